@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace files {
+
+using Bytes = std::vector<std::uint8_t>;
+
+static_assert(std::endian::native == std::endian::little, "journal and wire are little-endian, and so is every host");
+
+/// Bytes that do not hold what they should: cut short, or a value that cannot be.
+class FormatError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+/// Appends little-endian numbers to bytes: what the wire, the broadcast and the journal are made of.
+class ByteWriter {
+public:
+    template <class Number>
+        requires std::is_arithmetic_v<Number>
+    void put(Number value) {
+        const std::size_t end = bytes_.size();
+        bytes_.resize(end + sizeof value);
+        std::memcpy(bytes_.data() + end, &value, sizeof value);
+    }
+    void putBytes(std::span<const std::uint8_t> bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
+    /// A length, then the bytes.
+    void putBlock(std::span<const std::uint8_t> bytes) {
+        put(static_cast<std::uint32_t>(bytes.size()));
+        putBytes(bytes);
+    }
+    void putText(std::string_view text) {
+        putBlock({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    }
+    /// Seven bits a byte, lowest first.
+    void putVarint(std::uint64_t value) {
+        for (; value >= 0x80; value >>= 7) {
+            bytes_.push_back(static_cast<std::uint8_t>(value | 0x80));
+        }
+        bytes_.push_back(static_cast<std::uint8_t>(value));
+    }
+    /// Small magnitudes of either sign stay short.
+    void putSigned(std::int64_t value) {
+        putVarint((static_cast<std::uint64_t>(value) << 1) ^ static_cast<std::uint64_t>(value >> 63));
+    }
+
+    [[nodiscard]] const Bytes& bytes() const { return bytes_; }
+    [[nodiscard]] Bytes take() { return std::move(bytes_); }
+
+private:
+    Bytes bytes_;
+};
+
+/// Reads what ByteWriter wrote; throws FormatError rather than read past the end.
+class ByteReader {
+public:
+    explicit ByteReader(std::span<const std::uint8_t> bytes) : rest_(bytes) {}
+
+    template <class Number>
+        requires std::is_arithmetic_v<Number>
+    Number get() {
+        Number value;
+        std::memcpy(&value, getBytes(sizeof value).data(), sizeof value);
+        return value;
+    }
+    std::span<const std::uint8_t> getBytes(std::size_t count) {
+        if (count > rest_.size()) {
+            throw FormatError("cut short: " + std::to_string(count) + " bytes wanted, " +
+                              std::to_string(rest_.size()) + " there");
+        }
+        const auto bytes = rest_.first(count);
+        rest_ = rest_.subspan(count);
+        return bytes;
+    }
+    std::span<const std::uint8_t> getBlock() { return getBytes(get<std::uint32_t>()); }
+    std::string getText() {
+        const auto block = getBlock();
+        return {block.begin(), block.end()};
+    }
+    std::uint64_t getVarint() {
+        std::uint64_t value = 0;
+        for (unsigned shift = 0; shift < 64; shift += 7) {
+            const auto byte = get<std::uint8_t>();
+            value |= static_cast<std::uint64_t>(byte & 0x7f) << shift;
+            if ((byte & 0x80) == 0) {
+                return value;
+            }
+        }
+        throw FormatError("a number longer than 64 bits");
+    }
+    std::int64_t getSigned() {
+        const std::uint64_t value = getVarint();
+        return static_cast<std::int64_t>(value >> 1) ^ -static_cast<std::int64_t>(value & 1);
+    }
+    [[nodiscard]] std::span<const std::uint8_t> rest() const { return rest_; }
+    [[nodiscard]] bool atEnd() const { return rest_.empty(); }
+
+private:
+    std::span<const std::uint8_t> rest_;
+};
+
+}  // namespace files

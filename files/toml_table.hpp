@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <initializer_list>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace files {
+
+/// The closed range of numbers a key accepts; an error quotes it.
+struct Range {
+    double lowest = -std::numeric_limits<double>::max();
+    double highest = std::numeric_limits<double>::max();
+};
+
+inline constexpr Range kPositive{std::numeric_limits<double>::min(), std::numeric_limits<double>::max()};
+
+/// One table of a TOML file, read key by key, so that every complaint names file, line and key.
+///
+/// A reader takes the keys it knows and ends with finish(), which refuses the ones nobody asked for: a typing error
+/// must not become a silent default. Every member throws InputError. Copies share the same file.
+class TomlTable {
+public:
+    static TomlTable load(const std::filesystem::path& file);
+    /// `name` stands for the file in messages.
+    static TomlTable parse(std::string_view text, const std::string& name);
+
+    [[nodiscard]] bool has(std::string_view key) const;
+    [[nodiscard]] double number(std::string_view key, Range range = {}) const;
+    [[nodiscard]] double numberOr(std::string_view key, double fallback, Range range = {}) const;
+    [[nodiscard]] int integer(std::string_view key, int lowest, int highest) const;
+    [[nodiscard]] int integerOr(std::string_view key, int fallback, int lowest, int highest) const;
+    [[nodiscard]] bool flagOr(std::string_view key, bool fallback) const;
+    [[nodiscard]] std::string text(std::string_view key) const;
+    [[nodiscard]] std::string textOr(std::string_view key, std::string_view fallback) const;
+    /// The index of the key's text among `choices`, `fallback` when the key is absent.
+    [[nodiscard]] int choiceOr(std::string_view key, std::initializer_list<std::string_view> choices,
+                               int fallback) const;
+    /// Exactly `count` finite numbers.
+    [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count) const;
+    [[nodiscard]] std::vector<double> numbersOr(std::string_view key, std::vector<double> fallback) const;
+    [[nodiscard]] std::vector<std::string> textsOr(std::string_view key, std::vector<std::string> fallback) const;
+
+    /// A sub-table; absent gives nothing.
+    [[nodiscard]] std::optional<TomlTable> table(std::string_view key) const;
+    /// A sub-table that must be there.
+    [[nodiscard]] TomlTable requiredTable(std::string_view key) const;
+    /// The tables of [[key]], in the order of the file; absent gives none.
+    [[nodiscard]] std::vector<TomlTable> tables(std::string_view key) const;
+
+    /// Throws for the first key, in the order of lines, that nobody read.
+    void finish() const;
+    /// Throws with file and the line of `key` (of the table itself when the key is absent).
+    [[noreturn]] void fail(std::string_view key, const std::string& message) const;
+    /// The folder of the file, for paths inside it.
+    [[nodiscard]] std::filesystem::path folder() const;
+
+private:
+    struct Document;
+    struct Node;
+    explicit TomlTable(std::shared_ptr<Node> node) : node_(std::move(node)) {}
+    std::shared_ptr<Node> node_;
+};
+
+}  // namespace files

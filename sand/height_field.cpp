@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/height_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+namespace sand {
+
+Rect Rect::clippedTo(const Rect& other) const {
+    return {std::max(x0, other.x0), std::max(y0, other.y0), std::min(x1, other.x1), std::min(y1, other.y1)};
+}
+
+HeightField::HeightField(int columns, int rows, double cellSize)
+    : columns_(columns), rows_(rows), cellSize_(cellSize) {
+    const bool sides = columns >= 1 && columns <= kMaxSide && rows >= 1 && rows <= kMaxSide;
+    if (!sides || !std::isfinite(cellSize) || cellSize <= 0) {
+        throw std::invalid_argument("HeightField: sides or cell size out of range");
+    }
+    cells_.assign((static_cast<std::size_t>(columns) + 2) * (static_cast<std::size_t>(rows) + 2), 0);
+}
+
+std::int64_t HeightField::volume() const {
+    std::int64_t sum = 0;
+    for (int y = 0; y < rows_; ++y) {
+        sum = std::accumulate(row(y), row(y) + columns_, sum);
+    }
+    return sum;
+}
+
+bool sameHeights(const HeightField& a, const HeightField& b) {
+    if (a.columns() != b.columns() || a.rows() != b.rows()) {
+        return false;
+    }
+    for (int y = 0; y < a.rows(); ++y) {
+        if (!std::equal(a.row(y), a.row(y) + a.columns(), b.row(y))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace sand

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/scene.hpp"
+
+#include <xxhash.h>
+
+#include "sand/heights_codec.hpp"
+
+namespace sand {
+
+void Rules::encode(files::ByteWriter& writer) const {
+    for (const std::int32_t number :
+         {columns, rows, threshold, startThreshold, sweepsPerStep, stepsPerSecond, toolRadius}) {
+        writer.put(number);
+    }
+    writer.put(static_cast<std::uint8_t>(scheme));
+    writer.put(static_cast<std::uint8_t>(rim));
+}
+
+Rules Rules::decode(files::ByteReader& reader) {
+    Rules rules;
+    for (std::int32_t* number : {&rules.columns, &rules.rows, &rules.threshold, &rules.startThreshold,
+                                 &rules.sweepsPerStep, &rules.stepsPerSecond, &rules.toolRadius}) {
+        *number = reader.get<std::int32_t>();
+        if (*number < 0) {
+            throw files::FormatError("a scene with a negative rule");
+        }
+    }
+    const auto scheme = reader.get<std::uint8_t>();
+    const auto rim = reader.get<std::uint8_t>();
+    const bool sides = rules.columns >= 1 && rules.columns <= kMaxSide && rules.rows >= 1 && rules.rows <= kMaxSide;
+    if (!sides || scheme > 1 || rim > 1 || rules.stepsPerSecond < 1) {
+        throw files::FormatError("a scene with rules out of range");
+    }
+    rules.scheme = static_cast<Scheme>(scheme);
+    rules.rim = static_cast<Rim>(rim);
+    return rules;
+}
+
+std::uint64_t Rules::digest() const {
+    files::ByteWriter writer;
+    encode(writer);
+    return XXH3_64bits_withSeed(writer.bytes().data(), writer.bytes().size(), kAlgorithmVersion);
+}
+
+std::int32_t Scene::referenceHeight() const {
+    const std::int64_t cells = std::int64_t{terrain.columns()} * terrain.rows();
+    return static_cast<std::int32_t>(terrain.volume() / cells);
+}
+
+files::Bytes Scene::encode() const {
+    files::ByteWriter writer;
+    writer.putText(name);
+    rules.encode(writer);
+    for (const double constant : {force.stiffness, force.depthExponent, force.friction}) {
+        writer.put(constant);
+    }
+    for (const auto* triple : {&look.sandColour, &look.backgroundColour, &look.sunDirection}) {
+        for (const double number : *triple) {
+            writer.put(number);
+        }
+    }
+    writer.put(terrain.cellSize());
+    encodeHeights(terrain, writer);
+    return writer.take();
+}
+
+Scene Scene::decode(std::span<const std::uint8_t> bytes) {
+    files::ByteReader reader(bytes);
+    Scene scene;
+    scene.name = reader.getText();
+    scene.rules = Rules::decode(reader);
+    for (double* constant : {&scene.force.stiffness, &scene.force.depthExponent, &scene.force.friction}) {
+        *constant = reader.get<double>();
+    }
+    for (auto* triple : {&scene.look.sandColour, &scene.look.backgroundColour, &scene.look.sunDirection}) {
+        for (double& number : *triple) {
+            number = reader.get<double>();
+        }
+    }
+    const auto cellSize = reader.get<double>();
+    if (!(cellSize > 0)) {
+        throw files::FormatError("a scene without a cell size");
+    }
+    scene.terrain = HeightField(scene.rules.columns, scene.rules.rows, cellSize);
+    decodeHeights(reader, scene.terrain);
+    return scene;
+}
+
+}  // namespace sand

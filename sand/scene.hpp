@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "files/byte_stream.hpp"
+#include "sand/height_field.hpp"
+
+namespace sand {
+
+/// Changes with anything that changes what a step does to the sand; replicas of different versions refuse each other.
+inline constexpr std::uint32_t kAlgorithmVersion = 1;
+
+enum class Scheme : std::uint8_t { isotropic, n4 };  // NUMERICS names: G and N4
+enum class Rim : std::uint8_t { closed, open };
+
+/// Every number the sand is computed from: derived once by whoever loads the scene, then broadcast, never recomputed.
+struct Rules {
+    std::int32_t columns = 0, rows = 0;
+    std::int32_t threshold = 0;         // [unit], largest stable difference between neighbours: tan(talus) · cell
+    std::int32_t startThreshold = 0;    // [unit], ≥ threshold: sand at rest starts to slide beyond this (hysteresis)
+    std::int32_t sweepsPerStep = 0;
+    std::int32_t stepsPerSecond = 0;
+    std::int32_t toolRadius = 0;        // [probe unit]
+    Scheme scheme = Scheme::isotropic;
+    Rim rim = Rim::closed;
+
+    void encode(files::ByteWriter& writer) const;
+    static Rules decode(files::ByteReader& reader);
+    /// What server and master compare: equal digests mean equal sand from equal steps.
+    [[nodiscard]] std::uint64_t digest() const;
+    friend bool operator==(const Rules&, const Rules&) = default;
+};
+
+/// Constants of the first paper's force law, in the units its text implies (docs/forces.md).
+struct ForceConstants {
+    double stiffness = 1000;     // k_s [N]
+    double depthExponent = 0.5;  // k_c [1/scene unit]
+    double friction = 10;        // k_f [frame/scene unit], speed per 1/60 s; the sphere's friction area k_a is inside
+    friend bool operator==(const ForceConstants&, const ForceConstants&) = default;
+};
+
+/// What to look at, not what to compute: never part of a digest.
+struct Look {
+    std::vector<double> sandColour{0.80, 0.66, 0.45};       // linear-light RGB, of dry sand in full light
+    std::vector<double> backgroundColour{0.10, 0.12, 0.15};  // linear-light RGB
+    std::vector<double> sunDirection{-0.55, 0.35, 0.60};     // towards the sun, scene axes x east, y north, z up
+};
+
+/// One session's world, read from a TOML file: terrain, material, tool, force, look.
+struct Scene {
+    std::string name;
+    Rules rules;
+    ForceConstants force;
+    Look look;
+    HeightField terrain{1, 1, 1.0};      // as the session starts
+    std::vector<std::string> warnings;   // one line each, for whoever loads it to print
+
+    [[nodiscard]] double toolRadius() const {  // [scene unit]
+        return rules.toolRadius * terrain.cellSize() / kProbePerCell;
+    }
+    /// The mean height the session starts with [unit]: devices hover and dig relative to it.
+    [[nodiscard]] std::int32_t referenceHeight() const;
+
+    /// The whole scene as bytes: what the master broadcasts and the journal begins with.
+    [[nodiscard]] files::Bytes encode() const;
+    /// Throws files::FormatError.
+    static Scene decode(std::span<const std::uint8_t> bytes);
+};
+
+/// Reads a scene file. Throws files::InputError with file, line and key; a DEM's errors name the DEM's line.
+[[nodiscard]] Scene loadScene(const std::filesystem::path& file);
+
+}  // namespace sand

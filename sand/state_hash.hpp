@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sand/height_field.hpp"
+
+namespace sand {
+
+inline constexpr int kHashTile = 32;  // [cell], side of a hash tile
+
+/// A hash of all heights that costs only what changed: one XXH3 per 32×32 tile, summed modulo 2^64.
+///
+/// A tile's index is its seed, so that exchanged tiles do not cancel. The tiling is part of the definition and does
+/// not follow the blocks that erosion works in.
+class StateHash {
+public:
+    explicit StateHash(const HeightField& field);
+
+    /// Marks the tiles that overlap `cells` as changed.
+    void touch(const Rect& cells);
+    /// Hashes the changed tiles, and returns the sum over all.
+    [[nodiscard]] std::uint64_t update(const HeightField& field);
+    /// Hashes the next `tiles` tiles, in turn over the field, whether or not they changed.
+    void audit(const HeightField& field, int tiles);
+
+    [[nodiscard]] int tileCount() const { return static_cast<int>(hashes_.size()); }
+    [[nodiscard]] const std::vector<std::uint64_t>& tileHashes() const { return hashes_; }  // row by row, south first
+    [[nodiscard]] Rect cellsOf(int tile) const;
+
+private:
+    void rehash(const HeightField& field, int tile);
+
+    int columns_, rows_, tilesAcross_;
+    std::vector<std::uint64_t> hashes_;
+    std::vector<std::uint8_t> dirty_;
+    std::uint64_t sum_ = 0;
+    int auditNext_ = 0;
+};
+
+}  // namespace sand

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "files/byte_stream.hpp"
+
+namespace sand {
+
+inline constexpr std::size_t kMaxPathPoints = 64;
+
+/// A pose of the tool's centre, quantised before anybody uses it [probe unit = cellSize / 256].
+///
+/// x runs east from the south-west corner of the field, y north, z up from height 0.
+struct ProbePoint {
+    std::int32_t x = 0, y = 0, z = 0;
+    friend bool operator==(const ProbePoint&, const ProbePoint&) = default;
+};
+
+/// The largest magnitude of a probe coordinate: any further out, and the tool is clamped by whoever quantises it.
+inline constexpr std::int32_t kMaxProbe = 1 << 24;  // [probe unit], four times the longest field
+
+/// The only thing that changes sand: where the hand has been since the step before.
+///
+/// `number` counts 1, 2, 3 … over a whole session; `epoch` names who numbered it (one sequencer per epoch). The path
+/// starts at the last point of the step before and may be empty (the hand rests); at most kMaxPathPoints.
+struct Step {
+    std::uint32_t epoch = 0;
+    std::uint64_t number = 0;
+    bool engaged = false;  // the tool touches; otherwise it hovers and leaves the sand alone
+    std::vector<ProbePoint> path;
+    friend bool operator==(const Step&, const Step&) = default;
+};
+
+/// The one encoding of a step, on the wire, in the broadcast and in the journal: differences in short integers, about
+/// 60 bytes at 17 samples a step.
+void encode(const Step& step, files::ByteWriter& writer);
+/// Throws files::FormatError for bytes that are no step, a path too long or a point beyond kMaxProbe.
+[[nodiscard]] Step decodeStep(files::ByteReader& reader);
+
+}  // namespace sand

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/terrain.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <stdexcept>
+#include <string>
+
+#include "sand/heights_codec.hpp"
+
+namespace sand {
+namespace {
+
+constexpr std::uint32_t kStateVersion = 1;
+
+Rect around(const Rect& a, const Rect& b) {
+    if (a.empty()) {
+        return b;
+    }
+    if (b.empty()) {
+        return a;
+    }
+    return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
+}
+
+/// The finaliser of MurmurHash3: every bit of the input reaches every bit of the result.
+std::uint64_t mix(std::uint64_t value) {
+    value = (value ^ (value >> 33)) * 0xff51afd7ed558ccdULL;
+    value = (value ^ (value >> 33)) * 0xc4ceb9fe1a85ec53ULL;
+    return value ^ (value >> 33);
+}
+
+}  // namespace
+
+Terrain::Terrain(const Scene& scene)
+    : rules_(scene.rules), field_(scene.terrain), erosion_(field_, rules_), hash_(field_), damage_(field_.bounds()) {}
+
+void Terrain::touch(const Rect& cells) {
+    if (!cells.empty()) {
+        hash_.touch(cells);
+        damage_ = around(damage_, cells);
+    }
+}
+
+void Terrain::apply(const Step& step) {
+    if (step.number != stepNumber_ + 1) {
+        throw std::logic_error("Terrain::apply: step " + std::to_string(step.number) + " after step " +
+                               std::to_string(stepNumber_));
+    }
+    const SphereTool tool(rules_.toolRadius);
+    const bool wasEngaged = engaged_;
+    const ProbePoint before = probe_;
+    for (std::size_t i = 0; i < step.path.size(); ++i) {
+        const ProbePoint to = step.path[i];
+        // A hand that has just engaged comes from nowhere: its first point presses and does not drag.
+        const bool arrived = !wasEngaged && i == 0;
+        if (step.engaged) {
+            const SphereTool::Displacement done = tool.drag(field_, rules_.rim, arrived ? to : probe_, to);
+            erosion_.touch(field_, done.cells);
+            touch(done.cells);
+            outflow_ += done.outflow;
+        }
+        probe_ = to;
+    }
+    engaged_ = step.engaged;
+    stepNumber_ = step.number;
+
+    const Obstacle here = engaged_ ? tool.obstacle(field_, probe_) : Obstacle{};
+    if (wasEngaged && (!engaged_ || probe_ != before)) {
+        // Sand that the tool held back may flow again.
+        erosion_.touch(field_, tool.obstacle(field_, before).cells);
+    }
+    outflow_ += erosion_.sweep(field_, rules_.sweepsPerStep, engaged_ ? &here : nullptr);
+    for (const Rect& block : erosion_.takeMoved()) {
+        touch(block);
+    }
+}
+
+std::uint64_t Terrain::stateHash() {
+    std::uint64_t hash = hash_.update(field_);
+    const auto fold = [&hash](std::uint64_t value) { hash = mix(hash ^ value) + std::rotl(value, 17); };
+    fold(stepNumber_);
+    fold(static_cast<std::uint64_t>(outflow_));
+    fold(engaged_ ? 1 : 0);
+    for (const std::int32_t coordinate : {probe_.x, probe_.y, probe_.z}) {
+        fold(static_cast<std::uint32_t>(coordinate));
+    }
+    return hash;
+}
+
+Rect Terrain::takeDamage() { return std::exchange(damage_, Rect{}); }
+
+files::Bytes Terrain::encodeState() const {
+    files::ByteWriter writer;
+    writer.put(kStateVersion);
+    writer.put(stepNumber_);
+    writer.put(outflow_);
+    writer.put(static_cast<std::uint8_t>(engaged_ ? 1 : 0));
+    for (const std::int32_t coordinate : {probe_.x, probe_.y, probe_.z}) {
+        writer.put(coordinate);
+    }
+    encodeHeights(field_, writer);
+    return writer.take();
+}
+
+void Terrain::decodeState(std::span<const std::uint8_t> bytes) {
+    files::ByteReader reader(bytes);
+    if (const auto version = reader.get<std::uint32_t>(); version != kStateVersion) {
+        throw files::FormatError("a state of version " + std::to_string(version));
+    }
+    const auto number = reader.get<std::uint64_t>();
+    const auto outflow = reader.get<std::int64_t>();
+    const bool engaged = reader.get<std::uint8_t>() != 0;
+    ProbePoint probe;
+    for (std::int32_t* coordinate : {&probe.x, &probe.y, &probe.z}) {
+        *coordinate = reader.get<std::int32_t>();
+        if (*coordinate > kMaxProbe || *coordinate < -kMaxProbe) {
+            throw files::FormatError("a state with its tool out of reach");
+        }
+    }
+    HeightField heights = field_;
+    decodeHeights(reader, heights);
+    field_ = std::move(heights);
+    stepNumber_ = number;
+    outflow_ = outflow;
+    engaged_ = engaged;
+    probe_ = probe;
+    // Which blocks were still moving is not in the state: visiting one at rest changes nothing.
+    erosion_ = Erosion(field_, rules_);
+    touch(field_.bounds());
+}
+
+void Terrain::corrupt(int column, int row) { field_.setHeight(column, row, field_.height(column, row) ^ 1); }
+
+}  // namespace sand

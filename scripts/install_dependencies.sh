@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Installs what Sandwall needs from Debian 12's packages; says nothing and asks for no password when all of it is there.
+set -euo pipefail
+
+packages=(
+    g++ cmake ninja-build pkg-config python3                # build and launcher
+    openmpi-bin libopenmpi-dev                              # the cluster
+    libboost-dev                                            # Asio, Endian, Lockfree: headers alone
+    libosmesa6-dev libglm-dev python3-glad # drawing
+    libtomlplusplus-dev libcli11-dev libfmt-dev             # files, options, messages
+    libxxhash-dev libzstd-dev libpng-dev nlohmann-json3-dev # hashes, states, pictures, summaries
+    libgtest-dev libbenchmark-dev                           # tests and benchmarks
+)
+# The tests also build with clang, for the proof that the state hash does not depend on the compiler.
+[[ "${1:-}" == "--with-tests" ]] && packages+=(clang-14)
+
+missing=()
+for package in "${packages[@]}"; do
+    status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
+    [[ "$status" == "installed" ]] || missing+=("$package")
+done
+[[ ${#missing[@]} -eq 0 ]] && exit 0
+
+as_root=()
+if [[ $EUID -ne 0 ]]; then
+    command -v sudo >/dev/null || { echo "install_dependencies.sh: run as root, or install sudo; missing: ${missing[*]}" >&2; exit 2; }
+    as_root=(sudo)
+fi
+echo "installing: ${missing[*]}"
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
