@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -34,7 +34,12 @@ public:
         bytes_.resize(end + sizeof value);
         std::memcpy(bytes_.data() + end, &value, sizeof value);
     }
-    void putBytes(std::span<const std::uint8_t> bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
+    void putBytes(std::span<const std::uint8_t> bytes) {
+        // resize and copy: g++ 12 takes the growth inside vector::insert for an overflow and warns.
+        const std::size_t end = bytes_.size();
+        bytes_.resize(end + bytes.size());
+        std::copy(bytes.begin(), bytes.end(), bytes_.begin() + static_cast<std::ptrdiff_t>(end));
+    }
     /// A length, then the bytes.
     void putBlock(std::span<const std::uint8_t> bytes) {
         put(static_cast<std::uint32_t>(bytes.size()));
