@@ -18,7 +18,8 @@ struct Offset {
 };
 
 Offset offsetOf(ProbePoint at, int column, int row) {
-    return {std::int64_t{column} * kProbePerCell + kHalfCell - at.x, std::int64_t{row} * kProbePerCell + kHalfCell - at.y};
+    return {std::int64_t{column} * kProbePerCell + kHalfCell - at.x,
+            std::int64_t{row} * kProbePerCell + kHalfCell - at.y};
 }
 
 int cellOf(std::int64_t coordinate /* [probe unit] */) {
