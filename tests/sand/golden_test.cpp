@@ -9,7 +9,7 @@
 
 namespace {
 
-/// 2000 steps of a senseless hand over dunes on an odd-sized field.
+/// 400 steps of a senseless hand over dunes on an odd-sized field.
 std::uint64_t hashOfSession(sand::Scheme scheme, sand::Rim rim) {
     sand::Scene scene = samples::flatScene(97, 61, 2.56);
     sand::makeDunes({.bed = 2, .height = 6, .length = 30, .seed = 5}, scene.terrain);
@@ -17,7 +17,7 @@ std::uint64_t hashOfSession(sand::Scheme scheme, sand::Rim rim) {
     scene.rules.rim = rim;
     sand::Terrain terrain(scene);
     std::mt19937 random(43);
-    for (std::uint64_t i = 1; i <= 2000; ++i) {
+    for (std::uint64_t i = 1; i <= 400; ++i) {
         terrain.apply(samples::randomStep(i, scene.rules, random));
     }
     return terrain.stateHash();
@@ -29,9 +29,9 @@ std::uint64_t hashOfSession(sand::Scheme scheme, sand::Rim rim) {
 TEST(Golden, SessionHashesAreTheSameEverywhere) {
     using enum sand::Scheme;
     using enum sand::Rim;
-    EXPECT_EQ(fmt::format("{:016x}", hashOfSession(isotropic, closed)), "d8d26772cf2508e4");
-    EXPECT_EQ(fmt::format("{:016x}", hashOfSession(isotropic, open)), "1e825635f7242dfa");
-    EXPECT_EQ(fmt::format("{:016x}", hashOfSession(n4, closed)), "aa1d372af6ae3d3c");
+    EXPECT_EQ(fmt::format("{:016x}", hashOfSession(isotropic, closed)), "06a2c90d7f6815c7");
+    EXPECT_EQ(fmt::format("{:016x}", hashOfSession(isotropic, open)), "b538a1e0dc3c4a2c");
+    EXPECT_EQ(fmt::format("{:016x}", hashOfSession(n4, closed)), "731b07712236c456");
 }
 
 }  // namespace
