@@ -46,8 +46,8 @@ public:
         }
     }
 
-    /// Frames until the last one. Returns the exit status.
-    int run(double frameTimeout) {
+    /// Frames until the last one, or until replicas differ.
+    void run(double frameTimeout) {
         lockstep::FrameBarrier barrier(cluster_, {}, frameTimeout);
         const std::int64_t clockAhead = lockstep::clockAheadOfMaster(cluster_);
         std::int64_t lastSwap = 0;
@@ -71,7 +71,7 @@ public:
             if (!equal) {
                 (void)lockstep::findDivergence(cluster_, *terrain_);
                 (void)lockstep::gatherReports(cluster_, report());
-                return 1;
+                return;  // the master says what differs, and ends with the status for it
             }
             more = !frame.stop;
             if (frame.stop) {
@@ -81,7 +81,6 @@ public:
                 sendPictures();
             }
         }
-        return 0;
     }
 
 private:
@@ -156,7 +155,8 @@ int showTile(const lockstep::Cluster& cluster, Backend backend) {
     if (!lockstep::agreeToGoOn(cluster, false)) {
         return 0;
     }
-    return session->run(message->frameTimeout);
+    session->run(message->frameTimeout);
+    return 0;
 }
 
 }  // namespace render_node

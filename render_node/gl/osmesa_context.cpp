@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// glad's header must come before Mesa's, which brings its own declarations of OpenGL.
+// clang-format off
+#include <glad/gl.h>
+#include <GL/osmesa.h>
+// clang-format on
+
+#include <array>
+
+#include "files/input_error.hpp"
+#include "render_node/gl/gl_context.hpp"
+
+namespace render_node {
+namespace {
+
+/// Mesa drawing into memory: no window, no display server, no graphics card.
+class OsmesaContext final : public GlContext {
+public:
+    OsmesaContext() : context_(create()) {
+        makeCurrent();
+        if (gladLoadGL(OSMesaGetProcAddress) == 0) {
+            OSMesaDestroyContext(context_);
+            throw files::InputError("OSMesa gave an OpenGL context without functions; reinstall libosmesa6");
+        }
+    }
+    ~OsmesaContext() override { OSMesaDestroyContext(context_); }
+
+    void makeCurrent() override {
+        if (OSMesaMakeCurrent(context_, surface_.data(), GL_UNSIGNED_BYTE, kSide, kSide) != GL_TRUE) {
+            throw files::InputError("OSMesa cannot make its OpenGL context current; reinstall libosmesa6");
+        }
+    }
+    [[nodiscard]] std::string name() const override { return "osmesa"; }
+
+private:
+    static OSMesaContext create() {
+        constexpr std::array<int, 13> kWanted{OSMESA_FORMAT,
+                                              OSMESA_RGBA,
+                                              OSMESA_DEPTH_BITS,
+                                              0,
+                                              OSMESA_STENCIL_BITS,
+                                              0,
+                                              OSMESA_PROFILE,
+                                              OSMESA_CORE_PROFILE,
+                                              OSMESA_CONTEXT_MAJOR_VERSION,
+                                              3,
+                                              OSMESA_CONTEXT_MINOR_VERSION,
+                                              3,
+                                              0};
+        OSMesaContext context = OSMesaCreateContextAttribs(kWanted.data(), nullptr);
+        if (context == nullptr) {
+            throw files::InputError("OSMesa has no OpenGL 3.3 core; install Mesa's libosmesa6 22 or later");
+        }
+        return context;
+    }
+
+    static constexpr int kSide = 4;  // [pixel]: everything is drawn into frame buffers of our own
+    std::array<unsigned char, 4 * kSide * kSide> surface_{};
+    OSMesaContext context_;
+};
+
+}  // namespace
+
+std::unique_ptr<GlContext> makeOsmesaContext() { return std::make_unique<OsmesaContext>(); }
+
+}  // namespace render_node

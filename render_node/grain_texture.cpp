@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/grain_texture.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace render_node {
+namespace {
+
+constexpr int kMask = kGrainSide - 1;
+static_assert((kGrainSide & kMask) == 0, "the pattern wraps by masking");
+
+/// 0 … 255 per lattice point (the finaliser of MurmurHash3 on 32 bits).
+int hashAt(int x, int y, std::uint32_t seed) {
+    std::uint32_t h = static_cast<std::uint32_t>(x) * 0x9e3779b1U + static_cast<std::uint32_t>(y) * 0x85ebca6bU + seed;
+    h = (h ^ (h >> 16)) * 0x85ebca6bU;
+    h = (h ^ (h >> 13)) * 0xc2b2ae35U;
+    return static_cast<int>((h ^ (h >> 16)) & 0xffU);
+}
+
+/// How high the grains lie at a texel, 0 … 4080: white noise under a small binomial blur.
+int bump(int x, int y) {
+    constexpr std::array<int, 3> kWeight{1, 2, 1};
+    int sum = 0;
+    for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+            const int weight = kWeight[static_cast<std::size_t>(dx + 1)] * kWeight[static_cast<std::size_t>(dy + 1)];
+            sum += weight * hashAt((x + dx) & kMask, (y + dy) & kMask, 1);
+        }
+    }
+    return sum;
+}
+
+/// Bilinear noise with features of `size` texels, 0 … 255.
+int slowNoise(int x, int y, int size, std::uint32_t seed) {
+    const int lattice = kGrainSide / size;
+    const auto at = [&](int i, int j) { return hashAt(i & (lattice - 1), j & (lattice - 1), seed); };
+    const int i = x / size;
+    const int j = y / size;
+    const int tx = x % size;
+    const int ty = y % size;
+    const int south = at(i, j) * (size - tx) + at(i + 1, j) * tx;
+    const int north = at(i, j + 1) * (size - tx) + at(i + 1, j + 1) * tx;
+    return (south * (size - ty) + north * ty) / (size * size);
+}
+
+std::uint8_t toByte(int value) { return static_cast<std::uint8_t>(std::clamp(value, 0, 255)); }
+
+}  // namespace
+
+std::vector<std::uint8_t> makeGrain() {
+    std::vector<std::uint8_t> texels;
+    texels.reserve(4UL * kGrainSide * kGrainSide);
+    for (int y = 0; y < kGrainSide; ++y) {
+        for (int x = 0; x < kGrainSide; ++x) {
+            // Quartz of many shades; one grain in 40 is a dark mineral, one in 40 glints.
+            const int kind = hashAt(x, y, 7);
+            const int odd = kind < 6 ? -70 : kind > 249 ? 60 : 0;
+            texels.push_back(toByte(128 + (hashAt(x, y, 3) - 128) / 2 + odd));
+            texels.push_back(toByte(128 + (bump(x - 1, y) - bump(x + 1, y)) / 12));
+            texels.push_back(toByte(128 + (bump(x, y - 1) - bump(x, y + 1)) / 12));
+            texels.push_back(toByte((4 * slowNoise(x, y, 64, 11) + 3 * slowNoise(x, y, 32, 12) +
+                                     2 * slowNoise(x, y, 16, 13) + slowNoise(x, y, 8, 14)) /
+                                    10));
+        }
+    }
+    return texels;
+}
+
+GrainTexture::GrainTexture() {
+    const std::vector<std::uint8_t> texels = makeGrain();
+    glBindTexture(GL_TEXTURE_2D, texture_.id());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, kGrainSide, kGrainSide, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+    glGenerateMipmap(GL_TEXTURE_2D);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+}
+
+void GrainTexture::bind(int unit) const {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(GL_TEXTURE_2D, texture_.id());
+}
+
+}  // namespace render_node

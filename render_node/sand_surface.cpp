@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/sand_surface.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace render_node {
+
+SandSurface::SandSurface(const sand::HeightField& field)
+    : columns_(field.columns()),
+      rows_(field.rows()),
+      cellSize_(static_cast<float>(field.cellSize())),
+      heights_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {
+    update(field, field.bounds());
+}
+
+void SandSurface::update(const sand::HeightField& field, const sand::Rect& cells) {
+    const double unit = field.unit();
+    for (int row = cells.y0; row < cells.y1; ++row) {
+        const std::int32_t* from = field.row(row);
+        float* to = heights_.data() + static_cast<std::ptrdiff_t>(row) * columns_;
+        for (int column = cells.x0; column < cells.x1; ++column) {
+            to[column] = static_cast<float>(from[column] * unit);
+        }
+    }
+}
+
+float SandSurface::height(int column, int row) const {
+    const auto x = static_cast<std::size_t>(std::clamp(column, 0, columns_ - 1));
+    const auto y = static_cast<std::size_t>(std::clamp(row, 0, rows_ - 1));
+    return heights_[y * static_cast<std::size_t>(columns_) + x];
+}
+
+float SandSurface::along(int vertex, int cells) const {
+    return std::clamp(static_cast<float>(vertex) - 0.5F, 0.0F, static_cast<float>(cells)) * cellSize_;
+}
+
+/// One minus the mean squared sine of the horizon over eight directions: the sky's light on level ground there.
+float SandSurface::openSky(int column, int row) const {
+    struct Direction {
+        int east, north;
+        float length;
+    };
+    constexpr float kDiagonal = 1.41421356F;
+    static constexpr std::array<Direction, 8> kDirections{{{1, 0, 1},
+                                                           {-1, 0, 1},
+                                                           {0, 1, 1},
+                                                           {0, -1, 1},
+                                                           {1, 1, kDiagonal},
+                                                           {-1, 1, kDiagonal},
+                                                           {1, -1, kDiagonal},
+                                                           {-1, -1, kDiagonal}}};
+    static constexpr std::array<int, 3> kDistances{2, 5, kReach};
+    const float here = height(column, row);
+    float hidden = 0;
+    for (const Direction& direction : kDirections) {
+        float steepest = 0;
+        for (const int distance : kDistances) {
+            const float rise = height(column + direction.east * distance, row + direction.north * distance) - here;
+            steepest = std::max(steepest, rise / (direction.length * static_cast<float>(distance)));
+        }
+        const float square = steepest / cellSize_ * (steepest / cellSize_);
+        hidden += square / (1 + square);
+    }
+    return 1 - hidden / static_cast<float>(kDirections.size());
+}
+
+SandVertex SandSurface::vertexAt(int column, int row) const {
+    const int x = std::clamp(column - 1, 0, columns_ - 1);
+    const int y = std::clamp(row - 1, 0, rows_ - 1);
+    // One-sided at the rim; a field of one column is level across.
+    const auto slope = [this](float low, float high, int cells) {
+        return cells == 0 ? 0.0F : (high - low) / (static_cast<float>(cells) * cellSize_);
+    };
+    const int west = std::max(x - 1, 0);
+    const int east = std::min(x + 1, columns_ - 1);
+    const int south = std::max(y - 1, 0);
+    const int north = std::min(y + 1, rows_ - 1);
+    const float slopeEast = slope(height(west, y), height(east, y), east - west);
+    const float slopeNorth = slope(height(x, south), height(x, north), north - south);
+    const float scale = 32767 / std::sqrt(1 + slopeEast * slopeEast + slopeNorth * slopeNorth);
+    SandVertex vertex{};
+    vertex.height = height(x, y);
+    vertex.column = static_cast<std::uint16_t>(column);
+    vertex.row = static_cast<std::uint16_t>(row);
+    vertex.normalEast = static_cast<std::int16_t>(-slopeEast * scale);
+    vertex.normalNorth = static_cast<std::int16_t>(-slopeNorth * scale);
+    vertex.open = static_cast<std::uint16_t>(openSky(x, y) * 65535);
+    return vertex;
+}
+
+void SandSurface::fill(const sand::Rect& vertices, std::span<SandVertex> out) const {
+    std::size_t next = 0;
+    for (int row = vertices.y0; row < vertices.y1; ++row) {
+        for (int column = vertices.x0; column < vertices.x1; ++column) {
+            out[next++] = vertexAt(std::min(column, columns_ + 1), std::min(row, rows_ + 1));
+        }
+    }
+}
+
+}  // namespace render_node

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "render_node/eye_target.hpp"
+#include "render_node/gl/gl_program.hpp"
+#include "render_node/grain_texture.hpp"
+#include "render_node/sand_box.hpp"
+#include "render_node/sand_mesh.hpp"
+#include "render_node/tool_mesh.hpp"
+#include "sand/scene.hpp"
+#include "sand/step.hpp"
+
+namespace render_node {
+
+/// One eye of one tile.
+struct Camera {
+    glm::dmat4 roomToClip;  // OpenGL clip coordinates from metres in the room
+    glm::dvec3 eye;         // [m], room
+};
+
+/// What the last draw() did.
+struct DrawCounts {
+    int chunks = 0;         // of sand, drawn
+    int chunksOfField = 0;  // that the field has
+    int triangles = 0;      // of sand, drawn
+};
+
+/// The scene as a person sees it: sand, the box it lies in, and the tool.
+///
+/// Scene axes are x east, y north, z up, with the origin at the south-west corner of the field and height 0, in scene
+/// units; `sceneToRoom` (a similarity: turned, moved and scaled alike in all axes) takes them to metres in the room.
+/// Every position and colour is a function of the scene alone, so that the tiles of a wall join. Only the chunks a
+/// camera sees are ever built, sent to GL and drawn. Needs its context current; one thread.
+class SandView {
+public:
+    /// Takes heights, tool radius and look from the scene. Throws std::runtime_error when a shader does not compile.
+    SandView(const sand::Scene& scene, const glm::dmat4& sceneToRoom);
+
+    /// Takes over the heights of `damage`, which may be empty or reach beyond the field. `field` must have the size
+    /// of the scene's; it is copied, not kept.
+    void update(const sand::HeightField& field, sand::Rect damage);
+    /// Where the tool's centre is. No tool is drawn before the first call.
+    void setTool(sand::ProbePoint centre, bool engaged);
+
+    /// Clears the target and draws everything into it. Does not wait: EyeTarget::finish() does.
+    void draw(const Camera& camera, const EyeTarget& target);
+
+    [[nodiscard]] const DrawCounts& counts() const { return counts_; }
+    /// Bytes this view has asked of GL for geometry so far.
+    [[nodiscard]] std::size_t geometryBytes() const { return mesh_.bytes(); }
+    /// Draws every chunk, seen or not: for measurements of what culling gains.
+    void setCulling(bool culling) { culling_ = culling; }
+
+private:
+    struct Tool {
+        glm::vec3 centre;  // [scene unit]
+        bool engaged;
+    };
+    void prepare(const GlProgram& program, const Camera& camera) const;
+
+    glm::dmat4 sceneToRoom_;
+    sand::Look look_;
+    float cellSize_;    // [scene unit]
+    float toolRadius_;  // [scene unit]
+    std::optional<Tool> tool_;
+    bool culling_ = true;
+    DrawCounts counts_;
+
+    GlProgram sandProgram_, skirtProgram_, woodProgram_, toolProgram_;
+    GrainTexture grain_;
+    SandMesh mesh_;
+    SandBox box_;
+    ToolMesh toolMesh_;
+};
+
+}  // namespace render_node
