@@ -48,27 +48,38 @@ std::uint8_t toByte(int value) { return static_cast<std::uint8_t>(std::clamp(val
 
 }  // namespace
 
-std::vector<std::uint8_t> makeGrain() {
+int mottlingAt(int column, int row) {
+    const int x = column & kMask;
+    const int y = row & kMask;
+    return (4 * slowNoise(x, y, 64, 11) + 3 * slowNoise(x, y, 32, 12) + 2 * slowNoise(x, y, 16, 13) +
+            slowNoise(x, y, 8, 14)) /
+           10;
+}
+
+std::vector<std::uint8_t> makeGrain(const glm::vec2& sun) {
+    const float length = std::max(glm::length(sun), 1e-6F);
+    const glm::vec2 towards = sun / length;
     std::vector<std::uint8_t> texels;
     texels.reserve(4UL * kGrainSide * kGrainSide);
     for (int y = 0; y < kGrainSide; ++y) {
         for (int x = 0; x < kGrainSide; ++x) {
             // Quartz of many shades; one grain in 40 is a dark mineral, one in 40 glints.
             const int kind = hashAt(x, y, 7);
-            const int odd = kind < 6 ? -70 : kind > 249 ? 60 : 0;
-            texels.push_back(toByte(128 + (hashAt(x, y, 3) - 128) / 2 + odd));
-            texels.push_back(toByte(128 + (bump(x - 1, y) - bump(x + 1, y)) / 12));
-            texels.push_back(toByte(128 + (bump(x, y - 1) - bump(x, y + 1)) / 12));
-            texels.push_back(toByte((4 * slowNoise(x, y, 64, 11) + 3 * slowNoise(x, y, 32, 12) +
-                                     2 * slowNoise(x, y, 16, 13) + slowNoise(x, y, 8, 14)) /
-                                    10));
+            const int odd = kind < 6 ? -40 : kind > 249 ? 30 : 0;
+            const int clumps = (slowNoise(x, y, 4, 5) - 128) / 10;
+            texels.push_back(toByte(128 + (hashAt(x, y, 3) - 128) / 7 + odd + clumps));
+            const auto east = static_cast<float>(bump(x + 1, y) - bump(x - 1, y));
+            const auto north = static_cast<float>(bump(x, y + 1) - bump(x, y - 1));
+            texels.push_back(toByte(128 - static_cast<int>((east * towards.x + north * towards.y) / 12)));
+            texels.push_back(toByte(mottlingAt(x, y)));
+            texels.push_back(255);
         }
     }
     return texels;
 }
 
-GrainTexture::GrainTexture() {
-    const std::vector<std::uint8_t> texels = makeGrain();
+GrainTexture::GrainTexture(const glm::vec2& sun) {
+    const std::vector<std::uint8_t> texels = makeGrain(sun);
     glBindTexture(GL_TEXTURE_2D, texture_.id());
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, kGrainSide, kGrainSide, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
     glGenerateMipmap(GL_TEXTURE_2D);

@@ -53,7 +53,7 @@ SandBox::SandBox(const SandSurface& surface, sand::Rim rim) {
     const float length = std::max(surface.east(surface.columns() + 1), surface.north(surface.rows() + 1));
     floor_ = lowest - 0.06F * length;
     // Boards as high as the sand at the rim and a little more; but mountains must not vanish behind them.
-    top_ = std::min(highestRim + 0.006F * length, lowestRim + 0.03F * length);
+    top_ = std::min(highestRim + 0.006F * length, lowestRim + 0.045F * length);
     makeSides(surface);
     makeBoards(surface, rim);
 }

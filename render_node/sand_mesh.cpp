@@ -23,7 +23,7 @@ void describeVertex() {
     attribute(0, 1, GL_FLOAT, GL_FALSE, offsetof(SandVertex, height));
     attribute(1, 2, GL_UNSIGNED_SHORT, GL_FALSE, offsetof(SandVertex, column));
     attribute(2, 2, GL_SHORT, GL_TRUE, offsetof(SandVertex, normalEast));
-    attribute(3, 1, GL_UNSIGNED_SHORT, GL_TRUE, offsetof(SandVertex, open));
+    attribute(3, 2, GL_UNSIGNED_SHORT, GL_TRUE, offsetof(SandVertex, open));
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "render_node/grain_texture.hpp"
+
 namespace render_node {
 
 SandSurface::SandSurface(const sand::HeightField& field)
@@ -87,6 +89,7 @@ SandVertex SandSurface::vertexAt(int column, int row) const {
     vertex.normalEast = static_cast<std::int16_t>(-slopeEast * scale);
     vertex.normalNorth = static_cast<std::int16_t>(-slopeNorth * scale);
     vertex.open = static_cast<std::uint16_t>(openSky(x, y) * 65535);
+    vertex.mottling = static_cast<std::uint16_t>(mottlingAt(x, y) * 257);
     return vertex;
 }
 

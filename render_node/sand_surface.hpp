@@ -15,7 +15,7 @@ struct SandVertex {
     std::uint16_t column, row;             // of the vertex grid
     std::int16_t normalEast, normalNorth;  // 1/32767
     std::uint16_t open;                    // share of the sky that the vertex sees, 1/65535
-    std::uint16_t unused;
+    std::uint16_t mottling;                // slow change of shade from place to place, 1/65535
 };
 static_assert(sizeof(SandVertex) == 16);
 

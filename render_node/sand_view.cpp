@@ -21,9 +21,10 @@ SandView::SandView(const sand::Scene& scene, const glm::dmat4& sceneToRoom)
       cellSize_(static_cast<float>(scene.terrain.cellSize())),
       toolRadius_(static_cast<float>(scene.toolRadius())),
       sandProgram_("sand.vert.glsl", "sand.frag.glsl"),
-      skirtProgram_("solid.vert.glsl", "sand.frag.glsl"),
+      sideProgram_("side.vert.glsl", "sand.frag.glsl"),
       woodProgram_("solid.vert.glsl", "wood.frag.glsl"),
       toolProgram_("solid.vert.glsl", "tool.frag.glsl"),
+      grain_(glm::vec2(glm::normalize(toVector(look_.sunDirection)))),
       mesh_(scene.terrain),
       box_(mesh_.surface(), scene.rules.rim) {
     counts_.chunksOfField = mesh_.chunks();
@@ -63,15 +64,13 @@ void SandView::draw(const Camera& camera, const EyeTarget& target) {
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     grain_.bind(0);
 
+    // Front to back as far as that is known: what is hidden is not shaded.
     if (tool_ && toolRadius_ > 0) {
         prepare(toolProgram_, camera);
         toolProgram_.set("uModel", glm::vec4(tool_->centre, toolRadius_));
         toolProgram_.set("uEngaged", tool_->engaged ? 1.0F : 0.0F);
         toolMesh_.draw();
     }
-    prepare(woodProgram_, camera);
-    box_.drawBoards();
-
     prepare(sandProgram_, camera);
     sandProgram_.set("uCell", cellSize_);
     sandProgram_.set("uCells", glm::vec2(mesh_.surface().columns(), mesh_.surface().rows()));
@@ -79,8 +78,10 @@ void SandView::draw(const Camera& camera, const EyeTarget& target) {
     counts_.chunks = drawn.chunks;
     counts_.triangles = drawn.triangles;
 
-    prepare(skirtProgram_, camera);
+    prepare(sideProgram_, camera);
     box_.drawSides();
+    prepare(woodProgram_, camera);
+    box_.drawBoards();
 }
 
 }  // namespace render_node

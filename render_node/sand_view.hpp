@@ -69,7 +69,7 @@ private:
     bool culling_ = true;
     DrawCounts counts_;
 
-    GlProgram sandProgram_, skirtProgram_, woodProgram_, toolProgram_;
+    GlProgram sandProgram_, sideProgram_, woodProgram_, toolProgram_;
     GrainTexture grain_;
     SandMesh mesh_;
     SandBox box_;

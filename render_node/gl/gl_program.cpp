@@ -56,7 +56,7 @@ const ShaderSource& shaderSource(std::string_view file) {
 }
 
 GlProgram::GlProgram(const ShaderSource& vertex, const ShaderSource& light, const ShaderSource& fragment) {
-    const Shader first(GL_VERTEX_SHADER, {&vertex});
+    const Shader first(GL_VERTEX_SHADER, {&light, &vertex});
     const Shader second(GL_FRAGMENT_SHADER, {&light, &fragment});
     for (const Shader* shader : {&first, &second}) {
         glAttachShader(program_.id(), shader->id());

@@ -24,10 +24,10 @@ struct ShaderSource {
 /// A linked pair of shaders and its uniforms.
 class GlProgram {
 public:
-    /// `light` is put before `fragment`. Throws std::runtime_error, one line "render_node/shaders/FILE: message", with
+    /// `light` is put before both. Throws std::runtime_error, one line "render_node/shaders/FILE: message", with
     /// the first complaint of the driver's compiler.
     GlProgram(const ShaderSource& vertex, const ShaderSource& light, const ShaderSource& fragment);
-    /// From embedded files; light.glsl is put before the fragment shader.
+    /// From embedded files; light.glsl is put before both.
     GlProgram(std::string_view vertexFile, std::string_view fragmentFile);
 
     void use() const { glUseProgram(program_.id()); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything but the sand's surface.
+// Boards and tool: everything but the sand.
 layout(location = 0) in vec3 aPosition;
 layout(location = 1) in vec3 aNormal;
 layout(location = 2) in vec2 aAlong;
@@ -11,13 +11,11 @@ uniform vec4 uModel;  // where the model stands, and its scale
 out vec3 vScene;
 out vec3 vNormal;
 out vec2 vAlong;
-out float vOpen;
 
 void main() {
     vScene = uModel.xyz + uModel.w * aPosition;
     vNormal = aNormal;
     vAlong = aAlong;
-    vOpen = 1.0;
     vec4 room = uSceneToRoom * vec4(vScene, 1.0);
     gl_Position = uRoomToClip * room;
 }

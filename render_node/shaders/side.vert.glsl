@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// The cut sides of the sand.
+layout(location = 0) in vec3 aPosition;
+layout(location = 1) in vec3 aNormal;
+
+uniform mat4 uSceneToRoom;
+uniform mat4 uRoomToClip;
+
+out vec4 vColour;
+out vec2 vGrainAt;
+
+void main() {
+    vColour = sandColour(aPosition, aNormal, 0.9, 0.5);
+    vGrainAt = grainAt(aPosition);
+    vec4 room = uSceneToRoom * vec4(aPosition, 1.0);
+    gl_Position = uRoomToClip * room;
+}

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "render_node/gl/gl_context.hpp"
+#include "sample_scene.hpp"
+
+namespace {
+
+using render_node::EyeTarget;
+using render_node::SandView;
+using sample::Pixels;
+
+constexpr int kWidth = 400;
+constexpr int kHeight = 300;
+
+/// The hash that picture_hash prints with this many threads of llvmpipe.
+std::string hashWithThreads(int threads) {
+    const std::string command =
+        "LP_NUM_THREADS=" + std::to_string(threads) + " '" SANDWALL_BIN_DIR "/picture_hash' 2>&1";
+    const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
+    std::array<char, 256> line{};
+    return pipe != nullptr && std::fgets(line.data(), line.size(), pipe.get()) != nullptr ? line.data() : "";
+}
+
+double meanLuminance(const Pixels& pixels, int x0, int y0, int x1, int y1) {
+    double sum = 0;
+    for (int y = y0; y < y1; ++y) {
+        for (int x = x0; x < x1; ++x) {
+            const glm::ivec3 colour = sample::pixel(pixels, kWidth, x, y);
+            sum += 0.2126 * colour.r + 0.7152 * colour.g + 0.0722 * colour.b;
+        }
+    }
+    return sum / ((x1 - x0) * (y1 - y0));
+}
+
+class Picture : public testing::Test {
+protected:
+    std::unique_ptr<render_node::GlContext> context_ = render_node::makeContext(render_node::Backend::osmesa);
+    EyeTarget target_{kWidth, kHeight};
+    render_node::Camera above_ = sample::camera({1, 1, 1.5}, {1, 1, 0});
+};
+
+TEST_F(Picture, NamesItsRenderer) {
+    EXPECT_EQ(context_->name(), "osmesa");
+    EXPECT_NE(context_->renderer().find("OpenGL"), std::string::npos) << context_->renderer();
+}
+
+TEST_F(Picture, OfASandBedIsFullOfSandColouredGrains) {
+    SandView view(sample::flatScene(128, 128), glm::dmat4(1));
+    const Pixels pixels = sample::draw(view, above_, target_);
+    int sandy = 0;
+    int darkest = 255;
+    int brightest = 0;
+    for (int y = 0; y < kHeight; ++y) {
+        for (int x = 0; x < kWidth; ++x) {
+            const glm::ivec3 colour = sample::pixel(pixels, kWidth, x, y);
+            // A hue between red and yellow, bright and not garish.
+            sandy += colour.r > colour.g && colour.g > colour.b && colour.r > 150 && colour.b > 80 ? 1 : 0;
+            darkest = std::min(darkest, colour.r);
+            brightest = std::max(brightest, colour.r);
+        }
+    }
+    EXPECT_GT(sandy, 0.98 * kWidth * kHeight);
+    EXPECT_GT(brightest - darkest, 12) << "no grains to see";
+}
+
+TEST_F(Picture, OfAFurrowHasASunnyAndAShadyBank) {
+    const sand::Scene scene = sample::flatScene(256, 256);
+    sand::Terrain terrain(scene);
+    SandView view(scene, glm::dmat4(1));
+    // North-south through the middle; the sun stands in the west, so that the eastern slope faces it.
+    sample::drag(terrain, scene, {1, 0.5, 0.01}, {1, 1.5, 0.01});
+    view.update(terrain.field(), terrain.takeDamage());
+    const Pixels pixels = sample::draw(view, above_, target_);
+    // 1.5 m over 400 pixels: 3.75 mm each; the furrow is some 5 cm wide on either side of column 200.
+    const double west = meanLuminance(pixels, 193, 130, 198, 170);
+    const double east = meanLuminance(pixels, 202, 130, 207, 170);
+    const double level = meanLuminance(pixels, 60, 130, 100, 170);
+    EXPECT_GT(east, level + 5);
+    EXPECT_LT(west, level - 25);
+}
+
+TEST_F(Picture, OfDamageAloneEqualsThatOfEverything) {
+    const sand::Scene scene = sample::duneScene(150);
+    sand::Terrain terrain(scene);
+    SandView partial(scene, glm::dmat4(1));
+    (void)terrain.takeDamage();
+    const auto camera = sample::camera({1, -0.4, 1.1}, {1, 0.9, 0});
+    const Pixels before = sample::draw(partial, camera, target_);
+    for (const double x : {0.02, 0.5, 1.3}) {  // the first touches the rim
+        sample::drag(terrain, scene, {x, 0.4, 0.03}, {x + 0.3, 1.2, 0.02});
+        partial.update(terrain.field(), terrain.takeDamage());
+        SandView whole(scene, glm::dmat4(1));
+        whole.update(terrain.field(), terrain.field().bounds());
+        const Pixels got = sample::draw(partial, camera, target_);
+        EXPECT_TRUE(got == sample::draw(whole, camera, target_)) << "after the furrow at " << x;
+        EXPECT_FALSE(got == before);
+    }
+}
+
+TEST_F(Picture, KeepsNoTraceOfTheOneBefore) {
+    SandView view(sample::duneScene(100), glm::dmat4(1));
+    const Pixels first = sample::draw(view, above_, target_);
+    sample::draw(view, sample::camera({0.3, -1, 0.4}, {1, 1, 0}), target_);
+    EXPECT_TRUE(sample::draw(view, above_, target_) == first);
+}
+
+TEST_F(Picture, ShowsTheToolTrueToSize) {
+    const sand::Scene scene = sample::flatScene(128, 128, 0.05);
+    SandView view(scene, glm::dmat4(1));
+    const Pixels without = sample::draw(view, above_, target_);
+    view.setTool(sample::probeAt(scene, {1, 1, 0.5}), true);
+    const Pixels with = sample::draw(view, above_, target_);
+    int red = 0;
+    for (int y = 0; y < kHeight; ++y) {
+        for (int x = 0; x < kWidth; ++x) {
+            const glm::ivec3 colour = sample::pixel(with, kWidth, x, y);
+            red += colour.r > 2 * colour.g && colour.r > 60 ? 1 : 0;
+        }
+    }
+    // Seen from 1 m with 400 pixels to a metre there: a disc of 20 pixels radius, tangents r/√(d² − r²).
+    const double radius = 0.05 / std::sqrt(1 - 0.05 * 0.05) * 400;
+    EXPECT_NEAR(red, 3.14159 * radius * radius, 0.12 * 3.14159 * radius * radius);
+    // Its shadow falls away from the sun, to the east and south of it.
+    EXPECT_FALSE(with == without);
+}
+
+TEST_F(Picture, OfEveryFieldSizeIsDrawn) {
+    for (const auto& [columns, rows] : {std::pair{1, 1}, {2, 1}, {1, 40}, {31, 33}, {63, 64}, {80, 122}, {100, 7}}) {
+        SandView view(sample::flatScene(columns, rows), glm::dmat4(1));
+        const auto middle = glm::dvec3(1, sample::kWidth * rows / columns / 2, 0);
+        const Pixels pixels = sample::draw(view, sample::camera(middle + glm::dvec3(0, 0, 1.5), middle), target_);
+        const glm::ivec3 centre = sample::pixel(pixels, kWidth, kWidth / 2, kHeight / 2);
+        EXPECT_GT(centre.r, centre.b + 20) << columns << " x " << rows;
+        EXPECT_GT(view.counts().chunks, 0);
+    }
+}
+
+TEST_F(Picture, IsTheSameForEveryNumberOfThreads) {
+    const std::string one = hashWithThreads(0);
+    ASSERT_EQ(one.size(), 17U) << one;
+    EXPECT_EQ(hashWithThreads(1), one);
+    EXPECT_EQ(hashWithThreads(2), one);
+}
+
+TEST_F(Picture, RefusesImpossibleSizes) {
+    EXPECT_THROW(EyeTarget(0, 10), std::runtime_error);
+    EXPECT_THROW(EyeTarget(1 << 20, 10), std::runtime_error);
+}
+
+TEST_F(Picture, NamesTheShaderThatDoesNotCompile) {
+    const auto& vertex = render_node::shaderSource("sand.vert.glsl");
+    const auto& light = render_node::shaderSource("light.glsl");
+    try {
+        const render_node::GlProgram program(vertex, light, {"broken.frag.glsl", "void main() { nonsense }"});
+        FAIL() << "it compiled";
+    } catch (const std::runtime_error& error) {
+        const std::string line = error.what();
+        EXPECT_EQ(line.rfind("render_node/shaders/broken.frag.glsl: ", 0), 0U) << line;
+        EXPECT_NE(line.find("nonsense"), std::string::npos) << line;
+        EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+    }
+}
+
+}  // namespace

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "render_node/gl/gl_context.hpp"
+#include "sample_scene.hpp"
+
+namespace {
+
+using render_node::EyeTarget;
+using render_node::SandView;
+using sample::Pixels;
+
+constexpr int kAcross = 4;  // tiles
+constexpr int kDown = 3;
+constexpr int kTileWidth = 256;
+constexpr int kTileHeight = 192;
+constexpr int kWidth = kAcross * kTileWidth;
+constexpr int kHeight = kDown * kTileHeight;
+
+/// Pixel by pixel, whether the scene's distance jumps nearby: the places where tiles may differ from the whole.
+std::vector<bool> silhouettes(const EyeTarget& whole) {
+    std::vector<float> depth(static_cast<std::size_t>(kWidth) * kHeight);
+    glBindFramebuffer(GL_FRAMEBUFFER, whole.framebuffer());
+    glReadPixels(0, 0, kWidth, kHeight, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
+    const auto distance = [&](int x, int yFromTop) {
+        const std::size_t at = static_cast<std::size_t>(kHeight - 1 - yFromTop) * kWidth + static_cast<std::size_t>(x);
+        return 2 * 0.05 * 30 / (30.05 - (2 * double{depth[at]} - 1) * 29.95);
+    };
+    std::vector<bool> out(depth.size());
+    for (int y = 0; y < kHeight; ++y) {
+        for (int x = 0; x < kWidth; ++x) {
+            double nearest = 1e9;
+            double farthest = 0;
+            for (int dy = std::max(0, y - 2); dy <= std::min(kHeight - 1, y + 2); ++dy) {
+                for (int dx = std::max(0, x - 2); dx <= std::min(kWidth - 1, x + 2); ++dx) {
+                    nearest = std::min(nearest, distance(dx, dy));
+                    farthest = std::max(farthest, distance(dx, dy));
+                }
+            }
+            out[static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x)] = farthest > 1.02 * nearest;
+        }
+    }
+    return out;
+}
+
+struct Difference {
+    double share = 0;      // of pixels that differ by more than 8 levels in some channel
+    double elsewhere = 0;  // share of pixels that do so away from silhouettes
+};
+
+class TiledWall : public testing::Test {
+protected:
+    /// The whole wall put together from its tiles, each drawn with a view of its own, as ranks do.
+    Pixels tiled(const glm::dvec3& eye) {
+        Pixels wall(3UL * kWidth * kHeight);
+        const EyeTarget target(kTileWidth, kTileHeight);
+        for (int row = 0; row < kDown; ++row) {
+            for (int column = 0; column < kAcross; ++column) {
+                SandView view = makeView();
+                const sample::Window window{column / double{kAcross}, 1 - (row + 1) / double{kDown},
+                                            (column + 1) / double{kAcross}, 1 - row / double{kDown}};
+                const Pixels tile = sample::draw(view, sample::camera(eye, eye + forward_, window), target);
+                fewestChunks_ = std::min(fewestChunks_, view.counts().chunks);
+                mostChunks_ = std::max(mostChunks_, view.counts().chunks);
+                chunksOfField_ = view.counts().chunksOfField;
+                for (int y = 0; y < kTileHeight; ++y) {
+                    const auto from = tile.begin() + 3L * y * kTileWidth;
+                    const auto at = 3L * ((row * kTileHeight + y) * kWidth + column * kTileWidth);
+                    std::copy(from, from + 3 * kTileWidth, wall.begin() + at);
+                }
+            }
+        }
+        return wall;
+    }
+    Pixels whole(const glm::dvec3& eye) {
+        SandView view = makeView();
+        return sample::draw(view, sample::camera(eye, eye + forward_), wholeTarget_);
+    }
+    [[nodiscard]] SandView makeView() const {
+        SandView view(scene_, glm::dmat4(1));
+        view.setTool(sample::probeAt(scene_, {1.1, 0.9, 0.06}), true);
+        return view;
+    }
+    /// Compares with the picture moved `shift` pixels to the right.
+    static Difference compare(const Pixels& wall, const Pixels& reference, const std::vector<bool>& edges,
+                              int shift = 0) {
+        int differ = 0;
+        int elsewhere = 0;
+        for (int y = 0; y < kHeight; ++y) {
+            for (int x = shift; x < kWidth; ++x) {
+                const glm::ivec3 gap =
+                    glm::abs(sample::pixel(wall, kWidth, x, y) - sample::pixel(reference, kWidth, x - shift, y));
+                if (std::max({gap.r, gap.g, gap.b}) > 8) {
+                    ++differ;
+                    const std::size_t at = static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x);
+                    elsewhere += edges[at] ? 0 : 1;
+                }
+            }
+        }
+        constexpr double kPixels = double{kWidth} * kHeight;
+        return {differ / kPixels, elsewhere / kPixels};
+    }
+
+    std::unique_ptr<render_node::GlContext> context_ = render_node::makeContext(render_node::Backend::osmesa);
+    sand::Scene scene_ = sample::duneScene(300);
+    EyeTarget wholeTarget_{kWidth, kHeight};
+    glm::dvec3 leftEye_{0.9675, -0.1, 0.75};
+    glm::dvec3 rightEye_{1.0325, -0.1, 0.75};
+    glm::dvec3 forward_{0, 1, -0.72};
+    int fewestChunks_ = 1 << 30, mostChunks_ = 0, chunksOfField_ = 0;
+};
+
+TEST_F(TiledWall, EqualsTheWholeButForSilhouettes) {
+    const Pixels wall = tiled(leftEye_);
+    const Pixels reference = whole(leftEye_);
+    const std::vector<bool> edges = silhouettes(wholeTarget_);
+    const Difference difference = compare(wall, reference, edges);
+    RecordProperty("share", std::to_string(difference.share));
+    std::printf("share of pixels that differ: %.4f %%, away from silhouettes: %.4f %%\n", 100 * difference.share,
+                100 * difference.elsewhere);
+    EXPECT_LE(difference.share, 0.01);
+    EXPECT_EQ(difference.elsewhere, 0);
+}
+
+TEST_F(TiledWall, DiffersFromTheWholeShiftedByAPixel) {
+    const Pixels reference = whole(leftEye_);
+    const std::vector<bool> edges = silhouettes(wholeTarget_);
+    EXPECT_GT(compare(tiled(leftEye_), reference, edges, 1).share, 0.01);
+}
+
+TEST_F(TiledWall, DiffersFromTheWholeOfTheOtherEye) {
+    const Pixels reference = whole(rightEye_);
+    const std::vector<bool> edges = silhouettes(wholeTarget_);
+    EXPECT_GT(compare(tiled(leftEye_), reference, edges).share, 0.01);
+}
+
+TEST_F(TiledWall, DrawsOnlyTheChunksEachTileSees) {
+    (void)tiled(leftEye_);
+    EXPECT_LT(mostChunks_, chunksOfField_);
+    EXPECT_LT(fewestChunks_, chunksOfField_ / 4);
+}
+
+}  // namespace
