@@ -21,7 +21,7 @@ LinkServer::LinkServer(asio::io_context& io, asio::ip::tcp::acceptor acceptor, I
                        std::uint32_t stepsPerSecond, Sources sources)
     : io_(io),
       acceptor_(std::move(acceptor)),
-      acceptPause_(io),
+      pause_(io),
       identity_(std::move(identity)),
       stepsPerSecond_(stepsPerSecond),
       sources_(std::move(sources)) {}
@@ -63,8 +63,8 @@ void LinkServer::accept() {
             return;
         }
         if (error) {  // out of descriptors, or the peer has gone again: try a little later
-            acceptPause_.expires_after(std::chrono::milliseconds(100));
-            acceptPause_.async_wait([this](error_code cancelled) {
+            pause_.expires_after(std::chrono::milliseconds(100));
+            pause_.async_wait([this](error_code cancelled) {
                 if (!cancelled) {
                     accept();
                 }
@@ -82,10 +82,25 @@ void LinkServer::shut(const std::string& reason) {
     shutting_ = true;
     error_code ignored;
     acceptor_.close(ignored);
-    acceptPause_.cancel(ignored);
+    std::weak_ptr<Connection> last;
     if (current_) {
+        last = current_->connection();
         current_->sayGoodbye(reason);
     }
+    stopWhenGone(last, 60);
+}
+
+void LinkServer::stopWhenGone(const std::weak_ptr<Connection>& last, int polls) {
+    if (last.expired() || polls == 0) {
+        io_.stop();
+        return;
+    }
+    pause_.expires_after(std::chrono::milliseconds(10));
+    pause_.async_wait([this, last, polls](error_code error) {
+        if (!error) {
+            stopWhenGone(last, polls - 1);
+        }
+    });
 }
 
 }  // namespace haptic_bridge

@@ -35,17 +35,18 @@ public:
     [[nodiscard]] Sequencer::Output output();
     /// Masters are taken in from now on.
     void serve(Sequencer& sequencer);
-    /// Says goodbye to the master and stops listening; the io context runs dry soon after.
+    /// Says goodbye to the master and stops listening; stops the io context when that has arrived, or after 0.6 s.
     void shut(const std::string& reason);
 
 private:
     friend class MasterLink;
     void accept();
+    void stopWhenGone(const std::weak_ptr<Connection>& last, int polls);
     [[nodiscard]] std::shared_ptr<MasterLink> linked(std::uint32_t session) const;
 
     boost::asio::io_context& io_;
     boost::asio::ip::tcp::acceptor acceptor_;
-    boost::asio::steady_timer acceptPause_;
+    boost::asio::steady_timer pause_;
     Identity identity_;
     std::uint32_t stepsPerSecond_;
     Sources sources_;

@@ -22,6 +22,7 @@ public:
     void sayGoodbye(const std::string& reason);
 
     [[nodiscard]] std::uint32_t session() const { return session_; }
+    [[nodiscard]] std::weak_ptr<Connection> connection() const { return connection_; }
 
 private:
     enum class Phase { greeting, waiting, granting, linked, over };

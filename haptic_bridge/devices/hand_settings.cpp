@@ -18,7 +18,9 @@ struct Option {
     std::string text;
     std::string_view key, value;
 
-    [[noreturn]] void fail(const std::string& what) const { throw files::InputError(fmt::format("--map {}: {}", text, what)); }
+    [[noreturn]] void fail(const std::string& what) const {
+        throw files::InputError(fmt::format("--map {}: {}", text, what));
+    }
 
     [[nodiscard]] double number(std::string_view word) const {
         double result = 0;
