@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <locale>
 #include <string>
 
@@ -104,6 +106,18 @@ TEST(WallConfigs, EveryFileLoadsAndPassesTheCheck) {
         EXPECT_EQ(ranks.output, std::to_string(wall.ranks()) + "\n");
     }
     EXPECT_GE(count, 3);
+}
+
+TEST(WallConfigs, TheExampleOfTheDocumentIsAWall) {
+    std::ifstream page(std::filesystem::path(SANDWALL_SOURCE_DIR) / "docs/wall_files.md");
+    const std::string text{std::istreambuf_iterator<char>(page), {}};
+    const std::string open = "```toml\n";
+    const std::size_t start = text.find(open);
+    ASSERT_NE(start, std::string::npos);
+    const std::size_t end = text.find("```", start + open.size());
+    const Wall wall = parseWall(text.substr(start + open.size(), end - start - open.size()), "docs/wall_files.md");
+    EXPECT_EQ(wall.ranks(), 4);
+    EXPECT_NEAR(wall.tiles[1].screen.lowerRight.x, 1.0215, 1e-12) << "as far right as it reaches left";
 }
 
 /// A locale that writes 1,5 for one and a half and 1.024 for a thousand and twenty-four.
