@@ -56,6 +56,9 @@ int main(int argc, char** argv) {
         return comparePictures(options);
     } catch (const CLI::Success& help) {
         return app.exit(help);
+    } catch (const files::InputError& error) {
+        fmt::print(stderr, "{}\n", error.what());
+        return files::kExitBadInput;
     } catch (const std::exception& error) {
         fmt::print(stderr, "sandwall-compare: {}\n", error.what());
         return files::kExitBadInput;

@@ -22,6 +22,9 @@ int main(int argc, char** argv) {
         return 0;
     } catch (const CLI::Success& help) {
         return app.exit(help);
+    } catch (const files::InputError& error) {
+        fmt::print(stderr, "{}\n", error.what());
+        return files::kExitBadInput;
     } catch (const std::exception& error) {
         fmt::print(stderr, "sandwall-check: {}\n", error.what());
         return files::kExitBadInput;

@@ -52,6 +52,12 @@ void put(files::ByteWriter& writer, const Grid& grid) {
     put(writer, grid.up);
 }
 
+void checkPixels(glm::ivec2 pixels) {
+    if (pixels.x < 1 || pixels.y < 1 || pixels.x > kMaxTileSide || pixels.y > kMaxTileSide) {
+        throw files::FormatError(fmt::format("a tile of {}x{} pixels", pixels.x, pixels.y));
+    }
+}
+
 Grid getGrid(files::ByteReader& reader) {
     Grid grid;
     grid.rows = reader.get<std::int32_t>();
@@ -62,6 +68,13 @@ Grid getGrid(files::ByteReader& reader) {
     grid.lowerLeft = getVector<glm::dvec3>(reader);
     grid.right = getVector<glm::dvec3>(reader);
     grid.up = getVector<glm::dvec3>(reader);
+    checkPixels(grid.tilePixels);
+    const bool sized = grid.tileSize.x > 0 && grid.tileSize.y > 0 && grid.bezel.x >= 0 && grid.bezel.y >= 0;
+    if (!sized || glm::any(glm::greaterThan(grid.bezel, grid.tileSize)) || grid.rows < 1 || grid.columns < 1 ||
+        grid.rows > kMaxTiles || grid.columns > kMaxTiles) {
+        throw files::FormatError(
+            fmt::format("a grid of {} rows and {} columns without a size", grid.rows, grid.columns));
+    }
     return grid;
 }
 
@@ -94,9 +107,7 @@ Tile getTile(files::ByteReader& reader) {
     tile.screen.lowerRight = getVector<glm::dvec3>(reader);
     tile.screen.upperLeft = getVector<glm::dvec3>(reader);
     tile.pixels = getVector<glm::ivec2>(reader);
-    if (tile.pixels.x < 1 || tile.pixels.y < 1 || tile.pixels.x > kMaxTileSide || tile.pixels.y > kMaxTileSide) {
-        throw files::FormatError(fmt::format("a tile of {}x{} pixels", tile.pixels.x, tile.pixels.y));
-    }
+    checkPixels(tile.pixels);
     tile.outputs.resize(reader.get<std::uint8_t>());
     for (Output& output : tile.outputs) {
         output.name = reader.getText();
@@ -210,7 +221,14 @@ Wall Wall::decode(std::span<const std::uint8_t> bytes) {
         throw files::FormatError(fmt::format("a wall of {} tiles", count));
     }
     for (std::uint32_t i = 0; i < count; ++i) {
-        wall.tiles.push_back(getTile(reader));
+        const Tile tile = getTile(reader);
+        const bool placed = wall.grid && tile.row >= 1 && tile.row <= wall.grid->rows && tile.column >= 1 &&
+                            tile.column <= wall.grid->columns;
+        if (tile.rank != wall.ranks() + 1 || (!placed && (tile.row != 0 || tile.column != 0))) {
+            throw files::FormatError(fmt::format("a tile out of place: number {} has rank {}, row {}, column {}", i + 1,
+                                                 tile.rank, tile.row, tile.column));
+        }
+        wall.tiles.push_back(tile);
     }
     if (!reader.atEnd()) {
         throw files::FormatError(fmt::format("{} bytes after the last tile of a wall", reader.rest().size()));

@@ -98,9 +98,10 @@ std::string describe(const Wall& wall) {
     for (const Tile& tile : wall.tiles) {
         outputs += tile.outputs.size();
     }
+    const std::string mode = wall.stereo == Stereo::mono ? "mono" : fmt::format("{} stereo", stereoName(wall.stereo));
     std::string text =
-        fmt::format("{}: {} render ranks, {} stereo, {} outputs, whole picture {}x{} pixels\n", wall.name, wall.ranks(),
-                    stereoName(wall.stereo), outputs, canvas.width, canvas.height);
+        fmt::format("{}: {} render rank{}, {}, {} output{}, whole picture {}x{} pixels\n", wall.name, wall.ranks(),
+                    wall.ranks() == 1 ? "" : "s", mode, outputs, outputs == 1 ? "" : "s", canvas.width, canvas.height);
     text += fmt::format("viewer: eye {}, eyes {:.1f} mm apart; drawn from {} to {} m\n\n", point(wall.viewer.eye),
                         wall.viewer.eyeSeparation * 1000, wall.clip.near, wall.clip.far);
     if (wall.grid) {
