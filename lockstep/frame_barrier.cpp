@@ -71,6 +71,7 @@ bool FrameBarrier::meet(const Arrival& mine, std::uint64_t stateHash) {
     // The largest hash and the smallest at once: the complement of the largest complement is the smallest.
     std::array<std::uint64_t, 2> hashes{stateHash, ~stateHash};
     MPI_Allreduce(MPI_IN_PLACE, hashes.data(), 2, MPI_UINT64_T, MPI_MAX, cluster_.frames());
+    watchdog_->startUpIsOver();
     return hashes[0] == ~hashes[1];
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -10,6 +11,13 @@
 #include "lockstep/cluster.hpp"
 
 namespace lockstep {
+namespace {
+
+constexpr double kFirstWord = 1;  // [s]
+constexpr double kStartUpFirstWord = 10;
+constexpr double kStartUpLimit = 120;
+
+}  // namespace
 
 Watchdog::Watchdog(std::function<std::string()> describe, double limitSeconds, bool speaks)
     : describe_(std::move(describe)), limit_(limitSeconds), speaks_(speaks), thread_([this] { look(); }) {}
@@ -35,13 +43,14 @@ void Watchdog::look() {
             continue;
         }
         const double seconds = static_cast<double>(nowNs() - since) * 1e-9;
-        if (seconds > limit_) {
+        const double limit = startingUp_ ? std::max(limit_, kStartUpLimit) : limit_;
+        if (seconds > limit) {
             fmt::print(stderr, "sandwall: {} for {:.1f} s; the limit is {:.0f} s, ending the job\n", describe_(),
-                       seconds, limit_.load());
+                       seconds, limit);
             std::fflush(stderr);
             std::_Exit(1);
         }
-        if (speaks_ && seconds > kFirstWord && spokenOf != since) {
+        if (speaks_ && seconds > (startingUp_ ? kStartUpFirstWord : kFirstWord) && spokenOf != since) {
             spokenOf = since;
             fmt::print(stderr, "sandwall: {} for {:.1f} s\n", describe_(), seconds);
         }

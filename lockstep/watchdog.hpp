@@ -12,12 +12,11 @@ namespace lockstep {
 
 /// Makes sure that no wait is silent and none is for ever.
 ///
-/// A thread of its own looks on while the main thread is inside a call that may block. After kFirstWord it says who is
-/// waited for; after the limit it says so once more and ends this process, which makes mpirun end the job.
+/// A thread of its own looks on while the main thread is inside a call that may block. After a second it says who is
+/// waited for; after the limit it says so once more and ends this process, which makes mpirun end the job. Until
+/// startUpIsOver() it has more patience: shaders compile and sand settles before the first frame.
 class Watchdog {
 public:
-    static constexpr double kFirstWord = 1.0;  // [s]
-
     /// `describe` names what is waited for; it runs on the watchdog's thread and must only read atomics.
     Watchdog(std::function<std::string()> describe, double limitSeconds, bool speaks);
     ~Watchdog();
@@ -27,15 +26,15 @@ public:
     /// From now on until disarm(), time counts. A new arm() starts afresh.
     void arm();
     void disarm();
-    /// For start-up, which may take long, and back.
-    void setLimit(double seconds) { limit_ = seconds; }
+    void startUpIsOver() { startingUp_ = false; }
 
 private:
     void look();
 
     std::function<std::string()> describe_;
-    std::atomic<double> limit_;
+    double limit_;
     bool speaks_;
+    std::atomic<bool> startingUp_{true};
     std::atomic<std::int64_t> armedAt_{0};  // [ns], 0 when nobody waits
     std::mutex mutex_;
     std::condition_variable stop_;

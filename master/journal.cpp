@@ -81,9 +81,10 @@ void JournalWriter::writeAll(const files::Bytes& bytes) {
     while (done < bytes.size()) {
         const ssize_t count = write(descriptor_, bytes.data() + done, bytes.size() - done);
         if (count < 0 && errno != EINTR) {
-            throw files::InputError(fmt::format("{}: the journal cannot be written ({}); the sand stops here, what was "
-                                                "shown is on disk",
-                                                file_.string(), std::strerror(errno)));
+            throw files::InputError(
+                fmt::format("{}: the journal cannot be written ({}); the sand stops here, what was "
+                            "shown is on disk",
+                            file_.string(), std::strerror(errno)));
         }
         done += count > 0 ? static_cast<std::size_t>(count) : 0;
     }

@@ -51,7 +51,7 @@ struct Journal {
     struct End {
         std::uint64_t step = 0, hash = 0;
     };
-    std::optional<End> end;     // absent when the session was cut off
+    std::optional<End> end;      // absent when the session was cut off
     std::int64_t tornBytes = 0;  // at the end of the file, behind the last whole record; left out
 };
 

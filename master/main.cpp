@@ -49,15 +49,16 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
         fmt::print(stderr, "{}: warning: {}\n", options.scene, warning);
     }
     if (world.wall.ranks() != cluster.renderRanks()) {
-        throw files::InputError(fmt::format("{}: {} tiles need {} render ranks, but the job has {}: mpirun -n 1 "
-                                            "sandwall-master ... : -n {} sandwall-render-node",
-                                            options.wall, world.wall.ranks(), world.wall.ranks(),
-                                            cluster.renderRanks(), world.wall.ranks()));
+        throw files::InputError(fmt::format(
+            "{}: {} tiles need {} render ranks, but the job has {}: mpirun -n 1 "
+            "sandwall-master ... : -n {} sandwall-render-node",
+            options.wall, world.wall.ranks(), world.wall.ranks(), cluster.renderRanks(), world.wall.ranks()));
     }
     std::error_code error;
     std::filesystem::create_directories(options.out, error);
     if (error) {
-        throw files::InputError(fmt::format("{}: cannot be made ({}); choose another --out", options.out, error.message()));
+        throw files::InputError(
+            fmt::format("{}: cannot be made ({}); choose another --out", options.out, error.message()));
     }
     if (options.haptic != "none") {
         options.session.server = haptic_bridge::Address::parse(options.haptic, "--haptic");
@@ -135,8 +136,10 @@ void describeOptions(CLI::App& app, Options& options) {
     app.add_option("--frame-timeout", session.frameTimeout, "seconds a frame may take before the job ends")
         ->check(CLI::Range(2.0, 3600.0));
     app.add_flag("--no-pictures", options.noPictures, "write no pictures at the end");
-    app.add_flag("--control-stdin", session.readInput, "a line \"stop\" on standard input, or its end, ends the session");
-    app.add_option("--flip-bit", options.fault, "for tests: rank=R,frame=F,column=C,row=W flips one bit of that replica");
+    app.add_flag("--control-stdin", session.readInput,
+                 "a line \"stop\" on standard input, or its end, ends the session");
+    app.add_option("--flip-bit", options.fault,
+                   "for tests: rank=R,frame=F,column=C,row=W flips one bit of that replica");
 }
 
 }  // namespace

@@ -79,8 +79,9 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app("Replays the journal of a session, bit for bit, and checks it against the session's own hashes.\n"
-                 "Exit status 0 alike, 1 different, 2 unusable.");
+    CLI::App app(
+        "Replays the journal of a session, bit for bit, and checks it against the session's own hashes.\n"
+        "Exit status 0 alike, 1 different, 2 unusable.");
     Options options;
     app.add_option("FILE", options.file, "session.journal of a session")->required();
     app.add_flag("--hash", options.hash, "print the state hash after the last step");

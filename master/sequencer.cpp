@@ -117,9 +117,7 @@ void Sequencer::distrustServer() {
     takeOver();
 }
 
-std::optional<haptic_bridge::Report> Sequencer::report() const {
-    return client_ ? client_->report() : std::nullopt;
-}
+std::optional<haptic_bridge::Report> Sequencer::report() const { return client_ ? client_->report() : std::nullopt; }
 
 haptic_bridge::LinkCounters Sequencer::counters() const {
     return client_ ? client_->counters() : haptic_bridge::LinkCounters{};

@@ -22,8 +22,8 @@ using lockstep::nowNs;
 
 constexpr std::size_t kMostStepsPerFrame = 16;  // a long catch-up is spread over frames
 constexpr std::size_t kMostStepsPerFastFrame = 4;
-constexpr double kFastPatience = 0.1;   // [s] that a fast session waits for a step before it shows a frame without
-constexpr double kAuditSeconds = 1.0;   // in which all of memory is hashed again, whatever the frame rate
+constexpr double kFastPatience = 0.1;  // [s] that a fast session waits for a step before it shows a frame without
+constexpr double kAuditSeconds = 1.0;  // in which all of memory is hashed again, whatever the frame rate
 
 std::vector<std::string> namesOf(const walls::Wall& wall) {
     std::vector<std::string> names{"the master"};
@@ -206,10 +206,10 @@ void Session::reportDivergence(const lockstep::Divergence& divergence) {
     };
     for (const lockstep::Divergence::Odd& odd : divergence.odd) {
         const std::string where =
-            odd.tile < 0 ? "in pose, step or outflow"
-                         : fmt::format("first in hash tile {} (columns {}..{}, rows {}..{}), {} cells of it", odd.tile,
-                                       odd.cells.x0, odd.cells.x1 - 1, odd.cells.y0, odd.cells.y1 - 1,
-                                       odd.cellsDiffering);
+            odd.tile < 0
+                ? "in pose, step or outflow"
+                : fmt::format("first in hash tile {} (columns {}..{}, rows {}..{}), {} cells of it", odd.tile,
+                              odd.cells.x0, odd.cells.x1 - 1, odd.cells.y0, odd.cells.y1 - 1, odd.cellsDiffering);
         say(fmt::format("frame {}, step {}: {} holds other sand than {} of {} ranks: {:016x} and not {:016x}, {}",
                         frame_, terrain_.stepNumber(), names_[static_cast<std::size_t>(odd.rank)], divergence.agreeing,
                         cluster_.size(), odd.hash, divergence.majorityHash, where));

@@ -26,12 +26,12 @@ inline constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::ma
 struct SessionOptions {
     std::optional<haptic_bridge::Address> server;
     Pace pace = Pace::realtime;
-    double refreshHz = 60;              // of the wall
-    std::uint64_t steps = kNoLimit;     // ends when exactly this many have been shown
-    std::uint64_t frames = kNoLimit;    // ends after this many
-    double frameTimeout = 30;           // [s] that a frame may take before the job ends
+    double refreshHz = 60;            // of the wall
+    std::uint64_t steps = kNoLimit;   // ends when exactly this many have been shown
+    std::uint64_t frames = kNoLimit;  // ends after this many
+    double frameTimeout = 30;         // [s] that a frame may take before the job ends
     bool pictures = true;
-    bool readInput = false;             // "stop" on standard input, or its end, ends the session
+    bool readInput = false;  // "stop" on standard input, or its end, ends the session
     std::filesystem::path out;
 };
 
@@ -69,9 +69,9 @@ private:
     StopRequest stop_;
     Summary summary_;
     std::uint64_t frame_ = 0;
-    std::uint64_t hash_ = 0;         // of the state the wall shows
+    std::uint64_t hash_ = 0;                                      // of the state the wall shows
     std::int64_t firstSwap_ = 0, lastSwap_ = 0, frameStart_ = 0;  // [ns]
-    std::int64_t lastProgress_ = 0;  // [ns]
+    std::int64_t lastProgress_ = 0;                               // [ns]
     std::uint64_t lastProgressFrame_ = 0;
     double lastSkewUs_ = 0;
     bool stopping_ = false;

@@ -121,9 +121,10 @@ std::string describe(const Summary& summary) {
                             summary.latency.wholeWay.percentile(0.5), summary.latency.wholeWay.percentile(0.99));
     }
     if (summary.haptic && summary.haptic->hapticPeriodUsMax > 0) {
-        text += fmt::format("  haptics   period p50 {:.0f} us, p99 {:.0f} us; force p99 {:.2f} us; half round trip {:.1f} ms\n",
-                            summary.haptic->hapticPeriodUsP50, summary.haptic->hapticPeriodUsP99,
-                            summary.haptic->forceUsP99, summary.haptic->halfRoundTripMsMean);
+        text += fmt::format(
+            "  haptics   period p50 {:.0f} us, p99 {:.0f} us; force p99 {:.2f} us; half round trip {:.1f} ms\n",
+            summary.haptic->hapticPeriodUsP50, summary.haptic->hapticPeriodUsP99, summary.haptic->forceUsP99,
+            summary.haptic->halfRoundTripMsMean);
     }
     double slowest = 0;
     std::int64_t memory = 0;

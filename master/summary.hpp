@@ -15,11 +15,11 @@ namespace master {
 
 /// The way of a step from the hand to the wall, leg by leg [ms], in the master's clock.
 struct Latency {
-    lockstep::Statistics toMaster;    // read from the device -> received over TCP
-    lockstep::Statistics queued;      // -> broadcast
-    lockstep::Statistics drawn;       // -> drawn by the slowest rank
-    lockstep::Statistics swapped;     // -> agreed and swapped
-    lockstep::Statistics wholeWay;    // all of it: probe to swap
+    lockstep::Statistics toMaster;  // read from the device -> received over TCP
+    lockstep::Statistics queued;    // -> broadcast
+    lockstep::Statistics drawn;     // -> drawn by the slowest rank
+    lockstep::Statistics swapped;   // -> agreed and swapped
+    lockstep::Statistics wholeWay;  // all of it: probe to swap
 };
 
 /// What a session has measured; summary.json in numbers.
@@ -28,13 +28,13 @@ struct Summary {
     std::uint64_t frames = 0, steps = 0;
     int ranks = 0;
     std::uint64_t stateHash = 0;
-    std::uint64_t divergences = 0;        // frames on which the ranks' sand differed
-    std::uint64_t serverDivergences = 0;  // frames on which the haptic server's did
+    std::uint64_t divergences = 0;                                       // frames on which the ranks' sand differed
+    std::uint64_t serverDivergences = 0;                                 // frames on which the haptic server's did
     std::int64_t volumeInitial = 0, volumeFinal = 0, volumeOutflow = 0;  // [unit · cell]
-    double seconds = 0;                   // from the first frame to the last
-    lockstep::Statistics frameMs;         // from swap to swap
-    lockstep::Statistics skewUs;          // spread of the swap times of one frame
-    lockstep::Statistics broadcastBytes;  // of the frame message
+    double seconds = 0;                                                  // from the first frame to the last
+    lockstep::Statistics frameMs;                                        // from swap to swap
+    lockstep::Statistics skewUs;                                         // spread of the swap times of one frame
+    lockstep::Statistics broadcastBytes;                                 // of the frame message
     Latency latency;
     std::optional<haptic_bridge::Report> haptic;
     haptic_bridge::LinkCounters link;

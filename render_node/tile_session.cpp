@@ -34,9 +34,9 @@ public:
         const sand::Scene scene = sand::Scene::decode(message.scene);
         terrain_.emplace(scene);
         const sand::HeightField& field = scene.terrain;
-        view_.emplace(scene, walls::stageToRoom(wall_.stage, field.columns() * field.cellSize(),
-                                                field.rows() * field.cellSize(),
-                                                scene.referenceHeight() * field.unit()));
+        view_.emplace(
+            scene, walls::stageToRoom(wall_.stage, field.columns() * field.cellSize(), field.rows() * field.cellSize(),
+                                      scene.referenceHeight() * field.unit()));
         for (std::size_t i = 0; i < walls::eyesOf(wall_.stereo).size(); ++i) {
             targets_.emplace_back(tile_.pixels.x, tile_.pixels.y);
         }
@@ -120,9 +120,9 @@ private:
     }
 
     [[nodiscard]] lockstep::RankReport report() const {
-        return {lockstep::hostName(),      context_->renderer(),      drawMs_.percentile(0.5),
-                drawMs_.percentile(0.99),  drawMs_.largest(),         waitMs_.percentile(0.5),
-                waitMs_.percentile(0.99),  lockstep::residentBytes(), frameBufferBytes_};
+        return {lockstep::hostName(),     context_->renderer(),      drawMs_.percentile(0.5),
+                drawMs_.percentile(0.99), drawMs_.largest(),         waitMs_.percentile(0.5),
+                waitMs_.percentile(0.99), lockstep::residentBytes(), frameBufferBytes_};
     }
 
     const lockstep::Cluster& cluster_;

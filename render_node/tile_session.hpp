@@ -8,8 +8,8 @@
 
 namespace render_node {
 
-/// The life of a render rank: takes scene and wall from the master, then replica, drawing, barrier, swap per frame, until
-/// the master says stop. Returns the exit status. Collective with the master's Session.
+/// The life of a render rank: takes scene and wall from the master, then replica, drawing, barrier, swap per frame,
+/// until the master says stop. Returns the exit status. Collective with the master's Session.
 [[nodiscard]] int showTile(const lockstep::Cluster& cluster, Backend backend);
 
 }  // namespace render_node

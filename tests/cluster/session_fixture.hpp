@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/support/child_process.hpp"
+
+/// Whole sessions through scripts/sandwall, at sizes that two cores draw in moments.
+class SessionTest : public testing::Test {
+protected:
+    void SetUp() override {
+        folder_ = std::filesystem::temp_directory_path() /
+                  ("sandwall_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+        std::filesystem::remove_all(folder_);
+        std::filesystem::create_directories(folder_);
+    }
+    void TearDown() override {
+        if (!HasFailure()) {
+            std::filesystem::remove_all(folder_);
+        }
+    }
+
+    std::string write(const std::string& name, const std::string& text) {
+        std::ofstream(folder_ / name) << text;
+        return (folder_ / name).string();
+    }
+    [[nodiscard]] std::string read(const std::string& name) const {
+        std::ifstream stream(folder_ / name);
+        return {std::istreambuf_iterator<char>(stream), {}};
+    }
+
+    /// A wall of equal tiles of 96 x 72 pixels per eye.
+    std::string wall(int rows, int columns, const std::string& stereo = "passive") {
+        const std::string text =
+            "name = \"test\"\n[viewer]\neye = [0.0, 1.6, 3.0]\neye_separation = 0.065\n[stereo]\nmode = \"" + stereo +
+            "\"\n[grid]\nrows = " + std::to_string(rows) + "\ncolumns = " + std::to_string(columns) +
+            "\ntile_size = [1.0, 0.75]\nbezel = [0.0104166666666666667, 0.0104166666666666667]\ntile_pixels = [96, "
+            "72]\n"
+            "lower_left = [" +
+            std::to_string(-0.505 * columns) +
+            ", 0.4, 0.0]\n[clip]\nnear = 0.1\nfar = 20.0\n[stage]\n"
+            "centre = [0.0, 1.2, 0.0]\nwidth = 2.6\ntilt_deg = 40.0\n";
+        return write("wall.toml", text);
+    }
+    /// A small level sand box.
+    std::string scene(const std::string& more = "") {
+        return write(
+            "scene.toml",
+            "name = \"test\"\n" + more +
+                "[field]\ncolumns = 128\nrows = 128\n[terrain]\nheight = 0.2\n[material]\n[tool]\nradius = 0.04\n");
+    }
+
+    std::unique_ptr<support::ChildProcess> start(const std::vector<std::string>& arguments) {
+        std::vector<std::string> command{SANDWALL_SOURCE_DIR "/scripts/sandwall", "run"};
+        command.insert(command.end(), arguments.begin(), arguments.end());
+        return std::make_unique<support::ChildProcess>(command, folder_ / "output.txt");
+    }
+
+    struct Ended {
+        int status;
+        std::string output;
+    };
+    Ended runToEnd(const std::vector<std::string>& arguments, double seconds = 120) {
+        const auto session = start(arguments);
+        const std::optional<int> status = session->wait(seconds);
+        EXPECT_TRUE(status.has_value()) << "still running after " << seconds << " s:\n" << session->output();
+        return {status.value_or(-1), session->output()};
+    }
+
+    [[nodiscard]] std::string out() const { return (folder_ / "out").string(); }
+    [[nodiscard]] nlohmann::json summary() const { return nlohmann::json::parse(read("out/summary.json")); }
+
+    std::filesystem::path folder_;
+};

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+
+#include "tests/cluster/session_fixture.hpp"
+#include "tests/support/run_program.hpp"
+
+namespace {
+
+using Lockstep = SessionTest;
+
+TEST_F(Lockstep, OneFourAndThirteenRanksHashLikeTheirJournal) {
+    std::string expected;
+    for (const auto& [rows, columns] : {std::pair{1, 1}, {2, 2}, {3, 4}}) {
+        const Ended ended = runToEnd({"--wall", wall(rows, columns), "--scene", scene(), "--device", "script:gis",
+                                      "--pace", "fast", "--steps", "240", "--out", out(), "--no-pictures"});
+        ASSERT_EQ(ended.status, 0) << ended.output;
+        const nlohmann::json result = summary();
+        const std::string hash = result["state_hash"];
+        EXPECT_EQ(hash.size(), 16U);
+        EXPECT_EQ(result["steps"], 240);
+        EXPECT_EQ(result["ranks"], rows * columns);
+        EXPECT_EQ(result["divergences"], 0);
+        EXPECT_EQ(result["server_divergences"], 0);
+        EXPECT_EQ(result["volume_final"].get<std::int64_t>() + result["volume_outflow"].get<std::int64_t>(),
+                  result["volume_initial"].get<std::int64_t>());
+        const support::Ran replayed = support::runProgram("sandwall-replay", out() + "/session.journal --hash");
+        EXPECT_EQ(replayed.status, 0);
+        EXPECT_EQ(replayed.output, hash + "\n");
+        if (expected.empty()) {
+            expected = hash;
+        }
+        EXPECT_EQ(hash, expected) << rows << " x " << columns << " ranks";
+    }
+}
+
+TEST_F(Lockstep, ASessionLeavesItsPicturesAndItsFigures) {
+    const Ended ended =
+        runToEnd({"--wall", wall(2, 2), "--scene", scene(), "--device", "script:gis", "--steps", "60", "--out", out()});
+    ASSERT_EQ(ended.status, 0) << ended.output;
+    for (const char* name : {"tile_r1c1_left.png", "tile_r1c1_right.png", "tile_r2c2_left.png", "tile_r2c2_right.png",
+                             "wall_left.png", "wall_right.png", "wall_anaglyph.png", "session.journal"}) {
+        EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / name)) << name;
+    }
+    const nlohmann::json result = summary();
+    for (const char* path :
+         {"/frames", "/fps", "/skew_us/p50", "/skew_us/p99", "/skew_us/max", "/latency_ms/mean", "/latency_ms/stddev",
+          "/latency_ms/p50", "/latency_ms/p99", "/haptic_period_us/p50", "/haptic_period_us/p99",
+          "/haptic_period_us/max", "/per_rank/3/draw_ms/p50", "/per_rank/3/memory_bytes"}) {
+        const nlohmann::json::json_pointer pointer(path);
+        ASSERT_TRUE(result.contains(pointer)) << path;
+        EXPECT_TRUE(result[pointer].is_number()) << path << " is " << result[pointer];
+    }
+    // A second of hand at 1 kHz: its middle period is a millisecond, or the loop was not there.
+    EXPECT_NEAR(result["haptic_period_us"]["p50"].get<double>(), 1000, 500);
+}
+
+TEST_F(Lockstep, AnIdleFlippedBitIsNamedWithRankAndTile) {
+    const Ended ended =
+        runToEnd({"--wall", wall(2, 2), "--scene", scene(), "--device", "script:gis", "--pace", "fast", "--steps",
+                  "100000", "--out", out(), "--flip-bit", "rank=3,frame=20,column=5,row=120"});
+    EXPECT_EQ(ended.status, 1) << ended.output;
+    EXPECT_NE(ended.output.find("rank 3 (tile r2c1) holds other sand than 4 of 5 ranks"), std::string::npos)
+        << ended.output;
+    EXPECT_NE(ended.output.find("first in hash tile 12 (columns 0..31, rows 96..127), 1 cells of it"),
+              std::string::npos)
+        << ended.output;
+    EXPECT_EQ(summary()["divergences"], 1);
+    // The command it prints gives the hash that it says is right.
+    const auto at = ended.output.find("sandwall-replay ");
+    ASSERT_NE(at, std::string::npos);
+    const std::string command = ended.output.substr(at + 16, ended.output.find('\n', at) - at - 16);
+    const support::Ran replayed = support::runProgram("sandwall-replay", command);
+    ASSERT_EQ(replayed.output.size(), 17U) << replayed.output;
+    EXPECT_NE(ended.output.find("and not " + replayed.output.substr(0, 16)), std::string::npos) << ended.output;
+}
+
+TEST_F(Lockstep, TheWallGoesOnWhenTheHapticServerDies) {
+    const auto session = start({"--wall", wall(1, 1), "--scene", scene(), "--device", "script:gis", "--out", out(),
+                                "--steps", "600", "--no-pictures"});
+    ASSERT_TRUE(session->waitForOutput("hand linked", 60)) << session->output();
+    const auto server = support::findProgram(session->family(), "sandwall-haptic-server");
+    ASSERT_TRUE(server.has_value());
+    kill(*server, SIGKILL);
+    EXPECT_TRUE(session->waitForOutput("the wall goes on without a hand", 30)) << session->output();
+    EXPECT_EQ(session->wait(60), 0) << session->output();
+    EXPECT_EQ(summary()["steps"], 600);
+    EXPECT_EQ(summary()["divergences"], 0);
+}
+
+}  // namespace

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/journal.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "files/input_error.hpp"
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+class JournalFile : public testing::Test {
+protected:
+    void SetUp() override {
+        file_ = std::filesystem::temp_directory_path() /
+                (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + ".journal");
+        std::filesystem::remove(file_);
+    }
+    void TearDown() override { std::filesystem::remove(file_); }
+
+    /// Ten frames of a random hand, three steps each.
+    std::vector<master::JournalFrame> writeSession(bool finished) {
+        const sand::Scene scene = samples::flatScene(20, 10);
+        std::mt19937 random(47);
+        master::JournalWriter writer(file_, scene, "0123456789abcdef");
+        std::vector<master::JournalFrame> frames;
+        for (std::uint64_t frame = 0; frame < 10; ++frame) {
+            master::JournalFrame& written = frames.emplace_back();
+            written.frame = frame + 1;
+            written.hashBefore = random();
+            for (std::uint64_t i = 1; i <= 3; ++i) {
+                written.steps.push_back(samples::randomStep(3 * frame + i, scene.rules, random));
+            }
+            writer.append(written);
+        }
+        if (finished) {
+            writer.finish(30, 77);
+        }
+        return frames;
+    }
+    static void expectFrames(const std::vector<master::JournalFrame>& got,
+                             const std::vector<master::JournalFrame>& expected, std::size_t count) {
+        ASSERT_EQ(got.size(), count);
+        for (std::size_t i = 0; i < count; ++i) {
+            EXPECT_EQ(got[i].frame, expected[i].frame);
+            EXPECT_EQ(got[i].hashBefore, expected[i].hashBefore);
+            EXPECT_EQ(got[i].steps, expected[i].steps);
+        }
+    }
+    std::filesystem::path file_;
+};
+
+TEST_F(JournalFile, GivesBackWhatWasWritten) {
+    const auto frames = writeSession(true);
+    const master::Journal journal = master::readJournal(file_);
+    expectFrames(journal.frames, frames, 10);
+    EXPECT_EQ(journal.buildId, "0123456789abcdef");
+    ASSERT_TRUE(journal.end.has_value());
+    EXPECT_EQ(journal.end->step, 30U);
+    EXPECT_EQ(journal.end->hash, 77U);
+    EXPECT_EQ(journal.tornBytes, 0);
+}
+
+TEST_F(JournalFile, ATornTailLosesNothingButItself) {
+    const auto frames = writeSession(false);
+    const auto whole = std::filesystem::file_size(file_);
+    const std::size_t before = master::readJournal(file_).frames.size();
+    ASSERT_EQ(before, 10U);
+    for (std::uintmax_t cut = 1; cut < 20; ++cut) {
+        std::filesystem::resize_file(file_, whole - cut);
+        const master::Journal journal = master::readJournal(file_);
+        expectFrames(journal.frames, frames, 9);
+        EXPECT_GT(journal.tornBytes, 0);
+        EXPECT_FALSE(journal.end.has_value());
+    }
+}
+
+TEST_F(JournalFile, RefusesWhatIsNoJournal) {
+    EXPECT_THROW((void)master::readJournal(file_), files::InputError);
+    std::ofstream(file_) << "certainly not";
+    EXPECT_THROW((void)master::readJournal(file_), files::InputError);
+    writeSession(true);
+    std::fstream stream(file_, std::ios::in | std::ios::out | std::ios::binary);
+    stream.seekp(30);  // in the header
+    stream.put('\x7f');
+    stream.close();
+    EXPECT_THROW((void)master::readJournal(file_), files::InputError);
+}
+
+TEST_F(JournalFile, ADiskThatRefusesIsNamed) {
+    if (std::filesystem::exists("/dev/full")) {
+        EXPECT_THROW(master::JournalWriter("/dev/full", samples::flatScene(8, 8), "x"), files::InputError);
+    }
+    EXPECT_THROW(master::JournalWriter("/nowhere/session.journal", samples::flatScene(8, 8), "x"), files::InputError);
+}
+
+}  // namespace

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/child_process.hpp"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+namespace support {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+Clock::time_point deadline(double seconds) {
+    return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+void pause() { std::this_thread::sleep_for(std::chrono::milliseconds(20)); }
+
+struct Stat {
+    std::string name;
+    char state = 'X';
+    pid_t parent = 0;
+};
+
+/// What the kernel says of a process; state X when there is none.
+Stat statOf(pid_t pid) {
+    std::ifstream stream("/proc/" + std::to_string(pid) + "/stat");
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    Stat stat;
+    const auto open = text.find('(');
+    const auto close = text.rfind(')');
+    if (open != std::string::npos && close != std::string::npos) {
+        stat.name = text.substr(open + 1, close - open - 1);
+        std::istringstream(text.substr(close + 1)) >> stat.state >> stat.parent;
+    }
+    return stat;
+}
+
+bool runs(pid_t pid) {
+    const char state = statOf(pid).state;
+    return state != 'X' && state != 'Z';
+}
+
+}  // namespace
+
+ChildProcess::ChildProcess(const std::vector<std::string>& command, std::filesystem::path outputFile)
+    : outputFile_(std::move(outputFile)) {
+    std::vector<char*> words;
+    for (const std::string& word : command) {
+        words.push_back(const_cast<char*>(word.c_str()));
+    }
+    words.push_back(nullptr);
+    pid_ = fork();
+    if (pid_ < 0) {
+        throw std::runtime_error("cannot start " + command.at(0));
+    }
+    if (pid_ == 0) {
+        const int file = open(outputFile_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+        const int nothing = open("/dev/null", O_RDONLY);
+        dup2(nothing, STDIN_FILENO);
+        dup2(file, STDOUT_FILENO);
+        dup2(file, STDERR_FILENO);
+        execv(words[0], words.data());
+        _exit(127);
+    }
+}
+
+ChildProcess::~ChildProcess() {
+    const std::vector<pid_t> all = family();
+    for (const pid_t process : all) {
+        if (!status_ || process != pid_) {
+            kill(process, SIGKILL);
+        }
+    }
+    (void)wait(5);
+}
+
+std::string ChildProcess::output() const {
+    std::ifstream stream(outputFile_);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+bool ChildProcess::waitForOutput(const std::string& text, double seconds) {
+    const auto until = deadline(seconds);
+    while (output().find(text) == std::string::npos) {
+        if (Clock::now() > until || (wait(0) && output().find(text) == std::string::npos)) {
+            return false;
+        }
+        pause();
+    }
+    return true;
+}
+
+std::optional<int> ChildProcess::wait(double seconds) {
+    const auto until = deadline(seconds);
+    while (!status_) {
+        int ended = 0;
+        if (waitpid(pid_, &ended, WNOHANG) == pid_) {
+            status_ = WIFEXITED(ended) ? WEXITSTATUS(ended) : 128 + WTERMSIG(ended);
+        } else if (Clock::now() > until) {
+            break;
+        } else {
+            pause();
+        }
+    }
+    return status_;
+}
+
+void ChildProcess::signal(int number) const { kill(pid_, number); }
+
+std::vector<pid_t> ChildProcess::family() const {
+    std::multimap<pid_t, pid_t> children;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+        const std::string name = entry.path().filename();
+        if (std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; })) {
+            const pid_t pid = static_cast<pid_t>(std::stol(name));
+            children.emplace(statOf(pid).parent, pid);
+        }
+    }
+    std::vector<pid_t> all{pid_};
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const auto [first, last] = children.equal_range(all[i]);
+        std::transform(first, last, std::back_inserter(all), [](const auto& pair) { return pair.second; });
+    }
+    return all;
+}
+
+std::vector<pid_t> alive(const std::vector<pid_t>& processes) {
+    std::vector<pid_t> result;
+    std::copy_if(processes.begin(), processes.end(), std::back_inserter(result), runs);
+    return result;
+}
+
+std::vector<pid_t> waitUntilGone(const std::vector<pid_t>& processes, double seconds) {
+    const auto until = deadline(seconds);
+    std::vector<pid_t> left = alive(processes);
+    while (!left.empty() && Clock::now() < until) {
+        pause();
+        left = alive(left);
+    }
+    return left;
+}
+
+std::optional<pid_t> findProgram(const std::vector<pid_t>& processes, const std::string& name) {
+    // The kernel keeps fifteen letters of a name.
+    const auto found = std::find_if(processes.begin(), processes.end(),
+                                    [&](pid_t pid) { return statOf(pid).name == name.substr(0, 15); });
+    return found == processes.end() ? std::nullopt : std::optional(*found);
+}
+
+}  // namespace support

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace support {
+
+/// A program that runs beside the test, its output in a file. Killed with all its descendants when this goes.
+class ChildProcess {
+public:
+    /// `command[0]` is a path. Throws std::runtime_error when it cannot be started.
+    ChildProcess(const std::vector<std::string>& command, std::filesystem::path outputFile);
+    ~ChildProcess();
+    ChildProcess(const ChildProcess&) = delete;
+    ChildProcess& operator=(const ChildProcess&) = delete;
+
+    [[nodiscard]] pid_t pid() const { return pid_; }
+    /// Everything it and its children have printed so far, stdout and stderr together.
+    [[nodiscard]] std::string output() const;
+    /// Waits until the output holds `text`; false when it does not in time or the program has ended without.
+    [[nodiscard]] bool waitForOutput(const std::string& text, double seconds);
+    /// Exit status, 128 + signal when a signal ended it; nothing when it still runs after `seconds`.
+    [[nodiscard]] std::optional<int> wait(double seconds);
+    void signal(int number) const;
+
+    /// Every process below this one at this moment, and itself.
+    [[nodiscard]] std::vector<pid_t> family() const;
+
+private:
+    pid_t pid_;
+    std::filesystem::path outputFile_;
+    std::optional<int> status_;
+};
+
+/// Those of the processes that still run; a zombie does not.
+[[nodiscard]] std::vector<pid_t> alive(const std::vector<pid_t>& processes);
+/// Waits until none runs; returns those left over.
+[[nodiscard]] std::vector<pid_t> waitUntilGone(const std::vector<pid_t>& processes, double seconds);
+/// The first of `processes` whose program is called `name`.
+[[nodiscard]] std::optional<pid_t> findProgram(const std::vector<pid_t>& processes, const std::string& name);
+
+}  // namespace support
