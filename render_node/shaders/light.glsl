@@ -22,7 +22,7 @@ vec2 lightPastTool(vec3 place, vec3 normal) {
     float blur = 0.12 + 0.06 * max(along, 0.0);
     float sun = mix(1.0, smoothstep(1.0 - blur, 1.0 + blur, miss), smoothstep(-0.2, 0.2, along));
     float facing = clamp(dot(normal, away) * inversesqrt(square), 0.0, 1.0);
-    float sky = 1.0 - 0.9 * facing / max(square, 1.0);
+    float sky = 1.0 - 0.65 * facing / max(square, 1.0);
     return vec2(sun, sky);
 }
 
