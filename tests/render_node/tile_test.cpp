@@ -147,4 +147,36 @@ TEST_F(TiledWall, DrawsOnlyTheChunksEachTileSees) {
     EXPECT_LT(fewestChunks_, chunksOfField_ / 4);
 }
 
+TEST_F(TiledWall, LeavesOutTilesThatCannotHaveChangedAndMissesNone) {
+    scene_ = sample::flatScene(300, 300, 0.03);
+    sand::Terrain terrain(scene_);
+    SandView lazy = makeView();
+    std::vector<EyeTarget> targets;
+    std::vector<render_node::EyeMemory> memories(kAcross * kDown);
+    int left = 0;
+    for (int frame = 0; frame < 6; ++frame) {
+        const glm::dvec3 from(0.3 + 0.2 * frame, 0.5, 0.02);
+        if (frame != 3) {  // the hand rests once
+            sample::drag(terrain, scene_, from, from + glm::dvec3(0.1, 0.15, 0));
+            lazy.setTool(terrain.probe(), frame % 2 == 0);
+        }
+        lazy.update(terrain.field(), terrain.takeDamage());
+        const EyeTarget fresh(kTileWidth, kTileHeight);
+        for (int tile = 0; tile < kAcross * kDown; ++tile) {
+            if (frame == 0) {
+                targets.emplace_back(kTileWidth, kTileHeight);
+            }
+            const double x = tile % kAcross / double{kAcross};
+            const double y = tile / kAcross / double{kDown};
+            const auto camera =
+                sample::camera(leftEye_, leftEye_ + forward_, {x, y, x + 1.0 / kAcross, y + 1.0 / kDown});
+            const auto at = static_cast<std::size_t>(tile);
+            left += lazy.drawIfChanged(camera, targets[at], memories[at]) ? 0 : 1;
+            ASSERT_TRUE(targets[at].read() == sample::draw(lazy, camera, fresh))
+                << "frame " << frame << " tile " << tile;
+        }
+    }
+    EXPECT_GE(left, kAcross * kDown + 10) << "all tiles of the resting frame, and those far from the hand";
+}
+
 }  // namespace
