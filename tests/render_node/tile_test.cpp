@@ -154,9 +154,12 @@ TEST_F(TiledWall, LeavesOutTilesThatCannotHaveChangedAndMissesNone) {
     std::vector<EyeTarget> targets;
     std::vector<render_node::EyeMemory> memories(kAcross * kDown);
     int left = 0;
-    for (int frame = 0; frame < 6; ++frame) {
+    for (int frame = 0; frame < 18; ++frame) {
         const glm::dvec3 from(0.3 + 0.2 * frame, 0.5, 0.02);
-        if (frame != 3) {  // the hand rests once
+        if (frame >= 6) {  // it hovers, and only dims the sand
+            lazy.setTool(sample::probeAt(scene_, {0.2 + 0.09 * frame, 0.5 + 0.03 * frame, frame % 2 == 0 ? 0.05 : 0.5}),
+                         false);
+        } else if (frame != 3) {  // it rests once
             sample::drag(terrain, scene_, from, from + glm::dvec3(0.1, 0.15, 0));
             lazy.setTool(terrain.probe(), frame % 2 == 0);
         }
