@@ -28,7 +28,7 @@ public:
 class ByteWriter {
 public:
     template <class Number>
-        requires std::is_arithmetic_v<Number>
+    requires std::is_arithmetic_v<Number>
     void put(Number value) {
         const std::size_t end = bytes_.size();
         bytes_.resize(end + sizeof value);
@@ -45,9 +45,7 @@ public:
         put(static_cast<std::uint32_t>(bytes.size()));
         putBytes(bytes);
     }
-    void putText(std::string_view text) {
-        putBlock({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-    }
+    void putText(std::string_view text) { putBlock({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}); }
     /// Seven bits a byte, lowest first.
     void putVarint(std::uint64_t value) {
         for (; value >= 0x80; value >>= 7) {
@@ -73,16 +71,15 @@ public:
     explicit ByteReader(std::span<const std::uint8_t> bytes) : rest_(bytes) {}
 
     template <class Number>
-        requires std::is_arithmetic_v<Number>
-    Number get() {
+    requires std::is_arithmetic_v<Number> Number get() {
         Number value;
         std::memcpy(&value, getBytes(sizeof value).data(), sizeof value);
         return value;
     }
     std::span<const std::uint8_t> getBytes(std::size_t count) {
         if (count > rest_.size()) {
-            throw FormatError("cut short: " + std::to_string(count) + " bytes wanted, " +
-                              std::to_string(rest_.size()) + " there");
+            throw FormatError("cut short: " + std::to_string(count) + " bytes wanted, " + std::to_string(rest_.size()) +
+                              " there");
         }
         const auto bytes = rest_.first(count);
         rest_ = rest_.subspan(count);

@@ -21,7 +21,7 @@ struct TomlTable::Document {
 struct TomlTable::Node {
     std::shared_ptr<Document> document;
     const toml::table* table = nullptr;
-    std::string name;                      // as in [name], empty for the root
+    std::string name;                       // as in [name], empty for the root
     mutable std::set<std::string> known{};  // keys somebody asked for
 };
 

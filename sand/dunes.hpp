@@ -9,9 +9,9 @@ namespace sand {
 
 /// A field of transverse dunes: long windward slopes from the west, steep lee sides, crests that wind and fade.
 struct Dunes {
-    double bed = 0;          // [scene unit], the ground between the dunes
-    double height = 0.04;    // [scene unit], of the highest crest over the bed
-    double length = 0.4;     // [scene unit], from crest to crest
+    double bed = 0;        // [scene unit], the ground between the dunes
+    double height = 0.04;  // [scene unit], of the highest crest over the bed
+    double length = 0.4;   // [scene unit], from crest to crest
     std::uint32_t seed = 1;
 };
 

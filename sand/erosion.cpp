@@ -2,6 +2,7 @@
 #include "sand/erosion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "sand/erosion_kernel.hpp"
@@ -89,12 +90,8 @@ std::int64_t Erosion::sweep(HeightField& field, int sweeps, const Obstacle* obst
         for (const int block : active_) {
             refreshGhosts(field, cellsOf(block));
         }
-        for (const int block : active_) {
-            const Rect cells = cellsOf(block);
-            if (sweepBlock(field, cells, obstacle, outflow)) {
-                moved_[static_cast<std::size_t>(block)] = 1;
-                mark(blocksAround(cells));
-            }
+        for (std::size_t first = 0; first < active_.size();) {
+            first = sweepStrip(field, first, obstacle, outflow);
         }
         field.swapHeights(scratch_);
         collectMarked();
@@ -102,24 +99,43 @@ std::int64_t Erosion::sweep(HeightField& field, int sweeps, const Obstacle* obst
     return outflow;
 }
 
-bool Erosion::sweepBlock(HeightField& field, const Rect& cells, const Obstacle* obstacle, std::int64_t& outflow) {
+std::size_t Erosion::sweepStrip(HeightField& field, std::size_t first, const Obstacle* obstacle,
+                                std::int64_t& outflow) {
+    const auto longest = static_cast<std::size_t>(kMaxStrip / blockSize_);
+    std::size_t end = first + 1;
+    while (end < active_.size() && end - first < longest && active_[end] == active_[end - 1] + 1 &&
+           active_[end] % across_ != 0) {
+        ++end;
+    }
+    Rect cells = cellsOf(active_[first]);
+    cells.x1 = cellsOf(active_[end - 1]).x1;
     const Rect grown{cells.x0 - 1, cells.y0 - 1, cells.x1 + 1, cells.y1 + 1};
     const bool toolNear = obstacle != nullptr && !obstacle->cells.clippedTo(grown).empty();
     if (toolNear) {
         fillRoom(field, grown, *obstacle);
     }
-    const BlockSweep block{.in = field.row(0),
+    std::array<std::uint8_t, kMaxStrip / 2> moved{};
+    const StripSweep strip{.in = field.row(0),
                            .out = scratch_.row(0),
                            .stride = field.columns() + std::ptrdiff_t{2},
                            .cells = cells,
+                           .blockSize = blockSize_,
                            .columns = field.columns(),
                            .rows = field.rows(),
                            .threshold = rules_.threshold,
                            .startThreshold = rules_.startThreshold,
                            .n4 = rules_.scheme == Scheme::n4,
                            .openRim = rules_.rim == Rim::open,
-                           .room = toolNear ? room_.data() : nullptr};
-    return v3_ ? v3::sweepBlock(block, outflow) : baseline::sweepBlock(block, outflow);
+                           .room = toolNear ? room_.data() : nullptr,
+                           .moved = moved.data()};
+    v3_ ? v3::sweepStrip(strip, outflow) : baseline::sweepStrip(strip, outflow);
+    for (std::size_t i = first; i < end; ++i) {
+        if (moved[i - first] != 0) {
+            moved_[static_cast<std::size_t>(active_[i])] = 1;
+            mark(blocksAround(cellsOf(active_[i])));
+        }
+    }
+    return end;
 }
 
 void Erosion::fillRoom(const HeightField& field, const Rect& grown, const Obstacle& obstacle) {

@@ -48,7 +48,8 @@ private:
     [[nodiscard]] Rect cellsOf(int block) const;
     [[nodiscard]] Rect blocksAround(const Rect& cells) const;
     void refreshGhosts(HeightField& field, const Rect& cells) const;
-    bool sweepBlock(HeightField& field, const Rect& cells, const Obstacle* obstacle, std::int64_t& outflow);
+    /// Sweeps the run of neighbouring active blocks that begins at active_[first]; returns the index behind it.
+    std::size_t sweepStrip(HeightField& field, std::size_t first, const Obstacle* obstacle, std::int64_t& outflow);
     void fillRoom(const HeightField& field, const Rect& cells, const Obstacle& obstacle);
     void mark(const Rect& blocks);
     void collectMarked();
@@ -58,10 +59,10 @@ private:
     int blockSize_;
     int across_, down_;  // blocks
     bool v3_;
-    std::vector<int> active_;          // ascending
+    std::vector<int> active_;           // ascending
     std::vector<std::uint8_t> marked_;  // per block: belongs to the next active set
     std::vector<std::uint8_t> moved_;   // per block: changed since takeMoved()
-    std::vector<std::int32_t> room_;    // [unit], see BlockSweep::room
+    std::vector<std::int32_t> room_;    // [unit], see StripSweep::room
 };
 
 }  // namespace sand

@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace sand::SANDWALL_CODE_PATH {
 namespace {
 
-using Fluxes = std::array<std::int32_t, kMaxBlock + 1>;  // [unit] through consecutive faces, towards east or north
+using Fluxes = std::array<std::int32_t, kMaxStrip + 1>;  // [unit] through consecutive faces, towards east or north
 
 /// Scheme G of NUMERICS: isotropic, the default. Slope across the face from its two cells, slope along it as the mean
 /// of the four differences beside it; `alongA` and `alongB` are the sums of the two differences of either cell.
@@ -18,8 +19,8 @@ struct Isotropic {
     static constexpr float kShare = 0.2499F;
     float threshold, startThreshold;
 
-    explicit Isotropic(const BlockSweep& block)
-        : threshold(static_cast<float>(block.threshold)), startThreshold(static_cast<float>(block.startThreshold)) {}
+    explicit Isotropic(const StripSweep& strip)
+        : threshold(static_cast<float>(strip.threshold)), startThreshold(static_cast<float>(strip.startThreshold)) {}
 
     std::int32_t operator()(std::int32_t a, std::int32_t b, std::int32_t alongA, std::int32_t alongB) const {
         const auto across = static_cast<float>(a - b);
@@ -34,8 +35,8 @@ struct Isotropic {
 struct FourNeighbours {
     std::int32_t threshold, startThreshold;
 
-    explicit FourNeighbours(const BlockSweep& block)
-        : threshold(block.threshold), startThreshold(block.startThreshold) {}
+    explicit FourNeighbours(const StripSweep& strip)
+        : threshold(strip.threshold), startThreshold(strip.startThreshold) {}
 
     std::int32_t operator()(std::int32_t a, std::int32_t b, std::int32_t, std::int32_t) const {
         const std::int32_t difference = a - b;
@@ -45,41 +46,59 @@ struct FourNeighbours {
     }
 };
 
+/// `count` fluxes between the cells of two parallel runs; the neighbours of either run lie `along` cells further.
+/// A free function on restricted pointers and a copy of the scheme: with members in reach g++ keeps the loop scalar.
+template <class Scheme>
+void fluxesBetween(const Scheme scheme, const std::int32_t* __restrict a, const std::int32_t* __restrict b,
+                   std::ptrdiff_t along, int count, std::int32_t* __restrict flux) {
+    for (int i = 0; i < count; ++i) {
+        flux[i] = scheme(a[i], b[i], a[i + along] - a[i - along], b[i + along] - b[i - along]);
+    }
+}
+
+/// Takes a row's fluxes from its cells; returns the bits that changed anywhere.
+std::int32_t balance(const std::int32_t* __restrict in, const std::int32_t* __restrict across,
+                     const std::int32_t* __restrict south, const std::int32_t* __restrict north, int count,
+                     std::int32_t* __restrict out) {
+    std::int32_t changed = 0;
+    for (int i = 0; i < count; ++i) {
+        const std::int32_t change = across[i] - across[i + 1] + south[i] - north[i];
+        out[i] = in[i] + change;
+        changed |= change;
+    }
+    return changed;
+}
+
 template <class Scheme, bool kTool>
 class Sweep {
 public:
-    Sweep(const BlockSweep& block, std::int64_t& outflow)
-        : block_(block), scheme_(block), outflow_(outflow), width_(block.cells.x1 - block.cells.x0) {}
+    Sweep(const StripSweep& strip, std::int64_t& outflow)
+        : strip_(strip), scheme_(strip), outflow_(outflow), width_(strip.cells.x1 - strip.cells.x0) {}
 
-    bool run() {
+    void run() {
         Fluxes south;
         Fluxes north;
         Fluxes across;
-        northFluxes(block_.cells.y0 - 1, south);
-        std::int32_t changed = 0;
-        for (int y = block_.cells.y0; y < block_.cells.y1; ++y) {
+        northFluxes(strip_.cells.y0 - 1, south);
+        for (int y = strip_.cells.y0; y < strip_.cells.y1; ++y) {
             northFluxes(y, north);
             eastFluxes(y, across);
-            const std::int32_t* in = rowOf(y);
-            std::int32_t* out = block_.out + y * block_.stride + block_.cells.x0;
-            for (int i = 0; i < width_; ++i) {
-                const auto at = static_cast<std::size_t>(i);
-                const std::int32_t change = across[at] - across[at + 1] + south[at] - north[at];
-                out[i] = in[i] + change;
-                changed |= change;
+            std::int32_t* out = strip_.out + y * strip_.stride + strip_.cells.x0;
+            for (int block = 0, x = 0; x < width_; ++block, x += strip_.blockSize) {
+                const int count = std::min(strip_.blockSize, width_ - x);
+                const std::int32_t changed =
+                    balance(rowOf(y) + x, across.data() + x, south.data() + x, north.data() + x, count, out + x);
+                strip_.moved[block] |= changed != 0 ? 1 : 0;
             }
-            south = north;
+            std::swap(south, north);
         }
-        return changed != 0;
     }
 
 private:
-    /// The block's first cell in row y.
-    [[nodiscard]] const std::int32_t* rowOf(int y) const {
-        return block_.in + y * block_.stride + block_.cells.x0;
-    }
+    /// The strip's first cell in row y.
+    [[nodiscard]] const std::int32_t* rowOf(int y) const { return strip_.in + y * strip_.stride + strip_.cells.x0; }
     [[nodiscard]] const std::int32_t* roomOf(int y) const {
-        return block_.room + (y - block_.cells.y0 + 1) * (width_ + 2) + 1;
+        return strip_.room + (y - strip_.cells.y0 + 1) * (width_ + 2) + 1;
     }
     static std::int32_t limit(std::int32_t flux, std::int32_t roomBehind, std::int32_t roomAhead) {
         return std::max(std::min(flux, roomAhead), -roomBehind);
@@ -89,18 +108,13 @@ private:
         return std::max(scheme_(height, 0, along, along), 0);
     }
 
-    /// Fluxes from row y to row y + 1, one per column of the block.
+    /// Fluxes from row y to row y + 1, one per column of the strip.
     void northFluxes(int y, Fluxes& flux) {
-        const std::int32_t* here = rowOf(y);
-        if (y < 0 || y == block_.rows - 1) {
+        if (y < 0 || y == strip_.rows - 1) {
             rimNorth(y, flux);
             return;
         }
-        const std::int32_t* there = here + block_.stride;
-        for (int i = 0; i < width_; ++i) {
-            flux[static_cast<std::size_t>(i)] =
-                scheme_(here[i], there[i], here[i + 1] - here[i - 1], there[i + 1] - there[i - 1]);
-        }
+        fluxesBetween(scheme_, rowOf(y), rowOf(y) + strip_.stride, 1, width_, flux.data());
         if constexpr (kTool) {
             for (int i = 0; i < width_; ++i) {
                 std::int32_t& q = flux[static_cast<std::size_t>(i)];
@@ -111,7 +125,7 @@ private:
 
     void rimNorth(int y, Fluxes& flux) {
         flux.fill(0);
-        if (!block_.openRim) {
+        if (!strip_.openRim) {
             return;
         }
         const std::int32_t* inner = rowOf(std::max(y, 0));
@@ -122,37 +136,39 @@ private:
         }
     }
 
-    /// Fluxes through the vertical faces of row y: index i lies between cells i - 1 and i of the block.
+    /// Fluxes through the vertical faces of row y: index i lies between cells i - 1 and i of the strip.
     void eastFluxes(int y, Fluxes& flux) {
         const std::int32_t* here = rowOf(y);
-        const std::int32_t* above = here + block_.stride;
-        const std::int32_t* below = here - block_.stride;
-        const bool westRim = block_.cells.x0 == 0;
-        const bool eastRim = block_.cells.x1 == block_.columns;
-        for (int i = westRim ? 1 : 0; i < width_ + (eastRim ? 0 : 1); ++i) {
-            flux[static_cast<std::size_t>(i)] =
-                scheme_(here[i - 1], here[i], above[i - 1] - below[i - 1], above[i] - below[i]);
+        const std::int32_t* above = here + strip_.stride;
+        const std::int32_t* below = here - strip_.stride;
+        const bool westRim = strip_.cells.x0 == 0;
+        const bool eastRim = strip_.cells.x1 == strip_.columns;
+        const int first = westRim ? 1 : 0;
+        const int end = width_ + (eastRim ? 0 : 1);
+        if (!westRim) {  // by itself, so that the others come in whole vectors
+            fluxesBetween(scheme_, here - 1, here, strip_.stride, 1, flux.data());
         }
+        fluxesBetween(scheme_, here, here + 1, strip_.stride, end - 1, flux.data() + 1);
         if constexpr (kTool) {
-            for (int i = westRim ? 1 : 0; i < width_ + (eastRim ? 0 : 1); ++i) {
+            for (int i = first; i < end; ++i) {
                 std::int32_t& q = flux[static_cast<std::size_t>(i)];
                 q = limit(q, roomOf(y)[i - 1], roomOf(y)[i]);
             }
         }
         if (westRim) {
-            const std::int32_t q = block_.openRim ? overRim(here[0], above[0] - below[0]) : 0;
+            const std::int32_t q = strip_.openRim ? overRim(here[0], above[0] - below[0]) : 0;
             flux[0] = -q;
             outflow_ += q;
         }
         if (eastRim) {
             const int last = width_ - 1;
-            const std::int32_t q = block_.openRim ? overRim(here[last], above[last] - below[last]) : 0;
+            const std::int32_t q = strip_.openRim ? overRim(here[last], above[last] - below[last]) : 0;
             flux[static_cast<std::size_t>(width_)] = q;
             outflow_ += q;
         }
     }
 
-    const BlockSweep& block_;
+    const StripSweep& strip_;
     const Scheme scheme_;
     std::int64_t& outflow_;
     const int width_;
@@ -160,13 +176,14 @@ private:
 
 }  // namespace
 
-bool sweepBlock(const BlockSweep& block, std::int64_t& outflow) {
-    if (block.n4) {
-        return block.room != nullptr ? Sweep<FourNeighbours, true>(block, outflow).run()
-                                     : Sweep<FourNeighbours, false>(block, outflow).run();
+void sweepStrip(const StripSweep& strip, std::int64_t& outflow) {
+    if (strip.n4) {
+        strip.room != nullptr ? Sweep<FourNeighbours, true>(strip, outflow).run()
+                              : Sweep<FourNeighbours, false>(strip, outflow).run();
+    } else {
+        strip.room != nullptr ? Sweep<Isotropic, true>(strip, outflow).run()
+                              : Sweep<Isotropic, false>(strip, outflow).run();
     }
-    return block.room != nullptr ? Sweep<Isotropic, true>(block, outflow).run()
-                                 : Sweep<Isotropic, false>(block, outflow).run();
 }
 
 }  // namespace sand::SANDWALL_CODE_PATH

@@ -8,32 +8,35 @@
 
 namespace sand {
 
-inline constexpr int kMaxBlock = 128;  // [cell], side of the largest block a kernel takes
+inline constexpr int kMaxBlock = 128;  // [cell], side of the largest block
+inline constexpr int kMaxStrip = 512;  // [cell], longest run of blocks a kernel takes at once
 
-/// One sweep of one block: reads `in`, writes the same cells of `out`. Both point at cell (0,0) of padded rows.
-struct BlockSweep {
+/// One sweep of a strip, which is a run of neighbouring blocks: reads `in`, writes the same cells of `out`. Both point
+/// at cell (0,0) of padded rows. Strips and not blocks, because every row begins and ends with work that cannot be
+/// done eight cells at a time.
+struct StripSweep {
     const std::int32_t* in;
     std::int32_t* out;
-    std::ptrdiff_t stride;  // [cell] from a row to the next
-    Rect cells;             // of the block, at most kMaxBlock on a side
-    int columns, rows;      // of the field
+    std::ptrdiff_t stride;                   // [cell] from a row to the next
+    Rect cells;                              // of the strip, at most kMaxStrip wide
+    int blockSize;                           // [cell]
+    int columns, rows;                       // of the field
     std::int32_t threshold, startThreshold;  // [unit]
     bool n4;
     bool openRim;
     /// How much each cell may still rise this sweep [unit], over `cells` grown by one on every side, row by row; null
     /// where no tool is near.
     const std::int32_t* room;
+    std::uint8_t* moved;  // per block of the strip: set to 1 when a cell of it changed
 };
 
-/// Returns whether any cell of the block changed. Adds what left over an open rim to `outflow` [unit · cell].
-using SweepKernel = bool (*)(const BlockSweep& block, std::int64_t& outflow);
-
-// One source, compiled twice (sand/CMakeLists.txt): the same heights, bit for bit.
+// One source, compiled twice (sand/CMakeLists.txt): the same heights, bit for bit. They add what left over an open rim
+// to `outflow` [unit · cell].
 namespace baseline {
-bool sweepBlock(const BlockSweep& block, std::int64_t& outflow);
+void sweepStrip(const StripSweep& strip, std::int64_t& outflow);
 }
 namespace v3 {
-bool sweepBlock(const BlockSweep& block, std::int64_t& outflow);
+void sweepStrip(const StripSweep& strip, std::int64_t& outflow);
 }
 
 }  // namespace sand

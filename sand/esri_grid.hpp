@@ -9,9 +9,9 @@ namespace sand {
 /// A raster as ESRI ASCII grids hold it: square cells, rows from the north.
 struct EsriGrid {
     int columns = 0, rows = 0;
-    double cellSize = 0;                  // [file's length unit]
-    double westEdge = 0, southEdge = 0;   // of the south-west cell [file's length unit]
-    std::vector<double> heights;          // [file's height unit], row by row, north first
+    double cellSize = 0;                 // [file's length unit]
+    double westEdge = 0, southEdge = 0;  // of the south-west cell [file's length unit]
+    std::vector<double> heights;         // [file's height unit], row by row, north first
 
     [[nodiscard]] double at(int column, int rowFromSouth) const {
         return heights[static_cast<std::size_t>(rows - 1 - rowFromSouth) * static_cast<std::size_t>(columns) +

@@ -12,8 +12,7 @@ Rect Rect::clippedTo(const Rect& other) const {
     return {std::max(x0, other.x0), std::max(y0, other.y0), std::min(x1, other.x1), std::min(y1, other.y1)};
 }
 
-HeightField::HeightField(int columns, int rows, double cellSize)
-    : columns_(columns), rows_(rows), cellSize_(cellSize) {
+HeightField::HeightField(int columns, int rows, double cellSize) : columns_(columns), rows_(rows), cellSize_(cellSize) {
     const bool sides = columns >= 1 && columns <= kMaxSide && rows >= 1 && rows <= kMaxSide;
     if (!sides || !std::isfinite(cellSize) || cellSize <= 0) {
         throw std::invalid_argument("HeightField: sides or cell size out of range");

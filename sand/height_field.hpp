@@ -8,10 +8,10 @@
 
 namespace sand {
 
-inline constexpr int kMaxSide = 16384;                        // [cell]
-inline constexpr std::int32_t kMaxHeight = 1 << 28;           // [unit], of either sign
-inline constexpr int kHeightBits = 16;                        // one height unit is cellSize / 2^16
-inline constexpr int kProbeBits = 8;                          // one probe unit is cellSize / 2^8
+inline constexpr int kMaxSide = 16384;               // [cell]
+inline constexpr std::int32_t kMaxHeight = 1 << 28;  // [unit], of either sign
+inline constexpr int kHeightBits = 16;               // one height unit is cellSize / 2^16
+inline constexpr int kProbeBits = 8;                 // one probe unit is cellSize / 2^8
 inline constexpr std::int32_t kUnitsPerCell = 1 << kHeightBits;
 inline constexpr std::int32_t kProbePerCell = 1 << kProbeBits;
 
@@ -37,8 +37,8 @@ public:
 
     [[nodiscard]] int columns() const { return columns_; }
     [[nodiscard]] int rows() const { return rows_; }
-    [[nodiscard]] double cellSize() const { return cellSize_; }                 // [scene unit]
-    [[nodiscard]] double unit() const { return cellSize_ / kUnitsPerCell; }     // [scene unit], of one height unit
+    [[nodiscard]] double cellSize() const { return cellSize_; }              // [scene unit]
+    [[nodiscard]] double unit() const { return cellSize_ / kUnitsPerCell; }  // [scene unit], of one height unit
     [[nodiscard]] Rect bounds() const { return {0, 0, columns_, rows_}; }
 
     [[nodiscard]] std::int32_t height(int column, int row) const { return this->row(row)[column]; }  // [unit]

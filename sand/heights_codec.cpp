@@ -27,8 +27,7 @@ void encodeHeights(const HeightField& field, files::ByteWriter& writer) {
 
 void decodeHeights(files::ByteReader& reader, HeightField& field) {
     const auto packed = reader.getBlock();
-    std::vector<std::int32_t> plain(static_cast<std::size_t>(field.columns()) *
-                                    static_cast<std::size_t>(field.rows()));
+    std::vector<std::int32_t> plain(static_cast<std::size_t>(field.columns()) * static_cast<std::size_t>(field.rows()));
     const std::size_t size = plain.size() * sizeof plain[0];
     if (ZSTD_decompress(plain.data(), size, packed.data(), packed.size()) != size) {
         throw files::FormatError("heights that do not unpack to the field's size");

@@ -21,11 +21,11 @@ enum class Rim : std::uint8_t { closed, open };
 /// Every number the sand is computed from: derived once by whoever loads the scene, then broadcast, never recomputed.
 struct Rules {
     std::int32_t columns = 0, rows = 0;
-    std::int32_t threshold = 0;         // [unit], largest stable difference between neighbours: tan(talus) · cell
-    std::int32_t startThreshold = 0;    // [unit], ≥ threshold: sand at rest starts to slide beyond this (hysteresis)
+    std::int32_t threshold = 0;       // [unit], largest stable difference between neighbours: tan(talus) · cell
+    std::int32_t startThreshold = 0;  // [unit], ≥ threshold: sand at rest starts to slide beyond this (hysteresis)
     std::int32_t sweepsPerStep = 0;
     std::int32_t stepsPerSecond = 0;
-    std::int32_t toolRadius = 0;        // [probe unit]
+    std::int32_t toolRadius = 0;  // [probe unit]
     Scheme scheme = Scheme::isotropic;
     Rim rim = Rim::closed;
 
@@ -46,7 +46,7 @@ struct ForceConstants {
 
 /// What to look at, not what to compute: never part of a digest.
 struct Look {
-    std::vector<double> sandColour{0.80, 0.66, 0.45};       // linear-light RGB, of dry sand in full light
+    std::vector<double> sandColour{0.80, 0.66, 0.45};        // linear-light RGB, of dry sand in full light
     std::vector<double> backgroundColour{0.10, 0.12, 0.15};  // linear-light RGB
     std::vector<double> sunDirection{-0.55, 0.35, 0.60};     // towards the sun, scene axes x east, y north, z up
 };
@@ -57,8 +57,8 @@ struct Scene {
     Rules rules;
     ForceConstants force;
     Look look;
-    HeightField terrain{1, 1, 1.0};      // as the session starts
-    std::vector<std::string> warnings;   // one line each, for whoever loads it to print
+    HeightField terrain{1, 1, 1.0};     // as the session starts
+    std::vector<std::string> warnings;  // one line each, for whoever loads it to print
 
     [[nodiscard]] double toolRadius() const {  // [scene unit]
         return rules.toolRadius * terrain.cellSize() / kProbePerCell;

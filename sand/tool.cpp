@@ -18,7 +18,8 @@ struct Offset {
 };
 
 Offset offsetOf(ProbePoint at, int column, int row) {
-    return {std::int64_t{column} * kProbePerCell + kHalfCell - at.x, std::int64_t{row} * kProbePerCell + kHalfCell - at.y};
+    return {std::int64_t{column} * kProbePerCell + kHalfCell - at.x,
+            std::int64_t{row} * kProbePerCell + kHalfCell - at.y};
 }
 
 int cellOf(std::int64_t coordinate /* [probe unit] */) {
@@ -111,14 +112,14 @@ SphereTool::Displacement SphereTool::press(HeightField& field, Rim rim, ProbePoi
     if (ring.empty()) {  // dragged against a closed rim: it escapes to the sides and behind
         ring = receivers(field.bounds(), rim, at, radius_, {0, 0});
     }
+    if (ring.empty()) {  // the tool is larger than the field: there is nowhere to put the sand
+        return {};
+    }
     const std::vector<std::int64_t> share = shares(ring, taken);
     for (std::size_t i = 0; i < ring.size(); ++i) {
         if (!ring[i].outside && field.height(ring[i].column, ring[i].row) + share[i] > kMaxHeight) {
             return {};  // no room left in 32 bits: the sand stays, and the tool passes through it
         }
-    }
-    if (ring.empty()) {
-        return {};
     }
     for (int y = cells.y0; y < cells.y1; ++y) {
         for (int x = cells.x0; x < cells.x1; ++x) {

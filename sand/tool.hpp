@@ -13,8 +13,8 @@ namespace sand {
 
 /// The underside of the tool while it stands in the sand: no flux may raise a cell above it.
 struct Obstacle {
-    Rect cells;                            // where the underside is defined
-    std::vector<std::int32_t> underside;   // [unit], row by row over `cells`; kFree beside the tool
+    Rect cells;                           // where the underside is defined
+    std::vector<std::int32_t> underside;  // [unit], row by row over `cells`; kFree beside the tool
     static constexpr std::int32_t kFree = std::numeric_limits<std::int32_t>::max();
 };
 

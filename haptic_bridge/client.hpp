@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "files/byte_stream.hpp"
+#include "haptic_bridge/protocol.hpp"
+#include "sand/step.hpp"
+
+namespace haptic_bridge {
+
+/// Where a haptic server listens.
+struct Address {
+    std::string host;  // a name, an IPv4 address, or an IPv6 address without brackets
+    std::uint16_t port = kDefaultPort;
+    /// Reads "HOST:PORT", "HOST" or "[IPV6]:PORT". Throws files::InputError that begins with `option`.
+    static Address parse(std::string_view text, std::string_view option);
+    [[nodiscard]] std::string text() const;
+};
+
+/// What the master compares with the server at the handshake.
+struct Offer {
+    std::uint64_t rulesDigest = 0;  // sand::Rules::digest()
+    std::string sceneName;
+};
+
+/// Where the link stands. Only a linked server numbers steps; in every other state the master does.
+enum class Link : std::uint8_t {
+    connecting,  // nobody answers yet; tried again for ever
+    refused,     // one side refused the other, see the message; tried again for ever
+    offered,     // the handshake fits: call grant()
+    granting,    // grant() is under way
+    linked,      // the server numbers the steps of the granted epoch
+    lost,        // was offered or more, and is gone; tried again for ever
+    stopped
+};
+
+struct LinkStatus {
+    Link link = Link::connecting;
+    std::string message;        // one line for a person: with whom, and why not
+    std::uint64_t changes = 0;  // grows whenever link or message changes: print the message then
+};
+
+struct TimedStep {
+    sand::Step step;
+    std::int64_t serverTimeNs = 0;  // server's clock, when the hand was read last
+    std::uint64_t serverHash = 0;   // state hash of the server's replica after the step
+    std::int64_t receivedNs = 0;    // this host's monotonic clock
+};
+
+struct LinkCounters {
+    std::uint64_t reconnects = 0;  // handshakes after the first
+    std::uint64_t bytesIn = 0, bytesOut = 0;
+    std::uint64_t stepsIn = 0;       // accepted
+    std::uint64_t stepsStale = 0;    // late or doubled: recognised by number, left out
+    std::uint64_t stepsForeign = 0;  // of another epoch: left out
+};
+
+/// The master's end of the link: connects by itself, for ever, and hands over steps in order.
+///
+/// Has a network thread of its own. Every member may be called from any thread, returns at once and, whatever the
+/// network does, throws nothing; the link's troubles are told by link().
+///
+/// Order of calls: poll link(); when it is offered, drain() what is left, then grant() with the replica's state; while
+/// it is linked, drain() and apply, and call shown() after every frame of the wall. When link() is anything else, the
+/// server numbers no steps: what it had sent is still there to drain(), and then the master numbers on, in a new epoch.
+class Client {
+public:
+    Client(Address address, Offer offer);
+    ~Client();
+    Client(const Client&) = delete;
+    Client& operator=(const Client&) = delete;
+
+    [[nodiscard]] LinkStatus link() const;
+    /// Makes the server the sequencer of `epoch` from its next step, stepNumber + 1, on. `state` is
+    /// sand::Terrain::encodeState() at stepNumber, sent only when the server's replica is elsewhere. Drops steps that
+    /// were not drained. Without effect unless the link is offered.
+    void grant(std::uint32_t epoch, std::uint64_t stepNumber, std::uint64_t stateHash, files::Bytes state);
+    /// At most `most` steps, in order and without gaps, of the granted epoch only. When the queue is full (kMaxQueued),
+    /// the network thread stops reading, and TCP holds the server back.
+    [[nodiscard]] std::vector<TimedStep> drain(std::size_t most);
+    /// The wall has swapped, and shows this step. Lets the server go on, and answers timing tests.
+    void shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs);
+    /// Server's clock − this host's clock [ns]; 0 before the first exchange.
+    [[nodiscard]] std::int64_t clockOffsetNs() const;
+    /// The server's latest measurements; kept when the link is lost.
+    [[nodiscard]] std::optional<Report> report() const;
+    [[nodiscard]] LinkCounters counters() const;
+    /// From the server's scene, once offered; 0 before.
+    [[nodiscard]] std::uint32_t stepsPerSecond() const;
+    /// Says goodbye, waits at most half a second for the server's last report, and ends the network thread.
+    void stop();
+
+    static constexpr std::size_t kMaxQueued = 1024;  // [step]
+
+private:
+    class Session;
+    std::unique_ptr<Session> session_;
+};
+
+}  // namespace haptic_bridge

@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/client_session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/asio/connect.hpp>
+#include <boost/asio/post.hpp>
+#include <utility>
+
+#include "haptic_bridge/monotonic.hpp"
+
+namespace haptic_bridge {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using boost::system::error_code;
+
+namespace {
+
+constexpr std::chrono::milliseconds kFirstBackOff{100}, kLastBackOff{2000};
+constexpr std::chrono::milliseconds kConnectTimeout{3000};
+constexpr std::chrono::milliseconds kSilence{10000};  // pongs come four times a second
+constexpr std::chrono::milliseconds kGoodbye{500};
+
+}  // namespace
+
+Client::Session::Session(Address address, Offer offer) : address_(std::move(address)), offer_(std::move(offer)) {
+    backOff_ = kFirstBackOff;
+    tell(Link::connecting, "haptic server " + address_.text() + ": connecting");
+    asio::post(io_, [this] { connect(); });
+    thread_ = std::thread([this] {
+        const auto work = asio::make_work_guard(io_);
+        io_.run();
+    });
+}
+
+void Client::Session::stop() {
+    if (!thread_.joinable()) {
+        return;
+    }
+    asio::post(io_, [this] {
+        stopping_ = true;
+        resolver_.cancel();
+        retryTimer_.cancel();
+        if (connection_) {
+            connection_->resume();
+            connection_->send(Bye{"the master has ended"});
+        }
+        watchTimer_.expires_after(connection_ ? kGoodbye : Milliseconds(0));
+        watchTimer_.async_wait([this](error_code error) {
+            if (!error) {
+                io_.stop();
+            }
+        });
+    });
+    thread_.join();
+    tell(Link::stopped, "haptic server " + address_.text() + ": link closed");
+}
+
+void Client::Session::tell(Link link, const std::string& message) {
+    const std::lock_guard lock(shelf.mutex);
+    if (shelf.status.changes == 0 || shelf.status.link != link || shelf.status.message != message) {
+        shelf.status = {link, message, shelf.status.changes + 1};
+    }
+}
+
+Link Client::Session::link() {
+    const std::lock_guard lock(shelf.mutex);
+    return shelf.status.link;
+}
+
+void Client::Session::connect() {
+    // One answer of the two below wins; the other finds `done` set.
+    const auto done = std::make_shared<bool>(false);
+    const auto socket = std::make_shared<tcp::socket>(io_);
+    watchTimer_.expires_after(kConnectTimeout);
+    watchTimer_.async_wait([this, done, socket](error_code error) {
+        if (!error && !std::exchange(*done, true)) {
+            error_code ignored;
+            socket->close(ignored);
+            failed("no answer");
+        }
+    });
+    const auto settle = [this, done](error_code error) {
+        if (stopping_ || std::exchange(*done, true)) {
+            return false;
+        }
+        watchTimer_.cancel();
+        if (error) {
+            failed(error.message());
+        }
+        return !error;
+    };
+    resolver_.async_resolve(address_.host, std::to_string(address_.port),
+                            [this, done, socket, settle](error_code error, const tcp::resolver::results_type& results) {
+                                if (error || *done) {
+                                    settle(error);
+                                    return;
+                                }
+                                asio::async_connect(*socket, results,
+                                                    [this, socket, settle](error_code failure, const tcp::endpoint&) {
+                                                        if (settle(failure)) {
+                                                            connected(std::move(*socket));
+                                                        }
+                                                    });
+                            });
+}
+
+void Client::Session::connected(Connection::Socket socket) {
+    connection_ = std::make_shared<Connection>(std::move(socket));
+    peer_ = "haptic server " + address_.text();
+    connection_->start(
+        {[this](Message&& message) { receive(std::move(message)); },
+         [this](const std::string& why, bool garbage) { garbage ? refuse("closed, " + why) : closed(why); }});
+    connection_->send(Hello{{kProtocolVersion, sand::kAlgorithmVersion, offer_.rulesDigest, offer_.sceneName}});
+    heard_ = std::chrono::steady_clock::now();
+    pings_ = 0;
+    tests_.clear();
+    watch();
+}
+
+void Client::Session::failed(const std::string& why) {
+    tell(everWelcomed_ ? Link::lost : Link::connecting,
+         fmt::format("haptic server {} does not answer ({}); trying again", address_.text(), why));
+    retry();
+}
+
+void Client::Session::closed(const std::string& why) {
+    const Link before = link();
+    const bool wasUp = before == Link::offered || before == Link::granting || before == Link::linked;
+    if (stopping_) {
+        io_.stop();
+        return;
+    }
+    if (wasUp) {
+        tell(Link::lost, fmt::format("{}: link lost, {}; trying again", peer_, why));
+    } else if (before != Link::refused) {
+        failed(why);
+        return;
+    }
+    retry();
+}
+
+void Client::Session::refuse(const std::string& why) {
+    tell(Link::refused, fmt::format("{}: {}", peer_, why));
+    backOff_ = kLastBackOff;
+    if (stopping_) {
+        io_.stop();
+        return;
+    }
+    retry();
+}
+
+void Client::Session::retry() {
+    if (connection_) {
+        const auto gone = std::exchange(connection_, nullptr);
+        gone->finish();
+    }
+    pingTimer_.cancel();
+    watchTimer_.cancel();
+    if (stopping_) {
+        return;
+    }
+    retryTimer_.expires_after(backOff_);
+    backOff_ = std::min(backOff_ * 2, kLastBackOff);
+    retryTimer_.async_wait([this](error_code error) {
+        if (!error) {
+            connect();
+        }
+    });
+}
+
+void Client::Session::watch() {
+    watchTimer_.expires_after(Milliseconds(500));
+    watchTimer_.async_wait([this](error_code error) {
+        if (error || !connection_) {
+            return;
+        }
+        bool full = false;
+        {
+            const std::lock_guard lock(shelf.mutex);
+            full = shelf.full;
+        }
+        const auto now = std::chrono::steady_clock::now();
+        heard_ = full ? now : heard_;
+        if (now - heard_ > kSilence) {
+            connection_->close(fmt::format("silent for {} s", kSilence.count() / 1000));
+            return;
+        }
+        watch();
+    });
+}
+
+void Client::Session::ping() {
+    // Quick at first, so that the clock offset is known within the first frames.
+    pingTimer_.expires_after(pings_ < 8 ? Milliseconds(10) : Milliseconds(250));
+    pingTimer_.async_wait([this](error_code error) {
+        if (!error && connection_) {
+            ++pings_;
+            connection_->send(Ping{monotonicNs()});
+            ping();
+        }
+    });
+}
+
+void Client::Session::grant(Start start, files::Bytes state) {
+    {
+        const std::lock_guard lock(shelf.mutex);
+        if (shelf.status.link != Link::offered) {
+            return;
+        }
+        shelf.steps.clear();
+    }
+    asio::post(io_, [this, start, state = std::move(state)]() mutable {
+        if (link() != Link::offered || !connection_) {
+            return;
+        }
+        granted_ = start;
+        lastStep_ = start.stepNumber;
+        state_ = std::move(state);
+        tell(Link::granting, fmt::format("{}: handing over at step {}", peer_, start.stepNumber));
+        connection_->send(start);
+    });
+}
+
+std::vector<TimedStep> Client::Session::drain(std::size_t most) {
+    std::vector<TimedStep> steps;
+    const std::lock_guard lock(shelf.mutex);
+    const std::size_t count = std::min(most, shelf.steps.size());
+    const auto end = shelf.steps.begin() + static_cast<std::ptrdiff_t>(count);
+    steps.assign(std::make_move_iterator(shelf.steps.begin()), std::make_move_iterator(end));
+    shelf.steps.erase(shelf.steps.begin(), end);
+    if (shelf.full && shelf.steps.size() < kMaxQueued) {
+        shelf.full = false;
+        asio::post(io_, [this] {
+            if (connection_) {
+                connection_->resume();
+            }
+        });
+    }
+    return steps;
+}
+
+void Client::Session::shown(const Shown& frame) {
+    asio::post(io_, [this, frame] {
+        if (!connection_ || link() != Link::linked) {
+            return;
+        }
+        // A frame drawn before the hand-over's first step says nothing about the server's steps yet.
+        connection_->send(Shown{std::clamp(frame.stepNumber, granted_.stepNumber, lastStep_), frame.frameIntervalNs});
+        for (const TimingTest& test : std::exchange(tests_, {})) {
+            connection_->send(TimingEcho{test.id});
+        }
+    });
+}
+
+void Client::Session::receive(Message&& message) {
+    heard_ = std::chrono::steady_clock::now();
+    {
+        const std::lock_guard lock(shelf.mutex);
+        shelf.counters.bytesIn = connection_->bytesIn();
+        shelf.counters.bytesOut = connection_->bytesOut();
+    }
+    if (const auto* refusal = std::get_if<Refusal>(&message)) {
+        refuse("refuses: " + refusal->text);
+    } else if (const auto* bye = std::get_if<Bye>(&message)) {
+        connection_->close("it says goodbye: " + bye->reason);
+    } else if (const auto* greeting = std::get_if<Welcome>(&message)) {
+        welcome(*greeting);
+    } else if (link() < Link::offered || link() > Link::linked) {
+        connection_->close("it did not greet", true);
+    } else if (const auto* pong = std::get_if<Pong>(&message)) {
+        clock_.add(pong->masterNs, pong->serverNs, monotonicNs());
+        const std::lock_guard lock(shelf.mutex);
+        shelf.clockOffsetNs = clock_.offsetNs();
+    } else if (const auto* report = std::get_if<Report>(&message)) {
+        const std::lock_guard lock(shelf.mutex);
+        shelf.report = *report;
+    } else if (const auto* test = std::get_if<TimingTest>(&message)) {
+        tests_.push_back(*test);
+        if (tests_.size() > 64) {  // a wall that stands still for a quarter of a minute has no round trip to tell
+            tests_.erase(tests_.begin());
+        }
+    } else if (auto* step = std::get_if<StepMessage>(&message)) {
+        accept(std::move(*step));
+    } else if (std::holds_alternative<NeedState>(message) && link() == Link::granting) {
+        connection_->send(State{std::move(state_)});
+        state_.clear();
+    } else if (std::holds_alternative<Ready>(message) && link() == Link::granting) {
+        state_.clear();
+        backOff_ = kFirstBackOff;
+        tell(Link::linked,
+             fmt::format("{}: linked, epoch {} from step {}", peer_, granted_.epoch, granted_.stepNumber + 1));
+    } else {
+        connection_->close("it sent a message out of turn", true);
+    }
+}
+
+void Client::Session::welcome(const Welcome& greeting) {
+    const Identity mine{kProtocolVersion, sand::kAlgorithmVersion, offer_.rulesDigest, offer_.sceneName};
+    // The server judged as well; a server that does not is no reason to show sand that differs from what is felt.
+    if (const auto refusal = refusalFor(greeting.server, mine)) {
+        refuse("refused: " + refusal->text);
+        return;
+    }
+    {
+        const std::lock_guard lock(shelf.mutex);
+        shelf.counters.reconnects += everWelcomed_ ? 1 : 0;
+        shelf.stepsPerSecond = greeting.stepsPerSecond;
+    }
+    everWelcomed_ = true;
+    clock_ = ClockOffset();
+    tell(Link::offered, fmt::format("{}: connected, {} steps per second", peer_, greeting.stepsPerSecond));
+    ping();
+}
+
+void Client::Session::accept(StepMessage&& message) {
+    const sand::Step& step = message.step;
+    const std::uint64_t number = step.number;
+    const bool linked = link() == Link::linked;
+    bool full = false;
+    {
+        const std::lock_guard lock(shelf.mutex);
+        if (!linked || step.epoch != granted_.epoch) {
+            ++shelf.counters.stepsForeign;
+            return;
+        }
+        if (number <= lastStep_) {
+            ++shelf.counters.stepsStale;
+            return;
+        }
+        if (number == lastStep_ + 1) {
+            lastStep_ = number;
+            ++shelf.counters.stepsIn;
+            shelf.steps.push_back({std::move(message.step), message.serverTimeNs, message.stateHash, monotonicNs()});
+            full = shelf.full = shelf.steps.size() >= kMaxQueued;
+        }
+    }
+    if (lastStep_ < number) {
+        connection_->close(fmt::format("step {} came after step {}", number, lastStep_));
+    } else if (full) {
+        connection_->pause();
+    }
+}
+
+}  // namespace haptic_bridge

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "haptic_bridge/client.hpp"
+#include "haptic_bridge/clock_offset.hpp"
+#include "haptic_bridge/connection.hpp"
+
+namespace haptic_bridge {
+
+/// What lies behind Client: a network thread that runs the whole conversation, and a locked shelf between it and the
+/// callers. Members that end in an underscore and stand below `shelf` belong to the network thread.
+class Client::Session {
+public:
+    Session(Address address, Offer offer);
+    ~Session() { stop(); }
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+
+    void grant(Start start, files::Bytes state);
+    std::vector<TimedStep> drain(std::size_t most);
+    void shown(const Shown& frame);
+    void stop();
+
+    /// What callers see, under its mutex.
+    struct Shelf {
+        std::mutex mutex;
+        LinkStatus status;
+        std::deque<TimedStep> steps;
+        std::optional<Report> report;
+        LinkCounters counters;
+        std::int64_t clockOffsetNs = 0;
+        std::uint32_t stepsPerSecond = 0;
+        bool full = false;  // reading is paused until somebody drains
+    } shelf;
+
+private:
+    using Timer = boost::asio::steady_timer;
+    using Milliseconds = std::chrono::milliseconds;
+
+    void tell(Link link, const std::string& message);
+    [[nodiscard]] Link link();
+    void connect();
+    void connected(Connection::Socket socket);
+    void failed(const std::string& why);
+    void closed(const std::string& why);
+    void refuse(const std::string& why);
+    void retry();
+    void watch();
+    void ping();
+    void receive(Message&& message);
+    void welcome(const Welcome& welcome);
+    void accept(StepMessage&& message);
+
+    const Address address_;
+    const Offer offer_;
+    boost::asio::io_context io_;
+    boost::asio::ip::tcp::resolver resolver_{io_};
+    Timer retryTimer_{io_}, pingTimer_{io_}, watchTimer_{io_};
+    std::shared_ptr<Connection> connection_;
+    std::string peer_;
+    Start granted_;
+    files::Bytes state_;
+    std::uint64_t lastStep_ = 0;
+    std::vector<TimingTest> tests_;  // to be echoed after the next swap
+    ClockOffset clock_;
+    Milliseconds backOff_{};
+    std::chrono::steady_clock::time_point heard_;
+    int pings_ = 0;
+    bool everWelcomed_ = false, stopping_ = false;
+    std::thread thread_;
+};
+
+}  // namespace haptic_bridge

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace haptic_bridge {
+
+/// Estimates how far another host's clock is ahead: of the latest exchanges, the one with the shortest round trip is
+/// believed, because its two ways can differ least. The error is at most half that round trip.
+class ClockOffset {
+public:
+    void add(std::int64_t sentNs, std::int64_t otherNs, std::int64_t receivedNs) {
+        exchanges_[next_ % exchanges_.size()] = {receivedNs - sentNs, otherNs - (sentNs + (receivedNs - sentNs) / 2)};
+        ++next_;
+        const std::size_t count = next_ < exchanges_.size() ? next_ : exchanges_.size();
+        best_ = exchanges_[0];
+        for (std::size_t i = 1; i < count; ++i) {
+            best_ = exchanges_[i].roundTripNs < best_.roundTripNs ? exchanges_[i] : best_;
+        }
+    }
+    [[nodiscard]] std::int64_t offsetNs() const { return best_.offsetNs; }  // other − own; 0 before the first exchange
+    [[nodiscard]] std::int64_t roundTripNs() const { return best_.roundTripNs; }
+
+private:
+    struct Exchange {
+        std::int64_t roundTripNs = 0, offsetNs = 0;
+    };
+    std::array<Exchange, 64> exchanges_{};
+    std::size_t next_ = 0;
+    Exchange best_;
+};
+
+}  // namespace haptic_bridge

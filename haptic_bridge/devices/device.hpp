@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "sand/force/contact_force.hpp"
+
+namespace haptic_bridge {
+
+/// Where a hand is, in hand space (docs/devices.md).
+///
+/// x runs east and y north from the centre of the field; 1 is half of the field's shorter side. z is the height of the
+/// tool's centre over the sand's surface as the session began [tool radius]: 1 touches it, 0 is half sunk.
+struct Pose {
+    double x = 0, y = 0, z = 2;
+    bool engaged = false;  // may touch the sand; otherwise the tool hovers
+};
+
+/// A haptic device, or what stands in for one. Used by one thread.
+class Device {
+public:
+    Device() = default;
+    virtual ~Device() = default;
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
+
+    /// Where the hand is at `time` [s] since the session began; times never run backwards.
+    [[nodiscard]] virtual Pose read(double time) = 0;
+    virtual void sendForce(sand::force::Vec3 force /* [N], east, north, up */) = 0;
+    /// Whether a recording is over: from then on it hovers where it is.
+    [[nodiscard]] virtual bool finished(double time) const = 0;
+};
+
+}  // namespace haptic_bridge

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/devices/open_device.hpp"
+
+#include <fstream>
+#include <iterator>
+
+#include "files/input_error.hpp"
+#include "haptic_bridge/devices/strokes.hpp"
+#include "haptic_bridge/devices/trace.hpp"
+
+namespace haptic_bridge {
+namespace {
+
+std::ifstream open(const std::string& file) {
+    std::ifstream stream(file, std::ios::binary);
+    // Opening a folder succeeds; reading it does not.
+    if (!stream || (stream.peek(), stream.bad())) {
+        throw files::InputError(file + ": cannot be read; give --device a file that is there");
+    }
+    return stream;
+}
+
+}  // namespace
+
+std::unique_ptr<Device> openDevice(const std::string& spec, const HandSettings& settings, const sand::Scene& scene) {
+    const auto colon = spec.find(':');
+    const std::string kind = spec.substr(0, colon);
+    const std::string what = colon == std::string::npos ? "" : spec.substr(colon + 1);
+    if (kind == "script" && what == "gis") {
+        return std::make_unique<StrokeDevice>(Strokes::parse(gisStrokes(), "gis.strokes"));
+    }
+    if (kind == "script" && !what.empty()) {
+        std::ifstream file = open(what);
+        const std::string text{std::istreambuf_iterator<char>(file), {}};
+        return std::make_unique<StrokeDevice>(Strokes::parse(text, what));
+    }
+    if (kind == "trace" && !what.empty()) {
+        std::ifstream file = open(what);
+        const double cell = scene.terrain.cellSize();
+        return std::make_unique<TraceDevice>(Trace::parse(file, what, settings), settings,
+                                             scene.terrain.columns() * cell, scene.terrain.rows() * cell,
+                                             scene.toolRadius());
+    }
+    throw files::InputError("--device " + spec + ": unknown device; give script:gis, script:FILE or trace:FILE.csv");
+}
+
+}  // namespace haptic_bridge

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "haptic_bridge/devices/device.hpp"
+#include "haptic_bridge/devices/hand_settings.hpp"
+#include "sand/scene.hpp"
+
+namespace haptic_bridge {
+
+/// Opens "script:gis", "script:FILE" or "trace:FILE". Throws files::InputError for anything else, and for files that
+/// cannot be read.
+[[nodiscard]] std::unique_ptr<Device> openDevice(const std::string& spec, const HandSettings& settings,
+                                                 const sand::Scene& scene);
+
+}  // namespace haptic_bridge

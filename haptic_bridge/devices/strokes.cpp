@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/devices/strokes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include "files/input_error.hpp"
+
+namespace haptic_bridge {
+namespace {
+
+constexpr double kReach = 100;    // [half side]: farther out is a typing error
+constexpr int kArcSegments = 64;  // of a full turn
+
+/// One line of a stroke file, cut into words.
+struct Line {
+    const std::string& name;
+    long number;
+    std::vector<std::string_view> words;
+
+    [[noreturn]] void fail(const std::string& message) const { throw files::InputError(name, number, message); }
+    void expect(std::size_t count, const char* form) const {
+        if (words.size() != count + 1) {
+            fail(fmt::format("'{}' takes {}, got {} values", words[0], form, words.size() - 1));
+        }
+    }
+    [[nodiscard]] double value(std::size_t index, double lowest, double highest) const {
+        const std::string_view word = words[index];
+        double number_ = 0;
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number_);
+        if (error != std::errc{} || end != word.data() + word.size() || !(number_ >= lowest && number_ <= highest)) {
+            fail(fmt::format("'{}' needs a number from {} to {}, got '{}'", words[0], lowest, highest, word));
+        }
+        return number_;
+    }
+    [[nodiscard]] double coordinate(std::size_t index) const { return value(index, -kReach, kReach); }
+};
+
+std::vector<std::string_view> cutWords(std::string_view line) {
+    line = line.substr(0, line.find('#'));
+    std::vector<std::string_view> words;
+    constexpr std::string_view blank = " \t\r";
+    for (std::size_t begin = line.find_first_not_of(blank); begin != std::string_view::npos;) {
+        const std::size_t end = std::min(line.find_first_of(blank, begin), line.size());
+        words.push_back(line.substr(begin, end - begin));
+        begin = line.find_first_not_of(blank, end);
+    }
+    return words;
+}
+
+void addArc(const Line& line, std::vector<Strokes::Point>& points) {
+    line.expect(6, "CENTRE_X CENTRE_Y RADIUS_X RADIUS_Y FROM_DEG TO_DEG");
+    const double from = line.value(5, -3600, 3600), to = line.value(6, -3600, 3600);
+    const double rx = line.value(3, 0, kReach), ry = line.value(4, 0, kReach);
+    const int segments = std::max(1, static_cast<int>(std::ceil(std::abs(to - from) / 360 * kArcSegments)));
+    for (int i = 0; i <= segments; ++i) {
+        const double angle = (from + (to - from) * i / segments) * std::numbers::pi / 180;
+        points.push_back({line.coordinate(1) + rx * std::cos(angle), line.coordinate(2) + ry * std::sin(angle)});
+    }
+}
+
+/// Reads line by line; speed and depth hold for the strokes that begin after them.
+class StrokeReader {
+public:
+    void take(const Line& line) {
+        const std::string_view word = line.words[0];
+        if (word == "stroke") {
+            line.expect(0, "nothing");
+            closeStroke(line);
+            strokes_.strokes.push_back({{}, speed_, depth_});
+        } else if (word == "speed") {
+            line.expect(1, "HALF_SIDES_PER_SECOND");
+            speed_ = line.value(1, 1e-6, 1e6);
+        } else if (word == "depth") {
+            line.expect(1, "TOOL_RADII");
+            depth_ = line.value(1, -kReach, kReach);
+        } else if (word == "travel") {
+            line.expect(1, "HALF_SIDES_PER_SECOND");
+            strokes_.travel = line.value(1, 1e-6, 1e6);
+        } else if (word == "lift") {
+            line.expect(1, "TOOL_RADII");
+            strokes_.lift = line.value(1, 0, kReach);
+        } else if (word == "point") {
+            line.expect(2, "X Y");
+            points(line).push_back({line.coordinate(1), line.coordinate(2)});
+        } else if (word == "arc") {
+            addArc(line, points(line));
+        } else {
+            line.fail(fmt::format("'{}' is none of stroke, point, arc, speed, depth, travel, lift", word));
+        }
+    }
+    [[nodiscard]] Strokes finish(const Line& end) {
+        if (strokes_.strokes.empty()) {
+            end.fail("no stroke in the file; write 'stroke', then 'point X Y' lines");
+        }
+        closeStroke(end);
+        return std::move(strokes_);
+    }
+
+private:
+    std::vector<Strokes::Point>& points(const Line& line) {
+        if (strokes_.strokes.empty()) {
+            line.fail(fmt::format("'{}' before the first 'stroke'", line.words[0]));
+        }
+        return strokes_.strokes.back().points;
+    }
+    void closeStroke(const Line& line) {
+        if (!strokes_.strokes.empty() && strokes_.strokes.back().points.empty()) {
+            line.fail("the stroke before this line has no points");
+        }
+    }
+
+    Strokes strokes_;
+    double speed_ = 1, depth_ = 0.5;
+};
+
+}  // namespace
+
+Strokes Strokes::parse(std::string_view text, const std::string& name) {
+    StrokeReader reader;
+    long number = 0;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        Line line{name, ++number, cutWords(text.substr(0, end))};
+        text.remove_prefix(std::min(end + 1, text.size()));
+        if (!line.words.empty()) {
+            reader.take(line);
+        }
+    }
+    return reader.finish({name, std::max(number, 1L), {}});
+}
+
+StrokeDevice::StrokeDevice(const Strokes& strokes) : hoverHeight_(1 + strokes.lift) {
+    const Strokes::Point first = strokes.strokes.front().points.front();
+    knots_.push_back({0, first.x, first.y, hoverHeight_, false});
+    for (const Strokes::Stroke& stroke : strokes.strokes) {
+        moveTo(stroke.points.front(), strokes.travel, hoverHeight_, false);
+        for (const Strokes::Point& point : stroke.points) {
+            moveTo(point, stroke.speed, 1 - stroke.depth, true);
+        }
+    }
+}
+
+void StrokeDevice::moveTo(Strokes::Point to, double speed, double z, bool engaged) {
+    const Knot& from = knots_.back();
+    const double distance = std::hypot(to.x - from.x, to.y - from.y);
+    knots_.push_back({from.time + distance / speed, to.x, to.y, z, engaged});
+}
+
+Pose StrokeDevice::read(double time) {
+    while (next_ < knots_.size() && knots_[next_].time < time) {
+        ++next_;
+    }
+    if (next_ == knots_.size()) {
+        return {knots_.back().x, knots_.back().y, hoverHeight_, false};
+    }
+    const Knot& from = knots_[next_ - 1];
+    const Knot& to = knots_[next_];
+    const double span = to.time - from.time;
+    const double share = span > 0 ? std::clamp((time - from.time) / span, 0.0, 1.0) : 1.0;
+    return {from.x + share * (to.x - from.x), from.y + share * (to.y - from.y), to.z, to.engaged};
+}
+
+}  // namespace haptic_bridge

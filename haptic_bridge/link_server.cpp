@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/link_server.hpp"
+
+#include <boost/asio/post.hpp>
+#include <utility>
+
+#include "haptic_bridge/master_link.hpp"
+
+namespace haptic_bridge {
+
+namespace asio = boost::asio;
+using boost::system::error_code;
+
+namespace {
+
+constexpr int kMaxGuests = 16;
+
+}  // namespace
+
+LinkServer::LinkServer(asio::io_context& io, asio::ip::tcp::acceptor acceptor, Identity identity,
+                       std::uint32_t stepsPerSecond, Sources sources)
+    : io_(io),
+      acceptor_(std::move(acceptor)),
+      pause_(io),
+      identity_(std::move(identity)),
+      stepsPerSecond_(stepsPerSecond),
+      sources_(std::move(sources)) {}
+
+LinkServer::~LinkServer() = default;
+
+std::shared_ptr<MasterLink> LinkServer::linked(std::uint32_t session) const {
+    return current_ && current_->session() == session ? current_ : nullptr;
+}
+
+Sequencer::Output LinkServer::output() {
+    // What comes for a session that has ended meanwhile is for nobody.
+    const auto hand = [this](std::uint32_t session, auto act) {
+        asio::post(io_, [this, session, act = std::move(act)]() mutable {
+            if (const auto link = linked(session)) {
+                act(*link);
+            }
+        });
+    };
+    return {[hand](std::uint32_t session) { hand(session, [](MasterLink& link) { link.ready(); }); },
+            [hand](std::uint32_t session) { hand(session, [](MasterLink& link) { link.needState(); }); },
+            [hand](std::uint32_t session, std::string why) {
+                hand(session, [why = std::move(why)](MasterLink& link) { link.unusable(why); });
+            },
+            [hand](std::uint32_t session, files::Bytes message) {
+                hand(session,
+                     [message = std::move(message)](MasterLink& link) mutable { link.step(std::move(message)); });
+            }};
+}
+
+void LinkServer::serve(Sequencer& sequencer) {
+    sequencer_ = &sequencer;
+    accept();
+}
+
+void LinkServer::accept() {
+    acceptor_.async_accept([this](error_code error, Connection::Socket socket) {
+        if (shutting_) {
+            return;
+        }
+        if (error) {  // out of descriptors, or the peer has gone again: try a little later
+            pause_.expires_after(std::chrono::milliseconds(100));
+            pause_.async_wait([this](error_code cancelled) {
+                if (!cancelled) {
+                    accept();
+                }
+            });
+            return;
+        }
+        if (guests_ < kMaxGuests) {
+            std::make_shared<MasterLink>(*this, std::move(socket))->start();
+        }
+        accept();
+    });
+}
+
+void LinkServer::shut(const std::string& reason) {
+    shutting_ = true;
+    error_code ignored;
+    acceptor_.close(ignored);
+    std::weak_ptr<Connection> last;
+    if (current_) {
+        last = current_->connection();
+        current_->sayGoodbye(reason);
+    }
+    stopWhenGone(last, 60);
+}
+
+void LinkServer::stopWhenGone(const std::weak_ptr<Connection>& last, int polls) {
+    if (last.expired() || polls == 0) {
+        io_.stop();
+        return;
+    }
+    pause_.expires_after(std::chrono::milliseconds(10));
+    pause_.async_wait([this, last, polls](error_code error) {
+        if (!error) {
+            stopWhenGone(last, polls - 1);
+        }
+    });
+}
+
+}  // namespace haptic_bridge

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "haptic_bridge/connection.hpp"
+#include "haptic_bridge/sequencer.hpp"
+
+namespace haptic_bridge {
+
+class MasterLink;
+
+/// The streaming thread: takes masters in, one at a time, and carries the sequencer's steps to them.
+///
+/// Everything runs on the thread that runs `io`. A master that leaves, breaks or sends garbage ends its own link and
+/// nothing else; the next one may come.
+class LinkServer {
+public:
+    struct Sources {
+        std::function<Report()> report;               // the parts of a report that the link does not measure itself
+        std::function<void(const std::string&)> log;  // one line for a person
+    };
+
+    /// Takes over a listening acceptor.
+    LinkServer(boost::asio::io_context& io, boost::asio::ip::tcp::acceptor acceptor, Identity identity,
+               std::uint32_t stepsPerSecond, Sources sources);
+    ~LinkServer();
+
+    /// What the sequencer calls on its own thread; hands over to this one.
+    [[nodiscard]] Sequencer::Output output();
+    /// Masters are taken in from now on.
+    void serve(Sequencer& sequencer);
+    /// Says goodbye to the master and stops listening; stops the io context when that has arrived, or after 0.6 s.
+    void shut(const std::string& reason);
+
+private:
+    friend class MasterLink;
+    void accept();
+    void stopWhenGone(const std::weak_ptr<Connection>& last, int polls);
+    [[nodiscard]] std::shared_ptr<MasterLink> linked(std::uint32_t session) const;
+
+    boost::asio::io_context& io_;
+    boost::asio::ip::tcp::acceptor acceptor_;
+    boost::asio::steady_timer pause_;
+    Identity identity_;
+    std::uint32_t stepsPerSecond_;
+    Sources sources_;
+    Sequencer* sequencer_ = nullptr;
+    std::shared_ptr<MasterLink> current_;  // the one that passed the handshake
+    std::uint32_t sessions_ = 0;
+    int guests_ = 0;  // connections that have not greeted yet
+    bool shutting_ = false;
+};
+
+}  // namespace haptic_bridge

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace haptic_bridge {
+
+/// Durations as one thread measures them, while others read: 128 buckets an octave, so percentiles are within 1 %.
+///
+/// One writer, any number of readers; nobody waits. Negative durations count as 0.
+class LiveHistogram {
+public:
+    void add(std::int64_t ns) {
+        const auto value = static_cast<std::uint64_t>(std::max<std::int64_t>(ns, 0));
+        bump(buckets_[bucketOf(value)], std::uint64_t{1});
+        bump(count_, std::uint64_t{1});
+        bump(sum_, static_cast<double>(value));
+        bump(squares_, static_cast<double>(value) * static_cast<double>(value));
+        max_.store(std::max(max_.load(std::memory_order_relaxed), value), std::memory_order_relaxed);
+    }
+    [[nodiscard]] std::uint64_t count() const { return count_.load(std::memory_order_relaxed); }
+    [[nodiscard]] double maxNs() const { return static_cast<double>(max_.load(std::memory_order_relaxed)); }
+    [[nodiscard]] double meanNs() const {
+        return count() == 0 ? 0 : sum_.load(std::memory_order_relaxed) / static_cast<double>(count());
+    }
+    [[nodiscard]] double stddevNs() const {
+        const double mean = meanNs();
+        const double square =
+            count() == 0 ? 0 : squares_.load(std::memory_order_relaxed) / static_cast<double>(count());
+        return std::sqrt(std::max(0.0, square - mean * mean));
+    }
+    /// The middle of the bucket that holds the share-th value; 0 when nothing was added.
+    [[nodiscard]] double percentileNs(double share) const {
+        const auto wanted = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(count())));
+        std::uint64_t seen = 0;
+        for (std::size_t i = 0; i < buckets_.size() && wanted > 0; ++i) {
+            seen += buckets_[i].load(std::memory_order_relaxed);
+            if (seen >= wanted) {
+                return std::min(middleOf(i), maxNs());
+            }
+        }
+        return 0;
+    }
+
+private:
+    static constexpr unsigned kBits = 7;  // 2^7 buckets an octave
+
+    static std::size_t bucketOf(std::uint64_t value) {
+        const unsigned width = static_cast<unsigned>(std::bit_width(value));
+        const unsigned shift = width > kBits + 1 ? width - kBits - 1 : 0;
+        return (std::size_t{shift} << kBits) + static_cast<std::size_t>(value >> shift);
+    }
+    static double middleOf(std::size_t bucket) {
+        const std::size_t octave = bucket >> kBits;
+        const std::size_t shift = octave > 1 ? octave - 1 : 0;
+        const double lowest = std::ldexp(static_cast<double>(bucket - (shift << kBits)), static_cast<int>(shift));
+        return lowest + (std::ldexp(1.0, static_cast<int>(shift)) - 1) / 2;
+    }
+    template <class Number>
+    static void bump(std::atomic<Number>& number, Number by) {
+        number.store(number.load(std::memory_order_relaxed) + by, std::memory_order_relaxed);
+    }
+
+    std::array<std::atomic<std::uint64_t>, (64 - kBits + 1) << kBits> buckets_{};
+    std::atomic<std::uint64_t> count_{0}, max_{0};
+    std::atomic<double> sum_{0}, squares_{0};
+};
+
+}  // namespace haptic_bridge

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "sand/step.hpp"
+
+namespace haptic_bridge {
+
+/// One reading of the hand.
+struct HandSample {
+    std::int64_t timeNs = 0;  // monotonic
+    sand::ProbePoint at;
+    bool engaged = false;
+};
+
+/// Gathers hand samples and cuts them into the paths of steps.
+///
+/// A step is engaged or not as a whole, so it takes the samples up to the next change between the two; what follows is
+/// left to the step after. Points where the hand rests are left out. A path too long for a step keeps its first and its
+/// last point and, between them, points at even distances in the order of time. Not thread-safe.
+class PathBuilder {
+public:
+    /// Beyond this many waiting samples every second one is thinned out, so that a blocked link costs bounded memory.
+    static constexpr std::size_t kMaxWaiting = 4096;
+
+    void add(const HandSample& sample);
+    /// Fills engaged and path. Returns when the last point was read [ns], 0 when no sample waited: the hand is then
+    /// where it was, engaged as it was.
+    std::int64_t take(sand::Step& step);
+    /// Forgets what waits, and where the hand was.
+    void restart(sand::ProbePoint at, bool engaged);
+    void dropWaiting();
+    [[nodiscard]] std::uint64_t dropped() const { return dropped_; }  // samples thinned out, or dropped while waiting
+
+private:
+    void thinWaiting();
+
+    std::deque<HandSample> waiting_;
+    sand::ProbePoint last_;
+    bool engaged_ = false;
+    std::uint64_t dropped_ = 0;
+};
+
+/// At most `most` (≥ 2) of the points: first, last, and evenly chosen ones between.
+[[nodiscard]] std::vector<sand::ProbePoint> thinned(const std::vector<sand::ProbePoint>& path, std::size_t most);
+
+}  // namespace haptic_bridge

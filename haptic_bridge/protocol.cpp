@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/protocol.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+namespace haptic_bridge {
+namespace {
+
+constexpr std::size_t kLengthBytes = sizeof(std::uint32_t);
+
+template <class Kind>
+constexpr std::uint8_t typeOf() {
+    return []<std::size_t... index>(std::index_sequence<index...>) {
+        std::uint8_t type = 0;
+        ((std::is_same_v<Kind, std::variant_alternative_t<index, Message>> ? type = static_cast<std::uint8_t>(index + 1)
+                                                                           : type),
+         ...);
+        return type;
+    }
+    (std::make_index_sequence<std::variant_size_v<Message>>{});
+}
+
+void putIdentity(const Identity& identity, files::ByteWriter& writer) {
+    writer.put(kMagic);
+    writer.put(identity.protocol);
+    writer.put(identity.algorithm);
+    writer.put(identity.rulesDigest);
+    writer.putText(std::string_view(identity.sceneName).substr(0, kMaxSceneName));
+}
+
+/// Leaves nothing to read when the protocol is another one: what follows then is not ours to judge.
+Identity getIdentity(files::ByteReader& reader) {
+    if (reader.get<std::uint32_t>() != kMagic) {
+        throw files::FormatError("a greeting without the magic word SWHB");
+    }
+    Identity identity;
+    identity.protocol = reader.get<std::uint32_t>();
+    if (identity.protocol != kProtocolVersion) {
+        reader.getBytes(reader.rest().size());
+        return identity;
+    }
+    identity.algorithm = reader.get<std::uint32_t>();
+    identity.rulesDigest = reader.get<std::uint64_t>();
+    identity.sceneName = reader.getText();
+    if (identity.sceneName.size() > kMaxSceneName) {
+        throw files::FormatError("a scene name of " + std::to_string(identity.sceneName.size()) + " bytes");
+    }
+    return identity;
+}
+
+/// Texts of the other side are printed: one line of plain characters, whatever came.
+std::string getLine(files::ByteReader& reader) {
+    std::string text = reader.getText();
+    for (char& character : text) {
+        if (static_cast<unsigned char>(character) < 0x20 || character == 0x7f) {
+            character = '?';
+        }
+    }
+    return text;
+}
+
+void put(const Hello& hello, files::ByteWriter& writer) { putIdentity(hello.master, writer); }
+void put(const Welcome& welcome, files::ByteWriter& writer) {
+    putIdentity(welcome.server, writer);
+    writer.put(welcome.stepsPerSecond);
+}
+void put(const Refusal& refusal, files::ByteWriter& writer) {
+    writer.put(static_cast<std::uint8_t>(refusal.code));
+    writer.putText(refusal.text);
+}
+void put(const Start& start, files::ByteWriter& writer) {
+    writer.put(start.epoch);
+    writer.put(start.stepNumber);
+    writer.put(start.stateHash);
+}
+void put(const Ready&, files::ByteWriter&) {}
+void put(const NeedState&, files::ByteWriter&) {}
+void put(const State& state, files::ByteWriter& writer) { writer.putBytes(state.bytes); }
+void put(const StepMessage& message, files::ByteWriter& writer) {
+    writer.put(message.serverTimeNs);
+    writer.put(message.stateHash);
+    sand::encode(message.step, writer);
+}
+void put(const TimingTest& test, files::ByteWriter& writer) {
+    writer.put(test.id);
+    writer.putBytes(files::Bytes(test.padding, 0));
+}
+void put(const Shown& shown, files::ByteWriter& writer) {
+    writer.put(shown.stepNumber);
+    writer.put(shown.frameIntervalNs);
+}
+void put(const TimingEcho& echo, files::ByteWriter& writer) { writer.put(echo.id); }
+void put(const Ping& ping, files::ByteWriter& writer) { writer.put(ping.masterNs); }
+void put(const Pong& pong, files::ByteWriter& writer) {
+    writer.put(pong.masterNs);
+    writer.put(pong.serverNs);
+}
+/// The one list of a report's numbers, in the order of the wire.
+template <class AnyReport, class Visit>
+void eachNumber(AnyReport& report, const Visit& visit) {
+    for (auto* number :
+         {&report.hapticPeriodUsP50, &report.hapticPeriodUsP99, &report.hapticPeriodUsMax, &report.forceUsP50,
+          &report.forceUsP99, &report.halfRoundTripMsMean, &report.halfRoundTripMsStddev, &report.halfRoundTripMsP50,
+          &report.halfRoundTripMsP99, &report.stepBytesMean}) {
+        visit(*number);
+    }
+    for (auto* number : {&report.steps, &report.stepsWithheld, &report.samplesDropped}) {
+        visit(*number);
+    }
+}
+void put(const Report& report, files::ByteWriter& writer) {
+    eachNumber(report, [&writer](auto number) { writer.put(number); });
+}
+void put(const Bye& bye, files::ByteWriter& writer) { writer.putText(bye.reason); }
+
+void get(Hello& hello, files::ByteReader& reader) { hello.master = getIdentity(reader); }
+void get(Welcome& welcome, files::ByteReader& reader) {
+    welcome.server = getIdentity(reader);
+    if (welcome.server.protocol == kProtocolVersion) {
+        welcome.stepsPerSecond = reader.get<std::uint32_t>();
+    }
+}
+void get(Refusal& refusal, files::ByteReader& reader) {
+    const auto code = reader.get<std::uint8_t>();
+    if (code < static_cast<std::uint8_t>(RefusalCode::garbage) ||
+        code > static_cast<std::uint8_t>(RefusalCode::state)) {
+        throw files::FormatError("a refusal with code " + std::to_string(code));
+    }
+    refusal.code = static_cast<RefusalCode>(code);
+    refusal.text = getLine(reader);
+}
+void get(Start& start, files::ByteReader& reader) {
+    start.epoch = reader.get<std::uint32_t>();
+    start.stepNumber = reader.get<std::uint64_t>();
+    start.stateHash = reader.get<std::uint64_t>();
+}
+void get(Ready&, files::ByteReader&) {}
+void get(NeedState&, files::ByteReader&) {}
+void get(State& state, files::ByteReader& reader) {
+    const auto bytes = reader.getBytes(reader.rest().size());
+    state.bytes.assign(bytes.begin(), bytes.end());
+}
+void get(StepMessage& message, files::ByteReader& reader) {
+    message.serverTimeNs = reader.get<std::int64_t>();
+    message.stateHash = reader.get<std::uint64_t>();
+    message.step = sand::decodeStep(reader);
+}
+void get(TimingTest& test, files::ByteReader& reader) {
+    test.id = reader.get<std::uint32_t>();
+    test.padding = static_cast<std::uint32_t>(reader.rest().size());
+    reader.getBytes(test.padding);
+}
+void get(Shown& shown, files::ByteReader& reader) {
+    shown.stepNumber = reader.get<std::uint64_t>();
+    shown.frameIntervalNs = reader.get<std::int64_t>();
+}
+void get(TimingEcho& echo, files::ByteReader& reader) { echo.id = reader.get<std::uint32_t>(); }
+void get(Ping& ping, files::ByteReader& reader) { ping.masterNs = reader.get<std::int64_t>(); }
+void get(Pong& pong, files::ByteReader& reader) {
+    pong.masterNs = reader.get<std::int64_t>();
+    pong.serverNs = reader.get<std::int64_t>();
+}
+void get(Report& report, files::ByteReader& reader) {
+    eachNumber(report, [&reader](auto& number) {
+        number = reader.get<std::remove_reference_t<decltype(number)>>();
+        if (!std::isfinite(static_cast<double>(number))) {
+            throw files::FormatError("a report with a number that is none");
+        }
+    });
+}
+void get(Bye& bye, files::ByteReader& reader) { bye.reason = getLine(reader); }
+
+template <std::size_t index = 0>
+Message decodeType(std::uint8_t type, files::ByteReader& reader) {
+    if constexpr (index == std::variant_size_v<Message>) {
+        throw files::FormatError("a message of type " + std::to_string(type));
+    } else if (type == index + 1) {
+        std::variant_alternative_t<index, Message> message;
+        get(message, reader);
+        return message;
+    } else {
+        return decodeType<index + 1>(type, reader);
+    }
+}
+
+}  // namespace
+
+files::Bytes encode(const Message& message) {
+    files::ByteWriter payload;
+    std::visit(
+        [&payload](const auto& kind) {
+            payload.put(typeOf<std::decay_t<decltype(kind)>>());
+            put(kind, payload);
+        },
+        message);
+    files::ByteWriter framed;
+    framed.putBlock(payload.bytes());
+    return framed.take();
+}
+
+Message decode(std::span<const std::uint8_t> typeAndPayload) {
+    files::ByteReader reader(typeAndPayload);
+    const auto type = reader.get<std::uint8_t>();
+    Message message = decodeType(type, reader);
+    if (!reader.atEnd()) {
+        throw files::FormatError(
+            fmt::format("a message of type {} with {} bytes too many", type, reader.rest().size()));
+    }
+    return message;
+}
+
+std::optional<Refusal> refusalFor(const Identity& server, const Identity& master) {
+    if (server.protocol != master.protocol) {
+        return Refusal{RefusalCode::protocol,
+                       fmt::format("the server speaks protocol version {}, the master {}; run the same build on both",
+                                   server.protocol, master.protocol)};
+    }
+    if (server.algorithm != master.algorithm) {
+        return Refusal{RefusalCode::algorithm,
+                       fmt::format("the server's sand is algorithm version {}, the master's {}; run the same build on "
+                                   "both",
+                                   server.algorithm, master.algorithm)};
+    }
+    if (server.sceneName != master.sceneName) {
+        return Refusal{RefusalCode::scene, fmt::format("the server has scene '{}', the master '{}'; start both with "
+                                                       "the same scene",
+                                                       server.sceneName, master.sceneName)};
+    }
+    if (server.rulesDigest != master.rulesDigest) {
+        return Refusal{RefusalCode::scene,
+                       fmt::format("the server's scene '{}' has another material or tool (digest {:016x}) than the "
+                                   "master's '{}' ({:016x}); give both the same scene file",
+                                   server.sceneName, server.rulesDigest, master.sceneName, master.rulesDigest)};
+    }
+    return std::nullopt;
+}
+
+void MessageReader::feed(std::span<const std::uint8_t> bytes) {
+    if (begin_ > 0) {
+        buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(begin_));
+        begin_ = 0;
+    }
+    const std::size_t end = buffer_.size();
+    buffer_.resize(end + bytes.size());
+    std::copy(bytes.begin(), bytes.end(), buffer_.begin() + static_cast<std::ptrdiff_t>(end));
+}
+
+std::optional<Message> MessageReader::next() {
+    const auto stream = std::span<const std::uint8_t>(buffer_).subspan(begin_);
+    if (stream.size() < kLengthBytes) {
+        return std::nullopt;
+    }
+    const auto length = files::ByteReader(stream).get<std::uint32_t>();
+    const bool longMessage = length > kMaxMessage;
+    if (length == 0 || length > kMaxState || (longMessage && !stateExpected_)) {
+        throw files::FormatError(fmt::format("a message of {} bytes, {} is the most", length, kMaxMessage));
+    }
+    if (longMessage && stream.size() > kLengthBytes && stream[kLengthBytes] != typeOf<State>()) {
+        throw files::FormatError(fmt::format("a message of {} bytes that is no state", length));
+    }
+    if (stream.size() < kLengthBytes + length) {
+        return std::nullopt;
+    }
+    begin_ += kLengthBytes + length;
+    if (stream[kLengthBytes] == typeOf<State>() && !std::exchange(stateExpected_, false)) {
+        throw files::FormatError("a state that nobody asked for");
+    }
+    return decode(stream.subspan(kLengthBytes, length));
+}
+
+}  // namespace haptic_bridge

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+
+#include "files/byte_stream.hpp"
+#include "sand/scene.hpp"
+#include "sand/step.hpp"
+
+/// The link between a haptic server, which feels the sand, and the master of a wall, which shows it.
+///
+/// docs/protocol.md describes every byte. The master is the TCP client; the server owns the device.
+namespace haptic_bridge {
+
+inline constexpr std::uint32_t kMagic = 0x42485753;  // "SWHB" as it stands on the wire
+inline constexpr std::uint32_t kProtocolVersion = 1;
+inline constexpr std::uint16_t kDefaultPort = 7750;
+inline constexpr std::size_t kMaxMessage = 64 * 1024;        // [byte], type and payload
+inline constexpr std::size_t kMaxState = 256 * 1024 * 1024;  // [byte], of a State, and only when one is expected
+inline constexpr std::size_t kMaxSceneName = 256;            // [byte]
+
+/// What both sides must have alike before a step may pass.
+struct Identity {
+    std::uint32_t protocol = kProtocolVersion;
+    std::uint32_t algorithm = sand::kAlgorithmVersion;
+    std::uint64_t rulesDigest = 0;  // sand::Rules::digest()
+    std::string sceneName;
+    friend bool operator==(const Identity&, const Identity&) = default;
+};
+
+enum class RefusalCode : std::uint8_t { garbage = 1, protocol, algorithm, scene, busy, state };
+
+// Master to server.
+struct Hello {
+    Identity master;
+    friend bool operator==(const Hello&, const Hello&) = default;
+};
+/// The master hands over the numbering: the server's first step is stepNumber + 1 of `epoch`.
+struct Start {
+    std::uint32_t epoch = 0;
+    std::uint64_t stepNumber = 0;
+    std::uint64_t stateHash = 0;  // sand::Terrain::stateHash() at stepNumber
+    friend bool operator==(const Start&, const Start&) = default;
+};
+struct State {
+    files::Bytes bytes;
+    friend bool operator==(const State&, const State&) = default;
+};
+/// Sent after every frame of the wall.
+struct Shown {
+    std::uint64_t stepNumber = 0;      // the last step that the wall shows
+    std::int64_t frameIntervalNs = 0;  // since the frame before
+    friend bool operator==(const Shown&, const Shown&) = default;
+};
+struct TimingEcho {
+    std::uint32_t id = 0;
+    friend bool operator==(const TimingEcho&, const TimingEcho&) = default;
+};
+struct Ping {
+    std::int64_t masterNs = 0;
+    friend bool operator==(const Ping&, const Ping&) = default;
+};
+
+// Server to master.
+struct Welcome {
+    Identity server;
+    std::uint32_t stepsPerSecond = 0;
+    friend bool operator==(const Welcome&, const Welcome&) = default;
+};
+struct Refusal {
+    RefusalCode code = RefusalCode::garbage;
+    std::string text;
+    friend bool operator==(const Refusal&, const Refusal&) = default;
+};
+struct Ready {
+    friend bool operator==(const Ready&, const Ready&) = default;
+};
+struct NeedState {
+    friend bool operator==(const NeedState&, const NeedState&) = default;
+};
+struct StepMessage {
+    std::int64_t serverTimeNs = 0;  // server's monotonic clock when the last point of the path was read
+    std::uint64_t stateHash = 0;    // of the server's replica after the step
+    sand::Step step;
+    friend bool operator==(const StepMessage&, const StepMessage&) = default;
+};
+/// As long on the wire as the step message before it, to be answered when the wall has swapped.
+struct TimingTest {
+    std::uint32_t id = 0;
+    std::uint32_t padding = 0;  // [byte]
+    friend bool operator==(const TimingTest&, const TimingTest&) = default;
+};
+struct Pong {
+    std::int64_t masterNs = 0;  // of the Ping
+    std::int64_t serverNs = 0;
+    friend bool operator==(const Pong&, const Pong&) = default;
+};
+/// What the server has measured since the link came up. A quantity not measured yet is 0.
+struct Report {
+    double hapticPeriodUsP50 = 0, hapticPeriodUsP99 = 0, hapticPeriodUsMax = 0;  // 0 under --pace fast
+    double forceUsP50 = 0, forceUsP99 = 0;                                       // one force evaluation
+    double halfRoundTripMsMean = 0, halfRoundTripMsStddev = 0, halfRoundTripMsP50 = 0, halfRoundTripMsP99 = 0;
+    double stepBytesMean = 0;          // step messages, length prefix included
+    std::uint64_t steps = 0;           // sent
+    std::uint64_t stepsWithheld = 0;   // due, but the wall was a whole window behind
+    std::uint64_t samplesDropped = 0;  // hand samples that no step holds: thinned out, or the queue was full
+    friend bool operator==(const Report&, const Report&) = default;
+};
+
+// Either way.
+struct Bye {
+    std::string reason;
+    friend bool operator==(const Bye&, const Bye&) = default;
+};
+
+/// In the order of their type bytes, which count from 1.
+using Message = std::variant<Hello, Welcome, Refusal, Start, Ready, NeedState, State, StepMessage, TimingTest, Shown,
+                             TimingEcho, Ping, Pong, Report, Bye>;
+
+/// The message as it goes over the wire: length, type, payload.
+[[nodiscard]] files::Bytes encode(const Message& message);
+
+/// Reads type and payload. Throws files::FormatError for anything that encode() does not write. Of a Hello or Welcome
+/// of another protocol version only that version is read.
+[[nodiscard]] Message decode(std::span<const std::uint8_t> typeAndPayload);
+
+/// Whether a server with one identity refuses a master with the other, and with which words.
+[[nodiscard]] std::optional<Refusal> refusalFor(const Identity& server, const Identity& master);
+
+/// Cuts a stream of bytes into messages; keeps half a message until the rest arrives.
+class MessageReader {
+public:
+    void feed(std::span<const std::uint8_t> bytes);
+    /// The next whole message, or nothing yet. Throws files::FormatError for a stream that is no such stream (a length
+    /// beyond the bounds, garbage), after which the link must be closed.
+    [[nodiscard]] std::optional<Message> next();
+    /// A State may come next, up to kMaxState long.
+    void expectState(bool expected) { stateExpected_ = expected; }
+    /// Whether the stream stands in the middle of a message.
+    [[nodiscard]] bool midMessage() const { return begin_ < buffer_.size(); }
+
+private:
+    files::Bytes buffer_;
+    std::size_t begin_ = 0;
+    bool stateExpected_ = false;
+};
+
+}  // namespace haptic_bridge

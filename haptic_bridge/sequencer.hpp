@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <boost/lockfree/spsc_queue.hpp>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <variant>
+
+#include "haptic_bridge/hand.hpp"
+#include "haptic_bridge/protocol.hpp"
+#include "haptic_bridge/step_clock.hpp"
+#include "sand/terrain.hpp"
+
+namespace haptic_bridge {
+
+enum class Pace : std::uint8_t { realtime, fast };
+
+/// What the force thread shares with the sand's, without locks.
+struct HandChannel {
+    boost::lockfree::spsc_queue<HandSample, boost::lockfree::capacity<8192>> samples;  // force thread to sand
+    std::atomic<std::uint64_t> overflow{0};  // samples that found the queue full
+    Latest<Surface> surface;                 // sand to force thread
+    std::atomic<bool> moving{false};         // the hand's recording runs; it rests while nobody is linked
+};
+
+/// The sand thread: owns the server's replica, and numbers the steps while a master is linked.
+///
+/// In real time a step is due by the StepClock and takes what the force thread has queued. Under the fast pace there
+/// is no clock: step n takes exactly the samples at the virtual milliseconds in ((n−1)/rate, n/rate], counted from
+/// the first start, as quickly as the wall's window allows.
+class Sequencer {
+public:
+    static constexpr std::uint64_t kWindowRealtime = 32, kWindowFast = 8;  // [step] that may be ahead of the wall
+
+    /// Called on the sand thread; `session` is the one given to start().
+    struct Output {
+        std::function<void(std::uint32_t session)> ready;
+        std::function<void(std::uint32_t session)> needState;
+        std::function<void(std::uint32_t session, std::string why)> unusable;  // the state sent does not fit
+        std::function<void(std::uint32_t session, files::Bytes stepMessage)> step;
+    };
+
+    /// Under Pace::fast `hand` is ticked by this thread, and must not be used by another.
+    Sequencer(const sand::Scene& scene, Pace pace, Hand& hand, HandChannel& channel, Output output);
+    ~Sequencer();
+    Sequencer(const Sequencer&) = delete;
+    Sequencer& operator=(const Sequencer&) = delete;
+
+    // From any thread; the answer comes through Output.
+    void start(std::uint32_t session, const Start& start) { post(Granted{session, start}); }
+    void state(files::Bytes bytes) { post(State{std::move(bytes)}); }
+    void shown(const Shown& frame, std::int64_t nowNs) { post(Frame{frame, nowNs}); }
+    void release() { post(Released{}); }
+
+    [[nodiscard]] std::uint64_t withheld() const { return withheld_; }  // steps, over the program's life
+    [[nodiscard]] std::uint64_t dropped() const { return dropped_ + channel_.overflow; }
+
+private:
+    struct Granted {
+        std::uint32_t session;
+        Start start;
+    };
+    struct Frame {
+        Shown shown;
+        std::int64_t nowNs;
+    };
+    struct Released {};
+    struct Stop {};
+    using Command = std::variant<Granted, State, Frame, Released, Stop>;
+
+    void post(Command command);
+    void run();
+    bool waitForWork();
+    void obey(Granted& command);
+    void obey(State& command);
+    void obey(Frame& command);
+    void obey(Released&);
+    void obey(Stop&) { stopping_ = true; }
+    void begin();
+    [[nodiscard]] bool blocked() const { return terrain_.stepNumber() >= shown_ + window_; }
+    void collect();
+    void gatherVirtual();
+    void makeStep();
+    void publishSurface();
+
+    const sand::Scene& scene_;
+    const Pace pace_;
+    const std::uint64_t window_;
+    Hand& hand_;
+    HandChannel& channel_;
+    Output output_;
+
+    std::mutex mutex_;
+    std::condition_variable wake_;
+    std::deque<Command> commands_;
+
+    // The sand thread's own.
+    sand::Terrain terrain_;
+    PathBuilder path_;
+    StepClock clock_;
+    Surface virtualSurface_;
+    std::uint32_t session_ = 0;
+    Start start_;
+    enum class Phase { idle, awaitingState, running } phase_ = Phase::idle;
+    std::uint64_t shown_ = 0;
+    std::uint64_t virtualSteps_ = 0;  // made under the fast pace since the first start
+    bool liftFirst_ = false;          // the first step of an epoch lifts a tool that was left in the sand
+    bool stopping_ = false;
+    std::atomic<std::uint64_t> withheld_{0}, dropped_{0};
+    std::thread thread_;
+};
+
+}  // namespace haptic_bridge

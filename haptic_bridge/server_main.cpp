@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "files/input_error.hpp"
+#include "haptic_bridge/client.hpp"
+#include "haptic_bridge/devices/open_device.hpp"
+#include "haptic_bridge/force_loop.hpp"
+#include "haptic_bridge/link_server.hpp"
+
+namespace {
+
+namespace asio = boost::asio;
+using boost::system::error_code;
+using namespace haptic_bridge;
+
+struct Options {
+    std::string scene, device, listen = "127.0.0.1:7750", portFile;
+    std::vector<std::string> map;
+    Pace pace = Pace::realtime;
+    bool dieWithParent = false;
+};
+
+void print(const std::string& line) {
+    std::fprintf(stderr, "sandwall-haptic-server: %s\n", line.c_str());
+    std::fflush(stderr);
+}
+
+asio::ip::tcp::acceptor listenAt(asio::io_context& io, const std::string& text) {
+    const Address address = Address::parse(text, "--listen");
+    error_code error;
+    const auto host = asio::ip::make_address(address.host == "localhost" ? "127.0.0.1" : address.host, error);
+    if (error) {
+        throw files::InputError("--listen: '" + address.host +
+                                "' is no IP address; write one such as 127.0.0.1, or "
+                                "0.0.0.0 for every network");
+    }
+    const asio::ip::tcp::endpoint endpoint(host, address.port);
+    asio::ip::tcp::acceptor acceptor(io);
+    acceptor.open(endpoint.protocol());
+    acceptor.set_option(asio::socket_base::reuse_address(true));
+    acceptor.bind(endpoint, error);
+    if (!error) {
+        acceptor.listen(asio::socket_base::max_listen_connections, error);
+    }
+    if (error == asio::error::address_in_use) {
+        throw files::InputError("--listen " + textOf(endpoint) +
+                                ": the port is in use; stop the program that has it, "
+                                "or give another port (0 takes any free one)");
+    }
+    if (error) {
+        throw files::InputError("--listen " + textOf(endpoint) + ": " + error.message());
+    }
+    return acceptor;
+}
+
+/// Written beside, then renamed: a reader sees no port, or the whole of it.
+void writePortFile(const std::string& file, std::uint16_t port) {
+    if (file.empty()) {
+        return;
+    }
+    const std::string beside = file + "." + std::to_string(getpid());
+    std::ofstream stream(beside);
+    stream << port << '\n';
+    stream.close();
+    std::error_code error;
+    if (stream) {
+        std::filesystem::rename(beside, file, error);
+    }
+    if (!stream || error) {
+        throw files::InputError("--port-file " + file + ": cannot be written");
+    }
+}
+
+Report measured(const Hand& hand, const ForceLoop* loop, const Sequencer& sequencer) {
+    Report report;
+    if (loop != nullptr) {
+        report.hapticPeriodUsP50 = loop->period().percentileNs(0.50) * 1e-3;
+        report.hapticPeriodUsP99 = loop->period().percentileNs(0.99) * 1e-3;
+        report.hapticPeriodUsMax = loop->period().maxNs() * 1e-3;
+    }
+    report.forceUsP50 = hand.forceCost().percentileNs(0.50) * 1e-3;
+    report.forceUsP99 = hand.forceCost().percentileNs(0.99) * 1e-3;
+    report.stepsWithheld = sequencer.withheld();
+    report.samplesDropped = sequencer.dropped();
+    return report;
+}
+
+void serve(const Options& options) {
+    const sand::Scene scene = sand::loadScene(options.scene);
+    for (const std::string& warning : scene.warnings) {
+        print("warning: " + warning);
+    }
+    const HandSettings settings = HandSettings::parse(options.map);
+    Hand hand(scene, openDevice(options.device, settings, scene), settings.datum);
+    HandChannel channel;
+
+    asio::io_context io;
+    asio::ip::tcp::acceptor acceptor = listenAt(io, options.listen);
+    const auto endpoint = acceptor.local_endpoint();
+    const Identity identity{kProtocolVersion, sand::kAlgorithmVersion, scene.rules.digest(), scene.name};
+    std::function<Report()> measure;
+    LinkServer server(io, std::move(acceptor), identity, static_cast<std::uint32_t>(scene.rules.stepsPerSecond),
+                      {[&measure] { return measure(); }, print});
+    // The sand and force threads end before the link they report to.
+    Sequencer sequencer(scene, options.pace, hand, channel, server.output());
+    const auto loop = options.pace == Pace::realtime ? std::make_unique<ForceLoop>(hand, channel) : nullptr;
+    measure = [&] { return measured(hand, loop.get(), sequencer); };
+
+    asio::signal_set signals(io, SIGINT, SIGTERM);
+    signals.async_wait([&server](error_code error, int) {
+        if (!error) {
+            server.shut("the server was stopped");
+        }
+    });
+    server.serve(sequencer);
+    writePortFile(options.portFile, endpoint.port());
+    fmt::print("listening on {}\n", textOf(endpoint));
+    std::fflush(stdout);
+    io.run();
+}
+
+/// The program's options; exits by itself after --help.
+Options parse(int count, char** words) {
+    Options options;
+    CLI::App app("Feels the sand at 1 kHz, and streams what the hand does to a wall's master.");
+    app.add_option("--scene", options.scene, "scene file, the same as the wall's")->required();
+    app.add_option("--device", options.device, "script:gis, script:FILE or trace:FILE.csv")->required();
+    app.add_option("--map", options.map, "KEY=VALUE, how a trace lies over the sand (docs/devices.md); repeatable")
+        ->allow_extra_args(false);
+    app.add_option("--pace", options.pace, "realtime, or fast: a virtual clock, as quick as the wall")
+        ->transform(
+            CLI::CheckedTransformer(std::map<std::string, Pace>{{"realtime", Pace::realtime}, {"fast", Pace::fast}}));
+    app.add_option("--listen", options.listen, "ADDRESS:PORT; port 0 takes any free one");
+    app.add_option("--port-file", options.portFile, "written when the server listens: the port's number");
+    app.add_flag("--die-with-parent", options.dieWithParent, "end when the program that started this one ends");
+    try {
+        app.parse(count, words);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) {
+            std::exit(app.exit(error));
+        }
+        throw files::InputError(error.what() + std::string("; see --help"));
+    }
+    return options;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+    try {
+        const Options options = parse(count, words);
+        if (options.dieWithParent) {
+            prctl(PR_SET_PDEATHSIG, SIGKILL);
+        }
+        serve(options);
+        return 0;
+    } catch (const files::InputError& error) {
+        print(error.what());
+        return files::kExitBadInput;
+    } catch (const std::exception& error) {
+        print(error.what());
+        return 1;
+    }
+}

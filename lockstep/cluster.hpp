@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mpi.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "files/byte_stream.hpp"
+
+namespace lockstep {
+
+inline constexpr int kMaster = 0;
+
+/// Nanoseconds of this machine's steady clock.
+[[nodiscard]] std::int64_t nowNs();
+
+/// The job: MPI initialised for as long as this lives, and one communicator per purpose.
+///
+/// Only the thread that made it may call MPI (MPI_THREAD_FUNNELED). A failing MPI call ends the job: Open MPI's own
+/// handler names it.
+class Cluster {
+public:
+    Cluster(int* argc, char*** argv);
+    ~Cluster();
+    Cluster(const Cluster&) = delete;
+    Cluster& operator=(const Cluster&) = delete;
+
+    [[nodiscard]] int rank() const { return rank_; }
+    [[nodiscard]] int size() const { return size_; }
+    [[nodiscard]] int renderRanks() const { return size_ - 1; }
+    [[nodiscard]] bool isMaster() const { return rank_ == kMaster; }
+
+    [[nodiscard]] MPI_Comm frames() const { return frames_; }      // broadcasts and the barrier
+    [[nodiscard]] MPI_Comm arrivals() const { return arrivals_; }  // who has come to the barrier
+    [[nodiscard]] MPI_Comm pictures() const { return pictures_; }  // screenshots
+
+    /// Gives everyone the master's bytes; collective.
+    [[nodiscard]] files::Bytes broadcast(const files::Bytes& fromMaster) const;
+    /// Collects everyone's bytes at the master, by rank; others get nothing. Collective.
+    [[nodiscard]] std::vector<files::Bytes> gather(const files::Bytes& mine) const;
+
+    /// Ends the whole job at once, for when a rank cannot be waited for.
+    [[noreturn]] void abort(int status) const;
+
+private:
+    int rank_ = 0;
+    int size_ = 1;
+    MPI_Comm frames_ = MPI_COMM_NULL;
+    MPI_Comm arrivals_ = MPI_COMM_NULL;
+    MPI_Comm pictures_ = MPI_COMM_NULL;
+};
+
+/// Asks the kernel to kill this process when the one that started it (mpirun, its daemon, the launcher) dies: nothing
+/// may outlive the job, not even when mpirun is killed.
+void dieWithParent();
+
+[[nodiscard]] std::string hostName();
+/// Resident memory of this process [byte].
+[[nodiscard]] std::int64_t residentBytes();
+
+}  // namespace lockstep

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lockstep/session_message.hpp"
+
+namespace lockstep {
+
+files::Bytes SessionMessage::encode() const {
+    files::ByteWriter writer;
+    writer.putBlock(scene);
+    writer.putBlock(wall);
+    writer.put(frameTimeout);
+    writer.put(static_cast<std::uint8_t>(fault.has_value() ? 1 : 0));
+    if (fault) {
+        writer.put(fault->rank);
+        writer.put(fault->frame);
+        writer.put(fault->column);
+        writer.put(fault->row);
+    }
+    return writer.take();
+}
+
+SessionMessage SessionMessage::decode(std::span<const std::uint8_t> bytes) {
+    files::ByteReader reader(bytes);
+    SessionMessage session;
+    const auto scene = reader.getBlock();
+    session.scene.assign(scene.begin(), scene.end());
+    const auto wall = reader.getBlock();
+    session.wall.assign(wall.begin(), wall.end());
+    session.frameTimeout = reader.get<double>();
+    if (reader.get<std::uint8_t>() != 0) {
+        session.fault.emplace();
+        session.fault->rank = reader.get<int>();
+        session.fault->frame = reader.get<std::uint64_t>();
+        session.fault->column = reader.get<int>();
+        session.fault->row = reader.get<int>();
+    }
+    return session;
+}
+
+std::optional<SessionMessage> broadcastSession(const Cluster& cluster,
+                                               const std::optional<SessionMessage>& fromMaster) {
+    const files::Bytes bytes = cluster.broadcast(fromMaster ? fromMaster->encode() : files::Bytes{});
+    if (bytes.empty()) {
+        return std::nullopt;
+    }
+    return SessionMessage::decode(bytes);
+}
+
+std::vector<Readiness> gatherReadiness(const Cluster& cluster, const Readiness& mine) {
+    files::ByteWriter writer;
+    for (const std::string& text : {mine.host, mine.buildId, mine.error}) {
+        writer.putText(text);
+    }
+    std::vector<Readiness> result;
+    for (const files::Bytes& bytes : cluster.gather(writer.take())) {
+        files::ByteReader reader(bytes);
+        Readiness& rank = result.emplace_back();
+        for (std::string* text : {&rank.host, &rank.buildId, &rank.error}) {
+            *text = reader.getText();
+        }
+    }
+    return result;
+}
+
+bool agreeToGoOn(const Cluster& cluster, bool master) {
+    int goOn = master ? 1 : 0;
+    MPI_Bcast(&goOn, 1, MPI_INT, kMaster, cluster.frames());
+    return goOn != 0;
+}
+
+std::vector<RankReport> gatherReports(const Cluster& cluster, const RankReport& mine) {
+    files::ByteWriter writer;
+    writer.putText(mine.host);
+    writer.putText(mine.renderer);
+    for (const double figure : {mine.drawP50, mine.drawP99, mine.drawMax, mine.waitP50, mine.waitP99}) {
+        writer.put(figure);
+    }
+    writer.put(mine.residentBytes);
+    writer.put(mine.frameBufferBytes);
+    const std::vector<files::Bytes> all = cluster.gather(writer.take());
+    std::vector<RankReport> result;
+    for (std::size_t rank = 1; rank < all.size(); ++rank) {
+        files::ByteReader reader(all[rank]);
+        RankReport& report = result.emplace_back();
+        report.host = reader.getText();
+        report.renderer = reader.getText();
+        for (double* figure : {&report.drawP50, &report.drawP99, &report.drawMax, &report.waitP50, &report.waitP99}) {
+            *figure = reader.get<double>();
+        }
+        report.residentBytes = reader.get<std::int64_t>();
+        report.frameBufferBytes = reader.get<std::int64_t>();
+    }
+    return result;
+}
+
+}  // namespace lockstep

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lockstep/cluster.hpp"
+
+namespace lockstep {
+
+/// A fault made on purpose, so that tests can see it found: one bit of one cell of one rank flips before a frame.
+struct BitFlip {
+    int rank = 0;
+    std::uint64_t frame = 0;
+    int column = 0, row = 0;
+};
+
+/// What every rank is told before the first frame. Ranks read no file: the scene and the wall come from the master.
+struct SessionMessage {
+    files::Bytes scene;       // sand::Scene::encode
+    files::Bytes wall;        // walls::Wall::encode
+    double frameTimeout = 0;  // [s] without a sign of the master, after which a rank ends
+    std::optional<BitFlip> fault;
+
+    [[nodiscard]] files::Bytes encode() const;
+    static SessionMessage decode(std::span<const std::uint8_t> bytes);
+};
+
+/// Collective. The master opens the session, or refuses it to all with nothing; ranks get what it gave.
+[[nodiscard]] std::optional<SessionMessage> broadcastSession(const Cluster& cluster,
+                                                             const std::optional<SessionMessage>& fromMaster);
+
+/// What a rank says before it takes part: who it is, and why it cannot, if it cannot.
+struct Readiness {
+    std::string host;
+    std::string buildId;
+    std::string error;  // empty when ready
+};
+
+/// Collective: everyone's readiness, by rank, at the master; others get nothing.
+[[nodiscard]] std::vector<Readiness> gatherReadiness(const Cluster& cluster, const Readiness& mine);
+
+/// Collective: whether the master says to go on.
+[[nodiscard]] bool agreeToGoOn(const Cluster& cluster, bool master);
+
+/// What a render rank has to report at the end.
+struct RankReport {
+    std::string host;
+    std::string renderer;
+    double drawP50 = 0, drawP99 = 0, drawMax = 0;  // [ms] per frame, all eyes
+    double waitP50 = 0, waitP99 = 0;               // [ms] at the barrier
+    std::int64_t residentBytes = 0;
+    std::int64_t frameBufferBytes = 0;
+};
+
+/// Collective: the render ranks' reports, by rank from 1, at the master; others get nothing. The master gives any.
+[[nodiscard]] std::vector<RankReport> gatherReports(const Cluster& cluster, const RankReport& mine);
+
+}  // namespace lockstep

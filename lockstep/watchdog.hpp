@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+namespace lockstep {
+
+/// Makes sure that no wait is silent and none is for ever.
+///
+/// A thread of its own looks on while the main thread is inside a call that may block. After kFirstWord it says who is
+/// waited for; after the limit it says so once more and ends this process, which makes mpirun end the job.
+class Watchdog {
+public:
+    static constexpr double kFirstWord = 1.0;  // [s]
+
+    /// `describe` names what is waited for; it runs on the watchdog's thread and must only read atomics.
+    Watchdog(std::function<std::string()> describe, double limitSeconds, bool speaks);
+    ~Watchdog();
+    Watchdog(const Watchdog&) = delete;
+    Watchdog& operator=(const Watchdog&) = delete;
+
+    /// From now on until disarm(), time counts. A new arm() starts afresh.
+    void arm();
+    void disarm();
+    /// For start-up, which may take long, and back.
+    void setLimit(double seconds) { limit_ = seconds; }
+
+private:
+    void look();
+
+    std::function<std::string()> describe_;
+    std::atomic<double> limit_;
+    bool speaks_;
+    std::atomic<std::int64_t> armedAt_{0};  // [ns], 0 when nobody waits
+    std::mutex mutex_;
+    std::condition_variable stop_;
+    bool stopping_ = false;
+    std::thread thread_;
+};
+
+/// Arms a watchdog for the length of a scope.
+class Watched {
+public:
+    explicit Watched(Watchdog& watchdog) : watchdog_(watchdog) { watchdog_.arm(); }
+    ~Watched() { watchdog_.disarm(); }
+    Watched(const Watched&) = delete;
+    Watched& operator=(const Watched&) = delete;
+
+private:
+    Watchdog& watchdog_;
+};
+
+}  // namespace lockstep

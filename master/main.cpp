@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <limits>
+
+#include "files/command_line.hpp"
+#include "files/input_error.hpp"
+#include "lockstep/build_id.hpp"
+#include "lockstep/clock_sync.hpp"
+#include "lockstep/session_message.hpp"
+#include "master/session.hpp"
+#include "sand/scene.hpp"
+#include "walls/wall.hpp"
+
+namespace {
+
+struct Options {
+    std::string scene, wall, haptic, pace = "realtime", out;
+    std::string fault;
+    bool noPictures = false;
+    master::SessionOptions session;
+};
+
+/// "rank=5,frame=20,column=100,row=200"
+lockstep::BitFlip parseFault(const std::string& text) {
+    lockstep::BitFlip flip;
+    int used = 0;
+    if (std::sscanf(text.c_str(), "rank=%d,frame=%lu,column=%d,row=%d%n", &flip.rank, &flip.frame, &flip.column,
+                    &flip.row, &used) != 4 ||
+        used != static_cast<int>(text.size())) {
+        throw files::InputError(
+            fmt::format("--flip-bit: '{}' is not rank=R,frame=F,column=C,row=W with whole numbers", text));
+    }
+    return flip;
+}
+
+/// What everyone needs to know, from the files the user named.
+struct World {
+    sand::Scene scene;
+    walls::Wall wall;
+    lockstep::SessionMessage message;
+};
+
+World loadWorld(const lockstep::Cluster& cluster, Options& options) {
+    World world{sand::loadScene(options.scene), walls::loadWall(options.wall), {}};
+    for (const std::string& warning : world.scene.warnings) {
+        fmt::print(stderr, "{}: warning: {}\n", options.scene, warning);
+    }
+    if (world.wall.ranks() != cluster.renderRanks()) {
+        throw files::InputError(fmt::format("{}: {} tiles need {} render ranks, but the job has {}: mpirun -n 1 "
+                                            "sandwall-master ... : -n {} sandwall-render-node",
+                                            options.wall, world.wall.ranks(), world.wall.ranks(),
+                                            cluster.renderRanks(), world.wall.ranks()));
+    }
+    std::error_code error;
+    std::filesystem::create_directories(options.out, error);
+    if (error) {
+        throw files::InputError(fmt::format("{}: cannot be made ({}); choose another --out", options.out, error.message()));
+    }
+    if (options.haptic != "none") {
+        options.session.server = haptic_bridge::Address::parse(options.haptic, "--haptic");
+    }
+    options.session.pace = options.pace == "fast" ? master::Pace::fast : master::Pace::realtime;
+    options.session.pictures = !options.noPictures;
+    options.session.out = options.out;
+    world.message = {world.scene.encode(), world.wall.encode(), options.session.frameTimeout, std::nullopt};
+    if (!options.fault.empty()) {
+        const lockstep::BitFlip& flip = world.message.fault.emplace(parseFault(options.fault));
+        if (flip.rank < 1 || flip.rank > world.wall.ranks() || flip.column < 0 || flip.row < 0 ||
+            flip.column >= world.scene.rules.columns || flip.row >= world.scene.rules.rows) {
+            throw files::InputError(fmt::format("--flip-bit: {} names no render rank or no cell", options.fault));
+        }
+    }
+    return world;
+}
+
+/// Throws for the first rank that cannot take part, by its own words.
+void requireReady(const std::vector<lockstep::Readiness>& ranks, const walls::Wall& wall) {
+    for (std::size_t rank = 1; rank < ranks.size(); ++rank) {
+        const std::string who =
+            fmt::format("rank {} (tile {}) on {}", rank, wall.tiles[rank - 1].name, ranks[rank].host);
+        if (ranks[rank].buildId != lockstep::buildId()) {
+            throw files::InputError(fmt::format("{}: is of build {}, the master of {}; install one build on every host",
+                                                who, ranks[rank].buildId, lockstep::buildId()));
+        }
+        if (!ranks[rank].error.empty()) {
+            throw files::InputError(fmt::format("{}: {}", who, ranks[rank].error));
+        }
+    }
+}
+
+int runSession(const lockstep::Cluster& cluster, Options& options) {
+    std::optional<World> world;
+    bool sessionOpen = false;
+    try {
+        world.emplace(loadWorld(cluster, options));
+        (void)lockstep::broadcastSession(cluster, world->message);
+        sessionOpen = true;
+        requireReady(lockstep::gatherReadiness(cluster, {lockstep::hostName(), lockstep::buildId(), ""}), world->wall);
+    } catch (const files::InputError&) {
+        // The ranks wait for a word, and end quietly when it is no.
+        if (sessionOpen) {
+            (void)lockstep::agreeToGoOn(cluster, false);
+        } else {
+            (void)lockstep::broadcastSession(cluster, std::nullopt);
+        }
+        throw;
+    }
+    (void)lockstep::agreeToGoOn(cluster, true);
+    (void)lockstep::clockAheadOfMaster(cluster);
+    try {
+        return master::Session(cluster, world->scene, world->wall, options.session).run();
+    } catch (const std::exception& error) {
+        // The ranks are in the middle of a frame and cannot be asked to leave.
+        const bool input = dynamic_cast<const files::InputError*>(&error) != nullptr;
+        fmt::print(stderr, "sandwall-master: {}\n", error.what());
+        cluster.abort(input ? files::kExitBadInput : 1);
+    }
+}
+
+void describeOptions(CLI::App& app, Options& options) {
+    master::SessionOptions& session = options.session;
+    app.add_option("--scene", options.scene, "scene file")->required();
+    app.add_option("--wall", options.wall, "wall file")->required();
+    app.add_option("--out", options.out, "folder for journal, pictures and summary")->required();
+    app.add_option("--haptic", options.haptic, "HOST:PORT of the haptic server, or none")->default_val("none");
+    app.add_option("--pace", options.pace, "realtime: at the wall's refresh rate; fast: as fast as it goes")
+        ->check(CLI::IsMember({"realtime", "fast"}));
+    app.add_option("--refresh", session.refreshHz, "frames per second of the wall")->check(CLI::Range(1.0, 1000.0));
+    app.add_option("--steps", session.steps, "end when exactly this many steps have been shown")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--frames", session.frames, "end after this many frames")->check(CLI::PositiveNumber);
+    app.add_option("--frame-timeout", session.frameTimeout, "seconds a frame may take before the job ends")
+        ->check(CLI::Range(2.0, 3600.0));
+    app.add_flag("--no-pictures", options.noPictures, "write no pictures at the end");
+    app.add_flag("--control-stdin", session.readInput, "a line \"stop\" on standard input, or its end, ends the session");
+    app.add_option("--flip-bit", options.fault, "for tests: rank=R,frame=F,column=C,row=W flips one bit of that replica");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    lockstep::dieWithParent();
+    // Open MPI starts before the options are read: mpirun counts a process that ends without it as crashed.
+    lockstep::Cluster cluster(&argc, &argv);
+    CLI::App app("Rank 0 of a wall: bridges the haptic server to all ranks, paces frames, keeps the journal.",
+                 "sandwall-master");
+    Options options;
+    describeOptions(app, options);
+    bool parsed = false;
+    const int status = files::runMain(app, argc, argv, [&] {
+        parsed = true;
+        return runSession(cluster, options);
+    });
+    if (!parsed) {
+        (void)lockstep::broadcastSession(cluster, std::nullopt);
+    }
+    return status;
+}

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <limits>
+
+#include "files/command_line.hpp"
+#include "files/input_error.hpp"
+#include "master/journal.hpp"
+#include "sand/esri_grid.hpp"
+#include "sand/terrain.hpp"
+
+namespace {
+
+struct Options {
+    std::string file;
+    bool hash = false;
+    std::string heights;
+    std::uint64_t until = std::numeric_limits<std::uint64_t>::max();
+};
+
+/// Applies the journal's steps and checks the session's hashes on the way. Returns how many frames differed.
+int replay(const master::Journal& journal, std::uint64_t until, sand::Terrain& terrain) {
+    int differing = 0;
+    for (const master::JournalFrame& frame : journal.frames) {
+        if (frame.steps.empty() || terrain.stepNumber() >= until) {
+            continue;
+        }
+        if (terrain.stateHash() != frame.hashBefore && differing++ == 0) {
+            fmt::print(stderr, "before frame {}, after step {}: the session had {:016x}, the replay has {:016x}\n",
+                       frame.frame, terrain.stepNumber(), frame.hashBefore, terrain.stateHash());
+        }
+        for (const sand::Step& step : frame.steps) {
+            if (step.number <= until) {
+                terrain.apply(step);
+            }
+        }
+    }
+    return differing;
+}
+
+void writeHeights(const sand::HeightField& field, const std::string& file) {
+    sand::EsriGrid grid{field.columns(), field.rows(), field.cellSize(), 0, 0, {}};
+    for (int y = field.rows() - 1; y >= 0; --y) {
+        for (int x = 0; x < field.columns(); ++x) {
+            grid.heights.push_back(field.height(x, y) * field.unit());
+        }
+    }
+    sand::writeEsriGrid(grid, file);
+}
+
+int run(const Options& options) {
+    const master::Journal journal = master::readJournal(options.file);
+    if (journal.tornBytes > 0) {
+        fmt::print(stderr, "{}: the last {} bytes are no whole record and were left out\n", options.file,
+                   journal.tornBytes);
+    }
+    sand::Terrain terrain(journal.scene);
+    int differing = replay(journal, options.until, terrain);
+    if (options.until != std::numeric_limits<std::uint64_t>::max() && terrain.stepNumber() < options.until) {
+        throw files::InputError(
+            fmt::format("{}: ends at step {}, before --until {}", options.file, terrain.stepNumber(), options.until));
+    }
+    const bool whole = journal.end && journal.end->step == terrain.stepNumber();
+    if (whole && journal.end->hash != terrain.stateHash()) {
+        fmt::print(stderr, "after step {}: the session had {:016x}, the replay has {:016x}\n", terrain.stepNumber(),
+                   journal.end->hash, terrain.stateHash());
+        ++differing;
+    }
+    if (options.hash) {
+        fmt::print("{:016x}\n", terrain.stateHash());
+    }
+    if (!options.heights.empty()) {
+        writeHeights(terrain.field(), options.heights);
+    }
+    return differing == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("Replays the journal of a session, bit for bit, and checks it against the session's own hashes.\n"
+                 "Exit status 0 alike, 1 different, 2 unusable.");
+    Options options;
+    app.add_option("FILE", options.file, "session.journal of a session")->required();
+    app.add_flag("--hash", options.hash, "print the state hash after the last step");
+    app.add_option("--heights", options.heights, "write the heights then, as an ESRI ASCII grid");
+    app.add_option("--until", options.until, "stop after this step");
+    return files::runMain(app, argc, argv, [&] { return run(options); });
+}

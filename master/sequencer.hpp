@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "haptic_bridge/client.hpp"
+#include "sand/terrain.hpp"
+
+namespace master {
+
+enum class Pace : std::uint8_t { realtime, fast };
+
+/// Gives every step its number, or leaves that to the haptic server: exactly one of them per epoch.
+///
+/// While a server is linked it numbers; else the master does, with a hovering tool, so that sand never freezes in
+/// mid-slide. Every change is a new epoch. Main thread only.
+class Sequencer {
+public:
+    /// At the start a haptic server is waited for this long before the master numbers by itself [s].
+    static constexpr double kStartWait = 10;
+
+    Sequencer(std::optional<haptic_bridge::Address> server, const sand::Scene& scene, Pace pace);
+
+    /// At most `most` steps for the next frame, numbered on from the terrain's; none when nothing is due.
+    [[nodiscard]] std::vector<haptic_bridge::TimedStep> next(const sand::Terrain& terrain, std::uint64_t stateHash,
+                                                             std::size_t most);
+    /// The wall has swapped and shows the terrain at this step.
+    void shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs);
+
+    /// The server's replica holds other sand than the wall: it is let go, and starts again from the wall's state.
+    void distrustServer();
+
+    /// Whether steps are still awaited from a server that has only just started.
+    [[nodiscard]] bool starting() const { return source_ == Source::starting; }
+    [[nodiscard]] bool linked() const { return source_ == Source::server; }
+    [[nodiscard]] std::uint32_t epoch() const { return epoch_; }
+    /// How far the server's clock is ahead of ours [ns].
+    [[nodiscard]] std::int64_t clockOffsetNs() const { return client_ ? client_->clockOffsetNs() : 0; }
+    [[nodiscard]] std::optional<haptic_bridge::Report> report() const;
+    [[nodiscard]] haptic_bridge::LinkCounters counters() const;
+    /// Ends the link in an orderly way.
+    void stop();
+
+private:
+    enum class Source : std::uint8_t { starting, server, granting, own };
+
+    void followLink(const sand::Terrain& terrain, std::uint64_t stateHash);
+    void sayLink(const haptic_bridge::LinkStatus& status);
+    void takeOver();
+    [[nodiscard]] std::size_t ownStepsDue();
+
+    std::optional<haptic_bridge::Address> server_;
+    haptic_bridge::Offer offer_;
+    int stepsPerSecond_;
+    Pace pace_;
+    std::unique_ptr<haptic_bridge::Client> client_;
+    Source source_;
+    std::uint32_t epoch_ = 0;
+    std::uint64_t linkChanges_ = 0;
+    std::int64_t startedNs_;
+    double ownStepsOwed_ = 0;
+    std::int64_t lastOwnNs_ = 0;
+};
+
+}  // namespace master

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <thread>
+
+#include "lockstep/build_id.hpp"
+#include "lockstep/session_message.hpp"
+#include "master/wall_pictures.hpp"
+
+namespace master {
+namespace {
+
+using haptic_bridge::TimedStep;
+using lockstep::nowNs;
+
+constexpr std::size_t kMostStepsPerFrame = 16;  // a long catch-up is spread over frames
+constexpr std::size_t kMostStepsPerFastFrame = 4;
+constexpr double kFastPatience = 0.1;   // [s] that a fast session waits for a step before it shows a frame without
+constexpr double kAuditSeconds = 1.0;   // in which all of memory is hashed again, whatever the frame rate
+
+std::vector<std::string> namesOf(const walls::Wall& wall) {
+    std::vector<std::string> names{"the master"};
+    for (const walls::Tile& tile : wall.tiles) {
+        names.push_back(fmt::format("rank {} (tile {})", tile.rank, tile.name));
+    }
+    return names;
+}
+
+void sleepNs(std::int64_t ns) { std::this_thread::sleep_for(std::chrono::nanoseconds(ns)); }
+
+double milliseconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-6; }
+
+}  // namespace
+
+Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, const walls::Wall& wall,
+                 SessionOptions options)
+    : cluster_(cluster),
+      wall_(wall),
+      options_(std::move(options)),
+      terrain_(scene),
+      names_(namesOf(wall)),
+      barrier_(cluster, names_, options_.frameTimeout),
+      journal_(options_.out / "session.journal", scene, lockstep::buildId()),
+      sequencer_(options_.server, scene, options_.pace),
+      stop_(options_.readInput) {
+    summary_.scene = scene.name;
+    summary_.wall = wall.name;
+    summary_.ranks = wall.ranks();
+    summary_.volumeInitial = terrain_.field().volume();
+    for (const walls::Tile& tile : wall.tiles) {
+        summary_.tileNames.push_back(tile.name);
+    }
+    hash_ = terrain_.stateHash();
+}
+
+void Session::waitForFrameTime() {
+    if (options_.pace == Pace::fast) {
+        return;
+    }
+    // From one grid of times, not from the last frame: the wall's clock must not drift with each late frame.
+    const auto period = static_cast<std::int64_t>(1e9 / options_.refreshHz);
+    const std::int64_t now = nowNs();
+    frameStart_ = std::max(frameStart_ + period, now - period);
+    if (frameStart_ > now) {
+        sleepNs(frameStart_ - now);
+    }
+}
+
+std::vector<TimedStep> Session::awaitSteps() {
+    const bool fast = options_.pace == Pace::fast;
+    std::size_t most = fast ? kMostStepsPerFastFrame : kMostStepsPerFrame;
+    most = std::min<std::uint64_t>(most, options_.steps - terrain_.stepNumber());
+    const std::int64_t since = nowNs();
+    std::vector<TimedStep> steps = sequencer_.next(terrain_, hash_, most);
+    while (fast && steps.empty() && !stop_.made() && static_cast<double>(nowNs() - since) * 1e-9 < kFastPatience) {
+        sleepNs(500'000);
+        steps = sequencer_.next(terrain_, hash_, most);
+    }
+    return steps;
+}
+
+lockstep::FrameMessage Session::prepare(std::vector<TimedStep>& steps) {
+    lockstep::FrameMessage message;
+    message.frame = ++frame_;
+    message.view = {{wall_.viewer.eye.x, wall_.viewer.eye.y, wall_.viewer.eye.z}, wall_.viewer.eyeSeparation};
+    for (const TimedStep& timed : steps) {
+        message.steps.push_back(timed.step);
+    }
+    const std::uint64_t shownThen = terrain_.stepNumber() + steps.size();
+    message.stop = stop_.made() || frame_ >= options_.frames || shownThen >= options_.steps;
+    message.capture = message.stop && options_.pictures;
+    const double sinceLast = lastSwap_ == 0 ? 0 : static_cast<double>(nowNs() - lastSwap_) * 1e-9;
+    const int tiles = terrain_.hashTiles().tileCount();
+    message.auditTiles = static_cast<std::uint32_t>(
+        std::clamp(static_cast<int>(std::ceil(tiles * sinceLast / kAuditSeconds)), (tiles + 63) / 64, tiles));
+    return message;
+}
+
+void Session::applySteps(const std::vector<TimedStep>& steps) {
+    for (const TimedStep& timed : steps) {
+        terrain_.apply(timed.step);
+    }
+}
+
+bool Session::showFrame() {
+    waitForFrameTime();
+    std::vector<TimedStep> steps = awaitSteps();
+    const std::uint64_t hashBefore = hash_;
+    std::size_t bytes = 0;
+    const lockstep::FrameMessage message = lockstep::broadcastFrame(cluster_, prepare(steps), bytes);
+    const std::int64_t broadcast = nowNs();
+    summary_.broadcastBytes.add(static_cast<double>(bytes));
+    if (!message.steps.empty()) {
+        // The ranks draw meanwhile; none of them swaps before the master has come to the barrier.
+        journal_.append({message.frame, hashBefore, message.steps});
+    }
+    applySteps(steps);
+    terrain_.audit(static_cast<int>(message.auditTiles));
+    hash_ = terrain_.stateHash();
+
+    const bool equal = barrier_.meet({.frame = message.frame, .arrived = nowNs(), .lastSwap = lastSwap_}, hash_);
+    const std::int64_t swapped = nowNs();
+    if (!equal) {
+        ++summary_.divergences;
+        reportDivergence(*lockstep::findDivergence(cluster_, terrain_));
+        return false;
+    }
+    measureSwaps(swapped);
+    measureLatency(steps, broadcast, swapped);
+    sequencer_.shown(terrain_.stepNumber(), swapped - (lastSwap_ == 0 ? swapped : lastSwap_));
+    lastSwap_ = swapped;
+    if (!steps.empty() && sequencer_.linked() && steps.back().step.epoch == sequencer_.epoch() &&
+        steps.back().serverHash != hash_) {
+        ++summary_.serverDivergences;
+        sequencer_.distrustServer();
+    }
+    stopping_ = message.stop;
+    return true;
+}
+
+void Session::measureSwaps(std::int64_t now) {
+    if (lastSwap_ == 0) {
+        firstSwap_ = now;
+        return;
+    }
+    summary_.frameMs.add(milliseconds(now - lastSwap_));
+    // The ranks tell when they swapped the frame before this one; the first has nothing to tell.
+    const auto& arrivals = barrier_.arrivals();
+    const auto earlier = [](const lockstep::Arrival& a, const lockstep::Arrival& b) { return a.lastSwap < b.lastSwap; };
+    const auto [first, last] = std::minmax_element(arrivals.begin() + 1, arrivals.end(), earlier);
+    if (first->lastSwap != 0) {
+        lastSkewUs_ = static_cast<double>(last->lastSwap - first->lastSwap) * 1e-3;
+        summary_.skewUs.add(lastSkewUs_);
+    }
+}
+
+void Session::measureLatency(const std::vector<TimedStep>& steps, std::int64_t broadcast, std::int64_t swapped) {
+    std::int64_t drawn = broadcast;
+    for (std::size_t rank = 1; rank < barrier_.arrivals().size(); ++rank) {
+        drawn = std::max(drawn, barrier_.arrivals()[rank].arrived);
+    }
+    for (const TimedStep& timed : steps) {
+        if (timed.serverTimeNs == 0) {  // the master's own
+            continue;
+        }
+        const std::int64_t sent = timed.serverTimeNs - sequencer_.clockOffsetNs();
+        Latency& latency = summary_.latency;
+        latency.toMaster.add(milliseconds(timed.receivedNs - sent));
+        latency.queued.add(milliseconds(broadcast - timed.receivedNs));
+        latency.drawn.add(milliseconds(drawn - broadcast));
+        latency.swapped.add(milliseconds(swapped - drawn));
+        latency.wholeWay.add(milliseconds(swapped - sent));
+    }
+}
+
+void Session::sayProgress(bool last) {
+    const std::int64_t now = nowNs();
+    if (!last && now - lastProgress_ < 1'000'000'000) {
+        return;
+    }
+    const double fps = lastProgress_ == 0 ? 0
+                                          : static_cast<double>(frame_ - lastProgressFrame_) /
+                                                (static_cast<double>(now - lastProgress_) * 1e-9);
+    const std::string of = options_.steps == kNoLimit ? "" : fmt::format("/{}", options_.steps);
+    fmt::print("frame {}  step {}{}  {:.1f} fps  skew {:.0f} us  hashes agree  {}\n", frame_, terrain_.stepNumber(), of,
+               fps, lastSkewUs_,
+               sequencer_.linked() ? "hand linked" : (sequencer_.starting() ? "waiting for a hand" : "no hand"));
+    std::fflush(stdout);
+    lastProgress_ = now;
+    lastProgressFrame_ = frame_;
+}
+
+void Session::reportDivergence(const lockstep::Divergence& divergence) {
+    const std::string journal = (options_.out / "session.journal").string();
+    std::ofstream dump(options_.out / "divergence.txt");
+    const auto say = [&dump](const std::string& line) {
+        fmt::print(stderr, "sandwall: {}\n", line);
+        dump << line << '\n';
+    };
+    for (const lockstep::Divergence::Odd& odd : divergence.odd) {
+        const std::string where =
+            odd.tile < 0 ? "in pose, step or outflow"
+                         : fmt::format("first in hash tile {} (columns {}..{}, rows {}..{}), {} cells of it", odd.tile,
+                                       odd.cells.x0, odd.cells.x1 - 1, odd.cells.y0, odd.cells.y1 - 1,
+                                       odd.cellsDiffering);
+        say(fmt::format("frame {}, step {}: {} holds other sand than {} of {} ranks: {:016x} and not {:016x}, {}",
+                        frame_, terrain_.stepNumber(), names_[static_cast<std::size_t>(odd.rank)], divergence.agreeing,
+                        cluster_.size(), odd.hash, divergence.majorityHash, where));
+    }
+    if (divergence.tie) {
+        say("no hash has a majority; the master's was taken for right");
+    }
+    say(fmt::format("reproduce the right hash with: sandwall-replay {} --until {} --hash", journal,
+                    terrain_.stepNumber()));
+}
+
+void Session::finish() {
+    sequencer_.stop();
+    summary_.frames = frame_;
+    summary_.steps = terrain_.stepNumber();
+    summary_.stateHash = hash_;
+    summary_.volumeFinal = terrain_.field().volume();
+    summary_.volumeOutflow = terrain_.outflow();
+    summary_.seconds = static_cast<double>(lastSwap_ - firstSwap_) * 1e-9;
+    summary_.haptic = sequencer_.report();
+    summary_.link = sequencer_.counters();
+    summary_.ranksReports = lockstep::gatherReports(cluster_, {});
+    summary_.masterResidentBytes = lockstep::residentBytes();
+}
+
+int Session::run() {
+    bool agreed = true;
+    while (agreed && !stopping_) {
+        agreed = showFrame();
+        if (agreed) {
+            sayProgress(stopping_);
+        }
+    }
+    if (agreed) {
+        journal_.finish(terrain_.stepNumber(), hash_);
+    }
+    finish();
+    writeSummary(summary_, options_.out / "summary.json");
+    if (agreed && options_.pictures) {
+        writeWallPictures(cluster_, wall_, options_.out);
+    }
+    fmt::print("{}", describe(summary_));
+    return agreed ? 0 : 1;
+}
+
+}  // namespace master

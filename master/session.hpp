@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "lockstep/divergence.hpp"
+#include "lockstep/frame_barrier.hpp"
+#include "lockstep/frame_message.hpp"
+#include "master/journal.hpp"
+#include "master/sequencer.hpp"
+#include "master/stop_request.hpp"
+#include "master/summary.hpp"
+#include "sand/terrain.hpp"
+#include "walls/wall.hpp"
+
+namespace master {
+
+inline constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
+
+/// How a session runs.
+struct SessionOptions {
+    std::optional<haptic_bridge::Address> server;
+    Pace pace = Pace::realtime;
+    double refreshHz = 60;              // of the wall
+    std::uint64_t steps = kNoLimit;     // ends when exactly this many have been shown
+    std::uint64_t frames = kNoLimit;    // ends after this many
+    double frameTimeout = 30;           // [s] that a frame may take before the job ends
+    bool pictures = true;
+    bool readInput = false;             // "stop" on standard input, or its end, ends the session
+    std::filesystem::path out;
+};
+
+/// The frame loop of the master: number, broadcast, journal, apply, agree, swap; 60 times a second if the wall can.
+class Session {
+public:
+    Session(const lockstep::Cluster& cluster, const sand::Scene& scene, const walls::Wall& wall,
+            SessionOptions options);
+
+    /// Runs to the end and writes journal, pictures and summary. Returns the exit status: 0, or 1 when replicas
+    /// differed. Collective with renderTile() of the render ranks.
+    int run();
+
+private:
+    [[nodiscard]] lockstep::FrameMessage prepare(std::vector<haptic_bridge::TimedStep>& steps);
+    void waitForFrameTime();
+    [[nodiscard]] std::vector<haptic_bridge::TimedStep> awaitSteps();
+    [[nodiscard]] bool showFrame();
+    void applySteps(const std::vector<haptic_bridge::TimedStep>& steps);
+    void measureSwaps(std::int64_t now);
+    void measureLatency(const std::vector<haptic_bridge::TimedStep>& steps, std::int64_t broadcast,
+                        std::int64_t swapped);
+    void sayProgress(bool last);
+    void reportDivergence(const lockstep::Divergence& divergence);
+    void finish();
+
+    const lockstep::Cluster& cluster_;
+    const walls::Wall& wall_;
+    SessionOptions options_;
+    sand::Terrain terrain_;
+    std::vector<std::string> names_;  // of ranks, as messages speak of them
+    lockstep::FrameBarrier barrier_;
+    JournalWriter journal_;
+    Sequencer sequencer_;
+    StopRequest stop_;
+    Summary summary_;
+    std::uint64_t frame_ = 0;
+    std::uint64_t hash_ = 0;         // of the state the wall shows
+    std::int64_t firstSwap_ = 0, lastSwap_ = 0, frameStart_ = 0;  // [ns]
+    std::int64_t lastProgress_ = 0;  // [ns]
+    std::uint64_t lastProgressFrame_ = 0;
+    double lastSkewUs_ = 0;
+    bool stopping_ = false;
+};
+
+}  // namespace master

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/summary.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "files/input_error.hpp"
+
+namespace master {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json spread(const lockstep::Statistics& figures) {
+    return {{"p50", figures.percentile(0.5)}, {"p99", figures.percentile(0.99)}, {"max", figures.largest()}};
+}
+
+ordered_json distribution(const lockstep::Statistics& figures) {
+    return {{"mean", figures.mean()},
+            {"stddev", figures.deviation()},
+            {"p50", figures.percentile(0.5)},
+            {"p99", figures.percentile(0.99)}};
+}
+
+double framesPerSecond(const Summary& summary) {
+    return summary.seconds > 0 ? static_cast<double>(summary.frames - 1) / summary.seconds : 0;
+}
+
+ordered_json hapticPart(const Summary& summary) {
+    ordered_json part = ordered_json::object();
+    part["reconnects"] = summary.link.reconnects;
+    if (const auto& report = summary.haptic) {
+        part["force_us"] = {{"p50", report->forceUsP50}, {"p99", report->forceUsP99}};
+        part["half_round_trip_ms"] = {{"mean", report->halfRoundTripMsMean},
+                                      {"stddev", report->halfRoundTripMsStddev},
+                                      {"p50", report->halfRoundTripMsP50},
+                                      {"p99", report->halfRoundTripMsP99}};
+        part["step_message_bytes"] = report->stepBytesMean;
+        part["steps_withheld"] = report->stepsWithheld;
+        part["samples_dropped"] = report->samplesDropped;
+    }
+    return part;
+}
+
+ordered_json rankPart(const Summary& summary, std::size_t index) {
+    const lockstep::RankReport& report = summary.ranksReports[index];
+    return {{"rank", index + 1},
+            {"tile", summary.tileNames[index]},
+            {"host", report.host},
+            {"renderer", report.renderer},
+            {"draw_ms", {{"p50", report.drawP50}, {"p99", report.drawP99}, {"max", report.drawMax}}},
+            {"barrier_wait_ms", {{"p50", report.waitP50}, {"p99", report.waitP99}}},
+            {"memory_bytes", report.residentBytes},
+            {"frame_buffer_bytes", report.frameBufferBytes}};
+}
+
+ordered_json jsonOf(const Summary& summary) {
+    ordered_json json;
+    json["scene"] = summary.scene;
+    json["wall"] = summary.wall;
+    json["frames"] = summary.frames;
+    json["steps"] = summary.steps;
+    json["ranks"] = summary.ranks;
+    json["state_hash"] = fmt::format("{:016x}", summary.stateHash);
+    json["divergences"] = summary.divergences;
+    json["server_divergences"] = summary.serverDivergences;
+    json["volume_initial"] = summary.volumeInitial;
+    json["volume_final"] = summary.volumeFinal;
+    json["volume_outflow"] = summary.volumeOutflow;
+    json["seconds"] = summary.seconds;
+    json["fps"] = framesPerSecond(summary);
+    json["frame_ms"] = spread(summary.frameMs);
+    json["skew_us"] = spread(summary.skewUs);
+    json["latency_ms"] = distribution(summary.latency.wholeWay);
+    json["latency_legs_ms"] = {{"to_master", distribution(summary.latency.toMaster)},
+                               {"queued", distribution(summary.latency.queued)},
+                               {"drawn", distribution(summary.latency.drawn)},
+                               {"swapped", distribution(summary.latency.swapped)}};
+    // Without a haptic loop in real time there is no period to speak of.
+    const bool felt = summary.haptic && summary.haptic->hapticPeriodUsMax > 0;
+    const haptic_bridge::Report report = summary.haptic.value_or(haptic_bridge::Report{});
+    json["haptic_period_us"] = felt ? ordered_json{{"p50", report.hapticPeriodUsP50},
+                                                   {"p99", report.hapticPeriodUsP99},
+                                                   {"max", report.hapticPeriodUsMax}}
+                                    : ordered_json{{"p50", nullptr}, {"p99", nullptr}, {"max", nullptr}};
+    json["broadcast_bytes"] = spread(summary.broadcastBytes);
+    json["haptic"] = hapticPart(summary);
+    json["master_memory_bytes"] = summary.masterResidentBytes;
+    json["per_rank"] = ordered_json::array();
+    for (std::size_t i = 0; i < summary.ranksReports.size(); ++i) {
+        json["per_rank"].push_back(rankPart(summary, i));
+    }
+    return json;
+}
+
+}  // namespace
+
+void writeSummary(const Summary& summary, const std::filesystem::path& file) {
+    std::ofstream stream(file);
+    stream << jsonOf(summary).dump(2) << '\n';
+    stream.flush();
+    if (!stream) {
+        throw files::InputError(fmt::format("{}: cannot be written; check free space", file.string()));
+    }
+}
+
+std::string describe(const Summary& summary) {
+    std::string text = fmt::format(
+        "{} on {}: {} steps in {} frames, {:.1f} fps, {} render ranks\n"
+        "  sand      state hash {:016x}, {} divergences, volume {} + outflow {} = {} at the start: {}\n"
+        "  wall      swap skew p50 {:.0f} us, p99 {:.0f} us, max {:.0f} us; frame message p50 {:.0f} bytes\n",
+        summary.scene, summary.wall, summary.steps, summary.frames, framesPerSecond(summary), summary.ranks,
+        summary.stateHash, summary.divergences, summary.volumeFinal, summary.volumeOutflow, summary.volumeInitial,
+        summary.volumeFinal + summary.volumeOutflow == summary.volumeInitial ? "exact" : "WRONG",
+        summary.skewUs.percentile(0.5), summary.skewUs.percentile(0.99), summary.skewUs.largest(),
+        summary.broadcastBytes.percentile(0.5));
+    if (summary.latency.wholeWay.count() > 0) {
+        text += fmt::format("  latency   hand to wall p50 {:.1f} ms, p99 {:.1f} ms\n",
+                            summary.latency.wholeWay.percentile(0.5), summary.latency.wholeWay.percentile(0.99));
+    }
+    if (summary.haptic && summary.haptic->hapticPeriodUsMax > 0) {
+        text += fmt::format("  haptics   period p50 {:.0f} us, p99 {:.0f} us; force p99 {:.2f} us; half round trip {:.1f} ms\n",
+                            summary.haptic->hapticPeriodUsP50, summary.haptic->hapticPeriodUsP99,
+                            summary.haptic->forceUsP99, summary.haptic->halfRoundTripMsMean);
+    }
+    double slowest = 0;
+    std::int64_t memory = 0;
+    for (const lockstep::RankReport& report : summary.ranksReports) {
+        slowest = std::max(slowest, report.drawP50);
+        memory = std::max(memory, report.residentBytes);
+    }
+    text += fmt::format("  ranks     slowest draws in {:.1f} ms (p50), largest holds {:.0f} MiB\n", slowest,
+                        static_cast<double>(memory) / (1 << 20));
+    return text;
+}
+
+}  // namespace master

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "haptic_bridge/client.hpp"
+#include "lockstep/session_message.hpp"
+#include "lockstep/statistics.hpp"
+
+namespace master {
+
+/// The way of a step from the hand to the wall, leg by leg [ms], in the master's clock.
+struct Latency {
+    lockstep::Statistics toMaster;    // read from the device -> received over TCP
+    lockstep::Statistics queued;      // -> broadcast
+    lockstep::Statistics drawn;       // -> drawn by the slowest rank
+    lockstep::Statistics swapped;     // -> agreed and swapped
+    lockstep::Statistics wholeWay;    // all of it: probe to swap
+};
+
+/// What a session has measured; summary.json in numbers.
+struct Summary {
+    std::string scene, wall;
+    std::uint64_t frames = 0, steps = 0;
+    int ranks = 0;
+    std::uint64_t stateHash = 0;
+    std::uint64_t divergences = 0;        // frames on which the ranks' sand differed
+    std::uint64_t serverDivergences = 0;  // frames on which the haptic server's did
+    std::int64_t volumeInitial = 0, volumeFinal = 0, volumeOutflow = 0;  // [unit · cell]
+    double seconds = 0;                   // from the first frame to the last
+    lockstep::Statistics frameMs;         // from swap to swap
+    lockstep::Statistics skewUs;          // spread of the swap times of one frame
+    lockstep::Statistics broadcastBytes;  // of the frame message
+    Latency latency;
+    std::optional<haptic_bridge::Report> haptic;
+    haptic_bridge::LinkCounters link;
+    std::vector<lockstep::RankReport> ranksReports;
+    std::vector<std::string> tileNames;  // by rank, from 1
+    std::int64_t masterResidentBytes = 0;
+};
+
+/// Writes summary.json. Throws files::InputError when it cannot.
+void writeSummary(const Summary& summary, const std::filesystem::path& file);
+
+/// The same for a person, a screenful.
+[[nodiscard]] std::string describe(const Summary& summary);
+
+}  // namespace master

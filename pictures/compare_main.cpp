@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <string>
+
+#include "files/input_error.hpp"
+#include "pictures/compare.hpp"
+#include "pictures/png_file.hpp"
+
+namespace {
+
+struct Options {
+    std::string first, second, difference;
+    int maxChannelDifference = 8;  // [level]
+    double maxBadShare = 0.01;
+};
+
+/// 0 when the pictures are alike, 1 when they differ.
+int comparePictures(const Options& options) {
+    const pictures::Image first = pictures::readPng(options.first);
+    const pictures::Image second = pictures::readPng(options.second);
+    pictures::Comparison comparison;
+    try {
+        comparison = pictures::compare(first, second, options.maxChannelDifference);
+    } catch (const files::InputError& error) {
+        throw files::InputError(fmt::format("{}, {}: {}", options.first, options.second, error.what()));
+    }
+    fmt::print("largest channel difference: {}\n", comparison.largestDifference);
+    fmt::print("share of pixels that differ by more than {}: {:.6f} ({} of {})\n", options.maxChannelDifference,
+               comparison.badShare, comparison.badPixels, first.pixels());
+    if (!options.difference.empty()) {
+        pictures::writePng(options.difference, pictures::differenceImage(first, comparison));
+    }
+    return comparison.badShare <= options.maxBadShare ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"Compares two pictures: exit status 0 alike, 1 different, 2 unusable.", "sandwall-compare"};
+    Options options;
+    app.add_option("A", options.first, "a PNG")->required();
+    app.add_option("B", options.second, "a PNG of the same size")->required();
+    app.add_option("--max-channel-diff", options.maxChannelDifference,
+                   "levels by which a channel may differ before its pixel is bad")
+        ->check(CLI::Range(0, 255))
+        ->capture_default_str();
+    app.add_option("--max-bad-share", options.maxBadShare, "share of bad pixels up to which the pictures are alike")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str();
+    app.add_option("--diff", options.difference, "write a PNG of A, dimmed, with the bad pixels in red");
+    try {
+        app.parse(argc, argv);
+        return comparePictures(options);
+    } catch (const CLI::Success& help) {
+        return app.exit(help);
+    } catch (const files::InputError& error) {
+        fmt::print(stderr, "{}\n", error.what());
+        return files::kExitBadInput;
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "sandwall-compare: {}\n", error.what());
+        return files::kExitBadInput;
+    }
+}

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "lockstep/cluster.hpp"
+#include "render_node/gl/gl_context.hpp"
+
+namespace render_node {
+
+/// The life of a render rank: takes scene and wall from the master, then replica, drawing, barrier, swap per frame, until
+/// the master says stop. Returns the exit status. Collective with the master's Session.
+[[nodiscard]] int showTile(const lockstep::Cluster& cluster, Backend backend);
+
+}  // namespace render_node

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/force/surface_patch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sand::force {
+
+SurfacePatch::SurfacePatch(const HeightField& field, ProbePoint centre, double toolRadius) {
+    const double cell = field.cellSize();
+    const int reach = static_cast<int>(std::ceil(std::max(4 * toolRadius / cell, 8.0)));  // [cell]
+    const int stride = (2 * reach + 1 + kMaxSideNodes - 1) / kMaxSideNodes;
+    const int half = reach / stride;
+    const auto firstCell = [&](std::int32_t coordinate, int cells) {
+        const int middle = std::clamp(static_cast<int>(coordinate >> kProbeBits), 0, cells - 1);
+        return middle - half * stride;
+    };
+    const int x0 = firstCell(centre.x, field.columns());
+    const int y0 = firstCell(centre.y, field.rows());
+    columns_ = rows_ = 2 * half + 1;
+    spacing_ = stride * cell;
+    west_ = (x0 + 0.5) * cell;
+    south_ = (y0 + 0.5) * cell;
+    fieldWidth_ = field.columns() * cell;
+    fieldHeight_ = field.rows() * cell;
+    std::size_t node = 0;
+    for (int j = 0; j < rows_; ++j) {
+        const std::int32_t* row = field.row(std::clamp(y0 + j * stride, 0, field.rows() - 1));
+        for (int i = 0; i < columns_; ++i) {
+            const int column = std::clamp(x0 + i * stride, 0, field.columns() - 1);
+            heights_[node++] = static_cast<float>(row[column] * field.unit());
+        }
+    }
+}
+
+double SurfacePatch::height(double x, double y) const {
+    const double column = std::clamp((x - west_) / spacing_, 0.0, columns_ - 1.0);
+    const double row = std::clamp((y - south_) / spacing_, 0.0, rows_ - 1.0);
+    const int i = std::min(static_cast<int>(column), std::max(columns_ - 2, 0));
+    const int j = std::min(static_cast<int>(row), std::max(rows_ - 2, 0));
+    const double u = column - i, v = row - j;
+    const int right = columns_ > 1 ? 1 : 0, up = rows_ > 1 ? columns_ : 0;
+    const float* node = heights_.data() + std::ptrdiff_t{j} * columns_ + i;
+    return (1 - v) * ((1 - u) * node[0] + u * node[right]) + v * ((1 - u) * node[up] + u * node[up + right]);
+}
+
+}  // namespace sand::force

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "sand/height_field.hpp"
+#include "sand/step.hpp"
+
+namespace sand::force {
+
+/// A copy of the sand around the tool, small enough to be handed to a force thread after every step.
+///
+/// It reaches four tool radii and at least eight cells from its centre, so that the hand may go on for a step; a
+/// large tool's patch takes every second or third cell. Heights are [scene unit], positions [scene unit] from the
+/// field's south-west corner.
+class SurfacePatch {
+public:
+    static constexpr int kMaxSideNodes = 96;
+
+    SurfacePatch() = default;
+    SurfacePatch(const HeightField& field, ProbePoint centre, double toolRadius /* [scene unit] */);
+
+    /// Whether (x, y) lies over the field.
+    [[nodiscard]] bool overField(double x, double y) const {
+        return x >= 0 && y >= 0 && x <= fieldWidth_ && y <= fieldHeight_;
+    }
+    /// Bilinear between the centres of cells; beyond the patch, its nearest node.
+    [[nodiscard]] double height(double x, double y) const;
+    [[nodiscard]] bool empty() const { return columns_ == 0; }
+
+private:
+    int columns_ = 0, rows_ = 0;
+    double west_ = 0, south_ = 0;  // of node (0,0)
+    double spacing_ = 1;
+    double fieldWidth_ = -1, fieldHeight_ = -1;
+    std::array<float, kMaxSideNodes * kMaxSideNodes> heights_;
+};
+
+}  // namespace sand::force

@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# The main job, headless: a recorded hand writes GIS into sand on a 3x4 passive-stereo wall of 12 render ranks.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+
+out="$root/out/demo"
+while [[ $# -gt 0 ]]; do
+    case "$1" in
+        --out) out=$(realpath -m "${2:?--out needs a folder}"); shift 2 ;;
+        *) echo "usage: scripts/demo.sh [--out DIR]" >&2; exit 2 ;;
+    esac
+done
+
+cd "$root"
+scripts/install_dependencies.sh
+[[ -f build/release/build.ninja ]] || cmake --preset release >/dev/null
+cmake --build build/release
+
+mkdir -p "$out"
+scripts/make_hand_trace.py "$out/hand.csv"
+scripts/sandwall run --wall walls/configs/tiled_3x4.toml --scene scenes/writing.toml \
+    --device "trace:$out/hand.csv" --steps 360 --out "$out"
+echo "pictures and summary: $out (begin with wall_anaglyph.png and summary.json)"

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+// The real server program over loopback, with the real client.
+#include <arpa/inet.h>
+#include <sys/socket.h>
+
+#include "files/input_error.hpp"
+#include "tests/haptic_bridge/server_process.hpp"
+
+namespace {
+
+using namespace test;
+using haptic_bridge::Client;
+using haptic_bridge::Link;
+
+class HapticServer : public testing::Test {
+protected:
+    Folder folder_;
+    std::string sceneFile_ = folder_.write("small.toml", kSmallScene);
+    sand::Scene scene_ = sand::loadScene(sceneFile_);
+};
+
+/// A plain socket that says whatever a test wants to a server.
+class RawPeer {
+public:
+    explicit RawPeer(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_port = htons(port);
+        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        const timeval patience{.tv_sec = 10, .tv_usec = 0};
+        setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+        EXPECT_EQ(connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    }
+    ~RawPeer() { ::close(socket_); }
+    RawPeer(const RawPeer&) = delete;
+    RawPeer& operator=(const RawPeer&) = delete;
+
+    void send(std::span<const std::uint8_t> bytes) const {
+        EXPECT_EQ(::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL), static_cast<ssize_t>(bytes.size()));
+    }
+    void send(const haptic_bridge::Message& message) const { send(haptic_bridge::encode(message)); }
+    /// The next message, or nothing when the server has closed.
+    std::optional<haptic_bridge::Message> receive() {
+        while (true) {
+            if (auto message = reader_.next()) {
+                return message;
+            }
+            std::array<std::uint8_t, 4096> chunk{};
+            const ssize_t count = recv(socket_, chunk.data(), chunk.size(), 0);
+            if (count <= 0) {
+                return std::nullopt;
+            }
+            reader_.feed(std::span(chunk).first(static_cast<std::size_t>(count)));
+        }
+    }
+    std::string refusal() {
+        const auto message = receive();
+        const auto* refusal = message ? std::get_if<haptic_bridge::Refusal>(&*message) : nullptr;
+        return refusal != nullptr ? refusal->text : "(no refusal)";
+    }
+
+private:
+    int socket_;
+    haptic_bridge::MessageReader reader_;
+};
+
+TEST_F(HapticServer, WritesTheSameSandTwice) {
+    std::vector<std::uint64_t> hashes;
+    for (int run = 0; run < 2; ++run) {
+        ServerProcess server(folder_, ServerProcess::usual(sceneFile_, folder_));
+        Client client(server.address(), offerOf(scene_));
+        Wall wall(scene_);
+        ASSERT_TRUE(wall.follow(client, 240)) << client.link().message << "\n" << server.errors();
+        EXPECT_EQ(wall.divergences, 0);
+        EXPECT_EQ(wall.outOfOrder, 0);
+        EXPECT_GT(wall.engaged, 120) << "most of the word's four seconds is writing";
+        EXPECT_FALSE(wall.terrain.engaged()) << "the word must be complete within 240 steps";
+        EXPECT_LE(wall.longest, 34U) << "17 samples, and as many that waited for the end of a stroke";
+        EXPECT_EQ(wall.terrain.field().volume() + wall.terrain.outflow(), scene_.terrain.volume());
+        hashes.push_back(wall.terrain.stateHash());
+        client.stop();
+        ASSERT_TRUE(client.report().has_value());
+        EXPECT_GE(client.report()->steps, 240U);
+        EXPECT_EQ(client.report()->samplesDropped, 0U);
+        EXPECT_EQ(client.link().link, Link::stopped);
+        EXPECT_EQ(server.stop(SIGTERM), 0) << server.errors();
+    }
+    EXPECT_EQ(hashes[0], hashes[1]);
+    EXPECT_NE(hashes[0], sand::Terrain(scene_).stateHash());
+}
+
+TEST_F(HapticServer, RunsInRealTimeAndReports) {
+    ServerProcess server(folder_, ServerProcess::usual(sceneFile_, folder_, 0, "realtime"));
+    Client client(server.address(), offerOf(scene_));
+    Wall wall(scene_);
+    ASSERT_TRUE(wall.follow(client, 90)) << client.link().message << "\n" << server.errors();
+    EXPECT_EQ(wall.divergences, 0);
+    EXPECT_EQ(client.stepsPerSecond(), 60U);
+    client.stop();
+    ASSERT_TRUE(client.report().has_value());
+    const haptic_bridge::Report report = *client.report();
+    EXPECT_GT(report.hapticPeriodUsP50, 0);
+    EXPECT_GT(report.forceUsP50, 0);
+    EXPECT_GT(report.halfRoundTripMsP50, 0);
+    EXPECT_GT(report.stepBytesMean, 0);
+    std::printf("haptic period us p50 %.0f p99 %.0f max %.0f; force us p50 %.2f p99 %.2f; half round trip ms mean %.3f "
+                "stddev %.3f; step message %.0f bytes\n",
+                report.hapticPeriodUsP50, report.hapticPeriodUsP99, report.hapticPeriodUsMax, report.forceUsP50,
+                report.forceUsP99, report.halfRoundTripMsMean, report.halfRoundTripMsStddev, report.stepBytesMean);
+}
+
+TEST_F(HapticServer, GetsFewerStepsThroughASlowWallAndLosesNone) {
+    ServerProcess server(folder_, ServerProcess::usual(sceneFile_, folder_, 0, "realtime"));
+    Client client(server.address(), offerOf(scene_));
+    Wall wall(scene_);
+    ASSERT_TRUE(wall.follow(client, 5));
+    // The wall stands still for longer than the window of 32 steps.
+    std::this_thread::sleep_for(1500ms);
+    const std::uint64_t before = wall.terrain.stepNumber();
+    EXPECT_LE(client.counters().stepsIn, before + 32);
+    ASSERT_TRUE(wall.follow(client, before + 40)) << client.link().message;
+    EXPECT_EQ(wall.divergences, 0);
+    EXPECT_EQ(wall.outOfOrder, 0);
+    EXPECT_GT(wall.longest, 17U) << "what was withheld comes as a longer path";
+    EXPECT_LE(wall.longest, sand::kMaxPathPoints);
+    client.stop();
+    ASSERT_TRUE(client.report().has_value());
+    EXPECT_GT(client.report()->stepsWithheld, 0U);
+}
+
+TEST_F(HapticServer, ComesBackAfterAKillInANewEpoch) {
+    auto server = std::make_unique<ServerProcess>(folder_, ServerProcess::usual(sceneFile_, folder_));
+    const std::uint16_t port = server->port();
+    Client client({"127.0.0.1", port}, offerOf(scene_));
+    Wall wall(scene_);
+    ASSERT_TRUE(wall.follow(client, 50));
+    EXPECT_EQ(server->stop(SIGKILL), -SIGKILL);
+    ASSERT_TRUE(eventually([&] { return client.link().link == Link::lost; })) << client.link().message;
+    EXPECT_NE(client.link().message.find("link lost"), std::string::npos) << client.link().message;
+    server = nullptr;
+    server = std::make_unique<ServerProcess>(folder_, ServerProcess::usual(sceneFile_, folder_, port));
+    ASSERT_TRUE(wall.follow(client, 100)) << client.link().message << "\n" << server->errors();
+    EXPECT_EQ(wall.epoch, 2U);
+    EXPECT_EQ(wall.divergences, 0) << "the server must have started from the wall's own state";
+    EXPECT_EQ(client.counters().reconnects, 1U);
+}
+
+TEST_F(HapticServer, ServesTheNextMasterFromItsOwnState) {
+    ServerProcess server(folder_, ServerProcess::usual(sceneFile_, folder_));
+    Wall first(scene_), second(scene_);
+    {
+        Client client(server.address(), offerOf(scene_));
+        ASSERT_TRUE(first.follow(client, 30));
+    }
+    Client client(server.address(), offerOf(scene_));
+    ASSERT_TRUE(second.follow(client, 30)) << client.link().message;
+    EXPECT_EQ(second.divergences, 0);
+}
+
+TEST_F(HapticServer, RefusesASecondMasterAndLetsItInLater) {
+    ServerProcess server(folder_, ServerProcess::usual(sceneFile_, folder_));
+    auto first = std::make_unique<Client>(server.address(), offerOf(scene_));
+    ASSERT_TRUE(eventually([&] { return first->link().link == Link::offered; }));
+    Client second(server.address(), offerOf(scene_));
+    ASSERT_TRUE(eventually([&] { return second.link().link == Link::refused; }));
+    EXPECT_NE(second.link().message.find("busy"), std::string::npos) << second.link().message;
+    first = nullptr;
+    EXPECT_TRUE(eventually([&] { return second.link().link == Link::offered; })) << second.link().message;
+}
+
+TEST_F(HapticServer, NamesBothScenesAndBothDigests) {
+    ServerProcess server(folder_, ServerProcess::usual(sceneFile_, folder_));
+    Client otherScene(server.address(), {scene_.rules.digest(), "dunes"});
+    ASSERT_TRUE(eventually([&] { return otherScene.link().link == Link::refused; }));
+    EXPECT_NE(otherScene.link().message.find("'small'"), std::string::npos) << otherScene.link().message;
+    EXPECT_NE(otherScene.link().message.find("'dunes'"), std::string::npos) << otherScene.link().message;
+    Client otherSand(server.address(), {scene_.rules.digest() ^ 1, "small"});
+    ASSERT_TRUE(eventually([&] { return otherSand.link().link == Link::refused; }));
+    EXPECT_NE(otherSand.link().message.find("material"), std::string::npos) << otherSand.link().message;
+}
+
+TEST_F(HapticServer, AnswersGarbageHalfMessagesAndOtherVersionsWithAReason) {
+    ServerProcess server(folder_, ServerProcess::usual(sceneFile_, folder_));
+    const std::uint16_t port = server.port();
+    haptic_bridge::Identity mine{haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), "small"};
+    {
+        RawPeer browser(port);
+        const std::string request = "GET / HTTP/1.1\r\n\r\n";
+        browser.send({reinterpret_cast<const std::uint8_t*>(request.data()), request.size()});
+        EXPECT_NE(browser.refusal().find("haptic server"), std::string::npos);
+        EXPECT_FALSE(browser.receive()) << "the link must be closed";
+    }
+    {
+        RawPeer newer(port);
+        haptic_bridge::Identity other = mine;
+        other.protocol += 1;
+        newer.send(haptic_bridge::Hello{other});
+        EXPECT_NE(newer.refusal().find("protocol version"), std::string::npos);
+    }
+    {
+        RawPeer other(port);
+        haptic_bridge::Identity sandy = mine;
+        sandy.algorithm += 1;
+        other.send(haptic_bridge::Hello{sandy});
+        EXPECT_NE(other.refusal().find("algorithm version"), std::string::npos);
+    }
+    {
+        RawPeer half(port);
+        half.send(std::span<const std::uint8_t>(haptic_bridge::encode(haptic_bridge::Hello{mine})).first(10));
+    }
+    {
+        RawPeer early(port);
+        early.send(haptic_bridge::Shown{1, 1});
+        EXPECT_NE(early.refusal().find("out of turn"), std::string::npos);
+    }
+    {
+        RawPeer liar(port);
+        liar.send(haptic_bridge::Hello{mine});
+        ASSERT_TRUE(liar.receive());
+        liar.send(haptic_bridge::Start{1, 0, 12345});
+        const auto answer = liar.receive();
+        ASSERT_TRUE(answer && std::holds_alternative<haptic_bridge::NeedState>(*answer));
+        liar.send(haptic_bridge::State{files::Bytes(100'000, 1)});
+        EXPECT_NE(liar.refusal().find("state"), std::string::npos);
+    }
+    // After all that it serves as if nothing had happened.
+    Client client({"127.0.0.1", port}, offerOf(scene_));
+    Wall wall(scene_);
+    EXPECT_TRUE(wall.follow(client, 20)) << client.link().message << "\n" << server.errors();
+    EXPECT_EQ(server.stop(SIGINT), 0) << server.errors();
+}
+
+/// What the server printed before it gave up, expected with exit status 2.
+std::string complaint(const Folder& folder, const std::vector<std::string>& arguments) {
+    ServerProcess server(folder, arguments);
+    EXPECT_EQ(server.wait(), files::kExitBadInput) << server.errors();
+    const std::string errors = server.errors();
+    EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
+    return errors;
+}
+
+TEST_F(HapticServer, SaysWhatIsWrongInOneLine) {
+    ServerProcess server(folder_, ServerProcess::usual(sceneFile_, folder_));
+    const std::uint16_t port = server.port();
+    const Folder other;
+    EXPECT_NE(complaint(other, ServerProcess::usual(sceneFile_, other, port)).find("in use"), std::string::npos);
+    EXPECT_NE(complaint(other, ServerProcess::usual("/nowhere.toml", other)).find("/nowhere.toml"), std::string::npos);
+    const std::string trace = other.write("bad.csv", "time,x,y,z\n0,1,2,3\n0.001,1,two,3\n");
+    EXPECT_NE(complaint(other, {"--scene", sceneFile_, "--device", "trace:" + trace}).find("bad.csv:3:"),
+              std::string::npos);
+    EXPECT_NE(complaint(other, {"--scene", sceneFile_, "--device", "phantom"}).find("unknown device"), std::string::npos);
+    EXPECT_NE(complaint(other, {"--scene", sceneFile_, "--device", "script:/nowhere"}).find("/nowhere"),
+              std::string::npos);
+    EXPECT_NE(complaint(other, {"--scene", sceneFile_, "--device", "script:gis", "--map", "sacle=2"}).find("sacle=2"),
+              std::string::npos);
+    EXPECT_NE(complaint(other, {"--scene", sceneFile_, "--device", "script:gis", "--listen", "127.0.0.1:x"}).find("port"),
+              std::string::npos);
+}
+
+TEST_F(HapticServer, PrintsAndWritesItsPort) {
+    ServerProcess server(folder_, ServerProcess::usual(sceneFile_, folder_));
+    const std::string port = std::to_string(server.port());
+    EXPECT_TRUE(eventually([&] { return !server.output().empty(); }));
+    EXPECT_EQ(server.output(), "listening on 127.0.0.1:" + port + "\n");
+}
+
+}  // namespace

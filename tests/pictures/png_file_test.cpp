@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pictures/png_file.hpp"
+
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <string>
+
+#include "files/input_error.hpp"
+
+namespace pictures {
+namespace {
+
+namespace fs = std::filesystem;
+
+class PngFile : public ::testing::Test {
+protected:
+    void SetUp() override { fs::create_directories(folder); }
+    void TearDown() override { fs::remove_all(folder); }
+    void store(const std::vector<char>& bytes) const {
+        std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    }
+    [[nodiscard]] std::vector<char> bytes() const {
+        std::ifstream stream(file, std::ios::binary);
+        return {std::istreambuf_iterator<char>(stream), {}};
+    }
+    /// The complaint about `file`, which must name it and be one line.
+    [[nodiscard]] std::string complaint() const {
+        try {
+            (void)readPng(file);
+        } catch (const files::InputError& error) {
+            const std::string line = error.what();
+            EXPECT_EQ(line.rfind(file.string() + ":", 0), 0U) << line;
+            EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+            return line;
+        }
+        ADD_FAILURE() << "was read";
+        return {};
+    }
+
+    const fs::path folder =
+        fs::path(testing::TempDir()) /
+        (std::string("sandwall_png_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    const fs::path file = folder / "picture.png";
+};
+
+Image noise(int width, int height, unsigned seed) {
+    std::mt19937 random(seed);
+    Image image(width, height);
+    std::generate(image.rgb.begin(), image.rgb.end(), [&] { return static_cast<std::uint8_t>(random()); });
+    return image;
+}
+
+void putBigEndian(std::vector<char>& bytes, std::size_t at, std::uint32_t value) {
+    for (std::size_t i = 0; i < 4; ++i) {
+        bytes.at(at + i) = static_cast<char>(value >> (24 - 8 * i));
+    }
+}
+
+/// Writes another size into a PNG's header, with the header's checksum made right again.
+void claimSize(std::vector<char>& bytes, std::uint32_t width, std::uint32_t height) {
+    putBigEndian(bytes, 16, width);
+    putBigEndian(bytes, 20, height);
+    std::uint32_t crc = 0xffffffff;
+    for (std::size_t i = 12; i < 29; ++i) {
+        crc ^= static_cast<std::uint8_t>(bytes.at(i));
+        for (int bit = 0; bit < 8; ++bit) {
+            crc = (crc >> 1) ^ ((crc & 1) != 0 ? 0xedb88320U : 0U);
+        }
+    }
+    putBigEndian(bytes, 29, ~crc);
+}
+
+TEST_F(PngFile, GivesBackEveryPixelItWasGiven) {
+    const unsigned seed = std::random_device{}();
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    for (const auto& [width, height] : {std::pair{1, 1}, {1, 37}, {53, 1}, {64, 48}}) {
+        const Image image = noise(width, height, seed);
+        writePng(file, image);
+        EXPECT_EQ(readPng(file), image) << width << "x" << height;
+    }
+}
+
+TEST_F(PngFile, LaysTransparencyOverBlack) {
+    png_image png{};
+    png.version = PNG_IMAGE_VERSION;
+    png.width = 2;
+    png.height = 1;
+    png.format = PNG_FORMAT_RGBA;
+    const std::array<std::uint8_t, 8> pixels{200, 100, 50, 255, 200, 100, 50, 0};
+    ASSERT_NE(png_image_write_to_file(&png, file.c_str(), 0, pixels.data(), 0, nullptr), 0);
+    EXPECT_EQ(readPng(file).rgb, (std::vector<std::uint8_t>{200, 100, 50, 0, 0, 0}));
+}
+
+TEST_F(PngFile, RefusesWhatIsNoPng) {
+    EXPECT_NE(complaint().find("check the path"), std::string::npos);
+    store({});
+    (void)complaint();
+    store({'P', '6', ' ', '1', ' ', '1'});
+    (void)complaint();
+    fs::remove(file);
+    fs::create_directory(file);
+    EXPECT_NE(complaint().find("check the path"), std::string::npos);
+}
+
+TEST_F(PngFile, RefusesAPictureCutShortAnywhere) {
+    writePng(file, noise(20, 20, 1));
+    const std::vector<char> whole = bytes();
+    // The last chunk holds no pixel; libpng does without it.
+    for (std::size_t size = 0; size < whole.size() - 16; size += 13) {
+        store({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
+        (void)complaint();
+    }
+}
+
+TEST_F(PngFile, RefusesSizesItsBytesCannotHold) {
+    writePng(file, noise(4, 4, 1));
+    std::vector<char> bomb = bytes();
+    claimSize(bomb, 16000, 16000);
+    store(bomb);
+    EXPECT_NE(complaint().find("16000x16000"), std::string::npos);
+    claimSize(bomb, 900000, 900000);
+    store(bomb);
+    EXPECT_NE(complaint().find("900000x900000"), std::string::npos);
+    claimSize(bomb, 4, 4);
+    store(bomb);
+    EXPECT_EQ(readPng(file), noise(4, 4, 1)) << "the patched header itself must be sound";
+}
+
+TEST_F(PngFile, SurvivesDamagedBytes) {
+    const unsigned seed = std::random_device{}();
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    writePng(file, noise(16, 16, 1));
+    const std::vector<char> whole = bytes();
+    for (int round = 0; round < 300; ++round) {
+        std::vector<char> damaged = whole;
+        damaged[random() % damaged.size()] ^= static_cast<char>(1 << random() % 8);
+        store(damaged);
+        try {
+            EXPECT_LE(readPng(file).pixels(), static_cast<std::size_t>(kMaxPixels));
+        } catch (const files::InputError&) {
+        }
+    }
+}
+
+TEST_F(PngFile, NamesThePictureItCannotWrite) {
+    const fs::path nowhere = folder / "no" / "such.png";
+    try {
+        writePng(nowhere, Image(2, 2));
+        FAIL() << "was written";
+    } catch (const files::InputError& error) {
+        EXPECT_EQ(std::string(error.what()).rfind(nowhere.string() + ":", 0), 0U) << error.what();
+    }
+}
+
+}  // namespace
+}  // namespace pictures

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include "files/input_error.hpp"
+#include "sand/esri_grid.hpp"
+
+namespace {
+
+class SceneFile : public testing::Test {
+protected:
+    void SetUp() override {
+        folder_ = std::filesystem::temp_directory_path() /
+                  ("sandwall_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+        std::filesystem::create_directories(folder_);
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    std::filesystem::path write(const std::string& name, const std::string& text) {
+        std::ofstream(folder_ / name) << text;
+        return folder_ / name;
+    }
+    /// The one line a person reads, without the folder.
+    std::string complaint(const std::string& text) {
+        try {
+            (void)sand::loadScene(write("s.toml", text));
+        } catch (const files::InputError& error) {
+            const std::string line = error.what();
+            return line.substr(line.find(folder_.string()) == 0 ? folder_.string().size() + 1 : 0);
+        }
+        return "accepted";
+    }
+    std::filesystem::path folder_;
+};
+
+const std::string kFlat = "[field]\n[terrain]\n[material]\n";
+
+TEST_F(SceneFile, DefaultsAreThePapers) {
+    const sand::Scene scene = sand::loadScene(write("s.toml", kFlat));
+    EXPECT_EQ(scene.rules.columns, 512);
+    EXPECT_EQ(scene.rules.rows, 512);
+    EXPECT_DOUBLE_EQ(scene.terrain.cellSize(), 2.0 / 512);
+    EXPECT_EQ(scene.rules.toolRadius, 655);  // 2.56 cells
+    EXPECT_EQ(scene.rules.threshold, std::lround(std::tan(34 * std::numbers::pi / 180) * 65536));
+    EXPECT_EQ(scene.rules.stepsPerSecond, 60);
+}
+
+TEST_F(SceneFile, SweepsFollowTheSquareOfTheToolsCells) {
+    const auto sweeps = [&](const std::string& radius) {
+        return sand::loadScene(write("s.toml", kFlat + "[tool]\nradius = " + radius)).rules.sweepsPerStep;
+    };
+    EXPECT_EQ(sweeps("0.046875"), 58);  // 12 cells: 2.4 * 144 / (0.1 s * 60)
+    EXPECT_NEAR(sweeps("0.09375"), 4 * 58, 3);
+}
+
+TEST_F(SceneFile, ErrorsNameFileLineKeyAndRange) {
+    EXPECT_EQ(complaint(kFlat + "talus_deg = 90\n"), "s.toml:4: talus_deg must be within [0, 90), got 90");
+    EXPECT_EQ(complaint(kFlat + "talus_deg = -1\n"), "s.toml:4: talus_deg must be within [0, 90], got -1");
+    EXPECT_EQ(complaint(kFlat + "talus_deg = nan\n"), "s.toml:4: talus_deg must be a finite number");
+    EXPECT_EQ(complaint("[field]\ncolumns = 0\n[terrain]\n[material]\n"),
+              "s.toml:2: columns must be within [1, 16384], got 0");
+    EXPECT_EQ(complaint("[field]\nwidth = -2\n[terrain]\n[material]\n"), "s.toml:2: width must be positive, got -2");
+    EXPECT_EQ(complaint(kFlat + "talus = 3\n"),
+              "s.toml:4: unknown key 'talus'; known here: band, scheme, settling_time, talus_deg");
+    EXPECT_EQ(complaint("[terrain]\n[field]\n"), "s.toml:1: a table [material] is missing");
+    EXPECT_NE(complaint("[terrain\n").find("s.toml:1: "), std::string::npos);
+    EXPECT_EQ(complaint("[field]\n[terrain]\nheight = 1e9\n[material]\n").find("s.toml:3: a height of 1000000000"), 0U);
+}
+
+TEST_F(SceneFile, AMissingFileIsNamed) {
+    EXPECT_THROW((void)sand::loadScene(folder_ / "none.toml"), files::InputError);
+}
+
+TEST_F(SceneFile, AFlatTalusWarns) {
+    EXPECT_EQ(sand::loadScene(write("s.toml", kFlat + "talus_deg = 3\n")).warnings.size(), 1U);
+    EXPECT_TRUE(sand::loadScene(write("s.toml", kFlat + "talus_deg = 4\n")).warnings.empty());
+}
+
+TEST_F(SceneFile, LoadsAnEsriGridFromTheNorth) {
+    write("t.asc", "NCOLS 3\nnrows 2\nxllcorner 5\nyllcorner 6\ncellsize 10\nNODATA_value -9999\n1 2 3\n4 5 6.5\n");
+    const sand::Scene scene = sand::loadScene(
+        write("s.toml", "[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n[material]\n[tool]\nradius = 5\n"));
+    EXPECT_EQ(scene.rules.columns, 3);
+    EXPECT_EQ(scene.rules.rows, 2);
+    EXPECT_EQ(scene.terrain.height(2, 0), 42598);  // 6.5 / 10 * 65536, south-east
+    EXPECT_EQ(scene.terrain.height(0, 1), 6554);   // 1 / 10, north-west
+}
+
+TEST_F(SceneFile, EsriGridErrorsNameTheGridsLine) {
+    const auto complaintOf = [&](const std::string& grid) {
+        write("t.asc", grid);
+        return complaint("[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n[material]\n");
+    };
+    const std::string head = "ncols 2\nnrows 2\ncellsize 1\n";
+    EXPECT_EQ(complaintOf(head + "1 2\n3\n"), "t.asc:6: the file ends where a height should be");
+    EXPECT_EQ(complaintOf(head + "1 2\n3 nan\n"), "t.asc:5: a height must be a finite number, got 'nan'");
+    EXPECT_EQ(complaintOf(head + "1 2\n3 4 5\n"), "t.asc:5: more values than ncols x nrows = 4");
+    EXPECT_EQ(complaintOf("ncols 0\n"), "t.asc:1: ncols must be a whole number within [1, 16384], got 0");
+    EXPECT_EQ(complaintOf("nodata_value -1\n" + head + "1 2\n-1 4\n"),
+              "t.asc:6: no-data cell 2 (value -1); fill it or crop the grid");
+    EXPECT_EQ(complaintOf("depth 3\n"), "t.asc:1: 'depth' is no key of an ESRI ASCII grid");
+}
+
+TEST_F(SceneFile, EsriGridSurvivesWritingAndReading) {
+    const sand::EsriGrid grid{2, 2, 0.5, 1, 2, {1.25, -3, 0.1, 1e6}};
+    sand::writeEsriGrid(grid, folder_ / "g.asc");
+    const sand::EsriGrid read = sand::readEsriGrid(folder_ / "g.asc");
+    EXPECT_EQ(read.heights, grid.heights);
+    EXPECT_EQ(read.westEdge, 1);
+}
+
+TEST_F(SceneFile, EverySceneOfTheProjectLoadsAndSurvivesItsEncoding) {
+    int scenes = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(SANDWALL_SOURCE_DIR "/scenes")) {
+        const sand::Scene scene = sand::loadScene(entry.path());
+        const sand::Scene copy = sand::Scene::decode(scene.encode());
+        EXPECT_EQ(copy.rules, scene.rules) << entry.path();
+        EXPECT_EQ(copy.rules.digest(), scene.rules.digest());
+        EXPECT_TRUE(sameHeights(copy.terrain, scene.terrain)) << entry.path();
+        ++scenes;
+    }
+    EXPECT_GE(scenes, 2);
+}
+
+}  // namespace

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/step.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <span>
+
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+files::Bytes bytesOf(const sand::Step& step) {
+    files::ByteWriter writer;
+    encode(step, writer);
+    return writer.take();
+}
+
+TEST(Step, SurvivesItsEncoding) {
+    std::mt19937 random(41);
+    for (int i = 0; i < 1000; ++i) {
+        sand::Step step = samples::randomStep(random(), samples::flatScene(900, 900).rules, random);
+        step.epoch = static_cast<std::uint32_t>(random());
+        const files::Bytes bytes = bytesOf(step);
+        files::ByteReader reader(bytes);
+        ASSERT_EQ(sand::decodeStep(reader), step);
+        ASSERT_TRUE(reader.atEnd());
+    }
+}
+
+TEST(Step, SeventeenSamplesOfAHandFitInEightyBytes) {
+    sand::Step step{3, 1000000, true, {}};
+    for (int i = 0; i < 17; ++i) {  // 1.5 cells in a step of 1/60 s
+        step.path.push_back({60000 + 23 * i, 70000 - 11 * i, 512 + i % 3});
+    }
+    EXPECT_LE(bytesOf(step).size(), 80U);
+}
+
+TEST(Step, RefusesEveryTruncation) {
+    const files::Bytes bytes = bytesOf({1, 2, true, {{1000, 2000, 3000}, {-5, 7, 9}}});
+    for (std::size_t length = 0; length < bytes.size(); ++length) {
+        files::ByteReader reader{std::span(bytes).first(length)};
+        EXPECT_THROW((void)sand::decodeStep(reader), files::FormatError) << length;
+    }
+}
+
+TEST(Step, RefusesPathsTooLongAndPointsOutOfReach) {
+    files::Bytes bytes = bytesOf({1, 2, true, {}});
+    bytes.back() = sand::kMaxPathPoints + 1;
+    files::ByteReader tooLong(bytes);
+    EXPECT_THROW((void)sand::decodeStep(tooLong), files::FormatError);
+    const files::Bytes far = bytesOf({1, 2, true, {{sand::kMaxProbe + 1, 0, 0}}});
+    files::ByteReader outOfReach(far);
+    EXPECT_THROW((void)sand::decodeStep(outOfReach), files::FormatError);
+}
+
+}  // namespace

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+
+namespace support {
+
+struct Ran {
+    int status = -1;     // exit status, -1 when a signal ended it
+    std::string output;  // stdout and stderr together
+};
+
+/// Runs one of our programs to its end; `arguments` are words of the shell.
+inline Ran runProgram(const std::string& name, const std::string& arguments) {
+    const std::string command = std::string(SANDWALL_BIN_DIR) + "/" + name + " " + arguments + " 2>&1";
+    std::FILE* pipe = popen(command.c_str(), "r");
+    if (pipe == nullptr) {
+        throw std::runtime_error("cannot start " + command);
+    }
+    Ran ran;
+    std::array<char, 4096> buffer{};
+    for (std::size_t count = 0; (count = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
+        ran.output.append(buffer.data(), count);
+    }
+    const int ended = pclose(pipe);
+    ran.status = WIFEXITED(ended) ? WEXITSTATUS(ended) : -1;
+    return ran;
+}
+
+}  // namespace support

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "walls/canvas.hpp"
+#include "walls/projection.hpp"
+#include "walls/wall.hpp"
+
+namespace walls {
+
+inline std::filesystem::path configFolder() { return std::filesystem::path(SANDWALL_SOURCE_DIR) / "walls/configs"; }
+inline Wall config(const std::string& name) { return loadWall(configFolder() / name); }
+
+/// A 0.8 x 0.6 m screen of 800 x 600 pixels, straight before an eye 2 m away at the height of its middle.
+inline Screen plainScreen() { return {{-0.4, 0, 0}, {0.4, 0, 0}, {-0.4, 0.6, 0}}; }
+
+/// Where a point of the room shows, on the plane of the screen, by the matrices [m, room].
+inline glm::dvec3 shownAt(const Screen& screen, const View& view, glm::dvec3 point) {
+    const glm::dvec4 clip = view.viewProjection * glm::dvec4(point, 1);
+    return screen.lowerLeft + (screen.lowerRight - screen.lowerLeft) * ((clip.x / clip.w + 1) / 2) +
+           (screen.upperLeft - screen.lowerLeft) * ((clip.y / clip.w + 1) / 2);
+}
+
+/// The same in pixels of a canvas, also where the point lies beyond the tile.
+inline glm::dvec2 pixelAt(const PixelRect& rect, const View& view, glm::dvec3 point) {
+    const glm::dvec4 clip = view.viewProjection * glm::dvec4(point, 1);
+    return {rect.x + rect.width * (clip.x / clip.w + 1) / 2, rect.y + rect.height * (1 - clip.y / clip.w) / 2};
+}
+
+}  // namespace walls

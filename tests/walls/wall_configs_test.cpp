@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <locale>
+#include <string>
+
+#include "tests/support/run_program.hpp"
+#include "tests/walls/sample_walls.hpp"
+
+namespace walls {
+namespace {
+
+/// A corner of the field of sand, taken as square, in the room.
+glm::dvec3 sandCorner(const Wall& wall, int east, int north) {
+    return glm::dvec3(stageToRoom(wall.stage, 1, 1, 0) * glm::dvec4(east, north, 0, 1));
+}
+
+TEST(WallConfigs, TiledWallIsThePapers) {
+    const Wall wall = config("tiled_3x4.toml");
+    EXPECT_EQ(wall.ranks(), 12);
+    EXPECT_EQ(wall.stereo, Stereo::passive);
+    const Tile& tile = wall.tiles[6];
+    EXPECT_EQ(tile.rank, 7);
+    EXPECT_EQ(tile.name, "r2c3");
+    EXPECT_EQ(tile.row, 2);
+    EXPECT_EQ(tile.column, 3);
+    EXPECT_EQ(tile.pixels, glm::ivec2(1024, 768));
+    ASSERT_EQ(tile.outputs.size(), 2U);
+    EXPECT_EQ(tile.outputs[0], (Output{"r2c3_left", {Eye::left}}));
+    EXPECT_EQ(tile.outputs[1], (Output{"r2c3_right", {Eye::right}}));
+}
+
+TEST(WallConfigs, TilesStandABezelApart) {
+    const Wall wall = config("tiled_3x4.toml");
+    for (const Tile& tile : wall.tiles) {
+        if (tile.column < 4) {
+            const Tile& next = wall.tiles[static_cast<std::size_t>(tile.rank)];
+            EXPECT_NEAR(next.screen.lowerLeft.x - tile.screen.lowerRight.x, 0.010, 1e-12);
+        }
+        if (tile.row < 3) {
+            const Tile& below = wall.tiles[static_cast<std::size_t>(tile.rank + 3)];
+            EXPECT_NEAR(tile.screen.lowerLeft.y - below.screen.upperLeft.y, 0.010, 1e-12);
+        }
+    }
+}
+
+TEST(WallConfigs, FlexShowsBothEyesInTurnOnFourScreens) {
+    const Wall wall = config("flex_cave.toml");
+    EXPECT_EQ(wall.ranks(), 4);
+    EXPECT_EQ(wall.stereo, Stereo::active);
+    EXPECT_EQ(wall.tiles[3].outputs, (std::vector<Output>{{"floor", {Eye::left, Eye::right}}}));
+    EXPECT_LT(glm::distance(wall.tiles[3].screen.normal(), {0, 1, 0}), 1e-12) << "the floor faces up";
+}
+
+TEST(WallConfigs, DesktopIsOneMonoRank) {
+    const Wall wall = config("desktop.toml");
+    EXPECT_EQ(wall.ranks(), 1);
+    EXPECT_EQ(wall.tiles[0].outputs, (std::vector<Output>{{"r1c1", {Eye::middle}}}));
+}
+
+TEST(WallConfigs, TheSandFillsMostOfAWallAndNoneOfItFallsOff) {
+    for (const char* name : {"tiled_3x4.toml", "desktop.toml"}) {
+        const Wall whole = wholeWall(config(name));
+        for (const Eye eye : eyesOf(whole.stereo)) {
+            glm::dvec2 lowest(2), highest(-2);
+            for (int corner = 0; corner < 4; ++corner) {
+                const glm::dvec4 clip = viewOf(whole, whole.tiles[0], eye).viewProjection *
+                                        glm::dvec4(sandCorner(whole, corner % 2, corner / 2), 1);
+                lowest = glm::min(lowest, glm::dvec2(clip) / clip.w);
+                highest = glm::max(highest, glm::dvec2(clip) / clip.w);
+                EXPECT_LT(std::abs(clip.z), clip.w) << name << ": clipped";
+            }
+            EXPECT_GT(std::min(lowest.x, lowest.y), -1) << name;
+            EXPECT_LT(std::max(highest.x, highest.y), 1) << name;
+            EXPECT_GT((highest - lowest).x, 2 * 0.8) << name << ": of the picture's width";
+            EXPECT_GT((highest - lowest).y, 2 * 0.7) << name << ": of the picture's height";
+        }
+    }
+}
+
+TEST(WallConfigs, TheSandStandsPartlyBeforeAndPartlyBehindTheWall) {
+    for (const char* name : {"tiled_3x4.toml", "desktop.toml"}) {
+        const Wall wall = config(name);
+        EXPECT_GT(sandCorner(wall, 0, 0).z, 0) << name;
+        EXPECT_LT(sandCorner(wall, 0, 1).z, 0) << name;
+    }
+}
+
+TEST(WallConfigs, EveryFileLoadsAndPassesTheCheck) {
+    int count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(configFolder())) {
+        if (entry.path().extension() != ".toml") {
+            continue;
+        }
+        ++count;
+        const Wall wall = loadWall(entry.path());
+        const support::Ran check = support::runProgram("sandwall-check", entry.path().string());
+        EXPECT_EQ(check.status, 0) << check.output;
+        for (const Tile& tile : wall.tiles) {
+            EXPECT_NE(check.output.find(tile.name), std::string::npos) << tile.name << " missing:\n" << check.output;
+        }
+        const support::Ran ranks = support::runProgram("sandwall-check", entry.path().string() + " --ranks");
+        EXPECT_EQ(ranks.output, std::to_string(wall.ranks()) + "\n");
+    }
+    EXPECT_GE(count, 3);
+}
+
+TEST(WallConfigs, TheExampleOfTheDocumentIsAWall) {
+    std::ifstream page(std::filesystem::path(SANDWALL_SOURCE_DIR) / "docs/wall_files.md");
+    const std::string text{std::istreambuf_iterator<char>(page), {}};
+    const std::string open = "```toml\n";
+    const std::size_t start = text.find(open);
+    ASSERT_NE(start, std::string::npos);
+    const std::size_t end = text.find("```", start + open.size());
+    const Wall wall = parseWall(text.substr(start + open.size(), end - start - open.size()), "docs/wall_files.md");
+    EXPECT_EQ(wall.ranks(), 4);
+    EXPECT_NEAR(wall.tiles[1].screen.lowerRight.x, 1.0215, 1e-12) << "as far right as it reaches left";
+}
+
+/// A locale that writes 1,5 for one and a half and 1.024 for a thousand and twenty-four.
+class DecimalComma : public std::numpunct<char> {
+    char do_decimal_point() const override { return ','; }
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+};
+
+TEST(WallConfigs, MeanTheSameInALocaleWithDecimalCommas) {
+    const Wall wall = config("tiled_3x4.toml");
+    const std::locale before = std::locale::global(std::locale(std::locale::classic(), new DecimalComma));
+    const Wall again = config("tiled_3x4.toml");
+    std::locale::global(before);
+    EXPECT_EQ(again, wall);
+}
+
+}  // namespace
+}  // namespace walls
