@@ -62,6 +62,7 @@ void SandBox::update(const SandSurface& surface, const sand::Rect& cells) {
     if (!cells.empty() &&
         (cells.x0 <= 0 || cells.y0 <= 0 || cells.x1 >= surface.columns() || cells.y1 >= surface.rows())) {
         makeSides(surface);
+        ++revision_;
     }
 }
 

@@ -16,6 +16,8 @@ public:
 
     /// These cells have changed: the sides follow when they touch the rim.
     void update(const SandSurface& surface, const sand::Rect& cells);
+    /// Counts the changes of the sides.
+    [[nodiscard]] std::uint64_t revision() const { return revision_; }
 
     void drawSides() const { sides_.draw(); }
     void drawBoards() const { boards_.draw(); }
@@ -24,6 +26,7 @@ private:
     void makeSides(const SandSurface& surface);
     void makeBoards(const SandSurface& surface, sand::Rim rim);
 
+    std::uint64_t revision_ = 0;
     float floor_ = 0;  // [scene unit]
     float top_ = 0;    // of the boards [scene unit]
     SolidMesh sides_, boards_;

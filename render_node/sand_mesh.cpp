@@ -41,6 +41,8 @@ SandMesh::SandMesh(const sand::HeightField& field)
             Chunk& chunk = chunks_.emplace_back();
             chunk.vertices = vertices;
             measure(chunk);
+            chunk.lowestEver = chunk.lowest;
+            chunk.highestEver = chunk.highest;
         }
     }
     scratch_.resize(static_cast<std::size_t>(quadsAcross_ + 1) * static_cast<std::size_t>(quadsDown_ + 1));
@@ -92,6 +94,7 @@ void SandMesh::update(const sand::HeightField& field, const sand::Rect& cells) {
         return;
     }
     surface_.update(field, cells);
+    ++revision_;
     // Cell c lies under vertex c + 1; normals and shade of the vertices around depend on it.
     constexpr int kAround = SandSurface::kReach + 1;
     const sand::Rect touched{cells.x0 + 1 - kAround, cells.y0 + 1 - kAround, cells.x1 + 1 + kAround,
@@ -99,29 +102,32 @@ void SandMesh::update(const sand::HeightField& field, const sand::Rect& cells) {
     for (Chunk& chunk : chunks_) {
         if (!touched.clippedTo(chunk.vertices).empty()) {
             chunk.stale = true;
+            chunk.changed = revision_;
             measure(chunk);
+            chunk.lowestEver = std::min(chunk.lowestEver, chunk.lowest);
+            chunk.highestEver = std::max(chunk.highestEver, chunk.highest);
         }
     }
 }
 
-bool SandMesh::seen(const Chunk& chunk, const glm::dmat4& sceneToClip) const {
+Box SandMesh::boxOf(const Chunk& chunk, float lowest, float highest) const {
     // A hundredth of a cell more, for what GL's floats may round.
-    const double margin = 0.01 * surface_.cellSize();
-    const std::array<double, 2> easts{surface_.east(chunk.vertices.x0) - margin,
-                                      surface_.east(chunk.vertices.x1 - 1) + margin};
-    const std::array<double, 2> norths{surface_.north(chunk.vertices.y0) - margin,
-                                       surface_.north(chunk.vertices.y1 - 1) + margin};
-    const std::array<double, 2> heights{chunk.lowest - margin, chunk.highest + margin};
-    std::array<int, 6> outside{};
-    for (unsigned corner = 0; corner < 8; ++corner) {
-        const glm::dvec4 clip =
-            sceneToClip * glm::dvec4(easts[corner & 1U], norths[corner >> 1U & 1U], heights[corner >> 2U & 1U], 1);
-        for (int axis = 0; axis < 3; ++axis) {
-            outside[static_cast<std::size_t>(2 * axis)] += clip[axis] < -clip.w ? 1 : 0;
-            outside[static_cast<std::size_t>(2 * axis + 1)] += clip[axis] > clip.w ? 1 : 0;
-        }
-    }
-    return std::none_of(outside.begin(), outside.end(), [](int corners) { return corners == 8; });
+    const double margin = 0.01 * double{surface_.cellSize()};
+    const glm::dvec3 low(surface_.east(chunk.vertices.x0), surface_.north(chunk.vertices.y0), lowest);
+    const glm::dvec3 high(surface_.east(chunk.vertices.x1 - 1), surface_.north(chunk.vertices.y1 - 1), highest);
+    return {low - margin, high + margin};
+}
+
+bool SandMesh::changedInView(const glm::dmat4& sceneToClip, std::uint64_t since) const {
+    return std::any_of(chunks_.begin(), chunks_.end(), [&](const Chunk& chunk) {
+        return chunk.changed > since && inFrustum(boxOf(chunk, chunk.lowestEver, chunk.highestEver), sceneToClip);
+    });
+}
+
+float SandMesh::lowestEver() const {
+    return std::min_element(chunks_.begin(), chunks_.end(),
+                            [](const Chunk& a, const Chunk& b) { return a.lowestEver < b.lowestEver; })
+        ->lowestEver;
 }
 
 void SandMesh::refresh(Chunk& chunk) {
@@ -145,7 +151,7 @@ void SandMesh::refresh(Chunk& chunk) {
 SandMesh::Drawn SandMesh::draw(const glm::dmat4& sceneToClip, bool culling) {
     Drawn drawn;
     for (Chunk& chunk : chunks_) {
-        if (culling && !seen(chunk, sceneToClip)) {
+        if (culling && !inFrustum(boxOf(chunk, chunk.lowest, chunk.highest), sceneToClip)) {
             continue;
         }
         if (chunk.stale) {

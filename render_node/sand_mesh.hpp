@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "render_node/frustum.hpp"
 #include "render_node/gl/gl_handle.hpp"
 #include "render_node/sand_surface.hpp"
 
@@ -30,6 +31,13 @@ public:
     /// Draws the chunks that reach into the frustum; all of them when `culling` is off. The program must be in use.
     Drawn draw(const glm::dmat4& sceneToClip, bool culling);
 
+    /// Counts the updates so far.
+    [[nodiscard]] std::uint64_t revision() const { return revision_; }
+    /// Whether sand that this camera sees, or saw, may have changed since that revision.
+    [[nodiscard]] bool changedInView(const glm::dmat4& sceneToClip, std::uint64_t since) const;
+    /// The lowest any sand has been [scene unit].
+    [[nodiscard]] float lowestEver() const;
+
     [[nodiscard]] const SandSurface& surface() const { return surface_; }
     [[nodiscard]] int chunks() const { return static_cast<int>(chunks_.size()); }
     /// Bytes of vertices and indices in GL: grows as chunks come into view.
@@ -41,14 +49,16 @@ private:
         GlBuffer vertices;
     };
     struct Chunk {
-        sand::Rect vertices;    // of the vertex grid
-        float lowest, highest;  // [scene unit]
-        bool stale = true;      // its vertices are not those of the surface
+        sand::Rect vertices;            // of the vertex grid
+        float lowest, highest;          // [scene unit]
+        float lowestEver, highestEver;  // since the start [scene unit]
+        std::uint64_t changed = 0;      // revision of the last update that touched it
+        bool stale = true;              // its vertices are not those of the surface
         std::optional<Geometry> geometry;
     };
     void makeIndices();
     void measure(Chunk& chunk) const;
-    [[nodiscard]] bool seen(const Chunk& chunk, const glm::dmat4& sceneToClip) const;
+    [[nodiscard]] Box boxOf(const Chunk& chunk, float lowest, float highest) const;
     void refresh(Chunk& chunk);
 
     SandSurface surface_;
@@ -58,6 +68,7 @@ private:
     std::vector<SandVertex> scratch_;  // one chunk
     GlBuffer indices_;                 // 16 bit, one chunk's
     std::size_t bytes_ = 0;
+    std::uint64_t revision_ = 0;
 };
 
 }  // namespace render_node

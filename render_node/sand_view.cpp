@@ -6,6 +6,9 @@
 namespace render_node {
 namespace {
 
+constexpr double kToolReach = 6;     // [tool radius], beyond which light.glsl leaves the sky's light alone
+constexpr double kLowestSun = 0.05;  // lower, and the tool's shadow may reach any tile
+
 glm::vec3 toVector(const std::vector<double>& numbers) { return glm::dvec3(numbers[0], numbers[1], numbers[2]); }
 
 /// sRGB from linear light, as the shaders' encode() does it but exact.
@@ -38,7 +41,7 @@ void SandView::update(const sand::HeightField& field, sand::Rect damage) {
 
 void SandView::setTool(sand::ProbePoint centre, bool engaged) {
     const glm::dvec3 cells = glm::dvec3(centre.x, centre.y, centre.z) / double{sand::kProbePerCell};
-    tool_ = Tool{glm::vec3(cells * double{cellSize_}), engaged};
+    tool_ = EyeMemory::Tool{glm::vec3(cells * double{cellSize_}), engaged};
 }
 
 void SandView::prepare(const GlProgram& program, const Camera& camera) const {
@@ -82,6 +85,46 @@ void SandView::draw(const Camera& camera, const EyeTarget& target) {
     box_.drawSides();
     prepare(woodProgram_, camera);
     box_.drawBoards();
+}
+
+bool SandView::toolInView(const std::optional<EyeMemory::Tool>& tool, const glm::dmat4& sceneToClip) const {
+    if (!tool || toolRadius_ <= 0) {
+        return false;
+    }
+    const glm::dvec3 sun = glm::normalize(toVector(look_.sunDirection));
+    if (sun.z < kLowestSun) {
+        return true;
+    }
+    // The ball, the dimmed sand around it, and its shadow down to the lowest sand there has been.
+    const double radius = toolRadius_;
+    const glm::dvec3 centre = tool->centre;
+    const double along = std::max(0.0, centre.z - double{mesh_.lowestEver()}) / sun.z;
+    const glm::dvec3 end = centre - along * sun;
+    const double blurred = 1.2 * radius + 0.06 * along;
+    const glm::dvec3 low = glm::min(centre - kToolReach * radius, end - blurred);
+    const glm::dvec3 high = glm::max(centre + kToolReach * radius, end + blurred);
+    // Light is interpolated between vertices: a cell more.
+    return inFrustum({low - double{cellSize_}, high + double{cellSize_}}, sceneToClip);
+}
+
+bool SandView::same(const Camera& camera, const EyeMemory& memory) const {
+    if (!memory.drawn || memory.roomToClip != camera.roomToClip || memory.eye != camera.eye ||
+        memory.sides != box_.revision()) {
+        return false;
+    }
+    const glm::dmat4 sceneToClip = camera.roomToClip * sceneToRoom_;
+    const bool toolMoved = memory.tool != tool_;
+    return !(toolMoved && (toolInView(memory.tool, sceneToClip) || toolInView(tool_, sceneToClip))) &&
+           !mesh_.changedInView(sceneToClip, memory.sand);
+}
+
+bool SandView::drawIfChanged(const Camera& camera, const EyeTarget& target, EyeMemory& memory) {
+    const bool needed = !same(camera, memory);
+    if (needed) {
+        draw(camera, target);
+    }
+    memory = {true, camera.roomToClip, camera.eye, mesh_.revision(), box_.revision(), tool_};
+    return needed;
 }
 
 }  // namespace render_node

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
 
@@ -28,6 +29,20 @@ struct DrawCounts {
     int triangles = 0;      // of sand, drawn
 };
 
+/// What was drawn last into one target by one view: the caller keeps one per eye.
+struct EyeMemory {
+    struct Tool {
+        glm::vec3 centre;  // [scene unit]
+        bool engaged;
+        friend bool operator==(const Tool&, const Tool&) = default;
+    };
+    bool drawn = false;  // reset to draw anew whatever has changed
+    glm::dmat4 roomToClip{1};
+    glm::dvec3 eye{0};
+    std::uint64_t sand = 0, sides = 0;  // revisions
+    std::optional<Tool> tool;
+};
+
 /// The scene as a person sees it: sand, the box it lies in, and the tool.
 ///
 /// Scene axes are x east, y north, z up, with the origin at the south-west corner of the field and height 0, in scene
@@ -47,6 +62,9 @@ public:
 
     /// Clears the target and draws everything into it. Does not wait: EyeTarget::finish() does.
     void draw(const Camera& camera, const EyeTarget& target);
+    /// Draws unless no pixel can differ from what `memory` says is in the target: most tiles are far from the hand.
+    /// Returns whether it drew. The target then holds what draw() would have left there, bit for bit.
+    bool drawIfChanged(const Camera& camera, const EyeTarget& target, EyeMemory& memory);
 
     [[nodiscard]] const DrawCounts& counts() const { return counts_; }
     /// Bytes this view has asked of GL for geometry so far.
@@ -55,17 +73,15 @@ public:
     void setCulling(bool culling) { culling_ = culling; }
 
 private:
-    struct Tool {
-        glm::vec3 centre;  // [scene unit]
-        bool engaged;
-    };
     void prepare(const GlProgram& program, const Camera& camera) const;
+    [[nodiscard]] bool same(const Camera& camera, const EyeMemory& memory) const;
+    [[nodiscard]] bool toolInView(const std::optional<EyeMemory::Tool>& tool, const glm::dmat4& sceneToClip) const;
 
     glm::dmat4 sceneToRoom_;
     sand::Look look_;
     float cellSize_;    // [scene unit]
     float toolRadius_;  // [scene unit]
-    std::optional<Tool> tool_;
+    std::optional<EyeMemory::Tool> tool_;
     bool culling_ = true;
     DrawCounts counts_;
 

@@ -22,7 +22,8 @@ vec2 lightPastTool(vec3 place, vec3 normal) {
     float blur = 0.12 + 0.06 * max(along, 0.0);
     float sun = mix(1.0, smoothstep(1.0 - blur, 1.0 + blur, miss), smoothstep(-0.2, 0.2, along));
     float facing = clamp(dot(normal, away) * inversesqrt(square), 0.0, 1.0);
-    float sky = 1.0 - 0.9 * facing / max(square, 1.0);
+    // Nothing at all beyond six radii, so that far tiles need not be drawn again (kToolReach in sand_view.cpp).
+    float sky = 1.0 - 0.65 * facing * max(1.0 / max(square, 1.0) - 1.0 / 36.0, 0.0);
     return vec2(sun, sky);
 }
 

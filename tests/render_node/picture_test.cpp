@@ -157,7 +157,7 @@ TEST_F(Picture, NamesTheShaderThatDoesNotCompile) {
     const auto& vertex = render_node::shaderSource("sand.vert.glsl");
     const auto& light = render_node::shaderSource("light.glsl");
     try {
-        const render_node::GlProgram program(vertex, light, {"broken.frag.glsl", "void main() { nonsense }"});
+        const render_node::GlProgram program(vertex, light, {"broken.frag.glsl", "void main() { nonsense = 1.0; }"});
         FAIL() << "it compiled";
     } catch (const std::runtime_error& error) {
         const std::string line = error.what();

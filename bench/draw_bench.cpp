@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// What one eye of one tile costs: the twelve tiles of a 3 × 4 wall, 1024 × 768 pixels each, over dunes of 512 × 512
+// cells. Set LP_NUM_THREADS to choose llvmpipe's threads (0: draw in the calling thread).
+#include <benchmark/benchmark.h>
+
+#include <string>
+
+#include "render_node/gl/gl_context.hpp"
+#include "tests/render_node/sample_scene.hpp"
+
+namespace {
+
+constexpr int kAcross = 4;
+constexpr int kDown = 3;
+
+sample::Window windowOf(int tile) {
+    const int column = tile % kAcross;
+    const int row = tile / kAcross;
+    return {column / double{kAcross}, row / double{kDown}, (column + 1) / double{kAcross}, (row + 1) / double{kDown}};
+}
+
+/// Argument 0: whether chunks that a tile does not see are left out.
+void drawWall(benchmark::State& state) {
+    const auto context = render_node::makeContext(render_node::Backend::osmesa);
+    const sand::Scene scene = sample::duneScene(512);
+    const render_node::EyeTarget target(1024, 768);
+    const bool culling = state.range(0) != 0;
+    // One view per tile, as on the ranks: each holds only what its tile sees.
+    double chunks = 0;
+    double kilobytes = 0;
+    for (int tile = 0; tile < kAcross * kDown; ++tile) {
+        render_node::SandView view(scene, glm::dmat4(1));
+        view.setCulling(culling);
+        view.draw(sample::camera({1, 0.2, 0.9}, {1, 1, 0}, windowOf(tile)), target);
+        target.finish();
+        chunks += view.counts().chunks;
+        kilobytes += static_cast<double>(view.geometryBytes()) / 1024;
+        state.counters["chunks_of_field"] = view.counts().chunksOfField;
+    }
+    render_node::SandView view(scene, glm::dmat4(1));
+    view.setCulling(culling);
+    int tile = 0;
+    for (auto _ : state) {
+        view.draw(sample::camera({1, 0.2, 0.9}, {1, 1, 0}, windowOf(tile)), target);
+        target.finish();
+        tile = (tile + 1) % (kAcross * kDown);
+    }
+    state.counters["chunks_per_tile"] = chunks / (kAcross * kDown);
+    state.counters["geometry_kB_per_tile"] = kilobytes / (kAcross * kDown);
+    state.SetLabel(context->renderer());
+}
+BENCHMARK(drawWall)
+    ->ArgName("culled")
+    ->Arg(0)
+    ->Arg(1)
+    ->Iterations(4 * kAcross * kDown)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+/// A new furrow: the damaged heights to the view, and what is drawn of them.
+void updateDamage(benchmark::State& state) {
+    const auto context = render_node::makeContext(render_node::Backend::osmesa);
+    const sand::Scene scene = sample::duneScene(512);
+    const render_node::EyeTarget target(64, 48);
+    render_node::SandView view(scene, glm::dmat4(1));
+    const int side = static_cast<int>(state.range(0));
+    for (auto _ : state) {
+        view.update(scene.terrain, {200, 200, 200 + side, 200 + side});
+        view.draw(sample::camera({1, 1, 2}, {1, 1, 0}), target);
+        target.finish();
+    }
+}
+BENCHMARK(updateDamage)->ArgName("cells")->Arg(0)->Arg(64)->Arg(312)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void readBack(benchmark::State& state) {
+    const auto context = render_node::makeContext(render_node::Backend::osmesa);
+    const render_node::EyeTarget target(1024, 768);
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(target.read());
+    }
+}
+BENCHMARK(readBack)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace
+
+BENCHMARK_MAIN();

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <glm/glm.hpp>
+
+namespace render_node {
+
+/// A box along the scene's axes.
+struct Box {
+    glm::dvec3 low, high;  // [scene unit]
+};
+
+/// Whether a box may reach into what a camera sees. Never false for one that does; seldom true for one that does not.
+[[nodiscard]] inline bool inFrustum(const Box& box, const glm::dmat4& sceneToClip) {
+    std::array<int, 6> outside{};
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        const glm::dvec4 clip = sceneToClip * glm::dvec4((corner & 1U) != 0 ? box.high.x : box.low.x,
+                                                         (corner & 2U) != 0 ? box.high.y : box.low.y,
+                                                         (corner & 4U) != 0 ? box.high.z : box.low.z, 1);
+        for (int axis = 0; axis < 3; ++axis) {
+            outside[static_cast<std::size_t>(2 * axis)] += clip[axis] < -clip.w ? 1 : 0;
+            outside[static_cast<std::size_t>(2 * axis + 1)] += clip[axis] > clip.w ? 1 : 0;
+        }
+    }
+    return std::none_of(outside.begin(), outside.end(), [](int corners) { return corners == 8; });
+}
+
+}  // namespace render_node
