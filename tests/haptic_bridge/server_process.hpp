@@ -101,8 +101,17 @@ public:
     /// The usual server of the tests: fast, script:gis, on any free port.
     static std::vector<std::string> usual(const std::string& scene, const Folder& folder, int port = 0,
                                           const std::string& pace = "fast") {
-        return {"--scene", scene, "--device", "script:gis", "--pace", pace, "--die-with-parent", "--listen",
-                "127.0.0.1:" + std::to_string(port), "--port-file", folder.file("port")};
+        return {"--scene",
+                scene,
+                "--device",
+                "script:gis",
+                "--pace",
+                pace,
+                "--die-with-parent",
+                "--listen",
+                "127.0.0.1:" + std::to_string(port),
+                "--port-file",
+                folder.file("port")};
     }
 
     /// 0 when the server does not come up.
@@ -143,19 +152,21 @@ struct Wall {
 
     /// Grants when offered, and follows until `steps` is reached or time is up. Counts hashes that differ.
     bool follow(haptic_bridge::Client& client, std::uint64_t steps) {
-        return eventually([&] {
-            if (client.link().link == haptic_bridge::Link::offered) {
-                for (const auto& left : client.drain(1000)) {
-                    apply(left);
+        return eventually(
+            [&] {
+                if (client.link().link == haptic_bridge::Link::offered) {
+                    for (const auto& left : client.drain(1000)) {
+                        apply(left);
+                    }
+                    client.grant(++epoch, terrain.stepNumber(), terrain.stateHash(), terrain.encodeState());
                 }
-                client.grant(++epoch, terrain.stepNumber(), terrain.stateHash(), terrain.encodeState());
-            }
-            for (const auto& timed : client.drain(steps - terrain.stepNumber())) {
-                apply(timed);
-            }
-            client.shown(terrain.stepNumber(), 16'666'667);
-            return terrain.stepNumber() >= steps;
-        }, 60000ms);
+                for (const auto& timed : client.drain(steps - terrain.stepNumber())) {
+                    apply(timed);
+                }
+                client.shown(terrain.stepNumber(), 16'666'667);
+                return terrain.stepNumber() >= steps;
+            },
+            60000ms);
     }
     void apply(const haptic_bridge::TimedStep& timed) {
         if (timed.step.epoch == epoch && timed.step.number == terrain.stepNumber() + 1) {

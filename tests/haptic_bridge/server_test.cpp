@@ -103,10 +103,11 @@ TEST_F(HapticServer, RunsInRealTimeAndReports) {
     EXPECT_GT(report.forceUsP50, 0);
     EXPECT_GT(report.halfRoundTripMsP50, 0);
     EXPECT_GT(report.stepBytesMean, 0);
-    std::printf("haptic period us p50 %.0f p99 %.0f max %.0f; force us p50 %.2f p99 %.2f; half round trip ms mean %.3f "
-                "stddev %.3f; step message %.0f bytes\n",
-                report.hapticPeriodUsP50, report.hapticPeriodUsP99, report.hapticPeriodUsMax, report.forceUsP50,
-                report.forceUsP99, report.halfRoundTripMsMean, report.halfRoundTripMsStddev, report.stepBytesMean);
+    std::printf(
+        "haptic period us p50 %.0f p99 %.0f max %.0f; force us p50 %.2f p99 %.2f; half round trip ms mean %.3f "
+        "stddev %.3f; step message %.0f bytes\n",
+        report.hapticPeriodUsP50, report.hapticPeriodUsP99, report.hapticPeriodUsMax, report.forceUsP50,
+        report.forceUsP99, report.halfRoundTripMsMean, report.halfRoundTripMsStddev, report.stepBytesMean);
 }
 
 TEST_F(HapticServer, GetsFewerStepsThroughASlowWallAndLosesNone) {
@@ -182,7 +183,8 @@ TEST_F(HapticServer, NamesBothScenesAndBothDigests) {
 TEST_F(HapticServer, AnswersGarbageHalfMessagesAndOtherVersionsWithAReason) {
     ServerProcess server(folder_, ServerProcess::usual(sceneFile_, folder_));
     const std::uint16_t port = server.port();
-    haptic_bridge::Identity mine{haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), "small"};
+    haptic_bridge::Identity mine{haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(),
+                                 "small"};
     {
         RawPeer browser(port);
         const std::string request = "GET / HTTP/1.1\r\n\r\n";
@@ -248,13 +250,15 @@ TEST_F(HapticServer, SaysWhatIsWrongInOneLine) {
     const std::string trace = other.write("bad.csv", "time,x,y,z\n0,1,2,3\n0.001,1,two,3\n");
     EXPECT_NE(complaint(other, {"--scene", sceneFile_, "--device", "trace:" + trace}).find("bad.csv:3:"),
               std::string::npos);
-    EXPECT_NE(complaint(other, {"--scene", sceneFile_, "--device", "phantom"}).find("unknown device"), std::string::npos);
+    EXPECT_NE(complaint(other, {"--scene", sceneFile_, "--device", "phantom"}).find("unknown device"),
+              std::string::npos);
     EXPECT_NE(complaint(other, {"--scene", sceneFile_, "--device", "script:/nowhere"}).find("/nowhere"),
               std::string::npos);
     EXPECT_NE(complaint(other, {"--scene", sceneFile_, "--device", "script:gis", "--map", "sacle=2"}).find("sacle=2"),
               std::string::npos);
-    EXPECT_NE(complaint(other, {"--scene", sceneFile_, "--device", "script:gis", "--listen", "127.0.0.1:x"}).find("port"),
-              std::string::npos);
+    EXPECT_NE(
+        complaint(other, {"--scene", sceneFile_, "--device", "script:gis", "--listen", "127.0.0.1:x"}).find("port"),
+        std::string::npos);
 }
 
 TEST_F(HapticServer, PrintsAndWritesItsPort) {
