@@ -19,6 +19,10 @@ std::int64_t nowNs() {
 }
 
 Cluster::Cluster(int* argc, char*** argv) {
+    // Broadcasts go from the master to each rank by itself. In Open MPI's tree a rank that has stopped cuts off those
+    // below it, and they would be named as missing with it. Whoever runs the job can set them otherwise.
+    setenv("OMPI_MCA_coll_tuned_use_dynamic_rules", "1", 0);
+    setenv("OMPI_MCA_coll_tuned_bcast_algorithm", "1", 0);
     int provided = 0;
     MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <sched.h>
 
-#include <array>
+#include <algorithm>
 
 namespace lockstep {
 namespace {
@@ -59,20 +59,23 @@ void FrameBarrier::collectArrivals(std::uint64_t frame) {
     }
 }
 
-bool FrameBarrier::meet(const Arrival& mine, std::uint64_t stateHash) {
+bool FrameBarrier::meet(const Arrival& mine) {
     const Watched watched(*watchdog_);
+    int equal = 0;
     if (cluster_.isMaster()) {
         arrivals_[kMaster] = mine;
         collectArrivals(mine.frame);
+        equal = std::all_of(arrivals_.begin(), arrivals_.end(),
+                            [&](const Arrival& arrival) { return arrival.stateHash == mine.stateHash; })
+                    ? 1
+                    : 0;
     } else {
         frame_ = mine.frame;
         MPI_Send(&mine, kArrivalBytes, MPI_BYTE, kMaster, kTag, cluster_.arrivals());
     }
-    // The largest hash and the smallest at once: the complement of the largest complement is the smallest.
-    std::array<std::uint64_t, 2> hashes{stateHash, ~stateHash};
-    MPI_Allreduce(MPI_IN_PLACE, hashes.data(), 2, MPI_UINT64_T, MPI_MAX, cluster_.frames());
+    MPI_Bcast(&equal, 1, MPI_INT, kMaster, cluster_.frames());
     watchdog_->startUpIsOver();
-    return hashes[0] == ~hashes[1];
+    return equal != 0;
 }
 
 }  // namespace lockstep

@@ -18,11 +18,13 @@ struct Arrival {
     std::int64_t arrived = 0;
     std::int64_t lastSwap = 0;  // when it swapped the frame before; 0 on the first
     std::int64_t drawn = 0;     // how long it drew [ns]
+    std::uint64_t stateHash = 0;
 };
 
-/// The barrier before a swap, which is also the proof that all replicas are equal: one allreduce of the state hash.
+/// The barrier before a swap, which is also the proof that all replicas are equal.
 ///
-/// Every rank first sends its Arrival by itself, so that the master knows who is missing. Main thread only.
+/// Every rank sends its Arrival, state hash and all, to the master by itself; the master compares and broadcasts the
+/// verdict. Not an allreduce: a rank that stops inside one cannot be told from those that wait for it. Main thread only.
 class FrameBarrier {
 public:
     /// `names` is how each rank is spoken of, by rank; only the master needs it. A rank that waits longer than
@@ -31,7 +33,7 @@ public:
     ~FrameBarrier();
 
     /// Collective: comes to the barrier of a frame and returns when all have come, with whether all hashes are equal.
-    [[nodiscard]] bool meet(const Arrival& mine, std::uint64_t stateHash);
+    [[nodiscard]] bool meet(const Arrival& mine);
 
     /// At the master: what the ranks said at the last barrier, by rank; its own first.
     [[nodiscard]] const std::vector<Arrival>& arrivals() const { return arrivals_; }

@@ -125,7 +125,7 @@ bool Session::showFrame() {
     terrain_.audit(static_cast<int>(message.auditTiles));
     hash_ = terrain_.stateHash();
 
-    const bool equal = barrier_.meet({.frame = message.frame, .arrived = nowNs(), .lastSwap = lastSwap_}, hash_);
+    const bool equal = barrier_.meet({message.frame, nowNs(), lastSwap_, 0, hash_});
     const std::int64_t swapped = nowNs();
     if (!equal) {
         ++summary_.divergences;

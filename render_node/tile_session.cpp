@@ -40,6 +40,7 @@ public:
         for (std::size_t i = 0; i < walls::eyesOf(wall_.stereo).size(); ++i) {
             targets_.emplace_back(tile_.pixels.x, tile_.pixels.y);
         }
+        memories_.resize(targets_.size());
         for (const EyeTarget& target : targets_) {
             constexpr int kBytesPerPixel = 8;  // colour and depth
             frameBufferBytes_ += std::int64_t{kBytesPerPixel} * target.width() * target.height();
@@ -64,7 +65,7 @@ public:
             drawMs_.add(static_cast<double>(drawn - start) * 1e-6);
             const std::uint64_t hash = terrain_->stateHash();
             const std::int64_t arrived = nowNs();
-            const bool equal = barrier.meet({frame.frame, arrived - clockAhead, lastSwap, drawn - start}, hash);
+            const bool equal = barrier.meet({frame.frame, arrived - clockAhead, lastSwap, drawn - start, hash});
             // Nobody comes here before all have agreed. Off screen, to swap is to let the pictures count.
             lastSwap = nowNs() - clockAhead;
             waitMs_.add(static_cast<double>(nowNs() - arrived) * 1e-6);
@@ -106,7 +107,8 @@ private:
         for (const walls::Eye eye : walls::eyesOf(wall_.stereo)) {
             const glm::dvec3 position = walls::eyePosition(viewer, eye);
             const walls::View view = walls::viewOf(tile_.screen, position, wall_.clip.near, wall_.clip.far);
-            view_->draw({view.viewProjection, position}, targets_[next++]);
+            view_->drawIfChanged({view.viewProjection, position}, targets_[next], memories_[next]);
+            ++next;
         }
         targets_.back().finish();  // one context: all eyes at once
     }
@@ -133,6 +135,7 @@ private:
     std::optional<sand::Terrain> terrain_;
     std::optional<SandView> view_;
     std::vector<EyeTarget> targets_;
+    std::vector<EyeMemory> memories_;  // what each target shows already
     std::int64_t frameBufferBytes_ = 0;
     lockstep::Statistics drawMs_, waitMs_;
 };

@@ -1,1 +1,263 @@
 // SPDX-License-Identifier: Apache-2.0
+// The master's end against servers that do not behave.
+#include "haptic_bridge/client.hpp"
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+
+#include <atomic>
+#include <functional>
+
+#include "files/input_error.hpp"
+#include "tests/haptic_bridge/server_process.hpp"
+
+namespace {
+
+using namespace haptic_bridge;
+using namespace test;
+
+/// A listening socket whose every guest gets one conversation, on a thread of its own.
+class FakeServer {
+public:
+    struct Guest {
+        int socket;
+        MessageReader reader;
+
+        void send(std::span<const std::uint8_t> bytes) const {
+            (void)!::send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+        }
+        void send(const Message& message) const { send(encode(message)); }
+        /// Reads until a message of this kind comes; false when the client has gone.
+        template <class Kind>
+        bool await() {
+            while (true) {
+                while (const auto message = reader.next()) {
+                    if (std::holds_alternative<Kind>(*message)) {
+                        return true;
+                    }
+                }
+                std::array<std::uint8_t, 4096> chunk{};
+                const ssize_t count = recv(socket, chunk.data(), chunk.size(), 0);
+                if (count <= 0) {
+                    return false;
+                }
+                reader.feed(std::span(chunk).first(static_cast<std::size_t>(count)));
+            }
+        }
+    };
+
+    explicit FakeServer(std::function<void(Guest&)> talk) : talk_(std::move(talk)) {
+        socket_ = socket(AF_INET, SOCK_STREAM, 0);
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        socklen_t size = sizeof address;
+        EXPECT_EQ(bind(socket_, reinterpret_cast<const sockaddr*>(&address), size), 0);
+        EXPECT_EQ(listen(socket_, 8), 0);
+        EXPECT_EQ(getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size), 0);
+        port_ = ntohs(address.sin_port);
+        thread_ = std::thread([this] { serve(); });
+    }
+    ~FakeServer() {
+        shutdown(socket_, SHUT_RDWR);
+        thread_.join();
+        close(socket_);
+    }
+    FakeServer(const FakeServer&) = delete;
+    FakeServer& operator=(const FakeServer&) = delete;
+
+    [[nodiscard]] Address address() const { return {"127.0.0.1", port_}; }
+    [[nodiscard]] int guests() const { return guests_; }
+
+private:
+    void serve() {
+        while (true) {
+            Guest guest{accept(socket_, nullptr, nullptr), {}};
+            if (guest.socket < 0) {
+                return;
+            }
+            const timeval patience{.tv_sec = 5, .tv_usec = 0};
+            setsockopt(guest.socket, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+            ++guests_;
+            talk_(guest);
+            close(guest.socket);
+        }
+    }
+
+    std::function<void(Guest&)> talk_;
+    int socket_ = -1;
+    std::uint16_t port_ = 0;
+    std::atomic<int> guests_{0};
+    std::thread thread_;
+};
+
+const Offer kOffer{42, "dunes"};
+const Identity kIdentity{kProtocolVersion, sand::kAlgorithmVersion, 42, "dunes"};
+
+bool reaches(const Client& client, Link link) {
+    return eventually([&] { return client.link().link == link; });
+}
+
+StepMessage stepOf(std::uint32_t epoch, std::uint64_t number) {
+    return {1, 2, {epoch, number, false, {{static_cast<std::int32_t>(number), 0, 0}}}};
+}
+
+/// Greets, and takes the numbering over.
+bool linkUp(FakeServer::Guest& guest) {
+    if (!guest.await<Hello>()) {
+        return false;
+    }
+    guest.send(Welcome{kIdentity, 60});
+    if (!guest.await<Start>()) {
+        return false;
+    }
+    guest.send(Ready{});
+    return true;
+}
+
+void grantWhenOffered(Client& client, std::uint32_t epoch, std::uint64_t number) {
+    ASSERT_TRUE(reaches(client, Link::offered)) << client.link().message;
+    client.grant(epoch, number, 0, {});
+}
+
+TEST(Client, SaysThatNobodyAnswersAndStopsAtOnce) {
+    Client client({"127.0.0.1", 1}, kOffer);
+    ASSERT_TRUE(eventually([&] { return client.link().message.find("does not answer") != std::string::npos; }));
+    EXPECT_EQ(client.link().link, Link::connecting);
+    client.stop();
+    client.stop();
+    EXPECT_EQ(client.link().link, Link::stopped);
+}
+
+TEST(Client, StopsWhileAServerStaysSilent) {
+    FakeServer server([](FakeServer::Guest& guest) { guest.await<Bye>(); });
+    Client client(server.address(), kOffer);
+    ASSERT_TRUE(eventually([&] { return server.guests() == 1; }));
+    client.stop();
+}
+
+TEST(Client, RefusesAServerOfAnotherVersionOrScene) {
+    for (int which = 0; which < 3; ++which) {
+        Identity other = kIdentity;
+        other.protocol += which == 0 ? 1 : 0;
+        other.algorithm += which == 1 ? 1 : 0;
+        other.rulesDigest += which == 2 ? 1 : 0;
+        FakeServer server([&](FakeServer::Guest& guest) {
+            guest.await<Hello>();
+            guest.send(Welcome{other, 60});
+            guest.await<Bye>();
+        });
+        const Client client(server.address(), kOffer);
+        ASSERT_TRUE(reaches(client, Link::refused)) << client.link().message;
+        const std::array<const char*, 3> words{"protocol version", "algorithm version", "material"};
+        EXPECT_NE(client.link().message.find(words[static_cast<std::size_t>(which)]), std::string::npos)
+            << client.link().message;
+    }
+}
+
+TEST(Client, RefusesGarbageAndTriesAgain) {
+    FakeServer server([](FakeServer::Guest& guest) {
+        const std::string banner = "SSH-2.0-OpenSSH_9.2\r\n";
+        guest.send({reinterpret_cast<const std::uint8_t*>(banner.data()), banner.size()});
+        guest.await<Bye>();
+    });
+    const Client client(server.address(), kOffer);
+    ASSERT_TRUE(reaches(client, Link::refused));
+    EXPECT_NE(client.link().message.find("it sent a message of"), std::string::npos) << client.link().message;
+    EXPECT_TRUE(eventually([&] { return server.guests() >= 2; })) << "it must try again";
+}
+
+TEST(Client, KeepsTheStepsBeforeHalfAMessage) {
+    FakeServer server([](FakeServer::Guest& guest) {
+        if (linkUp(guest)) {
+            guest.send(stepOf(1, 11));
+            guest.send(stepOf(1, 12));
+            guest.send(std::span<const std::uint8_t>(encode(stepOf(1, 13))).first(9));
+        }
+    });
+    Client client(server.address(), kOffer);
+    grantWhenOffered(client, 1, 10);
+    ASSERT_TRUE(eventually([&] { return client.link().message.find("middle of a message") != std::string::npos; }))
+        << client.link().message;
+    const auto steps = client.drain(10);
+    ASSERT_EQ(steps.size(), 2U);
+    EXPECT_EQ(steps[1].step.number, 12U);
+}
+
+TEST(Client, LeavesOutLateDoubledAndForeignSteps) {
+    FakeServer server([](FakeServer::Guest& guest) {
+        if (linkUp(guest)) {
+            for (const auto& [epoch, number] : std::vector<std::pair<std::uint32_t, std::uint64_t>>{
+                     {4, 8}, {4, 8}, {3, 9}, {4, 7}, {4, 9}, {5, 10}, {4, 10}}) {
+                guest.send(stepOf(epoch, number));
+            }
+            guest.await<Bye>();
+        }
+    });
+    Client client(server.address(), kOffer);
+    grantWhenOffered(client, 4, 7);
+    ASSERT_TRUE(eventually([&] { return client.counters().stepsIn == 3; }));
+    const auto steps = client.drain(100);
+    ASSERT_EQ(steps.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(steps[i].step.number, 8 + i);
+        EXPECT_EQ(steps[i].step.epoch, 4U);
+        EXPECT_GT(steps[i].receivedNs, 0);
+    }
+    EXPECT_EQ(client.counters().stepsStale, 2U);
+    EXPECT_EQ(client.counters().stepsForeign, 2U);
+    EXPECT_EQ(client.link().link, Link::linked);
+}
+
+TEST(Client, GivesUpTheLinkOverAMissingStep) {
+    FakeServer server([](FakeServer::Guest& guest) {
+        if (linkUp(guest)) {
+            guest.send(stepOf(1, 1));
+            guest.send(stepOf(1, 3));
+            guest.await<Bye>();
+        }
+    });
+    Client client(server.address(), kOffer);
+    grantWhenOffered(client, 1, 0);
+    ASSERT_TRUE(eventually([&] { return client.link().message.find("step 3 came after step 1") != std::string::npos; }))
+        << client.link().message;
+    EXPECT_EQ(client.drain(10).size(), 1U);
+    EXPECT_TRUE(reaches(client, Link::offered)) << "it must come back";
+}
+
+TEST(Client, HoldsAFloodBackAndLosesNothing) {
+    constexpr std::uint64_t kSteps = 5000;
+    FakeServer server([](FakeServer::Guest& guest) {
+        if (linkUp(guest)) {
+            for (std::uint64_t number = 1; number <= kSteps; ++number) {
+                guest.send(stepOf(1, number));
+            }
+            guest.await<Bye>();
+        }
+    });
+    Client client(server.address(), kOffer);
+    grantWhenOffered(client, 1, 0);
+    ASSERT_TRUE(eventually([&] { return client.counters().stepsIn == Client::kMaxQueued; }));
+    std::this_thread::sleep_for(50ms);
+    EXPECT_EQ(client.counters().stepsIn, Client::kMaxQueued) << "nobody drains";
+    std::uint64_t next = 1;
+    ASSERT_TRUE(eventually([&] {
+        for (const auto& timed : client.drain(100)) {
+            EXPECT_EQ(timed.step.number, next++);
+        }
+        return next == kSteps + 1;
+    }));
+}
+
+TEST(Client, ReadsAddressesAndNamesWhatIsWrong) {
+    EXPECT_EQ(Address::parse("node3:99", "--haptic").port, 99);
+    EXPECT_EQ(Address::parse("node3", "--haptic").port, kDefaultPort);
+    EXPECT_EQ(Address::parse("[::1]:80", "--haptic").host, "::1");
+    EXPECT_EQ(Address::parse("[::1]:80", "--haptic").text(), "[::1]:80");
+    for (const char* wrong : {"", ":1", "a:70000", "a:", "a:1x", "[::1"}) {
+        EXPECT_THROW((void)Address::parse(wrong, "--haptic"), files::InputError) << wrong;
+    }
+}
+
+}  // namespace

@@ -1,1 +1,135 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/path_builder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <thread>
+
+#include "haptic_bridge/latest.hpp"
+#include "haptic_bridge/live_histogram.hpp"
+
+namespace {
+
+using haptic_bridge::HandSample;
+using haptic_bridge::PathBuilder;
+
+HandSample at(std::int32_t x, bool engaged = true) { return {x + 1, {x, 0, 0}, engaged}; }
+
+sand::Step take(PathBuilder& builder) {
+    sand::Step step;
+    (void)builder.take(step);
+    return step;
+}
+
+TEST(PathBuilder, GivesEverySampleInOrder) {
+    PathBuilder builder;
+    for (int x = 1; x <= 17; ++x) {
+        builder.add(at(x));
+    }
+    sand::Step step;
+    EXPECT_EQ(builder.take(step), 18) << "the time of the last sample";
+    EXPECT_TRUE(step.engaged);
+    ASSERT_EQ(step.path.size(), 17U);
+    EXPECT_EQ(step.path.front().x, 1);
+    EXPECT_EQ(step.path.back().x, 17);
+}
+
+TEST(PathBuilder, EndsAStepWhereTheHandLifts) {
+    PathBuilder builder;
+    for (int x = 1; x <= 9; ++x) {
+        builder.add(at(x, x <= 3 || x >= 7));
+    }
+    const sand::Step first = take(builder), second = take(builder), third = take(builder);
+    EXPECT_EQ(first.path.size(), 3U);
+    EXPECT_TRUE(first.engaged);
+    EXPECT_EQ(second.path.size(), 3U);
+    EXPECT_FALSE(second.engaged);
+    EXPECT_EQ(third.path.front().x, 7);
+    EXPECT_TRUE(third.engaged);
+}
+
+TEST(PathBuilder, LeavesOutWhereTheHandRestsButNotWherePressed) {
+    PathBuilder builder;
+    builder.restart({5, 0, 0}, false);
+    builder.add(at(5, false));
+    EXPECT_TRUE(take(builder).path.empty());
+    builder.add(at(5, true));
+    builder.add(at(5, true));
+    const sand::Step pressed = take(builder);
+    EXPECT_TRUE(pressed.engaged);
+    EXPECT_EQ(pressed.path.size(), 1U) << "the press itself";
+    const sand::Step held = take(builder);
+    EXPECT_TRUE(held.engaged) << "no sample: as it was";
+    EXPECT_TRUE(held.path.empty());
+}
+
+TEST(PathBuilder, ThinsALongPathEvenly) {
+    PathBuilder builder;
+    for (int x = 1; x <= 1000; ++x) {
+        builder.add(at(x));
+    }
+    const sand::Step step = take(builder);
+    ASSERT_EQ(step.path.size(), sand::kMaxPathPoints);
+    EXPECT_EQ(step.path.front().x, 1);
+    EXPECT_EQ(step.path.back().x, 1000);
+    for (std::size_t i = 1; i < step.path.size(); ++i) {
+        EXPECT_NEAR(step.path[i].x - step.path[i - 1].x, 999.0 / 63, 1.0);
+    }
+    EXPECT_EQ(builder.dropped(), 1000 - sand::kMaxPathPoints);
+}
+
+TEST(PathBuilder, StaysBoundedWhileNobodyTakes) {
+    PathBuilder builder;
+    for (int x = 1; x <= 100'000; ++x) {
+        builder.add(at(x));
+    }
+    const sand::Step step = take(builder);
+    EXPECT_EQ(step.path.size(), sand::kMaxPathPoints);
+    EXPECT_EQ(step.path.back().x, 100'000) << "the hand must end where it is";
+    EXPECT_EQ(builder.dropped(), 100'000 - sand::kMaxPathPoints);
+    for (int x = 1; x <= 100'000; ++x) {
+        builder.add(at(x, x % 2 == 0));
+    }
+    EXPECT_GT(builder.dropped(), 100'000U) << "a tapping hand is bounded too";
+}
+
+TEST(Latest, HandsOverWholeValuesAndTheNewest) {
+    struct Pair {
+        std::uint64_t a = 0, b = 0;
+    };
+    haptic_bridge::Latest<Pair> latest;
+    constexpr std::uint64_t kLast = 200'000;
+    std::thread writer([&] {
+        for (std::uint64_t i = 1; i <= kLast; ++i) {
+            latest.next() = {i, ~i};
+            latest.publish();
+        }
+    });
+    std::uint64_t seen = 0;
+    int torn = 0, backwards = 0;
+    while (seen < kLast) {
+        const Pair& pair = latest.latest();
+        torn += pair.a != 0 && pair.b != ~pair.a ? 1 : 0;
+        backwards += pair.a < seen ? 1 : 0;
+        seen = pair.a;
+    }
+    writer.join();
+    EXPECT_EQ(torn, 0);
+    EXPECT_EQ(backwards, 0);
+}
+
+TEST(LiveHistogram, PercentilesAreWithinAPercent) {
+    haptic_bridge::LiveHistogram histogram;
+    EXPECT_EQ(histogram.percentileNs(0.5), 0);
+    for (int i = 1; i <= 100'000; ++i) {
+        histogram.add(i * 10);
+    }
+    EXPECT_NEAR(histogram.percentileNs(0.50), 500'000, 5'000);
+    EXPECT_NEAR(histogram.percentileNs(0.99), 990'000, 9'900);
+    EXPECT_EQ(histogram.maxNs(), 1'000'000);
+    EXPECT_NEAR(histogram.meanNs(), 500'005, 1);
+    EXPECT_NEAR(histogram.stddevNs(), 1'000'000 / std::sqrt(12.0), 10);
+}
+
+}  // namespace

@@ -1,1 +1,190 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/protocol.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace {
+
+using namespace haptic_bridge;
+
+sand::Step someStep() { return {3, 77, true, {{100, -200, 300}, {101, -200, 299}, {110, 5, 299}}}; }
+
+/// One of each kind, with values that no default has.
+std::vector<Message> oneOfEach() {
+    const Identity identity{kProtocolVersion, sand::kAlgorithmVersion, 0x0123456789abcdefULL, "dunes"};
+    Report report;
+    report.hapticPeriodUsP50 = 1000.5;
+    report.forceUsP99 = 2.25;
+    report.stepBytesMean = 84;
+    report.steps = 9;
+    report.stepsWithheld = 4;
+    report.samplesDropped = 1;
+    return {Hello{identity},
+            Welcome{identity, 60},
+            Refusal{RefusalCode::busy, "busy"},
+            Start{2, 40, 99},
+            Ready{},
+            NeedState{},
+            State{{1, 2, 3}},
+            StepMessage{-5, 17, someStep()},
+            TimingTest{7, 50},
+            Shown{41, 16'666'667},
+            TimingEcho{7},
+            Ping{123},
+            Pong{123, -9},
+            report,
+            Bye{"good night"}};
+}
+
+std::span<const std::uint8_t> withoutLength(const files::Bytes& framed) {
+    return std::span(framed).subspan(sizeof(std::uint32_t));
+}
+
+TEST(Protocol, EveryMessageComesBackAsItWent) {
+    const auto messages = oneOfEach();
+    ASSERT_EQ(messages.size(), std::variant_size_v<Message>);
+    for (std::size_t i = 0; i < messages.size(); ++i) {
+        EXPECT_EQ(messages[i].index(), i);
+        const files::Bytes framed = encode(messages[i]);
+        EXPECT_EQ(framed[4], i + 1) << "the type byte";
+        EXPECT_EQ(decode(withoutLength(framed)), messages[i]) << "message " << i;
+    }
+}
+
+TEST(Protocol, BytesOnTheWireAreThoseOfTheDocument) {
+    EXPECT_EQ(encode(Shown{0x0102, 3}),
+              (files::Bytes{17, 0, 0, 0, 10, 2, 1, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0, 0, 0, 0, 0}));
+    const files::Bytes hello = encode(Hello{{1, 1, 2, "a"}});
+    EXPECT_EQ(hello, (files::Bytes{26, 0, 0, 0, 1, 'S', 'W', 'H', 'B', 1, 0, 0, 0, 1, 0,
+                                   0,  0, 2, 0, 0, 0,   0,   0,   0,   0, 1, 0, 0, 0, 'a'}));
+}
+
+TEST(Protocol, RefusesEveryTruncationAndEveryTrailingByte) {
+    for (const Message& message : oneOfEach()) {
+        const files::Bytes framed = encode(message);
+        const auto whole = withoutLength(framed);
+        // Any length is right for a state or the padding of a timing test.
+        const bool open = std::holds_alternative<State>(message) || std::holds_alternative<TimingTest>(message);
+        for (std::size_t length = 0; length < (open ? 1 : whole.size()); ++length) {
+            EXPECT_THROW((void)decode(whole.first(length)), files::FormatError) << message.index() << " at " << length;
+        }
+        if (!open) {
+            files::Bytes longer(whole.begin(), whole.end());
+            longer.push_back(0);
+            EXPECT_THROW((void)decode(longer), files::FormatError) << message.index();
+        }
+    }
+}
+
+TEST(Protocol, SurvivesRandomMutations) {
+    const unsigned seed = std::random_device{}();
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    const auto messages = oneOfEach();
+    int refused = 0;
+    for (int round = 0; round < 20'000; ++round) {
+        files::Bytes framed = encode(messages[random() % messages.size()]);
+        for (unsigned flips = 1 + random() % 4; flips > 0; --flips) {
+            framed[random() % framed.size()] = static_cast<std::uint8_t>(random());
+        }
+        MessageReader reader;
+        reader.expectState(random() % 2 == 0);
+        reader.feed(framed);
+        try {
+            // Whatever is accepted must be a message that can be said again.
+            if (const auto message = reader.next()) {
+                (void)encode(*message);
+            }
+        } catch (const files::FormatError&) {
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 1000);
+}
+
+TEST(Protocol, ReadsAStreamCutAnywhere) {
+    files::Bytes stream;
+    for (const Message& message : oneOfEach()) {
+        const files::Bytes framed = encode(message);
+        stream.insert(stream.end(), framed.begin(), framed.end());
+    }
+    for (const std::size_t piece : {1UL, 2UL, 3UL, 7UL, 64UL, stream.size()}) {
+        MessageReader reader;
+        reader.expectState(true);
+        std::vector<Message> read;
+        for (std::size_t begin = 0; begin < stream.size(); begin += piece) {
+            reader.feed(std::span(stream).subspan(begin, std::min(piece, stream.size() - begin)));
+            while (auto message = reader.next()) {
+                read.push_back(std::move(*message));
+            }
+        }
+        EXPECT_EQ(read, oneOfEach()) << "pieces of " << piece;
+        EXPECT_FALSE(reader.midMessage());
+    }
+}
+
+TEST(Protocol, BoundsTheLengthBeforeTheBytesCome) {
+    const auto lengthOnly = [](std::uint32_t length, std::uint8_t type, bool stateExpected) {
+        files::ByteWriter writer;
+        writer.put(length);
+        writer.put(type);
+        MessageReader reader;
+        reader.expectState(stateExpected);
+        reader.feed(writer.bytes());
+        return reader.next();
+    };
+    constexpr std::uint8_t kStateType = 7, kByeType = 15;
+    EXPECT_THROW((void)lengthOnly(0, kByeType, false), files::FormatError);
+    EXPECT_THROW((void)lengthOnly(kMaxMessage + 1, kStateType, false), files::FormatError);
+    EXPECT_THROW((void)lengthOnly(kMaxMessage + 1, kByeType, true), files::FormatError);
+    EXPECT_THROW((void)lengthOnly(kMaxState + 1, kStateType, true), files::FormatError);
+    EXPECT_FALSE(lengthOnly(kMaxState, kStateType, true));
+    EXPECT_FALSE(lengthOnly(kMaxMessage, kByeType, false));
+}
+
+TEST(Protocol, TakesAStateOnceAndOnlyWhenExpected) {
+    MessageReader reader;
+    const files::Bytes large = encode(State{files::Bytes(3 * kMaxMessage, 9)});
+    reader.expectState(true);
+    reader.feed(large);
+    EXPECT_TRUE(reader.next());
+    reader.feed(encode(State{{1}}));
+    EXPECT_THROW((void)reader.next(), files::FormatError);
+}
+
+TEST(Protocol, ReadsOnlyTheVersionOfAnotherProtocol) {
+    files::ByteWriter payload;
+    payload.put(std::uint8_t{1});
+    payload.put(kMagic);
+    payload.put(kProtocolVersion + 1);
+    payload.putText("a layout nobody knows yet");
+    const auto hello = std::get<Hello>(decode(payload.bytes()));
+    EXPECT_EQ(hello.master.protocol, kProtocolVersion + 1);
+    const auto refusal = refusalFor({}, hello.master);
+    ASSERT_TRUE(refusal);
+    EXPECT_EQ(refusal->code, RefusalCode::protocol);
+}
+
+TEST(Protocol, RefusesWithTheReason) {
+    const Identity mine{kProtocolVersion, sand::kAlgorithmVersion, 1, "dunes"};
+    EXPECT_FALSE(refusalFor(mine, mine));
+    Identity other = mine;
+    other.algorithm += 1;
+    EXPECT_EQ(refusalFor(mine, other)->code, RefusalCode::algorithm);
+    other = mine;
+    other.sceneName = "beach";
+    EXPECT_EQ(refusalFor(mine, other)->text,
+              "the server has scene 'dunes', the master 'beach'; start both with the same scene");
+    other = mine;
+    other.rulesDigest = 2;
+    EXPECT_NE(refusalFor(mine, other)->text.find("0000000000000002"), std::string::npos);
+}
+
+TEST(Protocol, PrintsNoControlCharactersOfTheOtherSide) {
+    const files::Bytes framed = encode(Bye{"bad\nline\x1b[31m"});
+    EXPECT_EQ(std::get<Bye>(decode(withoutLength(framed))).reason, "bad?line?[31m");
+}
+
+}  // namespace

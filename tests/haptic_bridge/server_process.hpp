@@ -170,6 +170,7 @@ struct Wall {
     }
     void apply(const haptic_bridge::TimedStep& timed) {
         if (timed.step.epoch == epoch && timed.step.number == terrain.stepNumber() + 1) {
+            strokes += timed.step.engaged && !terrain.engaged() ? 1 : 0;
             terrain.apply(timed.step);
             divergences += terrain.stateHash() != timed.serverHash ? 1 : 0;
             longest = std::max(longest, timed.step.path.size());
@@ -181,7 +182,7 @@ struct Wall {
 
     sand::Terrain terrain;
     std::uint32_t epoch = 0;
-    int divergences = 0, outOfOrder = 0, engaged = 0;
+    int divergences = 0, outOfOrder = 0, engaged = 0, strokes = 0;
     std::size_t longest = 0;
 };
 

@@ -89,6 +89,24 @@ TEST_F(HapticServer, WritesTheSameSandTwice) {
     EXPECT_NE(hashes[0], sand::Terrain(scene_).stateHash());
 }
 
+TEST_F(HapticServer, WritesWithARecordedHand) {
+    const std::string command = std::string("python3 ") + SANDWALL_SOURCE_DIR +
+                                "/scripts/make_hand_trace.py --seconds 6 " + folder_.file("hand.csv");
+    ASSERT_EQ(std::system(command.c_str()), 0);
+    std::vector<std::string> arguments = ServerProcess::usual(sceneFile_, folder_);
+    arguments[3] = "trace:" + folder_.file("hand.csv");
+    ServerProcess server(folder_, arguments);
+    Client client(server.address(), offerOf(scene_));
+    Wall wall(scene_);
+    ASSERT_TRUE(wall.follow(client, 380)) << client.link().message << "\n" << server.errors();
+    EXPECT_EQ(wall.divergences, 0);
+    EXPECT_EQ(wall.strokes, 3) << "G, I and S";
+    EXPECT_FALSE(wall.terrain.engaged()) << "a recording that is over hovers";
+    // The I stands in the middle of the field, and the sand between I and S is untouched.
+    EXPECT_LT(wall.terrain.field().height(64, 64), scene_.terrain.height(64, 64));
+    EXPECT_EQ(wall.terrain.field().height(78, 48), scene_.terrain.height(78, 48));
+}
+
 TEST_F(HapticServer, RunsInRealTimeAndReports) {
     ServerProcess server(folder_, ServerProcess::usual(sceneFile_, folder_, 0, "realtime"));
     Client client(server.address(), offerOf(scene_));
