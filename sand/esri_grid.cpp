@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -53,6 +54,7 @@ public:
         }
         return value;
     }
+    [[nodiscard]] long line() const { return line_; }
     [[noreturn]] void fail(const std::string& message) const { throw files::InputError(file_, line_, message); }
 
 private:
@@ -112,6 +114,48 @@ std::optional<double> readHeader(Words& words, EsriGrid& grid) {
     return noData;
 }
 
+constexpr double kNoData = std::numeric_limits<double>::quiet_NaN();  // no file can hold it: it is not finite
+
+/// Cuts off edges without any data, which exporters leave around a rotated or resampled raster. `lines` is where each
+/// row begins in the file.
+EsriGrid withoutEmptyEdges(const EsriGrid& grid, const std::vector<long>& lines, const std::string& file) {
+    int west = grid.columns;
+    int east = -1;
+    int south = grid.rows;
+    int north = -1;
+    for (int row = 0; row < grid.rows; ++row) {
+        for (int column = 0; column < grid.columns; ++column) {
+            if (!std::isnan(grid.at(column, row))) {
+                west = std::min(west, column);
+                east = std::max(east, column);
+                south = std::min(south, row);
+                north = row;
+            }
+        }
+    }
+    if (east < 0) {
+        throw files::InputError(file + ": every cell is a no-data cell; there is no terrain in it");
+    }
+    EsriGrid result{east - west + 1,
+                    north - south + 1,
+                    grid.cellSize,
+                    grid.westEdge + west * grid.cellSize,
+                    grid.southEdge + south * grid.cellSize,
+                    {}};
+    for (int row = north; row >= south; --row) {
+        for (int column = west; column <= east; ++column) {
+            if (std::isnan(grid.at(column, row))) {
+                throw files::InputError(file, lines[static_cast<std::size_t>(grid.rows - 1 - row)],
+                                        fmt::format("no-data cell in column {} of this row, amid others; fill it or "
+                                                    "crop the grid",
+                                                    column + 1));
+            }
+            result.heights.push_back(grid.at(column, row));
+        }
+    }
+    return result;
+}
+
 }  // namespace
 
 EsriGrid readEsriGrid(const std::filesystem::path& file) {
@@ -125,17 +169,18 @@ EsriGrid readEsriGrid(const std::filesystem::path& file) {
     const std::optional<double> noData = readHeader(words, grid);
     const std::size_t cells = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
     grid.heights.reserve(std::min<std::size_t>(cells, 1 << 20));  // a lying header must not allocate gigabytes
+    std::vector<long> lines;                                      // of the first value of each row
     for (std::size_t i = 0; i < cells; ++i) {
         const double height = words.number("a height");
-        if (noData && height == *noData) {
-            words.fail(fmt::format("no-data cell {} (value {}); fill it or crop the grid", i, height));
+        grid.heights.push_back(noData && height == *noData ? kNoData : height);
+        if (i % static_cast<std::size_t>(grid.columns) == 0) {
+            lines.push_back(words.line());
         }
-        grid.heights.push_back(height);
     }
     if (!words.next().empty()) {
         words.fail(fmt::format("more values than ncols x nrows = {}", cells));
     }
-    return grid;
+    return withoutEmptyEdges(grid, lines, file.string());
 }
 
 void writeEsriGrid(const EsriGrid& grid, const std::filesystem::path& file) {

@@ -19,8 +19,8 @@ struct EsriGrid {
     }
 };
 
-/// Throws files::InputError with file and line: a header that is not one, values missing, too many or not finite, or
-/// no-data cells, which a scene cannot hold yet.
+/// Throws files::InputError with file and line: a header that is not one, values missing, too many or not finite, or a
+/// no-data cell amid the others. Rows and columns at the edges that hold no data at all are cut off.
 [[nodiscard]] EsriGrid readEsriGrid(const std::filesystem::path& file);
 
 /// Writes with nine digits. Throws files::InputError when the file cannot be written whole.
