@@ -20,7 +20,7 @@ namespace {
 using haptic_bridge::TimedStep;
 using lockstep::nowNs;
 
-constexpr std::size_t kMostStepsPerFrame = 16;  // a long catch-up is spread over frames
+constexpr std::size_t kMostStepsPerFrame = 8;  // a long catch-up is spread over frames
 constexpr std::size_t kMostStepsPerFastFrame = 4;
 constexpr double kFastPatience = 0.1;  // [s] that a fast session waits for a step before it shows a frame without
 constexpr double kAuditSeconds = 1.0;  // in which all of memory is hashed again, whatever the frame rate
