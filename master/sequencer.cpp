@@ -58,7 +58,10 @@ void Sequencer::followLink(const sand::Terrain& terrain, std::uint64_t stateHash
     } else if (status.link == Link::linked) {
         source_ = Source::server;
     } else if (source_ == Source::starting) {
-        if (static_cast<double>(nowNs() - startedNs_) * 1e-9 > kStartWait) {
+        if (status.link == Link::refused) {
+            fmt::print(stderr, "haptic link: refused; the wall goes on without a hand\n");
+            takeOver();
+        } else if (static_cast<double>(nowNs() - startedNs_) * 1e-9 > kStartWait) {
             fmt::print(stderr, "haptic link: nobody at {} for {:.0f} s; the wall goes on without a hand\n",
                        server_->text(), kStartWait);
             takeOver();

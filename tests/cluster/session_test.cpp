@@ -87,4 +87,30 @@ TEST_F(Lockstep, TheWallGoesOnWhenTheHapticServerDies) {
     EXPECT_EQ(summary()["divergences"], 0);
 }
 
+TEST_F(Lockstep, AnAbsentServerIsNamedAndTheWallGoesOn) {
+    const Ended ended = runToEnd({"--wall", wall(1, 1), "--scene", scene(), "--haptic", "127.0.0.1:1", "--out", out(),
+                                  "--steps", "30", "--no-pictures"});
+    EXPECT_EQ(ended.status, 0) << ended.output;
+    EXPECT_NE(ended.output.find("haptic link: nobody at 127.0.0.1:1 for 10 s; the wall goes on without a hand"),
+              std::string::npos)
+        << ended.output;
+    EXPECT_EQ(summary()["steps"], 30);
+}
+
+TEST_F(Lockstep, AServerWithAnotherMaterialIsRefusedAndTheWallGoesOn) {
+    const std::string other = write("other.toml", "name = \"test\"\n[field]\ncolumns = 128\n[terrain]\n[material]\n");
+    const std::string portFile = (folder_ / "port").string();
+    support::ChildProcess server({SANDWALL_BIN_DIR "/sandwall-haptic-server", "--scene", other, "--device",
+                                  "script:gis", "--listen", "127.0.0.1:0", "--port-file", portFile},
+                                 folder_ / "server.txt");
+    ASSERT_TRUE(server.waitForOutput("listening on 127.0.0.1:", 20)) << server.output();
+    const Ended ended = runToEnd({"--wall", wall(1, 1), "--scene", scene(), "--haptic",
+                                  "127.0.0.1:" + std::to_string(std::stoi(read("port"))), "--out", out(), "--steps",
+                                  "30", "--no-pictures"});
+    EXPECT_EQ(ended.status, 0) << ended.output;
+    EXPECT_NE(ended.output.find("haptic link: refused; the wall goes on without a hand"), std::string::npos)
+        << ended.output;
+    EXPECT_EQ(summary()["steps"], 30);
+}
+
 }  // namespace
