@@ -66,7 +66,12 @@ void readRecord(files::ByteReader& reader, Journal& journal) {
 }  // namespace
 
 JournalWriter::JournalWriter(const std::filesystem::path& file, const sand::Scene& scene, const std::string& buildId)
-    : file_(file), descriptor_(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)) {
+    : file_(file) {
+    std::error_code none;  // usually there is no older one
+    if (std::filesystem::is_regular_file(file, none)) {
+        std::filesystem::rename(file, file.string() + ".previous", none);
+    }
+    descriptor_ = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     if (descriptor_ < 0) {
         throw files::InputError(
             fmt::format("{}: cannot be made ({}); choose another --out", file.string(), std::strerror(errno)));

@@ -24,7 +24,8 @@ struct JournalFrame {
 /// Writes a session to disk before the wall shows it (docs/journal.md). One thread.
 class JournalWriter {
 public:
-    /// Makes the file, header and all. Throws files::InputError when that fails.
+    /// Makes the file, header and all; a journal that is there already is kept as FILE.previous. Throws
+    /// files::InputError when the file cannot be made.
     JournalWriter(const std::filesystem::path& file, const sand::Scene& scene, const std::string& buildId);
     ~JournalWriter();
     JournalWriter(const JournalWriter&) = delete;
@@ -40,7 +41,7 @@ private:
     void writeAll(const files::Bytes& bytes);
 
     std::filesystem::path file_;
-    int descriptor_;
+    int descriptor_ = -1;
 };
 
 /// A session read back.

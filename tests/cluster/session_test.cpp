@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <csignal>
 #include <filesystem>
 
 #include "tests/cluster/session_fixture.hpp"
@@ -85,6 +86,30 @@ TEST_F(Lockstep, TheWallGoesOnWhenTheHapticServerDies) {
     EXPECT_EQ(session->wait(60), 0) << session->output();
     EXPECT_EQ(summary()["steps"], 600);
     EXPECT_EQ(summary()["divergences"], 0);
+}
+
+TEST_F(Lockstep, AHapticServerThatComesBackIsLinkedAgain) {
+    const std::string sceneFile = scene();
+    const auto serve = [&](const std::string& address) {
+        return std::make_unique<support::ChildProcess>(
+            std::vector<std::string>{SANDWALL_BIN_DIR "/sandwall-haptic-server", "--scene", sceneFile, "--device",
+                                     "script:gis", "--listen", address, "--port-file", (folder_ / "port").string()},
+            folder_ / "server.txt");
+    };
+    auto server = serve("127.0.0.1:0");
+    ASSERT_TRUE(server->waitForOutput("listening on 127.0.0.1:", 20)) << server->output();
+    const std::string address = "127.0.0.1:" + std::to_string(std::stoi(read("port")));
+    const auto session = start({"--wall", wall(1, 1), "--scene", sceneFile, "--haptic", address, "--out", out(),
+                                "--steps", "900", "--no-pictures"});
+    ASSERT_TRUE(session->waitForOutput("linked, epoch 1 from step 1", 30)) << session->output();
+    server->signal(SIGKILL);
+    ASSERT_TRUE(session->waitForOutput("the wall goes on without a hand", 30)) << session->output();
+    server = serve(address);
+    EXPECT_TRUE(session->waitForOutput("linked, epoch 3", 30)) << session->output();
+    EXPECT_EQ(session->wait(60), 0) << session->output();
+    EXPECT_EQ(summary()["steps"], 900);
+    EXPECT_EQ(summary()["server_divergences"], 0) << "the server went on from the wall's sand";
+    EXPECT_EQ(summary()["haptic"]["reconnects"], 1);
 }
 
 TEST_F(Lockstep, AnAbsentServerIsNamedAndTheWallGoesOn) {

@@ -78,6 +78,16 @@ TEST_F(JournalFile, ATornTailLosesNothingButItself) {
     }
 }
 
+TEST_F(JournalFile, KeepsTheJournalOfTheSessionBefore) {
+    writeSession(false);
+    const auto before = std::filesystem::file_size(file_);
+    const std::filesystem::path kept = file_.string() + ".previous";
+    const master::JournalWriter writer(file_, samples::flatScene(8, 8), "x");
+    EXPECT_EQ(std::filesystem::file_size(kept), before);
+    EXPECT_TRUE(master::readJournal(file_).frames.empty());
+    std::filesystem::remove(kept);
+}
+
 TEST_F(JournalFile, RefusesWhatIsNoJournal) {
     EXPECT_THROW((void)master::readJournal(file_), files::InputError);
     std::ofstream(file_) << "certainly not";
