@@ -24,7 +24,8 @@ struct Arrival {
 /// The barrier before a swap, which is also the proof that all replicas are equal.
 ///
 /// Every rank sends its Arrival, state hash and all, to the master by itself; the master compares and broadcasts the
-/// verdict. Not an allreduce: a rank that stops inside one cannot be told from those that wait for it. Main thread only.
+/// verdict. Not an allreduce: a rank that stops inside one cannot be told from those that wait for it. Main thread
+/// only.
 class FrameBarrier {
 public:
     /// `names` is how each rank is spoken of, by rank; only the master needs it. A rank that waits longer than

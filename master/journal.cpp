@@ -55,7 +55,7 @@ void readRecord(files::ByteReader& reader, Journal& journal) {
     if (body[0] == kFrameRecord) {
         journal.frames.push_back(decodeFrame(payload));
     } else if (body[0] == kEndRecord) {
-        Journal::End& end = journal.end.emplace();
+        JournalEnd& end = journal.end.emplace();
         end.step = payload.get<std::uint64_t>();
         end.hash = payload.get<std::uint64_t>();
     } else {

@@ -44,16 +44,18 @@ private:
     int descriptor_ = -1;
 };
 
+/// What the last record of a whole session holds.
+struct JournalEnd {
+    std::uint64_t step = 0, hash = 0;
+};
+
 /// A session read back.
 struct Journal {
     sand::Scene scene;
     std::string buildId;
     std::vector<JournalFrame> frames;
-    struct End {
-        std::uint64_t step = 0, hash = 0;
-    };
-    std::optional<End> end;      // absent when the session was cut off
-    std::int64_t tornBytes = 0;  // at the end of the file, behind the last whole record; left out
+    std::optional<JournalEnd> end;  // absent when the session was cut off
+    std::int64_t tornBytes = 0;     // at the end of the file, behind the last whole record; left out
 };
 
 /// Throws files::InputError for a file that is missing, no journal, of another version, or damaged before its end.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -16,10 +17,10 @@
 class SessionTest : public testing::Test {
 protected:
     void SetUp() override {
-        folder_ = std::filesystem::temp_directory_path() /
-                  ("sandwall_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-        std::filesystem::remove_all(folder_);
-        std::filesystem::create_directories(folder_);
+        const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
+        std::string name = (std::filesystem::temp_directory_path() / ("sandwall-" + test + "-XXXXXX")).string();
+        ASSERT_NE(mkdtemp(name.data()), nullptr) << name;
+        folder_ = name;
     }
     void TearDown() override {
         if (!HasFailure()) {
