@@ -32,6 +32,17 @@ void putIdentity(const Identity& identity, files::ByteWriter& writer) {
     writer.putText(std::string_view(identity.sceneName).substr(0, kMaxSceneName));
 }
 
+/// Texts of the other side are printed: one line of plain characters, whatever came.
+std::string getLine(files::ByteReader& reader) {
+    std::string text = reader.getText();
+    for (char& character : text) {
+        if (static_cast<unsigned char>(character) < 0x20 || character == 0x7f) {
+            character = '?';
+        }
+    }
+    return text;
+}
+
 /// Leaves nothing to read when the protocol is another one: what follows then is not ours to judge.
 Identity getIdentity(files::ByteReader& reader) {
     if (reader.get<std::uint32_t>() != kMagic) {
@@ -45,22 +56,11 @@ Identity getIdentity(files::ByteReader& reader) {
     }
     identity.algorithm = reader.get<std::uint32_t>();
     identity.rulesDigest = reader.get<std::uint64_t>();
-    identity.sceneName = reader.getText();
+    identity.sceneName = getLine(reader);
     if (identity.sceneName.size() > kMaxSceneName) {
         throw files::FormatError("a scene name of " + std::to_string(identity.sceneName.size()) + " bytes");
     }
     return identity;
-}
-
-/// Texts of the other side are printed: one line of plain characters, whatever came.
-std::string getLine(files::ByteReader& reader) {
-    std::string text = reader.getText();
-    for (char& character : text) {
-        if (static_cast<unsigned char>(character) < 0x20 || character == 0x7f) {
-            character = '?';
-        }
-    }
-    return text;
 }
 
 void put(const Hello& hello, files::ByteWriter& writer) { putIdentity(hello.master, writer); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lockstep/cluster.hpp"
 
+#include <fmt/format.h>
 #include <sys/prctl.h>
 #include <unistd.h>
 
@@ -19,25 +20,30 @@ std::int64_t nowNs() {
 }
 
 Cluster::Cluster(int* argc, char*** argv) {
-    // Broadcasts go from the master to each rank by itself. In Open MPI's tree a rank that has stopped cuts off those
-    // below it, and they would be named as missing with it. Whoever runs the job can set them otherwise.
-    setenv("OMPI_MCA_coll_tuned_use_dynamic_rules", "1", 0);
-    setenv("OMPI_MCA_coll_tuned_bcast_algorithm", "1", 0);
     int provided = 0;
     MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
+    const auto role = isMaster()   ? Watchdog::Role::master
+                      : rank_ == 1 ? Watchdog::Role::firstRank
+                                   : Watchdog::Role::otherRank;
+    startUp_ = std::make_unique<Watchdog>(
+        [this] { return fmt::format("rank {} waits for the other ranks to start up", rank_); }, 0, role);
+    startUp_->arm();
     for (MPI_Comm* communicator : {&frames_, &arrivals_, &pictures_}) {
         MPI_Comm_dup(MPI_COMM_WORLD, communicator);
     }
 }
 
 Cluster::~Cluster() {
+    startUpIsOver();
     for (MPI_Comm* communicator : {&frames_, &arrivals_, &pictures_}) {
         MPI_Comm_free(communicator);
     }
     MPI_Finalize();
 }
+
+void Cluster::startUpIsOver() const { startUp_->disarm(); }
 
 files::Bytes Cluster::broadcast(const files::Bytes& fromMaster) const {
     auto size = static_cast<std::uint64_t>(fromMaster.size());

@@ -4,10 +4,12 @@
 #include <mpi.h>
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "files/byte_stream.hpp"
+#include "lockstep/watchdog.hpp"
 
 namespace lockstep {
 
@@ -41,12 +43,16 @@ public:
     /// Collects everyone's bytes at the master, by rank; others get nothing. Collective.
     [[nodiscard]] std::vector<files::Bytes> gather(const files::Bytes& mine) const;
 
+    /// From the start on a watchdog limits every wait; the frame barrier brings its own and calls this.
+    void startUpIsOver() const;
+
     /// Ends the whole job at once, for when a rank cannot be waited for.
     [[noreturn]] void abort(int status) const;
 
 private:
     int rank_ = 0;
     int size_ = 1;
+    std::unique_ptr<Watchdog> startUp_;
     MPI_Comm frames_ = MPI_COMM_NULL;
     MPI_Comm arrivals_ = MPI_COMM_NULL;
     MPI_Comm pictures_ = MPI_COMM_NULL;

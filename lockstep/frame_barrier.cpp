@@ -5,12 +5,19 @@
 #include <sched.h>
 
 #include <algorithm>
+#include <array>
 
 namespace lockstep {
 namespace {
 
-constexpr int kTag = 2;
+enum Tag : int { kFrameTag = 10, kRestTag, kArrivalTag, kVerdictTag };
 constexpr int kArrivalBytes = static_cast<int>(sizeof(Arrival));
+
+Watchdog::Role roleOf(const Cluster& cluster) {
+    return cluster.isMaster()    ? Watchdog::Role::master
+           : cluster.rank() == 1 ? Watchdog::Role::firstRank
+                                 : Watchdog::Role::otherRank;
+}
 
 }  // namespace
 
@@ -18,10 +25,10 @@ FrameBarrier::FrameBarrier(const Cluster& cluster, std::vector<std::string> name
     : cluster_(cluster),
       names_(std::move(names)),
       arrivals_(cluster.isMaster() ? static_cast<std::size_t>(cluster.size()) : 0),
-      receives_(arrivals_.size(), MPI_REQUEST_NULL),
+      requests_(arrivals_.size(), MPI_REQUEST_NULL),
       missing_(std::make_unique<std::atomic<bool>[]>(arrivals_.size() + 1)) {
-    // One voice is enough: the master names the missing; if it is silent itself, the first rank says so.
-    watchdog_ = std::make_unique<Watchdog>([this] { return describeWait(); }, limitSeconds, cluster.rank() <= 1);
+    watchdog_ = std::make_unique<Watchdog>([this] { return describeWait(); }, limitSeconds, roleOf(cluster));
+    cluster.startUpIsOver();
 }
 
 FrameBarrier::~FrameBarrier() = default;
@@ -36,44 +43,86 @@ std::string FrameBarrier::describeWait() const {
             who += fmt::format("{}{}", who.empty() ? "" : ", ", names_[rank]);
         }
     }
-    return fmt::format("frame {} waits for {}", frame_.load(), who.empty() ? "the barrier" : who);
+    return fmt::format("frame {} waits for {}", frame_.load(), who.empty() ? "reports and pictures" : who);
 }
 
-void FrameBarrier::collectArrivals(std::uint64_t frame) {
+void FrameBarrier::awaitEach() {
     for (std::size_t rank = 1; rank < arrivals_.size(); ++rank) {
         missing_[rank] = true;
-        MPI_Irecv(&arrivals_[rank], kArrivalBytes, MPI_BYTE, static_cast<int>(rank), kTag, cluster_.arrivals(),
-                  &receives_[rank]);
     }
-    frame_ = frame;
-    for (std::size_t here = 1; here < arrivals_.size();) {
+    for (std::size_t done = 1; done < arrivals_.size();) {
         int which = MPI_UNDEFINED;
-        int done = 0;
-        MPI_Testany(static_cast<int>(receives_.size()), receives_.data(), &which, &done, MPI_STATUS_IGNORE);
-        if (done != 0 && which != MPI_UNDEFINED) {
+        int found = 0;
+        MPI_Testany(static_cast<int>(requests_.size()), requests_.data(), &which, &found, MPI_STATUS_IGNORE);
+        if (found != 0 && which != MPI_UNDEFINED) {
             missing_[static_cast<std::size_t>(which)] = false;
-            ++here;
+            ++done;
         } else {
             sched_yield();  // whoever draws on this core goes first
         }
     }
 }
 
+void FrameBarrier::sendToAll(const void* data, std::size_t bytes, int tag) {
+    for (std::size_t rank = 1; rank < requests_.size(); ++rank) {
+        MPI_Isend(data, static_cast<int>(bytes), MPI_BYTE, static_cast<int>(rank), tag, cluster_.frames(),
+                  &requests_[rank]);
+    }
+    awaitEach();
+}
+
+void FrameBarrier::receiveFromMaster(void* data, std::size_t bytes, int tag) const {
+    MPI_Recv(data, static_cast<int>(bytes), MPI_BYTE, kMaster, tag, cluster_.frames(), MPI_STATUS_IGNORE);
+}
+
+FrameMessage FrameBarrier::begin(const FrameMessage& fromMaster, std::size_t& bytes) {
+    const Watched watched(*watchdog_);
+    std::array<std::uint8_t, kOneMessage> packet{};
+    constexpr std::size_t kRoom = kOneMessage - sizeof(std::uint32_t);
+    files::Bytes message;
+    std::uint32_t length = 0;
+    if (cluster_.isMaster()) {
+        frame_ = fromMaster.frame;
+        message = fromMaster.encode();
+        length = static_cast<std::uint32_t>(message.size());
+        std::memcpy(packet.data(), &length, sizeof length);
+        const std::size_t first = std::min(message.size(), kRoom);
+        std::copy_n(message.begin(), first, packet.begin() + sizeof length);
+        sendToAll(packet.data(), sizeof length + first, kFrameTag);
+        if (length > kRoom) {  // a long catch-up
+            sendToAll(message.data() + kRoom, length - kRoom, kRestTag);
+        }
+    } else {
+        receiveFromMaster(packet.data(), packet.size(), kFrameTag);
+        std::memcpy(&length, packet.data(), sizeof length);
+        message.resize(length);
+        std::copy_n(packet.begin() + sizeof length, std::min<std::size_t>(length, kRoom), message.begin());
+        if (length > kRoom) {
+            receiveFromMaster(message.data() + kRoom, length - kRoom, kRestTag);
+        }
+    }
+    bytes = length;
+    return FrameMessage::decode(message);
+}
+
 bool FrameBarrier::meet(const Arrival& mine) {
     const Watched watched(*watchdog_);
-    int equal = 0;
+    frame_ = mine.frame;
+    std::uint8_t equal = 0;
     if (cluster_.isMaster()) {
         arrivals_[kMaster] = mine;
-        collectArrivals(mine.frame);
-        equal = std::all_of(arrivals_.begin(), arrivals_.end(),
-                            [&](const Arrival& arrival) { return arrival.stateHash == mine.stateHash; })
-                    ? 1
-                    : 0;
+        for (std::size_t rank = 1; rank < arrivals_.size(); ++rank) {
+            MPI_Irecv(&arrivals_[rank], kArrivalBytes, MPI_BYTE, static_cast<int>(rank), kArrivalTag,
+                      cluster_.arrivals(), &requests_[rank]);
+        }
+        awaitEach();
+        const auto likeMine = [&](const Arrival& arrival) { return arrival.stateHash == mine.stateHash; };
+        equal = std::all_of(arrivals_.begin(), arrivals_.end(), likeMine) ? 1 : 0;
+        sendToAll(&equal, sizeof equal, kVerdictTag);
     } else {
-        frame_ = mine.frame;
-        MPI_Send(&mine, kArrivalBytes, MPI_BYTE, kMaster, kTag, cluster_.arrivals());
+        MPI_Send(&mine, kArrivalBytes, MPI_BYTE, kMaster, kArrivalTag, cluster_.arrivals());
+        receiveFromMaster(&equal, sizeof equal, kVerdictTag);
     }
-    MPI_Bcast(&equal, 1, MPI_INT, kMaster, cluster_.frames());
     watchdog_->startUpIsOver();
     return equal != 0;
 }

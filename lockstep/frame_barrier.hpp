@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lockstep/cluster.hpp"
+#include "lockstep/frame_message.hpp"
 #include "lockstep/watchdog.hpp"
 
 namespace lockstep {
@@ -21,35 +22,44 @@ struct Arrival {
     std::uint64_t stateHash = 0;
 };
 
-/// The barrier before a swap, which is also the proof that all replicas are equal.
+/// How a frame begins and ends on every rank: one message from the master to all, and the barrier before the swap,
+/// which is also the proof that all replicas are equal.
 ///
-/// Every rank sends its Arrival, state hash and all, to the master by itself; the master compares and broadcasts the
-/// verdict. Not an allreduce: a rank that stops inside one cannot be told from those that wait for it. Main thread
-/// only.
+/// Every rank sends its Arrival, state hash and all, to the master by itself; the master compares and tells the
+/// verdict. All of it goes point to point, and the master polls: inside a broadcast or an allreduce of MPI a rank that
+/// has stopped cannot be told from those that wait for it, and would take the master with it. Main thread only.
 class FrameBarrier {
 public:
-    /// `names` is how each rank is spoken of, by rank; only the master needs it. A rank that waits longer than
-    /// `limitSeconds` ends the job.
+    /// Frame messages up to this size travel whole; longer ones send their rest behind [byte].
+    static constexpr std::size_t kOneMessage = 1024;
+
+    /// `names` is how each rank is spoken of, by rank; only the master needs it. A frame that takes longer than
+    /// `limitSeconds` ends the job. Ends the cluster's own start-up watch.
     FrameBarrier(const Cluster& cluster, std::vector<std::string> names, double limitSeconds);
     ~FrameBarrier();
 
-    /// Collective: comes to the barrier of a frame and returns when all have come, with whether all hashes are equal.
+    /// Collective: begins a frame. The master gives the message; everyone gets it. Sets `bytes` to its length.
+    [[nodiscard]] FrameMessage begin(const FrameMessage& fromMaster, std::size_t& bytes);
+
+    /// Collective: comes to the barrier of the frame; returns when all have, with whether all hashes are equal.
     [[nodiscard]] bool meet(const Arrival& mine);
 
     /// At the master: what the ranks said at the last barrier, by rank; its own first.
     [[nodiscard]] const std::vector<Arrival>& arrivals() const { return arrivals_; }
 
-    /// Watches other waits than the barrier, such as a rank's for the next broadcast.
+    /// Watches waits outside the frame loop too, such as for reports and pictures.
     [[nodiscard]] Watchdog& watchdog() { return *watchdog_; }
 
 private:
-    void collectArrivals(std::uint64_t frame);
+    void sendToAll(const void* data, std::size_t bytes, int tag);
+    void receiveFromMaster(void* data, std::size_t bytes, int tag) const;
+    void awaitEach();
     [[nodiscard]] std::string describeWait() const;
 
     const Cluster& cluster_;
     std::vector<std::string> names_;
     std::vector<Arrival> arrivals_;
-    std::vector<MPI_Request> receives_;
+    std::vector<MPI_Request> requests_;             // one per rank, at the master
     std::unique_ptr<std::atomic<bool>[]> missing_;  // by rank; read by the watchdog's thread
     std::atomic<std::uint64_t> frame_{0};
     std::unique_ptr<Watchdog> watchdog_;

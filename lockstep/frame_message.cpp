@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lockstep/frame_message.hpp"
 
-#include <algorithm>
-
 namespace lockstep {
 
 files::Bytes FrameMessage::encode() const {
@@ -38,28 +36,6 @@ FrameMessage FrameMessage::decode(std::span<const std::uint8_t> bytes) {
         message.steps.push_back(sand::decodeStep(reader));
     }
     return message;
-}
-
-FrameMessage broadcastFrame(const Cluster& cluster, const FrameMessage& fromMaster, std::size_t& bytes) {
-    std::array<std::uint8_t, kOneBroadcast> packet{};
-    constexpr std::size_t kRoom = kOneBroadcast - sizeof(std::uint32_t);
-    files::Bytes message;
-    std::uint32_t length = 0;
-    if (cluster.isMaster()) {
-        message = fromMaster.encode();
-        length = static_cast<std::uint32_t>(message.size());
-        std::memcpy(packet.data(), &length, sizeof length);
-        std::copy_n(message.begin(), std::min(message.size(), kRoom), packet.begin() + sizeof length);
-    }
-    MPI_Bcast(packet.data(), static_cast<int>(packet.size()), MPI_BYTE, kMaster, cluster.frames());
-    std::memcpy(&length, packet.data(), sizeof length);
-    bytes = length;
-    message.resize(length);
-    std::copy_n(packet.begin() + sizeof length, std::min<std::size_t>(length, kRoom), message.begin());
-    if (length > kRoom) {  // a long catch-up
-        MPI_Bcast(message.data() + kRoom, static_cast<int>(length - kRoom), MPI_BYTE, kMaster, cluster.frames());
-    }
-    return FrameMessage::decode(message);
 }
 
 }  // namespace lockstep

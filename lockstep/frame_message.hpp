@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lockstep/cluster.hpp"
+#include "files/byte_stream.hpp"
 #include "sand/step.hpp"
 
 namespace lockstep {
@@ -17,7 +17,7 @@ struct ViewState {
     friend bool operator==(const ViewState&, const ViewState&) = default;
 };
 
-/// All that a frame needs; broadcast by the master, once per frame.
+/// All that a frame needs; sent by the master to every rank, once per frame.
 struct FrameMessage {
     std::uint64_t frame = 0;
     ViewState view;
@@ -31,11 +31,5 @@ struct FrameMessage {
     static FrameMessage decode(std::span<const std::uint8_t> bytes);
     friend bool operator==(const FrameMessage&, const FrameMessage&) = default;
 };
-
-/// Messages up to this size go out in one broadcast of fixed length, so that nobody asks for the length first.
-inline constexpr std::size_t kOneBroadcast = 1024;  // [byte]
-
-/// Collective. The master gives the message; everyone gets it. Returns in `bytes` how long it was.
-[[nodiscard]] FrameMessage broadcastFrame(const Cluster& cluster, const FrameMessage& fromMaster, std::size_t& bytes);
 
 }  // namespace lockstep

@@ -12,13 +12,19 @@ namespace lockstep {
 
 /// Makes sure that no wait is silent and none is for ever.
 ///
-/// A thread of its own looks on while the main thread is inside a call that may block. After a second it says who is
+/// A thread of its own looks on while the main thread is inside a call that may block. After a while it says who is
 /// waited for; after the limit it says so once more and ends this process, which makes mpirun end the job. Until
 /// startUpIsOver() it has more patience: shaders compile and sand settles before the first frame.
+///
+/// The master is the first to speak and the first to end the job, because it alone knows who is missing; a rank waits
+/// longer, for the case that it is the master that has stopped.
 class Watchdog {
 public:
-    /// `describe` names what is waited for; it runs on the watchdog's thread and must only read atomics.
-    Watchdog(std::function<std::string()> describe, double limitSeconds, bool speaks);
+    enum class Role { master, firstRank, otherRank };
+
+    /// `describe` names what is waited for; it runs on the watchdog's thread and must only read atomics. Of the ranks
+    /// only the first speaks.
+    Watchdog(std::function<std::string()> describe, double limitSeconds, Role role);
     ~Watchdog();
     Watchdog(const Watchdog&) = delete;
     Watchdog& operator=(const Watchdog&) = delete;
@@ -33,7 +39,7 @@ private:
 
     std::function<std::string()> describe_;
     double limit_;
-    bool speaks_;
+    Role role_;
     std::atomic<bool> startingUp_{true};
     std::atomic<std::int64_t> armedAt_{0};  // [ns], 0 when nobody waits
     std::mutex mutex_;

@@ -63,6 +63,17 @@ void readRecord(files::ByteReader& reader, Journal& journal) {
     }
 }
 
+/// Whether the record at the beginning of `rest` would end at its end or behind it.
+bool reachesTheEnd(std::span<const std::uint8_t> rest) {
+    std::uint32_t length = 0;
+    constexpr std::size_t kAround = sizeof length + 1 + sizeof(std::uint64_t);  // length, type, checksum
+    if (rest.size() < kAround) {
+        return true;
+    }
+    std::memcpy(&length, rest.data(), sizeof length);
+    return length >= rest.size() - kAround;
+}
+
 }  // namespace
 
 JournalWriter::JournalWriter(const std::filesystem::path& file, const sand::Scene& scene, const std::string& buildId)
@@ -158,8 +169,13 @@ Journal readJournal(const std::filesystem::path& file) {
         const auto rest = reader.rest();
         try {
             readRecord(reader, journal);
-        } catch (const files::FormatError&) {
-            // A crash tears the last record; whatever stands before it is whole, by its checksum.
+        } catch (const files::FormatError& error) {
+            // A crash tears the last record. One that is followed by more was damaged on the disk.
+            if (!reachesTheEnd(rest)) {
+                throw files::InputError(fmt::format("{}: damaged at byte {} of {}: {}; what stands before it is whole",
+                                                    file.string(), bytes.size() - rest.size(), bytes.size(),
+                                                    error.what()));
+            }
             journal.tornBytes = static_cast<std::int64_t>(rest.size());
             break;
         }

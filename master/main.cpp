@@ -100,8 +100,8 @@ int runSession(const lockstep::Cluster& cluster, Options& options) {
         (void)lockstep::broadcastSession(cluster, world->message);
         sessionOpen = true;
         requireReady(lockstep::gatherReadiness(cluster, {lockstep::hostName(), lockstep::buildId(), ""}), world->wall);
-    } catch (const files::InputError&) {
-        // The ranks wait for a word, and end quietly when it is no.
+    } catch (...) {
+        // Whatever it is: the ranks wait for a word, and end quietly when it is no.
         if (sessionOpen) {
             (void)lockstep::agreeToGoOn(cluster, false);
         } else {

@@ -55,6 +55,9 @@ int run(const Options& options) {
         fmt::print(stderr, "{}: the last {} bytes are no whole record and were left out\n", options.file,
                    journal.tornBytes);
     }
+    if (!journal.end) {
+        fmt::print(stderr, "{}: has no orderly end; the session was cut off\n", options.file);
+    }
     sand::Terrain terrain(journal.scene);
     int differing = replay(journal, options.until, terrain);
     if (options.until != std::numeric_limits<std::uint64_t>::max() && terrain.stepNumber() < options.until) {

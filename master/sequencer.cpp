@@ -15,25 +15,42 @@ using haptic_bridge::Link;
 using haptic_bridge::TimedStep;
 using lockstep::nowNs;
 
+namespace {
+
+double secondsSince(std::int64_t then) { return static_cast<double>(nowNs() - then) * 1e-9; }
+
+}  // namespace
+
 Sequencer::Sequencer(std::optional<haptic_bridge::Address> server, const sand::Scene& scene, Pace pace)
     : server_(std::move(server)),
       offer_{scene.rules.digest(), scene.name},
       stepsPerSecond_(scene.rules.stepsPerSecond),
       pace_(pace),
       source_(server_ ? Source::starting : Source::own),
-      startedNs_(nowNs()) {
+      waitingSinceNs_(nowNs()) {
     if (server_) {
         client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_);
     } else {
-        takeOver();
+        takeOver("");
     }
 }
 
-void Sequencer::takeOver() {
+void Sequencer::takeOver(const std::string& why) {
+    if (!why.empty()) {
+        fmt::print(stderr, "haptic link: {}; the wall goes on without a hand\n", why);
+    }
     source_ = Source::own;
     ++epoch_;
     ownStepsOwed_ = 0;
     lastOwnNs_ = nowNs();
+}
+
+void Sequencer::grant(const sand::Terrain& terrain, std::uint64_t stateHash, std::uint64_t linkChanges) {
+    ++epoch_;
+    client_->grant(epoch_, terrain.stepNumber(), stateHash, terrain.encodeState());
+    source_ = Source::granting;
+    grantedChanges_ = linkChanges;
+    waitingSinceNs_ = nowNs();
 }
 
 void Sequencer::sayLink(const haptic_bridge::LinkStatus& status) {
@@ -51,24 +68,25 @@ void Sequencer::followLink(const sand::Terrain& terrain, std::uint64_t stateHash
     }
     const haptic_bridge::LinkStatus status = client_->link();
     sayLink(status);
-    if (status.link == Link::offered && source_ != Source::granting) {
-        ++epoch_;
-        client_->grant(epoch_, terrain.stepNumber(), stateHash, terrain.encodeState());
-        source_ = Source::granting;
-    } else if (status.link == Link::linked) {
+    const bool waiting = status.link == Link::offered || status.link == Link::granting;
+    if (status.link == Link::linked) {
         source_ = Source::server;
+    } else if (status.link == Link::offered && (source_ != Source::granting || status.changes > grantedChanges_ + 1)) {
+        // The second case: between two frames the link was lost and has been offered anew.
+        grant(terrain, stateHash, status.changes);
+    } else if (source_ == Source::granting && waiting) {
+        if (secondsSince(waitingSinceNs_) > kGrantWait) {
+            renewClient();
+            takeOver(fmt::format("{} does not begin", server_->text()));
+        }
     } else if (source_ == Source::starting) {
         if (status.link == Link::refused) {
-            fmt::print(stderr, "haptic link: refused; the wall goes on without a hand\n");
-            takeOver();
-        } else if (static_cast<double>(nowNs() - startedNs_) * 1e-9 > kStartWait) {
-            fmt::print(stderr, "haptic link: nobody at {} for {:.0f} s; the wall goes on without a hand\n",
-                       server_->text(), kStartWait);
-            takeOver();
+            takeOver("refused");
+        } else if (secondsSince(waitingSinceNs_) > kStartWait) {
+            takeOver(fmt::format("nobody at {} for {:.0f} s", server_->text(), kStartWait));
         }
-    } else if (status.link != Link::offered && status.link != Link::granting && source_ != Source::own) {
-        fmt::print(stderr, "haptic link: lost; the wall goes on without a hand\n");
-        takeOver();
+    } else if (source_ != Source::own) {
+        takeOver("lost");
     }
 }
 
@@ -87,13 +105,22 @@ std::size_t Sequencer::ownStepsDue() {
 std::vector<TimedStep> Sequencer::next(const sand::Terrain& terrain, std::uint64_t stateHash, std::size_t most) {
     std::vector<TimedStep> steps;
     if (client_ && source_ == Source::server) {
-        // Before a look at the link: what has arrived counts, even when the link has gone since.
         steps = client_->drain(most);
     }
     if (!steps.empty()) {
         return steps;
     }
+    const bool fromServer = source_ == Source::server;
     followLink(terrain, stateHash);
+    if (fromServer && source_ == Source::own) {
+        // What arrived between the first look and the loss counts too.
+        steps = client_->drain(most);
+        if (!steps.empty()) {
+            source_ = Source::server;
+            --epoch_;
+            return steps;
+        }
+    }
     if (source_ == Source::own) {
         // A wall slower than the steps does not catch up on hovering: it would only fall further behind.
         const std::size_t due = std::min(ownStepsDue(), most);
@@ -112,18 +139,37 @@ void Sequencer::shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs) {
     }
 }
 
-void Sequencer::distrustServer() {
-    fmt::print(stderr, "haptic link: the server's sand differs from the wall's; it starts again from the wall's\n");
+void Sequencer::renewClient() {
+    earlierReport_ = report();
+    earlierLinks_ = counters();
+    ++earlierLinks_.reconnects;
     client_->stop();
     client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_);
     linkChanges_ = 0;
-    takeOver();
 }
 
-std::optional<haptic_bridge::Report> Sequencer::report() const { return client_ ? client_->report() : std::nullopt; }
+void Sequencer::distrustServer() {
+    renewClient();
+    takeOver("the server's sand differs from the wall's, it must start again from the wall's");
+}
+
+std::optional<haptic_bridge::Report> Sequencer::report() const {
+    const auto latest = client_ ? client_->report() : std::nullopt;
+    return latest ? latest : earlierReport_;
+}
 
 haptic_bridge::LinkCounters Sequencer::counters() const {
-    return client_ ? client_->counters() : haptic_bridge::LinkCounters{};
+    haptic_bridge::LinkCounters sum = earlierLinks_;
+    if (client_) {
+        const haptic_bridge::LinkCounters now = client_->counters();
+        sum.reconnects += now.reconnects;
+        sum.bytesIn += now.bytesIn;
+        sum.bytesOut += now.bytesOut;
+        sum.stepsIn += now.stepsIn;
+        sum.stepsStale += now.stepsStale;
+        sum.stepsForeign += now.stepsForeign;
+    }
+    return sum;
 }
 
 void Sequencer::stop() {

@@ -33,6 +33,25 @@ std::vector<std::string> namesOf(const walls::Wall& wall) {
     return names;
 }
 
+/// What a session before has left in the folder must not pass for this one's, whatever becomes of this one.
+void forgetOldResults(const std::filesystem::path& folder) {
+    std::error_code none;  // usually there is nothing
+    for (const char* name :
+         {"summary.json", "divergence.txt", "wall.png", "wall_left.png", "wall_right.png", "wall_anaglyph.png"}) {
+        std::filesystem::remove(folder / name, none);
+    }
+    std::vector<std::filesystem::path> tiles;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
+        const std::string name = entry.path().filename().string();
+        if (name.starts_with("tile_") && name.ends_with(".png")) {
+            tiles.push_back(entry.path());
+        }
+    }
+    for (const std::filesystem::path& tile : tiles) {
+        std::filesystem::remove(tile, none);
+    }
+}
+
 void sleepNs(std::int64_t ns) { std::this_thread::sleep_for(std::chrono::nanoseconds(ns)); }
 
 double milliseconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-6; }
@@ -114,7 +133,7 @@ bool Session::showFrame() {
     std::vector<TimedStep> steps = awaitSteps();
     const std::uint64_t hashBefore = hash_;
     std::size_t bytes = 0;
-    const lockstep::FrameMessage message = lockstep::broadcastFrame(cluster_, prepare(steps), bytes);
+    const lockstep::FrameMessage message = barrier_.begin(prepare(steps), bytes);
     const std::int64_t broadcast = nowNs();
     summary_.broadcastBytes.add(static_cast<double>(bytes));
     if (!message.steps.empty()) {
@@ -129,6 +148,7 @@ bool Session::showFrame() {
     const std::int64_t swapped = nowNs();
     if (!equal) {
         ++summary_.divergences;
+        const lockstep::Watched watched(barrier_.watchdog());
         reportDivergence(*lockstep::findDivergence(cluster_, terrain_));
         return false;
     }
@@ -198,7 +218,9 @@ void Session::sayProgress(bool last) {
 }
 
 void Session::reportDivergence(const lockstep::Divergence& divergence) {
-    const std::string journal = (options_.out / "session.journal").string();
+    const std::filesystem::path replay =
+        std::filesystem::read_symlink("/proc/self/exe").parent_path() / "sandwall-replay";
+    const std::filesystem::path journal = options_.out / "session.journal";
     std::ofstream dump(options_.out / "divergence.txt");
     const auto say = [&dump](const std::string& line) {
         fmt::print(stderr, "sandwall: {}\n", line);
@@ -217,11 +239,12 @@ void Session::reportDivergence(const lockstep::Divergence& divergence) {
     if (divergence.tie) {
         say("no hash has a majority; the master's was taken for right");
     }
-    say(fmt::format("reproduce the right hash with: sandwall-replay {} --until {} --hash", journal,
+    say(fmt::format("reproduce the right hash with: '{}' '{}' --until {} --hash", replay.string(), journal.string(),
                     terrain_.stepNumber()));
 }
 
 void Session::finish() {
+    const lockstep::Watched watched(barrier_.watchdog());
     sequencer_.stop();
     summary_.frames = frame_;
     summary_.steps = terrain_.stepNumber();
@@ -236,6 +259,7 @@ void Session::finish() {
 }
 
 int Session::run() {
+    forgetOldResults(options_.out);
     bool agreed = true;
     while (agreed && !stopping_) {
         agreed = showFrame();
@@ -249,7 +273,8 @@ int Session::run() {
     finish();
     writeSummary(summary_, options_.out / "summary.json");
     if (agreed && options_.pictures) {
-        writeWallPictures(cluster_, wall_, options_.out);
+        const lockstep::Watched watched(barrier_.watchdog());
+        writeWallPictures(cluster_, wall_, options_.out, [this] { barrier_.watchdog().arm(); });
     }
     fmt::print("{}", describe(summary_));
     return agreed ? 0 : 1;

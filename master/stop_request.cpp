@@ -42,7 +42,13 @@ void StopRequest::listen() {
     std::string line;
     std::array<char, 256> piece{};
     std::array<pollfd, 2> watched{{{STDIN_FILENO, POLLIN, 0}, {wake_[0], POLLIN, 0}}};
-    while (poll(watched.data(), watched.size(), -1) >= 0 || errno == EINTR) {
+    for (;;) {
+        if (poll(watched.data(), watched.size(), -1) < 0) {
+            if (errno == EINTR) {
+                continue;
+            }
+            break;
+        }
         if (watched[1].revents != 0) {
             return;
         }

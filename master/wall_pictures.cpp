@@ -41,13 +41,14 @@ private:
 
 }  // namespace
 
-void writeWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall, const std::filesystem::path& folder) {
+void writeWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall, const std::filesystem::path& folder,
+                       const std::function<void()>& received) {
     const std::span<const walls::Eye> eyes = walls::eyesOf(wall.stereo);
     const walls::Canvas canvas = walls::wallCanvas(wall);
     std::vector<pictures::Image> whole(eyes.size(), pictures::Image(canvas.width, canvas.height));
     std::vector<int> eyesByRank(static_cast<std::size_t>(cluster.size()), static_cast<int>(eyes.size()));
     PictureFolder out(folder);
-    std::size_t received = 0;
+    std::size_t count = 0;
     lockstep::receivePictures(cluster, eyesByRank, [&](const lockstep::TilePicture& picture) {
         const walls::Tile& tile = wall.tiles[static_cast<std::size_t>(picture.rank - 1)];
         const auto eye = static_cast<std::size_t>(picture.eye);
@@ -58,8 +59,9 @@ void writeWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall
         const walls::PixelRect& place = canvas.tiles[static_cast<std::size_t>(picture.rank - 1)];
         pictures::blit(whole[eye], image, place.x, place.y);
         out.write(fmt::format("tile_{}_{}.png", tile.name, walls::eyeName(eyes[eye])), image);
-        fmt::print("pictures {}/{}\n", ++received, wall.tiles.size() * eyes.size());
+        fmt::print("pictures {}/{}\n", ++count, wall.tiles.size() * eyes.size());
         std::fflush(stdout);
+        received();
     });
     if (eyes.size() == 1) {
         out.write("wall.png", whole[0]);

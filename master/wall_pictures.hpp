@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 
 #include "lockstep/cluster.hpp"
 #include "walls/wall.hpp"
@@ -10,7 +11,9 @@ namespace master {
 
 /// Receives every tile's pictures and writes them as tile_NAME_EYE.png, and the wall put together from them:
 /// wall_left.png, wall_right.png and wall_anaglyph.png, or wall.png where it is mono. Progress goes to stdout.
-/// The ranks must be sending. Throws files::InputError when a file cannot be written, after all were received.
-void writeWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall, const std::filesystem::path& folder);
+/// The ranks must be sending; `received` is called after each picture. Throws files::InputError when a file cannot be
+/// written, after all were received.
+void writeWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall, const std::filesystem::path& folder,
+                       const std::function<void()>& received);
 
 }  // namespace master

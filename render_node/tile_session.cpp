@@ -49,15 +49,12 @@ public:
 
     /// Frames until the last one, or until replicas differ.
     void run(double frameTimeout) {
-        lockstep::FrameBarrier barrier(cluster_, {}, frameTimeout);
         const std::int64_t clockAhead = lockstep::clockAheadOfMaster(cluster_);
+        lockstep::FrameBarrier barrier(cluster_, {}, frameTimeout);
         std::int64_t lastSwap = 0;
         for (bool more = true; more;) {
             std::size_t bytes = 0;
-            const lockstep::FrameMessage frame = [&] {
-                const lockstep::Watched watched(barrier.watchdog());
-                return lockstep::broadcastFrame(cluster_, {}, bytes);
-            }();
+            const lockstep::FrameMessage frame = barrier.begin({}, bytes);
             apply(frame);
             const std::int64_t start = nowNs();
             draw(frame.view);

@@ -14,7 +14,9 @@
 namespace sand {
 namespace {
 
-constexpr int kTooCoarse = 4096;  // [unit]: below, rest slopes come out more than a percent too steep
+constexpr double kPaperRadius = 0.01;  // [scene unit], the first paper's sphere
+constexpr double kLargestTool = 2048;  // [cell]
+constexpr int kTooCoarse = 4096;       // [unit]: below, rest slopes come out more than a percent too steep
 
 HeightField levelField(const files::TomlTable& file) {
     const files::TomlTable field = file.requiredTable("field");
@@ -112,18 +114,25 @@ void readMaterial(const files::TomlTable& file, Scene& scene) {
 }
 
 void readTool(const files::TomlTable& file, Scene& scene) {
-    double radius = 0.01;  // [scene unit], the first paper's
-    if (const auto tool = file.table("tool")) {
-        radius = tool->numberOr("radius", radius, files::kPositive);
-        const double cells = radius / scene.terrain.cellSize();
-        constexpr double kLargest = 2048;
-        if (cells > kLargest) {
-            tool->fail("radius", fmt::format("radius {} is {:.0f} cells; {} is the most", radius, cells, kLargest));
-        }
+    const std::optional<files::TomlTable> tool = file.table("tool");
+    const double radius = tool ? tool->numberOr("radius", kPaperRadius, files::kPositive) : kPaperRadius;
+    const double cells = radius / scene.terrain.cellSize();
+    if (!(cells <= kLargestTool)) {
+        const std::string message = fmt::format(
+            "a tool of radius {} is {:.4g} cells of {}; {} is the most: set radius "
+            "in [tool]",
+            radius, cells, scene.terrain.cellSize(), kLargestTool);
+        tool ? tool->fail("radius", message) : file.fail("tool", message);
+    }
+    if (cells < 1) {
+        scene.warnings.push_back(
+            fmt::format("a tool of radius {} is {:.2g} cells of {} and will hardly dig; set radius in [tool]", radius,
+                        cells, scene.terrain.cellSize()));
+    }
+    if (tool) {
         tool->finish();
     }
-    scene.rules.toolRadius =
-        static_cast<std::int32_t>(std::floor(radius / scene.terrain.cellSize() * kProbePerCell + 0.5));
+    scene.rules.toolRadius = static_cast<std::int32_t>(std::floor(cells * kProbePerCell + 0.5));
 }
 
 void readForce(const files::TomlTable& file, Scene& scene) {
@@ -154,6 +163,10 @@ Scene loadScene(const std::filesystem::path& file) {
     const files::TomlTable toml = files::TomlTable::load(file);
     Scene scene;
     scene.name = toml.textOr("name", file.stem().string());
+    const auto control = [](char c) { return static_cast<unsigned char>(c) < ' '; };
+    if (std::any_of(scene.name.begin(), scene.name.end(), control)) {
+        toml.fail("name", "name must be one line of plain text");
+    }
     scene.rules.stepsPerSecond = toml.integerOr("steps_per_second", 60, 1, 1000);
     scene.rules.rim = static_cast<Rim>(toml.choiceOr("rim", {"closed", "open"}, 0));
     scene.terrain = makeTerrain(toml);

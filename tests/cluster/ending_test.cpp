@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <csignal>
 
 #include "tests/cluster/session_fixture.hpp"
@@ -58,20 +59,54 @@ TEST_F(Ending, AKilledRankEndsTheJob) {
     expectNothingLeft(5);
 }
 
+/// How many lines say that they end the job.
+std::size_t endings(const std::string& output) {
+    std::size_t count = 0;
+    for (auto at = output.find("ending the job"); at != std::string::npos; at = output.find("ending the job", at + 1)) {
+        ++count;
+    }
+    return count;
+}
+
 TEST_F(Ending, AStoppedRankIsNamedAndTheJobEnds) {
-    const auto session = runningSession();
-    kill(support::findProgram(family_, "sandwall-render-node").value(), SIGSTOP);
-    EXPECT_TRUE(session->waitForOutput("waits for rank 1 (tile r1c1) for 1.", 10)) << session->output();
+    // Still sand and no hand: the ranks wait most of the time, and stop in the middle of waiting.
+    const auto session = start({"--wall", wall(2, 2, "mono"), "--scene", scene(), "--steps", "100000", "--out", out(),
+                                "--frame-timeout", "3"});
+    ASSERT_TRUE(session->waitForOutput("hashes agree", 60)) << session->output();
+    family_ = session->family();
+    std::vector<pid_t> nodes;
+    for (const pid_t process : family_) {
+        if (support::findProgram({process}, "sandwall-render-node")) {
+            nodes.push_back(process);
+        }
+    }
+    ASSERT_EQ(nodes.size(), 4U);
+    std::sort(nodes.begin(), nodes.end());  // mpirun starts them in the order of ranks
+    kill(nodes[2], SIGSTOP);
+    EXPECT_TRUE(session->waitForOutput("waits for rank 3 (tile r2c1) for 1.", 10)) << session->output();
     EXPECT_EQ(session->wait(30), 1) << session->output();
-    EXPECT_NE(session->output().find("the limit is 3 s, ending the job"), std::string::npos) << session->output();
+    EXPECT_NE(session->output().find("waits for rank 3 (tile r2c1) for 3."), std::string::npos) << session->output();
+    EXPECT_EQ(endings(session->output()), 1U) << session->output();
     expectNothingLeft(5);
 }
 
-TEST_F(Ending, AStoppedMasterEndsTheJob) {
+TEST_F(Ending, AStoppedMasterIsNamedAndTheJobEnds) {
     const auto session = runningSession();
     kill(support::findProgram(family_, "sandwall-master").value(), SIGSTOP);
     EXPECT_NE(session->wait(30).value_or(0), 0) << session->output();
-    EXPECT_NE(session->output().find("waits for the master"), std::string::npos) << session->output();
+    EXPECT_NE(session->output().find("rank 1 waits for the master after frame"), std::string::npos)
+        << session->output();
+    EXPECT_EQ(endings(session->output()), 1U) << session->output();
+    expectNothingLeft(10);
+}
+
+TEST_F(Ending, ASecondCtrlCKills) {
+    const auto session = runningSession();
+    kill(support::findProgram(family_, "sandwall-master").value(), SIGSTOP);
+    session->signal(SIGINT);
+    ASSERT_TRUE(session->waitForOutput("once more to kill", 10)) << session->output();
+    session->signal(SIGINT);
+    EXPECT_TRUE(session->wait(20).has_value()) << session->output();
     expectNothingLeft(10);
 }
 

@@ -67,12 +67,17 @@ TEST_F(Lockstep, AnIdleFlippedBitIsNamedWithRankAndTile) {
         << ended.output;
     EXPECT_EQ(summary()["divergences"], 1);
     // The command it prints gives the hash that it says is right.
-    const auto at = ended.output.find("sandwall-replay ");
-    ASSERT_NE(at, std::string::npos);
-    const std::string command = ended.output.substr(at + 16, ended.output.find('\n', at) - at - 16);
-    const support::Ran replayed = support::runProgram("sandwall-replay", command);
-    ASSERT_EQ(replayed.output.size(), 17U) << replayed.output;
-    EXPECT_NE(ended.output.find("and not " + replayed.output.substr(0, 16)), std::string::npos) << ended.output;
+    const std::string before = "reproduce the right hash with: ";
+    const auto at = ended.output.find(before);
+    ASSERT_NE(at, std::string::npos) << ended.output;
+    const std::string command =
+        ended.output.substr(at + before.size(), ended.output.find('\n', at) - at - before.size());
+    support::ChildProcess replay({"/bin/sh", "-c", command}, folder_ / "replay.txt");
+    EXPECT_EQ(replay.wait(60), 0);
+    const std::string printed = replay.output();
+    ASSERT_GE(printed.size(), 17U);
+    EXPECT_NE(ended.output.find("and not " + printed.substr(printed.size() - 17, 16)), std::string::npos)
+        << ended.output << printed;
 }
 
 TEST_F(Lockstep, TheWallGoesOnWhenTheHapticServerDies) {

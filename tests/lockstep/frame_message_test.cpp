@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "lockstep/frame_barrier.hpp"
 #include "lockstep/session_message.hpp"
 
 namespace {
@@ -29,8 +30,8 @@ TEST(FrameMessage, SurvivesItsEncoding) {
     EXPECT_EQ(lockstep::FrameMessage::decode(message.encode()), message);
 }
 
-TEST(FrameMessage, EightStepsOfDiggingFitInOneBroadcast) {
-    EXPECT_LE(digging().encode().size(), lockstep::kOneBroadcast - sizeof(std::uint32_t));
+TEST(FrameMessage, EightStepsOfDiggingTravelInOneMessage) {
+    EXPECT_LE(digging().encode().size(), lockstep::FrameBarrier::kOneMessage - sizeof(std::uint32_t));
 }
 
 TEST(FrameMessage, RefusesEveryTruncation) {

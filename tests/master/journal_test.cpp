@@ -78,6 +78,18 @@ TEST_F(JournalFile, ATornTailLosesNothingButItself) {
     }
 }
 
+TEST_F(JournalFile, RefusesDamageInItsMiddle) {
+    writeSession(true);
+    const auto size = static_cast<std::streamoff>(std::filesystem::file_size(file_));
+    std::fstream stream(file_, std::ios::in | std::ios::out | std::ios::binary);
+    stream.seekg(size * 3 / 4);
+    const int before = stream.get();
+    stream.seekp(size * 3 / 4);
+    stream.put(static_cast<char>(before ^ 1));
+    stream.close();
+    EXPECT_THROW((void)master::readJournal(file_), files::InputError);
+}
+
 TEST_F(JournalFile, KeepsTheJournalOfTheSessionBefore) {
     writeSession(false);
     const auto before = std::filesystem::file_size(file_);

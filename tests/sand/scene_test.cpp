@@ -73,6 +73,13 @@ TEST_F(SceneFile, ErrorsNameFileLineKeyAndRange) {
     EXPECT_EQ(complaint("[field]\n[terrain]\nheight = 1e9\n[material]\n").find("s.toml:3: a height of 1000000000"), 0U);
 }
 
+TEST_F(SceneFile, AToolOutOfScaleIsRefusedOrWarnedOf) {
+    EXPECT_EQ(complaint("[field]\nwidth = 1e-10\n[terrain]\n[material]\n").find("s.toml:1: a tool of radius 0.01 is"),
+              0U);
+    EXPECT_EQ(complaint(kFlat + "[tool]\nradius = 10\n").find("s.toml:5: a tool of radius 10 is 2560 cells"), 0U);
+    EXPECT_EQ(sand::loadScene(write("s.toml", kFlat + "[tool]\nradius = 0.003\n")).warnings.size(), 1U);
+}
+
 TEST_F(SceneFile, AMissingFileIsNamed) {
     EXPECT_THROW((void)sand::loadScene(folder_ / "none.toml"), files::InputError);
 }
