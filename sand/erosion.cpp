@@ -117,7 +117,7 @@ std::size_t Erosion::sweepStrip(HeightField& field, std::size_t first, const Obs
     std::array<std::uint8_t, kMaxStrip / 2> moved{};
     const StripSweep strip{.in = field.row(0),
                            .out = scratch_.row(0),
-                           .stride = field.columns() + std::ptrdiff_t{2},
+                           .stride = field.stride(),
                            .cells = cells,
                            .blockSize = blockSize_,
                            .columns = field.columns(),

@@ -12,7 +12,7 @@ inline constexpr int kMaxBlock = 128;  // [cell], side of the largest block
 inline constexpr int kMaxStrip = 512;  // [cell], longest run of blocks a kernel takes at once
 
 /// One sweep of a strip, which is a run of neighbouring blocks: reads `in`, writes the same cells of `out`. Both point
-/// at cell (0,0) of padded rows. Strips and not blocks, because every row begins and ends with work that cannot be
+/// at cell (0,0) of a HeightField, whose padding it reads. Strips and not blocks, because every row begins and ends with work that cannot be
 /// done eight cells at a time.
 struct StripSweep {
     const std::int32_t* in;
