@@ -14,10 +14,10 @@ namespace {
 constexpr int kLanes = 8;
 constexpr int wholeVectors(int count) { return (count + kLanes - 1) / kLanes * kLanes; }
 
-/// A number per cell or face of a row of the strip; left uninitialised, since blocks are small and rows long.
+/// A number per cell or face of a row of the patch; left uninitialised, since blocks are small and rows long.
 template <class Number>
 struct alignas(64) Row {
-    std::array<Number, kMaxStrip + 2 * kLanes> values;
+    std::array<Number, kMaxPatch + 2 * kLanes> values;
     Number* data() { return values.data(); }
     Number& operator[](int i) { return values[static_cast<std::size_t>(i)]; }
 };
@@ -31,8 +31,8 @@ struct Isotropic {
     static constexpr float kShare = 0.2499F;
     float threshold, startThreshold;
 
-    explicit Isotropic(const StripSweep& strip)
-        : threshold(static_cast<float>(strip.threshold)), startThreshold(static_cast<float>(strip.startThreshold)) {}
+    explicit Isotropic(const PatchSweep& patch)
+        : threshold(static_cast<float>(patch.threshold)), startThreshold(static_cast<float>(patch.startThreshold)) {}
 
     std::int32_t operator()(std::int32_t difference, float along) const {
         const auto across = static_cast<float>(difference);
@@ -48,8 +48,8 @@ struct FourNeighbours {
     static constexpr bool kNeedsAlong = false;
     std::int32_t threshold, startThreshold;
 
-    explicit FourNeighbours(const StripSweep& strip)
-        : threshold(strip.threshold), startThreshold(strip.startThreshold) {}
+    explicit FourNeighbours(const PatchSweep& patch)
+        : threshold(patch.threshold), startThreshold(patch.startThreshold) {}
 
     std::int32_t operator()(std::int32_t difference, float) const {
         const std::int32_t size = difference < 0 ? -difference : difference;
@@ -100,8 +100,8 @@ void balance(const std::int32_t* __restrict in, const std::int32_t* __restrict a
 template <class Scheme, bool kTool>
 class Sweep {
 public:
-    Sweep(const StripSweep& strip, std::int64_t& outflow)
-        : strip_(strip), scheme_(strip), outflow_(outflow), width_(strip.cells.x1 - strip.cells.x0) {}
+    Sweep(const PatchSweep& patch, std::int64_t& outflow)
+        : patch_(patch), scheme_(patch), outflow_(outflow), width_(patch.cells.x1 - patch.cells.x0) {}
 
     void run() {
         std::fill_n(changed_.data(), width_, 0);
@@ -111,38 +111,43 @@ public:
         Fluxes* north = &fluxes[1];
         Row<float>* rise = &rises[0];
         Row<float>* riseAbove = &rises[1];
-        riseEast(strip_.cells.y0 - 1, *rise);
-        riseEast(strip_.cells.y0, *riseAbove);
-        northFluxes(strip_.cells.y0 - 1, *rise, *riseAbove, *south);
-        for (int y = strip_.cells.y0; y < strip_.cells.y1; ++y) {
+        riseEast(patch_.cells.y0 - 1, *rise);
+        riseEast(patch_.cells.y0, *riseAbove);
+        northFluxes(patch_.cells.y0 - 1, *rise, *riseAbove, *south);
+        for (int y = patch_.cells.y0; y < patch_.cells.y1; ++y) {
             std::swap(rise, riseAbove);
             riseEast(y + 1, *riseAbove);
             northFluxes(y, *rise, *riseAbove, *north);
             eastFluxes(y);
             balance(rowOf(y), across_.data(), south->data(), north->data(), width_,
-                    strip_.out + y * strip_.stride + strip_.cells.x0, changed_.data());
+                    patch_.out + y * patch_.stride + patch_.cells.x0, changed_.data());
             std::swap(south, north);
+            const int done = y + 1 - patch_.cells.y0;
+            if (done % patch_.blockSize == 0 || y + 1 == patch_.cells.y1) {
+                reportMoved((done - 1) / patch_.blockSize);
+            }
         }
-        reportMoved();
     }
 
 private:
-    /// The strip's first cell in row y.
-    [[nodiscard]] const std::int32_t* rowOf(int y) const { return strip_.in + y * strip_.stride + strip_.cells.x0; }
+    /// The patch's first cell in row y.
+    [[nodiscard]] const std::int32_t* rowOf(int y) const { return patch_.in + y * patch_.stride + patch_.cells.x0; }
     [[nodiscard]] const std::int32_t* roomOf(int y) const {
-        return strip_.room + (y - strip_.cells.y0 + 1) * (width_ + 2) + 1;
+        return patch_.room + (y - patch_.cells.y0 + 1) * (width_ + 2) + 1;
     }
     /// Over an open rim sand falls to height 0 and never comes back.
     [[nodiscard]] std::int32_t overRim(std::int32_t height, std::int32_t along) const {
         return std::max(scheme_(height, 2 * static_cast<float>(along)), 0);
     }
 
-    void reportMoved() {
-        for (int block = 0, x = 0; x < width_; ++block, x += strip_.blockSize) {
-            const auto end = changed_.data() + std::min(x + strip_.blockSize, width_);
-            const bool moved = std::any_of(changed_.data() + x, end, [](std::int32_t bits) { return bits != 0; });
-            strip_.moved[block] |= moved ? 1 : 0;
+    /// Tells which blocks of a row of blocks have changed, and begins the next.
+    void reportMoved(int blockRow) {
+        std::uint8_t* moved = patch_.moved + blockRow * patch_.blocksAcross;
+        for (int x = 0; x < width_; x += patch_.blockSize) {
+            const auto end = changed_.data() + std::min(x + patch_.blockSize, width_);
+            *moved++ = std::any_of(changed_.data() + x, end, [](std::int32_t bits) { return bits != 0; }) ? 1 : 0;
         }
+        std::fill_n(changed_.data(), width_, 0);
     }
 
     /// How much higher the eastern neighbour of each cell of row y is than the western one.
@@ -152,9 +157,9 @@ private:
         }
     }
 
-    /// Fluxes from row y to row y + 1, one per column of the strip.
+    /// Fluxes from row y to row y + 1, one per column of the patch.
     void northFluxes(int y, Row<float>& rise, Row<float>& riseAbove, Fluxes& flux) {
-        if (y < 0 || y == strip_.rows - 1) {
+        if (y < 0 || y == patch_.rows - 1) {
             rimNorth(y, flux);
             return;
         }
@@ -167,7 +172,7 @@ private:
 
     void rimNorth(int y, Fluxes& flux) {
         std::fill_n(flux.data(), width_, 0);
-        if (!strip_.openRim) {
+        if (!patch_.openRim) {
             return;
         }
         const std::int32_t* inner = rowOf(std::max(y, 0));
@@ -178,7 +183,7 @@ private:
         }
     }
 
-    /// Fluxes through the vertical faces of row y: index i lies between cells i - 1 and i of the strip.
+    /// Fluxes through the vertical faces of row y: index i lies between cells i - 1 and i of the patch.
     void eastFluxes(int y) {
         const std::int32_t* here = rowOf(y);
         const int faces = wholeVectors(width_ + 1);
@@ -189,22 +194,22 @@ private:
         if constexpr (kTool) {
             limit(roomOf(y) - 1, roomOf(y), width_ + 1, across_.data());
         }
-        if (strip_.cells.x0 == 0) {
+        if (patch_.cells.x0 == 0) {
             across_[0] = -rimEast(y, 0);
         }
-        if (strip_.cells.x1 == strip_.columns) {
+        if (patch_.cells.x1 == patch_.columns) {
             across_[width_] = rimEast(y, width_ - 1);
         }
     }
 
     /// What falls over the rim beside cell i of row y.
     std::int32_t rimEast(int y, int i) {
-        const std::int32_t q = strip_.openRim ? overRim(rowOf(y)[i], rowOf(y + 1)[i] - rowOf(y - 1)[i]) : 0;
+        const std::int32_t q = patch_.openRim ? overRim(rowOf(y)[i], rowOf(y + 1)[i] - rowOf(y - 1)[i]) : 0;
         outflow_ += q;
         return q;
     }
 
-    const StripSweep& strip_;
+    const PatchSweep& patch_;
     const Scheme scheme_;
     std::int64_t& outflow_;
     const int width_;
@@ -215,13 +220,13 @@ private:
 
 }  // namespace
 
-void sweepStrip(const StripSweep& strip, std::int64_t& outflow) {
-    if (strip.n4) {
-        strip.room != nullptr ? Sweep<FourNeighbours, true>(strip, outflow).run()
-                              : Sweep<FourNeighbours, false>(strip, outflow).run();
+void sweepPatch(const PatchSweep& patch, std::int64_t& outflow) {
+    if (patch.n4) {
+        patch.room != nullptr ? Sweep<FourNeighbours, true>(patch, outflow).run()
+                              : Sweep<FourNeighbours, false>(patch, outflow).run();
     } else {
-        strip.room != nullptr ? Sweep<Isotropic, true>(strip, outflow).run()
-                              : Sweep<Isotropic, false>(strip, outflow).run();
+        patch.room != nullptr ? Sweep<Isotropic, true>(patch, outflow).run()
+                              : Sweep<Isotropic, false>(patch, outflow).run();
     }
 }
 
