@@ -31,6 +31,7 @@ Erosion::Erosion(const HeightField& field, const Rules& rules, int blockSize, Co
     waiting_.assign(blocks, 0);
     movedNow_.assign(blocks, 0);
     moved_.assign(blocks, 0);
+    markedFrom_ = down_;
     wakeAll();
 }
 
@@ -54,6 +55,8 @@ Rect Erosion::blocksAround(const Rect& cells) const {
 }
 
 void Erosion::mark(const Rect& blocks) {
+    markedFrom_ = std::min(markedFrom_, blocks.y0);
+    markedTo_ = std::max(markedTo_, blocks.y1);
     for (int y = blocks.y0; y < blocks.y1; ++y) {
         for (int x = blocks.x0; x < blocks.x1; ++x) {
             marked_[static_cast<std::size_t>(y * across_ + x)] = 1;
@@ -63,12 +66,15 @@ void Erosion::mark(const Rect& blocks) {
 
 void Erosion::collectMarked() {
     active_.clear();
-    for (std::size_t block = 0; block < marked_.size(); ++block) {
-        if (marked_[block] != 0) {
-            active_.push_back(static_cast<int>(block));
-            marked_[block] = 0;
+    for (int block = markedFrom_ * across_; block < markedTo_ * across_; ++block) {
+        std::uint8_t& marked = marked_[static_cast<std::size_t>(block)];
+        if (marked != 0) {
+            active_.push_back(block);
+            marked = 0;
         }
     }
+    markedFrom_ = down_;
+    markedTo_ = 0;
 }
 
 void Erosion::touch(const HeightField& field, const Rect& cells) {
@@ -79,7 +85,9 @@ void Erosion::touch(const HeightField& field, const Rect& cells) {
         std::copy(field.row(y) + cells.x0, field.row(y) + cells.x1, scratch_.row(y) + cells.x0);
     }
     for (const int block : active_) {
-        marked_[static_cast<std::size_t>(block)] = 1;
+        const int x = block % across_;
+        const int y = block / across_;
+        mark({x, y, x + 1, y + 1});
     }
     mark(blocksAround(cells));
     collectMarked();

@@ -68,7 +68,10 @@ private:
     std::vector<std::uint8_t> waiting_;   // is active and not yet in a patch of this sweep
     std::vector<std::uint8_t> movedNow_;  // changed in the sweep that visited it last
     std::vector<std::uint8_t> moved_;     // changed since takeMoved()
-    std::vector<std::int32_t> room_;      // [unit], see PatchSweep::room
+    // Rows of blocks [from, to) that hold a mark: on a large field most hold none.
+    int markedFrom_ = 0;
+    int markedTo_ = 0;
+    std::vector<std::int32_t> room_;  // [unit], see PatchSweep::room
 };
 
 }  // namespace sand
