@@ -118,6 +118,8 @@ Rect Erosion::takePatch(int block) {
     };
     Rect blocks{x0, y0, x0 + 1, y0};
     const int longest = x0 + kMaxPatch / blockSize_;
+    // A column of patches as high as 2048 cells runs through the whole field once for each: a third slower.
+    const int highest = std::min(y0 + kMaxBlock / blockSize_, down_);
     while (blocks.x1 < longest && waiting(blocks.x1, y0)) {
         ++blocks.x1;
     }
@@ -133,7 +135,7 @@ Rect Erosion::takePatch(int block) {
             waiting_[static_cast<std::size_t>(blocks.y1 * across_ + x)] = 0;
         }
         ++blocks.y1;
-    } while (blocks.y1 < down_ && sameRun(blocks.y1));
+    } while (blocks.y1 < highest && sameRun(blocks.y1));
     return blocks;
 }
 
