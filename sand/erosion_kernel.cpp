@@ -85,8 +85,8 @@ void limit(const std::int32_t* __restrict roomBehind, const std::int32_t* __rest
     }
 }
 
-/// Takes a row's fluxes from its cells. `changed` collects the bits that changed in each column: to fold them row by
-/// row would cost as much as the row itself.
+/// Takes a row's fluxes from its cells. `changed` collects the bits that changed in each column, so that blocks are
+/// looked at once and not in every row.
 void balance(const std::int32_t* __restrict in, const std::int32_t* __restrict across,
              const std::int32_t* __restrict south, const std::int32_t* __restrict north, int count,
              std::int32_t* __restrict out, std::int32_t* __restrict changed) {
