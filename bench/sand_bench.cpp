@@ -73,7 +73,9 @@ void dig(benchmark::State& state, double toolCells, int sweeps) {
     for (auto _ : state) {
         const double angle = static_cast<double>(terrain.stepNumber()) * 1.5 / 120;
         const auto at = [](double cell) { return static_cast<std::int32_t>(cell * sand::kProbePerCell); };
-        terrain.apply({1, terrain.stepNumber() + 1, true,
+        terrain.apply({1,
+                       terrain.stepNumber() + 1,
+                       true,
                        {{at(256 + 120 * std::cos(angle)), at(256 + 120 * std::sin(angle)), 0}}});
         benchmark::DoNotOptimize(terrain.stateHash());
     }
