@@ -21,7 +21,7 @@ enum class CodePath : std::uint8_t { automatic, baseline };
 /// did, are swept again: settled sand costs nothing, and the result is that of full sweeps bit for bit.
 class Erosion {
 public:
-    static constexpr int kDefaultBlock = 64;  // [cell]
+    static constexpr int kDefaultBlock = 16;  // [cell], digging takes 1.3 ms a step with 16, 2.2 with 32, 5.1 with 64
 
     /// Everything may move at first. blockSize is in [2, kMaxBlock] and never changes the result.
     Erosion(const HeightField& field, const Rules& rules, int blockSize = kDefaultBlock,
@@ -48,10 +48,13 @@ private:
     [[nodiscard]] Rect cellsOf(int block) const;
     [[nodiscard]] Rect blocksAround(const Rect& cells) const;
     void refreshGhosts(HeightField& field, const Rect& cells) const;
-    /// Sweeps the run of neighbouring active blocks that begins at active_[first]; returns the index behind it.
-    std::size_t sweepStrip(HeightField& field, std::size_t first, const Obstacle* obstacle, std::int64_t& outflow);
+    /// The run of waiting blocks that begins with `block`, and the rows above it that wait in just the same run; they
+    /// wait no longer. A wider run above is left whole: narrow patches cost more per cell.
+    [[nodiscard]] Rect takePatch(int block);
+    void sweepPatch(HeightField& field, const Rect& blocks, const Obstacle* obstacle, std::int64_t& outflow);
     void fillRoom(const HeightField& field, const Rect& cells, const Obstacle& obstacle);
     void mark(const Rect& blocks);
+    void markAroundMoved(const Rect& blocks);
     void collectMarked();
 
     Rules rules_;
@@ -59,10 +62,16 @@ private:
     int blockSize_;
     int across_, down_;  // blocks
     bool v3_;
-    std::vector<int> active_;           // ascending
-    std::vector<std::uint8_t> marked_;  // per block: belongs to the next active set
-    std::vector<std::uint8_t> moved_;   // per block: changed since takeMoved()
-    std::vector<std::int32_t> room_;    // [unit], see StripSweep::room
+    std::vector<int> active_;  // ascending
+    // One number per block:
+    std::vector<std::uint8_t> marked_;    // belongs to the next active set
+    std::vector<std::uint8_t> waiting_;   // is active and not yet in a patch of this sweep
+    std::vector<std::uint8_t> movedNow_;  // changed in the sweep that visited it last
+    std::vector<std::uint8_t> moved_;     // changed since takeMoved()
+    // Rows of blocks [from, to) that hold a mark: on a large field most hold none.
+    int markedFrom_ = 0;
+    int markedTo_ = 0;
+    std::vector<std::int32_t> room_;  // [unit], see PatchSweep::room
 };
 
 }  // namespace sand

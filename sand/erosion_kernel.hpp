@@ -9,16 +9,16 @@
 namespace sand {
 
 inline constexpr int kMaxBlock = 128;  // [cell], side of the largest block
-inline constexpr int kMaxStrip = 512;  // [cell], longest run of blocks a kernel takes at once
+inline constexpr int kMaxPatch = 512;  // [cell], longest row a kernel takes at once
 
-/// One sweep of a strip, which is a run of neighbouring blocks: reads `in`, writes the same cells of `out`. Both point
-/// at cell (0,0) of padded rows. Strips and not blocks, because every row begins and ends with work that cannot be
-/// done eight cells at a time.
-struct StripSweep {
+/// One sweep of a patch, which is a rectangle of whole blocks: reads `in`, writes the same cells of `out`. Both point
+/// at cell (0,0) of a HeightField, whose padding it reads. Patches and not blocks, because every row begins and ends
+/// with work that cannot be done eight cells at a time, and a patch with fluxes that its neighbour computes too.
+struct PatchSweep {
     const std::int32_t* in;
     std::int32_t* out;
     std::ptrdiff_t stride;                   // [cell] from a row to the next
-    Rect cells;                              // of the strip, at most kMaxStrip wide
+    Rect cells;                              // of the patch, at most kMaxPatch wide
     int blockSize;                           // [cell]
     int columns, rows;                       // of the field
     std::int32_t threshold, startThreshold;  // [unit]
@@ -27,16 +27,17 @@ struct StripSweep {
     /// How much each cell may still rise this sweep [unit], over `cells` grown by one on every side, row by row; null
     /// where no tool is near.
     const std::int32_t* room;
-    std::uint8_t* moved;  // per block of the strip: set to 1 when a cell of it changed
+    std::uint8_t* moved;  // of the patch's first block: whether a cell of it changed
+    int blocksAcross;     // from a block's `moved` to that of the block north of it
 };
 
 // One source, compiled twice (sand/CMakeLists.txt): the same heights, bit for bit. They add what left over an open rim
 // to `outflow` [unit · cell].
 namespace baseline {
-void sweepStrip(const StripSweep& strip, std::int64_t& outflow);
+void sweepPatch(const PatchSweep& patch, std::int64_t& outflow);
 }
 namespace v3 {
-void sweepStrip(const StripSweep& strip, std::int64_t& outflow);
+void sweepPatch(const PatchSweep& patch, std::int64_t& outflow);
 }
 
 }  // namespace sand

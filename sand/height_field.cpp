@@ -17,7 +17,7 @@ HeightField::HeightField(int columns, int rows, double cellSize) : columns_(colu
     if (!sides || !std::isfinite(cellSize) || cellSize <= 0) {
         throw std::invalid_argument("HeightField: sides or cell size out of range");
     }
-    cells_.assign((static_cast<std::size_t>(columns) + 2) * (static_cast<std::size_t>(rows) + 2), 0);
+    cells_.assign(static_cast<std::size_t>(stride()) * (static_cast<std::size_t>(rows) + 2), 0);
 }
 
 std::int64_t HeightField::volume() const {

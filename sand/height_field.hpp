@@ -48,6 +48,11 @@ public:
     [[nodiscard]] const std::int32_t* row(int row) const { return cells_.data() + offset(row); }
     [[nodiscard]] std::int32_t* row(int row) { return cells_.data() + offset(row); }
 
+    /// From a row to the next [cell]. Whoever reads a row by vectors may read kPadding cells beyond either end.
+    [[nodiscard]] std::ptrdiff_t stride() const {
+        return 2 * kPadding + (columns_ + kPadding - 1) / kPadding * kPadding;
+    }
+
     /// The sum of all heights [unit · cell], exact.
     [[nodiscard]] std::int64_t volume() const;
 
@@ -57,7 +62,11 @@ public:
     friend bool sameHeights(const HeightField& a, const HeightField& b);
 
 private:
-    [[nodiscard]] std::ptrdiff_t offset(int row) const { return (row + std::ptrdiff_t{1}) * (columns_ + 2) + 1; }
+    // A row: a vector of padding that ends in a ghost, the cells up to a whole vector, a vector that begins with a
+    // ghost or holds the last of it.
+    static constexpr int kPadding = 16;  // [cell], one cache line
+
+    [[nodiscard]] std::ptrdiff_t offset(int row) const { return (row + std::ptrdiff_t{1}) * stride() + kPadding; }
 
     int columns_;
     int rows_;
