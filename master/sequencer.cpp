@@ -51,7 +51,7 @@ void Sequencer::followLink(const sand::Terrain& terrain, std::uint64_t stateHash
     }
     const haptic_bridge::LinkStatus status = client_->link();
     sayLink(status);
-    if (status.link == Link::offered && source_ != Source::granting) {
+    if (status.link == Link::offered) {
         ++epoch_;
         client_->grant(epoch_, terrain.stepNumber(), stateHash, terrain.encodeState());
         source_ = Source::granting;
