@@ -172,7 +172,10 @@ std::vector<double> TomlTable::numbers(std::string_view key, std::size_t count) 
 
 std::vector<double> TomlTable::numbersOr(std::string_view key, std::vector<double> fallback) const {
     node_->known.emplace(key);
-    return has(key) ? numbers(key, fallback.size()) : fallback;
+    if (!has(key)) {
+        return fallback;
+    }
+    return numbers(key, fallback.size());
 }
 
 std::vector<std::string> TomlTable::textsOr(std::string_view key, std::vector<std::string> fallback) const {

@@ -210,10 +210,12 @@ void Client::Session::grant(Start start, files::Bytes state) {
         if (shelf.status.link != Link::offered) {
             return;
         }
+        // Now, and not when the network thread comes to it: who polls again meanwhile must not see an offer.
+        shelf.status.link = Link::granting;
         shelf.steps.clear();
     }
     asio::post(io_, [this, start, state = std::move(state)]() mutable {
-        if (link() != Link::offered || !connection_) {
+        if (link() != Link::granting || !connection_) {
             return;
         }
         granted_ = start;

@@ -36,7 +36,7 @@ double Statistics::percentile(double share) const {
         return 0;
     }
     std::vector<double> sorted = kept_;
-    const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(sorted.size() - 1) + 0.5);
+    const std::ptrdiff_t at = std::lround(share * static_cast<double>(sorted.size() - 1));
     std::nth_element(sorted.begin(), sorted.begin() + at, sorted.end());
     return sorted[static_cast<std::size_t>(at)];
 }

@@ -45,11 +45,10 @@ void Sequencer::takeOver(const std::string& why) {
     lastOwnNs_ = nowNs();
 }
 
-void Sequencer::grant(const sand::Terrain& terrain, std::uint64_t stateHash, std::uint64_t linkChanges) {
+void Sequencer::grant(const sand::Terrain& terrain, std::uint64_t stateHash) {
     ++epoch_;
     client_->grant(epoch_, terrain.stepNumber(), stateHash, terrain.encodeState());
     source_ = Source::granting;
-    grantedChanges_ = linkChanges;
     waitingSinceNs_ = nowNs();
 }
 
@@ -63,20 +62,22 @@ void Sequencer::sayLink(const haptic_bridge::LinkStatus& status) {
 }
 
 void Sequencer::followLink(const sand::Terrain& terrain, std::uint64_t stateHash) {
+    if (!client_ && server_ && secondsSince(waitingSinceNs_) > kRetryWait) {
+        client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_);
+    }
     if (!client_) {
         return;
     }
     const haptic_bridge::LinkStatus status = client_->link();
     sayLink(status);
-    const bool waiting = status.link == Link::offered || status.link == Link::granting;
     if (status.link == Link::linked) {
         source_ = Source::server;
-    } else if (status.link == Link::offered && (source_ != Source::granting || status.changes > grantedChanges_ + 1)) {
-        // The second case: between two frames the link was lost and has been offered anew.
-        grant(terrain, stateHash, status.changes);
-    } else if (source_ == Source::granting && waiting) {
+    } else if (status.link == Link::offered) {
+        grant(terrain, stateHash);
+    } else if (source_ == Source::granting && status.link == Link::granting) {
         if (secondsSince(waitingSinceNs_) > kGrantWait) {
-            renewClient();
+            leaveServer();  // for a while: each try stops the sand
+            waitingSinceNs_ = nowNs();
             takeOver(fmt::format("{} does not begin", server_->text()));
         }
     } else if (source_ == Source::starting) {
@@ -112,7 +113,7 @@ std::vector<TimedStep> Sequencer::next(const sand::Terrain& terrain, std::uint64
     }
     const bool fromServer = source_ == Source::server;
     followLink(terrain, stateHash);
-    if (fromServer && source_ == Source::own) {
+    if (fromServer && source_ == Source::own && client_) {
         // What arrived between the first look and the loss counts too.
         steps = client_->drain(most);
         if (!steps.empty()) {
@@ -139,17 +140,18 @@ void Sequencer::shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs) {
     }
 }
 
-void Sequencer::renewClient() {
+void Sequencer::leaveServer() {
     earlierReport_ = report();
     earlierLinks_ = counters();
     ++earlierLinks_.reconnects;
     client_->stop();
-    client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_);
+    client_.reset();
     linkChanges_ = 0;
 }
 
 void Sequencer::distrustServer() {
-    renewClient();
+    leaveServer();
+    client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_);
     takeOver("the server's sand differs from the wall's, it must start again from the wall's");
 }
 

@@ -24,6 +24,7 @@ public:
     static constexpr double kStartWait = 10;
     /// A server that has been handed the numbering and does not begin within this time is passed over [s].
     static constexpr double kGrantWait = 5;
+    static constexpr double kRetryWait = 30;  // [s] until it is tried again
 
     Sequencer(std::optional<haptic_bridge::Address> server, const sand::Scene& scene, Pace pace);
 
@@ -52,9 +53,9 @@ private:
 
     void followLink(const sand::Terrain& terrain, std::uint64_t stateHash);
     void sayLink(const haptic_bridge::LinkStatus& status);
-    void grant(const sand::Terrain& terrain, std::uint64_t stateHash, std::uint64_t linkChanges);
+    void grant(const sand::Terrain& terrain, std::uint64_t stateHash);
     void takeOver(const std::string& why);
-    void renewClient();
+    void leaveServer();
     [[nodiscard]] std::size_t ownStepsDue();
 
     std::optional<haptic_bridge::Address> server_;
@@ -64,9 +65,8 @@ private:
     std::unique_ptr<haptic_bridge::Client> client_;
     Source source_;
     std::uint32_t epoch_ = 0;
-    std::uint64_t linkChanges_ = 0;     // of which the user has been told
-    std::uint64_t grantedChanges_ = 0;  // of the offer that was taken
-    std::int64_t waitingSinceNs_;       // for a server to answer, or to begin
+    std::uint64_t linkChanges_ = 0;  // of which the user has been told
+    std::int64_t waitingSinceNs_;    // for a server to answer, or to begin
     haptic_bridge::LinkCounters earlierLinks_;
     std::optional<haptic_bridge::Report> earlierReport_;
     double ownStepsOwed_ = 0;

@@ -19,9 +19,10 @@ struct Box {
         const glm::dvec4 clip = sceneToClip * glm::dvec4((corner & 1U) != 0 ? box.high.x : box.low.x,
                                                          (corner & 2U) != 0 ? box.high.y : box.low.y,
                                                          (corner & 4U) != 0 ? box.high.z : box.low.z, 1);
-        for (int axis = 0; axis < 3; ++axis) {
-            outside[static_cast<std::size_t>(2 * axis)] += clip[axis] < -clip.w ? 1 : 0;
-            outside[static_cast<std::size_t>(2 * axis + 1)] += clip[axis] > clip.w ? 1 : 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double along = clip[static_cast<int>(axis)];
+            outside[2 * axis] += along < -clip.w ? 1 : 0;
+            outside[2 * axis + 1] += along > clip.w ? 1 : 0;
         }
     }
     return std::none_of(outside.begin(), outside.end(), [](int corners) { return corners == 8; });

@@ -22,10 +22,10 @@ int hashAt(int x, int y, std::uint32_t seed) {
 int bump(int x, int y) {
     constexpr std::array<int, 3> kWeight{1, 2, 1};
     int sum = 0;
-    for (int dy = -1; dy <= 1; ++dy) {
-        for (int dx = -1; dx <= 1; ++dx) {
-            const int weight = kWeight[static_cast<std::size_t>(dx + 1)] * kWeight[static_cast<std::size_t>(dy + 1)];
-            sum += weight * hashAt((x + dx) & kMask, (y + dy) & kMask, 1);
+    for (std::size_t j = 0; j < kWeight.size(); ++j) {
+        for (std::size_t i = 0; i < kWeight.size(); ++i) {
+            const int dx = static_cast<int>(i) - 1, dy = static_cast<int>(j) - 1;
+            sum += kWeight[i] * kWeight[j] * hashAt((x + dx) & kMask, (y + dy) & kMask, 1);
         }
     }
     return sum;

@@ -27,6 +27,7 @@ std::vector<Triangle> icosahedron() {
          {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
          {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
     std::vector<Triangle> triangles;
+    triangles.reserve(kFaces.size());
     for (const auto& face : kFaces) {
         triangles.push_back(
             {glm::normalize(corners[face[0]]), glm::normalize(corners[face[1]]), glm::normalize(corners[face[2]])});

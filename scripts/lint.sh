@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Checks format (clang-format 14) and habits (clang-tidy 14, minutes): scripts/lint.sh, after apt install clang-format-14 clang-tidy-14.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+scripts/install_dependencies.sh --with-tests
+
+git ls-files -z '*.cpp' '*.hpp' | xargs -0 clang-format-14 --dry-run -Werror
+
+# clang-tidy reads how clang would build each file, and some files include generated ones.
+cmake --preset clang >/dev/null
+cmake --build build/clang --parallel "$(nproc)" --target glad
+run-clang-tidy-14 -quiet -j "$(nproc)" -p build/clang "$PWD/(files|sand|pictures|walls|haptic_bridge|lockstep|render_node|master|bench|tests)/"
+echo "format and habits: nothing to complain about"
