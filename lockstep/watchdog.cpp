@@ -16,6 +16,7 @@ namespace {
 constexpr double kFirstWord = 1;  // [s]
 constexpr double kStartUpFirstWord = 10;
 constexpr double kStartUpLimit = 120;
+constexpr double kLongestLook = 0.5;
 constexpr double kRankAfterMaster = 3;  // so much later a rank does what the master would have done
 
 }  // namespace
@@ -38,14 +39,22 @@ void Watchdog::disarm() { armedAt_ = 0; }
 void Watchdog::look() {
     std::unique_lock lock(mutex_);
     std::int64_t spokenOf = 0;  // the wait that was already mentioned
+    std::int64_t watched = 0;   // the wait that `waited` is of
+    std::int64_t lastLook = nowNs();
+    double waited = 0;  // [s]
     const double later = role_ == Role::master ? 0 : kRankAfterMaster;
     const bool speaks = role_ != Role::otherRank;
     while (!stop_.wait_for(lock, std::chrono::milliseconds(100), [this] { return stopping_; })) {
         const std::int64_t since = armedAt_;
+        const double sinceLook = static_cast<double>(nowNs() - lastLook) * 1e-9;
+        lastLook = nowNs();
         if (since == 0) {
             continue;
         }
-        const double seconds = static_cast<double>(nowNs() - since) * 1e-9 - later;
+        // A process that was stopped and goes on must not hold the lost time against the others.
+        waited = (since == watched ? waited : 0) + std::min(sinceLook, kLongestLook);
+        watched = since;
+        const double seconds = waited - later;
         const double limit = startingUp_ ? std::max(limit_, kStartUpLimit) : limit_;
         if (seconds > limit) {
             if (speaks) {
