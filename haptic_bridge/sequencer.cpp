@@ -18,7 +18,6 @@ constexpr std::int64_t kMillisecond = 1'000'000;  // [ns]
 Sequencer::Sequencer(const sand::Scene& scene, Pace pace, Hand& hand, HandChannel& channel, Output output)
     : scene_(scene),
       pace_(pace),
-      window_(pace == Pace::fast ? kWindowFast : kWindowRealtime),
       hand_(hand),
       channel_(channel),
       output_(std::move(output)),

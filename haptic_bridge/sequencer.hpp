@@ -34,7 +34,8 @@ struct HandChannel {
 /// the first start, as quickly as the wall's window allows.
 class Sequencer {
 public:
-    static constexpr std::uint64_t kWindowRealtime = 32, kWindowFast = 8;  // [step] that may be ahead of the wall
+    // What a wall that cannot keep up has queued is how late it shows the hand: 32 steps made a second of it.
+    static constexpr std::uint64_t kWindow = 8;  // [step] that may be ahead of the wall
 
     /// Called on the sand thread; `session` is the one given to start().
     struct Output {
@@ -81,7 +82,7 @@ private:
     void obey(Released&);
     void obey(Stop&) { stopping_ = true; }
     void begin();
-    [[nodiscard]] bool blocked() const { return terrain_.stepNumber() >= shown_ + window_; }
+    [[nodiscard]] bool blocked() const { return terrain_.stepNumber() >= shown_ + kWindow; }
     void collect();
     void gatherVirtual();
     void makeStep();
@@ -89,7 +90,6 @@ private:
 
     const sand::Scene& scene_;
     const Pace pace_;
-    const std::uint64_t window_;
     Hand& hand_;
     HandChannel& channel_;
     Output output_;

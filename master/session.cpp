@@ -273,8 +273,7 @@ int Session::run() {
     finish();
     writeSummary(summary_, options_.out / "summary.json");
     if (agreed && options_.pictures) {
-        const lockstep::Watched watched(barrier_.watchdog());
-        writeWallPictures(cluster_, wall_, options_.out, [this] { barrier_.watchdog().arm(); });
+        writeWallPictures(cluster_, wall_, options_.out, barrier_.watchdog());
     }
     fmt::print("{}", describe(summary_));
     return agreed ? 0 : 1;

@@ -42,13 +42,21 @@ private:
 }  // namespace
 
 void writeWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall, const std::filesystem::path& folder,
-                       const std::function<void()>& received) {
+                       lockstep::Watchdog& watchdog) {
     const std::span<const walls::Eye> eyes = walls::eyesOf(wall.stereo);
     const walls::Canvas canvas = walls::wallCanvas(wall);
-    std::vector<pictures::Image> whole(eyes.size(), pictures::Image(canvas.width, canvas.height));
+    const bool fits = std::int64_t{canvas.width} * canvas.height <= pictures::kMaxPixels;
+    if (!fits) {
+        fmt::print(stderr,
+                   "sandwall: {} x {} pixels are too many for one picture of the wall; its tiles are written alone\n",
+                   canvas.width, canvas.height);
+    }
+    std::vector<pictures::Image> whole(eyes.size(),
+                                       fits ? pictures::Image(canvas.width, canvas.height) : pictures::Image());
     std::vector<int> eyesByRank(static_cast<std::size_t>(cluster.size()), static_cast<int>(eyes.size()));
     PictureFolder out(folder);
     std::size_t count = 0;
+    watchdog.arm();
     lockstep::receivePictures(cluster, eyesByRank, [&](const lockstep::TilePicture& picture) {
         const walls::Tile& tile = wall.tiles[static_cast<std::size_t>(picture.rank - 1)];
         const auto eye = static_cast<std::size_t>(picture.eye);
@@ -61,9 +69,12 @@ void writeWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall
         out.write(fmt::format("tile_{}_{}.png", tile.name, walls::eyeName(eyes[eye])), image);
         fmt::print("pictures {}/{}\n", ++count, wall.tiles.size() * eyes.size());
         std::fflush(stdout);
-        received();
+        watchdog.arm();  // each picture has its own time
     });
-    if (eyes.size() == 1) {
+    watchdog.disarm();
+    if (!fits) {
+        // said above
+    } else if (eyes.size() == 1) {
         out.write("wall.png", whole[0]);
     } else {
         out.write("wall_left.png", whole[0]);

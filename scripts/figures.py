@@ -67,7 +67,7 @@ def session_rows(file):
     haptic = summary["haptic"]
     yield "frame drawing per tile, both eyes, p99 of the slowest rank", f"{slowest:.0f} ms", f"{len(ranks)} ranks on one machine"
     yield "resident memory per render rank", f"{memory:.0f} MiB", f"frame buffers {ranks[0]['frame_buffer_bytes'] / 2**20:.0f} MiB of it"
-    yield "broadcast per frame", f"{message['p50']:.0f} bytes (p99 {message['p99']:.0f})", "bar: 1 kB"
+    yield "frame message", f"{message['p50']:.0f} bytes (p99 {message['p99']:.0f})", "at most 8 steps"
     yield "step message over TCP", f"{haptic['step_message_bytes']:.0f} bytes", ""
     trip = haptic["half_round_trip_ms"]
     yield "half round trip, swap included", f"{trip['mean']:.1f} ± {trip['stddev']:.1f} ms", "first paper, wired: 13.6 ± 9.8 ms on its wall"
