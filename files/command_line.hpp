@@ -10,9 +10,9 @@
 namespace files {
 
 /// The frame of every program's main: options, then `run`, and one line on stderr for whatever goes wrong. Unusable
-/// options and input give exit status kExitBadInput, our own failures 1.
+/// options and input give exit status kExitBadInput; our own failures `failed`, for programs in which 1 is an answer.
 template <class Run>
-int runMain(CLI::App& app, int argc, char** argv, Run run) {
+int runMain(CLI::App& app, int argc, char** argv, Run run, int failed = 1) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -29,7 +29,7 @@ int runMain(CLI::App& app, int argc, char** argv, Run run) {
         return kExitBadInput;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "%s: failed: %s\n", app.get_name().c_str(), error.what());
-        return 1;
+        return failed;
     }
 }
 

@@ -90,5 +90,6 @@ int main(int argc, char** argv) {
     app.add_flag("--hash", options.hash, "print the state hash after the last step");
     app.add_option("--heights", options.heights, "write the heights then, as an ESRI ASCII grid");
     app.add_option("--until", options.until, "stop after this step");
-    return files::runMain(app, argc, argv, [&] { return run(options); });
+    return files::runMain(
+        app, argc, argv, [&] { return run(options); }, files::kExitBadInput);
 }

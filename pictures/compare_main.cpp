@@ -2,10 +2,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <exception>
 #include <string>
 
-#include "files/input_error.hpp"
+#include "files/command_line.hpp"
 #include "pictures/compare.hpp"
 #include "pictures/png_file.hpp"
 
@@ -51,16 +50,6 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
     app.add_option("--diff", options.difference, "write a PNG of A, dimmed, with the bad pixels in red");
-    try {
-        app.parse(argc, argv);
-        return comparePictures(options);
-    } catch (const CLI::Success& help) {
-        return app.exit(help);
-    } catch (const files::InputError& error) {
-        fmt::print(stderr, "{}\n", error.what());
-        return files::kExitBadInput;
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "sandwall-compare: {}\n", error.what());
-        return files::kExitBadInput;
-    }
+    return files::runMain(
+        app, argc, argv, [&] { return comparePictures(options); }, files::kExitBadInput);
 }

@@ -2,10 +2,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <exception>
 #include <string>
 
-#include "files/input_error.hpp"
+#include "files/command_line.hpp"
 #include "walls/wall.hpp"
 #include "walls/wall_report.hpp"
 
@@ -15,18 +14,9 @@ int main(int argc, char** argv) {
     bool ranks = false;
     app.add_option("WALL", file, "a wall file (docs/wall_files.md)")->required();
     app.add_flag("--ranks", ranks, "print only the number of render ranks");
-    try {
-        app.parse(argc, argv);
+    return files::runMain(app, argc, argv, [&] {
         const walls::Wall wall = walls::loadWall(file);
         fmt::print("{}", ranks ? fmt::format("{}\n", wall.ranks()) : walls::describe(wall));
         return 0;
-    } catch (const CLI::Success& help) {
-        return app.exit(help);
-    } catch (const files::InputError& error) {
-        fmt::print(stderr, "{}\n", error.what());
-        return files::kExitBadInput;
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "sandwall-check: {}\n", error.what());
-        return files::kExitBadInput;
-    }
+    });
 }
