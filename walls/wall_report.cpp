@@ -76,7 +76,7 @@ std::string stageLines(const Wall& wall) {
                     wall.stage.width, point(wall.stage.centre), wall.stage.tiltDegrees, wall.stage.turnDegrees);
     constexpr std::array<const char*, 4> kCorners{"south-west", "south-east", "north-west", "north-east"};
     for (std::size_t i = 0; i < kCorners.size(); ++i) {
-        const glm::dvec4 corner = toRoom * glm::dvec4(static_cast<double>(i % 2), static_cast<double>(i / 2), 0, 1);
+        const glm::dvec4 corner = toRoom * glm::dvec4(i % 2 == 1 ? 1.0 : 0.0, i >= 2 ? 1.0 : 0.0, 0, 1);
         std::string seen;
         for (const Tile& tile : wall.tiles) {
             const glm::dvec4 c = viewOf(wall, tile, Eye::middle).viewProjection * corner;
