@@ -225,6 +225,18 @@ void Erosion::refreshGhosts(HeightField& field, const Rect& cells) const {
     }
 }
 
+bool Erosion::copyDiffers(const HeightField& field, const Rect& cells) const {
+    for (int y = cells.y0; y < cells.y1; ++y) {
+        for (int x = cells.x0; x < cells.x1; ++x) {
+            if (field.height(x, y) != scratch_.height(x, y) &&
+                !std::binary_search(active_.begin(), active_.end(), y / blockSize_ * across_ + x / blockSize_)) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
 std::vector<Rect> Erosion::takeMoved() {
     std::vector<Rect> result;
     for (std::size_t block = 0; block < moved_.size(); ++block) {

@@ -36,6 +36,8 @@ public:
 
     /// Whether the next sweep would visit no block at all.
     [[nodiscard]] bool settled() const { return active_.empty(); }
+    /// Whether the sweeps' own copy of these cells is no longer what it must be: memory went bad where nothing moves.
+    [[nodiscard]] bool copyDiffers(const HeightField& field, const Rect& cells) const;
     /// Everything may move again: the tool has left, or the rules have changed.
     void wakeAll();
     /// The blocks in which sweep() changed a cell since this was called last.

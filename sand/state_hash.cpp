@@ -54,11 +54,16 @@ std::uint64_t StateHash::update(const HeightField& field) {
     return sum_;
 }
 
-void StateHash::audit(const HeightField& field, int tiles) {
-    for (int i = 0; i < std::min(tiles, tileCount()); ++i) {
-        rehash(field, auditNext_);
-        auditNext_ = (auditNext_ + 1) % tileCount();
-    }
+int StateHash::auditNext(const HeightField& field) {
+    const int tile = nextAudited_;
+    rehash(field, tile);
+    nextAudited_ = (nextAudited_ + 1) % tileCount();
+    return tile;
+}
+
+void StateHash::spoil(int tile) {
+    ++hashes_[static_cast<std::size_t>(tile)];
+    ++sum_;
 }
 
 }  // namespace sand

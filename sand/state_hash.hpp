@@ -22,8 +22,10 @@ public:
     void touch(const Rect& cells);
     /// Hashes the changed tiles, and returns the sum over all.
     [[nodiscard]] std::uint64_t update(const HeightField& field);
-    /// Hashes the next `tiles` tiles, in turn over the field, whether or not they changed.
-    void audit(const HeightField& field, int tiles);
+    /// Hashes the next tile again, in turn over the field, whether or not it changed; returns which it was.
+    int auditNext(const HeightField& field);
+    /// The tile is known to be corrupt somewhere that its hash does not reach: makes it differ.
+    void spoil(int tile);
 
     [[nodiscard]] int tileCount() const { return static_cast<int>(hashes_.size()); }
     [[nodiscard]] const std::vector<std::uint64_t>& tileHashes() const { return hashes_; }  // row by row, south first
@@ -36,7 +38,7 @@ private:
     std::vector<std::uint64_t> hashes_;
     std::vector<std::uint8_t> dirty_;
     std::uint64_t sum_ = 0;
-    int auditNext_ = 0;
+    int nextAudited_ = 0;
 };
 
 }  // namespace sand

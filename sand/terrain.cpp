@@ -88,6 +88,16 @@ std::uint64_t Terrain::stateHash() {
     return hash;
 }
 
+void Terrain::audit(int tiles) {
+    for (int i = 0; i < std::min(tiles, hash_.tileCount()); ++i) {
+        const int tile = hash_.auditNext(field_);
+        // The sweeps exchange two copies of the sand: a bit that flipped in one hides whenever the other is current.
+        if (erosion_.copyDiffers(field_, hash_.cellsOf(tile))) {
+            hash_.spoil(tile);
+        }
+    }
+}
+
 Rect Terrain::takeDamage() { return std::exchange(damage_, Rect{}); }
 
 files::Bytes Terrain::encodeState() const {

@@ -37,7 +37,7 @@ public:
     /// Hash of everything a later step depends on: heights, tool pose, step number, outflow.
     [[nodiscard]] std::uint64_t stateHash();
     /// Hashes the next `tiles` hash tiles again from memory, changed or not, so that silent corruption shows.
-    void audit(int tiles) { hash_.audit(field_, tiles); }
+    void audit(int tiles);
     [[nodiscard]] const StateHash& hashTiles() const { return hash_; }
 
     /// The cells that changed since this was called last: one rectangle around them, empty when nothing did.
