@@ -2,12 +2,18 @@
 #include "sand/erosion.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "sand/erosion_kernel.hpp"
+#include "sand/grid_codec.hpp"
+#include "sand/held_patch.hpp"
 
 namespace sand {
 namespace {
+
+constexpr int kSharedPatch = 32;  // [cell], height of a patch where several threads want some
 
 bool machineHasV3() {
     // clang 14 knows no "x86-64-v3" here; these three stand for it on every processor that was ever sold.
@@ -17,15 +23,39 @@ bool machineHasV3() {
 /// Beyond the rim the ground goes on as it came: the slope along the rim is then that of the cell's one neighbour.
 std::int32_t extrapolate(std::int32_t edge, std::int32_t inner) { return 2 * edge - inner; }
 
+/// The law's numbers for faces across which the cells are `ratio` times as long as along them; thresholds in [unit]
+/// from cell to cell.
+AxisLaw axisLaw(double threshold, double startThreshold, double ratio) {
+    // 0.4998 and not 0.5: the float products must not round above the proven bound.
+    const double limit = 0.4998 / (ratio * ratio + 1);
+    // As strong as linear stability allows, less a tenth; the same flux per slope along either axis.
+    const double push = 0.45 * std::min(1.0, 1 / (ratio * ratio));
+    return {static_cast<float>(threshold), static_cast<float>(startThreshold), static_cast<float>(limit),
+            static_cast<float>(push), static_cast<float>(0.25 * ratio)};
+}
+
+std::int32_t scaled(std::int32_t threshold, double ratio) {
+    return static_cast<std::int32_t>(std::min(std::floor(threshold * ratio), 1073741824.0));
+}
+
+/// How much of the last sweep's flux goes on in sweep n of something: it begins without and grows.
+float momentumAfter(int n, int damping) { return static_cast<float>(n) / static_cast<float>(n + damping); }
+
+constexpr int kDamping = 25;        // [sweep], what overshoots no pile of 64 cells or more
+constexpr int kMostCounted = 1000;  // [sweep], undisturbed; the momentum is at its most long before
+constexpr float kMostMomentum = 0.9F;
+
 }  // namespace
 
-Erosion::Erosion(const HeightField& field, const Rules& rules, int blockSize, CodePath path)
+Erosion::Erosion(const HeightField& field, const Rules& rules, const Options& options)
     : rules_(rules),
-      scratch_(field),
-      blockSize_(std::clamp(blockSize, 2, kMaxBlock)),
+      options_(options),
+      blockSize_(std::clamp(options.blockSize, 2, kMaxBlock)),
       across_((field.columns() + blockSize_ - 1) / blockSize_),
       down_((field.rows() + blockSize_ - 1) / blockSize_),
-      v3_(path == CodePath::automatic && machineHasV3()) {
+      v3_(options.path == CodePath::automatic && machineHasV3()),
+      east_(field.columns(), field.rows()),
+      north_(field.columns(), field.rows()) {
     const auto blocks = static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_);
     marked_.assign(blocks, 0);
     waiting_.assign(blocks, 0);
@@ -42,10 +72,13 @@ void Erosion::wakeAll() {
     std::iota(active_.begin(), active_.end(), 0);
 }
 
-Rect Erosion::cellsOf(int block) const {
-    const int x = block % across_ * blockSize_;
-    const int y = block / across_ * blockSize_;
-    return Rect{x, y, x + blockSize_, y + blockSize_}.clippedTo(scratch_.bounds());
+std::size_t Erosion::bytes() const {
+    return east_.bytes() + north_.bytes() + marked_.size() * 4 + active_.capacity() * sizeof active_[0];
+}
+
+Rect Erosion::cellsOf(const Rect& blocks) const {
+    return Rect{blocks.x0 * blockSize_, blocks.y0 * blockSize_, blocks.x1 * blockSize_, blocks.y1 * blockSize_}
+        .clippedTo(east_.bounds());
 }
 
 Rect Erosion::blocksAround(const Rect& cells) const {
@@ -77,12 +110,9 @@ void Erosion::collectMarked() {
     markedTo_ = 0;
 }
 
-void Erosion::touch(const HeightField& field, const Rect& cells) {
+void Erosion::touch(const Rect& cells) {
     if (cells.empty()) {
         return;
-    }
-    for (int y = cells.y0; y < cells.y1; ++y) {
-        std::copy(field.row(y) + cells.x0, field.row(y) + cells.x1, scratch_.row(y) + cells.x0);
     }
     for (const int block : active_) {
         const int x = block % across_;
@@ -91,23 +121,60 @@ void Erosion::touch(const HeightField& field, const Rect& cells) {
     }
     mark(blocksAround(cells));
     collectMarked();
+    undisturbed_ = 0;
 }
 
 std::int64_t Erosion::sweep(HeightField& field, int sweeps, const Obstacle* obstacle) {
     std::int64_t outflow = 0;
-    for (int i = 0; i < sweeps && !settled(); ++i) {
-        for (const int block : active_) {
-            waiting_[static_cast<std::size_t>(block)] = 1;
+    for (int n = 0; n < sweeps && !settled(); ++n) {
+        collectPatches(field);
+        // A short call ends before anything overshoots, and may begin with inertia sooner.
+        const float momentum = std::min(
+            std::max(momentumAfter(n, std::clamp(sweeps / 3, 3, kDamping)), momentumAfter(undisturbed_, kDamping)),
+            kMostMomentum);
+        forEachPatch([&](int i) {
+            const auto patch = static_cast<std::size_t>(i);
+            outflows_[patch] = sweepFluxes(field, patches_[patch], momentum, obstacle);
+        });
+        forEachPatch([&](int i) { balance(field, patches_[static_cast<std::size_t>(i)]); });
+        for (std::size_t i = 0; i < patches_.size(); ++i) {
+            outflow += outflows_[i];
+            markAroundMoved(patches_[i]);
         }
-        for (const int block : active_) {
-            if (waiting_[static_cast<std::size_t>(block)] != 0) {
-                sweepPatch(field, takePatch(block), obstacle, outflow);
-            }
-        }
-        field.swapHeights(scratch_);
+        ++sweepsDone_;
+        undisturbed_ = std::min(undisturbed_ + 1, kMostCounted);
+        const bool still = markedFrom_ >= markedTo_;
         collectMarked();
+        if (!options_.skipSettled && !still) {
+            wakeAll();
+        }
     }
     return outflow;
+}
+
+void Erosion::forEachPatch(const std::function<void(int)>& task) const {
+    const int count = static_cast<int>(patches_.size());
+    if (options_.executor != nullptr && count > 1) {
+        (*options_.executor)(count, task);
+        return;
+    }
+    for (int i = 0; i < count; ++i) {
+        task(i);
+    }
+}
+
+void Erosion::collectPatches(HeightField& field) {
+    for (const int block : active_) {
+        waiting_[static_cast<std::size_t>(block)] = 1;
+    }
+    patches_.clear();
+    for (const int block : active_) {
+        if (waiting_[static_cast<std::size_t>(block)] != 0) {
+            patches_.push_back(takePatch(block));
+            refreshGhosts(field, cellsOf(patches_.back()));
+        }
+    }
+    outflows_.assign(patches_.size(), 0);
 }
 
 Rect Erosion::takePatch(int block) {
@@ -119,7 +186,8 @@ Rect Erosion::takePatch(int block) {
     Rect blocks{x0, y0, x0 + 1, y0};
     const int longest = x0 + kMaxPatch / blockSize_;
     // A column of patches as high as 2048 cells runs through the whole field once for each: a third slower.
-    const int highest = std::min(y0 + kMaxBlock / blockSize_, down_);
+    const int high = options_.executor != nullptr ? kSharedPatch : kMaxBlock;
+    const int highest = std::min(y0 + std::max(high / blockSize_, 1), down_);
     while (blocks.x1 < longest && waiting(blocks.x1, y0)) {
         ++blocks.x1;
     }
@@ -139,32 +207,52 @@ Rect Erosion::takePatch(int block) {
     return blocks;
 }
 
-void Erosion::sweepPatch(HeightField& field, const Rect& blocks, const Obstacle* obstacle, std::int64_t& outflow) {
-    const Rect cells =
-        Rect{blocks.x0 * blockSize_, blocks.y0 * blockSize_, blocks.x1 * blockSize_, blocks.y1 * blockSize_}.clippedTo(
-            field.bounds());
-    refreshGhosts(field, cells);
-    const Rect grown{cells.x0 - 1, cells.y0 - 1, cells.x1 + 1, cells.y1 + 1};
-    const bool toolNear = obstacle != nullptr && !obstacle->cells.clippedTo(grown).empty();
-    if (toolNear) {
-        fillRoom(field, grown, *obstacle);
+std::int64_t Erosion::sweepFluxes(const HeightField& field, const Rect& blocks, float momentum,
+                                  const Obstacle* obstacle) {
+    const Rect cells = cellsOf(blocks);
+    const bool toolNear = obstacle != nullptr && !obstacle->cells.clippedTo(cells.grownBy(1)).empty();
+    std::optional<HeldPatch> held;
+    if (toolNear || options_.ground != nullptr) {
+        held.emplace(field, cells, options_.ground, toolNear ? obstacle : nullptr);
     }
-    const PatchSweep patch{.in = field.row(0),
-                           .out = scratch_.row(0),
-                           .stride = field.stride(),
-                           .cells = cells,
-                           .blockSize = blockSize_,
-                           .columns = field.columns(),
-                           .rows = field.rows(),
-                           .threshold = rules_.threshold,
-                           .startThreshold = rules_.startThreshold,
-                           .n4 = rules_.scheme == Scheme::n4,
-                           .openRim = rules_.rim == Rim::open,
-                           .room = toolNear ? room_.data() : nullptr,
-                           .moved = movedNow_.data() + blocks.y0 * across_ + blocks.x0,
-                           .blocksAcross = across_};
-    v3_ ? v3::sweepPatch(patch, outflow) : baseline::sweepPatch(patch, outflow);
-    markAroundMoved(blocks);
+    const bool grounded = options_.ground != nullptr;
+    const int heldWidth = cells.x1 - cells.x0 + 2;
+    const double ratio = static_cast<double>(rules_.aspect) / kUnitsPerCell;
+    using Law = FluxPatch::Law;
+    const Law isotropic = rules_.scheme == Scheme::isotropic ? Law::inertial : Law::isotropic;
+    const FluxPatch patch{.heights = grounded ? held->heights.data() + heldWidth + 1 : field.row(cells.y0) + cells.x0,
+                          .heightStride = grounded ? heldWidth : field.stride(),
+                          .east = east_.row(0),
+                          .north = north_.row(0),
+                          .fluxStride = east_.stride(),
+                          .cells = cells,
+                          .blockSize = blockSize_,
+                          .columns = field.columns(),
+                          .rows = field.rows(),
+                          .eastLaw = axisLaw(rules_.threshold, rules_.startThreshold, 1 / ratio),
+                          .northLaw = axisLaw(rules_.threshold * ratio, rules_.startThreshold * ratio, ratio),
+                          .eastThreshold = rules_.threshold,
+                          .northThreshold = scaled(rules_.threshold, ratio),
+                          .eastStartThreshold = rules_.startThreshold,
+                          .northStartThreshold = scaled(rules_.startThreshold, ratio),
+                          .momentum = momentum,
+                          .law = rules_.scheme == Scheme::n4 ? Law::n4 : isotropic,
+                          .openRim = rules_.rim == Rim::open,
+                          .room = held ? held->room.data() : nullptr,
+                          .sand = grounded ? held->sand.data() : nullptr,
+                          .moved = movedNow_.data() + blocks.y0 * across_ + blocks.x0,
+                          .blocksAcross = across_};
+    return v3_ ? v3::sweepFluxes(patch) : baseline::sweepFluxes(patch);
+}
+
+void Erosion::balance(HeightField& field, const Rect& blocks) const {
+    const BalancePatch patch{.heights = field.row(0),
+                             .heightStride = field.stride(),
+                             .east = east_.row(0),
+                             .north = north_.row(0),
+                             .fluxStride = east_.stride(),
+                             .cells = cellsOf(blocks)};
+    v3_ ? v3::balance(patch) : baseline::balance(patch);
 }
 
 void Erosion::markAroundMoved(const Rect& blocks) {
@@ -172,26 +260,11 @@ void Erosion::markAroundMoved(const Rect& blocks) {
         for (int x = blocks.x0; x < blocks.x1; ++x) {
             const auto block = static_cast<std::size_t>(y * across_ + x);
             if (movedNow_[block] != 0) {
+                // What it gives changes the blocks behind its eastern and northern faces too.
                 moved_[block] = 1;
+                moved_[static_cast<std::size_t>(y * across_ + std::min(x + 1, across_ - 1))] = 1;
+                moved_[static_cast<std::size_t>(std::min(y + 1, down_ - 1) * across_ + x)] = 1;
                 mark(Rect{x - 1, y - 1, x + 2, y + 2}.clippedTo({0, 0, across_, down_}));
-            }
-        }
-    }
-}
-
-void Erosion::fillRoom(const HeightField& field, const Rect& grown, const Obstacle& obstacle) {
-    const int width = grown.x1 - grown.x0;
-    room_.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(grown.y1 - grown.y0), Obstacle::kFree);
-    const Rect shared = obstacle.cells.clippedTo(grown);
-    const int obstacleWidth = obstacle.cells.x1 - obstacle.cells.x0;
-    for (int y = shared.y0; y < shared.y1; ++y) {
-        for (int x = shared.x0; x < shared.x1; ++x) {
-            const std::int32_t underside = obstacle.underside[static_cast<std::size_t>(
-                (y - obstacle.cells.y0) * obstacleWidth + x - obstacle.cells.x0)];
-            if (underside != Obstacle::kFree) {
-                // Four faces may each bring a quarter of what fits under the tool.
-                room_[static_cast<std::size_t>((y - grown.y0) * width + x - grown.x0)] =
-                    std::max(underside - field.height(x, y), 0) / 4;
             }
         }
     }
@@ -200,7 +273,7 @@ void Erosion::fillRoom(const HeightField& field, const Rect& grown, const Obstac
 void Erosion::refreshGhosts(HeightField& field, const Rect& cells) const {
     const int columns = field.columns();
     const int rows = field.rows();
-    const Rect reach = Rect{cells.x0 - 1, cells.y0 - 1, cells.x1 + 1, cells.y1 + 1}.clippedTo(field.bounds());
+    const Rect reach = cells.grownBy(1).clippedTo(field.bounds());
     const auto ghostRow = [&](int ghost, int edge, int inner) {
         for (int x = reach.x0; x < reach.x1; ++x) {
             field.setHeight(x, ghost, extrapolate(field.height(x, edge), field.height(x, inner)));
@@ -225,10 +298,33 @@ void Erosion::refreshGhosts(HeightField& field, const Rect& cells) const {
     }
 }
 
-bool Erosion::copyDiffers(const HeightField& field, const Rect& cells) const {
+void Erosion::encode(files::ByteWriter& writer) const {
+    writer.put(static_cast<std::int32_t>(undisturbed_));
+    if (undisturbed_ > 0) {
+        for (const Grid* flux : {&east_, &north_}) {
+            encodeCells(*flux, {-1, -1, flux->columns(), flux->rows()}, writer);
+        }
+    }
+}
+
+void Erosion::decode(files::ByteReader& reader) {
+    const auto undisturbed = reader.get<std::int32_t>();
+    if (undisturbed < 0 || undisturbed > kMostCounted) {
+        throw files::FormatError("sand with an inertia of no age");
+    }
+    if (undisturbed > 0) {
+        for (Grid* flux : {&east_, &north_}) {
+            decodeCells(reader, {-1, -1, flux->columns(), flux->rows()}, kMaxHeight, *flux);
+        }
+    }
+    undisturbed_ = undisturbed;
+    wakeAll();
+}
+
+bool Erosion::amiss(const Rect& cells) const {
     for (int y = cells.y0; y < cells.y1; ++y) {
         for (int x = cells.x0; x < cells.x1; ++x) {
-            if (field.height(x, y) != scratch_.height(x, y) &&
+            if ((east_.row(y)[x] != 0 || north_.row(y)[x] != 0) &&
                 !std::binary_search(active_.begin(), active_.end(), y / blockSize_ * across_ + x / blockSize_)) {
                 return true;
             }
@@ -241,7 +337,9 @@ std::vector<Rect> Erosion::takeMoved() {
     std::vector<Rect> result;
     for (std::size_t block = 0; block < moved_.size(); ++block) {
         if (moved_[block] != 0) {
-            result.push_back(cellsOf(static_cast<int>(block)));
+            const int x = static_cast<int>(block) % across_;
+            const int y = static_cast<int>(block) / across_;
+            result.push_back(cellsOf({x, y, x + 1, y + 1}));
             moved_[block] = 0;
         }
     }

@@ -10,35 +10,50 @@
 namespace sand::SANDWALL_CODE_PATH {
 namespace {
 
-// Loops over a row do whole vectors: the cells and faces behind its end cost less than a remainder one by one.
-constexpr int kLanes = 8;
-constexpr int wholeVectors(int count) { return (count + kLanes - 1) / kLanes * kLanes; }
-
-/// A number per cell or face of a row of the patch; left uninitialised, since blocks are small and rows long.
+/// A number per cell of a row of the patch, and one before and one behind; left uninitialised, since rows are long.
 template <class Number>
 struct alignas(64) Row {
-    std::array<Number, kMaxPatch + 2 * kLanes> values;
-    Number* data() { return values.data(); }
-    Number& operator[](int i) { return values[static_cast<std::size_t>(i)]; }
+    std::array<Number, kMaxPatch + 2 * kKernelMargin> values;
+    Number* data() { return values.data() + kKernelMargin; }
 };
-using Fluxes = Row<std::int32_t>;  // [unit] through consecutive faces, towards east or north
 
-/// Scheme G of NUMERICS: isotropic, the default. Slope across the face from its two cells, slope along it as the mean
-/// of the four differences beside it, whose sum is `along`.
+// Free functions on restricted pointers, and laws as copies: with members in reach g++ keeps the loops scalar.
+
+/// Scheme G with inertia: what flowed in the last sweep goes on, pushed by the excess of the slope over the threshold
+/// and braked by its lack; never uphill, and never more than the share that keeps all proofs.
+struct Inertial {
+    static constexpr bool kNeedsAlong = true;
+    AxisLaw axis;
+    float momentum;
+
+    std::int32_t operator()(std::int32_t difference, float along, std::int32_t last) const {
+        const auto across = static_cast<float>(difference);
+        const float mean = axis.along * along;
+        // At least the smallest slope there is: 0 · (threshold / 0) would be no number.
+        const float slope = std::max(std::sqrt(across * across + mean * mean), 0.25F);
+        const float excess = axis.push * (1.0F - axis.threshold / slope);
+        // Below the start threshold nothing is pushed; what flows is braked.
+        const float push = slope > axis.startThreshold ? excess : std::min(excess, 0.0F);
+        const float most = axis.limit * across;
+        const float forth = std::max(most, 0.0F);
+        const float back = std::min(most, 0.0F);
+        // What goes on is cut by itself first: else a flux that has just turned would rest for a sweep, and a face at
+        // which nothing flows could not be left alone.
+        const float kept = std::min(std::max(momentum * static_cast<float>(last), back), forth);
+        return static_cast<std::int32_t>(std::min(std::max(kept + push * across, back), forth));
+    }
+};
+
+/// Scheme G of NUMERICS: slope across the face from its two cells, slope along it as the mean of four differences.
 struct Isotropic {
     static constexpr bool kNeedsAlong = true;
-    // 0.2499 and not 0.25: the float product must not round above the proven bound.
-    static constexpr float kShare = 0.2499F;
-    float threshold, startThreshold;
+    AxisLaw axis;
 
-    explicit Isotropic(const PatchSweep& patch)
-        : threshold(static_cast<float>(patch.threshold)), startThreshold(static_cast<float>(patch.startThreshold)) {}
-
-    std::int32_t operator()(std::int32_t difference, float along) const {
+    std::int32_t operator()(std::int32_t difference, float along, std::int32_t) const {
         const auto across = static_cast<float>(difference);
-        const float mean = 0.25F * along;
+        const float mean = axis.along * along;
         const float slope = std::sqrt(across * across + mean * mean);
-        const float share = slope > startThreshold ? kShare * (1.0F - threshold / slope) : 0.0F;
+        const float share = slope > axis.startThreshold ? axis.limit * (1.0F - axis.threshold / slope) : 0.0F;
         return static_cast<std::int32_t>(share * across);
     }
 };
@@ -48,17 +63,12 @@ struct FourNeighbours {
     static constexpr bool kNeedsAlong = false;
     std::int32_t threshold, startThreshold;
 
-    explicit FourNeighbours(const PatchSweep& patch)
-        : threshold(patch.threshold), startThreshold(patch.startThreshold) {}
-
-    std::int32_t operator()(std::int32_t difference, float) const {
+    std::int32_t operator()(std::int32_t difference, float, std::int32_t) const {
         const std::int32_t size = difference < 0 ? -difference : difference;
         const std::int32_t flux = size > startThreshold ? (size - threshold + 3) / 4 : 0;
         return difference < 0 ? -flux : flux;
     }
 };
-
-// Free functions on restricted pointers, and a copy of the scheme: with members in reach g++ keeps the loops scalar.
 
 void differences(const std::int32_t* __restrict a, const std::int32_t* __restrict b, int count,
                  float* __restrict result) {
@@ -67,166 +77,247 @@ void differences(const std::int32_t* __restrict a, const std::int32_t* __restric
     }
 }
 
+/// Differences as the slope along a face sees them: a step counts at most the sand of its upper cell, or a bare cliff
+/// beside it would turn stable sand liquid.
+void sandDifferences(const std::int32_t* __restrict a, const std::int32_t* __restrict b,
+                     const std::int32_t* __restrict sandA, const std::int32_t* __restrict sandB, int count,
+                     std::int32_t* __restrict result) {
+    for (int i = 0; i < count; ++i) {
+        result[i] = std::max(std::min(a[i] - b[i], sandA[i]), -sandB[i]);
+    }
+}
+
+void sums(const std::int32_t* __restrict a, const std::int32_t* __restrict b, int count, float* __restrict result) {
+    for (int i = 0; i < count; ++i) {
+        result[i] = static_cast<float>(a[i] + b[i]);
+    }
+}
+
 /// The fluxes between two parallel runs of cells, given the sum of the two differences along the faces of either cell.
-template <class Scheme>
-void fluxesBetween(const Scheme scheme, const std::int32_t* __restrict a, const std::int32_t* __restrict b,
+template <class Law>
+void fluxesBetween(const Law law, const std::int32_t* __restrict a, const std::int32_t* __restrict b,
                    const float* __restrict alongA, const float* __restrict alongB, int count,
                    std::int32_t* __restrict flux) {
     for (int i = 0; i < count; ++i) {
-        flux[i] = scheme(a[i] - b[i], alongA[i] + alongB[i]);
+        flux[i] = law(a[i] - b[i], alongA[i] + alongB[i], flux[i]);
+    }
+}
+
+/// Collects the bits of all fluxes in each column, so that blocks are looked at once and not in every row.
+void collect(const std::int32_t* __restrict east, const std::int32_t* __restrict north, int count,
+             std::int32_t* __restrict moved) {
+    for (int i = 0; i < count; ++i) {
+        moved[i] |= east[i] | north[i];
     }
 }
 
 /// Lets no flux bring more than there is room for, behind it or ahead.
-void limit(const std::int32_t* __restrict roomBehind, const std::int32_t* __restrict roomAhead, int count,
-           std::int32_t* __restrict flux) {
+void limitToRoom(const std::int32_t* __restrict behind, const std::int32_t* __restrict ahead, int count,
+                 std::int32_t* __restrict flux) {
     for (int i = 0; i < count; ++i) {
-        flux[i] = std::max(std::min(flux[i], roomAhead[i]), -roomBehind[i]);
+        flux[i] = std::max(std::min(flux[i], ahead[i]), -behind[i]);
     }
 }
 
-/// Takes a row's fluxes from its cells. `changed` collects the bits that changed in each column, so that blocks are
-/// looked at once and not in every row.
-void balance(const std::int32_t* __restrict in, const std::int32_t* __restrict across,
-             const std::int32_t* __restrict south, const std::int32_t* __restrict north, int count,
-             std::int32_t* __restrict out, std::int32_t* __restrict changed) {
+/// Lets no cell give more than its sand through four faces: thickness never goes negative.
+void limitToSand(const std::int32_t* __restrict behind, const std::int32_t* __restrict ahead, int count,
+                 std::int32_t* __restrict flux) {
     for (int i = 0; i < count; ++i) {
-        const std::int32_t change = across[i] - across[i + 1] + south[i] - north[i];
-        out[i] = in[i] + change;
-        changed[i] |= change;
+        flux[i] = std::max(std::min(flux[i], behind[i] / 4), -(ahead[i] / 4));
     }
 }
 
-template <class Scheme, bool kTool>
-class Sweep {
+template <class Law, bool kHeld>
+class Fluxes {
 public:
-    Sweep(const PatchSweep& patch, std::int64_t& outflow)
-        : patch_(patch), scheme_(patch), outflow_(outflow), width_(patch.cells.x1 - patch.cells.x0) {}
+    Fluxes(const FluxPatch& patch, const Law& east, const Law& north)
+        : patch_(patch), eastLaw_(east), northLaw_(north), width_(patch.cells.x1 - patch.cells.x0) {}
 
-    void run() {
-        std::fill_n(changed_.data(), width_, 0);
-        std::array<Fluxes, 2> fluxes;
-        std::array<Row<float>, 2> rises;
-        Fluxes* south = &fluxes[0];
-        Fluxes* north = &fluxes[1];
-        Row<float>* rise = &rises[0];
-        Row<float>* riseAbove = &rises[1];
-        riseEast(patch_.cells.y0 - 1, *rise);
+    std::int64_t run() {
+        std::fill_n(moved_.data(), width_, 0);
+        Row<float>* rise = &rises_[0];
+        Row<float>* riseAbove = &rises_[1];
+        if (patch_.cells.y0 == 0) {
+            rimNorth(-1);
+        }
         riseEast(patch_.cells.y0, *riseAbove);
-        northFluxes(patch_.cells.y0 - 1, *rise, *riseAbove, *south);
         for (int y = patch_.cells.y0; y < patch_.cells.y1; ++y) {
             std::swap(rise, riseAbove);
-            riseEast(y + 1, *riseAbove);
-            northFluxes(y, *rise, *riseAbove, *north);
+            if (y == patch_.rows - 1) {
+                rimNorth(y);
+            } else {
+                riseEast(y + 1, *riseAbove);
+                northFluxes(y, rise->data(), riseAbove->data());
+            }
             eastFluxes(y);
-            balance(rowOf(y), across_.data(), south->data(), north->data(), width_,
-                    patch_.out + y * patch_.stride + patch_.cells.x0, changed_.data());
-            std::swap(south, north);
+            collect(east(y), north(y), width_, moved_.data());
             const int done = y + 1 - patch_.cells.y0;
             if (done % patch_.blockSize == 0 || y + 1 == patch_.cells.y1) {
                 reportMoved((done - 1) / patch_.blockSize);
             }
         }
+        return outflow_;
     }
 
 private:
     /// The patch's first cell in row y.
-    [[nodiscard]] const std::int32_t* rowOf(int y) const { return patch_.in + y * patch_.stride + patch_.cells.x0; }
-    [[nodiscard]] const std::int32_t* roomOf(int y) const {
-        return patch_.room + (y - patch_.cells.y0 + 1) * (width_ + 2) + 1;
+    [[nodiscard]] const std::int32_t* heights(int y) const {
+        return patch_.heights + (y - patch_.cells.y0) * patch_.heightStride;
     }
-    /// Over an open rim sand falls to height 0 and never comes back.
-    [[nodiscard]] std::int32_t overRim(std::int32_t height, std::int32_t along) const {
-        return std::max(scheme_(height, 2 * static_cast<float>(along)), 0);
+    [[nodiscard]] std::int32_t* east(int y) const { return patch_.east + y * patch_.fluxStride + patch_.cells.x0; }
+    [[nodiscard]] std::int32_t* north(int y) const { return patch_.north + y * patch_.fluxStride + patch_.cells.x0; }
+    /// The patch's first cell in row y of `room` or `sand`.
+    [[nodiscard]] const std::int32_t* held(const std::int32_t* numbers, int y) const {
+        return numbers + (y - patch_.cells.y0 + 1) * (width_ + 2) + 1;
     }
 
-    /// Tells which blocks of a row of blocks have changed, and begins the next.
+    /// Tells in which blocks of a row of blocks sand flows, and begins the next.
     void reportMoved(int blockRow) {
         std::uint8_t* moved = patch_.moved + blockRow * patch_.blocksAcross;
         for (int x = 0; x < width_; x += patch_.blockSize) {
-            const auto end = changed_.data() + std::min(x + patch_.blockSize, width_);
-            *moved++ = std::any_of(changed_.data() + x, end, [](std::int32_t bits) { return bits != 0; }) ? 1 : 0;
+            const auto end = moved_.data() + std::min(x + patch_.blockSize, width_);
+            *moved++ = std::any_of(moved_.data() + x, end, [](std::int32_t bits) { return bits != 0; }) ? 1 : 0;
         }
-        std::fill_n(changed_.data(), width_, 0);
+        std::fill_n(moved_.data(), width_, 0);
     }
 
     /// How much higher the eastern neighbour of each cell of row y is than the western one.
-    void riseEast(int y, Row<float>& rise) const {
-        if constexpr (Scheme::kNeedsAlong) {
-            differences(rowOf(y) + 1, rowOf(y) - 1, wholeVectors(width_), rise.data());
+    void riseEast(int y, Row<float>& rise) {
+        if constexpr (Law::kNeedsAlong && kHeld) {
+            if (patch_.sand != nullptr) {
+                const std::int32_t* sand = held(patch_.sand, y) - 1;
+                sandDifferences(heights(y), heights(y) - 1, sand + 1, sand, width_ + 1, steps_[0].data());
+                sums(steps_[0].data(), steps_[0].data() + 1, width_, rise.data());
+                return;
+            }
+        }
+        if constexpr (Law::kNeedsAlong) {
+            differences(heights(y) + 1, heights(y) - 1, width_, rise.data());
         }
     }
 
-    /// Fluxes from row y to row y + 1, one per column of the patch.
-    void northFluxes(int y, Row<float>& rise, Row<float>& riseAbove, Fluxes& flux) {
-        if (y < 0 || y == patch_.rows - 1) {
-            rimNorth(y, flux);
-            return;
+    /// How much higher the northern neighbour of each cell of row y is than the southern one, one cell more than wide.
+    void riseNorth(int y) {
+        const int count = width_ + 1;
+        if constexpr (Law::kNeedsAlong && kHeld) {
+            if (patch_.sand != nullptr) {
+                const std::int32_t* sand = held(patch_.sand, y);
+                const int up = width_ + 2;
+                sandDifferences(heights(y), heights(y - 1), sand, sand - up, count, steps_[0].data());
+                sandDifferences(heights(y + 1), heights(y), sand + up, sand, count, steps_[1].data());
+                sums(steps_[0].data(), steps_[1].data(), count, riseNorth_.data());
+                return;
+            }
         }
-        fluxesBetween(scheme_, rowOf(y), rowOf(y + 1), rise.data(), riseAbove.data(), wholeVectors(width_),
-                      flux.data());
-        if constexpr (kTool) {
-            limit(roomOf(y), roomOf(y + 1), width_, flux.data());
+        if constexpr (Law::kNeedsAlong) {
+            differences(heights(y + 1), heights(y - 1), count, riseNorth_.data());
         }
     }
 
-    void rimNorth(int y, Fluxes& flux) {
-        std::fill_n(flux.data(), width_, 0);
+    /// Limits the fluxes from the cells of row y to those `ahead` cells further in `room` and `sand`.
+    void hold(int y, int ahead, int count, std::int32_t* flux) const {
+        if constexpr (kHeld) {
+            if (patch_.room != nullptr) {
+                limitToRoom(held(patch_.room, y), held(patch_.room, y) + ahead, count, flux);
+            }
+            if (patch_.sand != nullptr) {
+                limitToSand(held(patch_.sand, y), held(patch_.sand, y) + ahead, count, flux);
+            }
+        }
+    }
+
+    /// Fluxes from row y to row y + 1.
+    void northFluxes(int y, const float* rise, const float* riseAbove) {
+        fluxesBetween(northLaw_, heights(y), heights(y + 1), rise, riseAbove, width_, north(y));
+        hold(y, width_ + 2, width_, north(y));
+    }
+
+    /// Fluxes from the cells of row y to their eastern neighbours, and over the rims at the row's ends.
+    void eastFluxes(int y) {
+        riseNorth(y);
+        std::int32_t* flux = east(y);
+        const bool atRim = patch_.cells.x1 == patch_.columns;
+        const int faces = atRim ? width_ - 1 : width_;
+        fluxesBetween(eastLaw_, heights(y), heights(y) + 1, riseNorth_.data(), riseNorth_.data() + 1, faces, flux);
+        hold(y, 1, faces, flux);
+        if (patch_.openRim && patch_.cells.x0 == 0) {
+            flux[-1] = -overRim(eastLaw_, y, 0, heights(y + 1)[0] - heights(y - 1)[0], -flux[-1]);
+        }
+        if (patch_.openRim && atRim) {
+            const int last = width_ - 1;
+            flux[last] = overRim(eastLaw_, y, last, heights(y + 1)[last] - heights(y - 1)[last], flux[last]);
+        }
+    }
+
+    void rimNorth(int y) {
         if (!patch_.openRim) {
             return;
         }
-        const std::int32_t* inner = rowOf(std::max(y, 0));
+        const int inner = std::max(y, 0);
+        std::int32_t* flux = north(y);
         for (int i = 0; i < width_; ++i) {
-            const std::int32_t q = overRim(inner[i], inner[i + 1] - inner[i - 1]);
-            flux[i] += y < 0 ? -q : q;
-            outflow_ += q;
+            const std::int32_t along = heights(inner)[i + 1] - heights(inner)[i - 1];
+            flux[i] =
+                y < 0 ? -overRim(northLaw_, inner, i, along, -flux[i]) : overRim(northLaw_, inner, i, along, flux[i]);
         }
     }
 
-    /// Fluxes through the vertical faces of row y: index i lies between cells i - 1 and i of the patch.
-    void eastFluxes(int y) {
-        const std::int32_t* here = rowOf(y);
-        const int faces = wholeVectors(width_ + 1);
-        if constexpr (Scheme::kNeedsAlong) {  // index i is that of cell i - 1
-            differences(rowOf(y + 1) - 1, rowOf(y - 1) - 1, faces + kLanes, riseNorth_.data());
+    /// Over an open rim sand falls to height 0 and never comes back.
+    std::int32_t overRim(const Law& law, int y, int i, std::int32_t along, std::int32_t last) {
+        std::int32_t flux = std::max(law(heights(y)[i], 2 * static_cast<float>(along), last), 0);
+        if constexpr (kHeld) {
+            if (patch_.sand != nullptr) {
+                flux = std::min(flux, held(patch_.sand, y)[i] / 4);
+            }
         }
-        fluxesBetween(scheme_, here - 1, here, riseNorth_.data(), riseNorth_.data() + 1, faces, across_.data());
-        if constexpr (kTool) {
-            limit(roomOf(y) - 1, roomOf(y), width_ + 1, across_.data());
-        }
-        if (patch_.cells.x0 == 0) {
-            across_[0] = -rimEast(y, 0);
-        }
-        if (patch_.cells.x1 == patch_.columns) {
-            across_[width_] = rimEast(y, width_ - 1);
-        }
+        outflow_ += flux;
+        moved_.data()[i] |= flux;  // the faces at the southern and western rim are in no cell's collection
+        return flux;
     }
 
-    /// What falls over the rim beside cell i of row y.
-    std::int32_t rimEast(int y, int i) {
-        const std::int32_t q = patch_.openRim ? overRim(rowOf(y)[i], rowOf(y + 1)[i] - rowOf(y - 1)[i]) : 0;
-        outflow_ += q;
-        return q;
-    }
-
-    const PatchSweep& patch_;
-    const Scheme scheme_;
-    std::int64_t& outflow_;
+    const FluxPatch& patch_;
+    const Law eastLaw_, northLaw_;
     const int width_;
+    std::int64_t outflow_ = 0;
+    std::array<Row<float>, 2> rises_;
     Row<float> riseNorth_;
-    Fluxes across_;
-    Fluxes changed_;  // per column: every bit that changed
+    std::array<Row<std::int32_t>, kHeld ? 2 : 0> steps_;
+    Row<std::int32_t> moved_;  // per column: every bit of the fluxes
 };
+
+template <class Law>
+std::int64_t run(const FluxPatch& patch, const Law& east, const Law& north) {
+    return patch.room != nullptr || patch.sand != nullptr ? Fluxes<Law, true>(patch, east, north).run()
+                                                          : Fluxes<Law, false>(patch, east, north).run();
+}
+
+void addUp(const std::int32_t* __restrict east, const std::int32_t* __restrict south,
+           const std::int32_t* __restrict north, int count, std::int32_t* __restrict heights) {
+    for (int i = 0; i < count; ++i) {
+        heights[i] += east[i - 1] - east[i] + south[i] - north[i];
+    }
+}
 
 }  // namespace
 
-void sweepPatch(const PatchSweep& patch, std::int64_t& outflow) {
-    if (patch.n4) {
-        patch.room != nullptr ? Sweep<FourNeighbours, true>(patch, outflow).run()
-                              : Sweep<FourNeighbours, false>(patch, outflow).run();
-    } else {
-        patch.room != nullptr ? Sweep<Isotropic, true>(patch, outflow).run()
-                              : Sweep<Isotropic, false>(patch, outflow).run();
+std::int64_t sweepFluxes(const FluxPatch& patch) {
+    switch (patch.law) {
+        case FluxPatch::Law::inertial:
+            return run(patch, Inertial{patch.eastLaw, patch.momentum}, Inertial{patch.northLaw, patch.momentum});
+        case FluxPatch::Law::isotropic:
+            return run(patch, Isotropic{patch.eastLaw}, Isotropic{patch.northLaw});
+        case FluxPatch::Law::n4:
+            break;
+    }
+    return run(patch, FourNeighbours{patch.eastThreshold, patch.eastStartThreshold},
+               FourNeighbours{patch.northThreshold, patch.northStartThreshold});
+}
+
+void balance(const BalancePatch& patch) {
+    for (int y = patch.cells.y0; y < patch.cells.y1; ++y) {
+        const std::ptrdiff_t flux = y * patch.fluxStride + patch.cells.x0;
+        addUp(patch.east + flux, patch.north + flux - patch.fluxStride, patch.north + flux,
+              patch.cells.x1 - patch.cells.x0, patch.heights + y * patch.heightStride + patch.cells.x0);
     }
 }
 

@@ -4,40 +4,66 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "sand/height_field.hpp"
+#include "sand/grid.hpp"
 
 namespace sand {
 
-inline constexpr int kMaxBlock = 128;  // [cell], side of the largest block
-inline constexpr int kMaxPatch = 512;  // [cell], longest row a kernel takes at once
+inline constexpr int kMaxBlock = 128;    // [cell], side of the largest block
+inline constexpr int kMaxPatch = 512;    // [cell], longest row a kernel takes at once
+inline constexpr int kKernelMargin = 8;  // [cell], how far beyond its cells a kernel may read heights
 
-/// One sweep of a patch, which is a rectangle of whole blocks: reads `in`, writes the same cells of `out`. Both point
-/// at cell (0,0) of a HeightField, whose padding it reads. Patches and not blocks, because every row begins and ends
-/// with work that cannot be done eight cells at a time, and a patch with fluxes that its neighbour computes too.
-struct PatchSweep {
-    const std::int32_t* in;
-    std::int32_t* out;
-    std::ptrdiff_t stride;                   // [cell] from a row to the next
-    Rect cells;                              // of the patch, at most kMaxPatch wide
-    int blockSize;                           // [cell]
-    int columns, rows;                       // of the field
-    std::int32_t threshold, startThreshold;  // [unit]
-    bool n4;
-    bool openRim;
-    /// How much each cell may still rise this sweep [unit], over `cells` grown by one on every side, row by row; null
-    /// where no tool is near.
-    const std::int32_t* room;
-    std::uint8_t* moved;  // of the patch's first block: whether a cell of it changed
-    int blocksAcross;     // from a block's `moved` to that of the block north of it
+/// The constants of the isotropic law for the faces across one axis (sand/erosion.hpp states the law).
+struct AxisLaw {
+    float threshold, startThreshold;  // [unit], difference between the two cells of a face
+    float limit;                      // share of the difference that a flux may be at most
+    float push;                       // how strongly the excess over the threshold drives, with inertia
+    float along;                      // from the sum of four differences along the face to their mean, in the same unit
 };
 
-// One source, compiled twice (sand/CMakeLists.txt): the same heights, bit for bit. They add what left over an open rim
-// to `outflow` [unit · cell].
+/// Fluxes of one sweep through the faces of a patch, which is a rectangle of whole blocks: the faces east and north of
+/// each of its cells, and where it meets the field's western or southern rim, the faces there. Patches and not blocks,
+/// because rows begin and end with work that cannot be done eight cells at a time.
+struct FluxPatch {
+    const std::int32_t* heights;  // at the patch's first cell; read up to a cell beyond the patch on every side
+    std::ptrdiff_t heightStride;  // [cell]
+    std::int32_t* east;           // at cell (0,0) of the field: flux to the eastern neighbour [unit]; of the last
+    std::int32_t* north;          // sweep when called, of this one on return
+    std::ptrdiff_t fluxStride;    // [cell]
+    Rect cells;                   // of the patch, at most kMaxPatch wide
+    int blockSize;                // [cell]
+    int columns, rows;            // of the field
+    AxisLaw eastLaw, northLaw;    // of the isotropic schemes
+    std::int32_t eastThreshold, northThreshold;            // [unit], of N4
+    std::int32_t eastStartThreshold, northStartThreshold;  // [unit], of N4
+    float momentum;                                        // share of the last sweep's flux that goes on
+    enum class Law : std::uint8_t { inertial, isotropic, n4 } law;
+    bool openRim;
+    // Over `cells` grown by one on every side, row by row; null where nothing holds the sand:
+    const std::int32_t* room;  // what each cell may receive through a face [unit]
+    const std::int32_t* sand;  // what lies in each cell [unit]: a face gives at most a quarter
+    std::uint8_t* moved;       // of the patch's first block: whether sand flows through a face that it owns
+    int blocksAcross;          // from a block's `moved` to that of the block north of it
+};
+
+/// The same patch's heights after these fluxes.
+struct BalancePatch {
+    std::int32_t* heights;  // at cell (0,0) of the field
+    std::ptrdiff_t heightStride;
+    const std::int32_t* east;  // as in FluxPatch
+    const std::int32_t* north;
+    std::ptrdiff_t fluxStride;
+    Rect cells;
+};
+
+// One source, compiled twice (sand/CMakeLists.txt): the same heights, bit for bit. sweepFluxes returns what leaves over
+// an open rim [unit · cell].
 namespace baseline {
-void sweepPatch(const PatchSweep& patch, std::int64_t& outflow);
-}
+std::int64_t sweepFluxes(const FluxPatch& patch);
+void balance(const BalancePatch& patch);
+}  // namespace baseline
 namespace v3 {
-void sweepPatch(const PatchSweep& patch, std::int64_t& outflow);
-}
+std::int64_t sweepFluxes(const FluxPatch& patch);
+void balance(const BalancePatch& patch);
+}  // namespace v3
 
 }  // namespace sand

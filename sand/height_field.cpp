@@ -12,18 +12,25 @@ Rect Rect::clippedTo(const Rect& other) const {
     return {std::max(x0, other.x0), std::max(y0, other.y0), std::min(x1, other.x1), std::min(y1, other.y1)};
 }
 
-HeightField::HeightField(int columns, int rows, double cellSize) : columns_(columns), rows_(rows), cellSize_(cellSize) {
+namespace {
+
+double checked(int columns, int rows, double cellSize) {
     const bool sides = columns >= 1 && columns <= kMaxSide && rows >= 1 && rows <= kMaxSide;
     if (!sides || !std::isfinite(cellSize) || cellSize <= 0) {
         throw std::invalid_argument("HeightField: sides or cell size out of range");
     }
-    cells_.assign(static_cast<std::size_t>(stride()) * (static_cast<std::size_t>(rows) + 2), 0);
+    return cellSize;
 }
+
+}  // namespace
+
+HeightField::HeightField(int columns, int rows, double cellSize)
+    : cellSize_(checked(columns, rows, cellSize)), cells_(columns, rows) {}
 
 std::int64_t HeightField::volume() const {
     std::int64_t sum = 0;
-    for (int y = 0; y < rows_; ++y) {
-        sum = std::accumulate(row(y), row(y) + columns_, sum);
+    for (int y = 0; y < rows(); ++y) {
+        sum = std::accumulate(row(y), row(y) + columns(), sum);
     }
     return sum;
 }

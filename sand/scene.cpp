@@ -3,13 +3,13 @@
 
 #include <xxhash.h>
 
-#include "sand/heights_codec.hpp"
+#include "sand/grid_codec.hpp"
 
 namespace sand {
 
 void Rules::encode(files::ByteWriter& writer) const {
     for (const std::int32_t number :
-         {columns, rows, threshold, startThreshold, sweepsPerStep, stepsPerSecond, toolRadius}) {
+         {columns, rows, aspect, threshold, startThreshold, sweepsPerStep, stepsPerSecond, toolRadius}) {
         writer.put(number);
     }
     writer.put(static_cast<std::uint8_t>(scheme));
@@ -18,7 +18,7 @@ void Rules::encode(files::ByteWriter& writer) const {
 
 Rules Rules::decode(files::ByteReader& reader) {
     Rules rules;
-    for (std::int32_t* number : {&rules.columns, &rules.rows, &rules.threshold, &rules.startThreshold,
+    for (std::int32_t* number : {&rules.columns, &rules.rows, &rules.aspect, &rules.threshold, &rules.startThreshold,
                                  &rules.sweepsPerStep, &rules.stepsPerSecond, &rules.toolRadius}) {
         *number = reader.get<std::int32_t>();
         if (*number < 0) {
@@ -28,7 +28,7 @@ Rules Rules::decode(files::ByteReader& reader) {
     const auto scheme = reader.get<std::uint8_t>();
     const auto rim = reader.get<std::uint8_t>();
     const bool sides = rules.columns >= 1 && rules.columns <= kMaxSide && rules.rows >= 1 && rules.rows <= kMaxSide;
-    if (!sides || scheme > 1 || rim > 1 || rules.stepsPerSecond < 1) {
+    if (!sides || rules.aspect < 1 || scheme > 2 || rim > 1 || rules.stepsPerSecond < 1) {
         throw files::FormatError("a scene with rules out of range");
     }
     rules.scheme = static_cast<Scheme>(scheme);
@@ -60,7 +60,7 @@ files::Bytes Scene::encode() const {
         }
     }
     writer.put(terrain.cellSize());
-    encodeHeights(terrain, writer);
+    encodeCells(terrain.cells(), terrain.bounds(), writer);
     return writer.take();
 }
 
@@ -82,7 +82,7 @@ Scene Scene::decode(std::span<const std::uint8_t> bytes) {
         throw files::FormatError("a scene without a cell size");
     }
     scene.terrain = HeightField(scene.rules.columns, scene.rules.rows, cellSize);
-    decodeHeights(reader, scene.terrain);
+    decodeCells(reader, scene.terrain.bounds(), kMaxHeight, scene.terrain.cells());
     return scene;
 }
 

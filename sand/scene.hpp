@@ -13,15 +13,17 @@
 namespace sand {
 
 /// Changes with anything that changes what a step does to the sand; replicas of different versions refuse each other.
-inline constexpr std::uint32_t kAlgorithmVersion = 1;
+inline constexpr std::uint32_t kAlgorithmVersion = 2;
 
-enum class Scheme : std::uint8_t { isotropic, n4 };  // NUMERICS names: G and N4
+/// sand/erosion.hpp says what they are. NUMERICS calls plainIsotropic G, and n4 N4.
+enum class Scheme : std::uint8_t { isotropic, n4, plainIsotropic };
 enum class Rim : std::uint8_t { closed, open };
 
 /// Every number the sand is computed from: derived once by whoever loads the scene, then broadcast, never recomputed.
 struct Rules {
     std::int32_t columns = 0, rows = 0;
-    std::int32_t threshold = 0;       // [unit], largest stable difference between neighbours: tan(talus) · cell
+    std::int32_t aspect = kUnitsPerCell;  // length of a cell from south to north over that from west to east [2^-16]
+    std::int32_t threshold = 0;           // [unit], largest stable difference between neighbours: tan(talus) · cell
     std::int32_t startThreshold = 0;  // [unit], ≥ threshold: sand at rest starts to slide beyond this (hysteresis)
     std::int32_t sweepsPerStep = 0;
     std::int32_t stepsPerSecond = 0;

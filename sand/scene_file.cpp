@@ -77,10 +77,12 @@ HeightField makeTerrain(const files::TomlTable& file) {
 }
 
 /// How many sweeps a step needs for sand beside the tool to rest after the settling time. A disturbance of R cells
-/// needs about 2.4 R² sweeps to come within a percent (NUMERICS: R = 12, 320 to 370).
-std::int32_t sweepsFor(double radius /* [cell] */, double settlingSeconds, int stepsPerSecond) {
-    const double sweeps = 2.4 * radius * radius / (settlingSeconds * stepsPerSecond);
-    return static_cast<std::int32_t>(std::clamp(std::ceil(sweeps), 2.0, 4096.0));
+/// needs about R² sweeps to come within a percent, and 2.4 R² without inertia (R = 12: 144 and 350). With fewer than
+/// four a step, no inertia would arise.
+std::int32_t sweepsFor(Scheme scheme, double radius /* [cell] */, double settlingSeconds, int stepsPerSecond) {
+    const double perSquare = scheme == Scheme::isotropic ? 1.0 : 2.4;
+    const double sweeps = perSquare * radius * radius / (settlingSeconds * stepsPerSecond);
+    return static_cast<std::int32_t>(std::clamp(std::ceil(sweeps), 4.0, 4096.0));
 }
 
 void readMaterial(const files::TomlTable& file, Scene& scene) {
@@ -96,7 +98,7 @@ void readMaterial(const files::TomlTable& file, Scene& scene) {
     const double band = material.numberOr("band", 0.001, {0, 1});
     rules.threshold = static_cast<std::int32_t>(threshold);
     rules.startThreshold = static_cast<std::int32_t>(std::min(std::floor(threshold * (1 + band)), 1073741824.0));
-    rules.scheme = static_cast<Scheme>(material.choiceOr("scheme", {"g", "n4"}, 0));
+    rules.scheme = static_cast<Scheme>(material.choiceOr("scheme", {"g", "n4", "g_plain"}, 0));
     if (rules.scheme == Scheme::n4 && rules.threshold < 4) {
         material.fail("talus_deg", fmt::format("talus_deg is too flat for scheme n4: its threshold is {} units, and "
                                                "4 is the least; use scheme \"g\"",
@@ -109,7 +111,7 @@ void readMaterial(const files::TomlTable& file, Scene& scene) {
     }
     const double settling = material.numberOr("settling_time", 0.1, {0.001, 1e6});
     rules.sweepsPerStep =
-        sweepsFor(static_cast<double>(rules.toolRadius) / kProbePerCell, settling, rules.stepsPerSecond);
+        sweepsFor(rules.scheme, static_cast<double>(rules.toolRadius) / kProbePerCell, settling, rules.stepsPerSecond);
     material.finish();
 }
 

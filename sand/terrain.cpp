@@ -6,12 +6,12 @@
 #include <stdexcept>
 #include <string>
 
-#include "sand/heights_codec.hpp"
+#include "sand/grid_codec.hpp"
 
 namespace sand {
 namespace {
 
-constexpr std::uint32_t kStateVersion = 1;
+constexpr std::uint32_t kStateVersion = 2;
 
 Rect around(const Rect& a, const Rect& b) {
     if (a.empty()) {
@@ -56,7 +56,7 @@ void Terrain::apply(const Step& step) {
         const bool arrived = !wasEngaged && i == 0;
         if (step.engaged) {
             const SphereTool::Displacement done = tool.drag(field_, rules_.rim, arrived ? to : probe_, to);
-            erosion_.touch(field_, done.cells);
+            erosion_.touch(done.cells);
             touch(done.cells);
             outflow_ += done.outflow;
         }
@@ -68,7 +68,7 @@ void Terrain::apply(const Step& step) {
     const Obstacle here = engaged_ ? tool.obstacle(field_, probe_) : Obstacle{};
     if (wasEngaged && (!engaged_ || probe_ != before)) {
         // Sand that the tool held back may flow again.
-        erosion_.touch(field_, tool.obstacle(field_, before).cells);
+        erosion_.touch(tool.obstacle(field_, before).cells);
     }
     outflow_ += erosion_.sweep(field_, rules_.sweepsPerStep, engaged_ ? &here : nullptr);
     for (const Rect& block : erosion_.takeMoved()) {
@@ -82,6 +82,7 @@ std::uint64_t Terrain::stateHash() {
     fold(stepNumber_);
     fold(static_cast<std::uint64_t>(outflow_));
     fold(engaged_ ? 1 : 0);
+    fold(static_cast<std::uint64_t>(erosion_.undisturbed()));
     for (const std::int32_t coordinate : {probe_.x, probe_.y, probe_.z}) {
         fold(static_cast<std::uint32_t>(coordinate));
     }
@@ -91,8 +92,8 @@ std::uint64_t Terrain::stateHash() {
 void Terrain::audit(int tiles) {
     for (int i = 0; i < std::min(tiles, hash_.tileCount()); ++i) {
         const int tile = hash_.auditNext(field_);
-        // The sweeps exchange two copies of the sand: a bit that flipped in one hides whenever the other is current.
-        if (erosion_.copyDiffers(field_, hash_.cellsOf(tile))) {
+        // A flux that went bad where nothing flows would make sand from nothing.
+        if (erosion_.amiss(hash_.cellsOf(tile))) {
             hash_.spoil(tile);
         }
     }
@@ -109,7 +110,8 @@ files::Bytes Terrain::encodeState() const {
     for (const std::int32_t coordinate : {probe_.x, probe_.y, probe_.z}) {
         writer.put(coordinate);
     }
-    encodeHeights(field_, writer);
+    encodeCells(field_.cells(), field_.bounds(), writer);
+    erosion_.encode(writer);
     return writer.take();
 }
 
@@ -129,14 +131,16 @@ void Terrain::decodeState(std::span<const std::uint8_t> bytes) {
         }
     }
     HeightField heights = field_;
-    decodeHeights(reader, heights);
+    decodeCells(reader, heights.bounds(), kMaxHeight, heights.cells());
+    Erosion erosion(heights, rules_);
+    erosion.decode(reader);
     field_ = std::move(heights);
     stepNumber_ = number;
     outflow_ = outflow;
     engaged_ = engaged;
     probe_ = probe;
     // Which blocks were still moving is not in the state: visiting one at rest changes nothing.
-    erosion_ = Erosion(field_, rules_);
+    erosion_ = std::move(erosion);
     touch(field_.bounds());
 }
 

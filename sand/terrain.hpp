@@ -34,7 +34,8 @@ public:
     /// Whether no block of sand moves any more: the next sweeps cost nothing.
     [[nodiscard]] bool settled() const { return erosion_.settled(); }
 
-    /// Hash of everything a later step depends on: heights, tool pose, step number, outflow.
+    /// Hash of everything a later step depends on: heights, tool pose, step number, outflow. Of the sand's inertia only
+    /// its age: a wrong flux shows in the heights of the next step.
     [[nodiscard]] std::uint64_t stateHash();
     /// Hashes the next `tiles` hash tiles again from memory, changed or not, so that silent corruption shows.
     void audit(int tiles);

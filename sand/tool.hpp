@@ -16,6 +16,10 @@ struct Obstacle {
     Rect cells;                           // where the underside is defined
     std::vector<std::int32_t> underside;  // [unit], row by row over `cells`; kFree beside the tool
     static constexpr std::int32_t kFree = std::numeric_limits<std::int32_t>::max();
+
+    [[nodiscard]] std::int32_t at(int column, int row) const {
+        return underside[static_cast<std::size_t>((row - cells.y0) * (cells.x1 - cells.x0) + column - cells.x0)];
+    }
 };
 
 /// The paper's sphere: it takes out what lies above its underside and puts it down ahead (first paper, section 3).

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -16,6 +17,8 @@ using sand::Erosion;
 using sand::HeightField;
 using sand::Rules;
 
+constexpr std::array kSchemes{sand::Scheme::isotropic, sand::Scheme::n4, sand::Scheme::plainIsotropic};
+
 Rules rulesFor(const HeightField& field, std::int32_t threshold = sand::kUnitsPerCell) {
     Rules rules;
     rules.columns = field.columns();
@@ -24,14 +27,11 @@ Rules rulesFor(const HeightField& field, std::int32_t threshold = sand::kUnitsPe
     return rules;
 }
 
-int relax(HeightField& field, const Rules& rules, int most = 100000) {
+std::int64_t relax(HeightField& field, const Rules& rules, int most = 100000) {
     Erosion erosion(field, rules);
-    int sweeps = 0;
-    for (; !erosion.settled() && sweeps < most; ++sweeps) {
-        erosion.sweep(field, 1);
-    }
+    erosion.sweep(field, most);
     EXPECT_TRUE(erosion.settled()) << "still moving after " << most << " sweeps";
-    return sweeps;
+    return erosion.sweepsDone();
 }
 
 /// Mean of a radial profile over a cell, by 8 x 8 samples.
@@ -83,7 +83,7 @@ TEST(Erosion, KeepsVolumeAndMakesNoNewExtremes) {
     HeightField field = samples::randomField(67, 45, 1 << 24, random);
     const std::int64_t volume = field.volume();
     Rules rules = rulesFor(field, 1000);
-    for (const auto scheme : {sand::Scheme::isotropic, sand::Scheme::n4}) {
+    for (const auto scheme : kSchemes) {
         rules.scheme = scheme;
         Erosion erosion(field, rules);
         erosion.sweep(field, 200);
@@ -150,16 +150,16 @@ TEST(Erosion, CommutesWithMirroringAndTransposition) {
 TEST(Erosion, BlockSizeAndInstructionSetChangeNothing) {
     std::mt19937 random(13);
     const HeightField start = samples::randomField(131, 77, 1 << 20, random);
-    for (const auto scheme : {sand::Scheme::isotropic, sand::Scheme::n4}) {
+    for (const auto scheme : kSchemes) {
         Rules rules = rulesFor(start);
         rules.scheme = scheme;
         rules.rim = sand::Rim::open;
         HeightField expected = start;
-        const std::int64_t outflow = Erosion(expected, rules, 128).sweep(expected, 100);
+        const std::int64_t outflow = Erosion(expected, rules, {.blockSize = 128}).sweep(expected, 100);
         for (const int block : {2, 16, 31, 32, 64}) {
             for (const auto path : {CodePath::automatic, CodePath::baseline}) {
                 HeightField field = start;
-                EXPECT_EQ(Erosion(field, rules, block, path).sweep(field, 100), outflow);
+                EXPECT_EQ(Erosion(field, rules, {.blockSize = block, .path = path}).sweep(field, 100), outflow);
                 EXPECT_TRUE(sameHeights(field, expected)) << "blocks of " << block;
             }
         }
@@ -181,11 +181,8 @@ TEST(Erosion, ActiveBlocksEqualFullSweepsOnNearCriticalPlanes) {
         HeightField full = field;
         const std::int64_t volume = field.volume();
         const Rules rules = rulesFor(field);
-        Erosion active(field, rules, 16);
-        active.sweep(field, 50);
-        for (int i = 0; i < 50; ++i) {
-            Erosion(full, rules, 128).sweep(full, 1);
-        }
+        Erosion(field, rules).sweep(field, 50);
+        Erosion(full, rules, {.skipSettled = false}).sweep(full, 50);
         ASSERT_TRUE(sameHeights(field, full)) << "run " << run << " of seed 17";
         ASSERT_EQ(field.volume(), volume);
     }

@@ -55,8 +55,8 @@ TEST_F(SceneFile, SweepsFollowTheSquareOfTheToolsCells) {
     const auto sweeps = [&](const std::string& radius) {
         return sand::loadScene(write("s.toml", kFlat + "[tool]\nradius = " + radius)).rules.sweepsPerStep;
     };
-    EXPECT_EQ(sweeps("0.046875"), 58);  // 12 cells: 2.4 * 144 / (0.1 s * 60)
-    EXPECT_NEAR(sweeps("0.09375"), 4 * 58, 3);
+    EXPECT_EQ(sweeps("0.046875"), 24);  // 12 cells: 144 / (0.1 s * 60)
+    EXPECT_NEAR(sweeps("0.09375"), 4 * 24, 3);
 }
 
 TEST_F(SceneFile, ErrorsNameFileLineKeyAndRange) {
