@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "files/byte_stream.hpp"
 #include "sand/height_field.hpp"
 
 namespace sand {
@@ -27,6 +28,10 @@ public:
         return isWall(column, row) ? 0 : height - bedrock(column, row);
     }
     [[nodiscard]] const Grid& cells() const { return bed_; }
+    /// Equal digests mean equal rock and walls; never 0.
+    [[nodiscard]] std::uint64_t digest() const;
+    /// Reads what encodeCells() wrote of cells(). Throws files::FormatError, also for rock above the sand of `field`.
+    static Ground decode(files::ByteReader& reader, const HeightField& field);
 
     static constexpr std::int32_t kBottomless = -kMaxHeight;
     static constexpr std::int32_t kWall = std::numeric_limits<std::int32_t>::max();

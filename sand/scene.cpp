@@ -14,6 +14,7 @@ void Rules::encode(files::ByteWriter& writer) const {
     }
     writer.put(static_cast<std::uint8_t>(scheme));
     writer.put(static_cast<std::uint8_t>(rim));
+    writer.put(ground);
 }
 
 Rules Rules::decode(files::ByteReader& reader) {
@@ -33,6 +34,7 @@ Rules Rules::decode(files::ByteReader& reader) {
     }
     rules.scheme = static_cast<Scheme>(scheme);
     rules.rim = static_cast<Rim>(rim);
+    rules.ground = reader.get<std::uint64_t>();
     return rules;
 }
 
@@ -61,6 +63,9 @@ files::Bytes Scene::encode() const {
     }
     writer.put(terrain.cellSize());
     encodeCells(terrain.cells(), terrain.bounds(), writer);
+    if (ground != nullptr) {
+        encodeCells(ground->cells(), terrain.bounds(), writer);
+    }
     return writer.take();
 }
 
@@ -83,6 +88,12 @@ Scene Scene::decode(std::span<const std::uint8_t> bytes) {
     }
     scene.terrain = HeightField(scene.rules.columns, scene.rules.rows, cellSize);
     decodeCells(reader, scene.terrain.bounds(), kMaxHeight, scene.terrain.cells());
+    if (scene.rules.ground != 0) {
+        scene.ground = std::make_shared<const Ground>(Ground::decode(reader, scene.terrain));
+        if (scene.ground->digest() != scene.rules.ground) {
+            throw files::FormatError("a scene whose ground is not that of its rules");
+        }
+    }
     return scene;
 }
 

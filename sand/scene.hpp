@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "files/byte_stream.hpp"
+#include "sand/ground.hpp"
 #include "sand/height_field.hpp"
 
 namespace sand {
@@ -30,6 +32,7 @@ struct Rules {
     std::int32_t toolRadius = 0;  // [probe unit]
     Scheme scheme = Scheme::isotropic;
     Rim rim = Rim::closed;
+    std::uint64_t ground = 0;  // Ground::digest(), 0 without rock and walls
 
     void encode(files::ByteWriter& writer) const;
     static Rules decode(files::ByteReader& reader);
@@ -59,8 +62,9 @@ struct Scene {
     Rules rules;
     ForceConstants force;
     Look look;
-    HeightField terrain{1, 1, 1.0};     // as the session starts
-    std::vector<std::string> warnings;  // one line each, for whoever loads it to print
+    HeightField terrain{1, 1, 1.0};        // as the session starts
+    std::shared_ptr<const Ground> ground;  // null without rock and walls
+    std::vector<std::string> warnings;     // one line each, for whoever loads it to print
 
     [[nodiscard]] double toolRadius() const {  // [scene unit]
         return rules.toolRadius * terrain.cellSize() / kProbePerCell;

@@ -7,74 +7,17 @@
 
 #include "files/input_error.hpp"
 #include "files/toml_table.hpp"
-#include "sand/dunes.hpp"
-#include "sand/esri_grid.hpp"
 #include "sand/scene.hpp"
+#include "sand/scene_terrain.hpp"
 
 namespace sand {
 namespace {
 
 constexpr double kPaperRadius = 0.01;  // [scene unit], the first paper's sphere
 constexpr double kLargestTool = 2048;  // [cell]
-constexpr int kTooCoarse = 4096;       // [unit]: below, rest slopes come out more than a percent too steep
-
-HeightField levelField(const files::TomlTable& file) {
-    const files::TomlTable field = file.requiredTable("field");
-    const int columns = field.integerOr("columns", 512, 1, kMaxSide);
-    const int rows = field.integerOr("rows", columns, 1, kMaxSide);
-    const double width = field.numberOr("width", 2.0, files::kPositive);  // the paper's (-1, 1)
-    field.finish();
-    return {columns, rows, width / columns};
-}
-
-std::int32_t heightUnits(const files::TomlTable& terrain, const std::string& key, double height, double unit) {
-    const double units = std::floor(height / unit + 0.5);
-    if (!(std::abs(units) <= kMaxHeight)) {
-        terrain.fail(key, fmt::format("a height of {} is beyond the range of ±{} (4096 cells); set 'datum'", height,
-                                      kMaxHeight * unit));
-    }
-    return static_cast<std::int32_t>(units);
-}
-
-HeightField fromEsriGrid(const files::TomlTable& file, const files::TomlTable& terrain) {
-    if (file.has("field")) {
-        file.fail("field", "[field] is for flat and dunes; an ESRI grid brings its own columns, rows and cell size");
-    }
-    const EsriGrid grid = readEsriGrid(terrain.folder() / terrain.text("file"));
-    const double datum = terrain.numberOr("datum", 0);
-    HeightField field(grid.columns, grid.rows, grid.cellSize);
-    for (int row = 0; row < grid.rows; ++row) {
-        for (int column = 0; column < grid.columns; ++column) {
-            const double height = grid.at(column, row) - datum;
-            field.setHeight(column, row, heightUnits(terrain, "file", height, field.unit()));
-        }
-    }
-    return field;
-}
-
-HeightField makeTerrain(const files::TomlTable& file) {
-    const files::TomlTable terrain = file.requiredTable("terrain");
-    const int kind = terrain.choiceOr("kind", {"flat", "dunes", "esri_ascii"}, 0);
-    HeightField field = kind == 2 ? fromEsriGrid(file, terrain) : levelField(file);
-    if (kind != 2) {
-        const double bed = terrain.numberOr("height", 0);
-        const std::int32_t units = heightUnits(terrain, "height", bed, field.unit());
-        for (int row = 0; row < field.rows(); ++row) {
-            std::fill_n(field.row(row), field.columns(), units);
-        }
-        if (kind == 1) {
-            Dunes dunes;
-            dunes.bed = bed;
-            dunes.height = terrain.numberOr("dune_height", dunes.height, {0, 1e9});
-            dunes.length = terrain.numberOr("dune_length", dunes.length, files::kPositive);
-            dunes.seed = static_cast<std::uint32_t>(terrain.integerOr("seed", 1, 0, 1 << 30));
-            heightUnits(terrain, "dune_height", bed + dunes.height, field.unit());
-            makeDunes(dunes, field);
-        }
-    }
-    terrain.finish();
-    return field;
-}
+// Differences never exceed 2^29: a larger threshold means the same as this one, nothing slides.
+constexpr double kLargestThreshold = 1 << 30;  // [unit]
+constexpr int kTooCoarse = 4096;               // [unit]: below, rest slopes come out more than a percent too steep
 
 /// How many sweeps a step needs for sand beside the tool to rest after the settling time. A disturbance of R cells
 /// needs about R² sweeps to come within a percent, and 2.4 R² without inertia (R = 12: 144 and 350). With fewer than
@@ -85,19 +28,34 @@ std::int32_t sweepsFor(Scheme scheme, double radius /* [cell] */, double settlin
     return static_cast<std::int32_t>(std::clamp(std::ceil(sweeps), 4.0, 4096.0));
 }
 
+double slopeAngle(const files::TomlTable& material, const std::string& key, double fallback) {
+    const double angle = material.numberOr(key, fallback, {0, 90});
+    if (angle >= 90) {
+        material.fail(key, fmt::format("{} must be within [0, 90), got 90", key));
+    }
+    return angle;
+}
+
+/// Humidity w, from 0 (dry) to 1: the talus is talus_deg + w (wet_talus_deg - talus_deg), and a bank whose step from a
+/// cell to the next is at most w · cohesion_length stands. Both grow with w, and w = 0 is dry sand.
 void readMaterial(const files::TomlTable& file, Scene& scene) {
     const files::TomlTable material = file.requiredTable("material");
     Rules& rules = scene.rules;
-    const double talus = material.numberOr("talus_deg", 34, {0, 90});
-    if (talus >= 90) {
-        material.fail("talus_deg", "talus_deg must be within [0, 90), got 90");
+    const double humidity = material.numberOr("humidity", 0, {0, 1});
+    const double dryTalus = slopeAngle(material, "talus_deg", 34);
+    const double wetTalus = slopeAngle(material, "wet_talus_deg", std::max(dryTalus, 45.0));
+    if (wetTalus < dryTalus) {
+        material.fail("wet_talus_deg",
+                      fmt::format("wet_talus_deg must be at least talus_deg = {}, got {}", dryTalus, wetTalus));
     }
-    // Differences never exceed 2^29: a larger threshold means the same as this one, nothing slides.
-    const double slope = std::tan(talus * std::numbers::pi / 180);
-    const double threshold = std::min(std::floor(slope * kUnitsPerCell + 0.5), 1073741824.0);
+    const double talus = dryTalus + humidity * (wetTalus - dryTalus);
+    const double cohesion = humidity * material.numberOr("cohesion_length", 0, {0, 1e9}) / scene.terrain.unit();
+    const double threshold =
+        std::min(std::floor(std::tan(talus * std::numbers::pi / 180) * kUnitsPerCell + 0.5), kLargestThreshold);
     const double band = material.numberOr("band", 0.001, {0, 1});
+    const double start = std::max(std::floor(threshold * (1 + band)), std::floor(cohesion));
     rules.threshold = static_cast<std::int32_t>(threshold);
-    rules.startThreshold = static_cast<std::int32_t>(std::min(std::floor(threshold * (1 + band)), 1073741824.0));
+    rules.startThreshold = static_cast<std::int32_t>(std::min(start, kLargestThreshold));
     rules.scheme = static_cast<Scheme>(material.choiceOr("scheme", {"g", "n4", "g_plain"}, 0));
     if (rules.scheme == Scheme::n4 && rules.threshold < 4) {
         material.fail("talus_deg", fmt::format("talus_deg is too flat for scheme n4: its threshold is {} units, and "
@@ -171,9 +129,7 @@ Scene loadScene(const std::filesystem::path& file) {
     }
     scene.rules.stepsPerSecond = toml.integerOr("steps_per_second", 60, 1, 1000);
     scene.rules.rim = static_cast<Rim>(toml.choiceOr("rim", {"closed", "open"}, 0));
-    scene.terrain = makeTerrain(toml);
-    scene.rules.columns = scene.terrain.columns();
-    scene.rules.rows = scene.terrain.rows();
+    readTerrain(toml, scene);
     readTool(toml, scene);
     readMaterial(toml, scene);
     readForce(toml, scene);

@@ -30,10 +30,21 @@ std::uint64_t mix(std::uint64_t value) {
     return value ^ (value >> 33);
 }
 
+Erosion::Options withGround(Erosion::Options options, const Ground* ground) {
+    options.ground = ground;
+    return options;
+}
+
 }  // namespace
 
-Terrain::Terrain(const Scene& scene)
-    : rules_(scene.rules), field_(scene.terrain), erosion_(field_, rules_), hash_(field_), damage_(field_.bounds()) {}
+Terrain::Terrain(const Scene& scene, const Erosion::Options& options)
+    : rules_(scene.rules),
+      ground_(scene.ground),
+      options_(withGround(options, ground_.get())),
+      field_(scene.terrain),
+      erosion_(field_, rules_, options_),
+      hash_(field_),
+      damage_(field_.bounds()) {}
 
 void Terrain::touch(const Rect& cells) {
     if (!cells.empty()) {
@@ -55,7 +66,8 @@ void Terrain::apply(const Step& step) {
         // A hand that has just engaged comes from nowhere: its first point presses and does not drag.
         const bool arrived = !wasEngaged && i == 0;
         if (step.engaged) {
-            const SphereTool::Displacement done = tool.drag(field_, rules_.rim, arrived ? to : probe_, to);
+            const SphereTool::Displacement done =
+                tool.drag(field_, rules_.rim, ground_.get(), arrived ? to : probe_, to);
             erosion_.touch(done.cells);
             touch(done.cells);
             outflow_ += done.outflow;
@@ -132,7 +144,7 @@ void Terrain::decodeState(std::span<const std::uint8_t> bytes) {
     }
     HeightField heights = field_;
     decodeCells(reader, heights.bounds(), kMaxHeight, heights.cells());
-    Erosion erosion(heights, rules_);
+    Erosion erosion(heights, rules_, options_);
     erosion.decode(reader);
     field_ = std::move(heights);
     stepNumber_ = number;

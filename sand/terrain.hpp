@@ -19,7 +19,8 @@ namespace sand {
 /// number of threads or the size of the blocks. Not thread-safe.
 class Terrain {
 public:
-    explicit Terrain(const Scene& scene);
+    /// `options` say how the sand is swept, not what comes of it; their ground is the scene's own.
+    explicit Terrain(const Scene& scene, const Erosion::Options& options = {});
 
     /// The tool displaces sand along the step's path, then Rules::sweepsPerStep sweeps let it slide. Steps must come
     /// in order: throws std::logic_error when step.number is not stepNumber() + 1.
@@ -27,6 +28,8 @@ public:
 
     [[nodiscard]] const HeightField& field() const { return field_; }
     [[nodiscard]] const Rules& rules() const { return rules_; }
+    [[nodiscard]] const Ground* ground() const { return ground_.get(); }  // null without rock and walls
+    [[nodiscard]] const Erosion& erosion() const { return erosion_; }
     [[nodiscard]] std::uint64_t stepNumber() const { return stepNumber_; }
     [[nodiscard]] std::int64_t outflow() const { return outflow_; }  // [unit · cell] lost over an open rim
     [[nodiscard]] ProbePoint probe() const { return probe_; }        // where the tool is
@@ -56,6 +59,8 @@ private:
     void touch(const Rect& cells);
 
     Rules rules_;
+    std::shared_ptr<const Ground> ground_;
+    Erosion::Options options_;
     HeightField field_;
     Erosion erosion_;
     StateHash hash_;

@@ -34,8 +34,10 @@ struct Receiver {
 };
 
 /// The cells in a ring of two cells around the tool. With a drag direction, those ahead, by the cosine of their angle
-/// to it; without one, all of them alike. Cells beyond a closed rim do not count; beyond an open one they swallow.
-std::vector<Receiver> receivers(const Rect& bounds, Rim rim, ProbePoint at, std::int64_t radius, Offset ahead) {
+/// to it; without one, all of them alike. Walls and cells beyond a closed rim do not count; beyond an open one they
+/// swallow.
+std::vector<Receiver> receivers(const Rect& bounds, Rim rim, const Ground* ground, ProbePoint at, std::int64_t radius,
+                                Offset ahead) {
     const std::int64_t outer = radius + 2 * kProbePerCell;
     const bool everywhere = ahead.x == 0 && ahead.y == 0;
     std::vector<Receiver> ring;
@@ -44,7 +46,7 @@ std::vector<Receiver> receivers(const Rect& bounds, Rim rim, ProbePoint at, std:
             const Offset offset = offsetOf(at, x, y);
             const bool outside = x < bounds.x0 || x >= bounds.x1 || y < bounds.y0 || y >= bounds.y1;
             if (offset.squared() < radius * radius || offset.squared() > outer * outer ||
-                (outside && rim == Rim::closed)) {
+                (outside && rim == Rim::closed) || (!outside && ground != nullptr && ground->isWall(x, y))) {
                 continue;
             }
             // The drag is at most a cell and the ring at most 2^14 cells away: the product stays below 2^32.
@@ -96,21 +98,32 @@ std::int32_t SphereTool::underside(ProbePoint at, int column, int row) const {
     return static_cast<std::int32_t>(std::clamp<std::int64_t>(under, -kMaxHeight, kMaxHeight));
 }
 
-SphereTool::Displacement SphereTool::press(HeightField& field, Rim rim, ProbePoint at, std::int64_t dx,
-                                           std::int64_t dy) const {
+std::int32_t SphereTool::cutTo(const HeightField& field, const Ground* ground, ProbePoint at, int column,
+                               int row) const {
+    const std::int32_t height = field.height(column, row);
+    if (ground == nullptr) {
+        return std::min(height, underside(at, column, row));
+    }
+    return ground->isWall(column, row)
+               ? height
+               : std::min(height, std::max(underside(at, column, row), ground->bedrock(column, row)));
+}
+
+SphereTool::Displacement SphereTool::press(HeightField& field, Rim rim, const Ground* ground, ProbePoint at,
+                                           std::int64_t dx, std::int64_t dy) const {
     const Rect cells = footprint(at, 0).clippedTo(field.bounds());
     std::int64_t taken = 0;
     for (int y = cells.y0; y < cells.y1; ++y) {
         for (int x = cells.x0; x < cells.x1; ++x) {
-            taken += std::max<std::int64_t>(std::int64_t{field.height(x, y)} - underside(at, x, y), 0);
+            taken += std::int64_t{field.height(x, y)} - cutTo(field, ground, at, x, y);
         }
     }
     if (taken == 0) {
         return {};
     }
-    std::vector<Receiver> ring = receivers(field.bounds(), rim, at, radius_, {dx, dy});
+    std::vector<Receiver> ring = receivers(field.bounds(), rim, ground, at, radius_, {dx, dy});
     if (ring.empty()) {  // dragged against a closed rim: it escapes to the sides and behind
-        ring = receivers(field.bounds(), rim, at, radius_, {0, 0});
+        ring = receivers(field.bounds(), rim, ground, at, radius_, {0, 0});
     }
     if (ring.empty()) {  // the tool is larger than the field: there is nowhere to put the sand
         return {};
@@ -123,7 +136,7 @@ SphereTool::Displacement SphereTool::press(HeightField& field, Rim rim, ProbePoi
     }
     for (int y = cells.y0; y < cells.y1; ++y) {
         for (int x = cells.x0; x < cells.x1; ++x) {
-            field.setHeight(x, y, std::min(field.height(x, y), underside(at, x, y)));
+            field.setHeight(x, y, cutTo(field, ground, at, x, y));
         }
     }
     Displacement result{footprint(at, 3).clippedTo(field.bounds()), 0};
@@ -138,7 +151,8 @@ SphereTool::Displacement SphereTool::press(HeightField& field, Rim rim, ProbePoi
     return result;
 }
 
-SphereTool::Displacement SphereTool::drag(HeightField& field, Rim rim, ProbePoint from, ProbePoint to) const {
+SphereTool::Displacement SphereTool::drag(HeightField& field, Rim rim, const Ground* ground, ProbePoint from,
+                                          ProbePoint to) const {
     const std::int64_t dx = std::int64_t{to.x} - from.x;
     const std::int64_t dy = std::int64_t{to.y} - from.y;
     const std::int64_t dz = std::int64_t{to.z} - from.z;
@@ -154,7 +168,7 @@ SphereTool::Displacement SphereTool::drag(HeightField& field, Rim rim, ProbePoin
         }
         // A direction in whole probe units of one sub-step would lose its angle when the hand is slow.
         const std::int64_t scale = std::max<std::int64_t>(longest / kProbePerCell, 1);
-        const Displacement one = press(field, rim, at, dx / scale, dy / scale);
+        const Displacement one = press(field, rim, ground, at, dx / scale, dy / scale);
         if (!one.cells.empty()) {
             all.cells = {std::min(all.cells.x0, one.cells.x0), std::min(all.cells.y0, one.cells.y0),
                          std::max(all.cells.x1, one.cells.x1), std::max(all.cells.y1, one.cells.y1)};

@@ -36,13 +36,18 @@ public:
     };
 
     /// Sweeps the tool from `from` to `to` in sub-steps of at most a cell. Where no cell could take the sand, it stays.
-    Displacement drag(HeightField& field, Rim rim, ProbePoint from, ProbePoint to) const;
+    /// Rock and walls of `ground`, which may be null, stay where they are.
+    Displacement drag(HeightField& field, Rim rim, const Ground* ground, ProbePoint from, ProbePoint to) const;
 
     /// The tool at rest at `at`, as seen by flowing sand.
     [[nodiscard]] Obstacle obstacle(const HeightField& field, ProbePoint at) const;
 
 private:
-    Displacement press(HeightField& field, Rim rim, ProbePoint at, std::int64_t dx, std::int64_t dy) const;
+    Displacement press(HeightField& field, Rim rim, const Ground* ground, ProbePoint at, std::int64_t dx,
+                       std::int64_t dy) const;
+    /// The height to which the tool takes a cell down: its underside, or the rock beneath.
+    [[nodiscard]] std::int32_t cutTo(const HeightField& field, const Ground* ground, ProbePoint at, int column,
+                                     int row) const;
     [[nodiscard]] Rect footprint(ProbePoint at, int margin) const;
     /// Height of the sphere's underside over the centre of a cell [unit], or Obstacle::kFree beside it.
     [[nodiscard]] std::int32_t underside(ProbePoint at, int column, int row) const;

@@ -4,42 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <numbers>
 
-#include "files/input_error.hpp"
 #include "sand/esri_grid.hpp"
+#include "tests/sand/scene_fixture.hpp"
 
 namespace {
-
-class SceneFile : public testing::Test {
-protected:
-    void SetUp() override {
-        folder_ = std::filesystem::temp_directory_path() /
-                  ("sandwall_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-        std::filesystem::create_directories(folder_);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
-    std::filesystem::path write(const std::string& name, const std::string& text) {
-        std::ofstream(folder_ / name) << text;
-        return folder_ / name;
-    }
-    /// The one line a person reads, without the folder.
-    std::string complaint(const std::string& text) {
-        try {
-            (void)sand::loadScene(write("s.toml", text));
-        } catch (const files::InputError& error) {
-            const std::string line = error.what();
-            return line.substr(line.find(folder_.string()) == 0 ? folder_.string().size() + 1 : 0);
-        }
-        return "accepted";
-    }
-    std::filesystem::path folder_;
-};
-
-const std::string kFlat = "[field]\n[terrain]\n[material]\n";
 
 TEST_F(SceneFile, DefaultsAreThePapers) {
     const sand::Scene scene = sand::loadScene(write("s.toml", kFlat));
@@ -66,8 +36,10 @@ TEST_F(SceneFile, ErrorsNameFileLineKeyAndRange) {
     EXPECT_EQ(complaint("[field]\ncolumns = 0\n[terrain]\n[material]\n"),
               "s.toml:2: columns must be within [1, 16384], got 0");
     EXPECT_EQ(complaint("[field]\nwidth = -2\n[terrain]\n[material]\n"), "s.toml:2: width must be positive, got -2");
-    EXPECT_EQ(complaint(kFlat + "talus = 3\n"),
-              "s.toml:4: unknown key 'talus'; known here: band, scheme, settling_time, talus_deg");
+    EXPECT_EQ(
+        complaint(kFlat + "talus = 3\n"),
+        "s.toml:4: unknown key 'talus'; known here: band, cohesion_length, humidity, scheme, settling_time, talus_deg, "
+        "wet_talus_deg");
     EXPECT_EQ(complaint("[terrain]\n[field]\n"), "s.toml:1: a table [material] is missing");
     EXPECT_NE(complaint("[terrain\n").find("s.toml:1: "), std::string::npos);
     EXPECT_EQ(complaint("[field]\n[terrain]\nheight = 1e9\n[material]\n").find("s.toml:3: a height of 1000000000"), 0U);

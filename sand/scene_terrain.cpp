@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/scene_terrain.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sand/dunes.hpp"
+#include "sand/esri_grid.hpp"
+
+namespace sand {
+namespace {
+
+HeightField levelField(const files::TomlTable& file) {
+    const files::TomlTable field = file.requiredTable("field");
+    const int columns = field.integerOr("columns", 512, 1, kMaxSide);
+    const int rows = field.integerOr("rows", columns, 1, kMaxSide);
+    const double width = field.numberOr("width", 2.0, files::kPositive);  // the paper's (-1, 1)
+    field.finish();
+    return {columns, rows, width / columns};
+}
+
+std::int32_t heightUnits(const files::TomlTable& terrain, const std::string& key, double height, double unit) {
+    const double units = std::floor(height / unit + 0.5);
+    if (!(std::abs(units) <= kMaxHeight)) {
+        terrain.fail(key, fmt::format("a height of {} is beyond the range of ±{} (4096 cells); set 'datum'", height,
+                                      kMaxHeight * unit));
+    }
+    return static_cast<std::int32_t>(units);
+}
+
+/// The ground of a scene that turns out to need one.
+Ground& groundOf(std::shared_ptr<Ground>& ground, const HeightField& field) {
+    if (ground == nullptr) {
+        ground = std::make_shared<Ground>(field.columns(), field.rows());
+    }
+    return *ground;
+}
+
+/// Cells without data become walls, drawn as flats at the lowest height there is.
+HeightField fromEsriGrid(const files::TomlTable& file, const files::TomlTable& terrain,
+                         std::shared_ptr<Ground>& ground) {
+    if (file.has("field")) {
+        file.fail("field", "[field] is for flat and dunes; an ESRI grid brings its own columns, rows and cell size");
+    }
+    const EsriGrid grid = readEsriGrid(terrain.folder() / terrain.text("file"));
+    const double datum = terrain.numberOr("datum", 0);
+    HeightField field(grid.columns, grid.rows, grid.cellSize);
+    std::int32_t lowest = kMaxHeight;
+    const auto forEachCell = [&](auto&& visit) {
+        for (int row = 0; row < grid.rows; ++row) {
+            for (int column = 0; column < grid.columns; ++column) {
+                visit(column, row, grid.at(column, row));
+            }
+        }
+    };
+    forEachCell([&](int column, int row, double height) {
+        if (!std::isnan(height)) {
+            const std::int32_t units = heightUnits(terrain, "file", height - datum, field.unit());
+            field.setHeight(column, row, units);
+            lowest = std::min(lowest, units);
+        }
+    });
+    forEachCell([&](int column, int row, double height) {
+        if (std::isnan(height)) {
+            field.setHeight(column, row, lowest);
+            groundOf(ground, field).setWall(column, row);
+        }
+    });
+    return field;
+}
+
+HeightField madeUp(const files::TomlTable& file, const files::TomlTable& terrain, bool withDunes) {
+    HeightField field = levelField(file);
+    const double bed = terrain.numberOr("height", 0);
+    const std::int32_t units = heightUnits(terrain, "height", bed, field.unit());
+    for (int row = 0; row < field.rows(); ++row) {
+        std::fill_n(field.row(row), field.columns(), units);
+    }
+    if (withDunes) {
+        Dunes dunes;
+        dunes.bed = bed;
+        dunes.height = terrain.numberOr("dune_height", dunes.height, {0, 1e9});
+        dunes.length = terrain.numberOr("dune_length", dunes.length, files::kPositive);
+        dunes.seed = static_cast<std::uint32_t>(terrain.integerOr("seed", 1, 0, 1 << 30));
+        heightUnits(terrain, "dune_height", bed + dunes.height, field.unit());
+        makeDunes(dunes, field);
+    }
+    return field;
+}
+
+/// Puts rock at `heightOf(column, row)` [unit] under every cell that is no wall.
+template <class HeightOf>
+void layRock(const files::TomlTable& terrain, const std::string& key, const HeightField& field, Ground& ground,
+             HeightOf heightOf) {
+    for (int row = 0; row < field.rows(); ++row) {
+        for (int column = 0; column < field.columns(); ++column) {
+            if (ground.isWall(column, row)) {
+                continue;
+            }
+            const std::int32_t rock = heightOf(column, row);
+            if (rock > field.height(column, row)) {
+                terrain.fail(key,
+                             fmt::format("the layer of sand is {} thick in column {}, row {} (from the south-west); "
+                                         "rock must lie at or below the sand",
+                                         (field.height(column, row) - rock) * field.unit(), column + 1, row + 1));
+            }
+            ground.setBedrock(column, row, rock);
+        }
+    }
+}
+
+void readBedrock(const files::TomlTable& terrain, const HeightField& field, std::shared_ptr<Ground>& ground) {
+    if (terrain.has("layer") && terrain.has("bedrock")) {
+        terrain.fail("bedrock", "give 'layer' or 'bedrock', not both: either says where the rock lies");
+    }
+    if (terrain.has("layer")) {
+        const std::int32_t layer = heightUnits(terrain, "layer", terrain.number("layer", {0, 1e9}), field.unit());
+        layRock(terrain, "layer", field, groundOf(ground, field),
+                [&](int column, int row) { return std::max(field.height(column, row) - layer, -kMaxHeight); });
+    }
+    if (terrain.has("bedrock")) {
+        const EsriGrid rock = readEsriGrid(terrain.folder() / terrain.text("bedrock"));
+        if (rock.columns != field.columns() || rock.rows != field.rows()) {
+            terrain.fail("bedrock",
+                         fmt::format("the rock has {} x {} cells, the terrain {} x {}: they must be the same",
+                                     rock.columns, rock.rows, field.columns(), field.rows()));
+        }
+        const double datum = terrain.numberOr("datum", 0);
+        layRock(terrain, "bedrock", field, groundOf(ground, field), [&](int column, int row) {
+            const double height = rock.at(column, row);
+            if (std::isnan(height)) {
+                terrain.fail("bedrock",
+                             fmt::format("no rock in column {}, row {} (from the south-west), where there is "
+                                         "sand",
+                                         column + 1, row + 1));
+            }
+            return heightUnits(terrain, "bedrock", height - datum, field.unit());
+        });
+    }
+}
+
+}  // namespace
+
+void readTerrain(const files::TomlTable& file, Scene& scene) {
+    const files::TomlTable terrain = file.requiredTable("terrain");
+    const int kind = terrain.choiceOr("kind", {"flat", "dunes", "esri_ascii"}, 0);
+    std::shared_ptr<Ground> ground;
+    scene.terrain = kind == 2 ? fromEsriGrid(file, terrain, ground) : madeUp(file, terrain, kind == 1);
+    readBedrock(terrain, scene.terrain, ground);
+    terrain.finish();
+    scene.rules.columns = scene.terrain.columns();
+    scene.rules.rows = scene.terrain.rows();
+    scene.rules.ground = ground == nullptr ? 0 : ground->digest();
+    scene.ground = ground;
+}
+
+}  // namespace sand

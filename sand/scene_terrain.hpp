@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "files/toml_table.hpp"
+#include "sand/scene.hpp"
+
+namespace sand {
+
+/// Reads [field] and [terrain] of a scene file: heights, rock, walls, and what the rules say of them. Throws
+/// files::InputError with file, line and key; a DEM's errors name the DEM's line.
+void readTerrain(const files::TomlTable& file, Scene& scene);
+
+}  // namespace sand

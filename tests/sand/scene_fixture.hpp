@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "files/input_error.hpp"
+#include "sand/scene.hpp"
+
+/// Writes scene files into a folder of its own and tells what the loader says of them.
+class SceneFile : public testing::Test {
+protected:
+    void SetUp() override {
+        folder_ = std::filesystem::temp_directory_path() /
+                  ("sandwall_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+        std::filesystem::create_directories(folder_);
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    std::filesystem::path write(const std::string& name, const std::string& text) {
+        std::ofstream(folder_ / name) << text;
+        return folder_ / name;
+    }
+    /// The one line a person reads, without the folder.
+    std::string complaint(const std::string& text) {
+        try {
+            (void)sand::loadScene(write("s.toml", text));
+        } catch (const files::InputError& error) {
+            const std::string line = error.what();
+            return line.substr(line.find(folder_.string()) == 0 ? folder_.string().size() + 1 : 0);
+        }
+        return "accepted";
+    }
+    std::filesystem::path folder_;
+};
+
+inline const std::string kFlat = "[field]\n[terrain]\n[material]\n";
