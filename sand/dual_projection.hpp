@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "sand/dual_kernel.hpp"
+#include "sand/erosion.hpp"
+
+namespace sand {
+
+/// The pile nearest to a field in which no quad is steeper than the talus, found through its fluxes.
+///
+/// Relaxed sand is close to the projection of the start, in the least-squares sense, onto the surfaces that are stable
+/// everywhere (Prigozhin 1996). A quad's slope has the mean difference east, the mean difference north, and a twist,
+/// without which a chequerboard would lie level. The dual unknown is the pressure of each quad: its maximum is sought
+/// by proximal gradient steps with momentum (Beck and Teboulle 2009) that is dropped whenever it points downhill
+/// (O'Donoghue and Candès 2015). The number of steps grows with the side of what moves, that of sweeps with its square.
+///
+/// Only a box around what moves is computed. It grows before the movement reaches its edge, so that the whole field
+/// would give the same numbers. Heights between two iterations are no sand: they overshoot. Doubles and not floats:
+/// with 512² cells in motion a float's last bit of pressure was 2 % of the talus.
+class DualProjection {
+public:
+    /// Heights at an open rim must not lie below 0: there sand falls out of the field, never into it.
+    DualProjection(const HeightField& field, const Rules& rules, CodePath path = CodePath::automatic);
+
+    /// Whether no quad is too steep at the start.
+    [[nodiscard]] bool atRest() const { return box_.empty(); }
+
+    /// Iterates until the relative duality gap is at most 1e-5, or a cap, and returns the number of iterations.
+    int run();
+
+    /// Cells, rim included, whose faces may have fluxes: a cell outside has none.
+    [[nodiscard]] const Rect& box() const { return box_; }
+    /// What the projection sends through a cell's eastern and northern face [unit · cell], rounded. A cell of the ring
+    /// around an open field has faces too.
+    [[nodiscard]] std::int64_t eastFlux(int column, int row) const;
+    [[nodiscard]] std::int64_t northFlux(int column, int row) const;
+
+private:
+    struct Measures {
+        double gap = 0, moved = 0, excess = 0;
+    };
+
+    [[nodiscard]] std::int32_t startHeight(int column, int row) const;
+    [[nodiscard]] Rect steepQuads() const;
+    [[nodiscard]] double pressure(std::size_t component, int column, int row) const;
+    void allocate(const Rect& box);
+    /// One step, and whether it turned back.
+    bool iterate(double momentum, Measures* measures);
+    [[nodiscard]] bool nearEdge() const;
+    void grow();
+
+    const HeightField& field_;
+    Rules rules_;
+    bool v3_;
+    Rect domain_;  // the field, with a ring around it where the rim is open
+    Rect box_;     // the part of it that is computed
+    std::ptrdiff_t stride_ = 0;
+    std::array<std::vector<double>, 7> arrays_;  // start, pressure now, pressure before
+    QuadPressure now_{}, before_{};
+    std::vector<double> scratch_;
+    std::array<std::vector<double>, 4> sums_;
+};
+
+}  // namespace sand
