@@ -18,8 +18,13 @@ double dot(const Faces& a, const Faces& b) { return a[0] * b[0] + a[1] * b[1] + 
 /// beside its mirror image, since quads need two.
 class Quads {
 public:
-    Quads(const HeightField& rest, const NetFlux& flux, Rim rim)
-        : rest_(rest), flux_(flux), ring_(rim == Rim::open ? 1 : 0), columns_(rest.columns()), rows_(rest.rows()) {}
+    Quads(const HeightField& rest, const NetFlux& flux, const Rules& rules)
+        : rest_(rest),
+          flux_(flux),
+          ring_(rules.rim == Rim::open ? 1 : 0),
+          columns_(rest.columns()),
+          rows_(rest.rows()),
+          northing_(static_cast<double>(kUnitsPerCell) / rules.aspect) {}
 
     /// Calls visit(differences, fluxes) for every quad, row by row. Faces that lie in two quads give half to each.
     template <class Visit>
@@ -69,16 +74,17 @@ private:
         const double b = height(x + 1, y);
         const double c = height(x, y + 1);
         const double d = height(x + 1, y + 1);
-        return {b - a, d - c, c - a, d - b};
+        return {b - a, d - c, northing_ * (c - a), northing_ * (d - b)};
     }
     [[nodiscard]] Faces fluxes(int x, int y) const {
-        return {east(x, y), east(x, y + 1), north(x, y), north(x + 1, y)};
+        return {east(x, y), east(x, y + 1), north(x, y) / northing_, north(x + 1, y) / northing_};
     }
 
     const HeightField& rest_;
     const NetFlux& flux_;
     int ring_;
     int columns_, rows_;
+    double northing_;  // slope north per difference, over slope east per difference: V·D stays what it is
 };
 
 double squaredDistance(const HeightField& a, const HeightField& b) {
@@ -95,7 +101,7 @@ double squaredDistance(const HeightField& a, const HeightField& b) {
 }  // namespace
 
 Certificate certify(const HeightField& start, const HeightField& rest, const NetFlux& flux, const Rules& rules) {
-    const Quads quads(rest, flux, rules.rim);
+    const Quads quads(rest, flux, rules);
     double steepest = rules.threshold;
     quads.forEach([&](const Faces& differences, const Faces&) {
         steepest = std::max(steepest, std::sqrt(0.5 * dot(differences, differences)));

@@ -9,11 +9,11 @@
 namespace sand {
 namespace {
 
-constexpr int kCheckEvery = 16;           // [iteration]; an iteration carries pressure at most one quad further
-constexpr int kMargin = kCheckEvery + 1;  // [quad], free of pressure around whatever has some
-constexpr double kRelativeGap = 1e-5;     // leaves 0.003 % of the sand misplaced at 512², the grid itself 0.0023 %
-constexpr double kRelativeExcess = 0.01;  // of the talus, so that a gap that only changes its sign does not count
-constexpr int kIterationsPerCell = 40;    // of width and height of the box; the slowest start known needed 4
+constexpr int kCheckEvery = 16;            // [iteration]; an iteration carries pressure at most one quad further
+constexpr int kMargin = kCheckEvery + 1;   // [quad], free of pressure around whatever has some
+constexpr double kRelativeGap = 1e-5;      // leaves 0.003 % of the sand misplaced at 512², the grid itself 0.0023 %
+constexpr double kRelativeExcess = 0.01;   // of the talus, so that a gap that only changes its sign does not count
+constexpr double kIterationsPerCell = 40;  // of width and height of the box; the slowest start known needed 4
 constexpr double kLeastExcess = 4.0 / kUnitsPerCell;  // [cell], what the sweeps leave standing
 
 bool useV3(CodePath path) {
@@ -36,7 +36,12 @@ Rect domainOf(const HeightField& field, Rim rim) {
 }  // namespace
 
 DualProjection::DualProjection(const HeightField& field, const Rules& rules, CodePath path)
-    : field_(field), rules_(rules), v3_(useV3(path)), domain_(domainOf(field, rules.rim)) {
+    : field_(field),
+      rules_(rules),
+      v3_(useV3(path)),
+      northing_(static_cast<double>(kUnitsPerCell) / rules.aspect),
+      twist_(std::max(northing_, 1.0)),
+      domain_(domainOf(field, rules.rim)) {
     const Rect steep = steepQuads();
     if (!steep.empty()) {
         allocate(grownBy(steep, 2 * kMargin, 2 * kMargin).clippedTo(domain_));
@@ -60,8 +65,8 @@ Rect DualProjection::steepQuads() const {
             const double c = startHeight(x, y + 1);
             const double d = startHeight(x + 1, y + 1);
             const double east = b - a + (d - c);
-            const double north = c - a + (d - b);
-            const double twist = d - c - (b - a);
+            const double north = northing_ * (c - a + (d - b));
+            const double twist = twist_ * (d - c - (b - a));
             if (std::sqrt(east * east + north * north + twist * twist) > 2.0 * rules_.threshold) {
                 steep = {std::min(steep.x0, x), std::min(steep.y0, y), std::max(steep.x1, x + 2),
                          std::max(steep.y1, y + 2)};
@@ -107,10 +112,10 @@ bool DualProjection::iterate(double momentum, Measures* measures) {
                                   .now = now_,
                                   .before = before_,
                                   .momentum = momentum,
-                                  .step = 0.25,
+                                  .step = 0.25 / (twist_ * twist_),
                                   .threshold = static_cast<double>(rules_.threshold) / kUnitsPerCell,
-                                  .northing = 1.0,
-                                  .twist = 1.0,
+                                  .northing = northing_,
+                                  .twist = twist_,
                                   .heldWest = open && box_.x0 == domain_.x0,
                                   .heldEast = open && box_.x1 == domain_.x1,
                                   .heldSouth = open && box_.y0 == domain_.y0,
@@ -140,7 +145,8 @@ int DualProjection::run() {
     double momentum = 0;
     bool wasClose = false;
     int iterations = 0;
-    while (!atRest() && iterations < kIterationsPerCell * (box_.x1 - box_.x0 + box_.y1 - box_.y0)) {
+    const double longest = kIterationsPerCell * std::max(northing_, 1 / northing_);
+    while (!atRest() && iterations < longest * (box_.x1 - box_.x0 + box_.y1 - box_.y0)) {
         ++iterations;
         const bool check = iterations % kCheckEvery == 0;
         Measures measures;
@@ -210,13 +216,13 @@ double DualProjection::pressure(std::size_t component, int column, int row) cons
 
 std::int64_t DualProjection::eastFlux(int column, int row) const {
     const double mean = 0.5 * (pressure(0, column, row - 1) + pressure(0, column, row));
-    const double twist = 0.25 * (pressure(2, column, row - 1) - pressure(2, column, row));
+    const double twist = 0.25 * twist_ * (pressure(2, column, row - 1) - pressure(2, column, row));
     return rounded(-kUnitsPerCell * (mean + twist));
 }
 
 std::int64_t DualProjection::northFlux(int column, int row) const {
-    const double mean = 0.5 * (pressure(1, column - 1, row) + pressure(1, column, row));
-    const double twist = 0.25 * (pressure(2, column - 1, row) - pressure(2, column, row));
+    const double mean = 0.5 * northing_ * (pressure(1, column - 1, row) + pressure(1, column, row));
+    const double twist = 0.25 * twist_ * (pressure(2, column - 1, row) - pressure(2, column, row));
     return rounded(-kUnitsPerCell * (mean + twist));
 }
 

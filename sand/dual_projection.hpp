@@ -57,8 +57,10 @@ private:
     const HeightField& field_;
     Rules rules_;
     bool v3_;
-    Rect domain_;  // the field, with a ring around it where the rim is open
-    Rect box_;     // the part of it that is computed
+    double northing_;  // slope north per difference, over slope east per difference
+    double twist_;     // weight of the twist: as much as leaves the slope's norm, and with it the step, alone
+    Rect domain_;      // the field, with a ring around it where the rim is open
+    Rect box_;         // the part of it that is computed
     std::ptrdiff_t stride_ = 0;
     std::array<std::vector<double>, 7> arrays_;  // start, pressure now, pressure before
     QuadPressure now_{}, before_{};

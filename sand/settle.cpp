@@ -26,7 +26,7 @@ Extremes extremesOf(const HeightField& field) {
 
 bool isAtRest(const HeightField& field, const Rules& rules, CodePath path) {
     HeightField swept = field;
-    Erosion(field, rules, Erosion::kDefaultBlock, path).sweep(swept, 1);
+    Erosion(field, rules, {.path = path}).sweep(swept, 1);
     return sameHeights(swept, field);
 }
 
@@ -176,7 +176,7 @@ Settled settle(HeightField& field, const Rules& rules, NetFlux* flux, CodePath p
     project(field, rules, flux, path, result);
     Rules toRest = rules;
     toRest.startThreshold = rules.threshold;
-    Erosion erosion(field, toRest, Erosion::kDefaultBlock, path);
+    Erosion erosion(field, toRest, {.path = path});
     for (; !erosion.settled(); ++result.sweeps) {
         result.outflow += erosion.sweep(field, 1);
     }
