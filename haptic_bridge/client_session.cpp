@@ -257,6 +257,14 @@ void Client::Session::shown(const Shown& frame) {
     });
 }
 
+void Client::Session::request(const EditRequest& request) {
+    asio::post(io_, [this, request] {
+        if (connection_ && link() == Link::linked) {
+            connection_->send(request);
+        }
+    });
+}
+
 void Client::Session::receive(Message&& message) {
     heard_ = std::chrono::steady_clock::now();
     {

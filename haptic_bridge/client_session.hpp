@@ -30,6 +30,7 @@ public:
     void grant(Start start, files::Bytes state);
     std::vector<TimedStep> drain(std::size_t most);
     void shown(const Shown& frame);
+    void request(const EditRequest& request);
     void stop();
 
     /// What callers see, under its mutex.

@@ -85,6 +85,9 @@ void MasterLink::receive(Message&& message) {
         server_.sequencer_->shown(*shown, monotonicNs());
     } else if (const auto* echo = std::get_if<TimingEcho>(&message); echo != nullptr && phase_ == Phase::linked) {
         echoed(echo->id);
+    } else if (const auto* request = std::get_if<EditRequest>(&message);
+               request != nullptr && phase_ == Phase::linked) {
+        server_.sequencer_->edit(*request);
     } else {
         outOfTurn();
     }

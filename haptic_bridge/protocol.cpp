@@ -116,6 +116,7 @@ void put(const Report& report, files::ByteWriter& writer) {
     eachNumber(report, [&writer](auto number) { writer.put(number); });
 }
 void put(const Bye& bye, files::ByteWriter& writer) { writer.putText(bye.reason); }
+void put(const EditRequest& request, files::ByteWriter& writer) { writer.put(static_cast<std::uint8_t>(request.edit)); }
 
 void get(Hello& hello, files::ByteReader& reader) { hello.master = getIdentity(reader); }
 void get(Welcome& welcome, files::ByteReader& reader) {
@@ -173,6 +174,13 @@ void get(Report& report, files::ByteReader& reader) {
     });
 }
 void get(Bye& bye, files::ByteReader& reader) { bye.reason = getLine(reader); }
+void get(EditRequest& request, files::ByteReader& reader) {
+    const auto edit = reader.get<std::uint8_t>();
+    if (edit == 0 || edit >= sand::kEdits) {
+        throw files::FormatError("a request for edit " + std::to_string(edit));
+    }
+    request.edit = static_cast<sand::Edit>(edit);
+}
 
 template <std::size_t index = 0>
 Message decodeType(std::uint8_t type, files::ByteReader& reader) {

@@ -17,7 +17,7 @@
 namespace haptic_bridge {
 
 inline constexpr std::uint32_t kMagic = 0x42485753;  // "SWHB" as it stands on the wire
-inline constexpr std::uint32_t kProtocolVersion = 1;
+inline constexpr std::uint32_t kProtocolVersion = 2;
 inline constexpr std::uint16_t kDefaultPort = 7750;
 inline constexpr std::size_t kMaxMessage = 64 * 1024;        // [byte], type and payload
 inline constexpr std::size_t kMaxState = 256 * 1024 * 1024;  // [byte], of a State, and only when one is expected
@@ -63,6 +63,11 @@ struct TimingEcho {
 struct Ping {
     std::int64_t masterNs = 0;
     friend bool operator==(const Ping&, const Ping&) = default;
+};
+/// An operator of the wall asks: the server puts it into its next step.
+struct EditRequest {
+    sand::Edit edit = sand::Edit::none;
+    friend bool operator==(const EditRequest&, const EditRequest&) = default;
 };
 
 // Server to master.
@@ -119,7 +124,7 @@ struct Bye {
 
 /// In the order of their type bytes, which count from 1.
 using Message = std::variant<Hello, Welcome, Refusal, Start, Ready, NeedState, State, StepMessage, TimingTest, Shown,
-                             TimingEcho, Ping, Pong, Report, Bye>;
+                             TimingEcho, Ping, Pong, Report, Bye, EditRequest>;
 
 /// The message as it goes over the wire: length, type, payload.
 [[nodiscard]] files::Bytes encode(const Message& message);

@@ -120,6 +120,7 @@ void Sequencer::obey(Released&) {
 
 void Sequencer::begin() {
     phase_ = Phase::running;
+    edit_ = sand::Edit::none;
     shown_ = start_.stepNumber;
     // Whoever numbered before may have left the tool in the sand elsewhere: no furrow from there to here.
     liftFirst_ = terrain_.engaged();
@@ -170,6 +171,7 @@ void Sequencer::makeStep() {
             message.serverTimeNs = readNs;
         }
     }
+    message.step.edit = std::exchange(edit_, sand::Edit::none);
     terrain_.apply(message.step);
     message.stateHash = terrain_.stateHash();
     output_.step(session_, encode(message));

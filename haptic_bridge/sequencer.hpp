@@ -55,6 +55,7 @@ public:
     void start(std::uint32_t session, const Start& start) { post(Granted{session, start}); }
     void state(files::Bytes bytes) { post(State{std::move(bytes)}); }
     void shown(const Shown& frame, std::int64_t nowNs) { post(Frame{frame, nowNs}); }
+    void edit(const EditRequest& request) { post(request); }
     void release() { post(Released{}); }
 
     [[nodiscard]] std::uint64_t withheld() const { return withheld_; }  // steps, over the program's life
@@ -71,7 +72,7 @@ private:
     };
     struct Released {};
     struct Stop {};
-    using Command = std::variant<Granted, State, Frame, Released, Stop>;
+    using Command = std::variant<Granted, State, Frame, EditRequest, Released, Stop>;
 
     void post(Command command);
     void run();
@@ -79,6 +80,7 @@ private:
     void obey(Granted& command);
     void obey(State& command);
     void obey(Frame& command);
+    void obey(EditRequest& request) { edit_ = request.edit; }
     void obey(Released&);
     void obey(Stop&) { stopping_ = true; }
     void begin();
@@ -106,6 +108,7 @@ private:
     std::uint32_t session_ = 0;
     Start start_;
     enum class Phase { idle, awaitingState, running } phase_ = Phase::idle;
+    sand::Edit edit_ = sand::Edit::none;  // for the next step
     std::uint64_t shown_ = 0;
     std::uint64_t virtualSteps_ = 0;  // made under the fast pace since the first start
     bool liftFirst_ = false;          // the first step of an epoch lifts a tool that was left in the sand

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "lockstep/cluster.hpp"
 
@@ -129,6 +130,7 @@ std::vector<TimedStep> Sequencer::next(const sand::Terrain& terrain, std::uint64
             TimedStep& own = steps.emplace_back();
             own.step.epoch = epoch_;
             own.step.number = terrain.stepNumber() + 1 + i;
+            own.step.edit = std::exchange(edit_, sand::Edit::none);
         }
     }
     return steps;
@@ -137,6 +139,14 @@ std::vector<TimedStep> Sequencer::next(const sand::Terrain& terrain, std::uint64
 void Sequencer::shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs) {
     if (client_) {
         client_->shown(stepNumber, frameIntervalNs);
+    }
+}
+
+void Sequencer::request(sand::Edit edit) {
+    if (source_ == Source::server) {
+        client_->request(edit);
+    } else {
+        edit_ = edit;
     }
 }
 

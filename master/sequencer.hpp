@@ -34,6 +34,9 @@ public:
     /// The wall has swapped and shows the terrain at this step.
     void shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs);
 
+    /// An operator asks for an edit: it goes into the next step, whoever numbers it.
+    void request(sand::Edit edit);
+
     /// The server's replica holds other sand than the wall: it is let go, and starts again from the wall's state.
     void distrustServer();
 
@@ -69,6 +72,7 @@ private:
     std::int64_t waitingSinceNs_;    // for a server to answer, or to begin
     haptic_bridge::LinkCounters earlierLinks_;
     std::optional<haptic_bridge::Report> earlierReport_;
+    sand::Edit edit_ = sand::Edit::none;  // for the next step of our own
     double ownStepsOwed_ = 0;
     std::int64_t lastOwnNs_ = 0;
 };

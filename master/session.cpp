@@ -68,7 +68,7 @@ Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, con
       barrier_(cluster, names_, options_.frameTimeout),
       journal_(options_.out / "session.journal", scene, lockstep::buildId()),
       sequencer_(options_.server, scene, options_.pace),
-      stop_(options_.readInput) {
+      operator_(options_.readInput) {
     summary_.scene = scene.name;
     summary_.wall = wall.name;
     summary_.ranks = wall.ranks();
@@ -96,9 +96,13 @@ std::vector<TimedStep> Session::awaitSteps() {
     const bool fast = options_.pace == Pace::fast;
     std::size_t most = fast ? kMostStepsPerFastFrame : kMostStepsPerFrame;
     most = std::min<std::uint64_t>(most, options_.steps - terrain_.stepNumber());
+    if (const sand::Edit edit = operator_.takeEdit(); edit != sand::Edit::none) {
+        sequencer_.request(edit);
+    }
     const std::int64_t since = nowNs();
     std::vector<TimedStep> steps = sequencer_.next(terrain_, hash_, most);
-    while (fast && steps.empty() && !stop_.made() && static_cast<double>(nowNs() - since) * 1e-9 < kFastPatience) {
+    while (fast && steps.empty() && !operator_.stopAsked() &&
+           static_cast<double>(nowNs() - since) * 1e-9 < kFastPatience) {
         sleepNs(500'000);
         steps = sequencer_.next(terrain_, hash_, most);
     }
@@ -113,7 +117,7 @@ lockstep::FrameMessage Session::prepare(std::vector<TimedStep>& steps) {
         message.steps.push_back(timed.step);
     }
     const std::uint64_t shownThen = terrain_.stepNumber() + steps.size();
-    message.stop = stop_.made() || frame_ >= options_.frames || shownThen >= options_.steps;
+    message.stop = operator_.stopAsked() || frame_ >= options_.frames || shownThen >= options_.steps;
     message.capture = message.stop && options_.pictures;
     const double sinceLast = lastSwap_ == 0 ? 0 : static_cast<double>(nowNs() - lastSwap_) * 1e-9;
     const int tiles = terrain_.hashTiles().tileCount();
@@ -125,6 +129,7 @@ lockstep::FrameMessage Session::prepare(std::vector<TimedStep>& steps) {
 void Session::applySteps(const std::vector<TimedStep>& steps) {
     for (const TimedStep& timed : steps) {
         terrain_.apply(timed.step);
+        summary_.edits += timed.step.edit == sand::Edit::none ? 0 : 1;
     }
 }
 

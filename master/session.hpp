@@ -12,8 +12,8 @@
 #include "lockstep/frame_barrier.hpp"
 #include "lockstep/frame_message.hpp"
 #include "master/journal.hpp"
+#include "master/operator_input.hpp"
 #include "master/sequencer.hpp"
-#include "master/stop_request.hpp"
 #include "master/summary.hpp"
 #include "sand/terrain.hpp"
 #include "walls/wall.hpp"
@@ -66,7 +66,7 @@ private:
     lockstep::FrameBarrier barrier_;
     JournalWriter journal_;
     Sequencer sequencer_;
-    StopRequest stop_;
+    OperatorInput operator_;
     Summary summary_;
     std::uint64_t frame_ = 0;
     std::uint64_t hash_ = 0;                                      // of the state the wall shows

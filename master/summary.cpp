@@ -68,6 +68,7 @@ ordered_json jsonOf(const Summary& summary) {
     json["server_divergences"] = summary.serverDivergences;
     json["volume_initial"] = summary.volumeInitial;
     json["volume_final"] = summary.volumeFinal;
+    json["edits"] = summary.edits;
     json["volume_outflow"] = summary.volumeOutflow;
     json["seconds"] = summary.seconds;
     json["fps"] = framesPerSecond(summary);

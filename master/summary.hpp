@@ -26,6 +26,7 @@ struct Latency {
 struct Summary {
     std::string scene, wall;
     std::uint64_t frames = 0, steps = 0;
+    std::uint64_t edits = 0;  // steps in which an operator asked something of the sand
     int ranks = 0;
     std::uint64_t stateHash = 0;
     std::uint64_t divergences = 0;                                       // frames on which the ranks' sand differed

@@ -9,7 +9,7 @@ namespace sand {
 void encode(const Step& step, files::ByteWriter& writer) {
     writer.putVarint(step.epoch);
     writer.putVarint(step.number);
-    writer.put(static_cast<std::uint8_t>(step.engaged ? 1 : 0));
+    writer.put(static_cast<std::uint8_t>((step.engaged ? 1 : 0) + 2 * static_cast<int>(step.edit)));
     writer.put(static_cast<std::uint8_t>(step.path.size()));
     ProbePoint last;
     for (const ProbePoint& point : step.path) {
@@ -39,12 +39,13 @@ Step decodeStep(files::ByteReader& reader) {
     }
     step.epoch = static_cast<std::uint32_t>(epoch);
     step.number = reader.getVarint();
-    const auto engaged = reader.get<std::uint8_t>();
+    const auto flags = reader.get<std::uint8_t>();
     const auto count = reader.get<std::uint8_t>();
-    if (engaged > 1 || count > kMaxPathPoints) {
-        throw files::FormatError("a step with " + std::to_string(count) + " points, flags " + std::to_string(engaged));
+    if (flags >= 2 * kEdits || count > kMaxPathPoints) {
+        throw files::FormatError("a step with " + std::to_string(count) + " points, flags " + std::to_string(flags));
     }
-    step.engaged = engaged == 1;
+    step.engaged = flags % 2 == 1;
+    step.edit = static_cast<Edit>(flags / 2);
     step.path.reserve(count);
     ProbePoint last;
     for (int i = 0; i < count; ++i) {

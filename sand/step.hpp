@@ -21,7 +21,11 @@ struct ProbePoint {
 /// The largest magnitude of a probe coordinate: any further out, and the tool is clamped by whoever quantises it.
 inline constexpr std::int32_t kMaxProbe = 1 << 24;  // [probe unit], four times the longest field
 
-/// The only thing that changes sand: where the hand has been since the step before.
+/// What an operator may ask of the sand.
+enum class Edit : std::uint8_t { none, settle };  // settle: let it come to rest at once
+inline constexpr int kEdits = 2;
+
+/// The only thing that changes sand: where the hand has been since the step before, and what an operator asked.
 ///
 /// `number` counts 1, 2, 3 … over a whole session; `epoch` names who numbered it (one sequencer per epoch). The path
 /// starts at the last point of the step before and may be empty (the hand rests); at most kMaxPathPoints.
@@ -30,6 +34,7 @@ struct Step {
     std::uint64_t number = 0;
     bool engaged = false;  // the tool touches; otherwise it hovers and leaves the sand alone
     std::vector<ProbePoint> path;
+    Edit edit = Edit::none;  // done after the tool's displacement, before the sweeps
     friend bool operator==(const Step&, const Step&) = default;
 };
 

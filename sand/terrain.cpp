@@ -7,11 +7,13 @@
 #include <string>
 
 #include "sand/grid_codec.hpp"
+#include "sand/settle.hpp"
 
 namespace sand {
 namespace {
 
 constexpr std::uint32_t kStateVersion = 2;
+constexpr int kSweepsToRest = 1 << 20;  // more than any field that is worth waiting for
 
 Rect around(const Rect& a, const Rect& b) {
     if (a.empty()) {
@@ -77,6 +79,9 @@ void Terrain::apply(const Step& step) {
     engaged_ = step.engaged;
     stepNumber_ = step.number;
 
+    if (step.edit == Edit::settle) {
+        settleNow();
+    }
     const Obstacle here = engaged_ ? tool.obstacle(field_, probe_) : Obstacle{};
     if (wasEngaged && (!engaged_ || probe_ != before)) {
         // Sand that the tool held back may flow again.
@@ -86,6 +91,17 @@ void Terrain::apply(const Step& step) {
     for (const Rect& block : erosion_.takeMoved()) {
         touch(block);
     }
+}
+
+void Terrain::settleNow() {
+    if (ground_ != nullptr) {
+        // The projection knows no rock and no walls; sweeps do, and take longer.
+        outflow_ += erosion_.sweep(field_, kSweepsToRest);
+        return;
+    }
+    outflow_ += settle(field_, rules_).outflow;
+    erosion_.touch(field_.bounds());
+    touch(field_.bounds());
 }
 
 std::uint64_t Terrain::stateHash() {

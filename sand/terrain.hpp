@@ -22,8 +22,8 @@ public:
     /// `options` say how the sand is swept, not what comes of it; their ground is the scene's own.
     explicit Terrain(const Scene& scene, const Erosion::Options& options = {});
 
-    /// The tool displaces sand along the step's path, then Rules::sweepsPerStep sweeps let it slide. Steps must come
-    /// in order: throws std::logic_error when step.number is not stepNumber() + 1.
+    /// The tool displaces sand along the step's path, what an operator asked is done, then Rules::sweepsPerStep sweeps
+    /// let the sand slide. Steps must come in order: throws std::logic_error when step.number is not stepNumber() + 1.
     void apply(const Step& step);
 
     [[nodiscard]] const HeightField& field() const { return field_; }
@@ -57,6 +57,7 @@ public:
 
 private:
     void touch(const Rect& cells);
+    void settleNow();
 
     Rules rules_;
     std::shared_ptr<const Ground> ground_;

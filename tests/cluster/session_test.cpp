@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <thread>
 
 #include "tests/cluster/session_fixture.hpp"
 #include "tests/support/run_program.hpp"
@@ -31,6 +33,26 @@ TEST_F(Lockstep, OneFourAndThirteenRanksHashLikeTheirJournal) {
             expected = hash;
         }
         EXPECT_EQ(hash, expected) << rows << " x " << columns << " ranks";
+    }
+}
+
+// With and without a hand: whoever numbers the steps takes the operator's wish into one of them.
+TEST_F(Lockstep, AnOperatorSettlesTheSandOnEveryReplica) {
+    for (const std::string device : {"script:gis", "none"}) {
+        const auto session = start({"--wall", wall(1, 2), "--scene", scene(), "--device", device, "--steps", "100000",
+                                    "--out", out(), "--no-pictures"});
+        ASSERT_TRUE(session->waitForOutput(device == "none" ? "no hand" : "hand linked", 60)) << session->output();
+        session->type("settle");
+        session->type("dance");
+        ASSERT_TRUE(session->waitForOutput("'dance' is no command; these are: settle, stop", 30)) << session->output();
+        std::this_thread::sleep_for(std::chrono::seconds(2));
+        session->type("stop");
+        EXPECT_EQ(session->wait(60), 0) << session->output();
+        EXPECT_EQ(summary()["edits"], 1) << device;
+        EXPECT_EQ(summary()["divergences"], 0);
+        EXPECT_EQ(summary()["server_divergences"], 0);
+        const support::Ran replayed = support::runProgram("sandwall-replay", out() + "/session.journal --hash");
+        EXPECT_EQ(replayed.output, summary()["state_hash"].get<std::string>() + "\n");
     }
 }
 

@@ -35,7 +35,8 @@ std::vector<Message> oneOfEach() {
             Ping{123},
             Pong{123, -9},
             report,
-            Bye{"good night"}};
+            Bye{"good night"},
+            EditRequest{sand::Edit::settle}};
 }
 
 std::span<const std::uint8_t> withoutLength(const files::Bytes& framed) {

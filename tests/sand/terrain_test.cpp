@@ -152,6 +152,26 @@ TEST(Terrain, GoesOnInMidSlide) {
     }
 }
 
+TEST(Terrain, SettlesAtOnceWhenAsked) {
+    sand::Scene scene = samples::flatScene(64, 64);
+    scene.terrain = samples::cylinder(64, 12, 30);
+    scene.rules.sweepsPerStep = 4;
+    for (const bool onRock : {false, true}) {
+        if (onRock) {
+            scene.ground = std::make_shared<sand::Ground>(64, 64);
+            scene.rules.ground = scene.ground->digest();
+        }
+        Terrain terrain(scene);
+        terrain.apply({1, 1, false, {}, sand::Edit::settle});
+        EXPECT_TRUE(terrain.settled());
+        EXPECT_EQ(terrain.field().volume(), scene.terrain.volume());
+        EXPECT_LT(terrain.field().height(32, 32), scene.terrain.height(32, 32)) << "a cone, lower than its cylinder";
+        const std::uint64_t incremental = terrain.stateHash();
+        terrain.audit(terrain.hashTiles().tileCount());
+        EXPECT_EQ(terrain.stateHash(), incremental);
+    }
+}
+
 TEST(Terrain, IncrementalHashEqualsAFreshOne) {
     const sand::Scene scene = samples::flatScene(70, 50);
     std::mt19937 random(31);

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <fstream>
@@ -60,19 +61,24 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command, std::filesys
         words.push_back(const_cast<char*>(word.c_str()));
     }
     words.push_back(nullptr);
+    std::array<int, 2> input{};
+    if (pipe2(input.data(), O_CLOEXEC) != 0) {
+        throw std::runtime_error("no pipe for " + command.at(0));
+    }
     pid_ = fork();
     if (pid_ < 0) {
         throw std::runtime_error("cannot start " + command.at(0));
     }
     if (pid_ == 0) {
         const int file = open(outputFile_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-        const int nothing = open("/dev/null", O_RDONLY);
-        dup2(nothing, STDIN_FILENO);
+        dup2(input[0], STDIN_FILENO);
         dup2(file, STDOUT_FILENO);
         dup2(file, STDERR_FILENO);
         execv(words[0], words.data());
         _exit(127);
     }
+    close(input[0]);
+    input_ = input[1];
 }
 
 ChildProcess::~ChildProcess() {
@@ -83,6 +89,14 @@ ChildProcess::~ChildProcess() {
         }
     }
     (void)wait(5);
+    close(input_);
+}
+
+void ChildProcess::type(const std::string& line) const {
+    const std::string text = line + "\n";
+    if (write(input_, text.data(), text.size()) != static_cast<ssize_t>(text.size())) {
+        throw std::runtime_error("nobody reads '" + line + "'");
+    }
 }
 
 std::string ChildProcess::output() const {

@@ -27,12 +27,15 @@ public:
     /// Exit status, 128 + signal when a signal ended it; nothing when it still runs after `seconds`.
     [[nodiscard]] std::optional<int> wait(double seconds);
     void signal(int number) const;
+    /// Types a line on its standard input.
+    void type(const std::string& line) const;
 
     /// Every process below this one at this moment, and itself.
     [[nodiscard]] std::vector<pid_t> family() const;
 
 private:
     pid_t pid_;
+    int input_ = -1;  // our end of its standard input
     std::filesystem::path outputFile_;
     std::optional<int> status_;
 };

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "master/stop_request.hpp"
+#include "master/operator_input.hpp"
 
+#include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -12,13 +14,15 @@
 namespace master {
 namespace {
 
+constexpr std::size_t kLongestLine = 1024;  // what never ends is no command
+
 volatile std::sig_atomic_t signalled = 0;
 
 void onSignal(int) { signalled = 1; }
 
 }  // namespace
 
-StopRequest::StopRequest(bool readInput) {
+OperatorInput::OperatorInput(bool readInput) {
     struct sigaction action {};
     action.sa_handler = onSignal;
     sigaction(SIGTERM, &action, nullptr);
@@ -28,7 +32,7 @@ StopRequest::StopRequest(bool readInput) {
     }
 }
 
-StopRequest::~StopRequest() {
+OperatorInput::~OperatorInput() {
     if (thread_.joinable()) {
         close(wake_[1]);
         thread_.join();
@@ -36,13 +40,26 @@ StopRequest::~StopRequest() {
     }
 }
 
-bool StopRequest::made() const { return made_ || signalled != 0; }
+bool OperatorInput::stopAsked() const { return stop_ || signalled != 0; }
 
-void StopRequest::listen() {
-    std::string line;
+bool OperatorInput::obey(std::string_view line) {
+    if (line == "stop") {
+        return false;
+    }
+    if (line == "settle") {
+        edit_ = sand::Edit::settle;
+    } else if (!line.empty()) {
+        fmt::print(stderr, "'{}' is no command; these are: settle, stop\n", line.substr(0, 80));
+    }
+    return true;
+}
+
+void OperatorInput::listen() {
+    std::string text;
+    bool listening = true;
     std::array<char, 256> piece{};
     std::array<pollfd, 2> watched{{{STDIN_FILENO, POLLIN, 0}, {wake_[0], POLLIN, 0}}};
-    for (;;) {
+    while (listening) {
         if (poll(watched.data(), watched.size(), -1) < 0) {
             if (errno == EINTR) {
                 continue;
@@ -59,13 +76,14 @@ void StopRequest::listen() {
         if (count <= 0) {
             break;
         }
-        line.append(piece.data(), static_cast<std::size_t>(count));
-        if (line.find("stop\n") != std::string::npos) {
-            break;
+        text.append(piece.data(), static_cast<std::size_t>(count));
+        for (std::size_t end = text.find('\n'); end != std::string::npos && listening; end = text.find('\n')) {
+            listening = obey(std::string_view(text).substr(0, end));
+            text.erase(0, end + 1);
         }
-        line.erase(0, line.rfind('\n') + 1);
+        text.resize(std::min(text.size(), kLongestLine));
     }
-    made_ = true;
+    stop_ = true;
 }
 
 }  // namespace master
