@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+
+#include "sand/height_field.hpp"
+#include "sand/net_flux.hpp"
+
+/// Plain sweeps, cell by cell, that tell what passed every face: what fast ones are compared with.
+namespace reference {
+
+/// Difference from north to south, or east to west, of a cell's neighbours; beyond the rim the ground goes on as it
+/// came.
+inline double alongColumn(const sand::HeightField& field, int x, int y) {
+    const auto height = [&](int row) { return static_cast<double>(field.height(x, row)); };
+    const int last = field.rows() - 1;
+    const double above = y < last ? height(y + 1) : 2 * height(last) - height(std::max(last - 1, 0));
+    const double below = y > 0 ? height(y - 1) : 2 * height(0) - height(std::min(1, last));
+    return above - below;
+}
+inline double alongRow(const sand::HeightField& field, int x, int y) {
+    const auto height = [&](int column) { return static_cast<double>(field.height(column, y)); };
+    const int last = field.columns() - 1;
+    const double east = x < last ? height(x + 1) : 2 * height(last) - height(std::max(last - 1, 0));
+    const double west = x > 0 ? height(x - 1) : 2 * height(0) - height(std::min(1, last));
+    return east - west;
+}
+
+/// Scheme G of NUMERICS.
+struct Isotropic {
+    std::int64_t operator()(double across, double along, double threshold) const {
+        const double slope = std::sqrt(across * across + along * along / 16);
+        return slope > threshold ? static_cast<std::int64_t>(0.2499 * (1 - threshold / slope) * across) : 0;
+    }
+};
+
+/// N4: each pair of neighbours by itself.
+struct FourNeighbours {
+    std::int64_t operator()(double across, double, double threshold) const {
+        const double flux = std::ceil(std::max(std::abs(across) - threshold, 0.0) / 4);
+        return static_cast<std::int64_t>(across < 0 ? -flux : flux);
+    }
+};
+
+/// Sweeps a closed field of square cells until nothing moves; returns all that passed its faces.
+template <class Law>
+sand::NetFlux relax(sand::HeightField& field, std::int32_t threshold, Law law) {
+    sand::NetFlux total(field.columns(), field.rows());
+    for (bool moved = true; moved;) {
+        moved = false;
+        sand::NetFlux now(field.columns(), field.rows());
+        for (int y = 0; y < field.rows(); ++y) {
+            for (int x = 0; x < field.columns(); ++x) {
+                const double here = field.height(x, y);
+                if (x + 1 < field.columns()) {
+                    now.east(y)[x] = law(here - field.height(x + 1, y),
+                                         alongColumn(field, x, y) + alongColumn(field, x + 1, y), threshold);
+                    moved = moved || now.east(y)[x] != 0;
+                }
+                if (y + 1 < field.rows()) {
+                    now.north(y)[x] = law(here - field.height(x, y + 1),
+                                          alongRow(field, x, y) + alongRow(field, x, y + 1), threshold);
+                    moved = moved || now.north(y)[x] != 0;
+                }
+            }
+        }
+        for (int y = 0; y < field.rows(); ++y) {
+            for (int x = 0; x < field.columns(); ++x) {
+                field.setHeight(x, y, static_cast<std::int32_t>(field.height(x, y) + now.rise(x, y)));
+            }
+        }
+        total.add(now);
+    }
+    return total;
+}
+
+}  // namespace reference
