@@ -106,13 +106,17 @@ Certificate certify(const HeightField& start, const HeightField& rest, const Net
     quads.forEach([&](const Faces& differences, const Faces&) {
         steepest = std::max(steepest, std::sqrt(0.5 * dot(differences, differences)));
     });
-    double sum = 0;
+    double lengths = 0;
+    double descents = 0;
     quads.forEach([&](const Faces& differences, const Faces& fluxes) {
+        lengths += std::numbers::sqrt2 * std::sqrt(dot(fluxes, fluxes));
         // Sand flows downhill: a flux east belongs to a difference below zero.
-        sum += std::numbers::sqrt2 * steepest * std::sqrt(dot(fluxes, fluxes)) + dot(fluxes, differences);
+        descents -= dot(fluxes, differences);
     });
-    return {
-        .squaredDistance = sum / quads.images(), .squaredMoved = squaredDistance(start, rest), .steepest = steepest};
+    return {.squaredDistance = (steepest * lengths - descents) / quads.images(),
+            .gap = (rules.threshold * lengths - descents) / quads.images(),
+            .squaredMoved = squaredDistance(start, rest),
+            .steepest = steepest};
 }
 
 }  // namespace sand
