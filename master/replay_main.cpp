@@ -43,7 +43,7 @@ void writeHeights(const sand::HeightField& field, const std::string& file) {
     sand::EsriGrid grid{field.columns(), field.rows(), field.cellSize(), 0, 0, {}};
     for (int y = field.rows() - 1; y >= 0; --y) {
         for (int x = 0; x < field.columns(); ++x) {
-            grid.heights.push_back(field.height(x, y) * field.unit());
+            grid.heights.push_back(sand::withFewDecimals(field.height(x, y) * field.unit(), field.unit()));
         }
     }
     sand::writeEsriGrid(grid, file);

@@ -4,16 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <limits>
-#include <optional>
 #include <string>
 #include <string_view>
 
 #include "files/input_error.hpp"
+#include "files/whole_file.hpp"
 #include "sand/height_field.hpp"
 
 namespace sand {
@@ -81,79 +82,76 @@ int sideOf(Words& words, const std::string& key) {
     return static_cast<int>(side);
 }
 
-/// Reads the header into `grid`; returns the value that stands for no data.
-std::optional<double> readHeader(Words& words, EsriGrid& grid) {
-    std::optional<double> noData;
+constexpr double kNoData = std::numeric_limits<double>::quiet_NaN();
+
+double sizeOf(Words& words, const std::string& key) {
+    const double size = words.number(key);
+    if (!(size > 0)) {
+        words.fail(fmt::format("{} must be positive, got {}", key, size));
+    }
+    return size;
+}
+
+/// What stands for no data: any number, or the "nan" that GDAL writes.
+double noDataOf(Words& words, const std::string& key) {
+    if (lower(words.peek()) == "nan") {
+        words.next();
+        return kNoData;
+    }
+    return words.number(key);
+}
+
+void readHeader(Words& words, EsriGrid& grid) {
     bool centres = false;
-    while (!words.peek().empty() && std::isalpha(static_cast<unsigned char>(words.peek().front())) != 0) {
+    double square = 0;
+    const auto isKey = [](std::string_view word) {
+        return !word.empty() && std::isalpha(static_cast<unsigned char>(word.front())) != 0 && lower(word) != "nan";
+    };
+    while (isKey(words.peek())) {
         const std::string key = lower(words.next());
         if (key == "ncols") {
             grid.columns = sideOf(words, key);
         } else if (key == "nrows") {
             grid.rows = sideOf(words, key);
         } else if (key == "cellsize") {
-            grid.cellSize = words.number(key);
+            square = sizeOf(words, key);
+        } else if (key == "dx") {
+            grid.cellSize = sizeOf(words, key);
+        } else if (key == "dy") {
+            grid.cellDepth = sizeOf(words, key);
         } else if (key == "xllcorner" || key == "xllcenter") {
             grid.westEdge = words.number(key);
             centres = key == "xllcenter";
         } else if (key == "yllcorner" || key == "yllcenter") {
             grid.southEdge = words.number(key);
         } else if (key == "nodata_value") {
-            noData = words.number(key);
+            grid.noData = noDataOf(words, key);
         } else {
             words.fail(fmt::format("'{}' is no key of an ESRI ASCII grid", key));
         }
     }
-    if (grid.columns == 0 || grid.rows == 0 || !(grid.cellSize > 0)) {
-        words.fail("an ESRI ASCII grid begins with ncols, nrows and a positive cellsize");
+    const bool dx = grid.cellSize > 0;
+    const bool dy = grid.cellDepth.has_value();
+    if (grid.columns == 0 || grid.rows == 0 || dx != dy || dx == (square > 0)) {
+        words.fail("an ESRI ASCII grid begins with ncols, nrows, and either cellsize or dx and dy");
+    }
+    if (square > 0) {
+        grid.cellSize = square;
     }
     if (centres) {
         grid.westEdge -= grid.cellSize / 2;
-        grid.southEdge -= grid.cellSize / 2;
+        grid.southEdge -= grid.cellDepth.value_or(grid.cellSize) / 2;
     }
-    return noData;
 }
 
-constexpr double kNoData = std::numeric_limits<double>::quiet_NaN();  // no file can hold it: it is not finite
-
-/// Cuts off edges without any data, which exporters leave around a rotated or resampled raster. `lines` is where each
-/// row begins in the file.
-EsriGrid withoutEmptyEdges(const EsriGrid& grid, const std::vector<long>& lines, const std::string& file) {
-    int west = grid.columns;
-    int east = -1;
-    int south = grid.rows;
-    int north = -1;
-    for (int row = 0; row < grid.rows; ++row) {
-        for (int column = 0; column < grid.columns; ++column) {
-            if (!std::isnan(grid.at(column, row))) {
-                west = std::min(west, column);
-                east = std::max(east, column);
-                south = std::min(south, row);
-                north = row;
-            }
-        }
+/// The next word as a height, or as no data.
+double heightOf(Words& words, const EsriGrid& grid) {
+    if (grid.noData && std::isnan(*grid.noData) && lower(words.peek()) == "nan") {
+        words.next();
+        return kNoData;
     }
-    if (east < 0) {
-        throw files::InputError(file + ": every cell is a no-data cell; there is no terrain in it");
-    }
-    EsriGrid result{east - west + 1,
-                    north - south + 1,
-                    grid.cellSize,
-                    grid.westEdge + west * grid.cellSize,
-                    grid.southEdge + south * grid.cellSize,
-                    {}};
-    for (int row = north; row >= south; --row) {
-        for (int column = west; column <= east; ++column) {
-            if (std::isnan(grid.at(column, row))) {
-                throw files::InputError(file, lines[static_cast<std::size_t>(grid.rows - 1 - row)],
-                                        fmt::format("no-data cell in column {} of this row, amid others; fill it or "
-                                                    "crop the grid",
-                                                    column + 1));
-            }
-            result.heights.push_back(grid.at(column, row));
-        }
-    }
-    return result;
+    const double height = words.number("a height");
+    return grid.noData && height == *grid.noData ? kNoData : height;
 }
 
 }  // namespace
@@ -166,37 +164,89 @@ EsriGrid readEsriGrid(const std::filesystem::path& file) {
     }
     Words words({std::istreambuf_iterator<char>(stream), {}}, file.string());
     EsriGrid grid;
-    const std::optional<double> noData = readHeader(words, grid);
+    grid.file = file.string();
+    readHeader(words, grid);
     const std::size_t cells = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
     grid.heights.reserve(std::min<std::size_t>(cells, 1 << 20));  // a lying header must not allocate gigabytes
-    std::vector<long> lines;                                      // of the first value of each row
     for (std::size_t i = 0; i < cells; ++i) {
-        const double height = words.number("a height");
-        grid.heights.push_back(noData && height == *noData ? kNoData : height);
+        grid.heights.push_back(heightOf(words, grid));
         if (i % static_cast<std::size_t>(grid.columns) == 0) {
-            lines.push_back(words.line());
+            grid.lines.push_back(words.line());
         }
     }
     if (!words.next().empty()) {
         words.fail(fmt::format("more values than ncols x nrows = {}", cells));
     }
-    return withoutEmptyEdges(grid, lines, file.string());
+    return grid;
+}
+
+void EsriGrid::fail(int column, int rowFromSouth, const std::string& message) const {
+    const long line = lines.empty() ? 0 : lines[static_cast<std::size_t>(rows - 1 - rowFromSouth)];
+    throw files::InputError(file, line, fmt::format("column {} of this row: {}", column + 1, message));
+}
+
+Rect cellsWithData(const EsriGrid& grid) {
+    Rect filled{grid.columns, grid.rows, 0, 0};
+    for (int row = 0; row < grid.rows; ++row) {
+        for (int column = 0; column < grid.columns; ++column) {
+            if (!grid.isNoData(column, row)) {
+                filled = {std::min(filled.x0, column), std::min(filled.y0, row), std::max(filled.x1, column + 1),
+                          row + 1};
+            }
+        }
+    }
+    return filled.empty() ? Rect{} : filled;
+}
+
+EsriGrid withoutEmptyEdges(const EsriGrid& grid) {
+    const Rect filled = cellsWithData(grid);
+    if (filled.empty()) {
+        throw files::InputError(grid.file + ": every cell is a no-data cell; there is no terrain in it");
+    }
+    EsriGrid result = grid;
+    result.columns = filled.x1 - filled.x0;
+    result.rows = filled.y1 - filled.y0;
+    result.westEdge += filled.x0 * grid.cellSize;
+    result.southEdge += filled.y0 * grid.cellDepth.value_or(grid.cellSize);
+    result.heights.clear();
+    for (int row = filled.y1 - 1; row >= filled.y0; --row) {
+        const double* cells = grid.heights.data() + grid.index(0, row);
+        result.heights.insert(result.heights.end(), cells + filled.x0, cells + filled.x1);
+    }
+    if (!grid.lines.empty()) {
+        const auto first = grid.lines.begin() + (grid.rows - filled.y1);
+        result.lines.assign(first, first + result.rows);
+    }
+    return result;
 }
 
 void writeEsriGrid(const EsriGrid& grid, const std::filesystem::path& file) {
-    std::ofstream stream(file, std::ios::binary);
-    stream << fmt::format("ncols {}\nnrows {}\nxllcorner {}\nyllcorner {}\ncellsize {}\nNODATA_value -9999\n",
-                          grid.columns, grid.rows, grid.westEdge, grid.southEdge, grid.cellSize);
-    std::size_t next = 0;
-    for (int y = 0; y < grid.rows; ++y) {
-        for (int x = 0; x < grid.columns; ++x) {
-            stream << fmt::format("{:.9g}{}", grid.heights[next++], x + 1 == grid.columns ? '\n' : ' ');
+    files::WholeFile whole(file);
+    const std::string cells = grid.cellDepth ? fmt::format("dx {}\ndy {}", grid.cellSize, *grid.cellDepth)
+                                             : fmt::format("cellsize {}", grid.cellSize);
+    whole.stream() << fmt::format("ncols {}\nnrows {}\nxllcorner {}\nyllcorner {}\n{}\n", grid.columns, grid.rows,
+                                  grid.westEdge, grid.southEdge, cells);
+    const auto& heights = grid.heights;
+    const double noData = grid.noData.value_or(-9999);
+    if (grid.noData || std::any_of(heights.begin(), heights.end(), [](double height) { return std::isnan(height); })) {
+        whole.stream() << fmt::format("NODATA_value {}\n", noData);
+    }
+    std::string line;
+    for (int row = grid.rows - 1; row >= 0; --row) {
+        line.clear();
+        for (int column = 0; column < grid.columns; ++column) {
+            fmt::format_to(std::back_inserter(line), "{} ", grid.isNoData(column, row) ? noData : grid.at(column, row));
         }
+        line.back() = '\n';
+        whole.stream() << line;
     }
-    stream.flush();
-    if (!stream) {
-        throw files::InputError(fmt::format("{}: cannot be written; check path and free space", file.string()));
-    }
+    whole.keep();
+}
+
+double withFewDecimals(double height, double unit) {
+    const double power = std::pow(10, std::max(std::ceil(-std::log10(unit)) + 2, 0.0));
+    const double shifted = std::round(height * power);
+    return std::isfinite(shifted) ? shifted / power : height;
 }
 
 }  // namespace sand

@@ -44,7 +44,14 @@ HeightField fromEsriGrid(const files::TomlTable& file, const files::TomlTable& t
     if (file.has("field")) {
         file.fail("field", "[field] is for flat and dunes; an ESRI grid brings its own columns, rows and cell size");
     }
-    const EsriGrid grid = readEsriGrid(terrain.folder() / terrain.text("file"));
+    const EsriGrid whole = readEsriGrid(terrain.folder() / terrain.text("file"));
+    if (whole.aspect() != 1) {
+        terrain.fail("file", fmt::format("{} has cells of {} x {}; a scene's are square", whole.file, whole.cellSize,
+                                         *whole.cellDepth));
+    }
+    // A grid of rock has the same cells, those at the edges too.
+    const EsriGrid trimmed = withoutEmptyEdges(whole);
+    const EsriGrid& grid = terrain.has("bedrock") ? whole : trimmed;
     const double datum = terrain.numberOr("datum", 0);
     HeightField field(grid.columns, grid.rows, grid.cellSize);
     std::int32_t lowest = kMaxHeight;

@@ -24,6 +24,17 @@ TEST_F(SceneFile, ALayerLiesOnRock) {
     EXPECT_EQ(scene.ground->sand(2, 0, scene.terrain.height(2, 0)), sand::kUnitsPerCell / 2);
 }
 
+TEST_F(SceneFile, CellsWithoutDataAreWallsAndEmptyEdgesAreCutOff) {
+    write("t.asc", "ncols 4\nnrows 4\ncellsize 1\nNODATA_value -1\n-1 -1 -1 -1\n1 2 3 -1\n4 -1 6 -1\n7 8 9 -1\n");
+    const sand::Scene scene = sand::loadScene(write("s.toml", kFromGrid));
+    ASSERT_EQ(scene.terrain.columns(), 3);
+    ASSERT_EQ(scene.terrain.rows(), 3);
+    ASSERT_NE(scene.ground, nullptr);
+    EXPECT_TRUE(scene.ground->isWall(1, 1));
+    EXPECT_FALSE(scene.ground->isWall(2, 1));
+    EXPECT_EQ(scene.terrain.height(0, 0), 7 * sand::kUnitsPerCell);
+}
+
 TEST_F(SceneFile, RockComesFromASecondGrid) {
     write("t.asc", kGrid + "1 2 3\n4 5 6\n");
     write("rock.asc", kGrid + "0 0 0\n4 4 4\n");

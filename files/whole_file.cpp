@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "files/whole_file.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "files/input_error.hpp"
+
+namespace files {
+
+WholeFile::WholeFile(const std::filesystem::path& path) : path_(path), target_(path) {
+    std::error_code none;
+    const bool there = std::filesystem::exists(path, none);
+    // Renaming would replace what may not be written to.
+    if (there && (std::filesystem::is_directory(path, none) || ::access(path.c_str(), W_OK) != 0)) {
+        fail();
+    }
+    if (there && !std::filesystem::is_regular_file(path, none)) {
+        stream_.open(target_, std::ios::binary);
+    } else {
+        if (there) {
+            target_ = std::filesystem::canonical(path, none);  // a link stays a link
+        }
+        beside_ = target_.string() + fmt::format(".{}.part", ::getpid());
+        stream_.open(beside_, std::ios::binary | std::ios::trunc);
+    }
+    if (!stream_) {
+        fail();
+    }
+}
+
+WholeFile::~WholeFile() {
+    if (!beside_.empty()) {
+        std::error_code none;
+        std::filesystem::remove(beside_, none);
+    }
+}
+
+void WholeFile::keep() {
+    stream_.close();
+    if (!stream_) {
+        fail();
+    }
+    if (!beside_.empty()) {
+        std::error_code error;
+        if (const auto status = std::filesystem::status(target_, error); std::filesystem::exists(status)) {
+            std::filesystem::permissions(beside_, status.permissions(), error);
+        }
+        std::filesystem::rename(beside_, target_, error);
+        if (error) {
+            fail();
+        }
+        beside_.clear();
+    }
+}
+
+void WholeFile::fail() const {
+    throw InputError(fmt::format("{}: cannot be written; check path and free space", path_.string()));
+}
+
+}  // namespace files
