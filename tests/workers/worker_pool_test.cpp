@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workers/worker_pool.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <latch>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+#include "sand/erosion.hpp"
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+using workers::WorkerPool;
+
+TEST(WorkerPool, RunsEveryTaskOnce) {
+    for (const int threads : {1, 2, 3, 7}) {
+        WorkerPool pool(threads);
+        for (const int count : {0, 1, 2, 6, 1000}) {
+            std::vector<std::atomic<int>> runs(static_cast<std::size_t>(count));
+            pool.run(count, [&](int i) { ++runs[static_cast<std::size_t>(i)]; });
+            EXPECT_TRUE(std::all_of(runs.begin(), runs.end(), [](const auto& n) { return n == 1; }))
+                << count << " tasks on " << threads << " threads";
+        }
+    }
+}
+
+// Each task waits for the others to have begun: with fewer than three threads this would wait for ever.
+TEST(WorkerPool, WorksOnAllThreadsAtOnce) {
+    WorkerPool pool(3);
+    std::latch begun(3);
+    pool.run(3, [&](int) { begun.arrive_and_wait(); });
+    EXPECT_TRUE(begun.try_wait());
+}
+
+TEST(WorkerPool, RefusesToBeNobodyOrAMob) {
+    EXPECT_THROW(WorkerPool(0), std::invalid_argument);
+    EXPECT_THROW(WorkerPool(workers::kMostThreads + 1), std::invalid_argument);
+}
+
+TEST(WorkerPool, TheSandIsTheSameOnAnyNumberOfThreads) {
+    constexpr unsigned kSeed = 41;
+    std::mt19937 random(kSeed);
+    const sand::HeightField start = samples::randomField(203, 151, 1 << 22, random);
+    sand::Ground ground(203, 151);
+    for (int y = 40; y < 110; ++y) {
+        ground.setWall(97, y);
+        ground.setBedrock(60, y, start.height(60, y) / 2);
+    }
+    for (const auto scheme : {sand::Scheme::isotropic, sand::Scheme::n4, sand::Scheme::plainIsotropic}) {
+        sand::Rules rules = samples::flatScene(203, 151).rules;
+        rules.scheme = scheme;
+        rules.rim = sand::Rim::open;
+        sand::HeightField expected = start;
+        const std::int64_t outflow = sand::Erosion(expected, rules, {.ground = &ground}).sweep(expected, 100);
+        for (const int threads : {1, 2, 3, 7}) {
+            WorkerPool pool(threads);
+            const sand::Executor executor = pool.executor();
+            sand::HeightField field = start;
+            sand::Erosion erosion(field, rules, {.ground = &ground, .executor = &executor});
+            EXPECT_EQ(erosion.sweep(field, 100), outflow);
+            EXPECT_TRUE(sameHeights(field, expected)) << threads << " threads, seed " << kSeed;
+        }
+    }
+}
+
+}  // namespace
