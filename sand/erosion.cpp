@@ -255,6 +255,24 @@ void Erosion::balance(HeightField& field, const Rect& blocks) const {
     v3_ ? v3::balance(patch) : baseline::balance(patch);
 }
 
+void Erosion::addFluxes(NetFlux& sum) const {
+    const auto add = [](const std::int32_t* flux, std::int64_t* to, int from, int end) {
+        for (int i = from; i < end; ++i) {
+            to[i] += flux[i];
+        }
+    };
+    // Outside the patches of that sweep nothing flowed.
+    forEachPatch([&](int i) {
+        const Rect cells = cellsOf(patches_[static_cast<std::size_t>(i)]);
+        for (int y = cells.y0; y < cells.y1; ++y) {
+            add(east_.row(y), sum.east(y), cells.x0 == 0 ? -1 : cells.x0, cells.x1);
+        }
+        for (int y = cells.y0 == 0 ? -1 : cells.y0; y < cells.y1; ++y) {
+            add(north_.row(y), sum.north(y), cells.x0, cells.x1);
+        }
+    });
+}
+
 void Erosion::markAroundMoved(const Rect& blocks) {
     for (int y = blocks.y0; y < blocks.y1; ++y) {
         for (int x = blocks.x0; x < blocks.x1; ++x) {

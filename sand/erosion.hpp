@@ -8,6 +8,7 @@
 #include "sand/executor.hpp"
 #include "sand/ground.hpp"
 #include "sand/height_field.hpp"
+#include "sand/net_flux.hpp"
 #include "sand/scene.hpp"
 #include "sand/tool.hpp"
 
@@ -54,6 +55,9 @@ public:
     /// Runs at most `sweeps` sweeps over `field`, fewer when nothing moves any more, and returns the volume that fell
     /// over an open rim [unit · cell]. No flux raises a cell above the underside of `obstacle`.
     std::int64_t sweep(HeightField& field, int sweeps, const Obstacle* obstacle = nullptr);
+
+    /// Adds what passed every face in the last sweep.
+    void addFluxes(NetFlux& sum) const;
 
     /// Whether the next sweep would visit no block at all.
     [[nodiscard]] bool settled() const { return active_.empty(); }

@@ -179,6 +179,9 @@ Settled settle(HeightField& field, const Rules& rules, NetFlux* flux, CodePath p
     Erosion erosion(field, toRest, {.path = path});
     for (; !erosion.settled(); ++result.sweeps) {
         result.outflow += erosion.sweep(field, 1);
+        if (flux != nullptr) {
+            erosion.addFluxes(*flux);
+        }
     }
     return result;
 }

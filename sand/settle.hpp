@@ -25,7 +25,7 @@ struct Settled {
 /// threshold. A field that lies below 0 anywhere under an open rim, or whose projection would leave the extremes, is
 /// swept only: that ends too, but takes O(side²) sweeps. It knows neither bedrock nor walls. The result depends on
 /// nothing but the arguments, and not on `path`. Memory: 56 bytes per cell of the box in which sand moves. Where `flux`
-/// is not null, what passed every face is added to it, but for the sweeps'.
+/// is not null, what passed every face is added to it.
 Settled settle(HeightField& field, const Rules& rules, NetFlux* flux = nullptr, CodePath path = CodePath::automatic);
 
 }  // namespace sand
