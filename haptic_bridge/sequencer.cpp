@@ -15,13 +15,14 @@ constexpr std::int64_t kMillisecond = 1'000'000;  // [ns]
 
 }  // namespace
 
-Sequencer::Sequencer(const sand::Scene& scene, Pace pace, Hand& hand, HandChannel& channel, Output output)
+Sequencer::Sequencer(const sand::Scene& scene, Pace pace, Hand& hand, HandChannel& channel, Output output,
+                     const sand::Erosion::Options& sweeps)
     : scene_(scene),
       pace_(pace),
       hand_(hand),
       channel_(channel),
       output_(std::move(output)),
-      terrain_(scene),
+      terrain_(scene, sweeps),
       clock_(scene.rules.stepsPerSecond) {
     thread_ = std::thread([this] { run(); });
 }

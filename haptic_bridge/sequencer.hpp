@@ -46,7 +46,8 @@ public:
     };
 
     /// Under Pace::fast `hand` is ticked by this thread, and must not be used by another.
-    Sequencer(const sand::Scene& scene, Pace pace, Hand& hand, HandChannel& channel, Output output);
+    Sequencer(const sand::Scene& scene, Pace pace, Hand& hand, HandChannel& channel, Output output,
+              const sand::Erosion::Options& sweeps = {});
     ~Sequencer();
     Sequencer(const Sequencer&) = delete;
     Sequencer& operator=(const Sequencer&) = delete;

@@ -15,6 +15,7 @@
 #include "haptic_bridge/devices/open_device.hpp"
 #include "haptic_bridge/force_loop.hpp"
 #include "haptic_bridge/link_server.hpp"
+#include "workers/sand_threads.hpp"
 
 namespace {
 
@@ -26,6 +27,7 @@ struct Options {
     std::string scene, device, listen = "127.0.0.1:7750", portFile;
     std::vector<std::string> map;
     Pace pace = Pace::realtime;
+    int sandThreads = 1;
     bool dieWithParent = false;
 };
 
@@ -111,7 +113,8 @@ void serve(const Options& options) {
     LinkServer server(io, std::move(acceptor), identity, static_cast<std::uint32_t>(scene.rules.stepsPerSecond),
                       {[&measure] { return measure(); }, print});
     // The sand and force threads end before the link they report to.
-    Sequencer sequencer(scene, options.pace, hand, channel, server.output());
+    const workers::WorkerPool pool(options.sandThreads);
+    Sequencer sequencer(scene, options.pace, hand, channel, server.output(), {.executor = pool.lend()});
     const auto loop = options.pace == Pace::realtime ? std::make_unique<ForceLoop>(hand, channel) : nullptr;
     measure = [&] { return measured(hand, loop.get(), sequencer); };
 
@@ -141,6 +144,7 @@ Options parse(int count, char** words) {
             CLI::CheckedTransformer(std::map<std::string, Pace>{{"realtime", Pace::realtime}, {"fast", Pace::fast}}));
     app.add_option("--listen", options.listen, "ADDRESS:PORT; port 0 takes any free one");
     app.add_option("--port-file", options.portFile, "written when the server listens: the port's number");
+    workers::addSandThreads(app, options.sandThreads);
     app.add_flag("--die-with-parent", options.dieWithParent, "end when the program that started this one ends");
     try {
         app.parse(count, words);

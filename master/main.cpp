@@ -13,6 +13,7 @@
 #include "master/session.hpp"
 #include "sand/scene.hpp"
 #include "walls/wall.hpp"
+#include "workers/sand_threads.hpp"
 
 namespace {
 
@@ -21,6 +22,7 @@ struct Options {
     std::string fault;
     bool noPictures = false;
     master::SessionOptions session;
+    int sandThreads = 1;
 };
 
 /// "rank=5,frame=20,column=100,row=200"
@@ -112,6 +114,8 @@ int runSession(const lockstep::Cluster& cluster, Options& options) {
     (void)lockstep::agreeToGoOn(cluster, true);
     (void)lockstep::clockAheadOfMaster(cluster);
     try {
+        const workers::WorkerPool pool(options.sandThreads);
+        options.session.sweeps.executor = pool.lend();
         return master::Session(cluster, world->scene, world->wall, options.session).run();
     } catch (const std::exception& error) {
         // The ranks are in the middle of a frame and cannot be asked to leave.
@@ -135,9 +139,10 @@ void describeOptions(CLI::App& app, Options& options) {
     app.add_option("--frames", session.frames, "end after this many frames")->check(CLI::PositiveNumber);
     app.add_option("--frame-timeout", session.frameTimeout, "seconds a frame may take before the job ends")
         ->check(CLI::Range(2.0, 3600.0));
+    workers::addSandThreads(app, options.sandThreads);
     app.add_flag("--no-pictures", options.noPictures, "write no pictures at the end");
     app.add_flag("--control-stdin", session.readInput,
-                 "a line \"stop\" on standard input, or its end, ends the session");
+                 "obeys lines on standard input: settle, stop; its end is a stop");
     app.add_option("--flip-bit", options.fault,
                    "for tests: rank=R,frame=F,column=C,row=W flips one bit of that replica");
 }

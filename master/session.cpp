@@ -63,7 +63,7 @@ Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, con
     : cluster_(cluster),
       wall_(wall),
       options_(std::move(options)),
-      terrain_(scene),
+      terrain_(scene, options_.sweeps),
       names_(namesOf(wall)),
       barrier_(cluster, names_, options_.frameTimeout),
       journal_(options_.out / "session.journal", scene, lockstep::buildId()),

@@ -33,6 +33,7 @@ struct SessionOptions {
     bool pictures = true;
     bool readInput = false;  // "stop" on standard input, or its end, ends the session
     std::filesystem::path out;
+    sand::Erosion::Options sweeps;  // how the master's own replica is swept
 };
 
 /// The frame loop of the master: number, broadcast, journal, apply, agree, swap; 60 times a second if the wall can.

@@ -4,6 +4,7 @@
 #include "files/command_line.hpp"
 #include "lockstep/cluster.hpp"
 #include "render_node/tile_session.hpp"
+#include "workers/sand_threads.hpp"
 
 int main(int argc, char** argv) {
     lockstep::dieWithParent();
@@ -13,9 +14,13 @@ int main(int argc, char** argv) {
         "sandwall-render-node");
     std::string gl = "auto";
     app.add_option("--gl", gl, "what draws")->check(CLI::IsMember({"auto", "osmesa"}));
+    int sandThreads = 1;
+    workers::addSandThreads(app, sandThreads);
     // The one backend there is so far; "auto" will prefer a window where the wall file asks for one.
-    const int status =
-        files::runMain(app, argc, argv, [&] { return render_node::showTile(cluster, render_node::Backend::osmesa); });
+    const int status = files::runMain(app, argc, argv, [&] {
+        const workers::WorkerPool pool(sandThreads);
+        return render_node::showTile(cluster, render_node::Backend::osmesa, {.executor = pool.lend()});
+    });
     if (status != 0) {
         cluster.abort(status);
     }

@@ -25,14 +25,15 @@ using lockstep::nowNs;
 /// One tile: its replica, its context and what it draws into.
 class TileSession {
 public:
-    TileSession(const lockstep::Cluster& cluster, const lockstep::SessionMessage& message, Backend backend)
+    TileSession(const lockstep::Cluster& cluster, const lockstep::SessionMessage& message, Backend backend,
+                const sand::Erosion::Options& sweeps)
         : cluster_(cluster),
           fault_(message.fault),
           wall_(walls::Wall::decode(message.wall)),
           tile_(wall_.tiles.at(static_cast<std::size_t>(cluster.rank() - 1))),
           context_(makeContext(backend)) {
         const sand::Scene scene = sand::Scene::decode(message.scene);
-        terrain_.emplace(scene);
+        terrain_.emplace(scene, sweeps);
         const sand::HeightField& field = scene.terrain;
         view_.emplace(
             scene, walls::stageToRoom(wall_.stage, field.columns() * field.cellSize(), field.rows() * field.cellSize(),
@@ -139,7 +140,7 @@ private:
 
 }  // namespace
 
-int showTile(const lockstep::Cluster& cluster, Backend backend) {
+int showTile(const lockstep::Cluster& cluster, Backend backend, const sand::Erosion::Options& sweeps) {
     const std::optional<lockstep::SessionMessage> message = lockstep::broadcastSession(cluster, std::nullopt);
     if (!message) {
         return 0;  // the master has said why
@@ -147,7 +148,7 @@ int showTile(const lockstep::Cluster& cluster, Backend backend) {
     lockstep::Readiness readiness{lockstep::hostName(), lockstep::buildId(), ""};
     std::unique_ptr<TileSession> session;
     try {
-        session = std::make_unique<TileSession>(cluster, *message, backend);
+        session = std::make_unique<TileSession>(cluster, *message, backend, sweeps);
     } catch (const std::exception& error) {
         readiness.error = error.what();
     }

@@ -9,6 +9,7 @@
 #include "files/toml_table.hpp"
 #include "sand/scene.hpp"
 #include "sand/scene_terrain.hpp"
+#include "sand/terrain.hpp"
 
 namespace sand {
 namespace {
@@ -129,12 +130,17 @@ Scene loadScene(const std::filesystem::path& file) {
     }
     scene.rules.stepsPerSecond = toml.integerOr("steps_per_second", 60, 1, 1000);
     scene.rules.rim = static_cast<Rim>(toml.choiceOr("rim", {"closed", "open"}, 0));
-    readTerrain(toml, scene);
+    const bool settle = readTerrain(toml, scene);
     readTool(toml, scene);
     readMaterial(toml, scene);
     readForce(toml, scene);
     readLook(toml, scene);
     toml.finish();
+    if (settle) {
+        Terrain terrain(scene);
+        terrain.apply({.epoch = 1, .number = 1, .engaged = false, .path = {}, .edit = Edit::settle});
+        scene.terrain = terrain.field();
+    }
     return scene;
 }
 

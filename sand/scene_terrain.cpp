@@ -150,17 +150,19 @@ void readBedrock(const files::TomlTable& terrain, const HeightField& field, std:
 
 }  // namespace
 
-void readTerrain(const files::TomlTable& file, Scene& scene) {
+bool readTerrain(const files::TomlTable& file, Scene& scene) {
     const files::TomlTable terrain = file.requiredTable("terrain");
     const int kind = terrain.choiceOr("kind", {"flat", "dunes", "esri_ascii"}, 0);
     std::shared_ptr<Ground> ground;
     scene.terrain = kind == 2 ? fromEsriGrid(file, terrain, ground) : madeUp(file, terrain, kind == 1);
     readBedrock(terrain, scene.terrain, ground);
+    const bool settle = terrain.flagOr("settle", false);
     terrain.finish();
     scene.rules.columns = scene.terrain.columns();
     scene.rules.rows = scene.terrain.rows();
     scene.rules.ground = ground == nullptr ? 0 : ground->digest();
     scene.ground = ground;
+    return settle;
 }
 
 }  // namespace sand

@@ -10,7 +10,7 @@
 
 namespace workers {
 
-WorkerPool::WorkerPool(int threads) : threads_(threads) {
+WorkerPool::WorkerPool(int threads) : threads_(threads), executor_(executor()) {
     if (threads < 1 || threads > kMostThreads) {
         throw std::invalid_argument("WorkerPool: number of threads out of range");
     }

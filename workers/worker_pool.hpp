@@ -31,9 +31,12 @@ public:
     void run(int count, const std::function<void(int)>& task);
     /// run() of this pool, which must outlive it.
     [[nodiscard]] sand::Executor executor();
+    /// The same for sand::Erosion::Options, or null for a pool of one.
+    [[nodiscard]] const sand::Executor* lend() const { return threads_ > 1 ? &executor_ : nullptr; }
 
 private:
     int threads_;
+    sand::Executor executor_;
     std::unique_ptr<boost::asio::thread_pool> helpers_;  // all but the caller; null when there are none
 };
 

@@ -36,6 +36,19 @@ TEST_F(Lockstep, OneFourAndThirteenRanksHashLikeTheirJournal) {
     }
 }
 
+TEST_F(Lockstep, ThreadsInsideARankChangeNothing) {
+    std::string expected;
+    for (const std::string threads : {"1", "3"}) {
+        const Ended ended =
+            runToEnd({"--wall", wall(1, 2), "--scene", scene(), "--device", "script:gis", "--pace", "fast", "--steps",
+                      "120", "--out", out(), "--no-pictures", "--sand-threads", threads});
+        ASSERT_EQ(ended.status, 0) << ended.output;
+        const std::string hash = summary()["state_hash"];
+        expected = expected.empty() ? hash : expected;
+        EXPECT_EQ(hash, expected) << threads << " threads";
+    }
+}
+
 // With and without a hand: whoever numbers the steps takes the operator's wish into one of them.
 TEST_F(Lockstep, AnOperatorSettlesTheSandOnEveryReplica) {
     for (const std::string device : {"script:gis", "none"}) {

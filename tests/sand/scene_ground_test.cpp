@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sand/erosion.hpp"
 #include "tests/sand/scene_fixture.hpp"
 
 namespace {
@@ -57,6 +58,20 @@ TEST_F(SceneFile, BadRockIsNamed) {
     EXPECT_EQ(complaint(kFromGrid + "layer = -1\n"), "s.toml:7: layer must be within [0, 1000000000], got -1");
     EXPECT_EQ(complaint(kFromGrid + "layer = 1\nbedrock = \"above.asc\"\n"),
               "s.toml:8: give 'layer' or 'bedrock', not both: either says where the rock lies");
+}
+
+TEST_F(SceneFile, SettlesBeforeAnybodyTouchesIt) {
+    const std::string steep =
+        "[field]\ncolumns = 64\nwidth = 64\n[material]\n[tool]\nradius = 2\n[terrain]\nkind = "
+        "\"dunes\"\ndune_height = 30\ndune_length = 20\n";
+    const sand::Scene raw = sand::loadScene(write("s.toml", steep));
+    const sand::Scene settled = sand::loadScene(write("s.toml", steep + "settle = true\n"));
+    sand::HeightField field = settled.terrain;
+    sand::Erosion erosion(field, settled.rules);
+    erosion.sweep(field, 1);
+    EXPECT_TRUE(erosion.settled());
+    EXPECT_FALSE(sameHeights(raw.terrain, settled.terrain));
+    EXPECT_EQ(raw.terrain.volume(), settled.terrain.volume());
 }
 
 TEST_F(SceneFile, WetSandIsSteeperAndItsBanksStand) {
