@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "sand/esri_grid.hpp"
+#include "tests/support/run_program.hpp"
+
+/// Runs sandwall-relax on files of its own folder.
+class Relax : public testing::Test {
+protected:
+    Relax()
+        : folder_(std::filesystem::temp_directory_path() /
+                  fmt::format("sandwall_relax_{}_{}", ::getpid(),
+                              testing::UnitTest::GetInstance()->current_test_info()->name())) {
+        std::filesystem::create_directories(folder_);
+    }
+    ~Relax() override {
+        std::error_code none;
+        std::filesystem::remove_all(folder_, none);
+    }
+
+    [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
+    void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
+    [[nodiscard]] std::string read(const std::string& name) const {
+        std::ifstream stream(path(name));
+        return {std::istreambuf_iterator<char>(stream), {}};
+    }
+    /// A grid of square cells of side 1, its heights from the north.
+    void writeGrid(const std::string& name, int columns, int rows, const std::vector<double>& heights) const {
+        sand::writeEsriGrid({columns, rows, 1, 0, 0, heights}, path(name));
+    }
+    /// In the test's folder, so that files go by their names.
+    [[nodiscard]] support::Ran run(const std::string& arguments) const {
+        const std::filesystem::path before = std::filesystem::current_path();
+        std::filesystem::current_path(folder_);
+        const support::Ran ran = support::runProgram("sandwall-relax", arguments);
+        std::filesystem::current_path(before);
+        return ran;
+    }
+    /// Runs it to success, and returns its one line.
+    [[nodiscard]] nlohmann::json relax(const std::string& arguments) const {
+        const support::Ran ran = run(arguments);
+        EXPECT_EQ(ran.status, 0) << ran.output;
+        EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
+        return nlohmann::json::parse(ran.output, nullptr, false);
+    }
+
+    std::filesystem::path folder_;
+};
