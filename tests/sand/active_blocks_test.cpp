@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// Leaving settled blocks alone must not show (NUMERICS, section 1, active blocks).
+#include <gtest/gtest.h>
+
+#include <array>
+#include <random>
+
+#include "tests/support/relaxing.hpp"
+#include "tests/support/sand_samples.hpp"
+#include "tests/support/thread_team.hpp"
+
+namespace {
+
+using samples::nameOf;
+using sand::CodePath;
+using sand::Erosion;
+using sand::HeightField;
+using sand::Scheme;
+
+/// A plane that rises in the direction (3, 4) or one of its mirror images, just below 45 degrees, roughened by a few
+/// units so that it is critical here and there, with a bump at a corner of a block.
+HeightField nearCriticalPlane(int side, int block, std::mt19937& random) {
+    const int eastward = random() % 2 == 0 ? 1 : -1;
+    const int northward = random() % 2 == 0 ? 1 : -1;
+    HeightField field(side, side, 1.0);
+    for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+            field.setHeight(x, y,
+                            39321 * eastward * x + 52420 * northward * y - static_cast<std::int32_t>(random() % 16));
+        }
+    }
+    const auto besideCorner = [&] {
+        const auto corners = static_cast<unsigned>((side - 1) / block);
+        return block * (1 + static_cast<int>(random() % corners)) - static_cast<int>(random() % 2);
+    };
+    const int x = besideCorner();
+    const int y = besideCorner();
+    field.setHeight(x, y, field.height(x, y) + static_cast<std::int32_t>(random() % 100000));
+    return field;
+}
+
+// With edge neighbours only, NUMERICS lost sand in 84 of 3000 such runs; lumps alone never show it.
+TEST(ActiveBlocks, EqualFullSweepsOn3000NearCriticalPlanes) {
+    constexpr int kRuns = samples::kSanitized ? 300 : 3000;
+    constexpr std::array kBlocks{16, 32, 64};
+    std::mt19937 random(17);
+    int moving = 0;
+    for (int run = 0; run < kRuns; ++run) {
+        const int block = kBlocks[static_cast<std::size_t>(run) % kBlocks.size()];
+        const HeightField start = nearCriticalPlane(block + 35, block, random);
+        const Scheme scheme = run % 4 == 3 ? Scheme::plainIsotropic : Scheme::isotropic;
+        const sand::Rules rules = samples::rulesFor(start, scheme);
+        HeightField field = start;
+        HeightField full = start;
+        Erosion erosion(field, rules, {.blockSize = block});
+        erosion.sweep(field, 50);
+        Erosion(full, rules, {.blockSize = block, .skipSettled = false}).sweep(full, 50);
+        ASSERT_TRUE(sameHeights(field, full)) << "run " << run << " of seed 17, blocks of " << block;
+        ASSERT_EQ(field.volume(), start.volume()) << "run " << run << " of seed 17, blocks of " << block;
+        moving += erosion.sweepsDone() > 1 ? 1 : 0;
+    }
+    EXPECT_GE(moving, kRuns / 4) << "these planes are not near enough to critical to show anything";
+}
+
+TEST(ActiveBlocks, BlockSizeInstructionSetAndThreadsChangeNothing) {
+    std::mt19937 random(13);
+    const HeightField start = samples::randomField(131, 77, 1 << 20, random);
+    samples::ThreadTeam team(3);
+    const sand::Executor executor = team.executor();
+    for (const Scheme scheme : samples::kEverySlope) {
+        sand::Rules rules = samples::rulesFor(start, scheme);
+        rules.rim = sand::Rim::open;
+        HeightField expected = start;
+        const std::int64_t outflow = Erosion(expected, rules, {.blockSize = 128}).sweep(expected, 100);
+        for (const int block : {2, 16, 31, 32, 64}) {
+            for (const auto path : {CodePath::automatic, CodePath::baseline}) {
+                for (const sand::Executor* threads : {static_cast<const sand::Executor*>(nullptr), &executor}) {
+                    HeightField field = start;
+                    Erosion erosion(field, rules, {.blockSize = block, .path = path, .executor = threads});
+                    EXPECT_EQ(erosion.sweep(field, 100), outflow);
+                    EXPECT_TRUE(sameHeights(field, expected)) << nameOf(scheme) << ", blocks of " << block;
+                }
+            }
+        }
+    }
+}
+
+TEST(ActiveBlocks, WhatLeavesAnOpenRimIsCounted) {
+    HeightField field = samples::cylinder(64, 30, 40);
+    const std::int64_t volume = field.volume();
+    sand::Rules rules = samples::rulesFor(field);
+    rules.rim = sand::Rim::open;
+    Erosion erosion(field, rules);
+    std::int64_t outflow = 0;
+    while (!erosion.settled()) {
+        outflow += erosion.sweep(field, 16);
+    }
+    EXPECT_GT(outflow, 0);
+    EXPECT_EQ(field.volume() + outflow, volume);
+}
+
+}  // namespace

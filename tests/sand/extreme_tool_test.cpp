@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tools of any size, anywhere (NUMERICS, section 6). A pose that is no number never becomes a step: the haptic side
+// refuses it before it is quantised (tests/haptic_bridge/device_test.cpp).
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <random>
+
+#include "sand/terrain.hpp"
+#include "tests/support/relaxing.hpp"
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+using sand::kProbePerCell;
+using sand::ProbePoint;
+using sand::Rim;
+using sand::Terrain;
+
+ProbePoint at(double column, double row, double height /* [cell] */) {
+    return {static_cast<std::int32_t>(column * kProbePerCell), static_cast<std::int32_t>(row * kProbePerCell),
+            static_cast<std::int32_t>(height * kProbePerCell)};
+}
+
+constexpr std::array kRims{Rim::closed, Rim::open};
+
+sand::Scene sceneWith(double toolCells, Rim rim) {
+    sand::Scene scene = samples::flatScene(45, 33, toolCells);
+    scene.rules.rim = rim;
+    return scene;
+}
+
+TEST(ExtremeTool, OutsideTheFieldItTouchesNothing) {
+    for (const Rim rim : kRims) {
+        const sand::Scene scene = sceneWith(4, rim);
+        Terrain terrain(scene);
+        std::uint64_t number = 0;
+        for (const ProbePoint point : {at(-4, 16, -1), at(49, 16, -1), at(20, -4, -1), at(20, 37, -1), at(20, 16, 4),
+                                       ProbePoint{sand::kMaxProbe, -sand::kMaxProbe, 0},
+                                       ProbePoint{-sand::kMaxProbe, sand::kMaxProbe, -sand::kMaxProbe}}) {
+            terrain.apply({1, ++number, false, {point}});
+            terrain.apply({1, ++number, true, {point}});
+            EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain)) << "at " << point.x << ", " << point.y;
+            terrain.apply({1, ++number, false, {}});
+        }
+        EXPECT_EQ(terrain.outflow(), 0);
+    }
+}
+
+TEST(ExtremeTool, AtACornerAndOnTheRimsItLosesNothing) {
+    for (const Rim rim : kRims) {
+        for (const double radius : {0.6, 2.56, 8.0, 20.0}) {
+            for (const ProbePoint point : {at(0, 0, -1), at(45, 33, -1), at(0, 33, 0), at(45, 0, 0), at(22, 0, -2),
+                                           at(0, 16, -2), at(44.5, 32.5, 0)}) {
+                const sand::Scene scene = sceneWith(radius, rim);
+                Terrain terrain(scene);
+                for (std::uint64_t i = 1; i <= 200; ++i) {
+                    terrain.apply({1, i, i < 100, i == 1 ? std::vector{point} : std::vector<ProbePoint>{}});
+                    ASSERT_EQ(terrain.field().volume() + terrain.outflow(), 0)
+                        << "radius " << radius << " at " << point.x << ", " << point.y << " in step " << i;
+                }
+                EXPECT_EQ(terrain.outflow() == 0, rim == Rim::closed || sameHeights(terrain.field(), scene.terrain));
+            }
+        }
+    }
+}
+
+TEST(ExtremeTool, LargerThanTheFieldItHasNowhereToPutTheSand) {
+    const sand::Scene scene = sceneWith(2048, Rim::closed);
+    Terrain terrain(scene);
+    terrain.apply({1, 1, true, {at(22, 16, 2000)}});
+    EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain)) << "it passes through the sand";
+    Terrain open(sceneWith(2048, Rim::open));
+    open.apply({1, 1, true, {at(22, 16, 2000)}});
+    EXPECT_GT(open.outflow(), 0) << "over an open rim it clears the table";
+    EXPECT_EQ(open.field().volume() + open.outflow(), 0);
+}
+
+TEST(ExtremeTool, OfNoRadiusItDigsNothing) {
+    const sand::Scene scene = sceneWith(0, Rim::closed);
+    Terrain terrain(scene);
+    terrain.apply({1, 1, true, {at(5.5, 5.5, -3), at(40, 30, -3)}});
+    EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain));
+}
+
+TEST(ExtremeTool, ThePapersOf256HundredthsDigsAFurrow) {
+    Terrain terrain(sceneWith(2.56, Rim::closed));
+    for (std::uint64_t i = 1; i <= 30; ++i) {
+        terrain.apply({1, i, true, {at(8 + static_cast<double>(i), 16.5, 1)}});
+    }
+    EXPECT_LT(terrain.field().height(20, 16), -sand::kUnitsPerCell / 2);
+    EXPECT_GT(samples::extremesOf(terrain.field()).highest, sand::kUnitsPerCell / 4);
+    EXPECT_EQ(terrain.field().volume(), 0);
+}
+
+TEST(ExtremeTool, TeleportingItPloughsAllTheWay) {
+    for (const Rim rim : kRims) {
+        Terrain terrain(sceneWith(2.56, rim));
+        terrain.apply({1, 1, true, {at(4, 16.5, 1)}});
+        terrain.apply({1, 2, true, {at(40, 16.5, 1)}});
+        for (const int column : {10, 20, 30}) {
+            EXPECT_LT(terrain.field().height(column, 16), 0) << "no furrow at column " << column;
+        }
+        // From one end of the world to the other, and back.
+        terrain.apply({1, 3, true, {{sand::kMaxProbe, sand::kMaxProbe, 0}, {-sand::kMaxProbe, -sand::kMaxProbe, 0}}});
+        terrain.apply({1, 4, true, {{sand::kMaxProbe, 16 * kProbePerCell, -sand::kMaxProbe}}});
+        EXPECT_EQ(terrain.field().volume() + terrain.outflow(), 0);
+    }
+}
+
+TEST(ExtremeTool, HeldStillItLetsTheSweepsStop) {
+    for (const double radius : {2.56, 8.0}) {
+        for (const double height : {0.0, 1.0, -3.0}) {
+            Terrain terrain(sceneWith(radius, Rim::closed));
+            std::uint64_t number = 0;
+            terrain.apply({1, ++number, true, {at(22.3, 16.1, height)}});
+            for (int i = 0; i < 2000 && !terrain.settled(); ++i) {
+                terrain.apply({1, ++number, true, {}});
+            }
+            ASSERT_TRUE(terrain.settled()) << "a ball held still must not pump sand for ever";
+            const std::int64_t sweeps = terrain.erosion().sweepsDone();
+            (void)terrain.stateHash();
+            const auto tiles = terrain.hashTiles().tileHashes();
+            for (int i = 0; i < 100; ++i) {
+                terrain.apply({1, ++number, true, {}});
+                (void)terrain.stateHash();
+                ASSERT_EQ(terrain.hashTiles().tileHashes(), tiles) << "step " << number;
+            }
+            EXPECT_EQ(terrain.erosion().sweepsDone(), sweeps);
+        }
+    }
+}
+
+TEST(ExtremeTool, DiggingToBedrockStopsThere) {
+    sand::Scene scene = sceneWith(6, Rim::closed);
+    auto ground = std::make_shared<sand::Ground>(45, 33);
+    for (int y = 0; y < 33; ++y) {
+        for (int x = 0; x < 45; ++x) {
+            ground->setBedrock(x, y, -2 * sand::kUnitsPerCell);
+        }
+    }
+    scene.ground = ground;
+    scene.rules.ground = ground->digest();
+    Terrain terrain(scene);
+    for (std::uint64_t i = 1; i <= 60; ++i) {
+        terrain.apply({1, i, true, {at(10 + 0.4 * static_cast<double>(i), 16.5, 2)}});
+        ASSERT_GE(samples::extremesOf(terrain.field()).lowest, -2 * sand::kUnitsPerCell) << "step " << i;
+        ASSERT_EQ(terrain.field().volume(), 0);
+    }
+    EXPECT_EQ(terrain.field().height(34, 16), -2 * sand::kUnitsPerCell) << "bare rock under the tool";
+}
+
+}  // namespace

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sliding knows no direction, and rest is rest (NUMERICS, section 1, O7).
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/support/relaxing.hpp"
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+using samples::nameOf;
+using sand::Erosion;
+using sand::HeightField;
+using sand::Rim;
+using sand::Scheme;
+
+/// One of the eight ways to lay a rectangle onto a grid: bit 0 mirrors east and west, bit 1 north and south, and bit 2
+/// then exchanges columns and rows.
+HeightField turned(const HeightField& field, unsigned way) {
+    const bool transposed = (way & 4) != 0;
+    HeightField result(transposed ? field.rows() : field.columns(), transposed ? field.columns() : field.rows(), 1.0);
+    for (int y = 0; y < field.rows(); ++y) {
+        for (int x = 0; x < field.columns(); ++x) {
+            const int toX = (way & 1) != 0 ? field.columns() - 1 - x : x;
+            const int toY = (way & 2) != 0 ? field.rows() - 1 - y : y;
+            result.setHeight(transposed ? toY : toX, transposed ? toX : toY, field.height(x, y));
+        }
+    }
+    return result;
+}
+
+TEST(Symmetry, SlidingCommutesWithFlipsAndTransposition) {
+    std::mt19937 random(11);
+    for (const Scheme scheme : samples::kEverySlope) {
+        for (const Rim rim : {Rim::closed, Rim::open}) {
+            const HeightField start = samples::randomField(50, 71, 1 << 22, random);
+            sand::Rules rules = samples::rulesFor(start, scheme);
+            rules.rim = rim;
+            HeightField field = start;
+            const std::int64_t outflow = Erosion(field, rules).sweep(field, 60);
+            for (unsigned way = 1; way < 8; ++way) {
+                HeightField image = turned(start, way);
+                rules = samples::rulesFor(image, scheme);
+                rules.rim = rim;
+                EXPECT_EQ(Erosion(image, rules).sweep(image, 60), outflow);
+                EXPECT_TRUE(sameHeights(turned(field, way), image)) << nameOf(scheme) << ", way " << way;
+            }
+        }
+    }
+}
+
+TEST(Symmetry, NoTwoWaysAreTheSame) {
+    std::mt19937 random(12);
+    const HeightField field = samples::randomField(6, 6, 1 << 22, random);
+    for (unsigned a = 0; a < 8; ++a) {
+        for (unsigned b = 0; b < a; ++b) {
+            EXPECT_FALSE(sameHeights(turned(field, a), turned(field, b)));
+        }
+    }
+}
+
+TEST(Symmetry, ARestStateIsAFixedPoint) {
+    std::mt19937 random(13);
+    for (const Scheme scheme : samples::kEverySlope) {
+        for (const Rim rim : {Rim::closed, Rim::open}) {
+            HeightField field = samples::randomField(67, 45, 1 << 21, random);
+            sand::Rules rules = samples::rulesFor(field, scheme);
+            rules.rim = rim;
+            samples::relax(field, rules);
+            const HeightField rest = field;
+            Erosion again(field, rules);
+            EXPECT_EQ(again.sweep(field, 10), 0);
+            EXPECT_EQ(again.sweepsDone(), 1) << "the one sweep that finds nothing to do; " << nameOf(scheme);
+            EXPECT_TRUE(sameHeights(field, rest)) << nameOf(scheme);
+        }
+    }
+}
+
+}  // namespace

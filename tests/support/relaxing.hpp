@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "sand/erosion.hpp"
+
+/// Letting fields slide to rest, for tests of the solver.
+namespace samples {
+
+/// The address sanitizer makes a sweep some twenty times dearer: there the largest grids are left out, and what they
+/// show is shown by the other builds.
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr bool kSanitized = true;
+#else
+inline constexpr bool kSanitized = false;
+#endif
+
+/// The schemes that converge, the default first.
+inline constexpr std::array kIsotropic{sand::Scheme::isotropic, sand::Scheme::plainIsotropic};
+inline constexpr std::array kEverySlope{sand::Scheme::isotropic, sand::Scheme::plainIsotropic, sand::Scheme::n4};
+
+inline const char* nameOf(sand::Scheme scheme) {
+    constexpr std::array kNames{"isotropic", "n4", "plainIsotropic"};
+    return kNames.at(static_cast<std::size_t>(scheme));
+}
+
+/// Rules for a field alone: no band, closed rim, square cells; 45 degrees unless said.
+inline sand::Rules rulesFor(const sand::HeightField& field, sand::Scheme scheme = sand::Scheme::isotropic,
+                            std::int32_t threshold = sand::kUnitsPerCell) {
+    sand::Rules rules;
+    rules.columns = field.columns();
+    rules.rows = field.rows();
+    rules.threshold = rules.startThreshold = threshold;
+    rules.scheme = scheme;
+    return rules;
+}
+
+/// The lowest and the highest height of a field [unit].
+struct Extremes {
+    std::int32_t lowest, highest;
+};
+
+inline Extremes extremesOf(const sand::HeightField& field) {
+    Extremes result{field.height(0, 0), field.height(0, 0)};
+    for (int y = 0; y < field.rows(); ++y) {
+        const auto [low, high] = std::minmax_element(field.row(y), field.row(y) + field.columns());
+        result = {std::min(result.lowest, *low), std::max(result.highest, *high)};
+    }
+    return result;
+}
+
+/// Sweeps until nothing moves, and expects that the volume is kept and no new extreme arises, which holds for any
+/// field in a closed box. Returns the number of sweeps.
+inline std::int64_t relax(sand::HeightField& field, const sand::Rules& rules, int most = 1000000) {
+    const std::int64_t volume = field.volume();
+    const Extremes before = extremesOf(field);
+    sand::Erosion erosion(field, rules);
+    const std::int64_t outflow = erosion.sweep(field, most);
+    EXPECT_TRUE(erosion.settled()) << nameOf(rules.scheme) << " still moves after " << most << " sweeps";
+    EXPECT_EQ(field.volume() + outflow, volume);
+    const Extremes after = extremesOf(field);
+    EXPECT_GE(after.lowest, rules.rim == sand::Rim::open ? std::min(before.lowest, 0) : before.lowest);
+    EXPECT_LE(after.highest, before.highest);
+    return erosion.sweepsDone();
+}
+
+/// Slope m at the steepest face of a field of square cells, as scheme G measures it, less the threshold [unit].
+inline double steepestExcess(const sand::HeightField& field, std::int32_t threshold) {
+    const int columns = field.columns();
+    const int rows = field.rows();
+    // Beyond the rim the ground goes on as it came.
+    const auto height = [&](int x, int y) {
+        const auto inRow = [&](int row) {
+            const auto cell = [&](int column) { return static_cast<double>(field.height(column, row)); };
+            if (x < 0) {
+                return 2 * cell(0) - cell(std::min(1, columns - 1));
+            }
+            return x < columns ? cell(x) : 2 * cell(columns - 1) - cell(std::max(columns - 2, 0));
+        };
+        if (y < 0) {
+            return 2 * inRow(0) - inRow(std::min(1, rows - 1));
+        }
+        return y < rows ? inRow(y) : 2 * inRow(rows - 1) - inRow(std::max(rows - 2, 0));
+    };
+    double steepest = 0;
+    for (int y = 0; y < rows; ++y) {
+        for (int x = 0; x < columns; ++x) {
+            // From (x, y) to its neighbour (dx, dy) ahead; (dy, dx) is the direction along the face.
+            for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}}) {
+                if (x + dx < columns && y + dy < rows) {
+                    const double across = height(x, y) - height(x + dx, y + dy);
+                    const double along = 0.25 * (height(x + dy, y + dx) - height(x - dy, y - dx) +
+                                                 height(x + 1, y + 1) - height(x + dx - dy, y + dy - dx));
+                    steepest = std::max(steepest, std::hypot(across, along));
+                }
+            }
+        }
+    }
+    return steepest - threshold;
+}
+
+/// NUMERICS, section 1: how far above the threshold a face may be at rest [unit], since a flux below one is none.
+inline double restingExcess(std::int32_t threshold) { return std::cbrt(8.0 * threshold) + 4; }
+
+}  // namespace samples
