@@ -208,8 +208,11 @@ TEST(HandMapping, ClampsWhatIsOutOfReachAndDropsWhatIsNoNumber) {
     ASSERT_TRUE(far);
     EXPECT_LE(far->x, sand::kMaxProbe);
     EXPECT_GE(far->y, -sand::kMaxProbe);
-    EXPECT_FALSE(mapping.probe({std::nan(""), 0, 0, true}));
-    EXPECT_FALSE(mapping.probe({0, 0, HUGE_VAL, true}));
+    for (const double noNumber : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+        EXPECT_FALSE(mapping.probe({noNumber, 0, 0, true}));
+        EXPECT_FALSE(mapping.probe({0, noNumber, 0, true}));
+        EXPECT_FALSE(mapping.probe({0, 0, noNumber, true}));
+    }
 }
 
 }  // namespace

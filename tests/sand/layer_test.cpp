@@ -140,7 +140,7 @@ TEST(Layer, RockSteeperThanTheTalusKeepsNoMoreThanThat) {
 
 TEST(Layer, CliffsNeverMakeALayerThinnerThanNothing) {
     for (const Scheme scheme : samples::kEverySlope) {
-        for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+        for (std::uint32_t seed = 1; seed <= (samples::kSanitized ? 1U : 4U); ++seed) {
             std::mt19937 random(seed);
             Layer layer;
             layer.forEachCell([&](int x, int y) {

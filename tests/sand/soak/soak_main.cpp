@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// What takes too long or too much memory for a test; scripts/soak.sh runs it and compares.
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <random>
+
+#include "files/command_line.hpp"
+#include "sand/dunes.hpp"
+#include "tests/support/sand_samples.hpp"
+#include "tests/support/thread_team.hpp"
+
+namespace {
+
+struct Options {
+    std::uint64_t edits = 1000000;
+    int columns = 61, rows = 43;  // [cell]
+    int threads = 1;
+    int block = sand::Erosion::kDefaultBlock;  // [cell]
+    bool baseline = false;
+    std::uint32_t seed = 53;
+};
+
+double peakGibibytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) / (1 << 20);  // Linux counts in KiB
+}
+
+sand::Scene dunes(const Options& options) {
+    sand::Scene scene = samples::flatScene(options.columns, options.rows, 2.56);
+    sand::makeDunes({.bed = 2, .height = 6, .length = 30, .seed = 5}, scene.terrain);
+    scene.rules.sweepsPerStep = 4;
+    return scene;
+}
+
+int run(const Options& options) {
+    samples::ThreadTeam team(options.threads);
+    const sand::Executor executor = team.executor();
+    const sand::Rules rules = dunes(options).rules;
+    sand::Terrain terrain(dunes(options),
+                          {.blockSize = options.block,
+                           .path = options.baseline ? sand::CodePath::baseline : sand::CodePath::automatic,
+                           .executor = options.threads > 1 ? &executor : nullptr});
+    const std::int64_t volume = terrain.field().volume();
+    std::mt19937 random(options.seed);
+    std::uint64_t all = 0;
+    const auto begin = std::chrono::steady_clock::now();
+    for (std::uint64_t edit = 1; edit <= options.edits; ++edit) {
+        terrain.apply(samples::randomStep(edit, rules, random));
+        all = all * 31 + terrain.stateHash();
+        if (edit % std::max<std::uint64_t>(options.edits / 10, 1) == 0) {
+            const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+            fmt::print(stderr, "soak: {} edits in {:.0f} s, hash of all steps {:016x}\n", edit, seconds.count(), all);
+        }
+    }
+    if (terrain.field().volume() + terrain.outflow() != volume) {
+        fmt::print(stderr, "soak: the volume was {} and is {}\n", volume, terrain.field().volume() + terrain.outflow());
+        return 1;
+    }
+    fmt::print("{:016x}\n", all);
+    fmt::print(stderr, "soak: {} x {} cells, {} threads, blocks of {}, {} sweeps: peak of {:.3g} GiB\n",
+               options.columns, options.rows, options.threads, options.block, terrain.erosion().sweepsDone(),
+               peakGibibytes());
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"Random edits with a hash at every step; prints one hash over all of them.", "sand_soak"};
+    Options options;
+    app.add_option("--edits", options.edits, "how many")->capture_default_str();
+    app.add_option("--columns", options.columns)->check(CLI::Range(1, sand::kMaxSide))->capture_default_str();
+    app.add_option("--rows", options.rows)->check(CLI::Range(1, sand::kMaxSide))->capture_default_str();
+    app.add_option("--threads", options.threads)->check(CLI::Range(1, 256))->capture_default_str();
+    app.add_option("--block", options.block, "side of a block [cell]")
+        ->check(CLI::Range(2, 128))
+        ->capture_default_str();
+    app.add_flag("--baseline", options.baseline, "the code path of every x86-64");
+    app.add_option("--seed", options.seed)->capture_default_str();
+    return files::runMain(app, argc, argv, [&] { return run(options); });
+}
