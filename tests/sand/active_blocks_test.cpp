@@ -7,7 +7,7 @@
 
 #include "tests/support/relaxing.hpp"
 #include "tests/support/sand_samples.hpp"
-#include "tests/support/thread_team.hpp"
+#include "workers/worker_pool.hpp"
 
 namespace {
 
@@ -65,7 +65,7 @@ TEST(ActiveBlocks, EqualFullSweepsOn3000NearCriticalPlanes) {
 TEST(ActiveBlocks, BlockSizeInstructionSetAndThreadsChangeNothing) {
     std::mt19937 random(13);
     const HeightField start = samples::randomField(131, 77, 1 << 20, random);
-    samples::ThreadTeam team(3);
+    workers::WorkerPool team(3);
     const sand::Executor executor = team.executor();
     for (const Scheme scheme : samples::kEverySlope) {
         sand::Rules rules = samples::rulesFor(start, scheme);

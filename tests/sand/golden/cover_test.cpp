@@ -8,7 +8,7 @@
 #include "sand/dunes.hpp"
 #include "tests/support/relaxing.hpp"
 #include "tests/support/sand_samples.hpp"
-#include "tests/support/thread_team.hpp"
+#include "workers/worker_pool.hpp"
 
 namespace {
 
@@ -51,7 +51,7 @@ TEST(Cover, TenThousandEditsHashAlikeOnAnyThreadsBlocksAndBuild) {
     const sand::Scene scene = coveredScene();
     for (std::size_t i = 0; i < kThreads.size(); ++i) {
         const Way way = wayOf(i);
-        samples::ThreadTeam team(way.threads);
+        workers::WorkerPool team(way.threads);
         const sand::Executor executor = team.executor();
         sand::Terrain terrain(scene, {.blockSize = way.block, .path = way.path, .executor = &executor});
         std::mt19937 random(47);

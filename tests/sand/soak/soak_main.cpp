@@ -11,7 +11,7 @@
 #include "files/command_line.hpp"
 #include "sand/dunes.hpp"
 #include "tests/support/sand_samples.hpp"
-#include "tests/support/thread_team.hpp"
+#include "workers/worker_pool.hpp"
 
 namespace {
 
@@ -38,7 +38,7 @@ sand::Scene dunes(const Options& options) {
 }
 
 int run(const Options& options) {
-    samples::ThreadTeam team(options.threads);
+    workers::WorkerPool team(options.threads);
     const sand::Executor executor = team.executor();
     const sand::Rules rules = dunes(options).rules;
     sand::Terrain terrain(dunes(options),
