@@ -28,8 +28,8 @@ std::int32_t extrapolate(std::int32_t edge, std::int32_t inner) { return 2 * edg
 AxisLaw axisLaw(Scheme scheme, double threshold, double startThreshold, double ratio) {
     // At 0.5 the proofs end; 0.4998 leaves room for the rounding of float products. Near it a chequerboard swings
     // without damping, and with inertia a steep needle would fall too flat: 17 % of its sand misplaced, and 0.8 % with
-    // 0.4.
-    const double limit = (scheme == Scheme::isotropic ? 0.4 : 0.4998) / (ratio * ratio + 1);
+    // 0.46.
+    const double limit = (scheme == Scheme::isotropic ? 0.46 : 0.4998) / (ratio * ratio + 1);
     // As strong as linear stability allows, less a tenth; the same flux per slope along either axis.
     const double push = 0.45 * std::min(1.0, 1 / (ratio * ratio));
     return {static_cast<float>(threshold), static_cast<float>(startThreshold), static_cast<float>(limit),

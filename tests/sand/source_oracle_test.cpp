@@ -61,22 +61,41 @@ double allowedForCone(double foot) {
     return 0.45 * 6 / (foot * foot) + 0.59 * samples::restingExcess(sand::kUnitsPerCell) / sand::kUnitsPerCell;
 }
 
-// In portions, because a single one would be a tower of 200 cells, whose inertia flattens a heap of this size: 0.60 %
-// at 64 cells, against 0.30 % without inertia.
+// In a single portion it is a tower of 200 cells, whose inertia flattens the heap a little: 0.54 % at 64 cells against
+// 0.30 % without.
+constexpr double kTowersOvershoot = 0.0008;
+
 TEST(SourceOracle, WhatIsPouredOnASpotIsACone) {
     for (const Scheme scheme : samples::kIsotropic) {
-        for (const int portions : {10, 40}) {
+        for (const int portions : {1, 10, 40}) {
             double coarser = 1;
             for (const int n : {32, 64, 128}) {
                 if (n > (scheme == Scheme::isotropic ? 128 : 64) / (samples::kSanitized ? 2 : 1)) {
                     continue;  // seconds without inertia
                 }
                 const Poured poured = pouredCone(n, portions, scheme);
-                EXPECT_LE(poured.misplaced, allowedForCone(poured.foot))
+                const bool overshoots = portions == 1 && scheme == Scheme::isotropic;
+                EXPECT_LE(poured.misplaced, allowedForCone(poured.foot) + (overshoots ? kTowersOvershoot : 0))
                     << nameOf(scheme) << ", " << portions << " portions, " << n << " cells";
                 EXPECT_LE(poured.misplaced, 0.8 * coarser) << "does not converge: " << portions << " portions";
                 coarser = poured.misplaced;
             }
+        }
+    }
+}
+
+// A column of one cell is the steepest start there is: whoever lets inertia carry it away gets a plate, no cone.
+TEST(SourceOracle, ANeedleOfOneCellBecomesACone) {
+    for (const Scheme scheme : samples::kIsotropic) {
+        for (const int height : {800, 2196}) {
+            HeightField field(65, 65, 1.0);
+            field.setHeight(32, 32, height * sand::kUnitsPerCell);
+            samples::relax(field, samples::rulesFor(field, scheme));
+            const oracles::PouredCone cone(height);
+            const auto expected =
+                oracles::sampled(65, 65, oracles::around(32.5, 32.5, [&](double r) { return cone.rest(r); }));
+            EXPECT_LE(oracles::distance(field, expected).misplaced, allowedForCone(cone.foot()))
+                << nameOf(scheme) << ", " << height << " cells high";
         }
     }
 }
