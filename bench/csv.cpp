@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/csv.hpp"
+
+#include <ctime>
+#include <fstream>
+#include <stdexcept>
+#include <thread>
+
+#include "bench/relaxations.hpp"
+#include "files/input_error.hpp"
+
+namespace bench {
+namespace {
+
+std::string machine() {
+    std::ifstream info("/proc/cpuinfo");
+    std::string model = "unknown processor";
+    for (std::string line; std::getline(info, line);) {
+        if (line.starts_with("model name")) {
+            model = line.substr(line.find(':') + 2);
+            break;
+        }
+    }
+    return fmt::format("{}, {} processors", model, std::thread::hardware_concurrency());
+}
+
+std::string date() {
+    const std::time_t now = std::time(nullptr);
+    std::tm utc{};
+    gmtime_r(&now, &utc);
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    return text;
+}
+
+}  // namespace
+
+void Csv::Close::operator()(std::FILE* file) const {
+    if (file != stdout) {
+        std::fclose(file);
+    }
+}
+
+Csv::Csv(const Settings& settings) : name_(settings.out.empty() ? "standard output" : settings.out.string()) {
+    file_.reset(settings.out.empty() ? stdout : std::fopen(settings.out.c_str(), "w"));
+    if (!file_) {
+        throw files::InputError(name_ + ": cannot be written, choose another --out");
+    }
+    note("machine: " + machine());
+    note("compiler: " SANDWALL_COMPILER);
+    note("flags: " SANDWALL_FLAGS);
+    note(std::string("code path: ") + codePath());
+    note(fmt::format("seed: {}", settings.seed));
+    note("command: " + settings.commandLine);
+    note("date: " + date());
+}
+
+void Csv::note(std::string_view line) { write(fmt::format("# {}", line)); }
+
+void Csv::columns(std::string_view names) { write(names); }
+
+void Csv::write(std::string_view line) {
+    fmt::print(file_.get(), "{}\n", line);
+    std::fflush(file_.get());
+}
+
+void Csv::finish() {
+    if (std::ferror(file_.get()) != 0) {
+        throw std::runtime_error(name_ + ": not everything could be written");
+    }
+}
+
+}  // namespace bench

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "bench/csv.hpp"
+
+/// The curves of the report, one function each: it notes what its columns mean, names them and writes their rows.
+namespace bench {
+
+void workPrecision(const Settings& settings, Csv& csv);
+void errorAtRest(const Settings& settings, Csv& csv);
+void anisotropy(const Settings& settings, Csv& csv);
+void decay(const Settings& settings, Csv& csv);
+void heightBits(const Settings& settings, Csv& csv);
+void band(const Settings& settings, Csv& csv);
+void edit(const Settings& settings, Csv& csv);
+void dig(const Settings& settings, Csv& csv);
+void throughput(const Settings& settings, Csv& csv);
+void massDrift(const Settings& settings, Csv& csv);
+void budget(const Settings& settings, Csv& csv);
+void rest(const Settings& settings, Csv& csv);
+void hashes(const Settings& settings, Csv& csv);
+void explain(const Settings& settings, Csv& csv);
+
+}  // namespace bench

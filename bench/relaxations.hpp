@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sand/height_field.hpp"
+#include "sand/scene.hpp"
+
+namespace bench {
+
+/// One pile on its way to rest by one method. The one place where the benchmarks meet the solvers' interfaces.
+class Relaxation {
+public:
+    virtual ~Relaxation() = default;
+    virtual void sweep(int count) = 0;
+    [[nodiscard]] virtual bool atRest() const = 0;
+    /// Heights row by row [cell].
+    [[nodiscard]] virtual std::vector<double> heights() const = 0;
+};
+
+/// A way to bring sand to rest: ours, or one in common use.
+struct Method {
+    std::string name;
+    bool ours;
+    /// Whether sweep(a) and then sweep(b) is sweep(a + b). A method that gains speed from sweep to sweep starts anew
+    /// with every call: its curve is sampled by runs of their own.
+    bool inParts;
+    /// Whether one call does everything, whatever the count of sweeps.
+    bool direct;
+    std::function<std::unique_ptr<Relaxation>(const sand::HeightField&, const sand::Rules&)> start;
+};
+
+/// Everything a pile can be relaxed with, ours first.
+[[nodiscard]] std::vector<Method> allMethods();
+/// The ones whose name is in `names`, in that order. Throws std::logic_error for a name that no method has.
+[[nodiscard]] std::vector<Method> methods(const std::vector<std::string>& names);
+
+/// Rules of a closed box for sand at `talus` (a tangent), band 0 unless told.
+[[nodiscard]] sand::Rules rulesFor(const sand::HeightField& field, double talus = 1, double band = 0);
+
+/// Runs our own scheme of these rules until nothing moves; returns the sweeps it took.
+std::int64_t sweepToRest(sand::HeightField& field, const sand::Rules& rules);
+
+/// "x86-64-v3" or "baseline": what the sweeps run with on this machine.
+[[nodiscard]] const char* codePath();
+
+inline constexpr int kMostSweeps = 1 << 20;      // no pile of ours needs as many
+inline constexpr float kFloatTolerance = 1e-6F;  // [cell]: a baseline stops when nothing moves further in a sweep
+
+}  // namespace bench

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// Error against run time: what a second buys with each method.
+#include <cmath>
+
+#include "bench/curves.hpp"
+#include "bench/piles.hpp"
+#include "bench/relaxations.hpp"
+#include "bench/timing.hpp"
+
+namespace bench {
+namespace {
+
+/// One place on a method's curve.
+struct Sample {
+    int sweeps = 0;
+    oracles::Distance error;
+    bool atRest = false;
+    std::vector<double> seconds;  // since the start, of each run
+};
+
+/// 1, 2, 3, 4, 6, 8, 12, 16, 24 …
+int next(int sweeps) {
+    if (sweeps < 4) {
+        return sweeps + 1;
+    }
+    const bool powerOfTwo = (sweeps & (sweeps - 1)) == 0;
+    return powerOfTwo ? sweeps / 2 * 3 : sweeps / 3 * 4;
+}
+
+/// Whether four times the sweeps have not improved the error by a hundredth: in floats some piles never rest.
+bool onPlateau(const std::vector<Sample>& samples) {
+    constexpr std::size_t kBack = 4;
+    return samples.size() > 2 * kBack && samples[samples.size() - 1 - kBack].sweeps >= 256 &&
+           samples.back().error.misplaced > 0.99 * samples[samples.size() - 1 - kBack].error.misplaced;
+}
+
+oracles::Distance errorOf(const Pile& pile, const Relaxation& relaxation) {
+    const std::vector<double> heights = relaxation.heights();
+    return oracles::distance(
+        pile.side(), pile.rest, [&](std::size_t i) { return heights[i]; }, [](int, int) { return true; });
+}
+
+/// Runs a method once through the samples that `samples` holds, or, the first time, as far as it goes.
+class Runner {
+public:
+    Runner(const Method& method, const Pile& pile) : method_(method), pile_(pile), rules_(rulesFor(pile.start)) {}
+
+    std::vector<Sample> first() {
+        std::vector<Sample> samples;
+        start();
+        for (int sweeps = 1; samples.empty() || !samples.back().atRest; sweeps = next(sweeps)) {
+            Sample sample;
+            sample.sweeps = sweeps;
+            sample.seconds.push_back(advanceTo(sweeps));
+            sample.error = errorOf(pile_, *relaxation_);
+            sample.atRest = relaxation_->atRest();
+            samples.push_back(sample);
+            if (sweeps >= kMostSweeps || (!method_.ours && onPlateau(samples))) {
+                break;
+            }
+        }
+        return samples;
+    }
+
+    void again(std::vector<Sample>& samples) {
+        start();
+        for (Sample& sample : samples) {
+            sample.seconds.push_back(advanceTo(sample.sweeps));
+        }
+    }
+
+private:
+    void start() {
+        relaxation_ = method_.start(pile_.start, rules_);
+        done_ = 0;
+        seconds_ = 0;
+    }
+    /// Seconds from the start to `sweeps` sweeps, setting up included.
+    double advanceTo(int sweeps) {
+        if (!method_.inParts || done_ == 0) {
+            seconds_ = secondsOf([&] {
+                relaxation_ = method_.start(pile_.start, rules_);
+                relaxation_->sweep(sweeps);
+            });
+        } else {
+            seconds_ += secondsOf([&] { relaxation_->sweep(sweeps - done_); });
+        }
+        done_ = sweeps;
+        return seconds_;
+    }
+
+    const Method& method_;
+    const Pile& pile_;
+    const sand::Rules rules_;
+    std::unique_ptr<Relaxation> relaxation_;
+    int done_ = 0;
+    double seconds_ = 0;
+};
+
+}  // namespace
+
+void workPrecision(const Settings& settings, Csv& csv) {
+    csv.note("misplaced: sum of |height - analytic mean over the cell| over the sum of the latter");
+    csv.note("largest, apex: L-infinity error and error of the highest point [cell of this N]");
+    csv.note("seconds: CPU time of one thread from the start field on, setting up included");
+    csv.note(fmt::format("a float baseline ends when no sweep moves {} cells, or four times the sweeps gain < 1 %",
+                         kFloatTolerance));
+    csv.columns("pile,method,ours,N,sweeps,seconds_median,seconds_min,seconds_max,misplaced,largest,apex,at_rest");
+    for (const int side : settings.sizes) {
+        for (const Pile& pile : {lowPile(side), tallPile(side)}) {
+            for (const Method& method : allMethods()) {
+                progress("{} pile, N = {}, {}: {} runs", pile.name, side, method.name, settings.runs);
+                Runner runner(method, pile);
+                std::vector<Sample> samples = runner.first();
+                for (int run = 1; run < settings.runs; ++run) {
+                    runner.again(samples);
+                }
+                for (const Sample& sample : samples) {
+                    const Spread seconds = spreadOf(sample.seconds);
+                    csv.row(pile.name, method.name, method.ours ? 1 : 0, side, sample.sweeps, seconds.median,
+                            seconds.lowest, seconds.highest, sample.error.misplaced, sample.error.largest,
+                            sample.error.apex, sample.atRest ? 1 : 0);
+                }
+            }
+        }
+    }
+}
+
+}  // namespace bench
