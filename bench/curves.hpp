@@ -8,6 +8,7 @@ namespace bench {
 
 void workPrecision(const Settings& settings, Csv& csv);
 void errorAtRest(const Settings& settings, Csv& csv);
+void sweeps(const Settings& settings, Csv& csv);
 void anisotropy(const Settings& settings, Csv& csv);
 void decay(const Settings& settings, Csv& csv);
 void heightBits(const Settings& settings, Csv& csv);

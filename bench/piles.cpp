@@ -2,6 +2,7 @@
 #include "bench/piles.hpp"
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace bench {
@@ -59,7 +60,7 @@ double misplaced(const sand::HeightField& a, const sand::HeightField& b) {
 double observedOrder(double coarseError, int coarse, double fineError, int fine) {
     return coarseError > 0 && fineError > 0 && coarse > 0
                ? std::log(coarseError / fineError) / std::log(static_cast<double>(fine) / coarse)
-               : 0;
+               : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace bench

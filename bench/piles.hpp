@@ -34,7 +34,8 @@ struct Pile {
 [[nodiscard]] double misplaced(const std::vector<double>& a, const std::vector<double>& b);
 [[nodiscard]] double misplaced(const sand::HeightField& a, const sand::HeightField& b);
 
-/// Order of convergence between two sizes: log of the errors' ratio over log of the sizes'. 0 without a first.
+/// Order of convergence between two sizes: log of the errors' ratio over log of the sizes'. NaN where it has none:
+/// without a first size, or of errors that are zero.
 [[nodiscard]] double observedOrder(double coarseError, int coarse, double fineError, int fine);
 
 }  // namespace bench

@@ -28,6 +28,7 @@ public:
         : field_(field), erosion_(field_, rules, options) {}
     void sweep(int count) override { erosion_.sweep(field_, count); }
     [[nodiscard]] bool atRest() const override { return erosion_.settled(); }
+    [[nodiscard]] std::int64_t sweepsDone() const override { return erosion_.sweepsDone(); }
     [[nodiscard]] std::vector<double> heights() const override { return heightsOf(field_); }
 
 private:
@@ -56,9 +57,11 @@ public:
         for (int i = 0; i < count && !atRest(); ++i) {
             largest_ =
                 v3_ ? v3::sweep(scheme_, talus_, field_, scratch_) : baseline::sweep(scheme_, talus_, field_, scratch_);
+            ++sweepsDone_;
         }
     }
     [[nodiscard]] bool atRest() const override { return largest_ < kFloatTolerance; }
+    [[nodiscard]] std::int64_t sweepsDone() const override { return sweepsDone_; }
     [[nodiscard]] std::vector<double> heights() const override {
         std::vector<double> heights;
         for (int y = 0; y < field_.side; ++y) {
@@ -72,6 +75,7 @@ private:
     float talus_;
     FloatField field_, scratch_;
     bool v3_;
+    std::int64_t sweepsDone_ = 0;
     float largest_ = 1;  // moved in the last sweep [cell]
 };
 

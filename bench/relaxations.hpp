@@ -18,6 +18,7 @@ public:
     virtual ~Relaxation() = default;
     virtual void sweep(int count) = 0;
     [[nodiscard]] virtual bool atRest() const = 0;
+    [[nodiscard]] virtual std::int64_t sweepsDone() const = 0;
     /// Heights row by row [cell].
     [[nodiscard]] virtual std::vector<double> heights() const = 0;
 };
@@ -38,6 +39,9 @@ struct Method {
 [[nodiscard]] std::vector<Method> allMethods();
 /// The ones whose name is in `names`, in that order. Throws std::logic_error for a name that no method has.
 [[nodiscard]] std::vector<Method> methods(const std::vector<std::string>& names);
+
+/// What the time to rest is measured of: the reference first, the one nearest to the truth last.
+inline const std::vector<std::string> kToRest{"G plain full sweeps", "G plain", "G"};
 
 /// Rules of a closed box for sand at `talus` (a tangent), band 0 unless told.
 [[nodiscard]] sand::Rules rulesFor(const sand::HeightField& field, double talus = 1, double band = 0);

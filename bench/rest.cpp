@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Seconds to rest: of one pile, and of a field in which everything moves.
+#include "bench/curves.hpp"
+#include "bench/piles.hpp"
+#include "bench/relaxations.hpp"
+#include "bench/timing.hpp"
+
+namespace bench {
+namespace {
+
+struct Contender {
+    const Method* method;
+    std::vector<double> seconds;
+    std::vector<double> heights;
+    std::int64_t sweeps = 0;
+};
+
+/// Every method in every round, so that a neighbour's load meets all of them alike.
+std::vector<Contender> race(const std::vector<Method>& all, const sand::HeightField& start, int runs,
+                            const std::string& field) {
+    std::vector<Contender> contenders;
+    for (const Method& method : all) {
+        contenders.push_back({&method, {}, {}, 0});
+    }
+    for (int run = 0; run < runs; ++run) {
+        progress("{}, N = {}, {} of {} runs", field, start.columns(), run + 1, runs);
+        for (Contender& contender : contenders) {
+            std::unique_ptr<Relaxation> relaxation;
+            contender.seconds.push_back(secondsOf([&] {
+                relaxation = contender.method->start(start, rulesFor(start));
+                relaxation->sweep(kMostSweeps);
+            }));
+            contender.heights = relaxation->heights();
+            contender.sweeps = relaxation->sweepsDone();
+        }
+    }
+    return contenders;
+}
+
+}  // namespace
+
+void rest(const Settings& settings, Csv& csv) {
+    const std::vector<Method> all = methods(kToRest);
+    csv.note(
+        "low pile: cylinder of height 0.6 R, R = 0.3 N, talus 45 degrees, band 0; error against the analytic pile");
+    csv.note("bumpy slope: a plane three times as steep as the talus with bumps of up to half a cell in a closed box;");
+    csv.note("  error against " + kToRest.back() + ", over the sum of |heights|");
+    csv.note("ratio: median of `" + kToRest.front() + "` of the same field over this one's median");
+    csv.columns("field,method,N,sweeps,seconds_median,seconds_min,seconds_max,ratio,error");
+    for (const int side : settings.sizes) {
+        const auto write = [&](const std::string& field, const std::vector<Contender>& contenders,
+                               const std::vector<double>& truth) {
+            const double reference = spreadOf(contenders.front().seconds).median;
+            for (const Contender& contender : contenders) {
+                const Spread seconds = spreadOf(contender.seconds);
+                csv.row(field, contender.method->name, side, contender.sweeps, seconds.median, seconds.lowest,
+                        seconds.highest, reference / seconds.median, misplaced(contender.heights, truth));
+            }
+        };
+        const Pile pile = lowPile(side);
+        write("low pile", race(all, pile.start, settings.runs, "low pile"), pile.rest);
+        const auto slope = race(all, bumpySlope(side, settings.seed), settings.runs, "bumpy slope");
+        write("bumpy slope", slope, slope.back().heights);
+    }
+}
+
+}  // namespace bench

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a sweep costs per cell, beside what the machine's memory allows.
+#include <atomic>
+#include <cstring>
+#include <random>
+#include <thread>
+
+#include "bench/baseline_schemes.hpp"
+#include "bench/curves.hpp"
+#include "bench/relaxations.hpp"
+#include "bench/thread_pool.hpp"
+#include "bench/timing.hpp"
+#include "sand/erosion.hpp"
+
+namespace bench {
+namespace {
+
+/// Noise of 64 cells' height: next to nothing of it rests.
+sand::HeightField roughField(int side, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    sand::HeightField field(side, side, 1.0);
+    for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+            field.setHeight(x, y, static_cast<std::int32_t>(random() % (1U << 22)));
+        }
+    }
+    return field;
+}
+
+/// Sweeps enough for some 20 ms, so that the clock's grain and the first sweep's cold memory do not matter.
+int sweepsFor(int side) { return std::max(2, (1 << 24) / (side * side)); }
+
+struct Variant {
+    std::string name;
+    sand::Scheme scheme;
+    sand::CodePath path;
+    int threads;
+};
+
+/// Wall seconds per sweep, a number for each run.
+std::vector<double> measure(const Variant& variant, const sand::HeightField& start, int runs) {
+    sand::Rules rules = rulesFor(start, 64.0 / sand::kUnitsPerCell);
+    rules.scheme = variant.scheme;
+    ThreadPool pool(variant.threads);
+    const sand::Executor executor = pool.executor();
+    sand::Erosion::Options options;
+    options.path = variant.path;
+    options.executor = variant.threads > 1 ? &executor : nullptr;
+    sand::HeightField field = start;
+    sand::Erosion erosion(field, rules, options);
+    const int count = sweepsFor(start.columns());
+    std::vector<double> seconds;
+    for (int run = 0; run < runs; ++run) {
+        const double before = wallSeconds();
+        erosion.sweep(field, count);
+        seconds.push_back((wallSeconds() - before) / count);
+    }
+    return seconds;
+}
+
+std::vector<double> measureCopy(int side, int runs) {
+    const auto cells = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
+    const std::vector<std::int32_t> from(cells, 1);
+    std::vector<std::int32_t> to(cells);
+    const int count = 4 * sweepsFor(side);
+    std::vector<double> seconds;
+    for (int run = 0; run < runs; ++run) {
+        const double before = wallSeconds();
+        for (int i = 0; i < count; ++i) {
+            std::memcpy(to.data(), from.data(), cells * sizeof from[0]);
+            // Without a reader the compiler may leave out every copy.
+            std::atomic_signal_fence(std::memory_order_seq_cst);
+        }
+        seconds.push_back((wallSeconds() - before) / count);
+    }
+    return seconds;
+}
+
+std::vector<double> measureBaseline(BaselineScheme scheme, const sand::HeightField& start, int runs) {
+    FloatField field(start.columns());
+    FloatField scratch(start.columns());
+    for (int y = 0; y < field.side; ++y) {
+        for (int x = 0; x < field.side; ++x) {
+            field.row(y)[x] = static_cast<float>(start.height(x, y)) / sand::kUnitsPerCell;
+        }
+    }
+    const bool isV3 = std::strcmp(codePath(), "baseline") != 0;
+    const int count = sweepsFor(start.columns());
+    std::vector<double> seconds;
+    for (int run = 0; run < runs; ++run) {
+        const double before = wallSeconds();
+        for (int i = 0; i < count; ++i) {
+            isV3 ? v3::sweep(scheme, 1e-3F, field, scratch) : baseline::sweep(scheme, 1e-3F, field, scratch);
+        }
+        seconds.push_back((wallSeconds() - before) / count);
+    }
+    return seconds;
+}
+
+}  // namespace
+
+void throughput(const Settings& settings, Csv& csv) {
+    using sand::CodePath;
+    using sand::Scheme;
+    std::vector<Variant> variants{{"G", Scheme::isotropic, CodePath::automatic, 1},
+                                  {"G plain", Scheme::plainIsotropic, CodePath::automatic, 1},
+                                  {"N4", Scheme::n4, CodePath::automatic, 1},
+                                  {"G, baseline x86-64", Scheme::isotropic, CodePath::baseline, 1}};
+    for (int threads = 2; threads <= static_cast<int>(std::thread::hardware_concurrency()); threads *= 2) {
+        variants.push_back({fmt::format("G, {} threads", threads), Scheme::isotropic, CodePath::automatic, threads});
+    }
+    csv.note("a field in which everything moves; wall time, since several threads share the work");
+    csv.note("times_memcpy: over the median of copying as many 32-bit cells in the same run, which is the roofline");
+    csv.columns("variant,threads,N,ns_per_cell_median,ns_per_cell_min,ns_per_cell_max,times_memcpy");
+    for (const int side : settings.sizes) {
+        const double nanoseconds = 1e9 / (static_cast<double>(side) * side);
+        const double copy = spreadOf(measureCopy(side, settings.runs)).median;
+        const auto row = [&](const std::string& name, int threads, const std::vector<double>& seconds) {
+            progress("N = {}, {}", side, name);
+            const Spread spread = spreadOf(seconds);
+            csv.row(name, threads, side, spread.median * nanoseconds, spread.lowest * nanoseconds,
+                    spread.highest * nanoseconds, spread.median / copy);
+        };
+        row("memcpy", 1, measureCopy(side, settings.runs));
+        const sand::HeightField start = roughField(side, settings.seed);
+        for (const Variant& variant : variants) {
+            row(variant.name, variant.threads, measure(variant, start, settings.runs));
+        }
+        row("float32 N4 Jacobi", 1, measureBaseline(BaselineScheme::jacobiN4, start, settings.runs));
+        row("float32 N4 in place", 1, measureBaseline(BaselineScheme::inPlaceN4, start, settings.runs));
+        row("float32 N8 sqrt2 Jacobi", 1, measureBaseline(BaselineScheme::jacobiN8r2, start, settings.runs));
+    }
+}
+
+}  // namespace bench
