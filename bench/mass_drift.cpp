@@ -45,10 +45,6 @@ void massDrift(const Settings& settings, Csv& csv) {
                 const double before = volume();
                 std::int64_t done = 0;
                 for (int wanted = 1; wanted <= 1 << 14 && !relaxation->atRest(); wanted *= 2) {
-                    if (!method.inParts) {
-                        relaxation = method.start(start, rulesFor(start));
-                        done = 0;
-                    }
                     relaxation->sweep(wanted - static_cast<int>(done));
                     done = wanted;
                     csv.row(pile.name, method.name, side, datum, wanted, (volume() - before) / before);

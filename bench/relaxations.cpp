@@ -80,7 +80,7 @@ private:
 };
 
 Method ours(const std::string& name, sand::Scheme scheme, bool skipSettled) {
-    return {name, true, scheme != sand::Scheme::isotropic, false,
+    return {name, true, false,
             [=](const sand::HeightField& field, const sand::Rules& rules) -> std::unique_ptr<Relaxation> {
                 sand::Rules own = rules;
                 own.scheme = scheme;
@@ -91,7 +91,7 @@ Method ours(const std::string& name, sand::Scheme scheme, bool skipSettled) {
 }
 
 Method floats(const std::string& name, BaselineScheme scheme) {
-    return {name, false, true, false,
+    return {name, false, false,
             [=](const sand::HeightField& field, const sand::Rules& rules) -> std::unique_ptr<Relaxation> {
                 return std::make_unique<Baseline>(scheme, field, rules);
             }};

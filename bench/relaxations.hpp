@@ -16,6 +16,7 @@ namespace bench {
 class Relaxation {
 public:
     virtual ~Relaxation() = default;
+    /// At most so many more sweeps; in parts or at once gives the same.
     virtual void sweep(int count) = 0;
     [[nodiscard]] virtual bool atRest() const = 0;
     [[nodiscard]] virtual std::int64_t sweepsDone() const = 0;
@@ -27,9 +28,6 @@ public:
 struct Method {
     std::string name;
     bool ours;
-    /// Whether sweep(a) and then sweep(b) is sweep(a + b). A method that gains speed from sweep to sweep starts anew
-    /// with every call: its curve is sampled by runs of their own.
-    bool inParts;
     /// Whether one call does everything, whatever the count of sweeps.
     bool direct;
     std::function<std::unique_ptr<Relaxation>(const sand::HeightField&, const sand::Rules&)> start;
@@ -52,7 +50,7 @@ std::int64_t sweepToRest(sand::HeightField& field, const sand::Rules& rules);
 /// "x86-64-v3" or "baseline": what the sweeps run with on this machine.
 [[nodiscard]] const char* codePath();
 
-inline constexpr int kMostSweeps = 1 << 20;      // no pile of ours needs as many
+inline constexpr int kMostSweeps = 1 << 22;      // nothing of ours needs as many
 inline constexpr float kFloatTolerance = 1e-6F;  // [cell]: a baseline stops when nothing moves further in a sweep
 
 }  // namespace bench

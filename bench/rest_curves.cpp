@@ -110,7 +110,6 @@ void anisotropy(const Settings& settings, Csv& csv) {
 void decay(const Settings& settings, Csv& csv) {
     csv.note("moved: volume that changed cell per sweep, mean since the sample before, over the pile's volume");
     csv.note("to_rest: sum of |height - height at this method's own rest| over the volume");
-    csv.note("G gains speed within a run: each of its samples is a run of its own from the start");
     csv.columns("pile,method,N,sweeps,moved,to_rest");
     for (const int side : settings.sizes) {
         for (const Pile& pile : {lowPile(side), tallPile(side)}) {
@@ -125,12 +124,7 @@ void decay(const Settings& settings, Csv& csv) {
                     if (sweepsWanted <= done) {
                         continue;
                     }
-                    if (method.inParts) {
-                        relaxation->sweep(sweepsWanted - static_cast<int>(done));
-                    } else {
-                        relaxation = method.start(pile.start, rulesFor(pile.start));
-                        relaxation->sweep(sweepsWanted);
-                    }
+                    relaxation->sweep(sweepsWanted - static_cast<int>(done));
                     const std::vector<double> now = relaxation->heights();
                     // Every grain that moves is missing in one cell and too many in another: half of the sum.
                     const double moved = misplaced(now, last) / 2 / static_cast<double>(sweepsWanted - done);

@@ -77,7 +77,7 @@ private:
     }
     /// Seconds from the start to `sweeps` sweeps, setting up included.
     double advanceTo(int sweeps) {
-        if (!method_.inParts || done_ == 0) {
+        if (done_ == 0) {
             seconds_ = secondsOf([&] {
                 relaxation_ = method_.start(pile_.start, rules_);
                 relaxation_->sweep(sweeps);
