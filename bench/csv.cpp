@@ -41,17 +41,17 @@ void Csv::Close::operator()(std::FILE* file) const {
     }
 }
 
-Csv::Csv(const Settings& settings) : name_(settings.out.empty() ? "standard output" : settings.out.string()) {
-    file_.reset(settings.out.empty() ? stdout : std::fopen(settings.out.c_str(), "w"));
+void Csv::open() {
+    file_.reset(settings_.out.empty() ? stdout : std::fopen(settings_.out.c_str(), "w"));
     if (!file_) {
-        throw files::InputError(name_ + ": cannot be written, choose another --out");
+        throw files::InputError(name() + ": cannot be written, choose another --out");
     }
     note("machine: " + machine());
     note("compiler: " SANDWALL_COMPILER);
     note("flags: " SANDWALL_FLAGS);
     note(std::string("code path: ") + codePath());
-    note(fmt::format("seed: {}", settings.seed));
-    note("command: " + settings.commandLine);
+    note(fmt::format("seed: {}", settings_.seed));
+    note("command: " + settings_.commandLine);
     note("date: " + date());
 }
 
@@ -60,13 +60,16 @@ void Csv::note(std::string_view line) { write(fmt::format("# {}", line)); }
 void Csv::columns(std::string_view names) { write(names); }
 
 void Csv::write(std::string_view line) {
+    if (!file_) {
+        open();
+    }
     fmt::print(file_.get(), "{}\n", line);
     std::fflush(file_.get());
 }
 
 void Csv::finish() {
-    if (std::ferror(file_.get()) != 0) {
-        throw std::runtime_error(name_ + ": not everything could be written");
+    if (file_ && std::ferror(file_.get()) != 0) {
+        throw std::runtime_error(name() + ": not everything could be written");
     }
 }
 

@@ -26,11 +26,11 @@ struct Settings {
 /// A table of measurements: comment lines that say where they come from, a line of column names, rows of numbers.
 class Csv {
 public:
-    /// Writes machine, compiler, flags, code path, seed, command and date as comments. Throws files::InputError when
-    /// the file cannot be opened.
-    explicit Csv(const Settings& settings);
+    explicit Csv(const Settings& settings) : settings_(settings) {}
 
-    /// One more comment line: a definition that a reader of the numbers needs.
+    /// One more comment line: a definition that a reader of the numbers needs. The first opens the file and writes
+    /// machine, compiler, flags, code path, seed, command and date before it: input that cannot be used leaves no file.
+    /// Throws files::InputError when the file cannot be opened.
     void note(std::string_view line);
     void columns(std::string_view names);
 
@@ -58,8 +58,13 @@ private:
     struct Close {
         void operator()(std::FILE* file) const;
     };
-    std::string name_;
-    std::unique_ptr<std::FILE, Close> file_;
+    void open();
+    [[nodiscard]] std::string name() const {
+        return settings_.out.empty() ? "standard output" : settings_.out.string();
+    }
+
+    const Settings& settings_;
+    std::unique_ptr<std::FILE, Close> file_;  // null before the first line
 };
 
 /// A line on stderr about what runs now.

@@ -18,6 +18,7 @@ void dig(const Settings& settings, Csv& csv);
 void throughput(const Settings& settings, Csv& csv);
 void massDrift(const Settings& settings, Csv& csv);
 void budget(const Settings& settings, Csv& csv);
+void parts(const Settings& settings, Csv& csv);
 void rest(const Settings& settings, Csv& csv);
 void hashes(const Settings& settings, Csv& csv);
 void explain(const Settings& settings, Csv& csv);

@@ -10,7 +10,7 @@ namespace {
 struct Curve {
     const char* name;
     const char* what;
-    std::vector<int> sizes;
+    std::vector<int> sizes;  // [cell]; a curve without measures a scene
     int runs;
     void (*measure)(const bench::Settings&, bench::Csv&);
 };
@@ -41,6 +41,16 @@ std::vector<Curve> allCurves() {
          bench::throughput},
         {"rest", "seconds to rest of a pile, and of a field in which everything moves", {512}, 10, bench::rest},
         {"hashes", "one hash by every code path, number of threads and size of blocks", {128}, 1, bench::hashes},
+        {"parts",
+         "what bedrock, an edit and moving sand cost, and settled sand does not",
+         {512, 1024, 2048},
+         10,
+         bench::parts},
+        {"explain",
+         "what a scene loads and runs, what it leaves out, and what each part costs",
+         {},
+         100,
+         bench::explain},
         {"mass-drift", "sand that floats lose or invent, and integers do not", {128}, 1, bench::massDrift},
         {"budget", "where one pile's error comes from", {128}, 1, bench::budget},
     };
@@ -52,17 +62,18 @@ void addOptions(CLI::App& command, const Curve& curve, bench::Settings& settings
     settings.sizes = curve.sizes;
     settings.runs = curve.runs;
     command.add_option("--out", settings.out, "the CSV file; standard output without");
-    command.add_option("--sizes", settings.sizes, "sides of the square fields [cell], separated by commas")
-        ->delimiter(',')
-        ->check(CLI::Range(8, kLargestSide))
-        ->capture_default_str();
     command.add_option("--runs", settings.runs, "runs of everything that is timed")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     command.add_option("--seed", settings.seed, "of everything that is random")->capture_default_str();
-    if (std::string(curve.name) == "explain") {
+    if (curve.sizes.empty()) {
         command.add_option("SCENE", settings.scene, "a scene file")->required();
+        return;
     }
+    command.add_option("--sizes", settings.sizes, "sides of the square fields [cell], separated by commas")
+        ->delimiter(',')
+        ->check(CLI::Range(8, kLargestSide))
+        ->capture_default_str();
 }
 
 }  // namespace

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a scene without bedrock, or with nothing going on, does not pay for.
+#include <optional>
+#include <random>
+
+#include "bench/curves.hpp"
+#include "bench/relaxations.hpp"
+#include "bench/timing.hpp"
+#include "sand/erosion.hpp"
+#include "sand/ground.hpp"
+
+namespace bench {
+namespace {
+
+constexpr int kSweeps = 16;        // per step
+constexpr int kDepth = 64;         // [cell], of the bedrock below the level sand
+constexpr double kTalus = 0.6745;  // 34 degrees
+
+enum class Happening { settled, smallEdit, everythingMoves };
+
+struct Cost {
+    std::vector<double> seconds;  // per step
+    std::int64_t sweeps = 0;      // of the last step
+    std::size_t bytes = 0;        // heights, fluxes, blocks and rock
+};
+
+Cost measure(int side, bool withBedrock, Happening happening, const Settings& settings) {
+    std::mt19937 random(settings.seed);
+    sand::HeightField start(side, side, 1.0);
+    std::optional<sand::Ground> ground;
+    if (withBedrock) {
+        ground.emplace(side, side);
+        for (int y = 0; y < side; ++y) {
+            for (int x = 0; x < side; ++x) {
+                ground->setBedrock(x, y, -kDepth * sand::kUnitsPerCell);
+            }
+        }
+    }
+    if (happening == Happening::everythingMoves) {
+        for (int y = 0; y < side; ++y) {
+            for (int x = 0; x < side; ++x) {
+                start.setHeight(x, y, static_cast<std::int32_t>(random() % (1U << 22)));
+            }
+        }
+    }
+    const sand::Rules rules = rulesFor(start, kTalus);
+    sand::Erosion::Options options;
+    options.ground = ground ? &*ground : nullptr;
+    const sand::SphereTool tool(3 * sand::kProbePerCell);
+    const sand::ProbePoint middle{side * sand::kProbePerCell / 2, side * sand::kProbePerCell / 2, 0};
+
+    Cost cost;
+    for (int run = 0; run < settings.runs; ++run) {
+        sand::HeightField field = start;
+        sand::Erosion erosion(field, rules, options);
+        if (happening != Happening::everythingMoves) {
+            erosion.sweep(field, kMostSweeps);
+        }
+        const std::int64_t before = erosion.sweepsDone();
+        cost.seconds.push_back(secondsOf([&] {
+            if (happening == Happening::smallEdit) {
+                erosion.touch(tool.drag(field, rules.rim, middle, middle).cells);
+            }
+            erosion.sweep(field, kSweeps);
+        }));
+        cost.sweeps = erosion.sweepsDone() - before;
+        cost.bytes = static_cast<std::size_t>(field.stride()) * static_cast<std::size_t>(side + 2) * sizeof(int) +
+                     erosion.bytes() + (ground ? ground->cells().bytes() : 0);
+    }
+    return cost;
+}
+
+}  // namespace
+
+void parts(const Settings& settings, Csv& csv) {
+    csv.note(
+        fmt::format("a step of {} sweeps; bedrock {} cells below level sand; a small edit: a sphere of 3 cells "
+                    "presses half of itself in; everything moving: noise of 64 cells",
+                    kSweeps, kDepth));
+    csv.note("CPU time of one thread; sweeps: run before nothing moved any more");
+    csv.columns("ground,state,N,us_median,us_min,us_max,sweeps,bytes");
+    for (const int side : settings.sizes) {
+        for (const bool withBedrock : {false, true}) {
+            for (const auto& [happening, name] : {std::pair{Happening::settled, "settled"},
+                                                  {Happening::smallEdit, "one small edit"},
+                                                  {Happening::everythingMoves, "everything moving"}}) {
+                progress("N = {}, {} bedrock, {}", side, withBedrock ? "with" : "without", name);
+                const Cost cost = measure(side, withBedrock, happening, settings);
+                const Spread us = spreadOf(cost.seconds);
+                csv.row(withBedrock ? "bedrock" : "none", name, side, us.median * 1e6, us.lowest * 1e6,
+                        us.highest * 1e6, cost.sweeps, cost.bytes);
+            }
+        }
+    }
+}
+
+}  // namespace bench
