@@ -34,7 +34,7 @@ Costs measure(int side, double radius, bool skipSettled, int runs) {
         sand::Erosion erosion(field, rules, options);
         erosion.sweep(field, 2);
         const double before = cpuSeconds();
-        erosion.touch(tool.drag(field, rules.rim, at, at).cells);
+        erosion.touch(tool.drag(field, rules.rim, nullptr, at, at).cells);
         erosion.sweep(field, kSweeps);
         costs.step.push_back(cpuSeconds() - before);
         if (skipSettled) {

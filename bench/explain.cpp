@@ -56,7 +56,7 @@ private:
 };
 
 void explainMemory(const sand::Scene& scene, Explanation& rows) {
-    const sand::Erosion erosion(scene.terrain, scene.rules);
+    const sand::Erosion erosion(scene.terrain, scene.rules, sand::Erosion::Options{.ground = scene.ground.get()});
     const sand::StateHash hash(scene.terrain);
     rows.memory("heights",
                 static_cast<std::size_t>(scene.terrain.stride()) * static_cast<std::size_t>(scene.rules.rows + 2) *
@@ -65,14 +65,15 @@ void explainMemory(const sand::Scene& scene, Explanation& rows) {
     rows.memory("fluxes and blocks", erosion.bytes(), "a flux per face; flags per block of 16 x 16 cells");
     rows.memory("hash tiles", static_cast<std::size_t>(hash.tileCount()) * (sizeof(std::uint64_t) + 1),
                 "a hash and a flag per tile of 32 x 32 cells");
-    rows.memory("bedrock and walls", 0, "the scene has none");
+    rows.memory("bedrock and walls", scene.ground ? scene.ground->cells().bytes() : 0,
+                scene.ground ? "a height of rock per cell" : "the scene has none");
 }
 
 void explainRules(const sand::Scene& scene, Explanation& rows) {
     const sand::Rules& rules = scene.rules;
     rows.rule("isotropic flux with inertia", rules.scheme == sand::Scheme::isotropic, "scheme = g");
     rows.rule("four-neighbour flux", rules.scheme == sand::Scheme::n4, "only with scheme = n4");
-    rows.rule("layer limiter", false, "only with bedrock or walls");
+    rows.rule("layer limiter", scene.ground != nullptr, "only with bedrock or walls");
     rows.rule("non-square cells", rules.aspect != sand::kUnitsPerCell,
               "a law per axis: only where a cell is not square");
     rows.rule("outflow over the rim", rules.rim == sand::Rim::open, "only with rim = open");

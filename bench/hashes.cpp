@@ -27,7 +27,7 @@ std::uint64_t hashAfterEdits(int side, std::uint32_t seed, sand::Scheme scheme, 
     for (int i = 0; i < kEdits; ++i) {
         const sand::ProbePoint from{within(field.columns()), within(field.rows()), -within(3)};
         const sand::ProbePoint to{from.x + within(8), from.y + within(8), from.z};
-        erosion.touch(tool.drag(field, rules.rim, from, to).cells);
+        erosion.touch(tool.drag(field, rules.rim, nullptr, from, to).cells);
         erosion.sweep(field, 1 + static_cast<int>(random() % 8));
     }
     return sand::StateHash(field).update(field);

@@ -59,7 +59,7 @@ Cost measure(int side, bool withBedrock, Happening happening, const Settings& se
         const std::int64_t before = erosion.sweepsDone();
         cost.seconds.push_back(secondsOf([&] {
             if (happening == Happening::smallEdit) {
-                erosion.touch(tool.drag(field, rules.rim, middle, middle).cells);
+                erosion.touch(tool.drag(field, rules.rim, options.ground, middle, middle).cells);
             }
             erosion.sweep(field, kSweeps);
         }));

@@ -113,9 +113,9 @@ void throughput(const Settings& settings, Csv& csv) {
     std::vector<Variant> variants{{"G", Scheme::isotropic, CodePath::automatic, 1},
                                   {"G plain", Scheme::plainIsotropic, CodePath::automatic, 1},
                                   {"N4", Scheme::n4, CodePath::automatic, 1},
-                                  {"G, baseline x86-64", Scheme::isotropic, CodePath::baseline, 1}};
+                                  {"G baseline x86-64", Scheme::isotropic, CodePath::baseline, 1}};
     for (int threads = 2; threads <= static_cast<int>(std::thread::hardware_concurrency()); threads *= 2) {
-        variants.push_back({fmt::format("G, {} threads", threads), Scheme::isotropic, CodePath::automatic, threads});
+        variants.push_back({fmt::format("G {} threads", threads), Scheme::isotropic, CodePath::automatic, threads});
     }
     csv.note("a field in which everything moves; wall time, since several threads share the work");
     csv.note(

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rules in common use must be what they claim to be, or the comparison is worth nothing.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bench/baseline_schemes.hpp"
+#include "bench/piles.hpp"
+#include "bench/relaxations.hpp"
+
+namespace {
+
+using bench::BaselineScheme;
+using bench::FloatField;
+
+constexpr BaselineScheme kAll[]{BaselineScheme::inPlaceN4, BaselineScheme::jacobiN4, BaselineScheme::jacobiN8,
+                                BaselineScheme::jacobiN8r2};
+
+double volume(const FloatField& field) {
+    double sum = 0;
+    for (int y = 0; y < field.side; ++y) {
+        for (int x = 0; x < field.side; ++x) {
+            sum += field.row(y)[x];
+        }
+    }
+    return sum;
+}
+
+TEST(Baselines, KeepVolumeButForRounding) {
+    for (const BaselineScheme scheme : kAll) {
+        FloatField field(33);
+        FloatField scratch(33);
+        field.row(16)[16] = 30;
+        for (int i = 0; i < 20; ++i) {
+            bench::baseline::sweep(scheme, 1, field, scratch);
+        }
+        EXPECT_NEAR(volume(field), 30, 30 * 20 * 1e-6);
+    }
+}
+
+TEST(Baselines, LeaveSandAtTheTalusAlone) {
+    for (const BaselineScheme scheme : kAll) {
+        FloatField field(20);
+        FloatField scratch(20);
+        for (int y = 0; y < 20; ++y) {
+            for (int x = 0; x < 20; ++x) {
+                field.row(y)[x] = static_cast<float>(x);
+            }
+        }
+        EXPECT_EQ(bench::baseline::sweep(scheme, 1, field, scratch), 0.0F);
+    }
+}
+
+// One spike of height 9 at a talus of 1: what each rule gives its neighbours, by hand.
+TEST(Baselines, MoveTheSharesOfTheirRules) {
+    const auto spike = [](BaselineScheme scheme) {
+        FloatField field(9);
+        FloatField scratch(9);
+        field.row(4)[4] = 9;
+        bench::baseline::sweep(scheme, 1, field, scratch);
+        return field;
+    };
+    const FloatField n4 = spike(BaselineScheme::jacobiN4);
+    EXPECT_FLOAT_EQ(n4.row(4)[4], 9 - 4 * (9 - 1) / 4.0F);
+    EXPECT_FLOAT_EQ(n4.row(4)[5], 2);
+    EXPECT_FLOAT_EQ(n4.row(5)[5], 0);
+    const FloatField n8 = spike(BaselineScheme::jacobiN8);
+    EXPECT_FLOAT_EQ(n8.row(5)[5], 1);
+    EXPECT_FLOAT_EQ(n8.row(5)[4], 1);
+    const FloatField n8r2 = spike(BaselineScheme::jacobiN8r2);
+    EXPECT_FLOAT_EQ(n8r2.row(5)[5], (9 - std::sqrt(2.0F)) / 8);
+    EXPECT_FLOAT_EQ(n8r2.row(5)[4], 1);
+    // In place: the face to the south comes first and leaves 5 in the spike. Of these 2 go east, from where 0.5 go on
+    // east and 0.25 north; of the 3 that are left 1 goes west and 0.5 north.
+    const FloatField inPlace = spike(BaselineScheme::inPlaceN4);
+    EXPECT_FLOAT_EQ(inPlace.row(3)[4], 4);
+    EXPECT_FLOAT_EQ(inPlace.row(4)[5], 1.25F);
+    EXPECT_FLOAT_EQ(inPlace.row(4)[3], 1);
+    EXPECT_FLOAT_EQ(inPlace.row(4)[4], 1.5F);
+}
+
+TEST(Baselines, AreTheSameInBothInstructionSets) {
+    if (std::string(bench::codePath()) == "baseline") {
+        GTEST_SKIP() << "this machine has no x86-64-v3";
+    }
+    for (const BaselineScheme scheme : kAll) {
+        FloatField a(37), b(37), scratch(37);
+        for (int y = 10; y < 20; ++y) {
+            std::fill_n(a.row(y) + 10, 12, 7.5F);
+        }
+        b.heights = a.heights;
+        for (int i = 0; i < 30; ++i) {
+            bench::baseline::sweep(scheme, 1, a, scratch);
+            bench::v3::sweep(scheme, 1, b, scratch);
+        }
+        for (int y = 0; y < 37; ++y) {
+            for (int x = 0; x < 37; ++x) {
+                ASSERT_EQ(a.row(y)[x], b.row(y)[x]);
+            }
+        }
+    }
+}
+
+// Without it, error against time compares nothing: the rules rest in the pile that the integer N4 rests in.
+TEST(Baselines, JacobiN4RestsInThePileOfOurN4) {
+    const bench::Pile pile = bench::lowPile(32);
+    std::vector<std::vector<double>> heights;
+    for (const bench::Method& method : bench::methods({"N4", "float32 N4 Jacobi"})) {
+        const auto relaxation = method.start(pile.start, bench::rulesFor(pile.start));
+        relaxation->sweep(10000);
+        ASSERT_TRUE(relaxation->atRest()) << method.name;
+        heights.push_back(relaxation->heights());
+    }
+    // Rounding each flux up moves at most a unit per face and sweep: 4 x 200 sweeps / 2^16 = 1.2 % of a cell at most.
+    EXPECT_LE(bench::misplaced(heights[0], heights[1]), 1e-3);
+}
+
+}  // namespace
