@@ -17,6 +17,7 @@ void edit(const Settings& settings, Csv& csv);
 void dig(const Settings& settings, Csv& csv);
 void throughput(const Settings& settings, Csv& csv);
 void massDrift(const Settings& settings, Csv& csv);
+void certificate(const Settings& settings, Csv& csv);
 void budget(const Settings& settings, Csv& csv);
 void parts(const Settings& settings, Csv& csv);
 void rest(const Settings& settings, Csv& csv);

@@ -7,6 +7,7 @@
 
 #include "bench/baseline_schemes.hpp"
 #include "sand/erosion.hpp"
+#include "sand/settle.hpp"
 
 namespace bench {
 namespace {
@@ -80,8 +81,7 @@ private:
 };
 
 Method ours(const std::string& name, sand::Scheme scheme, bool skipSettled) {
-    return {name, true, false,
-            [=](const sand::HeightField& field, const sand::Rules& rules) -> std::unique_ptr<Relaxation> {
+    return {name, true, [=](const sand::HeightField& field, const sand::Rules& rules) -> std::unique_ptr<Relaxation> {
                 sand::Rules own = rules;
                 own.scheme = scheme;
                 sand::Erosion::Options options;
@@ -90,9 +90,36 @@ Method ours(const std::string& name, sand::Scheme scheme, bool skipSettled) {
             }};
 }
 
+/// sand::settle(): one call does it all.
+class Direct : public Relaxation {
+public:
+    Direct(const sand::HeightField& field, const sand::Rules& rules) : field_(field), rules_(rules) {}
+    void sweep(int count) override {
+        if (count > 0 && !atRest_) {
+            sweepsDone_ = sand::settle(field_, rules_).sweeps;
+            atRest_ = true;
+        }
+    }
+    [[nodiscard]] bool atRest() const override { return atRest_; }
+    [[nodiscard]] std::int64_t sweepsDone() const override { return sweepsDone_; }
+    [[nodiscard]] std::vector<double> heights() const override { return heightsOf(field_); }
+
+private:
+    sand::HeightField field_;
+    sand::Rules rules_;
+    std::int64_t sweepsDone_ = 0;
+    bool atRest_ = false;
+};
+
+Method direct() {
+    return {"settle", true,
+            [](const sand::HeightField& field, const sand::Rules& rules) -> std::unique_ptr<Relaxation> {
+                return std::make_unique<Direct>(field, rules);
+            }};
+}
+
 Method floats(const std::string& name, BaselineScheme scheme) {
-    return {name, false, false,
-            [=](const sand::HeightField& field, const sand::Rules& rules) -> std::unique_ptr<Relaxation> {
+    return {name, false, [=](const sand::HeightField& field, const sand::Rules& rules) -> std::unique_ptr<Relaxation> {
                 return std::make_unique<Baseline>(scheme, field, rules);
             }};
 }
@@ -104,6 +131,7 @@ std::vector<Method> allMethods() {
             ours("G plain", sand::Scheme::plainIsotropic, true),
             ours("G plain full sweeps", sand::Scheme::plainIsotropic, false),
             ours("N4", sand::Scheme::n4, true),
+            direct(),
             floats("float32 N4 in place", BaselineScheme::inPlaceN4),
             floats("float32 N4 Jacobi", BaselineScheme::jacobiN4),
             floats("float32 N8 Jacobi", BaselineScheme::jacobiN8),

@@ -28,8 +28,6 @@ public:
 struct Method {
     std::string name;
     bool ours;
-    /// Whether one call does everything, whatever the count of sweeps.
-    bool direct;
     std::function<std::unique_ptr<Relaxation>(const sand::HeightField&, const sand::Rules&)> start;
 };
 
@@ -39,7 +37,7 @@ struct Method {
 [[nodiscard]] std::vector<Method> methods(const std::vector<std::string>& names);
 
 /// What the time to rest is measured of: the reference first, the one nearest to the truth last.
-inline const std::vector<std::string> kToRest{"G plain full sweeps", "G plain", "G"};
+inline const std::vector<std::string> kToRest{"G plain full sweeps", "G plain", "G", "settle"};
 
 /// Rules of a closed box for sand at `talus` (a tangent), band 0 unless told.
 [[nodiscard]] sand::Rules rulesFor(const sand::HeightField& field, double talus = 1, double band = 0);

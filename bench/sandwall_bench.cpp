@@ -51,6 +51,7 @@ std::vector<Curve> allCurves() {
          {},
          100,
          bench::explain},
+        {"certificate", "distance from the right pile: proved, and true", {32, 64, 128}, 1, bench::certificate},
         {"mass-drift", "sand that floats lose or invent, and integers do not", {128}, 1, bench::massDrift},
         {"budget", "where one pile's error comes from", {128}, 1, bench::budget},
     };
