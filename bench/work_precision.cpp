@@ -10,6 +10,16 @@
 namespace bench {
 namespace {
 
+// Full sweeps cost what active ones do while the whole pile moves; `rest` compares them.
+const std::vector<std::string> kRaced{"G",
+                                      "G plain",
+                                      "N4",
+                                      "settle",
+                                      "float32 N4 in place",
+                                      "float32 N4 Jacobi",
+                                      "float32 N8 Jacobi",
+                                      "float32 N8 sqrt2 Jacobi"};
+
 /// One place on a method's curve.
 struct Sample {
     int sweeps = 0;
@@ -27,10 +37,13 @@ int next(int sweeps) {
     return powerOfTwo ? sweeps / 2 * 3 : sweeps / 3 * 4;
 }
 
-/// Whether four times the sweeps have not improved the error by a hundredth: in floats some piles never rest.
+constexpr double kPatience = 10;   // [s] of all runs of one method: a slower one is run fewer times
+constexpr int kLargestTall = 256;  // [cell]: larger tall piles take plain G minutes
+
+/// Whether twice the sweeps have not improved the error by a hundredth: in floats some piles never rest.
 bool onPlateau(const std::vector<Sample>& samples) {
-    constexpr std::size_t kBack = 4;
-    return samples.size() > 2 * kBack && samples[samples.size() - 1 - kBack].sweeps >= 256 &&
+    constexpr std::size_t kBack = 2;
+    return samples.size() > kBack && samples[samples.size() - 1 - kBack].sweeps >= 256 &&
            samples.back().error.misplaced > 0.99 * samples[samples.size() - 1 - kBack].error.misplaced;
 }
 
@@ -62,6 +75,8 @@ public:
         return samples;
     }
 
+    [[nodiscard]] double total() const { return total_; }  // [s], of all runs so far
+
     void again(std::vector<Sample>& samples) {
         start();
         for (Sample& sample : samples) {
@@ -77,6 +92,7 @@ private:
     }
     /// Seconds from the start to `sweeps` sweeps, setting up included.
     double advanceTo(int sweeps) {
+        const double before = seconds_;
         if (done_ == 0) {
             seconds_ = secondsOf([&] {
                 relaxation_ = method_.start(pile_.start, rules_);
@@ -85,6 +101,7 @@ private:
         } else {
             seconds_ += secondsOf([&] { relaxation_->sweep(sweeps - done_); });
         }
+        total_ += seconds_ - before;
         done_ = sweeps;
         return seconds_;
     }
@@ -95,6 +112,7 @@ private:
     std::unique_ptr<Relaxation> relaxation_;
     int done_ = 0;
     double seconds_ = 0;
+    double total_ = 0;
 };
 
 }  // namespace
@@ -103,23 +121,28 @@ void workPrecision(const Settings& settings, Csv& csv) {
     csv.note("misplaced: sum of |height - analytic mean over the cell| over the sum of the latter");
     csv.note("largest, apex: L-infinity error and error of the highest point [cell of this N]");
     csv.note("seconds: CPU time of one thread from the start field on, setting up included");
-    csv.note(fmt::format("a float baseline ends when no sweep moves {} cells, or four times the sweeps gain < 1 %",
+    csv.note(fmt::format("a float baseline ends when no sweep moves {} cells, or twice the sweeps gain < 1 %",
                          kFloatTolerance));
-    csv.columns("pile,method,ours,N,sweeps,seconds_median,seconds_min,seconds_max,misplaced,largest,apex,at_rest");
+    csv.note(fmt::format("a method that has taken {} s in all is not run again; no tall pile beyond N = {}", kPatience,
+                         kLargestTall));
+    csv.columns("pile,method,ours,N,runs,sweeps,seconds_median,seconds_min,seconds_max,misplaced,largest,apex,at_rest");
     for (const int side : settings.sizes) {
         for (const Pile& pile : {lowPile(side), tallPile(side)}) {
-            for (const Method& method : allMethods()) {
+            if (pile.name == "tall" && side > kLargestTall) {
+                continue;
+            }
+            for (const Method& method : methods(kRaced)) {
                 progress("{} pile, N = {}, {}: {} runs", pile.name, side, method.name, settings.runs);
                 Runner runner(method, pile);
                 std::vector<Sample> samples = runner.first();
-                for (int run = 1; run < settings.runs; ++run) {
+                for (int run = 1; run < settings.runs && runner.total() < kPatience; ++run) {
                     runner.again(samples);
                 }
                 for (const Sample& sample : samples) {
                     const Spread seconds = spreadOf(sample.seconds);
-                    csv.row(pile.name, method.name, method.ours ? 1 : 0, side, sample.sweeps, seconds.median,
-                            seconds.lowest, seconds.highest, sample.error.misplaced, sample.error.largest,
-                            sample.error.apex, sample.atRest ? 1 : 0);
+                    csv.row(pile.name, method.name, method.ours ? 1 : 0, side, sample.seconds.size(), sample.sweeps,
+                            seconds.median, seconds.lowest, seconds.highest, sample.error.misplaced,
+                            sample.error.largest, sample.error.apex, sample.atRest ? 1 : 0);
                 }
             }
         }
