@@ -114,8 +114,9 @@ sand::HeightField projected(const sand::HeightField& start, sand::Rules rules, d
 void certificate(const Settings& settings, Csv& csv) {
     csv.note("bound: the certificate's bound of the squared distance to the projection of the start, over the squared");
     csv.note("  distance that was moved; truth: the squared distance itself, by a projection to a gap of 1e-5");
-    csv.note("both for the projection onto the fields without a quad steeper than the steepest at rest");
-    csv.columns("pile,method,N,bound,truth,steepest_over_talus");
+    csv.note("gap: the bound with the talus for the steepest slope; bound and truth are");
+    csv.note("  for the projection onto the fields without a quad steeper than the steepest at rest");
+    csv.columns("pile,method,N,bound,gap,truth,steepest_over_talus");
     for (const int side : settings.sizes) {
         for (const Pile& pile : {lowPile(side), tallPile(side)}) {
             for (const std::string method : {"G plain", "N4", "settle"}) {
@@ -133,7 +134,8 @@ void certificate(const Settings& settings, Csv& csv) {
                 const sand::Certificate proof = sand::certify(pile.start, sweeps.field, sweeps.flux, rules);
                 const double truth =
                     squaredDistance(projected(pile.start, rules, proof.steepest), sweeps.field) / proof.squaredMoved;
-                csv.row(pile.name, method, side, proof.relative(), truth, proof.steepest / rules.threshold);
+                csv.row(pile.name, method, side, proof.relative(), proof.relativeGap(), truth,
+                        proof.steepest / rules.threshold);
             }
         }
     }

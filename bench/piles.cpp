@@ -22,6 +22,14 @@ Pile lowPile(int side) { return pile("low", side, 0.3 * side, 0.18 * side); }
 
 Pile tallPile(int side) { return pile("tall", side, 0.25 * side, 0.5 * side); }
 
+std::vector<Pile> pilesOf(int side) {
+    std::vector<Pile> piles{lowPile(side)};
+    if (side <= kLargestTall) {
+        piles.push_back(tallPile(side));
+    }
+    return piles;
+}
+
 sand::HeightField bumpySlope(int side, std::uint32_t seed) {
     std::mt19937 random(seed);
     sand::HeightField field(side, side, 1.0);

@@ -26,6 +26,10 @@ struct Pile {
 /// Height over radius 2: it becomes a cone. The radius is 0.25 of the side.
 [[nodiscard]] Pile tallPile(int side);
 
+/// Both, or the low one alone where the tall one would take plain G minutes: beyond a side of kLargestTall.
+[[nodiscard]] std::vector<Pile> pilesOf(int side);
+inline constexpr int kLargestTall = 256;  // [cell]
+
 /// A plane three times as steep as the talus in a closed box, with bumps of half a cell from a generator seeded with
 /// `seed`: every cell of it moves.
 [[nodiscard]] sand::HeightField bumpySlope(int side, std::uint32_t seed);

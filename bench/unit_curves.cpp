@@ -68,7 +68,7 @@ void heightBits(const Settings& settings, Csv& csv) {
     csv.note("steepest: largest slope through a face at rest over the talus");
     csv.columns("pile,N,bits,sweeps,misplaced,largest,apex,steepest");
     for (const int side : settings.sizes) {
-        for (const Pile& pile : {lowPile(side), tallPile(side)}) {
+        for (const Pile& pile : pilesOf(side)) {
             for (int bits = 8; bits <= 24 && fits(pile, bits); bits += 2) {
                 progress("{} pile, N = {}, 2^-{} cells", pile.name, side, bits);
                 Scaled sand(pile, bits);
@@ -86,7 +86,7 @@ void band(const Settings& settings, Csv& csv) {
     csv.note("band: how much steeper than the talus sand at rest must be to start, as a share of the talus");
     csv.columns("pile,method,N,band,sweeps,misplaced,largest,apex");
     for (const int side : settings.sizes) {
-        for (const Pile& pile : {lowPile(side), tallPile(side)}) {
+        for (const Pile& pile : pilesOf(side)) {
             for (const Method& method : methods({"G", "G plain"})) {
                 for (const double width : {0.0, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1}) {
                     progress("{} pile, N = {}, {}, band {}", pile.name, side, method.name, width);
@@ -109,7 +109,7 @@ void budget(const Settings& settings, Csv& csv) {
     csv.note("misplaced: sum of |difference| over the sum of what it is measured against");
     csv.columns("pile,N,part,misplaced");
     for (const int side : settings.sizes) {
-        for (const Pile& pile : {lowPile(side), tallPile(side)}) {
+        for (const Pile& pile : pilesOf(side)) {
             progress("{} pile, N = {}", pile.name, side);
             int finest = sand::kHeightBits;
             while (finest < 22 && fits(pile, finest + 1)) {

@@ -37,8 +37,7 @@ int next(int sweeps) {
     return powerOfTwo ? sweeps / 2 * 3 : sweeps / 3 * 4;
 }
 
-constexpr double kPatience = 10;   // [s] of all runs of one method: a slower one is run fewer times
-constexpr int kLargestTall = 256;  // [cell]: larger tall piles take plain G minutes
+constexpr double kPatience = 10;  // [s] of all runs of one method: a slower one is run fewer times
 
 /// Whether twice the sweeps have not improved the error by a hundredth: in floats some piles never rest.
 bool onPlateau(const std::vector<Sample>& samples) {
@@ -127,10 +126,7 @@ void workPrecision(const Settings& settings, Csv& csv) {
                          kLargestTall));
     csv.columns("pile,method,ours,N,runs,sweeps,seconds_median,seconds_min,seconds_max,misplaced,largest,apex,at_rest");
     for (const int side : settings.sizes) {
-        for (const Pile& pile : {lowPile(side), tallPile(side)}) {
-            if (pile.name == "tall" && side > kLargestTall) {
-                continue;
-            }
+        for (const Pile& pile : pilesOf(side)) {
             for (const Method& method : methods(kRaced)) {
                 progress("{} pile, N = {}, {}: {} runs", pile.name, side, method.name, settings.runs);
                 Runner runner(method, pile);
