@@ -37,7 +37,7 @@ int next(int sweeps) {
     return powerOfTwo ? sweeps / 2 * 3 : sweeps / 3 * 4;
 }
 
-constexpr double kPatience = 10;  // [s] of all runs of one method: a slower one is run fewer times
+constexpr double kPatience = 4;  // [s] of all runs of one method: a slower one is run fewer times
 
 /// Whether twice the sweeps have not improved the error by a hundredth: in floats some piles never rest.
 bool onPlateau(const std::vector<Sample>& samples) {

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tables that sandwall-bench wrote, and the few numbers that the report's text takes from them."""
+
+import csv
+import math
+import pathlib
+
+
+class Table:
+    """Rows as dictionaries, numbers as numbers; and the comment lines above them."""
+
+    def __init__(self, path):
+        self.path = pathlib.Path(path)
+        lines = self.path.read_text().splitlines()
+        self.notes = [line[2:] for line in lines if line.startswith("# ")]
+        rows = csv.DictReader(line for line in lines if not line.startswith("#"))
+        self.rows = [{key: number(value) for key, value in row.items()} for row in rows]
+
+    def fact(self, name):
+        """What the file's head says of "machine", "compiler", "command" …"""
+        return next(note[len(name) + 2:] for note in self.notes if note.startswith(name + ": "))
+
+    def where(self, **wanted):
+        return [row for row in self.rows if all(row[key] == value for key, value in wanted.items())]
+
+    def values(self, column, **wanted):
+        return [row[column] for row in self.where(**wanted)]
+
+    def distinct(self, column, **wanted):
+        """In order of first appearance."""
+        return list(dict.fromkeys(self.values(column, **wanted)))
+
+    def one(self, column, **wanted):
+        return self.values(column, **wanted)[0]
+
+
+def number(text):
+    try:
+        value = float(text)
+    except ValueError:
+        return text
+    return int(value) if value.is_integer() and "." not in text and "e" not in text else value
+
+
+def frontier(rows, cost, error):
+    """The samples that no other beats in both: least cost for a wanted error."""
+    best = math.inf
+    result = []
+    for row in sorted(rows, key=lambda row: (row[cost], row[error])):
+        if row[error] < best:
+            best = row[error]
+            result.append(row)
+    return result
+
+
+def least_seconds(rows, error):
+    """Of all samples at most this wrong, the one that took least; None when no sample is as good."""
+    good = [row["seconds_median"] for row in rows if row["misplaced"] <= error]
+    return min(good) if good else None
+
+
+def percent(share, digits=2):
+    return f"{100 * share:.{digits}g} %"
+
+
+def markdown(header, rows):
+    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
+    return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows])

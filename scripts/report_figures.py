@@ -1,0 +1,287 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The figures of docs/report, one function each: takes tables, returns a matplotlib figure."""
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+from matplotlib.ticker import FuncFormatter, NullFormatter
+
+from report_data import frontier
+
+# Okabe and Ito's colours, which the colour-blind tell apart; marker and line tell them apart in grey.
+STYLES = {
+    "G": dict(color="#0072B2", marker="o", linestyle="-"),
+    "G plain": dict(color="#56B4E9", marker="s", linestyle="--"),
+    "settle": dict(color="#009E73", marker="D", linestyle="-"),
+    "N4": dict(color="#E69F00", marker="^", linestyle="--"),
+    "float32 N4 in place": dict(color="#D55E00", marker="v", linestyle=":"),
+    "float32 N4 Jacobi": dict(color="#CC79A7", marker="P", linestyle=":"),
+    "float32 N8 Jacobi": dict(color="#000000", marker="x", linestyle=":"),
+    "float32 N8 sqrt2 Jacobi": dict(color="#777777", marker="*", linestyle="-."),
+}
+SERIES = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#000000"]
+MARKERS = ["o", "s", "^", "D", "v", "P"]
+PILES = {"low": "low pile, H/R = 0.6", "tall": "tall pile, H/R = 2"}
+
+plt.rcParams.update({"font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "lines.markersize": 4, "legend.fontsize": 8,
+                     "axes.titlesize": 10, "figure.dpi": 100, "savefig.dpi": 100, "lines.linewidth": 1.4})
+
+
+def panels(count, height=3.9):
+    figure, axes = plt.subplots(1, count, figsize=(4.6 * count, height), squeeze=False, constrained_layout=True)
+    return figure, axes[0]
+
+
+def label(axis, x, y, title="", logx=True, logy=True):
+    axis.set_xlabel(x)
+    axis.set_ylabel(y)
+    axis.set_title(title)
+    if logx:
+        axis.set_xscale("log")
+    if logy:
+        axis.set_yscale("log")
+
+
+def sizes_on(axis, sizes):
+    """Names the sizes themselves on a logarithmic axis."""
+    axis.set_xticks(sizes)
+    axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.xaxis.set_minor_formatter(NullFormatter())
+    axis.tick_params(axis="x", which="minor", length=0)
+
+
+def percents(axis):
+    axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+
+
+def legend_below(figure, axes, columns=4):
+    """One legend for all panels, of what any of them shows, under them."""
+    entries = {}
+    for axis in axes:
+        for handle, name in zip(*axis.get_legend_handles_labels()):
+            entries.setdefault(name, handle)
+    figure.legend(entries.values(), entries.keys(), loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=columns,
+                  frameon=False)
+
+
+def work_precision(table):
+    figure, axes = panels(2)
+    size = 128 if 128 in table.distinct("N") else table.distinct("N")[-1]
+    for axis, (pile, title) in zip(axes, PILES.items()):
+        for method, style in STYLES.items():
+            rows = table.where(pile=pile, method=method, N=size)
+            seconds = [row["seconds_median"] for row in rows]
+            axis.plot(seconds, [100 * row["misplaced"] for row in rows], label=method, **style)
+            axis.fill_betweenx([100 * row["misplaced"] for row in rows], [row["seconds_min"] for row in rows],
+                               [row["seconds_max"] for row in rows], color=style["color"], alpha=0.2, linewidth=0)
+        label(axis, "time [s], one thread", "sand in the wrong place [%]", f"{title}, N = {size}")
+        percents(axis)
+    legend_below(figure, axes)
+    return figure
+
+
+def envelope(table):
+    figure, axes = panels(2)
+    for axis, (pile, title) in zip(axes, PILES.items()):
+        for method, style in STYLES.items():
+            best = frontier(table.where(pile=pile, method=method), "seconds_median", "misplaced")
+            axis.plot([row["seconds_median"] for row in best], [100 * row["misplaced"] for row in best], label=method,
+                      **style)
+        label(axis, "least time over all N [s], one thread", "sand in the wrong place [%]", title)
+        percents(axis)
+    legend_below(figure, axes)
+    return figure
+
+
+def error_at_rest(table):
+    figure, axes = panels(2)
+    for axis, (pile, title) in zip(axes, PILES.items()):
+        for method, style in STYLES.items():
+            rows = table.where(pile=pile, method=method)
+            axis.plot([row["N"] for row in rows], [100 * row["misplaced"] for row in rows], label=method, **style)
+        label(axis, "N [cells]", "sand in the wrong place at rest [%]", title)
+        sizes_on(axis, table.distinct("N", pile=pile))
+        percents(axis)
+    legend_below(figure, axes)
+    return figure
+
+
+def sweeps(table):
+    figure, axes = panels(2)
+    for axis, (pile, title) in zip(axes, PILES.items()):
+        for method in table.distinct("method"):
+            for band, line in ((0, "-"), (0.001, "--")):
+                rows = table.where(pile=pile, method=method, band=band)
+                style = dict(STYLES[method], linestyle=line)
+                axis.plot([row["N"] for row in rows], [row["sweeps"] for row in rows],
+                          label=f"{method}, band {band:g}", **style)
+        label(axis, "N [cells]", "sweeps to rest", title)
+        sizes_on(axis, table.distinct("N", pile=pile))
+    legend_below(figure, axes, 3)
+    return figure
+
+
+def anisotropy(table):
+    figure, axes = panels(2)
+    size = table.distinct("N")[-1]
+    for axis, (pile, title) in zip(axes, PILES.items()):
+        for method in table.distinct("method"):
+            rows = [row for row in table.where(pile=pile, method=method, N=size) if row["degrees"] <= 90]
+            axis.plot([row["degrees"] for row in rows], [100 * row["radius_error"] for row in rows], label=method,
+                      markevery=3, **STYLES[method])
+        label(axis, "direction from the x axis [degrees]", "error of the radius at half height [%]",
+              f"{title}, N = {size}", logx=False, logy=False)
+        axis.set_xticks(range(0, 91, 15))
+    legend_below(figure, axes, 3)
+    return figure
+
+
+def decay(table):
+    figure, axes = panels(2)
+    for axis, (column, name) in zip(axes, (("moved", "volume that moves per sweep, share of all"),
+                                           ("to_rest", "distance to rest, share of all"))):
+        for method in table.distinct("method"):
+            rows = [row for row in table.where(pile="low", method=method) if row[column] > 0]
+            axis.plot([row["sweeps"] for row in rows], [row[column] for row in rows], label=method, **STYLES[method])
+        label(axis, "sweeps", name, f"{PILES['low']}, N = {table.distinct('N')[-1]}")
+    legend_below(figure, axes)
+    return figure
+
+
+def height_bits(table):
+    figure, axes = panels(2)
+    sizes = table.distinct("N")
+    for axis, column, name in ((axes[0], "misplaced", "sand in the wrong place [%]"),
+                               (axes[1], "steepest", "steepest slope above the talus [%]")):
+        for size, colour, marker in zip(sizes, SERIES, MARKERS):
+            for pile, line in (("low", "-"), ("tall", "--")):
+                rows = table.where(pile=pile, N=size)
+                values = [100 * (row[column] - (1 if column == "steepest" else 0)) for row in rows]
+                axis.plot([row["bits"] for row in rows], values, color=colour, marker=marker, linestyle=line,
+                          label=f"{pile} pile, N = {size}")
+        label(axis, "height unit: cell / 2^bits", name, logx=False)
+        axis.set_xticks(range(8, 25, 4))
+        axis.axvline(16, color="#777777", linewidth=1)
+        percents(axis)
+    legend_below(figure, axes, 3)
+    return figure
+
+
+def band(table):
+    figure, axes = panels(2)
+    for axis, column, name in ((axes[0], "sweeps", "sweeps to rest"),
+                               (axes[1], "misplaced", "sand in the wrong place [%]")):
+        for method in table.distinct("method"):
+            for pile, line in (("low", "-"), ("tall", "--")):
+                rows = table.where(pile=pile, method=method)
+                scale = 100 if column == "misplaced" else 1
+                axis.plot([max(row["band"], 3e-5) for row in rows], [scale * row[column] for row in rows],
+                          label=f"{method}, {pile} pile", **dict(STYLES[method], linestyle=line))
+        label(axis, "band, share of the talus (leftmost: none)", name, f"N = {table.distinct('N')[-1]}")
+        percents(axis)
+    legend_below(figure, axes)
+    return figure
+
+
+def edit(table):
+    figure, axes = panels(1)
+    axis = axes[0]
+    for size, colour, marker in zip(table.distinct("N"), SERIES, MARKERS):
+        for blocks, line in (("active", "-"), ("full", "--")):
+            rows = table.where(N=size, blocks=blocks)
+            axis.plot([row["radius"] for row in rows], [row["ms_median"] for row in rows], color=colour, marker=marker,
+                      linestyle=line, label=f"{blocks}, N = {size}")
+    label(axis, "radius of the tool [cells]", "press and 16 sweeps [ms]")
+    sizes_on(axis, table.distinct("radius"))
+    percents(axis)
+    legend_below(figure, axes, 3)
+    return figure
+
+
+def dig(table):
+    figure, axes = panels(2)
+    size = table.distinct("N")[0]
+    strokes = [(radius, speed) for radius in (12, 2.56) for speed in (1.5, 2.4)]
+    for axis, x in ((axes[0], "ms_p99"), (axes[1], "sweeps_per_step")):
+        for (radius, speed), colour, marker in zip(strokes, SERIES, MARKERS):
+            rows = table.where(N=size, R=radius, cells_per_step=speed)
+            axis.plot([row[x] for row in rows], [100 * row["misplaced_held"] for row in rows], color=colour,
+                      marker=marker, label=f"R = {radius:g}, {speed:g} cells per step")
+    for row in table.where(N=size, R=12, cells_per_step=1.5):
+        axes[0].annotate(f"{row['sweeps_per_step']:g}", (row["ms_p99"], 100 * row["misplaced_held"]), fontsize=7,
+                         textcoords="offset points", xytext=(4, 4))
+    label(axes[0], "time per step, 99th percentile [ms]", "sand behind the hand [%]",
+          f"N = {size}; labels: sweeps per step", logy=True)
+    label(axes[1], "sweeps per step", "sand behind the hand [%]", f"N = {size}")
+    axes[0].axvline(2, color="#777777", linewidth=1)
+    sizes_on(axes[1], table.distinct("sweeps_per_step"))
+    for axis in axes:
+        axis.axhline(10, color="#777777", linewidth=1)
+        percents(axis)
+    percents(axes[1])
+    legend_below(figure, axes, 2)
+    return figure
+
+
+def throughput(table):
+    figure, axes = panels(1, 4.2)
+    axis = axes[0]
+    colours = {"copy": "#000000", "G": "#0072B2", "G plain": "#56B4E9", "N4": "#E69F00", "G baseline x86-64": "#009E73",
+               "float32 N4 in place": "#D55E00", "float32 N4 Jacobi": "#CC79A7", "float32 N8 sqrt2 Jacobi": "#777777"}
+    for variant, marker in zip(table.distinct("variant"), MARKERS * 2):
+        rows = table.where(variant=variant)
+        axis.plot([row["N"] for row in rows], [row["ns_per_cell_median"] for row in rows], marker=marker, label=variant,
+                  color=colours.get(variant, "#0072B2"), linestyle=":" if "threads" in variant else "-")
+    label(axis, "N [cells]", "time per cell and sweep [ns]")
+    sizes_on(axis, table.distinct("N"))
+    percents(axis)
+    legend_below(figure, axes, 2)
+    return figure
+
+
+def mass_drift(table):
+    figure, axes = panels(2)
+    for axis, datum in zip(axes, table.distinct("datum")):
+        for method in table.distinct("method"):
+            rows = [row for row in table.where(method=method, datum=datum) if row["drift"] != 0]
+            if rows:
+                axis.plot([row["sweeps"] for row in rows], [abs(row["drift"]) for row in rows], label=method,
+                          **STYLES[method])
+        axis.plot([], [], label="G: exactly 0", **STYLES["G"])
+        label(axis, "sweeps", "volume lost or invented, share of all", f"ground at {datum:g} cells")
+    legend_below(figure, axes, 3)
+    return figure
+
+
+def certificate(table):
+    figure, axes = panels(2)
+    for axis, (pile, title) in zip(axes, PILES.items()):
+        for method in table.distinct("method"):
+            rows = table.where(pile=pile, method=method)
+            for column, line in (("bound", "-"), ("truth", ":")):
+                style = dict(STYLES[method], linestyle=line)
+                axis.plot([row["N"] for row in rows], [100 * row[column] for row in rows],
+                          label=f"{method}, {'proved' if column == 'bound' else 'true'}", **style)
+        label(axis, "N [cells]", "squared distance to the projection,\nshare of that moved [%]", title)
+        sizes_on(axis, table.distinct("N"))
+        percents(axis)
+    legend_below(figure, axes, 3)
+    return figure
+
+
+def budget(table):
+    figure, axes = panels(2)
+    for axis, (pile, title) in zip(axes, PILES.items()):
+        parts = table.distinct("part", pile=pile)
+        sizes = table.distinct("N", pile=pile)
+        for i, (size, colour) in enumerate(zip(sizes, SERIES)):
+            values = [100 * table.one("misplaced", pile=pile, N=size, part=part) for part in parts]
+            places = [row + (i - (len(sizes) - 1) / 2) * 0.25 for row in range(len(parts))]
+            axis.barh(places, values, height=0.22, color=colour, label=f"N = {size}")
+        label(axis, "sand in the wrong place [%]", "", title, logy=False)
+        axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_yticks(range(len(parts)), parts if axis is axes[0] else [""] * len(parts))
+        axis.invert_yaxis()
+    legend_below(figure, axes)
+    return figure

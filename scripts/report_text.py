@@ -1,0 +1,294 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the report says beside each figure: every number in it comes out of the tables."""
+
+from dataclasses import dataclass
+from typing import Callable, Optional
+
+from report_data import least_seconds, markdown, percent
+
+PUBLIC = ["float32 N4 in place", "float32 N4 Jacobi", "float32 N8 Jacobi", "float32 N8 sqrt2 Jacobi"]
+OURS = ["G", "settle"]
+
+
+@dataclass
+class Section:
+    title: str
+    figure: Optional[str]  # the function in report_figures, and the picture's name
+    needs: list  # tables; the figure is drawn from the first
+    reading: Callable
+
+
+def seconds(value):
+    return "never" if value is None else f"{value:.2g} s" if value >= 1 else f"{value * 1e3:.2g} ms"
+
+
+def work_precision(tables):
+    table = tables["work-precision"]
+    size = 128 if 128 in table.distinct("N") else table.distinct("N")[-1]
+    best = {m: min(table.values("misplaced", pile="low", method=m, N=size)) for m in OURS + PUBLIC}
+    floors = ", ".join(f"{percent(best[m])} ({m})" for m in PUBLIC)
+    return (f"The same pile from the same start, one point per sample of the run, at one N. On the low pile G comes to "
+            f"{percent(best['G'])} and settle to {percent(best['settle'])}; the public rules stop at {floors}, however "
+            f"long they run. Their error is in the shape: a diamond or an octagon is no circle at any N.")
+
+
+def envelope(tables):
+    table = tables["work-precision"]
+    parts = []
+    for pile in table.distinct("pile"):
+        methods = ["G", "G plain", "settle", "N4"] + PUBLIC
+        wanted = [0.1, 0.044, 0.03, 0.02, 0.014, 0.01, 0.005, 0.002, 0.001, 5e-4, 2e-4, 1e-4]
+        rows, won = [], []
+        for error in wanted:
+            least = {m: least_seconds(table.where(pile=pile, method=m), error) for m in methods}
+            if any(value is not None for value in least.values()):
+                rows.append([percent(error)] + [seconds(least[m]) for m in methods])
+            ours = min((least[m] for m in OURS if least[m] is not None), default=None)
+            public = min((least[m] for m in PUBLIC if least[m] is not None), default=None)
+            won.append(ours is not None and (public is None or ours <= public))
+        last_lost = max((i for i, good in enumerate(won) if not good), default=-1)
+        reach = min(row["misplaced"] for row in table.rows if row["pile"] == pile and row["method"] in PUBLIC)
+        claim = (f"at every error of this table from {percent(wanted[last_lost + 1])} down" if last_lost + 1 < len(wanted)
+                 else "at no error of this table")
+        parts.append(f"**The {pile} pile.** G or settle takes less time than every public rule {claim}; below "
+                     f"{percent(reach)} no public rule arrives at all.\n\n" + markdown(["at most"] + methods, rows))
+    return ("What is the least time, over all N and all lengths of the run, for a wanted error? A coarse pile that has "
+            "come to rest competes with a fine one that has not. *never*: no N and no time is enough.\n\n" + "\n\n".join(parts))
+
+
+def error_at_rest(tables):
+    table = tables["error-at-rest"]
+    lines = []
+    for pile in table.distinct("pile"):
+        for method in ["G", "G plain", "settle", "N4"] + PUBLIC:
+            rows = table.where(pile=pile, method=method)
+            last = rows[-1]
+            lines.append([pile, method, last["N"], percent(last["misplaced"]), f"{last['largest']:.2g}",
+                          f"{last['apex']:+.2g}", f"{last['order']:.2f}", last["sweeps"]])
+    return ("At rest, and for as long as floats creep after half as many sweeps as there are cells. G and settle converge "
+            "with N; the largest error stays within a fraction of a cell, at the kinks of the profile, where a mean over "
+            "a cell cannot be stable. The public rules keep their error at every N (order 0), and their largest error "
+            "grows with N. At the largest N of each:\n\n" +
+            markdown(["pile", "method", "N", "sand in the wrong place", "largest error [cell]", "apex error [cell]",
+                      "order in N", "sweeps"], lines))
+
+
+def sweeps(tables):
+    table = tables["sweeps"]
+    size = table.distinct("N", pile="low")[-1]
+    plain = table.one("sweeps", pile="low", method="G plain", band=0, N=size)
+    g = table.one("sweeps", pile="low", method="G", band=0, N=size)
+    banded = table.one("sweeps", pile="low", method="G plain", band=0.001, N=size)
+    return (f"Plain G needs sweeps as N²; inertia makes that {plain / g:.0f} times fewer at N = {size} ({g} for {plain}). "
+            f"A band of 10⁻³ saves plain G a factor of {plain / banded:.1f}, and G, which overshoots into it, little.")
+
+
+def anisotropy(tables):
+    table = tables["anisotropy"]
+    size = table.distinct("N")[-1]
+
+    def worst(pile, method):
+        return max(abs(value) for value in table.values("radius_error", pile=pile, method=method, N=size))
+
+    lines = [[m] + [percent(worst(p, m)) for p in ("low", "tall")] for m in table.distinct("method")]
+    return ("Where the pile's flank crosses half of its height, by direction; a quarter of the circle, the others are its "
+            "mirror images. Largest error of the radius in any direction:\n\n" +
+            markdown(["method", f"low pile, N = {size}", f"tall pile, N = {size}"], lines))
+
+
+def decay(tables):
+    table = tables["decay"]
+
+    def reach(method, share):
+        return next(row["sweeps"] for row in table.where(pile="low", method=method) if row["to_rest"] < share)
+
+    return (f"How the low pile comes to rest. To within 0.1 % of where each will rest: {reach('G', 1e-3)} sweeps of G, "
+            f"{reach('G plain', 1e-3)} of plain G, {reach('N4', 1e-3)} of N4. Integers end: the curves stop because "
+            "nothing moves any more; in floats the last creep goes on.")
+
+
+def height_bits(tables):
+    table = tables["height-bits"]
+    size = table.distinct("N", pile="low")[-1]
+
+    def at(bits):
+        return table.one("misplaced", pile="low", N=size, bits=bits)
+
+    return (f"The same pile in coarser and finer height units; the line marks the 2⁻¹⁶ cells in use. From 16 to the "
+            f"finest unit that fits the error of the low pile at N = {size} changes from {percent(at(16), 4)} to "
+            f"{percent(table.where(pile='low', N=size)[-1]['misplaced'], 4)}: the grid decides, not the unit. At 8 bits "
+            f"it is {percent(at(8))}.")
+
+
+def band(tables):
+    table = tables["band"]
+
+    def at(method, width, column):
+        return table.one(column, pile="low", method=method, band=width)
+
+    return (f"Hysteresis is physics (sand starts to slide at a steeper angle than it comes to rest at), and it saves "
+            f"sweeps: plain G needs {at('G plain', 0, 'sweeps')} without and {at('G plain', 0.001, 'sweeps')} with the "
+            f"default of 10⁻³, G {at('G', 0, 'sweeps')} and {at('G', 0.001, 'sweeps')}. The error of the low pile goes from "
+            f"{percent(at('G', 0, 'misplaced'), 3)} to {percent(at('G', 0.001, 'misplaced'), 3)} with 10⁻³, and to "
+            f"{percent(at('G', 0.1, 'misplaced'))} with 0.1.")
+
+
+def edit(tables):
+    table = tables["edit"]
+    large = table.distinct("N")[-1]
+
+    def gain(size, radius):
+        return (table.one("ms_median", N=size, radius=radius, blocks="full") /
+                table.one("ms_median", N=size, radius=radius, blocks="active"))
+
+    return (f"One press into level sand and 16 sweeps. With active blocks the time depends on the tool and not on the "
+            f"field; visiting every block instead takes {gain(large, 12):.0f} times as long at N = {large} with a tool of "
+            f"12 cells, and gives the same sand bit for bit.")
+
+
+def dig(tables):
+    table = tables["dig"]
+    lines = []
+    for row in table.rows:
+        lines.append([row["N"], row["R"], row["cells_per_step"], row["sweeps_per_step"], f"{row['ms_p50']:.2f}",
+                      f"{row['ms_p99']:.2f}", percent(row["misplaced_held"]), percent(row["misplaced_lifted"]),
+                      f"{row['bank']:.0f}", f"{row['bank_reach']:.0f}", row["steps_after"]])
+    idle = max(table.values("idle_us"))
+    return ("A sphere with its centre at the level of the sand, dragged along the diagonal for 200 steps. *Behind the "
+            "hand*: sum of |height − height once settled| over that of |the latter − level|, with the tool held where it "
+            "stands; *lifted*: without it, so that the hole it leaves has to fill too. *Bank*: the highest sand over the "
+            "level; *reach*: how far from the stroke's line sand stands half a cell higher than once settled. *After*: "
+            "steps after lifting until 1 % is left. Lines mark 2 ms and 10 %. A step of settled sand takes at most "
+            f"{idle:.1f} µs.\n\n" +
+            markdown(["N", "R [cells]", "cells/step", "sweeps/step", "p50 [ms]", "p99 [ms]", "behind", "lifted",
+                      "bank [cells]", "reach [cells]", "after"], lines))
+
+
+def throughput(tables):
+    table = tables["throughput"]
+    size = 512 if 512 in table.distinct("N") else table.distinct("N")[-1]
+    lines = [[v, f"{table.one('ns_per_cell_median', variant=v, N=size):.2f}",
+              f"{table.one('times_copy', variant=v, N=size):.1f}"] for v in table.distinct("variant")]
+    return (f"A field in which everything moves; wall time. *copy* reads and writes one number per cell in the same run: "
+            f"the memory's roofline. Sweeps compute square roots and are far from it. Threads pay from about N = 256 on, "
+            f"and only where their cores are idle; on a shared machine they were not always. At N = {size}:\n\n" +
+            markdown(["variant", "ns per cell", "times the copy"], lines))
+
+
+def mass_drift(tables):
+    table = tables["mass-drift"]
+
+    def worst(datum):
+        return max(abs(row["drift"]) for row in table.where(datum=datum) if row["method"] in PUBLIC)
+
+    ours = max(abs(row["drift"]) for row in table.where(method="G"))
+    return (f"Sand that floats lose or invent: up to {worst(0):.1e} of it with the ground at 0, and {worst(1000):.1e} with "
+            f"the ground at 1000 cells, as a survey's is. G's drift is {ours:g}, for as long as it runs: what leaves a cell "
+            "is the integer that enters the next.")
+
+
+def certificate(tables):
+    table = tables["certificate"]
+    size = table.distinct("N")[-1]
+
+    def row(method):
+        return table.where(pile="low", method=method, N=size)[0]
+
+    return (f"What the fluxes prove about the distance to the right pile, and the distance itself, without knowing the "
+            f"former. On the low pile at N = {size}: settle {percent(row('settle')['bound'])} proved, "
+            f"{percent(row('settle')['truth'])} true; plain G {percent(row('G plain')['bound'])} and "
+            f"{percent(row('G plain')['truth'])}; N4 {percent(row('N4')['bound'])} and {percent(row('N4')['truth'])}. "
+            f"The bound is never below the truth. It is taken at the steepest quad at rest, {row('settle')['steepest_over_talus']:.3f} "
+            f"of the talus after settle, {row('G plain')['steepest_over_talus']:.2f} after plain G and "
+            f"{row('N4')['steepest_over_talus']:.2f} after N4, which is why it shrinks with N for settle and does not for N4.")
+
+
+def budget(tables):
+    table = tables["budget"]
+    size = table.distinct("N", pile="low")[-1]
+
+    def part(name):
+        return percent(table.one("misplaced", pile="low", N=size, part=name))
+
+    return (f"One pile's error, taken apart: the grid gives {part('grid')} at N = {size} (low pile), the band {part('band')}, "
+            f"the height unit {part('bits')}, and stopping at half of the sweeps {part('iteration 50 %')}. The last bar is "
+            "the default as a whole.")
+
+
+def rest(tables):
+    table = tables["rest"]
+    lines = [[r["field"], r["method"], r["N"], r["runs"], r["sweeps"], f"{r['seconds_median']:.3g}",
+              f"{r['seconds_min']:.3g} … {r['seconds_max']:.3g}", f"{r['ratio']:.1f}", percent(r["error"])]
+             for r in table.rows]
+    return ("Seconds to rest against plain G with full sweeps and without band, the reference; the ratio is how many times "
+            "faster. The bumpy slope is a plane three times as steep as the talus in a closed box, where every cell moves; "
+            "its error is the distance to settle's result over the sand moved, since rough fields have no closed form. A "
+            "slow method is run fewer times.\n\n" +
+            markdown(["field", "method", "N", "runs", "sweeps", "median [s]", "least … most [s]", "ratio", "error"], lines))
+
+
+def parts(tables):
+    table = tables["parts"]
+    lines = [[r["N"], r["ground"], r["state"], f"{r['us_median']:.3g}", r["sweeps"], f"{r['bytes'] / 2**20:.1f}"]
+             for r in table.rows]
+    return ("What a scene does not need it does not pay for: without bedrock no array for it and a law without the layer's "
+            "limiter; settled sand takes no sweep, whatever the field's size.\n\n" +
+            markdown(["N", "bedrock", "state", "µs per step of 16 sweeps", "sweeps run", "memory [MiB]"], lines))
+
+
+def explain(tables):
+    table = tables["explain"]
+    lines = []
+    for r in table.rows:
+        cost = "" if r["cost"] == "" else f"{r['cost']:.4g} µs" if r["unit"] == "us" else f"{r['cost'] / 1024:.0f} KiB"
+        lines.append([r["kind"], r["part"], r["used"], cost, r["why"]])
+    scene = next(note for note in table.notes if note.startswith("scene: "))
+    return (f"`sandwall-bench explain SCENE` says of any scene what it loads and runs, and what it leaves out; here for "
+            f"`scenes/dunes.toml` ({scene[7:]}). Libraries are those of this program; a render rank maps MPI and Mesa "
+            "besides.\n\n" + markdown(["kind", "part", "used", "cost", "why"], lines))
+
+
+def hashes(tables):
+    lines, seen = [], {}
+    for name, table in tables.items():
+        if name.startswith("hashes-"):
+            for scheme in table.distinct("scheme"):
+                hashes_found = table.distinct("hash", scheme=scheme)
+                seen.setdefault(scheme, set()).update(hashes_found)
+                lines.append([table.fact("compiler"), f"`{table.fact('flags').split('-Werror')[-1].strip()}`", scheme,
+                              ", ".join(map(str, table.distinct("code_path"))),
+                              ", ".join(map(str, table.distinct("threads"))),
+                              ", ".join(map(str, table.distinct("block"))), " ".join(map(str, hashes_found))])
+    verdict = ("one hash per scheme over all of them" if all(len(found) == 1 for found in seen.values())
+               else "**they differ**")
+    text = (f"300 random drags on a field of odd sides, by every build that is there: {verdict}.\n\n" +
+            markdown(["compiler", "flags", "scheme", "code paths", "threads", "blocks", "hash"], lines))
+    if "ranks" in tables:
+        rows = [[r["ranks"], f"{r['session_hash']}", f"{r['replay_hash']}", r["divergences"]]
+                for r in tables["ranks"].rows]
+        text += ("\n\nWhole sessions of 60 steps: every rank compares its hash with the others' in every frame, and one "
+                 "process that replays the journal must come to the same.\n\n" +
+                 markdown(["render ranks", "hash of the session", "hash of the replay", "divergences"], rows))
+    return text
+
+
+SECTIONS = [
+    Section("Error against time, at one N", "work_precision", ["work-precision"], work_precision),
+    Section("Least time for a wanted error", "envelope", ["work-precision"], envelope),
+    Section("Seconds to rest", None, ["rest"], rest),
+    Section("Error at rest against N", "error_at_rest", ["error-at-rest"], error_at_rest),
+    Section("Sweeps to rest against N", "sweeps", ["sweeps"], sweeps),
+    Section("Roundness", "anisotropy", ["anisotropy"], anisotropy),
+    Section("How motion dies down", "decay", ["decay"], decay),
+    Section("Height bits", "height_bits", ["height-bits"], height_bits),
+    Section("The hysteresis band", "band", ["band"], band),
+    Section("One edit", "edit", ["edit"], edit),
+    Section("Digging", "dig", ["dig"], dig),
+    Section("Throughput", "throughput", ["throughput"], throughput),
+    Section("Mass", "mass_drift", ["mass-drift"], mass_drift),
+    Section("The certificate", "certificate", ["certificate"], certificate),
+    Section("Where one pile's error comes from", "budget", ["budget"], budget),
+    Section("What a scene does not need", None, ["parts"], parts),
+    Section("A scene explained", None, ["explain"], explain),
+    Section("One hash", None, [], hashes),
+]
