@@ -95,7 +95,7 @@ measure() {
     curve dig --sizes 512,2048 --runs 10 -- --sizes 512 --runs 1
     curve throughput --sizes 64,128,256,512,1024,2048,4096 --runs 10 -- --sizes 64,256,1024 --runs 5
     curve mass-drift --sizes 128 -- --sizes 64
-    curve certificate --sizes 32,64,128 -- --sizes 32,64
+    curve certificate --sizes 32,64,128,256 -- --sizes 32,64
     curve budget --sizes 64,128,256 -- --sizes 64
     curve parts --sizes 512,1024,2048 --runs 10 -- --sizes 512 --runs 3
     curve explain scenes/dunes.toml -- scenes/dunes.toml
