@@ -42,7 +42,7 @@ private:
 
 bool fits(const Pile& pile, int bits) { return std::ldexp(pile.shape.apex() * 2, bits) <= sand::kMaxHeight; }
 
-/// Largest slope of the pile over the talus, where the ground is not level all round.
+/// Largest slope through a face of the pile; the talus is 1.
 double steepest(const std::vector<double>& heights, int side) {
     const auto at = [&](int x, int y) { return heights[static_cast<std::size_t>(y * side + x)]; };
     double slope = 0;
@@ -65,8 +65,8 @@ oracles::Distance errorOf(const Pile& pile, const std::vector<double>& heights) 
 
 void heightBits(const Settings& settings, Csv& csv) {
     csv.note("bits: a height unit is 2^-bits cells; rows are missing where the pile is out of 32 bits' range");
-    csv.note("steepest: largest slope through a face at rest over the talus");
-    csv.columns("pile,N,bits,sweeps,misplaced,largest,apex,steepest");
+    csv.note("too_steep: largest slope through a face at rest over the talus, minus 1");
+    csv.columns("pile,N,bits,sweeps,misplaced,largest,apex,too_steep");
     for (const int side : settings.sizes) {
         for (const Pile& pile : pilesOf(side)) {
             for (int bits = 8; bits <= 24 && fits(pile, bits); bits += 2) {
@@ -76,7 +76,7 @@ void heightBits(const Settings& settings, Csv& csv) {
                 const std::vector<double> heights = sand.heights();
                 const oracles::Distance error = errorOf(pile, heights);
                 csv.row(pile.name, side, bits, sweepsDone, error.misplaced, error.largest, error.apex,
-                        steepest(heights, side));
+                        steepest(heights, side) - 1);
             }
         }
     }

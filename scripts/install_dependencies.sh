@@ -13,7 +13,14 @@ packages=(
     libgtest-dev libbenchmark-dev                           # tests and benchmarks
 )
 # The tests also build with clang, for the proof that the state hash does not depend on the compiler.
-[[ "${1:-}" == "--with-tests" ]] && packages+=(clang-14)
+# The report draws its curves with matplotlib.
+for option in "$@"; do
+    case "$option" in
+        --with-tests) packages+=(clang-14) ;;
+        --with-report) packages+=(python3-matplotlib) ;;
+        *) echo "usage: scripts/install_dependencies.sh [--with-tests] [--with-report]" >&2; exit 2 ;;
+    esac
+done
 
 missing=()
 for package in "${packages[@]}"; do

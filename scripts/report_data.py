@@ -42,6 +42,18 @@ def number(text):
     return int(value) if value.is_integer() and "." not in text and "e" not in text else value
 
 
+def held(rows):
+    """Runs of one pile with each row's error replaced by the worst from there to its end: an error that a run only
+    passes through is none that it reaches, for nobody can know when to stop."""
+    worst = {}
+    result = []
+    for row in sorted(rows, key=lambda row: -row["sweeps"]):
+        run = (row["method"], row["N"])
+        worst[run] = max(row["misplaced"], worst.get(run, 0))
+        result.append(dict(row, misplaced=worst[run]))
+    return result
+
+
 def frontier(rows, cost, error):
     """The samples that no other beats in both: least cost for a wanted error."""
     best = math.inf

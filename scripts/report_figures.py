@@ -7,7 +7,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from report_data import frontier
+from report_data import frontier, held
 
 # Okabe and Ito's colours, which the colour-blind tell apart; marker and line tell them apart in grey.
 STYLES = {
@@ -85,10 +85,10 @@ def envelope(table):
     figure, axes = panels(2)
     for axis, (pile, title) in zip(axes, PILES.items()):
         for method, style in STYLES.items():
-            best = frontier(table.where(pile=pile, method=method), "seconds_median", "misplaced")
+            best = frontier(held(table.where(pile=pile, method=method)), "seconds_median", "misplaced")
             axis.plot([row["seconds_median"] for row in best], [100 * row["misplaced"] for row in best], label=method,
                       **style)
-        label(axis, "least time over all N [s], one thread", "sand in the wrong place [%]", title)
+        label(axis, "least time over all N [s], one thread", "sand in the wrong place from then on [%]", title)
         percents(axis)
     legend_below(figure, axes)
     return figure
@@ -153,12 +153,12 @@ def height_bits(table):
     figure, axes = panels(2)
     sizes = table.distinct("N")
     for axis, column, name in ((axes[0], "misplaced", "sand in the wrong place [%]"),
-                               (axes[1], "steepest", "steepest slope above the talus [%]")):
+                               (axes[1], "too_steep", "steepest slope above the talus [%]")):
         for size, colour, marker in zip(sizes, SERIES, MARKERS):
             for pile, line in (("low", "-"), ("tall", "--")):
                 rows = table.where(pile=pile, N=size)
-                values = [100 * (row[column] - (1 if column == "steepest" else 0)) for row in rows]
-                axis.plot([row["bits"] for row in rows], values, color=colour, marker=marker, linestyle=line,
+                rows = [row for row in rows if row[column] > 0]
+                axis.plot([row["bits"] for row in rows], [100 * row[column] for row in rows], color=colour, marker=marker, linestyle=line,
                           label=f"{pile} pile, N = {size}")
         label(axis, "height unit: cell / 2^bits", name, logx=False)
         axis.set_xticks(range(8, 25, 4))
