@@ -21,6 +21,7 @@ void certificate(const Settings& settings, Csv& csv);
 void budget(const Settings& settings, Csv& csv);
 void parts(const Settings& settings, Csv& csv);
 void rest(const Settings& settings, Csv& csv);
+void restMoving(const Settings& settings, Csv& csv);
 void hashes(const Settings& settings, Csv& csv);
 void explain(const Settings& settings, Csv& csv);
 

@@ -53,37 +53,50 @@ double distance(const std::vector<double>& a, const std::vector<double>& b) {
 
 double sumOf(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
+/// The rows of one race, the first contender being the reference; errors are over `whole`.
+void write(Csv& csv, const std::string& field, int side, const std::vector<Contender>& contenders,
+           const std::vector<double>& truth, double whole) {
+    const double reference = spreadOf(contenders.front().seconds).median;
+    for (const Contender& contender : contenders) {
+        const Spread seconds = spreadOf(contender.seconds);
+        csv.row(field, contender.method->name, side, contender.seconds.size(), contender.sweeps, seconds.median,
+                seconds.lowest, seconds.highest, reference / seconds.median,
+                distance(contender.heights, truth) / whole);
+    }
+}
+
+void begin(Csv& csv) {
+    csv.note(fmt::format("a method that has taken {} s in all is not run again", kPatience));
+    csv.note("ratio: median of `" + kToRest.front() + "` of the same field over this one's median");
+    csv.columns("field,method,N,runs,sweeps,seconds_median,seconds_min,seconds_max,ratio,error");
+}
+
 }  // namespace
 
 void rest(const Settings& settings, Csv& csv) {
     const std::vector<Method> all = methods(kToRest);
-    // Where everything moves, active blocks are full sweeps.
-    std::vector<Method> moving = all;
-    std::erase_if(moving, [](const Method& method) { return method.name == "G plain"; });
     csv.note(
         "low pile: cylinder of height 0.6 R, R = 0.3 N, talus 45 degrees, band 0; error against the analytic pile");
+    begin(csv);
+    for (const int side : settings.sizes) {
+        const Pile pile = lowPile(side);
+        write(csv, "low pile", side, race(all, pile.start, settings.runs, "low pile"), pile.rest, sumOf(pile.rest));
+    }
+}
+
+void restMoving(const Settings& settings, Csv& csv) {
+    std::vector<Method> all = methods(kToRest);
+    // Where everything moves, active blocks are full sweeps.
+    std::erase_if(all, [](const Method& method) { return method.name == "G plain"; });
     csv.note("bumpy slope: a plane three times as steep as the talus with bumps of up to half a cell in a closed box;");
     csv.note("  error against " + kToRest.back() + ": sum of |difference| over that of |rest - start|, the sand moved");
-    csv.note(fmt::format("a method that has taken {} s in all is not run again", kPatience));
-    csv.note("ratio: median of `" + kToRest.front() + "` of the same field over this one's median");
-    csv.columns("field,method,N,runs,sweeps,seconds_median,seconds_min,seconds_max,ratio,error");
+    begin(csv);
     for (const int side : settings.sizes) {
-        const auto write = [&](const std::string& field, const std::vector<Contender>& contenders,
-                               const std::vector<double>& truth, double whole) {
-            const double reference = spreadOf(contenders.front().seconds).median;
-            for (const Contender& contender : contenders) {
-                const Spread seconds = spreadOf(contender.seconds);
-                csv.row(field, contender.method->name, side, contender.seconds.size(), contender.sweeps, seconds.median,
-                        seconds.lowest, seconds.highest, reference / seconds.median,
-                        distance(contender.heights, truth) / whole);
-            }
-        };
-        const Pile pile = lowPile(side);
-        write("low pile", race(all, pile.start, settings.runs, "low pile"), pile.rest, sumOf(pile.rest));
         const sand::HeightField start = bumpySlope(side, settings.seed);
-        const auto slope = race(moving, start, settings.runs, "bumpy slope");
+        const std::vector<Contender> slope = race(all, start, settings.runs, "bumpy slope");
         const std::vector<double>& truth = slope.back().heights;
-        write("bumpy slope", slope, truth, distance(all.back().start(start, rulesFor(start))->heights(), truth));
+        write(csv, "bumpy slope", side, slope, truth,
+              distance(all.back().start(start, rulesFor(start))->heights(), truth));
     }
 }
 

@@ -102,6 +102,7 @@ measure() {
     hash_table
     [[ $quick == yes ]] || rank_table
     curve rest --sizes 512 --runs 10 -- --sizes 128 --runs 3
+    curve rest-moving --sizes 256,512 --runs 10 -- --sizes 64 --runs 3
     rm -f "$out/progress.txt"
 }
 
