@@ -6,23 +6,17 @@
 #include <numeric>
 #include <utility>
 
+#include "sand/code_path.hpp"
+
 namespace sand {
 namespace {
 
-constexpr int kCheckEvery = 16;            // [iteration]; an iteration carries pressure at most one quad further
-constexpr int kMargin = kCheckEvery + 1;   // [quad], free of pressure around whatever has some
-constexpr double kRelativeGap = 1e-5;      // leaves 0.003 % of the sand misplaced at 512², the grid itself 0.0023 %
-constexpr double kRelativeExcess = 0.01;   // of the talus, so that a gap that only changes its sign does not count
+constexpr double kRelativeExcess = 0.03;   // of the talus, so that a gap that only changes its sign does not count
 constexpr double kIterationsPerCell = 40;  // of width and height of the box; the slowest start known needed 4
 // Fluxes round to a unit, slopes then by up to 4: at just the talus that would set the whole slope creeping, and with
 // this allowance 18 sweeps end a pile at 512² instead of 1100.
 constexpr double kSlack = 1.0 / 16384;
 constexpr double kLeastExcess = 4.0 / kUnitsPerCell;  // [cell], what the sweeps leave standing
-
-bool useV3(CodePath path) {
-    return path == CodePath::automatic && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
-           __builtin_cpu_supports("bmi2");
-}
 
 std::int64_t rounded(double flux) { return static_cast<std::int64_t>(flux < 0 ? flux - 0.5 : flux + 0.5); }
 
@@ -39,7 +33,7 @@ Rect domainOf(const HeightField& field, Rim rim) {
 DualProjection::DualProjection(const HeightField& field, const Rules& rules, CodePath path)
     : field_(field),
       rules_(rules),
-      v3_(useV3(path)),
+      v3_(path == CodePath::automatic && machineHasV3()),
       northing_(static_cast<double>(kUnitsPerCell) / rules.aspect),
       twist_(std::max(northing_, 1.0)),
       domain_(domainOf(field, rules.rim)) {
@@ -140,7 +134,7 @@ bool DualProjection::iterate(double momentum, Measures* measures) {
     return sum(sums_[0], iteration.columns - 1) > 0;
 }
 
-int DualProjection::run() {
+int DualProjection::run(double relativeGap) {
     const double enough = std::max(kRelativeExcess * rules_.threshold / kUnitsPerCell, kLeastExcess);
     double weight = 1;  // t of Beck and Teboulle
     double momentum = 0;
@@ -158,7 +152,7 @@ int DualProjection::run() {
         momentum = (weight - 1) / next;
         weight = next;
         if (check) {
-            const bool isClose = std::abs(measures.gap) <= kRelativeGap * measures.moved && measures.excess <= enough;
+            const bool isClose = std::abs(measures.gap) <= relativeGap * measures.moved && measures.excess <= enough;
             if (isClose && wasClose) {
                 break;
             }

@@ -24,14 +24,20 @@ namespace sand {
 /// with 512² cells in motion a float's last bit of pressure was 2 % of the talus.
 class DualProjection {
 public:
+    static constexpr double kRelativeGap = 3e-6;  // of the squared change of height
+
     /// Heights at an open rim must not lie below 0: there sand falls out of the field, never into it.
     DualProjection(const HeightField& field, const Rules& rules, CodePath path = CodePath::automatic);
 
     /// Whether no quad is too steep at the start.
     [[nodiscard]] bool atRest() const { return box_.empty(); }
 
-    /// Iterates until the relative duality gap is at most 1e-5, or a cap, and returns the number of iterations.
-    int run();
+    /// Iterates until the relative duality gap is small enough, or a cap, and returns the number of iterations.
+    int run(double relativeGap = kRelativeGap);
+
+    /// Takes over the pressures on a field of half as many columns and rows, rounded up, with heights in units of its
+    /// own cells. Before run(); sand/coarse_start.hpp says what for.
+    void startFrom(const DualProjection& coarse);
 
     /// Cells, rim included, whose faces may have fluxes: a cell outside has none.
     [[nodiscard]] const Rect& box() const { return box_; }
@@ -41,6 +47,9 @@ public:
     [[nodiscard]] std::int64_t northFlux(int column, int row) const;
 
 private:
+    static constexpr int kCheckEvery = 16;           // [iteration]; one carries pressure at most one quad further
+    static constexpr int kMargin = kCheckEvery + 1;  // [quad], free of pressure around whatever has some
+
     struct Measures {
         double gap = 0, moved = 0, excess = 0;
     };
@@ -48,6 +57,10 @@ private:
     [[nodiscard]] std::int32_t startHeight(int column, int row) const;
     [[nodiscard]] Rect steepQuads() const;
     [[nodiscard]] double pressure(std::size_t component, int column, int row) const;
+    // Of a coarser projection, and of one that starts from it (sand/coarse_start.cpp).
+    [[nodiscard]] double pressureBeyond(std::size_t component, int column, int row) const;
+    [[nodiscard]] Rect pressedCells() const;
+    void allocateFor(const DualProjection& coarse);
     void allocate(const Rect& box);
     /// One step, and whether it turned back.
     bool iterate(double momentum, Measures* measures);

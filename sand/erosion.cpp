@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "sand/code_path.hpp"
 #include "sand/erosion_kernel.hpp"
 #include "sand/grid_codec.hpp"
 #include "sand/held_patch.hpp"
@@ -14,11 +15,6 @@ namespace sand {
 namespace {
 
 constexpr int kSharedPatch = 32;  // [cell], height of a patch where several threads want some
-
-bool machineHasV3() {
-    // clang 14 knows no "x86-64-v3" here; these three stand for it on every processor that was ever sold.
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
-}
 
 /// Beyond the rim the ground goes on as it came: the slope along the rim is then that of the cell's one neighbour.
 std::int32_t extrapolate(std::int32_t edge, std::int32_t inner) { return 2 * edge - inner; }

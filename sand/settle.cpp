@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "sand/coarse_start.hpp"
 #include "sand/dual_projection.hpp"
 
 namespace sand {
@@ -153,6 +154,7 @@ void project(HeightField& field, const Rules& rules, NetFlux* flux, CodePath pat
         return;
     }
     DualProjection projection(field, rules, path);
+    startFromCoarser(projection, field, rules, path);
     const int iterations = projection.run();
     Draft draft(field, open);
     draft.apply(projection);

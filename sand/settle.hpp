@@ -11,7 +11,7 @@
 namespace sand {
 
 struct Settled {
-    int iterations = 0;        // of the dual projection; 0 where sweeps alone did the work
+    int iterations = 0;        // of the dual projection on the field's own cells; 0: sweeps alone did the work
     int sweeps = 0;            // that brought it to rest
     std::int64_t outflow = 0;  // over an open rim [unit · cell]
 };
@@ -24,7 +24,7 @@ struct Settled {
 /// alone, one that is at rest only thanks to a start threshold above the threshold too; any other settles to the
 /// threshold. A field that lies below 0 anywhere under an open rim, or whose projection would leave the extremes, is
 /// swept only: that ends too, but takes O(side²) sweeps. It knows neither bedrock nor walls. The result depends on
-/// nothing but the arguments, and not on `path`. Memory: 56 bytes per cell of the box in which sand moves. Where `flux`
+/// nothing but the arguments, and not on `path`. Memory: 75 bytes per cell of the box in which sand moves. Where `flux`
 /// is not null, what passed every face is added to it.
 Settled settle(HeightField& field, const Rules& rules, NetFlux* flux = nullptr, CodePath path = CodePath::automatic);
 
