@@ -11,7 +11,8 @@
 namespace sand {
 namespace {
 
-constexpr double kRelativeExcess = 0.03;   // of the talus, so that a gap that only changes its sign does not count
+constexpr double kRelativeExcess = 0.03;  // of the talus, so that a gap that only changes its sign does not
+// count; at 0.01 the sweeps after it were as many
 constexpr double kIterationsPerCell = 40;  // of width and height of the box; the slowest start known needed 4
 // Fluxes round to a unit, slopes then by up to 4: at just the talus that would set the whole slope creeping, and with
 // this allowance 18 sweeps end a pile at 512² instead of 1100.
