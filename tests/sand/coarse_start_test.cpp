@@ -106,7 +106,7 @@ TEST(CoarseStart, SparesIterationsWhereEverythingMoves) {
     const HeightField plane = oracles::fieldOf(128, 128, [](double x, double y) { return 2.1 * (0.8 * x + 0.6 * y); });
     const Runs onPlane = expectSamePile(plane, rulesFor(plane));
     EXPECT_LE(onPlane.nested * 4, onPlane.direct);
-    // The larger the field the more it spares: a fifth here, three quarters at 512 cells.
+    // The larger the field the more it spares: little here, two thirds at 512 cells.
     const HeightField hills = bumps(128, 128);
     const Runs onHills = expectSamePile(hills, rulesFor(hills));
     EXPECT_LT(onHills.nested, onHills.direct);
