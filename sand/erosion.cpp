@@ -225,7 +225,6 @@ std::int64_t Erosion::sweepFluxes(const HeightField& field, const Rect& blocks, 
         .north = north_.row(0),
         .fluxStride = east_.stride(),
         .cells = cells,
-        .blockSize = blockSize_,
         .columns = field.columns(),
         .rows = field.rows(),
         .eastLaw = axisLaw(rules_.scheme, rules_.threshold, rules_.startThreshold, 1 / ratio),
@@ -238,19 +237,20 @@ std::int64_t Erosion::sweepFluxes(const HeightField& field, const Rect& blocks, 
         .law = rules_.scheme == Scheme::n4 ? Law::n4 : isotropic,
         .openRim = rules_.rim == Rim::open,
         .room = held ? held->room.data() : nullptr,
-        .sand = grounded ? held->sand.data() : nullptr,
-        .moved = movedNow_.data() + blocks.y0 * across_ + blocks.x0,
-        .blocksAcross = across_};
+        .sand = grounded ? held->sand.data() : nullptr};
     return v3_ ? v3::sweepFluxes(patch) : baseline::sweepFluxes(patch);
 }
 
-void Erosion::balance(HeightField& field, const Rect& blocks) const {
+void Erosion::balance(HeightField& field, const Rect& blocks) {
     const BalancePatch patch{.heights = field.row(0),
                              .heightStride = field.stride(),
                              .east = east_.row(0),
                              .north = north_.row(0),
                              .fluxStride = east_.stride(),
-                             .cells = cellsOf(blocks)};
+                             .cells = cellsOf(blocks),
+                             .blockSize = blockSize_,
+                             .moved = movedNow_.data() + blocks.y0 * across_ + blocks.x0,
+                             .blocksAcross = across_};
     v3_ ? v3::balance(patch) : baseline::balance(patch);
 }
 

@@ -91,7 +91,7 @@ private:
     void collectPatches(HeightField& field);
     [[nodiscard]] std::int64_t sweepFluxes(const HeightField& field, const Rect& blocks, float momentum,
                                            const Obstacle* obstacle);
-    void balance(HeightField& field, const Rect& blocks) const;
+    void balance(HeightField& field, const Rect& blocks);
     void forEachPatch(const std::function<void(int)>& task) const;
     void mark(const Rect& blocks);
     void markAroundMoved(const Rect& blocks);

@@ -103,14 +103,6 @@ void fluxesBetween(const Law law, const std::int32_t* __restrict a, const std::i
     }
 }
 
-/// Collects the bits of all fluxes in each column, so that blocks are looked at once and not in every row.
-void collect(const std::int32_t* __restrict east, const std::int32_t* __restrict north, int count,
-             std::int32_t* __restrict moved) {
-    for (int i = 0; i < count; ++i) {
-        moved[i] |= east[i] | north[i];
-    }
-}
-
 /// Lets no flux bring more than there is room for, behind it or ahead.
 void limitToRoom(const std::int32_t* __restrict behind, const std::int32_t* __restrict ahead, int count,
                  std::int32_t* __restrict flux) {
@@ -134,7 +126,6 @@ public:
         : patch_(patch), eastLaw_(east), northLaw_(north), width_(patch.cells.x1 - patch.cells.x0) {}
 
     std::int64_t run() {
-        std::fill_n(moved_.data(), width_, 0);
         Row<float>* rise = &rises_[0];
         Row<float>* riseAbove = &rises_[1];
         if (patch_.cells.y0 == 0) {
@@ -150,11 +141,6 @@ public:
                 northFluxes(y, rise->data(), riseAbove->data());
             }
             eastFluxes(y);
-            collect(east(y), north(y), width_, moved_.data());
-            const int done = y + 1 - patch_.cells.y0;
-            if (done % patch_.blockSize == 0 || y + 1 == patch_.cells.y1) {
-                reportMoved((done - 1) / patch_.blockSize);
-            }
         }
         return outflow_;
     }
@@ -169,16 +155,6 @@ private:
     /// The patch's first cell in row y of `room` or `sand`.
     [[nodiscard]] const std::int32_t* held(const std::int32_t* numbers, int y) const {
         return numbers + (y - patch_.cells.y0 + 1) * (width_ + 2) + 1;
-    }
-
-    /// Tells in which blocks of a row of blocks sand flows, and begins the next.
-    void reportMoved(int blockRow) {
-        std::uint8_t* moved = patch_.moved + blockRow * patch_.blocksAcross;
-        for (int x = 0; x < width_; x += patch_.blockSize) {
-            const auto end = moved_.data() + std::min(x + patch_.blockSize, width_);
-            *moved++ = std::any_of(moved_.data() + x, end, [](std::int32_t bits) { return bits != 0; }) ? 1 : 0;
-        }
-        std::fill_n(moved_.data(), width_, 0);
     }
 
     /// How much higher the eastern neighbour of each cell of row y is than the western one.
@@ -271,7 +247,6 @@ private:
             }
         }
         outflow_ += flux;
-        moved_.data()[i] |= flux;  // the faces at the southern and western rim are in no cell's collection
         return flux;
     }
 
@@ -282,7 +257,6 @@ private:
     std::array<Row<float>, 2> rises_;
     Row<float> riseNorth_;
     std::array<Row<std::int32_t>, kHeld ? 2 : 0> steps_;
-    Row<std::int32_t> moved_;  // per column: every bit of the fluxes
 };
 
 template <class Law>
@@ -291,11 +265,25 @@ std::int64_t run(const FluxPatch& patch, const Law& east, const Law& north) {
                                                           : Fluxes<Law, false>(patch, east, north).run();
 }
 
+/// `moved` collects the bits of all fluxes in each column, so that blocks are looked at once and not in every row.
 void addUp(const std::int32_t* __restrict east, const std::int32_t* __restrict south,
-           const std::int32_t* __restrict north, int count, std::int32_t* __restrict heights) {
+           const std::int32_t* __restrict north, int count, std::int32_t* __restrict heights,
+           std::int32_t* __restrict moved) {
     for (int i = 0; i < count; ++i) {
         heights[i] += east[i - 1] - east[i] + south[i] - north[i];
+        moved[i] |= east[i] | north[i];
     }
+}
+
+/// Tells in which blocks of a row of blocks sand flows, and begins the next.
+void reportMoved(const BalancePatch& patch, int blockRow, Row<std::int32_t>& moved) {
+    const int width = patch.cells.x1 - patch.cells.x0;
+    std::uint8_t* flag = patch.moved + blockRow * patch.blocksAcross;
+    for (int x = 0; x < width; x += patch.blockSize) {
+        const auto end = moved.data() + std::min(x + patch.blockSize, width);
+        *flag++ = std::any_of(moved.data() + x, end, [](std::int32_t bits) { return bits != 0; }) ? 1 : 0;
+    }
+    std::fill_n(moved.data(), width, 0);
 }
 
 }  // namespace
@@ -314,10 +302,24 @@ std::int64_t sweepFluxes(const FluxPatch& patch) {
 }
 
 void balance(const BalancePatch& patch) {
+    const int width = patch.cells.x1 - patch.cells.x0;
+    Row<std::int32_t> moved;
+    std::fill_n(moved.data(), width, 0);
+    if (patch.cells.y0 == 0) {  // the faces at the southern rim are no cell's northern ones
+        const std::int32_t* south = patch.north - patch.fluxStride + patch.cells.x0;
+        std::copy(south, south + width, moved.data());
+    }
     for (int y = patch.cells.y0; y < patch.cells.y1; ++y) {
         const std::ptrdiff_t flux = y * patch.fluxStride + patch.cells.x0;
-        addUp(patch.east + flux, patch.north + flux - patch.fluxStride, patch.north + flux,
-              patch.cells.x1 - patch.cells.x0, patch.heights + y * patch.heightStride + patch.cells.x0);
+        addUp(patch.east + flux, patch.north + flux - patch.fluxStride, patch.north + flux, width,
+              patch.heights + y * patch.heightStride + patch.cells.x0, moved.data());
+        if (patch.cells.x0 == 0) {
+            moved.data()[0] |= patch.east[flux - 1];
+        }
+        const int done = y + 1 - patch.cells.y0;
+        if (done % patch.blockSize == 0 || y + 1 == patch.cells.y1) {
+            reportMoved(patch, (done - 1) / patch.blockSize, moved);
+        }
     }
 }
 

@@ -30,7 +30,6 @@ struct FluxPatch {
     std::int32_t* north;          // sweep when called, of this one on return
     std::ptrdiff_t fluxStride;    // [cell]
     Rect cells;                   // of the patch, at most kMaxPatch wide
-    int blockSize;                // [cell]
     int columns, rows;            // of the field
     AxisLaw eastLaw, northLaw;    // of the isotropic schemes
     std::int32_t eastThreshold, northThreshold;            // [unit], of N4
@@ -41,8 +40,6 @@ struct FluxPatch {
     // Over `cells` grown by one on every side, row by row; null where nothing holds the sand:
     const std::int32_t* room;  // what each cell may receive through a face [unit]
     const std::int32_t* sand;  // what lies in each cell [unit]: a face gives at most a quarter
-    std::uint8_t* moved;       // of the patch's first block: whether sand flows through a face that it owns
-    int blocksAcross;          // from a block's `moved` to that of the block north of it
 };
 
 /// The same patch's heights after these fluxes.
@@ -53,6 +50,9 @@ struct BalancePatch {
     const std::int32_t* north;
     std::ptrdiff_t fluxStride;
     Rect cells;
+    int blockSize;        // [cell]
+    std::uint8_t* moved;  // of the patch's first block: whether sand flows through a face that it owns
+    int blocksAcross;     // from a block's `moved` to that of the block north of it
 };
 
 // One source, compiled twice (sand/CMakeLists.txt): the same heights, bit for bit. sweepFluxes returns what leaves over

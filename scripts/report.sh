@@ -85,14 +85,14 @@ measure() {
     bench=build/release/bin/sandwall-bench
 
     curve work-precision --sizes 16,32,64,128,256,512 --runs 10 -- --sizes 16,32,64,128 --runs 3
-    curve error-at-rest --sizes 32,64,128,256,512 -- --sizes 32,64,128
-    curve sweeps --sizes 32,64,128,256,512 -- --sizes 32,64,128
+    curve error-at-rest --sizes 32,64,128,256,512 -- --sizes 32,64,128,256
+    curve sweeps --sizes 32,64,128,256,512 -- --sizes 32,64,128,256
     curve anisotropy --sizes 64,256 -- --sizes 64,128
     curve decay --sizes 128 -- --sizes 64
     curve height-bits --sizes 32,64,128 -- --sizes 32,64
     curve band --sizes 128 -- --sizes 64
     curve edit --sizes 512,1024,2048 --runs 10 -- --sizes 512,2048 --runs 3
-    curve dig --sizes 512,2048 --runs 10 -- --sizes 512 --runs 1
+    curve dig --sizes 512,2048 --runs 10 -- --sizes 512,2048 --runs 1
     curve throughput --sizes 64,128,256,512,1024,2048,4096 --runs 10 -- --sizes 64,256,1024 --runs 5
     curve mass-drift --sizes 128 -- --sizes 64
     curve certificate --sizes 32,64,128,256 -- --sizes 32,64
@@ -101,8 +101,8 @@ measure() {
     curve explain scenes/dunes.toml -- scenes/dunes.toml
     hash_table
     [[ $quick == yes ]] || rank_table
-    curve rest --sizes 512 --runs 10 -- --sizes 128 --runs 3
-    curve rest-moving --sizes 256,512 --runs 10 -- --sizes 64 --runs 3
+    curve rest --sizes 512 --runs 10 -- --sizes 512 --runs 1
+    curve rest-moving --sizes 256,512 --runs 10 -- --sizes 256 --runs 1
     rm -f "$out/progress.txt"
 }
 
