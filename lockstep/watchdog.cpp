@@ -18,6 +18,7 @@ constexpr double kStartUpFirstWord = 10;
 constexpr double kStartUpLimit = 120;
 constexpr double kLongestLook = 0.5;
 constexpr double kRankAfterMaster = 3;  // so much later a rank does what the master would have done
+constexpr double kOthersAfterRank = 1;  // [s] that ranks which say nothing leave after the one that does
 
 }  // namespace
 
@@ -43,6 +44,8 @@ void Watchdog::look() {
     std::int64_t lastLook = nowNs();
     double waited = 0;  // [s]
     const double later = role_ == Role::master ? 0 : kRankAfterMaster;
+    // Whoever speaks must come to it: the first to leave takes all the others along.
+    const double patience = role_ == Role::otherRank ? kOthersAfterRank : 0;
     const bool speaks = role_ != Role::otherRank;
     while (!stop_.wait_for(lock, std::chrono::milliseconds(100), [this] { return stopping_; })) {
         const std::int64_t since = armedAt_;
@@ -56,7 +59,7 @@ void Watchdog::look() {
         watched = since;
         const double seconds = waited - later;
         const double limit = startingUp_ ? std::max(limit_, kStartUpLimit) : limit_;
-        if (seconds > limit) {
+        if (seconds > limit + patience) {
             if (speaks) {
                 fmt::print(stderr, "sandwall: {} for {:.1f} s; the limit is {:.0f} s, ending the job\n", describe_(),
                            seconds + later, limit);
