@@ -127,9 +127,9 @@ TEST(ExtremeHeight, DifferencesOfAUnitRestAtAnyAngle) {
 }
 
 // Across cells r = 1000 times as long as wide, a flux moves so much sand that it must be a tiny share of the
-// difference: at most 0.45 / r² with inertia, and 0.4998 / (r² + 1) without. What exceeds the threshold by less than a unit
-// over that share rests: a dead band of 2.2 million units. On a threshold of r cells that is 3 %; where cells are long
-// from west to east, and heights come in units of that length, 34 times the threshold.
+// difference: at most 0.45 / r² with inertia, and 0.4998 / (r² + 1) without. What exceeds the threshold by less than a
+// unit over that share rests: a dead band of 2.2 million units. On a threshold of r cells that is 3 %; where cells are
+// long from west to east, and heights come in units of that length, 34 times the threshold.
 TEST(ExtremeCell, OneToAThousandRestsWithinItsDeadBand) {
     constexpr double kRatio = 1000;
     for (const Scheme scheme : samples::kIsotropic) {
