@@ -21,7 +21,7 @@ sample::Window windowOf(int tile) {
 
 /// Argument 0: whether chunks that a tile does not see are left out.
 void drawWall(benchmark::State& state) {
-    const auto context = render_node::makeContext(render_node::Backend::osmesa);
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     const sand::Scene scene = sample::duneScene(512);
     const render_node::EyeTarget target(1024, 768);
     const bool culling = state.range(0) != 0;
@@ -59,7 +59,7 @@ BENCHMARK(drawWall)
 
 /// A new furrow: the damaged heights to the view, and what is drawn of them.
 void updateDamage(benchmark::State& state) {
-    const auto context = render_node::makeContext(render_node::Backend::osmesa);
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     const sand::Scene scene = sample::duneScene(512);
     const render_node::EyeTarget target(64, 48);
     render_node::SandView view(scene, glm::dmat4(1));
@@ -73,7 +73,7 @@ void updateDamage(benchmark::State& state) {
 BENCHMARK(updateDamage)->ArgName("cells")->Arg(0)->Arg(64)->Arg(312)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void readBack(benchmark::State& state) {
-    const auto context = render_node::makeContext(render_node::Backend::osmesa);
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     const render_node::EyeTarget target(1024, 768);
     for (auto _ : state) {
         benchmark::DoNotOptimize(target.read());

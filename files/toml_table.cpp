@@ -136,7 +136,7 @@ std::string TomlTable::textOr(std::string_view key, std::string_view fallback) c
     return has(key) ? text(key) : std::string(fallback);
 }
 
-int TomlTable::choiceOr(std::string_view key, std::initializer_list<std::string_view> choices, int fallback) const {
+int TomlTable::choiceOr(std::string_view key, const std::vector<std::string_view>& choices, int fallback) const {
     node_->known.emplace(key);
     if (!has(key)) {
         return fallback;

@@ -39,8 +39,7 @@ public:
     [[nodiscard]] std::string text(std::string_view key) const;
     [[nodiscard]] std::string textOr(std::string_view key, std::string_view fallback) const;
     /// The index of the key's text among `choices`, `fallback` when the key is absent.
-    [[nodiscard]] int choiceOr(std::string_view key, std::initializer_list<std::string_view> choices,
-                               int fallback) const;
+    [[nodiscard]] int choiceOr(std::string_view key, const std::vector<std::string_view>& choices, int fallback) const;
     /// Exactly `count` finite numbers.
     [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count) const;
     [[nodiscard]] std::vector<double> numbersOr(std::string_view key, std::vector<double> fallback) const;

@@ -2,14 +2,46 @@
 #include "lockstep/frame_message.hpp"
 
 namespace lockstep {
+namespace {
+
+template <std::size_t kCount>
+void putEach(const std::array<double, kCount>& numbers, files::ByteWriter& writer) {
+    for (const double number : numbers) {
+        writer.put(number);
+    }
+}
+
+template <std::size_t kCount>
+void getEach(files::ByteReader& reader, std::array<double, kCount>& numbers) {
+    for (double& number : numbers) {
+        number = reader.get<double>();
+    }
+}
+
+}  // namespace
+
+void ViewState::encode(files::ByteWriter& writer) const {
+    putEach(head, writer);
+    putEach(right, writer);
+    writer.put(eyeSeparation);
+    putEach(sceneToRoom, writer);
+    writer.put(pattern);
+}
+
+ViewState ViewState::decode(files::ByteReader& reader) {
+    ViewState view;
+    getEach(reader, view.head);
+    getEach(reader, view.right);
+    view.eyeSeparation = reader.get<double>();
+    getEach(reader, view.sceneToRoom);
+    view.pattern = reader.get<std::uint8_t>();
+    return view;
+}
 
 files::Bytes FrameMessage::encode() const {
     files::ByteWriter writer;
     writer.putVarint(frame);
-    for (const double coordinate : view.head) {
-        writer.put(coordinate);
-    }
-    writer.put(view.eyeSeparation);
+    view.encode(writer);
     writer.putVarint(auditTiles);
     writer.put(static_cast<std::uint8_t>((capture ? 1 : 0) | (stop ? 2 : 0)));
     writer.putVarint(steps.size());
@@ -23,10 +55,7 @@ FrameMessage FrameMessage::decode(std::span<const std::uint8_t> bytes) {
     files::ByteReader reader(bytes);
     FrameMessage message;
     message.frame = reader.getVarint();
-    for (double& coordinate : message.view.head) {
-        coordinate = reader.get<double>();
-    }
-    message.view.eyeSeparation = reader.get<double>();
+    message.view = ViewState::decode(reader);
     message.auditTiles = static_cast<std::uint32_t>(reader.getVarint());
     const auto flags = reader.get<std::uint8_t>();
     message.capture = (flags & 1) != 0;

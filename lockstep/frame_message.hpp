@@ -10,10 +10,19 @@
 
 namespace lockstep {
 
-/// From where the wall is seen this frame; all of it in every frame, so that none ever shows an old eye.
+/// From where the wall is seen this frame; all of it in every frame, so that none ever shows an old eye, and part of
+/// what the ranks must agree on.
 struct ViewState {
-    std::array<double, 3> head{};  // [m] in the room, between the eyes
-    double eyeSeparation = 0;      // [m]
+    std::array<double, 3> head{};          // [m] in the room, between the eyes
+    std::array<double, 3> right{1, 0, 0};  // unit vector from the left eye to the right one
+    double eyeSeparation = 0;              // [m]
+    // Column by column: scene units to metres in the room.
+    std::array<double, 16> sceneToRoom{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    std::uint8_t pattern = 0;  // test pattern shown instead of the sand, 0 for none: render_node/test_pattern.hpp
+
+    void encode(files::ByteWriter& writer) const;
+    /// Throws files::FormatError when cut short.
+    static ViewState decode(files::ByteReader& reader);
     friend bool operator==(const ViewState&, const ViewState&) = default;
 };
 

@@ -112,7 +112,9 @@ std::vector<TimedStep> Session::awaitSteps() {
 lockstep::FrameMessage Session::prepare(std::vector<TimedStep>& steps) {
     lockstep::FrameMessage message;
     message.frame = ++frame_;
-    message.view = {{wall_.viewer.eye.x, wall_.viewer.eye.y, wall_.viewer.eye.z}, wall_.viewer.eyeSeparation};
+    message.view.head = {wall_.viewer.eye.x, wall_.viewer.eye.y, wall_.viewer.eye.z};
+    message.view.right = {wall_.viewer.right.x, wall_.viewer.right.y, wall_.viewer.right.z};
+    message.view.eyeSeparation = wall_.viewer.eyeSeparation;
     for (const TimedStep& timed : steps) {
         message.steps.push_back(timed.step);
     }

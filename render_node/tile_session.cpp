@@ -31,7 +31,7 @@ public:
           fault_(message.fault),
           wall_(walls::Wall::decode(message.wall)),
           tile_(wall_.tiles.at(static_cast<std::size_t>(cluster.rank() - 1))),
-          context_(makeContext(backend)) {
+          context_(makeContext(backend, wall_, tile_)) {
         const sand::Scene scene = sand::Scene::decode(message.scene);
         terrain_.emplace(scene, sweeps);
         const sand::HeightField& field = scene.terrain;
@@ -100,6 +100,7 @@ private:
         }
         walls::Viewer viewer = wall_.viewer;
         viewer.eye = {state.head[0], state.head[1], state.head[2]};
+        viewer.right = {state.right[0], state.right[1], state.right[2]};
         viewer.eyeSeparation = state.eyeSeparation;
         std::size_t next = 0;
         for (const walls::Eye eye : walls::eyesOf(wall_.stereo)) {

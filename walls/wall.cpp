@@ -3,13 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace walls {
 namespace {
 
-constexpr std::uint8_t kEncoding = 1;
+constexpr std::uint8_t kEncoding = 2;
 
 template <glm::length_t N, class Number>
 void put(files::ByteWriter& writer, const glm::vec<N, Number>& vector) {
@@ -69,9 +70,9 @@ Grid getGrid(files::ByteReader& reader) {
     grid.right = getVector<glm::dvec3>(reader);
     grid.up = getVector<glm::dvec3>(reader);
     checkPixels(grid.tilePixels);
-    const bool sized = grid.tileSize.x > 0 && grid.tileSize.y > 0 && grid.bezel.x >= 0 && grid.bezel.y >= 0;
-    if (!sized || glm::any(glm::greaterThan(grid.bezel, grid.tileSize)) || grid.rows < 1 || grid.columns < 1 ||
-        grid.rows > kMaxTiles || grid.columns > kMaxTiles) {
+    const bool sized = grid.tileSize.x > 0 && grid.tileSize.y > 0;
+    if (!sized || glm::any(glm::greaterThan(glm::abs(grid.bezel), grid.tileSize)) || grid.rows < 1 ||
+        grid.columns < 1 || grid.rows > kMaxTiles || grid.columns > kMaxTiles) {
         throw files::FormatError(
             fmt::format("a grid of {} rows and {} columns without a size", grid.rows, grid.columns));
     }
@@ -94,7 +95,13 @@ void put(files::ByteWriter& writer, const Tile& tile) {
         for (const Eye eye : output.eyes) {
             writer.put(static_cast<std::uint8_t>(eye));
         }
+        writer.putText(output.monitor);
+        writer.put(static_cast<std::uint8_t>(output.window.has_value()));
+        put(writer, output.window.value_or(glm::ivec2(0)));
     }
+    writer.putText(tile.place.host);
+    writer.putText(tile.place.display);
+    writer.put(tile.place.device);
 }
 
 Tile getTile(files::ByteReader& reader) {
@@ -115,7 +122,14 @@ Tile getTile(files::ByteReader& reader) {
         for (Eye& eye : output.eyes) {
             eye = getChoice(reader, Eye::middle);
         }
+        output.monitor = reader.getText();
+        const bool placed = getChoice(reader, std::uint8_t{1}) == 1;
+        const auto window = getVector<glm::ivec2>(reader);
+        output.window = placed ? std::optional(window) : std::nullopt;
     }
+    tile.place.host = reader.getText();
+    tile.place.display = reader.getText();
+    tile.place.device = reader.get<std::int32_t>();
     return tile;
 }
 
@@ -127,26 +141,44 @@ std::string_view eyeName(Eye eye) {
 }
 
 std::string_view stereoName(Stereo stereo) {
-    constexpr std::array<std::string_view, 3> kNames{"mono", "passive", "active"};
+    constexpr std::array<std::string_view, 12> kNames{
+        "mono",       "left",           "right",        "passive",  "active",        "side_by_side",
+        "top_bottom", "row_interlaced", "checkerboard", "anaglyph", "anaglyph_half", "anaglyph_dubois"};
     return kNames.at(static_cast<std::size_t>(stereo));
 }
 
 std::span<const Eye> eyesOf(Stereo stereo) {
     static constexpr std::array<Eye, 2> kBoth{Eye::left, Eye::right};
     static constexpr std::array<Eye, 1> kMiddle{Eye::middle};
-    return stereo == Stereo::mono ? std::span<const Eye>(kMiddle) : std::span<const Eye>(kBoth);
+    switch (stereo) {
+        case Stereo::mono:
+            return kMiddle;
+        case Stereo::left:
+            return std::span(kBoth).first(1);
+        case Stereo::right:
+            return std::span(kBoth).last(1);
+        default:
+            return kBoth;
+    }
+}
+
+glm::ivec2 outputPixels(Stereo stereo, glm::ivec2 eyePixels) {
+    switch (stereo) {
+        case Stereo::sideBySide:
+            return {2 * eyePixels.x, eyePixels.y};
+        case Stereo::topBottom:
+            return {eyePixels.x, 2 * eyePixels.y};
+        default:
+            return eyePixels;
+    }
 }
 
 std::vector<Output> outputsOf(Stereo stereo, const std::string& tileName) {
-    switch (stereo) {
-        case Stereo::passive:
-            return {{tileName + "_left", {Eye::left}}, {tileName + "_right", {Eye::right}}};
-        case Stereo::active:
-            return {{tileName, {Eye::left, Eye::right}}};
-        case Stereo::mono:
-            break;
+    if (stereo == Stereo::passive) {
+        return {{tileName + "_left", {Eye::left}, {}, {}}, {tileName + "_right", {Eye::right}, {}, {}}};
     }
-    return {{tileName, {Eye::middle}}};
+    const std::span<const Eye> eyes = eyesOf(stereo);
+    return {{tileName, {eyes.begin(), eyes.end()}, {}, {}}};
 }
 
 std::vector<Tile> tilesOf(const Grid& grid, Stereo stereo) {
@@ -171,6 +203,19 @@ std::vector<Tile> tilesOf(const Grid& grid, Stereo stereo) {
     return tiles;
 }
 
+Wall shownIn(Wall wall, Stereo stereo) {
+    for (Tile& tile : wall.tiles) {
+        std::vector<Output> outputs = outputsOf(stereo, tile.name);
+        for (std::size_t i = 0; i < std::min(outputs.size(), tile.outputs.size()); ++i) {
+            outputs[i].monitor = tile.outputs[i].monitor;
+            outputs[i].window = tile.outputs[i].window;
+        }
+        tile.outputs = std::move(outputs);
+    }
+    wall.stereo = stereo;
+    return wall;
+}
+
 files::Bytes Wall::encode() const {
     files::ByteWriter writer;
     writer.put(kEncoding);
@@ -179,6 +224,8 @@ files::Bytes Wall::encode() const {
     writer.put(viewer.eyeSeparation);
     put(writer, viewer.right);
     writer.put(static_cast<std::uint8_t>(stereo));
+    writer.put(refreshHz);
+    writer.putText(tracking);
     writer.put(clip.near);
     writer.put(clip.far);
     put(writer, stage.centre);
@@ -206,7 +253,9 @@ Wall Wall::decode(std::span<const std::uint8_t> bytes) {
     wall.viewer.eye = getVector<glm::dvec3>(reader);
     wall.viewer.eyeSeparation = getLength(reader);
     wall.viewer.right = getVector<glm::dvec3>(reader);
-    wall.stereo = getChoice(reader, Stereo::active);
+    wall.stereo = getChoice(reader, kLastStereo);
+    wall.refreshHz = getLength(reader);
+    wall.tracking = reader.getText();
     wall.clip.near = getLength(reader);
     wall.clip.far = getLength(reader);
     wall.stage.centre = getVector<glm::dvec3>(reader);

@@ -22,17 +22,31 @@ inline constexpr int kMaxTiles = 1024;
 inline constexpr int kMaxTileSide = 16384;  // [pixel]
 
 enum class Eye : std::uint8_t { left, right, middle };
+/// How a tile's pictures reach two eyes. All but passive have one output per tile.
 enum class Stereo : std::uint8_t {
-    mono,     // one output per tile, seen from the middle between the eyes
-    passive,  // two outputs per tile, one for each eye, told apart by polarisers
-    active    // one output per tile that shows the eyes in turn
+    mono,            // seen from the middle between the eyes
+    left,            // the left eye alone
+    right,           // the right eye alone
+    passive,         // two outputs per tile, one for each eye, told apart by polarisers
+    active,          // the eyes in turn: quad buffers where the driver has them, else frame by frame
+    sideBySide,      // one buffer twice as wide, left eye on the left
+    topBottom,       // one buffer twice as high, left eye above
+    rowInterlaced,   // even rows (from the top, from 0) show the left eye, odd rows the right one
+    checkerboard,    // pixels whose row + column is even (from the top left) show the left eye
+    anaglyphColour,  // red from the left eye, green and blue from the right
+    anaglyphHalf,    // the same with the left eye's luminance as red
+    anaglyphDubois   // least-squares matrices of Dubois (2001) for red-cyan glasses
 };
+inline constexpr Stereo kLastStereo = Stereo::anaglyphDubois;
 
 /// "left", "right", "middle": as in the names of pictures.
 [[nodiscard]] std::string_view eyeName(Eye eye);
 [[nodiscard]] std::string_view stereoName(Stereo stereo);
-/// The eyes that are drawn, in the order they are drawn: the middle alone for mono, else left and right.
+/// The eyes that are drawn, in the order they are drawn: the middle alone for mono, left or right alone where only one
+/// is shown, else left and right.
 [[nodiscard]] std::span<const Eye> eyesOf(Stereo stereo);
+/// Size of each output's buffer when one eye's picture has this size [pixel].
+[[nodiscard]] glm::ivec2 outputPixels(Stereo stereo, glm::ivec2 eyePixels);
 
 /// The lit rectangle of a tile by three of its corners, as the viewer sees them [m].
 struct Screen {
@@ -54,7 +68,17 @@ struct Screen {
 struct Output {
     std::string name;
     std::vector<Eye> eyes;
+    std::string monitor;               // full screen on the monitor of this name, as xrandr lists it; empty: a window
+    std::optional<glm::ivec2> window;  // [pixel], where the window's top left corner goes; none: where the system likes
     friend bool operator==(const Output&, const Output&) = default;
+};
+
+/// Which machine draws a tile, and with what; read from [[place]].
+struct Place {
+    std::string host;          // as mpirun knows it; empty: any
+    std::string display;       // X display, such as ":0.1"; empty: the DISPLAY of the rank
+    std::int32_t device = -1;  // EGL device by number; -1: the driver's choice
+    friend bool operator==(const Place&, const Place&) = default;
 };
 
 /// What one render rank draws.
@@ -65,6 +89,7 @@ struct Tile {
     Screen screen;
     glm::ivec2 pixels{1, 1};  // width, height of one eye's picture
     std::vector<Output> outputs;
+    Place place;
     friend bool operator==(const Tile&, const Tile&) = default;
 };
 
@@ -95,7 +120,7 @@ struct Stage {
 struct Grid {
     std::int32_t rows = 1, columns = 1;
     glm::dvec2 tileSize{1};  // [m], the lit area
-    glm::dvec2 bezel{0};     // [m], between the lit areas of neighbours: horizontally, vertically
+    glm::dvec2 bezel{0};     // [m], between the lit areas of neighbours: horizontally, vertically; < 0: they overlap
     glm::ivec2 tilePixels{1};
     glm::dvec3 lowerLeft{0};                 // [m], corner of the whole grid
     glm::dvec3 right{1, 0, 0}, up{0, 1, 0};  // unit vectors, perpendicular
@@ -107,6 +132,8 @@ struct Wall {
     std::string name;
     Viewer viewer;
     Stereo stereo = Stereo::mono;
+    double refreshHz = 60;  // frames per second; with eyes in turn each frame shows one of them
+    std::string tracking;   // where the head's pose comes from (docs/head_tracking.md); empty: the viewer stands still
     Clip clip;
     Stage stage;
     std::optional<Grid> grid;  // tiles with a row came from it
@@ -124,6 +151,9 @@ struct Wall {
 [[nodiscard]] std::vector<Output> outputsOf(Stereo stereo, const std::string& tileName);
 /// The tiles of a grid, row by row from the top left, ranks from 1.
 [[nodiscard]] std::vector<Tile> tilesOf(const Grid& grid, Stereo stereo);
+
+/// The same wall shown another way: eyes and outputs follow, monitors and windows are kept where they still fit.
+[[nodiscard]] Wall shownIn(Wall wall, Stereo stereo);
 
 /// Reads and checks a wall file (docs/wall_files.md). Throws files::InputError with file, line and what to do.
 [[nodiscard]] Wall loadWall(const std::filesystem::path& file);

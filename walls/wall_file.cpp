@@ -95,7 +95,11 @@ Stereo readStereo(const TomlTable& file) {
     if (!table) {
         return Stereo::mono;
     }
-    const int mode = table->choiceOr("mode", {"mono", "passive", "active"}, 0);
+    std::vector<std::string_view> names;
+    for (int mode = 0; mode <= static_cast<int>(kLastStereo); ++mode) {
+        names.push_back(stereoName(static_cast<Stereo>(mode)));
+    }
+    const int mode = table->choiceOr("mode", names, 0);
     table->finish();
     return static_cast<Stereo>(mode);
 }

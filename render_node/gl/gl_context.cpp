@@ -15,12 +15,18 @@ std::string GlContext::renderer() const {
     return text(GL_RENDERER) + ", OpenGL " + text(GL_VERSION);
 }
 
-std::unique_ptr<GlContext> makeContext(Backend backend) {
+void GlContext::present(std::span<const OutputPicture> /* outputs */, std::uint64_t /* frame */) { glFinish(); }
+
+std::unique_ptr<GlContext> makeOffscreenContext(Backend backend) {
     switch (backend) {
         case Backend::osmesa:
             return makeOsmesaContext();
     }
     throw files::InputError("no such OpenGL backend");
+}
+
+std::unique_ptr<GlContext> makeContext(Backend backend, const walls::Wall& /* wall */, const walls::Tile& /* tile */) {
+    return makeOffscreenContext(backend);
 }
 
 }  // namespace render_node

@@ -1,15 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
+
+#include "walls/wall.hpp"
 
 namespace render_node {
 
-/// What gives this process OpenGL. One file per backend; the rest of the program does not know which it is.
-enum class Backend { osmesa };
+class EyeTarget;
 
-/// An OpenGL 3.3 core context, current on the thread that made it and used by that thread alone.
+/// What gives this process OpenGL. One file per backend; the rest of the program does not know which it is.
+enum class Backend : std::uint8_t { osmesa };
+
+/// What one output shows in a frame: one picture, or both eyes' where one window shows them in turn.
+struct OutputPicture {
+    const EyeTarget* picture = nullptr;  // the only one, or the left eye's
+    const EyeTarget* right = nullptr;    // null unless the stereo is active
+};
+
+/// An OpenGL 3.3 core context, current on the thread that made it and used by that thread alone, and the windows of
+/// the tile where it has some.
 ///
 /// Everything that holds GL objects (EyeTarget, SandView) must be destroyed before its context is.
 class GlContext {
@@ -23,11 +37,27 @@ public:
     [[nodiscard]] virtual std::string name() const = 0;  // as --gl takes it: "osmesa"
     /// What draws, as GL_RENDERER and GL_VERSION name it. The context must be current.
     [[nodiscard]] std::string renderer() const;
+
+    /// Copies the outputs' pictures, in the order of tile.outputs, to where the screens will take them from, and waits
+    /// until GL has done so. `frame` is the wall's: with eyes in turn, even frames show the left one. Off screen it
+    /// only waits. Throws std::runtime_error when a window is lost, with its output in the message.
+    virtual void present(std::span<const OutputPicture> outputs, std::uint64_t frame);
+    /// Shows what was presented; nobody swaps before all ranks have agreed. Nothing off screen.
+    virtual void swap() {}
+    /// The keys pressed in the windows since the last call, one character each. None off screen.
+    [[nodiscard]] virtual std::string takeKeys() { return {}; }
+    /// What the wall file asks for and this machine cannot do, one line each, for the operator.
+    [[nodiscard]] virtual std::vector<std::string> shortcomings() const { return {}; }
+    /// "joined", "no extension", "refused" …: whether the swaps of several graphics cards are locked in hardware.
+    [[nodiscard]] virtual std::string swapLock() const { return "none"; }
 };
 
-/// Makes a context, current on this thread, with the GL functions loaded. Throws files::InputError in one line that
-/// says what to install or to choose instead.
-[[nodiscard]] std::unique_ptr<GlContext> makeContext(Backend backend);
+/// Makes a context for the outputs of a tile, current on this thread, with the GL functions loaded. Throws
+/// files::InputError in one line that says what to install or to choose instead.
+[[nodiscard]] std::unique_ptr<GlContext> makeContext(Backend backend, const walls::Wall& wall, const walls::Tile& tile);
+
+/// The same without any output: for tests and measurements.
+[[nodiscard]] std::unique_ptr<GlContext> makeOffscreenContext(Backend backend);
 
 // One per backend, in the file of its name.
 [[nodiscard]] std::unique_ptr<GlContext> makeOsmesaContext();

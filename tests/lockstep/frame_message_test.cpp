@@ -10,7 +10,7 @@ namespace {
 
 lockstep::FrameMessage digging() {
     lockstep::FrameMessage message{.frame = 100000,
-                                   .view = {{0.1, 1.6, 2.5}, 0.065},
+                                   .view = {.head = {0.1, 1.6, 2.5}, .eyeSeparation = 0.065},
                                    .auditTiles = 4,
                                    .capture = true,
                                    .stop = false,

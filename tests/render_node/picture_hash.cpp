@@ -6,7 +6,7 @@
 #include "sample_scene.hpp"
 
 int main() try {
-    const auto context = render_node::makeContext(render_node::Backend::osmesa);
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     const sand::Scene scene = sample::duneScene(200);
     render_node::SandView view(scene, glm::dmat4(1));
     view.setTool(sample::probeAt(scene, {1, 1, 0.05}), true);

@@ -40,7 +40,7 @@ double meanLuminance(const Pixels& pixels, int x0, int y0, int x1, int y1) {
 
 class Picture : public testing::Test {
 protected:
-    std::unique_ptr<render_node::GlContext> context_ = render_node::makeContext(render_node::Backend::osmesa);
+    std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     EyeTarget target_{kWidth, kHeight};
     render_node::Camera above_ = sample::camera({1, 1, 1.5}, {1, 1, 0});
 };

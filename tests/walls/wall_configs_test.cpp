@@ -29,8 +29,8 @@ TEST(WallConfigs, TiledWallIsThePapers) {
     EXPECT_EQ(tile.column, 3);
     EXPECT_EQ(tile.pixels, glm::ivec2(1024, 768));
     ASSERT_EQ(tile.outputs.size(), 2U);
-    EXPECT_EQ(tile.outputs[0], (Output{"r2c3_left", {Eye::left}}));
-    EXPECT_EQ(tile.outputs[1], (Output{"r2c3_right", {Eye::right}}));
+    EXPECT_EQ(tile.outputs[0], (Output{"r2c3_left", {Eye::left}, {}, {}}));
+    EXPECT_EQ(tile.outputs[1], (Output{"r2c3_right", {Eye::right}, {}, {}}));
 }
 
 TEST(WallConfigs, TilesStandABezelApart) {
