@@ -26,8 +26,9 @@ AxisLaw axisLaw(Scheme scheme, double threshold, double startThreshold, double r
     // without damping, and with inertia a steep needle would fall too flat: 17 % of its sand misplaced, and 0.8 % with
     // 0.46.
     const double limit = (scheme == Scheme::isotropic ? 0.46 : 0.4998) / (ratio * ratio + 1);
-    // As strong as linear stability allows, less a tenth; the same flux per slope along either axis.
-    const double push = 0.45 * std::min(1.0, 1 / (ratio * ratio));
+    // As strong as linear stability allows, less a tenth (near the threshold 1 - t²/m² is twice 1 - t/m); the same flux
+    // per slope along either axis.
+    const double push = 0.225 * std::min(1.0, 1 / (ratio * ratio));
     return {static_cast<float>(threshold), static_cast<float>(startThreshold), static_cast<float>(limit),
             static_cast<float>(push), static_cast<float>(0.25 * ratio)};
 }
@@ -140,8 +141,10 @@ std::int64_t Erosion::sweep(HeightField& field, int sweeps, const Obstacle* obst
             markAroundMoved(patches_[i]);
         }
         ++sweepsDone_;
-        undisturbed_ = std::min(undisturbed_ + 1, kMostCounted);
         const bool still = markedFrom_ >= markedTo_;
+        if (!still) {  // a replica that joins settled sand visits it once, and must not be the older for it
+            undisturbed_ = std::min(undisturbed_ + 1, kMostCounted);
+        }
         collectMarked();
         if (!options_.skipSettled && !still) {
             wakeAll();

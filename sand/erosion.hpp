@@ -27,7 +27,7 @@ enum class CodePath : std::uint8_t { automatic, baseline };
 /// falls by at least one in every sweep that moves anything, so that it ends.
 ///
 /// The default law has inertia: with a the difference across a face, m the slope and t the threshold,
-/// q = M q_last + p (1 - t/m) a, cut to [0, k a]. The proofs need only the cut. Sand at rest starts to slide where
+/// q = M q_last + p (1 - t²/m²) a, cut to [0, k a]. The proofs need only the cut. Sand at rest starts to slide where
 /// plain G would, and the pile is G's to the third digit, in a tenth of the sweeps. M = n / (n + 25), at most 0.9, in
 /// the n-th sweep since touch(): a pile so small that it rests early meets little inertia, and does not overshoot.
 ///
@@ -61,7 +61,7 @@ public:
 
     /// Whether the next sweep would visit no block at all.
     [[nodiscard]] bool settled() const { return active_.empty(); }
-    /// Sweeps since touch(), as far as they matter: the age of the inertia.
+    /// Sweeps that moved sand since touch(), as far as they matter: the age of the inertia.
     [[nodiscard]] int undisturbed() const { return undisturbed_; }
     /// What the next sweeps depend on beside the heights: the inertia. Nothing is awake or asleep in it: whoever
     /// decodes visits every block once. Throws files::FormatError.
@@ -106,7 +106,7 @@ private:
     // over the western and southern rim. Zero wherever a block is not active.
     Grid east_, north_;
     std::int64_t sweepsDone_ = 0;
-    int undisturbed_ = 0;                 // sweeps since touch()
+    int undisturbed_ = 0;                 // sweeps that moved sand since touch()
     std::vector<int> active_;             // ascending
     std::vector<Rect> patches_;           // of this sweep [block]
     std::vector<std::int64_t> outflows_;  // of each patch

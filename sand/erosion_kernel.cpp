@@ -20,27 +20,40 @@ struct alignas(64) Row {
 // Free functions on restricted pointers, and laws as copies: with members in reach g++ keeps the loops scalar.
 
 /// Scheme G with inertia: what flowed in the last sweep goes on, pushed by the excess of the slope over the threshold
-/// and braked by its lack; never uphill, and never more than the share that keeps all proofs.
+/// and braked by its lack; never uphill, and never more than the share that keeps all proofs. Squares of slopes are
+/// compared: a root would cost a quarter of the sweep. Without a band sand that is not pushed is braked anyway.
+template <bool kBand>
 struct Inertial {
     static constexpr bool kNeedsAlong = true;
-    AxisLaw axis;
-    float momentum;
 
-    std::int32_t operator()(std::int32_t difference, float along, std::int32_t last) const {
+    Inertial(const AxisLaw& law, float momentumNow)
+        : threshold(law.threshold * law.threshold),
+          startThreshold(law.startThreshold * law.startThreshold),
+          limit(law.limit),
+          push(law.push),
+          along(law.along),
+          momentum(momentumNow) {}
+
+    float threshold, startThreshold;  // [unit²]
+    float limit, push, along, momentum;
+
+    std::int32_t operator()(std::int32_t difference, float alongSum, std::int32_t last) const {
         const auto across = static_cast<float>(difference);
-        const float mean = axis.along * along;
+        const float mean = along * alongSum;
         // At least the smallest slope there is: 0 · (threshold / 0) would be no number.
-        const float slope = std::max(std::sqrt(across * across + mean * mean), 0.25F);
-        const float excess = axis.push * (1.0F - axis.threshold / slope);
-        // Below the start threshold nothing is pushed; what flows is braked.
-        const float push = slope > axis.startThreshold ? excess : std::min(excess, 0.0F);
-        const float most = axis.limit * across;
+        const float slope = std::max(across * across + mean * mean, 0.0625F);
+        float driven = push * (1.0F - threshold / slope);
+        if constexpr (kBand) {
+            // Below the start threshold nothing is pushed; what flows is braked.
+            driven = slope > startThreshold ? driven : std::min(driven, 0.0F);
+        }
+        const float most = limit * across;
         const float forth = std::max(most, 0.0F);
         const float back = std::min(most, 0.0F);
         // What goes on is cut by itself first: else a flux that has just turned would rest for a sweep, and a face at
         // which nothing flows could not be left alone.
         const float kept = std::min(std::max(momentum * static_cast<float>(last), back), forth);
-        return static_cast<std::int32_t>(std::min(std::max(kept + push * across, back), forth));
+        return static_cast<std::int32_t>(std::min(std::max(kept + driven * across, back), forth));
     }
 };
 
@@ -265,6 +278,12 @@ std::int64_t run(const FluxPatch& patch, const Law& east, const Law& north) {
                                                           : Fluxes<Law, false>(patch, east, north).run();
 }
 
+template <bool kBand>
+std::int64_t runInertial(const FluxPatch& patch) {
+    using Law = Inertial<kBand>;
+    return run(patch, Law(patch.eastLaw, patch.momentum), Law(patch.northLaw, patch.momentum));
+}
+
 /// `moved` collects the bits of all fluxes in each column, so that blocks are looked at once and not in every row.
 void addUp(const std::int32_t* __restrict east, const std::int32_t* __restrict south,
            const std::int32_t* __restrict north, int count, std::int32_t* __restrict heights,
@@ -291,7 +310,8 @@ void reportMoved(const BalancePatch& patch, int blockRow, Row<std::int32_t>& mov
 std::int64_t sweepFluxes(const FluxPatch& patch) {
     switch (patch.law) {
         case FluxPatch::Law::inertial:
-            return run(patch, Inertial{patch.eastLaw, patch.momentum}, Inertial{patch.northLaw, patch.momentum});
+            return patch.eastLaw.startThreshold > patch.eastLaw.threshold ? runInertial<true>(patch)
+                                                                          : runInertial<false>(patch);
         case FluxPatch::Law::isotropic:
             return run(patch, Isotropic{patch.eastLaw}, Isotropic{patch.northLaw});
         case FluxPatch::Law::n4:

@@ -48,6 +48,12 @@ Terrain::Terrain(const Scene& scene, const Erosion::Options& options)
       hash_(field_),
       damage_(field_.bounds()) {}
 
+std::int64_t Terrain::leastBytes(int columns, int rows) {
+    // The scene's heights, the replica's, and a flux through two faces of every cell.
+    constexpr std::int64_t kPerCell = 4 * sizeof(std::int32_t);
+    return kPerCell * columns * rows;
+}
+
 void Terrain::touch(const Rect& cells) {
     if (!cells.empty()) {
         hash_.touch(cells);

@@ -47,6 +47,9 @@ public:
     /// The cells that changed since this was called last: one rectangle around them, empty when nothing did.
     [[nodiscard]] Rect takeDamage();
 
+    /// What a replica of a field of this size takes at the very least, with the scene it starts from [byte].
+    [[nodiscard]] static std::int64_t leastBytes(int columns, int rows);
+
     /// The whole state, for a replica that must start from here (compressed).
     [[nodiscard]] files::Bytes encodeState() const;
     /// Throws files::FormatError when the bytes are no state of this scene; the replica is then unchanged.

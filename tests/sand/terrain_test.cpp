@@ -152,6 +152,28 @@ TEST(Terrain, GoesOnInMidSlide) {
     }
 }
 
+// Who joins visits every block once, where the others sleep: that must not make its inertia older than theirs.
+TEST(Terrain, GoesOnFromSettledSand) {
+    sand::Scene scene = samples::flatScene(64, 64);
+    scene.terrain = samples::cylinder(64, 12, 30);
+    Terrain whole(scene);
+    std::uint64_t step = 0;
+    while (!whole.settled()) {
+        whole.apply({1, ++step, false, {}});
+        ASSERT_LT(step, 10000U);
+    }
+    Terrain joined(scene);
+    joined.decodeState(whole.encodeState());
+    for (int i = 0; i < 5; ++i) {
+        const bool digs = i == 3;
+        for (Terrain* terrain : {&whole, &joined}) {
+            terrain->apply({1, step + 1, digs, {at(32, 32, digs ? 0 : 100)}});
+        }
+        ++step;
+        ASSERT_EQ(joined.stateHash(), whole.stateHash()) << i << " steps after joining";
+    }
+}
+
 TEST(Terrain, SettlesAtOnceWhenAsked) {
     sand::Scene scene = samples::flatScene(64, 64);
     scene.terrain = samples::cylinder(64, 12, 30);

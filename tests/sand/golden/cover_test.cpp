@@ -17,8 +17,8 @@ struct Way {
     sand::CodePath path;
 };
 
-// A pairwise cover: every number of threads meets every size of block in one of the three builds, and every build runs
-// all of either. scripts/test.sh runs them all: g++ and clang at several levels of optimisation.
+// A pairwise cover: every number of threads meets every size of block in one of the three kinds of build. Those without
+// optimisation take minutes, so g++ and clang share theirs. scripts/test.sh runs them all, at several levels.
 #ifndef __OPTIMIZE__
 constexpr int kBuild = 0;
 #elif defined(__clang__)
@@ -28,6 +28,16 @@ constexpr int kBuild = 2;
 #endif
 constexpr std::array kThreads{1, 2, 3, 7};
 constexpr std::array kBlocks{16, 32, 64};
+
+/// Whether this build runs the i-th way.
+constexpr bool isOurs(std::size_t i) {
+#ifdef __clang__
+    constexpr std::size_t kShare = 1;
+#else
+    constexpr std::size_t kShare = 0;
+#endif
+    return kBuild != 0 || i % 2 == kShare;
+}
 
 Way wayOf(std::size_t i) {
     return {kThreads[i], kBlocks[(i + kBuild) % kBlocks.size()],
@@ -50,6 +60,9 @@ TEST(Cover, TenThousandEditsHashAlikeOnAnyThreadsBlocksAndBuild) {
     constexpr std::uint64_t kFew = 1000;  // what a sanitizer has time for
     const sand::Scene scene = coveredScene();
     for (std::size_t i = 0; i < kThreads.size(); ++i) {
+        if (!isOurs(i)) {
+            continue;
+        }
         const Way way = wayOf(i);
         workers::WorkerPool team(way.threads);
         const sand::Executor executor = team.executor();
@@ -60,12 +73,12 @@ TEST(Cover, TenThousandEditsHashAlikeOnAnyThreadsBlocksAndBuild) {
             terrain.apply(samples::randomStep(edit, scene.rules, random));
             all = all * 31 + terrain.stateHash();
             if (edit == kFew) {
-                EXPECT_EQ(fmt::format("{:016x}", all), "55d87c8166e56d56")
+                EXPECT_EQ(fmt::format("{:016x}", all), "55e737c51a36a5ea")
                     << way.threads << " threads, blocks of " << way.block;
             }
         }
         if (!samples::kSanitized) {
-            EXPECT_EQ(fmt::format("{:016x}", all), "32d9f57f868e4598")
+            EXPECT_EQ(fmt::format("{:016x}", all), "72749cc55003504b")
                 << way.threads << " threads, blocks of " << way.block;
         }
     }
