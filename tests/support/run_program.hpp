@@ -15,10 +15,9 @@ struct Ran {
     std::string output;  // stdout and stderr together
 };
 
-/// Runs one of our programs to its end; `arguments` are words of the shell.
-inline Ran runProgram(const std::string& name, const std::string& arguments) {
-    const std::string command = std::string(SANDWALL_BIN_DIR) + "/" + name + " " + arguments + " 2>&1";
-    std::FILE* pipe = popen(command.c_str(), "r");
+/// Runs words of the shell to their end.
+inline Ran runCommand(const std::string& command) {
+    std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
     if (pipe == nullptr) {
         throw std::runtime_error("cannot start " + command);
     }
@@ -30,6 +29,11 @@ inline Ran runProgram(const std::string& name, const std::string& arguments) {
     const int ended = pclose(pipe);
     ran.status = WIFEXITED(ended) ? WEXITSTATUS(ended) : -1;
     return ran;
+}
+
+/// Runs one of our programs to its end; `arguments` are words of the shell.
+inline Ran runProgram(const std::string& name, const std::string& arguments) {
+    return runCommand(std::string(SANDWALL_BIN_DIR) + "/" + name + " " + arguments);
 }
 
 }  // namespace support
