@@ -33,6 +33,15 @@ Cluster::Cluster(int* argc, char*** argv) {
     for (MPI_Comm* communicator : {&frames_, &arrivals_, &pictures_}) {
         MPI_Comm_dup(MPI_COMM_WORLD, communicator);
     }
+    files::ByteWriter here;
+    here.putText(hostName());
+    here.put(freeMemory());
+    for (const files::Bytes& rank : gather(here.take())) {
+        files::ByteReader reader(rank);
+        RankHost& host = hosts_.emplace_back();
+        host.name = reader.getText();
+        host.freeBytes = reader.get<std::int64_t>();
+    }
 }
 
 Cluster::~Cluster() {

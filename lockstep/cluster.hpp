@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "files/byte_stream.hpp"
+#include "lockstep/host_memory.hpp"
 #include "lockstep/watchdog.hpp"
 
 namespace lockstep {
@@ -34,6 +35,9 @@ public:
     [[nodiscard]] int renderRanks() const { return size_ - 1; }
     [[nodiscard]] bool isMaster() const { return rank_ == kMaster; }
 
+    /// At the master: where each rank runs and what was free there at the start, by rank. Others have none.
+    [[nodiscard]] const std::vector<RankHost>& hosts() const { return hosts_; }
+
     [[nodiscard]] MPI_Comm frames() const { return frames_; }      // broadcasts and the barrier
     [[nodiscard]] MPI_Comm arrivals() const { return arrivals_; }  // who has come to the barrier
     [[nodiscard]] MPI_Comm pictures() const { return pictures_; }  // screenshots
@@ -53,6 +57,7 @@ private:
     int rank_ = 0;
     int size_ = 1;
     std::unique_ptr<Watchdog> startUp_;
+    std::vector<RankHost> hosts_;
     MPI_Comm frames_ = MPI_COMM_NULL;
     MPI_Comm arrivals_ = MPI_COMM_NULL;
     MPI_Comm pictures_ = MPI_COMM_NULL;

@@ -105,10 +105,10 @@ FrameMessage FrameBarrier::begin(const FrameMessage& fromMaster, std::size_t& by
     return FrameMessage::decode(message);
 }
 
-bool FrameBarrier::meet(const Arrival& mine) {
+Verdict FrameBarrier::meet(const Arrival& mine) {
     const Watched watched(*watchdog_);
     frame_ = mine.frame;
-    std::uint8_t equal = 0;
+    auto verdict = Verdict::equal;
     if (cluster_.isMaster()) {
         arrivals_[kMaster] = mine;
         for (std::size_t rank = 1; rank < arrivals_.size(); ++rank) {
@@ -116,15 +116,20 @@ bool FrameBarrier::meet(const Arrival& mine) {
                       cluster_.arrivals(), &requests_[rank]);
         }
         awaitEach();
-        const auto likeMine = [&](const Arrival& arrival) { return arrival.stateHash == mine.stateHash; };
-        equal = std::all_of(arrivals_.begin(), arrivals_.end(), likeMine) ? 1 : 0;
-        sendToAll(&equal, sizeof equal, kVerdictTag);
+        const auto differs = [&](auto hash) {
+            return std::any_of(arrivals_.begin(), arrivals_.end(),
+                               [&](const Arrival& arrival) { return arrival.*hash != mine.*hash; });
+        };
+        verdict = differs(&Arrival::stateHash)  ? Verdict::otherSand
+                  : differs(&Arrival::viewHash) ? Verdict::otherView
+                                                : Verdict::equal;
+        sendToAll(&verdict, sizeof verdict, kVerdictTag);
     } else {
         MPI_Send(&mine, kArrivalBytes, MPI_BYTE, kMaster, kArrivalTag, cluster_.arrivals());
-        receiveFromMaster(&equal, sizeof equal, kVerdictTag);
+        receiveFromMaster(&verdict, sizeof verdict, kVerdictTag);
     }
     watchdog_->startUpIsOver();
-    return equal != 0;
+    return verdict;
 }
 
 }  // namespace lockstep

@@ -20,6 +20,15 @@ struct Arrival {
     std::int64_t lastSwap = 0;  // when it swapped the frame before; 0 on the first
     std::int64_t drawn = 0;     // how long it drew [ns]
     std::uint64_t stateHash = 0;
+    std::uint64_t viewHash = 0;  // ViewProof::hash of what this frame was drawn by
+    char key = 0;                // pressed in a window of this rank since the frame before; 0 for none
+};
+
+/// What the master found when all had arrived.
+enum class Verdict : std::uint8_t {
+    equal,
+    otherSand,  // state hashes differ: findDivergence() tells where
+    otherView   // the sand is equal, but not what some rank sees it by
 };
 
 /// How a frame begins and ends on every rank: one message from the master to all, and the barrier before the swap,
@@ -42,7 +51,7 @@ public:
     [[nodiscard]] FrameMessage begin(const FrameMessage& fromMaster, std::size_t& bytes);
 
     /// Collective: comes to the barrier of the frame; returns when all have, with whether all hashes are equal.
-    [[nodiscard]] bool meet(const Arrival& mine);
+    [[nodiscard]] Verdict meet(const Arrival& mine);
 
     /// At the master: what the ranks said at the last barrier, by rank; its own first.
     [[nodiscard]] const std::vector<Arrival>& arrivals() const { return arrivals_; }

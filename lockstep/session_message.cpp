@@ -15,6 +15,11 @@ files::Bytes SessionMessage::encode() const {
         writer.put(fault->column);
         writer.put(fault->row);
     }
+    writer.put(static_cast<std::uint8_t>(skew.has_value() ? 1 : 0));
+    if (skew) {
+        writer.put(skew->rank);
+        writer.put(skew->frame);
+    }
     return writer.take();
 }
 
@@ -33,6 +38,11 @@ SessionMessage SessionMessage::decode(std::span<const std::uint8_t> bytes) {
         session.fault->column = reader.get<int>();
         session.fault->row = reader.get<int>();
     }
+    if (reader.get<std::uint8_t>() != 0) {
+        session.skew.emplace();
+        session.skew->rank = reader.get<int>();
+        session.skew->frame = reader.get<std::uint64_t>();
+    }
     return session;
 }
 
@@ -47,15 +57,23 @@ std::optional<SessionMessage> broadcastSession(const Cluster& cluster,
 
 std::vector<Readiness> gatherReadiness(const Cluster& cluster, const Readiness& mine) {
     files::ByteWriter writer;
-    for (const std::string& text : {mine.host, mine.buildId, mine.error}) {
+    for (const std::string& text : {mine.host, mine.buildId, mine.error, mine.renderer}) {
         writer.putText(text);
+    }
+    writer.putVarint(mine.shortcomings.size());
+    for (const std::string& line : mine.shortcomings) {
+        writer.putText(line);
     }
     std::vector<Readiness> result;
     for (const files::Bytes& bytes : cluster.gather(writer.take())) {
         files::ByteReader reader(bytes);
         Readiness& rank = result.emplace_back();
-        for (std::string* text : {&rank.host, &rank.buildId, &rank.error}) {
+        for (std::string* text : {&rank.host, &rank.buildId, &rank.error, &rank.renderer}) {
             *text = reader.getText();
+        }
+        rank.shortcomings.resize(reader.getVarint());
+        for (std::string& line : rank.shortcomings) {
+            line = reader.getText();
         }
     }
     return result;
@@ -71,6 +89,7 @@ std::vector<RankReport> gatherReports(const Cluster& cluster, const RankReport& 
     files::ByteWriter writer;
     writer.putText(mine.host);
     writer.putText(mine.renderer);
+    writer.putText(mine.swapLock);
     for (const double figure : {mine.drawP50, mine.drawP99, mine.drawMax, mine.waitP50, mine.waitP99}) {
         writer.put(figure);
     }
@@ -83,6 +102,7 @@ std::vector<RankReport> gatherReports(const Cluster& cluster, const RankReport& 
         RankReport& report = result.emplace_back();
         report.host = reader.getText();
         report.renderer = reader.getText();
+        report.swapLock = reader.getText();
         for (double* figure : {&report.drawP50, &report.drawP99, &report.drawMax, &report.waitP50, &report.waitP99}) {
             *figure = reader.get<double>();
         }

@@ -17,12 +17,19 @@ struct BitFlip {
     int column = 0, row = 0;
 };
 
+/// Another: one rank sees one frame from a metre beside where the master sent it.
+struct SkewedView {
+    int rank = 0;
+    std::uint64_t frame = 0;
+};
+
 /// What every rank is told before the first frame. Ranks read no file: the scene and the wall come from the master.
 struct SessionMessage {
     files::Bytes scene;       // sand::Scene::encode
     files::Bytes wall;        // walls::Wall::encode
     double frameTimeout = 0;  // [s] without a sign of the master, after which a rank ends
     std::optional<BitFlip> fault;
+    std::optional<SkewedView> skew;
 
     [[nodiscard]] files::Bytes encode() const;
     static SessionMessage decode(std::span<const std::uint8_t> bytes);
@@ -36,7 +43,10 @@ struct SessionMessage {
 struct Readiness {
     std::string host;
     std::string buildId;
-    std::string error;  // empty when ready
+    std::string error;     // empty when ready
+    std::string renderer;  // what draws
+    // What the wall file asks for and the rank's machine cannot do: for the operator.
+    std::vector<std::string> shortcomings;
 };
 
 /// Collective: everyone's readiness, by rank, at the master; others get nothing.
@@ -49,6 +59,7 @@ struct Readiness {
 struct RankReport {
     std::string host;
     std::string renderer;
+    std::string swapLock;                          // whether graphics cards swap together in hardware
     double drawP50 = 0, drawP99 = 0, drawMax = 0;  // [ms] per frame, all eyes
     double waitP50 = 0, waitP99 = 0;               // [ms] at the barrier
     std::int64_t residentBytes = 0;

@@ -11,6 +11,7 @@
 #include "lockstep/clock_sync.hpp"
 #include "lockstep/session_message.hpp"
 #include "master/session.hpp"
+#include "master/start_up.hpp"
 #include "sand/scene.hpp"
 #include "walls/wall.hpp"
 #include "workers/sand_threads.hpp"
@@ -19,7 +20,8 @@ namespace {
 
 struct Options {
     std::string scene, wall, haptic, pace = "realtime", out;
-    std::string fault;
+    std::string stereo;  // as the wall file says when empty
+    std::string fault, skew;
     bool noPictures = false;
     master::SessionOptions session;
     int sandThreads = 1;
@@ -38,6 +40,17 @@ lockstep::BitFlip parseFault(const std::string& text) {
     return flip;
 }
 
+/// "rank=5,frame=20"
+lockstep::SkewedView parseSkew(const std::string& text) {
+    lockstep::SkewedView skew;
+    int used = 0;
+    if (std::sscanf(text.c_str(), "rank=%d,frame=%lu%n", &skew.rank, &skew.frame, &used) != 2 ||
+        used != static_cast<int>(text.size())) {
+        throw files::InputError(fmt::format("--skew-view: '{}' is not rank=R,frame=F with whole numbers", text));
+    }
+    return skew;
+}
+
 /// What everyone needs to know, from the files the user named.
 struct World {
     sand::Scene scene;
@@ -47,9 +60,13 @@ struct World {
 
 World loadWorld(const lockstep::Cluster& cluster, Options& options) {
     World world{sand::loadScene(options.scene), walls::loadWall(options.wall), {}};
+    if (!options.stereo.empty()) {
+        world.wall = walls::shownIn(world.wall, walls::stereoNamed(options.stereo));
+    }
     for (const std::string& warning : world.scene.warnings) {
         fmt::print(stderr, "{}: warning: {}\n", options.scene, warning);
     }
+    master::requireMemory(cluster, world.scene, options.scene);
     if (world.wall.ranks() != cluster.renderRanks()) {
         throw files::InputError(fmt::format(
             "{}: {} tiles need {} render ranks, but the job has {}: mpirun -n 1 "
@@ -68,7 +85,8 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
     options.session.pace = options.pace == "fast" ? master::Pace::fast : master::Pace::realtime;
     options.session.pictures = !options.noPictures;
     options.session.out = options.out;
-    world.message = {world.scene.encode(), world.wall.encode(), options.session.frameTimeout, std::nullopt};
+    world.message = {world.scene.encode(), world.wall.encode(), options.session.frameTimeout, std::nullopt,
+                     std::nullopt};
     if (!options.fault.empty()) {
         const lockstep::BitFlip& flip = world.message.fault.emplace(parseFault(options.fault));
         if (flip.rank < 1 || flip.rank > world.wall.ranks() || flip.column < 0 || flip.row < 0 ||
@@ -76,22 +94,10 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
             throw files::InputError(fmt::format("--flip-bit: {} names no render rank or no cell", options.fault));
         }
     }
-    return world;
-}
-
-/// Throws for the first rank that cannot take part, by its own words.
-void requireReady(const std::vector<lockstep::Readiness>& ranks, const walls::Wall& wall) {
-    for (std::size_t rank = 1; rank < ranks.size(); ++rank) {
-        const std::string who =
-            fmt::format("rank {} (tile {}) on {}", rank, wall.tiles[rank - 1].name, ranks[rank].host);
-        if (ranks[rank].buildId != lockstep::buildId()) {
-            throw files::InputError(fmt::format("{}: is of build {}, the master of {}; install one build on every host",
-                                                who, ranks[rank].buildId, lockstep::buildId()));
-        }
-        if (!ranks[rank].error.empty()) {
-            throw files::InputError(fmt::format("{}: {}", who, ranks[rank].error));
-        }
+    if (!options.skew.empty()) {
+        world.message.skew = parseSkew(options.skew);
     }
+    return world;
 }
 
 int runSession(const lockstep::Cluster& cluster, Options& options) {
@@ -101,7 +107,9 @@ int runSession(const lockstep::Cluster& cluster, Options& options) {
         world.emplace(loadWorld(cluster, options));
         (void)lockstep::broadcastSession(cluster, world->message);
         sessionOpen = true;
-        requireReady(lockstep::gatherReadiness(cluster, {lockstep::hostName(), lockstep::buildId(), ""}), world->wall);
+        master::requireReady(
+            lockstep::gatherReadiness(cluster, {lockstep::hostName(), lockstep::buildId(), "", "", {}}),
+            master::namesOf(cluster, world->wall));
     } catch (...) {
         // Whatever it is: the ranks wait for a word, and end quietly when it is no.
         if (sessionOpen) {
@@ -133,7 +141,10 @@ void describeOptions(CLI::App& app, Options& options) {
     app.add_option("--haptic", options.haptic, "HOST:PORT of the haptic server, or none")->default_val("none");
     app.add_option("--pace", options.pace, "realtime: at the wall's refresh rate; fast: as fast as it goes")
         ->check(CLI::IsMember({"realtime", "fast"}));
-    app.add_option("--refresh", session.refreshHz, "frames per second of the wall")->check(CLI::Range(1.0, 1000.0));
+    app.add_option("--refresh", session.refreshHz, "frames per second, instead of the wall file's")
+        ->check(CLI::Range(1.0, 1000.0));
+    app.add_option("--stereo", options.stereo, "how the wall shows two eyes, instead of what its file says")
+        ->check(CLI::IsMember(walls::stereoNames()));
     app.add_option("--steps", session.steps, "end when exactly this many steps have been shown")
         ->check(CLI::PositiveNumber);
     app.add_option("--frames", session.frames, "end after this many frames")->check(CLI::PositiveNumber);
@@ -145,6 +156,7 @@ void describeOptions(CLI::App& app, Options& options) {
                  "obeys lines on standard input: settle, stop; its end is a stop");
     app.add_option("--flip-bit", options.fault,
                    "for tests: rank=R,frame=F,column=C,row=W flips one bit of that replica");
+    app.add_option("--skew-view", options.skew, "for tests: rank=R,frame=F shows that rank another view");
 }
 
 }  // namespace

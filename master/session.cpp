@@ -12,6 +12,7 @@
 
 #include "lockstep/build_id.hpp"
 #include "lockstep/session_message.hpp"
+#include "master/start_up.hpp"
 #include "master/wall_pictures.hpp"
 
 namespace master {
@@ -24,14 +25,6 @@ constexpr std::size_t kMostStepsPerFrame = 8;  // a long catch-up is spread over
 constexpr std::size_t kMostStepsPerFastFrame = 4;
 constexpr double kFastPatience = 0.1;  // [s] that a fast session waits for a step before it shows a frame without
 constexpr double kAuditSeconds = 1.0;  // in which all of memory is hashed again, whatever the frame rate
-
-std::vector<std::string> namesOf(const walls::Wall& wall) {
-    std::vector<std::string> names{"the master"};
-    for (const walls::Tile& tile : wall.tiles) {
-        names.push_back(fmt::format("rank {} (tile {})", tile.rank, tile.name));
-    }
-    return names;
-}
 
 /// What a session before has left in the folder must not pass for this one's, whatever becomes of this one.
 void forgetOldResults(const std::filesystem::path& folder) {
@@ -64,8 +57,10 @@ Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, con
       wall_(wall),
       options_(std::move(options)),
       terrain_(scene, options_.sweeps),
-      names_(namesOf(wall)),
+      names_(namesOf(cluster, wall)),
       barrier_(cluster, names_, options_.frameTimeout),
+      views_(wall, scene),
+      viewProof_(wall.encode()),
       journal_(options_.out / "session.journal", scene, lockstep::buildId()),
       sequencer_(options_.server, scene, options_.pace),
       operator_(options_.readInput) {
@@ -84,7 +79,7 @@ void Session::waitForFrameTime() {
         return;
     }
     // From one grid of times, not from the last frame: the wall's clock must not drift with each late frame.
-    const auto period = static_cast<std::int64_t>(1e9 / options_.refreshHz);
+    const auto period = static_cast<std::int64_t>(1e9 / options_.refreshHz.value_or(wall_.refreshHz));
     const std::int64_t now = nowNs();
     frameStart_ = std::max(frameStart_ + period, now - period);
     if (frameStart_ > now) {
@@ -112,9 +107,7 @@ std::vector<TimedStep> Session::awaitSteps() {
 lockstep::FrameMessage Session::prepare(std::vector<TimedStep>& steps) {
     lockstep::FrameMessage message;
     message.frame = ++frame_;
-    message.view.head = {wall_.viewer.eye.x, wall_.viewer.eye.y, wall_.viewer.eye.z};
-    message.view.right = {wall_.viewer.right.x, wall_.viewer.right.y, wall_.viewer.right.z};
-    message.view.eyeSeparation = wall_.viewer.eyeSeparation;
+    message.view = views_.next(frame_);
     for (const TimedStep& timed : steps) {
         message.steps.push_back(timed.step);
     }
@@ -151,12 +144,12 @@ bool Session::showFrame() {
     terrain_.audit(static_cast<int>(message.auditTiles));
     hash_ = terrain_.stateHash();
 
-    const bool equal = barrier_.meet({message.frame, nowNs(), lastSwap_, 0, hash_});
+    const lockstep::Verdict verdict =
+        barrier_.meet({message.frame, nowNs(), lastSwap_, 0, hash_, viewProof_.hash(message.view)});
     const std::int64_t swapped = nowNs();
-    if (!equal) {
+    if (verdict != lockstep::Verdict::equal) {
         ++summary_.divergences;
-        const lockstep::Watched watched(barrier_.watchdog());
-        reportDivergence(*lockstep::findDivergence(cluster_, terrain_));
+        reportDisagreement(verdict);
         return false;
     }
     measureSwaps(swapped);
@@ -248,6 +241,17 @@ void Session::reportDivergence(const lockstep::Divergence& divergence) {
     }
     say(fmt::format("reproduce the right hash with: '{}' '{}' --until {} --hash", replay.string(), journal.string(),
                     terrain_.stepNumber()));
+}
+
+void Session::reportDisagreement(lockstep::Verdict verdict) {
+    const lockstep::Watched watched(barrier_.watchdog());
+    if (verdict == lockstep::Verdict::otherSand) {
+        reportDivergence(*lockstep::findDivergence(cluster_, terrain_));
+        return;
+    }
+    for (const std::string& line : lockstep::describeOtherViews(barrier_.arrivals(), names_)) {
+        fmt::print(stderr, "sandwall: {}\n", line);
+    }
 }
 
 void Session::finish() {

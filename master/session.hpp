@@ -11,10 +11,12 @@
 #include "lockstep/divergence.hpp"
 #include "lockstep/frame_barrier.hpp"
 #include "lockstep/frame_message.hpp"
+#include "lockstep/view_agreement.hpp"
 #include "master/journal.hpp"
 #include "master/operator_input.hpp"
 #include "master/sequencer.hpp"
 #include "master/summary.hpp"
+#include "master/view_source.hpp"
 #include "sand/terrain.hpp"
 #include "walls/wall.hpp"
 
@@ -26,7 +28,7 @@ inline constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::ma
 struct SessionOptions {
     std::optional<haptic_bridge::Address> server;
     Pace pace = Pace::realtime;
-    double refreshHz = 60;            // of the wall
+    std::optional<double> refreshHz;  // frames per second; none: the wall file's
     std::uint64_t steps = kNoLimit;   // ends when exactly this many have been shown
     std::uint64_t frames = kNoLimit;  // ends after this many
     double frameTimeout = 30;         // [s] that a frame may take before the job ends
@@ -57,6 +59,7 @@ private:
                         std::int64_t swapped);
     void sayProgress(bool last);
     void reportDivergence(const lockstep::Divergence& divergence);
+    void reportDisagreement(lockstep::Verdict verdict);
     void finish();
 
     const lockstep::Cluster& cluster_;
@@ -65,6 +68,8 @@ private:
     sand::Terrain terrain_;
     std::vector<std::string> names_;  // of ranks, as messages speak of them
     lockstep::FrameBarrier barrier_;
+    ViewSource views_;
+    lockstep::ViewProof viewProof_;
     JournalWriter journal_;
     Sequencer sequencer_;
     OperatorInput operator_;

@@ -50,6 +50,7 @@ ordered_json rankPart(const Summary& summary, std::size_t index) {
             {"tile", summary.tileNames[index]},
             {"host", report.host},
             {"renderer", report.renderer},
+            {"swap_lock", report.swapLock},
             {"draw_ms", {{"p50", report.drawP50}, {"p99", report.drawP99}, {"max", report.drawMax}}},
             {"barrier_wait_ms", {{"p50", report.waitP50}, {"p99", report.waitP99}}},
             {"memory_bytes", report.residentBytes},

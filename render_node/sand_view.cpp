@@ -109,7 +109,7 @@ bool SandView::toolInView(const std::optional<EyeMemory::Tool>& tool, const glm:
 
 bool SandView::same(const Camera& camera, const EyeMemory& memory) const {
     if (!memory.drawn || memory.roomToClip != camera.roomToClip || memory.eye != camera.eye ||
-        memory.sides != box_.revision()) {
+        memory.sceneToRoom != sceneToRoom_ || memory.sides != box_.revision()) {
         return false;
     }
     const glm::dmat4 sceneToClip = camera.roomToClip * sceneToRoom_;
@@ -123,7 +123,7 @@ bool SandView::drawIfChanged(const Camera& camera, const EyeTarget& target, EyeM
     if (needed) {
         draw(camera, target);
     }
-    memory = {true, camera.roomToClip, camera.eye, mesh_.revision(), box_.revision(), tool_};
+    memory = {true, camera.roomToClip, sceneToRoom_, camera.eye, mesh_.revision(), box_.revision(), tool_};
     return needed;
 }
 

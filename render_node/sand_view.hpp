@@ -37,7 +37,7 @@ struct EyeMemory {
         friend bool operator==(const Tool&, const Tool&) = default;
     };
     bool drawn = false;  // reset to draw anew whatever has changed
-    glm::dmat4 roomToClip{1};
+    glm::dmat4 roomToClip{1}, sceneToRoom{1};
     glm::dvec3 eye{0};
     std::uint64_t sand = 0, sides = 0;  // revisions
     std::optional<Tool> tool;
@@ -54,6 +54,8 @@ public:
     /// Takes heights, tool radius and look from the scene. Throws std::runtime_error when a shader does not compile.
     SandView(const sand::Scene& scene, const glm::dmat4& sceneToRoom);
 
+    /// Where the scene stands from now on.
+    void setSceneToRoom(const glm::dmat4& sceneToRoom) { sceneToRoom_ = sceneToRoom; }
     /// Takes over the heights of `damage`, which may be empty or reach beyond the field. `field` must have the size
     /// of the scene's; it is copied, not kept.
     void update(const sand::HeightField& field, sand::Rect damage);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 namespace walls {
 namespace {
@@ -140,11 +141,21 @@ std::string_view eyeName(Eye eye) {
     return kNames.at(static_cast<std::size_t>(eye));
 }
 
-std::string_view stereoName(Stereo stereo) {
-    constexpr std::array<std::string_view, 12> kNames{
-        "mono",       "left",           "right",        "passive",  "active",        "side_by_side",
-        "top_bottom", "row_interlaced", "checkerboard", "anaglyph", "anaglyph_half", "anaglyph_dubois"};
-    return kNames.at(static_cast<std::size_t>(stereo));
+const std::vector<std::string>& stereoNames() {
+    static const std::vector<std::string> kNames{"mono",         "left",         "right",         "passive",
+                                                 "active",       "side_by_side", "top_bottom",    "row_interlaced",
+                                                 "checkerboard", "anaglyph",     "anaglyph_half", "anaglyph_dubois"};
+    return kNames;
+}
+
+std::string_view stereoName(Stereo stereo) { return stereoNames().at(static_cast<std::size_t>(stereo)); }
+
+Stereo stereoNamed(const std::string& name) {
+    const auto found = std::find(stereoNames().begin(), stereoNames().end(), name);
+    if (found == stereoNames().end()) {
+        throw std::out_of_range("no stereo mode " + name);
+    }
+    return static_cast<Stereo>(found - stereoNames().begin());
 }
 
 std::span<const Eye> eyesOf(Stereo stereo) {

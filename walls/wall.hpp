@@ -42,6 +42,10 @@ inline constexpr Stereo kLastStereo = Stereo::anaglyphDubois;
 /// "left", "right", "middle": as in the names of pictures.
 [[nodiscard]] std::string_view eyeName(Eye eye);
 [[nodiscard]] std::string_view stereoName(Stereo stereo);
+/// All of them, in the order of the enumeration: as wall files and options write them.
+[[nodiscard]] const std::vector<std::string>& stereoNames();
+/// Throws std::out_of_range for a name that is none of them.
+[[nodiscard]] Stereo stereoNamed(const std::string& name);
 /// The eyes that are drawn, in the order they are drawn: the middle alone for mono, left or right alone where only one
 /// is shown, else left and right.
 [[nodiscard]] std::span<const Eye> eyesOf(Stereo stereo);

@@ -95,11 +95,8 @@ Stereo readStereo(const TomlTable& file) {
     if (!table) {
         return Stereo::mono;
     }
-    std::vector<std::string_view> names;
-    for (int mode = 0; mode <= static_cast<int>(kLastStereo); ++mode) {
-        names.push_back(stereoName(static_cast<Stereo>(mode)));
-    }
-    const int mode = table->choiceOr("mode", names, 0);
+    const int mode =
+        table->choiceOr("mode", {stereoNames().begin(), stereoNames().end()}, static_cast<int>(Stereo::mono));
     table->finish();
     return static_cast<Stereo>(mode);
 }

@@ -83,9 +83,11 @@ TEST_F(Ending, AStoppedRankIsNamedAndTheJobEnds) {
     ASSERT_EQ(nodes.size(), 4U);
     std::sort(nodes.begin(), nodes.end());  // mpirun starts them in the order of ranks
     kill(nodes[2], SIGSTOP);
-    EXPECT_TRUE(session->waitForOutput("waits for rank 3 (tile r2c1) for 1.", 10)) << session->output();
+    EXPECT_TRUE(session->waitForOutput("waits for rank 3 (tile r2c1) on " + host() + " for 1.", 10))
+        << session->output();
     EXPECT_EQ(session->wait(30), 1) << session->output();
-    EXPECT_NE(session->output().find("waits for rank 3 (tile r2c1) for 3."), std::string::npos) << session->output();
+    EXPECT_NE(session->output().find("waits for rank 3 (tile r2c1) on " + host() + " for 3."), std::string::npos)
+        << session->output();
     EXPECT_EQ(endings(session->output()), 1U) << session->output();
     expectNothingLeft(5);
 }

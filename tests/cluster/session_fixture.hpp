@@ -2,7 +2,9 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -75,6 +77,12 @@ protected:
         return {status.value_or(-1), session->output()};
     }
 
+    /// As messages name this machine.
+    [[nodiscard]] static std::string host() {
+        std::array<char, 256> name{};
+        gethostname(name.data(), name.size() - 1);
+        return name.data();
+    }
     [[nodiscard]] std::string out() const { return (folder_ / "out").string(); }
     [[nodiscard]] nlohmann::json summary() const { return nlohmann::json::parse(read("out/summary.json")); }
 

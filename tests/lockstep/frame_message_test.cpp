@@ -42,7 +42,8 @@ TEST(FrameMessage, RefusesEveryTruncation) {
 }
 
 TEST(SessionMessage, SurvivesItsEncoding) {
-    const lockstep::SessionMessage message{{1, 2, 3}, {4, 5}, 12.5, lockstep::BitFlip{3, 99, 7, 8}};
+    const lockstep::SessionMessage message{
+        {1, 2, 3}, {4, 5}, 12.5, lockstep::BitFlip{3, 99, 7, 8}, lockstep::SkewedView{2, 98}};
     const lockstep::SessionMessage copy = lockstep::SessionMessage::decode(message.encode());
     EXPECT_EQ(copy.scene, message.scene);
     EXPECT_EQ(copy.wall, message.wall);
@@ -50,6 +51,9 @@ TEST(SessionMessage, SurvivesItsEncoding) {
     ASSERT_TRUE(copy.fault.has_value());
     EXPECT_EQ(copy.fault->frame, 99U);
     EXPECT_EQ(copy.fault->row, 8);
+    ASSERT_TRUE(copy.skew.has_value());
+    EXPECT_EQ(copy.skew->rank, 2);
+    EXPECT_EQ(copy.skew->frame, 98U);
 }
 
 }  // namespace

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lockstep {
+
+/// Where a rank runs and what that machine has left.
+struct RankHost {
+    std::string name;
+    std::int64_t freeBytes = 0;  // memory that may still be taken there, by all ranks together
+};
+
+/// Memory that programs on this machine, or in this control group, may still take [byte].
+[[nodiscard]] std::int64_t freeMemory();
+
+/// Why ranks that take `bytesPerRank` each do not fit their hosts, for the host that lacks most; nothing when they do.
+[[nodiscard]] std::optional<std::string> lackOfMemory(const std::vector<RankHost>& ranks, std::int64_t bytesPerRank);
+
+}  // namespace lockstep

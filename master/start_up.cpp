@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/start_up.hpp"
+
+#include <fmt/format.h>
+
+#include "files/input_error.hpp"
+#include "lockstep/build_id.hpp"
+#include "sand/terrain.hpp"
+
+namespace master {
+
+std::vector<std::string> namesOf(const lockstep::Cluster& cluster, const walls::Wall& wall) {
+    std::vector<std::string> names{"the master"};
+    for (const walls::Tile& tile : wall.tiles) {
+        names.push_back(fmt::format("rank {} (tile {}) on {}", tile.rank, tile.name,
+                                    cluster.hosts()[static_cast<std::size_t>(tile.rank)].name));
+    }
+    return names;
+}
+
+void requireMemory(const lockstep::Cluster& cluster, const sand::Scene& scene, const std::string& file) {
+    const int columns = scene.rules.columns;
+    const int rows = scene.rules.rows;
+    if (const auto lack = lockstep::lackOfMemory(cluster.hosts(), sand::Terrain::leastBytes(columns, rows))) {
+        throw files::InputError(
+            fmt::format("{}: {} x {} cells need {}: fewer cells, or more hosts", file, columns, rows, *lack));
+    }
+}
+
+void requireReady(const std::vector<lockstep::Readiness>& ranks, const std::vector<std::string>& names) {
+    for (std::size_t rank = 1; rank < ranks.size(); ++rank) {
+        if (ranks[rank].buildId != lockstep::buildId()) {
+            throw files::InputError(fmt::format("{}: is of build {}, the master of {}; install one build on every host",
+                                                names[rank], ranks[rank].buildId, lockstep::buildId()));
+        }
+        if (!ranks[rank].error.empty()) {
+            throw files::InputError(fmt::format("{}: {}", names[rank], ranks[rank].error));
+        }
+    }
+    for (std::size_t rank = 1; rank < ranks.size(); ++rank) {
+        for (const std::string& line : ranks[rank].shortcomings) {
+            fmt::print(stderr, "sandwall: {}: {}\n", names[rank], line);
+        }
+    }
+}
+
+}  // namespace master

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lockstep/cluster.hpp"
+#include "lockstep/session_message.hpp"
+#include "sand/scene.hpp"
+#include "walls/wall.hpp"
+
+/// What the master asks before the first frame: that the job can hold the sand, and that every rank can take part.
+namespace master {
+
+/// How each rank is spoken of, by rank: "rank 5 (tile r2c1) on node3".
+[[nodiscard]] std::vector<std::string> namesOf(const lockstep::Cluster& cluster, const walls::Wall& wall);
+
+/// Throws files::InputError unless every host has memory for the replicas of its ranks. `file` is the scene's.
+void requireMemory(const lockstep::Cluster& cluster, const sand::Scene& scene, const std::string& file);
+
+/// Throws files::InputError for the first rank that cannot take part, in its own words; prints what the others cannot
+/// do of what the wall file asks for.
+void requireReady(const std::vector<lockstep::Readiness>& ranks, const std::vector<std::string>& names);
+
+}  // namespace master

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lockstep/host_memory.hpp"
+
+#include <gtest/gtest.h>
+
+namespace {
+
+constexpr std::int64_t kGiB = std::int64_t{1} << 30;
+
+TEST(HostMemory, WhatFitsIsNoMatter) {
+    EXPECT_FALSE(lockstep::lackOfMemory({{"a", 8 * kGiB}, {"a", 8 * kGiB}}, 4 * kGiB));
+    EXPECT_FALSE(lockstep::lackOfMemory({}, kGiB));
+}
+
+TEST(HostMemory, RanksOfOneHostShareWhatItHas) {
+    const auto lack = lockstep::lackOfMemory({{"a", 8 * kGiB}, {"a", 8 * kGiB}, {"a", 8 * kGiB}}, 4 * kGiB);
+    EXPECT_EQ(lack, "at least 12.0 GiB for the 3 ranks on a, where 8.0 GiB are free");
+}
+
+TEST(HostMemory, TheHostThatLacksMostIsNamed) {
+    const auto lack = lockstep::lackOfMemory({{"a", 3 * kGiB}, {"b", kGiB}}, 4 * kGiB);
+    EXPECT_EQ(lack, "at least 4.0 GiB for the one rank on b, where 1.0 GiB are free");
+}
+
+TEST(HostMemory, ThisMachineHasSome) {
+    EXPECT_GT(lockstep::freeMemory(), 1 << 20);
+    EXPECT_LT(lockstep::freeMemory(), std::int64_t{1} << 50);
+}
+
+}  // namespace
