@@ -11,6 +11,7 @@
 #include "lockstep/screenshots.hpp"
 #include "pictures/image.hpp"
 #include "pictures/png_file.hpp"
+#include "pictures/stereo_packing.hpp"
 #include "walls/canvas.hpp"
 
 namespace master {
@@ -79,7 +80,7 @@ void writeWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall
     } else {
         out.write("wall_left.png", whole[0]);
         out.write("wall_right.png", whole[1]);
-        out.write("wall_anaglyph.png", pictures::anaglyph(whole[0], whole[1]));
+        out.write("wall_anaglyph.png", pictures::packStereo(walls::Stereo::anaglyphColour, whole[0], whole[1]));
     }
     out.tellFailure();
 }

@@ -53,16 +53,4 @@ Image shifted(const Image& image, int right, int down) {
     return result;
 }
 
-Image anaglyph(const Image& left, const Image& right) {
-    if (left.width != right.width || left.height != right.height) {
-        throw std::invalid_argument(
-            fmt::format("eyes of {}x{} and {}x{} pixels", left.width, left.height, right.width, right.height));
-    }
-    Image result = right;
-    for (std::size_t i = 0; i < result.rgb.size(); i += kChannels) {
-        result.rgb[i] = left.rgb[i];
-    }
-    return result;
-}
-
 }  // namespace pictures

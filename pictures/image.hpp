@@ -49,8 +49,5 @@ void blit(Image& canvas, const Image& image, int x, int y);
 [[nodiscard]] Image crop(const Image& image, int x, int y, int width, int height);
 /// The image moved by whole pixels, right and down for positive numbers; the freed rim is black.
 [[nodiscard]] Image shifted(const Image& image, int right, int down);
-/// Red-cyan in full colour: red of the left eye, green and blue of the right. Throws std::invalid_argument when the
-/// sizes differ.
-[[nodiscard]] Image anaglyph(const Image& left, const Image& right);
 
 }  // namespace pictures

@@ -62,16 +62,5 @@ TEST(Image, TheAssembledWallIsBlackBetweenItsTiles) {
     EXPECT_EQ(crop(wall, 4, 0, 2, 3), Image(2, 3));
 }
 
-TEST(Image, AnAnaglyphIsRedForTheLeftEyeAndCyanForTheRight) {
-    const Image left = numbered(3, 2);
-    const Image right = shifted(left, 1, 0);
-    const Image both = anaglyph(left, right);
-    for (std::size_t i = 0; i < both.rgb.size(); ++i) {
-        EXPECT_EQ(both.rgb[i], i % 3 == 0 ? left.rgb[i] : right.rgb[i]);
-    }
-    EXPECT_NE(both, anaglyph(right, left));
-    EXPECT_THROW((void)anaglyph(left, Image(2, 3)), std::invalid_argument);
-}
-
 }  // namespace
 }  // namespace pictures
