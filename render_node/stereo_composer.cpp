@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/stereo_composer.hpp"
+
+#include <algorithm>
+
+#include "pictures/anaglyph.hpp"
+
+namespace render_node {
+namespace {
+
+using walls::Stereo;
+
+constexpr int kLevelsSide = 256;  // of the table of levels
+static_assert(kLevelsSide * kLevelsSide == pictures::kFullLight + 1);
+
+bool isPacked(Stereo stereo) { return stereo >= Stereo::sideBySide; }
+bool isBeside(Stereo stereo) { return stereo == Stereo::sideBySide || stereo == Stereo::topBottom; }
+bool mixesLight(Stereo stereo) { return stereo == Stereo::anaglyphHalf || stereo == Stereo::anaglyphDubois; }
+
+glm::mat4 toMatrix(const std::array<std::array<std::int32_t, 3>, 3>& weights) {
+    glm::mat4 matrix(0);
+    for (std::size_t to = 0; to < 3; ++to) {
+        for (std::size_t from = 0; from < 3; ++from) {
+            matrix[static_cast<int>(to)][static_cast<int>(from)] = static_cast<float>(weights[to][from]);
+        }
+    }
+    return matrix;
+}
+
+void uploadTable(const GlTexture& texture, GLint kind, int width, int height, GLenum type, const void* numbers) {
+    glBindTexture(GL_TEXTURE_2D, texture.id());
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexImage2D(GL_TEXTURE_2D, 0, kind, width, height, 0, GL_RED_INTEGER, type, numbers);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+}
+
+void bindTexture(GLenum unit, GLuint texture) {
+    glActiveTexture(GL_TEXTURE0 + unit);
+    glBindTexture(GL_TEXTURE_2D, texture);
+}
+
+/// Which of the eyes that are drawn an output shows; both, for a packed picture, begin with the first.
+std::size_t eyeIndex(Stereo stereo, const walls::Output& output) {
+    const auto eyes = walls::eyesOf(stereo);
+    const auto found = std::find(eyes.begin(), eyes.end(), output.eyes.at(0));
+    return found == eyes.end() ? 0 : static_cast<std::size_t>(found - eyes.begin());
+}
+
+}  // namespace
+
+StereoComposer::Light::Light(Stereo stereo)
+    : fromLeft(toMatrix(pictures::anaglyphWeights(stereo).left)),
+      fromRight(toMatrix(pictures::anaglyphWeights(stereo).right)) {
+    uploadTable(lights, GL_R16UI, 256, 1, GL_UNSIGNED_SHORT, pictures::lightOfLevel().data());
+    uploadTable(levels, GL_R8UI, kLevelsSide, kLevelsSide, GL_UNSIGNED_BYTE, pictures::levelOfLight().data());
+}
+
+StereoComposer::StereoComposer(Stereo stereo, const walls::Tile& tile) : stereo_(stereo) {
+    for (const walls::Output& output : tile.outputs) {
+        eyeOfOutput_.push_back(eyeIndex(stereo, output));
+    }
+    if (!isPacked(stereo)) {
+        return;
+    }
+    const glm::ivec2 size = walls::outputPixels(stereo, tile.pixels);
+    packed_.emplace(size.x, size.y, EyeTarget::Depth::none);
+    if (isBeside(stereo)) {
+        return;
+    }
+    if (mixesLight(stereo)) {
+        light_.emplace(stereo);
+    }
+    const ShaderSource nothing;  // no light of the scene
+    program_.emplace(shaderSource("whole.vert.glsl"), nothing,
+                     shaderSource(light_ ? "anaglyph.frag.glsl" : "pack.frag.glsl"));
+    array_.emplace();
+}
+
+void StereoComposer::compose(std::span<const EyeTarget> eyes) {
+    if (!packed_) {
+        return;
+    }
+    if (isBeside(stereo_)) {
+        copyBeside(eyes);
+    } else {
+        drawMixed(eyes);
+    }
+}
+
+void StereoComposer::copyBeside(std::span<const EyeTarget> eyes) const {
+    const int width = eyes[0].width(), height = eyes[0].height();
+    const bool beside = stereo_ == Stereo::sideBySide;
+    glDisable(GL_SCISSOR_TEST);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, packed_->framebuffer());
+    const auto copy = [&](const EyeTarget& eye, int x, int y) {
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, eye.framebuffer());
+        glBlitFramebuffer(0, 0, width, height, x, y, x + width, y + height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    };
+    copy(eyes[0], 0, beside ? 0 : height);  // GL counts rows from below
+    copy(eyes[1], beside ? width : 0, 0);
+}
+
+void StereoComposer::drawMixed(std::span<const EyeTarget> eyes) const {
+    packed_->bind();
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+    program_->use();
+    program_->set("uLeft", 0);
+    program_->set("uRight", 1);
+    bindTexture(1, eyes[1].colour());
+    if (light_) {
+        program_->set("uLights", 2);
+        program_->set("uLevels", 3);
+        program_->set("uFromLeft", light_->fromLeft);
+        program_->set("uFromRight", light_->fromRight);
+        bindTexture(3, light_->levels.id());
+        bindTexture(2, light_->lights.id());
+    } else {
+        program_->set("uHeight", packed_->height());
+        program_->set("uOddColumns", stereo_ == Stereo::checkerboard ? 1 : 0);
+        program_->set("uChannels", stereo_ == Stereo::anaglyphColour ? 1 : 0);
+    }
+    bindTexture(0, eyes[0].colour());  // last: unit 0 stays the active one
+    glBindVertexArray(array_->id());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+std::vector<OutputPicture> StereoComposer::shown(std::span<const EyeTarget> eyes) const {
+    std::vector<OutputPicture> pictures;
+    for (const std::size_t eye : eyeOfOutput_) {
+        if (packed_) {
+            pictures.push_back({&*packed_, nullptr});
+        } else if (stereo_ == Stereo::active) {
+            pictures.push_back({&eyes[0], &eyes[1]});
+        } else {
+            pictures.push_back({&eyes[eye], nullptr});
+        }
+    }
+    return pictures;
+}
+
+std::int64_t StereoComposer::bytes() const {
+    constexpr std::int64_t kTables = 2 * 256 + kLevelsSide * kLevelsSide;
+    return (packed_ ? packed_->bytes() : 0) + (light_ ? kTables : 0);
+}
+
+}  // namespace render_node

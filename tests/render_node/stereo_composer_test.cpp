@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/stereo_composer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <random>
+
+#include "pictures/stereo_packing.hpp"
+
+namespace {
+
+using pictures::Image;
+using render_node::EyeTarget;
+using render_node::StereoComposer;
+using walls::Stereo;
+
+/// Random levels, every one of them somewhere in a picture of some size.
+Image noise(int width, int height, unsigned seed) {
+    std::mt19937 random(seed);
+    Image image(width, height);
+    for (std::uint8_t& level : image.rgb) {
+        level = static_cast<std::uint8_t>(random());
+    }
+    return image;
+}
+
+void fill(const EyeTarget& target, const Image& image) {
+    std::vector<std::uint8_t> fromBelow;
+    for (int y = image.height - 1; y >= 0; --y) {
+        fromBelow.insert(fromBelow.end(), image.at(0, y), image.at(0, y) + 3L * image.width);
+    }
+    glBindTexture(GL_TEXTURE_2D, target.colour());
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, image.width, image.height, GL_RGB, GL_UNSIGNED_BYTE, fromBelow.data());
+}
+
+Image pictureOf(const EyeTarget& target) {
+    Image image(target.width(), target.height());
+    image.rgb = target.read();
+    return image;
+}
+
+walls::Tile tileOf(Stereo stereo, int width, int height) {
+    walls::Tile tile;
+    tile.name = "only";
+    tile.pixels = {width, height};
+    tile.outputs = walls::outputsOf(stereo, tile.name);
+    return tile;
+}
+
+class Composer : public testing::Test {
+protected:
+    /// Targets of the eyes of a mode, with what each sees in them.
+    std::vector<EyeTarget> eyesOf(Stereo stereo) const {
+        std::vector<EyeTarget> targets;
+        for (const walls::Eye eye : walls::eyesOf(stereo)) {
+            targets.emplace_back(left_.width, left_.height);
+            fill(targets.back(), eye == walls::Eye::right ? right_ : left_);
+        }
+        return targets;
+    }
+    void setSize(int width, int height) {
+        left_ = noise(width, height, 1);
+        right_ = noise(width, height, 2);
+    }
+
+    std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    Image left_, right_;
+};
+
+TEST_F(Composer, EqualsTheReferenceInEveryModeAndSize) {
+    for (const auto& [width, height] : {std::pair{1, 1}, {7, 5}, {64, 48}, {33, 2}, {255, 131}}) {
+        setSize(width, height);
+        for (const Stereo stereo : {Stereo::sideBySide, Stereo::topBottom, Stereo::rowInterlaced, Stereo::checkerboard,
+                                    Stereo::anaglyphColour, Stereo::anaglyphHalf, Stereo::anaglyphDubois}) {
+            const std::vector<EyeTarget> eyes = eyesOf(stereo);
+            StereoComposer composer(stereo, tileOf(stereo, width, height));
+            // What the drawing of sand leaves behind must not matter.
+            glEnable(GL_DEPTH_TEST);
+            glEnable(GL_CULL_FACE);
+            composer.compose(eyes);
+            const auto shown = composer.shown(eyes);
+            ASSERT_EQ(shown.size(), 1U);
+            EXPECT_EQ(shown[0].right, nullptr);
+            EXPECT_EQ(pictureOf(*shown[0].picture), pictures::packStereo(stereo, left_, right_))
+                << walls::stereoName(stereo) << " of " << width << " x " << height;
+            EXPECT_EQ(pictureOf(eyes[0]), left_) << "an eye's own picture must stay";
+            EXPECT_EQ(pictureOf(eyes[1]), right_);
+        }
+    }
+}
+
+TEST_F(Composer, ShowsOneEyeFromItsOwnTarget) {
+    setSize(6, 4);
+    for (const Stereo stereo : {Stereo::mono, Stereo::left, Stereo::right}) {
+        const std::vector<EyeTarget> eyes = eyesOf(stereo);
+        ASSERT_EQ(eyes.size(), 1U) << "a wall that shows one eye has the memory of one";
+        StereoComposer composer(stereo, tileOf(stereo, 6, 4));
+        composer.compose(eyes);
+        const auto shown = composer.shown(eyes);
+        ASSERT_EQ(shown.size(), 1U);
+        EXPECT_EQ(shown[0].picture, eyes.data());
+        EXPECT_EQ(shown[0].right, nullptr);
+        EXPECT_EQ(composer.bytes(), 0);
+    }
+}
+
+TEST_F(Composer, GivesEachPolarisedOutputItsEye) {
+    setSize(6, 4);
+    const std::vector<EyeTarget> eyes = eyesOf(Stereo::passive);
+    walls::Tile tile = tileOf(Stereo::passive, 6, 4);
+    const StereoComposer composer(Stereo::passive, tile);
+    EXPECT_EQ(composer.shown(eyes).at(0).picture, &eyes[0]);
+    EXPECT_EQ(composer.shown(eyes).at(1).picture, &eyes[1]);
+    EXPECT_EQ(composer.bytes(), 0);
+    std::swap(tile.outputs[0], tile.outputs[1]);
+    EXPECT_EQ(StereoComposer(Stereo::passive, tile).shown(eyes).at(0).picture, &eyes[1]);
+}
+
+TEST_F(Composer, GivesAnActiveOutputBothEyes) {
+    setSize(6, 4);
+    const std::vector<EyeTarget> eyes = eyesOf(Stereo::active);
+    const StereoComposer composer(Stereo::active, tileOf(Stereo::active, 6, 4));
+    ASSERT_EQ(composer.shown(eyes).size(), 1U);
+    EXPECT_EQ(composer.shown(eyes)[0].picture, &eyes[0]);
+    EXPECT_EQ(composer.shown(eyes)[0].right, &eyes[1]);
+    EXPECT_EQ(composer.bytes(), 0);
+}
+
+TEST_F(Composer, TakesNoDepthForWhatItPutsTogether) {
+    const auto bytes = [](Stereo stereo) { return StereoComposer(stereo, tileOf(stereo, 40, 30)).bytes(); };
+    EXPECT_EQ(EyeTarget(40, 30).bytes(), 40 * 30 * 8);
+    EXPECT_EQ(bytes(Stereo::checkerboard), 40 * 30 * 4);
+    EXPECT_EQ(bytes(Stereo::sideBySide), 80 * 30 * 4);
+    EXPECT_EQ(bytes(Stereo::anaglyphDubois), 40 * 30 * 4 + 65536 + 512);
+}
+
+}  // namespace
