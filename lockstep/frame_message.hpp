@@ -18,7 +18,7 @@ struct ViewState {
     double eyeSeparation = 0;              // [m]
     // Column by column: scene units to metres in the room.
     std::array<double, 16> sceneToRoom{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-    std::uint8_t pattern = 0;  // test pattern shown instead of the sand, 0 for none: render_node/test_pattern.hpp
+    std::uint8_t pattern = 0;  // lockstep::Pattern shown instead of the sand
 
     void encode(files::ByteWriter& writer) const;
     /// Throws files::FormatError when cut short.

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "files/input_error.hpp"
+
+namespace lockstep {
+
+/// What a wall shows instead of the sand while a person adjusts it (docs/test_patterns.md). ViewState::pattern carries
+/// the number. Plain values: whoever names a pattern needs no GL.
+enum class Pattern : std::uint8_t {
+    none,
+    grid,   // cross grid and circles in the plane of the wall, running on behind the bezels
+    tiles,  // rank, host, row, column and eye on each tile
+    eyes,   // L in red for the left eye, R in cyan for the right
+    flash,  // one of four colours, and the number of the frame
+    ramp    // grey steps with their levels
+};
+inline constexpr Pattern kLastPattern = Pattern::ramp;
+
+inline constexpr std::array<std::string_view, 6> kPatternNames{"none", "grid", "tiles", "eyes", "flash", "ramp"};
+
+[[nodiscard]] constexpr std::string_view patternName(Pattern pattern) {
+    return kPatternNames.at(static_cast<std::size_t>(pattern));
+}
+
+/// Throws files::InputError that lists the names.
+[[nodiscard]] inline Pattern parsePattern(std::string_view name) {
+    std::string known;
+    for (std::size_t i = 0; i < kPatternNames.size(); ++i) {
+        if (kPatternNames[i] == name) {
+            return static_cast<Pattern>(i);
+        }
+        known += (i == 0 ? "" : ", ") + std::string(kPatternNames[i]);
+    }
+    throw files::InputError("no test pattern '" + std::string(name) + "'; there are " + known);
+}
+
+/// The one after it, as a key steps through them; none comes after the last.
+[[nodiscard]] constexpr Pattern nextPattern(Pattern pattern) {
+    return pattern == kLastPattern ? Pattern::none : static_cast<Pattern>(static_cast<std::uint8_t>(pattern) + 1);
+}
+
+/// Whether two frames with the same pattern show different pictures.
+[[nodiscard]] constexpr bool changesEveryFrame(Pattern pattern) { return pattern == Pattern::flash; }
+
+}  // namespace lockstep
