@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <limits>
+#include <thread>
+
+#include "files/command_line.hpp"
+#include "tracking/head_trace.hpp"
+#include "tracking/packet_sender.hpp"
+
+namespace {
+
+using namespace tracking;
+using Seconds = std::chrono::duration<double>;
+
+struct Options {
+    std::string send, listen, trace;
+    double rate = 60;
+    double seconds = std::numeric_limits<double>::infinity();
+};
+
+/// Calls `act` with the time since the first call, `rate` times a second for so long as it says.
+template <class Act>
+void atRate(double rate, double seconds, Act act) {
+    const auto start = std::chrono::steady_clock::now();
+    for (double i = 0; i / rate <= seconds; ++i) {
+        std::this_thread::sleep_until(start + std::chrono::duration_cast<std::chrono::nanoseconds>(Seconds(i / rate)));
+        if (!act(i / rate)) {
+            return;
+        }
+    }
+}
+
+int send(const Options& options) {
+    PacketSender sender(Source::parse(options.send, "--send"));
+    std::optional<HeadTrace> trace;
+    double seconds = options.seconds;
+    if (!options.trace.empty()) {
+        trace.emplace(HeadTrace::load(options.trace, RoomMapping{}));
+        seconds = std::min(seconds, trace->duration());
+    }
+    atRate(options.rate, seconds, [&](double time) {
+        sender.send(trace ? trace->at(time) : sway(time));
+        return true;
+    });
+    fmt::print(stderr, "sandwall-track: {} packets sent\n", sender.sent());
+    return 0;
+}
+
+int listen(const Options& options) {
+    const Source source = Source::parse(options.listen, "--listen");
+    const auto say = [](const std::string& line) { fmt::print(stderr, "sandwall-track: {}\n", line); };
+    const auto tracker = openTracker(source, glm::dvec3(0), say);
+    if (!tracker) {
+        throw files::InputError("--listen: there is nothing to listen to in 'none'");
+    }
+    // What it prints is a trace.
+    fmt::print("time,x,y,z,right_x,right_y,right_z\n");
+    std::optional<Pose> last;
+    atRate(options.rate, options.seconds, [&](double time) {
+        const std::optional<Pose> pose = tracker->newest(time);
+        if (pose && pose != last) {
+            const glm::dvec3 p = pose->position, r = pose->right;
+            fmt::print("{:.4f},{:.4f},{:.4f},{:.4f},{:.5f},{:.5f},{:.5f}\n", time, p.x, p.y, p.z, r.x, r.y, r.z);
+            last = pose;
+        }
+        return std::fflush(stdout) == 0;
+    });
+    const Counters counters = tracker->counters();
+    fmt::print(stderr, "sandwall-track: {} packets, {} refused, {} old, {} without the head, {} times lost\n",
+               counters.packets, counters.refused, counters.old, counters.absent, counters.timesLost);
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"Tries head tracking without a wall: sends a head's poses as a tracker would, or prints what arrives.",
+                 "sandwall-track"};
+    Options options;
+    auto* what = app.add_option_group("what to do");
+    what->add_option("--send", options.send, "opentrack:[HOST:]PORT or dtrack:[HOST:]PORT[:BODY] to send to");
+    what->add_option("--listen", options.listen, "a source as for sandwall run --track (docs/head_tracking.md)");
+    what->require_option(1);
+    app.add_option("--trace", options.trace, "send this head, instead of one that sways from side to side");
+    app.add_option("--rate", options.rate, "times a second to send or to look")->check(CLI::Range(1.0, 1000.0));
+    app.add_option("--seconds", options.seconds, "end after this time")->check(CLI::PositiveNumber);
+    return files::runMain(app, argc, argv, [&] {
+        if (!options.trace.empty() && options.send.empty()) {
+            throw files::InputError("--trace is for --send");
+        }
+        return options.send.empty() ? listen(options) : send(options);
+    });
+}

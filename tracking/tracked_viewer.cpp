@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/tracked_viewer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "walls/projection.hpp"
+
+namespace tracking {
+namespace {
+
+constexpr double kPause = 1;  // [s] without a pose outside, before the next one is worth a line again
+
+}  // namespace
+
+TrackedViewer::TrackedViewer(const walls::Wall& wall, const Source& source, Say say, Clock clock)
+    : tiles_(wall.tiles),
+      viewer_(wall.viewer),
+      say_(say),
+      tracker_(openTracker(source, wall.viewer.eye, std::move(say), std::move(clock))) {}
+
+const walls::Tile* TrackedViewer::tileBehind(const walls::Viewer& viewer) const {
+    const auto tile = std::find_if(tiles_.begin(), tiles_.end(), [&](const walls::Tile& one) {
+        return !(one.screen.distanceTo(walls::eyePosition(viewer, walls::Eye::left)) >= kNearestEye &&
+                 one.screen.distanceTo(walls::eyePosition(viewer, walls::Eye::right)) >= kNearestEye);
+    });
+    return tile == tiles_.end() ? nullptr : &*tile;
+}
+
+walls::Viewer TrackedViewer::at(double seconds) {
+    const std::optional<Pose> pose = tracker_ ? tracker_->newest(seconds) : std::nullopt;
+    if (!pose) {
+        return viewer_;
+    }
+    walls::Viewer moved = viewer_;
+    moved.eye = pose->position;
+    moved.right = pose->right;
+    if (const walls::Tile* tile = tileBehind(moved)) {
+        ++outside_;
+        if (!isOutside_) {
+            say_(
+                fmt::format("head tracking: the head at ({:.2f}, {:.2f}, {:.2f}) is not in front of tile '{}'; the "
+                            "last place is held",
+                            moved.eye.x, moved.eye.y, moved.eye.z, tile->name));
+        }
+        isOutside_ = true;
+        outsideUntil_ = seconds;
+        return viewer_;
+    }
+    if (isOutside_ && seconds > outsideUntil_ + kPause) {
+        isOutside_ = false;
+        say_("head tracking: the head is in front of every tile again");
+    }
+    return viewer_ = moved;
+}
+
+Counters TrackedViewer::counters() const {
+    Counters counters = tracker_ ? tracker_->counters() : Counters{};
+    counters.outside = outside_;
+    return counters;
+}
+
+}  // namespace tracking

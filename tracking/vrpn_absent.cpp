@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "files/input_error.hpp"
+#include "tracking/vrpn_tracker.hpp"
+
+namespace tracking {
+
+std::unique_ptr<HeadTracker> openVrpn(const Source& source, const RoomMapping&, Say, Clock) {
+    throw files::InputError(fmt::format(
+        "{}: this build has no VRPN; install its library and headers, and build again (docs/head_tracking.md)",
+        source.text));
+}
+
+}  // namespace tracking
