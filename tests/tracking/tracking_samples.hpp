@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "files/byte_stream.hpp"
+#include "files/input_error.hpp"
+#include "tracking/pose.hpp"
+
+namespace test {
+
+/// Both vectors, printed when they are farther apart than `most`.
+inline testing::AssertionResult near(glm::dvec3 got, glm::dvec3 want, double most = 1e-12) {
+    if (glm::length(got - want) <= most) {
+        return testing::AssertionSuccess();
+    }
+    return testing::AssertionFailure() << "got (" << got.x << ", " << got.y << ", " << got.z << "), want (" << want.x
+                                       << ", " << want.y << ", " << want.z << ")";
+}
+
+inline files::Bytes bytesOf(const std::string& text) { return {text.begin(), text.end()}; }
+
+/// Six doubles as opentrack sends them: cm and degrees.
+inline files::Bytes doubles(const std::vector<double>& values) {
+    files::ByteWriter writer;
+    for (const double value : values) {
+        writer.put(value);
+    }
+    return writer.take();
+}
+
+/// What the refusal says; empty when there is none.
+inline std::string refusal(const std::function<void()>& act) {
+    try {
+        act();
+    } catch (const files::InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+}  // namespace test
