@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -15,9 +16,17 @@ inline constexpr int kExitBadInput = 2;
 /// Caught once, in each program's main, which prints it and exits with kExitBadInput.
 class InputError : public std::runtime_error {
 public:
-    explicit InputError(const std::string& line) : std::runtime_error(line) {}
+    explicit InputError(const std::string& line) : std::runtime_error(oneLine(line)) {}
     InputError(const std::string& file, long lineNumber, const std::string& message)
-        : std::runtime_error(file + ":" + std::to_string(lineNumber) + ": " + message) {}
+        : InputError(file + ":" + std::to_string(lineNumber) + ": " + message) {}
+
+private:
+    /// What is quoted from the user may hold line feeds and worse.
+    static std::string oneLine(std::string text) {
+        std::replace_if(
+            text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+        return text;
+    }
 };
 
 }  // namespace files

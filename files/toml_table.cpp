@@ -29,6 +29,23 @@ namespace {
 
 long lineOf(const toml::node& node) { return static_cast<long>(node.source().begin.line); }
 
+/// Nothing unless the node is a list of exactly `count` finite numbers.
+std::optional<std::vector<double>> numbersOf(const toml::node* value, std::size_t count) {
+    const toml::array* array = value != nullptr ? value->as_array() : nullptr;
+    if (array == nullptr || array->size() != count) {
+        return std::nullopt;
+    }
+    std::vector<double> result;
+    for (const toml::node& element : *array) {
+        const std::optional<double> number = element.value<double>();
+        if (!element.is_number() || !number || !std::isfinite(*number)) {
+            return std::nullopt;
+        }
+        result.push_back(*number);
+    }
+    return result;
+}
+
 }  // namespace
 
 TomlTable TomlTable::load(const std::filesystem::path& file) {
@@ -155,19 +172,12 @@ int TomlTable::choiceOr(std::string_view key, const std::vector<std::string_view
 std::vector<double> TomlTable::numbers(std::string_view key, std::size_t count) const {
     node_->known.emplace(key);
     const toml::node* value = node_->table->get(key);
-    const toml::array* array = value != nullptr ? value->as_array() : nullptr;
-    if (array == nullptr || array->size() != count) {
-        fail(key, fmt::format("{} must be a list of {} numbers", key, count));
+    std::optional<std::vector<double>> result = numbersOf(value, count);
+    if (!result) {
+        fail(key, value == nullptr ? fmt::format("[{}] needs a list of {} numbers '{}'", node_->name, count, key)
+                                   : fmt::format("{} must be a list of {} finite numbers", key, count));
     }
-    std::vector<double> result;
-    for (const toml::node& element : *array) {
-        const std::optional<double> number = element.value<double>();
-        if (!element.is_number() || !number || !std::isfinite(*number)) {
-            fail(key, fmt::format("{} must be a list of {} finite numbers", key, count));
-        }
-        result.push_back(*number);
-    }
-    return result;
+    return *std::move(result);
 }
 
 std::vector<double> TomlTable::numbersOr(std::string_view key, std::vector<double> fallback) const {
@@ -196,6 +206,29 @@ std::vector<std::string> TomlTable::textsOr(std::string_view key, std::vector<st
         fail(key, fmt::format("{} must be a list of texts", key));
     }
     return result;
+}
+
+std::vector<std::vector<double>> TomlTable::numberLists(std::string_view key, std::size_t count) const {
+    node_->known.emplace(key);
+    const toml::node* value = node_->table->get(key);
+    const toml::array* array = value != nullptr ? value->as_array() : nullptr;
+    std::vector<std::vector<double>> result;
+    if (array != nullptr) {
+        for (const toml::node& element : *array) {
+            if (std::optional<std::vector<double>> numbers = numbersOf(&element, count)) {
+                result.push_back(*std::move(numbers));
+            }
+        }
+    }
+    if (array == nullptr || result.size() != array->size()) {
+        fail(key, fmt::format("{} must be a list of lists of {} finite numbers", key, count));
+    }
+    return result;
+}
+
+bool TomlTable::isText(std::string_view key) const {
+    const toml::node* value = node_->table->get(key);
+    return value != nullptr && value->is_string();
 }
 
 std::optional<TomlTable> TomlTable::table(std::string_view key) const {
@@ -240,6 +273,11 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
         result.push_back(TomlTable(std::move(node)));
     }
     return result;
+}
+
+void TomlTable::only(std::initializer_list<std::string_view> keys) const {
+    node_->known.insert(keys.begin(), keys.end());
+    finish();
 }
 
 void TomlTable::finish() const {

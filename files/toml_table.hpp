@@ -44,6 +44,10 @@ public:
     [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count) const;
     [[nodiscard]] std::vector<double> numbersOr(std::string_view key, std::vector<double> fallback) const;
     [[nodiscard]] std::vector<std::string> textsOr(std::string_view key, std::vector<std::string> fallback) const;
+    /// Any number of lists of exactly `count` finite numbers each.
+    [[nodiscard]] std::vector<std::vector<double>> numberLists(std::string_view key, std::size_t count) const;
+    /// Whether the key is there and holds a text: for keys that take a text or a list.
+    [[nodiscard]] bool isText(std::string_view key) const;
 
     /// A sub-table; absent gives nothing.
     [[nodiscard]] std::optional<TomlTable> table(std::string_view key) const;
@@ -52,6 +56,9 @@ public:
     /// The tables of [[key]], in the order of the file; absent gives none.
     [[nodiscard]] std::vector<TomlTable> tables(std::string_view key) const;
 
+    /// Throws for the first key, in the order of lines, that is not among these. Asked before anything is read, it
+    /// names the misspelt key where the reader would miss the right one.
+    void only(std::initializer_list<std::string_view> keys) const;
     /// Throws for the first key, in the order of lines, that nobody read.
     void finish() const;
     /// Throws with file and the line of `key` (of the table itself when the key is absent).
