@@ -13,13 +13,17 @@ int main(int argc, char** argv) {
         "A render rank of a wall: one tile. Started by mpirun beside sandwall-master, which tells it everything.",
         "sandwall-render-node");
     std::string gl = "auto";
-    app.add_option("--gl", gl, "what draws")->check(CLI::IsMember({"auto", "osmesa"}));
+    app.add_option(
+           "--gl", gl,
+           "what draws: osmesa in memory, egl on a graphics card without a display, glfw in windows; auto takes "
+           "glfw where the wall file names a display, a monitor or a window's place, else osmesa")
+        ->check(CLI::IsMember({"auto", "osmesa", "egl", "glfw"}))
+        ->capture_default_str();
     int sandThreads = 1;
     workers::addSandThreads(app, sandThreads);
-    // The one backend there is so far; "auto" will prefer a window where the wall file asks for one.
     const int status = files::runMain(app, argc, argv, [&] {
         const workers::WorkerPool pool(sandThreads);
-        return render_node::showTile(cluster, render_node::Backend::osmesa, {.executor = pool.lend()});
+        return render_node::showTile(cluster, render_node::backendNamed(gl), {.executor = pool.lend()});
     });
     if (status != 0) {
         cluster.abort(status);

@@ -3,9 +3,73 @@
 
 #include <glad/gl.h>
 
+#include <algorithm>
+#include <array>
+
 #include "files/input_error.hpp"
+#include "render_node/gl/gl_module.hpp"
+#include "render_node/gl/window_context.hpp"
 
 namespace render_node {
+namespace {
+
+constexpr std::array<std::string_view, 4> kNames{"auto", "osmesa", "egl", "glfw"};
+
+/// Pictures that stay in their frame buffers.
+class OffscreenContext final : public GlContext {
+public:
+    OffscreenContext(Backend backend, std::unique_ptr<GlPlatform> platform)
+        : backend_(backend), platform_(std::move(platform)) {
+        makeCurrent();
+        loadFunctions(*platform_);
+    }
+    void makeCurrent() override { platform_->makeCurrent(0); }
+    [[nodiscard]] std::string name() const override { return std::string(backendName(backend_)); }
+
+private:
+    Backend backend_;
+    std::unique_ptr<GlPlatform> platform_;
+};
+
+std::unique_ptr<GlContext> contextOf(Backend backend, const PlatformRequest& request) {
+    std::unique_ptr<GlPlatform> platform = loadPlatform(backend, request);
+    if (request.windows.empty()) {
+        return std::make_unique<OffscreenContext>(backend, std::move(platform));
+    }
+    return makeWindowContext(std::move(platform), request.windows);
+}
+
+}  // namespace
+
+std::string_view backendName(Backend backend) { return kNames.at(static_cast<std::size_t>(backend)); }
+
+Backend backendNamed(std::string_view name) {
+    const auto* const found = std::find(kNames.begin(), kNames.end(), name);
+    if (found == kNames.end()) {
+        throw files::InputError("--gl: '" + std::string(name) + "' is none of auto, osmesa, egl, glfw");
+    }
+    return static_cast<Backend>(found - kNames.begin());
+}
+
+Backend backendFor(Backend backend, const walls::Tile& tile) {
+    if (backend != Backend::automatic) {
+        return backend;
+    }
+    const bool shown = !tile.place.display.empty() ||
+                       std::any_of(tile.outputs.begin(), tile.outputs.end(), [](const walls::Output& output) {
+                           return !output.monitor.empty() || output.window.has_value();
+                       });
+    return shown ? Backend::glfw : Backend::osmesa;
+}
+
+void loadFunctions(GlPlatform& platform) {
+    const auto load = [](void* from, const char* name) -> GLADapiproc {
+        return static_cast<GlPlatform*>(from)->functionNamed(name);
+    };
+    if (gladLoadGLUserPtr(load, &platform) < GLAD_MAKE_VERSION(3, 3)) {
+        throw files::InputError("the OpenGL context lacks functions of OpenGL 3.3; install or update the driver");
+    }
+}
 
 std::string GlContext::renderer() const {
     const auto text = [](GLenum key) {
@@ -17,16 +81,22 @@ std::string GlContext::renderer() const {
 
 void GlContext::present(std::span<const OutputPicture> /* outputs */, std::uint64_t /* frame */) { glFinish(); }
 
-std::unique_ptr<GlContext> makeOffscreenContext(Backend backend) {
-    switch (backend) {
-        case Backend::osmesa:
-            return makeOsmesaContext();
+std::unique_ptr<GlContext> makeContext(Backend backend, const walls::Wall& wall, const walls::Tile& tile) {
+    PlatformRequest request;
+    request.who = "rank " + std::to_string(tile.rank) + " (" + tile.name + ")";
+    request.display = tile.place.display;
+    request.device = tile.place.device;
+    request.eyesInTurn = wall.stereo == walls::Stereo::active;
+    request.refreshHz = wall.refreshHz;
+    const Backend chosen = backendFor(backend, tile);
+    if (chosen == Backend::glfw) {
+        for (const walls::Output& output : tile.outputs) {
+            request.windows.push_back({output, walls::outputPixels(wall.stereo, tile.pixels)});
+        }
     }
-    throw files::InputError("no such OpenGL backend");
+    return contextOf(chosen, request);
 }
 
-std::unique_ptr<GlContext> makeContext(Backend backend, const walls::Wall& /* wall */, const walls::Tile& /* tile */) {
-    return makeOffscreenContext(backend);
-}
+std::unique_ptr<GlContext> makeOffscreenContext(Backend backend) { return contextOf(backendFor(backend, {}), {}); }
 
 }  // namespace render_node

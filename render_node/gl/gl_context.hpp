@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "walls/wall.hpp"
@@ -13,8 +14,19 @@ namespace render_node {
 
 class EyeTarget;
 
-/// What gives this process OpenGL. One file per backend; the rest of the program does not know which it is.
-enum class Backend : std::uint8_t { osmesa };
+/// What gives this process OpenGL. One loadable module per backend; the rest of the program does not know which it is.
+enum class Backend : std::uint8_t {
+    automatic,  // glfw for a tile whose wall file names a display, a monitor or a window's place, else osmesa
+    osmesa,     // in memory: no display, no graphics card
+    egl,        // off screen on a graphics card, or in Mesa's software renderer
+    glfw        // windows on an X display
+};
+/// "auto", "osmesa", "egl", "glfw": as --gl takes them.
+[[nodiscard]] std::string_view backendName(Backend backend);
+/// The other way round. Throws files::InputError for any other word.
+[[nodiscard]] Backend backendNamed(std::string_view name);
+/// What `automatic` means for a tile; any other backend is itself.
+[[nodiscard]] Backend backendFor(Backend backend, const walls::Tile& tile);
 
 /// What one output shows in a frame: one picture, or both eyes' where one window shows them in turn.
 struct OutputPicture {
@@ -48,8 +60,11 @@ public:
     [[nodiscard]] virtual std::string takeKeys() { return {}; }
     /// What the wall file asks for and this machine cannot do, one line each, for the operator.
     [[nodiscard]] virtual std::vector<std::string> shortcomings() const { return {}; }
-    /// "joined", "no extension", "refused" …: whether the swaps of several graphics cards are locked in hardware.
+    /// Whether the swaps of several graphics cards are locked in hardware: "none" off screen, "no extension",
+    /// "refused", "joined, no barrier" (the windows of one card), "joined" (all cards with a sync signal).
     [[nodiscard]] virtual std::string swapLock() const { return "none"; }
+    /// How many frames from the start a hardware barrier needs to settle: they do not count in the skew.
+    [[nodiscard]] virtual int framesToIgnore() const { return 0; }
 };
 
 /// Makes a context for the outputs of a tile, current on this thread, with the GL functions loaded. Throws
@@ -58,8 +73,5 @@ public:
 
 /// The same without any output: for tests and measurements.
 [[nodiscard]] std::unique_ptr<GlContext> makeOffscreenContext(Backend backend);
-
-// One per backend, in the file of its name.
-[[nodiscard]] std::unique_ptr<GlContext> makeOsmesaContext();
 
 }  // namespace render_node

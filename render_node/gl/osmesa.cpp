@@ -1,36 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// glad's header must come before Mesa's, which brings its own declarations of OpenGL.
-// clang-format off
-#include <glad/gl.h>
+// The module sandwall-gl-osmesa.so.
 #include <GL/osmesa.h>
-// clang-format on
 
 #include <array>
 
 #include "files/input_error.hpp"
-#include "render_node/gl/gl_context.hpp"
+#include "render_node/gl/gl_platform.hpp"
 
 namespace render_node {
 namespace {
 
 /// Mesa drawing into memory: no window, no display server, no graphics card.
-class OsmesaContext final : public GlContext {
+class Osmesa final : public GlPlatform {
 public:
-    OsmesaContext() : context_(create()) {
-        makeCurrent();
-        if (gladLoadGL(OSMesaGetProcAddress) == 0) {
-            OSMesaDestroyContext(context_);
-            throw files::InputError("OSMesa gave an OpenGL context without functions; reinstall libosmesa6");
-        }
-    }
-    ~OsmesaContext() override { OSMesaDestroyContext(context_); }
+    Osmesa() : context_(create()) {}
+    ~Osmesa() override { OSMesaDestroyContext(context_); }
 
-    void makeCurrent() override {
+    void makeCurrent(std::size_t /* context */) override {
         if (OSMesaMakeCurrent(context_, surface_.data(), GL_UNSIGNED_BYTE, kSide, kSide) != GL_TRUE) {
             throw files::InputError("OSMesa cannot make its OpenGL context current; reinstall libosmesa6");
         }
     }
-    [[nodiscard]] std::string name() const override { return "osmesa"; }
+    [[nodiscard]] GlFunction functionNamed(const char* name) override { return OSMesaGetProcAddress(name); }
 
 private:
     static OSMesaContext create() {
@@ -61,6 +52,6 @@ private:
 
 }  // namespace
 
-std::unique_ptr<GlContext> makeOsmesaContext() { return std::make_unique<OsmesaContext>(); }
+extern "C" GlPlatform* sandwallGlPlatform1(const PlatformRequest& /* request */) { return new Osmesa; }
 
 }  // namespace render_node

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// The module sandwall-gl-glfw.so.
+#define GLFW_INCLUDE_NONE
+#define GLFW_EXPOSE_NATIVE_X11
+#define GLFW_EXPOSE_NATIVE_GLX
+#include <GLFW/glfw3.h>
+#include <GLFW/glfw3native.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "files/input_error.hpp"
+#include "render_node/gl/gl_platform.hpp"
+#include "render_node/gl/glfw_window.hpp"
+#include "render_node/gl/swap_sync.hpp"
+#include "render_node/gl/x_watch.hpp"
+
+namespace render_node {
+namespace {
+
+/// Windows on an X display.
+class Glfw final : public GlPlatform {
+public:
+    explicit Glfw(const PlatformRequest& request)
+        : watch_(request.display, request.who), eyesInTurn_(request.eyesInTurn) {
+        if (request.windows.empty()) {
+            windows_.emplace_back(library_, watch_.name());
+        }
+        for (const WindowRequest& wanted : request.windows) {
+            windows_.emplace_back(library_, watch_.name(), wanted, request,
+                                  windows_.empty() ? nullptr : windows_.front().handle());
+        }
+        std::vector<unsigned long> ids;
+        std::vector<GlxDrawable> drawables;
+        for (GlfwWindow& window : windows_) {
+            ids.push_back(glfwGetX11Window(window.handle()));
+            drawables.push_back(glfwGetGLXWindow(window.handle()));
+            window.sendKeysTo(keys_);
+        }
+        watch_.watch(ids);
+        makeCurrent(0);
+        if (!request.windows.empty()) {
+            lockSwaps(drawables);
+        }
+    }
+    ~Glfw() override { glfwMakeContextCurrent(windows_.front().handle()); }
+
+    void makeCurrent(std::size_t context) override { glfwMakeContextCurrent(windows_.at(context).handle()); }
+    [[nodiscard]] GlFunction functionNamed(const char* name) override { return glfwGetProcAddress(name); }
+
+    [[nodiscard]] bool quadBuffers(std::size_t window) const override { return windows_.at(window).quadBuffers(); }
+
+    void check() override {
+        const int lost = watch_.firstLost();
+        if (lost >= 0) {
+            throw std::runtime_error("output " + windows_[static_cast<std::size_t>(lost)].name() + ": its window on " +
+                                     watch_.name() + " is gone");
+        }
+        glfwPollEvents();
+        for (const GlfwWindow& window : windows_) {
+            if (glfwWindowShouldClose(window.handle()) != 0) {
+                throw std::runtime_error("output " + window.name() + ": its window on " + watch_.name() +
+                                         " was closed");
+            }
+        }
+    }
+
+    void swap(std::uint64_t frame) override {
+        for (std::size_t i = 0; i < windows_.size(); ++i) {
+            if (!eyes_[i] || !eyes_[i]->swap(frame)) {
+                glfwSwapBuffers(windows_[i].handle());
+            }
+        }
+    }
+
+    [[nodiscard]] std::string takeKeys() override {
+        check();
+        return std::exchange(*keys_, {});
+    }
+
+    [[nodiscard]] std::vector<std::string> shortcomings() const override {
+        std::vector<std::string> lines;
+        for (std::size_t i = 0; i < windows_.size(); ++i) {
+            if (eyesInTurn_ && !windows_[i].quadBuffers()) {
+                lines.push_back("output " + windows_[i].name() + ": no quad buffers; eyes in turn by frame" +
+                                (eyes_[i] ? "" : ", without a count of retraces to keep them to"));
+            }
+            windows_[i].addShortcomings(lines);
+        }
+        return lines;
+    }
+    [[nodiscard]] std::string swapLock() const override { return group_ ? group_->state() : "none"; }
+    [[nodiscard]] int framesToIgnore() const override { return group_ ? group_->framesToIgnore() : 0; }
+
+private:
+    void lockSwaps(const std::vector<GlxDrawable>& drawables) {
+        const GlxLoader loader{[](const char* name) { return glfwExtensionSupported(name) != 0; },
+                               [](const char* name) { return glfwGetProcAddress(name); }, glfwGetX11Display(),
+                               displayScreen()};
+        group_.emplace(loader, drawables);
+        eyes_.resize(windows_.size());
+        for (std::size_t i = 0; i < windows_.size(); ++i) {
+            const bool inTurn = eyesInTurn_ && !windows_[i].quadBuffers();
+            if (inTurn) {
+                eyes_[i].emplace(loader, drawables[i]);
+                if (!eyes_[i]->available()) {
+                    eyes_[i].reset();
+                }
+            }
+            // The software barrier paces everything else; a second wait would only make ranks late for it.
+            makeCurrent(i);
+            glfwSwapInterval(inTurn || group_->joined() ? 1 : 0);
+        }
+        makeCurrent(0);
+    }
+
+    // In this order: windows go before the library, the library before the handlers of X errors.
+    XWatch watch_;
+    GlfwLibrary library_;
+    std::vector<GlfwWindow> windows_;
+    std::shared_ptr<std::string> keys_ = std::make_shared<std::string>();
+    bool eyesInTurn_;
+    std::optional<SwapGroup> group_;
+    std::vector<std::optional<EyesByRetrace>> eyes_;
+};
+
+}  // namespace
+
+extern "C" GlPlatform* sandwallGlPlatform1(const PlatformRequest& request) { return new Glfw(request); }
+
+}  // namespace render_node

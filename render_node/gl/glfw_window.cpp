@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/gl/glfw_window.hpp"
+
+#define GLFW_INCLUDE_NONE
+#define GLFW_EXPOSE_NATIVE_X11
+#include <GLFW/glfw3.h>
+#include <GLFW/glfw3native.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <span>
+
+#include "files/input_error.hpp"
+#include "render_node/gl/screen_cover.hpp"
+
+namespace render_node {
+namespace {
+
+using files::InputError;
+
+std::string lastComplaint;  // GLFW's handler gets nothing of ours
+
+std::string sizeText(glm::ivec2 size) { return fmt::format("{} x {}", size.x, size.y); }
+std::string placeText(glm::ivec2 place) { return fmt::format("({}, {})", place.x, place.y); }
+
+std::span<GLFWmonitor*> monitors() {
+    int count = 0;
+    GLFWmonitor** first = glfwGetMonitors(&count);
+    return {first, static_cast<std::size_t>(count)};
+}
+
+/// Where a monitor's picture lies on the X screen.
+PixelRectangle areaOf(GLFWmonitor* monitor) {
+    PixelRectangle area;
+    glfwGetMonitorPos(monitor, &area.low.x, &area.low.y);
+    const GLFWvidmode* mode = glfwGetVideoMode(monitor);
+    area.high = area.low + (mode == nullptr ? glm::ivec2(0) : glm::ivec2(mode->width, mode->height));
+    return area;
+}
+
+std::vector<PixelRectangle> lightedAreas() {
+    std::vector<PixelRectangle> areas;
+    for (GLFWmonitor* monitor : monitors()) {
+        areas.push_back(areaOf(monitor));
+    }
+    if (areas.empty()) {  // no cable plugged in, or a server without monitors
+        Screen* screen = ScreenOfDisplay(glfwGetX11Display(), displayScreen());
+        areas.push_back({{0, 0}, {WidthOfScreen(screen), HeightOfScreen(screen)}});
+    }
+    return areas;
+}
+
+GLFWmonitor* monitorNamed(const WindowRequest& wanted, const std::string& display) {
+    std::string there;
+    for (GLFWmonitor* monitor : monitors()) {
+        const PixelRectangle area = areaOf(monitor);
+        const std::string name = glfwGetMonitorName(monitor);
+        if (name == wanted.output.monitor) {
+            return monitor;
+        }
+        there += (there.empty() ? "there is " : ", ") + name + " (" + sizeText(area.high - area.low) + ")";
+    }
+    throw InputError("output " + wanted.output.name + ": no monitor " + wanted.output.monitor + " on display " +
+                     display + "; " + (there.empty() ? "there is none" : there));
+}
+
+void requireMode(GLFWmonitor* monitor, const WindowRequest& wanted) {
+    int count = 0;
+    const GLFWvidmode* modes = glfwGetVideoModes(monitor, &count);
+    for (const GLFWvidmode& mode : std::span(modes, static_cast<std::size_t>(count))) {
+        if (glm::ivec2(mode.width, mode.height) == wanted.pixels) {
+            return;
+        }
+    }
+    const PixelRectangle area = areaOf(monitor);
+    throw InputError("output " + wanted.output.name + ": monitor " + wanted.output.monitor + " shows " +
+                     sizeText(area.high - area.low) + " pixels and has no mode of " + sizeText(wanted.pixels) +
+                     "; correct the pixels in the wall file");
+}
+
+/// The rate that full screen shall have: the one asked for, else the one there is.
+int refreshRate(GLFWmonitor* monitor, const WindowRequest& wanted, double refreshHz) {
+    const GLFWvidmode* now = glfwGetVideoMode(monitor);
+    if (refreshHz > 0) {
+        return static_cast<int>(std::lround(refreshHz));
+    }
+    const bool same = now != nullptr && glm::ivec2(now->width, now->height) == wanted.pixels;
+    return same ? now->refreshRate : GLFW_DONT_CARE;
+}
+
+void hintContext(bool visible) {
+    glfwDefaultWindowHints();
+    glfwWindowHint(GLFW_CLIENT_API, GLFW_OPENGL_API);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    // Pictures come from frame buffers of our own: the window needs colours alone.
+    for (const int unused : {GLFW_ALPHA_BITS, GLFW_DEPTH_BITS, GLFW_STENCIL_BITS}) {
+        glfwWindowHint(unused, 0);
+    }
+    for (const int off : {GLFW_DECORATED, GLFW_RESIZABLE, GLFW_AUTO_ICONIFY, GLFW_CENTER_CURSOR}) {
+        glfwWindowHint(off, GLFW_FALSE);
+    }
+    glfwWindowHint(GLFW_VISIBLE, visible ? GLFW_TRUE : GLFW_FALSE);
+}
+
+}  // namespace
+
+GlfwLibrary::GlfwLibrary() {
+    glfwSetErrorCallback([](int /* code */, const char* text) { lastComplaint = text; });
+    if (glfwInit() != GLFW_TRUE) {
+        throw InputError("--gl glfw: GLFW does not start: " + lastComplaint);
+    }
+}
+
+GlfwLibrary::~GlfwLibrary() { glfwTerminate(); }
+
+std::string GlfwLibrary::complaint() const { return lastComplaint.empty() ? "no reason given" : lastComplaint; }
+
+void GlfwWindow::Destroy::operator()(GLFWwindow* window) const { glfwDestroyWindow(window); }
+
+GlfwWindow::GlfwWindow(const GlfwLibrary& library, const std::string& display) {
+    hintContext(false);
+    open(library, display, nullptr, nullptr);
+}
+
+GlfwWindow::GlfwWindow(const GlfwLibrary& library, const std::string& display, const WindowRequest& wanted,
+                       const PlatformRequest& request, GLFWwindow* share)
+    : wanted_(wanted), refreshHz_(request.eyesInTurn ? request.refreshHz : 0) {
+    GLFWmonitor* monitor = nullptr;
+    hintContext(false);
+    if (!wanted.output.monitor.empty()) {
+        monitor = monitorNamed(wanted, display);
+        requireMode(monitor, wanted);
+        glfwWindowHint(GLFW_REFRESH_RATE, refreshRate(monitor, wanted, refreshHz_));
+    }
+    if (request.eyesInTurn) {
+        glfwWindowHint(GLFW_STEREO, GLFW_TRUE);
+        window_.reset(glfwCreateWindow(wanted.pixels.x, wanted.pixels.y, "Sandwall", monitor, share));
+        quadBuffers_ = window_ != nullptr;
+        glfwWindowHint(GLFW_STEREO, GLFW_FALSE);
+    }
+    if (window_ == nullptr) {
+        open(library, display, monitor, share);
+    }
+    if (monitor == nullptr) {
+        if (wanted.output.window) {
+            glfwSetWindowPos(handle(), wanted.output.window->x, wanted.output.window->y);
+        }
+        glfwShowWindow(handle());
+    }
+    glfwSetInputMode(handle(), GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
+}
+
+void GlfwWindow::open(const GlfwLibrary& library, const std::string& display, GLFWmonitor* monitor, GLFWwindow* share) {
+    window_.reset(glfwCreateWindow(wanted_.pixels.x, wanted_.pixels.y, "Sandwall", monitor, share));
+    if (window_ == nullptr) {
+        throw InputError((name().empty() ? "--gl glfw" : "output " + name()) +
+                         ": no window with OpenGL 3.3 on display " + display + ": " + library.complaint());
+    }
+}
+
+void GlfwWindow::sendKeysTo(const std::shared_ptr<std::string>& keys) {
+    keys_ = keys;
+    glfwSetWindowUserPointer(handle(), keys_.get());
+    constexpr char kQuit = 27;
+    glfwSetCharCallback(handle(), [](GLFWwindow* window, unsigned character) {
+        if (character >= ' ' && character < 127) {
+            static_cast<std::string*>(glfwGetWindowUserPointer(window))
+                ->push_back(character == 'q' ? kQuit : static_cast<char>(character));
+        }
+    });
+    glfwSetKeyCallback(handle(), [](GLFWwindow* window, int key, int /* scancode */, int action, int /* shifts */) {
+        if (key == GLFW_KEY_ESCAPE && action == GLFW_PRESS) {
+            static_cast<std::string*>(glfwGetWindowUserPointer(window))->push_back(kQuit);
+        }
+    });
+}
+
+void GlfwWindow::addShortcomings(std::vector<std::string>& lines) const {
+    const std::string output = "output " + name() + ": ";
+    glm::ivec2 size;
+    glfwGetFramebufferSize(handle(), &size.x, &size.y);
+    PixelRectangle area;
+    glfwGetWindowPos(handle(), &area.low.x, &area.low.y);
+    area.high = area.low + size;
+    if (size != wanted_.pixels) {
+        lines.push_back(output + "the window manager made its window " + sizeText(size) + " pixels instead of " +
+                        sizeText(wanted_.pixels));
+    }
+    if (wanted_.output.monitor.empty() && wanted_.output.window && area.low != *wanted_.output.window) {
+        lines.push_back(output + "the window manager put its window at " + placeText(area.low) + " instead of " +
+                        placeText(*wanted_.output.window));
+    }
+    const std::int64_t hidden = hiddenPixels(area, lightedAreas());
+    if (hidden > 0) {
+        lines.push_back(output + "its window of " + sizeText(size) + " pixels at " + placeText(area.low) +
+                        " lies partly off the screen: " + std::to_string(hidden) + " pixels are on no monitor");
+    }
+    GLFWmonitor* monitor = glfwGetWindowMonitor(handle());
+    const GLFWvidmode* mode = monitor == nullptr ? nullptr : glfwGetVideoMode(monitor);
+    if (mode != nullptr && refreshHz_ > 0 && mode->refreshRate > 0 && std::abs(mode->refreshRate - refreshHz_) > 1) {
+        lines.push_back(output + "monitor " + wanted_.output.monitor + " runs at " + std::to_string(mode->refreshRate) +
+                        " Hz instead of " + std::to_string(std::lround(refreshHz_)));
+    }
+}
+
+int displayScreen() { return DefaultScreen(glfwGetX11Display()); }
+
+}  // namespace render_node

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/gl/screen_cover.hpp"
+
+namespace render_node {
+
+std::int64_t hiddenPixels(const PixelRectangle& window, std::span<const PixelRectangle> monitors) {
+    const glm::i64vec2 size = glm::i64vec2(window.high) - glm::i64vec2(window.low);
+    if (size.x <= 0 || size.y <= 0) {
+        return 0;
+    }
+    if (monitors.empty()) {
+        return size.x * size.y;
+    }
+    const PixelRectangle& monitor = monitors.front();
+    const glm::ivec2 low = glm::clamp(monitor.low, window.low, window.high);
+    const glm::ivec2 high = glm::clamp(monitor.high, window.low, window.high);
+    const std::span<const PixelRectangle> others = monitors.subspan(1);
+    if (low.x >= high.x || low.y >= high.y) {
+        return hiddenPixels(window, others);
+    }
+    // What is left: a strip above, one below, and two between them.
+    return hiddenPixels({window.low, {window.high.x, low.y}}, others) +
+           hiddenPixels({{window.low.x, high.y}, window.high}, others) +
+           hiddenPixels({{window.low.x, low.y}, {low.x, high.y}}, others) +
+           hiddenPixels({{high.x, low.y}, {window.high.x, high.y}}, others);
+}
+
+}  // namespace render_node

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/gl/swap_sync.hpp"
+
+#include <utility>
+
+namespace render_node {
+namespace {
+
+constexpr unsigned kGroup = 1;    // 0 is "none" in both
+constexpr unsigned kBarrier = 1;  // cards on the same sync signal meet in the barrier of the same number
+
+template <class Function>
+Function load(const GlxLoader& loader, const char* name) {
+    return reinterpret_cast<Function>(loader.functionNamed(name));
+}
+
+using JoinGroup = int (*)(void* display, GlxDrawable, unsigned group);
+using BindBarrier = int (*)(void* display, unsigned group, unsigned barrier);
+using MostGroups = int (*)(void* display, int screen, unsigned* groups, unsigned* barriers);
+
+}  // namespace
+
+SwapGroup::SwapGroup(GlxLoader loader, std::vector<GlxDrawable> windows)
+    : loader_(std::move(loader)), state_(join(windows)) {}
+
+SwapGroup::~SwapGroup() { leave(); }
+
+std::string SwapGroup::join(const std::vector<GlxDrawable>& windows) {
+    // The dispatch library has an address for any name: only the extension's own word counts.
+    if (!loader_.supports("GLX_NV_swap_group")) {
+        return "no extension";
+    }
+    const auto mostGroups = load<MostGroups>(loader_, "glXQueryMaxSwapGroupsNV");
+    const auto joinGroup = load<JoinGroup>(loader_, "glXJoinSwapGroupNV");
+    const auto bindBarrier = load<BindBarrier>(loader_, "glXBindSwapBarrierNV");
+    if (mostGroups == nullptr || joinGroup == nullptr || bindBarrier == nullptr) {
+        return "no extension";
+    }
+    unsigned groups = 0;
+    unsigned barriers = 0;
+    if (mostGroups(loader_.display, loader_.screen, &groups, &barriers) == 0 || groups < kGroup) {
+        return "refused";
+    }
+    for (const GlxDrawable window : windows) {
+        if (joinGroup(loader_.display, window, kGroup) == 0) {
+            leave();  // half a group would wait for nobody, or for ever
+            return "refused";
+        }
+        joined_.push_back(window);
+    }
+    bound_ = barriers >= kBarrier && bindBarrier(loader_.display, kGroup, kBarrier) != 0;
+    return bound_ ? "joined" : "joined, no barrier";
+}
+
+void SwapGroup::leave() {
+    if (bound_) {
+        load<BindBarrier>(loader_, "glXBindSwapBarrierNV")(loader_.display, kGroup, 0);
+        bound_ = false;
+    }
+    for (const GlxDrawable window : joined_) {
+        load<JoinGroup>(loader_, "glXJoinSwapGroupNV")(loader_.display, window, 0);
+    }
+    joined_.clear();
+}
+
+EyesByRetrace::EyesByRetrace(GlxLoader loader, GlxDrawable window) : loader_(std::move(loader)), window_(window) {
+    if (!loader_.supports("GLX_OML_sync_control")) {
+        return;
+    }
+    counts_ = load<Counts>(loader_, "glXGetSyncValuesOML");
+    swap_ = load<SwapAt>(loader_, "glXSwapBuffersMscOML");
+    std::int64_t ust = 0;
+    std::int64_t msc = 0;
+    std::int64_t sbc = 0;
+    // Drivers name the extension for screens that have no retrace, too.
+    if (counts_ == nullptr || swap_ == nullptr || counts_(loader_.display, window_, &ust, &msc, &sbc) == 0) {
+        swap_ = nullptr;
+    }
+}
+
+bool EyesByRetrace::swap(std::uint64_t frame) {
+    if (!available()) {
+        return false;
+    }
+    const auto parity = static_cast<std::int64_t>(frame % 2);
+    if (!phase_) {
+        std::int64_t ust = 0;
+        std::int64_t msc = 0;
+        std::int64_t sbc = 0;
+        if (counts_(loader_.display, window_, &ust, &msc, &sbc) == 0) {
+            return false;
+        }
+        // Cards count from different retraces. All show their first frame in the same one, the next.
+        phase_ = (msc + 1 + parity) % 2;
+    }
+    return swap_(loader_.display, window_, 0, 2, (parity + *phase_) % 2) >= 0;
+}
+
+}  // namespace render_node

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/gl/window_context.hpp"
+
+#include <glad/gl.h>
+
+#include <stdexcept>
+
+#include "render_node/eye_target.hpp"
+
+namespace render_node {
+namespace {
+
+/// The colours of a picture as its own context knows them; contexts share these, but no frame buffer objects.
+struct Colours {
+    GLint object = 0;
+    bool texture = false;
+};
+
+Colours coloursOf(const EyeTarget& picture) {
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, picture.framebuffer());
+    const auto ask = [](GLenum key) {
+        GLint value = 0;
+        glGetFramebufferAttachmentParameteriv(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, key, &value);
+        return value;
+    };
+    return {ask(GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME), ask(GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE) == GL_TEXTURE};
+}
+
+/// Attached anew for every copy: that is when a context sees what another one has changed.
+void attach(const Colours& colours) {
+    const auto object = static_cast<GLuint>(colours.object);
+    if (colours.texture) {
+        glFramebufferTexture2D(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, object, 0);
+    } else {
+        glFramebufferRenderbuffer(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, object);
+    }
+}
+
+GLenum bufferOf(BackBuffer buffer) {
+    return buffer == BackBuffer::left ? GL_BACK_LEFT : buffer == BackBuffer::right ? GL_BACK_RIGHT : GL_BACK;
+}
+
+class WindowContext final : public GlContext {
+public:
+    WindowContext(std::unique_ptr<GlPlatform> platform, const std::vector<WindowRequest>& windows)
+        : platform_(std::move(platform)), windows_(windows), readers_(windows.size()) {
+        platform_->makeCurrent(0);
+        loadFunctions(*platform_);
+        for (std::size_t i = 0; i < windows_.size(); ++i) {
+            platform_->makeCurrent(i);
+            glGenFramebuffers(1, &readers_[i]);
+        }
+        platform_->makeCurrent(0);
+    }
+    void makeCurrent() override { platform_->makeCurrent(0); }
+    [[nodiscard]] std::string name() const override { return "glfw"; }
+
+    void present(std::span<const OutputPicture> outputs, std::uint64_t frame) override {
+        if (outputs.size() != windows_.size()) {
+            throw std::logic_error(std::to_string(outputs.size()) + " pictures for " + std::to_string(windows_.size()) +
+                                   " windows in frame " + std::to_string(frame));
+        }
+        frame_ = frame;
+        platform_->check();
+        glFinish();  // the other contexts may only take what this one has finished
+        // Last to first, so that the context that draws is current in the end.
+        for (std::size_t i = windows_.size(); i-- > 0;) {
+            show(i, copiesOf(outputs[i], platform_->quadBuffers(i), frame));
+        }
+    }
+    void swap() override {
+        platform_->swap(frame_);
+        platform_->check();
+    }
+    [[nodiscard]] std::string takeKeys() override { return platform_->takeKeys(); }
+    [[nodiscard]] std::vector<std::string> shortcomings() const override { return platform_->shortcomings(); }
+    [[nodiscard]] std::string swapLock() const override { return platform_->swapLock(); }
+    [[nodiscard]] int framesToIgnore() const override { return platform_->framesToIgnore(); }
+
+private:
+    void show(std::size_t window, const std::vector<Copy>& copies) {
+        std::vector<Colours> sources;
+        platform_->makeCurrent(0);
+        for (const Copy& copy : copies) {
+            sources.push_back(coloursOf(*copy.picture));
+        }
+        if (window != 0) {
+            platform_->makeCurrent(window);
+        }
+        // A scissor that the drawing has left behind would cut the copy.
+        const GLboolean scissor = glIsEnabled(GL_SCISSOR_TEST);
+        glDisable(GL_SCISSOR_TEST);
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, readers_[window]);
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+        for (std::size_t i = 0; i < copies.size(); ++i) {
+            const EyeTarget& picture = *copies[i].picture;
+            const glm::ivec2 size = windows_[window].pixels;
+            if (picture.width() != size.x || picture.height() != size.y) {
+                throw std::logic_error("output " + windows_[window].output.name + " got a picture of " +
+                                       std::to_string(picture.width()) + " x " + std::to_string(picture.height()));
+            }
+            attach(sources[i]);
+            glDrawBuffer(bufferOf(copies[i].to));
+            glBlitFramebuffer(0, 0, size.x, size.y, 0, 0, size.x, size.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+        }
+        if (scissor == GL_TRUE) {
+            glEnable(GL_SCISSOR_TEST);
+        }
+        glFinish();
+    }
+
+    std::unique_ptr<GlPlatform> platform_;
+    std::vector<WindowRequest> windows_;
+    std::vector<GLuint> readers_;  // one frame buffer object in each window's context; they go with it
+    std::uint64_t frame_ = 0;
+};
+
+}  // namespace
+
+std::vector<Copy> copiesOf(const OutputPicture& output, bool quadBuffers, std::uint64_t frame) {
+    if (output.right == nullptr) {
+        return {{output.picture, BackBuffer::only}};
+    }
+    if (quadBuffers) {
+        return {{output.picture, BackBuffer::left}, {output.right, BackBuffer::right}};
+    }
+    return {{frame % 2 == 0 ? output.picture : output.right, BackBuffer::only}};
+}
+
+std::unique_ptr<GlContext> makeWindowContext(std::unique_ptr<GlPlatform> platform,
+                                             const std::vector<WindowRequest>& windows) {
+    return std::make_unique<WindowContext>(std::move(platform), windows);
+}
+
+}  // namespace render_node

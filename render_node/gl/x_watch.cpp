@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/gl/x_watch.hpp"
+
+#include <X11/Xlib.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "files/input_error.hpp"
+
+namespace render_node {
+namespace {
+
+// Xlib's handlers get nothing of ours, so what they need stands here.
+std::string lastWords;
+std::string refusal;
+
+int endWithoutServer(Display* /* display */) {
+    (void)!write(STDERR_FILENO, lastWords.data(), lastWords.size());
+    // Not exit(): what it would clean up talks to the server, or waits for other ranks.
+    _exit(1);
+}
+
+int noteRefusal(Display* display, XErrorEvent* error) {
+    if (refusal.empty()) {
+        std::array<char, 128> text{};
+        XGetErrorText(display, error->error_code, text.data(), static_cast<int>(text.size()));
+        refusal = std::string(text.data()) + ", request " + std::to_string(error->request_code) + "." +
+                  std::to_string(error->minor_code);
+    }
+    return 0;
+}
+
+std::string chosenDisplay(const std::string& display) {
+    if (!display.empty()) {
+        setenv("DISPLAY", display.c_str(), 1);
+        return display;
+    }
+    const char* fromEnvironment = std::getenv("DISPLAY");
+    if (fromEnvironment == nullptr || *fromEnvironment == '\0') {
+        throw files::InputError(
+            "--gl glfw: no X display; set DISPLAY, give the tile's place in the wall file one (display = \":0\"), or "
+            "draw off screen with --gl osmesa");
+    }
+    return fromEnvironment;
+}
+
+}  // namespace
+
+XWatch::XWatch(const std::string& display, const std::string& who)
+    : name_(chosenDisplay(display)), display_(XOpenDisplay(name_.c_str())) {
+    if (display_ == nullptr) {
+        throw files::InputError("--gl glfw: cannot open X display " + name_ +
+                                "; is its server running, and may this user use it (docs/backends.md)?");
+    }
+    std::array<char, 256> host{};
+    (void)gethostname(host.data(), host.size() - 1);
+    lastWords = who + " on " + host.data() + ": the X server of " + name_ + " is gone\n";
+    XSetIOErrorHandler(endWithoutServer);
+}
+
+XWatch::~XWatch() {
+    XSetErrorHandler(nullptr);
+    XCloseDisplay(display_);
+    XSetIOErrorHandler(nullptr);
+}
+
+void XWatch::watch(const std::vector<unsigned long>& windows) {
+    windows_ = windows;
+    refusal.clear();
+    XSetErrorHandler(noteRefusal);
+    for (const unsigned long window : windows_) {
+        XSelectInput(display_, window, StructureNotifyMask);
+    }
+    XSync(display_, False);
+}
+
+void XWatch::takeEvents() {
+    while (XPending(display_) > 0) {
+        XEvent event;
+        XNextEvent(display_, &event);
+        if (event.type == DestroyNotify && lost_ < 0) {
+            const auto found = std::find(windows_.begin(), windows_.end(), event.xdestroywindow.window);
+            lost_ = found == windows_.end() ? -1 : static_cast<int>(found - windows_.begin());
+        }
+    }
+}
+
+int XWatch::firstLost() {
+    takeEvents();
+    if (lost_ < 0 && !refusal.empty()) {
+        // The refusal came over GLFW's connection; that a window is gone may still be on its way over ours.
+        XSync(display_, False);
+        takeEvents();
+        if (lost_ < 0) {
+            throw std::runtime_error("the X server of " + name_ + " refused: " + refusal);
+        }
+    }
+    return lost_;
+}
+
+}  // namespace render_node

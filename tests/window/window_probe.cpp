@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a rank does with a backend, without a cluster: makes the context and the windows of a tile, draws the sample
+// scene for both eyes, shows frame 0, and then does what is typed: "frame N", "keys", "memory", "end".
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "files/command_line.hpp"
+#include "render_node/gl/gl_context.hpp"
+#include "tests/render_node/sample_scene.hpp"
+
+namespace {
+
+using render_node::EyeTarget;
+
+struct Options {
+    std::string gl = "glfw", pictures;
+    int width = 320, height = 240, device = -1, cells = 200;
+    bool active = false;
+    std::string display;
+    std::vector<std::string> places;  // "40,30" or the name of a monitor, one for each window
+};
+
+walls::Tile tileOf(const Options& options) {
+    walls::Tile tile;
+    tile.name = "r1c1";
+    tile.pixels = {options.width, options.height};
+    tile.place.device = options.device;
+    tile.place.display = options.display;
+    for (const std::string& place : options.places) {
+        walls::Output output{"out" + std::to_string(tile.outputs.size() + 1), {walls::Eye::middle}, {}, {}};
+        char comma = 0;
+        glm::ivec2 corner;
+        if (std::istringstream(place) >> corner.x >> comma >> corner.y) {
+            output.window = corner;
+        } else {
+            output.monitor = place;
+        }
+        tile.outputs.push_back(output);
+    }
+    return tile;
+}
+
+void writePicture(const EyeTarget& target, const std::string& file) {
+    const std::vector<std::uint8_t> pixels = target.read();
+    std::ofstream(file, std::ios::binary)
+        .write(reinterpret_cast<const char*>(pixels.data()), static_cast<std::streamsize>(pixels.size()));
+}
+
+/// The shared libraries in this process, each once: "libX11.so.6.4.0".
+void printLibraries() {
+    std::ifstream maps("/proc/self/maps");
+    std::set<std::string> names;
+    for (std::string line; std::getline(maps, line);) {
+        const auto slash = line.rfind('/');
+        if (slash != std::string::npos && line.find(".so", slash) != std::string::npos) {
+            names.insert(line.substr(slash + 1));
+        }
+    }
+    for (const std::string& name : names) {
+        std::cout << "library " << name << "\n";
+    }
+}
+
+void printMemory() {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);) {
+        if (line.starts_with("VmRSS") || line.starts_with("VmHWM") || line.starts_with("Rss")) {
+            std::cout << line << "\n";
+        }
+    }
+    std::cout << "memory printed" << std::endl;
+}
+
+void obey(render_node::GlContext& context, const std::vector<render_node::OutputPicture>& outputs) {
+    for (std::string word; std::cin >> word && word != "end";) {
+        if (word == "frame") {
+            std::uint64_t frame = 0;
+            std::cin >> frame;
+            context.present(outputs, frame);
+            context.swap();
+            std::cout << "frame " << frame << " shown" << std::endl;
+        } else if (word == "keys") {
+            for (const char key : context.takeKeys()) {
+                std::cout << "key " << int{key} << "\n";
+            }
+            std::cout << "keys taken" << std::endl;
+        } else if (word == "memory") {
+            printMemory();
+        }
+    }
+}
+
+int show(const Options& options) {
+    walls::Wall wall;
+    wall.stereo = options.active ? walls::Stereo::active : walls::Stereo::mono;
+    wall.tiles = {tileOf(options)};
+    const auto context = render_node::makeContext(render_node::backendNamed(options.gl), wall, wall.tiles[0]);
+    std::cout << "context " << context->name() << "\nrenderer " << context->renderer() << "\n";
+
+    const sand::Scene scene = sample::duneScene(options.cells);
+    render_node::SandView view(scene, glm::dmat4(1));
+    view.setTool(sample::probeAt(scene, {1, 1, 0.05}), true);
+    const EyeTarget left(options.width, options.height);
+    const EyeTarget right(options.width, options.height);
+    view.draw(sample::camera({0.9, -0.6, 1.2}, {1, 1, 0}), left);
+    view.draw(sample::camera({1.1, -0.6, 1.2}, {1, 1, 0}), right);
+    if (!options.pictures.empty()) {
+        writePicture(left, options.pictures + ".left");
+        writePicture(right, options.pictures + ".right");
+    }
+    // Several windows show the left and the right eye's picture by turns, as two projectors do.
+    std::vector<render_node::OutputPicture> outputs;
+    for (std::size_t i = 0; i < options.places.size(); ++i) {
+        outputs.push_back({i % 2 == 0 ? &left : &right, options.active ? &right : nullptr});
+    }
+    context->present(outputs, 0);
+    context->swap();
+    printLibraries();
+    for (const std::string& line : context->shortcomings()) {
+        std::cout << "shortcoming " << line << "\n";
+    }
+    std::cout << "swap lock " << context->swapLock() << ", ignore " << context->framesToIgnore() << "\nframe 0 shown"
+              << std::endl;
+    obey(*context, outputs);
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("Shows the sample scene with one backend.", "window_probe");
+    Options options;
+    app.add_option("--gl", options.gl);
+    app.add_option("--width", options.width);
+    app.add_option("--height", options.height);
+    app.add_option("--device", options.device);
+    app.add_option("--display", options.display);
+    app.add_option("--cells", options.cells);
+    app.add_option("--pictures", options.pictures, "begin of the files that the raw pictures go to");
+    app.add_option("--at", options.places, "a window: x,y or a monitor");
+    app.add_flag("--active", options.active);
+    return files::runMain(app, argc, argv, [&] { return show(options); });
+}
