@@ -20,7 +20,8 @@ namespace {
 
 struct Options {
     std::string scene, wall, haptic, pace = "realtime", out;
-    std::string stereo;  // as the wall file says when empty
+    std::string stereo, track;  // as the wall file says when empty
+    std::string pattern = "none";
     std::string fault, skew;
     bool noPictures = false;
     master::SessionOptions session;
@@ -85,6 +86,13 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
     options.session.pace = options.pace == "fast" ? master::Pace::fast : master::Pace::realtime;
     options.session.pictures = !options.noPictures;
     options.session.out = options.out;
+    options.session.pattern = lockstep::parsePattern(options.pattern);
+    if (!options.track.empty()) {
+        options.session.tracker = tracking::Source::parse(options.track, "--track");
+    } else if (!world.wall.tracking.empty()) {
+        options.session.tracker = tracking::Source::parse(world.wall.tracking, options.wall + ": source",
+                                                          std::filesystem::path(options.wall).parent_path());
+    }
     world.message = {world.scene.encode(), world.wall.encode(), options.session.frameTimeout, std::nullopt,
                      std::nullopt};
     if (!options.fault.empty()) {
@@ -145,6 +153,9 @@ void describeOptions(CLI::App& app, Options& options) {
         ->check(CLI::Range(1.0, 1000.0));
     app.add_option("--stereo", options.stereo, "how the wall shows two eyes, instead of what its file says")
         ->check(CLI::IsMember(walls::stereoNames()));
+    app.add_option("--track", options.track,
+                   "where the head's pose comes from, instead of what the wall file says (docs/head_tracking.md)");
+    app.add_option("--pattern", options.pattern, "test pattern shown from the start (docs/test_patterns.md)");
     app.add_option("--steps", session.steps, "end when exactly this many steps have been shown")
         ->check(CLI::PositiveNumber);
     app.add_option("--frames", session.frames, "end after this many frames")->check(CLI::PositiveNumber);

@@ -42,14 +42,31 @@ OperatorInput::~OperatorInput() {
 
 bool OperatorInput::stopAsked() const { return stop_ || signalled != 0; }
 
+std::optional<lockstep::Pattern> OperatorInput::takePattern(lockstep::Pattern shown) {
+    const int asked = pattern_.exchange(kNothing);
+    if (asked == kNothing) {
+        return std::nullopt;
+    }
+    return asked == kNext ? lockstep::nextPattern(shown) : static_cast<lockstep::Pattern>(asked);
+}
+
 bool OperatorInput::obey(std::string_view line) {
     if (line == "stop") {
         return false;
     }
+    constexpr std::string_view kPattern = "pattern ";
     if (line == "settle") {
         edit_ = sand::Edit::settle;
+    } else if (line == "pattern next") {
+        pattern_ = kNext;
+    } else if (line.starts_with(kPattern)) {
+        try {
+            pattern_ = static_cast<int>(lockstep::parsePattern(line.substr(kPattern.size())));
+        } catch (const files::InputError& error) {
+            fmt::print(stderr, "{}, next\n", error.what());
+        }
     } else if (!line.empty()) {
-        fmt::print(stderr, "'{}' is no command; these are: settle, stop\n", line.substr(0, 80));
+        fmt::print(stderr, "'{}' is no command; these are: settle, pattern NAME, stop\n", line.substr(0, 80));
     }
     return true;
 }

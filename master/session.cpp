@@ -7,11 +7,11 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <thread>
 
 #include "lockstep/build_id.hpp"
 #include "lockstep/session_message.hpp"
+#include "master/disagreement.hpp"
 #include "master/start_up.hpp"
 #include "master/wall_pictures.hpp"
 
@@ -45,6 +45,8 @@ void forgetOldResults(const std::filesystem::path& folder) {
     }
 }
 
+constexpr char kQuitKey = 27;  // Escape, in any window
+
 void sleepNs(std::int64_t ns) { std::this_thread::sleep_for(std::chrono::nanoseconds(ns)); }
 
 double milliseconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-6; }
@@ -59,7 +61,7 @@ Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, con
       terrain_(scene, options_.sweeps),
       names_(namesOf(cluster, wall)),
       barrier_(cluster, names_, options_.frameTimeout),
-      views_(wall, scene),
+      views_(wall, scene, options_.tracker),
       viewProof_(wall.encode()),
       journal_(options_.out / "session.journal", scene, lockstep::buildId()),
       sequencer_(options_.server, scene, options_.pace),
@@ -71,7 +73,17 @@ Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, con
     for (const walls::Tile& tile : wall.tiles) {
         summary_.tileNames.push_back(tile.name);
     }
+    views_.show(options_.pattern);
     hash_ = terrain_.stateHash();
+}
+
+double Session::framePeriod() const { return 1 / options_.refreshHz.value_or(wall_.refreshHz); }
+
+double Session::sessionTime() const {
+    // A fast session shows every frame what a recorded head did then, however long the frame takes.
+    return options_.pace == Pace::fast ? static_cast<double>(frame_) * framePeriod()
+           : lastSwap_ == 0            ? 0
+                                       : static_cast<double>(nowNs() - firstSwap_) * 1e-9;
 }
 
 void Session::waitForFrameTime() {
@@ -79,7 +91,7 @@ void Session::waitForFrameTime() {
         return;
     }
     // From one grid of times, not from the last frame: the wall's clock must not drift with each late frame.
-    const auto period = static_cast<std::int64_t>(1e9 / options_.refreshHz.value_or(wall_.refreshHz));
+    const auto period = static_cast<std::int64_t>(1e9 * framePeriod());
     const std::int64_t now = nowNs();
     frameStart_ = std::max(frameStart_ + period, now - period);
     if (frameStart_ > now) {
@@ -91,9 +103,6 @@ std::vector<TimedStep> Session::awaitSteps() {
     const bool fast = options_.pace == Pace::fast;
     std::size_t most = fast ? kMostStepsPerFastFrame : kMostStepsPerFrame;
     most = std::min<std::uint64_t>(most, options_.steps - terrain_.stepNumber());
-    if (const sand::Edit edit = operator_.takeEdit(); edit != sand::Edit::none) {
-        sequencer_.request(edit);
-    }
     const std::int64_t since = nowNs();
     std::vector<TimedStep> steps = sequencer_.next(terrain_, hash_, most);
     while (fast && steps.empty() && !operator_.stopAsked() &&
@@ -107,7 +116,7 @@ std::vector<TimedStep> Session::awaitSteps() {
 lockstep::FrameMessage Session::prepare(std::vector<TimedStep>& steps) {
     lockstep::FrameMessage message;
     message.frame = ++frame_;
-    message.view = views_.next(frame_);
+    message.view = views_.at(sessionTime());
     for (const TimedStep& timed : steps) {
         message.steps.push_back(timed.step);
     }
@@ -128,8 +137,25 @@ void Session::applySteps(const std::vector<TimedStep>& steps) {
     }
 }
 
+void Session::obeyOperator() {
+    if (const sand::Edit edit = operator_.takeEdit(); edit != sand::Edit::none) {
+        sequencer_.request(edit);
+    }
+    if (const auto pattern = operator_.takePattern(views_.pattern())) {
+        views_.show(*pattern);
+    }
+    for (const lockstep::Arrival& arrival : barrier_.arrivals()) {
+        if (arrival.key == 't') {
+            views_.show(lockstep::nextPattern(views_.pattern()));
+        } else if (arrival.key == kQuitKey) {
+            operator_.stop();
+        }
+    }
+}
+
 bool Session::showFrame() {
     waitForFrameTime();
+    obeyOperator();
     std::vector<TimedStep> steps = awaitSteps();
     const std::uint64_t hashBefore = hash_;
     std::size_t bytes = 0;
@@ -217,41 +243,14 @@ void Session::sayProgress(bool last) {
     lastProgressFrame_ = frame_;
 }
 
-void Session::reportDivergence(const lockstep::Divergence& divergence) {
-    const std::filesystem::path replay =
-        std::filesystem::read_symlink("/proc/self/exe").parent_path() / "sandwall-replay";
-    const std::filesystem::path journal = options_.out / "session.journal";
-    std::ofstream dump(options_.out / "divergence.txt");
-    const auto say = [&dump](const std::string& line) {
-        fmt::print(stderr, "sandwall: {}\n", line);
-        dump << line << '\n';
-    };
-    for (const lockstep::Divergence::Odd& odd : divergence.odd) {
-        const std::string where =
-            odd.tile < 0
-                ? "in pose, step or outflow"
-                : fmt::format("first in hash tile {} (columns {}..{}, rows {}..{}), {} cells of it", odd.tile,
-                              odd.cells.x0, odd.cells.x1 - 1, odd.cells.y0, odd.cells.y1 - 1, odd.cellsDiffering);
-        say(fmt::format("frame {}, step {}: {} holds other sand than {} of {} ranks: {:016x} and not {:016x}, {}",
-                        frame_, terrain_.stepNumber(), names_[static_cast<std::size_t>(odd.rank)], divergence.agreeing,
-                        cluster_.size(), odd.hash, divergence.majorityHash, where));
-    }
-    if (divergence.tie) {
-        say("no hash has a majority; the master's was taken for right");
-    }
-    say(fmt::format("reproduce the right hash with: '{}' '{}' --until {} --hash", replay.string(), journal.string(),
-                    terrain_.stepNumber()));
-}
-
 void Session::reportDisagreement(lockstep::Verdict verdict) {
     const lockstep::Watched watched(barrier_.watchdog());
-    if (verdict == lockstep::Verdict::otherSand) {
-        reportDivergence(*lockstep::findDivergence(cluster_, terrain_));
-        return;
-    }
-    for (const std::string& line : lockstep::describeOtherViews(barrier_.arrivals(), names_)) {
-        fmt::print(stderr, "sandwall: {}\n", line);
-    }
+    const std::vector<std::string> lines =
+        verdict == lockstep::Verdict::otherSand
+            ? describeDivergence({frame_, terrain_.stepNumber(), *lockstep::findDivergence(cluster_, terrain_)}, names_,
+                                 options_.out / "session.journal")
+            : lockstep::describeOtherViews(barrier_.arrivals(), names_);
+    tell(lines, options_.out / "divergence.txt");
 }
 
 void Session::finish() {
@@ -264,6 +263,9 @@ void Session::finish() {
     summary_.volumeOutflow = terrain_.outflow();
     summary_.seconds = static_cast<double>(lastSwap_ - firstSwap_) * 1e-9;
     summary_.haptic = sequencer_.report();
+    if (views_.viewer().tracked()) {
+        summary_.tracking = views_.viewer().counters();
+    }
     summary_.link = sequencer_.counters();
     summary_.ranksReports = lockstep::gatherReports(cluster_, {});
     summary_.masterResidentBytes = lockstep::residentBytes();

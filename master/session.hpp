@@ -33,7 +33,9 @@ struct SessionOptions {
     std::uint64_t frames = kNoLimit;  // ends after this many
     double frameTimeout = 30;         // [s] that a frame may take before the job ends
     bool pictures = true;
-    bool readInput = false;  // "stop" on standard input, or its end, ends the session
+    lockstep::Pattern pattern = lockstep::Pattern::none;  // shown from the start
+    tracking::Source tracker;                             // where the head's pose comes from
+    bool readInput = false;                               // "stop" on standard input, or its end, ends the session
     std::filesystem::path out;
     sand::Erosion::Options sweeps;  // how the master's own replica is swept
 };
@@ -51,6 +53,9 @@ public:
 private:
     [[nodiscard]] lockstep::FrameMessage prepare(std::vector<haptic_bridge::TimedStep>& steps);
     void waitForFrameTime();
+    void obeyOperator();
+    [[nodiscard]] double framePeriod() const;  // [s]
+    [[nodiscard]] double sessionTime() const;  // [s]
     [[nodiscard]] std::vector<haptic_bridge::TimedStep> awaitSteps();
     [[nodiscard]] bool showFrame();
     void applySteps(const std::vector<haptic_bridge::TimedStep>& steps);
@@ -58,7 +63,6 @@ private:
     void measureLatency(const std::vector<haptic_bridge::TimedStep>& steps, std::int64_t broadcast,
                         std::int64_t swapped);
     void sayProgress(bool last);
-    void reportDivergence(const lockstep::Divergence& divergence);
     void reportDisagreement(lockstep::Verdict verdict);
     void finish();
 

@@ -89,6 +89,10 @@ ordered_json jsonOf(const Summary& summary) {
                                     : ordered_json{{"p50", nullptr}, {"p99", nullptr}, {"max", nullptr}};
     json["broadcast_bytes"] = spread(summary.broadcastBytes);
     json["haptic"] = hapticPart(summary);
+    if (const auto& head = summary.tracking) {
+        json["head_tracking"] = {{"packets", head->packets}, {"refused", head->refused}, {"old", head->old},
+                                 {"absent", head->absent},   {"lost", head->timesLost},  {"outside", head->outside}};
+    }
     json["master_memory_bytes"] = summary.masterResidentBytes;
     json["per_rank"] = ordered_json::array();
     for (std::size_t i = 0; i < summary.ranksReports.size(); ++i) {

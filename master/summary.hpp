@@ -10,6 +10,7 @@
 #include "haptic_bridge/client.hpp"
 #include "lockstep/session_message.hpp"
 #include "lockstep/statistics.hpp"
+#include "tracking/head_tracker.hpp"
 
 namespace master {
 
@@ -39,6 +40,7 @@ struct Summary {
     Latency latency;
     std::optional<haptic_bridge::Report> haptic;
     haptic_bridge::LinkCounters link;
+    std::optional<tracking::Counters> tracking;  // of the head, where it is tracked
     std::vector<lockstep::RankReport> ranksReports;
     std::vector<std::string> tileNames;  // by rank, from 1
     std::int64_t masterResidentBytes = 0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "master/view_source.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <glm/gtc/type_ptr.hpp>
 
@@ -8,17 +10,21 @@
 
 namespace master {
 
-ViewSource::ViewSource(const walls::Wall& wall, const sand::Scene& scene) {
+ViewSource::ViewSource(const walls::Wall& wall, const sand::Scene& scene, const tracking::Source& source)
+    : viewer_(wall, source, [](const std::string& line) { fmt::print(stderr, "sandwall: {}\n", line); }) {
     const sand::HeightField& field = scene.terrain;
     const glm::dmat4 toRoom =
         walls::stageToRoom(wall.stage, field.columns() * field.cellSize(), field.rows() * field.cellSize(),
                            scene.referenceHeight() * field.unit());
     std::copy_n(glm::value_ptr(toRoom), state_.sceneToRoom.size(), state_.sceneToRoom.begin());
-    std::copy_n(glm::value_ptr(wall.viewer.eye), state_.head.size(), state_.head.begin());
-    std::copy_n(glm::value_ptr(wall.viewer.right), state_.right.size(), state_.right.begin());
-    state_.eyeSeparation = wall.viewer.eyeSeparation;
 }
 
-lockstep::ViewState ViewSource::next(std::uint64_t /* frame */) { return state_; }
+lockstep::ViewState ViewSource::at(double seconds) {
+    const walls::Viewer viewer = viewer_.at(seconds);
+    std::copy_n(glm::value_ptr(viewer.eye), state_.head.size(), state_.head.begin());
+    std::copy_n(glm::value_ptr(viewer.right), state_.right.size(), state_.right.begin());
+    state_.eyeSeparation = viewer.eyeSeparation;
+    return state_;
+}
 
 }  // namespace master

@@ -2,25 +2,32 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 #include "lockstep/frame_message.hpp"
+#include "lockstep/test_pattern.hpp"
 #include "sand/scene.hpp"
+#include "tracking/tracked_viewer.hpp"
 #include "walls/wall.hpp"
 
 namespace master {
 
-/// From where the wall is seen, frame by frame: the viewer of the wall file, where the sand stands, the test pattern.
+/// From where the wall is seen, frame by frame: the viewer of the wall file or a tracked head, where the sand stands,
+/// and the test pattern in its place.
 class ViewSource {
 public:
-    ViewSource(const walls::Wall& wall, const sand::Scene& scene);
+    /// Throws files::InputError when the tracker cannot be had.
+    ViewSource(const walls::Wall& wall, const sand::Scene& scene, const tracking::Source& source);
 
-    /// For this frame of the session.
-    [[nodiscard]] lockstep::ViewState next(std::uint64_t frame);
+    /// At this time of the session [s].
+    [[nodiscard]] lockstep::ViewState at(double seconds);
 
-    void showPattern(std::uint8_t pattern) { state_.pattern = pattern; }
-    [[nodiscard]] std::uint8_t pattern() const { return state_.pattern; }
+    void show(lockstep::Pattern pattern) { state_.pattern = static_cast<std::uint8_t>(pattern); }
+    [[nodiscard]] lockstep::Pattern pattern() const { return static_cast<lockstep::Pattern>(state_.pattern); }
+    [[nodiscard]] const tracking::TrackedViewer& viewer() const { return viewer_; }
 
 private:
+    tracking::TrackedViewer viewer_;
     lockstep::ViewState state_;
 };
 

@@ -4,12 +4,15 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "lockstep/frame_message.hpp"
 #include "render_node/eye_target.hpp"
 #include "render_node/gl/gl_context.hpp"
 #include "render_node/sand_view.hpp"
+#include "render_node/stereo_composer.hpp"
+#include "render_node/test_pattern.hpp"
 #include "sand/terrain.hpp"
 #include "walls/wall.hpp"
 
@@ -21,24 +24,33 @@ namespace render_node {
 /// thread.
 class TilePainter {
 public:
-    /// `wall`, `tile` must outlive it. Throws std::runtime_error when a shader does not compile or a size is refused.
-    TilePainter(const walls::Wall& wall, const walls::Tile& tile, const sand::Scene& scene);
+    /// `wall` and `tile` must outlive it; test patterns show the host. Throws std::runtime_error when a shader does not
+    /// compile or a size is refused.
+    TilePainter(const walls::Wall& wall, const walls::Tile& tile, const sand::Scene& scene, std::string host);
 
-    /// Brings every eye that differs up to date with `terrain` as `view` sees it.
-    void paint(sand::Terrain& terrain, const lockstep::ViewState& view);
+    /// Brings every eye that differs up to date with `terrain` as `view` sees it, or with its test pattern, and puts
+    /// them together. Does not wait for GL.
+    void paint(sand::Terrain& terrain, const lockstep::ViewState& view, std::uint64_t frame);
     /// What each output shows, in the order of tile.outputs; good until the next paint().
-    [[nodiscard]] std::vector<OutputPicture> outputs();
+    [[nodiscard]] std::vector<OutputPicture> outputs() const { return composer_.shown(targets_); }
 
     /// Each eye's picture, in the order of walls::eyesOf.
     [[nodiscard]] std::span<const EyeTarget> eyes() const { return targets_; }
     [[nodiscard]] std::int64_t frameBufferBytes() const;
 
 private:
+    [[nodiscard]] bool paintSand(const lockstep::ViewState& view);
+    [[nodiscard]] bool paintPattern(lockstep::Pattern pattern, std::uint64_t frame);
+
     const walls::Wall& wall_;
     const walls::Tile& tile_;
+    std::string host_;
     SandView sand_;
     std::vector<EyeTarget> targets_;
     std::vector<EyeMemory> memories_;  // what each target shows already
+    StereoComposer composer_;
+    std::optional<TestPatternView> patterns_;  // since one was asked for
+    lockstep::Pattern shown_ = lockstep::Pattern::none;
 };
 
 }  // namespace render_node

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render_node/tile_session.hpp"
 
+#include <fmt/format.h>
+
 #include <memory>
 #include <optional>
 #include <vector>
@@ -34,10 +36,12 @@ public:
           context_(makeContext(backend, wall_, tile_)) {
         const sand::Scene scene = sand::Scene::decode(message.scene);
         terrain_.emplace(scene, sweeps);
-        painter_.emplace(wall_, tile_, scene);
+        painter_.emplace(wall_, tile_, scene, lockstep::hostName());
     }
 
     [[nodiscard]] const GlContext& context() const { return *context_; }
+    /// As the master speaks of it.
+    [[nodiscard]] std::string name() const { return fmt::format("rank {} (tile {})", tile_.rank, tile_.name); }
 
     /// Frames until the last one, or until replicas differ.
     void run() {
@@ -50,7 +54,7 @@ public:
             applyFaults(frame);
             applySteps(frame);
             const std::int64_t start = nowNs();
-            painter_->paint(*terrain_, frame.view);
+            painter_->paint(*terrain_, frame.view, frame.frame);
             context_->present(painter_->outputs(), frame.frame);
             const std::int64_t drawn = nowNs();
             drawMs_.add(static_cast<double>(drawn - start) * 1e-6);
@@ -152,7 +156,13 @@ int showTile(const lockstep::Cluster& cluster, Backend backend, const sand::Eros
     if (!lockstep::agreeToGoOn(cluster, false)) {
         return 0;
     }
-    session->run();
+    try {
+        session->run();
+    } catch (const std::exception& error) {
+        // The others are in the middle of a frame and cannot be asked to leave.
+        fmt::print(stderr, "sandwall: {} on {}: {}\n", session->name(), readiness.host, error.what());
+        cluster.abort(1);
+    }
     return 0;
 }
 

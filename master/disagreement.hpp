@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "lockstep/divergence.hpp"
+
+namespace master {
+
+/// A frame on which some rank held other sand, as the master saw it.
+struct DivergedFrame {
+    std::uint64_t frame = 0;
+    std::uint64_t step = 0;
+    lockstep::Divergence divergence;
+};
+
+/// Who differs and where, a line each, and how to compute the right hash again from the journal. `names` are those of
+/// the ranks, the master's first.
+[[nodiscard]] std::vector<std::string> describeDivergence(const DivergedFrame& diverged,
+                                                          const std::vector<std::string>& names,
+                                                          const std::filesystem::path& journal);
+
+/// Prints the lines on standard error, and keeps them in a file.
+void tell(const std::vector<std::string>& lines, const std::filesystem::path& file);
+
+}  // namespace master
