@@ -171,12 +171,13 @@ void TestPatternView::addRamp(glm::ivec2 size) {
         const int wide = size.x * (step + 1) / kSteps - left;
         painter_.addBox({left, 0}, {wide, stepsHigh}, grey(std::min(255, 16 * step)));
     }
+    const int dot = dotToFit("255", {size.x / kSteps - 2, stepsHigh / 8});
     for (int step = 0; step < kSteps; step += stride) {
         const int level = std::min(255, 16 * step);
-        const int left = size.x * step / kSteps;
-        const int wide = size.x / kSteps;
-        addCentred(std::to_string(level), {left + 1, stepsHigh / 2}, {std::max(1, wide - 2), stepsHigh / 8},
-                   level < 128 ? kWhite : kBlack);
+        const std::string number = std::to_string(level);
+        const int middle = size.x * (2 * step + 1) / (2 * kSteps);
+        painter_.addText(number, {middle - textSize(number).x * dot / 2, stepsHigh / 2}, dot,
+                         level < 128 ? kWhite : kBlack);
     }
     for (int level = 0; level < 256; ++level) {
         const int left = size.x * level / 256;

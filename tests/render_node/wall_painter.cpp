@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wall_painter.hpp"
+
+#include <algorithm>
+
+namespace sample {
+namespace {
+
+constexpr int kGap = 4;  // [pixel], between what different outputs of a tile show
+
+render_node::Camera cameraOf(const walls::Wall& wall, const walls::Screen& screen, walls::Eye eye) {
+    const glm::dvec3 position = walls::eyePosition(wall.viewer, eye);
+    return {walls::viewOf(screen, position, wall.clip.near, wall.clip.far).viewProjection, position};
+}
+
+/// The wall with the size of its outputs' buffers in place of the eyes' pictures, to lay these out.
+walls::Wall ofBuffers(walls::Wall wall) {
+    for (walls::Tile& tile : wall.tiles) {
+        tile.pixels = walls::outputPixels(wall.stereo, tile.pixels);
+    }
+    if (wall.grid) {
+        wall.grid->tilePixels = walls::outputPixels(wall.stereo, wall.grid->tilePixels);
+    }
+    return wall;
+}
+
+}  // namespace
+
+std::vector<std::string> wallNames() {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(wallFolder())) {
+        if (entry.path().extension() == ".toml") {
+            names.push_back(entry.path().stem().string());
+        }
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+walls::Wall reduced(walls::Wall wall, int by) {
+    const auto smaller = [by](glm::ivec2 pixels) { return glm::max(pixels / by, glm::ivec2(1)); };
+    for (walls::Tile& tile : wall.tiles) {
+        tile.pixels = smaller(tile.pixels);
+    }
+    if (wall.grid) {
+        wall.grid->tilePixels = smaller(wall.grid->tilePixels);
+    }
+    return wall;
+}
+
+Image pictureOf(const render_node::EyeTarget& target) {
+    Image image(target.width(), target.height());
+    image.rgb = target.read();
+    return image;
+}
+
+render_node::SandView makeView(const DugScene& dug, const walls::Wall& wall) {
+    const sand::HeightField& field = dug.scene.terrain;
+    render_node::SandView view(
+        dug.scene, walls::stageToRoom(wall.stage, field.columns() * field.cellSize(), field.rows() * field.cellSize(),
+                                      static_cast<double>(dug.scene.referenceHeight()) * field.unit()));
+    view.update(dug.terrain.field(), dug.terrain.field().bounds());
+    view.setTool(dug.terrain.probe(), true);
+    return view;
+}
+
+Image drawThrough(render_node::SandView& sand, const walls::Wall& wall, const walls::Screen& screen, glm::ivec2 pixels,
+                  walls::Eye eye) {
+    const render_node::EyeTarget target(pixels.x, pixels.y);
+    sand.draw(cameraOf(wall, screen, eye), target);
+    return pictureOf(target);
+}
+
+std::vector<Image> outputsOf(render_node::SandView& sand, const walls::Wall& wall, const walls::Tile& tile) {
+    std::vector<render_node::EyeTarget> targets;
+    for (const walls::Eye eye : walls::eyesOf(wall.stereo)) {
+        targets.emplace_back(tile.pixels.x, tile.pixels.y);
+        sand.draw(cameraOf(wall, tile.screen, eye), targets.back());
+    }
+    render_node::StereoComposer composer(wall.stereo, tile);
+    composer.compose(targets);
+    std::vector<Image> images;
+    for (const render_node::OutputPicture& output : composer.shown(targets)) {
+        images.push_back(pictureOf(*output.picture));
+        if (output.right != nullptr) {
+            images.push_back(pictureOf(*output.right));
+        }
+    }
+    return images;
+}
+
+Image wallOfOutputs(const walls::Wall& wall, const std::vector<std::vector<Image>>& outputsByTile) {
+    const walls::Canvas canvas = walls::wallCanvas(ofBuffers(wall));
+    const auto most = std::max_element(outputsByTile.begin(), outputsByTile.end(), [](const auto& a, const auto& b) {
+                          return a.size() < b.size();
+                      })->size();
+    const int step = canvas.height + kGap;
+    Image whole(canvas.width, static_cast<int>(most) * step - kGap);
+    for (std::size_t tile = 0; tile < outputsByTile.size(); ++tile) {
+        for (std::size_t i = 0; i < outputsByTile[tile].size(); ++i) {
+            pictures::blit(whole, outputsByTile[tile][i], canvas.tiles[tile].x,
+                           canvas.tiles[tile].y + static_cast<int>(i) * step);
+        }
+    }
+    return whole;
+}
+
+Image patternOfWall(const walls::Wall& wall, lockstep::Pattern pattern, walls::Eye eye, std::uint64_t frame) {
+    const walls::Canvas canvas = walls::wallCanvas(wall);
+    Image whole(canvas.width, canvas.height);
+    for (std::size_t i = 0; i < wall.tiles.size(); ++i) {
+        const walls::Tile& tile = wall.tiles[i];
+        const render_node::EyeTarget target(tile.pixels.x, tile.pixels.y);
+        render_node::TestPatternView view(wall, tile, "node" + std::to_string(tile.rank));
+        view.draw(pattern, eye, frame, target);
+        pictures::blit(whole, pictureOf(target), canvas.tiles[i].x, canvas.tiles[i].y);
+    }
+    return whole;
+}
+
+}  // namespace sample

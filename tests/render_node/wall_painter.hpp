@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pictures/image.hpp"
+#include "render_node/sand_view.hpp"
+#include "render_node/stereo_composer.hpp"
+#include "render_node/test_pattern.hpp"
+#include "sample_scene.hpp"
+#include "walls/canvas.hpp"
+#include "walls/projection.hpp"
+
+/// Walls drawn tile by tile in one process, as their ranks would.
+namespace sample {
+
+using pictures::Image;
+
+/// Dunes with a furrow dug through them, the tool still in the sand.
+struct DugScene {
+    sand::Scene scene = ballInDunes();
+    sand::Terrain terrain{scene};
+
+    DugScene() {
+        drag(terrain, scene, {0.4, 0.4, 0.07}, {1.5, 0.6, 0.06});
+        drag(terrain, scene, {1.5, 0.6, 0.06}, {1.3, 1.5, 0.09});
+    }
+
+private:
+    static sand::Scene ballInDunes() {
+        sand::Scene dunes = duneScene(128);
+        dunes.rules.toolRadius *= 2;
+        return dunes;
+    }
+};
+
+inline std::filesystem::path wallFolder() { return std::filesystem::path(SANDWALL_SOURCE_DIR) / "walls/configs"; }
+
+/// The files of walls/configs, in the order of their names.
+[[nodiscard]] std::vector<std::string> wallNames();
+
+/// The same display with each side of a tile `by` times shorter in pixels, at least one.
+[[nodiscard]] walls::Wall reduced(walls::Wall wall, int by);
+
+[[nodiscard]] Image pictureOf(const render_node::EyeTarget& target);
+
+/// Draws the sand as seen through one screen. `sand` must have the wall's stage (makeView).
+[[nodiscard]] Image drawThrough(render_node::SandView& sand, const walls::Wall& wall, const walls::Screen& screen,
+                                glm::ivec2 pixels, walls::Eye eye);
+[[nodiscard]] render_node::SandView makeView(const DugScene& dug, const walls::Wall& wall);
+
+/// What the outputs of a tile show, in their order; an output that shows the eyes in turn gives the left, then the
+/// right.
+[[nodiscard]] std::vector<Image> outputsOf(render_node::SandView& sand, const walls::Wall& wall,
+                                           const walls::Tile& tile);
+
+/// One picture of all that the wall's outputs show, bezels black: first outputs as they stand on the wall, second
+/// ones, or second eyes, below.
+[[nodiscard]] Image wallOfOutputs(const walls::Wall& wall, const std::vector<std::vector<Image>>& outputsByTile);
+
+/// Every tile's pattern for one eye, put together.
+[[nodiscard]] Image patternOfWall(const walls::Wall& wall, lockstep::Pattern pattern, walls::Eye eye,
+                                  std::uint64_t frame = 0);
+
+}  // namespace sample
