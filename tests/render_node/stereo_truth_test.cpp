@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "render_node/gl/gl_context.hpp"
+#include "wall_painter.hpp"
+
+namespace {
+
+using pictures::Image;
+using walls::Eye;
+using walls::Screen;
+using walls::Stereo;
+
+class StereoPicture : public testing::Test {
+protected:
+    std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+};
+
+/// A screen of 0.8 x 0.6 m and 800 x 600 pixels, two metres before the viewer.
+walls::Wall plainWall() {
+    walls::Wall wall;
+    wall.viewer.eye = {0, 0.3, 2};
+    wall.viewer.eyeSeparation = 0.065;
+    wall.clip = {0.1, 20};
+    walls::Tile tile;
+    tile.name = "plain";
+    tile.screen = {{-0.4, 0, 0}, {0.4, 0, 0}, {-0.4, 0.6, 0}};
+    tile.pixels = {800, 600};
+    wall.tiles = {tile};
+    return walls::shownIn(wall, Stereo::passive);
+}
+
+/// Where a ball hangs in front of nothing: the middle of all pixels that are not background [pixel].
+glm::dvec2 middleOf(const Image& image, glm::ivec3 background) {
+    glm::dvec2 sum(0);
+    double count = 0;
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            const std::uint8_t* c = image.at(x, y);
+            if (glm::ivec3(c[0], c[1], c[2]) != background) {
+                sum += glm::dvec2(x + 0.5, y + 0.5);
+                count += 1;
+            }
+        }
+    }
+    EXPECT_GT(count, 100) << "no ball";
+    return sum / count;
+}
+
+TEST_F(StereoPicture, ShowsAPointWithTheParallaxOfItsDepth) {
+    const walls::Wall wall = plainWall();
+    sand::Scene scene = sample::flatScene(16, 16, 0.015);
+    scene.look.backgroundColour = {0, 1, 0};
+    // Upright like the room, the sand five metres below the floor, out of sight: only the tool is seen.
+    const glm::dmat4 sceneToRoom({1, 0, 0, 0}, {0, 0, -1, 0}, {0, 1, 0, 0}, {0, -5, 0, 1});
+    render_node::SandView view(scene, sceneToRoom);
+    for (const double wanted : {-1.0, -0.5, 0.0, 0.5, 2.0}) {
+        const sand::ProbePoint probe = sample::probeAt(scene, {0.06, wanted, 5.25});
+        view.setTool(probe, true);
+        // Probes are quantised: the truth is where the tool really is, from the middle of the screen's lower edge.
+        const double unit = scene.terrain.cellSize() / sand::kProbePerCell;  // [m]
+        const glm::dvec3 at(probe.x * unit, probe.z * unit - 5, probe.y * unit);
+        const double behind = at.z;
+        const auto shown = [&](Eye eye) {
+            return middleOf(sample::drawThrough(view, wall, wall.tiles[0].screen, wall.tiles[0].pixels, eye),
+                            {0, 255, 0});
+        };
+        const glm::dvec2 left = shown(Eye::left), right = shown(Eye::right), middle = shown(Eye::middle);
+        // By similar triangles separation * s / (s + D), a pixel being a millimetre; to the right for what lies behind.
+        const double parallax = 1000 * 0.065 * behind / (behind + 2);
+        EXPECT_NEAR(right.x - left.x, parallax, 0.25) << behind << " m behind the screen";
+        EXPECT_NEAR(right.y, left.y, 0.25);
+        EXPECT_NEAR(middle.x, (left.x + right.x) / 2, 0.25);
+        // And where the point itself must be: on the line from the eye.
+        EXPECT_NEAR(middle.x, 400 + 1000 * at.x * 2 / (behind + 2), 0.25);
+        EXPECT_NEAR(middle.y, 600 - 1000 * (0.3 + (at.y - 0.3) * 2 / (behind + 2)), 0.25);
+    }
+}
+
+TEST_F(StereoPicture, OfOneEyeIsTheMiddleBetweenTwo) {
+    const sample::DugScene dug;
+    walls::Wall mono = sample::reduced(walls::loadWall(sample::wallFolder() / "desktop.toml"), 4);
+    mono.viewer.eyeSeparation = 0.065;
+    ASSERT_EQ(mono.stereo, Stereo::mono);
+    render_node::SandView view = sample::makeView(dug, mono);
+    const auto monoShown = sample::outputsOf(view, mono, mono.tiles[0]);
+    ASSERT_EQ(monoShown.size(), 1U);
+    walls::Wall joined = walls::shownIn(mono, Stereo::passive);
+    joined.viewer.eyeSeparation = 0;
+    for (const Image& eye : sample::outputsOf(view, joined, joined.tiles[0])) {
+        EXPECT_EQ(eye, monoShown[0]) << "two eyes in one place";
+    }
+    const auto apart = [&] {
+        joined.viewer.eyeSeparation = 0.065;
+        return sample::outputsOf(view, joined, joined.tiles[0]);
+    }();
+    EXPECT_NE(apart[0], monoShown[0]);
+    EXPECT_NE(apart[1], monoShown[0]);
+}
+
+TEST_F(StereoPicture, OfTheLeftEyeAloneIsThatOfTheLeftOutput) {
+    const sample::DugScene dug;
+    const walls::Wall wall = sample::reduced(walls::loadWall(sample::wallFolder() / "tiled_3x4.toml"), 8);
+    render_node::SandView view = sample::makeView(dug, wall);
+    const auto both = sample::outputsOf(view, wall, wall.tiles[5]);
+    for (const auto& [stereo, expected] : {std::pair{Stereo::left, 0U}, {Stereo::right, 1U}}) {
+        const walls::Wall one = walls::shownIn(wall, stereo);
+        EXPECT_EQ(sample::outputsOf(view, one, one.tiles[5]), std::vector{both.at(expected)});
+    }
+    EXPECT_NE(both[0], both[1]);
+}
+
+/// Two corners that a face shares with another.
+struct Joint {
+    glm::dvec3 from, to;
+};
+
+std::optional<Joint> jointOf(const Screen& first, const Screen& second) {
+    const auto corners = [](const Screen& s) {
+        return std::array{s.lowerLeft, s.lowerRight, s.upperLeft, s.upperRight()};
+    };
+    std::vector<glm::dvec3> shared;
+    for (const glm::dvec3 a : corners(first)) {
+        for (const glm::dvec3 b : corners(second)) {
+            if (glm::distance(a, b) < 1e-9) {
+                shared.push_back(a);
+            }
+        }
+    }
+    return shared.size() == 2 ? std::optional(Joint{shared[0], shared[1]}) : std::nullopt;
+}
+
+/// What a face shows along one of its edges. The face is moved outwards by half a pixel, so that its last pixels lie on
+/// the edge itself, as those of the other face do: both then look along the same rays.
+std::vector<glm::ivec3> alongEdge(render_node::SandView& view, const walls::Wall& wall, const walls::Tile& tile,
+                                  const Joint& joint, Eye eye) {
+    Screen screen = tile.screen;
+    const glm::dvec3 middle = (screen.lowerRight + screen.upperLeft) / 2.0;
+    const glm::dvec3 outwards = glm::normalize((joint.from + joint.to) / 2.0 - middle);
+    const glm::dvec3 half = outwards * (0.5 * screen.width() / tile.pixels.x);
+    for (glm::dvec3* corner : {&screen.lowerLeft, &screen.lowerRight, &screen.upperLeft}) {
+        *corner += half;
+    }
+    const Image image = sample::drawThrough(view, wall, screen, tile.pixels, eye);
+    const int count = static_cast<int>(std::lround(glm::distance(joint.from, joint.to) / (2 * glm::length(half))));
+    std::vector<glm::ivec3> colours;
+    for (int i = 0; i < count; ++i) {
+        const glm::dvec3 at = glm::mix(joint.from, joint.to, (i + 0.5) / count) - screen.lowerLeft;
+        const int x = static_cast<int>(glm::dot(at, screen.right()) / screen.width() * image.width);
+        const int y = static_cast<int>((1 - glm::dot(at, screen.up()) / screen.height()) * image.height);
+        const std::uint8_t* c = image.at(std::clamp(x, 0, image.width - 1), std::clamp(y, 0, image.height - 1));
+        colours.emplace_back(c[0], c[1], c[2]);
+    }
+    return colours;
+}
+
+/// Of the pixels that meet, the mean of the largest difference of a channel [level].
+double meanDifference(const std::vector<glm::ivec3>& a, const std::vector<glm::ivec3>& b, std::size_t shift = 0) {
+    double sum = 0;
+    for (std::size_t i = 0; i + shift < a.size(); ++i) {
+        const glm::ivec3 d = glm::abs(a[i + shift] - b[i]);
+        sum += std::max({d.r, d.g, d.b});
+    }
+    return sum / static_cast<double>(a.size() - shift);
+}
+
+TEST_F(StereoPicture, FacesOfACaveJoinAlongTheirEdges) {
+    const sample::DugScene dug;
+    const walls::Wall cave = sample::reduced(walls::loadWall(sample::wallFolder() / "flex_cave.toml"), 2);
+    render_node::SandView view = sample::makeView(dug, cave);
+    int joints = 0;
+    for (std::size_t i = 0; i < cave.tiles.size(); ++i) {
+        for (std::size_t j = i + 1; j < cave.tiles.size(); ++j) {
+            const auto joint = jointOf(cave.tiles[i].screen, cave.tiles[j].screen);
+            if (!joint) {
+                continue;
+            }
+            ++joints;
+            for (const Eye eye : {Eye::left, Eye::right}) {
+                const auto first = alongEdge(view, cave, cave.tiles[i], *joint, eye);
+                const auto second = alongEdge(view, cave, cave.tiles[j], *joint, eye);
+                const auto other =
+                    alongEdge(view, cave, cave.tiles[j], *joint, eye == Eye::left ? Eye::right : Eye::left);
+                ASSERT_EQ(first.size(), second.size());
+                const std::string edge = cave.tiles[i].name + " and " + cave.tiles[j].name;
+                // What is left is grain: the texture is seen from another side, and another mipmap is taken.
+                EXPECT_LT(meanDifference(first, second), 0.5) << edge;
+                EXPECT_GT(meanDifference(first, second, 1), 1) << edge << ", a pixel apart";
+                EXPECT_GT(meanDifference(first, other), 1) << edge << ", eyes swapped";
+            }
+        }
+    }
+    EXPECT_EQ(joints, 5) << "left-front, front-right, and the floor with each";
+}
+
+}  // namespace

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "pictures/compare.hpp"
+#include "render_node/gl/gl_context.hpp"
+#include "wall_painter.hpp"
+
+namespace {
+
+using pictures::Image;
+using walls::Eye;
+using walls::PixelRect;
+using walls::Screen;
+
+constexpr int kLevels = 8;
+constexpr double kMostBad = 0.01;
+constexpr int kSilhouette = 48;  // [level]: grains of sand differ by less
+constexpr int kMostPixels = 700000;
+
+/// A screen that one camera sees as a whole, and the parts of it that are drawn on their own.
+struct Whole {
+    Screen screen;
+    glm::ivec2 pixels;
+    std::vector<std::pair<Screen, PixelRect>> parts;
+};
+
+/// The part of a screen that shows these pixels of it.
+Screen partOf(const Screen& screen, glm::ivec2 pixels, const PixelRect& rect) {
+    const glm::dvec3 x = (screen.lowerRight - screen.lowerLeft) / double(pixels.x);
+    const glm::dvec3 y = (screen.upperLeft - screen.lowerLeft) / double(pixels.y);
+    const glm::dvec3 corner = screen.lowerLeft + x * double(rect.x) + y * double(pixels.y - rect.y - rect.height);
+    return {corner, corner + x * double(rect.width), corner + y * double(rect.height)};
+}
+
+/// A screen of its own in four unequal parts.
+Whole inParts(const walls::Tile& tile) {
+    const int x = tile.pixels.x * 2 / 5, y = tile.pixels.y * 3 / 7;
+    Whole whole{tile.screen, tile.pixels, {}};
+    for (const PixelRect& rect : {PixelRect{0, 0, x, y},
+                                  {x, 0, tile.pixels.x - x, y},
+                                  {0, y, x, tile.pixels.y - y},
+                                  {x, y, tile.pixels.x - x, tile.pixels.y - y}}) {
+        whole.parts.emplace_back(partOf(tile.screen, tile.pixels, rect), rect);
+    }
+    return whole;
+}
+
+/// The same grid with bezels of whole pixels, so that a crop of the whole can equal a tile.
+walls::Wall withWholeBezels(walls::Wall wall) {
+    walls::Grid& grid = *wall.grid;
+    const glm::dvec2 pixel = grid.tileSize / glm::dvec2(grid.tilePixels);
+    grid.bezel = glm::round(grid.bezel / pixel) * pixel;
+    wall.tiles = walls::tilesOf(grid, wall.stereo);
+    return wall;
+}
+
+/// What of a wall one camera can see at a time: its grid of several tiles, minus the bezels, and each other screen.
+std::vector<Whole> wholesOf(const walls::Wall& wall) {
+    std::vector<Whole> wholes;
+    if (wall.grid && wall.grid->rows * wall.grid->columns > 1) {
+        const walls::Wall grid = withWholeBezels(wall);
+        const walls::Wall one = walls::wholeWall(grid);
+        Whole whole{one.tiles[0].screen, one.tiles[0].pixels, {}};
+        const walls::Canvas canvas = walls::wallCanvas(grid);
+        for (std::size_t i = 0; i < grid.tiles.size(); ++i) {
+            whole.parts.emplace_back(grid.tiles[i].screen, canvas.tiles[i]);
+        }
+        wholes.push_back(whole);
+    }
+    for (const walls::Tile& tile : wall.tiles) {
+        if (tile.row == 0 || wall.tiles.size() == 1) {
+            wholes.push_back(inParts(tile));
+        }
+    }
+    return wholes;
+}
+
+int reductionFor(const walls::Wall& wall) {
+    const walls::Canvas canvas = walls::wallCanvas(wall);
+    int by = 1;
+    while (std::int64_t{canvas.width} * canvas.height / (std::int64_t{by} * by) > kMostPixels) {
+        by *= 2;
+    }
+    return by;
+}
+
+struct Count {
+    double pixels = 0, bad = 0, badWhenMoved = 0, badInTheOtherEye = 0, silhouettes = 0;
+};
+
+class WallSeams : public testing::Test {
+protected:
+    /// Draws every part alone and holds it against the crop of the whole.
+    static void compareParts(render_node::SandView& view, const walls::Wall& wall, const Whole& whole, Count& count) {
+        const Image left = sample::drawThrough(view, wall, whole.screen, whole.pixels, Eye::left);
+        const Image right = sample::drawThrough(view, wall, whole.screen, whole.pixels, Eye::right);
+        for (const auto& [screen, rect] : whole.parts) {
+            const auto cropOf = [&, at = rect](const Image& image) {
+                return pictures::crop(image, at.x, at.y, at.width, at.height);
+            };
+            const Image got = sample::drawThrough(view, wall, screen, {rect.width, rect.height}, Eye::left);
+            const Image expected = cropOf(left);
+            const pictures::Comparison same = pictures::compare(expected, got, kLevels);
+            const pictures::Mask edges = pictures::silhouettes(expected, kSilhouette);
+            EXPECT_LE(same.badShare, kMostBad) << "part at " << rect.x << ", " << rect.y;
+            EXPECT_EQ(pictures::countOutside(same.bad, edges), 0) << "part at " << rect.x << ", " << rect.y;
+            const auto bad = [&](const Image& a, const Image& b) {
+                return static_cast<double>(pictures::compare(a, b, kLevels).badPixels);
+            };
+            count.pixels += static_cast<double>(got.pixels());
+            count.bad += static_cast<double>(same.badPixels);
+            count.badWhenMoved +=
+                std::min(bad(expected, pictures::shifted(got, 1, 0)), bad(expected, pictures::shifted(got, 0, 1)));
+            count.badInTheOtherEye += bad(cropOf(right), got);
+            count.silhouettes += static_cast<double>(std::count(edges.begin(), edges.end(), 1));
+        }
+    }
+
+    std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    sample::DugScene dug_;
+};
+
+// At most 1 % of a tile may differ by more than 8 levels from the one picture of the whole, all at silhouettes; a tile
+// that is a pixel off, or shows the other eye, must not pass.
+TEST_F(WallSeams, EveryTileOfEverySampleIsItsPartOfTheWhole) {
+    for (const std::string& name : sample::wallNames()) {
+        SCOPED_TRACE(name);
+        const walls::Wall full = walls::loadWall(sample::wallFolder() / (name + ".toml"));
+        walls::Wall wall = sample::reduced(full, reductionFor(full));
+        wall.viewer.eyeSeparation = std::max(wall.viewer.eyeSeparation, 0.06);  // a mono wall may have none
+        render_node::SandView view = sample::makeView(dug_, wall);
+        Count count;
+        for (const Whole& whole : wholesOf(wall)) {
+            compareParts(view, wall, whole, count);
+        }
+        fmt::print(
+            "{}: {:.4f} % of the pixels differ from the whole; {:.1f} % a pixel off, {:.1f} % in the other eye; "
+            "{:.1f} % are silhouettes\n",
+            name, 100 * count.bad / count.pixels, 100 * count.badWhenMoved / count.pixels,
+            100 * count.badInTheOtherEye / count.pixels, 100 * count.silhouettes / count.pixels);
+        EXPECT_GT(count.badWhenMoved, kMostBad * count.pixels);
+        EXPECT_GT(count.badInTheOtherEye, kMostBad * count.pixels);
+        EXPECT_LT(count.silhouettes, 0.25 * count.pixels) << "everything counts as a silhouette";
+    }
+}
+
+}  // namespace
