@@ -64,6 +64,7 @@ private:
     SandSurface surface_;
     int across_, down_;                // chunks
     int quadsAcross_, quadsDown_;      // of every chunk
+    bool software_;                    // drawn by llvmpipe, whose memory must be kept small
     std::vector<Chunk> chunks_;        // row by row from the south-west
     std::vector<SandVertex> scratch_;  // one chunk
     GlBuffer indices_;                 // 16 bit, one chunk's

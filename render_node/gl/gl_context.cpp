@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include "files/input_error.hpp"
+#include "render_node/gl/compiler_memory.hpp"
 #include "render_node/gl/gl_module.hpp"
 #include "render_node/gl/window_context.hpp"
 
@@ -24,6 +26,7 @@ public:
         loadFunctions(*platform_);
     }
     void makeCurrent() override { platform_->makeCurrent(0); }
+    void present(std::span<const OutputPicture> /* outputs */, std::uint64_t /* frame */) override { finishFrame(); }
     [[nodiscard]] std::string name() const override { return std::string(backendName(backend_)); }
 
 private:
@@ -79,7 +82,13 @@ std::string GlContext::renderer() const {
     return text(GL_RENDERER) + ", OpenGL " + text(GL_VERSION);
 }
 
-void GlContext::present(std::span<const OutputPicture> /* outputs */, std::uint64_t /* frame */) { glFinish(); }
+void GlContext::finishFrame() {
+    glFinish();
+    // After 1, 2, 4, 8 … frames: shaders are compiled when something is first seen, ever more rarely.
+    if (std::has_single_bit(++frames_)) {
+        giveBackCompilerMemory();
+    }
+}
 
 std::unique_ptr<GlContext> makeContext(Backend backend, const walls::Wall& wall, const walls::Tile& tile) {
     PlatformRequest request;

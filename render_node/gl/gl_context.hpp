@@ -53,7 +53,7 @@ public:
     /// Copies the outputs' pictures, in the order of tile.outputs, to where the screens will take them from, and waits
     /// until GL has done so. `frame` is the wall's: with eyes in turn, even frames show the left one. Off screen it
     /// only waits. Throws std::runtime_error when a window is lost, with its output in the message.
-    virtual void present(std::span<const OutputPicture> outputs, std::uint64_t frame);
+    virtual void present(std::span<const OutputPicture> outputs, std::uint64_t frame) = 0;
     /// Shows what was presented; nobody swaps before all ranks have agreed. Nothing off screen.
     virtual void swap() {}
     /// The keys pressed in the windows since the last call, one character each. None off screen.
@@ -65,6 +65,13 @@ public:
     [[nodiscard]] virtual std::string swapLock() const { return "none"; }
     /// How many frames from the start a hardware barrier needs to settle: they do not count in the skew.
     [[nodiscard]] virtual int framesToIgnore() const { return 0; }
+
+protected:
+    /// Waits for GL; now and then, the first time after the first frame, gives back what compiling shaders has left.
+    void finishFrame();
+
+private:
+    std::uint64_t frames_ = 0;
 };
 
 /// Makes a context for the outputs of a tile, current on this thread, with the GL functions loaded. Throws

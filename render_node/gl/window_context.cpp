@@ -67,6 +67,7 @@ public:
         for (std::size_t i = windows_.size(); i-- > 0;) {
             show(i, copiesOf(outputs[i], platform_->quadBuffers(i), frame));
         }
+        finishFrame();
     }
     void swap() override {
         platform_->swap(frame_);
