@@ -7,10 +7,12 @@ packages=(
     g++ cmake ninja-build pkg-config python3                # build and launcher
     openmpi-bin libopenmpi-dev                              # the cluster
     libboost-dev                                            # Asio, Endian, Lockfree: headers alone
-    libosmesa6-dev libglm-dev python3-glad # drawing
+    libosmesa6-dev libglm-dev python3-glad                  # drawing
+    libegl-dev libgl1-mesa-dri                              # off screen on graphics cards
+    libglfw3-dev libx11-dev libxrandr-dev libxcursor1       # windows, monitors by name, the hidden cursor
     libtomlplusplus-dev libcli11-dev libfmt-dev             # files, options, messages
     libxxhash-dev libzstd-dev libpng-dev nlohmann-json3-dev # hashes, states, pictures, summaries
-    libgtest-dev libbenchmark-dev                           # tests and benchmarks
+    libgtest-dev libbenchmark-dev xvfb                      # tests and benchmarks
 )
 # The tests also build with clang, for the proof that the state hash does not depend on the compiler.
 # The report draws its curves with matplotlib.

@@ -14,15 +14,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Debian's package with the library a module is linked to.
-const char* packageOf(Backend backend) {
+/// Debian's packages with the library a module is linked to, and with its headers.
+struct Packages {
+    const char* library;
+    const char* headers;
+};
+Packages packagesOf(Backend backend) {
     switch (backend) {
         case Backend::egl:
-            return "libegl1";
+            return {"libegl1", "libegl-dev"};
         case Backend::glfw:
-            return "libglfw3";
+            return {"libglfw3", "libglfw3-dev"};
         default:
-            return "libosmesa6";
+            return {"libosmesa6", "libosmesa6-dev"};
     }
 }
 
@@ -33,7 +37,7 @@ void* open(const fs::path& module, Backend backend) {
         const char* reason = dlerror();
         throw files::InputError("--gl " + std::string(backendName(backend)) + ": " +
                                 (reason == nullptr ? module.string() + " cannot be loaded" : reason) +
-                                "; install Debian's " + packageOf(backend) + ", or choose another --gl");
+                                "; install Debian's " + packagesOf(backend).library + ", or choose another --gl");
     }
     return handle;
 }
@@ -59,7 +63,7 @@ std::unique_ptr<GlPlatform> loadPlatform(Backend backend, const PlatformRequest&
             places += (places.empty() ? "" : " and ") + candidate.string();
         }
         throw files::InputError("--gl " + std::string(backendName(backend)) + ": there is no " + file + " in " +
-                                places + "; build Sandwall with Debian's " + packageOf(backend) + "-dev");
+                                places + "; build Sandwall with Debian's " + packagesOf(backend).headers);
     }
     void* symbol = dlsym(open(*folder / file, backend), kGlPlatformSymbol);
     if (symbol == nullptr) {

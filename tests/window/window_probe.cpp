@@ -4,10 +4,8 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdlib>
 #include <fstream>
 #include <iostream>
-#include <iterator>
 #include <memory>
 #include <set>
 #include <sstream>
@@ -15,6 +13,7 @@
 #include <vector>
 
 #include "files/command_line.hpp"
+#include "pictures/png_file.hpp"
 #include "render_node/gl/gl_context.hpp"
 #include "tests/render_node/sample_scene.hpp"
 
@@ -51,9 +50,9 @@ walls::Tile tileOf(const Options& options) {
 }
 
 void writePicture(const EyeTarget& target, const std::string& file) {
-    const std::vector<std::uint8_t> pixels = target.read();
-    std::ofstream(file, std::ios::binary)
-        .write(reinterpret_cast<const char*>(pixels.data()), static_cast<std::streamsize>(pixels.size()));
+    pictures::Image image(target.width(), target.height());
+    image.rgb = target.read();
+    pictures::writePng(file, image);
 }
 
 /// The shared libraries in this process, each once: "libX11.so.6.4.0".
@@ -71,17 +70,18 @@ void printLibraries() {
     }
 }
 
-void printMemory() {
-    std::ifstream status("/proc/self/status");
-    for (std::string line; std::getline(status, line);) {
-        if (line.starts_with("VmRSS") || line.starts_with("VmHWM") || line.starts_with("Rss")) {
-            std::cout << line << "\n";
-        }
-    }
-    std::cout << "memory printed" << std::endl;
+void printMemory(const Options& options) {
+    long total = 0;
+    long resident = 0;
+    std::ifstream("/proc/self/statm") >> total >> resident;
+    constexpr long kTargets = 2;
+    constexpr long kBytesPerPixel = 8;  // colour and depth
+    std::cout << "resident " << resident * sysconf(_SC_PAGESIZE) << "\nframe_buffers "
+              << kTargets * kBytesPerPixel * options.width * options.height << "\nmemory printed" << std::endl;
 }
 
-void obey(render_node::GlContext& context, const std::vector<render_node::OutputPicture>& outputs) {
+void obey(const Options& options, render_node::GlContext& context,
+          const std::vector<render_node::OutputPicture>& outputs) {
     for (std::string word; std::cin >> word && word != "end";) {
         if (word == "frame") {
             std::uint64_t frame = 0;
@@ -95,7 +95,7 @@ void obey(render_node::GlContext& context, const std::vector<render_node::Output
             }
             std::cout << "keys taken" << std::endl;
         } else if (word == "memory") {
-            printMemory();
+            printMemory(options);
         }
     }
 }
@@ -115,8 +115,8 @@ int show(const Options& options) {
     view.draw(sample::camera({0.9, -0.6, 1.2}, {1, 1, 0}), left);
     view.draw(sample::camera({1.1, -0.6, 1.2}, {1, 1, 0}), right);
     if (!options.pictures.empty()) {
-        writePicture(left, options.pictures + ".left");
-        writePicture(right, options.pictures + ".right");
+        writePicture(left, options.pictures + "left.png");
+        writePicture(right, options.pictures + "right.png");
     }
     // Several windows show the left and the right eye's picture by turns, as two projectors do.
     std::vector<render_node::OutputPicture> outputs;
@@ -131,7 +131,7 @@ int show(const Options& options) {
     }
     std::cout << "swap lock " << context->swapLock() << ", ignore " << context->framesToIgnore() << "\nframe 0 shown"
               << std::endl;
-    obey(*context, outputs);
+    obey(options, *context, outputs);
     return 0;
 }
 
@@ -146,7 +146,7 @@ int main(int argc, char** argv) {
     app.add_option("--device", options.device);
     app.add_option("--display", options.display);
     app.add_option("--cells", options.cells);
-    app.add_option("--pictures", options.pictures, "begin of the files that the raw pictures go to");
+    app.add_option("--pictures", options.pictures, "folder for left.png and right.png, with a slash");
     app.add_option("--at", options.places, "a window: x,y or a monitor");
     app.add_flag("--active", options.active);
     return files::runMain(app, argc, argv, [&] { return show(options); });

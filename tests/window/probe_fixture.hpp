@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "pictures/png_file.hpp"
+#include "tests/support/child_process.hpp"
+
+/// window_probe in processes of its own, each with a folder for its pictures. Times are bounds, never measurements.
+class ProbeTest : public testing::Test {
+protected:
+    static constexpr double kLong = 120;  // [s], for what takes one or two on an idle machine
+
+    void SetUp() override {
+        std::string name = (std::filesystem::temp_directory_path() / "sandwall-window-XXXXXX").string();
+        ASSERT_NE(mkdtemp(name.data()), nullptr) << name;
+        folder_ = name;
+    }
+    void TearDown() override {
+        probe_.reset();
+        if (!HasFailure()) {
+            std::filesystem::remove_all(folder_);
+        }
+    }
+
+    /// Starts it; `environment` holds words of env(1): NAME=value, or -u NAME.
+    void start(const std::vector<std::string>& arguments, const std::vector<std::string>& environment = {}) {
+        std::vector<std::string> command{"/usr/bin/env", "-u", "DISPLAY"};
+        command.insert(command.end(), environment.begin(), environment.end());
+        // The rank draws in its own thread, and compiles its shaders as on the first day.
+        command.insert(command.end(), {"LP_NUM_THREADS=0", "MESA_SHADER_CACHE_DISABLE=true",
+                                       SANDWALL_BIN_DIR "/window_probe", "--pictures", folder_.string() + "/"});
+        command.insert(command.end(), arguments.begin(), arguments.end());
+        for (const char* old : {"probe.log", "left.png", "right.png"}) {
+            std::filesystem::remove(folder_ / old);
+        }
+        probe_ = std::make_unique<support::ChildProcess>(command, folder_ / "probe.log");
+    }
+    /// The same, and waits until frame 0 is shown; what it has printed.
+    std::string startAndShow(const std::vector<std::string>& arguments,
+                             const std::vector<std::string>& environment = {}) {
+        start(arguments, environment);
+        EXPECT_TRUE(probe_->waitForOutput("frame 0 shown\n", kLong)) << probe_->output();
+        return probe_->output();
+    }
+    /// Types a command and waits for its answer; everything printed so far.
+    std::string ask(const std::string& command, const std::string& answer) {
+        probe_->type(command);
+        EXPECT_TRUE(probe_->waitForOutput(answer + "\n", kLong)) << command << ": " << probe_->output();
+        return probe_->output();
+    }
+    /// The one line with which it ends by itself, after `from` characters of output; status as given.
+    std::string lastLine(int status, std::size_t from = 0) {
+        const auto ended = probe_->wait(kLong);
+        const std::string text = probe_->output().substr(from);
+        EXPECT_TRUE(ended.has_value()) << "it hangs after: " << text;
+        EXPECT_EQ(ended.value_or(-1), status) << text;
+        EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+        return text;
+    }
+    [[nodiscard]] pictures::Image picture(const std::string& eye) const {
+        return pictures::readPng(folder_ / (eye + ".png"));
+    }
+    /// What follows a word at the begin of a line: all "library ..." lines, say.
+    static std::vector<std::string> linesOf(const std::string& output, const std::string& word) {
+        std::vector<std::string> found;
+        std::istringstream lines(output);
+        for (std::string line; std::getline(lines, line);) {
+            if (line.starts_with(word + " ")) {
+                found.push_back(line.substr(word.size() + 1));
+            }
+        }
+        return found;
+    }
+
+    std::filesystem::path folder_;
+    std::unique_ptr<support::ChildProcess> probe_;
+};

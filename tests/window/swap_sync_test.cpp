@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// Hardware that is not here: a driver's extension tables and a counter of retraces made up.
+#include "render_node/gl/swap_sync.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+#include <map>
+
+#include "render_node/eye_target.hpp"
+#include "render_node/gl/screen_cover.hpp"
+#include "render_node/gl/window_context.hpp"
+
+namespace {
+
+using render_node::BackBuffer;
+using render_node::EyesByRetrace;
+using render_node::GlxDrawable;
+using render_node::GlxLoader;
+using render_node::hiddenPixels;
+using render_node::PixelRectangle;
+using render_node::SwapGroup;
+
+/// A driver; its functions are plain pointers, so it is one for all tests, made anew by each.
+struct FakeDriver {
+    std::string extensions;
+    unsigned groups = 1, barriers = 1;
+    GlxDrawable refused = 0;                // cannot join
+    std::map<GlxDrawable, unsigned> group;  // of each window that has joined
+    unsigned barrier = 0;
+    std::int64_t msc = 0;  // retraces so far
+    bool counting = true;
+    std::array<std::int64_t, 3> wanted{};  // target, divisor, remainder of the last swap
+};
+FakeDriver driver;
+
+int queryMost(void* /* display */, int /* screen */, unsigned* groups, unsigned* barriers) {
+    *groups = driver.groups;
+    *barriers = driver.barriers;
+    return 1;
+}
+int joinGroup(void* /* display */, GlxDrawable window, unsigned group) {
+    if (window == driver.refused) {
+        return 0;
+    }
+    driver.group[window] = group;
+    return 1;
+}
+int bindBarrier(void* /* display */, unsigned /* group */, unsigned barrier) {
+    driver.barrier = barrier;
+    return 1;
+}
+int syncValues(void* /* display */, GlxDrawable /* window */, std::int64_t* ust, std::int64_t* msc, std::int64_t* sbc) {
+    *ust = *sbc = 0;
+    *msc = driver.msc;
+    return driver.counting ? 1 : 0;
+}
+/// Waits, as the specification says, for the next retrace with the remainder.
+std::int64_t swapAt(void* /* display */, GlxDrawable /* window */, std::int64_t target, std::int64_t divisor,
+                    std::int64_t remainder) {
+    driver.wanted = {target, divisor, remainder};
+    do {
+        ++driver.msc;
+    } while (driver.msc % divisor != remainder);
+    return 1;
+}
+
+GlxLoader loader() {
+    using Function = void (*)();
+    return {[](const char* name) { return driver.extensions.find(name) != std::string::npos; },
+            [](const char* name) -> Function {
+                const std::map<std::string, Function> table{
+                    {"glXQueryMaxSwapGroupsNV", reinterpret_cast<Function>(queryMost)},
+                    {"glXJoinSwapGroupNV", reinterpret_cast<Function>(joinGroup)},
+                    {"glXBindSwapBarrierNV", reinterpret_cast<Function>(bindBarrier)},
+                    {"glXGetSyncValuesOML", reinterpret_cast<Function>(syncValues)},
+                    {"glXSwapBuffersMscOML", reinterpret_cast<Function>(swapAt)}};
+                return table.at(name);
+            },
+            nullptr, 0};
+}
+
+class SwapSync : public testing::Test {
+protected:
+    void SetUp() override {
+        driver = {};
+        driver.extensions = "GLX_NV_swap_group GLX_OML_sync_control";
+    }
+};
+
+TEST_F(SwapSync, JoinsAllWindowsAndTheBarrierAndLeavesThem) {
+    {
+        const SwapGroup group(loader(), {11, 12});
+        EXPECT_EQ(group.state(), "joined");
+        EXPECT_TRUE(group.joined());
+        EXPECT_EQ(group.framesToIgnore(), 8);
+        EXPECT_EQ(driver.group, (std::map<GlxDrawable, unsigned>{{11, 1}, {12, 1}}));
+        EXPECT_EQ(driver.barrier, 1U);
+    }
+    EXPECT_EQ(driver.group, (std::map<GlxDrawable, unsigned>{{11, 0}, {12, 0}}));
+    EXPECT_EQ(driver.barrier, 0U);
+}
+
+TEST_F(SwapSync, CountsEveryFrameWithoutAHardwareBarrier) {
+    driver.barriers = 0;
+    const SwapGroup group(loader(), {11});
+    EXPECT_EQ(group.state(), "joined, no barrier");
+    EXPECT_TRUE(group.joined());
+    EXPECT_EQ(group.framesToIgnore(), 0);
+}
+
+TEST_F(SwapSync, LeavesTheGroupWhenOneWindowIsRefused) {
+    driver.refused = 12;
+    const SwapGroup group(loader(), {11, 12});
+    EXPECT_EQ(group.state(), "refused");
+    EXPECT_FALSE(group.joined());
+    EXPECT_EQ(driver.group[11], 0U);
+    EXPECT_EQ(driver.barrier, 0U);
+}
+
+TEST_F(SwapSync, AsksNothingOfADriverWithoutTheExtension) {
+    driver.extensions = "GLX_OML_sync_control";
+    EXPECT_EQ(SwapGroup(loader(), {11}).state(), "no extension");
+    driver.extensions = "";
+    EyesByRetrace eyes(loader(), 11);
+    EXPECT_FALSE(eyes.available());
+    EXPECT_FALSE(eyes.swap(0));
+    EXPECT_TRUE(driver.group.empty());
+}
+
+TEST_F(SwapSync, RefusesWhereTheDriverHasNoGroups) {
+    driver.groups = 0;
+    EXPECT_EQ(SwapGroup(loader(), {11}).state(), "refused");
+}
+
+TEST_F(SwapSync, KeepsEachEyeOnItsRetracesWhenSomeAreMissed) {
+    for (const std::int64_t first : {1000, 1001}) {
+        driver.msc = first;
+        EyesByRetrace eyes(loader(), 11);
+        ASSERT_TRUE(eyes.available());
+        ASSERT_TRUE(eyes.swap(6));
+        const std::int64_t leftParity = driver.msc % 2;
+        EXPECT_EQ(driver.msc, first + 1) << "the first frame waits for nothing but the next retrace";
+        std::uint64_t frame = 6;
+        for (const int missed : {0, 0, 1, 0, 2, 3, 0, 1, 1}) {
+            driver.msc += missed;
+            ASSERT_TRUE(eyes.swap(++frame));
+            const std::int64_t wanted = frame % 2 == 0 ? leftParity : 1 - leftParity;
+            EXPECT_EQ(driver.msc % 2, wanted) << "frame " << frame;
+        }
+    }
+}
+
+TEST_F(SwapSync, StartsWithEitherEye) {
+    driver.msc = 7;
+    EyesByRetrace eyes(loader(), 11);
+    ASSERT_TRUE(eyes.swap(3));
+    EXPECT_EQ(driver.msc, 8);
+    ASSERT_TRUE(eyes.swap(4));
+    EXPECT_EQ(driver.msc, 9);
+}
+
+TEST_F(SwapSync, LeavesTheSwapToOthersWhereNothingIsCounted) {
+    driver.counting = false;
+    EyesByRetrace eyes(loader(), 11);
+    EXPECT_FALSE(eyes.available());
+    EXPECT_FALSE(eyes.swap(0));
+    EXPECT_EQ(driver.msc, 0);
+}
+
+TEST(OutputPictures, FillBothQuadBuffersInEveryFrame) {
+    // Only their addresses are looked at.
+    const auto* left = reinterpret_cast<const render_node::EyeTarget*>(&driver);
+    const auto* right = reinterpret_cast<const render_node::EyeTarget*>(&driver.msc);
+    for (const std::uint64_t frame : {0, 1}) {
+        EXPECT_EQ(render_node::copiesOf({left, right}, true, frame),
+                  (std::vector<render_node::Copy>{{left, BackBuffer::left}, {right, BackBuffer::right}}));
+    }
+    EXPECT_EQ(render_node::copiesOf({left, right}, false, 4), (std::vector<render_node::Copy>{{left}}));
+    EXPECT_EQ(render_node::copiesOf({left, right}, false, 5), (std::vector<render_node::Copy>{{right}}));
+    for (const bool quad : {false, true}) {
+        EXPECT_EQ(render_node::copiesOf({left, nullptr}, quad, 5), (std::vector<render_node::Copy>{{left}}));
+    }
+}
+
+TEST(ScreenCover, CountsThePixelsThatNoMonitorShows) {
+    const PixelRectangle window{{100, 50}, {300, 150}};
+    EXPECT_EQ(hiddenPixels(window, {}), 200 * 100);
+    const PixelRectangle all{{0, 0}, {400, 300}};
+    const PixelRectangle leftHalf{{0, 0}, {200, 300}};
+    const PixelRectangle rightHalf{{200, 0}, {400, 300}};
+    const PixelRectangle inside{{120, 60}, {130, 80}};
+    const PixelRectangle elsewhere{{300, 0}, {400, 300}};
+    EXPECT_EQ(hiddenPixels(window, std::array{all}), 0);
+    EXPECT_EQ(hiddenPixels(window, std::array{leftHalf}), 100 * 100);
+    EXPECT_EQ(hiddenPixels(window, std::array{leftHalf, rightHalf}), 0);
+    EXPECT_EQ(hiddenPixels(window, std::array{leftHalf, leftHalf}), 100 * 100) << "mirrored monitors count once";
+    EXPECT_EQ(hiddenPixels(window, std::array{inside}), 200 * 100 - 10 * 20);
+    EXPECT_EQ(hiddenPixels(window, std::array{inside, inside, leftHalf}), 100 * 100);
+    EXPECT_EQ(hiddenPixels(window, std::array{elsewhere}), 200 * 100);
+}
+
+}  // namespace

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "probe_fixture.hpp"
+#include "tests/support/x_server.hpp"
+#include "x_screen.hpp"
+
+namespace {
+
+using support::XScreen;
+
+constexpr int kAcross = 800;  // [pixel], the screen
+constexpr int kDown = 600;
+
+class Window : public ProbeTest {
+protected:
+    void SetUp() override {
+        ProbeTest::SetUp();
+        server_ = std::make_unique<support::XServer>(
+            folder_,
+            std::vector<std::string>{std::to_string(kAcross) + "x" + std::to_string(kDown) + "x24", "640x480x24"});
+    }
+    void TearDown() override {
+        ProbeTest::TearDown();
+        server_.reset();
+    }
+    /// Windows of 320 x 240 pixels at these places.
+    std::string show(const std::vector<std::string>& places, const std::vector<std::string>& more = {}) {
+        return startAndShow(words(places, more));
+    }
+    [[nodiscard]] std::vector<std::string> words(const std::vector<std::string>& places,
+                                                 const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> all{"--display", server_->display()};
+        for (const std::string& place : places) {
+            all.insert(all.end(), {"--at", place});
+        }
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    }
+    /// The only window there is.
+    [[nodiscard]] unsigned long onlyWindow(const XScreen& screen) const {
+        const std::vector<unsigned long> seen = screen.windows();
+        EXPECT_EQ(seen.size(), 1U);
+        return seen.empty() ? 0 : seen.front();
+    }
+    std::unique_ptr<support::XServer> server_;
+};
+
+TEST_F(Window, ShowsThePicturePixelForPixelAtItsPlace) {
+    const std::string output = show({"40,30"});
+    EXPECT_EQ(linesOf(output, "context").at(0), "glfw");
+    EXPECT_TRUE(linesOf(output, "shortcoming").empty()) << output;
+    const XScreen screen(server_->display());
+    EXPECT_TRUE(screen.comesToShow(picture("left"), 40, 30));
+    EXPECT_FALSE(screen.picture(41, 30, 320, 240).rgb == picture("left").rgb) << "the picture has no features";
+    // No frame, no title: black screen all around.
+    const pictures::Image above = screen.picture(0, 0, kAcross, 30);
+    EXPECT_TRUE(std::all_of(above.rgb.begin(), above.rgb.end(), [](int level) { return level == 0; }));
+}
+
+TEST_F(Window, OpensForEachOutputWithThePictureOfItsEye) {
+    (void)show({"0,0", "400,100"});
+    const XScreen screen(server_->display());
+    EXPECT_EQ(screen.windows().size(), 2U);
+    EXPECT_TRUE(screen.comesToShow(picture("left"), 0, 0));
+    EXPECT_TRUE(screen.comesToShow(picture("right"), 400, 100));
+    EXPECT_FALSE(picture("left").rgb == picture("right").rgb);
+}
+
+TEST_F(Window, FillsTheMonitorThatIsNamed) {
+    const std::string output = show({"screen"}, {"--width", "800", "--height", "600"});
+    EXPECT_TRUE(linesOf(output, "shortcoming").empty()) << output;
+    EXPECT_TRUE(XScreen(server_->display()).comesToShow(picture("left"), 0, 0));
+}
+
+TEST_F(Window, OpensOnTheScreenThatTheDisplayNames) {
+    (void)startAndShow({"--at", "10,20", "--display", server_->display() + ".1"});
+    EXPECT_TRUE(XScreen(server_->display()).windows().empty());
+    EXPECT_TRUE(XScreen(server_->display() + ".1").comesToShow(picture("left"), 10, 20));
+}
+
+TEST_F(Window, TakesTheDisplayOfTheEnvironmentWhenTheWallFileNamesNone) {
+    (void)startAndShow({"--at", "10,20"}, {"DISPLAY=" + server_->display()});
+    EXPECT_TRUE(XScreen(server_->display()).comesToShow(picture("left"), 10, 20));
+}
+
+TEST_F(Window, ShowsTheEyesInTurnByTheNumberOfTheFrame) {
+    const std::string output = show({"40,30"}, {"--active"});
+    const std::vector<std::string> lines = linesOf(output, "shortcoming");
+    ASSERT_EQ(lines.size(), 1U) << output;
+    EXPECT_TRUE(lines[0].starts_with("output out1: no quad buffers; eyes in turn by frame")) << lines[0];
+    const XScreen screen(server_->display());
+    EXPECT_TRUE(screen.comesToShow(picture("left"), 40, 30));
+    // Also where frames are left out: what counts is the number.
+    for (const int frame : {1, 2, 3, 5, 7, 10}) {
+        const std::string number = std::to_string(frame);
+        (void)ask("frame " + number, "frame " + number + " shown");
+        EXPECT_TRUE(screen.comesToShow(picture(frame % 2 == 0 ? "left" : "right"), 40, 30)) << frame;
+    }
+}
+
+TEST_F(Window, SaysHowMuchOfItLiesOffTheScreen) {
+    const std::string output = show({"700,30"});
+    const std::vector<std::string> lines = linesOf(output, "shortcoming");
+    ASSERT_EQ(lines.size(), 1U) << output;
+    EXPECT_EQ(lines[0], "output out1: its window of 320 x 240 pixels at (700, 30) lies partly off the screen: " +
+                            std::to_string(220 * 240) + " pixels are on no monitor");
+}
+
+TEST_F(Window, HasNoHardwareLockOfSwapsHere) {
+    EXPECT_EQ(linesOf(show({"0,0"}), "swap").at(0), "lock no extension, ignore 0");
+}
+
+TEST_F(Window, HandsOverTheKeysThatArePressed) {
+    (void)show({"0,0", "400,100"});
+    const XScreen screen(server_->display());
+    const std::vector<unsigned long> windows = screen.windows();
+    ASSERT_EQ(windows.size(), 2U);
+    screen.type(windows[0], 't');
+    screen.type(windows[1], 't');
+    screen.type(windows[0], 'q');
+    screen.type(windows[1], 27);
+    const std::string output = ask("keys", "keys taken");
+    EXPECT_EQ(linesOf(output, "key"), (std::vector<std::string>{"116", "116", "27", "27"})) << output;
+}
+
+TEST_F(Window, NamesTheMonitorsThereAreForOneThatIsNot) {
+    start(words({"DP-7"}));
+    EXPECT_EQ(lastLine(2),
+              "output out1: no monitor DP-7 on display " + server_->display() + "; there is screen (800 x 600)\n");
+}
+
+TEST_F(Window, RefusesAMonitorOfAnotherSize) {
+    start(words({"screen"}));
+    EXPECT_EQ(lastLine(2),
+              "output out1: monitor screen shows 800 x 600 pixels and has no mode of 320 x 240; correct the pixels in "
+              "the wall file\n");
+}
+
+TEST_F(Window, NamesADisplayThatCannotBeOpened) {
+    const std::string display = server_->display();
+    server_->end();
+    start({"--at", "0,0", "--display", display});
+    EXPECT_TRUE(lastLine(2).starts_with("--gl glfw: cannot open X display " + display + "; is its server running"));
+}
+
+TEST_F(Window, SaysWhenThereIsNoDisplayAtAll) {
+    start({"--at", "0,0"});
+    EXPECT_TRUE(lastLine(2).starts_with("--gl glfw: no X display; set DISPLAY"));
+}
+
+TEST_F(Window, EndsTheRankWhenItIsDestroyed) {
+    const std::string before = show({"0,0", "400,100"});
+    const XScreen screen(server_->display());
+    screen.destroy(screen.windows().back());  // the second one was opened last
+    probe_->type("frame 1");
+    EXPECT_EQ(lastLine(1, before.size()),
+              "window_probe: failed: output out2: its window on " + server_->display() + " is gone\n");
+}
+
+TEST_F(Window, EndsTheRankWhenTheOnlyOneIsDestroyed) {
+    const std::string before = show({"0,0"});
+    {
+        const XScreen screen(server_->display());
+        screen.destroy(onlyWindow(screen));
+    }
+    probe_->type("frame 1");
+    EXPECT_EQ(lastLine(1, before.size()),
+              "window_probe: failed: output out1: its window on " + server_->display() + " is gone\n");
+}
+
+TEST_F(Window, EndsTheRankWhenItIsClosed) {
+    const std::string before = show({"0,0"});
+    {
+        const XScreen screen(server_->display());
+        screen.askToClose(onlyWindow(screen));
+    }
+    probe_->type("frame 1");
+    EXPECT_EQ(lastLine(1, before.size()),
+              "window_probe: failed: output out1: its window on " + server_->display() + " was closed\n");
+}
+
+TEST_F(Window, EndsTheRankWhenTheServerGoes) {
+    const std::string before = show({"0,0"});
+    const std::string display = server_->display();
+    server_->end();
+    probe_->type("frame 1");
+    const std::string line = lastLine(1, before.size());
+    EXPECT_TRUE(line.starts_with("rank 1 (r1c1) on ")) << line;
+    EXPECT_NE(line.find(": the X server of " + display + " is gone\n"), std::string::npos) << line;
+}
+
+}  // namespace

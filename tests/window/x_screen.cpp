@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/window/x_screen.hpp"
+
+#include <X11/Xlib.h>
+#include <X11/Xutil.h>
+#include <X11/keysym.h>
+
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+
+namespace support {
+
+void XScreen::Close::operator()(_XDisplay* display) const { XCloseDisplay(display); }
+
+XScreen::XScreen(const std::string& display) : display_(XOpenDisplay(display.c_str())) {
+    if (display_ == nullptr) {
+        throw std::runtime_error("the test cannot open display " + display);
+    }
+    root_ = DefaultRootWindow(display_.get());
+}
+
+pictures::Image XScreen::picture(int x, int y, int width, int height) const {
+    XImage* image = XGetImage(display_.get(), root_, x, y, static_cast<unsigned>(width), static_cast<unsigned>(height),
+                              AllPlanes, ZPixmap);
+    if (image == nullptr) {
+        throw std::runtime_error("the X server gives no picture of its screen");
+    }
+    pictures::Image result(width, height);
+    std::size_t next = 0;
+    for (int row = 0; row < height; ++row) {
+        for (int column = 0; column < width; ++column) {
+            const unsigned long pixel = XGetPixel(image, column, row);  // 24 bits: 0xRRGGBB
+            for (const int shift : {16, 8, 0}) {
+                result.rgb[next++] = static_cast<std::uint8_t>(pixel >> shift & 0xFFU);
+            }
+        }
+    }
+    XDestroyImage(image);
+    return result;
+}
+
+bool XScreen::comesToShow(const pictures::Image& expected, int x, int y) const {
+    // The server draws what it was sent when it comes to it.
+    const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (picture(x, y, expected.width, expected.height).rgb != expected.rgb) {
+        if (std::chrono::steady_clock::now() > until) {
+            return false;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return true;
+}
+
+std::vector<unsigned long> XScreen::windows() const {
+    Window root = 0;
+    Window parent = 0;
+    Window* children = nullptr;
+    unsigned count = 0;
+    XQueryTree(display_.get(), root_, &root, &parent, &children, &count);
+    std::vector<unsigned long> seen;
+    for (unsigned i = 0; i < count; ++i) {
+        XWindowAttributes attributes{};
+        if (XGetWindowAttributes(display_.get(), children[i], &attributes) != 0 && attributes.map_state == IsViewable) {
+            seen.push_back(children[i]);
+        }
+    }
+    XFree(children);
+    return seen;
+}
+
+void XScreen::destroy(unsigned long window) const {
+    XDestroyWindow(display_.get(), window);
+    XSync(display_.get(), False);
+}
+
+void XScreen::askToClose(unsigned long window) const {
+    XEvent event{};
+    event.xclient.type = ClientMessage;
+    event.xclient.window = window;
+    event.xclient.message_type = XInternAtom(display_.get(), "WM_PROTOCOLS", False);
+    event.xclient.format = 32;
+    event.xclient.data.l[0] = static_cast<long>(XInternAtom(display_.get(), "WM_DELETE_WINDOW", False));
+    XSendEvent(display_.get(), window, False, NoEventMask, &event);
+    XSync(display_.get(), False);
+}
+
+void XScreen::type(unsigned long window, char key) const {
+    constexpr char kEscape = 27;
+    const KeySym symbol = key == kEscape ? XK_Escape : static_cast<KeySym>(key);  // Latin letters are their own symbols
+    XEvent event{};
+    event.xkey.display = display_.get();
+    event.xkey.window = window;
+    event.xkey.root = root_;
+    event.xkey.same_screen = True;
+    event.xkey.keycode = XKeysymToKeycode(display_.get(), symbol);
+    for (const int kind : {KeyPress, KeyRelease}) {
+        event.xkey.type = kind;
+        event.xkey.time += 10;  // GLFW takes presses of the same time for repeats
+        XSendEvent(display_.get(), window, False, kind == KeyPress ? KeyPressMask : KeyReleaseMask, &event);
+    }
+    XSync(display_.get(), False);
+}
+
+}  // namespace support
