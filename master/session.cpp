@@ -74,6 +74,10 @@ Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, con
         summary_.tileNames.push_back(tile.name);
     }
     views_.show(options_.pattern);
+    if (views_.viewer().port() != 0) {
+        fmt::print("head tracking listens on port {}\n", views_.viewer().port());
+        std::fflush(stdout);
+    }
     hash_ = terrain_.stateHash();
 }
 

@@ -61,7 +61,9 @@ protected:
     }
 
     std::unique_ptr<support::ChildProcess> start(const std::vector<std::string>& arguments) {
-        std::vector<std::string> command{SANDWALL_SOURCE_DIR "/scripts/sandwall", "run"};
+        std::vector<std::string> command{"/usr/bin/env", "-u", "DISPLAY"};
+        command.insert(command.end(), environment_.begin(), environment_.end());
+        command.insert(command.end(), {SANDWALL_SOURCE_DIR "/scripts/sandwall", "run"});
         command.insert(command.end(), arguments.begin(), arguments.end());
         return std::make_unique<support::ChildProcess>(command, folder_ / "output.txt");
     }
@@ -87,4 +89,5 @@ protected:
     [[nodiscard]] nlohmann::json summary() const { return nlohmann::json::parse(read("out/summary.json")); }
 
     std::filesystem::path folder_;
+    std::vector<std::string> environment_;  // NAME=value, for the sessions
 };

@@ -5,7 +5,7 @@
 
 #include "probe_fixture.hpp"
 #include "tests/support/x_server.hpp"
-#include "x_screen.hpp"
+#include "tests/support/x_screen.hpp"
 
 namespace {
 

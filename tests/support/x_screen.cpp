@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/window/x_screen.hpp"
+#include "tests/support/x_screen.hpp"
 
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "pictures/png_file.hpp"
+#include "tests/cluster/session_fixture.hpp"
+#include "tests/support/run_program.hpp"
+
+namespace {
+
+constexpr double kLong = 120;  // [s], for what takes a few on an idle machine
+
+class HeadTracking : public SessionTest {
+protected:
+    std::string firstTile(const std::string& eye = "left") {
+        const pictures::Image image = pictures::readPng(folder_ / "out" / ("tile_r1c1_" + eye + ".png"));
+        return {image.rgb.begin(), image.rgb.end()};
+    }
+    void show(const std::vector<std::string>& more, const std::string& wallFile) {
+        std::vector<std::string> arguments{"--wall", wallFile,   "--scene", scene(), "--pace",
+                                           "fast",   "--frames", "30",      "--out", out()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Ended ended = runToEnd(arguments);
+        ASSERT_EQ(ended.status, 0) << ended.output;
+    }
+};
+
+// What a tracked head sees is what a viewer sees who stands there.
+TEST_F(HeadTracking, ATracedHeadSeesWhatAViewerSeesWhoStandsThere) {
+    const std::string there = wall(1, 2);
+    show({}, there);
+    const std::string unmoved = firstTile();
+    const std::string trace = write("head.csv", "time,x,y,z\n0,0.0,1.6,3.0\n0.2,0.4,1.5,2.5\n9,0.4,1.5,2.5\n");
+    show({"--track", "trace:" + trace}, there);
+    const std::string tracked = firstTile();
+    EXPECT_NE(tracked, unmoved);
+    EXPECT_EQ(summary()["head_tracking"]["packets"], 0);
+    std::string text = read("wall.toml");
+    const std::string eye = "eye = [0.0, 1.6, 3.0]";
+    text.replace(text.find(eye), eye.size(), "eye = [0.4, 1.5, 2.5]");
+    show({}, write("moved.toml", text));
+    EXPECT_EQ(firstTile(), tracked);
+}
+
+TEST_F(HeadTracking, AHeadTurnedToItsSideSeesWithOneEyeAboveTheOther) {
+    const std::string trace = write("head.csv", "time,x,y,z,yaw,pitch,roll\n0,0,1.6,3,0,0,90\n");
+    show({"--track", "trace:" + trace}, wall(1, 1));
+    const std::string tracked = firstTile("right");
+    // Rolled to the left by a right angle, the right eye is above.
+    std::string text = read("wall.toml");
+    text.replace(text.find("[stereo]"), 0, "right = [0.0, 1.0, 0.0]\n");
+    show({}, write("rolled.toml", text));
+    EXPECT_EQ(firstTile("right"), tracked);
+    EXPECT_NE(firstTile("left"), tracked);
+}
+
+TEST_F(HeadTracking, ATrackerThatFallsSilentIsSaidOnceAndItsLastPoseHeld) {
+    const std::string wallFile = wall(1, 1);
+    const auto session = start({"--wall", wallFile, "--scene", scene(), "--track", "opentrack:0", "--out", out()});
+    ASSERT_TRUE(session->waitForOutput("listens on port ", kLong)) << session->output();
+    const std::string said = session->output();
+    const std::string port = std::to_string(std::stoi(said.substr(said.find("listens on port ") + 16)));
+    ASSERT_TRUE(session->waitForOutput("hashes agree", kLong)) << session->output();
+    const support::Ran sent = support::runProgram("sandwall-track", "--send opentrack:" + port + " --seconds 0.5");
+    EXPECT_EQ(sent.status, 0) << sent.output;
+    EXPECT_TRUE(session->waitForOutput("the last one is held", kLong)) << session->output();
+    session->type("stop");
+    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    EXPECT_GT(summary()["head_tracking"]["packets"], 0);
+    EXPECT_EQ(summary()["head_tracking"]["lost"], 1);
+    const std::string held = firstTile();
+    show({"--track", "none"}, wallFile);
+    EXPECT_NE(held, firstTile()) << "the last pose was not held";
+}
+
+TEST_F(HeadTracking, ABrokenTraceIsOneLine) {
+    const std::string trace = write("head.csv", "time,x,y,z\n0,0,1.6,3\n0.1,0,zwei,3\n");
+    const Ended ended =
+        runToEnd({"--wall", wall(1, 1), "--scene", scene(), "--track", "trace:" + trace, "--out", out()});
+    EXPECT_EQ(ended.status, 2) << ended.output;
+    EXPECT_NE(ended.output.find("head.csv:3: "), std::string::npos) << ended.output;
+}
+
+}  // namespace
