@@ -37,6 +37,9 @@ glm::dvec2 cornerOf(const walls::Wall& wall, const walls::Tile& tile) {
 
 std::string eyeText(Eye eye) { return eye == Eye::left ? "LEFT EYE" : eye == Eye::right ? "RIGHT EYE" : "MONO"; }
 
+/// Red-cyan glasses let each eye see its own colour alone.
+glm::vec3 colourOf(Eye eye) { return eye == Eye::left ? kRed : eye == Eye::right ? kCyan : kWhite; }
+
 /// The part of a tile that is this eye's alone, so that words of both can be read in one picture.
 int leftOfOwn(Eye eye, int width) { return eye == Eye::right ? width / 2 : eye == Eye::left ? 0 : width / 4; }
 
@@ -107,8 +110,8 @@ void TestPatternView::drawGrid(const EyeTarget& target) {
 }
 
 void TestPatternView::addTile(Eye eye, glm::ivec2 size) {
-    const bool even = (tile_.row + tile_.column) % 2 == 0;
     const bool explicitScreen = tile_.row == 0;
+    const bool even = (explicitScreen ? tile_.rank : tile_.row + tile_.column) % 2 == 0;
     const std::array lines{fmt::format("RANK {}", tile_.rank), fmt::format("HOST {}", host_),
                            explicitScreen ? fmt::format("SCREEN {}", tile_.name)
                                           : fmt::format("ROW {} COLUMN {}", tile_.row, tile_.column),
@@ -117,20 +120,23 @@ void TestPatternView::addTile(Eye eye, glm::ivec2 size) {
     painter_.addFrame({0, 0}, size, std::max(1, size.y / 100), kWhite);
     const int lineHeight = size.y / 7;
     const int margin = size.x / 16;
+    const glm::ivec2 room(size.x - 2 * margin, lineHeight * 2 / 3);
+    int dot = dotToFit(lines[0], room);
+    for (const std::string& line : lines) {
+        dot = std::min(dot, dotToFit(line, room));
+    }
     int top = size.y / 14;
     for (const std::string& line : lines) {
-        addCentred(line, {margin, top}, {size.x - 2 * margin, lineHeight * 2 / 3}, kWhite);
+        painter_.addText(line, {(size.x - textSize(line).x * dot) / 2, top}, dot, kWhite);
         top += lineHeight;
     }
     // Each eye in its own half: where both come into one picture, both can be read.
-    const std::string eyes = eyeText(eye);
-    const glm::vec3 colour = eye == Eye::left ? kRed : eye == Eye::right ? kCyan : kWhite;
-    addCentred(eyes, {leftOfOwn(eye, size.x) + margin / 2, top + lineHeight / 2}, {size.x / 2 - margin, lineHeight},
-               colour);
+    addCentred(eyeText(eye), {leftOfOwn(eye, size.x) + margin / 2, top + lineHeight / 2},
+               {size.x / 2 - margin, lineHeight}, colourOf(eye));
 }
 
 void TestPatternView::addEyes(Eye eye, glm::ivec2 size) {
-    const glm::vec3 colour = eye == Eye::left ? kRed : eye == Eye::right ? kCyan : kWhite;
+    const glm::vec3 colour = colourOf(eye);
     const std::string letter = eye == Eye::left ? "L" : eye == Eye::right ? "R" : "M";
     const int quarter = size.x / 4;
     const int half = leftOfOwn(eye, size.x);
@@ -176,7 +182,8 @@ void TestPatternView::addRamp(glm::ivec2 size) {
         const int level = std::min(255, 16 * step);
         const std::string number = std::to_string(level);
         const int middle = size.x * (2 * step + 1) / (2 * kSteps);
-        painter_.addText(number, {middle - textSize(number).x * dot / 2, stepsHigh / 2}, dot,
+        const int wide = textSize(number).x * dot;
+        painter_.addText(number, {std::min(middle - wide / 2, size.x - wide), stepsHigh / 2}, dot,
                          level < 128 ? kWhite : kBlack);
     }
     for (int level = 0; level < 256; ++level) {
