@@ -156,7 +156,12 @@ struct Wall {
 /// The tiles of a grid, row by row from the top left, ranks from 1.
 [[nodiscard]] std::vector<Tile> tilesOf(const Grid& grid, Stereo stereo);
 
-/// The same wall shown another way: eyes and outputs follow, monitors and windows are kept where they still fit.
+/// Whether the display stretches each eye's half of the frame to the whole screen, as 3D televisions do: eyes side by
+/// side or one above the other, with pixels closer to twice as wide as high, or twice as high, than to square.
+[[nodiscard]] bool isStretched(Stereo stereo, const Tile& tile);
+
+/// The same wall shown another way: eyes and outputs follow, monitors and windows are kept where they still fit. What
+/// was half a frame stretched becomes the whole frame, so that mono fills the screen of a 3D television.
 [[nodiscard]] Wall shownIn(Wall wall, Stereo stereo);
 
 /// Reads and checks a wall file (docs/wall_files.md). Throws files::InputError with file, line and what to do.

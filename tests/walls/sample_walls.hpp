@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "walls/canvas.hpp"
 #include "walls/projection.hpp"
@@ -12,6 +14,18 @@ namespace walls {
 
 inline std::filesystem::path configFolder() { return std::filesystem::path(SANDWALL_SOURCE_DIR) / "walls/configs"; }
 inline Wall config(const std::string& name) { return loadWall(configFolder() / name); }
+
+/// Every sample of the project, by name.
+inline std::vector<std::string> configNames() {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(configFolder())) {
+        if (entry.path().extension() == ".toml") {
+            names.push_back(entry.path().filename().string());
+        }
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
 
 /// A 0.8 x 0.6 m screen of 800 x 600 pixels, straight before an eye 2 m away at the height of its middle.
 inline Screen plainScreen() { return {{-0.4, 0, 0}, {0.4, 0, 0}, {-0.4, 0.6, 0}}; }
