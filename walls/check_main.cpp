@@ -5,18 +5,70 @@
 #include <string>
 
 #include "files/command_line.hpp"
+#include "files/whole_file.hpp"
 #include "walls/wall.hpp"
+#include "walls/wall_check.hpp"
 #include "walls/wall_report.hpp"
+#include "walls/wall_svg.hpp"
+
+namespace {
+
+struct Options {
+    std::string wall, stereo, svg;
+    bool mono = false, ranks = false, hosts = false;
+};
+
+walls::Stereo stereoNamed(const std::string& name) {
+    std::string known;
+    for (int mode = 0; mode <= static_cast<int>(walls::kLastStereo); ++mode) {
+        const auto stereo = static_cast<walls::Stereo>(mode);
+        if (walls::stereoName(stereo) == name) {
+            return stereo;
+        }
+        known += (mode == 0 ? "" : ", ") + std::string(walls::stereoName(stereo));
+    }
+    throw files::InputError(fmt::format("--stereo must be one of {}, got '{}'", known, name));
+}
+
+/// Another mode may need an eye that the file's own did not draw.
+walls::Wall shown(const Options& options) {
+    const walls::Wall wall = walls::loadWall(options.wall);
+    if (!options.mono && options.stereo.empty()) {
+        return wall;
+    }
+    const walls::Wall other = walls::shownIn(wall, options.mono ? walls::Stereo::mono : stereoNamed(options.stereo));
+    if (const auto fault = walls::viewFault(other)) {
+        throw files::InputError(
+            fmt::format("{}: shown in {}: {}", options.wall, walls::stereoName(other.stereo), *fault));
+    }
+    return other;
+}
+
+int check(const Options& options) {
+    const walls::Wall wall = shown(options);
+    if (!options.svg.empty()) {
+        files::WholeFile file(options.svg);
+        file.stream() << walls::drawingOf(wall);
+        file.keep();
+    }
+    if (options.ranks) {
+        fmt::print("{}\n", wall.ranks());
+    } else {
+        fmt::print("{}", options.hosts ? walls::hostLines(wall) : walls::describe(wall));
+    }
+    return 0;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
     CLI::App app{"Checks a wall file and prints what it describes.", "sandwall-check"};
-    std::string file;
-    bool ranks = false;
-    app.add_option("WALL", file, "a wall file (docs/wall_files.md)")->required();
-    app.add_flag("--ranks", ranks, "print only the number of render ranks");
-    return files::runMain(app, argc, argv, [&] {
-        const walls::Wall wall = walls::loadWall(file);
-        fmt::print("{}", ranks ? fmt::format("{}\n", wall.ranks()) : walls::describe(wall));
-        return 0;
-    });
+    Options options;
+    app.add_option("WALL", options.wall, "a wall file (docs/wall_files.md)")->required();
+    CLI::Option* stereo = app.add_option("--stereo", options.stereo, "check it as shown in this mode");
+    app.add_flag("--mono", options.mono, "check it as shown without stereo")->excludes(stereo);
+    app.add_option("--svg", options.svg, "draw front view and plan into this file");
+    CLI::Option* ranks = app.add_flag("--ranks", options.ranks, "print only the number of render ranks");
+    app.add_flag("--hosts", options.hosts, "print only the host of each rank from 1, or '-'")->excludes(ranks);
+    return files::runMain(app, argc, argv, [&] { return check(options); });
 }

@@ -6,58 +6,48 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 
 #include "walls/canvas.hpp"
 #include "walls/projection.hpp"
+#include "walls/wall_checklist.hpp"
+#include "walls/wall_map.hpp"
 
 namespace walls {
 namespace {
 
-constexpr int kWidestMap = 12;  // [tile]: a hundred columns of text hold no more
-
 std::string point(glm::dvec3 p) { return fmt::format("({:.3f}, {:.3f}, {:.3f})", p.x, p.y, p.z); }
-
-/// Boxes as the viewer sees them; the columns of a wide grid are left out beyond kWidestMap.
-std::string gridMap(const Wall& wall) {
-    const Grid& grid = *wall.grid;
-    const int columns = std::min<int>(grid.columns, kWidestMap);
-    std::string rule = "  ";
-    for (int column = 0; column < columns; ++column) {
-        rule += "+------";
-    }
-    rule += columns < grid.columns ? "+ ...\n" : "+\n";
-    std::string map = rule;
-    for (int row = 0; row < grid.rows; ++row) {
-        map += "  ";
-        for (int column = 0; column < columns; ++column) {
-            map += fmt::format("|{:^6}", row * grid.columns + column + 1);
-        }
-        map += "|\n" + rule;
-    }
-    return map;
-}
-
-std::string screenMap(const Wall& wall) {
-    std::string map;
-    for (const Tile& tile : wall.tiles) {
-        if (tile.row == 0) {
-            map += fmt::format("  [{} {}]", tile.rank, tile.name);
-        }
-    }
-    return map.empty() ? map : map + "\n";
-}
 
 /// The angle between two edges of the screen as the eye sees it [degree].
 double angleOf(double low, double high, double near) {
     return glm::degrees(std::atan(high / near) - std::atan(low / near));
 }
 
+std::string outputText(const Output& output, glm::ivec2 frame, glm::ivec2 onePicture) {
+    std::string text = output.name;
+    for (const Eye eye : output.eyes) {
+        text += fmt::format(" {}", eyeName(eye).substr(0, 1));
+    }
+    if (frame != onePicture) {
+        text += fmt::format(" {}x{}", frame.x, frame.y);
+    }
+    if (!output.monitor.empty()) {
+        text += " on " + output.monitor;
+    }
+    return output.window ? text + fmt::format(" at [{}, {}]", output.window->x, output.window->y) : text;
+}
+
+std::string placeText(const Place& place) {
+    std::string text = place.host.empty() ? "" : "; host " + place.host;
+    text += place.display.empty() ? "" : "; display " + place.display;
+    return place.device < 0 ? text : text + fmt::format("; device {}", place.device);
+}
+
 std::string tileLine(const Wall& wall, const Tile& tile) {
     const View view = viewOf(wall, tile, Eye::middle);
     std::string outputs;
     for (const Output& output : tile.outputs) {
-        outputs += (outputs.empty() ? "" : ", ") + output.name;
+        outputs +=
+            (outputs.empty() ? "" : ", ") + outputText(output, outputPixels(wall.stereo, tile.pixels), tile.pixels);
     }
     return fmt::format("{:>6}  {:<10} {:>11} {:>15} {:>9.3f} {:>11.3f} {:>13}  {}  {}\n", tile.rank, tile.name,
                        fmt::format("{}x{}", tile.pixels.x, tile.pixels.y),
@@ -65,7 +55,7 @@ std::string tileLine(const Wall& wall, const Tile& tile) {
                        tile.screen.width() / tile.pixels.x * 1000, tile.screen.distanceTo(wall.viewer.eye),
                        fmt::format("{:.1f} x {:.1f}", angleOf(view.left, view.right, view.near),
                                    angleOf(view.bottom, view.top, view.near)),
-                       point(tile.screen.lowerLeft), outputs);
+                       point(tile.screen.lowerLeft), outputs + placeText(tile.place));
 }
 
 /// Whether the sand, taken as a square field, lies between the clipping planes of the screens that show it.
@@ -94,27 +84,30 @@ std::string stageLines(const Wall& wall) {
 
 std::string describe(const Wall& wall) {
     const Canvas canvas = wallCanvas(wall);
-    std::size_t outputs = 0;
-    for (const Tile& tile : wall.tiles) {
-        outputs += tile.outputs.size();
-    }
+    const std::size_t outputs = wall.tiles.front().outputs.size() * wall.tiles.size();
     const std::string mode = wall.stereo == Stereo::mono ? "mono" : fmt::format("{} stereo", stereoName(wall.stereo));
     std::string text =
         fmt::format("{}: {} render rank{}, {}, {} output{}, whole picture {}x{} pixels\n", wall.name, wall.ranks(),
                     wall.ranks() == 1 ? "" : "s", mode, outputs, outputs == 1 ? "" : "s", canvas.width, canvas.height);
-    text += fmt::format("viewer: eye {}, eyes {:.1f} mm apart; drawn from {} to {} m\n\n", point(wall.viewer.eye),
-                        wall.viewer.eyeSeparation * 1000, wall.clip.near, wall.clip.far);
-    if (wall.grid) {
-        text += gridMap(wall);
-        text += fmt::format("  bezels {:.1f} x {:.1f} mm\n", wall.grid->bezel.x * 1000, wall.grid->bezel.y * 1000);
-    }
-    text += screenMap(wall);
+    text +=
+        fmt::format("viewer: eye {}, eyes {:.1f} mm apart; drawn from {} to {} m; {} frames per second; head {}\n\n",
+                    point(wall.viewer.eye), wall.viewer.eyeSeparation * 1000, wall.clip.near, wall.clip.far,
+                    wall.refreshHz, wall.tracking.empty() ? "not tracked" : "from " + wall.tracking);
+    text += textMap(wall) + "\n" + checklist(wall);
     text += fmt::format("\n{:>6}  {:<10} {:>11} {:>15} {:>9} {:>11} {:>13}  {}\n", "rank", "tile", "pixels", "metres",
-                        "mm/pixel", "distance m", "degrees", "lower left, outputs");
+                        "mm/pixel", "distance m", "degrees", "lower left, outputs with their eyes, places");
     for (const Tile& tile : wall.tiles) {
         text += tileLine(wall, tile);
     }
     return text + "\n" + stageLines(wall);
+}
+
+std::string hostLines(const Wall& wall) {
+    std::string lines;
+    for (const Tile& tile : wall.tiles) {
+        lines += (tile.place.host.empty() ? "-" : tile.place.host) + "\n";
+    }
+    return lines;
 }
 
 }  // namespace walls

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "tests/support/run_program.hpp"
+#include "tests/support/wall_text.hpp"
+#include "tests/walls/sample_walls.hpp"
+#include "walls/wall_map.hpp"
+#include "walls/wall_measure.hpp"
+#include "walls/wall_svg.hpp"
+
+namespace walls {
+namespace {
+
+std::string pathOf(const std::string& name) { return (configFolder() / name).string(); }
+
+std::size_t countOf(const std::string& what, const std::string& text) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + what.size())) {
+        ++count;
+    }
+    return count;
+}
+
+TEST(CheckProgram, ExitsWithTwoAndOneLineForWhatItCannotUse) {
+    for (const std::string& arguments :
+         {std::string("no/such/wall.toml"), std::string(""), std::string("--what"), configFolder().string(),
+          std::string(SANDWALL_SOURCE_DIR "/LICENSE"), pathOf("desktop.toml") + " --stereo 3d",
+          pathOf("desktop.toml") + " --mono --stereo left", pathOf("desktop.toml") + " --ranks --hosts",
+          pathOf("desktop.toml") + " --svg /no/such/folder/wall.svg"}) {
+        const support::Ran ran = support::runProgram("sandwall-check", arguments);
+        EXPECT_EQ(ran.status, 2) << arguments;
+        EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
+    }
+}
+
+TEST(CheckProgram, ShowsAnyWallInAnyMode) {
+    for (const std::string& name : configNames()) {
+        for (int mode = 0; mode <= static_cast<int>(kLastStereo); ++mode) {
+            const std::string stereo(stereoName(static_cast<Stereo>(mode)));
+            const support::Ran ran = support::runProgram("sandwall-check", pathOf(name) + " --stereo " + stereo);
+            EXPECT_EQ(ran.status, 0) << name << "\n" << ran.output;
+            EXPECT_NE(ran.output.find(mode == 0 ? ", mono," : fmt::format(", {} stereo,", stereo)), std::string::npos)
+                << ran.output;
+        }
+    }
+}
+
+TEST(CheckProgram, AsksForTheEyesThatAnotherModeDraws) {
+    // The head is 2 cm before the right screen: enough for mono, too little for a right eye.
+    Wall cave = shownIn(config("flex_cave.toml"), Stereo::mono);
+    cave.viewer.eye.x = 1.58;
+    const std::string file = testing::TempDir() + "near_" + std::to_string(::getpid()) + ".toml";
+    std::ofstream(file) << support::wallText(cave);
+    EXPECT_EQ(support::runProgram("sandwall-check", file).status, 0);
+    const support::Ran ran = support::runProgram("sandwall-check", file + " --stereo active");
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_NE(ran.output.find("shown in active: the right eye"), std::string::npos) << ran.output;
+    EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
+    std::filesystem::remove(file);
+}
+
+TEST(CheckProgram, PrintsTheHostOfEachRank) {
+    Wall wall = config("flex_cave.toml");
+    wall.tiles[0].place.host = "node1";
+    wall.tiles[3].place.host = "10.0.0.4";
+    const std::string file = testing::TempDir() + "hosts_" + std::to_string(::getpid()) + ".toml";
+    std::ofstream(file) << support::wallText(wall);
+    const support::Ran ran = support::runProgram("sandwall-check", file + " --hosts");
+    EXPECT_EQ(ran.status, 0);
+    EXPECT_EQ(ran.output, "node1\n-\n-\n10.0.0.4\n");
+    std::filesystem::remove(file);
+}
+
+TEST(CheckProgram, SaysWhatItMeasured) {
+    const support::Ran tiled = support::runProgram("sandwall-check", pathOf("tiled_3x4.toml"));
+    EXPECT_NE(tiled.output.find("12 for the tiles; with the master, 13 processes"), std::string::npos);
+    EXPECT_NE(tiled.output.find("left and right on every tile, 24 outputs"), std::string::npos);
+    EXPECT_NE(tiled.output.find("measured 9 across of 10.0 mm, 8 down of 10.0 mm"), std::string::npos);
+    const support::Ran cave = support::runProgram("sandwall-check", pathOf("flex_cave.toml"));
+    EXPECT_EQ(countOf("0.0 mm apart, at 90.0 degrees", cave.output), 5U) << cave.output;
+    const support::Ran television = support::runProgram("sandwall-check", pathOf("top_bottom.toml"));
+    EXPECT_NE(television.output.find("twice as high as wide"), std::string::npos) << television.output;
+    EXPECT_NE(television.output.find("r1c1 l r 1920x1080"), std::string::npos) << television.output;
+}
+
+TEST(Measures, FindTilesThatAreNotWhereTheGridSays) {
+    Wall wall = config("tiled_3x4.toml");
+    wall.tiles[5].screen.lowerLeft.x += 0.001;
+    wall.tiles[5].screen.upperLeft.x += 0.001;
+    const auto [across, down] = gapsOf(wall);
+    EXPECT_EQ(across.count, 9);
+    EXPECT_EQ(down.count, 8);
+    EXPECT_NEAR(across.most, 0.011, 1e-12);
+    EXPECT_NEAR(across.least, 0.010, 1e-12);
+    EXPECT_NEAR(down.aslant, 0.001, 1e-12);
+}
+
+TEST(Measures, TellTheAngleAndTheGapOfScreensThatJoin) {
+    Wall wall = config("flex_cave.toml");
+    wall.tiles.resize(2);
+    Screen& front = wall.tiles[1].screen;
+    for (glm::dvec3* corner : {&front.lowerLeft, &front.lowerRight, &front.upperLeft}) {
+        corner->x += 0.02;
+    }
+    ASSERT_EQ(seamsOf(wall).size(), 1U);
+    const Seam seam = seamsOf(wall)[0];
+    EXPECT_EQ(seam.edgeOfFirst, Edge::right);
+    EXPECT_EQ(seam.edgeOfSecond, Edge::left);
+    EXPECT_NEAR(seam.apart, 0.02, 1e-12);
+    EXPECT_NEAR(seam.degrees, 90, 1e-9);
+    for (glm::dvec3* corner : {&front.lowerLeft, &front.lowerRight, &front.upperLeft}) {
+        corner->x += 0.04;
+    }
+    EXPECT_TRUE(seamsOf(wall).empty()) << "6 cm apart";
+}
+
+TEST(TextMap, UnfoldsACave) {
+    EXPECT_EQ(textMap(config("flex_cave.toml")),
+              "  +---------++---------++---------+\n"
+              "  | 1 left  || 2 front || 3 right |\n"
+              "  +---------++---------++---------+\n"
+              "             +---------+\n"
+              "             | 4 floor |\n"
+              "             +---------+\n");
+}
+
+TEST(TextMap, HasABoxForEveryTileOfAGrid) {
+    EXPECT_EQ(textMap(config("tiled_3x4.toml")),
+              "  +------+------+------+------+\n"
+              "  |  1   |  2   |  3   |  4   |\n"
+              "  +------+------+------+------+\n"
+              "  |  5   |  6   |  7   |  8   |\n"
+              "  +------+------+------+------+\n"
+              "  |  9   |  10  |  11  |  12  |\n"
+              "  +------+------+------+------+\n");
+}
+
+TEST(Drawing, HasEveryTileAndTheSandInBothViews) {
+    for (const std::string& name : configNames()) {
+        const Wall wall = config(name);
+        const std::string svg = drawingOf(wall);
+        EXPECT_EQ(svg.rfind("<?xml", 0), 0U);
+        EXPECT_EQ(svg.substr(svg.size() - 7), "</svg>\n");
+        for (const Tile& tile : wall.tiles) {
+            EXPECT_NE(svg.find(fmt::format(">{} {}<", tile.rank, tile.name)), std::string::npos) << name;
+        }
+        EXPECT_EQ(countOf(">sand<", svg), 2U) << name;
+        EXPECT_EQ(countOf(">viewer<", svg), 2U) << name;
+        EXPECT_EQ(svg.find("nan"), std::string::npos) << name;
+        EXPECT_EQ(svg.find("inf"), std::string::npos) << name;
+    }
+}
+
+TEST(Drawing, GivesBezelsAndSizesInFigures) {
+    const std::string svg = drawingOf(config("tiled_3x4.toml"));
+    EXPECT_EQ(countOf(">gap 10.0 mm<", svg), 2U);
+    EXPECT_EQ(countOf(">4.126 m<", svg), 1U);
+    EXPECT_EQ(countOf(">2.324 m<", svg), 1U);
+    EXPECT_EQ(countOf(">3.000 m<", svg), 1U) << "from the viewer to the wall";
+    EXPECT_EQ(countOf(">0.300 m<", svg), 1U) << "above the floor";
+}
+
+TEST(Drawing, WritesNamesThatMeanSomethingInXml) {
+    Wall wall = config("desktop.toml");
+    wall.name = "R&D <wall>";
+    EXPECT_NE(drawingOf(wall).find(">R&amp;D &lt;wall&gt;<"), std::string::npos);
+}
+
+TEST(Drawing, GoesIntoAFile) {
+    const std::string file = testing::TempDir() + "wall_" + std::to_string(::getpid()) + ".svg";
+    const support::Ran ran = support::runProgram("sandwall-check", pathOf("desktop.toml") + " --svg " + file);
+    EXPECT_EQ(ran.status, 0) << ran.output;
+    std::ifstream stream(file);
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    EXPECT_EQ(text, drawingOf(config("desktop.toml")));
+    std::filesystem::remove(file);
+}
+
+}  // namespace
+}  // namespace walls
