@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <regex>
+#include <string>
+
+#include "tests/support/run_program.hpp"
+#include "tests/walls/sample_walls.hpp"
+
+namespace walls {
+namespace {
+
+/// What the first comment of a broken wall promises: "# expect: 12: eye_separation must be positive".
+struct Promise {
+    std::string line, message;
+};
+
+Promise promiseOf(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    std::string first, why;
+    std::getline(stream, first);
+    std::getline(stream, why);
+    std::smatch parts;
+    if (!std::regex_match(first, parts, std::regex("# expect: ([0-9]+): (.{10,})")) || why.size() < 10) {
+        return {};
+    }
+    return {parts[1], parts[2]};
+}
+
+TEST(BrokenWalls, GiveOneClearLineEach) {
+    int count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(configFolder() / "broken")) {
+        SCOPED_TRACE(entry.path().filename().string());
+        ++count;
+        const Promise promise = promiseOf(entry.path());
+        ASSERT_FALSE(promise.line.empty()) << "the first two lines must say what is expected, and why";
+        const support::Ran ran = support::runProgram("sandwall-check", entry.path().string());
+        EXPECT_EQ(ran.status, 2);
+        EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
+        EXPECT_EQ(ran.output.rfind(fmt::format("{}:{}: ", entry.path().string(), promise.line), 0), 0U) << ran.output;
+        EXPECT_NE(ran.output.find(promise.message), std::string::npos) << ran.output;
+    }
+    EXPECT_GE(count, 70);
+}
+
+TEST(BrokenWalls, BecomeWholeByOneEdit) {
+    // The gallery's frame is sound: it is the one mistake that each file is refused for.
+    std::ifstream stream(configFolder() / "broken/eye_misspelt.toml");
+    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    text.replace(text.find("eyes ="), 4, "eye ");
+    EXPECT_EQ(parseWall(text, "mended.toml").ranks(), 4);
+}
+
+}  // namespace
+}  // namespace walls
