@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// docs/wall_files.md: every example is a wall, and the stranger's wall has the facts of the tape measure.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "tests/support/run_program.hpp"
+#include "tests/walls/sample_walls.hpp"
+
+namespace walls {
+namespace {
+
+std::string document() {
+    std::ifstream page(std::filesystem::path(SANDWALL_SOURCE_DIR) / "docs/wall_files.md");
+    return {std::istreambuf_iterator<char>(page), {}};
+}
+
+std::vector<std::string> examples() {
+    const std::string text = document();
+    const std::string open = "```toml\n";
+    std::vector<std::string> blocks;
+    for (std::size_t start = text.find(open); start != std::string::npos; start = text.find(open, start)) {
+        start += open.size();
+        blocks.push_back(text.substr(start, text.find("```", start) - start));
+    }
+    return blocks;
+}
+
+/// A part of a wall file, with the tables that it leaves out taken from the first example, a whole one.
+std::string completed(const std::string& part, const std::string& whole) {
+    std::string text = part;
+    for (const std::string table : {"[viewer]", "[grid]", "[stage]"}) {
+        const std::size_t start = whole.find(table);
+        if (part.find(table) == std::string::npos && start != std::string::npos) {
+            text += fmt::format("\n{}\n", whole.substr(start, whole.find("\n\n", start) - start));
+        }
+    }
+    return text;
+}
+
+TEST(WallDocument, LeadsFromATapeMeasureToAWallThatPasses) {
+    ASSERT_FALSE(examples().empty());
+    const std::filesystem::path file =
+        std::filesystem::path(testing::TempDir()) / ("stranger_" + std::to_string(::getpid()) + ".toml");
+    std::ofstream(file) << examples().front();
+    const support::Ran check = support::runProgram("sandwall-check", file.string());
+    EXPECT_EQ(check.status, 0) << check.output;
+    EXPECT_EQ(check.output.find("no tile"), std::string::npos) << "all corners of the sand are seen\n" << check.output;
+    EXPECT_NE(check.output.find("measured 2 across of 7.0 mm, 2 down of 7.0 mm"), std::string::npos) << check.output;
+    std::filesystem::remove(file);
+
+    const Wall wall = parseWall(examples().front(), "docs/wall_files.md");
+    ASSERT_EQ(wall.ranks(), 4);
+    for (const Tile& tile : wall.tiles) {
+        EXPECT_NEAR(tile.screen.width(), 1.018, 1e-12);
+        EXPECT_NEAR(tile.screen.height(), 0.573, 1e-12);
+        EXPECT_EQ(tile.pixels, glm::ivec2(1920, 1080));
+        EXPECT_NEAR(tile.screen.distanceTo(wall.viewer.eye), 2.5, 1e-12);
+    }
+    // Two bezels of 3.5 mm meet between lit areas.
+    EXPECT_NEAR(wall.tiles[1].screen.lowerLeft.x - wall.tiles[0].screen.lowerRight.x, 2 * 0.0035, 1e-12);
+    EXPECT_NEAR(wall.tiles[0].screen.lowerLeft.y - wall.tiles[2].screen.upperLeft.y, 2 * 0.0035, 1e-12);
+    EXPECT_NEAR(wall.tiles[2].screen.lowerLeft.y, 0.80, 1e-12) << "above the floor";
+    EXPECT_NEAR(wall.tiles[0].screen.lowerLeft.x, -wall.tiles[1].screen.lowerRight.x, 1e-12) << "in the middle";
+}
+
+TEST(WallDocument, HasExamplesThatAreWalls) {
+    const std::vector<std::string> blocks = examples();
+    ASSERT_GE(blocks.size(), 6U);
+    for (const std::string& block : blocks) {
+        EXPECT_NO_THROW((void)parseWall(completed(block, blocks.front()), "docs/wall_files.md")) << block;
+    }
+}
+
+TEST(WallDocument, NamesEverySampleAndEveryMode) {
+    const std::string text = document();
+    for (const std::string& name : configNames()) {
+        EXPECT_NE(text.find(fmt::format("`{}`", std::filesystem::path(name).stem().string())), std::string::npos)
+            << name;
+    }
+    for (int mode = 0; mode <= static_cast<int>(kLastStereo); ++mode) {
+        const std::string name(stereoName(static_cast<Stereo>(mode)));
+        EXPECT_NE(text.find(fmt::format("`{}`", name)), std::string::npos) << name;
+    }
+}
+
+}  // namespace
+}  // namespace walls
