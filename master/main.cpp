@@ -60,10 +60,7 @@ struct World {
 };
 
 World loadWorld(const lockstep::Cluster& cluster, Options& options) {
-    World world{sand::loadScene(options.scene), walls::loadWall(options.wall), {}};
-    if (!options.stereo.empty()) {
-        world.wall = walls::shownIn(world.wall, walls::stereoNamed(options.stereo));
-    }
+    World world{sand::loadScene(options.scene), walls::loadWallAs(options.wall, options.stereo), {}};
     for (const std::string& warning : world.scene.warnings) {
         fmt::print(stderr, "{}: warning: {}\n", options.scene, warning);
     }
@@ -151,8 +148,7 @@ void describeOptions(CLI::App& app, Options& options) {
         ->check(CLI::IsMember({"realtime", "fast"}));
     app.add_option("--refresh", session.refreshHz, "frames per second, instead of the wall file's")
         ->check(CLI::Range(1.0, 1000.0));
-    app.add_option("--stereo", options.stereo, "how the wall shows two eyes, instead of what its file says")
-        ->check(CLI::IsMember(walls::stereoNames()));
+    app.add_option("--stereo", options.stereo, "how the wall shows two eyes, instead of as its file says");
     app.add_option("--track", options.track,
                    "where the head's pose comes from, instead of what the wall file says (docs/head_tracking.md)");
     app.add_option("--pattern", options.pattern, "test pattern shown from the start (docs/test_patterns.md)");

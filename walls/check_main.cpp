@@ -7,7 +7,6 @@
 #include "files/command_line.hpp"
 #include "files/whole_file.hpp"
 #include "walls/wall.hpp"
-#include "walls/wall_check.hpp"
 #include "walls/wall_report.hpp"
 #include "walls/wall_svg.hpp"
 
@@ -18,34 +17,8 @@ struct Options {
     bool mono = false, ranks = false, hosts = false;
 };
 
-walls::Stereo stereoNamed(const std::string& name) {
-    std::string known;
-    for (int mode = 0; mode <= static_cast<int>(walls::kLastStereo); ++mode) {
-        const auto stereo = static_cast<walls::Stereo>(mode);
-        if (walls::stereoName(stereo) == name) {
-            return stereo;
-        }
-        known += (mode == 0 ? "" : ", ") + std::string(walls::stereoName(stereo));
-    }
-    throw files::InputError(fmt::format("--stereo must be one of {}, got '{}'", known, name));
-}
-
-/// Another mode may need an eye that the file's own did not draw.
-walls::Wall shown(const Options& options) {
-    const walls::Wall wall = walls::loadWall(options.wall);
-    if (!options.mono && options.stereo.empty()) {
-        return wall;
-    }
-    const walls::Wall other = walls::shownIn(wall, options.mono ? walls::Stereo::mono : stereoNamed(options.stereo));
-    if (const auto fault = walls::viewFault(other)) {
-        throw files::InputError(
-            fmt::format("{}: shown in {}: {}", options.wall, walls::stereoName(other.stereo), *fault));
-    }
-    return other;
-}
-
 int check(const Options& options) {
-    const walls::Wall wall = shown(options);
+    const walls::Wall wall = walls::loadWallAs(options.wall, options.mono ? "mono" : options.stereo);
     if (!options.svg.empty()) {
         files::WholeFile file(options.svg);
         file.stream() << walls::drawingOf(wall);

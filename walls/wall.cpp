@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <stdexcept>
+
+#include "files/input_error.hpp"
 
 namespace walls {
 std::string_view eyeName(Eye eye) {
@@ -26,7 +27,7 @@ std::string_view stereoName(Stereo stereo) { return stereoNames().at(static_cast
 Stereo stereoNamed(const std::string& name) {
     const auto found = std::find(stereoNames().begin(), stereoNames().end(), name);
     if (found == stereoNames().end()) {
-        throw std::out_of_range("no stereo mode " + name);
+        throw files::InputError(fmt::format("no stereo mode '{}'; there are {}", name, fmt::join(stereoNames(), ", ")));
     }
     return static_cast<Stereo>(found - stereoNames().begin());
 }

@@ -44,7 +44,7 @@ inline constexpr Stereo kLastStereo = Stereo::anaglyphDubois;
 [[nodiscard]] std::string_view stereoName(Stereo stereo);
 /// All of them, in the order of the enumeration: as wall files and options write them.
 [[nodiscard]] const std::vector<std::string>& stereoNames();
-/// Throws std::out_of_range for a name that is none of them.
+/// Throws files::InputError that lists them, for a name that is none of them.
 [[nodiscard]] Stereo stereoNamed(const std::string& name);
 /// The eyes that are drawn, in the order they are drawn: the middle alone for mono, left or right alone where only one
 /// is shown, else left and right.
@@ -166,6 +166,9 @@ struct Wall {
 
 /// Reads and checks a wall file (docs/wall_files.md). Throws files::InputError with file, line and what to do.
 [[nodiscard]] Wall loadWall(const std::filesystem::path& file);
+/// The same wall shown in another mode, which may need an eye that the file's own did not draw; an empty name means the
+/// file's own.
+[[nodiscard]] Wall loadWallAs(const std::filesystem::path& file, const std::string& stereo);
 /// The same from text; `name` stands for the file in messages.
 [[nodiscard]] Wall parseWall(std::string_view text, const std::string& name);
 

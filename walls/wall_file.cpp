@@ -132,6 +132,18 @@ std::string fallbackName(const std::filesystem::path& file) {
 
 Wall loadWall(const std::filesystem::path& file) { return readWall(TomlTable::load(file), fallbackName(file)); }
 
+Wall loadWallAs(const std::filesystem::path& file, const std::string& stereo) {
+    const Wall wall = loadWall(file);
+    if (stereo.empty()) {
+        return wall;
+    }
+    const Wall other = shownIn(wall, stereoNamed(stereo));
+    if (const auto fault = viewFault(other)) {
+        throw files::InputError(fmt::format("{}: shown in {}: {}", file.string(), stereo, *fault));
+    }
+    return other;
+}
+
 Wall parseWall(std::string_view text, const std::string& name) {
     return readWall(TomlTable::parse(text, name), fallbackName(name));
 }

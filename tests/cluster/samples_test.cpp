@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <set>
+
+#include "pictures/png_file.hpp"
+#include "tests/cluster/session_fixture.hpp"
+#include "tests/support/wall_text.hpp"
+
+namespace {
+
+std::vector<std::string> samples() {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(SANDWALL_SOURCE_DIR "/walls/configs")) {
+        if (entry.path().extension() == ".toml") {
+            names.push_back(entry.path().stem().string());
+        }
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+class Sample : public SessionTest, public testing::WithParamInterface<std::string> {
+protected:
+    void show(const walls::Wall& wall, const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{"--wall",  write("wall.toml", support::wallText(wall)),
+                                           "--scene", scene(),
+                                           "--pace",  "fast",
+                                           "--track", "none",
+                                           "--gl",    "osmesa",
+                                           "--here",  "--device",
+                                           "none",    "--frames",
+                                           "20",      "--out",
+                                           out()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Ended ended = runToEnd(arguments, 300);
+        ASSERT_EQ(ended.status, 0) << ended.output;
+    }
+    [[nodiscard]] pictures::Image tile(const std::string& name, walls::Eye eye) const {
+        return pictures::readPng(folder_ / "out" / fmt::format("tile_{}_{}.png", name, walls::eyeName(eye)));
+    }
+};
+
+// Every display file of the project, small: real ranks show it, every eye has its picture, and without stereo it is
+// seen from the middle.
+TEST_P(Sample, IsShownByItsRanksAndFallsBackToMono) {
+    const walls::Wall wall =
+        support::reduced(walls::loadWall(fmt::format(SANDWALL_SOURCE_DIR "/walls/configs/{}.toml", GetParam())), 0.1);
+    show(wall, {});
+    EXPECT_EQ(summary()["ranks"], wall.ranks());
+    EXPECT_EQ(summary()["divergences"], 0);
+    const std::string hash = summary()["state_hash"];
+    std::set<std::vector<std::uint8_t>> different;
+    for (const walls::Tile& each : wall.tiles) {
+        for (const walls::Eye eye : walls::eyesOf(wall.stereo)) {
+            const pictures::Image image = tile(each.name, eye);
+            EXPECT_EQ(glm::ivec2(image.width, image.height), each.pixels);
+            different.insert(image.rgb);
+        }
+    }
+    EXPECT_GE(different.size(), walls::eyesOf(wall.stereo).size()) << "both eyes see the same";
+
+    show(wall, {"--mono"});
+    EXPECT_EQ(summary()["state_hash"], hash);
+    const pictures::Image middle = tile(wall.tiles[0].name, walls::Eye::middle);
+    walls::Wall fromTheMiddle = walls::shownIn(wall, walls::Stereo::left);
+    fromTheMiddle.viewer.eyeSeparation = 1e-9;
+    show(fromTheMiddle, {});
+    EXPECT_EQ(tile(wall.tiles[0].name, walls::Eye::left).rgb, middle.rgb);
+}
+
+INSTANTIATE_TEST_SUITE_P(Walls, Sample, testing::ValuesIn(samples()),
+                         [](const testing::TestParamInfo<std::string>& info) { return info.param; });
+
+}  // namespace
