@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which rank of a session runs on which machine, and how mpirun is told."""
+
+import ipaddress
+import itertools
+import os
+import re
+import shlex
+import socket
+import subprocess
+import time
+
+HERE = "localhost"  # mpirun's name for the machine it runs on; the master is always there
+NO_HOST = "-"  # sandwall-check's word for a tile that may be drawn anywhere
+MOST_SLOTS = 1024
+REACH_SECONDS = 20
+# A word that ssh could take for an option, or mpirun for a list, names no machine.
+HOST_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,252}")
+
+
+class BadInput(Exception):
+    """One line for the user."""
+
+
+def is_here(host):
+    """Whether a name is this machine's own."""
+    name = socket.gethostname()
+    return host in (HERE, "127.0.0.1", name, name.split(".")[0])
+
+
+def checked_host(host, where):
+    if not HOST_NAME.fullmatch(host):
+        raise BadInput(f"{where}: '{host[:80]}' is no host name; write one as ssh knows it, such as node01")
+    return HERE if is_here(host) else host
+
+
+def hosts_of_wall(lines, wall):
+    """The host of every render rank, from what `sandwall-check WALL --hosts` printed."""
+    return [HERE if line == NO_HOST else checked_host(line, wall) for line in lines.split()]
+
+
+def hosts_of_file(path, ranks):
+    """The same from a file: `HOST` or `HOST slots=N` a line, filled in the order of ranks; the master takes no slot."""
+    hosts = []
+    try:
+        with open(path, encoding="utf-8") as file:
+            lines = file.read().split("\n")
+    except (OSError, UnicodeDecodeError) as error:
+        raise BadInput(f"--hosts {path}: cannot be read; check the path") from error
+    for number, line in enumerate(lines, start=1):
+        words = line.split("#")[0].split()
+        if words:
+            slots = slots_of(words[1:], f"{path}:{number}")
+            hosts += [checked_host(words[0], f"{path}:{number}")] * slots
+    if len(hosts) < ranks:
+        raise BadInput(f"{path}: {len(hosts)} slots are too few for the wall's {ranks} render ranks; add hosts, or slots=N")
+    return hosts[:ranks]
+
+
+def slots_of(words, where):
+    """How many ranks a host takes: 1 without a word."""
+    if not words:
+        return 1
+    match = re.fullmatch(r"slots=([0-9]{1,6})", words[0])
+    if len(words) > 1 or not match:
+        raise BadInput(f"{where}: '{' '.join(words)[:80]}' is not slots=N")
+    slots = int(match[1])
+    if not 1 <= slots <= MOST_SLOTS:
+        raise BadInput(f"{where}: slots must be from 1 to {MOST_SLOTS}, got {slots}")
+    return slots
+
+
+def checked_network(text):
+    """A network as mpirun takes it, such as 10.0.0.0/24."""
+    try:
+        if "/" not in text:
+            raise ValueError
+        return str(ipaddress.IPv4Network(text, strict=False))
+    except ValueError as error:
+        raise BadInput(f"--network: '{text}' is no network; write one such as 10.0.0.0/24") from error
+
+
+def transport(hosts, network):
+    """mpirun's options for how ranks talk: shared memory where they can, TCP where they must."""
+    if all(host == HERE for host in hosts):
+        if network is not None:
+            raise BadInput("--network: every rank runs on this machine; there is no network to choose")
+        # The ranks listen to nothing; mpirun itself still listens on all addresses (docs/how_it_works.md).
+        return ["--mca", "btl", "self,vader", "--mca", "oob_tcp_if_include", "lo"]
+    options = ["--mca", "btl", "self,vader,tcp"]
+    if network is not None:
+        network = checked_network(network)
+        options += ["--mca", "btl_tcp_if_include", network, "--mca", "oob_tcp_if_include", network]
+    # What is only in this machine's environment does not reach the others.
+    return options + ["--mca", "mpi_yield_when_idle", "1", "-x", "LP_NUM_THREADS"]
+
+
+def programs(hosts, master, node):
+    """mpirun's programs, one after the other: the master here, then a run of render ranks for every change of host."""
+    runs = [(host, len(list(run))) for host, run in itertools.groupby(hosts)]
+    if all(host == HERE for host in hosts):
+        return ["-n", "1", *master, ":", "-n", str(len(hosts)), *node]
+    words = ["-n", "1", "--host", HERE, *master]
+    for host, count in runs:
+        words += [":", "-n", str(count), "--host", f"{host}:{count}", *node]
+    return words
+
+
+def most_on_one_host(hosts):
+    return max(hosts.count(host) for host in hosts)
+
+
+def require_reachable(hosts, node):
+    """Asks every other host for the program, all at once: what mpirun says of a host it cannot reach fills a screen."""
+    # The same program that mpirun starts its daemons with; of several, divided by colons, the first.
+    agent = shlex.split(os.environ.get("OMPI_MCA_plm_rsh_agent", "").split(":")[0]) or ["ssh", "-o", "BatchMode=yes"]
+    others = sorted(set(hosts) - {HERE}, key=hosts.index)
+    try:
+        asked = [subprocess.Popen([*agent, host, f"test -x {shlex.quote(node)}"], stdin=subprocess.DEVNULL,
+                                  stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace")
+                 for host in others]
+    except OSError as error:
+        raise BadInput(f"{agent[0]}: cannot be run; install openssh-client, or name another in OMPI_MCA_plm_rsh_agent") from error
+    deadline = time.monotonic() + REACH_SECONDS
+    try:
+        for host, process in zip(others, asked):
+            rank = hosts.index(host) + 1
+            try:
+                said = process.communicate(timeout=max(0, deadline - time.monotonic()))[1].strip().split("\n")[-1]
+            except subprocess.TimeoutExpired as error:
+                raise BadInput(f"{host} (rank {rank}): no answer within {REACH_SECONDS} s; docs/hosts.md") from error
+            if process.returncode == 1 and not said:
+                raise BadInput(f"{host} (rank {rank}): has no {node}; install the same build at the same path on every host")
+            if process.returncode != 0:
+                raise BadInput(f"{host} (rank {rank}): cannot be reached: {said or f'{agent[0]} failed'}; docs/hosts.md")
+    finally:
+        for process in asked:
+            if process.poll() is None:
+                process.kill()
+                process.wait()
+            process.stderr.close()

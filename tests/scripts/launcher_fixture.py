@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""scripts/sandwall among made-up programs, which only say how they were started."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
+
+CHECK = """#!/bin/sh
+[ "$2" = --ranks ] && exec grep -c . "$1"
+[ "$2" = --hosts ] && exec cat "$1"
+echo "made-up sandwall-check: $*" >&2
+exit 2
+"""
+SAY = """#!/bin/sh
+echo "rank ${OMPI_COMM_WORLD_RANK:-none} on ${MADE_UP_HOST:-here} threads ${LP_NUM_THREADS:-none}: ${0##*/} $*"
+"""
+# In ssh's place: the host is the first word.
+AGENT = """#!/bin/sh
+host=$1; shift
+case $host in
+    away*) echo "ssh: connect to host $host port 22: No route to host" >&2; exit 255 ;;
+    bare*) exit 1 ;;
+esac
+exec env MADE_UP_HOST="$host" sh -c "$*"
+"""
+
+
+class LauncherTest(unittest.TestCase):
+    """A wall file here is the list of hosts that sandwall-check would print of it."""
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory(prefix="sandwall-launcher-")
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        (self.folder / "bin").mkdir()
+        self.script("sandwall-check", CHECK)
+        for name in ("sandwall-master", "sandwall-render-node", "sandwall-haptic-server"):
+            self.script(name, SAY)
+        self.agent = self.script("agent", AGENT)
+        self.write("scene.toml", "")
+        self.environment = {**os.environ, "SANDWALL_BIN": str(self.folder / "bin"),
+                            "OMPI_MCA_plm_rsh_agent": self.agent,
+                            "PATH": f"{self.folder / 'bin'}:{os.environ['PATH']}"}
+
+    def write(self, name, text):
+        (self.folder / name).write_text(text)
+        return str(self.folder / name)
+
+    def script(self, name, text):
+        path = self.folder / "bin" / name
+        path.write_text(text)
+        path.chmod(0o755)
+        return str(path)
+
+    def command(self, hosts, *options):
+        return [str(ROOT / "scripts" / "sandwall"), "run", "--wall", self.write("wall", "\n".join(hosts) + "\n"),
+                "--scene", str(self.folder / "scene.toml"), "--out", str(self.folder / "out"), *options]
+
+    def start(self, hosts, *options, **popen):
+        return subprocess.run(self.command(hosts, *options), env=self.environment, text=True, capture_output=True,
+                              timeout=120, **{"stdin": subprocess.DEVNULL, **popen})
+
+    def printed(self, hosts, *options):
+        """What --print-command prints of a session."""
+        ended = self.start(hosts, "--print-command", *options)
+        self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+        return ended.stdout.replace(str(self.folder / "bin") + "/", "").replace(str(self.folder) + "/", "")
+
+    def refused(self, hosts, *options):
+        """The one line that a session is refused with."""
+        ended = self.start(hosts, *options)
+        self.assertEqual((ended.returncode, ended.stdout), (2, ""), ended.stderr)
+        self.assertEqual(ended.stderr.count("\n"), 1, ended.stderr)
+        return ended.stderr.replace(str(self.folder) + "/", "")

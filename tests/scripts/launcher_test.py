@@ -1,0 +1,169 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What scripts/sandwall starts, refuses and hands on."""
+
+import os
+import pty
+import signal
+import subprocess
+import time
+import unittest
+
+from launcher_fixture import LauncherTest
+
+MPIRUN = """#!/bin/sh
+echo "mpirun $*"
+"""
+# Prints what it is told on standard input, until "stop".
+LISTENING_MPIRUN = """#!/bin/sh
+while read -r line; do echo "told: $line"; [ "$line" = stop ] && exit 0; done
+exit 9
+"""
+
+
+class PrintedCommands(LauncherTest):
+    def test_one_machine_talks_through_shared_memory(self):
+        command = self.printed(["-", "-"])
+        self.assertIn("mpirun -q --oversubscribe --bind-to none --mca btl self,vader --mca oob_tcp_if_include lo "
+                      "-n 1 sandwall-master ", command)
+        self.assertTrue(command.endswith(" : -n 2 sandwall-render-node --gl auto\n"), command)
+
+    def test_the_hosts_of_the_wall_file_are_taken(self):
+        command = self.printed(["node1", "node1", "node2", "-"])
+        self.assertIn("--mca btl self,vader,tcp ", command)
+        self.assertIn(" -n 1 --host localhost sandwall-master ", command)
+        self.assertTrue(command.endswith(" : -n 2 --host node1:2 sandwall-render-node --gl auto : -n 1 --host node2:1 "
+                                         "sandwall-render-node --gl auto : -n 1 --host localhost:1 "
+                                         "sandwall-render-node --gl auto\n"), command)
+
+    def test_here_puts_every_rank_on_this_machine(self):
+        self.assertEqual(self.printed(["node1", "node2"], "--here"), self.printed(["-", "-"]))
+
+    def test_a_file_of_hosts_goes_before_the_wall_file(self):
+        hosts = self.write("hosts", "other slots=2\n")
+        self.assertEqual(self.printed(["node1", "node2"], "--hosts", hosts), self.printed(["other", "other"]))
+
+    def test_a_network_is_for_ranks_and_daemons(self):
+        self.assertIn("--mca btl_tcp_if_include 10.0.0.0/24 --mca oob_tcp_if_include 10.0.0.0/24",
+                      self.printed(["node1"], "--network", "10.0.0.7/24"))
+
+    def test_what_is_shown_is_for_the_master(self):
+        command = self.printed(["-"], "--stereo", "anaglyph-dubois", "--track", "opentrack:4242 origin=0,1,0",
+                               "--pattern", "grid")
+        master, node = command.split(" : ")
+        self.assertIn(" --stereo anaglyph-dubois --track 'opentrack:4242 origin=0,1,0' --pattern grid", master)
+        self.assertEqual(node, "-n 1 sandwall-render-node --gl auto\n")
+
+    def test_mono_is_a_stereo_mode(self):
+        self.assertEqual(self.printed(["-"], "--mono"), self.printed(["-"], "--stereo", "mono"))
+
+    def test_nothing_is_said_that_was_not_asked_for(self):
+        command = self.printed(["-"])
+        for option in ("--stereo", "--track", "--pattern", "--host ", "btl_tcp_if_include"):
+            self.assertNotIn(option, command)
+
+    def test_every_backend_can_be_asked_for(self):
+        for gl in ("auto", "osmesa", "egl", "glfw"):
+            self.assertIn(f"sandwall-render-node --gl {gl}", self.printed(["-"], "--gl", gl))
+
+    def test_a_device_needs_a_server_started_before(self):
+        server, job = self.printed(["-"], "--device", "script:gis").splitlines()
+        self.assertEqual(server, "sandwall-haptic-server --scene scene.toml --device script:gis --pace realtime "
+                         "--listen 127.0.0.1:7750")
+        self.assertIn(" --haptic 127.0.0.1:7750 ", job)
+
+    def test_ranks_that_share_a_host_share_its_cores(self):
+        cores = len(os.sched_getaffinity(0))
+        self.assertIn(f"LP_NUM_THREADS={cores} ", self.printed(["node1", "node2"]))
+        self.assertIn(f"LP_NUM_THREADS={cores // 2} ", self.printed(["node1", "node2", "node1"]))
+        self.assertIn("LP_NUM_THREADS=3 ", self.printed(["node1", "node2", "node1"], "--gl-threads", "3"))
+
+    def test_nothing_is_started(self):
+        self.script("mpirun", "#!/bin/sh\ntouch " + str(self.folder / "started"))
+        self.printed(["away1"])
+        self.assertFalse((self.folder / "started").exists())
+
+
+class Refusals(LauncherTest):
+    def test_a_wall_that_does_not_pass_the_check_is_refused_in_its_words(self):
+        self.script("sandwall-check", "#!/bin/sh\necho 'wall.toml:3: no' >&2; exit 2\n")
+        self.assertEqual(self.refused(["-"]), "wall.toml:3: no\n")
+
+    def test_a_host_that_cannot_be_reached_is_named_with_its_rank(self):
+        self.assertEqual(self.refused(["-", "away1"]), "away1 (rank 2): cannot be reached: ssh: connect to host away1 "
+                         "port 22: No route to host; docs/hosts.md\n")
+
+    def test_a_host_without_the_programs_is_named_with_its_rank(self):
+        line = self.refused(["-", "-", "bare1"])
+        self.assertIn("bare1 (rank 3): has no ", line)
+        self.assertIn("sandwall-render-node; install the same build at the same path on every host", line)
+
+    def test_an_agent_that_is_not_there_is_named(self):
+        self.environment["OMPI_MCA_plm_rsh_agent"] = "/nowhere/ssh"
+        self.assertIn("/nowhere/ssh: cannot be run", self.refused(["node1"]))
+
+    def test_a_network_without_other_hosts_is_refused(self):
+        self.assertIn("--network: every rank runs on this machine", self.refused(["-"], "--network", "10.0.0.0/24"))
+
+    def test_a_network_that_is_none_is_refused(self):
+        self.assertIn("--network: 'eth0' is no network", self.refused(["node1"], "--print-command", "--network", "eth0"))
+
+    def test_too_few_slots_are_refused(self):
+        hosts = self.write("hosts", "node1\n")
+        self.assertIn("hosts: 1 slots are too few for the wall's 2 render ranks",
+                      self.refused(["-", "-"], "--hosts", hosts))
+
+    def test_here_and_hosts_exclude_each_other(self):
+        self.assertEqual(self.start(["-"], "--here", "--hosts", "x").returncode, 2)
+        self.assertEqual(self.start(["-"], "--mono", "--stereo", "mono").returncode, 2)
+
+
+class Input(LauncherTest):
+    def test_what_is_typed_reaches_the_master(self):
+        self.script("mpirun", LISTENING_MPIRUN)
+        ended = self.start(["-"], stdin=None, input="settle\n\n  stop  \n")
+        self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (0, "told: settle\ntold: stop\n", ""))
+
+    def test_a_last_line_without_an_end_counts(self):
+        self.script("mpirun", LISTENING_MPIRUN)
+        ended = self.start(["-"], stdin=None, input="stop")
+        self.assertEqual((ended.returncode, ended.stdout), (0, "told: stop\n"))
+
+    def test_the_end_of_our_input_means_nothing(self):
+        # Were it handed on, this mpirun would end with status 9 before it is told to stop.
+        started = self.folder / "started"
+        self.script("mpirun", LISTENING_MPIRUN.replace("while", f"touch {started}; while"))
+        process = subprocess.Popen(self.command(["-"]), env=self.environment, stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
+        deadline = time.monotonic() + 60
+        while not started.exists() and time.monotonic() < deadline:
+            time.sleep(0.01)
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        out, error = process.communicate(timeout=60)
+        self.assertEqual((process.returncode, out), (0, "told: stop\n"), error)
+
+    def end_with_open_input(self, theirs):
+        """Runs a session that ends by itself while its input stays open and silent."""
+        self.script("mpirun", MPIRUN)
+        for _ in range(3):
+            ended = self.start(["-"], stdin=theirs)
+            self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+            self.assertTrue(ended.stdout.startswith("mpirun -q "))
+
+    def test_a_session_ends_quietly_while_its_input_is_open(self):
+        theirs, ours = os.pipe()
+        self.addCleanup(os.close, ours)
+        self.addCleanup(os.close, theirs)
+        self.end_with_open_input(theirs)
+
+    def test_a_session_ends_quietly_at_a_terminal(self):
+        ours, theirs = pty.openpty()
+        self.addCleanup(os.close, ours)
+        self.addCleanup(os.close, theirs)
+        self.end_with_open_input(theirs)
+
+
+if __name__ == "__main__":
+    unittest.main()

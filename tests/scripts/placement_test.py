@@ -1,0 +1,32 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Where the real mpirun puts ranks; the other hosts are this one under other names, reached by a script in ssh's place."""
+
+import re
+import unittest
+
+from launcher_fixture import LauncherTest
+
+
+class Placement(LauncherTest):
+    def ranks(self, hosts, *options):
+        ended = self.start(hosts, *options)
+        self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
+        lines = re.findall(r"rank (\d+) on (\S+) threads (\S+): (\S+)", ended.stdout)
+        self.assertEqual(len(lines), len(hosts) + 1, ended.stdout + ended.stderr)
+        return {int(rank): words for rank, *words in lines}
+
+    def test_every_rank_is_on_its_host(self):
+        hosts = ["node1", "node1", "-", "node2", "node1", "-"]
+        ranks = self.ranks(hosts, "--gl-threads", "5")
+        self.assertEqual(ranks[0], ["here", "5", "sandwall-master"])
+        for rank, host in enumerate(hosts, start=1):
+            self.assertEqual(ranks[rank], [host.replace("-", "here"), "5", "sandwall-render-node"])
+
+    def test_here_is_here(self):
+        ranks = self.ranks(["node1", "node2"], "--here")
+        self.assertEqual([ranks[rank][0] for rank in range(3)], ["here"] * 3)
+
+
+if __name__ == "__main__":
+    unittest.main()
