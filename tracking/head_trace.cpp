@@ -119,7 +119,7 @@ private:
         if (has(kRight)) {
             const glm::dvec3 right(value[kRight], value[kRight + 1], value[kRight + 2]);
             requireUnit(glm::length(right), "right_x,right_y,right_z", number);
-            // Along the tracker's own axes, it is the head that is mirrored with them.
+            // A direction told in the tracker's axes, and not a turn.
             pose.right = glm::normalize(mapping_.axes * right);
         }
         return pose;

@@ -154,9 +154,9 @@ TEST(Dtrack, SurvivesAnyBytes) {
     std::mt19937 random(4);
     const std::string good = "fr 12\n6d 2 " + body(0, 1) + " " + body(1, 2) + "\n";
     int poses = 0;
-    for (int i = 0; i < 20'000; ++i) {
+    for (unsigned i = 0; i < 20'000; ++i) {
         files::Bytes bytes = test::bytesOf(good);
-        for (unsigned change = 0; change < 1 + i % 5U; ++change) {
+        for (unsigned change = 0; change < 1 + i % 5; ++change) {
             bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
         }
         bytes.resize(random() % 8 == 0 ? random() % bytes.size() : bytes.size());
