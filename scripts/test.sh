@@ -3,7 +3,7 @@
 # Installs what is missing, builds, and runs every test of every build below in one ctest run; fails if any part fails.
 #
 #   release      everything: all tests, the sessions over real ranks among them
-#   asan-sand    sand, files, pictures, walls and the haptic link under the address, leak and undefined sanitizers
+#   asan-sand    sand, files, pictures, walls, head tracking and the haptic link under the address, leak and undefined sanitizers
 #   clang-sand   the sand's tests with clang at -O3
 #   golden-*     the golden hashes alone, with further compilers and levels of optimisation
 #

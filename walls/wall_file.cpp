@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "files/input_error.hpp"
 #include "walls/wall_check.hpp"
 
 namespace walls {

@@ -78,6 +78,10 @@ class PrintedCommands(LauncherTest):
         self.assertIn(f"LP_NUM_THREADS={cores // 2} ", self.printed(["node1", "node2", "node1"]))
         self.assertIn("LP_NUM_THREADS=3 ", self.printed(["node1", "node2", "node1"], "--gl-threads", "3"))
 
+    def test_variables_are_for_every_rank(self):
+        command = self.printed(["node1"], "--env", "XAUTHORITY=/home/wall/.Xauthority", "--env", "A=")
+        self.assertIn(" -x XAUTHORITY=/home/wall/.Xauthority -x A= -n 1 ", command)
+
     def test_nothing_is_started(self):
         self.script("mpirun", "#!/bin/sh\ntouch " + str(self.folder / "started"))
         self.printed(["away1"])
@@ -107,6 +111,9 @@ class Refusals(LauncherTest):
 
     def test_a_network_that_is_none_is_refused(self):
         self.assertIn("--network: 'eth0' is no network", self.refused(["node1"], "--print-command", "--network", "eth0"))
+
+    def test_a_variable_without_a_value_is_refused(self):
+        self.assertEqual(self.refused(["-"], "--env", "XAUTHORITY"), "--env XAUTHORITY: write NAME=VALUE\n")
 
     def test_too_few_slots_are_refused(self):
         hosts = self.write("hosts", "node1\n")
