@@ -65,10 +65,15 @@ render_node::SandView makeView(const DugScene& dug, const walls::Wall& wall) {
 }
 
 Image drawThrough(render_node::SandView& sand, const walls::Wall& wall, const walls::Screen& screen, glm::ivec2 pixels,
-                  walls::Eye eye) {
+                  walls::Eye eye, std::vector<float>* depth) {
     const render_node::EyeTarget target(pixels.x, pixels.y);
     sand.draw(cameraOf(wall, screen, eye), target);
-    return pictureOf(target);
+    Image image = pictureOf(target);
+    if (depth != nullptr) {
+        depth->resize(image.pixels());
+        glReadPixels(0, 0, pixels.x, pixels.y, GL_DEPTH_COMPONENT, GL_FLOAT, depth->data());
+    }
+    return image;
 }
 
 std::vector<Image> outputsOf(render_node::SandView& sand, const walls::Wall& wall, const walls::Tile& tile) {

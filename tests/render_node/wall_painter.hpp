@@ -46,9 +46,10 @@ inline std::filesystem::path wallFolder() { return std::filesystem::path(SANDWAL
 
 [[nodiscard]] Image pictureOf(const render_node::EyeTarget& target);
 
-/// Draws the sand as seen through one screen. `sand` must have the wall's stage (makeView).
+/// Draws the sand as seen through one screen. `sand` must have the wall's stage (makeView). `depth` takes GL's depths,
+/// the lowest row first.
 [[nodiscard]] Image drawThrough(render_node::SandView& sand, const walls::Wall& wall, const walls::Screen& screen,
-                                glm::ivec2 pixels, walls::Eye eye);
+                                glm::ivec2 pixels, walls::Eye eye, std::vector<float>* depth = nullptr);
 [[nodiscard]] render_node::SandView makeView(const DugScene& dug, const walls::Wall& wall);
 
 /// What the outputs of a tile show, in their order; an output that shows the eyes in turn gives the left, then the
