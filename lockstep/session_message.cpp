@@ -64,6 +64,7 @@ std::vector<Readiness> gatherReadiness(const Cluster& cluster, const Readiness& 
     for (const std::string& line : mine.shortcomings) {
         writer.putText(line);
     }
+    writer.put(mine.framesToIgnore);
     std::vector<Readiness> result;
     for (const files::Bytes& bytes : cluster.gather(writer.take())) {
         files::ByteReader reader(bytes);
@@ -75,6 +76,7 @@ std::vector<Readiness> gatherReadiness(const Cluster& cluster, const Readiness& 
         for (std::string& line : rank.shortcomings) {
             line = reader.getText();
         }
+        rank.framesToIgnore = reader.get<std::uint32_t>();
     }
     return result;
 }

@@ -47,6 +47,8 @@ struct Readiness {
     std::string renderer;  // what draws
     // What the wall file asks for and the rank's machine cannot do: for the operator.
     std::vector<std::string> shortcomings;
+    // From the start: until a hardware barrier has settled, swap times say nothing.
+    std::uint32_t framesToIgnore = 0;
 };
 
 /// Collective: everyone's readiness, by rank, at the master; others get nothing.

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 
@@ -112,9 +113,13 @@ int runSession(const lockstep::Cluster& cluster, Options& options) {
         world.emplace(loadWorld(cluster, options));
         (void)lockstep::broadcastSession(cluster, world->message);
         sessionOpen = true;
-        master::requireReady(
-            lockstep::gatherReadiness(cluster, {lockstep::hostName(), lockstep::buildId(), "", "", {}}),
-            master::namesOf(cluster, world->wall));
+        const auto ranks =
+            lockstep::gatherReadiness(cluster, {lockstep::hostName(), lockstep::buildId(), "", "", {}, 0});
+        master::requireReady(ranks, master::namesOf(cluster, world->wall));
+        for (const lockstep::Readiness& rank : ranks) {
+            options.session.settlingFrames =
+                std::max<std::uint64_t>(options.session.settlingFrames, rank.framesToIgnore);
+        }
     } catch (...) {
         // Whatever it is: the ranks wait for a word, and end quietly when it is no.
         if (sessionOpen) {

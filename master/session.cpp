@@ -205,7 +205,7 @@ void Session::measureSwaps(std::int64_t now) {
     const auto& arrivals = barrier_.arrivals();
     const auto earlier = [](const lockstep::Arrival& a, const lockstep::Arrival& b) { return a.lastSwap < b.lastSwap; };
     const auto [first, last] = std::minmax_element(arrivals.begin() + 1, arrivals.end(), earlier);
-    if (first->lastSwap != 0) {
+    if (first->lastSwap != 0 && frame_ > options_.settlingFrames + 1) {
         lastSkewUs_ = static_cast<double>(last->lastSwap - first->lastSwap) * 1e-3;
         summary_.skewUs.add(lastSkewUs_);
     }

@@ -28,10 +28,11 @@ inline constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::ma
 struct SessionOptions {
     std::optional<haptic_bridge::Address> server;
     Pace pace = Pace::realtime;
-    std::optional<double> refreshHz;  // frames per second; none: the wall file's
-    std::uint64_t steps = kNoLimit;   // ends when exactly this many have been shown
-    std::uint64_t frames = kNoLimit;  // ends after this many
-    double frameTimeout = 30;         // [s] that a frame may take before the job ends
+    std::optional<double> refreshHz;   // frames per second; none: the wall file's
+    std::uint64_t steps = kNoLimit;    // ends when exactly this many have been shown
+    std::uint64_t frames = kNoLimit;   // ends after this many
+    std::uint64_t settlingFrames = 0;  // from the start, whose swap times do not count
+    double frameTimeout = 30;          // [s] that a frame may take before the job ends
     bool pictures = true;
     lockstep::Pattern pattern = lockstep::Pattern::none;  // shown from the start
     tracking::Source tracker;                             // where the head's pose comes from

@@ -143,12 +143,13 @@ int showTile(const lockstep::Cluster& cluster, Backend backend, const sand::Eros
     if (!message) {
         return 0;  // the master has said why
     }
-    lockstep::Readiness readiness{lockstep::hostName(), lockstep::buildId(), "", "", {}};
+    lockstep::Readiness readiness{lockstep::hostName(), lockstep::buildId(), "", "", {}, 0};
     std::unique_ptr<TileSession> session;
     try {
         session = std::make_unique<TileSession>(cluster, *message, backend, sweeps);
         readiness.renderer = session->context().renderer();
         readiness.shortcomings = session->context().shortcomings();
+        readiness.framesToIgnore = static_cast<std::uint32_t>(session->context().framesToIgnore());
     } catch (const std::exception& error) {
         readiness.error = error.what();
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <set>
+#include <algorithm>
 
 #include "pictures/png_file.hpp"
 #include "tests/cluster/session_fixture.hpp"
@@ -48,15 +48,17 @@ TEST_P(Sample, IsShownByItsRanksAndFallsBackToMono) {
     EXPECT_EQ(summary()["ranks"], wall.ranks());
     EXPECT_EQ(summary()["divergences"], 0);
     const std::string hash = summary()["state_hash"];
-    std::set<std::vector<std::uint8_t>> different;
+    std::vector<pictures::Image> seen;
     for (const walls::Tile& each : wall.tiles) {
         for (const walls::Eye eye : walls::eyesOf(wall.stereo)) {
-            const pictures::Image image = tile(each.name, eye);
-            EXPECT_EQ(glm::ivec2(image.width, image.height), each.pixels);
-            different.insert(image.rgb);
+            seen.push_back(tile(each.name, eye));
+            EXPECT_EQ(glm::ivec2(seen.back().width, seen.back().height), each.pixels);
         }
     }
-    EXPECT_GE(different.size(), walls::eyesOf(wall.stereo).size()) << "both eyes see the same";
+    const auto likeTheFirst = [&](const pictures::Image& image) { return image.rgb == seen[0].rgb; };
+    if (seen.size() > 1) {
+        EXPECT_FALSE(std::all_of(seen.begin(), seen.end(), likeTheFirst)) << "all eyes see the same";
+    }
 
     show(wall, {"--mono"});
     EXPECT_EQ(summary()["state_hash"], hash);
@@ -67,7 +69,6 @@ TEST_P(Sample, IsShownByItsRanksAndFallsBackToMono) {
     EXPECT_EQ(tile(wall.tiles[0].name, walls::Eye::left).rgb, middle.rgb);
 }
 
-INSTANTIATE_TEST_SUITE_P(Walls, Sample, testing::ValuesIn(samples()),
-                         [](const testing::TestParamInfo<std::string>& info) { return info.param; });
+INSTANTIATE_TEST_SUITE_P(Walls, Sample, testing::ValuesIn(samples()), [](const auto& sample) { return sample.param; });
 
 }  // namespace
