@@ -66,7 +66,10 @@ public:
 private:
     static std::string name(EGLDeviceEXT device) {
         const auto query = load<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
-        const char* extensions = query == nullptr ? nullptr : query(device, EGL_EXTENSIONS);
+        if (query == nullptr) {
+            return "nameless";
+        }
+        const char* extensions = query(device, EGL_EXTENSIONS);
         for (const auto& [extension, key] : {std::pair{"EGL_EXT_device_query_name", EGL_RENDERER_EXT},
                                              {"EGL_EXT_device_drm", EGL_DRM_DEVICE_FILE_EXT}}) {
             const char* text = lists(extensions, extension) ? query(device, key) : nullptr;

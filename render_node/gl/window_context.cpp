@@ -81,6 +81,7 @@ public:
 private:
     void show(std::size_t window, const std::vector<Copy>& copies) {
         std::vector<Colours> sources;
+        sources.reserve(copies.size());
         platform_->makeCurrent(0);
         for (const Copy& copy : copies) {
             sources.push_back(coloursOf(*copy.picture));

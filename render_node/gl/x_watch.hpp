@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-struct _XDisplay;
+struct _XDisplay;  // NOLINT(bugprone-reserved-identifier): Xlib's own name of its Display
 
 namespace render_node {
 

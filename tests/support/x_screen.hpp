@@ -7,7 +7,7 @@
 
 #include "pictures/image.hpp"
 
-struct _XDisplay;
+struct _XDisplay;  // NOLINT(bugprone-reserved-identifier): Xlib's own name of its Display
 
 namespace support {
 

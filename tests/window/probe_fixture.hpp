@@ -36,8 +36,9 @@ protected:
         std::vector<std::string> command{"/usr/bin/env", "-u", "DISPLAY"};
         command.insert(command.end(), environment.begin(), environment.end());
         // The rank draws in its own thread, and compiles its shaders as on the first day.
-        command.insert(command.end(), {"LP_NUM_THREADS=0", "MESA_SHADER_CACHE_DISABLE=true",
-                                       SANDWALL_BIN_DIR "/window_probe", "--pictures", folder_.string() + "/"});
+        command.insert(command.end(),
+                       {"LP_NUM_THREADS=0", "MESA_SHADER_CACHE_DISABLE=true",
+                        std::string(SANDWALL_BIN_DIR) + "/window_probe", "--pictures", folder_.string() + "/"});
         command.insert(command.end(), arguments.begin(), arguments.end());
         for (const char* old : {"probe.log", "left.png", "right.png"}) {
             std::filesystem::remove(folder_ / old);
@@ -60,7 +61,7 @@ protected:
     /// The one line with which it ends by itself, after `from` characters of output; status as given.
     std::string lastLine(int status, std::size_t from = 0) {
         const auto ended = probe_->wait(kLong);
-        const std::string text = probe_->output().substr(from);
+        std::string text = probe_->output().substr(from);
         EXPECT_TRUE(ended.has_value()) << "it hangs after: " << text;
         EXPECT_EQ(ended.value_or(-1), status) << text;
         EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
