@@ -10,9 +10,6 @@ namespace {
 
 using walls::Stereo;
 
-constexpr int kLevelsSide = 256;  // of the table of levels
-static_assert(kLevelsSide * kLevelsSide == pictures::kFullLight + 1);
-
 bool isPacked(Stereo stereo) { return stereo >= Stereo::sideBySide; }
 bool isBeside(Stereo stereo) { return stereo == Stereo::sideBySide || stereo == Stereo::topBottom; }
 bool mixesLight(Stereo stereo) { return stereo == Stereo::anaglyphHalf || stereo == Stereo::anaglyphDubois; }
@@ -25,15 +22,6 @@ glm::mat4 toMatrix(const std::array<std::array<std::int32_t, 3>, 3>& weights) {
         }
     }
     return matrix;
-}
-
-void uploadTable(const GlTexture& texture, GLint kind, int width, int height, GLenum type, const void* numbers) {
-    glBindTexture(GL_TEXTURE_2D, texture.id());
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glTexImage2D(GL_TEXTURE_2D, 0, kind, width, height, 0, GL_RED_INTEGER, type, numbers);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
 }
 
 void bindTexture(GLenum unit, GLuint texture) {
@@ -53,8 +41,13 @@ std::size_t eyeIndex(Stereo stereo, const walls::Output& output) {
 StereoComposer::Light::Light(Stereo stereo)
     : fromLeft(toMatrix(pictures::anaglyphWeights(stereo).left)),
       fromRight(toMatrix(pictures::anaglyphWeights(stereo).right)) {
-    uploadTable(lights, GL_R16UI, 256, 1, GL_UNSIGNED_SHORT, pictures::lightOfLevel().data());
-    uploadTable(levels, GL_R8UI, kLevelsSide, kLevelsSide, GL_UNSIGNED_BYTE, pictures::levelOfLight().data());
+    const std::vector<std::uint8_t>& levels = pictures::levelOfLight();
+    for (std::size_t level = 0; level < 256; ++level) {
+        const auto least = std::lower_bound(levels.begin(), levels.end(), level) - levels.begin();
+        const unsigned half = level % 2 == 0 ? 0 : 16;
+        lights[level / 2] |= GLuint{pictures::lightOfLevel()[level]} << half;
+        first[level / 2] |= static_cast<GLuint>(least) << half;
+    }
 }
 
 StereoComposer::StereoComposer(Stereo stereo, const walls::Tile& tile) : stereo_(stereo) {
@@ -111,12 +104,10 @@ void StereoComposer::drawMixed(std::span<const EyeTarget> eyes) const {
     program_->set("uRight", 1);
     bindTexture(1, eyes[1].colour());
     if (light_) {
-        program_->set("uLights", 2);
-        program_->set("uLevels", 3);
+        program_->set("uLights", light_->lights);
+        program_->set("uFirst", light_->first);
         program_->set("uFromLeft", light_->fromLeft);
         program_->set("uFromRight", light_->fromRight);
-        bindTexture(3, light_->levels.id());
-        bindTexture(2, light_->lights.id());
     } else {
         program_->set("uHeight", packed_->height());
         program_->set("uOddColumns", stereo_ == Stereo::checkerboard ? 1 : 0);
@@ -141,9 +132,6 @@ std::vector<OutputPicture> StereoComposer::shown(std::span<const EyeTarget> eyes
     return pictures;
 }
 
-std::int64_t StereoComposer::bytes() const {
-    constexpr std::int64_t kTables = 2 * 256 + kLevelsSide * kLevelsSide;
-    return (packed_ ? packed_->bytes() : 0) + (light_ ? kTables : 0);
-}
+std::int64_t StereoComposer::bytes() const { return packed_ ? packed_->bytes() : 0; }
 
 }  // namespace render_node

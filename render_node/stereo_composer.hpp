@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -31,14 +32,16 @@ public:
     /// this composer's own.
     [[nodiscard]] std::vector<OutputPicture> shown(std::span<const EyeTarget> eyes) const;
 
-    /// What the composer holds in GL's memory, tables included.
+    /// What the composer holds in GL's memory.
     [[nodiscard]] std::int64_t bytes() const;
 
 private:
     /// Tables of the anaglyphs that mix light.
     struct Light {
         explicit Light(walls::Stereo stereo);
-        GlTexture lights, levels;
+        // By level, two to a number, the even level's in the lower half.
+        std::array<GLuint, 128> lights{};  // what it emits
+        std::array<GLuint, 128> first{};   // the least light that is shown as it
         glm::mat4 fromLeft{0}, fromRight{0};
     };
     void copyBeside(std::span<const EyeTarget> eyes) const;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,6 +40,10 @@ public:
     void set(const char* name, const glm::vec4& value) const { glUniform4fv(find(name), 1, &value[0]); }
     void set(const char* name, const glm::mat4& value) const {
         glUniformMatrix4fv(find(name), 1, GL_FALSE, &value[0][0]);
+    }
+    /// An array from its first element on.
+    void set(const char* name, std::span<const GLuint> values) const {
+        glUniform1uiv(find(name), static_cast<GLsizei>(values.size()), values.data());
     }
 
 private:
