@@ -19,7 +19,7 @@ using Anchor = SvgPage::Anchor;
 constexpr double kPanelWidth = 900, kPanelHeight = 640;  // [pixel], the room one view may take
 constexpr double kTitleWidth = 540;                      // [pixel]
 constexpr double kMargin = 90, kLetters = 13;            // [pixel]
-constexpr SvgPage::Style kTileStyle{"#333333", "#e9edf2", "", 1.2};
+constexpr SvgPage::Style kTileStyle{"#333333", "#cdd6e080", "", 1.2};
 constexpr SvgPage::Style kSandStyle{"#a8701a", "#e8b45a55", "6 4", 1.5};
 constexpr SvgPage::Style kSightStyle{"#888888", "none", "2 4", 1};
 constexpr SvgPage::Style kEyeStyle{"#b01e1e", "#ffffff", "", 1.5};
