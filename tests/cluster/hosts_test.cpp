@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdlib>
+
+#include "pictures/png_file.hpp"
+#include "tests/cluster/session_fixture.hpp"
+
+namespace {
+
+/// Sessions over several hosts: this machine under other names, reached by a script in ssh's place, so that ranks of
+/// different names talk over TCP as ranks of different machines do.
+class Hosts : public SessionTest {
+protected:
+    void SetUp() override {
+        SessionTest::SetUp();
+        const std::string agent =
+            write("agent", "#!/bin/sh\nhost=$1; shift\n[ \"$host\" = away ] && exit 255\nexec sh -c \"$*\"\n");
+        std::filesystem::permissions(agent, std::filesystem::perms::owner_all);
+        setenv("OMPI_MCA_plm_rsh_agent", agent.c_str(), 1);
+    }
+    void TearDown() override {
+        unsetenv("OMPI_MCA_plm_rsh_agent");
+        SessionTest::TearDown();
+    }
+
+    /// A session of 40 steps; the rest of the arguments says where.
+    nlohmann::json show(std::vector<std::string> where) {
+        where.insert(where.end(), {"--wall", wall(1, 3, "mono"), "--scene", scene(), "--device", "script:gis", "--pace",
+                                   "fast", "--steps", "40", "--out", out()});
+        std::filesystem::remove_all(out());
+        const Ended ended = runToEnd(where);
+        EXPECT_EQ(ended.status, 0) << ended.output;
+        return summary();
+    }
+};
+
+TEST_F(Hosts, ShowTheSameSandAndPictureAsOneMachine) {
+    const nlohmann::json here = show({"--here"});
+    const pictures::Image picture = pictures::readPng(out() + "/wall.png");
+    const std::string hosts = write("hosts", "node1 slots=2\nnode2\n");
+    const nlohmann::json over = show({"--hosts", hosts, "--network", "127.0.0.0/8"});
+    EXPECT_EQ(over["state_hash"], here["state_hash"]);
+    EXPECT_EQ(over["divergences"], 0);
+    EXPECT_TRUE(pictures::readPng(out() + "/wall.png").rgb == picture.rgb);
+}
+
+TEST_F(Hosts, EndWithTheLauncher) {
+    const std::string hosts = write("hosts", "node1 slots=2\nnode2\n");
+    const auto session = start({"--wall", wall(1, 3, "mono"), "--scene", scene(), "--out", out(), "--hosts", hosts,
+                                "--network", "127.0.0.0/8"});
+    ASSERT_TRUE(session->waitForOutput("hashes agree", 60)) << session->output();
+    const std::vector<pid_t> family = session->family();
+    session->signal(SIGKILL);
+    EXPECT_TRUE(support::waitUntilGone(family, 60).empty()) << "processes left running";
+    EXPECT_EQ(summary()["divergences"], 0) << "the master saw its input end and finished its work";
+}
+
+TEST_F(Hosts, AHostThatCannotBeReachedIsOneLine) {
+    const Ended ended = runToEnd({"--wall", wall(1, 3, "mono"), "--scene", scene(), "--out", out(), "--hosts",
+                                  write("hosts", "node1 slots=2\naway\n")});
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_EQ(ended.output.find("away (rank 3): cannot be reached"), 0U) << ended.output;
+    EXPECT_EQ(ended.output.find('\n'), ended.output.size() - 1) << ended.output;
+}
+
+}  // namespace
