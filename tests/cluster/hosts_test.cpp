@@ -12,8 +12,12 @@ class Hosts : public SessionTest {
 protected:
     void SetUp() override {
         SessionTest::SetUp();
-        const std::string agent =
-            write("agent", "#!/bin/sh\nhost=$1; shift\n[ \"$host\" = away ] && exit 255\nexec sh -c \"$*\"\n");
+        // Open MPI names shared memory by machine and rank: two hosts that are one machine need a place each for it.
+        const std::string agent = write("agent",
+                                        "#!/bin/sh\nhost=$1; shift\n[ \"$host\" = away ] && exit 255\n"
+                                        "mkdir -p \"${0%/*}/memory-$host\"\n"
+                                        "export OMPI_MCA_btl_vader_backing_directory=\"${0%/*}/memory-$host\"\n"
+                                        "exec sh -c \"$*\"\n");
         std::filesystem::permissions(agent, std::filesystem::perms::owner_all);
         setenv("OMPI_MCA_plm_rsh_agent", agent.c_str(), 1);
     }
@@ -24,7 +28,7 @@ protected:
 
     /// A session of 40 steps; the rest of the arguments says where.
     nlohmann::json show(std::vector<std::string> where) {
-        where.insert(where.end(), {"--wall", wall(1, 3, "mono"), "--scene", scene(), "--device", "script:gis", "--pace",
+        where.insert(where.end(), {"--wall", wall(2, 2, "mono"), "--scene", scene(), "--device", "script:gis", "--pace",
                                    "fast", "--steps", "40", "--out", out()});
         std::filesystem::remove_all(out());
         const Ended ended = runToEnd(where);
@@ -36,7 +40,7 @@ protected:
 TEST_F(Hosts, ShowTheSameSandAndPictureAsOneMachine) {
     const nlohmann::json here = show({"--here"});
     const pictures::Image picture = pictures::readPng(out() + "/wall.png");
-    const std::string hosts = write("hosts", "node1 slots=2\nnode2\n");
+    const std::string hosts = write("hosts", "node1 slots=2\nlocalhost\nnode2\n");
     const nlohmann::json over = show({"--hosts", hosts, "--network", "127.0.0.0/8"});
     EXPECT_EQ(over["state_hash"], here["state_hash"]);
     EXPECT_EQ(over["divergences"], 0);
@@ -44,8 +48,8 @@ TEST_F(Hosts, ShowTheSameSandAndPictureAsOneMachine) {
 }
 
 TEST_F(Hosts, EndWithTheLauncher) {
-    const std::string hosts = write("hosts", "node1 slots=2\nnode2\n");
-    const auto session = start({"--wall", wall(1, 3, "mono"), "--scene", scene(), "--out", out(), "--hosts", hosts,
+    const std::string hosts = write("hosts", "node1 slots=2\nlocalhost\nnode2\n");
+    const auto session = start({"--wall", wall(2, 2, "mono"), "--scene", scene(), "--out", out(), "--hosts", hosts,
                                 "--network", "127.0.0.0/8"});
     ASSERT_TRUE(session->waitForOutput("hashes agree", 60)) << session->output();
     const std::vector<pid_t> family = session->family();
@@ -55,10 +59,10 @@ TEST_F(Hosts, EndWithTheLauncher) {
 }
 
 TEST_F(Hosts, AHostThatCannotBeReachedIsOneLine) {
-    const Ended ended = runToEnd({"--wall", wall(1, 3, "mono"), "--scene", scene(), "--out", out(), "--hosts",
-                                  write("hosts", "node1 slots=2\naway\n")});
+    const Ended ended = runToEnd({"--wall", wall(2, 2, "mono"), "--scene", scene(), "--out", out(), "--hosts",
+                                  write("hosts", "node1 slots=3\naway\n")});
     EXPECT_EQ(ended.status, 2);
-    EXPECT_EQ(ended.output.find("away (rank 3): cannot be reached"), 0U) << ended.output;
+    EXPECT_EQ(ended.output.find("away (rank 4): cannot be reached"), 0U) << ended.output;
     EXPECT_EQ(ended.output.find('\n'), ended.output.size() - 1) << ended.output;
 }
 
