@@ -9,10 +9,10 @@
 
 namespace lockstep {
 
-/// One eye's picture of one tile: RGB, 8 bits a channel, rows from the top, no padding.
+/// One eye's picture of one tile, or its output's: RGB, 8 bits a channel, rows from the top, no padding.
 struct TilePicture {
     int rank = 0;
-    int eye = 0;  // index among the eyes the tile draws
+    int eye = 0;  // index among the eyes the tile draws; their number for the output that is made of them
     int width = 0, height = 0;
     std::vector<std::uint8_t> pixels;
 };

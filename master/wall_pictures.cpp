@@ -54,21 +54,25 @@ void writeWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall
     }
     std::vector<pictures::Image> whole(eyes.size(),
                                        fits ? pictures::Image(canvas.width, canvas.height) : pictures::Image());
-    std::vector<int> eyesByRank(static_cast<std::size_t>(cluster.size()), static_cast<int>(eyes.size()));
+    const std::size_t perTile = eyes.size() + (walls::packsEyes(wall.stereo) ? 1 : 0);
+    const std::vector<int> picturesByRank(static_cast<std::size_t>(cluster.size()), static_cast<int>(perTile));
     PictureFolder out(folder);
     std::size_t count = 0;
     watchdog.arm();
-    lockstep::receivePictures(cluster, eyesByRank, [&](const lockstep::TilePicture& picture) {
+    lockstep::receivePictures(cluster, picturesByRank, [&](const lockstep::TilePicture& picture) {
         const walls::Tile& tile = wall.tiles[static_cast<std::size_t>(picture.rank - 1)];
         const auto eye = static_cast<std::size_t>(picture.eye);
         pictures::Image image;
         image.width = picture.width;
         image.height = picture.height;
         image.rgb = picture.pixels;
-        const walls::PixelRect& place = canvas.tiles[static_cast<std::size_t>(picture.rank - 1)];
-        pictures::blit(whole[eye], image, place.x, place.y);
-        out.write(fmt::format("tile_{}_{}.png", tile.name, walls::eyeName(eyes[eye])), image);
-        fmt::print("pictures {}/{}\n", ++count, wall.tiles.size() * eyes.size());
+        if (eye < eyes.size()) {
+            const walls::PixelRect& place = canvas.tiles[static_cast<std::size_t>(picture.rank - 1)];
+            pictures::blit(whole[eye], image, place.x, place.y);
+        }
+        const std::string_view kind = eye < eyes.size() ? walls::eyeName(eyes[eye]) : "output";
+        out.write(fmt::format("tile_{}_{}.png", tile.name, kind), image);
+        fmt::print("pictures {}/{}\n", ++count, wall.tiles.size() * perTile);
         std::fflush(stdout);
         watchdog.arm();  // each picture has its own time
     });

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render_node/tile_painter.hpp"
 
+#include <algorithm>
 #include <glm/gtc/type_ptr.hpp>
 
 #include "walls/projection.hpp"
 
 namespace render_node {
 namespace {
-
-constexpr int kBytesPerPixel = 8;  // colour and depth
 
 walls::Viewer viewerOf(const lockstep::ViewState& view) {
     return {
@@ -23,59 +22,72 @@ TilePainter::TilePainter(const walls::Wall& wall, const walls::Tile& tile, const
       host_(std::move(host)),
       sand_(scene, glm::dmat4(1)),
       memories_(walls::eyesOf(wall.stereo).size()),
-      composer_(wall.stereo, tile) {
+      composer_(wall.stereo, tile),
+      shown_(memories_.size(), lockstep::Pattern::none) {
     for (std::size_t i = 0; i < memories_.size(); ++i) {
         targets_.emplace_back(tile.pixels.x, tile.pixels.y);
     }
 }
 
-void TilePainter::paint(sand::Terrain& terrain, const lockstep::ViewState& view, std::uint64_t frame) {
+void TilePainter::paint(sand::Terrain& terrain, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye) {
     sand_.setSceneToRoom(glm::make_mat4(view.sceneToRoom.data()));
     sand_.update(terrain.field(), terrain.takeDamage());
     if (terrain.stepNumber() > 0) {
         sand_.setTool(terrain.probe(), terrain.engaged());
     }
+    const std::size_t shownEye = frame % targets_.size();
+    const EyeRange range = oneEye ? EyeRange{shownEye, shownEye + 1} : EyeRange{0, targets_.size()};
     const auto pattern = static_cast<lockstep::Pattern>(view.pattern);
-    const bool changed = pattern == lockstep::Pattern::none ? paintSand(view) : paintPattern(pattern, frame);
-    shown_ = pattern;
+    const bool changed =
+        pattern == lockstep::Pattern::none ? paintSand(view, range) : paintPattern(pattern, frame, range);
+    std::fill(shown_.begin() + static_cast<std::ptrdiff_t>(range.from),
+              shown_.begin() + static_cast<std::ptrdiff_t>(range.end), pattern);
     if (changed) {
         composer_.compose(targets_);
     }
 }
 
-bool TilePainter::paintSand(const lockstep::ViewState& view) {
+bool TilePainter::paintSand(const lockstep::ViewState& view, EyeRange range) {
     const walls::Viewer viewer = viewerOf(view);
     bool changed = false;
-    std::size_t next = 0;
-    for (const walls::Eye eye : walls::eyesOf(wall_.stereo)) {
-        const glm::dvec3 position = walls::eyePosition(viewer, eye);
+    for (std::size_t i = range.from; i < range.end; ++i) {
+        const glm::dvec3 position = walls::eyePosition(viewer, walls::eyesOf(wall_.stereo)[i]);
         const walls::View seen = walls::viewOf(tile_.screen, position, wall_.clip.near, wall_.clip.far);
-        changed |= sand_.drawIfChanged({seen.viewProjection, position}, targets_[next], memories_[next]);
-        ++next;
+        changed |= sand_.drawIfChanged({seen.viewProjection, position}, targets_[i], memories_[i]);
     }
     return changed;
 }
 
-bool TilePainter::paintPattern(lockstep::Pattern pattern, std::uint64_t frame) {
-    if (pattern == shown_ && !lockstep::changesEveryFrame(pattern)) {
-        return false;
-    }
+bool TilePainter::paintPattern(lockstep::Pattern pattern, std::uint64_t frame, EyeRange range) {
     if (!patterns_) {
         patterns_.emplace(wall_, tile_, host_);
     }
-    std::size_t next = 0;
-    for (const walls::Eye eye : walls::eyesOf(wall_.stereo)) {
-        patterns_->draw(pattern, eye, frame, targets_[next]);
-        memories_[next].drawn = false;  // the sand must come back whole
-        ++next;
+    bool changed = false;
+    for (std::size_t i = range.from; i < range.end; ++i) {
+        if (shown_[i] != pattern || lockstep::changesEveryFrame(pattern)) {
+            patterns_->draw(pattern, walls::eyesOf(wall_.stereo)[i], frame, targets_[i]);
+            memories_[i].drawn = false;  // the sand must come back whole
+            changed = true;
+        }
     }
-    return true;
+    return changed;
+}
+
+std::vector<const EyeTarget*> TilePainter::pictures() const {
+    std::vector<const EyeTarget*> all;
+    for (const EyeTarget& target : targets_) {
+        all.push_back(&target);
+    }
+    if (walls::packsEyes(wall_.stereo)) {
+        all.push_back(outputs().front().picture);
+    }
+    return all;
 }
 
 std::int64_t TilePainter::frameBufferBytes() const {
     std::int64_t bytes = composer_.bytes();
     for (const EyeTarget& target : targets_) {
-        bytes += std::int64_t{kBytesPerPixel} * target.width() * target.height();
+        bytes += target.bytes();
     }
     return bytes;
 }

@@ -29,18 +29,21 @@ public:
     TilePainter(const walls::Wall& wall, const walls::Tile& tile, const sand::Scene& scene, std::string host);
 
     /// Brings every eye that differs up to date with `terrain` as `view` sees it, or with its test pattern, and puts
-    /// them together. Does not wait for GL.
-    void paint(sand::Terrain& terrain, const lockstep::ViewState& view, std::uint64_t frame);
+    /// them together; with `oneEye` only that which the frame shows, the left one in even frames. Does not wait for GL.
+    void paint(sand::Terrain& terrain, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye = false);
     /// What each output shows, in the order of tile.outputs; good until the next paint().
     [[nodiscard]] std::vector<OutputPicture> outputs() const { return composer_.shown(targets_); }
 
-    /// Each eye's picture, in the order of walls::eyesOf.
-    [[nodiscard]] std::span<const EyeTarget> eyes() const { return targets_; }
+    /// Each eye's picture, in the order of walls::eyesOf, and behind them the output's where it is made of both.
+    [[nodiscard]] std::vector<const EyeTarget*> pictures() const;
     [[nodiscard]] std::int64_t frameBufferBytes() const;
 
 private:
-    [[nodiscard]] bool paintSand(const lockstep::ViewState& view);
-    [[nodiscard]] bool paintPattern(lockstep::Pattern pattern, std::uint64_t frame);
+    struct EyeRange {
+        std::size_t from, end;  // of the eyes that are painted, as indices of targets_
+    };
+    [[nodiscard]] bool paintSand(const lockstep::ViewState& view, EyeRange range);
+    [[nodiscard]] bool paintPattern(lockstep::Pattern pattern, std::uint64_t frame, EyeRange range);
 
     const walls::Wall& wall_;
     const walls::Tile& tile_;
@@ -50,7 +53,7 @@ private:
     std::vector<EyeMemory> memories_;  // what each target shows already
     StereoComposer composer_;
     std::optional<TestPatternView> patterns_;  // since one was asked for
-    lockstep::Pattern shown_ = lockstep::Pattern::none;
+    std::vector<lockstep::Pattern> shown_;     // by each target
 };
 
 }  // namespace render_node

@@ -54,7 +54,7 @@ public:
             applyFaults(frame);
             applySteps(frame);
             const std::int64_t start = nowNs();
-            painter_->paint(*terrain_, frame.view, frame.frame);
+            painter_->paint(*terrain_, frame.view, frame.frame, context_->showsEyesInTurn() && !frame.capture);
             context_->present(painter_->outputs(), frame.frame);
             const std::int64_t drawn = nowNs();
             drawMs_.add(static_cast<double>(drawn - start) * 1e-6);
@@ -113,8 +113,9 @@ private:
 
     void sendPictures() const {
         int eye = 0;
-        for (const EyeTarget& target : painter_->eyes()) {
-            lockstep::sendPicture(cluster_, {cluster_.rank(), eye++, target.width(), target.height(), target.read()});
+        for (const EyeTarget* target : painter_->pictures()) {
+            lockstep::sendPicture(cluster_,
+                                  {cluster_.rank(), eye++, target->width(), target->height(), target->read()});
         }
     }
 

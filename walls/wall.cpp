@@ -47,6 +47,10 @@ std::span<const Eye> eyesOf(Stereo stereo) {
     }
 }
 
+bool packsEyes(Stereo stereo) {
+    return eyesOf(stereo).size() > 1 && stereo != Stereo::passive && stereo != Stereo::active;
+}
+
 glm::ivec2 outputPixels(Stereo stereo, glm::ivec2 eyePixels) {
     switch (stereo) {
         case Stereo::sideBySide:

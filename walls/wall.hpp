@@ -49,6 +49,8 @@ inline constexpr Stereo kLastStereo = Stereo::anaglyphDubois;
 /// The eyes that are drawn, in the order they are drawn: the middle alone for mono, left or right alone where only one
 /// is shown, else left and right.
 [[nodiscard]] std::span<const Eye> eyesOf(Stereo stereo);
+/// Whether an output shows a picture that is made of both eyes' and is none of them.
+[[nodiscard]] bool packsEyes(Stereo stereo);
 /// Size of each output's buffer when one eye's picture has this size [pixel].
 [[nodiscard]] glm::ivec2 outputPixels(Stereo stereo, glm::ivec2 eyePixels);
 

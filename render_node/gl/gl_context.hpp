@@ -54,6 +54,8 @@ public:
     /// until GL has done so. `frame` is the wall's: with eyes in turn, even frames show the left one. Off screen it
     /// only waits. Throws std::runtime_error when a window is lost, with its output in the message.
     virtual void present(std::span<const OutputPicture> outputs, std::uint64_t frame) = 0;
+    /// Whether a frame shows one eye alone: active stereo in windows without quad buffers.
+    [[nodiscard]] virtual bool showsEyesInTurn() const { return false; }
     /// Shows what was presented; nobody swaps before all ranks have agreed. Nothing off screen.
     virtual void swap() {}
     /// The keys pressed in the windows since the last call, one character each. None off screen.

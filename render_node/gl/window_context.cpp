@@ -64,11 +64,13 @@ public:
         platform_->check();
         glFinish();  // the other contexts may only take what this one has finished
         // Last to first, so that the context that draws is current in the end.
+        inTurn_ = outputs.front().right != nullptr && !platform_->quadBuffers(0);
         for (std::size_t i = windows_.size(); i-- > 0;) {
             show(i, copiesOf(outputs[i], platform_->quadBuffers(i), frame));
         }
         finishFrame();
     }
+    [[nodiscard]] bool showsEyesInTurn() const override { return inTurn_; }
     void swap() override {
         platform_->swap(frame_);
         platform_->check();
@@ -115,6 +117,7 @@ private:
     std::vector<WindowRequest> windows_;
     std::vector<GLuint> readers_;  // one frame buffer object in each window's context; they go with it
     std::uint64_t frame_ = 0;
+    bool inTurn_ = false;  // known since the first frame
 };
 
 }  // namespace
