@@ -20,6 +20,7 @@ files::Bytes SessionMessage::encode() const {
         writer.put(skew->rank);
         writer.put(skew->frame);
     }
+    writer.put(spoiltShader);
     return writer.take();
 }
 
@@ -43,6 +44,7 @@ SessionMessage SessionMessage::decode(std::span<const std::uint8_t> bytes) {
         session.skew->rank = reader.get<int>();
         session.skew->frame = reader.get<std::uint64_t>();
     }
+    session.spoiltShader = reader.get<std::int32_t>();
     return session;
 }
 

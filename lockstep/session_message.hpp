@@ -30,6 +30,7 @@ struct SessionMessage {
     double frameTimeout = 0;  // [s] without a sign of the master, after which a rank ends
     std::optional<BitFlip> fault;
     std::optional<SkewedView> skew;
+    std::int32_t spoiltShader = 0;  // the rank that is to find one of its shaders broken, for tests; 0 for none
 
     [[nodiscard]] files::Bytes encode() const;
     static SessionMessage decode(std::span<const std::uint8_t> bytes);

@@ -24,6 +24,7 @@ struct Options {
     std::string stereo, track;  // as the wall file says when empty
     std::string pattern = "none";
     std::string fault, skew;
+    int spoiltShader = 0;
     bool noPictures = false;
     master::SessionOptions session;
     int sandThreads = 1;
@@ -91,8 +92,8 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
         options.session.tracker = tracking::Source::parse(world.wall.tracking, options.wall + ": source",
                                                           std::filesystem::path(options.wall).parent_path());
     }
-    world.message = {world.scene.encode(), world.wall.encode(), options.session.frameTimeout, std::nullopt,
-                     std::nullopt};
+    world.message = {world.scene.encode(), world.wall.encode(), options.session.frameTimeout,
+                     std::nullopt,         std::nullopt,        options.spoiltShader};
     if (!options.fault.empty()) {
         const lockstep::BitFlip& flip = world.message.fault.emplace(parseFault(options.fault));
         if (flip.rank < 1 || flip.rank > world.wall.ranks() || flip.column < 0 || flip.row < 0 ||
@@ -168,6 +169,7 @@ void describeOptions(CLI::App& app, Options& options) {
                  "obeys lines on standard input: settle, stop; its end is a stop");
     app.add_option("--flip-bit", options.fault,
                    "for tests: rank=R,frame=F,column=C,row=W flips one bit of that replica");
+    app.add_option("--spoil-shader", options.spoiltShader, "for tests: a shader of that rank does not compile");
     app.add_option("--skew-view", options.skew, "for tests: rank=R,frame=F shows that rank another view");
 }
 

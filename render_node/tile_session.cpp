@@ -16,6 +16,7 @@
 #include "lockstep/session_message.hpp"
 #include "lockstep/statistics.hpp"
 #include "lockstep/view_agreement.hpp"
+#include "render_node/gl/gl_program.hpp"
 #include "render_node/tile_painter.hpp"
 
 namespace render_node {
@@ -34,6 +35,10 @@ public:
           tile_(wall_.tiles.at(static_cast<std::size_t>(cluster.rank() - 1))),
           viewProof_(wall_.encode()),
           context_(makeContext(backend, wall_, tile_)) {
+        if (message.spoiltShader == cluster.rank()) {
+            const GlProgram broken(shaderSource("sand.vert.glsl"), shaderSource("light.glsl"),
+                                   {"sand.frag.glsl", "spoilt on purpose"});
+        }
         const sand::Scene scene = sand::Scene::decode(message.scene);
         terrain_.emplace(scene, sweeps);
         painter_.emplace(wall_, tile_, scene, lockstep::hostName());

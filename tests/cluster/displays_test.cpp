@@ -161,13 +161,12 @@ TEST_F(NoDisplay, IsSaidOfAMonitorThatIsNotThere) {
 }
 
 TEST_F(NoDisplay, IsSaidOfAnEglDeviceThatIsNotThere) {
-    expectOneLine("[[place]]\ntiles = [\"r1c1\"]\ndevice = 77\n", {"--gl", "egl"}, "no EGL device 77");
+    expectOneLine("[[place]]\ntiles = [\"r1c1\"]\ndevice = 63\n", {"--gl", "egl"}, "no EGL device 63");
 }
 
-// Mesa's own switch takes away the version of the language that the shaders are written in.
 TEST_F(NoDisplay, IsSaidOfAShaderThatDoesNotCompile) {
-    environment_.emplace_back("MESA_GLSL_VERSION_OVERRIDE=120");
-    expectOneLine("", {"--gl", "osmesa"}, "the OpenGL driver does not compile it");
+    expectOneLine("", {"--gl", "osmesa", "--spoil-shader", "2"},
+                  "render_node/shaders/sand.frag.glsl: the OpenGL driver does not compile it: ");
 }
 
 TEST_F(Displays, EveryWayToShowTwoEyesRuns) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <filesystem>
@@ -19,7 +20,8 @@
 class SessionTest : public testing::Test {
 protected:
     void SetUp() override {
-        const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
+        std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
+        std::replace(test.begin(), test.end(), '/', '-');
         std::string name = (std::filesystem::temp_directory_path() / ("sandwall-" + test + "-XXXXXX")).string();
         ASSERT_NE(mkdtemp(name.data()), nullptr) << name;
         folder_ = name;

@@ -43,7 +43,7 @@ TEST(FrameMessage, RefusesEveryTruncation) {
 
 TEST(SessionMessage, SurvivesItsEncoding) {
     const lockstep::SessionMessage message{
-        {1, 2, 3}, {4, 5}, 12.5, lockstep::BitFlip{3, 99, 7, 8}, lockstep::SkewedView{2, 98}};
+        {1, 2, 3}, {4, 5}, 12.5, lockstep::BitFlip{3, 99, 7, 8}, lockstep::SkewedView{2, 98}, 4};
     const lockstep::SessionMessage copy = lockstep::SessionMessage::decode(message.encode());
     EXPECT_EQ(copy.scene, message.scene);
     EXPECT_EQ(copy.wall, message.wall);
@@ -54,6 +54,7 @@ TEST(SessionMessage, SurvivesItsEncoding) {
     ASSERT_TRUE(copy.skew.has_value());
     EXPECT_EQ(copy.skew->rank, 2);
     EXPECT_EQ(copy.skew->frame, 98U);
+    EXPECT_EQ(copy.spoiltShader, 4);
 }
 
 }  // namespace
