@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "tests/cluster/session_fixture.hpp"
+#include "tests/support/x_server.hpp"
+
+namespace {
+
+constexpr double kMost = 120e6;  // [byte], of a rank beside its frame buffers
+constexpr double kLong = 120;    // [s], for what takes a few on an idle machine
+
+/// Libraries of Mesa's and the windows' that a process has mapped: file names up to the first dot.
+std::set<std::string> librariesOf(pid_t process) {
+    std::ifstream maps(fmt::format("/proc/{}/maps", process));
+    std::set<std::string> names;
+    for (std::string line; std::getline(maps, line);) {
+        const std::string file = line.substr(std::min(line.rfind('/'), line.size() - 1) + 1);
+        names.insert(file.substr(0, file.find('.')));
+    }
+    return names;
+}
+
+/// A number of kibibytes in /proc/PID/status [byte].
+double statusOf(pid_t process, const std::string& key) {
+    std::ifstream status(fmt::format("/proc/{}/status", process));
+    for (std::string word; status >> word;) {
+        if (double kibibytes = 0; word == key + ":" && status >> kibibytes) {
+            return kibibytes * 1024;
+        }
+    }
+    return 0;
+}
+
+/// Ranks at the size of real tiles, over a field of real size, whose drivers compile every shader as on the first day.
+class Memory : public SessionTest, public testing::WithParamInterface<std::string> {
+protected:
+    void SetUp() override {
+        SessionTest::SetUp();
+        server_ = std::make_unique<support::XServer>(folder_, std::vector<std::string>{"2048x1536x24"});
+        environment_ = {"DISPLAY=" + server_->display(), "MESA_SHADER_CACHE_DISABLE=true"};
+    }
+    void TearDown() override {
+        server_.reset();
+        SessionTest::TearDown();
+    }
+    /// A tile as large as one of the papers' wall, dug in until it is told to stop.
+    std::unique_ptr<support::ChildProcess> dig(const std::string& stereo) {
+        const std::string file = write("wall.toml", "[viewer]\neye = [0.0, 1.6, 2.0]\n[stereo]\nmode = \"" + stereo +
+                                                        "\"\n[grid]\nrows = 1\ncolumns = 1\ntile_size = [1.024, "
+                                                        "0.768]\ntile_pixels = [1024, 768]\nlower_left = [-0.512, "
+                                                        "0.9, 0.0]\n[stage]\ncentre = [0.0, 1.25, -0.3]\nwidth = "
+                                                        "1.0\ntilt_deg = 40\n");
+        auto session = start({"--wall", file, "--scene", SANDWALL_SOURCE_DIR "/scenes/writing.toml", "--device",
+                              "script:gis", "--gl", GetParam(), "--out", out()});
+        EXPECT_TRUE(session->waitForOutput("hand linked", kLong)) << session->output();
+        // The line comes once a second: ten frames or more have been drawn by then.
+        EXPECT_TRUE(session->waitForOutput("frame 2", kLong)) << session->output();
+        return session;
+    }
+    std::unique_ptr<support::XServer> server_;
+};
+
+TEST_P(Memory, OfARankIsSmallBesideItsFrameBuffers) {
+    for (const std::string stereo : {"mono", "passive"}) {
+        const auto session = dig(stereo);
+        const auto rank = support::findProgram(session->family(), "sandwall-render-node");
+        ASSERT_TRUE(rank.has_value());
+        const double peak = statusOf(*rank, "VmHWM");
+        session->type("stop");
+        ASSERT_EQ(session->wait(kLong), 0) << session->output();
+        const auto report = summary()["per_rank"][0];
+        const double frameBuffers = report["frame_buffer_bytes"];
+        EXPECT_EQ(frameBuffers, (stereo == "mono" ? 1 : 2) * 8.0 * 1024 * 768);
+        const double held = report["memory_bytes"].get<double>() - frameBuffers;
+        fmt::print("{} {}: {:.0f} MB beside {:.0f} MB of frame buffers; at its peak {:.0f} MB in all\n", GetParam(),
+                   stereo, held * 1e-6, frameBuffers * 1e-6, peak * 1e-6);
+        EXPECT_LE(held, kMost) << stereo;
+    }
+}
+
+TEST_P(Memory, OfARankMapsTheLibrariesOfItsBackendAlone) {
+    const auto session = dig("mono");
+    const std::vector<pid_t> family = session->family();
+    const auto rank = support::findProgram(family, "sandwall-render-node");
+    const auto master = support::findProgram(family, "sandwall-master");
+    ASSERT_TRUE(rank && master);
+    const std::set<std::string> drawing = librariesOf(*rank);
+    const std::set<std::string> bridging = librariesOf(*master);
+    session->type("stop");
+    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    const std::vector<std::pair<std::string, std::string>> owners{
+        {"libOSMesa", "osmesa"}, {"libEGL", "egl"}, {"libglfw", "glfw"}, {"libX11", "glfw"}, {"libGLX", "glfw"}};
+    for (const auto& [library, owner] : owners) {
+        // Mesa's EGL itself brings X11 in.
+        if (library != "libX11" || GetParam() != "egl") {
+            EXPECT_EQ(drawing.contains(library), owner == GetParam()) << library << " with " << GetParam();
+        }
+        EXPECT_FALSE(bridging.contains(library)) << library << " in the master";
+    }
+    EXPECT_FALSE(drawing.contains("libpng16")) << "a rank writes no pictures";
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, Memory, testing::Values("osmesa", "egl", "glfw"),
+                         [](const auto& backend) { return backend.param; });
+
+}  // namespace
