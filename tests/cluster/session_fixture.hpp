@@ -67,6 +67,8 @@ protected:
         command.insert(command.end(), environment_.begin(), environment_.end());
         command.insert(command.end(), {SANDWALL_SOURCE_DIR "/scripts/sandwall", "run"});
         command.insert(command.end(), arguments.begin(), arguments.end());
+        // What an earlier session has said must not pass for this one's.
+        std::filesystem::remove(folder_ / "output.txt");
         return std::make_unique<support::ChildProcess>(command, folder_ / "output.txt");
     }
 
