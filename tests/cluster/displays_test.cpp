@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <chrono>
 #include <thread>
@@ -39,7 +37,14 @@ protected:
     /// A session that shows still sand until it is told to stop, once its windows are there.
     std::unique_ptr<support::ChildProcess> showStillSand() {
         auto session = start({"--wall", placedWall(), "--scene", scene(), "--out", out()});
+        // The first line is printed when the first frame may be shown; a second later it has been.
         EXPECT_TRUE(session->waitForOutput("hashes agree", kLong)) << session->output();
+        const std::size_t first = session->output().find("hashes agree") + 1;
+        const auto second = [&] { return session->output().find("hashes agree", first) != std::string::npos; };
+        for (int i = 0; i < 600 && !second(); ++i) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        }
+        EXPECT_TRUE(second()) << session->output();
         return session;
     }
     [[nodiscard]] pictures::Image tile(const std::string& name) const {
