@@ -12,13 +12,20 @@ struct Box {
     glm::dvec3 low, high;  // [scene unit]
 };
 
+[[nodiscard]] inline std::array<glm::dvec3, 8> cornersOf(const Box& box) {
+    std::array<glm::dvec3, 8> corners;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        corners[corner] = {(corner & 1U) != 0 ? box.high.x : box.low.x, (corner & 2U) != 0 ? box.high.y : box.low.y,
+                           (corner & 4U) != 0 ? box.high.z : box.low.z};
+    }
+    return corners;
+}
+
 /// Whether a box may reach into what a camera sees. Never false for one that does; seldom true for one that does not.
 [[nodiscard]] inline bool inFrustum(const Box& box, const glm::dmat4& sceneToClip) {
     std::array<int, 6> outside{};
-    for (unsigned corner = 0; corner < 8; ++corner) {
-        const glm::dvec4 clip = sceneToClip * glm::dvec4((corner & 1U) != 0 ? box.high.x : box.low.x,
-                                                         (corner & 2U) != 0 ? box.high.y : box.low.y,
-                                                         (corner & 4U) != 0 ? box.high.z : box.low.z, 1);
+    for (const glm::dvec3& corner : cornersOf(box)) {
+        const glm::dvec4 clip = sceneToClip * glm::dvec4(corner, 1);
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const double along = clip[static_cast<int>(axis)];
             outside[2 * axis] += along < -clip.w ? 1 : 0;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
+#include "render_node/frustum.hpp"
 #include "render_node/sand_surface.hpp"
 #include "render_node/solid_mesh.hpp"
 #include "sand/scene.hpp"
@@ -16,20 +19,36 @@ public:
 
     /// These cells have changed: the sides follow when they touch the rim.
     void update(const SandSurface& surface, const sand::Rect& cells);
-    /// Counts the changes of the sides.
-    [[nodiscard]] std::uint64_t revision() const { return revision_; }
+    /// Whether a box lies over the sand, nowhere near the rim.
+    [[nodiscard]] bool insideRim(const Box& box) const;
+    /// A box in the scene, grown by all whose look depends on what is in it: a side is lit at its upper and lower ends,
+    /// so that it changes from top to bottom, and the floor lies open around a field without boards.
+    [[nodiscard]] Box withSides(const Box& box) const;
+    /// How deep a shadow that ends beyond the rim may be seen.
+    [[nodiscard]] double lowest() const { return bounds_.low.z; }
+    /// The highest that boards or the sand beside them have been.
+    [[nodiscard]] double highest() const { return bounds_.high.z; }
 
-    void drawSides() const { sides_.draw(); }
+    /// Draws the sides that reach into the frustum; all of them when `culling` is off. The program must be in use.
+    void drawSides(const glm::dmat4& sceneToClip, bool culling) const;
     void drawBoards() const { boards_.draw(); }
 
 private:
     void makeSides(const SandSurface& surface);
     void makeBoards(const SandSurface& surface, sand::Rim rim);
 
-    std::uint64_t revision_ = 0;
-    float floor_ = 0;  // [scene unit]
-    float top_ = 0;    // of the boards [scene unit]
+    /// A piece of a side.
+    struct Run {
+        GLint firstVertex;
+        GLsizei vertices;
+        Box box;
+    };
+    Box bounds_;                                   // of everything, sand at the rim included, ever
+    double cellSize_ = 0, width_ = 0, depth_ = 0;  // of the field [scene unit]
+    float floor_ = 0;                              // [scene unit]
+    float top_ = 0;                                // of the boards [scene unit]
     SolidMesh sides_, boards_;
+    std::vector<Run> runs_;
 };
 
 }  // namespace render_node

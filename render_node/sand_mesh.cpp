@@ -11,6 +11,8 @@ namespace {
 
 constexpr int kChunk = 32;  // [quad], the shortest side but for small fields
 
+constexpr int kMostChanges = 36;  // of one update
+
 int chunksFor(int quads) { return std::max(1, quads / kChunk); }
 int sideFor(int quads) { return (quads + chunksFor(quads) - 1) / chunksFor(quads); }
 
@@ -44,16 +46,13 @@ SandMesh::SandMesh(const sand::HeightField& field)
       down_(chunksFor(field.rows() + 1)),
       quadsAcross_(sideFor(field.columns() + 1)),
       quadsDown_(sideFor(field.rows() + 1)),
-      software_(drawnByLlvmpipe()) {
+      software_(drawnByLlvmpipe()),
+      ever_(surface_.heights({0, 0, field.columns() + 2, field.rows() + 2})) {
     for (int y = 0; y < down_; ++y) {
         for (int x = 0; x < across_; ++x) {
             const sand::Rect vertices{x * quadsAcross_, y * quadsDown_, (x + 1) * quadsAcross_ + 1,
                                       (y + 1) * quadsDown_ + 1};
-            Chunk& chunk = chunks_.emplace_back();
-            chunk.vertices = vertices;
-            measure(chunk);
-            chunk.lowestEver = chunk.lowest;
-            chunk.highestEver = chunk.highest;
+            chunks_.push_back({vertices, surface_.heights(vertices), true, {}});
         }
     }
     scratch_.resize(static_cast<std::size_t>(quadsAcross_ + 1) * static_cast<std::size_t>(quadsDown_ + 1));
@@ -87,58 +86,59 @@ void SandMesh::makeIndices() {
     bytes_ += bytes;
 }
 
-void SandMesh::measure(Chunk& chunk) const {
-    chunk.lowest = chunk.highest = surface_.height(chunk.vertices.x0 - 1, chunk.vertices.y0 - 1);
-    const int lastColumn = std::min(chunk.vertices.x1 - 1, surface_.columns() + 1) - 1;
-    const int lastRow = std::min(chunk.vertices.y1 - 1, surface_.rows() + 1) - 1;
-    for (int row = chunk.vertices.y0 - 1; row <= lastRow; ++row) {
-        for (int column = chunk.vertices.x0 - 1; column <= lastColumn; ++column) {
-            const float height = surface_.height(column, row);
-            chunk.lowest = std::min(chunk.lowest, height);
-            chunk.highest = std::max(chunk.highest, height);
+std::vector<SandMesh::Change> SandMesh::changesOf(const sand::HeightField& field, const sand::Rect& cells) const {
+    // Small parts follow the sand closely, few parts are soon looked through.
+    int side = kChunk;
+    while ((cells.x1 - cells.x0 + side - 1) / side * ((cells.y1 - cells.y0 + side - 1) / side) > kMostChanges) {
+        side *= 2;
+    }
+    // Cell c lies under vertex c + 1; normals and shade of the vertices around depend on it, and triangles reach from
+    // these a vertex further.
+    constexpr int kAround = SandSurface::kReach + 1;
+    const sand::Rect grid{0, 0, surface_.columns() + 2, surface_.rows() + 2};
+    std::vector<Change> changes;
+    for (int y = cells.y0; y < cells.y1; y += side) {
+        for (int x = cells.x0; x < cells.x1; x += side) {
+            const sand::Rect changed = surface_.differing(field, sand::Rect{x, y, x + side, y + side}.clippedTo(cells));
+            if (!changed.empty()) {
+                const sand::Rect vertices =
+                    sand::Rect{changed.x0 + 1, changed.y0 + 1, changed.x1 + 1, changed.y1 + 1}.grownBy(kAround);
+                changes.push_back({vertices.clippedTo(grid), surface_.heights(vertices)});
+            }
         }
     }
+    return changes;
 }
 
 void SandMesh::update(const sand::HeightField& field, const sand::Rect& cells) {
-    if (cells.empty()) {
+    const std::vector<Change> changes = changesOf(field, cells);
+    if (changes.empty()) {
         return;
     }
     surface_.update(field, cells);
     ++revision_;
-    // Cell c lies under vertex c + 1; normals and shade of the vertices around depend on it.
-    constexpr int kAround = SandSurface::kReach + 1;
-    const sand::Rect touched{cells.x0 + 1 - kAround, cells.y0 + 1 - kAround, cells.x1 + 1 + kAround,
-                             cells.y1 + 1 + kAround};
+    for (const Change& change : changes) {
+        const HeightRange after = surface_.heights(change.vertices);
+        const HeightRange heights{std::min(change.before.lowest, after.lowest),
+                                  std::max(change.before.highest, after.highest)};
+        damage_.add(revision_, boxOf(change.vertices, heights));
+        ever_ = {std::min(ever_.lowest, heights.lowest), std::max(ever_.highest, heights.highest)};
+    }
     for (Chunk& chunk : chunks_) {
-        if (!touched.clippedTo(chunk.vertices).empty()) {
+        if (std::any_of(changes.begin(), changes.end(),
+                        [&](const Change& change) { return !change.vertices.clippedTo(chunk.vertices).empty(); })) {
             chunk.stale = true;
-            chunk.changed = revision_;
-            measure(chunk);
-            chunk.lowestEver = std::min(chunk.lowestEver, chunk.lowest);
-            chunk.highestEver = std::max(chunk.highestEver, chunk.highest);
+            chunk.heights = surface_.heights(chunk.vertices);
         }
     }
 }
 
-Box SandMesh::boxOf(const Chunk& chunk, float lowest, float highest) const {
+Box SandMesh::boxOf(const sand::Rect& vertices, const HeightRange& heights) const {
     // A hundredth of a cell more, for what GL's floats may round.
     const double margin = 0.01 * double{surface_.cellSize()};
-    const glm::dvec3 low(surface_.east(chunk.vertices.x0), surface_.north(chunk.vertices.y0), lowest);
-    const glm::dvec3 high(surface_.east(chunk.vertices.x1 - 1), surface_.north(chunk.vertices.y1 - 1), highest);
+    const glm::dvec3 low(surface_.east(vertices.x0), surface_.north(vertices.y0), heights.lowest);
+    const glm::dvec3 high(surface_.east(vertices.x1 - 1), surface_.north(vertices.y1 - 1), heights.highest);
     return {low - margin, high + margin};
-}
-
-bool SandMesh::changedInView(const glm::dmat4& sceneToClip, std::uint64_t since) const {
-    return std::any_of(chunks_.begin(), chunks_.end(), [&](const Chunk& chunk) {
-        return chunk.changed > since && inFrustum(boxOf(chunk, chunk.lowestEver, chunk.highestEver), sceneToClip);
-    });
-}
-
-float SandMesh::lowestEver() const {
-    return std::min_element(chunks_.begin(), chunks_.end(),
-                            [](const Chunk& a, const Chunk& b) { return a.lowestEver < b.lowestEver; })
-        ->lowestEver;
 }
 
 void SandMesh::refresh(Chunk& chunk) {
@@ -163,7 +163,7 @@ SandMesh::Drawn SandMesh::draw(const glm::dmat4& sceneToClip, bool culling) {
     Drawn drawn;
     int waiting = 0;  // triangles
     for (Chunk& chunk : chunks_) {
-        if (culling && !inFrustum(boxOf(chunk, chunk.lowest, chunk.highest), sceneToClip)) {
+        if (culling && !inFrustum(boxOf(chunk.vertices, chunk.heights), sceneToClip)) {
             continue;
         }
         if (chunk.stale) {

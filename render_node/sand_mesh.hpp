@@ -3,10 +3,12 @@
 
 #include <glm/glm.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "render_node/frustum.hpp"
 #include "render_node/gl/gl_handle.hpp"
+#include "render_node/sand_damage.hpp"
 #include "render_node/sand_surface.hpp"
 
 namespace render_node {
@@ -31,12 +33,14 @@ public:
     /// Draws the chunks that reach into the frustum; all of them when `culling` is off. The program must be in use.
     Drawn draw(const glm::dmat4& sceneToClip, bool culling);
 
-    /// Counts the updates so far.
+    /// Counts the updates that changed something.
     [[nodiscard]] std::uint64_t revision() const { return revision_; }
-    /// Whether sand that this camera sees, or saw, may have changed since that revision.
-    [[nodiscard]] bool changedInView(const glm::dmat4& sceneToClip, std::uint64_t since) const;
-    /// The lowest any sand has been [scene unit].
-    [[nodiscard]] float lowestEver() const;
+    /// Where the picture of the sand has changed since that revision. Good until the next update().
+    [[nodiscard]] std::span<const SandDamage::Part> damageSince(std::uint64_t revision) const {
+        return damage_.since(revision);
+    }
+    /// The lowest and the highest that any sand has been.
+    [[nodiscard]] HeightRange heightsEver() const { return ever_; }
 
     [[nodiscard]] const SandSurface& surface() const { return surface_; }
     [[nodiscard]] int chunks() const { return static_cast<int>(chunks_.size()); }
@@ -49,16 +53,19 @@ private:
         GlBuffer vertices;
     };
     struct Chunk {
-        sand::Rect vertices;            // of the vertex grid
-        float lowest, highest;          // [scene unit]
-        float lowestEver, highestEver;  // since the start [scene unit]
-        std::uint64_t changed = 0;      // revision of the last update that touched it
-        bool stale = true;              // its vertices are not those of the surface
+        sand::Rect vertices;  // of the vertex grid
+        HeightRange heights;
+        bool stale = true;  // its vertices are not those of the surface
         std::optional<Geometry> geometry;
     };
+    /// Part of an update.
+    struct Change {
+        sand::Rect vertices;  // that may look different, with their triangles
+        HeightRange before;
+    };
     void makeIndices();
-    void measure(Chunk& chunk) const;
-    [[nodiscard]] Box boxOf(const Chunk& chunk, float lowest, float highest) const;
+    [[nodiscard]] std::vector<Change> changesOf(const sand::HeightField& field, const sand::Rect& cells) const;
+    [[nodiscard]] Box boxOf(const sand::Rect& vertices, const HeightRange& heights) const;
     void refresh(Chunk& chunk);
 
     SandSurface surface_;
@@ -70,6 +77,8 @@ private:
     GlBuffer indices_;                 // 16 bit, one chunk's
     std::size_t bytes_ = 0;
     std::uint64_t revision_ = 0;
+    SandDamage damage_;
+    HeightRange ever_;
 };
 
 }  // namespace render_node

@@ -28,6 +28,43 @@ void SandSurface::update(const sand::HeightField& field, const sand::Rect& cells
     }
 }
 
+sand::Rect SandSurface::differing(const sand::HeightField& field, const sand::Rect& cells) const {
+    const double unit = field.unit();
+    sand::Rect found{cells.x1, cells.y1, cells.x0, cells.y0};
+    for (int row = cells.y0; row < cells.y1; ++row) {
+        const std::int32_t* now = field.row(row);
+        const float* drawn = heights_.data() + static_cast<std::ptrdiff_t>(row) * columns_;
+        const auto same = [&](int column) { return drawn[column] == static_cast<float>(now[column] * unit); };
+        int first = cells.x0;
+        while (first < cells.x1 && same(first)) {
+            ++first;
+        }
+        if (first == cells.x1) {
+            continue;
+        }
+        int end = cells.x1;
+        while (same(end - 1)) {
+            --end;
+        }
+        found = {std::min(found.x0, first), std::min(found.y0, row), std::max(found.x1, end), row + 1};
+    }
+    return found.empty() ? sand::Rect{} : found;
+}
+
+HeightRange SandSurface::heights(const sand::Rect& vertices) const {
+    const int west = std::clamp(vertices.x0 - 1, 0, columns_ - 1);
+    const int east = std::clamp(vertices.x1 - 2, 0, columns_ - 1);
+    const int south = std::clamp(vertices.y0 - 1, 0, rows_ - 1);
+    const int north = std::clamp(vertices.y1 - 2, 0, rows_ - 1);
+    HeightRange range{height(west, south), height(west, south)};
+    for (int row = south; row <= north; ++row) {
+        const float* heights = heights_.data() + static_cast<std::ptrdiff_t>(row) * columns_;
+        const auto [lowest, highest] = std::minmax_element(heights + west, heights + east + 1);
+        range = {std::min(range.lowest, *lowest), std::max(range.highest, *highest)};
+    }
+    return range;
+}
+
 float SandSurface::height(int column, int row) const {
     const auto x = static_cast<std::size_t>(std::clamp(column, 0, columns_ - 1));
     const auto y = static_cast<std::size_t>(std::clamp(row, 0, rows_ - 1));

@@ -19,6 +19,10 @@ struct SandVertex {
 };
 static_assert(sizeof(SandVertex) == 16);
 
+struct HeightRange {
+    float lowest, highest;  // [scene unit]
+};
+
 /// The drawn surface of a height field, on the CPU: heights, normals and how much sky each place sees.
 ///
 /// Vertices stand over the cells' centres, and one more ring on the outer edges of the field: a field of c × r cells
@@ -30,6 +34,8 @@ public:
 
     explicit SandSurface(const sand::HeightField& field);
 
+    /// The smallest rectangle around those of these cells whose height is not drawn yet.
+    [[nodiscard]] sand::Rect differing(const sand::HeightField& field, const sand::Rect& cells) const;
     /// Takes over the heights of these cells, which must lie within the field.
     void update(const sand::HeightField& field, const sand::Rect& cells);
 
@@ -38,6 +44,8 @@ public:
     [[nodiscard]] float cellSize() const { return cellSize_; }  // [scene unit]
     /// Height over the nearest cell of the field [scene unit].
     [[nodiscard]] float height(int column, int row) const;
+    /// The lowest and the highest vertex of a rectangle of the vertex grid that may reach beyond it [scene unit].
+    [[nodiscard]] HeightRange heights(const sand::Rect& vertices) const;
     /// East (from a vertex column) or north (from a vertex row) of the field's corner [scene unit].
     [[nodiscard]] float east(int vertexColumn) const { return along(vertexColumn, columns_); }
     [[nodiscard]] float north(int vertexRow) const { return along(vertexRow, rows_); }

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
+#include <vector>
 
 #include "render_node/eye_target.hpp"
 #include "render_node/gl/gl_program.hpp"
 #include "render_node/grain_texture.hpp"
+#include "render_node/pixel_rect.hpp"
 #include "render_node/sand_box.hpp"
 #include "render_node/sand_mesh.hpp"
 #include "render_node/tool_mesh.hpp"
@@ -39,7 +41,7 @@ struct EyeMemory {
     bool drawn = false;  // reset to draw anew whatever has changed
     glm::dmat4 roomToClip{1}, sceneToRoom{1};
     glm::dvec3 eye{0};
-    std::uint64_t sand = 0, sides = 0;  // revisions
+    std::uint64_t sand = 0;  // revision
     std::optional<Tool> tool;
 };
 
@@ -64,9 +66,10 @@ public:
 
     /// Clears the target and draws everything into it. Does not wait: EyeTarget::finish() does.
     void draw(const Camera& camera, const EyeTarget& target);
-    /// Draws unless no pixel can differ from what `memory` says is in the target: most tiles are far from the hand.
-    /// Returns whether it drew. The target then holds what draw() would have left there, bit for bit.
-    bool drawIfChanged(const Camera& camera, const EyeTarget& target, EyeMemory& memory);
+    /// Draws the one rectangle outside of which no pixel can differ from what `memory` says is in the target, and
+    /// returns it: empty where nothing was drawn (most tiles are far from the hand), the whole picture where the view
+    /// is another one or most of it changed. The target then holds what draw() would have left there, bit for bit.
+    PixelRect drawIfChanged(const Camera& camera, const EyeTarget& target, EyeMemory& memory);
 
     [[nodiscard]] const DrawCounts& counts() const { return counts_; }
     /// Bytes this view has asked of GL for geometry so far.
@@ -76,8 +79,10 @@ public:
 
 private:
     void prepare(const GlProgram& program, const Camera& camera) const;
-    [[nodiscard]] bool same(const Camera& camera, const EyeMemory& memory) const;
-    [[nodiscard]] bool toolInView(const std::optional<EyeMemory::Tool>& tool, const glm::dmat4& sceneToClip) const;
+    void drawWithin(const PixelRect& pixels, const Camera& camera, const EyeTarget& target);
+    [[nodiscard]] PixelRect changedPixels(const Camera& camera, glm::ivec2 size, const EyeMemory& memory) const;
+    [[nodiscard]] Box ballOf(const EyeMemory::Tool& tool) const;
+    [[nodiscard]] std::vector<std::vector<glm::dvec3>> reachOf(const EyeMemory::Tool& tool) const;
 
     glm::dmat4 sceneToRoom_;
     sand::Look look_;

@@ -25,9 +25,9 @@ void SolidMesh::set(const std::vector<SolidVertex>& triangles) {
     count_ = static_cast<GLsizei>(triangles.size());
 }
 
-void SolidMesh::draw() const {
+void SolidMesh::draw(GLint firstVertex, GLsizei vertices) const {
     glBindVertexArray(array_.id());
-    glDrawArrays(GL_TRIANGLES, 0, count_);
+    glDrawArrays(GL_TRIANGLES, firstVertex, vertices);
 }
 
 }  // namespace render_node

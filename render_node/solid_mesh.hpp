@@ -22,7 +22,9 @@ public:
     /// Replaces the triangles: three vertices each.
     void set(const std::vector<SolidVertex>& triangles);
     /// The program must be in use.
-    void draw() const;
+    void draw() const { draw(0, count_); }
+    /// Some of its triangles.
+    void draw(GLint firstVertex, GLsizei vertices) const;
 
 private:
     GlVertexArray array_;

@@ -72,30 +72,34 @@ StereoComposer::StereoComposer(Stereo stereo, const walls::Tile& tile) : stereo_
 }
 
 void StereoComposer::compose(std::span<const EyeTarget> eyes) {
-    if (!packed_) {
+    compose(eyes, {0, 0, eyes[0].width(), eyes[0].height()});
+}
+
+void StereoComposer::compose(std::span<const EyeTarget> eyes, const PixelRect& changed) {
+    if (!packed_ || changed.empty()) {
         return;
     }
     if (isBeside(stereo_)) {
-        copyBeside(eyes);
+        copyBeside(eyes, changed);
     } else {
-        drawMixed(eyes);
+        drawMixed(eyes, changed);
     }
 }
 
-void StereoComposer::copyBeside(std::span<const EyeTarget> eyes) const {
-    const int width = eyes[0].width(), height = eyes[0].height();
+void StereoComposer::copyBeside(std::span<const EyeTarget> eyes, const PixelRect& changed) const {
     const bool beside = stereo_ == Stereo::sideBySide;
     glDisable(GL_SCISSOR_TEST);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, packed_->framebuffer());
     const auto copy = [&](const EyeTarget& eye, int x, int y) {
+        const auto& [x0, y0, x1, y1] = changed;
         glBindFramebuffer(GL_READ_FRAMEBUFFER, eye.framebuffer());
-        glBlitFramebuffer(0, 0, width, height, x, y, x + width, y + height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+        glBlitFramebuffer(x0, y0, x1, y1, x + x0, y + y0, x + x1, y + y1, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     };
-    copy(eyes[0], 0, beside ? 0 : height);  // GL counts rows from below
-    copy(eyes[1], beside ? width : 0, 0);
+    copy(eyes[0], 0, beside ? 0 : eyes[0].height());  // GL counts rows from below
+    copy(eyes[1], beside ? eyes[0].width() : 0, 0);
 }
 
-void StereoComposer::drawMixed(std::span<const EyeTarget> eyes) const {
+void StereoComposer::drawMixed(std::span<const EyeTarget> eyes, const PixelRect& changed) const {
     packed_->bind();
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
@@ -115,7 +119,10 @@ void StereoComposer::drawMixed(std::span<const EyeTarget> eyes) const {
     }
     bindTexture(0, eyes[0].colour());  // last: unit 0 stays the active one
     glBindVertexArray(array_->id());
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(changed.x0, changed.y0, changed.x1 - changed.x0, changed.y1 - changed.y0);
     glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDisable(GL_SCISSOR_TEST);
 }
 
 std::vector<OutputPicture> StereoComposer::shown(std::span<const EyeTarget> eyes) const {

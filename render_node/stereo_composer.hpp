@@ -9,6 +9,7 @@
 #include "render_node/eye_target.hpp"
 #include "render_node/gl/gl_context.hpp"
 #include "render_node/gl/gl_program.hpp"
+#include "render_node/pixel_rect.hpp"
 #include "walls/wall.hpp"
 
 namespace render_node {
@@ -27,6 +28,8 @@ public:
     /// walls::eyesOf, each of tile.pixels. Does not wait, and does nothing where the eyes' targets are shown
     /// themselves.
     void compose(std::span<const EyeTarget> eyes);
+    /// The same where the eyes have changed within these pixels alone.
+    void compose(std::span<const EyeTarget> eyes, const PixelRect& changed);
 
     /// What each output shows, in the order of tile.outputs, for GlContext::present. Points to the eyes' targets and to
     /// this composer's own.
@@ -44,8 +47,8 @@ private:
         std::array<GLuint, 128> first{};   // the least light that is shown as it
         glm::mat4 fromLeft{0}, fromRight{0};
     };
-    void copyBeside(std::span<const EyeTarget> eyes) const;
-    void drawMixed(std::span<const EyeTarget> eyes) const;
+    void copyBeside(std::span<const EyeTarget> eyes, const PixelRect& changed) const;
+    void drawMixed(std::span<const EyeTarget> eyes, const PixelRect& changed) const;
 
     walls::Stereo stereo_;
     std::vector<std::size_t> eyeOfOutput_;  // index into the eyes, by output

@@ -38,36 +38,34 @@ void TilePainter::paint(sand::Terrain& terrain, const lockstep::ViewState& view,
     const std::size_t shownEye = frame % targets_.size();
     const EyeRange range = oneEye ? EyeRange{shownEye, shownEye + 1} : EyeRange{0, targets_.size()};
     const auto pattern = static_cast<lockstep::Pattern>(view.pattern);
-    const bool changed =
+    const PixelRect changed =
         pattern == lockstep::Pattern::none ? paintSand(view, range) : paintPattern(pattern, frame, range);
     std::fill(shown_.begin() + static_cast<std::ptrdiff_t>(range.from),
               shown_.begin() + static_cast<std::ptrdiff_t>(range.end), pattern);
-    if (changed) {
-        composer_.compose(targets_);
-    }
+    composer_.compose(targets_, changed);
 }
 
-bool TilePainter::paintSand(const lockstep::ViewState& view, EyeRange range) {
+PixelRect TilePainter::paintSand(const lockstep::ViewState& view, EyeRange range) {
     const walls::Viewer viewer = viewerOf(view);
-    bool changed = false;
+    PixelRect changed;
     for (std::size_t i = range.from; i < range.end; ++i) {
         const glm::dvec3 position = walls::eyePosition(viewer, walls::eyesOf(wall_.stereo)[i]);
         const walls::View seen = walls::viewOf(tile_.screen, position, wall_.clip.near, wall_.clip.far);
-        changed |= sand_.drawIfChanged({seen.viewProjection, position}, targets_[i], memories_[i]);
+        changed = around(changed, sand_.drawIfChanged({seen.viewProjection, position}, targets_[i], memories_[i]));
     }
     return changed;
 }
 
-bool TilePainter::paintPattern(lockstep::Pattern pattern, std::uint64_t frame, EyeRange range) {
+PixelRect TilePainter::paintPattern(lockstep::Pattern pattern, std::uint64_t frame, EyeRange range) {
     if (!patterns_) {
         patterns_.emplace(wall_, tile_, host_);
     }
-    bool changed = false;
+    PixelRect changed;
     for (std::size_t i = range.from; i < range.end; ++i) {
         if (shown_[i] != pattern || lockstep::changesEveryFrame(pattern)) {
             patterns_->draw(pattern, walls::eyesOf(wall_.stereo)[i], frame, targets_[i]);
             memories_[i].drawn = false;  // the sand must come back whole
-            changed = true;
+            changed = {0, 0, targets_[i].width(), targets_[i].height()};
         }
     }
     return changed;

@@ -42,8 +42,9 @@ private:
     struct EyeRange {
         std::size_t from, end;  // of the eyes that are painted, as indices of targets_
     };
-    [[nodiscard]] bool paintSand(const lockstep::ViewState& view, EyeRange range);
-    [[nodiscard]] bool paintPattern(lockstep::Pattern pattern, std::uint64_t frame, EyeRange range);
+    // The pixels that have changed in some eye.
+    [[nodiscard]] PixelRect paintSand(const lockstep::ViewState& view, EyeRange range);
+    [[nodiscard]] PixelRect paintPattern(lockstep::Pattern pattern, std::uint64_t frame, EyeRange range);
 
     const walls::Wall& wall_;
     const walls::Tile& tile_;

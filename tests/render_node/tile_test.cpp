@@ -174,7 +174,7 @@ TEST_F(TiledWall, LeavesOutTilesThatCannotHaveChangedAndMissesNone) {
             const auto camera =
                 sample::camera(leftEye_, leftEye_ + forward_, {x, y, x + 1.0 / kAcross, y + 1.0 / kDown});
             const auto at = static_cast<std::size_t>(tile);
-            left += lazy.drawIfChanged(camera, targets[at], memories[at]) ? 0 : 1;
+            left += lazy.drawIfChanged(camera, targets[at], memories[at]).empty() ? 1 : 0;
             ASSERT_TRUE(targets[at].read() == sample::draw(lazy, camera, fresh))
                 << "frame " << frame << " tile " << tile;
         }
