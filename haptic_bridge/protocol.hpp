@@ -17,7 +17,7 @@
 namespace haptic_bridge {
 
 inline constexpr std::uint32_t kMagic = 0x42485753;  // "SWHB" as it stands on the wire
-inline constexpr std::uint32_t kProtocolVersion = 2;
+inline constexpr std::uint32_t kProtocolVersion = 3;
 inline constexpr std::uint16_t kDefaultPort = 7750;
 inline constexpr std::size_t kMaxMessage = 64 * 1024;        // [byte], type and payload
 inline constexpr std::size_t kMaxState = 256 * 1024 * 1024;  // [byte], of a State, and only when one is expected

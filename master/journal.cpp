@@ -17,7 +17,8 @@ namespace master {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x4c4a5753;  // "SWJL"
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kOldestVersion = 1;  // which knew no reset and no undo
 constexpr std::uint8_t kFrameRecord = 1;
 constexpr std::uint8_t kEndRecord = 2;
 
@@ -152,8 +153,9 @@ Journal readJournal(const std::filesystem::path& file) {
         if (reader.get<std::uint32_t>() != kMagic) {
             throw files::FormatError("no journal of Sandwall");
         }
-        if (const auto version = reader.get<std::uint32_t>(); version != kVersion) {
-            throw files::FormatError(fmt::format("a journal of version {}; this program reads {}", version, kVersion));
+        if (const auto version = reader.get<std::uint32_t>(); version < kOldestVersion || version > kVersion) {
+            throw files::FormatError(
+                fmt::format("a journal of version {}; this program reads {} to {}", version, kOldestVersion, kVersion));
         }
         journal.buildId = reader.getText();
         const auto scene = reader.getBlock();

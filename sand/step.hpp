@@ -22,8 +22,13 @@ struct ProbePoint {
 inline constexpr std::int32_t kMaxProbe = 1 << 24;  // [probe unit], four times the longest field
 
 /// What an operator may ask of the sand.
-enum class Edit : std::uint8_t { none, settle };  // settle: let it come to rest at once
-inline constexpr int kEdits = 2;
+enum class Edit : std::uint8_t {
+    none,
+    settle,  // let it come to rest at once
+    reset,   // as the scene began
+    undo     // as it was before the last stroke began; nothing when there is none
+};
+inline constexpr int kEdits = 4;
 
 /// The only thing that changes sand: where the hand has been since the step before, and what an operator asked.
 ///

@@ -12,7 +12,7 @@
 namespace sand {
 namespace {
 
-constexpr std::uint32_t kStateVersion = 2;
+constexpr std::uint32_t kStateVersion = 3;
 constexpr int kSweepsToRest = 1 << 20;  // more than any field that is worth waiting for
 
 Rect around(const Rect& a, const Rect& b) {
@@ -46,7 +46,11 @@ Terrain::Terrain(const Scene& scene, const Erosion::Options& options)
       field_(scene.terrain),
       erosion_(field_, rules_, options_),
       hash_(field_),
-      damage_(field_.bounds()) {}
+      damage_(field_.bounds()) {
+    files::ByteWriter writer;
+    encodeCells(field_.cells(), field_.bounds(), writer);
+    start_ = std::make_shared<const files::Bytes>(writer.take());
+}
 
 std::int64_t Terrain::leastBytes(int columns, int rows) {
     // The scene's heights, the replica's, and a flux through two faces of every cell.
@@ -69,6 +73,9 @@ void Terrain::apply(const Step& step) {
     const SphereTool tool(rules_.toolRadius);
     const bool wasEngaged = engaged_;
     const ProbePoint before = probe_;
+    if (step.engaged && !wasEngaged) {
+        beforeStroke_ = encodeSand();
+    }
     for (std::size_t i = 0; i < step.path.size(); ++i) {
         const ProbePoint to = step.path[i];
         // A hand that has just engaged comes from nowhere: its first point presses and does not drag.
@@ -87,6 +94,8 @@ void Terrain::apply(const Step& step) {
 
     if (step.edit == Edit::settle) {
         settleNow();
+    } else if (putBack(step.edit)) {
+        return;
     }
     const Obstacle here = engaged_ ? tool.obstacle(field_, probe_) : Obstacle{};
     if (wasEngaged && (!engaged_ || probe_ != before)) {
@@ -108,6 +117,24 @@ void Terrain::settleNow() {
     outflow_ += settle(field_, rules_).outflow;
     erosion_.touch(field_.bounds());
     touch(field_.bounds());
+}
+
+bool Terrain::putBack(Edit edit) {
+    if (edit == Edit::reset) {
+        files::ByteReader reader(*start_);
+        decodeCells(reader, field_.bounds(), kMaxHeight, field_.cells());
+        erosion_ = Erosion(field_, rules_, options_);
+        outflow_ = 0;
+        touch(field_.bounds());
+    } else if (edit == Edit::undo && canUndo()) {
+        files::ByteReader reader(beforeStroke_);
+        decodeSand(reader);
+    } else {
+        return false;
+    }
+    // A hand that is still in the sand goes on with its stroke, which now begins here.
+    beforeStroke_ = engaged_ ? encodeSand() : files::Bytes();
+    return true;
 }
 
 std::uint64_t Terrain::stateHash() {
@@ -135,17 +162,37 @@ void Terrain::audit(int tiles) {
 
 Rect Terrain::takeDamage() { return std::exchange(damage_, Rect{}); }
 
+files::Bytes Terrain::encodeSand() const {
+    files::ByteWriter writer;
+    writer.put(outflow_);
+    encodeCells(field_.cells(), field_.bounds(), writer);
+    erosion_.encode(writer);
+    return writer.take();
+}
+
+void Terrain::decodeSand(files::ByteReader& reader) {
+    const auto outflow = reader.get<std::int64_t>();
+    HeightField heights = field_;
+    decodeCells(reader, heights.bounds(), kMaxHeight, heights.cells());
+    Erosion erosion(heights, rules_, options_);
+    erosion.decode(reader);
+    field_ = std::move(heights);
+    outflow_ = outflow;
+    // Which blocks were still moving is not in the state: visiting one at rest changes nothing.
+    erosion_ = std::move(erosion);
+    touch(field_.bounds());
+}
+
 files::Bytes Terrain::encodeState() const {
     files::ByteWriter writer;
     writer.put(kStateVersion);
     writer.put(stepNumber_);
-    writer.put(outflow_);
-    writer.put(static_cast<std::uint8_t>(engaged_ ? 1 : 0));
     for (const std::int32_t coordinate : {probe_.x, probe_.y, probe_.z}) {
         writer.put(coordinate);
     }
-    encodeCells(field_.cells(), field_.bounds(), writer);
-    erosion_.encode(writer);
+    writer.put(std::int32_t{engaged_ ? 1 : 0});
+    writer.putBlock(beforeStroke_);
+    writer.putBytes(encodeSand());
     return writer.take();
 }
 
@@ -155,8 +202,6 @@ void Terrain::decodeState(std::span<const std::uint8_t> bytes) {
         throw files::FormatError("a state of version " + std::to_string(version));
     }
     const auto number = reader.get<std::uint64_t>();
-    const auto outflow = reader.get<std::int64_t>();
-    const bool engaged = reader.get<std::uint8_t>() != 0;
     ProbePoint probe;
     for (std::int32_t* coordinate : {&probe.x, &probe.y, &probe.z}) {
         *coordinate = reader.get<std::int32_t>();
@@ -164,18 +209,20 @@ void Terrain::decodeState(std::span<const std::uint8_t> bytes) {
             throw files::FormatError("a state with its tool out of reach");
         }
     }
-    HeightField heights = field_;
-    decodeCells(reader, heights.bounds(), kMaxHeight, heights.cells());
-    Erosion erosion(heights, rules_, options_);
-    erosion.decode(reader);
-    field_ = std::move(heights);
-    stepNumber_ = number;
-    outflow_ = outflow;
-    engaged_ = engaged;
-    probe_ = probe;
-    // Which blocks were still moving is not in the state: visiting one at rest changes nothing.
-    erosion_ = std::move(erosion);
-    touch(field_.bounds());
+    const bool engaged = reader.get<std::int32_t>() != 0;
+    const auto beforeStroke = reader.getBlock();
+    Terrain decoded(*this);
+    if (!beforeStroke.empty()) {
+        // Now, and not when somebody wants to undo: then it would be too late to refuse it.
+        files::ByteReader stroke(beforeStroke);
+        decoded.decodeSand(stroke);
+    }
+    decoded.decodeSand(reader);
+    decoded.stepNumber_ = number;
+    decoded.engaged_ = engaged;
+    decoded.probe_ = probe;
+    decoded.beforeStroke_.assign(beforeStroke.begin(), beforeStroke.end());
+    *this = std::move(decoded);
 }
 
 void Terrain::corrupt(int column, int row) { field_.setHeight(column, row, field_.height(column, row) ^ 1); }

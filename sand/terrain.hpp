@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -24,6 +25,9 @@ public:
 
     /// The tool displaces sand along the step's path, what an operator asked is done, then Rules::sweepsPerStep sweeps
     /// let the sand slide. Steps must come in order: throws std::logic_error when step.number is not stepNumber() + 1.
+    ///
+    /// A reset, and an undo that has a stroke to undo, put back heights, outflow and the sand's inertia, and that step
+    /// does not sweep: it ends with the sand exactly as it was. Step number and tool go on.
     void apply(const Step& step);
 
     [[nodiscard]] const HeightField& field() const { return field_; }
@@ -34,11 +38,14 @@ public:
     [[nodiscard]] std::int64_t outflow() const { return outflow_; }  // [unit · cell] lost over an open rim
     [[nodiscard]] ProbePoint probe() const { return probe_; }        // where the tool is
     [[nodiscard]] bool engaged() const { return engaged_; }
+    /// Whether an undo would change anything. A stroke is the steps in which the tool touches, from the first after one
+    /// in which it hovered; only the last is kept, until an undo or a reset.
+    [[nodiscard]] bool canUndo() const { return !beforeStroke_.empty(); }
     /// Whether no block of sand moves any more: the next sweeps cost nothing.
     [[nodiscard]] bool settled() const { return erosion_.settled(); }
 
     /// Hash of everything a later step depends on: heights, tool pose, step number, outflow. Of the sand's inertia only
-    /// its age: a wrong flux shows in the heights of the next step.
+    /// its age: a wrong flux shows in the heights of the next step, and a wrong undo in those after it.
     [[nodiscard]] std::uint64_t stateHash();
     /// Hashes the next `tiles` hash tiles again from memory, changed or not, so that silent corruption shows.
     void audit(int tiles);
@@ -61,6 +68,11 @@ public:
 private:
     void touch(const Rect& cells);
     void settleNow();
+    /// Does reset or undo; false when there was nothing to do.
+    bool putBack(Edit edit);
+    [[nodiscard]] files::Bytes encodeSand() const;
+    /// Throws files::FormatError, and is then unchanged.
+    void decodeSand(files::ByteReader& reader);
 
     Rules rules_;
     std::shared_ptr<const Ground> ground_;
@@ -72,6 +84,8 @@ private:
     std::int64_t outflow_ = 0;
     ProbePoint probe_;
     bool engaged_ = false;
+    std::shared_ptr<const files::Bytes> start_;  // the scene's heights, compressed; copies of a replica share them
+    files::Bytes beforeStroke_;                  // the sand before the last stroke, compressed; empty when none
     Rect damage_;
 };
 

@@ -36,7 +36,7 @@ std::vector<Message> oneOfEach() {
             Pong{123, -9},
             report,
             Bye{"good night"},
-            EditRequest{sand::Edit::settle}};
+            EditRequest{sand::Edit::undo}};
 }
 
 std::span<const std::uint8_t> withoutLength(const files::Bytes& framed) {

@@ -119,4 +119,22 @@ TEST_F(JournalFile, ADiskThatRefusesIsNamed) {
     EXPECT_THROW(master::JournalWriter("/nowhere/session.journal", samples::flatScene(8, 8), "x"), files::InputError);
 }
 
+// The version stands behind the four bytes of the name, and in front of all that a later one may change.
+TEST_F(JournalFile, TellsTheVersionsItReads) {
+    for (const auto& [version, complaint] : {std::pair{1, "a journal whose header is damaged"},
+                                             {3, "a journal of version 3; this program reads 1 to 2"}}) {
+        writeSession(true);
+        std::fstream stream(file_, std::ios::in | std::ios::out | std::ios::binary);
+        stream.seekp(4);
+        stream.put(static_cast<char>(version));
+        stream.close();
+        try {
+            (void)master::readJournal(file_);
+            ADD_FAILURE() << version;
+        } catch (const files::InputError& error) {
+            EXPECT_NE(std::string(error.what()).find(complaint), std::string::npos) << error.what();
+        }
+    }
+}
+
 }  // namespace

@@ -28,6 +28,20 @@ TEST(Step, SurvivesItsEncoding) {
     }
 }
 
+TEST(Step, EveryEditSurvivesAndNoOtherIsRead) {
+    for (int edit = 0; edit < sand::kEdits; ++edit) {
+        for (const bool engaged : {false, true}) {
+            const sand::Step step{1, 2, engaged, {{5, 6, 7}}, static_cast<sand::Edit>(edit)};
+            const files::Bytes bytes = bytesOf(step);
+            files::ByteReader reader(bytes);
+            EXPECT_EQ(sand::decodeStep(reader), step);
+        }
+    }
+    const files::Bytes bytes = bytesOf({1, 2, false, {}, static_cast<sand::Edit>(sand::kEdits)});
+    files::ByteReader reader(bytes);
+    EXPECT_THROW((void)sand::decodeStep(reader), files::FormatError);
+}
+
 TEST(Step, SeventeenSamplesOfAHandFitInEightyBytes) {
     sand::Step step{3, 1000000, true, {}};
     for (int i = 0; i < 17; ++i) {  // 1.5 cells in a step of 1/60 s

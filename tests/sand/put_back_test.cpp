@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <random>
+#include <vector>
+
+#include "sand/terrain.hpp"
+#include "tests/support/sand_samples.hpp"
+#include "workers/worker_pool.hpp"
+
+namespace {
+
+using sand::Edit;
+using sand::kProbePerCell;
+using sand::Step;
+using sand::Terrain;
+
+sand::ProbePoint at(int column, int row, int height /* [cell] */) {
+    return {column * kProbePerCell, row * kProbePerCell, height * kProbePerCell};
+}
+
+/// Numbers the steps of one replica.
+class Hand {
+public:
+    explicit Hand(Terrain& terrain) : terrain_(terrain) {}
+
+    void hover(Edit edit = Edit::none) { terrain_.apply({1, terrain_.stepNumber() + 1, false, {}, edit}); }
+    void lift() { terrain_.apply({1, terrain_.stepNumber() + 1, false, {at(32, 32, 30)}, Edit::none}); }
+    void dig(int column, int row, Edit edit = Edit::none) {
+        terrain_.apply({1, terrain_.stepNumber() + 1, true, {at(column, row, 0)}, edit});
+    }
+    void stroke(int row) {
+        for (int column = 16; column < 48; ++column) {
+            dig(column, row);
+        }
+        lift();
+    }
+
+private:
+    Terrain& terrain_;
+};
+
+/// Sand in mid-slide under an open rim: heights, outflow and inertia all have something to lose.
+sand::Scene slidingScene() {
+    sand::Scene scene = samples::flatScene(64, 64);
+    scene.terrain = samples::cylinder(64, 24, 40);
+    scene.rules.rim = sand::Rim::open;
+    return scene;
+}
+
+TEST(Undo, RestoresTheHeightsOfBeforeTheLastStroke) {
+    const sand::Scene scene = samples::flatScene(64, 64);
+    Terrain terrain(scene);
+    Hand hand(terrain);
+    hand.stroke(20);
+    const sand::HeightField first = terrain.field();
+    hand.stroke(40);
+    ASSERT_FALSE(sameHeights(terrain.field(), first)) << "a stroke that changed nothing shows nothing";
+    hand.hover(Edit::undo);
+    EXPECT_TRUE(sameHeights(terrain.field(), first));
+    EXPECT_FALSE(sameHeights(terrain.field(), scene.terrain)) << "only the last stroke";
+}
+
+// But for step number and tool the whole state is what it was, so that what follows is what would have followed.
+TEST(Undo, GoesOnAsIfTheStrokeHadNotBeen) {
+    Terrain terrain(slidingScene());
+    Hand hand(terrain);
+    for (int i = 0; i < 5; ++i) {
+        hand.hover();
+    }
+    Terrain other(terrain);
+    hand.stroke(32);
+    hand.hover(Edit::undo);
+    ASSERT_FALSE(terrain.settled());
+    EXPECT_TRUE(sameHeights(terrain.field(), other.field()));
+    EXPECT_EQ(terrain.outflow(), other.outflow());
+    Hand untouched(other);
+    for (int i = 0; i < 30; ++i) {
+        hand.hover();
+        untouched.hover();
+        ASSERT_TRUE(sameHeights(terrain.field(), other.field())) << i << " steps later";
+        ASSERT_EQ(terrain.outflow(), other.outflow());
+    }
+    EXPECT_GT(other.outflow(), 0) << "a rim that nothing falls over shows nothing";
+}
+
+// The tool is back where it was, so that only the step number differs: it is written into the state of before.
+TEST(Undo, RestoresTheHashOfBeforeTheStroke) {
+    Terrain undone(slidingScene());
+    Hand hand(undone);
+    hand.lift();
+    Terrain idle(undone);
+    hand.dig(32, 32);
+    hand.lift();
+    hand.hover(Edit::undo);
+    files::Bytes state = idle.encodeState();
+    state[4] = static_cast<std::uint8_t>(undone.stepNumber());  // eight bytes, behind the version
+    Terrain expected(slidingScene());
+    expected.decodeState(state);
+    EXPECT_EQ(undone.stateHash(), expected.stateHash());
+}
+
+TEST(Undo, OfAnUndoDoesNothingMore) {
+    Terrain terrain(samples::flatScene(64, 64));
+    Hand hand(terrain);
+    EXPECT_FALSE(terrain.canUndo());
+    hand.hover(Edit::undo);
+    hand.stroke(20);
+    hand.stroke(40);
+    EXPECT_TRUE(terrain.canUndo());
+    hand.hover(Edit::undo);
+    EXPECT_FALSE(terrain.canUndo());
+    Terrain other(terrain);
+    hand.hover(Edit::undo);
+    Hand(other).hover();
+    EXPECT_EQ(terrain.stateHash(), other.stateHash()) << "a step like any other";
+}
+
+TEST(Undo, TakesBackWhatSettledSince) {
+    Terrain terrain(slidingScene());
+    Hand hand(terrain);
+    hand.hover();
+    const sand::HeightField before = terrain.field();
+    hand.dig(32, 32);
+    hand.lift();
+    hand.hover(Edit::settle);
+    ASSERT_TRUE(terrain.settled());
+    hand.hover(Edit::undo);
+    EXPECT_TRUE(sameHeights(terrain.field(), before));
+}
+
+// The operator is quicker than the hand: its stroke then begins where the undo left the sand.
+TEST(Undo, InMidStrokeLetsTheStrokeBeginAnew) {
+    const sand::Scene scene = samples::flatScene(64, 64);
+    Terrain terrain(scene);
+    Hand hand(terrain);
+    hand.dig(20, 32);
+    hand.dig(24, 32, Edit::undo);
+    EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain));
+    hand.dig(28, 32);
+    hand.lift();
+    ASSERT_FALSE(sameHeights(terrain.field(), scene.terrain));
+    hand.hover(Edit::undo);
+    EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain));
+}
+
+TEST(Reset, RestoresTheSceneAndForgetsTheStroke) {
+    const sand::Scene scene = slidingScene();
+    Terrain terrain(scene);
+    Hand hand(terrain);
+    hand.stroke(20);
+    ASSERT_NE(terrain.outflow(), 0);
+    hand.hover(Edit::reset);
+    EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain));
+    EXPECT_EQ(terrain.outflow(), 0);
+    EXPECT_FALSE(terrain.canUndo());
+    Terrain fresh(scene);
+    Hand untouched(fresh);
+    for (int i = 0; i < 30; ++i) {
+        hand.hover();
+        untouched.hover();
+        ASSERT_TRUE(sameHeights(terrain.field(), fresh.field())) << i << " steps later";
+    }
+}
+
+/// Random strokes with now and then an edit of every kind.
+Step editedStep(std::uint64_t number, const sand::Rules& rules, std::mt19937& random) {
+    Step step = samples::randomStep(number, rules, random);
+    const auto draw = random() % 40;
+    step.edit = draw < 5 ? Edit::undo : draw == 5 ? Edit::reset : draw == 6 ? Edit::settle : Edit::none;
+    return step;
+}
+
+TEST(Edits, VolumeIsExactAndTheHashIsTheWholeFields) {
+    for (const auto rim : {sand::Rim::closed, sand::Rim::open}) {
+        sand::Scene scene = samples::flatScene(45, 33, 2.56);
+        scene.rules.rim = rim;
+        std::mt19937 random(53);
+        scene.terrain = samples::randomField(45, 33, 1 << 18, random);
+        Terrain terrain(scene);
+        for (std::uint64_t i = 1; i <= 200; ++i) {
+            const sand::HeightField before = terrain.field();
+            (void)terrain.takeDamage();
+            terrain.apply(editedStep(i, scene.rules, random));
+            ASSERT_EQ(terrain.field().volume() + terrain.outflow(), scene.terrain.volume()) << "step " << i;
+            const sand::Rect damage = terrain.takeDamage();
+            for (int y = 0; y < 33; ++y) {
+                for (int x = 0; x < 45; ++x) {
+                    const bool inside = x >= damage.x0 && x < damage.x1 && y >= damage.y0 && y < damage.y1;
+                    ASSERT_TRUE(inside || before.height(x, y) == terrain.field().height(x, y)) << x << ", " << y;
+                }
+            }
+            const std::uint64_t incremental = terrain.stateHash();
+            terrain.audit(terrain.hashTiles().tileCount());
+            ASSERT_EQ(terrain.stateHash(), incremental) << "step " << i;
+        }
+    }
+}
+
+TEST(Edits, ThreadsAndBlocksChangeNothingAndAStateTakesTheStrokeAlong) {
+    const sand::Scene scene = slidingScene();
+    const workers::WorkerPool pool(3);
+    sand::Erosion::Options threaded;
+    threaded.executor = pool.lend();
+    threaded.blockSize = 8;
+    Terrain plain(scene);
+    Terrain blocks(scene, threaded);
+    Terrain joined(scene);
+    std::mt19937 random(59);
+    for (std::uint64_t i = 1; i <= 150; ++i) {
+        const Step step = editedStep(i, scene.rules, random);
+        for (Terrain* terrain : {&plain, &blocks, &joined}) {
+            terrain->apply(step);
+        }
+        if (i % 7 == 0) {
+            Terrain fresh(scene);
+            fresh.decodeState(joined.encodeState());
+            joined = fresh;
+        }
+        ASSERT_EQ(blocks.stateHash(), plain.stateHash()) << "step " << i << " of seed 59";
+        ASSERT_EQ(joined.stateHash(), plain.stateHash()) << "step " << i << " of seed 59";
+        ASSERT_EQ(joined.canUndo(), plain.canUndo());
+    }
+}
+
+TEST(Edits, AStateWithASpoiltStrokeIsRefusedWhole) {
+    const sand::Scene scene = samples::flatScene(64, 64);
+    Terrain dug(scene);
+    Hand(dug).stroke(32);
+    files::Bytes state = dug.encodeState();
+    state[4 + 8 + 12 + 4 + 4 + 8 + 4] ^= 0xff;  // the first byte that zstd wrote of the heights before the stroke
+    Terrain terrain(scene);
+    const std::uint64_t hash = terrain.stateHash();
+    EXPECT_THROW(terrain.decodeState(state), files::FormatError);
+    EXPECT_EQ(terrain.stateHash(), hash);
+    EXPECT_FALSE(terrain.canUndo());
+}
+
+}  // namespace
