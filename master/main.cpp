@@ -166,7 +166,7 @@ void describeOptions(CLI::App& app, Options& options) {
     workers::addSandThreads(app, options.sandThreads);
     app.add_flag("--no-pictures", options.noPictures, "write no pictures at the end");
     app.add_flag("--control-stdin", session.readInput,
-                 "obeys lines on standard input: settle, stop; its end is a stop");
+                 "obeys lines on standard input (docs/operator.md); its end is a stop");
     app.add_option("--flip-bit", options.fault,
                    "for tests: rank=R,frame=F,column=C,row=W flips one bit of that replica");
     app.add_option("--spoil-shader", options.spoiltShader, "for tests: a shader of that rank does not compile");

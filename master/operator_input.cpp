@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "master/operator_input.hpp"
 
-#include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
 
@@ -9,12 +8,14 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <string>
+#include <utility>
+
+#include "master/operator_command.hpp"
 
 namespace master {
 namespace {
 
-constexpr std::size_t kLongestLine = 1024;  // what never ends is no command
+constexpr std::size_t kMostLines = 64;  // between two frames; nobody types more
 
 volatile std::sig_atomic_t signalled = 0;
 
@@ -42,31 +43,18 @@ OperatorInput::~OperatorInput() {
 
 bool OperatorInput::stopAsked() const { return stop_ || signalled != 0; }
 
-std::optional<lockstep::Pattern> OperatorInput::takePattern(lockstep::Pattern shown) {
-    const int asked = pattern_.exchange(kNothing);
-    if (asked == kNothing) {
-        return std::nullopt;
-    }
-    return asked == kNext ? lockstep::nextPattern(shown) : static_cast<lockstep::Pattern>(asked);
+std::vector<std::string> OperatorInput::takeLines() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(lines_, {});
 }
 
-bool OperatorInput::obey(std::string_view line) {
+bool OperatorInput::keep(std::string line) {
     if (line == "stop") {
         return false;
     }
-    constexpr std::string_view kPattern = "pattern ";
-    if (line == "settle") {
-        edit_ = sand::Edit::settle;
-    } else if (line == "pattern next") {
-        pattern_ = kNext;
-    } else if (line.starts_with(kPattern)) {
-        try {
-            pattern_ = static_cast<int>(lockstep::parsePattern(line.substr(kPattern.size())));
-        } catch (const files::InputError& error) {
-            fmt::print(stderr, "{}, next\n", error.what());
-        }
-    } else if (!line.empty()) {
-        fmt::print(stderr, "'{}' is no command; these are: settle, pattern NAME, stop\n", line.substr(0, 80));
+    const std::lock_guard lock(mutex_);
+    if (!line.empty() && lines_.size() < kMostLines) {
+        lines_.push_back(std::move(line));
     }
     return true;
 }
@@ -95,10 +83,10 @@ void OperatorInput::listen() {
         }
         text.append(piece.data(), static_cast<std::size_t>(count));
         for (std::size_t end = text.find('\n'); end != std::string::npos && listening; end = text.find('\n')) {
-            listening = obey(std::string_view(text).substr(0, end));
+            listening = keep(text.substr(0, end));
             text.erase(0, end + 1);
         }
-        text.resize(std::min(text.size(), kLongestLine));
+        text.resize(std::min(text.size(), kLongestCommand));
     }
     stop_ = true;
 }

@@ -2,17 +2,15 @@
 #pragma once
 
 #include <atomic>
-#include <optional>
-#include <string_view>
+#include <mutex>
+#include <string>
 #include <thread>
-
-#include "lockstep/test_pattern.hpp"
-#include "sand/step.hpp"
+#include <vector>
 
 namespace master {
 
-/// What somebody asks of a running session: "stop", "settle" or "pattern NAME|none|next" in a line on standard input;
-/// its end (the launcher is gone) or SIGTERM mean stop.
+/// What somebody types into a running session: commands (operator_command.hpp), a line each on standard input; its end
+/// (the launcher is gone) or SIGTERM mean stop.
 ///
 /// mpirun hands its standard input to rank 0, so that the launcher can ask for an orderly end and need not send
 /// signals, which mpirun follows up with SIGKILL.
@@ -26,21 +24,18 @@ public:
 
     [[nodiscard]] bool stopAsked() const;
     void stop() { stop_ = true; }
-    /// What was asked of the sand since this was called last.
-    [[nodiscard]] sand::Edit takeEdit() { return edit_.exchange(sand::Edit::none); }
-    /// The test pattern that was asked for since this was called last, given the one that is shown.
-    [[nodiscard]] std::optional<lockstep::Pattern> takePattern(lockstep::Pattern shown);
+    /// The lines typed since this was called last; "stop" is not among them.
+    [[nodiscard]] std::vector<std::string> takeLines();
 
 private:
     void listen();
-    /// Obeys a line; false ends the listening.
-    bool obey(std::string_view line);
+    /// Keeps a line; false ends the listening.
+    bool keep(std::string line);
 
     std::atomic<bool> stop_{false};
-    std::atomic<sand::Edit> edit_{sand::Edit::none};
-    static constexpr int kNothing = -1, kNext = -2;
-    std::atomic<int> pattern_{kNothing};  // a lockstep::Pattern, or one of the above
-    int wake_[2] = {-1, -1};              // a pipe that ends the listening thread
+    std::mutex mutex_;
+    std::vector<std::string> lines_;
+    int wake_[2] = {-1, -1};  // a pipe that ends the listening thread
     std::thread thread_;
 };
 

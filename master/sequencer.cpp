@@ -104,7 +104,27 @@ std::size_t Sequencer::ownStepsDue() {
     return static_cast<std::size_t>(due);
 }
 
+void Sequencer::passEdits(const std::vector<TimedStep>& steps) {
+    for (const TimedStep& timed : steps) {
+        if (timed.step.edit != sand::Edit::none && !edits_.empty() && timed.step.edit == edits_.front()) {
+            edits_.pop_front();
+            toldEpoch_ = 0;
+        }
+    }
+    // One at a time: the server keeps one for its next step. A link that was lost took along what it was asked for.
+    if (source_ == Source::server && !edits_.empty() && toldEpoch_ != epoch_) {
+        client_->request(edits_.front());
+        toldEpoch_ = epoch_;
+    }
+}
+
 std::vector<TimedStep> Sequencer::next(const sand::Terrain& terrain, std::uint64_t stateHash, std::size_t most) {
+    std::vector<TimedStep> steps = stepsDue(terrain, stateHash, most);
+    passEdits(steps);
+    return steps;
+}
+
+std::vector<TimedStep> Sequencer::stepsDue(const sand::Terrain& terrain, std::uint64_t stateHash, std::size_t most) {
     std::vector<TimedStep> steps;
     if (client_ && source_ == Source::server) {
         steps = client_->drain(most);
@@ -130,7 +150,7 @@ std::vector<TimedStep> Sequencer::next(const sand::Terrain& terrain, std::uint64
             TimedStep& own = steps.emplace_back();
             own.step.epoch = epoch_;
             own.step.number = terrain.stepNumber() + 1 + i;
-            own.step.edit = std::exchange(edit_, sand::Edit::none);
+            own.step.edit = i < edits_.size() ? edits_[i] : sand::Edit::none;
         }
     }
     return steps;
@@ -139,14 +159,6 @@ std::vector<TimedStep> Sequencer::next(const sand::Terrain& terrain, std::uint64
 void Sequencer::shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs) {
     if (client_) {
         client_->shown(stepNumber, frameIntervalNs);
-    }
-}
-
-void Sequencer::request(sand::Edit edit) {
-    if (source_ == Source::server) {
-        client_->request(edit);
-    } else {
-        edit_ = edit;
     }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,8 +35,9 @@ public:
     /// The wall has swapped and shows the terrain at this step.
     void shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs);
 
-    /// An operator asks for an edit: it goes into the next step, whoever numbers it.
-    void request(sand::Edit edit);
+    /// An operator asks for an edit: it goes into a step that next() returns, whoever numbers it, after those asked for
+    /// before.
+    void request(sand::Edit edit) { edits_.push_back(edit); }
 
     /// The server's replica holds other sand than the wall: it is let go, and starts again from the wall's state.
     void distrustServer();
@@ -60,6 +62,9 @@ private:
     void takeOver(const std::string& why);
     void leaveServer();
     [[nodiscard]] std::size_t ownStepsDue();
+    void passEdits(const std::vector<haptic_bridge::TimedStep>& steps);
+    [[nodiscard]] std::vector<haptic_bridge::TimedStep> stepsDue(const sand::Terrain& terrain, std::uint64_t stateHash,
+                                                                 std::size_t most);
 
     std::optional<haptic_bridge::Address> server_;
     haptic_bridge::Offer offer_;
@@ -72,7 +77,8 @@ private:
     std::int64_t waitingSinceNs_;    // for a server to answer, or to begin
     haptic_bridge::LinkCounters earlierLinks_;
     std::optional<haptic_bridge::Report> earlierReport_;
-    sand::Edit edit_ = sand::Edit::none;  // for the next step of our own
+    std::deque<sand::Edit> edits_;  // asked for, and in no step yet
+    std::uint32_t toldEpoch_ = 0;   // in which the server was asked for the first of them
     double ownStepsOwed_ = 0;
     std::int64_t lastOwnNs_ = 0;
 };

@@ -45,8 +45,6 @@ void forgetOldResults(const std::filesystem::path& folder) {
     }
 }
 
-constexpr char kQuitKey = 27;  // Escape, in any window
-
 void sleepNs(std::int64_t ns) { std::this_thread::sleep_for(std::chrono::nanoseconds(ns)); }
 
 double milliseconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-6; }
@@ -79,6 +77,7 @@ Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, con
         std::fflush(stdout);
     }
     hash_ = terrain_.stateHash();
+    control_.emplace(options_.out);
 }
 
 double Session::framePeriod() const { return 1 / options_.refreshHz.value_or(wall_.refreshHz); }
@@ -91,7 +90,7 @@ double Session::sessionTime() const {
 }
 
 void Session::waitForFrameTime() {
-    if (options_.pace == Pace::fast) {
+    if (options_.pace == Pace::fast && !paused_) {
         return;
     }
     // From one grid of times, not from the last frame: the wall's clock must not drift with each late frame.
@@ -106,10 +105,10 @@ void Session::waitForFrameTime() {
 std::vector<TimedStep> Session::awaitSteps() {
     const bool fast = options_.pace == Pace::fast;
     std::size_t most = fast ? kMostStepsPerFastFrame : kMostStepsPerFrame;
-    most = std::min<std::uint64_t>(most, options_.steps - terrain_.stepNumber());
+    most = paused_ ? 0 : std::min<std::uint64_t>(most, options_.steps - terrain_.stepNumber());
     const std::int64_t since = nowNs();
     std::vector<TimedStep> steps = sequencer_.next(terrain_, hash_, most);
-    while (fast && steps.empty() && !operator_.stopAsked() &&
+    while (fast && !paused_ && steps.empty() && !operator_.stopAsked() &&
            static_cast<double>(nowNs() - since) * 1e-9 < kFastPatience) {
         sleepNs(500'000);
         steps = sequencer_.next(terrain_, hash_, most);
@@ -126,7 +125,7 @@ lockstep::FrameMessage Session::prepare(std::vector<TimedStep>& steps) {
     }
     const std::uint64_t shownThen = terrain_.stepNumber() + steps.size();
     message.stop = operator_.stopAsked() || frame_ >= options_.frames || shownThen >= options_.steps;
-    message.capture = message.stop && options_.pictures;
+    message.capture = message.stop ? options_.pictures : !captures_.empty();
     const double sinceLast = lastSwap_ == 0 ? 0 : static_cast<double>(nowNs() - lastSwap_) * 1e-9;
     const int tiles = terrain_.hashTiles().tileCount();
     message.auditTiles = static_cast<std::uint32_t>(
@@ -138,22 +137,6 @@ void Session::applySteps(const std::vector<TimedStep>& steps) {
     for (const TimedStep& timed : steps) {
         terrain_.apply(timed.step);
         summary_.edits += timed.step.edit == sand::Edit::none ? 0 : 1;
-    }
-}
-
-void Session::obeyOperator() {
-    if (const sand::Edit edit = operator_.takeEdit(); edit != sand::Edit::none) {
-        sequencer_.request(edit);
-    }
-    if (const auto pattern = operator_.takePattern(views_.pattern())) {
-        views_.show(*pattern);
-    }
-    for (const lockstep::Arrival& arrival : barrier_.arrivals()) {
-        if (arrival.key == 't') {
-            views_.show(lockstep::nextPattern(views_.pattern()));
-        } else if (arrival.key == kQuitKey) {
-            operator_.stop();
-        }
     }
 }
 
@@ -184,6 +167,10 @@ bool Session::showFrame() {
     }
     measureSwaps(swapped);
     measureLatency(steps, broadcast, swapped);
+    answerEdits(steps);
+    if (message.capture && !message.stop) {
+        takeCapture();
+    }
     sequencer_.shown(terrain_.stepNumber(), swapped - (lastSwap_ == 0 ? swapped : lastSwap_));
     lastSwap_ = swapped;
     if (!steps.empty() && sequencer_.linked() && steps.back().step.epoch == sequencer_.epoch() &&
@@ -235,12 +222,12 @@ void Session::sayProgress(bool last) {
     if (!last && now - lastProgress_ < 1'000'000'000) {
         return;
     }
-    const double fps = lastProgress_ == 0 ? 0
-                                          : static_cast<double>(frame_ - lastProgressFrame_) /
-                                                (static_cast<double>(now - lastProgress_) * 1e-9);
+    fps_ = lastProgress_ == 0
+               ? 0
+               : static_cast<double>(frame_ - lastProgressFrame_) / (static_cast<double>(now - lastProgress_) * 1e-9);
     const std::string of = options_.steps == kNoLimit ? "" : fmt::format("/{}", options_.steps);
     fmt::print("frame {}  step {}{}  {:.1f} fps  skew {:.0f} us  hashes agree  {}\n", frame_, terrain_.stepNumber(), of,
-               fps, lastSkewUs_,
+               fps_, lastSkewUs_,
                sequencer_.linked() ? "hand linked" : (sequencer_.starting() ? "waiting for a hand" : "no hand"));
     std::fflush(stdout);
     lastProgress_ = now;
@@ -284,6 +271,7 @@ int Session::run() {
             sayProgress(stopping_);
         }
     }
+    control_.reset();  // whoever asks now finds no session
     if (agreed) {
         journal_.finish(terrain_.stepNumber(), hash_);
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -12,7 +13,9 @@
 #include "lockstep/frame_barrier.hpp"
 #include "lockstep/frame_message.hpp"
 #include "lockstep/view_agreement.hpp"
+#include "master/control_socket.hpp"
 #include "master/journal.hpp"
+#include "master/operator_command.hpp"
 #include "master/operator_input.hpp"
 #include "master/sequencer.hpp"
 #include "master/summary.hpp"
@@ -55,6 +58,13 @@ private:
     [[nodiscard]] lockstep::FrameMessage prepare(std::vector<haptic_bridge::TimedStep>& steps);
     void waitForFrameTime();
     void obeyOperator();
+    void obey(const std::string& line, std::optional<ControlSocket::Client> client);
+    void carryOut(const Command& command, std::optional<ControlSocket::Client> client);
+    void askEdit(sand::Edit edit, std::optional<ControlSocket::Client> client);
+    void answer(std::optional<ControlSocket::Client> client, const std::string& json);
+    void answerEdits(const std::vector<haptic_bridge::TimedStep>& steps);
+    void takeCapture();
+    [[nodiscard]] std::string status() const;
     [[nodiscard]] double framePeriod() const;  // [s]
     [[nodiscard]] double sessionTime() const;  // [s]
     [[nodiscard]] std::vector<haptic_bridge::TimedStep> awaitSteps();
@@ -78,6 +88,15 @@ private:
     JournalWriter journal_;
     Sequencer sequencer_;
     OperatorInput operator_;
+    std::optional<ControlSocket> control_;
+    struct Asker {
+        sand::Edit edit = sand::Edit::none;
+        std::optional<ControlSocket::Client> client;  // none: typed, or answered already
+    };
+    std::deque<Asker> askers_;                     // whose edits are in no step yet
+    std::vector<ControlSocket::Client> captures_;  // who wants the pictures of the next frame
+    bool paused_ = false;                          // no steps are taken
+    double fps_ = 0;                               // over the last second or so
     Summary summary_;
     std::uint64_t frame_ = 0;
     std::uint64_t hash_ = 0;                                      // of the state the wall shows

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "files/input_error.hpp"
 #include "walls/projection.hpp"
 
 namespace tracking {
@@ -54,6 +55,16 @@ walls::Viewer TrackedViewer::at(double seconds) {
         say_("head tracking: the head is in front of every tile again");
     }
     return viewer_ = moved;
+}
+
+void TrackedViewer::separateEyes(double metres) {
+    walls::Viewer wider = viewer_;
+    wider.eyeSeparation = metres;
+    if (const walls::Tile* tile = tileBehind(wider)) {
+        throw files::InputError(fmt::format(
+            "with eyes {} m apart, one is not in front of tile '{}'; bring them closer together", metres, tile->name));
+    }
+    viewer_ = wider;
 }
 
 Counters TrackedViewer::counters() const {

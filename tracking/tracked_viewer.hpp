@@ -22,6 +22,9 @@ public:
     /// The viewer at this time of the session [s]: frame / refresh rate where every run must show the same, else the
     /// time since the first frame.
     [[nodiscard]] walls::Viewer at(double seconds);
+    /// Moves the eyes this far apart [m], from now on. Throws files::InputError when one would not be in front of every
+    /// screen, and nothing has changed.
+    void separateEyes(double metres);
     [[nodiscard]] Counters counters() const;
     [[nodiscard]] bool tracked() const { return tracker_ != nullptr; }
     [[nodiscard]] std::uint16_t port() const { return tracker_ ? tracker_->port() : 0; }

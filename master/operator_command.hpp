@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "lockstep/test_pattern.hpp"
+
+namespace master {
+
+inline constexpr std::size_t kLongestCommand = 1024;  // [byte], without its line feed
+
+enum class Verb : std::uint8_t { status, pause, resume, reset, undo, settle, pattern, eyeSeparation, capture, stop };
+
+/// What somebody asks of a running session, typed or through its control socket (docs/operator.md).
+struct Command {
+    Verb verb = Verb::status;
+    std::optional<lockstep::Pattern> pattern;  // of Verb::pattern; none: the next one
+    double metres = 0;                         // of Verb::eyeSeparation
+};
+
+/// Throws files::InputError, with the verbs there are, for a line that is no command.
+[[nodiscard]] Command parseCommand(std::string_view line);
+
+}  // namespace master

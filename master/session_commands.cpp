@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the operator's hand does to a session, between two frames.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "files/input_error.hpp"
+#include "master/session.hpp"
+#include "master/wall_pictures.hpp"
+
+namespace master {
+namespace {
+
+using Json = nlohmann::json;
+using Client = ControlSocket::Client;
+
+constexpr std::size_t kMostEditsWaiting = 16;
+constexpr char kQuitKey = 27;  // Escape, in any window
+
+std::string line(const Json& json) {
+    // What a user has typed need not be text.
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string refusal(const std::string& why) { return line({{"ok", false}, {"error", why}}); }
+
+std::string done() { return line({{"ok", true}}); }
+
+/// capture_001, or the first after it that is not there; pictures of an earlier session stay.
+std::filesystem::path newCaptureFolder(const std::filesystem::path& out) {
+    for (int number = 1;; ++number) {
+        const std::filesystem::path folder = out / fmt::format("capture_{:03}", number);
+        std::error_code error;
+        if (std::filesystem::create_directory(folder, error) || error) {
+            return folder;  // one that cannot be made is told by the first picture
+        }
+    }
+}
+
+}  // namespace
+
+void Session::obeyOperator() {
+    for (const std::string& typed : operator_.takeLines()) {
+        obey(typed, std::nullopt);
+    }
+    for (const ControlSocket::Asked& asked : control_->take()) {
+        obey(asked.line, asked.client);
+    }
+    for (const lockstep::Arrival& arrival : barrier_.arrivals()) {
+        if (arrival.key == 't') {
+            views_.show(lockstep::nextPattern(views_.pattern()));
+        } else if (arrival.key == kQuitKey) {
+            operator_.stop();
+        }
+    }
+}
+
+void Session::obey(const std::string& text, std::optional<Client> client) {
+    try {
+        carryOut(parseCommand(text), client);
+    } catch (const files::InputError& error) {
+        if (client) {
+            control_->answer(*client, refusal(error.what()));
+        } else {
+            fmt::print(stderr, "{}\n", error.what());
+        }
+    }
+}
+
+void Session::carryOut(const Command& command, std::optional<Client> client) {
+    switch (command.verb) {
+        case Verb::status:
+            return answer(client, status());
+        case Verb::reset:
+            return askEdit(sand::Edit::reset, client);
+        case Verb::undo:
+            return askEdit(sand::Edit::undo, client);
+        case Verb::settle:
+            return askEdit(sand::Edit::settle, client);
+        case Verb::capture:
+            captures_.push_back(client.value_or(0));
+            return;  // answered when the pictures are there
+        case Verb::pause:
+        case Verb::resume:
+            paused_ = command.verb == Verb::pause;
+            break;
+        case Verb::pattern:
+            views_.show(command.pattern.value_or(lockstep::nextPattern(views_.pattern())));
+            break;
+        case Verb::eyeSeparation:
+            views_.separateEyes(command.metres);
+            break;
+        case Verb::stop:
+            operator_.stop();
+            break;
+    }
+    if (client) {
+        control_->answer(*client, done());
+    }
+}
+
+void Session::askEdit(sand::Edit edit, std::optional<Client> client) {
+    if (edit == sand::Edit::undo && !terrain_.canUndo()) {
+        throw files::InputError("there is no stroke to undo");
+    }
+    if (askers_.size() >= kMostEditsWaiting) {
+        throw files::InputError(fmt::format("{} edits wait for their steps already", askers_.size()));
+    }
+    if (paused_ && client) {
+        control_->answer(*client, line({{"ok", true}, {"waits_for", "resume"}}));
+        client.reset();
+    }
+    sequencer_.request(edit);
+    askers_.push_back({edit, client});
+}
+
+void Session::answer(std::optional<Client> client, const std::string& json) {
+    if (client) {
+        control_->answer(*client, json);
+    } else {
+        fmt::print("{}\n", json);
+        std::fflush(stdout);
+    }
+}
+
+void Session::answerEdits(const std::vector<haptic_bridge::TimedStep>& steps) {
+    for (const haptic_bridge::TimedStep& timed : steps) {
+        if (timed.step.edit == sand::Edit::none || askers_.empty() || askers_.front().edit != timed.step.edit) {
+            continue;
+        }
+        if (askers_.front().client) {
+            control_->answer(*askers_.front().client, line({{"ok", true}, {"step", timed.step.number}}));
+        }
+        askers_.pop_front();
+    }
+}
+
+void Session::takeCapture() {
+    const std::filesystem::path folder = newCaptureFolder(options_.out);
+    std::string said;
+    try {
+        writeWallPictures(cluster_, wall_, folder, barrier_.watchdog());
+        said = line({{"ok", true},
+                     {"folder", folder.filename().string()},
+                     {"frame", frame_},
+                     {"step", terrain_.stepNumber()},
+                     {"state_hash", fmt::format("{:016x}", hash_)}});
+    } catch (const files::InputError& error) {
+        fmt::print(stderr, "sandwall: {}\n", error.what());
+        said = refusal(error.what());
+    }
+    for (const Client client : captures_) {
+        control_->answer(client, said);  // 0, who typed it, is nobody there
+    }
+    captures_.clear();
+}
+
+std::string Session::status() const {
+    return line({{"ok", true},
+                 {"frame", frame_},
+                 {"step", terrain_.stepNumber()},
+                 {"fps", fps_},
+                 {"ranks", wall_.ranks()},
+                 {"linked", sequencer_.linked()},
+                 {"paused", paused_},
+                 {"pattern", std::string(lockstep::patternName(views_.pattern()))},
+                 {"eye_separation", views_.eyeSeparation()},
+                 {"state_hash", fmt::format("{:016x}", hash_)},
+                 {"divergences", summary_.divergences},
+                 {"server_divergences", summary_.serverDivergences},
+                 {"edits", summary_.edits},
+                 {"edits_waiting", askers_.size()},
+                 {"can_undo", terrain_.canUndo()}});
+}
+
+}  // namespace master

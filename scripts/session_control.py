@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The operator's side of a session's control socket: `sandwall ctl` (docs/operator.md)."""
+
+import json
+import os
+import socket
+
+from rank_hosts import BadInput
+
+SOCKET = "control"
+PATIENCE_SECONDS = 120  # a capture of a large wall takes its time
+LONGEST_ANSWER = 1 << 16
+
+
+def connect(session):
+    """A connection to the master of the session in this folder."""
+    try:
+        folder = os.open(session, os.O_PATH | os.O_DIRECTORY | os.O_CLOEXEC)
+    except OSError as error:
+        raise BadInput(f"{session}: cannot be opened ({error.strerror}); name the --out folder of a session") from None
+    peer = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    peer.settimeout(PATIENCE_SECONDS)
+    try:
+        # By its folder's descriptor: a socket's own path holds 107 bytes.
+        peer.connect(f"/proc/self/fd/{folder}/{SOCKET}")
+    except PermissionError:
+        raise BadInput(f"{session}: belongs to another user, who alone may command the session") from None
+    except (FileNotFoundError, ConnectionRefusedError):
+        raise BadInput(f"{session}: no session is running there") from None
+    except OSError as error:
+        raise BadInput(f"{session}: cannot be reached ({error})") from None
+    finally:
+        os.close(folder)
+    return peer
+
+
+def ask(session, line):
+    """The master's answer to a line, as text."""
+    with connect(session) as peer:
+        answer = b""
+        try:
+            peer.sendall(line.encode(errors="surrogateescape") + b"\n")
+            while len(answer) < LONGEST_ANSWER and (piece := peer.recv(4096)):
+                answer += piece
+        except socket.timeout:
+            raise BadInput(f"{session}: no answer within {PATIENCE_SECONDS} s") from None
+        except (ConnectionResetError, BrokenPipeError):
+            pass  # what it has said before counts
+    return answer.decode(errors="replace").strip()
+
+
+def ctl(args):
+    line = " ".join(args.words)
+    if "\n" in line:
+        raise BadInput("a command is one line")
+    answer = ask(args.session, line)
+    if not answer:
+        raise BadInput(f"{args.session}: the session ended before it answered")
+    try:
+        reply = json.loads(answer)
+        good, complaint = reply["ok"], reply.get("error")
+    except (ValueError, KeyError, TypeError, AttributeError):
+        raise BadInput(f"{args.session}: what answers there is no session") from None
+    if not good:
+        raise BadInput(f"{args.session}: {complaint}")
+    print(answer)
+    return 0
+
+
+def add_parser(commands, remainder):
+    """Adds `ctl` to the launcher's commands; `remainder` is argparse's word for all that is left."""
+    parser = commands.add_parser("ctl", help="command a running session",
+                                 description="Commands a session that runs on this machine: status, pause, resume, reset, undo, settle, "
+                                             "pattern NAME|none|next, eye-separation METRES, capture, stop; docs/operator.md.")
+    parser.set_defaults(run=ctl)
+    parser.add_argument("session", metavar="SESSION", help="the --out folder of the session")
+    parser.add_argument("words", metavar="VERB", nargs=remainder, help="what to do, and with what")

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "files/input_error.hpp"
+#include "master/control_socket.hpp"
+#include "master/operator_command.hpp"
+
+namespace {
+
+using master::ControlSocket;
+using master::parseCommand;
+using master::Verb;
+
+std::string complaint(const std::string& line) {
+    try {
+        (void)parseCommand(line);
+    } catch (const files::InputError& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+TEST(OperatorCommand, EveryVerbIsRead) {
+    EXPECT_EQ(parseCommand("status").verb, Verb::status);
+    EXPECT_EQ(parseCommand("undo").verb, Verb::undo);
+    EXPECT_EQ(parseCommand("stop").verb, Verb::stop);
+    EXPECT_EQ(parseCommand("pattern ramp").pattern, lockstep::Pattern::ramp);
+    EXPECT_EQ(parseCommand("pattern none").pattern, lockstep::Pattern::none);
+    EXPECT_FALSE(parseCommand("pattern next").pattern.has_value());
+    EXPECT_DOUBLE_EQ(parseCommand("eye-separation 0.5").metres, 0.5);
+    EXPECT_DOUBLE_EQ(parseCommand("eye-separation 0").metres, 0);
+}
+
+TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
+    EXPECT_EQ(complaint("dance"),
+              "'dance' is no command; these are: status, pause, resume, reset, undo, settle, pattern NAME, "
+              "eye-separation METRES, capture, stop");
+    EXPECT_EQ(complaint("").substr(0, 16), "'' is no command");
+    EXPECT_EQ(complaint("undo twice"), "undo takes no argument, got 'twice'");
+    EXPECT_EQ(complaint("pattern"), "pattern needs NAME");
+    EXPECT_EQ(complaint("pattern stripes"),
+              "no test pattern 'stripes'; there are none, grid, tiles, eyes, flash, ramp, next");
+    for (const std::string value : {"0.51", "-0.01", "nan", "inf", "wide", "0.1m", " 0.1"}) {
+        EXPECT_EQ(complaint("eye-separation " + value), "eye-separation must be 0 to 0.5 metres, got '" + value + "'");
+    }
+}
+
+/// A session's folder, and what a client of its socket does.
+class Control : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string name = (std::filesystem::temp_directory_path() / "sandwall-control-XXXXXX").string();
+        ASSERT_NE(mkdtemp(name.data()), nullptr);
+        folder_ = name;
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    [[nodiscard]] static int connectTo(const std::filesystem::path& path) {
+        sockaddr_un address{};
+        address.sun_family = AF_UNIX;
+        path.string().copy(address.sun_path, sizeof address.sun_path - 1);
+        const int made = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+        if (connect(made, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+            close(made);
+            return -1;
+        }
+        return made;
+    }
+    [[nodiscard]] int connectHere() const { return connectTo(folder_ / "control"); }
+    static void say(int peer, const std::string& text) { (void)send(peer, text.data(), text.size(), MSG_NOSIGNAL); }
+    /// All it is told, until the connection ends.
+    static std::string hear(int peer) {
+        std::string text;
+        char piece[256];
+        for (ssize_t count = 0; (count = recv(peer, piece, sizeof piece, 0)) > 0;) {
+            text.append(piece, static_cast<std::size_t>(count));
+        }
+        close(peer);
+        return text;
+    }
+    static ControlSocket::Asked await(ControlSocket& control) {
+        while (true) {  // the test's own time-out is the limit
+            if (const auto asked = control.take(); !asked.empty()) {
+                return asked.front();
+            }
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    }
+    /// Says a line, lets it be answered by `answer`, and returns what came.
+    [[nodiscard]] std::string ask(ControlSocket& control, const std::string& line, const std::string& answer) const {
+        const int peer = connectHere();
+        say(peer, line + "\n");
+        const ControlSocket::Asked asked = await(control);
+        EXPECT_EQ(asked.line, line);
+        control.answer(asked.client, answer);
+        return hear(peer);
+    }
+
+    std::filesystem::path folder_;
+};
+
+TEST_F(Control, HandsALineOverAndItsAnswerBack) {
+    ControlSocket control(folder_);
+    EXPECT_EQ(ask(control, "status", "{}"), "{}\n");
+    EXPECT_EQ(ask(control, "undo", "{\"ok\":true}"), "{\"ok\":true}\n");
+}
+
+TEST_F(Control, IsItsOwnersAlone) {
+    const ControlSocket control(folder_);
+    struct stat made {};
+    ASSERT_EQ(stat((folder_ / "control").c_str(), &made), 0);
+    EXPECT_TRUE(S_ISSOCK(made.st_mode));
+    EXPECT_EQ(made.st_mode & 0777, 0600U);
+    EXPECT_TRUE(master::mayCommand(1000, 1000));
+    EXPECT_FALSE(master::mayCommand(1001, 1000));
+    EXPECT_FALSE(master::mayCommand(0, 1000));
+}
+
+// Even where somebody has opened folder and socket to all.
+TEST_F(Control, RefusesAnotherUser) {
+    if (geteuid() != 0) {
+        GTEST_SKIP() << "only root can be somebody else";
+    }
+    ControlSocket control(folder_);
+    std::filesystem::permissions(folder_, std::filesystem::perms::all);
+    std::filesystem::permissions(folder_ / "control", std::filesystem::perms::all);
+    const pid_t child = fork();
+    if (child == 0) {
+        const bool other = setuid(65534) == 0;
+        const int peer = other ? connectHere() : -1;
+        _exit(peer >= 0 && hear(peer).find("belongs to another user") != std::string::npos ? 0 : 1);
+    }
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_EQ(status, 0);
+    EXPECT_TRUE(control.take().empty());
+}
+
+TEST_F(Control, GoesWithTheSession) {
+    { const ControlSocket control(folder_); }
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "control"));
+}
+
+TEST_F(Control, ReplacesWhatAKilledSessionLeft) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    (folder_ / "control").string().copy(address.sun_path, sizeof address.sun_path - 1);
+    const int left = socket(AF_UNIX, SOCK_STREAM, 0);
+    ASSERT_EQ(bind(left, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    close(left);
+    ASSERT_LT(connectHere(), 0);
+    ControlSocket control(folder_);
+    EXPECT_EQ(ask(control, "status", "{}"), "{}\n");
+}
+
+TEST_F(Control, LeavesARunningSessionsSocketAndOtherFilesAlone) {
+    ControlSocket first(folder_);
+    { const ControlSocket second(folder_); }
+    EXPECT_EQ(ask(first, "status", "{}"), "{}\n");
+    const std::filesystem::path other = folder_ / "other";
+    std::filesystem::create_directory(other);
+    std::ofstream(other / "control") << "mine";
+    { const ControlSocket third(other); }
+    EXPECT_TRUE(std::filesystem::is_regular_file(other / "control"));
+}
+
+TEST_F(Control, WorksInFoldersDeeperThanASocketsPath) {
+    const std::filesystem::path deep = folder_ / std::string(100, 'a') / std::string(100, 'b');
+    std::filesystem::create_directories(deep);
+    const ControlSocket control(deep);
+    EXPECT_TRUE(std::filesystem::is_socket(deep / "control"));
+}
+
+TEST_F(Control, SendsAwayWhoTalksTooMuch) {
+    ControlSocket control(folder_);
+    const int peer = connectHere();
+    say(peer, std::string(2000, 'x'));
+    EXPECT_NE(hear(peer).find("more than 1024 bytes"), std::string::npos);
+    EXPECT_TRUE(control.take().empty());
+    EXPECT_EQ(ask(control, "status", "{}"), "{}\n");
+}
+
+TEST_F(Control, WhoSaysNothingIsSentAway) {
+    ControlSocket control(folder_);
+    EXPECT_EQ(hear(connectHere()), "");
+    EXPECT_EQ(ask(control, "status", "{}"), "{}\n");
+}
+
+TEST_F(Control, CrowdsHarmNobody) {
+    ControlSocket control(folder_);
+    std::vector<int> crowd;
+    std::vector<ControlSocket::Asked> asked;
+    for (std::size_t i = 0; i < ControlSocket::kMostClients; ++i) {
+        crowd.push_back(connectHere());
+        say(crowd.back(), "capture\n");
+        asked.push_back(await(control));
+    }
+    EXPECT_NE(hear(connectHere()).find("too many clients"), std::string::npos);
+    for (std::size_t i = 0; i < crowd.size(); ++i) {
+        control.answer(asked[i].client, std::to_string(i));
+    }
+    for (std::size_t i = 0; i < crowd.size(); ++i) {
+        EXPECT_EQ(hear(crowd[i]), std::to_string(i) + "\n");
+    }
+    EXPECT_EQ(ask(control, "status", "{}"), "{}\n");
+}
+
+TEST_F(Control, ForgetsWhoLeavesBeforeTheAnswer) {
+    ControlSocket control(folder_);
+    const int peer = connectHere();
+    say(peer, "capture\n");
+    const ControlSocket::Asked asked = await(control);
+    close(peer);
+    control.answer(asked.client, "{}");
+    control.answer(asked.client + 100, "{}");
+    EXPECT_EQ(ask(control, "status", "{}"), "{}\n");
+}
+
+TEST_F(Control, WhoWaitsWhenTheSessionEndsIsLetGo) {
+    int peer = -1;
+    {
+        ControlSocket control(folder_);
+        peer = connectHere();
+        say(peer, "capture\n");
+        (void)await(control);
+    }
+    EXPECT_EQ(hear(peer), "");
+}
+
+}  // namespace
