@@ -20,7 +20,9 @@
 namespace {
 
 struct Options {
-    std::string scene, wall, haptic, pace = "realtime", out;
+    std::string scene, replay, wall, haptic, pace = "realtime", out;
+    int framesPerSecond = 30;  // of a replay
+    std::string filmEye;
     std::string stereo, track;  // as the wall file says when empty
     std::string pattern = "none";
     std::string fault, skew;
@@ -61,12 +63,35 @@ struct World {
     lockstep::SessionMessage message;
 };
 
-World loadWorld(const lockstep::Cluster& cluster, Options& options) {
-    World world{sand::loadScene(options.scene), walls::loadWallAs(options.wall, options.stereo), {}};
-    for (const std::string& warning : world.scene.warnings) {
-        fmt::print(stderr, "{}: warning: {}\n", options.scene, warning);
+/// The scene of the file named, or of the journal that is to be replayed.
+sand::Scene loadScene(Options& options) {
+    if (options.replay.empty()) {
+        if (options.scene.empty()) {
+            throw files::InputError("sandwall-master: name a --scene, or a journal to --replay");
+        }
+        sand::Scene scene = sand::loadScene(options.scene);
+        for (const std::string& warning : scene.warnings) {
+            fmt::print(stderr, "{}: warning: {}\n", options.scene, warning);
+        }
+        return scene;
     }
-    master::requireMemory(cluster, world.scene, options.scene);
+    if (std::filesystem::exists(std::filesystem::path(options.out) / "session.journal")) {
+        throw files::InputError(
+            fmt::format("{}: holds a session, whose results would be lost; choose another --out", options.out));
+    }
+    master::SessionOptions& session = options.session;
+    session.recording = std::make_shared<const master::Recording>(master::readJournal(options.replay), options.replay,
+                                                                  options.framesPerSecond);
+    if (!session.recording->shortcoming().empty()) {
+        fmt::print(stderr, "{}\n", session.recording->shortcoming());
+    }
+    session.refreshHz = options.framesPerSecond;
+    return session.recording->scene();
+}
+
+World loadWorld(const lockstep::Cluster& cluster, Options& options) {
+    World world{loadScene(options), walls::loadWallAs(options.wall, options.stereo), {}};
+    master::requireMemory(cluster, world.scene, options.scene + options.replay);
     if (world.wall.ranks() != cluster.renderRanks()) {
         throw files::InputError(fmt::format(
             "{}: {} tiles need {} render ranks, but the job has {}: mpirun -n 1 "
@@ -79,10 +104,16 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
         throw files::InputError(
             fmt::format("{}: cannot be made ({}); choose another --out", options.out, error.message()));
     }
+    if (options.session.film) {
+        if (!options.filmEye.empty()) {
+            options.session.filmEye = master::filmEyeNamed(options.filmEye);
+        }
+        (void)master::Film(world.wall, options.session.filmEye, options.out);  // refuses before anything is drawn
+    }
     if (options.haptic != "none") {
         options.session.server = haptic_bridge::Address::parse(options.haptic, "--haptic");
     }
-    options.session.pace = options.pace == "fast" ? master::Pace::fast : master::Pace::realtime;
+    options.session.pace = options.pace == "fast" || options.session.film ? master::Pace::fast : master::Pace::realtime;
     options.session.pictures = !options.noPictures;
     options.session.out = options.out;
     options.session.pattern = lockstep::parsePattern(options.pattern);
@@ -146,7 +177,7 @@ int runSession(const lockstep::Cluster& cluster, Options& options) {
 
 void describeOptions(CLI::App& app, Options& options) {
     master::SessionOptions& session = options.session;
-    app.add_option("--scene", options.scene, "scene file")->required();
+    app.add_option("--scene", options.scene, "scene file");
     app.add_option("--wall", options.wall, "wall file")->required();
     app.add_option("--out", options.out, "folder for journal, pictures and summary")->required();
     app.add_option("--haptic", options.haptic, "HOST:PORT of the haptic server, or none")->default_val("none");
@@ -173,6 +204,21 @@ void describeOptions(CLI::App& app, Options& options) {
     app.add_option("--skew-view", options.skew, "for tests: rank=R,frame=F shows that rank another view");
 }
 
+void describeReplay(CLI::App& app, Options& options) {
+    CLI::Option* replay =
+        app.add_option("--replay", options.replay, "journal of a session, shown again instead of a scene");
+    for (const char* other : {"--scene", "--haptic", "--refresh"}) {
+        replay->excludes(app.get_option(other));
+    }
+    app.add_option("--fps", options.framesPerSecond, "frames per second of a replay")
+        ->check(CLI::Range(1, 240))
+        ->needs(replay);
+    CLI::Option* film =
+        app.add_flag("--film", options.session.film, "write every frame of a replay as a picture of the whole wall");
+    film->needs(replay);
+    app.add_option("--eye", options.filmEye, "what a film shows of two eyes: left, right or anaglyph")->needs(film);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -183,6 +229,7 @@ int main(int argc, char** argv) {
                  "sandwall-master");
     Options options;
     describeOptions(app, options);
+    describeReplay(app, options);
     bool parsed = false;
     const int status = files::runMain(app, argc, argv, [&] {
         parsed = true;

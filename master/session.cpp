@@ -43,6 +43,7 @@ void forgetOldResults(const std::filesystem::path& folder) {
     for (const std::filesystem::path& tile : tiles) {
         std::filesystem::remove(tile, none);
     }
+    Film::forget(folder);
 }
 
 void sleepNs(std::int64_t ns) { std::this_thread::sleep_for(std::chrono::nanoseconds(ns)); }
@@ -61,9 +62,17 @@ Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, con
       barrier_(cluster, names_, options_.frameTimeout),
       views_(wall, scene, options_.tracker),
       viewProof_(wall.encode()),
-      journal_(options_.out / "session.journal", scene, lockstep::buildId()),
       sequencer_(options_.server, scene, options_.pace),
       operator_(options_.readInput) {
+    if (options_.recording) {
+        options_.steps = std::min(options_.steps, options_.recording->lastStep());
+    } else {
+        journal_.emplace(options_.out / "session.journal", scene, lockstep::buildId());
+        control_.emplace(options_.out);
+    }
+    if (options_.film) {
+        film_.emplace(wall, options_.filmEye, options_.out);
+    }
     summary_.scene = scene.name;
     summary_.wall = wall.name;
     summary_.ranks = wall.ranks();
@@ -77,7 +86,6 @@ Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, con
         std::fflush(stdout);
     }
     hash_ = terrain_.stateHash();
-    control_.emplace(options_.out);
 }
 
 double Session::framePeriod() const { return 1 / options_.refreshHz.value_or(wall_.refreshHz); }
@@ -103,6 +111,15 @@ void Session::waitForFrameTime() {
 }
 
 std::vector<TimedStep> Session::awaitSteps() {
+    if (options_.recording) {
+        std::vector<TimedStep> recorded;
+        for (const sand::Step& step : options_.recording->stepsOf(frame_ + 1)) {
+            if (step.number <= options_.steps) {
+                recorded.emplace_back().step = step;
+            }
+        }
+        return recorded;
+    }
     const bool fast = options_.pace == Pace::fast;
     std::size_t most = fast ? kMostStepsPerFastFrame : kMostStepsPerFrame;
     most = paused_ ? 0 : std::min<std::uint64_t>(most, options_.steps - terrain_.stepNumber());
@@ -124,8 +141,8 @@ lockstep::FrameMessage Session::prepare(std::vector<TimedStep>& steps) {
         message.steps.push_back(timed.step);
     }
     const std::uint64_t shownThen = terrain_.stepNumber() + steps.size();
-    message.stop = operator_.stopAsked() || frame_ >= options_.frames || shownThen >= options_.steps;
-    message.capture = message.stop ? options_.pictures : !captures_.empty();
+    message.stop = operator_.stopAsked() || strayed_ || frame_ >= options_.frames || shownThen >= options_.steps;
+    message.capture = film_.has_value() || (message.stop ? options_.pictures : !captures_.empty());
     const double sinceLast = lastSwap_ == 0 ? 0 : static_cast<double>(nowNs() - lastSwap_) * 1e-9;
     const int tiles = terrain_.hashTiles().tileCount();
     message.auditTiles = static_cast<std::uint32_t>(
@@ -134,9 +151,25 @@ lockstep::FrameMessage Session::prepare(std::vector<TimedStep>& steps) {
 }
 
 void Session::applySteps(const std::vector<TimedStep>& steps) {
+    compareWithRecording();
     for (const TimedStep& timed : steps) {
         terrain_.apply(timed.step);
         summary_.edits += timed.step.edit == sand::Edit::none ? 0 : 1;
+        compareWithRecording();
+    }
+}
+
+void Session::compareWithRecording() {
+    if (!options_.recording || strayed_) {
+        return;
+    }
+    const auto recorded = options_.recording->hashAfter(terrain_.stepNumber());
+    if (recorded && *recorded != terrain_.stateHash()) {
+        fmt::print(stderr,
+                   "after step {}: the session had {:016x}, now it is {:016x}; the recording is of another version or "
+                   "damaged, and ends here\n",
+                   terrain_.stepNumber(), *recorded, terrain_.stateHash());
+        strayed_ = true;
     }
 }
 
@@ -149,9 +182,9 @@ bool Session::showFrame() {
     const lockstep::FrameMessage message = barrier_.begin(prepare(steps), bytes);
     const std::int64_t broadcast = nowNs();
     summary_.broadcastBytes.add(static_cast<double>(bytes));
-    if (!message.steps.empty()) {
+    if (journal_ && !message.steps.empty()) {
         // The ranks draw meanwhile; none of them swaps before the master has come to the barrier.
-        journal_.append({message.frame, hashBefore, message.steps});
+        journal_->append({message.frame, hashBefore, message.steps});
     }
     applySteps(steps);
     terrain_.audit(static_cast<int>(message.auditTiles));
@@ -228,7 +261,9 @@ void Session::sayProgress(bool last) {
     const std::string of = options_.steps == kNoLimit ? "" : fmt::format("/{}", options_.steps);
     fmt::print("frame {}  step {}{}  {:.1f} fps  skew {:.0f} us  hashes agree  {}\n", frame_, terrain_.stepNumber(), of,
                fps_, lastSkewUs_,
-               sequencer_.linked() ? "hand linked" : (sequencer_.starting() ? "waiting for a hand" : "no hand"));
+               options_.recording    ? "recorded"
+               : sequencer_.linked() ? "hand linked"
+                                     : (sequencer_.starting() ? "waiting for a hand" : "no hand"));
     std::fflush(stdout);
     lastProgress_ = now;
     lastProgressFrame_ = frame_;
@@ -270,18 +305,23 @@ int Session::run() {
         if (agreed) {
             sayProgress(stopping_);
         }
+        if (agreed && film_ && !stopping_) {
+            film_->take(cluster_, barrier_.watchdog());
+        }
     }
     control_.reset();  // whoever asks now finds no session
-    if (agreed) {
-        journal_.finish(terrain_.stepNumber(), hash_);
+    if (agreed && journal_) {
+        journal_->finish(terrain_.stepNumber(), hash_);
     }
     finish();
     writeSummary(summary_, options_.out / "summary.json");
-    if (agreed && options_.pictures) {
+    if (agreed && film_) {
+        film_->take(cluster_, barrier_.watchdog());
+    } else if (agreed && options_.pictures) {
         writeWallPictures(cluster_, wall_, options_.out, barrier_.watchdog());
     }
     fmt::print("{}", describe(summary_));
-    return agreed ? 0 : 1;
+    return agreed && !strayed_ ? 0 : 1;
 }
 
 }  // namespace master

@@ -14,9 +14,11 @@
 #include "lockstep/frame_message.hpp"
 #include "lockstep/view_agreement.hpp"
 #include "master/control_socket.hpp"
+#include "master/film.hpp"
 #include "master/journal.hpp"
 #include "master/operator_command.hpp"
 #include "master/operator_input.hpp"
+#include "master/recording.hpp"
 #include "master/sequencer.hpp"
 #include "master/summary.hpp"
 #include "master/view_source.hpp"
@@ -41,7 +43,10 @@ struct SessionOptions {
     tracking::Source tracker;                             // where the head's pose comes from
     bool readInput = false;                               // "stop" on standard input, or its end, ends the session
     std::filesystem::path out;
-    sand::Erosion::Options sweeps;  // how the master's own replica is swept
+    sand::Erosion::Options sweeps;               // how the master's own replica is swept
+    std::shared_ptr<const Recording> recording;  // steps come from there, and no journal is written
+    bool film = false;                           // every frame becomes a picture, and there are no others
+    std::optional<FilmEye> filmEye;
 };
 
 /// The frame loop of the master: number, broadcast, journal, apply, agree, swap; 60 times a second if the wall can.
@@ -51,7 +56,7 @@ public:
             SessionOptions options);
 
     /// Runs to the end and writes journal, pictures and summary. Returns the exit status: 0, or 1 when replicas
-    /// differed. Collective with renderTile() of the render ranks.
+    /// differed, or a replica and the recording. Collective with renderTile() of the render ranks.
     int run();
 
 private:
@@ -70,6 +75,7 @@ private:
     [[nodiscard]] std::vector<haptic_bridge::TimedStep> awaitSteps();
     [[nodiscard]] bool showFrame();
     void applySteps(const std::vector<haptic_bridge::TimedStep>& steps);
+    void compareWithRecording();
     void measureSwaps(std::int64_t now);
     void measureLatency(const std::vector<haptic_bridge::TimedStep>& steps, std::int64_t broadcast,
                         std::int64_t swapped);
@@ -85,7 +91,8 @@ private:
     lockstep::FrameBarrier barrier_;
     ViewSource views_;
     lockstep::ViewProof viewProof_;
-    JournalWriter journal_;
+    std::optional<JournalWriter> journal_;  // none for a recording, which has one
+    std::optional<Film> film_;
     Sequencer sequencer_;
     OperatorInput operator_;
     std::optional<ControlSocket> control_;
@@ -105,6 +112,7 @@ private:
     std::uint64_t lastProgressFrame_ = 0;
     double lastSkewUs_ = 0;
     bool stopping_ = false;
+    bool strayed_ = false;  // from the recording
 };
 
 }  // namespace master

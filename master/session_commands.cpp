@@ -41,11 +41,14 @@ std::filesystem::path newCaptureFolder(const std::filesystem::path& out) {
 }  // namespace
 
 void Session::obeyOperator() {
-    for (const std::string& typed : operator_.takeLines()) {
-        obey(typed, std::nullopt);
-    }
-    for (const ControlSocket::Asked& asked : control_->take()) {
-        obey(asked.line, asked.client);
+    const std::vector<std::string> lines = operator_.takeLines();
+    if (control_) {  // nobody commands a recording but to stop
+        for (const std::string& typed : lines) {
+            obey(typed, std::nullopt);
+        }
+        for (const ControlSocket::Asked& asked : control_->take()) {
+            obey(asked.line, asked.client);
+        }
     }
     for (const lockstep::Arrival& arrival : barrier_.arrivals()) {
         if (arrival.key == 't') {

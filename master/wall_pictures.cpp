@@ -9,7 +9,6 @@
 
 #include "files/input_error.hpp"
 #include "lockstep/screenshots.hpp"
-#include "pictures/image.hpp"
 #include "pictures/png_file.hpp"
 #include "pictures/stereo_packing.hpp"
 #include "walls/canvas.hpp"
@@ -40,46 +39,68 @@ private:
     std::optional<files::InputError> failure_;
 };
 
+/// Each eye's, and the output's where that is made of both.
+int picturesPerTile(const walls::Wall& wall) {
+    return static_cast<int>(walls::eyesOf(wall.stereo).size()) + (walls::packsEyes(wall.stereo) ? 1 : 0);
+}
+
 }  // namespace
 
-void writeWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall, const std::filesystem::path& folder,
-                       lockstep::Watchdog& watchdog) {
+bool fitsOnePicture(const walls::Wall& wall) {
+    const walls::Canvas canvas = walls::wallCanvas(wall);
+    return std::int64_t{canvas.width} * canvas.height <= pictures::kMaxPixels;
+}
+
+std::vector<pictures::Image> receiveWall(
+    const lockstep::Cluster& cluster, const walls::Wall& wall, lockstep::Watchdog& watchdog,
+    const std::function<void(const walls::Tile&, std::string_view, const pictures::Image&)>& each) {
     const std::span<const walls::Eye> eyes = walls::eyesOf(wall.stereo);
     const walls::Canvas canvas = walls::wallCanvas(wall);
-    const bool fits = std::int64_t{canvas.width} * canvas.height <= pictures::kMaxPixels;
-    if (!fits) {
-        fmt::print(stderr,
-                   "sandwall: {} x {} pixels are too many for one picture of the wall; its tiles are written alone\n",
-                   canvas.width, canvas.height);
-    }
+    const bool fits = fitsOnePicture(wall);
     std::vector<pictures::Image> whole(eyes.size(),
                                        fits ? pictures::Image(canvas.width, canvas.height) : pictures::Image());
-    const std::size_t perTile = eyes.size() + (walls::packsEyes(wall.stereo) ? 1 : 0);
-    const std::vector<int> picturesByRank(static_cast<std::size_t>(cluster.size()), static_cast<int>(perTile));
-    PictureFolder out(folder);
-    std::size_t count = 0;
+    const std::vector<int> picturesByRank(static_cast<std::size_t>(cluster.size()), picturesPerTile(wall));
     watchdog.arm();
     lockstep::receivePictures(cluster, picturesByRank, [&](const lockstep::TilePicture& picture) {
-        const walls::Tile& tile = wall.tiles[static_cast<std::size_t>(picture.rank - 1)];
+        const auto index = static_cast<std::size_t>(picture.rank - 1);
         const auto eye = static_cast<std::size_t>(picture.eye);
         pictures::Image image;
         image.width = picture.width;
         image.height = picture.height;
         image.rgb = picture.pixels;
-        if (eye < eyes.size()) {
-            const walls::PixelRect& place = canvas.tiles[static_cast<std::size_t>(picture.rank - 1)];
-            pictures::blit(whole[eye], image, place.x, place.y);
+        if (eye < eyes.size() && fits) {
+            pictures::blit(whole[eye], image, canvas.tiles[index].x, canvas.tiles[index].y);
         }
-        const std::string_view kind = eye < eyes.size() ? walls::eyeName(eyes[eye]) : "output";
-        out.write(fmt::format("tile_{}_{}.png", tile.name, kind), image);
-        fmt::print("pictures {}/{}\n", ++count, wall.tiles.size() * perTile);
-        std::fflush(stdout);
+        if (each) {
+            each(wall.tiles[index], eye < eyes.size() ? walls::eyeName(eyes[eye]) : "output", image);
+        }
         watchdog.arm();  // each picture has its own time
     });
     watchdog.disarm();
+    return whole;
+}
+
+void writeWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall, const std::filesystem::path& folder,
+                       lockstep::Watchdog& watchdog) {
+    const bool fits = fitsOnePicture(wall);
+    if (!fits) {
+        const walls::Canvas canvas = walls::wallCanvas(wall);
+        fmt::print(stderr,
+                   "sandwall: {} x {} pixels are too many for one picture of the wall; its tiles are written alone\n",
+                   canvas.width, canvas.height);
+    }
+    PictureFolder out(folder);
+    std::size_t count = 0;
+    const std::size_t all = wall.tiles.size() * static_cast<std::size_t>(picturesPerTile(wall));
+    const std::vector<pictures::Image> whole = receiveWall(
+        cluster, wall, watchdog, [&](const walls::Tile& tile, std::string_view kind, const pictures::Image& image) {
+            out.write(fmt::format("tile_{}_{}.png", tile.name, kind), image);
+            fmt::print("pictures {}/{}\n", ++count, all);
+            std::fflush(stdout);
+        });
     if (!fits) {
         // said above
-    } else if (eyes.size() == 1) {
+    } else if (whole.size() == 1) {
         out.write("wall.png", whole[0]);
     } else {
         out.write("wall_left.png", whole[0]);

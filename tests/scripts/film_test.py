@@ -1,0 +1,87 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What scripts/sandwall film starts, and what it makes of the pictures."""
+
+import os
+import subprocess
+import unittest
+
+from launcher_fixture import ROOT, LauncherTest
+
+# Writes three frames where --out says, and then what it was started with.
+MPIRUN = """#!/bin/sh
+all="$*"
+while [ "$1" != --out ]; do shift; done
+mkdir -p "$2"
+for n in 1 2 3; do echo "frame $n" > "$2/frame_00000$n.png"; done
+echo "mpirun $all"
+"""
+FFMPEG = """#!/bin/sh
+for last; do :; done
+echo "$*" > "$last"
+"""
+
+
+class Film(LauncherTest):
+    def setUp(self):
+        super().setUp()
+        self.script("mpirun", MPIRUN)
+        # Whether this machine has ffmpeg or not must not matter: only what the launcher itself needs is on the path.
+        for name in ("env", "python3", "sh", "mkdir", "grep", "cat"):
+            for folder in os.environ["PATH"].split(":"):
+                if os.path.exists(f"{folder}/{name}"):
+                    os.symlink(f"{folder}/{name}", self.folder / "bin" / name)
+                    break
+        self.environment["PATH"] = str(self.folder / "bin")
+
+    def film(self, *options, hosts=("-", "node1")):
+        ended = subprocess.run([str(ROOT / "scripts" / "sandwall"), "film", "s.journal", "--wall",
+                                self.write("wall", "\n".join(hosts) + "\n"), "--out", str(self.folder / "out %d"), *options],
+                               env=self.environment, text=True, capture_output=True, timeout=120, stdin=subprocess.DEVNULL)
+        return (ended.returncode, ended.stdout.replace(str(self.folder) + "/", "").replace("bin/", ""),
+                ended.stderr.replace(str(self.folder) + "/", ""))
+
+    def test_every_rank_is_here_whatever_hosts_the_wall_names(self):
+        status, printed, error = self.film("--stereo", "side_by_side", "--fps", "25")
+        self.assertEqual((status, error), (0, ""))
+        master, node = printed.split("\n")[0].split(" : ")
+        self.assertTrue(master.endswith("-n 1 sandwall-master --replay s.journal --film --fps 25 --wall wall --out out %d "
+                                        "--track none --control-stdin --frame-timeout 60 --stereo side_by_side"), master)
+        self.assertEqual(node, "-n 2 sandwall-render-node --gl osmesa")
+
+    def test_without_ffmpeg_the_pictures_are_the_film(self):
+        status, printed, error = self.film()
+        self.assertEqual((status, error), (0, ""))
+        self.assertEqual(printed.split("\n")[1],
+                         "3 pictures in out %d; for a film.mp4 of them: apt-get install ffmpeg, then film it again")
+        self.assertFalse((self.folder / "out %d" / "film.mp4").exists())
+
+    def test_with_ffmpeg_there_is_one_file_at_the_films_rate(self):
+        self.script("ffmpeg", FFMPEG)
+        status, printed, error = self.film("--fps", "24")
+        self.assertEqual((status, error), (0, ""))
+        self.assertEqual(printed.split("\n")[1], "out %d/film.mp4: 3 frames")
+        words = (self.folder / "out %d" / "film.mp4").read_text()
+        self.assertIn("-framerate 24 -i frame_%06d.png ", words)
+        self.assertIn("-c:v libx264 -crf 18 -pix_fmt yuv420p film.mp4", words)
+
+    def test_a_film_that_ffmpeg_cannot_write_is_one_line(self):
+        self.script("ffmpeg", "#!/bin/sh\necho half > film.mp4; echo first >&2; echo No space left >&2; exit 1\n")
+        status, _, error = self.film()
+        self.assertEqual((status, error),
+                         (2, "out %d/film.mp4: ffmpeg failed: No space left; the 3 pictures are whole\n"))
+        self.assertFalse((self.folder / "out %d" / "film.mp4").exists())
+
+    def test_a_replay_that_fails_becomes_no_film(self):
+        self.script("ffmpeg", FFMPEG)
+        self.script("mpirun", MPIRUN + "exit 2\n")
+        self.assertEqual(self.film()[0], 2)
+        self.assertFalse((self.folder / "out %d" / "film.mp4").exists())
+
+    def test_a_wall_that_does_not_pass_the_check_is_refused_in_its_words(self):
+        self.script("sandwall-check", "#!/bin/sh\necho 'wall.toml:3: no' >&2; exit 2\n")
+        self.assertEqual(self.film(), (2, "", "wall.toml:3: no\n"))
+
+
+if __name__ == "__main__":
+    unittest.main()
