@@ -72,6 +72,37 @@ void updateDamage(benchmark::State& state) {
 }
 BENCHMARK(updateDamage)->ArgName("cells")->Arg(0)->Arg(64)->Arg(312)->Unit(benchmark::kMillisecond)->UseRealTime();
 
+/// The paper's tool digs on 512 × 512 cells under one eye of a tile that shows all of it. Argument 0: 1 draws what
+/// changed, 0 everything. The time of a step of sand is not in it.
+void dig(benchmark::State& state) {
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    sand::Scene scene = sample::flatScene(512, 512, 0.01);
+    sand::makeDunes({}, scene.terrain);
+    sand::Terrain terrain(scene);
+    render_node::SandView view(scene, glm::dmat4(1));
+    const render_node::EyeTarget target(1024, 768);
+    const sample::Window window{0.25, 0.25, 0.75, 0.75};
+    const render_node::Camera camera = sample::camera({1, 0.2, 0.9}, {1, 1, 0}, window);
+    render_node::EyeMemory memory;
+    view.drawIfChanged(camera, target, memory);
+    double pixels = 0;
+    for (auto _ : state) {
+        state.PauseTiming();
+        const double at = static_cast<double>(terrain.stepNumber() % 200) / 200;
+        const double place = 0.7 + 0.6 * at;
+        terrain.apply({0, terrain.stepNumber() + 1, true, {sample::probeAt(scene, {place, place, 0.04})}});
+        state.ResumeTiming();
+        memory.drawn = state.range(0) != 0;
+        view.update(terrain.field(), terrain.takeDamage());
+        view.setTool(terrain.probe(), terrain.engaged());
+        pixels += static_cast<double>(view.drawIfChanged(camera, target, memory).area()) / (1024 * 768);
+        target.finish();
+    }
+    state.counters["share_of_pixels"] = pixels / static_cast<double>(state.iterations());
+    state.counters["chunks"] = view.counts().chunks;
+}
+BENCHMARK(dig)->ArgName("in_part")->Arg(0)->Arg(1)->Iterations(100)->Unit(benchmark::kMillisecond)->UseRealTime();
+
 void readBack(benchmark::State& state) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     const render_node::EyeTarget target(1024, 768);

@@ -57,8 +57,7 @@ TEST_F(Lockstep, AnOperatorSettlesTheSandOnEveryReplica) {
         ASSERT_TRUE(session->waitForOutput(device == "none" ? "no hand" : "hand linked", 60)) << session->output();
         session->type("settle");
         session->type("dance");
-        ASSERT_TRUE(session->waitForOutput("'dance' is no command; these are: status, pause", 30))
-            << session->output();
+        ASSERT_TRUE(session->waitForOutput("'dance' is no command; these are: status, pause", 30)) << session->output();
         std::this_thread::sleep_for(std::chrono::seconds(2));
         session->type("stop");
         EXPECT_EQ(session->wait(60), 0) << session->output();
