@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <string_view>
 
 #include "files/command_line.hpp"
 #include "files/input_error.hpp"
@@ -222,6 +223,10 @@ void describeReplay(CLI::App& app, Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    if (argc > 1 && std::string_view(argv[1]) == "--build-id") {  // what ranks compare; needs no MPI
+        fmt::print("{}\n", lockstep::buildId());
+        return 0;
+    }
     lockstep::dieWithParent();
     // Open MPI starts before the options are read: mpirun counts a process that ends without it as crashed.
     lockstep::Cluster cluster(&argc, &argv);

@@ -1,17 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <cstdio>
+#include <string_view>
 
 #include "files/command_line.hpp"
+#include "lockstep/build_id.hpp"
 #include "lockstep/cluster.hpp"
+#include "render_node/probe.hpp"
 #include "render_node/tile_session.hpp"
 #include "workers/sand_threads.hpp"
 
 int main(int argc, char** argv) {
+    // Questions about this host, asked before a job: they need no MPI.
+    const std::string_view question = argc > 1 ? argv[1] : "";
+    if (question == "--build-id") {
+        std::puts(lockstep::buildId());
+        return 0;
+    }
+    if (question == "--probe") {
+        return render_node::probeMain(argc, argv);
+    }
     lockstep::dieWithParent();
     lockstep::Cluster cluster(&argc, &argv);
     CLI::App app(
         "A render rank of a wall: one tile. Started by mpirun beside sandwall-master, which tells it everything.",
         "sandwall-render-node");
+    app.footer(
+        "Alone: --build-id prints what ranks compare; --probe RANK < WALL tries what that rank would draw with.");
     std::string gl = "auto";
     app.add_option(
            "--gl", gl,

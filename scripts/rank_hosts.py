@@ -41,6 +41,14 @@ def hosts_of_wall(lines, wall):
 
 def hosts_of_file(path, ranks):
     """The same from a file: `HOST` or `HOST slots=N` a line, filled in the order of ranks; the master takes no slot."""
+    hosts = slots_of_file(path)
+    if len(hosts) < ranks:
+        raise BadInput(f"{path}: {len(hosts)} slots are too few for the wall's {ranks} render ranks; add hosts, or slots=N")
+    return hosts[:ranks]
+
+
+def slots_of_file(path):
+    """The host of every slot in a file of hosts."""
     hosts = []
     try:
         with open(path, encoding="utf-8") as file:
@@ -52,9 +60,7 @@ def hosts_of_file(path, ranks):
         if words:
             slots = slots_of(words[1:], f"{path}:{number}")
             hosts += [checked_host(words[0], f"{path}:{number}")] * slots
-    if len(hosts) < ranks:
-        raise BadInput(f"{path}: {len(hosts)} slots are too few for the wall's {ranks} render ranks; add hosts, or slots=N")
-    return hosts[:ranks]
+    return hosts
 
 
 def slots_of(words, where):
@@ -110,10 +116,14 @@ def most_on_one_host(hosts):
     return max(hosts.count(host) for host in hosts)
 
 
+def remote_shell():
+    """What mpirun starts its daemons with, as a list of words; of several, divided by colons, the first."""
+    return shlex.split(os.environ.get("OMPI_MCA_plm_rsh_agent", "").split(":")[0]) or ["ssh", "-o", "BatchMode=yes"]
+
+
 def require_reachable(hosts, node):
     """Asks every other host for the program, all at once: what mpirun says of a host it cannot reach fills a screen."""
-    # The same program that mpirun starts its daemons with; of several, divided by colons, the first.
-    agent = shlex.split(os.environ.get("OMPI_MCA_plm_rsh_agent", "").split(":")[0]) or ["ssh", "-o", "BatchMode=yes"]
+    agent = remote_shell()
     others = sorted(set(hosts) - {HERE}, key=hosts.index)
     try:
         asked = [subprocess.Popen([*agent, host, f"test -x {shlex.quote(node)}"], stdin=subprocess.DEVNULL,

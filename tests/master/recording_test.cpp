@@ -50,10 +50,10 @@ TEST(Recording, EachFrameShowsTheStepsOfItsTime) {
 
 TEST(Recording, KnowsTheHashesThatTheSessionWrote) {
     const master::Recording recording(sessionOf(10), "FILE", 30);
-    for (const std::uint64_t step : {0, 3, 6, 9, 10}) {
+    for (const std::uint64_t step : {0U, 3U, 6U, 9U, 10U}) {
         EXPECT_EQ(recording.hashAfter(step), 100 + step);
     }
-    for (const std::uint64_t step : {1, 2, 4, 8, 11}) {
+    for (const std::uint64_t step : {1U, 2U, 4U, 8U, 11U}) {
         EXPECT_EQ(recording.hashAfter(step), std::nullopt) << step;
     }
 }

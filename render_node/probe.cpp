@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/probe.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <string>
+
+#include "files/command_line.hpp"
+#include "files/input_error.hpp"
+#include "render_node/gl/gl_context.hpp"
+#include "walls/wall.hpp"
+
+namespace render_node {
+namespace {
+
+int probe(int rank, Backend backend) {
+    walls::Wall wall;
+    std::unique_ptr<GlContext> context;
+    if (rank == 0) {
+        context = makeOffscreenContext(backend);
+    } else {
+        wall = walls::parseWall(std::string{std::istreambuf_iterator<char>(std::cin), {}}, "standard input");
+        if (rank > wall.ranks()) {
+            throw files::InputError(
+                fmt::format("--probe: the wall on standard input has {} ranks, not {}", wall.ranks(), rank));
+        }
+        context = makeContext(backend, wall, wall.tiles[static_cast<std::size_t>(rank - 1)]);
+    }
+    fmt::print("{}: {}\n", context->name(), context->renderer());
+    for (const std::string& line : context->shortcomings()) {
+        fmt::print("{}\n", line);
+    }
+    return 0;
+}
+
+}  // namespace
+
+int probeMain(int argc, char** argv) {
+    CLI::App app("Tries what a render rank draws with on this machine; the wall file comes on standard input.",
+                 "sandwall-render-node");
+    int rank = 0;
+    std::string gl = "auto";
+    app.add_option("--probe", rank, "which rank of the wall; 0: none, off screen")
+        ->check(CLI::Range(0, walls::kMaxTiles));
+    app.add_option("--gl", gl, "what draws: auto, osmesa, egl, glfw")->capture_default_str();
+    return files::runMain(app, argc, argv, [&] { return probe(rank, backendNamed(gl)); });
+}
+
+}  // namespace render_node

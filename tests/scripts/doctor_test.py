@@ -1,0 +1,178 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What scripts/sandwall doctor finds on made-up hosts: this one under other names, reached by a script in ssh's place."""
+
+import os
+import pty
+import re
+import socket
+import subprocess
+import unittest
+
+from launcher_fixture import ROOT, LauncherTest
+
+# Every host is this machine but for what its name says.
+AGENT = """#!/bin/sh
+host=$1; shift
+case $host in
+    away*) echo "ssh: connect to host $host port 22: No route to host" >&2; exit 255 ;;
+    old*) export MADE_UP_BUILD=00000000000000ff ;;
+    small*) export MADE_UP_MEMORY=1 ;;
+    blind*) export MADE_UP_DISPLAY=none ;;
+    narrow*) export MADE_UP_DISPLAY=narrow ;;
+    late*) export MADE_UP_SHIFT=3600 ;;
+    walled*) export SSH_CONNECTION="127.0.0.1 1 127.0.0.1 22"; export MADE_UP_FIREWALL=1 ;;
+    *) export SSH_CONNECTION="127.0.0.1 1 127.0.0.1 22" ;;
+esac
+exec sh -c "$*"
+"""
+NODE = """#!/bin/sh
+[ "$1" = --build-id ] && { echo "${MADE_UP_BUILD:-0123456789abcdef}"; exit 0; }
+[ "$2" = 0 ] || grep -q . || { echo "no wall on standard input" >&2; exit 2; }
+[ "$MADE_UP_DISPLAY" = none ] && { echo "display :0 cannot be opened" >&2; exit 2; }
+echo "$4: made-up renderer"
+[ -z "$MADE_UP_DISPLAY" ] || echo "output a: its window lies partly off the screen"
+"""
+DATE = """#!/bin/sh
+exec /bin/date -d "@$(($(/bin/date +%s) + ${MADE_UP_SHIFT:-0}))" "$@"
+"""
+SED = """#!/bin/sh
+[ -z "$MADE_UP_MEMORY" ] || { echo "2048 kB"; exit 0; }
+echo "8388608 kB"
+"""
+BASH = """#!/bin/sh
+[ -z "$MADE_UP_FIREWALL" ] || exit 1
+exec /bin/bash "$@"
+"""
+
+
+class Doctor(LauncherTest):
+    def setUp(self):
+        super().setUp()
+        self.script("agent", AGENT)
+        self.script("sandwall-render-node", NODE)
+        self.script("sandwall-master", NODE)
+        self.script("mpirun", "#!/bin/sh\necho 'mpirun (Open MPI) 4.1.4'\n")
+        for name, text in (("date", DATE), ("sed", SED), ("bash", BASH)):
+            self.script(name, text)
+        self.name = socket.gethostname()
+
+    def arguments(self, hosts, *options):
+        wall = self.write("wall.toml", "\n".join(hosts) + "\n")
+        return [str(ROOT / "scripts" / "sandwall"), "doctor", wall, "--out", str(self.folder), *options]
+
+    def examine(self, hosts, *options):
+        """(exit status, {(host, check): (mark, words)}) of a wall with these hosts."""
+        ended = subprocess.run(self.arguments(hosts, *options), env=self.environment, text=True, capture_output=True,
+                               timeout=200, stdin=subprocess.DEVNULL)
+        self.assertEqual(ended.stderr, "")
+        *lines, last = ended.stdout.splitlines()
+        found = {}
+        for line in lines:
+            host, mark, check, words = re.fullmatch(r"(\S+) +(ok|RED) +(\S+) +(.*)", line).groups()
+            self.assertNotIn((host, check), found)
+            found[host, check] = (mark, words.replace(str(self.folder) + "/", ""))
+        self.assertEqual(last, f"{self.reds(found)} to put right" if self.reds(found) else "nothing to put right")
+        return ended.returncode, found
+
+    @staticmethod
+    def reds(found):
+        return sum(mark == "RED" for mark, _ in found.values())
+
+    def only_red(self, host, check):
+        """The words of the one red line on a wall with this host and a sound one."""
+        status, found = self.examine(["-", "sound1", host])
+        self.assertEqual(status, 1)
+        self.assertEqual([where for where, (mark, _) in found.items() if mark == "RED"], [(host, check)], found)
+        return found[host, check][1]
+
+    def test_a_sound_wall_is_green_all_over(self):
+        status, found = self.examine(["sound1", "-", "sound1", "sound1"])
+        self.assertEqual((status, self.reds(found)), (0, 0), found)
+        self.assertEqual([check for host, check in found if host == self.name],
+                         ["master", "disk", "build", "mpi", "memory", "gl"])
+        self.assertEqual([check for host, check in found if host == "sound1"],
+                         ["ssh", "build", "mpi", "memory", "clock", "ports", "gl"])
+        self.assertEqual(found["sound1", "build"][1], "0123456789abcdef")
+        self.assertEqual(found["sound1", "memory"][1], "8192 MiB free, 3 ranks may take 768")
+        self.assertEqual(found["sound1", "gl"][1], "ranks 1, 3-4: auto: made-up renderer")
+        self.assertEqual(found[self.name, "gl"][1], "rank 2: auto: made-up renderer")
+        self.assertRegex(found["sound1", "ports"][1], r"comes to this machine at 127\.0\.0\.1, port \d+")
+
+    def test_one_machine_needs_no_ssh(self):
+        self.environment["OMPI_MCA_plm_rsh_agent"] = "/nowhere/ssh"
+        self.assertEqual(self.examine(["-", "-"])[0], 0)
+
+    def test_a_host_that_does_not_answer_is_asked_nothing_more(self):
+        self.assertEqual(self.only_red("away1", "ssh"),
+                         "cannot be reached: ssh: connect to host away1 port 22: No route to host; "
+                         "`ssh -o BatchMode=yes away1 true` must end without a word (docs/hosts.md)")
+
+    def test_another_build_is_named_with_ours(self):
+        self.assertEqual(self.only_red("old1", "build"), "00000000000000ff, here it is 0123456789abcdef; "
+                         "install the same build at the same path everywhere")
+
+    def test_too_little_memory_is_red(self):
+        self.assertEqual(self.only_red("small1", "memory"), "2 MiB free, 1 rank may take 256; "
+                         "end other programs or spread the ranks")
+
+    def test_a_clock_of_another_hour_is_red(self):
+        words = self.only_red("late1", "clock")
+        self.assertRegex(words, r"^3[56]\d{5}\.\d ms ahead of this machine's, give or take .* ms; set it")
+
+    def test_a_host_behind_a_firewall_is_red(self):
+        self.assertRegex(self.only_red("walled1", "ports"), "^does not come to this machine at 127.0.0.1, port .*; "
+                         "open the firewalls between the hosts for all TCP ports$")
+
+    def test_a_display_that_cannot_be_opened_is_red(self):
+        self.assertEqual(self.only_red("blind1", "gl"), "rank 3: display :0 cannot be opened; docs/backends.md")
+
+    def test_a_window_that_is_not_as_wished_is_red(self):
+        self.assertEqual(self.only_red("narrow1", "screen"),
+                         "rank 3: output a: its window lies partly off the screen; docs/backends.md")
+
+    def test_a_master_of_another_build_is_red(self):
+        self.script("sandwall-master", "#!/bin/sh\necho 00000000000000ff\n")
+        status, found = self.examine(["-"])
+        self.assertEqual(status, 1)
+        self.assertEqual(found[self.name, "master"], ("RED", "build 00000000000000ff, the ranks have 0123456789abcdef; "
+                                                      "cmake --build build/release"))
+
+    def test_a_list_of_hosts_is_tried_without_a_wall(self):
+        hosts = self.write("hosts", "sound1 slots=2\nnarrow1\n")
+        ended = subprocess.run([str(ROOT / "scripts" / "sandwall"), "doctor", hosts, "--out", str(self.folder)],
+                               env=self.environment, text=True, capture_output=True, timeout=200, stdin=subprocess.DEVNULL)
+        self.assertEqual(ended.stderr, "")
+        self.assertRegex(ended.stdout, r"(?m)^sound1 +ok +memory +8192 MiB free, 2 ranks may take 512$")
+        self.assertRegex(ended.stdout, r"(?m)^sound1 +ok +gl +auto: made-up renderer$")
+        self.assertEqual(ended.returncode, 1)
+
+    def test_only_a_terminal_is_coloured(self):
+        ours, theirs = pty.openpty()
+        self.addCleanup(os.close, ours)
+        environment = {name: value for name, value in self.environment.items() if name != "NO_COLOR"}
+        ended = subprocess.run(self.arguments(["-"]), env=environment, stdout=theirs, timeout=200, stdin=subprocess.DEVNULL)
+        os.close(theirs)
+        self.assertEqual(ended.returncode, 0)
+        self.assertIn(b"\033[32mok \033[0m  master", os.read(ours, 65536))
+
+
+class Refusals(LauncherTest):
+    def refusal(self, which):
+        ended = subprocess.run([str(ROOT / "scripts" / "sandwall"), "doctor", which], env=self.environment, text=True,
+                               capture_output=True, timeout=120, stdin=subprocess.DEVNULL)
+        self.assertEqual((ended.returncode, ended.stdout, ended.stderr.count("\n")), (2, "", 1), ended.stderr)
+        return ended.stderr.replace(str(self.folder) + "/", "")
+
+    def test_bad_input_is_one_line(self):
+        self.assertIn("no-file: cannot be read; check the path", self.refusal(str(self.folder / "no-file")))
+        self.assertEqual(self.refusal(self.write("empty", "# nobody\n")),
+                         "empty: names no host; write one a line, as ssh knows it\n")
+        self.assertEqual(self.refusal(self.write("hosts", "a\n-oX\n")),
+                         "hosts:2: '-oX' is no host name; write one as ssh knows it, such as node01\n")
+        self.script("sandwall-check", "#!/bin/sh\necho 'wall.toml:3: no' >&2; exit 2\n")
+        self.assertEqual(self.refusal(self.write("wall.toml", "")), "wall.toml:3: no\n")
+
+
+if __name__ == "__main__":
+    unittest.main()
