@@ -98,7 +98,10 @@ std::vector<RankReport> gatherReports(const Cluster& cluster, const RankReport& 
         writer.put(figure);
     }
     writer.put(mine.residentBytes);
-    writer.put(mine.frameBufferBytes);
+    for (const std::int64_t count : {mine.frameBufferBytes, mine.viewsSkipped, mine.viewsInPart, mine.viewsWhole}) {
+        writer.put(count);
+    }
+    writer.put(mine.pixelShare);
     const std::vector<files::Bytes> all = cluster.gather(writer.take());
     std::vector<RankReport> result;
     for (std::size_t rank = 1; rank < all.size(); ++rank) {
@@ -111,7 +114,11 @@ std::vector<RankReport> gatherReports(const Cluster& cluster, const RankReport& 
             *figure = reader.get<double>();
         }
         report.residentBytes = reader.get<std::int64_t>();
-        report.frameBufferBytes = reader.get<std::int64_t>();
+        for (std::int64_t* count :
+             {&report.frameBufferBytes, &report.viewsSkipped, &report.viewsInPart, &report.viewsWhole}) {
+            *count = reader.get<std::int64_t>();
+        }
+        report.pixelShare = reader.get<double>();
     }
     return result;
 }

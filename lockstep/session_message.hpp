@@ -67,6 +67,9 @@ struct RankReport {
     double waitP50 = 0, waitP99 = 0;               // [ms] at the barrier
     std::int64_t residentBytes = 0;
     std::int64_t frameBufferBytes = 0;
+    // Views, an eye in a frame each: not drawn at all, drawn in part, drawn whole.
+    std::int64_t viewsSkipped = 0, viewsInPart = 0, viewsWhole = 0;
+    double pixelShare = 0;  // of all views' pixels, drawn
 };
 
 /// Collective: the render ranks' reports, by rank from 1, at the master; others get nothing. The master gives any.

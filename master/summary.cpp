@@ -53,6 +53,11 @@ ordered_json rankPart(const Summary& summary, std::size_t index) {
             {"swap_lock", report.swapLock},
             {"draw_ms", {{"p50", report.drawP50}, {"p99", report.drawP99}, {"max", report.drawMax}}},
             {"barrier_wait_ms", {{"p50", report.waitP50}, {"p99", report.waitP99}}},
+            {"views",
+             {{"skipped", report.viewsSkipped},
+              {"in_part", report.viewsInPart},
+              {"whole", report.viewsWhole},
+              {"pixel_share", report.pixelShare}}},
             {"memory_bytes", report.residentBytes},
             {"frame_buffer_bytes", report.frameBufferBytes}};
 }

@@ -16,6 +16,13 @@ walls::Viewer viewerOf(const lockstep::ViewState& view) {
 
 }  // namespace
 
+void ViewCounts::add(const PixelRect& drawn, const EyeTarget& target) {
+    const std::int64_t all = std::int64_t{target.width()} * target.height();
+    (drawn.empty() ? skipped : drawn.area() < all ? inPart : whole) += 1;
+    pixelsDrawn += drawn.area();
+    pixels += all;
+}
+
 TilePainter::TilePainter(const walls::Wall& wall, const walls::Tile& tile, const sand::Scene& scene, std::string host)
     : wall_(wall),
       tile_(tile),
@@ -51,7 +58,9 @@ PixelRect TilePainter::paintSand(const lockstep::ViewState& view, EyeRange range
     for (std::size_t i = range.from; i < range.end; ++i) {
         const glm::dvec3 position = walls::eyePosition(viewer, walls::eyesOf(wall_.stereo)[i]);
         const walls::View seen = walls::viewOf(tile_.screen, position, wall_.clip.near, wall_.clip.far);
-        changed = around(changed, sand_.drawIfChanged({seen.viewProjection, position}, targets_[i], memories_[i]));
+        const PixelRect drawn = sand_.drawIfChanged({seen.viewProjection, position}, targets_[i], memories_[i]);
+        counts_.add(drawn, targets_[i]);
+        changed = around(changed, drawn);
     }
     return changed;
 }

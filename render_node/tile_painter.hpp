@@ -18,6 +18,14 @@
 
 namespace render_node {
 
+/// What has been drawn of the eyes of a tile: a view is one eye in one frame.
+struct ViewCounts {
+    std::int64_t skipped = 0, inPart = 0, whole = 0;
+    std::int64_t pixelsDrawn = 0, pixels = 0;  // in rectangles that were drawn; of all views
+
+    void add(const PixelRect& drawn, const EyeTarget& target);
+};
+
 /// Draws one tile: an eye target for each eye that the wall shows, and what its outputs make of them.
 ///
 /// Everything follows from the wall, the sand and the frame's view, so that tiles join. Needs its context current; one
@@ -37,6 +45,8 @@ public:
     /// Each eye's picture, in the order of walls::eyesOf, and behind them the output's where it is made of both.
     [[nodiscard]] std::vector<const EyeTarget*> pictures() const;
     [[nodiscard]] std::int64_t frameBufferBytes() const;
+    /// Of the sand, so far; test patterns do not count.
+    [[nodiscard]] const ViewCounts& viewCounts() const { return counts_; }
 
 private:
     struct EyeRange {
@@ -55,6 +65,7 @@ private:
     StereoComposer composer_;
     std::optional<TestPatternView> patterns_;  // since one was asked for
     std::vector<lockstep::Pattern> shown_;     // by each target
+    ViewCounts counts_;
 };
 
 }  // namespace render_node

@@ -125,10 +125,23 @@ private:
     }
 
     [[nodiscard]] lockstep::RankReport report() const {
-        return {lockstep::hostName(),        context_->renderer(),     context_->swapLock(),
-                drawMs_.percentile(0.5),     drawMs_.percentile(0.99), drawMs_.largest(),
-                waitMs_.percentile(0.5),     waitMs_.percentile(0.99), lockstep::residentBytes(),
-                painter_->frameBufferBytes()};
+        const ViewCounts& views = painter_->viewCounts();
+        const double share =
+            views.pixels == 0 ? 0 : static_cast<double>(views.pixelsDrawn) / static_cast<double>(views.pixels);
+        return {lockstep::hostName(),
+                context_->renderer(),
+                context_->swapLock(),
+                drawMs_.percentile(0.5),
+                drawMs_.percentile(0.99),
+                drawMs_.largest(),
+                waitMs_.percentile(0.5),
+                waitMs_.percentile(0.99),
+                lockstep::residentBytes(),
+                painter_->frameBufferBytes(),
+                views.skipped,
+                views.inPart,
+                views.whole,
+                share};
     }
 
     const lockstep::Cluster& cluster_;
