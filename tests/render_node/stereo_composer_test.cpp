@@ -91,6 +91,42 @@ TEST_F(Composer, EqualsTheReferenceInEveryModeAndSize) {
     }
 }
 
+// Eyes of which a rectangle has changed, and nothing else: the output is the whole one again, and outside of what the
+// rectangle reaches nothing was touched.
+TEST_F(Composer, PutsOnlyTheChangedRectangleTogether) {
+    setSize(61, 47);
+    const render_node::PixelRect changed{10, 7, 33, 20};  // rows from below
+    for (const Stereo stereo : {Stereo::sideBySide, Stereo::topBottom, Stereo::rowInterlaced, Stereo::checkerboard,
+                                Stereo::anaglyphColour, Stereo::anaglyphHalf, Stereo::anaglyphDubois}) {
+        std::vector<EyeTarget> eyes = eyesOf(stereo);
+        StereoComposer composer(stereo, tileOf(stereo, left_.width, left_.height));
+        composer.compose(eyes);
+        const Image before = left_;
+        Image left = left_;
+        Image right = right_;
+        for (int row = changed.y0; row < changed.y1; ++row) {
+            for (int x = changed.x0; x < changed.x1; ++x) {
+                const int y = left.height - 1 - row;
+                std::fill_n(left.at(x, y), 3, std::uint8_t{200});
+                std::fill_n(right.at(x, y), 3, std::uint8_t{90});
+            }
+        }
+        fill(eyes[0], left);
+        fill(eyes[1], right);
+        composer.compose(eyes, changed);
+        EXPECT_EQ(pictureOf(*composer.shown(eyes)[0].picture), pictures::packStereo(stereo, left, right))
+            << walls::stereoName(stereo);
+
+        // Now everything differs, and only the rectangle is told of: the rest must stay as it was.
+        fill(eyes[0], right_);
+        fill(eyes[1], before);
+        composer.compose(eyes, changed);
+        const Image part = pictureOf(*composer.shown(eyes)[0].picture);
+        EXPECT_NE(part, pictures::packStereo(stereo, right_, before)) << walls::stereoName(stereo);
+        EXPECT_NE(part, pictures::packStereo(stereo, left, right)) << walls::stereoName(stereo);
+    }
+}
+
 TEST_F(Composer, ShowsOneEyeFromItsOwnTarget) {
     setSize(6, 4);
     for (const Stereo stereo : {Stereo::mono, Stereo::left, Stereo::right}) {

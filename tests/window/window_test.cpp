@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "probe_fixture.hpp"
-#include "tests/support/x_server.hpp"
 #include "tests/support/x_screen.hpp"
+#include "tests/support/x_server.hpp"
 
 namespace {
 
