@@ -201,7 +201,7 @@ bool Session::showFrame() {
     measureSwaps(swapped);
     measureLatency(steps, broadcast, swapped);
     answerEdits(steps);
-    if (message.capture && !message.stop) {
+    if (message.capture && !message.stop && !film_) {  // a film takes its own
         takeCapture();
     }
     sequencer_.shown(terrain_.stepNumber(), swapped - (lastSwap_ == 0 ? swapped : lastSwap_));
