@@ -4,7 +4,7 @@
 #
 #   release      everything: all tests, the sessions over real ranks among them
 #   asan-sand    sand, files, pictures, walls, head tracking and the haptic link under the address, leak and undefined sanitizers
-#   clang-sand   the golden hashes with clang at -O3
+#   clang-sand   the sand's tests with clang at -O3
 #   golden-*     the golden hashes alone, with further compilers and levels of optimisation
 #
 # A test of any build but release has the build's name before its own.
@@ -24,13 +24,13 @@ build() {
 scripts/install_dependencies.sh --with-tests
 build release
 build asan-sand
-build clang-sand sand_golden_tests
+build clang-sand sand_tests sand_golden_tests
 for variant in g++-O0 g++-O2 clang-O0; do
     build "golden-$variant" sand_golden_tests
 done
 
 # One list of tests over all builds, so that the last lines count every one of them.
-folders=(release asan-sand clang-sand/tests/sand/golden golden-{g++-O0,g++-O2,clang-O0}/tests/sand/golden)
+folders=(release asan-sand clang-sand/tests/sand golden-{g++-O0,g++-O2,clang-O0}/tests/sand/golden)
 for folder in "${folders[@]}"; do
     [[ -f build/$folder/CTestTestfile.cmake ]] || { echo "test.sh: build/$folder holds no tests" >&2; exit 1; }
     echo "subdirs($folder)"
