@@ -9,8 +9,9 @@
 
 namespace {
 
-constexpr double kMost = 120e6;  // [byte], of a rank beside its frame buffers
-constexpr double kLong = 120;    // [s], for what takes a few on an idle machine
+// Of a rank at work, beside its frame buffers [byte]. While shaders compile it is more for a moment, which is printed.
+constexpr double kMost = 120e6;
+constexpr double kLong = 120;  // [s], for what takes a few on an idle machine
 
 /// Libraries of Mesa's and the windows' that a process has mapped: file names up to the first dot.
 std::set<std::string> librariesOf(pid_t process) {
@@ -63,7 +64,7 @@ protected:
     std::unique_ptr<support::XServer> server_;
 };
 
-TEST_P(Memory, OfARankIsSmallBesideItsFrameBuffers) {
+TEST_P(Memory, OfARankAtWorkIsSmallBesideItsFrameBuffers) {
     for (const std::string stereo : {"mono", "passive"}) {
         const auto session = dig(stereo);
         const auto rank = support::findProgram(session->family(), "sandwall-render-node");

@@ -21,8 +21,9 @@ walls::Wall config(const std::string& name, double factor) {
 class Seam : public SessionTest {
 protected:
     void show(const std::string& name, const walls::Wall& wall) {
+        const std::string sand = scene_.empty() ? SANDWALL_SOURCE_DIR "/scenes/dunes.toml" : scene_;
         const Ended ended = runToEnd({"--wall", write(name + ".toml", support::wallText(wall)), "--scene", scene(),
-                                      "--device", "script:gis", "--pace", "fast", "--steps", "120", "--track", "none",
+                                      "--device", "script:gis", "--pace", "fast", "--steps", "200", "--track", "none",
                                       "--here", "--gl", "osmesa", "--out", (folder_ / name).string()},
                                      300);
         ASSERT_EQ(ended.status, 0) << ended.output;
@@ -86,6 +87,7 @@ protected:
             }
         }
     }
+    std::string scene_;                                 // dunes when empty
     int compared_ = 0, shiftsTold_ = 0, eyesTold_ = 0;  // pictures
 };
 
@@ -94,6 +96,25 @@ TEST_F(Seam, TilesOfThePapersWallAreOneCameraWithoutTheBezels) {
     show("tiled", wall);
     expectCropsOfTheGrid("tiled", wall);
     expectThatFaultsAreTold();
+}
+
+// A wall that has sand on every tile, near and far: there every single picture must tell both faults.
+TEST_F(Seam, EveryTileIsTheCropOfTheWholeWall) {
+    scene_ = scene();
+    walls::Wall wall = walls::loadWall(this->wall(2, 2));
+    wall.viewer.eye = {0.1, 1.5, 2.5};
+    wall.stage = {{0, 1.1, 0}, 1.9, 40, 0};
+    walls::Grid& grid = *wall.grid;
+    grid.tilePixels = {320, 240};
+    grid.tileSize = {1, 0.75};
+    grid.bezel = {4.0 / 320, 4.0 / 320};
+    grid.lowerLeft = {-1, 0.4, 0};
+    wall.tiles = walls::tilesOf(grid, wall.stereo);
+    show("tiled", wall);
+    expectCropsOfTheGrid("tiled", wall);
+    EXPECT_EQ(compared_, 8);
+    EXPECT_EQ(shiftsTold_, compared_);
+    EXPECT_EQ(eyesTold_, compared_);
 }
 
 TEST_F(Seam, FacesOfTheCaveAreWhatOneCameraSeesThroughEach) {
