@@ -12,11 +12,13 @@ class Hosts : public SessionTest {
 protected:
     void SetUp() override {
         SessionTest::SetUp();
-        // Open MPI names shared memory by machine and rank: two hosts that are one machine need a place each for it.
+        // Two hosts that are one machine need a place each for what Open MPI shares within a machine: its daemons make
+        // the same folders and map the same files otherwise, and now and then one of them fails over that.
         const std::string agent = write("agent",
                                         "#!/bin/sh\nhost=$1; shift\n[ \"$host\" = away ] && exit 255\n"
-                                        "mkdir -p \"${0%/*}/memory-$host\"\n"
-                                        "export OMPI_MCA_btl_vader_backing_directory=\"${0%/*}/memory-$host\"\n"
+                                        "export TMPDIR=\"${0%/*}/$host\"\n"
+                                        "export OMPI_MCA_btl_vader_backing_directory=\"$TMPDIR\"\n"
+                                        "mkdir -p \"$TMPDIR\"\n"
                                         "exec sh -c \"$*\"\n");
         std::filesystem::permissions(agent, std::filesystem::perms::owner_all);
         setenv("OMPI_MCA_plm_rsh_agent", agent.c_str(), 1);
@@ -53,6 +55,7 @@ TEST_F(Hosts, EndWithTheLauncher) {
                                 "--network", "127.0.0.0/8"});
     ASSERT_TRUE(session->waitForOutput("hashes agree", 60)) << session->output();
     const std::vector<pid_t> family = session->family();
+    EXPECT_TRUE(support::findProgram(family, "sandwall-master").has_value()) << "its daemon started it, not mpirun";
     session->signal(SIGKILL);
     EXPECT_TRUE(support::waitUntilGone(family, 60).empty()) << "processes left running";
     EXPECT_EQ(summary()["divergences"], 0) << "the master saw its input end and finished its work";

@@ -36,7 +36,9 @@ struct Stat {
 /// What the kernel says of a process; state X when there is none.
 Stat statOf(pid_t pid) {
     std::ifstream stream("/proc/" + std::to_string(pid) + "/stat");
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    // As a line, which ends a stream in peace when the process goes meanwhile; an iterator over its buffer throws.
+    std::string text;
+    std::getline(stream, text, '\0');
     Stat stat;
     const auto open = text.find('(');
     const auto close = text.rfind(')');
@@ -45,6 +47,17 @@ Stat statOf(pid_t pid) {
         std::istringstream(text.substr(close + 1)) >> stat.state >> stat.parent;
     }
     return stat;
+}
+
+/// Whether the process was started with `mark` (NAME=value) in its environment.
+bool carries(pid_t pid, const std::string& mark) {
+    std::ifstream stream("/proc/" + std::to_string(pid) + "/environ");
+    for (std::string variable; std::getline(stream, variable, '\0');) {
+        if (variable == mark) {
+            return true;
+        }
+    }
+    return false;
 }
 
 bool runs(pid_t pid) {
@@ -56,6 +69,10 @@ bool runs(pid_t pid) {
 
 ChildProcess::ChildProcess(const std::vector<std::string>& command, std::filesystem::path outputFile)
     : outputFile_(std::move(outputFile)) {
+    static int started = 0;
+    const std::string name = "SANDWALL_TEST_FAMILY";
+    const std::string value = std::to_string(getpid()) + "-" + std::to_string(++started);
+    mark_ = name + "=" + value;
     std::vector<char*> words;
     for (const std::string& word : command) {
         words.push_back(const_cast<char*>(word.c_str()));
@@ -74,6 +91,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command, std::filesys
         dup2(input[0], STDIN_FILENO);
         dup2(file, STDOUT_FILENO);
         dup2(file, STDERR_FILENO);
+        setenv(name.c_str(), value.c_str(), 1);
         execv(words[0], words.data());
         _exit(127);
     }
@@ -134,17 +152,25 @@ void ChildProcess::signal(int number) const { kill(pid_, number); }
 
 std::vector<pid_t> ChildProcess::family() const {
     std::multimap<pid_t, pid_t> children;
+    std::vector<pid_t> all{pid_};
     for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
         const std::string name = entry.path().filename();
         if (std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; })) {
             const pid_t pid = static_cast<pid_t>(std::stol(name));
             children.emplace(statOf(pid).parent, pid);
+            if (pid != pid_ && carries(pid, mark_)) {
+                all.push_back(pid);
+            }
         }
     }
-    std::vector<pid_t> all{pid_};
+    // A child between fork and exec, or with an environment of its own, is known by its parent.
     for (std::size_t i = 0; i < all.size(); ++i) {
         const auto [first, last] = children.equal_range(all[i]);
-        std::transform(first, last, std::back_inserter(all), [](const auto& pair) { return pair.second; });
+        std::for_each(first, last, [&](const auto& pair) {
+            if (std::find(all.begin(), all.end(), pair.second) == all.end()) {
+                all.push_back(pair.second);
+            }
+        });
     }
     return all;
 }

@@ -30,11 +30,13 @@ public:
     /// Types a line on its standard input.
     void type(const std::string& line) const;
 
-    /// Every process below this one at this moment, and itself.
+    /// Itself and every process that it or a descendant has started, at this moment: also those that have left their
+    /// parents, as the daemons that start the ranks of another host do.
     [[nodiscard]] std::vector<pid_t> family() const;
 
 private:
     pid_t pid_;
+    std::string mark_;  // NAME=value in the environment of the whole family
     int input_ = -1;  // our end of its standard input
     std::filesystem::path outputFile_;
     std::optional<int> status_;
