@@ -26,6 +26,7 @@ void ViewState::encode(files::ByteWriter& writer) const {
     writer.put(eyeSeparation);
     putEach(sceneToRoom, writer);
     writer.put(pattern);
+    writer.put(layers.bits());
 }
 
 ViewState ViewState::decode(files::ByteReader& reader) {
@@ -35,6 +36,7 @@ ViewState ViewState::decode(files::ByteReader& reader) {
     view.eyeSeparation = reader.get<double>();
     getEach(reader, view.sceneToRoom);
     view.pattern = reader.get<std::uint8_t>();
+    view.layers = Layers(reader.get<std::uint8_t>());
     return view;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "files/byte_stream.hpp"
+#include "lockstep/layer.hpp"
 #include "sand/step.hpp"
 
 namespace lockstep {
@@ -19,6 +20,7 @@ struct ViewState {
     // Column by column: scene units to metres in the room.
     std::array<double, 16> sceneToRoom{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     std::uint8_t pattern = 0;  // lockstep::Pattern shown instead of the sand
+    Layers layers{};           // shown beside the sand
 
     void encode(files::ByteWriter& writer) const;
     /// Throws files::FormatError when cut short.

@@ -26,6 +26,7 @@ struct Options {
     std::string filmEye;
     std::string stereo, track;  // as the wall file says when empty
     std::string pattern = "none";
+    std::vector<std::string> layers;
     std::string fault, skew;
     int spoiltShader = 0;
     bool noPictures = false;
@@ -118,6 +119,9 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
     options.session.pictures = !options.noPictures;
     options.session.out = options.out;
     options.session.pattern = lockstep::parsePattern(options.pattern);
+    for (const std::string& layer : options.layers) {
+        options.session.layers.set(lockstep::parseLayer(layer), true);
+    }
     if (!options.track.empty()) {
         options.session.tracker = tracking::Source::parse(options.track, "--track");
     } else if (!world.wall.tracking.empty()) {
@@ -190,6 +194,7 @@ void describeOptions(CLI::App& app, Options& options) {
     app.add_option("--track", options.track,
                    "where the head's pose comes from, instead of what the wall file says (docs/head_tracking.md)");
     app.add_option("--pattern", options.pattern, "test pattern shown from the start (docs/test_patterns.md)");
+    app.add_option("--show", options.layers, "shown beside the sand from the start (docs/operator.md)");
     app.add_option("--steps", session.steps, "end when exactly this many steps have been shown")
         ->check(CLI::PositiveNumber);
     app.add_option("--frames", session.frames, "end after this many frames")->check(CLI::PositiveNumber);

@@ -19,13 +19,15 @@ struct VerbName {
     Verb verb;
 };
 
-constexpr std::array<VerbName, 10> kVerbs{{{"status", "", Verb::status},
+constexpr std::array<VerbName, 12> kVerbs{{{"status", "", Verb::status},
                                            {"pause", "", Verb::pause},
                                            {"resume", "", Verb::resume},
                                            {"reset", "", Verb::reset},
                                            {"undo", "", Verb::undo},
                                            {"settle", "", Verb::settle},
                                            {"pattern", "NAME", Verb::pattern},
+                                           {"show", "LAYER", Verb::show},
+                                           {"hide", "LAYER", Verb::hide},
                                            {"eye-separation", "METRES", Verb::eyeSeparation},
                                            {"capture", "", Verb::capture},
                                            {"stop", "", Verb::stop}}};
@@ -66,9 +68,11 @@ Command parseCommand(std::string_view line) {
                                         ? fmt::format("{} takes no argument, got '{}'", word, argument.substr(0, 80))
                                         : fmt::format("{} needs {}", word, verb.argument));
         }
-        Command command{verb.verb, std::nullopt, 0};
+        Command command{verb.verb, std::nullopt, {}, 0};
         if (verb.verb == Verb::eyeSeparation) {
             command.metres = parseSeparation(argument);
+        } else if (verb.verb == Verb::show || verb.verb == Verb::hide) {
+            command.layer = lockstep::parseLayer(argument.substr(0, 80));
         } else if (verb.verb == Verb::pattern && argument != "next") {
             try {
                 command.pattern = lockstep::parsePattern(argument.substr(0, 80));

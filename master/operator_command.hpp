@@ -5,18 +5,33 @@
 #include <optional>
 #include <string_view>
 
+#include "lockstep/layer.hpp"
 #include "lockstep/test_pattern.hpp"
 
 namespace master {
 
 inline constexpr std::size_t kLongestCommand = 1024;  // [byte], without its line feed
 
-enum class Verb : std::uint8_t { status, pause, resume, reset, undo, settle, pattern, eyeSeparation, capture, stop };
+enum class Verb : std::uint8_t {
+    status,
+    pause,
+    resume,
+    reset,
+    undo,
+    settle,
+    pattern,
+    show,
+    hide,
+    eyeSeparation,
+    capture,
+    stop
+};
 
 /// What somebody asks of a running session, typed or through its control socket (docs/operator.md).
 struct Command {
     Verb verb = Verb::status;
     std::optional<lockstep::Pattern> pattern;  // of Verb::pattern; none: the next one
+    lockstep::Layer layer{};                   // of Verb::show and Verb::hide
     double metres = 0;                         // of Verb::eyeSeparation
 };
 

@@ -81,6 +81,7 @@ Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, con
         summary_.tileNames.push_back(tile.name);
     }
     views_.show(options_.pattern);
+    views_.show(options_.layers);
     if (views_.viewer().port() != 0) {
         fmt::print("head tracking listens on port {}\n", views_.viewer().port());
         std::fflush(stdout);

@@ -40,6 +40,7 @@ struct SessionOptions {
     double frameTimeout = 30;          // [s] that a frame may take before the job ends
     bool pictures = true;
     lockstep::Pattern pattern = lockstep::Pattern::none;  // shown from the start
+    lockstep::Layers layers;                              // as well
     tracking::Source tracker;                             // where the head's pose comes from
     bool readInput = false;                               // "stop" on standard input, or its end, ends the session
     std::filesystem::path out;

@@ -91,6 +91,10 @@ void Session::carryOut(const Command& command, std::optional<Client> client) {
         case Verb::pattern:
             views_.show(command.pattern.value_or(lockstep::nextPattern(views_.pattern())));
             break;
+        case Verb::show:
+        case Verb::hide:
+            views_.show(command.layer, command.verb == Verb::show);
+            break;
         case Verb::eyeSeparation:
             views_.separateEyes(command.metres);
             break;

@@ -24,6 +24,9 @@ public:
 
     void show(lockstep::Pattern pattern) { state_.pattern = static_cast<std::uint8_t>(pattern); }
     [[nodiscard]] lockstep::Pattern pattern() const { return static_cast<lockstep::Pattern>(state_.pattern); }
+    void show(lockstep::Layers layers) { state_.layers = layers; }
+    void show(lockstep::Layer layer, bool shown) { state_.layers.set(layer, shown); }
+    [[nodiscard]] lockstep::Layers layers() const { return state_.layers; }
     /// As TrackedViewer's.
     void separateEyes(double metres) { viewer_.separateEyes(metres); }
     [[nodiscard]] double eyeSeparation() const { return state_.eyeSeparation; }  // [m], of the last at()

@@ -15,6 +15,7 @@ lockstep::FrameMessage digging() {
                                    .capture = true,
                                    .stop = false,
                                    .steps = {}};
+    message.view.layers.set(lockstep::Layer::hillShade, true);
     for (std::uint64_t i = 0; i < 8; ++i) {
         sand::Step& step = message.steps.emplace_back();
         step = {2, 500000 + i, true, {}};

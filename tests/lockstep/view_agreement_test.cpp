@@ -11,7 +11,12 @@ using lockstep::ViewState;
 const files::Bytes kWall{1, 2, 3};
 
 ViewState seen() {
-    return {.head = {0.1, 1.6, 2.5}, .right = {1, 0, 0}, .eyeSeparation = 0.065, .sceneToRoom = {}, .pattern = 0};
+    return {.head = {0.1, 1.6, 2.5},
+            .right = {1, 0, 0},
+            .eyeSeparation = 0.065,
+            .sceneToRoom = {},
+            .pattern = 0,
+            .layers = {}};
 }
 
 TEST(ViewAgreement, EveryPartOfAViewCounts) {
@@ -32,6 +37,9 @@ TEST(ViewAgreement, EveryPartOfAViewCounts) {
     EXPECT_NE(proof.hash(other), hash);
     other = seen();
     other.pattern = 3;
+    EXPECT_NE(proof.hash(other), hash);
+    other = seen();
+    other.layers.set(lockstep::Layer::force, true);
     EXPECT_NE(proof.hash(other), hash);
 }
 

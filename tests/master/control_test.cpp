@@ -40,6 +40,8 @@ TEST(OperatorCommand, EveryVerbIsRead) {
     EXPECT_EQ(parseCommand("pattern ramp").pattern, lockstep::Pattern::ramp);
     EXPECT_EQ(parseCommand("pattern none").pattern, lockstep::Pattern::none);
     EXPECT_FALSE(parseCommand("pattern next").pattern.has_value());
+    EXPECT_EQ(parseCommand("show hill-shade").layer, lockstep::Layer::hillShade);
+    EXPECT_EQ(parseCommand("hide statistics").layer, lockstep::Layer::statistics);
     EXPECT_DOUBLE_EQ(parseCommand("eye-separation 0.5").metres, 0.5);
     EXPECT_DOUBLE_EQ(parseCommand("eye-separation 0").metres, 0);
 }
@@ -47,10 +49,11 @@ TEST(OperatorCommand, EveryVerbIsRead) {
 TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
     EXPECT_EQ(complaint("dance"),
               "'dance' is no command; these are: status, pause, resume, reset, undo, settle, pattern NAME, "
-              "eye-separation METRES, capture, stop");
+              "show LAYER, hide LAYER, eye-separation METRES, capture, stop");
     EXPECT_EQ(complaint("").substr(0, 16), "'' is no command");
     EXPECT_EQ(complaint("undo twice"), "undo takes no argument, got 'twice'");
     EXPECT_EQ(complaint("pattern"), "pattern needs NAME");
+    EXPECT_EQ(complaint("show rain"), "no layer 'rain'; there are wireframe, hill-shade, force, statistics");
     EXPECT_EQ(complaint("pattern stripes"),
               "no test pattern 'stripes'; there are none, grid, tiles, eyes, flash, ramp, next");
     for (const std::string value : {"0.51", "-0.01", "nan", "inf", "wide", "0.1m", " 0.1"}) {

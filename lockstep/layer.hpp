@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "files/input_error.hpp"
+
+namespace lockstep {
+
+/// What a wall shows beside the sand when it is asked to (docs/operator.md). ViewState::layers has a bit for each.
+enum class Layer : std::uint8_t {
+    wireframe,  // the triangles' edges
+    hillShade,  // light and dark by slope, as maps have it
+    force,      // the tool's force, as an arrow
+    statistics  // how the wall keeps up, on every tile
+};
+
+inline constexpr std::array<std::string_view, 4> kLayerNames{"wireframe", "hill-shade", "force", "statistics"};
+
+/// Layers that are shown, as one number; all off at first.
+class Layers {
+public:
+    constexpr Layers() = default;
+    constexpr explicit Layers(std::uint8_t bits) : bits_(bits) {}
+    [[nodiscard]] constexpr bool shows(Layer layer) const { return (bits_ & bit(layer)) != 0; }
+    constexpr void set(Layer layer, bool shown) {
+        bits_ = static_cast<std::uint8_t>(shown ? bits_ | bit(layer) : bits_ & ~bit(layer));
+    }
+    [[nodiscard]] constexpr std::uint8_t bits() const { return bits_; }
+    friend constexpr bool operator==(Layers, Layers) = default;
+
+private:
+    static constexpr unsigned bit(Layer layer) { return 1U << static_cast<unsigned>(layer); }
+    std::uint8_t bits_ = 0;
+};
+
+/// Throws files::InputError that lists the names.
+[[nodiscard]] inline Layer parseLayer(std::string_view name) {
+    std::string known;
+    for (std::size_t i = 0; i < kLayerNames.size(); ++i) {
+        if (kLayerNames[i] == name) {
+            return static_cast<Layer>(i);
+        }
+        known += (i == 0 ? "" : ", ") + std::string(kLayerNames[i]);
+    }
+    throw files::InputError("no layer '" + std::string(name) + "'; there are " + known);
+}
+
+}  // namespace lockstep
