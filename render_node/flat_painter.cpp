@@ -62,6 +62,7 @@ void FlatPainter::paint(const EyeTarget& target) {
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices_.size() * sizeof(Vertex)), vertices_.data(),
                  GL_STREAM_DRAW);
     glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(vertices_.size()));
+    program_.drawn();
     vertices_.clear();
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "render_node/gl/compiler_memory.hpp"
+
 namespace render_node {
 namespace {
 
@@ -83,6 +85,7 @@ GrainTexture::GrainTexture(const glm::vec2& sun) {
     glBindTexture(GL_TEXTURE_2D, texture_.id());
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, kGrainSide, kGrainSide, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
     glGenerateMipmap(GL_TEXTURE_2D);
+    giveBackCompilerMemory();  // software drivers do it by shaders
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
 }

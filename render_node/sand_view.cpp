@@ -94,18 +94,22 @@ void SandView::drawWithin(const PixelRect& pixels, const Camera& camera, const E
         toolProgram_.set("uModel", glm::vec4(tool_->centre, toolRadius_));
         toolProgram_.set("uEngaged", tool_->engaged ? 1.0F : 0.0F);
         toolMesh_.draw();
+        toolProgram_.drawn();
     }
     prepare(sandProgram_, camera);
     sandProgram_.set("uCell", cellSize_);
     sandProgram_.set("uCells", glm::vec2(mesh_.surface().columns(), mesh_.surface().rows()));
     const SandMesh::Drawn drawn = mesh_.draw(sceneToPart, culling_);
+    sandProgram_.drawn();
     counts_.chunks = drawn.chunks;
     counts_.triangles = drawn.triangles;
 
     prepare(sideProgram_, camera);
     box_.drawSides(sceneToPart, culling_);
+    sideProgram_.drawn();
     prepare(woodProgram_, camera);
     box_.drawBoards();
+    woodProgram_.drawn();
     glDisable(GL_SCISSOR_TEST);
 }
 

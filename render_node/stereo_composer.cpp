@@ -122,6 +122,7 @@ void StereoComposer::drawMixed(std::span<const EyeTarget> eyes, const PixelRect&
     glEnable(GL_SCISSOR_TEST);
     glScissor(changed.x0, changed.y0, changed.x1 - changed.x0, changed.y1 - changed.y0);
     glDrawArrays(GL_TRIANGLES, 0, 3);
+    program_->drawn();
     glDisable(GL_SCISSOR_TEST);
 }
 

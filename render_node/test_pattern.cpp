@@ -99,6 +99,7 @@ void TestPatternView::drawGrid(const EyeTarget& target) {
     gridProgram_.set("uSpacing", static_cast<float>(spacing_));
     glBindVertexArray(noVertices_.id());
     glDrawArrays(GL_TRIANGLES, 0, 3);
+    gridProgram_.drawn();
 
     const std::string label = fmt::format("{}  GRID {:g} M", tile_.name, spacing_);
     const int dot = dotToFit(label, {size.x / 3, std::max(8, size.y / 40)});

@@ -137,7 +137,7 @@ private:
                 waitMs_.percentile(0.5),
                 waitMs_.percentile(0.99),
                 lockstep::residentBytes(),
-                painter_->frameBufferBytes(),
+                painter_->frameBufferBytes() + context_->frameBufferBytes(),
                 views.skipped,
                 views.inPart,
                 views.whole,

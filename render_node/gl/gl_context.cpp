@@ -36,10 +36,14 @@ private:
 
 std::unique_ptr<GlContext> contextOf(Backend backend, const PlatformRequest& request) {
     std::unique_ptr<GlPlatform> platform = loadPlatform(backend, request);
+    std::unique_ptr<GlContext> context;
     if (request.windows.empty()) {
-        return std::make_unique<OffscreenContext>(backend, std::move(platform));
+        context = std::make_unique<OffscreenContext>(backend, std::move(platform));
+    } else {
+        context = makeWindowContext(std::move(platform), request.windows);
     }
-    return makeWindowContext(std::move(platform), request.windows);
+    giveBackCompilerMemory();  // of starting the driver
+    return context;
 }
 
 }  // namespace

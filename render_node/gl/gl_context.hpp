@@ -67,10 +67,13 @@ public:
     [[nodiscard]] virtual std::string swapLock() const { return "none"; }
     /// How many frames from the start a hardware barrier needs to settle: they do not count in the skew.
     [[nodiscard]] virtual int framesToIgnore() const { return 0; }
+    /// Of the windows' own back buffers, at the least [byte].
+    [[nodiscard]] virtual std::int64_t frameBufferBytes() const { return 0; }
 
 protected:
     /// Waits for GL; now and then, the first time after the first frame, gives back what compiling shaders has left.
     void finishFrame();
+    [[nodiscard]] std::uint64_t framesFinished() const { return frames_; }
 
 private:
     std::uint64_t frames_ = 0;

@@ -4,6 +4,8 @@
 #include <array>
 #include <stdexcept>
 
+#include "render_node/gl/compiler_memory.hpp"
+
 namespace render_node {
 namespace {
 
@@ -69,6 +71,13 @@ GlProgram::GlProgram(const ShaderSource& vertex, const ShaderSource& light, cons
         glGetProgramInfoLog(program_.id(), static_cast<GLsizei>(log.size()), nullptr, log.data());
         throw std::runtime_error("render_node/shaders/" + fragment.file + ": the OpenGL driver does not link it with " +
                                  vertex.file + ": " + firstLine(log.data()));
+    }
+}
+
+void GlProgram::drawn() const {
+    if (!drawn_) {
+        drawn_ = true;
+        giveBackCompilerMemory();
     }
 }
 

@@ -32,6 +32,9 @@ public:
     GlProgram(std::string_view vertexFile, std::string_view fragmentFile);
 
     void use() const { glUseProgram(program_.id()); }
+    /// To be said behind draw calls with it: software drivers compile at the first, and what that took is given back
+    /// before the next program's is added to it.
+    void drawn() const;
     // The program must be in use. A name that the shader does not have is ignored, as GL does.
     void set(const char* name, int value) const { glUniform1i(find(name), value); }
     void set(const char* name, float value) const { glUniform1f(find(name), value); }
@@ -49,6 +52,7 @@ public:
 private:
     [[nodiscard]] GLint find(const char* name) const { return glGetUniformLocation(program_.id(), name); }
     GlHandle<ProgramKind> program_;
+    mutable bool drawn_ = false;
 };
 
 }  // namespace render_node

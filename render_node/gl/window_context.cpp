@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "render_node/eye_target.hpp"
+#include "render_node/gl/compiler_memory.hpp"
 
 namespace render_node {
 namespace {
@@ -79,6 +80,13 @@ public:
     [[nodiscard]] std::vector<std::string> shortcomings() const override { return platform_->shortcomings(); }
     [[nodiscard]] std::string swapLock() const override { return platform_->swapLock(); }
     [[nodiscard]] int framesToIgnore() const override { return platform_->framesToIgnore(); }
+    [[nodiscard]] std::int64_t frameBufferBytes() const override {
+        std::int64_t bytes = 0;
+        for (std::size_t i = 0; i < windows_.size(); ++i) {
+            bytes += std::int64_t{platform_->quadBuffers(i) ? 8 : 4} * windows_[i].pixels.x * windows_[i].pixels.y;
+        }
+        return bytes;
+    }
 
 private:
     void show(std::size_t window, const std::vector<Copy>& copies) {
@@ -111,6 +119,9 @@ private:
             glEnable(GL_SCISSOR_TEST);
         }
         glFinish();
+        if (framesFinished() == 0) {
+            giveBackCompilerMemory();  // every window has a context of its own, with copying shaders of its own
+        }
     }
 
     std::unique_ptr<GlPlatform> platform_;
