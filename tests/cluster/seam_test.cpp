@@ -22,8 +22,8 @@ class Seam : public SessionTest {
 protected:
     void show(const std::string& name, const walls::Wall& wall) {
         const std::string sand = scene_.empty() ? SANDWALL_SOURCE_DIR "/scenes/dunes.toml" : scene_;
-        const Ended ended = runToEnd({"--wall", write(name + ".toml", support::wallText(wall)), "--scene", scene(),
-                                      "--device", "script:gis", "--pace", "fast", "--steps", "200", "--track", "none",
+        const Ended ended = runToEnd({"--wall", write(name + ".toml", support::wallText(wall)), "--scene", sand,
+                                      "--device", "script:gis", "--pace", "fast", "--steps", "60", "--track", "none",
                                       "--here", "--gl", "osmesa", "--out", (folder_ / name).string()},
                                      300);
         ASSERT_EQ(ended.status, 0) << ended.output;
