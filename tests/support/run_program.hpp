@@ -33,7 +33,7 @@ inline Ran runCommand(const std::string& command) {
 
 /// Runs one of our programs to its end; `arguments` are words of the shell.
 inline Ran runProgram(const std::string& name, const std::string& arguments) {
-    return runCommand(std::string(SANDWALL_BIN_DIR) + "/" + name + " " + arguments);
+    return runCommand(SANDWALL_BIN_DIR "/" + name + " " + arguments);
 }
 
 }  // namespace support
