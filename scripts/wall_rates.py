@@ -1,0 +1,162 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Measures how a whole wall keeps up, on this machine alone: 12 ranks, 24 views of 1024 x 768, drawn by the processor.
+
+Runs sessions one after another and prints a table: a still wall, digging with the first paper's tool and with one of 12
+cells, a head that moves so that every view is drawn anew, the same on 2048 x 2048 cells, and a bare redraw beside it.
+
+usage: scripts/wall_rates.py [--seconds 60]   (about six minutes; leave the machine alone meanwhile)
+"""
+
+import argparse
+import json
+import math
+import os
+import pathlib
+import re
+import resource
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+BIN = ROOT / "build" / "release" / "bin"
+WALL = ROOT / "walls" / "configs" / "tiled_3x4.toml"
+WARM_UP = 5  # s, in which shaders are compiled and ranks fall into step
+
+SCENE = """name = "{cells} cells a side, tool of {radius} cells"
+[field]
+columns = {cells}
+rows = {cells}
+width = 2.0
+[terrain]
+kind = "{kind}"
+{height}
+[material]
+talus_deg = 34
+settling_time = 0.1
+[tool]
+radius = {scene_radius}
+"""
+
+
+def scene(folder, cells, radius, kind="flat"):
+    """A scene file whose tool is `radius` cells wide."""
+    file = folder / f"{kind}_{cells}_{radius}.toml"
+    height = "height = 0.2" if kind == "flat" else ""
+    file.write_text(SCENE.format(cells=cells, radius=radius, kind=kind, height=height, scene_radius=radius * 2.0 / cells))
+    return file
+
+
+def circles(folder, seconds):
+    """Strokes that never end in `seconds`: rings at one half side a second, of all sizes."""
+    file = folder / "circles.strokes"
+    lines = ["speed 1", "depth 0.5", "stroke", "point 0.6 0"]
+    length, ring = 0.0, 0
+    while length < seconds:
+        radius = 0.6 - 0.04 * (ring % 13)
+        lines.append(f"arc 0 0 {radius:.2f} {radius:.2f} 0 360")
+        length += 2 * math.pi * radius
+        ring += 1
+    file.write_text("\n".join(lines) + "\n")
+    return file
+
+
+def swaying_head(folder, seconds):
+    """A head that never rests, as a trace."""
+    file = folder / "head.csv"
+    rows = ["time,x,y,z"]
+    for i in range(int(60 * seconds)):
+        t = i / 60
+        rows.append(f"{t:.4f},{0.2 * math.sin(2 * t):.5f},{1.6 + 0.03 * math.sin(3 * t):.5f},{3 + 0.1 * math.cos(t):.5f}")
+    file.write_text("\n".join(rows) + "\n")
+    return file
+
+
+def session(out, scene_file, *more):
+    """A session's summary, and the processor time that all of its processes took [s]."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    command = [ROOT / "scripts" / "sandwall", "run", "--wall", WALL, "--scene", scene_file, "--out", out, "--no-pictures", *map(str, more)]
+    ran = subprocess.run(command, capture_output=True, text=True)
+    if ran.returncode != 0:
+        sys.exit(f"{' '.join(map(str, command))}: {ran.stderr.strip() or ran.stdout.strip()}")
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return json.loads((out / "summary.json").read_text()), cpu
+
+
+def views(summary, *kinds):
+    return sum(rank["views"][kind] for rank in summary["per_rank"] for kind in kinds)
+
+
+def still_row(out, scene_file, seconds):
+    frames = int(60 * seconds)
+    summary, _ = session(out, scene_file, "--frames", frames)
+    first = 2 * summary["ranks"]
+    drawn = views(summary, "in_part", "whole") - first
+    return "settled, nothing moves", f"{drawn} of {views(summary, 'skipped', 'in_part', 'whole') - first} views drawn", \
+        f"{frames / summary['seconds']:.1f} frames a second; the first frame's {first} apart"
+
+
+def dig_row(out, scene_file, strokes, seconds, rate, what):
+    frames = int(rate * (seconds + WARM_UP))
+    summary, cpu = session(out, scene_file, "--device", f"script:{strokes}", "--refresh", rate, "--frames", frames,
+                           "--warm-up", WARM_UP * rate)
+    late = summary["late_frames"]
+    share = 100 * late / summary["frame_ms"]["count"]
+    skipped = views(summary, "skipped") / views(summary, "skipped", "in_part", "whole")
+    return (what, f"{1e3 / summary['frame_ms']['mean']:.1f} frames a second, {share:.1f} % late",
+            f"wanted {rate}; {100 * skipped:.0f} % of views not drawn; {1e3 * cpu / summary['frames']:.0f} ms of processor a frame"), summary
+
+
+def head_row(out, scene_file, head, frames, what):
+    summary, _ = session(out, scene_file, "--track", f"trace:{head}", "--pace", "fast", "--frames", frames, "--warm-up", 10)
+    whole = views(summary, "whole") / views(summary, "skipped", "in_part", "whole")
+    median = summary["frame_ms"]["p50"]
+    return (what, f"{median:.0f} ms a frame", f"{100 * whole:.0f} % of views drawn whole"), median
+
+
+def bare_redraw(scene_file):
+    """Processor time of all views drawn barely and as sand, in one process [ms]."""
+    environment = dict(os.environ, LP_NUM_THREADS="0")
+    said = subprocess.run([BIN / "wall_bench", "--wall", WALL, "--scene", scene_file], capture_output=True, text=True,
+                          check=True, env=environment).stdout
+    bare, sand = re.search(r"bare (\d+) ms, as sand (\d+) ms", said).groups()
+    return float(bare), float(sand)
+
+
+def measure(folder, seconds):
+    cores = os.cpu_count()
+    out = folder / "out"
+    strokes = circles(folder, 2 * (seconds + WARM_UP))
+    head = swaying_head(folder, 120)
+    paper, broad = scene(folder, 512, 2.56), scene(folder, 512, 12)
+    yield still_row(out, broad, min(seconds, 10))
+    yield dig_row(out, paper, strokes, seconds, 60, "digging, 512², R = 2.56 cells")[0]
+    yield dig_row(out, broad, strokes, seconds, 30, "digging, 512², R = 12 cells")[0]
+    yield dig_row(out, scene(folder, 2048, 12), strokes, min(seconds, 20), 30, "digging, 2048², R = 12 cells")[0]
+    dunes, large = scene(folder, 512, 12, "dunes"), scene(folder, 2048, 12, "dunes")
+    row, median = head_row(out, dunes, head, 60, "head moving, 512² of dunes")
+    bare, sand = bare_redraw(dunes)
+    yield row[0], row[1], f"{row[2]}; {median * cores / bare:.2f} × a bare redraw"
+    yield "a bare redraw of the same views", f"{bare / cores:.0f} ms", f"{bare:.0f} ms of processor on {cores} cores; as sand {sand / bare:.2f} ×"
+    row, large_median = head_row(out, large, head, 60, "head moving, 2048² of dunes")
+    yield row[0], row[1], f"{row[2]}; {large_median / median:.2f} × 512²"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seconds", type=float, default=60, help="of each digging session, warm-up apart (default: 60)")
+    args = parser.parse_args()
+    if not (BIN / "wall_bench").is_file():
+        print(f"{BIN}/wall_bench: not there; build the release preset first", file=sys.stderr)
+        return 2
+    print("| 12 ranks, 24 views of 1024×768 on one machine | | |\n|---|---|---|", flush=True)
+    with tempfile.TemporaryDirectory(prefix="sandwall-rates-") as folder:
+        for what, figure, beside in measure(pathlib.Path(folder), args.seconds):
+            print(f"| {what} | {figure} | {beside} |", flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
