@@ -65,11 +65,11 @@ std::vector<std::uint8_t> makeGrain(const glm::vec2& sun) {
     texels.reserve(4UL * kGrainSide * kGrainSide);
     for (int y = 0; y < kGrainSide; ++y) {
         for (int x = 0; x < kGrainSide; ++x) {
-            // Quartz of many shades; one grain in 40 is a dark mineral, one in 40 glints.
+            // Quartz of many shades; one grain in 32 is a dark mineral, one in 32 glints.
             const int kind = hashAt(x, y, 7);
-            const int odd = kind < 6 ? -40 : kind > 249 ? 30 : 0;
+            const int odd = kind < 8 ? -48 : kind > 247 ? 40 : 0;
             const int clumps = (slowNoise(x, y, 4, 5) - 128) / 10;
-            texels.push_back(toByte(128 + (hashAt(x, y, 3) - 128) / 7 + odd + clumps));
+            texels.push_back(toByte(128 + (hashAt(x, y, 3) - 128) / 6 + odd + clumps));
             const auto east = static_cast<float>(bump(x + 1, y) - bump(x - 1, y));
             const auto north = static_cast<float>(bump(x, y + 1) - bump(x, y - 1));
             texels.push_back(toByte(128 - static_cast<int>((east * towards.x + north * towards.y) / 12)));

@@ -159,15 +159,20 @@ void SandMesh::refresh(Chunk& chunk) {
     chunk.stale = false;
 }
 
-SandMesh::Drawn SandMesh::draw(const glm::dmat4& sceneToClip, bool culling) {
+SandMesh::Drawn SandMesh::draw(const glm::dmat4& sceneToClip, bool culling,
+                               const std::function<void(const Box&)>& before) {
     Drawn drawn;
     int waiting = 0;  // triangles
     for (Chunk& chunk : chunks_) {
-        if (culling && !inFrustum(boxOf(chunk.vertices, chunk.heights), sceneToClip)) {
+        const Box box = boxOf(chunk.vertices, chunk.heights);
+        if (culling && !inFrustum(box, sceneToClip)) {
             continue;
         }
         if (chunk.stale) {
             refresh(chunk);
+        }
+        if (before) {
+            before(box);
         }
         glBindVertexArray(chunk.geometry->array.id());
         const int indices = 6 * quadsAcross_ * quadsDown_;

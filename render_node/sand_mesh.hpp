@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <glm/glm.hpp>
 #include <optional>
 #include <span>
@@ -30,8 +31,9 @@ public:
     /// Takes over the heights of these cells, which must lie within the field.
     void update(const sand::HeightField& field, const sand::Rect& cells);
 
-    /// Draws the chunks that reach into the frustum; all of them when `culling` is off. The program must be in use.
-    Drawn draw(const glm::dmat4& sceneToClip, bool culling);
+    /// Draws the chunks that reach into the frustum; all of them when `culling` is off. The program must be in use, or
+    /// `before` choose one by the box of each chunk.
+    Drawn draw(const glm::dmat4& sceneToClip, bool culling, const std::function<void(const Box&)>& before = {});
 
     /// Counts the updates that changed something.
     [[nodiscard]] std::uint64_t revision() const { return revision_; }

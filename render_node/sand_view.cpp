@@ -3,13 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace render_node {
 namespace {
 
-constexpr double kToolReach = 6;     // [tool radius], beyond which light.glsl leaves the sky's light alone
-constexpr double kLowestSun = 0.05;  // lower, and the tool's shadow may reach any tile
-constexpr double kMostOfAll = 0.8;   // of a picture: a rectangle larger than that costs as much as the whole
+constexpr double kMostOfAll = 0.8;  // of a picture: a rectangle larger than that costs as much as the whole
+
+const glm::vec4 kNoTool(0, 0, 1e9, 1);  // too far away to take any light
 
 glm::vec3 toVector(const std::vector<double>& numbers) { return glm::dvec3(numbers[0], numbers[1], numbers[2]); }
 
@@ -27,8 +28,7 @@ SandView::SandView(const sand::Scene& scene, const glm::dmat4& sceneToRoom)
       look_(scene.look),
       cellSize_(static_cast<float>(scene.terrain.cellSize())),
       toolRadius_(static_cast<float>(scene.toolRadius())),
-      sandProgram_("sand.vert.glsl", "sand.frag.glsl"),
-      sideProgram_("side.vert.glsl", "sand.frag.glsl"),
+      sunlit_("sunlit.glsl"),
       woodProgram_("solid.vert.glsl", "wood.frag.glsl"),
       toolProgram_("solid.vert.glsl", "tool.frag.glsl"),
       grain_(glm::vec2(glm::normalize(toVector(look_.sunDirection)))),
@@ -48,6 +48,13 @@ void SandView::setTool(sand::ProbePoint centre, bool engaged) {
     tool_ = EyeMemory::Tool{glm::vec3(cells * double{cellSize_}), engaged};
 }
 
+void SandView::setLayers(lockstep::Layers layers) {
+    layers_ = {};
+    for (const lockstep::Layer layer : {lockstep::Layer::hillShade}) {
+        layers_.set(layer, layers.shows(layer));
+    }
+}
+
 void SandView::prepare(const GlProgram& program, const Camera& camera) const {
     program.use();
     program.set("uSceneToRoom", glm::mat4(sceneToRoom_));
@@ -55,7 +62,7 @@ void SandView::prepare(const GlProgram& program, const Camera& camera) const {
     program.set("uEye", glm::vec3(glm::inverse(sceneToRoom_) * glm::dvec4(camera.eye, 1)));
     program.set("uSun", glm::normalize(toVector(look_.sunDirection)));
     program.set("uSand", toVector(look_.sandColour));
-    program.set("uTool", tool_ ? glm::vec4(tool_->centre, toolRadius_) : glm::vec4(0));
+    program.set("uTool", tool_ && toolRadius_ > 0 ? glm::vec4(tool_->centre, toolRadius_) : kNoTool);
     program.set("uGrain", 0);
     const double metresPerUnit = glm::length(glm::dvec3(sceneToRoom_[0]));
     program.set("uGrainScale", static_cast<float>(metresPerUnit / (kGrainSide * kGrainTexel)));
@@ -89,6 +96,15 @@ void SandView::drawWithin(const PixelRect& pixels, const Camera& camera, const E
     grain_.bind(0);
 
     // Front to back as far as that is known: what is hidden is not shaded.
+    drawTool(camera, sceneToPart);
+    drawSand(camera, sceneToPart);
+    prepare(woodProgram_, camera);
+    box_.drawBoards();
+    woodProgram_.drawn();
+    glDisable(GL_SCISSOR_TEST);
+}
+
+void SandView::drawTool(const Camera& camera, const glm::dmat4& sceneToPart) const {
     if (tool_ && toolRadius_ > 0 && (!culling_ || inFrustum(ballOf(*tool_), sceneToPart))) {
         prepare(toolProgram_, camera);
         toolProgram_.set("uModel", glm::vec4(tool_->centre, toolRadius_));
@@ -96,67 +112,69 @@ void SandView::drawWithin(const PixelRect& pixels, const Camera& camera, const E
         toolMesh_.draw();
         toolProgram_.drawn();
     }
-    prepare(sandProgram_, camera);
-    sandProgram_.set("uCell", cellSize_);
-    sandProgram_.set("uCells", glm::vec2(mesh_.surface().columns(), mesh_.surface().rows()));
-    const SandMesh::Drawn drawn = mesh_.draw(sceneToPart, culling_);
-    sandProgram_.drawn();
+}
+
+void SandView::drawSand(const Camera& camera, const glm::dmat4& sceneToPart) {
+    if (layers_.shows(lockstep::Layer::hillShade) && !hillShaded_) {
+        hillShaded_.emplace("hill_shade.glsl");
+    }
+    const SandPrograms& programs = layers_.shows(lockstep::Layer::hillShade) ? *hillShaded_ : sunlit_;
+    for (const GlProgram* program : {&programs.near, &programs.far}) {
+        prepare(*program, camera);
+        program->set("uCell", cellSize_);
+        program->set("uCells", glm::vec2(mesh_.surface().columns(), mesh_.surface().rows()));
+    }
+    // A shadow finer than the mesh costs a software renderer as much again as the grains: only where there is one.
+    std::function<void(const Box&)> choose;
+    bool near = false;
+    if (tool_ && toolRadius_ > 0) {
+        choose = [&programs, &near, reach = reachOf(*tool_)](const Box& chunk) {
+            const bool within = reach.meets(chunk);
+            (within ? programs.near : programs.far).use();
+            near = near || within;
+        };
+    }
+    const SandMesh::Drawn drawn = mesh_.draw(sceneToPart, culling_, choose);
+    (near ? programs.near : programs.far).drawn();
     counts_.chunks = drawn.chunks;
     counts_.triangles = drawn.triangles;
 
-    prepare(sideProgram_, camera);
+    prepare(programs.sides, camera);
     box_.drawSides(sceneToPart, culling_);
-    sideProgram_.drawn();
-    prepare(woodProgram_, camera);
-    box_.drawBoards();
-    woodProgram_.drawn();
-    glDisable(GL_SCISSOR_TEST);
+    programs.sides.drawn();
+}
+
+ToolReach SandView::reachOf(const EyeMemory::Tool& tool) const {
+    return {glm::dvec3(tool.centre), double{toolRadius_}, glm::normalize(toVector(look_.sunDirection))};
 }
 
 /// What a tool changes, as convex hulls: itself with the sand that it dims, and its shadow.
-std::vector<std::vector<glm::dvec3>> SandView::reachOf(const EyeMemory::Tool& tool) const {
-    const double radius = toolRadius_;
-    const double cell = cellSize_;  // light is interpolated between vertices: a cell more everywhere
-    const glm::dvec3 centre = tool.centre;
+std::vector<std::vector<glm::dvec3>> SandView::hullsOf(const EyeMemory::Tool& tool) const {
+    const ToolReach reach = reachOf(tool);
     const HeightRange sand = mesh_.heightsEver();
-    // High above everything, its ball of dimmed places meets little of it, or nothing.
-    const double above = std::max(0.0, centre.z - std::max(double{sand.highest}, box_.highest()));
-    const double reach = kToolReach * radius;
-    const double wide = std::max(radius, std::sqrt(std::max(0.0, reach * reach - above * above))) + cell;
-    Box dimmed{centre - glm::dvec3(wide, wide, reach), centre + glm::dvec3(wide, wide, reach)};
-    dimmed.low.z = std::min(centre.z - radius, std::max(dimmed.low.z, double{sand.lowest})) - cell;
-    dimmed.high.z = std::max(centre.z + radius, std::min(dimmed.high.z, double{sand.highest})) + cell;
-
-    const glm::dvec3 sun = glm::normalize(toVector(look_.sunDirection));
-    const auto shadowDownTo = [&](double lowest) {
-        const double along = std::max(0.0, centre.z - lowest) / sun.z;
-        const double blurred = 1.2 * radius + 0.06 * along + cell;
-        return Box{centre - along * sun - blurred, centre - along * sun + blurred};
-    };
-    const Box start{centre - 1.2 * radius - cell, centre + 1.2 * radius + cell};
+    const double highest = std::max(double{sand.highest}, box_.highest());
     // Down to the lowest sand there has been, unless it comes out again beyond the rim: nothing stops it in the
     // shaders.
-    const Box deepest = shadowDownTo(std::min(double{sand.lowest}, box_.lowest()));
-    const Box end = box_.insideRim(deepest) ? shadowDownTo(double{sand.lowest}) : deepest;
-
+    std::vector<Box> shadow = reach.shadowDownTo(std::min(double{sand.lowest}, box_.lowest()));
+    if (box_.insideRim(shadow.back())) {
+        shadow = reach.shadowDownTo(double{sand.lowest});
+    }
     std::vector<std::vector<glm::dvec3>> hulls(2);
-    const auto add = [](std::vector<glm::dvec3>& hull, const Box& box) {
-        for (const glm::dvec3& corner : cornersOf(box)) {
+    const auto add = [this](std::vector<glm::dvec3>& hull, const Box& box) {
+        for (const glm::dvec3& corner : cornersOf(box_.withSides(box))) {
             hull.push_back(corner);
         }
     };
-    add(hulls[0], box_.withSides(dimmed));
-    add(hulls[1], box_.withSides(start));
-    add(hulls[1], box_.withSides(end));
+    add(hulls[0], reach.closeBy(double{sand.lowest}, highest));
+    std::ranges::for_each(shadow, [&](const Box& box) { add(hulls[1], box); });
     return hulls;
 }
 
 PixelRect SandView::changedPixels(const Camera& camera, glm::ivec2 size, const EyeMemory& memory) const {
     const PixelRect whole{0, 0, size.x, size.y};
     const bool toolMoved = memory.tool != tool_;
-    const bool longShadows = toolRadius_ > 0 && glm::normalize(toVector(look_.sunDirection)).z < kLowestSun;
     if (!memory.drawn || memory.roomToClip != camera.roomToClip || memory.eye != camera.eye ||
-        memory.sceneToRoom != sceneToRoom_ || (toolMoved && longShadows)) {
+        memory.sceneToRoom != sceneToRoom_ || memory.layers != layers_) {
         return whole;
     }
     const glm::dmat4 sceneToClip = camera.roomToClip * sceneToRoom_;
@@ -167,7 +185,7 @@ PixelRect SandView::changedPixels(const Camera& camera, glm::ivec2 size, const E
     if (toolMoved && toolRadius_ > 0) {
         for (const std::optional<EyeMemory::Tool>& tool : {memory.tool, tool_}) {
             if (tool) {
-                std::ranges::for_each(reachOf(*tool), add);
+                std::ranges::for_each(hullsOf(*tool), add);
             }
         }
     }
@@ -182,7 +200,7 @@ PixelRect SandView::drawIfChanged(const Camera& camera, const EyeTarget& target,
     if (!changed.empty()) {
         drawWithin(changed, camera, target);
     }
-    memory = {true, camera.roomToClip, sceneToRoom_, camera.eye, mesh_.revision(), tool_};
+    memory = {true, camera.roomToClip, sceneToRoom_, camera.eye, mesh_.revision(), tool_, layers_};
     return changed;
 }
 

@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
+#include <string_view>
 #include <vector>
 
+#include "lockstep/layer.hpp"
 #include "render_node/eye_target.hpp"
 #include "render_node/gl/gl_program.hpp"
 #include "render_node/grain_texture.hpp"
@@ -13,6 +15,7 @@
 #include "render_node/sand_box.hpp"
 #include "render_node/sand_mesh.hpp"
 #include "render_node/tool_mesh.hpp"
+#include "render_node/tool_reach.hpp"
 #include "sand/scene.hpp"
 #include "sand/step.hpp"
 
@@ -43,6 +46,18 @@ struct EyeMemory {
     glm::dvec3 eye{0};
     std::uint64_t sand = 0;  // revision
     std::optional<Tool> tool;
+    lockstep::Layers layers;  // of those that change every pixel of sand
+};
+
+/// What draws the sand in one light.
+struct SandPrograms {
+    /// `light` is a file of shaders/.
+    explicit SandPrograms(std::string_view light)
+        : far({"sand.vert.glsl", "sand.frag.glsl", light}),
+          near({"sand.vert.glsl", "near.frag.glsl", light}),
+          sides({"side.vert.glsl", "near.frag.glsl", light}) {}
+    GlProgram far, near;  // the surface, beyond the tool's reach and within
+    GlProgram sides;
 };
 
 /// The scene as a person sees it: sand, the box it lies in, and the tool.
@@ -64,6 +79,10 @@ public:
     /// Where the tool's centre is. No tool is drawn before the first call.
     void setTool(sand::ProbePoint centre, bool engaged);
 
+    /// What is shown beside the sand from now on; the statistics are not drawn here. What a layer needs of GL is made
+    /// when it is first drawn, which throws std::runtime_error when a shader does not compile.
+    void setLayers(lockstep::Layers layers);
+
     /// Clears the target and draws everything into it. Does not wait: EyeTarget::finish() does.
     void draw(const Camera& camera, const EyeTarget& target);
     /// Draws the one rectangle outside of which no pixel can differ from what `memory` says is in the target, and
@@ -79,20 +98,26 @@ public:
 
 private:
     void prepare(const GlProgram& program, const Camera& camera) const;
+    void drawTool(const Camera& camera, const glm::dmat4& sceneToPart) const;
+    void drawSand(const Camera& camera, const glm::dmat4& sceneToPart);
     void drawWithin(const PixelRect& pixels, const Camera& camera, const EyeTarget& target);
     [[nodiscard]] PixelRect changedPixels(const Camera& camera, glm::ivec2 size, const EyeMemory& memory) const;
     [[nodiscard]] Box ballOf(const EyeMemory::Tool& tool) const;
-    [[nodiscard]] std::vector<std::vector<glm::dvec3>> reachOf(const EyeMemory::Tool& tool) const;
+    [[nodiscard]] ToolReach reachOf(const EyeMemory::Tool& tool) const;
+    [[nodiscard]] std::vector<std::vector<glm::dvec3>> hullsOf(const EyeMemory::Tool& tool) const;
 
     glm::dmat4 sceneToRoom_;
     sand::Look look_;
     float cellSize_;    // [scene unit]
     float toolRadius_;  // [scene unit]
     std::optional<EyeMemory::Tool> tool_;
+    lockstep::Layers layers_;
     bool culling_ = true;
     DrawCounts counts_;
 
-    GlProgram sandProgram_, sideProgram_, woodProgram_, toolProgram_;
+    SandPrograms sunlit_;
+    std::optional<SandPrograms> hillShaded_;
+    GlProgram woodProgram_, toolProgram_;
     GrainTexture grain_;
     SandMesh mesh_;
     SandBox box_;

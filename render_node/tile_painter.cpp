@@ -37,6 +37,7 @@ TilePainter::TilePainter(const walls::Wall& wall, const walls::Tile& tile, const
 }
 
 void TilePainter::paint(sand::Terrain& terrain, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye) {
+    sand_.setLayers(view.layers);
     sand_.setSceneToRoom(glm::make_mat4(view.sceneToRoom.data()));
     sand_.update(terrain.field(), terrain.takeDamage());
     if (terrain.stepNumber() > 0) {

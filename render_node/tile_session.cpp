@@ -36,7 +36,7 @@ public:
           viewProof_(wall_.encode()),
           context_(makeContext(backend, wall_, tile_)) {
         if (message.spoiltShader == cluster.rank()) {
-            const GlProgram broken(shaderSource("sand.vert.glsl"), shaderSource("light.glsl"),
+            const GlProgram broken(shaderSource("solid.vert.glsl"), shaderSource("light.glsl"),
                                    {"sand.frag.glsl", "spoilt on purpose"});
         }
         const sand::Scene scene = sand::Scene::decode(message.scene);

@@ -2,6 +2,7 @@
 #include "render_node/gl/gl_program.hpp"
 
 #include <array>
+#include <memory>
 #include <stdexcept>
 
 #include "render_node/gl/compiler_memory.hpp"
@@ -60,8 +61,35 @@ const ShaderSource& shaderSource(std::string_view file) {
 GlProgram::GlProgram(const ShaderSource& vertex, const ShaderSource& light, const ShaderSource& fragment) {
     const Shader first(GL_VERTEX_SHADER, {&light, &vertex});
     const Shader second(GL_FRAGMENT_SHADER, {&light, &fragment});
-    for (const Shader* shader : {&first, &second}) {
-        glAttachShader(program_.id(), shader->id());
+    link(std::array{first.id(), second.id()}, vertex.file, fragment.file);
+}
+
+GlProgram::GlProgram(const ProgramFiles& files) {
+    std::vector<const ShaderSource*> parts{&shaderSource("light.glsl")};
+    if (!files.look.empty()) {
+        parts.push_back(&shaderSource(files.look));
+    }
+    const auto compile = [&](GLenum kind, std::string_view file) {
+        std::vector<const ShaderSource*> all = parts;
+        all.push_back(&shaderSource(file));
+        return std::make_unique<Shader>(kind, all);
+    };
+    std::vector<std::unique_ptr<Shader>> shaders;
+    shaders.push_back(compile(GL_VERTEX_SHADER, files.vertex));
+    if (!files.geometry.empty()) {
+        shaders.push_back(compile(GL_GEOMETRY_SHADER, files.geometry));
+    }
+    shaders.push_back(compile(GL_FRAGMENT_SHADER, files.fragment));
+    std::vector<GLuint> ids;
+    for (const auto& shader : shaders) {
+        ids.push_back(shader->id());
+    }
+    link(ids, std::string(files.vertex), std::string(files.fragment));
+}
+
+void GlProgram::link(std::span<const GLuint> shaders, const std::string& vertex, const std::string& fragment) {
+    for (const GLuint shader : shaders) {
+        glAttachShader(program_.id(), shader);
     }
     glLinkProgram(program_.id());
     GLint fine = GL_FALSE;
@@ -69,8 +97,8 @@ GlProgram::GlProgram(const ShaderSource& vertex, const ShaderSource& light, cons
     if (fine != GL_TRUE) {
         std::array<char, 1024> log{};
         glGetProgramInfoLog(program_.id(), static_cast<GLsizei>(log.size()), nullptr, log.data());
-        throw std::runtime_error("render_node/shaders/" + fragment.file + ": the OpenGL driver does not link it with " +
-                                 vertex.file + ": " + firstLine(log.data()));
+        throw std::runtime_error("render_node/shaders/" + fragment + ": the OpenGL driver does not link it with " +
+                                 vertex + ": " + firstLine(log.data()));
     }
 }
 
@@ -80,8 +108,5 @@ void GlProgram::drawn() const {
         giveBackCompilerMemory();
     }
 }
-
-GlProgram::GlProgram(std::string_view vertexFile, std::string_view fragmentFile)
-    : GlProgram(shaderSource(vertexFile), shaderSource("light.glsl"), shaderSource(fragmentFile)) {}
 
 }  // namespace render_node

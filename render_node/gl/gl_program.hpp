@@ -22,14 +22,23 @@ struct ShaderSource {
 /// Throws std::out_of_range for a file that was not embedded.
 [[nodiscard]] const ShaderSource& shaderSource(std::string_view file);
 
-/// A linked pair of shaders and its uniforms.
+/// Names of embedded files that make a program.
+struct ProgramFiles {
+    std::string_view vertex, fragment;
+    std::string_view look{};      // put before both, behind light.glsl
+    std::string_view geometry{};  // between them
+};
+
+/// Linked shaders and their uniforms.
 class GlProgram {
 public:
     /// `light` is put before both. Throws std::runtime_error, one line "render_node/shaders/FILE: message", with
     /// the first complaint of the driver's compiler.
     GlProgram(const ShaderSource& vertex, const ShaderSource& light, const ShaderSource& fragment);
-    /// From embedded files; light.glsl is put before both.
-    GlProgram(std::string_view vertexFile, std::string_view fragmentFile);
+    /// From embedded files; light.glsl is put before all. Throws as above.
+    explicit GlProgram(const ProgramFiles& files);
+    GlProgram(std::string_view vertexFile, std::string_view fragmentFile)
+        : GlProgram(ProgramFiles{vertexFile, fragmentFile}) {}
 
     void use() const { glUseProgram(program_.id()); }
     /// To be said behind draw calls with it: software drivers compile at the first, and what that took is given back
@@ -50,6 +59,7 @@ public:
     }
 
 private:
+    void link(std::span<const GLuint> shaders, const std::string& vertex, const std::string& fragment);
     [[nodiscard]] GLint find(const char* name) const { return glGetUniformLocation(program_.id(), name); }
     GlHandle<ProgramKind> program_;
     mutable bool drawn_ = false;

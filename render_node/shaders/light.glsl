@@ -2,36 +2,45 @@
 // Put before every shader. All positions and directions are the scene's; all colours are linear light.
 uniform vec3 uSun;         // towards it
 uniform vec3 uEye;
-uniform vec4 uTool;        // centre and radius; radius 0 where there is none
+uniform vec4 uTool;        // centre and radius
 uniform vec3 uSand;        // its albedo
 uniform sampler2D uGrain;  // see grain_texture.hpp
 uniform float uGrainScale; // periods of the grain per scene unit
 
 const vec3 kSunlight = vec3(1.02, 0.92, 0.76);
-const vec3 kSkylight = vec3(0.21, 0.26, 0.34);
+const vec3 kSkylight = vec3(0.20, 0.24, 0.30);
 
-// What the tool leaves of the sun (x) and of the sky (y) at a place. The penumbra widens with the distance.
-vec2 lightPastTool(vec3 place, vec3 normal) {
-    if (uTool.w <= 0.0) {
-        return vec2(1.0);
-    }
-    vec3 away = (uTool.xyz - place) / uTool.w;
-    float square = max(dot(away, away), 0.25);
+// In radii of the tool; render_node/tool_reach.cpp has the same numbers.
+const float kToolReach = 4.0;
+const float kShadowLength = 20.0;
+const vec2 kPenumbra = vec2(0.08, 0.07);
+
+// How much of the sun the tool takes: all close behind it; its shadow widens and fades with the distance, and ends.
+// Exactly 0 where there is none: what is drawn without asking equals what is drawn with it (ToolReach).
+float toolShadow(vec3 place) {
+    vec3 away = (uTool.xyz - place) / max(uTool.w, 1e-20);
     float along = dot(away, uSun);
-    float miss = sqrt(max(square - along * along, 0.0));
-    float blur = 0.12 + 0.06 * max(along, 0.0);
-    float sun = mix(1.0, smoothstep(1.0 - blur, 1.0 + blur, miss), smoothstep(-0.2, 0.2, along));
-    float facing = clamp(dot(normal, away) * inversesqrt(square), 0.0, 1.0);
-    // Nothing at all beyond six radii, so that far tiles need not be drawn again (kToolReach in sand_view.cpp).
-    float sky = 1.0 - 0.65 * facing * max(1.0 / max(square, 1.0) - 1.0 / 36.0, 0.0);
-    return vec2(sun, sky);
+    float miss = sqrt(max(dot(away, away) - along * along, 0.0));
+    float blur = kPenumbra.x + kPenumbra.y * max(along, 0.0);
+    float behind = smoothstep(-0.2, 0.2, along) * (1.0 - smoothstep(2.0, kShadowLength, along));
+    return (1.0 - smoothstep(1.0 - blur, 1.0 + blur, miss)) * behind;
 }
 
-// A rough surface under sun and sky; where little sky is seen, its own kind throws light back.
-vec3 lit(vec3 albedo, vec3 normal, float open, vec2 past) {
-    float sun = max(dot(normal, uSun), 0.0) * past.x;
-    vec3 sky = kSkylight * (0.75 + 0.25 * normal.z) * (open * past.y);
-    vec3 bounce = kSunlight * albedo * (0.35 * (1.0 - open) * past.y + 0.05);
+// How much of the light from all around the tool takes: the share of the sky that a ball hides (its solid angle by the
+// cosine), no less than a part of it beside the ball, for sand that lies up against it; 0 beyond kToolReach radii.
+float toolOcclusion(vec3 place, vec3 normal) {
+    vec3 away = (uTool.xyz - place) / max(uTool.w, 1e-20);
+    float square = max(dot(away, away), 1.0);
+    float facing = clamp(0.4 + 0.6 * dot(normal, away) * inversesqrt(square), 0.0, 1.0);
+    float near = max(1.0 / square - 1.0 / (kToolReach * kToolReach), 0.0);
+    return facing * near * (0.75 + 0.25 * near);
+}
+
+// A rough surface under a share of the sun, and the sky; where little sky is seen, its own kind throws light back.
+vec3 lit(vec3 albedo, vec3 normal, float open, float sunny) {
+    float sun = max(dot(normal, uSun), 0.0) * sunny;
+    vec3 sky = kSkylight * ((0.75 + 0.25 * normal.z) * open);
+    vec3 bounce = kSunlight * albedo * (0.35 * (1.0 - open) + 0.15 * (1.0 - normal.z) + 0.04);
     return albedo * (kSunlight * sun + sky + bounce);
 }
 
@@ -42,17 +51,6 @@ vec3 encode(vec3 linear) {
     vec3 b = sqrt(a);
     vec3 d = sqrt(b);
     return 0.662002687 * a + 0.684122060 * b - 0.323583601 * d - 0.0225411470 * c;
-}
-
-// The sRGB colour of smooth sand, and (a) how much its grains stand out: most where the sun grazes them.
-vec4 sandColour(vec3 place, vec3 normal, float open, float mottling) {
-    vec2 past = lightPastTool(place, normal);
-    // Loose, steep sand has shed its fine pale dust.
-    float steep = min((1.0 - normal.z) * 2.5, 1.0);
-    vec3 albedo = uSand * mix(vec3(1.0), vec3(0.93, 0.86, 0.78), steep) * (0.86 + 0.28 * mottling);
-    float sun = max(dot(normal, uSun), 0.0) * past.x;
-    float relief = 0.30 + 0.45 * smoothstep(0.0, 0.25, sun) * (1.0 - smoothstep(0.25, 1.0, sun));
-    return vec4(encode(lit(albedo, normal, 0.4 + 0.6 * open, past)), relief);
 }
 
 // Where the grain texture lies on the sand. Height shifts it, or steep sides would show stripes.

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sand: grains fixed to the scene, so that they do not swim with the head.
+// Sand that the tool does not reach.
 in vec4 vColour;
 in vec2 vGrainAt;
 out vec4 oColour;
 
-void main() {
-    vec4 grain = texture(uGrain, vGrainAt);
-    oColour = vec4(vColour.rgb * (0.5 + grain.r + (grain.g - 0.5) * vColour.a), 1.0);
-}
+void main() { oColour = vec4(grained(vColour, vGrainAt), 1.0); }

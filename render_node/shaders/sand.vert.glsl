@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sand's surface, lit per vertex: the mesh is fine, and a software renderer shades the pixels of small triangles
-// several times over. The position in the room is the same sum in every tile, so that tiles join.
+// several times over. Only the tool's shadow may be finer. The position in the room is the same sum in every tile, so that tiles join.
 layout(location = 0) in float aHeight;  // scene unit
 layout(location = 1) in vec2 aGrid;     // vertex column and row
 layout(location = 2) in vec2 aNormal;   // east and north
@@ -11,15 +11,22 @@ uniform mat4 uRoomToClip;
 uniform float uCell;  // scene unit
 uniform vec2 uCells;  // columns and rows of the field
 
+// The same in every program, so that what is drawn by one joins what is drawn by another.
+invariant gl_Position;
 out vec4 vColour;
 out vec2 vGrainAt;
+out vec3 vInShadow;
+out vec3 vScene;
+out vec3 vNormal;
 
 void main() {
     vec2 ground = clamp(aGrid - 0.5, vec2(0.0), uCells) * uCell;
-    vec3 place = vec3(ground, aHeight);
-    vec3 normal = vec3(aNormal, sqrt(max(1.0 - dot(aNormal, aNormal), 0.0)));
-    vColour = sandColour(place, normal, aShade.x, aShade.y);
-    vGrainAt = grainAt(place);
-    vec4 room = uSceneToRoom * vec4(place, 1.0);
+    vScene = vec3(ground, aHeight);
+    vNormal = vec3(aNormal, sqrt(max(1.0 - dot(aNormal, aNormal), 0.0)));
+    Shade shade = shadeOf(vNormal, aShade.x, aShade.y);
+    vColour = shade.colour;
+    vInShadow = shade.inShadow;
+    vGrainAt = grainAt(vScene);
+    vec4 room = uSceneToRoom * vec4(vScene, 1.0);
     gl_Position = uRoomToClip * room;
 }

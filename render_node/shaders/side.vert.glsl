@@ -8,9 +8,16 @@ uniform mat4 uRoomToClip;
 
 out vec4 vColour;
 out vec2 vGrainAt;
+out vec3 vInShadow;
+out vec3 vScene;
+out vec3 vNormal;
 
 void main() {
-    vColour = sandColour(aPosition, aNormal, 0.9, 0.5);
+    vScene = aPosition;
+    vNormal = aNormal;
+    Shade shade = shadeOf(aNormal, 0.9, 0.5);
+    vColour = shade.colour;
+    vInShadow = shade.inShadow;
     vGrainAt = grainAt(aPosition);
     vec4 room = uSceneToRoom * vec4(aPosition, 1.0);
     gl_Position = uRoomToClip * room;

@@ -9,10 +9,13 @@ void main() {
     vec3 normal = normalize(vNormal);
     vec3 view = normalize(uEye - vScene);
     vec3 mirrored = reflect(-view, normal);
-    vec3 surroundings = mix(uSand * 0.45, vec3(0.55, 0.66, 0.80), smoothstep(-0.15, 0.35, mirrored.z));
+    // Sand, darker where the ball shades it, up to a horizon of haze, and a deeper sky above.
+    vec3 sand = uSand * mix(0.62, 0.16, smoothstep(0.0, 0.9, -mirrored.z));
+    vec3 sky = mix(vec3(0.74, 0.78, 0.80), vec3(0.27, 0.40, 0.62), smoothstep(0.0, 0.8, mirrored.z));
+    vec3 surroundings = mix(sand, sky, smoothstep(-0.04, 0.08, mirrored.z));
     float fresnel = 0.06 + 0.94 * pow(1.0 - max(dot(normal, view), 0.0), 5.0);
     float glint = pow(max(dot(mirrored, uSun), 0.0), 120.0);
-    vec3 steel = surroundings * vec3(0.62, 0.64, 0.67) + lit(vec3(0.12), normal, 1.0, vec2(1.0));
-    vec3 red = lit(vec3(0.62, 0.035, 0.025), normal, 0.5 + 0.5 * normal.z, vec2(1.0)) + surroundings * fresnel * 0.6;
+    vec3 steel = surroundings * vec3(0.62, 0.64, 0.67) + lit(vec3(0.12), normal, 1.0, 1.0);
+    vec3 red = lit(vec3(0.62, 0.035, 0.025), normal, 0.5 + 0.5 * normal.z, 1.0) + surroundings * fresnel * 0.6;
     oColour = vec4(encode(mix(steel, red, uEngaged) + glint * 1.5), 1.0);
 }

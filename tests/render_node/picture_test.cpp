@@ -154,7 +154,7 @@ TEST_F(Picture, RefusesImpossibleSizes) {
 }
 
 TEST_F(Picture, NamesTheShaderThatDoesNotCompile) {
-    const auto& vertex = render_node::shaderSource("sand.vert.glsl");
+    const auto& vertex = render_node::shaderSource("solid.vert.glsl");
     const auto& light = render_node::shaderSource("light.glsl");
     try {
         const render_node::GlProgram program(vertex, light, {"broken.frag.glsl", "void main() { nonsense = 1.0; }"});

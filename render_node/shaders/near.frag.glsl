@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sand near the tool, whose shadow is finer than the mesh. Equal to sand.frag.glsl where the tool takes no light.
+in vec4 vColour;
+in vec2 vGrainAt;
+in vec3 vInShadow;
+in vec3 vScene;
+in vec3 vNormal;
+out vec4 oColour;
+
+void main() {
+    float shadow = toolShadow(vScene);
+    vec4 colour = vColour - shadow * vec4(vColour.rgb - vInShadow, 0.7 * vColour.a);
+    colour.rgb *= 1.0 - 0.62 * toolOcclusion(vScene, normalize(vNormal));
+    oColour = vec4(grained(colour, vGrainAt), 1.0);
+}
