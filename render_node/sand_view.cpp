@@ -50,7 +50,7 @@ void SandView::setTool(sand::ProbePoint centre, bool engaged) {
 
 void SandView::setLayers(lockstep::Layers layers) {
     layers_ = {};
-    for (const lockstep::Layer layer : {lockstep::Layer::hillShade}) {
+    for (const lockstep::Layer layer : {lockstep::Layer::wireframe, lockstep::Layer::hillShade}) {
         layers_.set(layer, layers.shows(layer));
     }
 }
@@ -67,6 +67,12 @@ void SandView::prepare(const GlProgram& program, const Camera& camera) const {
     const double metresPerUnit = glm::length(glm::dvec3(sceneToRoom_[0]));
     program.set("uGrainScale", static_cast<float>(metresPerUnit / (kGrainSide * kGrainTexel)));
     program.set("uModel", glm::vec4(0, 0, 0, 1));
+}
+
+void SandView::prepareSurface(const GlProgram& program, const Camera& camera) const {
+    prepare(program, camera);
+    program.set("uCell", cellSize_);
+    program.set("uCells", glm::vec2(mesh_.surface().columns(), mesh_.surface().rows()));
 }
 
 Box SandView::ballOf(const EyeMemory::Tool& tool) const {
@@ -97,7 +103,13 @@ void SandView::drawWithin(const PixelRect& pixels, const Camera& camera, const E
 
     // Front to back as far as that is known: what is hidden is not shaded.
     drawTool(camera, sceneToPart);
+    if (force_) {
+        drawForce(camera);
+    }
     drawSand(camera, sceneToPart);
+    if (layers_.shows(lockstep::Layer::wireframe)) {
+        drawWires(camera, sceneToPart);
+    }
     prepare(woodProgram_, camera);
     box_.drawBoards();
     woodProgram_.drawn();
@@ -114,16 +126,21 @@ void SandView::drawTool(const Camera& camera, const glm::dmat4& sceneToPart) con
     }
 }
 
+void SandView::drawForce(const Camera& camera) {
+    if (!forceView_) {
+        forceView_.emplace();
+    }
+    prepare(forceView_->program(), camera);
+    forceView_->draw(*force_, toolRadius_);
+}
+
 void SandView::drawSand(const Camera& camera, const glm::dmat4& sceneToPart) {
     if (layers_.shows(lockstep::Layer::hillShade) && !hillShaded_) {
         hillShaded_.emplace("hill_shade.glsl");
     }
     const SandPrograms& programs = layers_.shows(lockstep::Layer::hillShade) ? *hillShaded_ : sunlit_;
-    for (const GlProgram* program : {&programs.near, &programs.far}) {
-        prepare(*program, camera);
-        program->set("uCell", cellSize_);
-        program->set("uCells", glm::vec2(mesh_.surface().columns(), mesh_.surface().rows()));
-    }
+    prepareSurface(programs.near, camera);
+    prepareSurface(programs.far, camera);
     // A shadow finer than the mesh costs a software renderer as much again as the grains: only where there is one.
     std::function<void(const Box&)> choose;
     bool near = false;
@@ -142,6 +159,22 @@ void SandView::drawSand(const Camera& camera, const glm::dmat4& sceneToPart) {
     prepare(programs.sides, camera);
     box_.drawSides(sceneToPart, culling_);
     programs.sides.drawn();
+}
+
+void SandView::drawWires(const Camera& camera, const glm::dmat4& sceneToPart) {
+    if (!wireProgram_) {
+        wireProgram_.emplace(ProgramFiles{"sand.vert.glsl", "wire.frag.glsl", "sunlit.glsl", "wire.geom.glsl"});
+    }
+    prepareSurface(*wireProgram_, camera);
+    glDepthFunc(GL_LEQUAL);
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(-1, -1);  // a driver may compute depths a little differently behind a geometry shader
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    mesh_.draw(sceneToPart, culling_);
+    glDisable(GL_BLEND);
+    glDisable(GL_POLYGON_OFFSET_FILL);
+    glDepthFunc(GL_LESS);
 }
 
 ToolReach SandView::reachOf(const EyeMemory::Tool& tool) const {
@@ -189,6 +222,13 @@ PixelRect SandView::changedPixels(const Camera& camera, glm::ivec2 size, const E
             }
         }
     }
+    if (memory.force != force_) {
+        for (const std::optional<ForceArrow>& arrow : {memory.force, force_}) {
+            if (arrow) {
+                add(cornersOf(boxOf(*arrow, toolRadius_)));
+            }
+        }
+    }
     for (const SandDamage::Part& part : mesh_.damageSince(memory.sand)) {
         add(cornersOf(box_.withSides(part.box)));
     }
@@ -200,7 +240,7 @@ PixelRect SandView::drawIfChanged(const Camera& camera, const EyeTarget& target,
     if (!changed.empty()) {
         drawWithin(changed, camera, target);
     }
-    memory = {true, camera.roomToClip, sceneToRoom_, camera.eye, mesh_.revision(), tool_, layers_};
+    memory = {true, camera.roomToClip, sceneToRoom_, camera.eye, mesh_.revision(), tool_, force_, layers_};
     return changed;
 }
 

@@ -9,6 +9,7 @@
 
 #include "lockstep/layer.hpp"
 #include "render_node/eye_target.hpp"
+#include "render_node/force_arrow.hpp"
 #include "render_node/gl/gl_program.hpp"
 #include "render_node/grain_texture.hpp"
 #include "render_node/pixel_rect.hpp"
@@ -46,6 +47,7 @@ struct EyeMemory {
     glm::dvec3 eye{0};
     std::uint64_t sand = 0;  // revision
     std::optional<Tool> tool;
+    std::optional<ForceArrow> force;
     lockstep::Layers layers;  // of those that change every pixel of sand
 };
 
@@ -79,9 +81,11 @@ public:
     /// Where the tool's centre is. No tool is drawn before the first call.
     void setTool(sand::ProbePoint centre, bool engaged);
 
-    /// What is shown beside the sand from now on; the statistics are not drawn here. What a layer needs of GL is made
-    /// when it is first drawn, which throws std::runtime_error when a shader does not compile.
+    /// Hill-shade and wireframe; other layers are not drawn here. What a layer needs of GL is made when it is first
+    /// drawn, which throws std::runtime_error when a shader does not compile.
     void setLayers(lockstep::Layers layers);
+    /// Draws this arrow from now on, or none, as at first. Likewise.
+    void setForce(const std::optional<ForceArrow>& force) { force_ = force; }
 
     /// Clears the target and draws everything into it. Does not wait: EyeTarget::finish() does.
     void draw(const Camera& camera, const EyeTarget& target);
@@ -98,8 +102,11 @@ public:
 
 private:
     void prepare(const GlProgram& program, const Camera& camera) const;
+    void prepareSurface(const GlProgram& program, const Camera& camera) const;
     void drawTool(const Camera& camera, const glm::dmat4& sceneToPart) const;
+    void drawForce(const Camera& camera);
     void drawSand(const Camera& camera, const glm::dmat4& sceneToPart);
+    void drawWires(const Camera& camera, const glm::dmat4& sceneToPart);
     void drawWithin(const PixelRect& pixels, const Camera& camera, const EyeTarget& target);
     [[nodiscard]] PixelRect changedPixels(const Camera& camera, glm::ivec2 size, const EyeMemory& memory) const;
     [[nodiscard]] Box ballOf(const EyeMemory::Tool& tool) const;
@@ -111,12 +118,15 @@ private:
     float cellSize_;    // [scene unit]
     float toolRadius_;  // [scene unit]
     std::optional<EyeMemory::Tool> tool_;
+    std::optional<ForceArrow> force_;
     lockstep::Layers layers_;
     bool culling_ = true;
     DrawCounts counts_;
 
     SandPrograms sunlit_;
-    std::optional<SandPrograms> hillShaded_;
+    std::optional<SandPrograms> hillShaded_;  // since the layer was first drawn, as those below
+    std::optional<GlProgram> wireProgram_;
+    std::optional<ForceArrowView> forceView_;
     GlProgram woodProgram_, toolProgram_;
     GrainTexture grain_;
     SandMesh mesh_;

@@ -27,6 +27,7 @@ TilePainter::TilePainter(const walls::Wall& wall, const walls::Tile& tile, const
     : wall_(wall),
       tile_(tile),
       host_(std::move(host)),
+      forceConstants_(scene.force),
       sand_(scene, glm::dmat4(1)),
       memories_(walls::eyesOf(wall.stereo).size()),
       composer_(wall.stereo, tile),
@@ -43,6 +44,12 @@ void TilePainter::paint(sand::Terrain& terrain, const lockstep::ViewState& view,
     if (terrain.stepNumber() > 0) {
         sand_.setTool(terrain.probe(), terrain.engaged());
     }
+    if (!view.layers.shows(lockstep::Layer::force)) {
+        force_.reset();
+    } else if (!force_) {
+        force_.emplace(forceConstants_);
+    }
+    sand_.setForce(force_ ? force_->arrow(terrain) : std::nullopt);
     const std::size_t shownEye = frame % targets_.size();
     const EyeRange range = oneEye ? EyeRange{shownEye, shownEye + 1} : EyeRange{0, targets_.size()};
     const auto pattern = static_cast<lockstep::Pattern>(view.pattern);

@@ -13,6 +13,7 @@
 #include "render_node/sand_view.hpp"
 #include "render_node/stereo_composer.hpp"
 #include "render_node/test_pattern.hpp"
+#include "render_node/tool_force.hpp"
 #include "sand/terrain.hpp"
 #include "walls/wall.hpp"
 
@@ -59,7 +60,9 @@ private:
     const walls::Wall& wall_;
     const walls::Tile& tile_;
     std::string host_;
+    sand::ForceConstants forceConstants_;
     SandView sand_;
+    std::optional<ToolForce> force_;  // while its layer is shown
     std::vector<EyeTarget> targets_;
     std::vector<EyeMemory> memories_;  // what each target shows already
     StereoComposer composer_;

@@ -6,10 +6,12 @@
 #include <memory>
 
 #include "render_node/gl/gl_context.hpp"
+#include "render_node/tool_force.hpp"
 #include "wall_painter.hpp"
 
 namespace {
 
+using lockstep::Layer;
 using render_node::EyeTarget;
 using render_node::PixelRect;
 using render_node::SandView;
@@ -57,6 +59,21 @@ struct Twice {
         : screen(tile.screen), eye(shown), inParts(tile.pixels.x, tile.pixels.y), whole(tile.pixels.x, tile.pixels.y) {}
 };
 
+/// What a step's frame shows beside the sand.
+struct Shown {
+    lockstep::Layers layers;
+    std::optional<render_node::ForceArrow> force;
+};
+
+using LayersAt = lockstep::Layers (*)(int step);
+lockstep::Layers noLayers(int) { return {}; }
+template <Layer... layers>
+lockstep::Layers always(int) {
+    lockstep::Layers shown;
+    (shown.set(layers, true), ...);
+    return shown;
+}
+
 struct Tally {
     int skipped = 0, inPart = 0, whole = 0;
     double pixels = 0, all = 0;
@@ -97,17 +114,19 @@ protected:
 
     /// Another view of the same scene that has taken over the sand at once shows the same.
     static void checkAgainstFreshView(const sand::Scene& scene, const sand::Terrain& terrain,
-                                      const glm::dmat4& sceneToRoom, const render_node::Camera& camera,
-                                      const Twice& twice) {
+                                      const glm::dmat4& sceneToRoom, const Shown& shown,
+                                      const render_node::Camera& camera, const Twice& twice) {
         SandView fresh(scene, sceneToRoom);
         fresh.update(terrain.field(), terrain.field().bounds());
         fresh.setTool(terrain.probe(), terrain.engaged());
+        fresh.setLayers(shown.layers);
+        fresh.setForce(shown.force);
         ASSERT_TRUE(sample::draw(fresh, camera, twice.whole) == twice.before);
     }
 
     /// The whole session on these tiles of a wall, counted from 0. With `headMoves` the viewer moves every 23 steps.
     static Tally play(const std::string& name, int smaller, const std::vector<std::size_t>& tiles, sand::Rim rim,
-                      bool headMoves, walls::Stereo stereo) {
+                      bool headMoves, walls::Stereo stereo, LayersAt layersAt = noLayers) {
         walls::Wall wall = sample::reduced(walls::loadWall(sample::wallFolder() / (name + ".toml")), smaller);
         const sand::Scene scene = sessionScene(rim);
         sand::Terrain terrain(scene);
@@ -123,10 +142,15 @@ protected:
         }
         walls::Viewer viewer = wall.viewer;
         Tally tally;
+        render_node::ToolForce force(scene.force);
         for (int i = 0; i < kSteps; ++i) {
             terrain.apply(stepOf(scene, i));
             view.update(terrain.field(), terrain.takeDamage());
             view.setTool(terrain.probe(), terrain.engaged());
+            Shown shown{layersAt(i), force.arrow(terrain)};
+            shown.force = shown.layers.shows(Layer::force) ? shown.force : std::nullopt;
+            view.setLayers(shown.layers);
+            view.setForce(shown.force);
             if (headMoves && i % 23 == 22) {
                 viewer.eye += glm::dvec3(0.03, -0.02, 0.01);
             }
@@ -140,7 +164,7 @@ protected:
             if (i % 40 == 39) {
                 const glm::dvec3 position = walls::eyePosition(viewer, eyes[0].eye);
                 const auto seen = walls::viewOf(eyes[0].screen, position, wall.clip.near, wall.clip.far);
-                checkAgainstFreshView(scene, terrain, sceneToRoom, {seen.viewProjection, position}, eyes[0]);
+                checkAgainstFreshView(scene, terrain, sceneToRoom, shown, {seen.viewProjection, position}, eyes[0]);
             }
         }
         std::printf("%s: %d views skipped, %d drawn in part, %d whole; %.1f %% of the pixels\n", name.c_str(),
@@ -171,6 +195,42 @@ TEST_F(Redraw, UnderAMovingHeadIsEqualToTheWhole) {
 TEST_F(Redraw, OfACaveAroundTheViewerIsEqualToTheWhole) {
     const Tally tally = play("flex_cave", 8, {1, 3}, sand::Rim::open, true, walls::Stereo::active);
     EXPECT_GT(tally.inPart, kSteps);
+}
+
+TEST_F(Redraw, WithAWireframeIsEqualToTheWhole) {
+    const Tally tally =
+        play("tiled_3x4", 8, {10}, sand::Rim::open, false, walls::Stereo::passive, always<Layer::wireframe>);
+    EXPECT_GE(tally.whole, 2);
+    EXPECT_GT(tally.inPart, kSteps / 3);
+}
+
+TEST_F(Redraw, WithHillShadeIsEqualToTheWhole) {
+    const Tally tally =
+        play("tiled_3x4", 8, {10}, sand::Rim::closed, false, walls::Stereo::passive, always<Layer::hillShade>);
+    EXPECT_GE(tally.whole, 2);
+    EXPECT_GT(tally.inPart, kSteps / 3);
+}
+
+TEST_F(Redraw, WithTheForcesArrowIsEqualToTheWhole) {
+    const Tally tally = play("desktop", 8, {0}, sand::Rim::closed, false, walls::Stereo::mono, always<Layer::force>);
+    EXPECT_GE(tally.whole, 1);
+    EXPECT_GT(tally.inPart, kSteps / 3);
+}
+
+// Each layer comes and goes while the tool drags, rests and digs along the rim; two change in one frame.
+TEST_F(Redraw, WhileLayersAreSwitchedIsEqualToTheWhole) {
+    const LayersAt switched = [](int step) {
+        lockstep::Layers layers;
+        layers.set(Layer::wireframe, (step >= 10 && step < 20) || step >= 110);
+        layers.set(Layer::hillShade, (step >= 15 && step < 30) || (step >= 75 && step < 80));
+        layers.set(Layer::force, (step >= 5 && step < 40) || (step >= 95 && step < 125));
+        layers.set(Layer::statistics, step % 7 == 0);  // not the sand's affair
+        return layers;
+    };
+    const Tally tally = play("desktop", 8, {0}, sand::Rim::closed, false, walls::Stereo::mono, switched);
+    EXPECT_GE(tally.whole, 1 + 7);
+    EXPECT_GT(tally.inPart, kSteps / 3);
+    EXPECT_GT(tally.skipped, 0);
 }
 
 /// How near a change comes to an edge of the rectangle that lies within the picture [pixel].

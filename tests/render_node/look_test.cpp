@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+// What makes sand look like sand, measured in pictures of it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <memory>
+
+#include "render_node/gl/gl_context.hpp"
+#include "sample_scene.hpp"
+#include "walls/projection.hpp"
+
+namespace {
+
+using render_node::EyeTarget;
+using render_node::SandView;
+using sample::Pixels;
+
+constexpr int kWidth = 400, kHeight = 300;
+
+double luminance(const glm::ivec3& colour) { return 0.2126 * colour.r + 0.7152 * colour.g + 0.0722 * colour.b; }
+
+double at(const Pixels& pixels, int x, int y) { return luminance(sample::pixel(pixels, kWidth, x, y)); }
+
+double mean(const Pixels& pixels, int x0, int y0, int x1, int y1) {
+    double sum = 0;
+    for (int y = y0; y < y1; ++y) {
+        for (int x = x0; x < x1; ++x) {
+            sum += at(pixels, x, y);
+        }
+    }
+    return sum / ((x1 - x0) * (y1 - y0));
+}
+
+/// How far neighbouring pixels differ in some rows, root mean square.
+double roughness(const Pixels& pixels, int y0, int y1) {
+    double sum = 0;
+    for (int y = y0; y < y1; ++y) {
+        for (int x = 1; x < kWidth; ++x) {
+            sum += std::pow(at(pixels, x, y) - at(pixels, x - 1, y), 2);
+        }
+    }
+    return std::sqrt(sum / ((kWidth - 1) * (y1 - y0)));
+}
+
+/// A plane that rises to the east (1 is 45 degrees) with the given seed in its rows.
+sand::Scene slopeScene(double east, double north) {
+    sand::Scene scene = sample::flatScene(128, 128);
+    for (int row = 0; row < 128; ++row) {
+        for (int column = 0; column < 128; ++column) {
+            const double height = (column - 64) * east + (row - 64) * north;
+            scene.terrain.setHeight(column, row, static_cast<std::int32_t>(height * sand::kUnitsPerCell));
+        }
+    }
+    return scene;
+}
+
+lockstep::Layers layersOf(std::initializer_list<lockstep::Layer> shown) {
+    lockstep::Layers layers;
+    for (const lockstep::Layer layer : shown) {
+        layers.set(layer, true);
+    }
+    return layers;
+}
+
+class Look : public testing::Test {
+protected:
+    std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    EyeTarget target_{kWidth, kHeight};
+    render_node::Camera above_ = sample::camera({1, 1, 1.5}, {1, 1, 0});
+};
+
+// Sand in the plane of a screen comes out on the same pixels wherever the head is: so must its grains.
+TEST_F(Look, GrainStaysOnItsSandWhenTheHeadMoves) {
+    SandView view(sample::flatScene(128, 128), glm::dmat4(1));
+    const walls::Screen screen{{0.75, 0.8, 0}, {1.25, 0.8, 0}, {0.75, 1.175, 0}};
+    Pixels first;
+    for (const glm::dvec3 eye : {glm::dvec3(1, 1, 0.8), {1.3, 0.7, 0.6}, {0.55, 1.3, 1.1}}) {
+        const Pixels seen = sample::draw(view, {walls::viewOf(screen, eye, 0.05, 10).viewProjection, eye}, target_);
+        EXPECT_GT(roughness(seen, 0, kHeight), 4) << "no grains to see";
+        first = first.empty() ? seen : first;
+        int most = 0;
+        for (std::size_t i = 0; i < seen.size(); ++i) {
+            most = std::max(most, std::abs(int{seen[i]} - int{first[i]}));
+        }
+        EXPECT_LE(most, 3) << "from " << eye.x << ", " << eye.y << ", " << eye.z;
+    }
+}
+
+// Far sand is what a finer picture shows, averaged: no grain stands for its neighbours.
+TEST_F(Look, GrainFadesWithTheDistanceWithoutAliasing) {
+    constexpr int kFiner = 6;
+    SandView view(sample::flatScene(256, 256), glm::dmat4(1));
+    const render_node::Camera along = sample::camera({1, -0.2, 0.35}, {1, 0.8, 0});
+    const Pixels seen = sample::draw(view, along, target_);
+    const Pixels fine = sample::draw(view, along, EyeTarget(kFiner * kWidth, kFiner * kHeight));
+    Pixels averaged;
+    for (int y = 0; y < kHeight; ++y) {
+        for (int x = 0; x < kWidth; ++x) {
+            glm::ivec3 sum(0);
+            for (int i = 0; i < kFiner * kFiner; ++i) {
+                sum += sample::pixel(fine, kFiner * kWidth, kFiner * x + i % kFiner, kFiner * y + i / kFiner);
+            }
+            for (int channel = 0; channel < 3; ++channel) {
+                averaged.push_back(static_cast<std::uint8_t>(sum[channel] / (kFiner * kFiner)));
+            }
+        }
+    }
+    // Rows of far sand, clear of the box's far end, to near sand.
+    double before = 0;
+    for (const int row : {110, 150, 190, 270}) {
+        const double rough = roughness(seen, row, row + 20);
+        std::printf("rows from %d: neighbours differ by %.2f, by %.2f in truth\n", row, rough,
+                    roughness(averaged, row, row + 20));
+        EXPECT_LT(rough, roughness(averaged, row, row + 20) + 0.7) << "row " << row;
+        EXPECT_GT(rough, before) << "row " << row;
+        before = rough;
+    }
+    EXPECT_GT(before, 3);
+}
+
+TEST_F(Look, SlidSandIsDarkerAndWarmerThanLevelSand) {
+    const auto colourOf = [&](double slope) {
+        // The sun stands on the axis of slopes that rise to the north: both get the same share of it.
+        sand::Scene scene = slopeScene(0, slope);
+        scene.look.sunDirection = {0, std::sin(0.5 * std::atan(-slope)), std::cos(0.5 * std::atan(slope))};
+        SandView view(scene, glm::dmat4(1));
+        const Pixels pixels = sample::draw(view, above_, target_);
+        glm::dvec3 sum(0);
+        for (int y = 140; y < 160; ++y) {
+            for (int x = 100; x < 300; ++x) {
+                sum += glm::dvec3(sample::pixel(pixels, kWidth, x, y));
+            }
+        }
+        return sum / 4000.0;
+    };
+    const glm::dvec3 level = colourOf(0), slid = colourOf(std::tan(glm::radians(34.0)));
+    std::printf("level %.0f %.0f %.0f, slid %.0f %.0f %.0f\n", level.r, level.g, level.b, slid.r, slid.g, slid.b);
+    EXPECT_LT(slid.g, level.g - 4);
+    EXPECT_GT(slid.g, 0.8 * level.g) << "subtle it is not";
+    EXPECT_GT(slid.r / slid.b, 1.05 * level.r / level.b);
+}
+
+/// By how much the tool darkens the ground under it.
+struct Shadow {
+    double darkest = 0;
+    double softness = 0;  // pixels that are darker at all, over those that are by half of the darkest
+};
+
+TEST_F(Look, ToolsShadowIsDarkerAndTighterTheCloserItComes) {
+    sand::Scene scene = sample::flatScene(256, 256, 0.05);
+    scene.look.sunDirection = {0, 0, 1};
+    SandView view(scene, glm::dmat4(1));
+    // From beside, so that the ball hides nothing that it shades; it is in the upper half of the picture.
+    const auto beside = sample::camera({1, 0.2, 0.6}, {1, 1, 0});
+    const Pixels ground = sample::draw(view, beside, target_);
+    const auto shadowFrom = [&](double height /* [radius] */) {
+        view.setTool(sample::probeAt(scene, {1, 1, 0.05 * height}), false);
+        const Pixels seen = sample::draw(view, beside, target_);
+        std::vector<double> darker;
+        for (int y = kHeight / 2; y < kHeight; ++y) {
+            for (int x = 0; x < kWidth; ++x) {
+                darker.push_back(at(ground, x, y) - at(seen, x, y));
+            }
+        }
+        const double darkest = *std::ranges::max_element(darker);
+        const auto beyond = [&](double share) {
+            return static_cast<double>(std::ranges::count_if(darker, [&](double d) { return d > share * darkest; }));
+        };
+        const Shadow shadow{darkest, beyond(0.1) / beyond(0.5)};
+        std::printf("%4.1f radii high: darker by %.0f, softness %.2f\n", height, shadow.darkest, shadow.softness);
+        return shadow;
+    };
+    Shadow lower = shadowFrom(1.2);
+    EXPECT_GT(lower.darkest, 130);
+    lower.softness = 0;  // in touch, the sky's light that the ball takes is more than its shadow's edge
+    for (const double height : {2.5, 5.0, 10.0}) {
+        const Shadow shadow = shadowFrom(height);
+        EXPECT_LT(shadow.darkest, lower.darkest - 5);
+        EXPECT_GT(shadow.softness, lower.softness);
+        lower = shadow;
+    }
+    view.setTool(sample::probeAt(scene, {1, 1, 0.05 * 31}), false);  // above what is seen
+    EXPECT_TRUE(sample::draw(view, beside, target_) == ground) << "a shadow from 31 radii";
+}
+
+TEST_F(Look, HillShadeIsLitFromTheNorthWestWhateverTheSun) {
+    const auto shadeOf = [&](double east, double north, const std::vector<double>& sun) {
+        sand::Scene scene = slopeScene(east, north);
+        scene.look.sunDirection = sun;
+        SandView view(scene, glm::dmat4(1));
+        view.setLayers(layersOf({lockstep::Layer::hillShade}));
+        return mean(sample::draw(view, above_, target_), 180, 130, 220, 170);
+    };
+    const std::vector<double> morning{0.6, 0, 0.8};
+    const double level = shadeOf(0, 0, morning);
+    EXPECT_GT(shadeOf(0.4, -0.4, morning), level + 10) << "falls to the north-west";
+    EXPECT_LT(shadeOf(-0.4, 0.4, morning), level - 40) << "falls to the south-east";
+    EXPECT_EQ(shadeOf(0.4, -0.4, morning), shadeOf(0.4, -0.4, {-0.6, 0, 0.8}));
+    EXPECT_NEAR(shadeOf(0.4, 0.4, morning), shadeOf(-0.4, -0.4, morning), 1) << "across the light";
+}
+
+TEST_F(Look, WireframeDrawsEveryEdgeAndLeavesTheFacesAlone) {
+    SandView view(sample::flatScene(32, 32), glm::dmat4(1));
+    const Pixels without = sample::draw(view, above_, target_);
+    view.setLayers(layersOf({lockstep::Layer::wireframe}));
+    const Pixels with = sample::draw(view, above_, target_);
+    // 3.75 mm to a pixel, 62.5 mm to a cell; vertices are over the middle of cells, cells (15, 15) and (16, 16) are
+    // half a cell from the middle of the picture.
+    const auto pixelAt = [](double x, double y) {
+        return glm::ivec2(200 + static_cast<int>(std::floor((x - 1) / 0.00375)),
+                          150 - static_cast<int>(std::ceil((y - 1) / 0.00375)));
+    };
+    const auto darkening = [&](double x, double y) {
+        double most = 0;
+        for (int i = 0; i < 9; ++i) {  // an edge may run along the border of two pixels
+            const glm::ivec2 p = pixelAt(x, y) + glm::ivec2(i % 3 - 1, i / 3 - 1);
+            most = std::max(most, at(without, p.x, p.y) - at(with, p.x, p.y));
+        }
+        return most;
+    };
+    constexpr double kCell = sample::kWidth / 32;
+    for (int column = 10; column < 20; ++column) {
+        for (int row = 11; row < 19; ++row) {
+            const glm::dvec2 vertex((column + 0.5) * kCell, (row + 0.5) * kCell);
+            EXPECT_GT(darkening(vertex.x + 0.3 * kCell, vertex.y), 40) << column << ", " << row;
+            EXPECT_GT(darkening(vertex.x, vertex.y + 0.3 * kCell), 40) << column << ", " << row;
+            EXPECT_GT(darkening(vertex.x + 0.5 * kCell, vertex.y + 0.5 * kCell), 40) << "diagonals meet the middle";
+            const glm::ivec2 face = pixelAt(vertex.x + 0.5 * kCell, vertex.y + 0.22 * kCell);
+            EXPECT_EQ(at(with, face.x, face.y), at(without, face.x, face.y)) << column << ", " << row;
+        }
+    }
+}
+
+TEST_F(Look, LayersThatAreOffLeaveNoTrace) {
+    sand::Scene scene = sample::duneScene(64);
+    SandView view(scene, glm::dmat4(1));
+    const Pixels before = sample::draw(view, above_, target_);
+    view.setLayers(layersOf({lockstep::Layer::wireframe, lockstep::Layer::hillShade}));
+    view.setForce(render_node::ForceArrow{{1, 1, 0.1}, {1, 1, 0.3}, false});
+    EXPECT_FALSE(sample::draw(view, above_, target_) == before);
+    view.setLayers({});
+    view.setForce(std::nullopt);
+    EXPECT_TRUE(sample::draw(view, above_, target_) == before);
+}
+
+}  // namespace
