@@ -18,11 +18,12 @@ constexpr int kSides = 20;
 const glm::vec3 kBlue(0.04F, 0.22F, 0.85F);
 const glm::vec3 kMagenta(0.80F, 0.02F, 0.50F);
 
-/// What turns around the arrow's axis: from one ring to the next, with the normal of the face between.
+/// A circle around the arrow's axis.
 struct Ring {
     float along, radius;  // [scene unit]
 };
 
+/// The faces from one circle to the next.
 void addBand(std::vector<SolidVertex>& out, const ForceArrow& arrow, const Ring& low, const Ring& high) {
     const glm::vec3 axis = glm::normalize(arrow.to - arrow.from);
     const glm::vec3 aside = std::abs(axis.z) < 0.9F ? glm::vec3(0, 0, 1) : glm::vec3(1, 0, 0);
@@ -30,9 +31,9 @@ void addBand(std::vector<SolidVertex>& out, const ForceArrow& arrow, const Ring&
     const glm::vec3 second = glm::cross(axis, first);
     const auto at = [&](const Ring& ring, int side) {
         const float angle = glm::two_pi<float>() * static_cast<float>(side) / kSides;
-        const glm::vec3 out1 = std::cos(angle) * first + std::sin(angle) * second;
-        const glm::vec3 normal = glm::normalize((high.along - low.along) * out1 + (low.radius - high.radius) * axis);
-        return SolidVertex{arrow.from + ring.along * axis + ring.radius * out1, normal, {0, 0}};
+        const glm::vec3 outward = std::cos(angle) * first + std::sin(angle) * second;
+        const glm::vec3 normal = glm::normalize((high.along - low.along) * outward + (low.radius - high.radius) * axis);
+        return SolidVertex{arrow.from + ring.along * axis + ring.radius * outward, normal, {0, 0}};
     };
     for (int side = 0; side < kSides; ++side) {
         for (const auto& [ring, step] :

@@ -141,7 +141,7 @@ void SandView::drawSand(const Camera& camera, const glm::dmat4& sceneToPart) {
     const SandPrograms& programs = layers_.shows(lockstep::Layer::hillShade) ? *hillShaded_ : sunlit_;
     prepareSurface(programs.near, camera);
     prepareSurface(programs.far, camera);
-    // A shadow finer than the mesh costs a software renderer as much again as the grains: only where there is one.
+    // A shadow finer than the mesh takes a software renderer time for every pixel that asks: only where there is one.
     std::function<void(const Box&)> choose;
     bool near = false;
     if (tool_ && toolRadius_ > 0) {
@@ -170,7 +170,7 @@ void SandView::drawWires(const Camera& camera, const glm::dmat4& sceneToPart) {
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(-1, -1);  // a driver may compute depths a little differently behind a geometry shader
     glEnable(GL_BLEND);
-    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);  // a window may show through its alpha
     mesh_.draw(sceneToPart, culling_);
     glDisable(GL_BLEND);
     glDisable(GL_POLYGON_OFFSET_FILL);

@@ -2,13 +2,13 @@
 // Put before every shader. All positions and directions are the scene's; all colours are linear light.
 uniform vec3 uSun;         // towards it
 uniform vec3 uEye;
-uniform vec4 uTool;        // centre and radius
+uniform vec4 uTool;        // centre and radius; far away where there is none
 uniform vec3 uSand;        // its albedo
 uniform sampler2D uGrain;  // see grain_texture.hpp
 uniform float uGrainScale; // periods of the grain per scene unit
 
 const vec3 kSunlight = vec3(1.02, 0.92, 0.76);
-const vec3 kSkylight = vec3(0.20, 0.24, 0.30);
+const vec3 kSkylight = vec3(0.205, 0.235, 0.28);
 
 // In radii of the tool; render_node/tool_reach.cpp has the same numbers.
 const float kToolReach = 4.0;
@@ -18,7 +18,7 @@ const vec2 kPenumbra = vec2(0.08, 0.07);
 // How much of the sun the tool takes: all close behind it; its shadow widens and fades with the distance, and ends.
 // Exactly 0 where there is none: what is drawn without asking equals what is drawn with it (ToolReach).
 float toolShadow(vec3 place) {
-    vec3 away = (uTool.xyz - place) / max(uTool.w, 1e-20);
+    vec3 away = (uTool.xyz - place) / uTool.w;
     float along = dot(away, uSun);
     float miss = sqrt(max(dot(away, away) - along * along, 0.0));
     float blur = kPenumbra.x + kPenumbra.y * max(along, 0.0);
@@ -29,7 +29,7 @@ float toolShadow(vec3 place) {
 // How much of the light from all around the tool takes: the share of the sky that a ball hides (its solid angle by the
 // cosine), no less than a part of it beside the ball, for sand that lies up against it; 0 beyond kToolReach radii.
 float toolOcclusion(vec3 place, vec3 normal) {
-    vec3 away = (uTool.xyz - place) / max(uTool.w, 1e-20);
+    vec3 away = (uTool.xyz - place) / uTool.w;
     float square = max(dot(away, away), 1.0);
     float facing = clamp(0.4 + 0.6 * dot(normal, away) * inversesqrt(square), 0.0, 1.0);
     float near = max(1.0 / square - 1.0 / (kToolReach * kToolReach), 0.0);
