@@ -119,6 +119,7 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
     options.session.pictures = !options.noPictures;
     options.session.out = options.out;
     options.session.pattern = lockstep::parsePattern(options.pattern);
+    options.session.layers.set(lockstep::Layer::hillShade, world.scene.look.hillShade);
     for (const std::string& layer : options.layers) {
         options.session.layers.set(lockstep::parseLayer(layer), true);
     }

@@ -66,6 +66,7 @@ files::Bytes Scene::encode() const {
     if (ground != nullptr) {
         encodeCells(ground->cells(), terrain.bounds(), writer);
     }
+    writer.put(static_cast<std::uint8_t>(look.hillShade ? 1 : 0));
     return writer.take();
 }
 
@@ -93,6 +94,9 @@ Scene Scene::decode(std::span<const std::uint8_t> bytes) {
         if (scene.ground->digest() != scene.rules.ground) {
             throw files::FormatError("a scene whose ground is not that of its rules");
         }
+    }
+    if (!reader.atEnd()) {  // journals from before there was a hill-shade end here
+        scene.look.hillShade = reader.get<std::uint8_t>() != 0;
     }
     return scene;
 }

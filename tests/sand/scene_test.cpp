@@ -84,6 +84,16 @@ TEST_F(SceneFile, EsriGridErrorsNameTheGridsLine) {
     EXPECT_EQ(complaintOf("depth 3\n"), "t.asc:1: 'depth' is no key of an ESRI ASCII grid");
 }
 
+TEST_F(SceneFile, ShadedLikeAMapSurvivesItsEncodingAndOlderOnesAreNot) {
+    const sand::Scene scene = sand::loadScene(write("s.toml", kFlat + "[look]\nhill_shade = true\n"));
+    files::Bytes bytes = scene.encode();
+    EXPECT_TRUE(sand::Scene::decode(bytes).look.hillShade);
+    bytes.pop_back();  // journals from before there was a hill-shade end here
+    EXPECT_FALSE(sand::Scene::decode(bytes).look.hillShade);
+    EXPECT_EQ(complaint(kFlat + "[look]\nhill_shade = 1\n").rfind("s.toml:5: hill_shade must be", 0), 0U)
+        << complaint(kFlat + "[look]\nhill_shade = 1\n");
+}
+
 TEST_F(SceneFile, EverySceneOfTheProjectLoadsAndSurvivesItsEncoding) {
     int scenes = 0;
     for (const auto& entry : std::filesystem::directory_iterator(SANDWALL_SOURCE_DIR "/scenes")) {
