@@ -53,5 +53,6 @@ vec3 encode(vec3 linear) {
     return 0.662002687 * a + 0.684122060 * b - 0.323583601 * d - 0.0225411470 * c;
 }
 
-// Where the grain texture lies on the sand. Height shifts it, or steep sides would show stripes.
-vec2 grainAt(vec3 place) { return (place.xy + place.z * vec2(0.71, 0.53)) * uGrainScale; }
+// Where the grain texture lies on the sand: as seen from above, shifted a little by the height, or a bank that stands
+// upright for a moment would show stripes. More of it would draw out the grain of slopes.
+vec2 grainAt(vec3 place) { return (place.xy + place.z * vec2(0.20, 0.15)) * uGrainScale; }

@@ -18,7 +18,7 @@ void main() {
     Shade shade = shadeOf(aNormal, 0.9, 0.5);
     vColour = shade.colour;
     vInShadow = shade.inShadow;
-    vGrainAt = grainAt(aPosition);
+    vGrainAt = (aPosition.xy + aPosition.z * vec2(0.71, 0.53)) * uGrainScale;  // upright: see grainAt()
     vec4 room = uSceneToRoom * vec4(aPosition, 1.0);
     gl_Position = uRoomToClip * room;
 }

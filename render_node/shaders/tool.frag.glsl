@@ -11,7 +11,7 @@ void main() {
     vec3 mirrored = reflect(-view, normal);
     // Sand, darker where the ball shades it, up to a horizon of haze, and a deeper sky above.
     vec3 sand = uSand * mix(0.62, 0.16, smoothstep(0.0, 0.9, -mirrored.z));
-    vec3 sky = mix(vec3(0.74, 0.78, 0.80), vec3(0.27, 0.40, 0.62), smoothstep(0.0, 0.8, mirrored.z));
+    vec3 sky = mix(vec3(0.72, 0.74, 0.74), vec3(0.34, 0.43, 0.56), smoothstep(0.0, 0.8, mirrored.z));
     vec3 surroundings = mix(sand, sky, smoothstep(-0.04, 0.08, mirrored.z));
     float fresnel = 0.06 + 0.94 * pow(1.0 - max(dot(normal, view), 0.0), 5.0);
     float glint = pow(max(dot(mirrored, uSun), 0.0), 120.0);
