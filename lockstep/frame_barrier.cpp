@@ -2,16 +2,25 @@
 #include "lockstep/frame_barrier.hpp"
 
 #include <fmt/format.h>
-#include <sched.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <thread>
+
+#include "lockstep/patience.hpp"
 
 namespace lockstep {
 namespace {
 
 enum Tag : int { kFrameTag = 10, kRestTag, kArrivalTag, kVerdictTag };
 constexpr int kArrivalBytes = static_cast<int>(sizeof(Arrival));
+
+/// How the master ends a frame.
+struct Ending {
+    Verdict verdict = Verdict::equal;
+    std::int64_t quiet = 0;  // for so long at least no frame will begin [ns]
+};
 
 Watchdog::Role roleOf(const Cluster& cluster) {
     return cluster.isMaster()    ? Watchdog::Role::master
@@ -29,6 +38,7 @@ FrameBarrier::FrameBarrier(const Cluster& cluster, std::vector<std::string> name
       missing_(std::make_unique<std::atomic<bool>[]>(arrivals_.size() + 1)) {
     watchdog_ = std::make_unique<Watchdog>([this] { return describeWait(); }, limitSeconds, roleOf(cluster));
     cluster.startUpIsOver();
+    sleepPunctually();
 }
 
 FrameBarrier::~FrameBarrier() = default;
@@ -50,6 +60,7 @@ void FrameBarrier::awaitEach() {
     for (std::size_t rank = 1; rank < arrivals_.size(); ++rank) {
         missing_[rank] = true;
     }
+    Patience patience;
     for (std::size_t done = 1; done < arrivals_.size();) {
         int which = MPI_UNDEFINED;
         int found = 0;
@@ -58,7 +69,7 @@ void FrameBarrier::awaitEach() {
             missing_[static_cast<std::size_t>(which)] = false;
             ++done;
         } else {
-            sched_yield();  // whoever draws on this core goes first
+            patience.rest();
         }
     }
 }
@@ -72,7 +83,16 @@ void FrameBarrier::sendToAll(const void* data, std::size_t bytes, int tag) {
 }
 
 void FrameBarrier::receiveFromMaster(void* data, std::size_t bytes, int tag) const {
-    MPI_Recv(data, static_cast<int>(bytes), MPI_BYTE, kMaster, tag, cluster_.frames(), MPI_STATUS_IGNORE);
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Irecv(data, static_cast<int>(bytes), MPI_BYTE, kMaster, tag, cluster_.frames(), &request);
+    Patience patience;
+    for (int there = 0;;) {
+        MPI_Test(&request, &there, MPI_STATUS_IGNORE);
+        if (there != 0) {
+            return;
+        }
+        patience.rest();
+    }
 }
 
 FrameMessage FrameBarrier::begin(const FrameMessage& fromMaster, std::size_t& bytes) {
@@ -93,6 +113,7 @@ FrameMessage FrameBarrier::begin(const FrameMessage& fromMaster, std::size_t& by
             sendToAll(message.data() + kRoom, length - kRoom, kRestTag);
         }
     } else {
+        std::this_thread::sleep_until(std::chrono::steady_clock::time_point(std::chrono::nanoseconds(quietUntil_)));
         receiveFromMaster(packet.data(), packet.size(), kFrameTag);
         std::memcpy(&length, packet.data(), sizeof length);
         message.resize(length);
@@ -105,10 +126,10 @@ FrameMessage FrameBarrier::begin(const FrameMessage& fromMaster, std::size_t& by
     return FrameMessage::decode(message);
 }
 
-Verdict FrameBarrier::meet(const Arrival& mine) {
+Verdict FrameBarrier::meet(const Arrival& mine, std::int64_t nextFrame) {
     const Watched watched(*watchdog_);
     frame_ = mine.frame;
-    auto verdict = Verdict::equal;
+    Ending ending;
     if (cluster_.isMaster()) {
         arrivals_[kMaster] = mine;
         for (std::size_t rank = 1; rank < arrivals_.size(); ++rank) {
@@ -120,16 +141,18 @@ Verdict FrameBarrier::meet(const Arrival& mine) {
             return std::any_of(arrivals_.begin(), arrivals_.end(),
                                [&](const Arrival& arrival) { return arrival.*hash != mine.*hash; });
         };
-        verdict = differs(&Arrival::stateHash)  ? Verdict::otherSand
-                  : differs(&Arrival::viewHash) ? Verdict::otherView
-                                                : Verdict::equal;
-        sendToAll(&verdict, sizeof verdict, kVerdictTag);
+        ending.verdict = differs(&Arrival::stateHash)  ? Verdict::otherSand
+                         : differs(&Arrival::viewHash) ? Verdict::otherView
+                                                       : Verdict::equal;
+        ending.quiet = std::max<std::int64_t>(0, nextFrame - nowNs());
+        sendToAll(&ending, sizeof ending, kVerdictTag);
     } else {
         MPI_Send(&mine, kArrivalBytes, MPI_BYTE, kMaster, kArrivalTag, cluster_.arrivals());
-        receiveFromMaster(&verdict, sizeof verdict, kVerdictTag);
+        receiveFromMaster(&ending, sizeof ending, kVerdictTag);
+        quietUntil_ = nowNs() + ending.quiet;
     }
     watchdog_->startUpIsOver();
-    return verdict;
+    return ending.verdict;
 }
 
 }  // namespace lockstep

@@ -36,7 +36,8 @@ enum class Verdict : std::uint8_t {
 ///
 /// Every rank sends its Arrival, state hash and all, to the master by itself; the master compares and tells the
 /// verdict. All of it goes point to point, and the master polls: inside a broadcast or an allreduce of MPI a rank that
-/// has stopped cannot be told from those that wait for it, and would take the master with it. Main thread only.
+/// has stopped cannot be told from those that wait for it, and would take the master with it. All waiting is
+/// Patience's, so that who waits leaves the core to who draws. Main thread only.
 class FrameBarrier {
 public:
     /// Frame messages up to this size travel whole; longer ones send their rest behind [byte].
@@ -50,8 +51,9 @@ public:
     /// Collective: begins a frame. The master gives the message; everyone gets it. Sets `bytes` to its length.
     [[nodiscard]] FrameMessage begin(const FrameMessage& fromMaster, std::size_t& bytes);
 
-    /// Collective: comes to the barrier of the frame; returns when all have, with whether all hashes are equal.
-    [[nodiscard]] Verdict meet(const Arrival& mine);
+    /// Collective: comes to the barrier of the frame; returns when all have, with whether all hashes are equal. The
+    /// master says when it will begin the next frame at the earliest [ns of its clock]: the ranks sleep until then.
+    [[nodiscard]] Verdict meet(const Arrival& mine, std::int64_t nextFrame = 0);
 
     /// At the master: what the ranks said at the last barrier, by rank; its own first.
     [[nodiscard]] const std::vector<Arrival>& arrivals() const { return arrivals_; }
@@ -71,6 +73,7 @@ private:
     std::vector<MPI_Request> requests_;             // one per rank, at the master
     std::unique_ptr<std::atomic<bool>[]> missing_;  // by rank; read by the watchdog's thread
     std::atomic<std::uint64_t> frame_{0};
+    std::int64_t quietUntil_ = 0;  // [ns], at a rank: no frame begins before
     std::unique_ptr<Watchdog> watchdog_;
 };
 

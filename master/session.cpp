@@ -98,14 +98,18 @@ double Session::sessionTime() const {
                                        : static_cast<double>(nowNs() - firstSwap_) * 1e-9;
 }
 
+std::int64_t Session::nextFrame() const {
+    const bool atOnce = options_.pace == Pace::fast && !paused_;
+    return atOnce ? 0 : frameStart_ + static_cast<std::int64_t>(1e9 * framePeriod());
+}
+
 void Session::waitForFrameTime() {
     if (options_.pace == Pace::fast && !paused_) {
         return;
     }
     // From one grid of times, not from the last frame: the wall's clock must not drift with each late frame.
-    const auto period = static_cast<std::int64_t>(1e9 * framePeriod());
     const std::int64_t now = nowNs();
-    frameStart_ = std::max(frameStart_ + period, now - period);
+    frameStart_ = std::max(nextFrame(), now - static_cast<std::int64_t>(1e9 * framePeriod()));
     if (frameStart_ > now) {
         sleepNs(frameStart_ - now);
     }
@@ -192,7 +196,7 @@ bool Session::showFrame() {
     hash_ = terrain_.stateHash();
 
     const lockstep::Verdict verdict =
-        barrier_.meet({message.frame, nowNs(), lastSwap_, 0, hash_, viewProof_.hash(message.view)});
+        barrier_.meet({message.frame, nowNs(), lastSwap_, 0, hash_, viewProof_.hash(message.view)}, nextFrame());
     const std::int64_t swapped = nowNs();
     if (verdict != lockstep::Verdict::equal) {
         ++summary_.divergences;

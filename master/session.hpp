@@ -62,6 +62,7 @@ public:
 
 private:
     [[nodiscard]] lockstep::FrameMessage prepare(std::vector<haptic_bridge::TimedStep>& steps);
+    [[nodiscard]] std::int64_t nextFrame() const;  // [ns], at the earliest
     void waitForFrameTime();
     void obeyOperator();
     void obey(const std::string& line, std::optional<ControlSocket::Client> client);

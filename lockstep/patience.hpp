@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace lockstep {
+
+/// How one wait for a message is spent: MPI can only be asked whether it is there, and asking without rest would burn
+/// the core of whoever draws, or of a wall that stands still.
+///
+/// At first it yields, so that a short wait ends as soon as it can; then it sleeps, always the same share of what the
+/// wait has taken so far, so that no wait is made longer by more than that share, nor by more than a quarter of a
+/// millisecond. One wait per object; any thread.
+class Patience {
+public:
+    /// Between two looks.
+    void rest();
+
+    /// How long to sleep after having waited so long; 0: only yield. [ns]
+    [[nodiscard]] static std::int64_t sleepAfter(std::int64_t waited);
+
+private:
+    std::int64_t since_ = 0;  // [ns], of the first rest
+};
+
+/// Makes this process's sleeps end when they should: Linux adds 50 µs to each otherwise.
+void sleepPunctually();
+
+}  // namespace lockstep
