@@ -21,6 +21,13 @@ files::Bytes SessionMessage::encode() const {
         writer.put(skew->frame);
     }
     writer.put(spoiltShader);
+    writer.putVarint(slow.size());
+    for (const SlowDrawing& one : slow) {
+        writer.put(one.rank);
+        writer.put(one.milliseconds);
+        writer.put(one.frame);
+        writer.put(one.frames);
+    }
     return writer.take();
 }
 
@@ -45,6 +52,14 @@ SessionMessage SessionMessage::decode(std::span<const std::uint8_t> bytes) {
         session.skew->frame = reader.get<std::uint64_t>();
     }
     session.spoiltShader = reader.get<std::int32_t>();
+    const std::uint64_t slow = reader.getVarint();
+    for (std::uint64_t i = 0; i < slow; ++i) {
+        SlowDrawing& one = session.slow.emplace_back();
+        one.rank = reader.get<int>();
+        one.milliseconds = reader.get<std::uint32_t>();
+        one.frame = reader.get<std::uint64_t>();
+        one.frames = reader.get<std::uint64_t>();
+    }
     return session;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,15 @@ struct SkewedView {
     std::uint64_t frame = 0;
 };
 
+/// A third: one rank takes longer to draw, for some frames or from one on.
+struct SlowDrawing {
+    int rank = 0;
+    std::uint32_t milliseconds = 0;
+    std::uint64_t frame = 1;                                           // the first that is slow
+    std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();  // how many are
+    friend bool operator==(const SlowDrawing&, const SlowDrawing&) = default;
+};
+
 /// What every rank is told before the first frame. Ranks read no file: the scene and the wall come from the master.
 struct SessionMessage {
     files::Bytes scene;       // sand::Scene::encode
@@ -31,6 +41,7 @@ struct SessionMessage {
     std::optional<BitFlip> fault;
     std::optional<SkewedView> skew;
     std::int32_t spoiltShader = 0;  // the rank that is to find one of its shaders broken, for tests; 0 for none
+    std::vector<SlowDrawing> slow{};
 
     [[nodiscard]] files::Bytes encode() const;
     static SessionMessage decode(std::span<const std::uint8_t> bytes);

@@ -12,6 +12,7 @@
 #include "lockstep/build_id.hpp"
 #include "lockstep/clock_sync.hpp"
 #include "lockstep/session_message.hpp"
+#include "master/injection.hpp"
 #include "master/session.hpp"
 #include "master/start_up.hpp"
 #include "sand/scene.hpp"
@@ -27,6 +28,7 @@ struct Options {
     std::string stereo, track;  // as the wall file says when empty
     std::string pattern = "none";
     std::vector<std::string> layers;
+    std::vector<std::string> injections;
     std::string fault, skew;
     int spoiltShader = 0;
     bool noPictures = false;
@@ -129,8 +131,16 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
         options.session.tracker = tracking::Source::parse(world.wall.tracking, options.wall + ": source",
                                                           std::filesystem::path(options.wall).parent_path());
     }
-    world.message = {world.scene.encode(), world.wall.encode(), options.session.frameTimeout,
-                     std::nullopt,         std::nullopt,        options.spoiltShader};
+    world.message = {world.scene.encode(),
+                     world.wall.encode(),
+                     options.session.frameTimeout,
+                     std::nullopt,
+                     std::nullopt,
+                     options.spoiltShader,
+                     {}};
+    for (const std::string& text : options.injections) {
+        master::inject(text, world.wall.ranks(), world.message);
+    }
     if (!options.fault.empty()) {
         const lockstep::BitFlip& flip = world.message.fault.emplace(parseFault(options.fault));
         if (flip.rank < 1 || flip.rank > world.wall.ranks() || flip.column < 0 || flip.row < 0 ||
@@ -205,6 +215,7 @@ void describeOptions(CLI::App& app, Options& options) {
     app.add_flag("--no-pictures", options.noPictures, "write no pictures at the end");
     app.add_flag("--control-stdin", session.readInput,
                  "obeys lines on standard input (docs/operator.md); its end is a stop");
+    app.add_option("--inject", options.injections, "a fault on purpose, such as slow:rank=5,ms=30 (docs/operator.md)");
     app.add_option("--flip-bit", options.fault,
                    "for tests: rank=R,frame=F,column=C,row=W flips one bit of that replica");
     app.add_option("--spoil-shader", options.spoiltShader, "for tests: a shader of that rank does not compile");

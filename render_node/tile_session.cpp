@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <memory>
 #include <optional>
+#include <thread>
 #include <vector>
 
 #include "lockstep/build_id.hpp"
@@ -61,6 +63,7 @@ public:
             const std::int64_t start = nowNs();
             painter_->paint(*terrain_, frame.view, frame.frame, context_->showsEyesInTurn() && !frame.capture);
             context_->present(painter_->outputs(), frame.frame);
+            drawSlowly(frame.frame);
             const std::int64_t drawn = nowNs();
             drawMs_.add(static_cast<double>(drawn - start) * 1e-6);
             const std::uint64_t hash = terrain_->stateHash();
@@ -93,6 +96,15 @@ private:
         }
         if (const auto& skew = message_.skew; skew && skew->rank == rank && skew->frame == frame.frame) {
             frame.view.head[0] += 1;
+        }
+    }
+
+    /// A fault on purpose. It sleeps: a slow graphics card leaves the cores alone, too.
+    void drawSlowly(std::uint64_t frame) const {
+        for (const lockstep::SlowDrawing& slow : message_.slow) {
+            if (slow.rank == cluster_.rank() && frame >= slow.frame && frame - slow.frame < slow.frames) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(slow.milliseconds));
+            }
         }
     }
 
