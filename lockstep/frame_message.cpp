@@ -45,10 +45,13 @@ files::Bytes FrameMessage::encode() const {
     writer.putVarint(frame);
     view.encode(writer);
     writer.putVarint(auditTiles);
-    writer.put(static_cast<std::uint8_t>((capture ? 1 : 0) | (stop ? 2 : 0)));
+    writer.put(static_cast<std::uint8_t>((capture ? 1 : 0) | (stop ? 2 : 0) | (figures ? 4 : 0)));
     writer.putVarint(steps.size());
     for (const sand::Step& step : steps) {
         sand::encode(step, writer);
+    }
+    if (figures) {
+        figures->encode(writer);
     }
     return writer.take();
 }
@@ -65,6 +68,9 @@ FrameMessage FrameMessage::decode(std::span<const std::uint8_t> bytes) {
     const std::uint64_t steps = reader.getVarint();
     for (std::uint64_t i = 0; i < steps; ++i) {
         message.steps.push_back(sand::decodeStep(reader));
+    }
+    if ((flags & 4) != 0) {
+        message.figures = WallFigures::decode(reader);
     }
     return message;
 }

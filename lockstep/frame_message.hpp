@@ -3,10 +3,12 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "files/byte_stream.hpp"
 #include "lockstep/layer.hpp"
+#include "lockstep/wall_figures.hpp"
 #include "sand/step.hpp"
 
 namespace lockstep {
@@ -36,6 +38,7 @@ struct FrameMessage {
     bool capture = false;          // send the pictures of this frame to the master
     bool stop = false;             // the last frame
     std::vector<sand::Step> steps;
+    std::optional<WallFigures> figures;  // while Layer::statistics is shown; what they say need not agree
 
     [[nodiscard]] files::Bytes encode() const;
     /// Throws files::FormatError.

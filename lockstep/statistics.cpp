@@ -5,19 +5,14 @@
 #include <cmath>
 
 namespace lockstep {
-namespace {
-
-constexpr std::size_t kMostKept = 1 << 16;
-
-}  // namespace
 
 void Statistics::add(double value) {
     if (count_ % every_ == 0) {
-        if (kept_.size() == kMostKept) {
-            for (std::size_t i = 0; i < kMostKept / 2; ++i) {
+        if (kept_.size() == mostKept_) {
+            for (std::size_t i = 0; i < mostKept_ / 2; ++i) {
                 kept_[i] = kept_[2 * i];
             }
-            kept_.resize(kMostKept / 2);
+            kept_.resize(mostKept_ / 2);
             every_ *= 2;
         }
         kept_.push_back(value);

@@ -10,6 +10,9 @@ namespace lockstep {
 /// that a session of days needs no more memory than one of minutes; mean, deviation and extremes are of all figures.
 class Statistics {
 public:
+    /// `mostKept` figures are kept for the percentiles; it must be even.
+    explicit Statistics(std::size_t mostKept = 1 << 16) : mostKept_(mostKept) {}
+
     void add(double value);
 
     [[nodiscard]] std::size_t count() const { return count_; }
@@ -20,6 +23,7 @@ public:
     [[nodiscard]] double percentile(double share) const;
 
 private:
+    std::size_t mostKept_;
     std::size_t count_ = 0;
     double mean_ = 0;
     double squares_ = 0;  // of the differences from the mean (Welford)

@@ -63,7 +63,8 @@ Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, con
       views_(wall, scene, options_.tracker),
       viewProof_(wall.encode()),
       sequencer_(options_.server, scene, options_.pace),
-      operator_(options_.readInput) {
+      operator_(options_.readInput),
+      rankStatistics_(names_.size()) {
     if (options_.recording) {
         options_.steps = std::min(options_.steps, options_.recording->lastStep());
     } else {
@@ -145,6 +146,9 @@ lockstep::FrameMessage Session::prepare(std::vector<TimedStep>& steps) {
     for (const TimedStep& timed : steps) {
         message.steps.push_back(timed.step);
     }
+    if (message.view.layers.shows(lockstep::Layer::statistics)) {
+        message.figures = wallFigures();
+    }
     const std::uint64_t shownThen = terrain_.stepNumber() + steps.size();
     message.stop = operator_.stopAsked() || strayed_ || frame_ >= options_.frames || shownThen >= options_.steps;
     message.capture = film_.has_value() || (message.stop ? options_.pictures : !captures_.empty());
@@ -220,18 +224,23 @@ bool Session::showFrame() {
     return true;
 }
 
+lockstep::WallFigures Session::wallFigures() const {
+    const std::uint64_t agreed = rankStatistics_.frames();
+    return {lastFrameMs_, rankStatistics_.recentDrag(), agreed, summary_.divergences, rankStatistics_.lastSwapsUs()};
+}
+
 void Session::measureSwaps(std::int64_t now) {
+    // The ranks tell when they swapped the frame before this one; the first has nothing to tell.
+    rankStatistics_.add(barrier_.arrivals(), lastSwap_ != 0 && frame_ > options_.settlingFrames + 1);
     if (lastSwap_ == 0) {
         firstSwap_ = now;
         return;
     }
-    summary_.frameMs.add(milliseconds(now - lastSwap_));
-    // The ranks tell when they swapped the frame before this one; the first has nothing to tell.
-    const auto& arrivals = barrier_.arrivals();
-    const auto earlier = [](const lockstep::Arrival& a, const lockstep::Arrival& b) { return a.lastSwap < b.lastSwap; };
-    const auto [first, last] = std::minmax_element(arrivals.begin() + 1, arrivals.end(), earlier);
-    if (first->lastSwap != 0 && frame_ > options_.settlingFrames + 1) {
-        lastSkewUs_ = static_cast<double>(last->lastSwap - first->lastSwap) * 1e-3;
+    lastFrameMs_ = milliseconds(now - lastSwap_);
+    summary_.frameMs.add(lastFrameMs_);
+    const std::vector<std::uint32_t>& swaps = rankStatistics_.lastSwapsUs();
+    if (!swaps.empty()) {
+        lastSkewUs_ = *std::max_element(swaps.begin(), swaps.end());
         summary_.skewUs.add(lastSkewUs_);
     }
 }
@@ -276,11 +285,24 @@ void Session::sayProgress(bool last) {
 
 void Session::reportDisagreement(lockstep::Verdict verdict) {
     const lockstep::Watched watched(barrier_.watchdog());
-    const std::vector<std::string> lines =
-        verdict == lockstep::Verdict::otherSand
-            ? describeDivergence({frame_, terrain_.stepNumber(), *lockstep::findDivergence(cluster_, terrain_)}, names_,
-                                 options_.out / "session.journal")
-            : lockstep::describeOtherViews(barrier_.arrivals(), names_);
+    std::vector<std::string> lines;
+    std::vector<int> odd;
+    if (verdict == lockstep::Verdict::otherSand) {
+        const lockstep::Divergence divergence = *lockstep::findDivergence(cluster_, terrain_);
+        lines =
+            describeDivergence({frame_, terrain_.stepNumber(), divergence}, names_, options_.out / "session.journal");
+        for (const lockstep::Divergence::Odd& one : divergence.odd) {
+            odd.push_back(one.rank);
+        }
+    } else {
+        lines = lockstep::describeOtherViews(barrier_.arrivals(), names_);
+        for (std::size_t rank = 1; rank < names_.size(); ++rank) {
+            if (barrier_.arrivals()[rank].viewHash != barrier_.arrivals()[lockstep::kMaster].viewHash) {
+                odd.push_back(static_cast<int>(rank));
+            }
+        }
+    }
+    rankStatistics_.addOdd(odd);
     tell(lines, options_.out / "divergence.txt");
 }
 
@@ -299,6 +321,9 @@ void Session::finish() {
     }
     summary_.link = sequencer_.counters();
     summary_.ranksReports = lockstep::gatherReports(cluster_, {});
+    summary_.rankStatistics = rankStatistics_.ranks();
+    summary_.drag = rankStatistics_.drag();
+    summary_.rankNames = names_;
     summary_.masterResidentBytes = lockstep::residentBytes();
 }
 

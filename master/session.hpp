@@ -12,6 +12,7 @@
 #include "lockstep/divergence.hpp"
 #include "lockstep/frame_barrier.hpp"
 #include "lockstep/frame_message.hpp"
+#include "lockstep/rank_statistics.hpp"
 #include "lockstep/view_agreement.hpp"
 #include "master/control_socket.hpp"
 #include "master/film.hpp"
@@ -78,6 +79,7 @@ private:
     [[nodiscard]] bool showFrame();
     void applySteps(const std::vector<haptic_bridge::TimedStep>& steps);
     void compareWithRecording();
+    [[nodiscard]] lockstep::WallFigures wallFigures() const;
     void measureSwaps(std::int64_t now);
     void measureLatency(const std::vector<haptic_bridge::TimedStep>& steps, std::int64_t broadcast,
                         std::int64_t swapped);
@@ -107,6 +109,8 @@ private:
     bool paused_ = false;                          // no steps are taken
     double fps_ = 0;                               // over the last second or so
     Summary summary_;
+    lockstep::RankStatistics rankStatistics_;
+    double lastFrameMs_ = 0;
     std::uint64_t frame_ = 0;
     std::uint64_t hash_ = 0;                                      // of the state the wall shows
     std::int64_t firstSwap_ = 0, lastSwap_ = 0, frameStart_ = 0;  // [ns]

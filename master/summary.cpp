@@ -44,8 +44,19 @@ ordered_json hapticPart(const Summary& summary) {
     return part;
 }
 
+double shareOf(std::size_t count, std::uint64_t frames) {
+    return frames == 0 ? 0 : static_cast<double>(count) / static_cast<double>(frames);
+}
+
+ordered_json slowestPart(const Summary& summary, const lockstep::RankStatistics::Rank& rank) {
+    return {{"frames", rank.keptMs.count()},
+            {"share", shareOf(rank.keptMs.count(), summary.frames)},
+            {"wall_waited_ms", spread(rank.keptMs)}};
+}
+
 ordered_json rankPart(const Summary& summary, std::size_t index) {
     const lockstep::RankReport& report = summary.ranksReports[index];
+    const lockstep::RankStatistics::Rank& seen = summary.rankStatistics[index + 1];
     return {{"rank", index + 1},
             {"tile", summary.tileNames[index]},
             {"host", report.host},
@@ -53,6 +64,10 @@ ordered_json rankPart(const Summary& summary, std::size_t index) {
             {"swap_lock", report.swapLock},
             {"draw_ms", {{"p50", report.drawP50}, {"p99", report.drawP99}, {"max", report.drawMax}}},
             {"barrier_wait_ms", {{"p50", report.waitP50}, {"p99", report.waitP99}}},
+            {"slowest", slowestPart(summary, seen)},
+            {"swap_us", spread(seen.swapUs)},
+            {"frames_agreed", seen.agreed},
+            {"frames_differed", seen.differed},
             {"views",
              {{"skipped", report.viewsSkipped},
               {"in_part", report.viewsInPart},
@@ -92,6 +107,14 @@ ordered_json jsonOf(const Summary& summary) {
                                                    {"p99", report.hapticPeriodUsP99},
                                                    {"max", report.hapticPeriodUsMax}}
                                     : ordered_json{{"p50", nullptr}, {"p99", nullptr}, {"max", nullptr}};
+    if (summary.drag) {
+        json["slowest"] = {{"rank", summary.drag->rank},
+                           {"name", summary.rankNames[static_cast<std::size_t>(summary.drag->rank)]},
+                           {"share", summary.drag->share},
+                           {"wall_waited_ms", summary.drag->keptMs}};
+    } else {
+        json["slowest"] = nullptr;
+    }
     json["broadcast_bytes"] = spread(summary.broadcastBytes);
     json["haptic"] = hapticPart(summary);
     if (const auto& head = summary.tracking) {
@@ -104,6 +127,27 @@ ordered_json jsonOf(const Summary& summary) {
         json["per_rank"].push_back(rankPart(summary, i));
     }
     return json;
+}
+
+/// Empty where no rank stands out.
+std::string describeDrag(const Summary& summary) {
+    if (!summary.drag) {
+        return {};
+    }
+    const auto rank = static_cast<std::size_t>(summary.drag->rank);
+    std::string drawing;
+    if (rank >= 1 && rank <= summary.ranksReports.size()) {  // not the master, which draws nothing
+        lockstep::Statistics others;
+        for (std::size_t i = 0; i < summary.ranksReports.size(); ++i) {
+            if (i + 1 != rank) {
+                others.add(summary.ranksReports[i].drawP50);
+            }
+        }
+        drawing = fmt::format(": draws in {:.1f} ms, the others in {:.1f} ms (p50)",
+                              summary.ranksReports[rank - 1].drawP50, others.percentile(0.5));
+    }
+    return fmt::format("  slowest   {} in {:.0f} % of frames{}; the wall waited {:.1f} ms more for it\n",
+                       summary.rankNames[rank], 100 * summary.drag->share, drawing, summary.drag->keptMs);
 }
 
 }  // namespace
@@ -145,7 +189,7 @@ std::string describe(const Summary& summary) {
     }
     text += fmt::format("  ranks     slowest draws in {:.1f} ms (p50), largest holds {:.0f} MiB\n", slowest,
                         static_cast<double>(memory) / (1 << 20));
-    return text;
+    return text + describeDrag(summary);
 }
 
 }  // namespace master

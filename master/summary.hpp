@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "haptic_bridge/client.hpp"
+#include "lockstep/rank_statistics.hpp"
 #include "lockstep/session_message.hpp"
 #include "lockstep/statistics.hpp"
 #include "tracking/head_tracker.hpp"
@@ -42,7 +43,10 @@ struct Summary {
     haptic_bridge::LinkCounters link;
     std::optional<tracking::Counters> tracking;  // of the head, where it is tracked
     std::vector<lockstep::RankReport> ranksReports;
-    std::vector<std::string> tileNames;  // by rank, from 1
+    std::vector<std::string> tileNames;                          // by rank, from 1
+    std::vector<lockstep::RankStatistics::Rank> rankStatistics;  // by rank, the master's first
+    std::vector<std::string> rankNames;                          // as well, as messages speak of them
+    std::optional<lockstep::Drag> drag;                          // who kept the wall waiting, if anyone
     std::int64_t masterResidentBytes = 0;
 };
 

@@ -14,7 +14,8 @@ lockstep::FrameMessage digging() {
                                    .auditTiles = 4,
                                    .capture = true,
                                    .stop = false,
-                                   .steps = {}};
+                                   .steps = {},
+                                   .figures = {}};
     message.view.layers.set(lockstep::Layer::hillShade, true);
     for (std::uint64_t i = 0; i < 8; ++i) {
         sand::Step& step = message.steps.emplace_back();
@@ -31,20 +32,51 @@ TEST(FrameMessage, SurvivesItsEncoding) {
     EXPECT_EQ(lockstep::FrameMessage::decode(message.encode()), message);
 }
 
+lockstep::FrameMessage observed() {
+    lockstep::FrameMessage message = digging();
+    message.figures = {16.7, lockstep::Drag{5, 0.97, 30.1}, 99999, 1, {0, 131, 20571, 4}};
+    return message;
+}
+
+TEST(FrameMessage, CarriesWhatTheWallKnowsOfItself) {
+    EXPECT_EQ(lockstep::FrameMessage::decode(observed().encode()), observed());
+    lockstep::FrameMessage nobodySlow = observed();
+    nobodySlow.figures->slowest.reset();
+    EXPECT_EQ(lockstep::FrameMessage::decode(nobodySlow.encode()), nobodySlow);
+}
+
+// Two bytes for a layer bit and the number of figures would be two too many: a wall stands still most of the day.
+TEST(FrameMessage, TakesNoByteForFiguresThatNobodyAskedFor) {
+    lockstep::FrameMessage message = digging();
+    const std::size_t unobserved = message.encode().size();
+    message.figures.emplace();
+    EXPECT_GT(message.encode().size(), unobserved);
+    lockstep::FrameMessage still;
+    still.frame = 1;
+    files::ByteWriter view;
+    still.view.encode(view);
+    EXPECT_EQ(still.encode().size(), view.bytes().size() + 4) << "frame, hash tiles, flags, steps: a byte each";
+}
+
 TEST(FrameMessage, EightStepsOfDiggingTravelInOneMessage) {
     EXPECT_LE(digging().encode().size(), lockstep::FrameBarrier::kOneMessage - sizeof(std::uint32_t));
 }
 
 TEST(FrameMessage, RefusesEveryTruncation) {
-    const files::Bytes bytes = digging().encode();
+    const files::Bytes bytes = observed().encode();
     for (std::size_t length = 0; length < bytes.size(); ++length) {
         EXPECT_THROW((void)lockstep::FrameMessage::decode(std::span(bytes).first(length)), files::FormatError);
     }
 }
 
 TEST(SessionMessage, SurvivesItsEncoding) {
-    const lockstep::SessionMessage message{
-        {1, 2, 3}, {4, 5}, 12.5, lockstep::BitFlip{3, 99, 7, 8}, lockstep::SkewedView{2, 98}, 4};
+    const lockstep::SessionMessage message{{1, 2, 3},
+                                           {4, 5},
+                                           12.5,
+                                           lockstep::BitFlip{3, 99, 7, 8},
+                                           lockstep::SkewedView{2, 98},
+                                           4,
+                                           {{5, 30, 7, 9}, {1, 2}}};
     const lockstep::SessionMessage copy = lockstep::SessionMessage::decode(message.encode());
     EXPECT_EQ(copy.scene, message.scene);
     EXPECT_EQ(copy.wall, message.wall);
@@ -56,6 +88,7 @@ TEST(SessionMessage, SurvivesItsEncoding) {
     EXPECT_EQ(copy.skew->rank, 2);
     EXPECT_EQ(copy.skew->frame, 98U);
     EXPECT_EQ(copy.spoiltShader, 4);
+    EXPECT_EQ(copy.slow, message.slow);
 }
 
 }  // namespace
