@@ -41,9 +41,16 @@ void FlatPainter::addText(std::string_view text, glm::ivec2 topLeft, int dot, gl
     for (const char letter : text) {
         const auto rows = glyphOf(letter);
         for (int y = 0; y < kGlyphHeight; ++y) {
+            const auto dark = [row = rows[static_cast<std::size_t>(y)]](int x) {
+                return ((row >> (kGlyphWidth - 1 - x)) & 1) == 0;
+            };
             for (int x = 0; x < kGlyphWidth; ++x) {
-                if (((rows[static_cast<std::size_t>(y)] >> (kGlyphWidth - 1 - x)) & 1) != 0) {
-                    addBox(topLeft + glm::ivec2(x, y) * dot, {dot, dot}, colour);
+                const int from = x;
+                while (x < kGlyphWidth && !dark(x)) {
+                    ++x;
+                }
+                if (x > from) {  // dots side by side are one box
+                    addBox(topLeft + glm::ivec2(from, y) * dot, {(x - from) * dot, dot}, colour);
                 }
             }
         }

@@ -211,7 +211,7 @@ PixelRect SandView::changedPixels(const Camera& camera, glm::ivec2 size, const E
         return whole;
     }
     const glm::dmat4 sceneToClip = camera.roomToClip * sceneToRoom_;
-    PixelRect changed;
+    PixelRect changed = memory.covered;
     const auto add = [&](std::span<const glm::dvec3> hull) {
         changed = around(changed, pixelsOf(hull, sceneToClip, size));
     };
@@ -240,7 +240,7 @@ PixelRect SandView::drawIfChanged(const Camera& camera, const EyeTarget& target,
     if (!changed.empty()) {
         drawWithin(changed, camera, target);
     }
-    memory = {true, camera.roomToClip, sceneToRoom_, camera.eye, mesh_.revision(), tool_, force_, layers_};
+    memory = {true, camera.roomToClip, sceneToRoom_, camera.eye, mesh_.revision(), tool_, force_, layers_, {}};
     return changed;
 }
 

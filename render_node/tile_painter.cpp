@@ -31,13 +31,15 @@ TilePainter::TilePainter(const walls::Wall& wall, const walls::Tile& tile, const
       sand_(scene, glm::dmat4(1)),
       memories_(walls::eyesOf(wall.stereo).size()),
       composer_(wall.stereo, tile),
-      shown_(memories_.size(), lockstep::Pattern::none) {
+      shown_(memories_.size(), lockstep::Pattern::none),
+      covered_(memories_.size()) {
     for (std::size_t i = 0; i < memories_.size(); ++i) {
         targets_.emplace_back(tile.pixels.x, tile.pixels.y);
     }
 }
 
-void TilePainter::paint(sand::Terrain& terrain, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye) {
+void TilePainter::paint(sand::Terrain& terrain, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye,
+                        const TileFigures& figures) {
     sand_.setLayers(view.layers);
     sand_.setSceneToRoom(glm::make_mat4(view.sceneToRoom.data()));
     sand_.update(terrain.field(), terrain.takeDamage());
@@ -53,11 +55,39 @@ void TilePainter::paint(sand::Terrain& terrain, const lockstep::ViewState& view,
     const std::size_t shownEye = frame % targets_.size();
     const EyeRange range = oneEye ? EyeRange{shownEye, shownEye + 1} : EyeRange{0, targets_.size()};
     const auto pattern = static_cast<lockstep::Pattern>(view.pattern);
+    if (!view.layers.shows(lockstep::Layer::statistics)) {
+        overlay_.reset();
+        uncover(range);
+    } else {
+        if (!overlay_) {
+            overlay_.emplace(wall_, tile_, host_);
+        }
+        overlay_->add(figures, frame);
+    }
     const PixelRect changed =
         pattern == lockstep::Pattern::none ? paintSand(view, range) : paintPattern(pattern, frame, range);
     std::fill(shown_.begin() + static_cast<std::ptrdiff_t>(range.from),
               shown_.begin() + static_cast<std::ptrdiff_t>(range.end), pattern);
     composer_.compose(targets_, changed);
+    if (overlay_ && pattern == lockstep::Pattern::none) {
+        paintOverlay(range);
+    }
+}
+
+/// Has the sand come back where the overlay was.
+void TilePainter::uncover(EyeRange range) {
+    for (std::size_t i = range.from; i < range.end; ++i) {
+        memories_[i].covered = around(memories_[i].covered, covered_[i]);
+        covered_[i] = {};
+    }
+}
+
+void TilePainter::paintOverlay(EyeRange range) {
+    overlay_->draw(std::span<const EyeTarget>(targets_).subspan(range.from, range.end - range.from));
+    for (std::size_t i = range.from; i < range.end; ++i) {
+        covered_[i] = overlay_->pixels();
+    }
+    composer_.compose(targets_, overlay_->pixels());
 }
 
 PixelRect TilePainter::paintSand(const lockstep::ViewState& view, EyeRange range) {
@@ -82,6 +112,7 @@ PixelRect TilePainter::paintPattern(lockstep::Pattern pattern, std::uint64_t fra
         if (shown_[i] != pattern || lockstep::changesEveryFrame(pattern)) {
             patterns_->draw(pattern, walls::eyesOf(wall_.stereo)[i], frame, targets_[i]);
             memories_[i].drawn = false;  // the sand must come back whole
+            covered_[i] = {};
             changed = {0, 0, targets_[i].width(), targets_[i].height()};
         }
     }

@@ -10,6 +10,7 @@
 #include "lockstep/frame_message.hpp"
 #include "render_node/eye_target.hpp"
 #include "render_node/gl/gl_context.hpp"
+#include "render_node/overlay.hpp"
 #include "render_node/sand_view.hpp"
 #include "render_node/stereo_composer.hpp"
 #include "render_node/test_pattern.hpp"
@@ -38,15 +39,17 @@ public:
     TilePainter(const walls::Wall& wall, const walls::Tile& tile, const sand::Scene& scene, std::string host);
 
     /// Brings every eye that differs up to date with `terrain` as `view` sees it, or with its test pattern, and puts
-    /// them together; with `oneEye` only that which the frame shows, the left one in even frames. Does not wait for GL.
-    void paint(sand::Terrain& terrain, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye = false);
+    /// them together; with `oneEye` only that which the frame shows, the left one in even frames. `figures` are shown
+    /// over the sand where the view has Layer::statistics. Does not wait for GL.
+    void paint(sand::Terrain& terrain, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye = false,
+               const TileFigures& figures = {});
     /// What each output shows, in the order of tile.outputs; good until the next paint().
     [[nodiscard]] std::vector<OutputPicture> outputs() const { return composer_.shown(targets_); }
 
     /// Each eye's picture, in the order of walls::eyesOf, and behind them the output's where it is made of both.
     [[nodiscard]] std::vector<const EyeTarget*> pictures() const;
     [[nodiscard]] std::int64_t frameBufferBytes() const;
-    /// Of the sand, so far; test patterns do not count.
+    /// Of the sand, so far; test patterns and statistics do not count.
     [[nodiscard]] const ViewCounts& viewCounts() const { return counts_; }
 
 private:
@@ -56,6 +59,8 @@ private:
     // The pixels that have changed in some eye.
     [[nodiscard]] PixelRect paintSand(const lockstep::ViewState& view, EyeRange range);
     [[nodiscard]] PixelRect paintPattern(lockstep::Pattern pattern, std::uint64_t frame, EyeRange range);
+    void uncover(EyeRange range);
+    void paintOverlay(EyeRange range);
 
     const walls::Wall& wall_;
     const walls::Tile& tile_;
@@ -66,8 +71,10 @@ private:
     std::vector<EyeTarget> targets_;
     std::vector<EyeMemory> memories_;  // what each target shows already
     StereoComposer composer_;
-    std::optional<TestPatternView> patterns_;  // since one was asked for
-    std::vector<lockstep::Pattern> shown_;     // by each target
+    std::optional<TestPatternView> patterns_;   // since one was asked for
+    std::vector<lockstep::Pattern> shown_;      // by each target
+    std::optional<StatisticsOverlay> overlay_;  // while it is shown
+    std::vector<PixelRect> covered_;            // of each target, by the overlay
     ViewCounts counts_;
 };
 

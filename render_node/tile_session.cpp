@@ -55,17 +55,20 @@ public:
         const std::int64_t clockAhead = lockstep::clockAheadOfMaster(cluster_);
         lockstep::FrameBarrier barrier(cluster_, {}, message_.frameTimeout);
         std::int64_t lastSwap = 0;
+        TileFigures figures;  // of the frame before
         for (bool more = true; more;) {
             std::size_t bytes = 0;
             lockstep::FrameMessage frame = barrier.begin({}, bytes);
             applyFaults(frame);
             applySteps(frame);
             const std::int64_t start = nowNs();
-            painter_->paint(*terrain_, frame.view, frame.frame, context_->showsEyesInTurn() && !frame.capture);
+            figures.wall = std::move(frame.figures).value_or(lockstep::WallFigures{});
+            painter_->paint(*terrain_, frame.view, frame.frame, context_->showsEyesInTurn() && !frame.capture, figures);
             context_->present(painter_->outputs(), frame.frame);
             drawSlowly(frame.frame);
             const std::int64_t drawn = nowNs();
-            drawMs_.add(static_cast<double>(drawn - start) * 1e-6);
+            figures.drawMs = static_cast<double>(drawn - start) * 1e-6;
+            drawMs_.add(figures.drawMs);
             const std::uint64_t hash = terrain_->stateHash();
             const std::int64_t arrived = nowNs();
             const lockstep::Verdict verdict = barrier.meet({frame.frame, arrived - clockAhead, lastSwap, drawn - start,
@@ -73,7 +76,8 @@ public:
             // Nobody comes here before all have agreed. Off screen, to swap is to let the pictures count.
             context_->swap();
             lastSwap = nowNs() - clockAhead;
-            waitMs_.add(static_cast<double>(nowNs() - arrived) * 1e-6);
+            figures.waitMs = static_cast<double>(nowNs() - arrived) * 1e-6;
+            waitMs_.add(figures.waitMs);
             if (verdict != lockstep::Verdict::equal) {
                 leave(verdict);
                 return;
