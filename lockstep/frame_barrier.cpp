@@ -38,7 +38,7 @@ FrameBarrier::FrameBarrier(const Cluster& cluster, std::vector<std::string> name
       missing_(std::make_unique<std::atomic<bool>[]>(arrivals_.size() + 1)) {
     watchdog_ = std::make_unique<Watchdog>([this] { return describeWait(); }, limitSeconds, roleOf(cluster));
     cluster.startUpIsOver();
-    sleepPunctually();
+    wakePunctually();
 }
 
 FrameBarrier::~FrameBarrier() = default;

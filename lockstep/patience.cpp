@@ -3,6 +3,9 @@
 
 #include <sched.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -14,8 +17,19 @@ namespace lockstep {
 namespace {
 
 constexpr std::int64_t kYielding = 50'000;  // [ns]: shorter than a sleep and the waking from it
-constexpr std::int64_t kLongest = 250'000;  // [ns]
+constexpr std::int64_t kLongest = 125'000;  // [ns]
 constexpr std::int64_t kShare = 8;          // of a wait, the sleep that may follow: one eighth
+
+/// sched_attr of the kernel, which the C library of Debian 12 does not have.
+struct SliceOfTime {
+    std::uint32_t size = sizeof(SliceOfTime);
+    std::uint32_t policy = SCHED_OTHER;
+    std::uint64_t flags = 0;
+    std::int32_t nice = 0;
+    std::uint32_t priority = 0;
+    std::uint64_t runtime = 0;  // [ns]
+    std::uint64_t deadline = 0, period = 0;
+};
 
 }  // namespace
 
@@ -33,9 +47,18 @@ void Patience::rest() {
     }
 }
 
-void sleepPunctually() {
+void wakePunctually() {
     constexpr unsigned long kSlack = 1000;  // [ns]
     prctl(PR_SET_TIMERSLACK, kSlack);
+    if (sched_getscheduler(0) != SCHED_OTHER) {
+        return;  // somebody has chosen better
+    }
+    // Since Linux 6.12 a thread with shorter slices goes before one with longer ones when it wakes; older ones ignore
+    // it. Twelve ranks beside compilers that kept two cores busy: swap skew p50 170 us with it, 3200 us without.
+    SliceOfTime slice;
+    slice.nice = getpriority(PRIO_PROCESS, 0);
+    slice.runtime = 100'000;
+    syscall(SYS_sched_setattr, 0, &slice, 0);
 }
 
 }  // namespace lockstep

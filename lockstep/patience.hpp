@@ -9,8 +9,8 @@ namespace lockstep {
 /// the core of whoever draws, or of a wall that stands still.
 ///
 /// At first it yields, so that a short wait ends as soon as it can; then it sleeps, always the same share of what the
-/// wait has taken so far, so that no wait is made longer by more than that share, nor by more than a quarter of a
-/// millisecond. One wait per object; any thread.
+/// wait has taken so far, so that no wait is made longer by more than that share, nor by more than an eighth of a
+/// millisecond: swaps lie no further apart for it. One wait per object; any thread.
 class Patience {
 public:
     /// Between two looks.
@@ -23,7 +23,8 @@ private:
     std::int64_t since_ = 0;  // [ns], of the first rest
 };
 
-/// Makes this process's sleeps end when they should: Linux adds 50 µs to each otherwise.
-void sleepPunctually();
+/// Has this thread wake when its sleep ends: Linux adds 50 µs to each sleep otherwise, and newer ones let whoever
+/// computes on the core finish some milliseconds before.
+void wakePunctually();
 
 }  // namespace lockstep
