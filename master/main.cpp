@@ -209,6 +209,8 @@ void describeOptions(CLI::App& app, Options& options) {
     app.add_option("--steps", session.steps, "end when exactly this many steps have been shown")
         ->check(CLI::PositiveNumber);
     app.add_option("--frames", session.frames, "end after this many frames")->check(CLI::PositiveNumber);
+    app.add_option("--warm-up", session.settlingFrames, "frames from the start whose times do not count")
+        ->check(CLI::Range(0, 1000000));
     app.add_option("--frame-timeout", session.frameTimeout, "seconds a frame may take before the job ends")
         ->check(CLI::Range(2.0, 3600.0));
     workers::addSandThreads(app, options.sandThreads);

@@ -24,6 +24,7 @@ using lockstep::nowNs;
 constexpr std::size_t kMostStepsPerFrame = 8;  // a long catch-up is spread over frames
 constexpr std::size_t kMostStepsPerFastFrame = 4;
 constexpr double kFastPatience = 0.1;  // [s] that a fast session waits for a step before it shows a frame without
+constexpr double kLate = 1.5;         // times its period that a late frame takes at least
 constexpr double kAuditSeconds = 1.0;  // in which all of memory is hashed again, whatever the frame rate
 
 /// What a session before has left in the folder must not pass for this one's, whatever becomes of this one.
@@ -237,7 +238,11 @@ void Session::measureSwaps(std::int64_t now) {
         return;
     }
     lastFrameMs_ = milliseconds(now - lastSwap_);
-    summary_.frameMs.add(lastFrameMs_);
+    if (frame_ > options_.settlingFrames + 1) {
+        summary_.frameMs.add(lastFrameMs_);
+        const bool late = options_.pace == Pace::realtime && lastFrameMs_ > kLate * 1e3 * framePeriod();
+        summary_.lateFrames += late ? 1 : 0;
+    }
     const std::vector<std::uint32_t>& swaps = rankStatistics_.lastSwapsUs();
     if (!swaps.empty()) {
         lastSkewUs_ = *std::max_element(swaps.begin(), swaps.end());

@@ -37,7 +37,7 @@ struct SessionOptions {
     std::optional<double> refreshHz;   // frames per second; none: the wall file's
     std::uint64_t steps = kNoLimit;    // ends when exactly this many have been shown
     std::uint64_t frames = kNoLimit;   // ends after this many
-    std::uint64_t settlingFrames = 0;  // from the start, whose swap times do not count
+    std::uint64_t settlingFrames = 0;  // from the start, whose times do not count
     double frameTimeout = 30;          // [s] that a frame may take before the job ends
     bool pictures = true;
     lockstep::Pattern pattern = lockstep::Pattern::none;  // shown from the start

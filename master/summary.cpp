@@ -94,6 +94,8 @@ ordered_json jsonOf(const Summary& summary) {
     json["seconds"] = summary.seconds;
     json["fps"] = framesPerSecond(summary);
     json["frame_ms"] = spread(summary.frameMs);
+    json["frame_ms"].update({{"count", summary.frameMs.count()}, {"mean", summary.frameMs.mean()}});
+    json["late_frames"] = summary.lateFrames;
     json["skew_us"] = spread(summary.skewUs);
     json["latency_ms"] = distribution(summary.latency.wholeWay);
     json["latency_legs_ms"] = {{"to_master", distribution(summary.latency.toMaster)},

@@ -36,6 +36,7 @@ struct Summary {
     std::int64_t volumeInitial = 0, volumeFinal = 0, volumeOutflow = 0;  // [unit · cell]
     double seconds = 0;                                                  // from the first frame to the last
     lockstep::Statistics frameMs;                                        // from swap to swap
+    std::uint64_t lateFrames = 0;                                        // of those, by half a period or more
     lockstep::Statistics skewUs;                                         // spread of the swap times of one frame
     lockstep::Statistics broadcastBytes;                                 // of the frame message
     Latency latency;
