@@ -54,12 +54,17 @@ class PrintedCommands(LauncherTest):
         self.assertIn(" --stereo anaglyph-dubois --track 'opentrack:4242 origin=0,1,0' --pattern grid", master)
         self.assertEqual(node, "-n 1 sandwall-render-node --gl auto\n")
 
+    def test_every_fault_on_purpose_is_for_the_master(self):
+        master, node = self.printed(["-"], "--inject", "slow:rank=1,ms=30", "--inject", "slow:rank=1,ms=5,frame=9").split(" : ")
+        self.assertIn(" --inject slow:rank=1,ms=30 --inject slow:rank=1,ms=5,frame=9", master)
+        self.assertEqual(node, "-n 1 sandwall-render-node --gl auto\n")
+
     def test_mono_is_a_stereo_mode(self):
         self.assertEqual(self.printed(["-"], "--mono"), self.printed(["-"], "--stereo", "mono"))
 
     def test_nothing_is_said_that_was_not_asked_for(self):
         command = self.printed(["-"])
-        for option in ("--stereo", "--track", "--pattern", "--host ", "btl_tcp_if_include"):
+        for option in ("--stereo", "--track", "--pattern", "--inject", "--host ", "btl_tcp_if_include"):
             self.assertNotIn(option, command)
 
     def test_every_backend_can_be_asked_for(self):
