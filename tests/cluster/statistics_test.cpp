@@ -98,7 +98,8 @@ double processorSeconds(const std::vector<pid_t>& processes) {
     return ticks / static_cast<double>(sysconf(_SC_CLK_TCK));
 }
 
-// Ranks that wait by spinning took every idle core: two here, six on a machine of as many. It is about a tenth of one.
+// Ranks that waited by spinning took whatever was idle: 84 % of a core on a machine whose cores others kept busy, and
+// all cores of one of its own. Now it is about a tenth of one core.
 TEST_F(WallStatistics, AStillWallLeavesTheCoresIdle) {
     const auto session = start(stillWall(2, 3, {"--frames", "100000", "--no-pictures"}));
     ASSERT_TRUE(session->waitForOutput("no hand", 60)) << session->output();
@@ -113,7 +114,7 @@ TEST_F(WallStatistics, AStillWallLeavesTheCoresIdle) {
     EXPECT_EQ(session->wait(60), 0) << session->output();
     std::printf("seven processes of a still wall: %.1f %% of one core\n", 100 * share);
     EXPECT_GT(share, 0) << "measured nothing";
-    EXPECT_LT(share, 0.9);
+    EXPECT_LT(share, 0.5);
 }
 
 }  // namespace
