@@ -61,6 +61,23 @@ TEST_F(WallStatistics, AreShownInThePicturesWhenTheyAreAskedFor) {
     }
 }
 
+TEST_F(WallStatistics, ComeAndGoAtTheOperatorsWish) {
+    const auto session = start(stillWall(1, 2, {"--frames", "100000", "--no-pictures"}));
+    ASSERT_TRUE(session->waitForOutput("no hand", 60)) << session->output();
+    for (const char* words : {"capture", "show statistics", "capture", "hide statistics", "capture", "stop"}) {
+        const support::Ran ran =
+            support::runCommand(SANDWALL_SOURCE_DIR "/scripts/sandwall ctl " + out() + " " + words);
+        EXPECT_EQ(ran.status, 0) << words << ": " << ran.output;
+    }
+    EXPECT_EQ(session->wait(60), 0) << session->output();
+    const auto picture = [this](int number) {
+        return read("out/capture_00" + std::to_string(number) + "/tile_r1c2_right.png");
+    };
+    ASSERT_FALSE(picture(1).empty());
+    EXPECT_NE(picture(2), picture(1));
+    EXPECT_EQ(picture(3), picture(1)) << "hidden, they leave the sand as it was";
+}
+
 TEST_F(WallStatistics, TravelOnlyWhileTheyAreShown) {
     const Ended ended = runToEnd(stillWall(1, 2, {"--frames", "30", "--no-pictures"}));
     ASSERT_EQ(ended.status, 0) << ended.output;
