@@ -103,6 +103,23 @@ void dig(benchmark::State& state) {
 }
 BENCHMARK(dig)->ArgName("in_part")->Arg(0)->Arg(1)->Iterations(100)->Unit(benchmark::kMillisecond)->UseRealTime();
 
+/// A tile of the wall with what is shown beside the sand. Argument 0: Layers::bits().
+void layers(benchmark::State& state) {
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const sand::Scene scene = sample::duneScene(512);
+    render_node::SandView view(scene, glm::dmat4(1));
+    view.setLayers(lockstep::Layers(static_cast<std::uint8_t>(state.range(0))));
+    const render_node::EyeTarget target(1024, 768);
+    const render_node::Camera camera = sample::camera({1, 0.2, 0.9}, {1, 1, 0}, windowOf(6));
+    view.draw(camera, target);
+    target.finish();
+    for (auto _ : state) {
+        view.draw(camera, target);
+        target.finish();
+    }
+}
+BENCHMARK(layers)->ArgName("bits")->DenseRange(0, 3)->Iterations(30)->Unit(benchmark::kMillisecond)->UseRealTime();
+
 void readBack(benchmark::State& state) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     const render_node::EyeTarget target(1024, 768);
