@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one eye of one tile costs: the twelve tiles of a 3 × 4 wall, 1024 × 768 pixels each, over dunes of 512 × 512
-// cells. Set LP_NUM_THREADS to choose llvmpipe's threads (0: draw in the calling thread).
+// What one eye of one tile costs: the twelve tiles of a 3 × 4 wall, 1024 × 768 pixels each, over dunes of 512 × 512 or
+// 2048 × 2048 cells. Set LP_NUM_THREADS to choose llvmpipe's threads (0: draw in the calling thread).
 #include <benchmark/benchmark.h>
 
+#include <cmath>
 #include <string>
 
 #include "render_node/gl/gl_context.hpp"
@@ -19,10 +20,10 @@ sample::Window windowOf(int tile) {
     return {column / double{kAcross}, row / double{kDown}, (column + 1) / double{kAcross}, (row + 1) / double{kDown}};
 }
 
-/// Argument 0: whether chunks that a tile does not see are left out.
+/// Argument 0: whether chunks that a tile does not see are left out. Argument 1: cells on a side.
 void drawWall(benchmark::State& state) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
-    const sand::Scene scene = sample::duneScene(512);
+    const sand::Scene scene = sample::duneScene(static_cast<int>(state.range(1)));
     const render_node::EyeTarget target(1024, 768);
     const bool culling = state.range(0) != 0;
     // One view per tile, as on the ranks: each holds only what its tile sees.
@@ -47,13 +48,39 @@ void drawWall(benchmark::State& state) {
     }
     state.counters["chunks_per_tile"] = chunks / (kAcross * kDown);
     state.counters["geometry_kB_per_tile"] = kilobytes / (kAcross * kDown);
+    state.counters["triangles"] = view.counts().triangles;
     state.SetLabel(context->renderer());
 }
 BENCHMARK(drawWall)
-    ->ArgName("culled")
-    ->Arg(0)
-    ->Arg(1)
+    ->ArgNames({"culled", "cells"})
+    ->Args({0, 512})
+    ->Args({1, 512})
+    ->Args({1, 2048})
     ->Iterations(4 * kAcross * kDown)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+/// The head moves, so that all of a tile is drawn in every frame, and chunks come into view. Argument: cells on a side.
+void moveHead(benchmark::State& state) {
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const sand::Scene scene = sample::duneScene(static_cast<int>(state.range(0)));
+    const render_node::EyeTarget target(1024, 768);
+    render_node::SandView view(scene, glm::dmat4(1));
+    render_node::EyeMemory memory;
+    int frame = 0;
+    for (auto _ : state) {
+        const double along = 0.3 * std::sin(0.05 * ++frame);
+        view.drawIfChanged(sample::camera({1 + along, 0.2, 0.9}, {1 + along, 1, 0}, windowOf(5)), target, memory);
+        target.finish();
+    }
+    state.counters["triangles"] = view.counts().triangles;
+    state.counters["geometry_kB"] = static_cast<double>(view.geometryBytes()) / 1024;
+}
+BENCHMARK(moveHead)
+    ->ArgName("cells")
+    ->Arg(512)
+    ->Arg(2048)
+    ->Iterations(63)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
@@ -72,11 +99,12 @@ void updateDamage(benchmark::State& state) {
 }
 BENCHMARK(updateDamage)->ArgName("cells")->Arg(0)->Arg(64)->Arg(312)->Unit(benchmark::kMillisecond)->UseRealTime();
 
-/// The paper's tool digs on 512 × 512 cells under one eye of a tile that shows all of it. Argument 0: 1 draws what
-/// changed, 0 everything. The time of a step of sand is not in it.
+/// The paper's tool digs under one eye of a tile that shows all of it. Argument 0: 1 draws what changed, 0 everything.
+/// Argument 1: cells on a side. The time of a step of sand is not in it.
 void dig(benchmark::State& state) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
-    sand::Scene scene = sample::flatScene(512, 512, 0.01);
+    const int side = static_cast<int>(state.range(1));
+    sand::Scene scene = sample::flatScene(side, side, 0.01);
     sand::makeDunes({}, scene.terrain);
     sand::Terrain terrain(scene);
     render_node::SandView view(scene, glm::dmat4(1));
@@ -100,8 +128,14 @@ void dig(benchmark::State& state) {
     }
     state.counters["share_of_pixels"] = pixels / static_cast<double>(state.iterations());
     state.counters["chunks"] = view.counts().chunks;
+    state.counters["triangles"] = view.counts().triangles;
 }
-BENCHMARK(dig)->ArgName("in_part")->Arg(0)->Arg(1)->Iterations(100)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(dig)
+    ->ArgNames({"in_part", "cells"})
+    ->ArgsProduct({{0, 1}, {512, 2048}})
+    ->Iterations(100)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 /// A tile of the wall with what is shown beside the sand. Argument 0: Layers::bits().
 void layers(benchmark::State& state) {

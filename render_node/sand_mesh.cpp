@@ -11,10 +11,18 @@ namespace {
 
 constexpr int kChunk = 32;  // [quad], the shortest side but for small fields
 
-constexpr int kMostChanges = 36;  // of one update
+constexpr int kGroup = 8;                       // [chunk], the side of a group
+constexpr int kMostChanges = 36;                // of one update
+constexpr std::size_t kManyBytes = 16UL << 20;  // of vertices: then those not drawn lately are dropped
+constexpr std::uint64_t kLately = 120;          // [draw]: a second or two
 
-int chunksFor(int quads) { return std::max(1, quads / kChunk); }
-int sideFor(int quads) { return (quads + chunksFor(quads) - 1) / chunksFor(quads); }
+// Levels need sides that their strides divide; a field without any gets chunks of one size.
+int chunksFor(int quads, int coarsest) {
+    return coarsest > 0 ? (quads + kChunk - 1) / kChunk : std::max(1, quads / kChunk);
+}
+int sideFor(int quads, int coarsest) {
+    return coarsest > 0 ? kChunk : (quads + chunksFor(quads, 0) - 1) / chunksFor(quads, 0);
+}
 
 /// Writes how the shader finds a SandVertex's parts into the bound vertex array.
 void describeVertex() {
@@ -40,50 +48,45 @@ bool drawnByLlvmpipe() {
 
 }  // namespace
 
-SandMesh::SandMesh(const sand::HeightField& field)
+SandMesh::SandMesh(const sand::HeightField& field, const glm::vec3& sun, double toolRadius)
     : surface_(field),
-      across_(chunksFor(field.columns() + 1)),
-      down_(chunksFor(field.rows() + 1)),
-      quadsAcross_(sideFor(field.columns() + 1)),
-      quadsDown_(sideFor(field.rows() + 1)),
-      software_(drawnByLlvmpipe()),
-      ever_(surface_.heights({0, 0, field.columns() + 2, field.rows() + 2})) {
-    for (int y = 0; y < down_; ++y) {
-        for (int x = 0; x < across_; ++x) {
-            const sand::Rect vertices{x * quadsAcross_, y * quadsDown_, (x + 1) * quadsAcross_ + 1,
-                                      (y + 1) * quadsDown_ + 1};
-            chunks_.push_back({vertices, surface_.heights(vertices), true, {}});
-        }
+      sun_(sun),
+      coarsest_(coarsestLevel(field.columns(), field.rows(), toolRadius)),
+      across_(chunksFor(field.columns() + 1, coarsest_)),
+      down_(chunksFor(field.rows() + 1, coarsest_)),
+      quadsAcross_(sideFor(field.columns() + 1, coarsest_)),
+      quadsDown_(sideFor(field.rows() + 1, coarsest_)),
+      software_(drawnByLlvmpipe()) {
+    makeChunks();
+    makeGroups();
+    ever_ = groups_.front().heights;
+    for (const Group& group : groups_) {
+        ever_ = around(ever_, group.heights);
     }
-    scratch_.resize(static_cast<std::size_t>(quadsAcross_ + 1) * static_cast<std::size_t>(quadsDown_ + 1));
-    makeIndices();
 }
 
-void SandMesh::makeIndices() {
-    std::vector<std::uint16_t> indices;
-    indices.reserve(6 * static_cast<std::size_t>(quadsAcross_) * static_cast<std::size_t>(quadsDown_));
-    const int stride = quadsAcross_ + 1;
-    for (int y = 0; y < quadsDown_; ++y) {
-        for (int x = 0; x < quadsAcross_; ++x) {
-            const int southWest = y * stride + x;
-            const int southEast = southWest + 1;
-            const int northWest = southWest + stride;
-            const int northEast = northWest + 1;
-            // The diagonals alternate, so that ridges look alike in both diagonal directions.
-            const std::array<int, 6> rising{southWest, southEast, northEast, southWest, northEast, northWest};
-            const std::array<int, 6> falling{southWest, southEast, northWest, southEast, northEast, northWest};
-            for (const int index : (x + y) % 2 == 0 ? rising : falling) {
-                indices.push_back(static_cast<std::uint16_t>(index));
-            }
+void SandMesh::makeChunks() {
+    chunks_.reserve(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_));
+    for (int y = 0; y < down_; ++y) {
+        for (int x = 0; x < across_; ++x) {
+            Chunk& made = chunks_.emplace_back();
+            made.vertices = {x * quadsAcross_, y * quadsDown_, (x + 1) * quadsAcross_ + 1, (y + 1) * quadsDown_ + 1};
+            made.heights = surface_.heights(made.vertices);
         }
     }
-    // Core profiles bind no element buffer without a vertex array; which one does not matter here.
-    const GlVertexArray array;
-    glBindVertexArray(array.id());
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.id());
-    const std::size_t bytes = indices.size() * sizeof(indices[0]);
-    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(bytes), indices.data(), GL_STATIC_DRAW);
-    bytes_ += bytes;
+}
+
+void SandMesh::makeGroups() {
+    for (int y = 0; y < down_; y += kGroup) {
+        for (int x = 0; x < across_; x += kGroup) {
+            Group group;
+            group.chunks = {x, y, std::min(x + kGroup, across_), std::min(y + kGroup, down_)};
+            group.vertices = {x * quadsAcross_, y * quadsDown_, group.chunks.x1 * quadsAcross_ + 1,
+                              group.chunks.y1 * quadsDown_ + 1};
+            group.heights = surface_.heights(group.vertices);
+            groups_.push_back(group);
+        }
+    }
 }
 
 std::vector<SandMesh::Change> SandMesh::changesOf(const sand::HeightField& field, const sand::Rect& cells) const {
@@ -93,8 +96,8 @@ std::vector<SandMesh::Change> SandMesh::changesOf(const sand::HeightField& field
         side *= 2;
     }
     // Cell c lies under vertex c + 1; normals and shade of the vertices around depend on it, and triangles reach from
-    // these a vertex further.
-    constexpr int kAround = SandSurface::kReach + 1;
+    // these a vertex further, of the coarsest level that there may be.
+    const int around = SandSurface::kReach + longestStride();
     const sand::Rect grid{0, 0, surface_.columns() + 2, surface_.rows() + 2};
     std::vector<Change> changes;
     for (int y = cells.y0; y < cells.y1; y += side) {
@@ -102,7 +105,7 @@ std::vector<SandMesh::Change> SandMesh::changesOf(const sand::HeightField& field
             const sand::Rect changed = surface_.differing(field, sand::Rect{x, y, x + side, y + side}.clippedTo(cells));
             if (!changed.empty()) {
                 const sand::Rect vertices =
-                    sand::Rect{changed.x0 + 1, changed.y0 + 1, changed.x1 + 1, changed.y1 + 1}.grownBy(kAround);
+                    sand::Rect{changed.x0 + 1, changed.y0 + 1, changed.x1 + 1, changed.y1 + 1}.grownBy(around);
                 changes.push_back({vertices.clippedTo(grid), surface_.heights(vertices)});
             }
         }
@@ -119,16 +122,34 @@ void SandMesh::update(const sand::HeightField& field, const sand::Rect& cells) {
     ++revision_;
     for (const Change& change : changes) {
         const HeightRange after = surface_.heights(change.vertices);
-        const HeightRange heights{std::min(change.before.lowest, after.lowest),
-                                  std::max(change.before.highest, after.highest)};
+        const HeightRange heights = around(change.before, after);
         damage_.add(revision_, boxOf(change.vertices, heights));
-        ever_ = {std::min(ever_.lowest, heights.lowest), std::max(ever_.highest, heights.highest)};
+        ever_ = around(ever_, heights);
+        markChanged(chunksAround(change.vertices));
     }
-    for (Chunk& chunk : chunks_) {
-        if (std::any_of(changes.begin(), changes.end(),
-                        [&](const Change& change) { return !change.vertices.clippedTo(chunk.vertices).empty(); })) {
-            chunk.stale = true;
-            chunk.heights = surface_.heights(chunk.vertices);
+}
+
+sand::Rect SandMesh::chunksAround(const sand::Rect& vertices) const {
+    // A vertex on an edge is part of both chunks.
+    return sand::Rect{(vertices.x0 - 1) / quadsAcross_, (vertices.y0 - 1) / quadsDown_,
+                      (vertices.x1 - 1) / quadsAcross_ + 1, (vertices.y1 - 1) / quadsDown_ + 1}
+        .clippedTo({0, 0, across_, down_});
+}
+
+void SandMesh::markChanged(const sand::Rect& chunks) {
+    for (int y = chunks.y0; y < chunks.y1; ++y) {
+        for (int x = chunks.x0; x < chunks.x1; ++x) {
+            Chunk& changed = chunk(x, y);
+            changed.revision = revision_;
+            changed.measured = false;
+            changed.heights = surface_.heights(changed.vertices);
+            for (Geometry& geometry : changed.geometries) {
+                geometry.stale = true;
+            }
+            Group& group =
+                groups_[static_cast<std::size_t>(y / kGroup * ((across_ + kGroup - 1) / kGroup) + x / kGroup)];
+            group.revision = revision_;
+            group.heights = around(group.heights, changed.heights);
         }
     }
 }
@@ -141,51 +162,168 @@ Box SandMesh::boxOf(const sand::Rect& vertices, const HeightRange& heights) cons
     return {low - margin, high + margin};
 }
 
-void SandMesh::refresh(Chunk& chunk) {
-    surface_.fill(chunk.vertices, scratch_);
-    const auto bytes = static_cast<GLsizeiptr>(scratch_.size() * sizeof(SandVertex));
-    if (!chunk.geometry) {
-        chunk.geometry.emplace();
-        glBindVertexArray(chunk.geometry->array.id());
-        glBindBuffer(GL_ARRAY_BUFFER, chunk.geometry->vertices.id());
-        glBufferData(GL_ARRAY_BUFFER, bytes, scratch_.data(), GL_DYNAMIC_DRAW);
-        describeVertex();
-        glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.id());
-        bytes_ += static_cast<std::size_t>(bytes);
-    } else {
-        glBindBuffer(GL_ARRAY_BUFFER, chunk.geometry->vertices.id());
-        glBufferSubData(GL_ARRAY_BUFFER, 0, bytes, scratch_.data());
+template <class Visit>
+void SandMesh::visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit& visit) {
+    for (const Group& group : groups_) {
+        if (culling && !inFrustum(boxOf(group.vertices, group.heights), sceneToClip)) {
+            continue;
+        }
+        for (int y = group.chunks.y0; y < group.chunks.y1; ++y) {
+            for (int x = group.chunks.x0; x < group.chunks.x1; ++x) {
+                if (!culling || inFrustum(boxOf(chunk(x, y).vertices, chunk(x, y).heights), sceneToClip)) {
+                    visit(x, y);
+                }
+            }
+        }
     }
-    chunk.stale = false;
 }
 
-SandMesh::Drawn SandMesh::draw(const glm::dmat4& sceneToClip, bool culling,
+int SandMesh::levelOf(int x, int y, const LevelRule& rule) {
+    Chunk& asked = chunk(x, y);
+    if (asked.chosenFor != choice_) {
+        if (!asked.measured) {
+            asked.errors = errorsOf(surface_, asked.vertices, sun_, coarsest_);
+            asked.measured = true;
+        }
+        asked.level = rule.level(boxOf(asked.vertices, asked.heights), asked.errors, coarsest_);
+        asked.chosenFor = choice_;
+    }
+    return asked.level;
+}
+
+/// The finer of two chunks decides how their edge is drawn. At the rim the sand meets its cut sides, which have all of
+/// the vertices.
+ChunkLevels SandMesh::levelsOf(int x, int y, const LevelRule& rule) {
+    if (coarsest_ == 0) {
+        return {};
+    }
+    ChunkLevels levels{levelOf(x, y, rule), {}};
+    const auto edge = [&](int besideX, int besideY) {
+        const bool rim = besideX < 0 || besideY < 0 || besideX == across_ || besideY == down_;
+        return rim ? 0 : std::min(levels.level, levelOf(besideX, besideY, rule));
+    };
+    levels.edges = {edge(x, y - 1), edge(x + 1, y), edge(x, y + 1), edge(x - 1, y)};
+    return levels;
+}
+
+DrawnLevels SandMesh::levelsWithin(const glm::dmat4& sceneToClip, const LevelRule& rule) {
+    if (coarsest_ == 0) {
+        return {};
+    }
+    ++choice_;
+    DrawnLevels levels(chunks_.size(), -1);
+    visitSeen(sceneToClip, true, [&](int x, int y) {
+        const sand::Rect beside = sand::Rect{x - 1, y - 1, x + 2, y + 2}.clippedTo({0, 0, across_, down_});
+        for (int v = beside.y0; v < beside.y1; ++v) {
+            for (int u = beside.x0; u < beside.x1; ++u) {
+                levels[static_cast<std::size_t>(v * across_ + u)] = static_cast<std::int8_t>(levelOf(u, v, rule));
+            }
+        }
+    });
+    return levels;
+}
+
+std::vector<Box> SandMesh::updateLevels(DrawnLevels& levels, std::uint64_t revision, const LevelRule& rule) {
+    std::vector<Box> changed;
+    ++choice_;
+    for (const Group& group : groups_) {
+        if (levels.empty() || group.revision <= revision) {
+            continue;
+        }
+        for (int y = group.chunks.y0; y < group.chunks.y1; ++y) {
+            for (int x = group.chunks.x0; x < group.chunks.x1; ++x) {
+                std::int8_t& drawn = levels[static_cast<std::size_t>(y * across_ + x)];
+                if (chunk(x, y).revision > revision && drawn != levelOf(x, y, rule)) {
+                    drawn = static_cast<std::int8_t>(levelOf(x, y, rule));
+                    // The outermost triangles of its neighbours follow its edges.
+                    const sand::Rect vertices = chunk(x, y).vertices.grownBy(longestStride());
+                    changed.push_back(boxOf(vertices, surface_.heights(vertices)));
+                }
+            }
+        }
+    }
+    return changed;
+}
+
+SandMesh::Geometry& SandMesh::geometryOf(Chunk& chunk, int level) {
+    auto found = std::ranges::find(chunk.geometries, level, &Geometry::level);
+    if (found != chunk.geometries.end() && !found->stale) {
+        return *found;
+    }
+    const std::vector<SandVertex> vertices = verticesOf(surface_, chunk.vertices, level);
+    const auto bytes = static_cast<GLsizeiptr>(vertices.size() * sizeof(SandVertex));
+    if (found == chunk.geometries.end()) {
+        chunk.geometries.push_back({level, true, choice_, static_cast<std::size_t>(bytes), {}, {}});
+        found = chunk.geometries.end() - 1;
+        glBindVertexArray(found->array.id());
+        glBindBuffer(GL_ARRAY_BUFFER, found->vertices.id());
+        glBufferData(GL_ARRAY_BUFFER, bytes, vertices.data(), GL_DYNAMIC_DRAW);
+        describeVertex();
+        bytes_ += found->bytes;
+    } else {
+        glBindBuffer(GL_ARRAY_BUFFER, found->vertices.id());
+        glBufferSubData(GL_ARRAY_BUFFER, 0, bytes, vertices.data());
+    }
+    found->stale = false;
+    return *found;
+}
+
+const SandMesh::Indices& SandMesh::indicesOf(const ChunkLevels& levels) {
+    const auto found = indices_.find(levels);
+    if (found != indices_.end()) {
+        return found->second;
+    }
+    const std::vector<std::uint16_t> indices = trianglesOf(quadsAcross_, quadsDown_, levels);
+    Indices& made = indices_.try_emplace(levels, Indices{{}, static_cast<int>(indices.size())}).first->second;
+    // Core profiles bind no element buffer without a vertex array; which one does not matter here.
+    const GlVertexArray array;
+    glBindVertexArray(array.id());
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, made.buffer.id());
+    const std::size_t bytes = indices.size() * sizeof(indices[0]);
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(bytes), indices.data(), GL_STATIC_DRAW);
+    bytes_ += bytes;
+    return made;
+}
+
+SandMesh::Drawn SandMesh::draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
                                const std::function<void(const Box&)>& before) {
     Drawn drawn;
     int waiting = 0;  // triangles
-    for (Chunk& chunk : chunks_) {
-        const Box box = boxOf(chunk.vertices, chunk.heights);
-        if (culling && !inFrustum(box, sceneToClip)) {
-            continue;
-        }
-        if (chunk.stale) {
-            refresh(chunk);
-        }
+    ++choice_;
+    visitSeen(sceneToClip, culling, [&](int x, int y) {
+        const ChunkLevels levels = levelsOf(x, y, rule);
+        const Indices& indices = indicesOf(levels);
+        Geometry& geometry = geometryOf(chunk(x, y), levels.level);
+        geometry.used = choice_;
         if (before) {
-            before(box);
+            before(boxOf(chunk(x, y).vertices, chunk(x, y).heights));
         }
-        glBindVertexArray(chunk.geometry->array.id());
-        const int indices = 6 * quadsAcross_ * quadsDown_;
-        glDrawElements(GL_TRIANGLES, indices, GL_UNSIGNED_SHORT, nullptr);
+        glBindVertexArray(geometry.array.id());
+        glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices.buffer.id());
+        glDrawElements(GL_TRIANGLES, indices.count, GL_UNSIGNED_SHORT, nullptr);
         ++drawn.chunks;
-        drawn.triangles += indices / 3;
-        waiting += indices / 3;
+        drawn.triangles += indices.count / 3;
+        waiting += indices.count / 3;
         if (software_ && waiting >= kTrianglesPerFinish) {
             glFinish();
             waiting = 0;
         }
-    }
+    });
+    dropUnused();
     return drawn;
+}
+
+void SandMesh::dropUnused() {
+    if (bytes_ <= kManyBytes) {
+        return;
+    }
+    for (Chunk& chunk : chunks_) {
+        std::erase_if(chunk.geometries, [this](const Geometry& geometry) {
+            const bool unused = geometry.used + kLately < choice_;
+            bytes_ -= unused ? geometry.bytes : 0;
+            return unused;
+        });
+    }
 }
 
 }  // namespace render_node

@@ -3,22 +3,27 @@
 
 #include <functional>
 #include <glm/glm.hpp>
-#include <optional>
+#include <map>
 #include <span>
 #include <vector>
 
 #include "render_node/frustum.hpp"
 #include "render_node/gl/gl_handle.hpp"
 #include "render_node/sand_damage.hpp"
+#include "render_node/sand_levels.hpp"
 #include "render_node/sand_surface.hpp"
 
 namespace render_node {
 
+/// The level at which each chunk was drawn; −1 where it was out of sight. Empty for a field that has no levels.
+using DrawnLevels = std::vector<std::int8_t>;
+
 /// The sand's triangles, in chunks of about 32 × 32 quads.
 ///
-/// A software renderer is bound by vertices: only chunks that a camera sees are drawn, and only those are ever computed
-/// and sent to GL; a chunk is computed again when sand in its reach has changed and somebody looks at it. Every camera
-/// gets the same vertices. One thread, its context current.
+/// A software renderer is bound by vertices: only chunks that a camera sees are drawn, each at the coarsest level that
+/// the camera's rule allows, and only those are ever computed and sent to GL; a chunk is computed again when sand in
+/// its reach has changed and somebody looks at it. What nobody has looked at lately is dropped when it gets much. Every
+/// camera gets the same vertices. One thread, its context current.
 class SandMesh {
 public:
     struct Drawn {
@@ -26,14 +31,22 @@ public:
         int triangles = 0;
     };
 
-    explicit SandMesh(const sand::HeightField& field);
+    /// `sun` points towards it and has length 1; the field has no level that is too coarse for a tool of this radius.
+    SandMesh(const sand::HeightField& field, const glm::vec3& sun, double toolRadius /* [cell] */);
 
     /// Takes over the heights of these cells, which must lie within the field.
     void update(const sand::HeightField& field, const sand::Rect& cells);
 
-    /// Draws the chunks that reach into the frustum; all of them when `culling` is off. The program must be in use, or
-    /// `before` choose one by the box of each chunk.
-    Drawn draw(const glm::dmat4& sceneToClip, bool culling, const std::function<void(const Box&)>& before = {});
+    /// Draws the chunks that reach into the frustum of `sceneToClip`, which may show a part of what `rule` is for; all
+    /// of them when `culling` is off. The program must be in use, or `before` choose one by the box of each chunk.
+    Drawn draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
+               const std::function<void(const Box&)>& before = {});
+
+    /// The levels at which draw() draws all that reaches into this frustum, its neighbours' with them.
+    [[nodiscard]] DrawnLevels levelsWithin(const glm::dmat4& sceneToClip, const LevelRule& rule);
+    /// Brings levels up to date that were true for the same rule at that revision. Returns where this changes the
+    /// picture, beside what damageSince() tells.
+    [[nodiscard]] std::vector<Box> updateLevels(DrawnLevels& levels, std::uint64_t revision, const LevelRule& rule);
 
     /// Counts the updates that changed something.
     [[nodiscard]] std::uint64_t revision() const { return revision_; }
@@ -46,39 +59,74 @@ public:
 
     [[nodiscard]] const SandSurface& surface() const { return surface_; }
     [[nodiscard]] int chunks() const { return static_cast<int>(chunks_.size()); }
-    /// Bytes of vertices and indices in GL: grows as chunks come into view.
+    /// The longest side of a triangle of any level along an axis [cell].
+    [[nodiscard]] int longestStride() const { return 1 << coarsest_; }
+    /// Bytes of vertices and indices in GL.
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
 private:
+    /// The vertices of a chunk at one level.
     struct Geometry {
+        int level;
+        bool stale;          // not those of the surface
+        std::uint64_t used;  // by this draw()
+        std::size_t bytes;
         GlVertexArray array;
         GlBuffer vertices;
     };
     struct Chunk {
         sand::Rect vertices;  // of the vertex grid
         HeightRange heights;
-        bool stale = true;  // its vertices are not those of the surface
-        std::optional<Geometry> geometry;
+        std::uint64_t revision = 0;  // that changed it last
+        bool measured = false;       // its errors are those of the surface
+        LevelErrors errors;
+        std::uint64_t chosenFor = 0;  // choice_ that `level` is of
+        int level = 0;
+        std::vector<Geometry> geometries;
+    };
+    /// Some chunks side by side, so that few are looked at one by one.
+    struct Group {
+        sand::Rect chunks;  // columns and rows of chunks
+        sand::Rect vertices;
+        HeightRange heights;
+        std::uint64_t revision = 0;
+    };
+    struct Indices {
+        GlBuffer buffer;
+        int count;
     };
     /// Part of an update.
     struct Change {
         sand::Rect vertices;  // that may look different, with their triangles
         HeightRange before;
     };
-    void makeIndices();
+    void makeChunks();
+    void makeGroups();
     [[nodiscard]] std::vector<Change> changesOf(const sand::HeightField& field, const sand::Rect& cells) const;
+    [[nodiscard]] sand::Rect chunksAround(const sand::Rect& vertices) const;
+    void markChanged(const sand::Rect& chunks);
     [[nodiscard]] Box boxOf(const sand::Rect& vertices, const HeightRange& heights) const;
-    void refresh(Chunk& chunk);
+    [[nodiscard]] Chunk& chunk(int x, int y) { return chunks_[static_cast<std::size_t>(y * across_ + x)]; }
+    template <class Visit>  // void(int x, int y), of chunks
+    void visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit& visit);
+    [[nodiscard]] int levelOf(int x, int y, const LevelRule& rule);
+    [[nodiscard]] ChunkLevels levelsOf(int x, int y, const LevelRule& rule);
+    [[nodiscard]] Geometry& geometryOf(Chunk& chunk, int level);
+    [[nodiscard]] const Indices& indicesOf(const ChunkLevels& levels);
+    void dropUnused();
 
     SandSurface surface_;
-    int across_, down_;                // chunks
-    int quadsAcross_, quadsDown_;      // of every chunk
-    bool software_;                    // drawn by llvmpipe, whose memory must be kept small
-    std::vector<Chunk> chunks_;        // row by row from the south-west
-    std::vector<SandVertex> scratch_;  // one chunk
-    GlBuffer indices_;                 // 16 bit, one chunk's
+    glm::vec3 sun_;
+    int coarsest_;                 // level
+    int across_, down_;            // chunks
+    int quadsAcross_, quadsDown_;  // of every chunk
+    bool software_;                // drawn by llvmpipe, whose memory must be kept small
+    std::vector<Chunk> chunks_;    // row by row from the south-west
+    std::vector<Group> groups_;
+    std::map<ChunkLevels, Indices> indices_;  // 16 bit
     std::size_t bytes_ = 0;
     std::uint64_t revision_ = 0;
+    std::uint64_t choice_ = 0;  // counts what levels are chosen for
     SandDamage damage_;
     HeightRange ever_;
 };

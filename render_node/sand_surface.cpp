@@ -105,38 +105,35 @@ float SandSurface::openSky(int column, int row) const {
     return 1 - hidden / static_cast<float>(kDirections.size());
 }
 
-SandVertex SandSurface::vertexAt(int column, int row) const {
-    const int x = std::clamp(column - 1, 0, columns_ - 1);
-    const int y = std::clamp(row - 1, 0, rows_ - 1);
+glm::vec2 SandSurface::slope(int vertexColumn, int vertexRow) const {
+    const int x = std::clamp(vertexColumn - 1, 0, columns_ - 1);
+    const int y = std::clamp(vertexRow - 1, 0, rows_ - 1);
     // One-sided at the rim; a field of one column is level across.
-    const auto slope = [this](float low, float high, int cells) {
+    const auto rise = [this](float low, float high, int cells) {
         return cells == 0 ? 0.0F : (high - low) / (static_cast<float>(cells) * cellSize_);
     };
     const int west = std::max(x - 1, 0);
     const int east = std::min(x + 1, columns_ - 1);
     const int south = std::max(y - 1, 0);
     const int north = std::min(y + 1, rows_ - 1);
-    const float slopeEast = slope(height(west, y), height(east, y), east - west);
-    const float slopeNorth = slope(height(x, south), height(x, north), north - south);
-    const float scale = 32767 / std::sqrt(1 + slopeEast * slopeEast + slopeNorth * slopeNorth);
+    return {rise(height(west, y), height(east, y), east - west),
+            rise(height(x, south), height(x, north), north - south)};
+}
+
+SandVertex SandSurface::vertex(int column, int row) const {
+    const int x = std::clamp(column - 1, 0, columns_ - 1);
+    const int y = std::clamp(row - 1, 0, rows_ - 1);
+    const glm::vec2 steep = slope(column, row);
+    const float scale = 32767 / std::sqrt(1 + steep.x * steep.x + steep.y * steep.y);
     SandVertex vertex{};
     vertex.height = height(x, y);
-    vertex.column = static_cast<std::uint16_t>(column);
-    vertex.row = static_cast<std::uint16_t>(row);
-    vertex.normalEast = static_cast<std::int16_t>(-slopeEast * scale);
-    vertex.normalNorth = static_cast<std::int16_t>(-slopeNorth * scale);
+    vertex.column = static_cast<std::uint16_t>(std::min(column, columns_ + 1));
+    vertex.row = static_cast<std::uint16_t>(std::min(row, rows_ + 1));
+    vertex.normalEast = static_cast<std::int16_t>(-steep.x * scale);
+    vertex.normalNorth = static_cast<std::int16_t>(-steep.y * scale);
     vertex.open = static_cast<std::uint16_t>(openSky(x, y) * 65535);
     vertex.mottling = static_cast<std::uint16_t>(mottlingAt(x, y) * 257);
     return vertex;
-}
-
-void SandSurface::fill(const sand::Rect& vertices, std::span<SandVertex> out) const {
-    std::size_t next = 0;
-    for (int row = vertices.y0; row < vertices.y1; ++row) {
-        for (int column = vertices.x0; column < vertices.x1; ++column) {
-            out[next++] = vertexAt(std::min(column, columns_ + 1), std::min(row, rows_ + 1));
-        }
-    }
 }
 
 }  // namespace render_node

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
-#include <span>
+#include <glm/glm.hpp>
 #include <vector>
 
 #include "sand/height_field.hpp"
@@ -22,6 +23,11 @@ static_assert(sizeof(SandVertex) == 16);
 struct HeightRange {
     float lowest, highest;  // [scene unit]
 };
+
+/// The smallest range around both.
+[[nodiscard]] inline HeightRange around(const HeightRange& a, const HeightRange& b) {
+    return {std::min(a.lowest, b.lowest), std::max(a.highest, b.highest)};
+}
 
 /// The drawn surface of a height field, on the CPU: heights, normals and how much sky each place sees.
 ///
@@ -50,13 +56,13 @@ public:
     [[nodiscard]] float east(int vertexColumn) const { return along(vertexColumn, columns_); }
     [[nodiscard]] float north(int vertexRow) const { return along(vertexRow, rows_); }
 
-    /// Writes the vertices of a rectangle of the vertex grid, row by row. A column or row beyond the grid repeats its
-    /// last one. `out` holds exactly the rectangle.
-    void fill(const sand::Rect& vertices, std::span<SandVertex> out) const;
+    /// A vertex of the grid. A column or row beyond the grid repeats its last one.
+    [[nodiscard]] SandVertex vertex(int column, int row) const;
+    /// How steeply the sand rises there towards east and north.
+    [[nodiscard]] glm::vec2 slope(int vertexColumn, int vertexRow) const;
 
 private:
     [[nodiscard]] float along(int vertex, int cells) const;
-    [[nodiscard]] SandVertex vertexAt(int column, int row) const;
     [[nodiscard]] float openSky(int column, int row) const;
 
     int columns_, rows_;

@@ -32,7 +32,8 @@ SandView::SandView(const sand::Scene& scene, const glm::dmat4& sceneToRoom)
       woodProgram_("solid.vert.glsl", "wood.frag.glsl"),
       toolProgram_("solid.vert.glsl", "tool.frag.glsl"),
       grain_(glm::vec2(glm::normalize(toVector(look_.sunDirection)))),
-      mesh_(scene.terrain),
+      mesh_(scene.terrain, glm::normalize(toVector(look_.sunDirection)),
+            scene.rules.toolRadius / double{sand::kProbePerCell}),
       box_(mesh_.surface(), scene.rules.rim) {
     counts_.chunksOfField = mesh_.chunks();
 }
@@ -106,9 +107,10 @@ void SandView::drawWithin(const PixelRect& pixels, const Camera& camera, const E
     if (force_) {
         drawForce(camera);
     }
-    drawSand(camera, sceneToPart);
+    const LevelRule rule = ruleFor(camera, size);
+    drawSand(camera, sceneToPart, rule);
     if (layers_.shows(lockstep::Layer::wireframe)) {
-        drawWires(camera, sceneToPart);
+        drawWires(camera, sceneToPart, rule);
     }
     prepare(woodProgram_, camera);
     box_.drawBoards();
@@ -134,7 +136,7 @@ void SandView::drawForce(const Camera& camera) {
     forceView_->draw(*force_, toolRadius_);
 }
 
-void SandView::drawSand(const Camera& camera, const glm::dmat4& sceneToPart) {
+void SandView::drawSand(const Camera& camera, const glm::dmat4& sceneToPart, const LevelRule& rule) {
     if (layers_.shows(lockstep::Layer::hillShade) && !hillShaded_) {
         hillShaded_.emplace("hill_shade.glsl");
     }
@@ -151,7 +153,7 @@ void SandView::drawSand(const Camera& camera, const glm::dmat4& sceneToPart) {
             near = near || within;
         };
     }
-    const SandMesh::Drawn drawn = mesh_.draw(sceneToPart, culling_, choose);
+    const SandMesh::Drawn drawn = mesh_.draw(sceneToPart, culling_, rule, choose);
     (near ? programs.near : programs.far).drawn();
     counts_.chunks = drawn.chunks;
     counts_.triangles = drawn.triangles;
@@ -161,7 +163,7 @@ void SandView::drawSand(const Camera& camera, const glm::dmat4& sceneToPart) {
     programs.sides.drawn();
 }
 
-void SandView::drawWires(const Camera& camera, const glm::dmat4& sceneToPart) {
+void SandView::drawWires(const Camera& camera, const glm::dmat4& sceneToPart, const LevelRule& rule) {
     if (!wireProgram_) {
         wireProgram_.emplace(ProgramFiles{"sand.vert.glsl", "wire.frag.glsl", "sunlit.glsl", "wire.geom.glsl"});
     }
@@ -171,7 +173,7 @@ void SandView::drawWires(const Camera& camera, const glm::dmat4& sceneToPart) {
     glPolygonOffset(-1, -1);  // a driver may compute depths a little differently behind a geometry shader
     glEnable(GL_BLEND);
     glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);  // a window may show through its alpha
-    mesh_.draw(sceneToPart, culling_);
+    mesh_.draw(sceneToPart, culling_, rule);
     glDisable(GL_BLEND);
     glDisable(GL_POLYGON_OFFSET_FILL);
     glDepthFunc(GL_LESS);
@@ -203,14 +205,20 @@ std::vector<std::vector<glm::dvec3>> SandView::hullsOf(const EyeMemory::Tool& to
     return hulls;
 }
 
-PixelRect SandView::changedPixels(const Camera& camera, glm::ivec2 size, const EyeMemory& memory) const {
+LevelRule SandView::ruleFor(const Camera& camera, glm::ivec2 size) const {
+    return {camera.roomToClip * sceneToRoom_, size, look_.detail};
+}
+
+PixelRect SandView::changedPixels(const Camera& camera, glm::ivec2 size, EyeMemory& memory) {
     const PixelRect whole{0, 0, size.x, size.y};
+    const glm::dmat4 sceneToClip = camera.roomToClip * sceneToRoom_;
+    const LevelRule rule = ruleFor(camera, size);
     const bool toolMoved = memory.tool != tool_;
     if (!memory.drawn || memory.roomToClip != camera.roomToClip || memory.eye != camera.eye ||
         memory.sceneToRoom != sceneToRoom_ || memory.layers != layers_) {
+        memory.levels = mesh_.levelsWithin(sceneToClip, rule);
         return whole;
     }
-    const glm::dmat4 sceneToClip = camera.roomToClip * sceneToRoom_;
     PixelRect changed = memory.covered;
     const auto add = [&](std::span<const glm::dvec3> hull) {
         changed = around(changed, pixelsOf(hull, sceneToClip, size));
@@ -232,6 +240,9 @@ PixelRect SandView::changedPixels(const Camera& camera, glm::ivec2 size, const E
     for (const SandDamage::Part& part : mesh_.damageSince(memory.sand)) {
         add(cornersOf(box_.withSides(part.box)));
     }
+    for (const Box& box : mesh_.updateLevels(memory.levels, memory.sand, rule)) {
+        add(cornersOf(box));
+    }
     return static_cast<double>(changed.area()) > kMostOfAll * static_cast<double>(whole.area()) ? whole : changed;
 }
 
@@ -240,7 +251,8 @@ PixelRect SandView::drawIfChanged(const Camera& camera, const EyeTarget& target,
     if (!changed.empty()) {
         drawWithin(changed, camera, target);
     }
-    memory = {true, camera.roomToClip, sceneToRoom_, camera.eye, mesh_.revision(), tool_, force_, layers_, {}};
+    memory = {true,   camera.roomToClip, sceneToRoom_, camera.eye, mesh_.revision(), std::move(memory.levels), tool_,
+              force_, layers_,           {}};
     return changed;
 }
 

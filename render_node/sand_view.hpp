@@ -46,6 +46,7 @@ struct EyeMemory {
     glm::dmat4 roomToClip{1}, sceneToRoom{1};
     glm::dvec3 eye{0};
     std::uint64_t sand = 0;  // revision
+    DrawnLevels levels;
     std::optional<Tool> tool;
     std::optional<ForceArrow> force;
     lockstep::Layers layers;  // of those that change every pixel of sand
@@ -100,16 +101,20 @@ public:
     [[nodiscard]] std::size_t geometryBytes() const { return mesh_.bytes(); }
     /// Draws every chunk, seen or not: for measurements of what culling gains.
     void setCulling(bool culling) { culling_ = culling; }
+    /// How far the level of detail may shift the picture of any sand, in place of the scene's look.detail [pixel]. Who
+    /// keeps an EyeMemory must have it drawn anew.
+    void setDetail(double bound) { look_.detail = bound; }
 
 private:
     void prepare(const GlProgram& program, const Camera& camera) const;
     void prepareSurface(const GlProgram& program, const Camera& camera) const;
     void drawTool(const Camera& camera, const glm::dmat4& sceneToPart) const;
     void drawForce(const Camera& camera);
-    void drawSand(const Camera& camera, const glm::dmat4& sceneToPart);
-    void drawWires(const Camera& camera, const glm::dmat4& sceneToPart);
+    void drawSand(const Camera& camera, const glm::dmat4& sceneToPart, const LevelRule& rule);
+    void drawWires(const Camera& camera, const glm::dmat4& sceneToPart, const LevelRule& rule);
     void drawWithin(const PixelRect& pixels, const Camera& camera, const EyeTarget& target);
-    [[nodiscard]] PixelRect changedPixels(const Camera& camera, glm::ivec2 size, const EyeMemory& memory) const;
+    [[nodiscard]] LevelRule ruleFor(const Camera& camera, glm::ivec2 size) const;
+    [[nodiscard]] PixelRect changedPixels(const Camera& camera, glm::ivec2 size, EyeMemory& memory);
     [[nodiscard]] Box ballOf(const EyeMemory::Tool& tool) const;
     [[nodiscard]] ToolReach reachOf(const EyeMemory::Tool& tool) const;
     [[nodiscard]] std::vector<std::vector<glm::dvec3>> hullsOf(const EyeMemory::Tool& tool) const;

@@ -61,6 +61,7 @@ files::Bytes Scene::encode() const {
             writer.put(number);
         }
     }
+    writer.put(look.detail);
     writer.put(terrain.cellSize());
     encodeCells(terrain.cells(), terrain.bounds(), writer);
     if (ground != nullptr) {
@@ -83,6 +84,7 @@ Scene Scene::decode(std::span<const std::uint8_t> bytes) {
             number = reader.get<double>();
         }
     }
+    scene.look.detail = reader.get<double>();
     const auto cellSize = reader.get<double>();
     if (!(cellSize > 0)) {
         throw files::FormatError("a scene without a cell size");

@@ -105,6 +105,9 @@ void readForce(const files::TomlTable& file, Scene& scene) {
     }
 }
 
+// [pixel]: GL promises vertices no finer than a sixteenth of a pixel.
+constexpr double kLeastDetail = 1.0 / 16;
+
 void readLook(const files::TomlTable& file, Scene& scene) {
     if (const auto look = file.table("look")) {
         scene.look.sandColour = look->numbersOr("sand", scene.look.sandColour);
@@ -114,6 +117,13 @@ void readLook(const files::TomlTable& file, Scene& scene) {
         const auto& sun = scene.look.sunDirection;
         if (sun[0] == 0 && sun[1] == 0 && sun[2] == 0) {
             look->fail("sun", "sun must point somewhere, got [0, 0, 0]");
+        }
+        const double& detail = scene.look.detail = look->numberOr("detail", scene.look.detail, {0, 64});
+        if (detail > 0 && detail < kLeastDetail) {
+            look->fail(
+                "detail",
+                fmt::format("detail must be 0 or at least {} pixels, which is what the graphics card can hold, got {}",
+                            kLeastDetail, detail));
         }
         look->finish();
     }

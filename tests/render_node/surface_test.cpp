@@ -7,7 +7,7 @@
 #include <random>
 
 #include "render_node/grain_texture.hpp"
-#include "render_node/sand_surface.hpp"
+#include "render_node/sand_levels.hpp"
 #include "render_node/tool_mesh.hpp"
 
 namespace {
@@ -18,9 +18,7 @@ using render_node::SandVertex;
 
 std::vector<SandVertex> allVertices(const SandSurface& surface) {
     const sand::Rect whole{0, 0, surface.columns() + 2, surface.rows() + 2};
-    std::vector<SandVertex> vertices(static_cast<std::size_t>(whole.x1) * static_cast<std::size_t>(whole.y1));
-    surface.fill(whole, vertices);
-    return vertices;
+    return render_node::verticesOf(surface, whole, 0);
 }
 
 TEST(SandSurface, NormalOfAnInclinedPlaneIsThatOfThePlane) {

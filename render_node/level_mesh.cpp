@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "render_node/sand_levels.hpp"
+
+namespace render_node {
+namespace {
+
+/// A vertex of a chunk by the way around it: `along` an edge counter-clockwise, `inward` from it [quad].
+glm::ivec2 placeOf(glm::ivec2 quads, std::size_t edge, int along, int inward) {
+    switch (edge) {
+        case 0:
+            return {along, inward};
+        case 1:
+            return {quads.x - inward, along};
+        case 2:
+            return {quads.x - along, quads.y - inward};
+        default:
+            return {inward, quads.y - along};
+    }
+}
+
+int lengthOf(glm::ivec2 quads, std::size_t edge) { return edge % 2 == 0 ? quads.x : quads.y; }
+
+class Triangulation {
+public:
+    Triangulation(int quadsAcross, int quadsDown, const ChunkLevels& levels)
+        : quads_(quadsAcross, quadsDown), levels_(levels), stride_(1 << levels.level), across_(quadsAcross / stride_) {}
+
+    /// The quads of a part of the grid of this level. Their diagonals alternate, so that ridges look alike in both
+    /// diagonal directions.
+    void addQuads(int west, int south, int east, int north) {
+        for (int y = south; y < north; ++y) {
+            for (int x = west; x < east; ++x) {
+                const int southWest = y * (across_ + 1) + x;
+                const int southEast = southWest + 1;
+                const int northWest = southWest + across_ + 1;
+                const int northEast = northWest + 1;
+                if ((x + y) % 2 == 0) {
+                    add(southWest, southEast, northEast);
+                    add(southWest, northEast, northWest);
+                } else {
+                    add(southWest, southEast, northWest);
+                    add(southEast, northEast, northWest);
+                }
+            }
+        }
+    }
+
+    /// The strip between an edge at its own level and the grid's first row of vertices within.
+    void addStrip(std::size_t edge) {
+        const int length = lengthOf(quads_, edge);
+        const int outerStride = 1 << levels_.edges[edge];
+        int outer = 0;
+        int inner = stride_;
+        while (outer < length || inner < length - stride_) {
+            const bool outerNext =
+                inner == length - stride_ || (outer < length && 2 * outer + outerStride <= 2 * inner + stride_);
+            const int next = outerNext ? onEdge(edge, outer + outerStride) : within(edge, inner + stride_);
+            add(onEdge(edge, outer), next, within(edge, inner));
+            (outerNext ? outer : inner) += outerNext ? outerStride : stride_;
+        }
+    }
+
+    [[nodiscard]] std::vector<std::uint16_t> take() { return std::move(indices_); }
+
+private:
+    void add(int a, int b, int c) {
+        for (const int index : {a, b, c}) {
+            indices_.push_back(static_cast<std::uint16_t>(index));
+        }
+    }
+    [[nodiscard]] int inGrid(glm::ivec2 place) const { return place.y / stride_ * (across_ + 1) + place.x / stride_; }
+    [[nodiscard]] int within(std::size_t edge, int along) const {
+        return inGrid(placeOf(quads_, edge, along, stride_));
+    }
+    [[nodiscard]] int onEdge(std::size_t edge, int along) const {
+        if (along % stride_ == 0) {
+            return inGrid(placeOf(quads_, edge, along, 0));
+        }
+        int first = (across_ + 1) * (quads_.y / stride_ + 1);
+        for (std::size_t before = 0; before < edge; ++before) {
+            first += lengthOf(quads_, before) + 1;
+        }
+        return first + along;
+    }
+
+    glm::ivec2 quads_;
+    const ChunkLevels& levels_;
+    int stride_, across_;  // [quad], [quad of the level]
+    std::vector<std::uint16_t> indices_;
+};
+
+}  // namespace
+
+std::vector<SandVertex> verticesOf(const SandSurface& surface, const sand::Rect& vertices, int level) {
+    std::vector<SandVertex> out;
+    const int stride = 1 << level;
+    for (int row = vertices.y0; row < vertices.y1; row += stride) {
+        for (int column = vertices.x0; column < vertices.x1; column += stride) {
+            out.push_back(surface.vertex(column, row));
+        }
+    }
+    const glm::ivec2 quads(vertices.x1 - vertices.x0 - 1, vertices.y1 - vertices.y0 - 1);
+    for (std::size_t edge = 0; edge < 4 && level > 0; ++edge) {
+        for (int along = 0; along <= lengthOf(quads, edge); ++along) {
+            const glm::ivec2 place = placeOf(quads, edge, along, 0);
+            out.push_back(surface.vertex(vertices.x0 + place.x, vertices.y0 + place.y));
+        }
+    }
+    return out;
+}
+
+std::vector<std::uint16_t> trianglesOf(int quadsAcross, int quadsDown, const ChunkLevels& levels) {
+    Triangulation triangles(quadsAcross, quadsDown, levels);
+    const int stride = 1 << levels.level;
+    const int across = quadsAcross / stride;
+    const int down = quadsDown / stride;
+    if (std::ranges::all_of(levels.edges, [&](int edge) { return edge == levels.level; })) {
+        triangles.addQuads(0, 0, across, down);
+    } else {
+        triangles.addQuads(1, 1, across - 1, down - 1);
+        for (std::size_t edge = 0; edge < 4; ++edge) {
+            triangles.addStrip(edge);
+        }
+    }
+    return triangles.take();
+}
+
+}  // namespace render_node

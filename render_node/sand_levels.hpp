@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "render_node/frustum.hpp"
+#include "render_node/sand_surface.hpp"
+
+namespace render_node {
+
+/// Level l of a chunk stands on every 2^l-th vertex of the sand, and these are the same vertices in every level: only
+/// what lies between them is smoothed over.
+inline constexpr int kLevels = 5;
+
+/// How far each level of a chunk is from all of its vertices, at its worst place.
+struct LevelErrors {
+    std::array<float, kLevels> height{};  // [scene unit], along the vertical
+    std::array<float, kLevels> light{};   // of the sun's full light
+};
+
+/// The coarsest level that a field may have: at least 512 cells are left of its longer side, so that a field of that
+/// size is always drawn as it is; and two to the tool's radius [cell], so that its shadow stays round.
+[[nodiscard]] int coarsestLevel(int columns, int rows, double toolRadius);
+
+/// The errors of a square part of the vertex grid, which may reach beyond the field; levels above `coarsest` are left
+/// 0. `sun` points towards it and has length 1.
+[[nodiscard]] LevelErrors errorsOf(const SandSurface& surface, const sand::Rect& vertices, const glm::vec3& sun,
+                                   int coarsest);
+
+/// Which level a camera asks for: a function of the scene, the eye, and the plane and density of the pixels, so that
+/// the tiles of one plane agree.
+///
+/// The coarsest level that shifts no point of the picture by more than the bound, and changes the sun's light on none
+/// by more than that allows.
+class LevelRule {
+public:
+    static constexpr double kLightPerPixel = 0.08;  // [1/pixel], of the sun's full light: about 8 levels of 255
+
+    /// `bound` 0 asks for level 0 everywhere.
+    LevelRule(const glm::dmat4& sceneToClip, glm::ivec2 size /* [pixel] */, double bound /* [pixel] */);
+    /// For the sand within a box.
+    [[nodiscard]] int level(const Box& box, const LevelErrors& errors, int coarsest) const;
+
+private:
+    [[nodiscard]] double pixelsPerUnit(const Box& box) const;
+
+    glm::dmat4 sceneToClip_;
+    glm::dvec2 half_;  // [pixel], the picture
+    double bound_;     // [pixel]
+};
+
+/// The level that a chunk is drawn at, and those of its edges, none of which is coarser: south, east, north, west.
+struct ChunkLevels {
+    int level = 0;
+    std::array<int, 4> edges{};
+    friend auto operator<=>(const ChunkLevels&, const ChunkLevels&) = default;
+};
+
+/// Vertices of a chunk of side × side quads at one level: the grid row by row from the south-west, then, above level 0,
+/// all vertices of the four edges counter-clockwise, for where a finer chunk or the rim lies beyond.
+[[nodiscard]] std::vector<SandVertex> verticesOf(const SandSurface& surface, const sand::Rect& vertices, int level);
+
+/// Triangles of such a chunk, counter-clockwise from above. Neighbours that agree on their common edge meet there in
+/// the same vertices: no crack, whatever their levels. Above level 0, 2^(level+1) must divide the sides.
+[[nodiscard]] std::vector<std::uint16_t> trianglesOf(int quadsAcross, int quadsDown, const ChunkLevels& levels);
+
+}  // namespace render_node
