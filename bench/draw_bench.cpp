@@ -3,6 +3,7 @@
 // 2048 × 2048 cells. Set LP_NUM_THREADS to choose llvmpipe's threads (0: draw in the calling thread).
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -105,7 +106,10 @@ void dig(benchmark::State& state) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     const int side = static_cast<int>(state.range(1));
     sand::Scene scene = sample::flatScene(side, side, 0.01);
-    sand::makeDunes({}, scene.terrain);
+    sand::makeDunes({.height = 0.02}, scene.terrain);  // at rest as they are
+    // As many as a scene file gives it.
+    const double radius = 0.01 / scene.terrain.cellSize();
+    scene.rules.sweepsPerStep = std::max(4, static_cast<int>(std::ceil(radius * radius / 6)));
     sand::Terrain terrain(scene);
     render_node::SandView view(scene, glm::dmat4(1));
     const render_node::EyeTarget target(1024, 768);
@@ -118,7 +122,7 @@ void dig(benchmark::State& state) {
         state.PauseTiming();
         const double at = static_cast<double>(terrain.stepNumber() % 200) / 200;
         const double place = 0.7 + 0.6 * at;
-        terrain.apply({0, terrain.stepNumber() + 1, true, {sample::probeAt(scene, {place, place, 0.04})}});
+        terrain.apply({0, terrain.stepNumber() + 1, true, {sample::probeAt(scene, {place, place, 0.01})}});
         state.ResumeTiming();
         memory.drawn = state.range(0) != 0;
         view.update(terrain.field(), terrain.takeDamage());

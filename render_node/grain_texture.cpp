@@ -51,11 +51,19 @@ std::uint8_t toByte(int value) { return static_cast<std::uint8_t>(std::clamp(val
 }  // namespace
 
 int mottlingAt(int column, int row) {
-    const int x = column & kMask;
-    const int y = row & kMask;
-    return (4 * slowNoise(x, y, 64, 11) + 3 * slowNoise(x, y, 32, 12) + 2 * slowNoise(x, y, 16, 13) +
-            slowNoise(x, y, 8, 14)) /
-           10;
+    // Computing it took a third of the time of a vertex.
+    static const std::vector<std::uint8_t> kAll = [] {
+        std::vector<std::uint8_t> all;
+        for (int y = 0; y < kGrainSide; ++y) {
+            for (int x = 0; x < kGrainSide; ++x) {
+                const int tenth = 4 * slowNoise(x, y, 64, 11) + 3 * slowNoise(x, y, 32, 12) +
+                                  2 * slowNoise(x, y, 16, 13) + slowNoise(x, y, 8, 14);
+                all.push_back(toByte(tenth / 10));
+            }
+        }
+        return all;
+    }();
+    return kAll[static_cast<std::size_t>((row & kMask) * kGrainSide + (column & kMask))];
 }
 
 std::vector<std::uint8_t> makeGrain(const glm::vec2& sun) {

@@ -28,37 +28,38 @@ std::vector<float> sharesOf(const std::vector<float>& places, int stride) {
         const float length = places[first + static_cast<std::size_t>(stride)] - places[first];
         shares.push_back(length > 0 ? (places[static_cast<std::size_t>(i)] - places[first]) / length : 0.0F);
     }
-    shares.push_back(0);
     return shares;
 }
 
-/// The largest distance of the samples from the triangles between every stride-th of them.
-float distance(const Samples& samples, int down, int stride, const std::vector<float>& shareEast,
-               const std::vector<float>& shareNorth) {
+/// The largest distance of the samples of one quad of a level from its two triangles. Its north and east sides are
+/// those of other quads, or of another chunk. The stride is a constant for the compiler's sake.
+template <int kStride>
+float distanceInQuad(const Samples& samples, glm::ivec2 at, const float* shareEast, const float* shareNorth) {
+    const float southWest = samples.at(at.x, at.y);
+    const float east = samples.at(at.x + kStride, at.y) - southWest;
+    const float north = samples.at(at.x, at.y + kStride) - southWest;
+    const float twist = samples.at(at.x + kStride, at.y + kStride) - southWest - east - north;
+    const bool rising = (at.x / kStride + at.y / kStride) % 2 == 0;
     float most = 0;
-    for (int y0 = 0; y0 + stride < down; y0 += stride) {
-        for (int x0 = 0; x0 + stride < samples.across; x0 += stride) {
-            const float southWest = samples.at(x0, y0);
-            const float southEast = samples.at(x0 + stride, y0);
-            const float northWest = samples.at(x0, y0 + stride);
-            const float northEast = samples.at(x0 + stride, y0 + stride);
-            const bool rising = (x0 / stride + y0 / stride) % 2 == 0;
-            for (int y = 0; y <= stride; ++y) {
-                const float v = y == stride ? 1 : shareNorth[static_cast<std::size_t>(y0 + y)];
-                for (int x = 0; x <= stride; ++x) {
-                    const float u = x == stride ? 1 : shareEast[static_cast<std::size_t>(x0 + x)];
-                    float between = 0;
-                    if (rising) {
-                        between = u >= v ? southWest + u * (southEast - southWest) + v * (northEast - southEast)
-                                         : southWest + v * (northWest - southWest) + u * (northEast - northWest);
-                    } else {
-                        between = u + v <= 1 ? southWest + u * (southEast - southWest) + v * (northWest - southWest)
-                                             : northEast + (1 - u) * (northWest - northEast) +
-                                                   (1 - v) * (southEast - northEast);
-                    }
-                    most = std::max(most, std::abs(between - samples.at(x0 + x, y0 + y)));
-                }
-            }
+    for (int y = 0; y < kStride; ++y) {
+        const float v = shareNorth[at.y + y];
+        const float* row = &samples.values[static_cast<std::size_t>((at.y + y) * samples.across + at.x)];
+        for (int x = 0; x < kStride; ++x) {
+            const float u = shareEast[at.x + x];
+            const float beyond = rising ? std::min(u, v) : std::max(u + v - 1, 0.0F);
+            const float between = southWest + u * east + v * north + beyond * twist;
+            most = std::max(most, std::abs(between - row[x]));
+        }
+    }
+    return most;
+}
+
+template <int kStride>
+float distance(const Samples& samples, const std::vector<float>& shareEast, const std::vector<float>& shareNorth) {
+    float most = 0;
+    for (int y = 0; y < static_cast<int>(shareNorth.size()); y += kStride) {
+        for (int x = 0; x < static_cast<int>(shareEast.size()); x += kStride) {
+            most = std::max(most, distanceInQuad<kStride>(samples, {x, y}, shareEast.data(), shareNorth.data()));
         }
     }
     return most;
@@ -78,29 +79,31 @@ int coarsestLevel(int columns, int rows, double toolRadius) {
 LevelErrors errorsOf(const SandSurface& surface, const sand::Rect& vertices, const glm::vec3& sun, int coarsest) {
     const int across = vertices.x1 - vertices.x0;
     const int down = vertices.y1 - vertices.y0;
-    Samples heights{{}, across};
-    Samples light{{}, across};
+    const std::size_t all = static_cast<std::size_t>(across) * static_cast<std::size_t>(down);
+    Samples heights{std::vector<float>(all), across};
+    Samples light{std::vector<float>(all), across};
     std::vector<float> east, north;
     for (int column = vertices.x0; column < vertices.x1; ++column) {
         east.push_back(surface.east(column));
     }
+    std::size_t next = 0;
     for (int row = vertices.y0; row < vertices.y1; ++row) {
         north.push_back(surface.north(row));
         for (int column = vertices.x0; column < vertices.x1; ++column) {
             const glm::vec2 slope = surface.slope(column, row);
-            heights.values.push_back(surface.height(column - 1, row - 1));
-            light.values.push_back(std::max(0.0F, (sun.z - slope.x * sun.x - slope.y * sun.y) /
-                                                      std::sqrt(1 + slope.x * slope.x + slope.y * slope.y)));
+            heights.values[next] = surface.height(column - 1, row - 1);
+            const float towards = sun.z - slope.x * sun.x - slope.y * sun.y;
+            light.values[next++] = std::max(0.0F, towards / std::sqrt(1 + slope.x * slope.x + slope.y * slope.y));
         }
     }
     LevelErrors errors;
-    for (int level = 1; level <= coarsest; ++level) {
-        const int stride = 1 << level;
-        const std::vector<float> shareEast = sharesOf(east, stride);
-        const std::vector<float> shareNorth = sharesOf(north, stride);
-        const auto at = static_cast<std::size_t>(level);
-        errors.height[at] = distance(heights, down, stride, shareEast, shareNorth);
-        errors.light[at] = distance(light, down, stride, shareEast, shareNorth);
+    constexpr std::array kDistances{distance<1>, distance<2>, distance<4>, distance<8>, distance<16>};
+    static_assert(kDistances.size() == kLevels);
+    for (std::size_t level = 1; level <= static_cast<std::size_t>(coarsest); ++level) {
+        const std::vector<float> shareEast = sharesOf(east, 1 << level);
+        const std::vector<float> shareNorth = sharesOf(north, 1 << level);
+        errors.height[level] = kDistances[level](heights, shareEast, shareNorth);
+        errors.light[level] = kDistances[level](light, shareEast, shareNorth);
     }
     return errors;
 }

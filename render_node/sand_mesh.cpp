@@ -302,6 +302,7 @@ SandMesh::Drawn SandMesh::draw(const glm::dmat4& sceneToClip, bool culling, cons
         glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices.buffer.id());
         glDrawElements(GL_TRIANGLES, indices.count, GL_UNSIGNED_SHORT, nullptr);
         ++drawn.chunks;
+        drawn.coarseChunks += levels.level > 0 ? 1 : 0;
         drawn.triangles += indices.count / 3;
         waiting += indices.count / 3;
         if (software_ && waiting >= kTrianglesPerFinish) {

@@ -28,6 +28,7 @@ class SandMesh {
 public:
     struct Drawn {
         int chunks = 0;
+        int coarseChunks = 0;  // above level 0
         int triangles = 0;
     };
 

@@ -156,6 +156,7 @@ void SandView::drawSand(const Camera& camera, const glm::dmat4& sceneToPart, con
     const SandMesh::Drawn drawn = mesh_.draw(sceneToPart, culling_, rule, choose);
     (near ? programs.near : programs.far).drawn();
     counts_.chunks = drawn.chunks;
+    counts_.coarseChunks = drawn.coarseChunks;
     counts_.triangles = drawn.triangles;
 
     prepare(programs.sides, camera);

@@ -31,6 +31,7 @@ struct Camera {
 /// What the last draw() did.
 struct DrawCounts {
     int chunks = 0;         // of sand, drawn
+    int coarseChunks = 0;   // of these, above level 0
     int chunksOfField = 0;  // that the field has
     int triangles = 0;      // of sand, drawn
 };
