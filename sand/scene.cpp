@@ -61,13 +61,13 @@ files::Bytes Scene::encode() const {
             writer.put(number);
         }
     }
-    writer.put(look.detail);
     writer.put(terrain.cellSize());
     encodeCells(terrain.cells(), terrain.bounds(), writer);
     if (ground != nullptr) {
         encodeCells(ground->cells(), terrain.bounds(), writer);
     }
     writer.put(static_cast<std::uint8_t>(look.hillShade ? 1 : 0));
+    writer.put(look.detail);
     return writer.take();
 }
 
@@ -84,7 +84,6 @@ Scene Scene::decode(std::span<const std::uint8_t> bytes) {
             number = reader.get<double>();
         }
     }
-    scene.look.detail = reader.get<double>();
     const auto cellSize = reader.get<double>();
     if (!(cellSize > 0)) {
         throw files::FormatError("a scene without a cell size");
@@ -97,8 +96,10 @@ Scene Scene::decode(std::span<const std::uint8_t> bytes) {
             throw files::FormatError("a scene whose ground is not that of its rules");
         }
     }
-    if (!reader.atEnd()) {  // journals from before there was a hill-shade end here
+    // Journals of before there were hill-shade and levels of detail end here.
+    if (!reader.atEnd()) {
         scene.look.hillShade = reader.get<std::uint8_t>() != 0;
+        scene.look.detail = reader.get<double>();
     }
     return scene;
 }

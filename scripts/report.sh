@@ -74,11 +74,19 @@ PYTHON
     done
 }
 
+# Pictures of a large field at each level of detail.
+detail_curve() {
+    local options=(--sizes 1024,2048 --runs 5 --frames 12)
+    [[ $quick == no ]] || options=(--sizes 2048 --runs 3 --frames 4)
+    echo "== detail"
+    build/release/bin/detail_bench "${options[@]}" --out "$data/detail.csv" 2>"$out/progress.txt" || { cat "$out/progress.txt" >&2; exit 1; }
+}
+
 measure() {
     scripts/install_dependencies.sh
     cmake --preset release >/dev/null
     if [[ $quick == yes ]]; then
-        cmake --build build/release --parallel "$jobs" --target sandwall_bench
+        cmake --build build/release --parallel "$jobs" --target sandwall_bench detail_bench
     else
         cmake --build build/release --parallel "$jobs"
     fi
@@ -103,6 +111,7 @@ measure() {
     [[ $quick == yes ]] || rank_table
     curve rest --sizes 512 --runs 10 -- --sizes 512 --runs 1
     curve rest-moving --sizes 256,512 --runs 10 -- --sizes 256 --runs 1
+    detail_curve
     rm -f "$out/progress.txt"
 }
 

@@ -285,3 +285,19 @@ def budget(table):
         axis.invert_yaxis()
     legend_below(figure, axes)
     return figure
+
+
+def detail(table):
+    figure, axes = panels(2)
+    for axis, (column, name, factor) in zip(axes, (("bad", "pixels beyond 8 levels [%]", 100),
+                                                   ("mean", "mean difference [level]", 1))):
+        for size, colour, marker in zip(table.distinct("N"), SERIES, MARKERS):
+            rows = table.where(N=size)
+            axis.plot([row["ratio"] for row in rows], [factor * row[column] for row in rows], color=colour, marker=marker,
+                      label=f"{size}² cells")
+            for row in rows:
+                axis.annotate(f"{row['bound']:g} px", (row["ratio"], factor * row[column]), fontsize=7,
+                              textcoords="offset points", xytext=(3, 3))
+        label(axis, "draw time, share of bound 0", name, logx=False, logy=False)
+    legend_below(figure, axes)
+    return figure

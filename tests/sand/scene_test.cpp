@@ -52,6 +52,16 @@ TEST_F(SceneFile, AToolOutOfScaleIsRefusedOrWarnedOf) {
     EXPECT_EQ(sand::loadScene(write("s.toml", kFlat + "[tool]\nradius = 0.003\n")).warnings.size(), 1U);
 }
 
+TEST_F(SceneFile, ALevelOfDetailThatCannotHoldItsErrorIsRefused) {
+    EXPECT_EQ(sand::loadScene(write("s.toml", kFlat + "[look]\ndetail = 0\n")).look.detail, 0);
+    const sand::Scene scene = sand::loadScene(write("s.toml", kFlat + "[look]\ndetail = 2.5\n"));
+    EXPECT_EQ(sand::Scene::decode(scene.encode()).look.detail, 2.5);
+    for (const std::string bound : {"-1", "nan", "inf", "0.001", "1000"}) {
+        const std::string said = complaint(kFlat + "[look]\ndetail = " + bound + "\n");
+        EXPECT_EQ(said.rfind("s.toml:5: detail must be ", 0), 0U) << bound << ": " << said;
+    }
+}
+
 TEST_F(SceneFile, AMissingFileIsNamed) {
     EXPECT_THROW((void)sand::loadScene(folder_ / "none.toml"), files::InputError);
 }
