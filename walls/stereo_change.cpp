@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "walls/stereo_change.hpp"
+
+#include <fmt/format.h>
+
+#include "files/input_error.hpp"
+#include "walls/wall_check.hpp"
+
+namespace walls {
+namespace {
+
+constexpr const char* kAdvice = "end the session and start it with --stereo";
+
+void requireSameOutputs(const Tile& open, Stereo was, Tile& other, Stereo wanted) {
+    if (open.outputs.size() > 1 && eyesOf(wanted).size() == 1) {
+        other.outputs = open.outputs;
+    }
+    if (other.outputs.size() != open.outputs.size()) {
+        throw files::InputError(fmt::format(
+            "{} needs {} output{} per tile, and tile '{}' has {}; {}", stereoName(wanted), other.outputs.size(),
+            other.outputs.size() == 1 ? "" : "s", open.name, open.outputs.size(), kAdvice));
+    }
+    const glm::ivec2 there = outputPixels(was, open.pixels);
+    const glm::ivec2 needed = outputPixels(wanted, other.pixels);
+    if (there != needed) {
+        throw files::InputError(fmt::format("{} needs frames of {}x{} pixels, and those of tile '{}' have {}x{}; {}",
+                                            stereoName(wanted), needed.x, needed.y, open.name, there.x, there.y,
+                                            kAdvice));
+    }
+}
+
+}  // namespace
+
+Wall shownOnItsOutputs(const Wall& wall, Stereo stereo) {
+    if (stereo == wall.stereo) {
+        return wall;
+    }
+    Wall other = shownIn(wall, stereo);
+    for (std::size_t i = 0; i < wall.tiles.size(); ++i) {
+        requireSameOutputs(wall.tiles[i], wall.stereo, other.tiles[i], stereo);
+    }
+    if (const auto fault = viewFault(other)) {
+        throw files::InputError(fmt::format("shown in {}: {}", stereoName(stereo), *fault));
+    }
+    return other;
+}
+
+}  // namespace walls
