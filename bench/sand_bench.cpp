@@ -6,6 +6,7 @@
 #include <cstring>
 #include <random>
 
+#include "sand/dunes.hpp"
 #include "sand/terrain.hpp"
 
 namespace {
@@ -83,6 +84,37 @@ void dig(benchmark::State& state, double toolCells, int sweeps) {
 }
 BENCHMARK_CAPTURE(dig, paper_tool, 2.56, 4)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(dig, tool_of_12_cells, 12.0, 24)->Unit(benchmark::kMillisecond);
+
+/// A hand touches down, far from where sand still moves, and leaves again: what keeping the sand for an undo costs.
+void touchDown(benchmark::State& state) {
+    const int side = static_cast<int>(state.range(0));
+    sand::Scene scene = level(2.56, 4);
+    scene.terrain = sand::HeightField(side, side, 1.0);
+    sand::makeDunes({}, scene.terrain);
+    scene.rules.columns = scene.rules.rows = side;
+    sand::Terrain terrain(scene);
+    for (auto _ : state) {
+        for (const bool engaged : {true, false}) {
+            const auto place = static_cast<std::int32_t>(side / 2 * sand::kProbePerCell);
+            terrain.apply({1, terrain.stepNumber() + 1, engaged, {{place, place, 0}}});
+        }
+    }
+}
+BENCHMARK(touchDown)->Arg(512)->Arg(2048)->Unit(benchmark::kMillisecond);
+
+/// The same sand compressed, as it was kept before.
+void compressed(benchmark::State& state) {
+    const int side = static_cast<int>(state.range(0));
+    sand::Scene scene = level(2.56, 4);
+    scene.terrain = sand::HeightField(side, side, 1.0);
+    sand::makeDunes({}, scene.terrain);
+    scene.rules.columns = scene.rules.rows = side;
+    const sand::Terrain terrain(scene);
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(terrain.copySand().encode());
+    }
+}
+BENCHMARK(compressed)->Arg(512)->Arg(2048)->Unit(benchmark::kMillisecond);
 
 /// Settled sand and a hovering hand.
 void idle(benchmark::State& state) {

@@ -66,7 +66,7 @@ void Client::shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs) {
     session_->shown({stepNumber, frameIntervalNs});
 }
 
-void Client::request(sand::Edit edit) { session_->request({edit}); }
+void Client::request(const sand::Edit& edit) { session_->request({edit}); }
 
 std::int64_t Client::clockOffsetNs() const {
     const std::lock_guard lock(session_->shelf.mutex);

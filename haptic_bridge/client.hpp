@@ -88,7 +88,7 @@ public:
     /// The wall has swapped, and shows this step. Lets the server go on, and answers timing tests.
     void shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs);
     /// An operator asks: the server puts it into its next step. Without effect unless the server is linked.
-    void request(sand::Edit edit);
+    void request(const sand::Edit& edit);
     /// Server's clock − this host's clock [ns]; 0 before the first exchange.
     [[nodiscard]] std::int64_t clockOffsetNs() const;
     /// The server's latest measurements; kept when the link is lost.

@@ -260,6 +260,7 @@ void Client::Session::shown(const Shown& frame) {
 void Client::Session::request(const EditRequest& request) {
     asio::post(io_, [this, request] {
         if (connection_ && link() == Link::linked) {
+            connection_->expectLoads(request.edit.kind == sand::Edit::load);  // it comes back in a step
             connection_->send(request);
         }
     });

@@ -34,6 +34,7 @@ public:
     /// Closes the connection when the other side leaves more than kMaxUnsent bytes unread.
     void sendBytes(files::Bytes bytes);
     void expectState(bool expected) { reader_.expectState(expected); }
+    void expectLoads(bool expected) { reader_.expectLoads(expected); }
     /// Reading stops after the message in hand, and goes on with resume(): TCP then holds the other side back.
     void pause() { paused_ = true; }
     void resume();

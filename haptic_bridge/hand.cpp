@@ -9,7 +9,7 @@
 namespace haptic_bridge {
 
 Hand::Hand(const sand::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum)
-    : constants_(scene.force), radius_(scene.toolRadius()), device_(std::move(device)), mapping_(scene, datum) {
+    : constants_(scene.force), device_(std::move(device)), mapping_(scene, datum) {
     last_ = mapping_.probe(Pose{}).value_or(sand::ProbePoint{});
 }
 
@@ -25,7 +25,7 @@ HandSample Hand::tick(double deviceTime, std::int64_t nowNs, const Surface& surf
     sand::force::Vec3 force;
     if (sample.engaged) {
         const double age = static_cast<double>(nowNs - surface.timeNs) * 1e-9;
-        const auto contact = sand::force::measureContact(surface.patch, place, radius_);
+        const auto contact = sand::force::measureContact(surface.patch, place, surface.toolRadius);
         force = sand::force::guarded(sand::force::contactForce(constants_, contact, velocity_), age);
         forceCost_.add(monotonicNs() - begin);
     }

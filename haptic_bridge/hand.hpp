@@ -16,6 +16,7 @@ namespace haptic_bridge {
 /// The sand around the tool after a step, for whoever computes forces.
 struct Surface {
     sand::force::SurfacePatch patch;
+    double toolRadius = 0;    // [scene unit], which an operator may change
     std::int64_t timeNs = 0;  // monotonic, of the step
 };
 
@@ -38,7 +39,6 @@ private:
     void updateVelocity(double deviceTime, sand::force::Vec3 place);
 
     const sand::ForceConstants constants_;
-    const double radius_;  // [scene unit]
     std::unique_ptr<Device> device_;
     HandMapping mapping_;
     sand::ProbePoint last_;

@@ -116,7 +116,10 @@ void put(const Report& report, files::ByteWriter& writer) {
     eachNumber(report, [&writer](auto number) { writer.put(number); });
 }
 void put(const Bye& bye, files::ByteWriter& writer) { writer.putText(bye.reason); }
-void put(const EditRequest& request, files::ByteWriter& writer) { writer.put(static_cast<std::uint8_t>(request.edit)); }
+void put(const EditRequest& request, files::ByteWriter& writer) {
+    writer.put(static_cast<std::uint8_t>(request.edit.kind));
+    sand::encodeDetails(request.edit, writer);
+}
 
 void get(Hello& hello, files::ByteReader& reader) { hello.master = getIdentity(reader); }
 void get(Welcome& welcome, files::ByteReader& reader) {
@@ -179,7 +182,7 @@ void get(EditRequest& request, files::ByteReader& reader) {
     if (edit == 0 || edit >= sand::kEdits) {
         throw files::FormatError("a request for edit " + std::to_string(edit));
     }
-    request.edit = static_cast<sand::Edit>(edit);
+    request.edit = sand::decodeDetails(static_cast<sand::Edit::Kind>(edit), reader);
 }
 
 template <std::size_t index = 0>
@@ -247,6 +250,11 @@ std::optional<Refusal> refusalFor(const Identity& server, const Identity& master
     return std::nullopt;
 }
 
+bool MessageReader::mayBeLong(std::uint8_t type) const {
+    const bool load = type == typeOf<EditRequest>() || type == typeOf<StepMessage>();
+    return type == typeOf<State>() ? stateExpected_ : load && loadsExpected_;
+}
+
 void MessageReader::feed(std::span<const std::uint8_t> bytes) {
     if (begin_ > 0) {
         buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(begin_));
@@ -264,11 +272,11 @@ std::optional<Message> MessageReader::next() {
     }
     const auto length = files::ByteReader(stream).get<std::uint32_t>();
     const bool longMessage = length > kMaxMessage;
-    if (length == 0 || length > kMaxState || (longMessage && !stateExpected_)) {
+    if (length == 0 || length > kMaxState || (longMessage && !stateExpected_ && !loadsExpected_)) {
         throw files::FormatError(fmt::format("a message of {} bytes, {} is the most", length, kMaxMessage));
     }
-    if (longMessage && stream.size() > kLengthBytes && stream[kLengthBytes] != typeOf<State>()) {
-        throw files::FormatError(fmt::format("a message of {} bytes that is no state", length));
+    if (longMessage && stream.size() > kLengthBytes && !mayBeLong(stream[kLengthBytes])) {
+        throw files::FormatError(fmt::format("a message of {} bytes that holds no sand", length));
     }
     if (stream.size() < kLengthBytes + length) {
         return std::nullopt;

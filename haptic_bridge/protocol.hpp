@@ -17,11 +17,14 @@
 namespace haptic_bridge {
 
 inline constexpr std::uint32_t kMagic = 0x42485753;  // "SWHB" as it stands on the wire
-inline constexpr std::uint32_t kProtocolVersion = 3;
+inline constexpr std::uint32_t kProtocolVersion = 4;
 inline constexpr std::uint16_t kDefaultPort = 7750;
-inline constexpr std::size_t kMaxMessage = 64 * 1024;        // [byte], type and payload
-inline constexpr std::size_t kMaxState = 256 * 1024 * 1024;  // [byte], of a State, and only when one is expected
-inline constexpr std::size_t kMaxSceneName = 256;            // [byte]
+inline constexpr std::size_t kMaxMessage = 64 * 1024;  // [byte], type and payload
+// [byte], of a State, and of an EditRequest or Step with sand that is loaded; and only when one is expected. A field of
+// 8192 cells a side compresses to about 150 MiB.
+inline constexpr std::size_t kMaxState = 256 * 1024 * 1024;
+static_assert(sand::kMaxSandBytes + kMaxMessage <= kMaxState, "a load fits, with the path of its step");
+inline constexpr std::size_t kMaxSceneName = 256;  // [byte]
 
 /// What both sides must have alike before a step may pass.
 struct Identity {
@@ -66,7 +69,7 @@ struct Ping {
 };
 /// An operator of the wall asks: the server puts it into its next step.
 struct EditRequest {
-    sand::Edit edit = sand::Edit::none;
+    sand::Edit edit;
     friend bool operator==(const EditRequest&, const EditRequest&) = default;
 };
 
@@ -145,13 +148,17 @@ public:
     [[nodiscard]] std::optional<Message> next();
     /// A State may come next, up to kMaxState long.
     void expectState(bool expected) { stateExpected_ = expected; }
+    /// Sand to be loaded may come, in messages up to kMaxState long.
+    void expectLoads(bool expected) { loadsExpected_ = expected; }
     /// Whether the stream stands in the middle of a message.
     [[nodiscard]] bool midMessage() const { return begin_ < buffer_.size(); }
 
 private:
+    [[nodiscard]] bool mayBeLong(std::uint8_t type) const;
+
     files::Bytes buffer_;
     std::size_t begin_ = 0;
-    bool stateExpected_ = false;
+    bool stateExpected_ = false, loadsExpected_ = false;
 };
 
 }  // namespace haptic_bridge

@@ -121,7 +121,7 @@ void Sequencer::obey(Released&) {
 
 void Sequencer::begin() {
     phase_ = Phase::running;
-    edit_ = sand::Edit::none;
+    edit_ = {};
     shown_ = start_.stepNumber;
     // Whoever numbered before may have left the tool in the sand elsewhere: no furrow from there to here.
     liftFirst_ = terrain_.engaged();
@@ -172,7 +172,7 @@ void Sequencer::makeStep() {
             message.serverTimeNs = readNs;
         }
     }
-    message.step.edit = std::exchange(edit_, sand::Edit::none);
+    message.step.edit = std::exchange(edit_, {});
     terrain_.apply(message.step);
     message.stateHash = terrain_.stateHash();
     output_.step(session_, encode(message));
@@ -181,13 +181,16 @@ void Sequencer::makeStep() {
 }
 
 void Sequencer::publishSurface() {
-    const sand::force::SurfacePatch patch(terrain_.field(), terrain_.probe(), scene_.toolRadius());
+    const double radius = terrain_.toolRadius();
+    const sand::force::SurfacePatch patch(terrain_.field(), terrain_.probe(), radius);
     if (pace_ == Pace::fast) {
         virtualSurface_.patch = patch;
+        virtualSurface_.toolRadius = radius;
         return;
     }
     Surface& next = channel_.surface.next();
     next.patch = patch;
+    next.toolRadius = radius;
     next.timeNs = monotonicNs();
     channel_.surface.publish();
 }

@@ -56,7 +56,7 @@ public:
     void start(std::uint32_t session, const Start& start) { post(Granted{session, start}); }
     void state(files::Bytes bytes) { post(State{std::move(bytes)}); }
     void shown(const Shown& frame, std::int64_t nowNs) { post(Frame{frame, nowNs}); }
-    void edit(const EditRequest& request) { post(request); }
+    void edit(EditRequest request) { post(std::move(request)); }
     void release() { post(Released{}); }
 
     [[nodiscard]] std::uint64_t withheld() const { return withheld_; }  // steps, over the program's life
@@ -81,7 +81,7 @@ private:
     void obey(Granted& command);
     void obey(State& command);
     void obey(Frame& command);
-    void obey(EditRequest& request) { edit_ = request.edit; }
+    void obey(EditRequest& request) { edit_ = std::move(request.edit); }
     void obey(Released&);
     void obey(Stop&) { stopping_ = true; }
     void begin();
@@ -109,7 +109,7 @@ private:
     std::uint32_t session_ = 0;
     Start start_;
     enum class Phase { idle, awaitingState, running } phase_ = Phase::idle;
-    sand::Edit edit_ = sand::Edit::none;  // for the next step
+    sand::Edit edit_;  // for the next step
     std::uint64_t shown_ = 0;
     std::uint64_t virtualSteps_ = 0;  // made under the fast pace since the first start
     bool liftFirst_ = false;          // the first step of an epoch lifts a tool that was left in the sand

@@ -17,8 +17,8 @@ namespace master {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x4c4a5753;  // "SWJL"
-constexpr std::uint32_t kVersion = 2;
-constexpr std::uint32_t kOldestVersion = 1;  // which knew no reset and no undo
+constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kOldestVersion = 1;  // which knew settle alone of the edits; 2 no tune and no load
 constexpr std::uint8_t kFrameRecord = 1;
 constexpr std::uint8_t kEndRecord = 2;
 
@@ -94,21 +94,25 @@ JournalWriter::JournalWriter(const std::filesystem::path& file, const sand::Scen
 JournalWriter::~JournalWriter() { close(descriptor_); }
 
 void JournalWriter::writeAll(const files::Bytes& bytes) {
+    const auto fail = [this] {
+        const int why = errno;
+        // What did get there is no record: the file then ends with the last whole one.
+        [[maybe_unused]] const int cut = ftruncate(descriptor_, size_);
+        throw files::InputError(
+            fmt::format("{}: the journal cannot be written ({})", file_.string(), std::strerror(why)));
+    };
     std::size_t done = 0;
     while (done < bytes.size()) {
         const ssize_t count = write(descriptor_, bytes.data() + done, bytes.size() - done);
         if (count < 0 && errno != EINTR) {
-            throw files::InputError(
-                fmt::format("{}: the journal cannot be written ({}); the sand stops here, what was "
-                            "shown is on disk",
-                            file_.string(), std::strerror(errno)));
+            fail();
         }
         done += count > 0 ? static_cast<std::size_t>(count) : 0;
     }
     if (fdatasync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) {  // pipes and the like cannot sync
-        throw files::InputError(
-            fmt::format("{}: the journal does not reach the disk ({})", file_.string(), std::strerror(errno)));
+        fail();
     }
+    size_ += static_cast<std::int64_t>(bytes.size());
 }
 
 void JournalWriter::appendRecord(std::uint8_t type, const files::Bytes& payload) {

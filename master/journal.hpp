@@ -31,7 +31,8 @@ public:
     JournalWriter(const JournalWriter&) = delete;
     JournalWriter& operator=(const JournalWriter&) = delete;
 
-    /// Returns when the steps are on disk. Throws files::InputError when the disk refuses them.
+    /// Returns when the steps are on disk. Throws files::InputError when the disk refuses them: the file then ends with
+    /// the frame before, and is to be left alone.
     void append(const JournalFrame& frame);
     /// The session ended here, on purpose.
     void finish(std::uint64_t step, std::uint64_t hash);
@@ -42,6 +43,7 @@ private:
 
     std::filesystem::path file_;
     int descriptor_ = -1;
+    std::int64_t size_ = 0;  // [byte], of what is on disk, whole
 };
 
 /// What the last record of a whole session holds.

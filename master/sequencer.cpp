@@ -106,7 +106,7 @@ std::size_t Sequencer::ownStepsDue() {
 
 void Sequencer::passEdits(const std::vector<TimedStep>& steps) {
     for (const TimedStep& timed : steps) {
-        if (timed.step.edit != sand::Edit::none && !edits_.empty() && timed.step.edit == edits_.front()) {
+        if (timed.step.edit.any() && !edits_.empty() && timed.step.edit == edits_.front()) {
             edits_.pop_front();
             toldEpoch_ = 0;
         }
@@ -150,7 +150,7 @@ std::vector<TimedStep> Sequencer::stepsDue(const sand::Terrain& terrain, std::ui
             TimedStep& own = steps.emplace_back();
             own.step.epoch = epoch_;
             own.step.number = terrain.stepNumber() + 1 + i;
-            own.step.edit = i < edits_.size() ? edits_[i] : sand::Edit::none;
+            own.step.edit = i < edits_.size() ? edits_[i] : sand::Edit();
         }
     }
     return steps;

@@ -37,7 +37,7 @@ public:
 
     /// An operator asks for an edit: it goes into a step that next() returns, whoever numbers it, after those asked for
     /// before.
-    void request(sand::Edit edit) { edits_.push_back(edit); }
+    void request(sand::Edit edit) { edits_.push_back(std::move(edit)); }
 
     /// The server's replica holds other sand than the wall: it is let go, and starts again from the wall's state.
     void distrustServer();

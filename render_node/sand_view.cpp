@@ -46,7 +46,12 @@ void SandView::update(const sand::HeightField& field, sand::Rect damage) {
 
 void SandView::setTool(sand::ProbePoint centre, bool engaged) {
     const glm::dvec3 cells = glm::dvec3(centre.x, centre.y, centre.z) / double{sand::kProbePerCell};
-    tool_ = EyeMemory::Tool{glm::vec3(cells * double{cellSize_}), engaged};
+    tool_ = EyeMemory::Tool{glm::vec3(cells * double{cellSize_}), engaged, toolRadius_};
+}
+
+void SandView::setTool(sand::ProbePoint centre, bool engaged, double radius) {
+    toolRadius_ = static_cast<float>(radius);
+    setTool(centre, engaged);
 }
 
 void SandView::setLayers(lockstep::Layers layers) {
@@ -77,7 +82,7 @@ void SandView::prepareSurface(const GlProgram& program, const Camera& camera) co
 }
 
 Box SandView::ballOf(const EyeMemory::Tool& tool) const {
-    const double radius = 1.01 * double{toolRadius_};  // more, for what GL's floats may round
+    const double radius = 1.01 * double{tool.radius};  // more, for what GL's floats may round
     return {glm::dvec3(tool.centre) - radius, glm::dvec3(tool.centre) + radius};
 }
 
@@ -181,7 +186,7 @@ void SandView::drawWires(const Camera& camera, const glm::dmat4& sceneToPart, co
 }
 
 ToolReach SandView::reachOf(const EyeMemory::Tool& tool) const {
-    return {glm::dvec3(tool.centre), double{toolRadius_}, glm::normalize(toVector(look_.sunDirection))};
+    return {glm::dvec3(tool.centre), double{tool.radius}, glm::normalize(toVector(look_.sunDirection))};
 }
 
 /// What a tool changes, as convex hulls: itself with the sand that it dims, and its shadow.
@@ -232,10 +237,11 @@ PixelRect SandView::changedPixels(const Camera& camera, glm::ivec2 size, EyeMemo
         }
     }
     if (memory.force != force_) {
-        for (const std::optional<ForceArrow>& arrow : {memory.force, force_}) {
-            if (arrow) {
-                add(cornersOf(boxOf(*arrow, toolRadius_)));
-            }
+        if (memory.force && memory.tool) {
+            add(cornersOf(boxOf(*memory.force, memory.tool->radius)));
+        }
+        if (force_) {
+            add(cornersOf(boxOf(*force_, toolRadius_)));
         }
     }
     for (const SandDamage::Part& part : mesh_.damageSince(memory.sand)) {

@@ -41,6 +41,7 @@ struct EyeMemory {
     struct Tool {
         glm::vec3 centre;  // [scene unit]
         bool engaged;
+        float radius;  // [scene unit]
         friend bool operator==(const Tool&, const Tool&) = default;
     };
     bool drawn = false;  // reset to draw anew whatever has changed
@@ -83,6 +84,8 @@ public:
     void update(const sand::HeightField& field, sand::Rect damage);
     /// Where the tool's centre is. No tool is drawn before the first call.
     void setTool(sand::ProbePoint centre, bool engaged);
+    /// The same for a tool of another radius than the scene's or that of before [scene unit].
+    void setTool(sand::ProbePoint centre, bool engaged, double radius);
 
     /// Hill-shade and wireframe; other layers are not drawn here. What a layer needs of GL is made when it is first
     /// drawn, which throws std::runtime_error when a shader does not compile.
@@ -123,7 +126,7 @@ private:
     glm::dmat4 sceneToRoom_;
     sand::Look look_;
     float cellSize_;    // [scene unit]
-    float toolRadius_;  // [scene unit]
+    float toolRadius_;  // [scene unit], of the tool now
     std::optional<EyeMemory::Tool> tool_;
     std::optional<ForceArrow> force_;
     lockstep::Layers layers_;

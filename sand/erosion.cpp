@@ -8,7 +8,6 @@
 
 #include "sand/code_path.hpp"
 #include "sand/erosion_kernel.hpp"
-#include "sand/grid_codec.hpp"
 #include "sand/held_patch.hpp"
 
 namespace sand {
@@ -40,8 +39,7 @@ std::int32_t scaled(std::int32_t threshold, double ratio) {
 /// How much of the last sweep's flux goes on in sweep n of something: it begins without and grows.
 float momentumAfter(int n, int damping) { return static_cast<float>(n) / static_cast<float>(n + damping); }
 
-constexpr int kDamping = 25;        // [sweep], what overshoots no pile of 64 cells or more
-constexpr int kMostCounted = 1000;  // [sweep], undisturbed; the momentum is at its most long before
+constexpr int kDamping = 25;  // [sweep], what overshoots no pile of 64 cells or more
 constexpr float kMostMomentum = 0.9F;
 
 }  // namespace
@@ -143,7 +141,7 @@ std::int64_t Erosion::sweep(HeightField& field, int sweeps, const Obstacle* obst
         ++sweepsDone_;
         const bool still = markedFrom_ >= markedTo_;
         if (!still) {  // a replica that joins settled sand visits it once, and must not be the older for it
-            undisturbed_ = std::min(undisturbed_ + 1, kMostCounted);
+            undisturbed_ = std::min(undisturbed_ + 1, Inertia::kMostCounted);
         }
         collectMarked();
         if (!options_.skipSettled && !still) {
@@ -318,27 +316,35 @@ void Erosion::refreshGhosts(HeightField& field, const Rect& cells) const {
     }
 }
 
-void Erosion::encode(files::ByteWriter& writer) const {
-    writer.put(static_cast<std::int32_t>(undisturbed_));
-    if (undisturbed_ > 0) {
-        for (const Grid* flux : {&east_, &north_}) {
-            encodeCells(*flux, {-1, -1, flux->columns(), flux->rows()}, writer);
-        }
+Inertia Erosion::inertia() const {
+    Inertia inertia(undisturbed_);
+    // With an age of zero the next sweep begins without momentum, whatever flowed before.
+    for (std::size_t i = 0; undisturbed_ > 0 && i < active_.size(); ++i) {
+        const int x = active_[i] % across_;
+        const int y = active_[i] / across_;
+        Rect cells = cellsOf({x, y, x + 1, y + 1});
+        cells.x0 -= x == 0 ? 1 : 0;  // what flows over the western rim
+        cells.y0 -= y == 0 ? 1 : 0;
+        inertia.keep(east_, north_, cells);
     }
+    return inertia;
 }
 
-void Erosion::decode(files::ByteReader& reader) {
-    const auto undisturbed = reader.get<std::int32_t>();
-    if (undisturbed < 0 || undisturbed > kMostCounted) {
-        throw files::FormatError("sand with an inertia of no age");
-    }
-    if (undisturbed > 0) {
-        for (Grid* flux : {&east_, &north_}) {
-            decodeCells(reader, {-1, -1, flux->columns(), flux->rows()}, kMaxHeight, *flux);
+void Erosion::resume(const Inertia& inertia) {
+    // Only active blocks hold anything, but their rows are as quickly cleared whole.
+    for (Grid* flux : {&east_, &north_}) {
+        for (int y = -1; y < flux->rows(); ++y) {
+            std::fill(flux->row(y) - 1, flux->row(y) + flux->columns(), 0);
         }
     }
-    undisturbed_ = undisturbed;
+    inertia.putInto(east_, north_);
+    undisturbed_ = inertia.undisturbed();
     wakeAll();
+}
+
+void Erosion::changeRules(const Rules& rules) {
+    rules_ = rules;
+    touch(east_.bounds());
 }
 
 bool Erosion::amiss(const Rect& cells) const {

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "files/byte_stream.hpp"
 #include "sand/executor.hpp"
 #include "sand/ground.hpp"
 #include "sand/height_field.hpp"
+#include "sand/inertia.hpp"
 #include "sand/net_flux.hpp"
 #include "sand/scene.hpp"
 #include "sand/tool.hpp"
@@ -63,10 +63,13 @@ public:
     [[nodiscard]] bool settled() const { return active_.empty(); }
     /// Sweeps that moved sand since touch(), as far as they matter: the age of the inertia.
     [[nodiscard]] int undisturbed() const { return undisturbed_; }
-    /// What the next sweeps depend on beside the heights: the inertia. Nothing is awake or asleep in it: whoever
-    /// decodes visits every block once. Throws files::FormatError.
-    void encode(files::ByteWriter& writer) const;
-    void decode(files::ByteReader& reader);
+    /// What the next sweeps depend on beside the heights.
+    [[nodiscard]] Inertia inertia() const;
+    /// Goes on from there. Nothing is awake or asleep in an inertia: every block is visited once, and one at rest does
+    /// not change.
+    void resume(const Inertia& inertia);
+    /// From now on; everything may move again.
+    void changeRules(const Rules& rules);
     /// How many sweeps have been run since the start.
     [[nodiscard]] std::int64_t sweepsDone() const { return sweepsDone_; }
     /// Whether sand flows in a block of these cells that is not visited any more: memory went bad where nothing moves.

@@ -7,6 +7,13 @@
 
 namespace sand {
 
+void Rules::tune(const Tuning& tuning) {
+    threshold = tuning.threshold;
+    startThreshold = tuning.startThreshold;
+    sweepsPerStep = tuning.sweepsPerStep;
+    toolRadius = tuning.toolRadius;
+}
+
 void Rules::encode(files::ByteWriter& writer) const {
     for (const std::int32_t number :
          {columns, rows, aspect, threshold, startThreshold, sweepsPerStep, stepsPerSecond, toolRadius}) {

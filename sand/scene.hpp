@@ -11,6 +11,8 @@
 #include "files/byte_stream.hpp"
 #include "sand/ground.hpp"
 #include "sand/height_field.hpp"
+#include "sand/material.hpp"
+#include "sand/tuning.hpp"
 
 namespace sand {
 
@@ -33,6 +35,9 @@ struct Rules {
     Scheme scheme = Scheme::isotropic;
     Rim rim = Rim::closed;
     std::uint64_t ground = 0;  // Ground::digest(), 0 without rock and walls
+
+    [[nodiscard]] Tuning tuning() const { return {threshold, startThreshold, sweepsPerStep, toolRadius}; }
+    void tune(const Tuning& tuning);
 
     void encode(files::ByteWriter& writer) const;
     static Rules decode(files::ByteReader& reader);
@@ -68,10 +73,13 @@ struct Scene {
     HeightField terrain{1, 1, 1.0};        // as the session starts
     std::shared_ptr<const Ground> ground;  // null without rock and walls
     std::vector<std::string> warnings;     // one line each, for whoever loads it to print
+    Material material;                     // what the rules were derived from; not encoded, as the warnings are not
 
     [[nodiscard]] double toolRadius() const {  // [scene unit]
         return rules.toolRadius * terrain.cellSize() / kProbePerCell;
     }
+    /// What a material is used with here.
+    [[nodiscard]] MaterialGrid grid() const { return {rules.scheme, rules.stepsPerSecond, terrain.cellSize()}; }
     /// The mean height the session starts with [unit]: devices hover and dig relative to it.
     [[nodiscard]] std::int32_t referenceHeight() const;
 

@@ -3,13 +3,54 @@
 
 #include <cstdlib>
 #include <string>
+#include <utility>
 
 namespace sand {
+
+Edit Edit::tuned(const Tuning& tuning) {
+    Edit edit(Kind::tune);
+    edit.tuning = tuning;
+    return edit;
+}
+
+Edit Edit::loaded(files::Bytes sand) {
+    Edit edit(Kind::load);
+    edit.sand = std::make_shared<const files::Bytes>(std::move(sand));
+    return edit;
+}
+
+bool operator==(const Edit& a, const Edit& b) {
+    const bool sameSand = a.sand == b.sand || (a.sand && b.sand && *a.sand == *b.sand);
+    return a.kind == b.kind && a.tuning == b.tuning && sameSand;
+}
+
+void encodeDetails(const Edit& edit, files::ByteWriter& writer) {
+    if (edit.kind == Edit::tune) {
+        edit.tuning.encode(writer);
+    } else if (edit.kind == Edit::load) {
+        writer.putBlock(edit.sand ? *edit.sand : files::Bytes());
+    }
+}
+
+Edit decodeDetails(Edit::Kind kind, files::ByteReader& reader) {
+    if (kind == Edit::tune) {
+        return Edit::tuned(Tuning::decode(reader));
+    }
+    if (kind == Edit::load) {
+        // What it holds is judged where it is put in the sand's place: that knows the field.
+        const auto sand = reader.getBlock();
+        if (sand.size() > kMaxSandBytes) {
+            throw files::FormatError("sand of " + std::to_string(sand.size()) + " bytes");
+        }
+        return Edit::loaded({sand.begin(), sand.end()});
+    }
+    return kind;
+}
 
 void encode(const Step& step, files::ByteWriter& writer) {
     writer.putVarint(step.epoch);
     writer.putVarint(step.number);
-    writer.put(static_cast<std::uint8_t>((step.engaged ? 1 : 0) + 2 * static_cast<int>(step.edit)));
+    writer.put(static_cast<std::uint8_t>((step.engaged ? 1 : 0) + 2 * static_cast<int>(step.edit.kind)));
     writer.put(static_cast<std::uint8_t>(step.path.size()));
     ProbePoint last;
     for (const ProbePoint& point : step.path) {
@@ -18,6 +59,7 @@ void encode(const Step& step, files::ByteWriter& writer) {
         writer.putSigned(std::int64_t{point.z} - last.z);
         last = point;
     }
+    encodeDetails(step.edit, writer);
 }
 
 namespace {
@@ -45,7 +87,6 @@ Step decodeStep(files::ByteReader& reader) {
         throw files::FormatError("a step with " + std::to_string(count) + " points, flags " + std::to_string(flags));
     }
     step.engaged = flags % 2 == 1;
-    step.edit = static_cast<Edit>(flags / 2);
     step.path.reserve(count);
     ProbePoint last;
     for (int i = 0; i < count; ++i) {
@@ -54,6 +95,7 @@ Step decodeStep(files::ByteReader& reader) {
         last.z = addChecked(last.z, reader.getSigned());
         step.path.push_back(last);
     }
+    step.edit = decodeDetails(static_cast<Edit::Kind>(flags / 2), reader);
     return step;
 }
 

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "files/byte_stream.hpp"
+#include "sand/tuning.hpp"
 
 namespace sand {
 
@@ -21,14 +23,37 @@ struct ProbePoint {
 /// The largest magnitude of a probe coordinate: any further out, and the tool is clamped by whoever quantises it.
 inline constexpr std::int32_t kMaxProbe = 1 << 24;  // [probe unit], four times the longest field
 
-/// What an operator may ask of the sand.
-enum class Edit : std::uint8_t {
-    none,
-    settle,  // let it come to rest at once
-    reset,   // as the scene began
-    undo     // as it was before the last stroke began; nothing when there is none
+inline constexpr std::size_t kMaxSandBytes = 192U << 20;  // [byte], compressed, of sand that is loaded
+
+/// What an operator may ask of the sand, with what it takes.
+struct Edit {
+    enum class Kind : std::uint8_t {
+        none,
+        settle,  // let it come to rest at once
+        reset,   // as the scene began
+        undo,    // as it was before the last stroke began; nothing when there is none
+        tune,    // another tool, another material
+        load     // as it was saved
+    };
+    using enum Kind;
+
+    Kind kind = Kind::none;
+    Tuning tuning;                             // of Kind::tune
+    std::shared_ptr<const files::Bytes> sand;  // of Kind::load, Terrain::encodeSand(); copies of a step share it
+
+    Edit() = default;
+    Edit(Kind what) : kind(what) {}  // not explicit: most edits are nothing but their kind
+    static Edit tuned(const Tuning& tuning);
+    static Edit loaded(files::Bytes sand);
+
+    [[nodiscard]] bool any() const { return kind != Kind::none; }
+    friend bool operator==(const Edit& a, const Edit& b);
 };
-inline constexpr int kEdits = 4;
+inline constexpr int kEdits = 6;
+
+/// What an edit takes, behind its kind. Throws files::FormatError, as decodeStep() does.
+void encodeDetails(const Edit& edit, files::ByteWriter& writer);
+[[nodiscard]] Edit decodeDetails(Edit::Kind kind, files::ByteReader& reader);
 
 /// The only thing that changes sand: where the hand has been since the step before, and what an operator asked.
 ///

@@ -5,6 +5,7 @@
 #include <bit>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "sand/grid_codec.hpp"
 #include "sand/settle.hpp"
@@ -12,7 +13,7 @@
 namespace sand {
 namespace {
 
-constexpr std::uint32_t kStateVersion = 3;
+constexpr std::uint32_t kStateVersion = 4;
 constexpr int kSweepsToRest = 1 << 20;  // more than any field that is worth waiting for
 
 Rect around(const Rect& a, const Rect& b) {
@@ -41,6 +42,7 @@ Erosion::Options withGround(Erosion::Options options, const Ground* ground) {
 
 Terrain::Terrain(const Scene& scene, const Erosion::Options& options)
     : rules_(scene.rules),
+      sceneRules_(scene.rules),
       ground_(scene.ground),
       options_(withGround(options, ground_.get())),
       field_(scene.terrain),
@@ -61,6 +63,7 @@ std::int64_t Terrain::leastBytes(int columns, int rows) {
 void Terrain::touch(const Rect& cells) {
     if (!cells.empty()) {
         hash_.touch(cells);
+        beforeStroke_.touch(cells);
         damage_ = around(damage_, cells);
     }
 }
@@ -74,30 +77,28 @@ void Terrain::apply(const Step& step) {
     const bool wasEngaged = engaged_;
     const ProbePoint before = probe_;
     if (step.engaged && !wasEngaged) {
-        beforeStroke_ = encodeSand();
+        beforeStroke_.keep(field_, erosion_.inertia(), outflow_);
     }
     for (std::size_t i = 0; i < step.path.size(); ++i) {
         const ProbePoint to = step.path[i];
         // A hand that has just engaged comes from nowhere: its first point presses and does not drag.
         const bool arrived = !wasEngaged && i == 0;
         if (step.engaged) {
-            const SphereTool::Displacement done =
-                tool.drag(field_, rules_.rim, ground_.get(), arrived ? to : probe_, to);
-            erosion_.touch(done.cells);
-            touch(done.cells);
-            outflow_ += done.outflow;
+            drag(tool, arrived ? to : probe_, to);
         }
         probe_ = to;
     }
     engaged_ = step.engaged;
     stepNumber_ = step.number;
 
-    if (step.edit == Edit::settle) {
+    if (step.edit.kind == Edit::settle) {
         settleNow();
+    } else if (step.edit.kind == Edit::tune) {
+        tune(step.edit.tuning);
     } else if (putBack(step.edit)) {
         return;
     }
-    const Obstacle here = engaged_ ? tool.obstacle(field_, probe_) : Obstacle{};
+    const Obstacle here = engaged_ ? SphereTool(rules_.toolRadius).obstacle(field_, probe_) : Obstacle{};
     if (wasEngaged && (!engaged_ || probe_ != before)) {
         // Sand that the tool held back may flow again.
         erosion_.touch(tool.obstacle(field_, before).cells);
@@ -105,6 +106,23 @@ void Terrain::apply(const Step& step) {
     outflow_ += erosion_.sweep(field_, rules_.sweepsPerStep, engaged_ ? &here : nullptr);
     for (const Rect& block : erosion_.takeMoved()) {
         touch(block);
+    }
+}
+
+void Terrain::drag(const SphereTool& tool, const ProbePoint& from, const ProbePoint& to) {
+    const SphereTool::Displacement done = tool.drag(field_, rules_.rim, ground_.get(), from, to);
+    erosion_.touch(done.cells);
+    touch(done.cells);
+    outflow_ += done.outflow;
+}
+
+void Terrain::tune(const Tuning& tuning) {
+    const bool otherTool = tuning.toolRadius != rules_.toolRadius;
+    rules_.tune(tuning);
+    // Wakes everything: sand may stand too steep now, or have been held back by a larger tool.
+    erosion_.changeRules(rules_);
+    if (engaged_ && otherTool) {
+        drag(SphereTool(rules_.toolRadius), probe_, probe_);
     }
 }
 
@@ -119,22 +137,42 @@ void Terrain::settleNow() {
     touch(field_.bounds());
 }
 
-bool Terrain::putBack(Edit edit) {
-    if (edit == Edit::reset) {
+bool Terrain::putBack(const Edit& edit) {
+    if (edit.kind == Edit::reset) {
         files::ByteReader reader(*start_);
         decodeCells(reader, field_.bounds(), kMaxHeight, field_.cells());
-        erosion_ = Erosion(field_, rules_, options_);
+        erosion_.resume({});
         outflow_ = 0;
         touch(field_.bounds());
-    } else if (edit == Edit::undo && canUndo()) {
-        files::ByteReader reader(beforeStroke_);
-        decodeSand(reader);
+    } else if (edit.kind == Edit::undo && canUndo()) {
+        for (const Rect& tile : beforeStroke_.putBackHeights(field_)) {
+            touch(tile);
+        }
+        erosion_.resume(beforeStroke_.kept()->inertia);
+        outflow_ = beforeStroke_.kept()->outflow;
+    } else if (edit.kind == Edit::load && edit.sand) {
+        try {
+            replaceSand(SandCopy::decode(*edit.sand, field_));
+        } catch (const files::FormatError&) {
+            return false;  // alike in every replica; who asked for it has looked before
+        }
     } else {
         return false;
     }
     // A hand that is still in the sand goes on with its stroke, which now begins here.
-    beforeStroke_ = engaged_ ? encodeSand() : files::Bytes();
+    if (engaged_) {
+        beforeStroke_.keep(field_, erosion_.inertia(), outflow_);
+    } else {
+        beforeStroke_.forget();
+    }
     return true;
+}
+
+void Terrain::replaceSand(const SandCopy& sand) {
+    field_ = sand.field;
+    erosion_.resume(sand.inertia);
+    outflow_ = sand.outflow;
+    touch(field_.bounds());
 }
 
 std::uint64_t Terrain::stateHash() {
@@ -146,6 +184,12 @@ std::uint64_t Terrain::stateHash() {
     fold(static_cast<std::uint64_t>(erosion_.undisturbed()));
     for (const std::int32_t coordinate : {probe_.x, probe_.y, probe_.z}) {
         fold(static_cast<std::uint32_t>(coordinate));
+    }
+    if (rules_ != sceneRules_) {  // only then: sessions in which nobody tuned keep the hashes they always had
+        const Tuning now = rules_.tuning();
+        for (const std::int32_t number : {now.threshold, now.startThreshold, now.sweepsPerStep, now.toolRadius}) {
+            fold(static_cast<std::uint32_t>(number));
+        }
     }
     return hash;
 }
@@ -162,27 +206,6 @@ void Terrain::audit(int tiles) {
 
 Rect Terrain::takeDamage() { return std::exchange(damage_, Rect{}); }
 
-files::Bytes Terrain::encodeSand() const {
-    files::ByteWriter writer;
-    writer.put(outflow_);
-    encodeCells(field_.cells(), field_.bounds(), writer);
-    erosion_.encode(writer);
-    return writer.take();
-}
-
-void Terrain::decodeSand(files::ByteReader& reader) {
-    const auto outflow = reader.get<std::int64_t>();
-    HeightField heights = field_;
-    decodeCells(reader, heights.bounds(), kMaxHeight, heights.cells());
-    Erosion erosion(heights, rules_, options_);
-    erosion.decode(reader);
-    field_ = std::move(heights);
-    outflow_ = outflow;
-    // Which blocks were still moving is not in the state: visiting one at rest changes nothing.
-    erosion_ = std::move(erosion);
-    touch(field_.bounds());
-}
-
 files::Bytes Terrain::encodeState() const {
     files::ByteWriter writer;
     writer.put(kStateVersion);
@@ -191,8 +214,9 @@ files::Bytes Terrain::encodeState() const {
         writer.put(coordinate);
     }
     writer.put(std::int32_t{engaged_ ? 1 : 0});
-    writer.putBlock(beforeStroke_);
-    writer.putBytes(encodeSand());
+    rules_.tuning().encode(writer);
+    writer.putBlock(canUndo() ? beforeStroke_.kept()->encode() : files::Bytes());
+    writer.putBytes(copySand().encode());
     return writer.take();
 }
 
@@ -210,19 +234,25 @@ void Terrain::decodeState(std::span<const std::uint8_t> bytes) {
         }
     }
     const bool engaged = reader.get<std::int32_t>() != 0;
+    const Tuning tuning = Tuning::decode(reader);
     const auto beforeStroke = reader.getBlock();
-    Terrain decoded(*this);
+    std::optional<SandCopy> stroke;
     if (!beforeStroke.empty()) {
         // Now, and not when somebody wants to undo: then it would be too late to refuse it.
-        files::ByteReader stroke(beforeStroke);
-        decoded.decodeSand(stroke);
+        stroke = SandCopy::decode(beforeStroke, field_);
     }
-    decoded.decodeSand(reader);
-    decoded.stepNumber_ = number;
-    decoded.engaged_ = engaged;
-    decoded.probe_ = probe;
-    decoded.beforeStroke_.assign(beforeStroke.begin(), beforeStroke.end());
-    *this = std::move(decoded);
+    const SandCopy sand = SandCopy::decode(reader.rest(), field_);
+    // Nothing below throws.
+    rules_.tune(tuning);
+    erosion_.changeRules(rules_);
+    replaceSand(sand);
+    stepNumber_ = number;
+    engaged_ = engaged;
+    probe_ = probe;
+    beforeStroke_ = {};
+    if (stroke) {
+        beforeStroke_.keep(std::move(*stroke));
+    }
 }
 
 void Terrain::corrupt(int column, int row) { field_.setHeight(column, row, field_.height(column, row) ^ 1); }

@@ -79,6 +79,40 @@ TEST(Protocol, RefusesEveryTruncationAndEveryTrailingByte) {
     }
 }
 
+TEST(Protocol, AnEditTakesItsDetailsAlong) {
+    for (const sand::Edit& edit : {sand::Edit::tuned({7, 11, 13, 17}), sand::Edit::loaded({3, 1, 4})}) {
+        const files::Bytes framed = encode(EditRequest{edit});
+        EXPECT_EQ(decode(withoutLength(framed)), Message(EditRequest{edit}));
+        for (std::size_t length = 0; length < framed.size() - 4; ++length) {
+            EXPECT_THROW((void)decode(withoutLength(framed).first(length)), files::FormatError) << length;
+        }
+    }
+}
+
+// Nobody who is not linked, or was not asked, makes us hold more than an ordinary message.
+TEST(Protocol, SandToBeLoadedPassesWhereItIsExpectedAndNothingElseAsLong) {
+    const files::Bytes sand(100'000, 7);
+    sand::Step step = someStep();
+    step.edit = sand::Edit::loaded(sand);
+    for (const Message& message : {Message(EditRequest{step.edit}), Message(StepMessage{-5, 17, step})}) {
+        const files::Bytes framed = encode(message);
+        MessageReader expecting;
+        expecting.expectLoads(true);
+        expecting.feed(framed);
+        EXPECT_EQ(expecting.next(), message);
+        for (const bool state : {false, true}) {
+            MessageReader other;
+            other.expectState(state);
+            other.feed(framed);
+            EXPECT_THROW((void)other.next(), files::FormatError);
+        }
+    }
+    MessageReader expecting;
+    expecting.expectLoads(true);
+    expecting.feed(encode(Bye{std::string(100'000, 'x')}));
+    EXPECT_THROW((void)expecting.next(), files::FormatError);
+}
+
 TEST(Protocol, SurvivesRandomMutations) {
     const unsigned seed = std::random_device{}();
     SCOPED_TRACE("seed " + std::to_string(seed));

@@ -175,6 +175,9 @@ struct Wall {
             divergences += terrain.stateHash() != timed.serverHash ? 1 : 0;
             longest = std::max(longest, timed.step.path.size());
             engaged += timed.step.engaged ? 1 : 0;
+            if (timed.step.edit.any()) {
+                edits.push_back(timed.step.edit);
+            }
         } else {
             ++outOfOrder;
         }
@@ -184,6 +187,7 @@ struct Wall {
     std::uint32_t epoch = 0;
     int divergences = 0, outOfOrder = 0, engaged = 0, strokes = 0;
     std::size_t longest = 0;
+    std::vector<sand::Edit> edits;
 };
 
 inline haptic_bridge::Offer offerOf(const sand::Scene& scene) { return {scene.rules.digest(), scene.name}; }

@@ -164,6 +164,33 @@ TEST_F(HapticServer, ComesBackAfterAKillInANewEpoch) {
     EXPECT_EQ(client.counters().reconnects, 1U);
 }
 
+TEST_F(HapticServer, DoesWhatAnOperatorAsksAndTakesTheWallsMaterialWhenItComesBack) {
+    auto server = std::make_unique<ServerProcess>(folder_, ServerProcess::usual(sceneFile_, folder_));
+    const std::uint16_t port = server->port();
+    Client client({"127.0.0.1", port}, offerOf(scene_));
+    Wall wall(scene_);
+    ASSERT_TRUE(wall.follow(client, 40));
+    sand::Tuning tuning = scene_.rules.tuning();
+    tuning.toolRadius *= 2;
+    tuning.threshold /= 2;
+    // The second is no sand of this field and changes nothing, but it is as long as that of a large one.
+    const std::vector<sand::Edit> asked{sand::Edit::tuned(tuning), sand::Edit::loaded(files::Bytes(300'000, 7)),
+                                        sand::Edit::loaded(sand::Terrain(scene_).copySand().encode())};
+    for (const sand::Edit& edit : asked) {
+        client.request(edit);
+        ASSERT_TRUE(wall.follow(client, wall.terrain.stepNumber() + 40)) << client.link().message;
+    }
+    EXPECT_EQ(wall.edits, asked);
+    EXPECT_EQ(wall.divergences, 0);
+    EXPECT_EQ(server->stop(SIGKILL), -SIGKILL);
+    ASSERT_TRUE(eventually([&] { return client.link().link == Link::lost; })) << client.link().message;
+    server = nullptr;
+    server = std::make_unique<ServerProcess>(folder_, ServerProcess::usual(sceneFile_, folder_, port));
+    ASSERT_TRUE(wall.follow(client, 240)) << client.link().message << "\n" << server->errors();
+    EXPECT_EQ(wall.terrain.rules().tuning(), tuning);
+    EXPECT_EQ(wall.divergences, 0) << "the server computes with what the operator has chosen";
+}
+
 TEST_F(HapticServer, ServesTheNextMasterFromItsOwnState) {
     ServerProcess server(folder_, ServerProcess::usual(sceneFile_, folder_));
     Wall first(scene_), second(scene_);

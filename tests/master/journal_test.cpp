@@ -2,7 +2,9 @@
 #include "master/journal.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -61,6 +63,44 @@ TEST_F(JournalFile, GivesBackWhatWasWritten) {
     ASSERT_TRUE(journal.end.has_value());
     EXPECT_EQ(journal.end->step, 30U);
     EXPECT_EQ(journal.end->hash, 77U);
+    EXPECT_EQ(journal.tornBytes, 0);
+}
+
+TEST_F(JournalFile, KeepsWhatAnOperatorAskedFor) {
+    const sand::Scene scene = samples::flatScene(20, 10);
+    master::JournalFrame frame{1, 5, {}};
+    for (const sand::Edit& edit : {sand::Edit::tuned({7, 11, 13, 17}), sand::Edit::loaded(files::Bytes(200'000, 9)),
+                                   sand::Edit(sand::Edit::undo)}) {
+        frame.steps.push_back({1, frame.steps.size() + 1, false, {}, edit});
+    }
+    {
+        master::JournalWriter writer(file_, scene, "0123456789abcdef");
+        writer.append(frame);
+    }
+    const master::Journal journal = master::readJournal(file_);
+    ASSERT_EQ(journal.frames.size(), 1U);
+    EXPECT_EQ(journal.frames[0].steps, frame.steps);
+}
+
+TEST_F(JournalFile, AFullDiskLeavesTheFramesBeforeWhole) {
+    const sand::Scene scene = samples::flatScene(20, 10);
+    std::mt19937 random(47);
+    master::JournalWriter writer(file_, scene, "0123456789abcdef");
+    const auto append = [&](std::uint64_t number) {
+        writer.append({number, number, {samples::randomStep(number, scene.rules, random)}});
+    };
+    append(1);
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    rlimit small = before;
+    small.rlim_cur = std::filesystem::file_size(file_) + 9;  // room for a part of the next record
+    setrlimit(RLIMIT_FSIZE, &small);
+    EXPECT_THROW(append(2), files::InputError);
+    setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, handler);
+    const master::Journal journal = master::readJournal(file_);
+    EXPECT_EQ(journal.frames.size(), 1U);
     EXPECT_EQ(journal.tornBytes, 0);
 }
 

@@ -286,6 +286,25 @@ TEST_F(Redraw, FollowsAToolHighAboveTheSandAndItsShadow) {
     EXPECT_TRUE(view.drawIfChanged(above, inParts, memory).empty());
 }
 
+TEST_F(Redraw, FollowsAToolThatChangesItsSizeWhereItIs) {
+    const sand::Scene scene = sample::flatScene(128, 128, 0.05);
+    SandView view(scene, glm::dmat4(1));
+    const render_node::Camera above = sample::camera({1, 1, 2.2}, {1, 1, 0});
+    const EyeTarget inParts(200, 150), whole(200, 150);
+    render_node::EyeMemory memory;
+    const sand::ProbePoint place = sample::probeAt(scene, {0.8, 0.9, 0.1});
+    Pixels before;
+    for (const double radius : {0.05, 0.12, 0.02, 0.08}) {
+        view.setTool(place, true, radius);
+        view.drawIfChanged(above, inParts, memory);
+        const Pixels now = inParts.read();
+        ASSERT_TRUE(now == sample::draw(view, above, whole)) << "radius " << radius;
+        EXPECT_FALSE(now == before) << "radius " << radius;
+        before = now;
+    }
+    EXPECT_TRUE(view.drawIfChanged(above, inParts, memory).empty());
+}
+
 TEST_F(Redraw, OfRestingSandDrawsNothing) {
     const sand::Scene scene = sample::flatScene(64, 64);
     sand::Terrain terrain(scene);

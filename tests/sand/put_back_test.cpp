@@ -163,11 +163,69 @@ TEST(Reset, RestoresTheSceneAndForgetsTheStroke) {
     }
 }
 
+TEST(Load, PutsBackHeightsOutflowAndInertiaAndForgetsTheStroke) {
+    Terrain terrain(slidingScene());
+    Hand hand(terrain);
+    for (int i = 0; i < 5; ++i) {
+        hand.hover();
+    }
+    ASSERT_FALSE(terrain.settled()) << "sand at rest has no inertia to lose";
+    Terrain other(terrain);
+    const Edit load = Edit::loaded(terrain.copySand().encode());
+    hand.stroke(32);
+    hand.hover(load);
+    EXPECT_TRUE(sameHeights(terrain.field(), other.field()));
+    EXPECT_FALSE(terrain.canUndo());
+    Hand untouched(other);
+    for (int i = 0; i < 30; ++i) {
+        hand.hover();
+        untouched.hover();
+        ASSERT_TRUE(sameHeights(terrain.field(), other.field())) << i << " steps later";
+        ASSERT_EQ(terrain.outflow(), other.outflow());
+    }
+}
+
+TEST(Load, OfBytesThatAreNoSandOfThisFieldIsAStepLikeAnyOther) {
+    const files::Bytes whole = Terrain(slidingScene()).copySand().encode();
+    files::Bytes longer = whole;
+    longer.push_back(0);
+    const files::Bytes larger = Terrain(samples::flatScene(65, 64)).copySand().encode();
+    for (const files::Bytes& bytes : {files::Bytes(), files::Bytes(whole.begin(), whole.end() - 1), longer, larger}) {
+        Terrain terrain(slidingScene());
+        Terrain other(terrain);
+        Hand(terrain).hover(Edit::loaded(bytes));
+        Hand(other).hover();
+        EXPECT_EQ(terrain.stateHash(), other.stateHash());
+    }
+}
+
+TEST(Undo, KeepsWhatTheOperatorHasChosen) {
+    const sand::Scene scene = samples::flatScene(64, 64);
+    Terrain terrain(scene);
+    Hand hand(terrain);
+    hand.stroke(20);
+    sand::Tuning tuning = scene.rules.tuning();
+    tuning.toolRadius *= 2;
+    hand.hover(Edit::tuned(tuning));
+    hand.hover(Edit::undo);
+    EXPECT_EQ(terrain.rules().tuning(), tuning);
+    hand.hover(Edit::reset);
+    EXPECT_EQ(terrain.rules().tuning(), tuning);
+    EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain));
+}
+
 /// Random strokes with now and then an edit of every kind.
 Step editedStep(std::uint64_t number, const sand::Rules& rules, std::mt19937& random) {
     Step step = samples::randomStep(number, rules, random);
     const auto draw = random() % 40;
     step.edit = draw < 5 ? Edit::undo : draw == 5 ? Edit::reset : draw == 6 ? Edit::settle : Edit::none;
+    if (draw == 7 || draw == 8) {
+        sand::Tuning tuning = rules.tuning();
+        tuning.threshold = tuning.threshold / 2 + static_cast<std::int32_t>(random() % 60000);
+        tuning.startThreshold = tuning.threshold + 100;
+        tuning.toolRadius += static_cast<std::int32_t>(random() % 512);
+        step.edit = Edit::tuned(tuning);
+    }
     return step;
 }
 
@@ -228,7 +286,7 @@ TEST(Edits, AStateWithASpoiltStrokeIsRefusedWhole) {
     Terrain dug(scene);
     Hand(dug).stroke(32);
     files::Bytes state = dug.encodeState();
-    state[4 + 8 + 12 + 4 + 4 + 8 + 4] ^= 0xff;  // the first byte that zstd wrote of the heights before the stroke
+    state[4 + 8 + 12 + 4 + 16 + 4 + 8 + 4] ^= 0xff;  // the first byte that zstd wrote of the heights before the stroke
     Terrain terrain(scene);
     const std::uint64_t hash = terrain.stateHash();
     EXPECT_THROW(terrain.decodeState(state), files::FormatError);

@@ -29,15 +29,21 @@ TEST(Step, SurvivesItsEncoding) {
 }
 
 TEST(Step, EveryEditSurvivesAndNoOtherIsRead) {
-    for (int edit = 0; edit < sand::kEdits; ++edit) {
+    for (int kind = 0; kind < sand::kEdits; ++kind) {
+        sand::Edit edit = static_cast<sand::Edit::Kind>(kind);
+        if (edit.kind == sand::Edit::tune) {
+            edit = sand::Edit::tuned({7, 11, 13, 17});
+        } else if (edit.kind == sand::Edit::load) {
+            edit = sand::Edit::loaded({3, 1, 4, 1, 5});
+        }
         for (const bool engaged : {false, true}) {
-            const sand::Step step{1, 2, engaged, {{5, 6, 7}}, static_cast<sand::Edit>(edit)};
+            const sand::Step step{1, 2, engaged, {{5, 6, 7}}, edit};
             const files::Bytes bytes = bytesOf(step);
             files::ByteReader reader(bytes);
             EXPECT_EQ(sand::decodeStep(reader), step);
         }
     }
-    const files::Bytes bytes = bytesOf({1, 2, false, {}, static_cast<sand::Edit>(sand::kEdits)});
+    const files::Bytes bytes = bytesOf({1, 2, false, {}, static_cast<sand::Edit::Kind>(sand::kEdits)});
     files::ByteReader reader(bytes);
     EXPECT_THROW((void)sand::decodeStep(reader), files::FormatError);
 }
@@ -56,6 +62,34 @@ TEST(Step, RefusesEveryTruncation) {
         files::ByteReader reader{std::span(bytes).first(length)};
         EXPECT_THROW((void)sand::decodeStep(reader), files::FormatError) << length;
     }
+}
+
+TEST(Step, RefusesEveryTruncationOfAnEdit) {
+    for (const sand::Edit& edit : {sand::Edit::tuned({7, 11, 13, 17}), sand::Edit::loaded({3, 1, 4, 1, 5})}) {
+        const files::Bytes bytes = bytesOf({1, 2, true, {{5, 6, 7}}, edit});
+        for (std::size_t length = 0; length < bytes.size(); ++length) {
+            files::ByteReader reader{std::span(bytes).first(length)};
+            EXPECT_THROW((void)sand::decodeStep(reader), files::FormatError) << length;
+        }
+    }
+}
+
+TEST(Step, RefusesAMaterialOrToolThatNoSceneGives) {
+    const sand::Tuning good{7, 11, 13, 17};
+    const auto refused = [](const sand::Tuning& tuning) {
+        const files::Bytes bytes = bytesOf({1, 2, false, {}, sand::Edit::tuned(tuning)});
+        files::ByteReader reader(bytes);
+        EXPECT_THROW((void)sand::decodeStep(reader), files::FormatError);
+    };
+    for (std::int32_t sand::Tuning::*number : {&sand::Tuning::threshold, &sand::Tuning::startThreshold,
+                                               &sand::Tuning::sweepsPerStep, &sand::Tuning::toolRadius}) {
+        for (const std::int32_t bad : {-1, sand::kLargestThreshold + 1}) {
+            sand::Tuning tuning = good;
+            tuning.*number = bad;
+            refused(tuning);
+        }
+    }
+    refused({12, 11, 13, 17});  // sand at rest would slide before sand that slides
 }
 
 TEST(Step, RefusesPathsTooLongAndPointsOutOfReach) {
