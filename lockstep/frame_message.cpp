@@ -27,6 +27,7 @@ void ViewState::encode(files::ByteWriter& writer) const {
     putEach(sceneToRoom, writer);
     writer.put(pattern);
     writer.put(layers.bits());
+    writer.put(stereo);
 }
 
 ViewState ViewState::decode(files::ByteReader& reader) {
@@ -37,6 +38,7 @@ ViewState ViewState::decode(files::ByteReader& reader) {
     getEach(reader, view.sceneToRoom);
     view.pattern = reader.get<std::uint8_t>();
     view.layers = Layers(reader.get<std::uint8_t>());
+    view.stereo = reader.get<std::uint8_t>();
     return view;
 }
 

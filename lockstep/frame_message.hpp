@@ -23,6 +23,7 @@ struct ViewState {
     std::array<double, 16> sceneToRoom{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     std::uint8_t pattern = 0;  // lockstep::Pattern shown instead of the sand
     Layers layers{};           // shown beside the sand
+    std::uint8_t stereo = 0;   // walls::Stereo, which an operator may change
 
     void encode(files::ByteWriter& writer) const;
     /// Throws files::FormatError when cut short.

@@ -3,11 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <string>
 
 #include "files/input_error.hpp"
+#include "master/saved_sand.hpp"
 #include "walls/wall_check.hpp"
 
 namespace master {
@@ -19,7 +22,7 @@ struct VerbName {
     Verb verb;
 };
 
-constexpr std::array<VerbName, 12> kVerbs{{{"status", "", Verb::status},
+constexpr std::array<VerbName, 17> kVerbs{{{"status", "", Verb::status},
                                            {"pause", "", Verb::pause},
                                            {"resume", "", Verb::resume},
                                            {"reset", "", Verb::reset},
@@ -29,6 +32,11 @@ constexpr std::array<VerbName, 12> kVerbs{{{"status", "", Verb::status},
                                            {"show", "LAYER", Verb::show},
                                            {"hide", "LAYER", Verb::hide},
                                            {"eye-separation", "METRES", Verb::eyeSeparation},
+                                           {"stereo", "MODE", Verb::stereo},
+                                           {"tool", "RADIUS", Verb::tool},
+                                           {"material", "KEY VALUE", Verb::material},
+                                           {"save", "NAME", Verb::save},
+                                           {"load", "NAME", Verb::load},
                                            {"capture", "", Verb::capture},
                                            {"stop", "", Verb::stop}}};
 
@@ -41,16 +49,76 @@ std::string knownVerbs() {
     return known;
 }
 
+/// None for what is no number, or none at all.
+std::optional<double> numberIn(std::string_view text) {
+    double number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    const bool whole = error == std::errc() && end == text.data() + text.size() && std::isfinite(number);
+    return whole ? std::optional(number) : std::nullopt;
+}
+
 double parseSeparation(std::string_view text) {
-    double metres = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), metres);
-    // Written so that what is no number is out of range.
-    if (error != std::errc() || end != text.data() + text.size() ||
-        !(metres >= 0 && metres <= walls::kMaxEyeSeparation)) {
+    const std::optional<double> metres = numberIn(text);
+    if (!metres || *metres < 0 || *metres > walls::kMaxEyeSeparation) {
         throw files::InputError(fmt::format("eye-separation must be 0 to {} metres, got '{}'", walls::kMaxEyeSeparation,
                                             text.substr(0, 80)));
     }
-    return metres;
+    return *metres;
+}
+
+double parseNumber(std::string_view what, std::string_view text) {
+    const std::optional<double> number = numberIn(text);
+    if (!number) {
+        throw files::InputError(fmt::format("{} must be a number, got '{}'", what, text.substr(0, 80)));
+    }
+    return *number;
+}
+
+void parseArgument(std::string_view argument, Command& command) {
+    switch (command.verb) {
+        case Verb::eyeSeparation:
+            command.number = parseSeparation(argument);
+            break;
+        case Verb::tool:
+            command.number = parseNumber("a tool's radius", argument);
+            break;
+        case Verb::material: {
+            const std::size_t space = argument.find(' ');
+            if (space == std::string_view::npos) {
+                throw files::InputError("material needs KEY VALUE");
+            }
+            command.word = argument.substr(0, std::min<std::size_t>(space, 80));
+            command.number = parseNumber(command.word, argument.substr(space + 1));
+            break;
+        }
+        case Verb::save:
+        case Verb::load:
+            command.word = argument;
+            if (!isSaveName(argument)) {
+                throw files::InputError(
+                    fmt::format("a name has 1 to 64 letters, digits, - and _, got '{}'", argument.substr(0, 80)));
+            }
+            break;
+        case Verb::stereo:
+            command.stereo = walls::stereoNamed(std::string(argument.substr(0, 80)));
+            break;
+        case Verb::show:
+        case Verb::hide:
+            command.layer = lockstep::parseLayer(argument.substr(0, 80));
+            break;
+        case Verb::pattern:
+            if (argument == "next") {
+                break;
+            }
+            try {
+                command.pattern = lockstep::parsePattern(argument.substr(0, 80));
+            } catch (const files::InputError& error) {
+                throw files::InputError(fmt::format("{}, next", error.what()));
+            }
+            break;
+        default:
+            break;
+    }
 }
 
 }  // namespace
@@ -68,18 +136,9 @@ Command parseCommand(std::string_view line) {
                                         ? fmt::format("{} takes no argument, got '{}'", word, argument.substr(0, 80))
                                         : fmt::format("{} needs {}", word, verb.argument));
         }
-        Command command{verb.verb, std::nullopt, {}, 0};
-        if (verb.verb == Verb::eyeSeparation) {
-            command.metres = parseSeparation(argument);
-        } else if (verb.verb == Verb::show || verb.verb == Verb::hide) {
-            command.layer = lockstep::parseLayer(argument.substr(0, 80));
-        } else if (verb.verb == Verb::pattern && argument != "next") {
-            try {
-                command.pattern = lockstep::parsePattern(argument.substr(0, 80));
-            } catch (const files::InputError& error) {
-                throw files::InputError(fmt::format("{}, next", error.what()));
-            }
-        }
+        Command command;
+        command.verb = verb.verb;
+        parseArgument(argument, command);
         return command;
     }
     throw files::InputError(fmt::format("'{}' is no command; these are: {}", line.substr(0, 80), knownVerbs()));

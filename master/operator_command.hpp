@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "lockstep/layer.hpp"
 #include "lockstep/test_pattern.hpp"
+#include "walls/wall.hpp"
 
 namespace master {
 
@@ -23,6 +25,11 @@ enum class Verb : std::uint8_t {
     show,
     hide,
     eyeSeparation,
+    stereo,
+    tool,
+    material,
+    save,
+    load,
     capture,
     stop
 };
@@ -32,7 +39,9 @@ struct Command {
     Verb verb = Verb::status;
     std::optional<lockstep::Pattern> pattern;  // of Verb::pattern; none: the next one
     lockstep::Layer layer{};                   // of Verb::show and Verb::hide
-    double metres = 0;                         // of Verb::eyeSeparation
+    double number = 0;                         // of Verb::eyeSeparation [m], Verb::tool [scene unit], Verb::material
+    std::string word;                          // of Verb::material, which number; of Verb::save and Verb::load
+    walls::Stereo stereo{};                    // of Verb::stereo
 };
 
 /// Throws files::InputError, with the verbs there are, for a line that is no command.

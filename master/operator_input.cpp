@@ -28,6 +28,9 @@ OperatorInput::OperatorInput(bool readInput) {
     action.sa_handler = onSignal;
     sigaction(SIGTERM, &action, nullptr);
     sigaction(SIGINT, &action, nullptr);
+    // A file that may not grow is told by its write, as a full disk is.
+    action.sa_handler = SIG_IGN;
+    sigaction(SIGXFSZ, &action, nullptr);
     if (readInput && pipe(wake_) == 0) {
         thread_ = std::thread([this] { listen(); });
     }

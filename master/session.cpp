@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "files/input_error.hpp"
 #include "lockstep/build_id.hpp"
 #include "lockstep/session_message.hpp"
 #include "master/disagreement.hpp"
@@ -57,6 +58,10 @@ Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, con
                  SessionOptions options)
     : cluster_(cluster),
       wall_(wall),
+      shown_(wall),
+      place_(SandPlace::of(scene)),
+      grid_(scene.grid()),
+      material_(scene.material),
       options_(std::move(options)),
       terrain_(scene, options_.sweeps),
       names_(namesOf(cluster, wall)),
@@ -164,7 +169,7 @@ void Session::applySteps(const std::vector<TimedStep>& steps) {
     compareWithRecording();
     for (const TimedStep& timed : steps) {
         terrain_.apply(timed.step);
-        summary_.edits += timed.step.edit == sand::Edit::none ? 0 : 1;
+        summary_.edits += timed.step.edit.any() ? 1 : 0;
         compareWithRecording();
     }
 }
@@ -183,6 +188,27 @@ void Session::compareWithRecording() {
     }
 }
 
+void Session::keepJournal(const JournalFrame& frame) {
+    try {
+        journal_->append(frame);
+    } catch (const files::InputError& error) {
+        // A full disk must not end a show; what is missing can be seen from the journal itself, which has no end.
+        fmt::print(stderr, "sandwall: {}; it ends before frame {}, and the session goes on without\n", error.what(),
+                   frame.frame);
+        journal_.reset();
+    }
+}
+
+void Session::endJournal() {
+    try {
+        if (journal_) {
+            journal_->finish(terrain_.stepNumber(), hash_);
+        }
+    } catch (const files::InputError& error) {
+        fmt::print(stderr, "sandwall: {}; it holds every step, and no end\n", error.what());
+    }
+}
+
 bool Session::showFrame() {
     waitForFrameTime();
     obeyOperator();
@@ -194,7 +220,7 @@ bool Session::showFrame() {
     summary_.broadcastBytes.add(static_cast<double>(bytes));
     if (journal_ && !message.steps.empty()) {
         // The ranks draw meanwhile; none of them swaps before the master has come to the barrier.
-        journal_->append({message.frame, hashBefore, message.steps});
+        keepJournal({message.frame, hashBefore, message.steps});
     }
     applySteps(steps);
     terrain_.audit(static_cast<int>(message.auditTiles));
@@ -344,19 +370,26 @@ int Session::run() {
             film_->take(cluster_, barrier_.watchdog());
         }
     }
+    finishErrands(true);
     control_.reset();  // whoever asks now finds no session
-    if (agreed && journal_) {
-        journal_->finish(terrain_.stepNumber(), hash_);
+    if (agreed) {
+        endJournal();
     }
     finish();
-    writeSummary(summary_, options_.out / "summary.json");
+    int status = agreed && !strayed_ ? 0 : 1;
+    try {
+        writeSummary(summary_, options_.out / "summary.json");
+    } catch (const files::InputError& error) {  // the ranks still have pictures to send
+        fmt::print(stderr, "sandwall: {}\n", error.what());
+        status = files::kExitBadInput;
+    }
     if (agreed && film_) {
         film_->take(cluster_, barrier_.watchdog());
     } else if (agreed && options_.pictures) {
-        writeWallPictures(cluster_, wall_, options_.out, barrier_.watchdog());
+        writeWallPictures(cluster_, shown_, options_.out, barrier_.watchdog());
     }
     fmt::print("{}", describe(summary_));
-    return agreed && !strayed_ ? 0 : 1;
+    return status;
 }
 
 }  // namespace master

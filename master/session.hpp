@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <functional>
+#include <future>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -20,6 +22,7 @@
 #include "master/operator_command.hpp"
 #include "master/operator_input.hpp"
 #include "master/recording.hpp"
+#include "master/saved_sand.hpp"
 #include "master/sequencer.hpp"
 #include "master/summary.hpp"
 #include "master/view_source.hpp"
@@ -69,6 +72,20 @@ private:
     void obey(const std::string& line, std::optional<ControlSocket::Client> client);
     void carryOut(const Command& command, std::optional<ControlSocket::Client> client);
     void askEdit(sand::Edit edit, std::optional<ControlSocket::Client> client);
+    /// Only a material that is in a step's queue becomes the one that the next is made from.
+    void askMaterial(const sand::Material& material, std::optional<ControlSocket::Client> client);
+    void changeStereo(walls::Stereo stereo);
+    void refuse(const std::string& why, std::optional<ControlSocket::Client> client);
+    /// What a thread beside the frames has done: a line of JSON, or an edit that is still to be asked for.
+    struct ErrandDone {
+        std::string json;
+        sand::Edit edit;
+    };
+    void runErrand(std::function<ErrandDone()> work, std::optional<ControlSocket::Client> client);
+    void save(const std::string& name, std::optional<ControlSocket::Client> client);
+    void load(const std::string& name, std::optional<ControlSocket::Client> client);
+    /// Answers who asked for what is done; with `wait` for all that is not, too.
+    void finishErrands(bool wait);
     void answer(std::optional<ControlSocket::Client> client, const std::string& json);
     void answerEdits(const std::vector<haptic_bridge::TimedStep>& steps);
     void takeCapture();
@@ -77,6 +94,8 @@ private:
     [[nodiscard]] double sessionTime() const;  // [s]
     [[nodiscard]] std::vector<haptic_bridge::TimedStep> awaitSteps();
     [[nodiscard]] bool showFrame();
+    void keepJournal(const JournalFrame& frame);
+    void endJournal();
     void applySteps(const std::vector<haptic_bridge::TimedStep>& steps);
     void compareWithRecording();
     [[nodiscard]] lockstep::WallFigures wallFigures() const;
@@ -89,6 +108,10 @@ private:
 
     const lockstep::Cluster& cluster_;
     const walls::Wall& wall_;
+    walls::Wall shown_;  // in the stereo mode that the operator has chosen
+    const SandPlace place_;
+    const sand::MaterialGrid grid_;
+    sand::Material material_;  // with all that the operator has asked for
     SessionOptions options_;
     sand::Terrain terrain_;
     std::vector<std::string> names_;  // of ranks, as messages speak of them
@@ -101,9 +124,14 @@ private:
     OperatorInput operator_;
     std::optional<ControlSocket> control_;
     struct Asker {
-        sand::Edit edit = sand::Edit::none;
+        sand::Edit edit;
         std::optional<ControlSocket::Client> client;  // none: typed, or answered already
     };
+    struct Errand {
+        std::future<ErrandDone> work;
+        std::optional<ControlSocket::Client> client;
+    };
+    std::vector<Errand> errands_;
     std::deque<Asker> askers_;                     // whose edits are in no step yet
     std::vector<ControlSocket::Client> captures_;  // who wants the pictures of the next frame
     bool paused_ = false;                          // no steps are taken

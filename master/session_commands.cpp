@@ -2,12 +2,14 @@
 // What the operator's hand does to a session, between two frames.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "files/input_error.hpp"
 #include "master/session.hpp"
 #include "master/wall_pictures.hpp"
+#include "walls/stereo_change.hpp"
 
 namespace master {
 namespace {
@@ -26,6 +28,13 @@ std::string line(const Json& json) {
 std::string refusal(const std::string& why) { return line({{"ok", false}, {"error", why}}); }
 
 std::string done() { return line({{"ok", true}}); }
+
+/// As an operator would type it.
+Json materialNow(const sand::Material& material) {
+    return {{"talus", material.dryTalus},    {"wet-talus", material.wetTalusNow()},
+            {"humidity", material.humidity}, {"cohesion", material.cohesionLength},
+            {"band", material.band},         {"settling-time", material.settlingSeconds}};
+}
 
 /// capture_001, or the first after it that is not there; pictures of an earlier session stay.
 std::filesystem::path newCaptureFolder(const std::filesystem::path& out) {
@@ -50,6 +59,7 @@ void Session::obeyOperator() {
             obey(asked.line, asked.client);
         }
     }
+    finishErrands(false);
     for (const lockstep::Arrival& arrival : barrier_.arrivals()) {
         if (arrival.key == 't') {
             views_.show(lockstep::nextPattern(views_.pattern()));
@@ -63,11 +73,15 @@ void Session::obey(const std::string& text, std::optional<Client> client) {
     try {
         carryOut(parseCommand(text), client);
     } catch (const files::InputError& error) {
-        if (client) {
-            control_->answer(*client, refusal(error.what()));
-        } else {
-            fmt::print(stderr, "{}\n", error.what());
-        }
+        refuse(error.what(), client);
+    }
+}
+
+void Session::refuse(const std::string& why, std::optional<Client> client) {
+    if (client) {
+        control_->answer(*client, refusal(why));
+    } else {
+        fmt::print(stderr, "{}\n", why);
     }
 }
 
@@ -81,6 +95,14 @@ void Session::carryOut(const Command& command, std::optional<Client> client) {
             return askEdit(sand::Edit::undo, client);
         case Verb::settle:
             return askEdit(sand::Edit::settle, client);
+        case Verb::tool:
+            return askMaterial(sand::withTool(material_, command.number, grid_), client);
+        case Verb::material:
+            return askMaterial(sand::withNumber(material_, command.word, command.number, grid_), client);
+        case Verb::save:
+            return save(command.word, client);
+        case Verb::load:
+            return load(command.word, client);
         case Verb::capture:
             captures_.push_back(client.value_or(0));
             return;  // answered when the pictures are there
@@ -96,7 +118,10 @@ void Session::carryOut(const Command& command, std::optional<Client> client) {
             views_.show(command.layer, command.verb == Verb::show);
             break;
         case Verb::eyeSeparation:
-            views_.separateEyes(command.metres);
+            views_.separateEyes(command.number);
+            break;
+        case Verb::stereo:
+            changeStereo(command.stereo);
             break;
         case Verb::stop:
             operator_.stop();
@@ -108,7 +133,11 @@ void Session::carryOut(const Command& command, std::optional<Client> client) {
 }
 
 void Session::askEdit(sand::Edit edit, std::optional<Client> client) {
-    if (edit == sand::Edit::undo && !terrain_.canUndo()) {
+    const auto loads = [](const Asker& asker) { return asker.edit.kind == sand::Edit::load; };
+    if (edit.kind == sand::Edit::load && std::any_of(askers_.begin(), askers_.end(), loads)) {
+        throw files::InputError("another load waits for its step already");  // each holds the whole sand
+    }
+    if (edit.kind == sand::Edit::undo && !terrain_.canUndo()) {
         throw files::InputError("there is no stroke to undo");
     }
     if (askers_.size() >= kMostEditsWaiting) {
@@ -119,7 +148,17 @@ void Session::askEdit(sand::Edit edit, std::optional<Client> client) {
         client.reset();
     }
     sequencer_.request(edit);
-    askers_.push_back({edit, client});
+    askers_.push_back({std::move(edit), client});
+}
+
+void Session::askMaterial(const sand::Material& material, std::optional<Client> client) {
+    askEdit(sand::Edit::tuned(sand::tuningOf(material, grid_)), client);
+    material_ = material;
+}
+
+void Session::changeStereo(walls::Stereo stereo) {
+    shown_ = walls::shownOnItsOutputs(wall_, stereo);
+    views_.show(stereo);
 }
 
 void Session::answer(std::optional<Client> client, const std::string& json) {
@@ -133,7 +172,7 @@ void Session::answer(std::optional<Client> client, const std::string& json) {
 
 void Session::answerEdits(const std::vector<haptic_bridge::TimedStep>& steps) {
     for (const haptic_bridge::TimedStep& timed : steps) {
-        if (timed.step.edit == sand::Edit::none || askers_.empty() || askers_.front().edit != timed.step.edit) {
+        if (!timed.step.edit.any() || askers_.empty() || !(askers_.front().edit == timed.step.edit)) {
             continue;
         }
         if (askers_.front().client) {
@@ -147,7 +186,7 @@ void Session::takeCapture() {
     const std::filesystem::path folder = newCaptureFolder(options_.out);
     std::string said;
     try {
-        writeWallPictures(cluster_, wall_, folder, barrier_.watchdog());
+        writeWallPictures(cluster_, shown_, folder, barrier_.watchdog());
         said = line({{"ok", true},
                      {"folder", folder.filename().string()},
                      {"frame", frame_},
@@ -172,13 +211,17 @@ std::string Session::status() const {
                  {"linked", sequencer_.linked()},
                  {"paused", paused_},
                  {"pattern", std::string(lockstep::patternName(views_.pattern()))},
+                 {"stereo", std::string(walls::stereoName(shown_.stereo))},
                  {"eye_separation", views_.eyeSeparation()},
+                 {"tool_radius", terrain_.toolRadius()},
+                 {"material", materialNow(material_)},
                  {"state_hash", fmt::format("{:016x}", hash_)},
                  {"divergences", summary_.divergences},
                  {"server_divergences", summary_.serverDivergences},
                  {"edits", summary_.edits},
                  {"edits_waiting", askers_.size()},
-                 {"can_undo", terrain_.canUndo()}});
+                 {"can_undo", terrain_.canUndo()},
+                 {"journal", journal_.has_value()}});
 }
 
 }  // namespace master

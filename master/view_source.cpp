@@ -16,6 +16,7 @@ ViewSource::ViewSource(const walls::Wall& wall, const sand::Scene& scene, const 
     const glm::dmat4 toRoom =
         walls::stageToRoom(wall.stage, field.columns() * field.cellSize(), field.rows() * field.cellSize(),
                            scene.referenceHeight() * field.unit());
+    show(wall.stereo);
     std::copy_n(glm::value_ptr(toRoom), state_.sceneToRoom.size(), state_.sceneToRoom.begin());
 }
 

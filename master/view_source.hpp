@@ -24,6 +24,7 @@ public:
 
     void show(lockstep::Pattern pattern) { state_.pattern = static_cast<std::uint8_t>(pattern); }
     [[nodiscard]] lockstep::Pattern pattern() const { return static_cast<lockstep::Pattern>(state_.pattern); }
+    void show(walls::Stereo stereo) { state_.stereo = static_cast<std::uint8_t>(stereo); }
     void show(lockstep::Layers layers) { state_.layers = layers; }
     void show(lockstep::Layer layer, bool shown) { state_.layers.set(layer, shown); }
     [[nodiscard]] lockstep::Layers layers() const { return state_.layers; }

@@ -24,18 +24,33 @@ void ViewCounts::add(const PixelRect& drawn, const EyeTarget& target) {
 }
 
 TilePainter::TilePainter(const walls::Wall& wall, const walls::Tile& tile, const sand::Scene& scene, std::string host)
-    : wall_(wall),
-      tile_(tile),
+    : wall_(&wall),
+      tile_(&tile),
       host_(std::move(host)),
       forceConstants_(scene.force),
       sand_(scene, glm::dmat4(1)),
-      memories_(walls::eyesOf(wall.stereo).size()),
-      composer_(wall.stereo, tile),
-      shown_(memories_.size(), lockstep::Pattern::none),
-      covered_(memories_.size()) {
-    for (std::size_t i = 0; i < memories_.size(); ++i) {
-        targets_.emplace_back(tile.pixels.x, tile.pixels.y);
+      composer_(wall.stereo, tile) {
+    makeTargets();
+}
+
+void TilePainter::makeTargets() {
+    const std::size_t eyes = walls::eyesOf(wall_->stereo).size();
+    targets_.clear();
+    for (std::size_t i = 0; i < eyes; ++i) {
+        targets_.emplace_back(tile_->pixels.x, tile_->pixels.y);
     }
+    memories_.assign(eyes, {});
+    shown_.assign(eyes, lockstep::Pattern::none);
+    covered_.assign(eyes, {});
+}
+
+void TilePainter::showAs(const walls::Wall& wall, const walls::Tile& tile) {
+    wall_ = &wall;
+    tile_ = &tile;
+    makeTargets();
+    composer_ = StereoComposer(wall.stereo, tile);
+    patterns_.reset();
+    overlay_.reset();
 }
 
 void TilePainter::paint(sand::Terrain& terrain, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye,
@@ -44,7 +59,7 @@ void TilePainter::paint(sand::Terrain& terrain, const lockstep::ViewState& view,
     sand_.setSceneToRoom(glm::make_mat4(view.sceneToRoom.data()));
     sand_.update(terrain.field(), terrain.takeDamage());
     if (terrain.stepNumber() > 0) {
-        sand_.setTool(terrain.probe(), terrain.engaged());
+        sand_.setTool(terrain.probe(), terrain.engaged(), terrain.toolRadius());
     }
     if (!view.layers.shows(lockstep::Layer::force)) {
         force_.reset();
@@ -60,7 +75,7 @@ void TilePainter::paint(sand::Terrain& terrain, const lockstep::ViewState& view,
         uncover(range);
     } else {
         if (!overlay_) {
-            overlay_.emplace(wall_, tile_, host_);
+            overlay_.emplace(*wall_, *tile_, host_);
         }
         overlay_->add(figures, frame);
     }
@@ -94,8 +109,8 @@ PixelRect TilePainter::paintSand(const lockstep::ViewState& view, EyeRange range
     const walls::Viewer viewer = viewerOf(view);
     PixelRect changed;
     for (std::size_t i = range.from; i < range.end; ++i) {
-        const glm::dvec3 position = walls::eyePosition(viewer, walls::eyesOf(wall_.stereo)[i]);
-        const walls::View seen = walls::viewOf(tile_.screen, position, wall_.clip.near, wall_.clip.far);
+        const glm::dvec3 position = walls::eyePosition(viewer, walls::eyesOf(wall_->stereo)[i]);
+        const walls::View seen = walls::viewOf(tile_->screen, position, wall_->clip.near, wall_->clip.far);
         const PixelRect drawn = sand_.drawIfChanged({seen.viewProjection, position}, targets_[i], memories_[i]);
         counts_.add(drawn, targets_[i]);
         changed = around(changed, drawn);
@@ -105,12 +120,12 @@ PixelRect TilePainter::paintSand(const lockstep::ViewState& view, EyeRange range
 
 PixelRect TilePainter::paintPattern(lockstep::Pattern pattern, std::uint64_t frame, EyeRange range) {
     if (!patterns_) {
-        patterns_.emplace(wall_, tile_, host_);
+        patterns_.emplace(*wall_, *tile_, host_);
     }
     PixelRect changed;
     for (std::size_t i = range.from; i < range.end; ++i) {
         if (shown_[i] != pattern || lockstep::changesEveryFrame(pattern)) {
-            patterns_->draw(pattern, walls::eyesOf(wall_.stereo)[i], frame, targets_[i]);
+            patterns_->draw(pattern, walls::eyesOf(wall_->stereo)[i], frame, targets_[i]);
             memories_[i].drawn = false;  // the sand must come back whole
             covered_[i] = {};
             changed = {0, 0, targets_[i].width(), targets_[i].height()};
@@ -124,7 +139,7 @@ std::vector<const EyeTarget*> TilePainter::pictures() const {
     for (const EyeTarget& target : targets_) {
         all.push_back(&target);
     }
-    if (walls::packsEyes(wall_.stereo)) {
+    if (walls::packsEyes(wall_->stereo)) {
         all.push_back(outputs().front().picture);
     }
     return all;

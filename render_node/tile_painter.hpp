@@ -38,6 +38,9 @@ public:
     /// compile or a size is refused.
     TilePainter(const walls::Wall& wall, const walls::Tile& tile, const sand::Scene& scene, std::string host);
 
+    /// From now on as another stereo mode of the same wall, on the same outputs. `wall` and `tile` must outlive it.
+    void showAs(const walls::Wall& wall, const walls::Tile& tile);
+
     /// Brings every eye that differs up to date with `terrain` as `view` sees it, or with its test pattern, and puts
     /// them together; with `oneEye` only that which the frame shows, the left one in even frames. `figures` are shown
     /// over the sand where the view has Layer::statistics. Does not wait for GL.
@@ -62,8 +65,10 @@ private:
     void uncover(EyeRange range);
     void paintOverlay(EyeRange range);
 
-    const walls::Wall& wall_;
-    const walls::Tile& tile_;
+    void makeTargets();
+
+    const walls::Wall* wall_;
+    const walls::Tile* tile_;
     std::string host_;
     sand::ForceConstants forceConstants_;
     SandView sand_;

@@ -20,6 +20,7 @@
 #include "lockstep/view_agreement.hpp"
 #include "render_node/gl/gl_program.hpp"
 #include "render_node/tile_painter.hpp"
+#include "walls/stereo_change.hpp"
 
 namespace render_node {
 namespace {
@@ -34,6 +35,7 @@ public:
         : cluster_(cluster),
           message_(message),
           wall_(walls::Wall::decode(message.wall)),
+          shown_(wall_),
           tile_(wall_.tiles.at(static_cast<std::size_t>(cluster.rank() - 1))),
           viewProof_(wall_.encode()),
           context_(makeContext(backend, wall_, tile_)) {
@@ -43,7 +45,8 @@ public:
         }
         const sand::Scene scene = sand::Scene::decode(message.scene);
         terrain_.emplace(scene, sweeps);
-        painter_.emplace(wall_, tile_, scene, lockstep::hostName());
+        painter_.emplace(shown_, shown_.tiles.at(static_cast<std::size_t>(cluster.rank() - 1)), scene,
+                         lockstep::hostName());
     }
 
     [[nodiscard]] const GlContext& context() const { return *context_; }
@@ -61,9 +64,12 @@ public:
             lockstep::FrameMessage frame = barrier.begin({}, bytes);
             applyFaults(frame);
             applySteps(frame);
+            changeStereo(frame.view);
             const std::int64_t start = nowNs();
             figures.wall = std::move(frame.figures).value_or(lockstep::WallFigures{});
-            painter_->paint(*terrain_, frame.view, frame.frame, context_->showsEyesInTurn() && !frame.capture, figures);
+            // Known of the frame before, whose mode may have been another.
+            const bool inTurn = context_->showsEyesInTurn() && shown_.stereo == walls::Stereo::active;
+            painter_->paint(*terrain_, frame.view, frame.frame, inTurn && !frame.capture, figures);
             context_->present(painter_->outputs(), frame.frame);
             drawSlowly(frame.frame);
             const std::int64_t drawn = nowNs();
@@ -109,6 +115,15 @@ private:
             if (slow.rank == cluster_.rank() && frame >= slow.frame && frame - slow.frame < slow.frames) {
                 std::this_thread::sleep_for(std::chrono::milliseconds(slow.milliseconds));
             }
+        }
+    }
+
+    /// As the operator has it; the master has looked whether the outputs can show that.
+    void changeStereo(const lockstep::ViewState& view) {
+        const auto stereo = static_cast<walls::Stereo>(view.stereo);
+        if (stereo != shown_.stereo) {
+            shown_ = walls::shownOnItsOutputs(wall_, stereo);
+            painter_->showAs(shown_, shown_.tiles.at(static_cast<std::size_t>(cluster_.rank() - 1)));
         }
     }
 
@@ -162,7 +177,8 @@ private:
 
     const lockstep::Cluster& cluster_;
     const lockstep::SessionMessage& message_;
-    walls::Wall wall_;
+    walls::Wall wall_;   // as the session began
+    walls::Wall shown_;  // in the mode of the last frame; the painter looks at it
     const walls::Tile& tile_;
     lockstep::ViewProof viewProof_;
     std::unique_ptr<GlContext> context_;  // before everything that holds GL objects

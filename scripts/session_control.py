@@ -71,7 +71,8 @@ def add_parser(commands, remainder):
     """Adds `ctl` to the launcher's commands; `remainder` is argparse's word for all that is left."""
     parser = commands.add_parser("ctl", help="command a running session",
                                  description="Commands a session that runs on this machine: status, pause, resume, reset, undo, settle, "
-                                             "pattern NAME|none|next, eye-separation METRES, capture, stop; docs/operator.md.")
+                                             "tool RADIUS, material KEY VALUE, save NAME, load NAME, stereo MODE, pattern NAME|none|next, "
+                                             "show LAYER, hide LAYER, eye-separation METRES, capture, stop; docs/operator.md.")
     parser.set_defaults(run=ctl)
     parser.add_argument("session", metavar="SESSION", help="the --out folder of the session")
     parser.add_argument("words", metavar="VERB", nargs=remainder, help="what to do, and with what")

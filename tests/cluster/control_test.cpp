@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <functional>
 #include <thread>
 
+#include "master/journal.hpp"
 #include "tests/cluster/session_fixture.hpp"
 #include "tests/support/run_program.hpp"
 
@@ -13,8 +19,11 @@ namespace {
 class Operator : public SessionTest {
 protected:
     void begin(const std::string& device, const std::string& waitFor, const std::string& stereo = "passive") {
-        session_ = start({"--wall", wall(1, 2, stereo), "--scene", scene(), "--device", device, "--steps", "1000000",
-                          "--out", out(), "--no-pictures"});
+        beginOn(wall(1, 2, stereo), device, waitFor);
+    }
+    void beginOn(const std::string& wallFile, const std::string& device, const std::string& waitFor) {
+        session_ = start({"--wall", wallFile, "--scene", scene(), "--device", device, "--steps", "1000000", "--out",
+                          out(), "--no-pictures"});
         ASSERT_TRUE(session_->waitForOutput(waitFor, 120)) << session_->output();
     }
     [[nodiscard]] support::Ran ctl(const std::string& words) const {
@@ -60,8 +69,56 @@ protected:
         EXPECT_EQ(replayed.output, summary()["state_hash"].get<std::string>() + "\n");
         EXPECT_FALSE(std::filesystem::exists(out() + "/control"));
     }
+    /// The process that answers at the session's socket.
+    [[nodiscard]] pid_t master() const {
+        const int peer = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+        sockaddr_un address{};
+        address.sun_family = AF_UNIX;
+        const std::string path = out() + "/control";
+        EXPECT_LT(path.size(), sizeof address.sun_path);
+        path.copy(address.sun_path, sizeof address.sun_path - 1);
+        ucred credentials{};
+        socklen_t size = sizeof credentials;
+        EXPECT_EQ(connect(peer, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+        EXPECT_EQ(getsockopt(peer, SOL_SOCKET, SO_PEERCRED, &credentials, &size), 0);
+        close(peer);
+        return credentials.pid;
+    }
+    /// No file of the master may grow beyond this: as if the disk were full.
+    void limitFiles(rlim_t bytes) const {
+        rlimit limit{};
+        ASSERT_EQ(prlimit(master(), RLIMIT_FSIZE, nullptr, &limit), 0);
+        limit.rlim_cur = std::min(bytes, limit.rlim_max);
+        ASSERT_EQ(prlimit(master(), RLIMIT_FSIZE, &limit, nullptr), 0);
+    }
+    [[nodiscard]] std::string heightsAfter(std::uint64_t step) const {
+        const support::Ran ran =
+            support::runProgram("sandwall-replay", out() + "/session.journal --until " + std::to_string(step) +
+                                                       " --heights " + (folder_ / "heights.asc").string());
+        EXPECT_EQ(ran.status, 0) << ran.output;
+        return read("heights.asc");
+    }
     std::unique_ptr<support::ChildProcess> session_;
 };
+
+/// The step after which the sand was as an undo at this step leaves it: the one before the last stroke, or an edit in
+/// its midst.
+std::uint64_t keptBefore(const master::Journal& journal, std::uint64_t undo) {
+    std::uint64_t kept = 0;
+    bool engaged = false;
+    for (const master::JournalFrame& frame : journal.frames) {
+        for (const sand::Step& step : frame.steps) {
+            if (step.number <= undo && step.engaged && !engaged) {
+                kept = step.number - 1;
+            } else if (step.number < undo && step.engaged &&
+                       (step.edit.kind == sand::Edit::reset || step.edit.kind == sand::Edit::load)) {
+                kept = step.number;
+            }
+            engaged = step.engaged;
+        }
+    }
+    return kept;
+}
 
 TEST_F(Operator, EditsTheSandThatAHandDigs) {
     begin("script:gis", "hand linked");
@@ -76,6 +133,84 @@ TEST_F(Operator, EditsTheSandThatAHandDigs) {
     EXPECT_EQ(now["edits_waiting"], 0) << now;
     EXPECT_EQ(now["ranks"], 2);
     endAndReplay(3);
+}
+
+// Every verb that changes sand, with a hand in it, on a whole wall; then the same again from the journal alone.
+TEST_F(Operator, ChangesToolMaterialAndSandOfTwelveRanksAndAReplayEndsInTheSameHash) {
+    beginOn(wall(3, 4, "anaglyph"), "script:gis", "hand linked");
+    const auto canUndo = [](const nlohmann::json& now) { return now.value("can_undo", false); };
+    awaitStatus(canUndo);
+    EXPECT_EQ(ask("status")["ranks"], 12);
+    ask("tool 0.08");
+    ask("material talus 20");
+    ask("material humidity 0.25");
+    nlohmann::json now = ask("status");
+    EXPECT_NEAR(now["tool_radius"].get<double>(), 0.08, 1e-3);
+    EXPECT_EQ(now["material"]["talus"], 20);
+    EXPECT_EQ(now["material"]["humidity"], 0.25);
+    EXPECT_EQ(ask("save dug-1")["file"], "saves/dug-1.sand");
+    ask("settle");
+    ask("reset");
+    EXPECT_GT(ask("load dug-1")["step"], 0);
+    awaitStatus(canUndo);
+    const std::uint64_t undone = ask("undo")["step"];
+    ask("material talus 40");
+    EXPECT_EQ(ask("status")["edits"], 8);
+    EXPECT_EQ(ask("status")["server_divergences"], 0);
+    std::filesystem::remove_all(folder_ / "out/saves");
+    endAndReplay(8);
+    const std::uint64_t kept = keptBefore(master::readJournal(out() + "/session.journal"), undone);
+    ASSERT_GT(kept, 0U);
+    EXPECT_EQ(heightsAfter(undone), heightsAfter(kept)) << "undone by step " << undone << ", kept after " << kept;
+
+    support::ChildProcess film(
+        {"/usr/bin/env", "-u", "DISPLAY", SANDWALL_SOURCE_DIR "/scripts/sandwall", "film", out() + "/session.journal",
+         "--wall", wall(1, 1, "mono"), "--fps", "2", "--out", (folder_ / "film").string()},
+        folder_ / "film.txt");
+    EXPECT_EQ(film.wait(300), 0) << film.output();
+    EXPECT_EQ(nlohmann::json::parse(read("film/summary.json"))["state_hash"], summary()["state_hash"]);
+}
+
+TEST_F(Operator, ChangesTheStereoModeOfARunningWall) {
+    begin("none", "no hand", "anaglyph");
+    EXPECT_EQ(ask("status")["stereo"], "anaglyph");
+    ask("capture");
+    ask("stereo mono");
+    EXPECT_EQ(ask("status")["stereo"], "mono");
+    ask("capture");
+    ask("stereo anaglyph");
+    ask("capture");
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "out/capture_001/tile_r1c1_output.png"));
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "out/capture_002/wall.png"));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out/capture_002/wall_left.png"));
+    for (const char* name : {"wall_left.png", "wall_right.png", "tile_r1c2_output.png"}) {
+        EXPECT_EQ(read(std::string("out/capture_001/") + name), read(std::string("out/capture_003/") + name)) << name;
+    }
+    expectRefusal("stereo passive", "passive needs 2 outputs per tile, and tile 'r1c1' has 1");
+    expectRefusal("stereo side_by_side", "side_by_side needs frames of 192x72 pixels");
+    expectRefusal("stereo sideways", "no stereo mode 'sideways'; there are mono, left");
+    EXPECT_EQ(ask("status")["stereo"], "anaglyph");
+    endAndReplay(0);
+}
+
+TEST_F(Operator, AFolderThatFillsUpEndsTheJournalAndNotTheSession) {
+    begin("none", "no hand");
+    limitFiles(64);
+    awaitStatus([](const nlohmann::json& now) { return !now.value("journal", true); });
+    EXPECT_TRUE(session_->waitForOutput("the journal cannot be written (File too large); it ends before frame", 60))
+        << session_->output();
+    expectRefusal("save full", "full.sand: cannot be written (File too large); nothing was saved");
+    expectRefusal("capture", "cannot be written");
+    EXPECT_TRUE(std::filesystem::is_empty(folder_ / "out/saves"));
+    limitFiles(RLIM_INFINITY);
+    ask("save full");
+    EXPECT_GT(ask("load full")["step"], 0);
+    EXPECT_FALSE(ask("status")["journal"]);
+    ask("stop");
+    EXPECT_EQ(session_->wait(120), 0) << session_->output();
+    EXPECT_EQ(summary()["divergences"], 0);
+    const support::Ran replayed = support::runProgram("sandwall-replay", out() + "/session.journal");
+    EXPECT_EQ(replayed.status, 0) << "what is there is whole";
 }
 
 // The hand is waited for, not thrown away: the server is the same, and its sand the wall's.
@@ -126,6 +261,14 @@ TEST_F(Operator, IsToldWhatCannotBeDoneAndTheSessionGoesOn) {
     expectRefusal("undo twice", "undo takes no argument, got 'twice'");
     expectRefusal("pattern stripes", "no test pattern 'stripes'");
     expectRefusal("eye-separation -0.1", "eye-separation must be 0 to 0.5 metres, got '-0.1'");
+    expectRefusal("tool 0", "a tool's radius must be at least");
+    expectRefusal("tool 1e9", "is the most");
+    expectRefusal("tool wide", "a tool's radius must be a number, got 'wide'");
+    expectRefusal("material talus", "material needs KEY VALUE");
+    expectRefusal("material talus 90", "talus must be within [0, 90), got 90");
+    expectRefusal("material colour 3", "a material has no 'colour'; there are talus");
+    expectRefusal("save ../elsewhere", "a name has 1 to 64 letters, digits, - and _, got '../elsewhere'");
+    expectRefusal("load never-saved", "never-saved.sand: cannot be read; nothing was loaded");
     expectRefusal("eye-separation nan", "eye-separation must be 0 to 0.5 metres, got 'nan'");
     const nlohmann::json now = ask("status");
     EXPECT_EQ(now["divergences"], 0);

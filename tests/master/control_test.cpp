@@ -42,17 +42,33 @@ TEST(OperatorCommand, EveryVerbIsRead) {
     EXPECT_FALSE(parseCommand("pattern next").pattern.has_value());
     EXPECT_EQ(parseCommand("show hill-shade").layer, lockstep::Layer::hillShade);
     EXPECT_EQ(parseCommand("hide statistics").layer, lockstep::Layer::statistics);
-    EXPECT_DOUBLE_EQ(parseCommand("eye-separation 0.5").metres, 0.5);
-    EXPECT_DOUBLE_EQ(parseCommand("eye-separation 0").metres, 0);
+    EXPECT_DOUBLE_EQ(parseCommand("eye-separation 0.5").number, 0.5);
+    EXPECT_DOUBLE_EQ(parseCommand("eye-separation 0").number, 0);
+    EXPECT_EQ(parseCommand("stereo anaglyph").stereo, walls::Stereo::anaglyphColour);
+    EXPECT_DOUBLE_EQ(parseCommand("tool 0.02").number, 0.02);
+    EXPECT_EQ(parseCommand("material talus 30").word, "talus");
+    EXPECT_DOUBLE_EQ(parseCommand("material talus 30").number, 30);
+    EXPECT_EQ(parseCommand("save a-B_1").word, "a-B_1");
+    EXPECT_EQ(parseCommand("load a-B_1").verb, Verb::load);
 }
 
 TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
     EXPECT_EQ(complaint("dance"),
               "'dance' is no command; these are: status, pause, resume, reset, undo, settle, pattern NAME, "
-              "show LAYER, hide LAYER, eye-separation METRES, capture, stop");
+              "show LAYER, hide LAYER, eye-separation METRES, stereo MODE, tool RADIUS, material KEY VALUE, save NAME, "
+              "load NAME, "
+              "capture, stop");
     EXPECT_EQ(complaint("").substr(0, 16), "'' is no command");
     EXPECT_EQ(complaint("undo twice"), "undo takes no argument, got 'twice'");
     EXPECT_EQ(complaint("pattern"), "pattern needs NAME");
+    EXPECT_EQ(complaint("material talus"), "material needs KEY VALUE");
+    EXPECT_EQ(complaint("material talus steep"), "talus must be a number, got 'steep'");
+    EXPECT_EQ(complaint("tool 1e999"), "a tool's radius must be a number, got '1e999'");
+    for (const std::string name : {"..", "../x", "/tmp/x", "a b", "a.sand"}) {
+        EXPECT_EQ(complaint("save " + name), "a name has 1 to 64 letters, digits, - and _, got '" + name + "'");
+        EXPECT_EQ(complaint("load " + name), complaint("save " + name));
+    }
+    EXPECT_EQ(complaint("stereo sideways").find("no stereo mode 'sideways'; there are mono, left"), 0U);
     EXPECT_EQ(complaint("show rain"), "no layer 'rain'; there are wireframe, hill-shade, force, statistics");
     EXPECT_EQ(complaint("pattern stripes"),
               "no test pattern 'stripes'; there are none, grid, tiles, eyes, flash, ramp, next");

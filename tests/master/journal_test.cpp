@@ -162,7 +162,7 @@ TEST_F(JournalFile, ADiskThatRefusesIsNamed) {
 // The version stands behind the four bytes of the name, and in front of all that a later one may change.
 TEST_F(JournalFile, TellsTheVersionsItReads) {
     for (const auto& [version, complaint] : {std::pair{1, "a journal whose header is damaged"},
-                                             {3, "a journal of version 3; this program reads 1 to 2"}}) {
+                                             {4, "a journal of version 4; this program reads 1 to 3"}}) {
         writeSession(true);
         std::fstream stream(file_, std::ios::in | std::ios::out | std::ios::binary);
         stream.seekp(4);

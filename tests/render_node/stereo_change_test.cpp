@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "walls/stereo_change.hpp"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/type_ptr.hpp>
+#include <memory>
+
+#include "render_node/tile_painter.hpp"
+#include "sample_scene.hpp"
+
+namespace {
+
+using walls::Stereo;
+
+walls::Wall smallWall() {
+    walls::Wall wall;
+    wall.viewer.eye = {1, 1, 3};
+    wall.clip = {0.1, 20};
+    walls::Tile tile;
+    tile.name = "only";
+    tile.screen = {{0, 0.25, 0}, {2, 0.25, 0}, {0, 1.75, 0}};
+    tile.pixels = {80, 60};
+    wall.tiles = {tile};
+    return walls::shownIn(wall, Stereo::anaglyphColour);
+}
+
+using Pictures = std::vector<std::vector<std::uint8_t>>;
+
+Pictures picturesOf(const render_node::TilePainter& painter) {
+    Pictures pictures;
+    for (const render_node::EyeTarget* target : painter.pictures()) {
+        pictures.push_back(target->read());
+    }
+    return pictures;
+}
+
+// Whatever mode a tile comes from, it shows what a tile shows that was started in that mode.
+TEST(StereoChange, OfATileShowsWhatATileOfThatModeShows) {
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const sand::Scene scene = sample::duneScene(48);
+    const walls::Wall wall = smallWall();
+    lockstep::ViewState view;
+    std::copy_n(glm::value_ptr(wall.viewer.eye), 3, view.head.begin());
+    view.eyeSeparation = 0.3;
+    sand::Terrain terrain(scene);
+    walls::Wall shown = wall;
+    render_node::TilePainter painter(shown, shown.tiles[0], scene, "host");
+    std::uint64_t frame = 0;
+    painter.paint(terrain, view, ++frame);
+    for (const Stereo stereo : {Stereo::mono, Stereo::anaglyphDubois, Stereo::right, Stereo::checkerboard, Stereo::left,
+                                Stereo::active, Stereo::anaglyphColour}) {
+        shown = walls::shownOnItsOutputs(wall, stereo);
+        painter.showAs(shown, shown.tiles[0]);
+        painter.paint(terrain, view, ++frame);
+        render_node::TilePainter fresh(shown, shown.tiles[0], scene, "host");
+        sand::Terrain same(scene);
+        fresh.paint(same, view, 1);
+        EXPECT_EQ(picturesOf(painter), picturesOf(fresh)) << walls::stereoName(stereo);
+        EXPECT_EQ(painter.frameBufferBytes(), fresh.frameBufferBytes()) << walls::stereoName(stereo);
+        EXPECT_EQ(painter.outputs().size(), 1U);
+    }
+}
+
+}  // namespace
