@@ -7,6 +7,7 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -96,7 +97,10 @@ void requireSamePlace(const SandPlace& saved, const SandPlace& here) {
 /// A file that takes its name only when all of it is on the disk.
 class Unnamed {
 public:
-    explicit Unnamed(std::filesystem::path target) : target_(std::move(target)), beside_(target_.string() + ".part") {
+    explicit Unnamed(std::filesystem::path target) : target_(std::move(target)) {
+        // Two threads may be saving under one name: the later one stays.
+        static std::atomic<unsigned> number{0};
+        beside_ = fmt::format("{}.{}.part", target_.string(), ++number);
         descriptor_ = open(beside_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
         require(descriptor_ >= 0);
     }

@@ -157,7 +157,7 @@ lockstep::FrameMessage Session::prepare(std::vector<TimedStep>& steps) {
     }
     const std::uint64_t shownThen = terrain_.stepNumber() + steps.size();
     message.stop = operator_.stopAsked() || strayed_ || frame_ >= options_.frames || shownThen >= options_.steps;
-    message.capture = film_.has_value() || (message.stop ? options_.pictures : !captures_.empty());
+    message.capture = film_.has_value() || (message.stop ? options_.pictures : !captures_.empty() && !capturing());
     const double sinceLast = lastSwap_ == 0 ? 0 : static_cast<double>(nowNs() - lastSwap_) * 1e-9;
     const int tiles = terrain_.hashTiles().tileCount();
     message.auditTiles = static_cast<std::uint32_t>(

@@ -75,13 +75,18 @@ private:
     /// Only a material that is in a step's queue becomes the one that the next is made from.
     void askMaterial(const sand::Material& material, std::optional<ControlSocket::Client> client);
     void changeStereo(walls::Stereo stereo);
-    void refuse(const std::string& why, std::optional<ControlSocket::Client> client);
+    /// Who asked; nothing stands for somebody who typed it.
+    using Clients = std::vector<std::optional<ControlSocket::Client>>;
+    void refuse(const std::string& why, const Clients& clients);
+    void answerAll(const Clients& clients, const std::string& json);
     /// What a thread beside the frames has done: a line of JSON, or an edit that is still to be asked for.
     struct ErrandDone {
         std::string json;
         sand::Edit edit;
     };
-    void runErrand(std::function<ErrandDone()> work, std::optional<ControlSocket::Client> client);
+    void startErrand(std::function<ErrandDone()> work, Clients clients, bool capture = false);
+    void requireFewErrands() const;
+    [[nodiscard]] bool capturing() const;
     void save(const std::string& name, std::optional<ControlSocket::Client> client);
     void load(const std::string& name, std::optional<ControlSocket::Client> client);
     /// Answers who asked for what is done; with `wait` for all that is not, too.
@@ -129,13 +134,14 @@ private:
     };
     struct Errand {
         std::future<ErrandDone> work;
-        std::optional<ControlSocket::Client> client;
+        Clients clients;
+        bool capture = false;
     };
     std::vector<Errand> errands_;
-    std::deque<Asker> askers_;                     // whose edits are in no step yet
-    std::vector<ControlSocket::Client> captures_;  // who wants the pictures of the next frame
-    bool paused_ = false;                          // no steps are taken
-    double fps_ = 0;                               // over the last second or so
+    std::deque<Asker> askers_;  // whose edits are in no step yet
+    Clients captures_;          // who wants pictures of the next frame
+    bool paused_ = false;       // no steps are taken
+    double fps_ = 0;            // over the last second or so
     Summary summary_;
     lockstep::RankStatistics rankStatistics_;
     double lastFrameMs_ = 0;

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "files/input_error.hpp"
 #include "master/session.hpp"
@@ -73,15 +75,25 @@ void Session::obey(const std::string& text, std::optional<Client> client) {
     try {
         carryOut(parseCommand(text), client);
     } catch (const files::InputError& error) {
-        refuse(error.what(), client);
+        refuse(error.what(), {client});
     }
 }
 
-void Session::refuse(const std::string& why, std::optional<Client> client) {
-    if (client) {
-        control_->answer(*client, refusal(why));
-    } else {
-        fmt::print(stderr, "{}\n", why);
+void Session::answerAll(const Clients& clients, const std::string& json) {
+    for (const auto& client : clients) {
+        if (client) {
+            control_->answer(*client, json);
+        }
+    }
+}
+
+void Session::refuse(const std::string& why, const Clients& clients) {
+    for (const auto& client : clients) {
+        if (client) {
+            control_->answer(*client, refusal(why));
+        } else {
+            fmt::print(stderr, "{}\n", why);
+        }
     }
 }
 
@@ -104,7 +116,7 @@ void Session::carryOut(const Command& command, std::optional<Client> client) {
         case Verb::load:
             return load(command.word, client);
         case Verb::capture:
-            captures_.push_back(client.value_or(0));
+            captures_.push_back(client);
             return;  // answered when the pictures are there
         case Verb::pause:
         case Verb::resume:
@@ -182,24 +194,35 @@ void Session::answerEdits(const std::vector<haptic_bridge::TimedStep>& steps) {
     }
 }
 
+bool Session::capturing() const {
+    return std::any_of(errands_.begin(), errands_.end(), [](const Errand& errand) { return errand.capture; });
+}
+
 void Session::takeCapture() {
     const std::filesystem::path folder = newCaptureFolder(options_.out);
-    std::string said;
+    const std::string said = line({{"ok", true},
+                                   {"folder", folder.filename().string()},
+                                   {"frame", frame_},
+                                   {"step", terrain_.stepNumber()},
+                                   {"state_hash", fmt::format("{:016x}", hash_)}});
+    const Clients clients = std::exchange(captures_, {});
+    if (mayBeHeld(shown_)) {
+        // Received with the frame; compressed and written, which takes longer, beside the next ones.
+        auto held = std::make_shared<const HeldPictures>(holdWallPictures(cluster_, shown_, barrier_.watchdog()));
+        startErrand(
+            [held = std::move(held), folder, said] {
+                writeHeldPictures(*held, folder);
+                return ErrandDone{said, {}};
+            },
+            clients, true);
+        return;
+    }
     try {
         writeWallPictures(cluster_, shown_, folder, barrier_.watchdog());
-        said = line({{"ok", true},
-                     {"folder", folder.filename().string()},
-                     {"frame", frame_},
-                     {"step", terrain_.stepNumber()},
-                     {"state_hash", fmt::format("{:016x}", hash_)}});
     } catch (const files::InputError& error) {
-        fmt::print(stderr, "sandwall: {}\n", error.what());
-        said = refusal(error.what());
+        return refuse(error.what(), clients);
     }
-    for (const Client client : captures_) {
-        control_->answer(client, said);  // 0, who typed it, is nobody there
-    }
-    captures_.clear();
+    answerAll(clients, said);
 }
 
 std::string Session::status() const {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "files/input_error.hpp"
@@ -18,18 +19,22 @@ constexpr std::size_t kMostErrands = 4;  // at once; each save holds a copy of t
 
 }  // namespace
 
-void Session::runErrand(std::function<ErrandDone()> work, std::optional<Client> client) {
+void Session::requireFewErrands() const {
     if (errands_.size() >= kMostErrands) {
         throw files::InputError(fmt::format("{} files are being written or read already; try again", errands_.size()));
     }
-    errands_.push_back({std::async(std::launch::async, std::move(work)), client});
+}
+
+void Session::startErrand(std::function<ErrandDone()> work, Clients clients, bool capture) {
+    errands_.push_back({std::async(std::launch::async, std::move(work)), std::move(clients), capture});
 }
 
 void Session::save(const std::string& name, std::optional<Client> client) {
+    requireFewErrands();
     // Copied here, which takes a fraction of a frame; compressed and written beside the frames.
     auto copy = std::make_shared<const sand::SandCopy>(terrain_.copySand());
     SavedSand saved{place_, terrain_.stepNumber(), hash_, {}};
-    runErrand(
+    startErrand(
         [copy = std::move(copy), saved = std::move(saved), file = saveFile(options_.out, name)]() mutable {
             saved.sand = copy->encode();
             copy.reset();
@@ -42,15 +47,16 @@ void Session::save(const std::string& name, std::optional<Client> client) {
                                   .dump(),
                               {}};
         },
-        client);
+        {client});
 }
 
 void Session::load(const std::string& name, std::optional<Client> client) {
-    runErrand(
+    requireFewErrands();
+    startErrand(
         [file = saveFile(options_.out, name), place = place_] {
             return ErrandDone{{}, sand::Edit::loaded(readSavedSand(file, place).sand)};
         },
-        client);
+        {client});
 }
 
 void Session::finishErrands(bool wait) {
@@ -60,16 +66,16 @@ void Session::finishErrands(bool wait) {
             ++i;
             continue;
         }
-        const std::optional<Client> client = errand.client;
+        const Clients clients = errand.clients;
         try {
             ErrandDone done = errand.work.get();
             if (done.edit.any()) {
-                askEdit(std::move(done.edit), client);
-            } else if (client) {
-                control_->answer(*client, std::move(done.json));
+                askEdit(std::move(done.edit), clients.front());
+            } else {
+                answerAll(clients, done.json);
             }
-        } catch (const files::InputError& error) {
-            refuse(error.what(), client);
+        } catch (const std::exception& error) {  // whatever befell the thread, frames go on
+            refuse(error.what(), clients);
         }
         errands_.erase(errands_.begin() + static_cast<std::ptrdiff_t>(i));
     }

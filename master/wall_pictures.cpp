@@ -44,7 +44,34 @@ int picturesPerTile(const walls::Wall& wall) {
     return static_cast<int>(walls::eyesOf(wall.stereo).size()) + (walls::packsEyes(wall.stereo) ? 1 : 0);
 }
 
+std::string fileOf(const walls::Tile& tile, std::string_view kind) {
+    return fmt::format("tile_{}_{}.png", tile.name, kind);
+}
+
+void writeWhole(const std::vector<pictures::Image>& whole, PictureFolder& out) {
+    if (whole[0].rgb.empty()) {
+        return;
+    }
+    if (whole.size() == 1) {
+        out.write("wall.png", whole[0]);
+        return;
+    }
+    out.write("wall_left.png", whole[0]);
+    out.write("wall_right.png", whole[1]);
+    out.write("wall_anaglyph.png", pictures::packStereo(walls::Stereo::anaglyphColour, whole[0], whole[1]));
+}
+
+constexpr std::int64_t kMostHeld = 1 << 28;  // [byte], of tiles; the wall put together takes as much again
+
 }  // namespace
+
+bool mayBeHeld(const walls::Wall& wall) {
+    std::int64_t bytes = 0;
+    for (const walls::Tile& tile : wall.tiles) {
+        bytes += std::int64_t{3} * tile.pixels.x * tile.pixels.y * picturesPerTile(wall);
+    }
+    return bytes <= kMostHeld;
+}
 
 bool fitsOnePicture(const walls::Wall& wall) {
     const walls::Canvas canvas = walls::wallCanvas(wall);
@@ -94,19 +121,29 @@ void writeWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall
     const std::size_t all = wall.tiles.size() * static_cast<std::size_t>(picturesPerTile(wall));
     const std::vector<pictures::Image> whole = receiveWall(
         cluster, wall, watchdog, [&](const walls::Tile& tile, std::string_view kind, const pictures::Image& image) {
-            out.write(fmt::format("tile_{}_{}.png", tile.name, kind), image);
+            out.write(fileOf(tile, kind), image);
             fmt::print("pictures {}/{}\n", ++count, all);
             std::fflush(stdout);
         });
-    if (!fits) {
-        // said above
-    } else if (whole.size() == 1) {
-        out.write("wall.png", whole[0]);
-    } else {
-        out.write("wall_left.png", whole[0]);
-        out.write("wall_right.png", whole[1]);
-        out.write("wall_anaglyph.png", pictures::packStereo(walls::Stereo::anaglyphColour, whole[0], whole[1]));
+    writeWhole(whole, out);
+    out.tellFailure();
+}
+
+HeldPictures holdWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall, lockstep::Watchdog& watchdog) {
+    HeldPictures held;
+    held.whole = receiveWall(cluster, wall, watchdog,
+                             [&](const walls::Tile& tile, std::string_view kind, const pictures::Image& image) {
+                                 held.tiles.push_back({fileOf(tile, kind), image});
+                             });
+    return held;
+}
+
+void writeHeldPictures(const HeldPictures& held, const std::filesystem::path& folder) {
+    PictureFolder out(folder);
+    for (const HeldPictures::Tile& tile : held.tiles) {
+        out.write(tile.file, tile.image);
     }
+    writeWhole(held.whole, out);
     out.tellFailure();
 }
 

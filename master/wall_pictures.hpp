@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -29,5 +30,21 @@ namespace master {
 /// cannot be written, after all were received.
 void writeWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall, const std::filesystem::path& folder,
                        lockstep::Watchdog& watchdog);
+
+/// The same pictures, received and not yet written.
+struct HeldPictures {
+    struct Tile {
+        std::string file;
+        pictures::Image image;
+    };
+    std::vector<Tile> tiles;
+    std::vector<pictures::Image> whole;  // by eye; empty ones where no picture holds the wall
+};
+/// Whether they may be held: on a wall of more than that they are to be written one by one.
+[[nodiscard]] bool mayBeHeld(const walls::Wall& wall);
+[[nodiscard]] HeldPictures holdWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall,
+                                            lockstep::Watchdog& watchdog);
+/// Any thread. Throws files::InputError when a file cannot be written, after all were tried.
+void writeHeldPictures(const HeldPictures& held, const std::filesystem::path& folder);
 
 }  // namespace master
