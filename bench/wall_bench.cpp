@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A redraw of every view of a wall against a bare one of the same views: the same chunks of the same mesh, lit by one
-// dot product at its vertices, no grain, no shadow, no box, no tool. Both alternate, so that the ratio holds on a busy
-// machine. CPU time; LP_NUM_THREADS=0 keeps all of it in this thread.
+// dot product at its vertices, every cell of it, no grain, no shadow, no box, no tool. Both alternate, so that the
+// ratio holds on a busy machine. CPU time; LP_NUM_THREADS=0 keeps all of it in this thread.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -41,7 +41,8 @@ void main() { oColour = vec4(vColour, 1.0); })"};
 /// Draws the sand and nothing else, as plainly as can be.
 class BareView {
 public:
-    explicit BareView(const sand::Scene& scene) : mesh_(scene.terrain), program_(kBareVertex, {}, kBareFragment) {}
+    explicit BareView(const sand::Scene& scene)
+        : mesh_(scene.terrain, {0, 0, 1}, 0), program_(kBareVertex, {}, kBareFragment) {}
 
     void draw(const glm::dmat4& sceneToClip, const render_node::EyeTarget& target) {
         target.bind();
@@ -52,7 +53,7 @@ public:
         program_.set("uSceneToClip", glm::mat4(sceneToClip));
         program_.set("uCell", mesh_.surface().cellSize());
         program_.set("uCells", glm::vec2(mesh_.surface().columns(), mesh_.surface().rows()));
-        mesh_.draw(sceneToClip, true);
+        mesh_.draw(sceneToClip, true, {sceneToClip, {target.width(), target.height()}, 0});
     }
 
 private:

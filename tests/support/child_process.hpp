@@ -37,7 +37,7 @@ public:
 private:
     pid_t pid_;
     std::string mark_;  // NAME=value in the environment of the whole family
-    int input_ = -1;  // our end of its standard input
+    int input_ = -1;    // our end of its standard input
     std::filesystem::path outputFile_;
     std::optional<int> status_;
 };
