@@ -53,7 +53,7 @@ def force_row():
 
 
 def draw_rows():
-    draw = benchmark("draw_bench", "drawWall/culled:1")
+    draw = benchmark("draw_bench", "drawWall/culled:1/cells:512")
     view = next(iter(draw.values()))
     yield "drawing one eye of a tile, 1024×768", f"{view['real_time']:.1f} ms", f"llvmpipe; {view['chunks_per_tile']:.0f} of {view['chunks_of_field']:.0f} chunks"
 
