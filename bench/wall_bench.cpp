@@ -42,7 +42,7 @@ void main() { oColour = vec4(vColour, 1.0); })"};
 class BareView {
 public:
     explicit BareView(const sand::Scene& scene)
-        : mesh_(scene.terrain, {0, 0, 1}, 0), program_(kBareVertex, {}, kBareFragment) {}
+        : mesh_(scene.terrain, {0, 0, 1}), program_(kBareVertex, {}, kBareFragment) {}
 
     void draw(const glm::dmat4& sceneToClip, const render_node::EyeTarget& target) {
         target.bind();

@@ -8,7 +8,11 @@
 namespace render_node {
 namespace {
 
-constexpr int kKeptCells = 512;
+constexpr int kKeptCells = 128;
+
+// How far mottling changes the sand's shade, as in shaders/sunlit.glsl.
+constexpr float kDarkest = 0.86F;
+constexpr float kMottling = 0.28F;
 
 /// What interpolation over the triangles of a level is compared on.
 struct Samples {
@@ -67,10 +71,9 @@ float distance(const Samples& samples, const std::vector<float>& shareEast, cons
 
 }  // namespace
 
-int coarsestLevel(int columns, int rows, double toolRadius) {
+int coarsestLevel(int columns, int rows) {
     int level = 0;
-    while (level + 1 < kLevels && (std::max(columns, rows) >> (level + 1)) >= kKeptCells &&
-           (toolRadius <= 0 || 2 << (level + 1) <= toolRadius)) {
+    while (level + 1 < kLevels && (std::max(columns, rows) >> (level + 1)) >= kKeptCells) {
         ++level;
     }
     return level;
@@ -93,7 +96,8 @@ LevelErrors errorsOf(const SandSurface& surface, const sand::Rect& vertices, con
             const glm::vec2 slope = surface.slope(column, row);
             heights.values[next] = surface.height(column - 1, row - 1);
             const float towards = sun.z - slope.x * sun.x - slope.y * sun.y;
-            light.values[next++] = std::max(0.0F, towards / std::sqrt(1 + slope.x * slope.x + slope.y * slope.y));
+            const float lit = std::max(0.0F, towards / std::sqrt(1 + slope.x * slope.x + slope.y * slope.y));
+            light.values[next++] = lit * (kDarkest + kMottling * surface.mottling(column, row));
         }
     }
     LevelErrors errors;

@@ -18,12 +18,13 @@ inline constexpr int kLevels = 5;
 /// How far each level of a chunk is from all of its vertices, at its worst place.
 struct LevelErrors {
     std::array<float, kLevels> height{};  // [scene unit], along the vertical
-    std::array<float, kLevels> light{};   // of the sun's full light
+    std::array<float, kLevels> light{};   // of the sun's full light, mottling in it
 };
 
-/// The coarsest level that a field may have: at least 512 cells are left of its longer side, so that a field of that
-/// size is always drawn as it is; and two to the tool's radius [cell], so that its shadow stays round.
-[[nodiscard]] int coarsestLevel(int columns, int rows, double toolRadius);
+/// The coarsest level that a field may have: at least 128 cells are left of its longer side. A change of the sand is
+/// drawn anew as far as the largest triangle reaches: a level more would cost a hand that digs in a field of 512 cells
+/// more than it saves.
+[[nodiscard]] int coarsestLevel(int columns, int rows);
 
 /// The errors of a square part of the vertex grid, which may reach beyond the field; levels above `coarsest` are left
 /// 0. `sun` points towards it and has length 1.

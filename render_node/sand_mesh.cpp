@@ -48,10 +48,10 @@ bool drawnByLlvmpipe() {
 
 }  // namespace
 
-SandMesh::SandMesh(const sand::HeightField& field, const glm::vec3& sun, double toolRadius)
+SandMesh::SandMesh(const sand::HeightField& field, const glm::vec3& sun)
     : surface_(field),
       sun_(sun),
-      coarsest_(coarsestLevel(field.columns(), field.rows(), toolRadius)),
+      coarsest_(coarsestLevel(field.columns(), field.rows())),
       across_(chunksFor(field.columns() + 1, coarsest_)),
       down_(chunksFor(field.rows() + 1, coarsest_)),
       quadsAcross_(sideFor(field.columns() + 1, coarsest_)),

@@ -32,8 +32,8 @@ public:
         int triangles = 0;
     };
 
-    /// `sun` points towards it and has length 1; the field has no level that is too coarse for a tool of this radius.
-    SandMesh(const sand::HeightField& field, const glm::vec3& sun, double toolRadius /* [cell] */);
+    /// `sun` points towards it and has length 1.
+    SandMesh(const sand::HeightField& field, const glm::vec3& sun);
 
     /// Takes over the heights of these cells, which must lie within the field.
     void update(const sand::HeightField& field, const sand::Rect& cells);

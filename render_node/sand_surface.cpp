@@ -120,6 +120,12 @@ glm::vec2 SandSurface::slope(int vertexColumn, int vertexRow) const {
             rise(height(x, south), height(x, north), north - south)};
 }
 
+float SandSurface::mottling(int column, int row) const {
+    const int x = std::clamp(column - 1, 0, columns_ - 1);
+    const int y = std::clamp(row - 1, 0, rows_ - 1);
+    return static_cast<float>(mottlingAt(x, y)) / 255;
+}
+
 SandVertex SandSurface::vertex(int column, int row) const {
     const int x = std::clamp(column - 1, 0, columns_ - 1);
     const int y = std::clamp(row - 1, 0, rows_ - 1);
@@ -132,7 +138,7 @@ SandVertex SandSurface::vertex(int column, int row) const {
     vertex.normalEast = static_cast<std::int16_t>(-steep.x * scale);
     vertex.normalNorth = static_cast<std::int16_t>(-steep.y * scale);
     vertex.open = static_cast<std::uint16_t>(openSky(x, y) * 65535);
-    vertex.mottling = static_cast<std::uint16_t>(mottlingAt(x, y) * 257);
+    vertex.mottling = static_cast<std::uint16_t>(mottling(column, row) * 65535 + 0.5F);
     return vertex;
 }
 

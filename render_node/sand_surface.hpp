@@ -60,6 +60,8 @@ public:
     [[nodiscard]] SandVertex vertex(int column, int row) const;
     /// How steeply the sand rises there towards east and north.
     [[nodiscard]] glm::vec2 slope(int vertexColumn, int vertexRow) const;
+    /// Slow change of shade from place to place, 0 … 1.
+    [[nodiscard]] float mottling(int vertexColumn, int vertexRow) const;
 
 private:
     [[nodiscard]] float along(int vertex, int cells) const;

@@ -32,8 +32,7 @@ SandView::SandView(const sand::Scene& scene, const glm::dmat4& sceneToRoom)
       woodProgram_("solid.vert.glsl", "wood.frag.glsl"),
       toolProgram_("solid.vert.glsl", "tool.frag.glsl"),
       grain_(glm::vec2(glm::normalize(toVector(look_.sunDirection)))),
-      mesh_(scene.terrain, glm::normalize(toVector(look_.sunDirection)),
-            scene.rules.toolRadius / double{sand::kProbePerCell}),
+      mesh_(scene.terrain, glm::normalize(toVector(look_.sunDirection))),
       box_(mesh_.surface(), scene.rules.rim) {
     counts_.chunksOfField = mesh_.chunks();
 }
@@ -258,8 +257,16 @@ PixelRect SandView::drawIfChanged(const Camera& camera, const EyeTarget& target,
     if (!changed.empty()) {
         drawWithin(changed, camera, target);
     }
-    memory = {true,   camera.roomToClip, sceneToRoom_, camera.eye, mesh_.revision(), std::move(memory.levels), tool_,
-              force_, layers_,           {}};
+    memory = {true,
+              camera.roomToClip,
+              sceneToRoom_,
+              camera.eye,
+              mesh_.revision(),
+              std::move(memory.levels),
+              tool_,
+              force_,
+              layers_,
+              {}};
     return changed;
 }
 

@@ -139,22 +139,22 @@ TEST(Levels, AreAsFarFromTheSandAsTheySay) {
         const auto errors = render_node::errorsOf(surface, vertices, sun, render_node::kLevels - 1);
         for (int level = 1; level < render_node::kLevels; ++level) {
             const double said = errors.height[static_cast<std::size_t>(level)];
-            // The north and east edges count with the chunks beyond.
+            // It is said of quads; along the edges run strips of triangles of the same size.
             const double whole = distanceOf(surface, vertices, {level, {level, level, level, level}});
-            EXPECT_GE(whole, 0.999 * said) << "chunk " << chunk << ", level " << level;
+            EXPECT_GE(whole, 0.8 * said) << "chunk " << chunk << ", level " << level;
+            EXPECT_LE(whole, 1.5 * said) << "chunk " << chunk << ", level " << level;
             const double inner = distanceOf(surface, vertices, {level, {0, 0, 0, 0}});
             EXPECT_LE(inner, 1.5 * said) << "chunk " << chunk << ", level " << level << ": between finer neighbours";
         }
     }
 }
 
-TEST(Levels, OfAFieldOf512CellsAreNone) {
-    EXPECT_EQ(render_node::coarsestLevel(512, 512, 2.56), 0);
-    EXPECT_EQ(render_node::coarsestLevel(1023, 64, 0), 0);
-    EXPECT_EQ(render_node::coarsestLevel(1024, 64, 10.24), 1);
-    EXPECT_EQ(render_node::coarsestLevel(2048, 2048, 10.24), 2);
-    EXPECT_EQ(render_node::coarsestLevel(2048, 2048, 2.5), 0) << "the shadow of a small tool needs its cells";
-    EXPECT_EQ(render_node::coarsestLevel(16384, 16384, 0), render_node::kLevels - 1);
+TEST(Levels, OfASmallFieldAreNone) {
+    EXPECT_EQ(render_node::coarsestLevel(128, 128), 0);
+    EXPECT_EQ(render_node::coarsestLevel(255, 64), 0);
+    EXPECT_EQ(render_node::coarsestLevel(256, 64), 1);
+    EXPECT_EQ(render_node::coarsestLevel(512, 512), 2);
+    EXPECT_EQ(render_node::coarsestLevel(16384, 16384), render_node::kLevels - 1);
 }
 
 // Tiles of one plane, seen by one eye, share what is sharp: each chunk must be drawn alike by all of them.
