@@ -139,8 +139,9 @@ TEST_F(Operator, EditsTheSandThatAHandDigs) {
 TEST_F(Operator, ChangesToolMaterialAndSandOfTwelveRanksAndAReplayEndsInTheSameHash) {
     beginOn(wall(3, 4, "anaglyph"), "script:gis", "hand linked");
     const auto canUndo = [](const nlohmann::json& now) { return now.value("can_undo", false); };
-    awaitStatus(canUndo);
-    EXPECT_EQ(ask("status")["ranks"], 12);
+    EXPECT_EQ(awaitStatus(canUndo)["ranks"], 12);
+    EXPECT_EQ(ask("save dug-1")["file"], "saves/dug-1.sand");
+    const std::uint64_t undone = ask("undo")["step"];  // first: the hand's strokes end after seconds
     ask("tool 0.08");
     ask("material talus 20");
     ask("material humidity 0.25");
@@ -148,12 +149,9 @@ TEST_F(Operator, ChangesToolMaterialAndSandOfTwelveRanksAndAReplayEndsInTheSameH
     EXPECT_NEAR(now["tool_radius"].get<double>(), 0.08, 1e-3);
     EXPECT_EQ(now["material"]["talus"], 20);
     EXPECT_EQ(now["material"]["humidity"], 0.25);
-    EXPECT_EQ(ask("save dug-1")["file"], "saves/dug-1.sand");
     ask("settle");
     ask("reset");
     EXPECT_GT(ask("load dug-1")["step"], 0);
-    awaitStatus(canUndo);
-    const std::uint64_t undone = ask("undo")["step"];
     ask("material talus 40");
     EXPECT_EQ(ask("status")["edits"], 8);
     EXPECT_EQ(ask("status")["server_divergences"], 0);
