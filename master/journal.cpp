@@ -64,15 +64,24 @@ void readRecord(files::ByteReader& reader, Journal& journal) {
     }
 }
 
-/// Whether the record at the beginning of `rest` would end at its end or behind it.
-bool reachesTheEnd(std::span<const std::uint8_t> rest) {
+/// Whether whole records stand anywhere behind the first byte.
+bool holdsRecords(std::span<const std::uint8_t> rest) {
     std::uint32_t length = 0;
     constexpr std::size_t kAround = sizeof length + 1 + sizeof(std::uint64_t);  // length, type, checksum
-    if (rest.size() < kAround) {
-        return true;
+    for (std::size_t at = 1; at + kAround <= rest.size(); ++at) {
+        std::memcpy(&length, &rest[at], sizeof length);
+        const std::uint8_t type = rest[at + sizeof length];
+        if (length > rest.size() - at - kAround || (type != kFrameRecord && type != kEndRecord)) {
+            continue;
+        }
+        const std::span<const std::uint8_t> body = rest.subspan(at + sizeof length, std::size_t{length} + 1);
+        std::uint64_t said = 0;
+        std::memcpy(&said, body.data() + body.size(), sizeof said);
+        if (said == checksum(body)) {
+            return true;
+        }
     }
-    std::memcpy(&length, rest.data(), sizeof length);
-    return length >= rest.size() - kAround;
+    return false;
 }
 
 }  // namespace
@@ -176,8 +185,8 @@ Journal readJournal(const std::filesystem::path& file) {
         try {
             readRecord(reader, journal);
         } catch (const files::FormatError& error) {
-            // A crash tears the last record. One that is followed by more was damaged on the disk.
-            if (!reachesTheEnd(rest)) {
+            // A crash tears the last record. One that is followed by more was damaged on the disk, its length perhaps.
+            if (holdsRecords(rest)) {
                 throw files::InputError(fmt::format("{}: damaged at byte {} of {}: {}; what stands before it is whole",
                                                     file.string(), bytes.size() - rest.size(), bytes.size(),
                                                     error.what()));

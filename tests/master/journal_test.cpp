@@ -122,12 +122,20 @@ TEST_F(JournalFile, RefusesDamageInItsMiddle) {
     writeSession(true);
     const auto size = static_cast<std::streamoff>(std::filesystem::file_size(file_));
     std::fstream stream(file_, std::ios::in | std::ios::out | std::ios::binary);
-    stream.seekg(size * 3 / 4);
-    const int before = stream.get();
-    stream.seekp(size * 3 / 4);
-    stream.put(static_cast<char>(before ^ 1));
-    stream.close();
-    EXPECT_THROW((void)master::readJournal(file_), files::InputError);
+    const auto flip = [&](std::streamoff at) {
+        stream.seekg(at);
+        const int before = stream.get();
+        stream.seekp(at);
+        stream.put(static_cast<char>(before ^ 1));
+        stream.flush();
+    };
+    // Whatever it is a part of: length, type, payload or checksum.
+    for (std::streamoff at = size * 3 / 4; at < size * 3 / 4 + 100; ++at) {
+        flip(at);
+        EXPECT_THROW((void)master::readJournal(file_), files::InputError) << "byte " << at << " of " << size;
+        flip(at);
+    }
+    EXPECT_NO_THROW((void)master::readJournal(file_));
 }
 
 TEST_F(JournalFile, KeepsTheJournalOfTheSessionBefore) {
