@@ -14,7 +14,6 @@ import math
 import os
 import pathlib
 import re
-import resource
 import subprocess
 import sys
 import tempfile
@@ -49,14 +48,14 @@ def scene(folder, cells, radius, kind="flat"):
 
 
 def circles(folder, seconds):
-    """Strokes that never end in `seconds`: rings at one half side a second, of all sizes."""
+    """Strokes that never end in `seconds`: rings of all sizes, at 2 cells of 512 a step."""
     file = folder / "circles.strokes"
-    lines = ["speed 1", "depth 0.5", "stroke", "point 0.6 0"]
-    length, ring = 0.0, 0
-    while length < seconds:
+    lines = ["speed 0.5", "depth 0.5", "stroke", "point 0.6 0"]
+    lasts, ring = 0.0, 0
+    while lasts < seconds:
         radius = 0.6 - 0.04 * (ring % 13)
         lines.append(f"arc 0 0 {radius:.2f} {radius:.2f} 0 360")
-        length += 2 * math.pi * radius
+        lasts += 2 * math.pi * radius / 0.5  # s
         ring += 1
     file.write_text("\n".join(lines) + "\n")
     return file
@@ -74,15 +73,12 @@ def swaying_head(folder, seconds):
 
 
 def session(out, scene_file, *more):
-    """A session's summary, and the processor time that all of its processes took [s]."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    """A session's summary."""
     command = [ROOT / "scripts" / "sandwall", "run", "--wall", WALL, "--scene", scene_file, "--out", out, "--no-pictures", *map(str, more)]
     ran = subprocess.run(command, capture_output=True, text=True)
     if ran.returncode != 0:
         sys.exit(f"{' '.join(map(str, command))}: {ran.stderr.strip() or ran.stdout.strip()}")
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return json.loads((out / "summary.json").read_text()), cpu
+    return json.loads((out / "summary.json").read_text())
 
 
 def views(summary, *kinds):
@@ -91,26 +87,26 @@ def views(summary, *kinds):
 
 def still_row(out, scene_file, seconds):
     frames = int(60 * seconds)
-    summary, _ = session(out, scene_file, "--frames", frames)
+    summary = session(out, scene_file, "--frames", frames)
     first = 2 * summary["ranks"]
     drawn = views(summary, "in_part", "whole") - first
     return "settled, nothing moves", f"{drawn} of {views(summary, 'skipped', 'in_part', 'whole') - first} views drawn", \
-        f"{frames / summary['seconds']:.1f} frames a second; the first frame's {first} apart"
+        f"{frames / summary['seconds']:.1f} frames a second; apart from the first frame's {first}; 2 show the tool when it comes"
 
 
 def dig_row(out, scene_file, strokes, seconds, rate, what):
     frames = int(rate * (seconds + WARM_UP))
-    summary, cpu = session(out, scene_file, "--device", f"script:{strokes}", "--refresh", rate, "--frames", frames,
-                           "--warm-up", WARM_UP * rate)
+    summary = session(out, scene_file, "--device", f"script:{strokes}", "--refresh", rate, "--frames", frames,
+                      "--warm-up", WARM_UP * rate)
     late = summary["late_frames"]
     share = 100 * late / summary["frame_ms"]["count"]
     skipped = views(summary, "skipped") / views(summary, "skipped", "in_part", "whole")
     return (what, f"{1e3 / summary['frame_ms']['mean']:.1f} frames a second, {share:.1f} % late",
-            f"wanted {rate}; {100 * skipped:.0f} % of views not drawn; {1e3 * cpu / summary['frames']:.0f} ms of processor a frame"), summary
+            f"wanted {rate}; {100 * skipped:.0f} % of views not drawn")
 
 
 def head_row(out, scene_file, head, frames, what):
-    summary, _ = session(out, scene_file, "--track", f"trace:{head}", "--pace", "fast", "--frames", frames, "--warm-up", 10)
+    summary = session(out, scene_file, "--track", f"trace:{head}", "--pace", "fast", "--frames", frames, "--warm-up", 10)
     whole = views(summary, "whole") / views(summary, "skipped", "in_part", "whole")
     median = summary["frame_ms"]["p50"]
     return (what, f"{median:.0f} ms a frame", f"{100 * whole:.0f} % of views drawn whole"), median
@@ -132,9 +128,9 @@ def measure(folder, seconds):
     head = swaying_head(folder, 120)
     paper, broad = scene(folder, 512, 2.56), scene(folder, 512, 12)
     yield still_row(out, broad, min(seconds, 10))
-    yield dig_row(out, paper, strokes, seconds, 60, "digging, 512², R = 2.56 cells")[0]
-    yield dig_row(out, broad, strokes, seconds, 30, "digging, 512², R = 12 cells")[0]
-    yield dig_row(out, scene(folder, 2048, 12), strokes, min(seconds, 20), 30, "digging, 2048², R = 12 cells")[0]
+    yield dig_row(out, paper, strokes, seconds, 60, "digging, 512², R = 2.56 cells")
+    yield dig_row(out, broad, strokes, seconds, 30, "digging, 512², R = 12 cells")
+    yield dig_row(out, scene(folder, 2048, 12), strokes, min(seconds, 20), 30, "digging, 2048², R = 12 cells")
     dunes, large = scene(folder, 512, 12, "dunes"), scene(folder, 2048, 12, "dunes")
     row, median = head_row(out, dunes, head, 60, "head moving, 512² of dunes")
     bare, sand = bare_redraw(dunes)
