@@ -20,13 +20,16 @@ exit 2
 SAY = """#!/bin/sh
 echo "rank ${OMPI_COMM_WORLD_RANK:-none} on ${MADE_UP_HOST:-here} threads ${LP_NUM_THREADS:-none}: ${0##*/} $*"
 """
-# In ssh's place: the host is the first word.
+# In ssh's place: the host is the first word. Open MPI's daemons make the same folders and map the same files on one
+# machine, and now and then one fails over that: each made-up host has its own.
 AGENT = """#!/bin/sh
 host=$1; shift
 case $host in
     away*) echo "ssh: connect to host $host port 22: No route to host" >&2; exit 255 ;;
     bare*) exit 1 ;;
 esac
+export TMPDIR="${0%/*}/tmp-$host"
+mkdir -p "$TMPDIR"
 exec env MADE_UP_HOST="$host" sh -c "$*"
 """
 
