@@ -4,10 +4,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <string_view>
 
-#include "files/input_error.hpp"
+#include "files/names.hpp"
 
 namespace lockstep {
 
@@ -40,14 +39,7 @@ private:
 
 /// Throws files::InputError that lists the names.
 [[nodiscard]] inline Layer parseLayer(std::string_view name) {
-    std::string known;
-    for (std::size_t i = 0; i < kLayerNames.size(); ++i) {
-        if (kLayerNames[i] == name) {
-            return static_cast<Layer>(i);
-        }
-        known += (i == 0 ? "" : ", ") + std::string(kLayerNames[i]);
-    }
-    throw files::InputError("no layer '" + std::string(name) + "'; there are " + known);
+    return static_cast<Layer>(files::indexOf(name, kLayerNames, "layer"));
 }
 
 }  // namespace lockstep

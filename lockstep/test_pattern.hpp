@@ -4,10 +4,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <string_view>
 
-#include "files/input_error.hpp"
+#include "files/names.hpp"
 
 namespace lockstep {
 
@@ -31,14 +30,7 @@ inline constexpr std::array<std::string_view, 6> kPatternNames{"none", "grid", "
 
 /// Throws files::InputError that lists the names.
 [[nodiscard]] inline Pattern parsePattern(std::string_view name) {
-    std::string known;
-    for (std::size_t i = 0; i < kPatternNames.size(); ++i) {
-        if (kPatternNames[i] == name) {
-            return static_cast<Pattern>(i);
-        }
-        known += (i == 0 ? "" : ", ") + std::string(kPatternNames[i]);
-    }
-    throw files::InputError("no test pattern '" + std::string(name) + "'; there are " + known);
+    return static_cast<Pattern>(files::indexOf(name, kPatternNames, "test pattern"));
 }
 
 /// The one after it, as a key steps through them; none comes after the last.

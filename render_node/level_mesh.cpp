@@ -45,8 +45,13 @@ public:
         }
     }
 
-    /// The strip between an edge at its own level and the grid's first row of vertices within.
+    /// The strip between an edge and the grid's first row of vertices within. Its ends lie on the diagonals of the
+    /// quads in the corners, so that each edge's triangles depend on its own level alone.
     void addStrip(std::size_t edge) {
+        if (levels_.edges[edge] == levels_.level) {
+            addQuadsAlong(edge);
+            return;
+        }
         const int length = lengthOf(quads_, edge);
         const int outerStride = 1 << levels_.edges[edge];
         int outer = 0;
@@ -63,6 +68,18 @@ public:
     [[nodiscard]] std::vector<std::uint16_t> take() { return std::move(indices_); }
 
 private:
+    /// As addQuads() would, but for the halves of the corners that belong to the edges beside.
+    void addQuadsAlong(std::size_t edge) {
+        const int last = lengthOf(quads_, edge) - stride_;
+        for (int along = 0; along <= last; along += stride_) {
+            const int next = along + stride_;
+            const bool diagonalFromHere = along / stride_ % 2 == 0;
+            add(onEdge(edge, along), onEdge(edge, next), within(edge, diagonalFromHere ? next : along));
+            if (along > 0 && along < last) {
+                add(within(edge, next), within(edge, along), onEdge(edge, diagonalFromHere ? along : next));
+            }
+        }
+    }
     void add(int a, int b, int c) {
         for (const int index : {a, b, c}) {
             indices_.push_back(static_cast<std::uint16_t>(index));
@@ -117,7 +134,7 @@ std::vector<std::uint16_t> trianglesOf(int quadsAcross, int quadsDown, const Chu
     if (levels.level == 0) {  // then so are its edges
         triangles.addQuads(0, 0, across, down);
     } else {
-        // Each edge has a strip of its own, fine or not: a neighbour's level changes this chunk along their edge alone.
+        // A neighbour's level changes this chunk along their edge alone: no more is drawn anew for it.
         triangles.addQuads(1, 1, across - 1, down - 1);
         for (std::size_t edge = 0; edge < 4; ++edge) {
             triangles.addStrip(edge);

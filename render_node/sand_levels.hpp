@@ -42,6 +42,8 @@ public:
 
     /// `bound` 0 asks for level 0 everywhere.
     LevelRule(const glm::dmat4& sceneToClip, glm::ivec2 size /* [pixel] */, double bound /* [pixel] */);
+    /// Whether it asks for level 0, whatever the errors.
+    [[nodiscard]] bool wantsEveryCell() const { return bound_ <= 0; }
     /// For the sand within a box.
     [[nodiscard]] int level(const Box& box, const LevelErrors& errors, int coarsest) const;
 

@@ -138,7 +138,7 @@ SandVertex SandSurface::vertex(int column, int row) const {
     vertex.normalEast = static_cast<std::int16_t>(-steep.x * scale);
     vertex.normalNorth = static_cast<std::int16_t>(-steep.y * scale);
     vertex.open = static_cast<std::uint16_t>(openSky(x, y) * 65535);
-    vertex.mottling = static_cast<std::uint16_t>(mottling(column, row) * 65535 + 0.5F);
+    vertex.mottling = static_cast<std::uint16_t>(mottlingAt(x, y) * 257);
     return vertex;
 }
 

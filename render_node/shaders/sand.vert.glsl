@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sand's surface, lit per vertex: the mesh is fine, and a software renderer shades the pixels of small triangles
-// several times over. Only the tool's shadow may be finer. The position in the room is the same sum in every tile, so that tiles join.
+// several times over. Only the tool's shadow may be finer. The position in the room is the same sum in every tile, so
+// that tiles join.
 layout(location = 0) in float aHeight;  // scene unit
 layout(location = 1) in vec2 aGrid;     // vertex column and row
 layout(location = 2) in vec2 aNormal;   // east and north
