@@ -5,11 +5,12 @@
 #include <utility>
 
 #include "haptic_bridge/monotonic.hpp"
+#include "sand/force/contact_force.hpp"
 
 namespace haptic_bridge {
 
 Hand::Hand(const sand::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum)
-    : constants_(scene.force), device_(std::move(device)), mapping_(scene, datum) {
+    : model_(scene.force), device_(std::move(device)), mapping_(scene, datum) {
     last_ = mapping_.probe(Pose{}).value_or(sand::ProbePoint{});
 }
 
@@ -25,8 +26,9 @@ HandSample Hand::tick(double deviceTime, std::int64_t nowNs, const Surface& surf
     sand::force::Vec3 force;
     if (sample.engaged) {
         const double age = static_cast<double>(nowNs - surface.timeNs) * 1e-9;
-        const auto contact = sand::force::measureContact(surface.patch, place, surface.toolRadius);
-        force = sand::force::guarded(sand::force::contactForce(constants_, contact, velocity_), age);
+        const auto felt = model_.at(surface.patch, surface.step, surface.tool, place, deviceTime);
+        const auto tangential = velocity_ - dot(velocity_, felt.normal) * felt.normal;
+        force = sand::force::guarded(felt.push - felt.drag * tangential, age);
         forceCost_.add(monotonicNs() - begin);
     }
     device_->sendForce(force);

@@ -9,15 +9,16 @@
 #include "haptic_bridge/latest.hpp"
 #include "haptic_bridge/live_histogram.hpp"
 #include "haptic_bridge/path_builder.hpp"
-#include "sand/force/contact_force.hpp"
+#include "sand/force/force_model.hpp"
 
 namespace haptic_bridge {
 
 /// The sand around the tool after a step, for whoever computes forces.
 struct Surface {
     sand::force::SurfacePatch patch;
-    double toolRadius = 0;    // [scene unit], which an operator may change
-    std::int64_t timeNs = 0;  // monotonic, of the step
+    sand::force::Contour tool;  // which an operator may change
+    std::uint64_t step = 0;     // number of the step that made it
+    std::int64_t timeNs = 0;    // monotonic, of the step
 };
 
 /// One tick of the force loop: read the device, quantise, compute the force, send it.
@@ -38,7 +39,7 @@ public:
 private:
     void updateVelocity(double deviceTime, sand::force::Vec3 place);
 
-    const sand::ForceConstants constants_;
+    sand::force::ForceModel model_;
     std::unique_ptr<Device> device_;
     HandMapping mapping_;
     sand::ProbePoint last_;

@@ -185,12 +185,14 @@ void Sequencer::publishSurface() {
     const sand::force::SurfacePatch patch(terrain_.field(), terrain_.probe(), radius);
     if (pace_ == Pace::fast) {
         virtualSurface_.patch = patch;
-        virtualSurface_.toolRadius = radius;
+        virtualSurface_.tool = sand::force::Contour::sphere(radius);
+        virtualSurface_.step = terrain_.stepNumber();
         return;
     }
     Surface& next = channel_.surface.next();
     next.patch = patch;
-    next.toolRadius = radius;
+    next.tool = sand::force::Contour::sphere(radius);
+    next.step = terrain_.stepNumber();
     next.timeNs = monotonicNs();
     channel_.surface.publish();
 }

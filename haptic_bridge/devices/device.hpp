@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "sand/force/contact_force.hpp"
+#include "haptic_bridge/devices/arm.hpp"
+#include "sand/force/vec3.hpp"
 
 namespace haptic_bridge {
 
@@ -25,6 +26,10 @@ public:
     /// Where the hand is at `time` [s] since the session began; times never run backwards.
     [[nodiscard]] virtual Pose read(double time) = 0;
     virtual void sendForce(sand::force::Vec3 force /* [N], east, north, up */) = 0;
+    /// The body that is pushed, and how far its tip goes; null for a recording, which feels nothing.
+    [[nodiscard]] virtual const ArmPhysics* physics() const { return nullptr; }
+    /// [scene unit/m] of a body's movement: the guards' limits hold for forces after this.
+    [[nodiscard]] virtual double scale() const { return 1; }
     /// Whether a recording is over: from then on it hovers where it is.
     [[nodiscard]] virtual bool finished(double time) const = 0;
 };

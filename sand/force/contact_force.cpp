@@ -32,8 +32,6 @@ const std::array<Direction, kRadii * kAngles>& ring() {
 
 }  // namespace
 
-double norm(Vec3 a) { return std::sqrt(dot(a, a)); }
-
 Contact measureContact(const SurfacePatch& patch, Vec3 centre, double radius) {
     Contact contact;
     if (patch.empty() || !(radius > 0)) {

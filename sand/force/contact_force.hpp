@@ -2,19 +2,11 @@
 #pragma once
 
 #include "sand/force/surface_patch.hpp"
+#include "sand/force/vec3.hpp"
 #include "sand/scene.hpp"
 
 /// What the hand feels. Forces read the sand and never change it; they may use libm.
 namespace sand::force {
-
-struct Vec3 {
-    double x = 0, y = 0, z = 0;
-};
-[[nodiscard]] inline Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-[[nodiscard]] inline Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-[[nodiscard]] inline Vec3 operator*(double s, Vec3 a) { return {s * a.x, s * a.y, s * a.z}; }
-[[nodiscard]] inline double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-[[nodiscard]] double norm(Vec3 a);
 
 /// The tool and the sand around it, reduced to what the force depends on.
 struct Contact {
