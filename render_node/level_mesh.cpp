@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <span>
+
 #include "render_node/sand_levels.hpp"
 
 namespace render_node {
@@ -111,7 +113,13 @@ private:
 std::vector<SandVertex> verticesOf(const SandSurface& surface, const sand::Rect& vertices, int level) {
     std::vector<SandVertex> out;
     const int stride = 1 << level;
+    const auto across = static_cast<std::size_t>(vertices.x1 - vertices.x0);
     for (int row = vertices.y0; row < vertices.y1; row += stride) {
+        if (stride == 1) {
+            out.resize(out.size() + across);
+            surface.vertices(vertices.x0, row, std::span(out).last(across));
+            continue;
+        }
         for (int column = vertices.x0; column < vertices.x1; column += stride) {
             out.push_back(surface.vertex(column, row));
         }
@@ -126,13 +134,30 @@ std::vector<SandVertex> verticesOf(const SandSurface& surface, const sand::Rect&
     return out;
 }
 
+std::vector<TriangleBlock> blocksOf(int quadsAcross, int quadsDown) {
+    constexpr int kSide = 8;  // [quad]
+    std::vector<TriangleBlock> blocks;
+    int first = 0;
+    for (int y = 0; y < quadsDown; y += kSide) {
+        for (int x = 0; x < quadsAcross; x += kSide) {
+            const sand::Rect quads{x, y, std::min(x + kSide, quadsAcross), std::min(y + kSide, quadsDown)};
+            const int count = 6 * (quads.x1 - quads.x0) * (quads.y1 - quads.y0);
+            blocks.push_back({quads, first, count});
+            first += count;
+        }
+    }
+    return blocks;
+}
+
 std::vector<std::uint16_t> trianglesOf(int quadsAcross, int quadsDown, const ChunkLevels& levels) {
     Triangulation triangles(quadsAcross, quadsDown, levels);
     const int stride = 1 << levels.level;
     const int across = quadsAcross / stride;
     const int down = quadsDown / stride;
     if (levels.level == 0) {  // then so are its edges
-        triangles.addQuads(0, 0, across, down);
+        for (const TriangleBlock& block : blocksOf(quadsAcross, quadsDown)) {
+            triangles.addQuads(block.quads.x0, block.quads.y0, block.quads.x1, block.quads.y1);
+        }
     } else {
         // A neighbour's level changes this chunk along their edge alone: no more is drawn anew for it.
         triangles.addQuads(1, 1, across - 1, down - 1);

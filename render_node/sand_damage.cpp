@@ -5,12 +5,13 @@
 
 namespace render_node {
 
-void SandDamage::add(std::uint64_t revision, const Box& box) {
-    parts_.push_back({revision, box});
+void SandDamage::add(const Part& part) {
+    parts_.push_back(part);
     if (parts_.size() > kMostParts) {
-        const Box& oldest = parts_[0].box;
-        Box& next = parts_[1].box;
-        next = {glm::min(next.low, oldest.low), glm::max(next.high, oldest.high)};
+        const Part& oldest = parts_[0];
+        Part& next = parts_[1];
+        next.vertices = next.vertices.joinedWith(oldest.vertices);
+        next.heights = around(next.heights, oldest.heights);
         parts_.erase(parts_.begin());
     }
 }

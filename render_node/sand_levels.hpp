@@ -44,6 +44,8 @@ public:
     LevelRule(const glm::dmat4& sceneToClip, glm::ivec2 size /* [pixel] */, double bound /* [pixel] */);
     /// Whether it asks for level 0, whatever the errors.
     [[nodiscard]] bool wantsEveryCell() const { return bound_ <= 0; }
+    /// Whether a box may reach into its picture.
+    [[nodiscard]] bool sees(const Box& box) const { return inFrustum(box, sceneToClip_); }
     /// For the sand within a box.
     [[nodiscard]] int level(const Box& box, const LevelErrors& errors, int coarsest) const;
 
@@ -65,6 +67,14 @@ struct ChunkLevels {
 /// Vertices of a chunk of side × side quads at one level: the grid row by row from the south-west, then, above level 0,
 /// all vertices of the four edges counter-clockwise, for where a finer chunk or the rim lies beyond.
 [[nodiscard]] std::vector<SandVertex> verticesOf(const SandSurface& surface, const sand::Rect& vertices, int level);
+
+/// Triangles side by side that stand together in trianglesOf(), so that a part of a chunk may be drawn.
+struct TriangleBlock {
+    sand::Rect quads;
+    int first, count;  // [index]
+};
+/// Those of level 0, of 8 × 8 quads each. A coarser level has few triangles and no blocks.
+[[nodiscard]] std::vector<TriangleBlock> blocksOf(int quadsAcross, int quadsDown);
 
 /// Triangles of such a chunk, counter-clockwise from above. Neighbours that agree on their common edge meet there in
 /// the same vertices: no crack, whatever their levels. Above level 0, 2^(level+1) must divide the sides.

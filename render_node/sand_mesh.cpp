@@ -24,19 +24,6 @@ int sideFor(int quads, int coarsest) {
     return coarsest > 0 ? kChunk : (quads + chunksFor(quads, 0) - 1) / chunksFor(quads, 0);
 }
 
-/// Writes how the shader finds a SandVertex's parts into the bound vertex array.
-void describeVertex() {
-    const auto attribute = [](GLuint index, GLint count, GLenum type, GLboolean normalised, std::size_t offset) {
-        glEnableVertexAttribArray(index);
-        glVertexAttribPointer(index, count, type, normalised, sizeof(SandVertex),
-                              reinterpret_cast<const void*>(offset));
-    };
-    attribute(0, 1, GL_FLOAT, GL_FALSE, offsetof(SandVertex, height));
-    attribute(1, 2, GL_UNSIGNED_SHORT, GL_FALSE, offsetof(SandVertex, column));
-    attribute(2, 2, GL_SHORT, GL_TRUE, offsetof(SandVertex, normalEast));
-    attribute(3, 2, GL_UNSIGNED_SHORT, GL_TRUE, offsetof(SandVertex, open));
-}
-
 // llvmpipe keeps some 270 bytes for each triangle until it fills pixels, in scenes of 36 MB that it never returns: a
 // field of 512 x 512 cells held 110 MB. Filling pixels more often bounds that, and costs no time that can be measured.
 constexpr int kTrianglesPerFinish = 32768;
@@ -89,24 +76,31 @@ void SandMesh::makeGroups() {
     }
 }
 
+/// The vertices that look different when these cells have changed.
+sand::Rect SandMesh::verticesOver(const sand::Rect& cells) const {
+    // Cell c lies under vertex c + 1; normals and shade of the vertices around depend on it.
+    const sand::Rect reached =
+        sand::Rect{cells.x0 + 1, cells.y0 + 1, cells.x1 + 1, cells.y1 + 1}.grownBy(SandSurface::kReach);
+    // The outermost ring repeats the next one, and what chunks have beyond the grid repeats that.
+    const auto first = [](int vertex) { return vertex <= 1 ? 0 : vertex; };
+    const auto end = [](int vertex, int count, int withBeyond) { return vertex > count ? withBeyond : vertex; };
+    return {first(reached.x0), first(reached.y0), end(reached.x1, surface_.columns(), across_ * quadsAcross_ + 1),
+            end(reached.y1, surface_.rows(), down_ * quadsDown_ + 1)};
+}
+
 std::vector<SandMesh::Change> SandMesh::changesOf(const sand::HeightField& field, const sand::Rect& cells) const {
     // Small parts follow the sand closely, few parts are soon looked through.
     int side = kChunk;
     while ((cells.x1 - cells.x0 + side - 1) / side * ((cells.y1 - cells.y0 + side - 1) / side) > kMostChanges) {
         side *= 2;
     }
-    // Cell c lies under vertex c + 1; normals and shade of the vertices around depend on it, and triangles reach from
-    // these a vertex further, of the coarsest level that there may be.
-    const int around = SandSurface::kReach + longestStride();
-    const sand::Rect grid{0, 0, surface_.columns() + 2, surface_.rows() + 2};
     std::vector<Change> changes;
     for (int y = cells.y0; y < cells.y1; y += side) {
         for (int x = cells.x0; x < cells.x1; x += side) {
             const sand::Rect changed = surface_.differing(field, sand::Rect{x, y, x + side, y + side}.clippedTo(cells));
             if (!changed.empty()) {
-                const sand::Rect vertices =
-                    sand::Rect{changed.x0 + 1, changed.y0 + 1, changed.x1 + 1, changed.y1 + 1}.grownBy(around);
-                changes.push_back({vertices.clippedTo(grid), surface_.heights(vertices)});
+                const sand::Rect vertices = verticesOver(changed);
+                changes.push_back({vertices, surface_.heights(vertices.grownBy(longestStride()))});
             }
         }
     }
@@ -121,11 +115,10 @@ void SandMesh::update(const sand::HeightField& field, const sand::Rect& cells) {
     surface_.update(field, cells);
     ++revision_;
     for (const Change& change : changes) {
-        const HeightRange after = surface_.heights(change.vertices);
-        const HeightRange heights = around(change.before, after);
-        damage_.add(revision_, boxOf(change.vertices, heights));
+        const HeightRange heights = around(change.before, surface_.heights(change.vertices.grownBy(longestStride())));
+        damage_.add({revision_, change.vertices, heights});
         ever_ = around(ever_, heights);
-        markChanged(chunksAround(change.vertices));
+        markChanged(chunksAround(change.vertices), change.vertices);
     }
 }
 
@@ -136,15 +129,15 @@ sand::Rect SandMesh::chunksAround(const sand::Rect& vertices) const {
         .clippedTo({0, 0, across_, down_});
 }
 
-void SandMesh::markChanged(const sand::Rect& chunks) {
+void SandMesh::markChanged(const sand::Rect& chunks, const sand::Rect& vertices) {
     for (int y = chunks.y0; y < chunks.y1; ++y) {
         for (int x = chunks.x0; x < chunks.x1; ++x) {
             Chunk& changed = chunk(x, y);
             changed.revision = revision_;
             changed.measured = false;
             changed.heights = surface_.heights(changed.vertices);
-            for (Geometry& geometry : changed.geometries) {
-                geometry.stale = true;
+            for (ChunkGeometry& geometry : changed.geometries) {
+                geometry.markStale(vertices);
             }
             Group& group =
                 groups_[static_cast<std::size_t>(y / kGroup * ((across_ + kGroup - 1) / kGroup) + x / kGroup)];
@@ -223,8 +216,49 @@ DrawnLevels SandMesh::levelsWithin(const glm::dmat4& sceneToClip, const LevelRul
     return levels;
 }
 
-std::vector<Box> SandMesh::updateLevels(DrawnLevels& levels, std::uint64_t revision, const LevelRule& rule) {
+/// Whether the level of a chunk may show: in it, or along the edges of those around.
+bool SandMesh::mayMatter(int x, int y, const LevelRule& rule) const {
+    const sand::Rect beside = sand::Rect{x - 1, y - 1, x + 2, y + 2}.clippedTo({0, 0, across_, down_});
+    for (int v = beside.y0; v < beside.y1; ++v) {
+        for (int u = beside.x0; u < beside.x1; ++u) {
+            const Chunk& near = chunks_[static_cast<std::size_t>(v * across_ + u)];
+            if (rule.sees(boxOf(near.vertices, near.heights))) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/// The longest side along an axis of the triangles drawn at any of these vertices [cell].
+int SandMesh::strideAround(const sand::Rect& vertices, const DrawnLevels& levels) const {
+    int level = 0;
+    const sand::Rect chunks = levels.empty() ? sand::Rect{} : chunksAround(vertices);
+    for (int y = chunks.y0; y < chunks.y1; ++y) {
+        for (int x = chunks.x0; x < chunks.x1; ++x) {
+            level = std::max(level, static_cast<int>(levels[static_cast<std::size_t>(y * across_ + x)]));
+        }
+    }
+    return 1 << level;
+}
+
+/// So many more vertices around.
+Box SandMesh::boxAround(const sand::Rect& vertices, const HeightRange& heights, int margin) const {
+    const sand::Rect grid{0, 0, surface_.columns() + 2, surface_.rows() + 2};
+    return boxOf(vertices.grownBy(margin).clippedTo(grid), heights);
+}
+
+std::vector<Box> SandMesh::changesSince(std::uint64_t revision, DrawnLevels& levels, const LevelRule& rule) {
     std::vector<Box> changed;
+    for (const SandDamage::Part& part : damage_.since(revision)) {
+        changed.push_back(boxAround(part.vertices, part.heights, strideAround(part.vertices, levels)));
+    }
+    updateLevels(levels, revision, rule, changed);
+    return changed;
+}
+
+void SandMesh::updateLevels(DrawnLevels& levels, std::uint64_t revision, const LevelRule& rule,
+                            std::vector<Box>& changed) {
     ++choice_;
     for (const Group& group : groups_) {
         if (levels.empty() || group.revision <= revision) {
@@ -233,38 +267,30 @@ std::vector<Box> SandMesh::updateLevels(DrawnLevels& levels, std::uint64_t revis
         for (int y = group.chunks.y0; y < group.chunks.y1; ++y) {
             for (int x = group.chunks.x0; x < group.chunks.x1; ++x) {
                 std::int8_t& drawn = levels[static_cast<std::size_t>(y * across_ + x)];
-                if (chunk(x, y).revision > revision && drawn != levelOf(x, y, rule)) {
+                if (chunk(x, y).revision <= revision || (drawn < 0 && !mayMatter(x, y, rule))) {
+                    continue;
+                }
+                if (drawn != levelOf(x, y, rule)) {
                     drawn = static_cast<std::int8_t>(levelOf(x, y, rule));
                     // The outermost triangles of its neighbours follow its edges.
-                    const sand::Rect vertices = chunk(x, y).vertices.grownBy(longestStride());
-                    changed.push_back(boxOf(vertices, surface_.heights(vertices)));
+                    const sand::Rect& vertices = chunk(x, y).vertices;
+                    const HeightRange heights = surface_.heights(vertices.grownBy(longestStride()));
+                    changed.push_back(boxAround(vertices, heights, strideAround(vertices, levels)));
                 }
             }
         }
     }
-    return changed;
 }
 
-SandMesh::Geometry& SandMesh::geometryOf(Chunk& chunk, int level) {
-    auto found = std::ranges::find(chunk.geometries, level, &Geometry::level);
-    if (found != chunk.geometries.end() && !found->stale) {
-        return *found;
-    }
-    const std::vector<SandVertex> vertices = verticesOf(surface_, chunk.vertices, level);
-    const auto bytes = static_cast<GLsizeiptr>(vertices.size() * sizeof(SandVertex));
+ChunkGeometry& SandMesh::geometryOf(Chunk& chunk, int level) {
+    auto found = std::ranges::find(chunk.geometries, level, &ChunkGeometry::level);
     if (found == chunk.geometries.end()) {
-        chunk.geometries.push_back({level, true, choice_, static_cast<std::size_t>(bytes), {}, {}});
-        found = chunk.geometries.end() - 1;
-        glBindVertexArray(found->array.id());
-        glBindBuffer(GL_ARRAY_BUFFER, found->vertices.id());
-        glBufferData(GL_ARRAY_BUFFER, bytes, vertices.data(), GL_DYNAMIC_DRAW);
-        describeVertex();
-        bytes_ += found->bytes;
-    } else {
-        glBindBuffer(GL_ARRAY_BUFFER, found->vertices.id());
-        glBufferSubData(GL_ARRAY_BUFFER, 0, bytes, vertices.data());
+        found = chunk.geometries.emplace(found, chunk.vertices, level);
     }
-    found->stale = false;
+    const std::size_t before = found->bytes();
+    found->refresh(surface_);
+    bytes_ += found->bytes() - before;
+    found->used = choice_;
     return *found;
 }
 
@@ -274,7 +300,10 @@ const SandMesh::Indices& SandMesh::indicesOf(const ChunkLevels& levels) {
         return found->second;
     }
     const std::vector<std::uint16_t> indices = trianglesOf(quadsAcross_, quadsDown_, levels);
-    Indices& made = indices_.try_emplace(levels, Indices{{}, static_cast<int>(indices.size())}).first->second;
+    Indices& made = indices_.try_emplace(levels, Indices{{}, static_cast<int>(indices.size()), {}}).first->second;
+    if (levels.level == 0) {
+        made.blocks = blocksOf(quadsAcross_, quadsDown_);
+    }
     // Core profiles bind no element buffer without a vertex array; which one does not matter here.
     const GlVertexArray array;
     glBindVertexArray(array.id());
@@ -293,18 +322,17 @@ SandMesh::Drawn SandMesh::draw(const glm::dmat4& sceneToClip, bool culling, cons
     visitSeen(sceneToClip, culling, [&](int x, int y) {
         const ChunkLevels levels = levelsOf(x, y, rule);
         const Indices& indices = indicesOf(levels);
-        Geometry& geometry = geometryOf(chunk(x, y), levels.level);
-        geometry.used = choice_;
+        const ChunkGeometry& geometry = geometryOf(chunk(x, y), levels.level);
         if (before) {
             before(boxOf(chunk(x, y).vertices, chunk(x, y).heights));
         }
-        glBindVertexArray(geometry.array.id());
+        glBindVertexArray(geometry.array());
         glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices.buffer.id());
-        glDrawElements(GL_TRIANGLES, indices.count, GL_UNSIGNED_SHORT, nullptr);
+        const int triangles = drawTriangles(chunk(x, y), indices, culling ? &sceneToClip : nullptr);
         ++drawn.chunks;
         drawn.coarseChunks += levels.level > 0 ? 1 : 0;
-        drawn.triangles += indices.count / 3;
-        waiting += indices.count / 3;
+        drawn.triangles += triangles;
+        waiting += triangles;
         if (software_ && waiting >= kTrianglesPerFinish) {
             glFinish();
             waiting = 0;
@@ -314,14 +342,48 @@ SandMesh::Drawn SandMesh::draw(const glm::dmat4& sceneToClip, bool culling, cons
     return drawn;
 }
 
+/// Draws the blocks that reach into the frustum, or all where none is given; says how many triangles that were.
+int SandMesh::drawTriangles(const Chunk& chunk, const Indices& indices, const glm::dmat4* frustum) const {
+    const auto draw = [](int first, int count) {
+        glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_SHORT,
+                       reinterpret_cast<const void*>(static_cast<std::size_t>(first) * sizeof(std::uint16_t)));
+    };
+    if (frustum == nullptr || indices.blocks.empty()) {
+        draw(0, indices.count);
+        return indices.count / 3;
+    }
+    int first = 0, count = 0, triangles = 0;  // first and count: of blocks that stand together, not drawn yet
+    for (const TriangleBlock& block : indices.blocks) {
+        const sand::Rect vertices{chunk.vertices.x0 + block.quads.x0, chunk.vertices.y0 + block.quads.y0,
+                                  chunk.vertices.x0 + block.quads.x1 + 1, chunk.vertices.y0 + block.quads.y1 + 1};
+        if (!inFrustum(boxOf(vertices, chunk.heights), *frustum)) {
+            continue;
+        }
+        triangles += block.count / 3;
+        if (first + count == block.first) {
+            count += block.count;
+            continue;
+        }
+        if (count > 0) {
+            draw(first, count);
+        }
+        first = block.first;
+        count = block.count;
+    }
+    if (count > 0) {
+        draw(first, count);
+    }
+    return triangles;
+}
+
 void SandMesh::dropUnused() {
     if (bytes_ <= kManyBytes) {
         return;
     }
     for (Chunk& chunk : chunks_) {
-        std::erase_if(chunk.geometries, [this](const Geometry& geometry) {
+        std::erase_if(chunk.geometries, [this](const ChunkGeometry& geometry) {
             const bool unused = geometry.used + kLately < choice_;
-            bytes_ -= unused ? geometry.bytes : 0;
+            bytes_ -= unused ? geometry.bytes() : 0;
             return unused;
         });
     }

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "render_node/chunk_geometry.hpp"
 #include "render_node/frustum.hpp"
 #include "render_node/gl/gl_handle.hpp"
 #include "render_node/sand_damage.hpp"
@@ -45,36 +46,21 @@ public:
 
     /// The levels at which draw() draws all that reaches into this frustum, its neighbours' with them.
     [[nodiscard]] DrawnLevels levelsWithin(const glm::dmat4& sceneToClip, const LevelRule& rule);
-    /// Brings levels up to date that were true for the same rule at that revision. Returns where this changes the
-    /// picture, beside what damageSince() tells.
-    [[nodiscard]] std::vector<Box> updateLevels(DrawnLevels& levels, std::uint64_t revision, const LevelRule& rule);
+    /// Where the picture differs from one that was drawn at that revision, of the same rule, at these levels. Brings
+    /// them up to date.
+    [[nodiscard]] std::vector<Box> changesSince(std::uint64_t revision, DrawnLevels& levels, const LevelRule& rule);
 
     /// Counts the updates that changed something.
     [[nodiscard]] std::uint64_t revision() const { return revision_; }
-    /// Where the picture of the sand has changed since that revision. Good until the next update().
-    [[nodiscard]] std::span<const SandDamage::Part> damageSince(std::uint64_t revision) const {
-        return damage_.since(revision);
-    }
     /// The lowest and the highest that any sand has been.
     [[nodiscard]] HeightRange heightsEver() const { return ever_; }
 
     [[nodiscard]] const SandSurface& surface() const { return surface_; }
     [[nodiscard]] int chunks() const { return static_cast<int>(chunks_.size()); }
-    /// The longest side of a triangle of any level along an axis [cell].
-    [[nodiscard]] int longestStride() const { return 1 << coarsest_; }
     /// Bytes of vertices and indices in GL.
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
 private:
-    /// The vertices of a chunk at one level.
-    struct Geometry {
-        int level;
-        bool stale;          // not those of the surface
-        std::uint64_t used;  // by this draw()
-        std::size_t bytes;
-        GlVertexArray array;
-        GlBuffer vertices;
-    };
     struct Chunk {
         sand::Rect vertices;  // of the vertex grid
         HeightRange heights;
@@ -83,7 +69,7 @@ private:
         LevelErrors errors;
         std::uint64_t chosenFor = 0;  // choice_ that `level` is of
         int level = 0;
-        std::vector<Geometry> geometries;
+        std::vector<ChunkGeometry> geometries;
     };
     /// Some chunks side by side, so that few are looked at one by one.
     struct Group {
@@ -95,25 +81,34 @@ private:
     struct Indices {
         GlBuffer buffer;
         int count;
+        std::vector<TriangleBlock> blocks;  // of level 0
     };
     /// Part of an update.
     struct Change {
-        sand::Rect vertices;  // that may look different, with their triangles
-        HeightRange before;
+        sand::Rect vertices;  // that may look different
+        HeightRange before;   // of all triangles that reach there
     };
     void makeChunks();
     void makeGroups();
     [[nodiscard]] std::vector<Change> changesOf(const sand::HeightField& field, const sand::Rect& cells) const;
+    [[nodiscard]] sand::Rect verticesOver(const sand::Rect& cells) const;
     [[nodiscard]] sand::Rect chunksAround(const sand::Rect& vertices) const;
-    void markChanged(const sand::Rect& chunks);
+    void markChanged(const sand::Rect& chunks, const sand::Rect& vertices);
     [[nodiscard]] Box boxOf(const sand::Rect& vertices, const HeightRange& heights) const;
     [[nodiscard]] Chunk& chunk(int x, int y) { return chunks_[static_cast<std::size_t>(y * across_ + x)]; }
     template <class Visit>  // void(int x, int y), of chunks
     void visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit& visit);
     [[nodiscard]] int levelOf(int x, int y, const LevelRule& rule);
+    /// The longest side of a triangle of any level along an axis [cell].
+    [[nodiscard]] int longestStride() const { return 1 << coarsest_; }
+    [[nodiscard]] int strideAround(const sand::Rect& vertices, const DrawnLevels& levels) const;
+    [[nodiscard]] Box boxAround(const sand::Rect& vertices, const HeightRange& heights, int margin) const;
+    void updateLevels(DrawnLevels& levels, std::uint64_t revision, const LevelRule& rule, std::vector<Box>& changed);
+    [[nodiscard]] bool mayMatter(int x, int y, const LevelRule& rule) const;
     [[nodiscard]] ChunkLevels levelsOf(int x, int y, const LevelRule& rule);
-    [[nodiscard]] Geometry& geometryOf(Chunk& chunk, int level);
+    [[nodiscard]] ChunkGeometry& geometryOf(Chunk& chunk, int level);
     [[nodiscard]] const Indices& indicesOf(const ChunkLevels& levels);
+    int drawTriangles(const Chunk& chunk, const Indices& indices, const glm::dmat4* frustum) const;
     void dropUnused();
 
     SandSurface surface_;

@@ -8,6 +8,46 @@
 #include "render_node/grain_texture.hpp"
 
 namespace render_node {
+namespace {
+
+struct Direction {
+    int east, north;
+    float length;
+};
+constexpr float kDiagonal = 1.41421356F;
+constexpr std::array<Direction, 8> kDirections{{{1, 0, 1},
+                                                {-1, 0, 1},
+                                                {0, 1, 1},
+                                                {0, -1, 1},
+                                                {1, 1, kDiagonal},
+                                                {-1, 1, kDiagonal},
+                                                {1, -1, kDiagonal},
+                                                {-1, -1, kDiagonal}}};
+constexpr std::array<int, 3> kDistances{2, 5, SandSurface::kReach};
+
+/// One minus the mean squared sine of the horizon over eight directions: the sky's light on level ground, for places
+/// side by side. `rise(place, east, north)` is how much higher sand so many cells away is [scene unit]. All places take
+/// one direction before the next, so that the compiler computes several at a time.
+template <class Rise>
+void openSky(std::span<float> open, float cellSize, const Rise& rise) {
+    std::fill(open.begin(), open.end(), 0.0F);
+    for (const Direction& direction : kDirections) {
+        for (std::size_t place = 0; place < open.size(); ++place) {
+            float steepest = 0;
+            for (const int distance : kDistances) {
+                const float there = rise(place, direction.east * distance, direction.north * distance);
+                steepest = std::max(steepest, there / (direction.length * static_cast<float>(distance)));
+            }
+            const float square = steepest / cellSize * (steepest / cellSize);
+            open[place] += square / (1 + square);
+        }
+    }
+    for (float& place : open) {
+        place = 1 - place / static_cast<float>(kDirections.size());
+    }
+}
+
+}  // namespace
 
 SandSurface::SandSurface(const sand::HeightField& field)
     : columns_(field.columns()),
@@ -75,36 +115,6 @@ float SandSurface::along(int vertex, int cells) const {
     return std::clamp(static_cast<float>(vertex) - 0.5F, 0.0F, static_cast<float>(cells)) * cellSize_;
 }
 
-/// One minus the mean squared sine of the horizon over eight directions: the sky's light on level ground there.
-float SandSurface::openSky(int column, int row) const {
-    struct Direction {
-        int east, north;
-        float length;
-    };
-    constexpr float kDiagonal = 1.41421356F;
-    static constexpr std::array<Direction, 8> kDirections{{{1, 0, 1},
-                                                           {-1, 0, 1},
-                                                           {0, 1, 1},
-                                                           {0, -1, 1},
-                                                           {1, 1, kDiagonal},
-                                                           {-1, 1, kDiagonal},
-                                                           {1, -1, kDiagonal},
-                                                           {-1, -1, kDiagonal}}};
-    static constexpr std::array<int, 3> kDistances{2, 5, kReach};
-    const float here = height(column, row);
-    float hidden = 0;
-    for (const Direction& direction : kDirections) {
-        float steepest = 0;
-        for (const int distance : kDistances) {
-            const float rise = height(column + direction.east * distance, row + direction.north * distance) - here;
-            steepest = std::max(steepest, rise / (direction.length * static_cast<float>(distance)));
-        }
-        const float square = steepest / cellSize_ * (steepest / cellSize_);
-        hidden += square / (1 + square);
-    }
-    return 1 - hidden / static_cast<float>(kDirections.size());
-}
-
 glm::vec2 SandSurface::slope(int vertexColumn, int vertexRow) const {
     const int x = std::clamp(vertexColumn - 1, 0, columns_ - 1);
     const int y = std::clamp(vertexRow - 1, 0, rows_ - 1);
@@ -129,6 +139,42 @@ float SandSurface::mottling(int column, int row) const {
 SandVertex SandSurface::vertex(int column, int row) const {
     const int x = std::clamp(column - 1, 0, columns_ - 1);
     const int y = std::clamp(row - 1, 0, rows_ - 1);
+    const float here = height(x, y);
+    float open = 0;
+    openSky({&open, 1}, cellSize_,
+            [&](std::size_t, int east, int north) { return height(x + east, y + north) - here; });
+    return vertexUnder(open, column, row);
+}
+
+void SandSurface::vertices(int firstColumn, int row, std::span<SandVertex> out) const {
+    const int last = firstColumn + static_cast<int>(out.size()) - 1;
+    const bool inside = row - 1 >= kReach && row - 1 + kReach < rows_;
+    // Places whose whole reach lies within the field need no clamping.
+    const int from = inside ? std::clamp(1 + kReach, firstColumn, last + 1) : last + 1;
+    const int end = inside ? std::clamp(columns_ + 1 - kReach, from, last + 1) : last + 1;
+    constexpr int kAtOnce = 64;
+    std::array<float, kAtOnce> open;
+    for (int begin = from; begin < end; begin += kAtOnce) {
+        const std::span<float> places(open.data(), static_cast<std::size_t>(std::min(kAtOnce, end - begin)));
+        const float* here = heights_.data() + static_cast<std::ptrdiff_t>(row - 1) * columns_ + (begin - 1);
+        openSky(places, cellSize_, [here, columns = std::ptrdiff_t{columns_}](std::size_t place, int east, int north) {
+            return here[static_cast<std::ptrdiff_t>(place) + north * columns + east] - here[place];
+        });
+        for (std::size_t place = 0; place < places.size(); ++place) {
+            const int column = begin + static_cast<int>(place);
+            out[static_cast<std::size_t>(column - firstColumn)] = vertexUnder(places[place], column, row);
+        }
+    }
+    for (int column = firstColumn; column <= last; ++column) {
+        if (column < from || column >= end) {
+            out[static_cast<std::size_t>(column - firstColumn)] = vertex(column, row);
+        }
+    }
+}
+
+SandVertex SandSurface::vertexUnder(float open, int column, int row) const {
+    const int x = std::clamp(column - 1, 0, columns_ - 1);
+    const int y = std::clamp(row - 1, 0, rows_ - 1);
     const glm::vec2 steep = slope(column, row);
     const float scale = 32767 / std::sqrt(1 + steep.x * steep.x + steep.y * steep.y);
     SandVertex vertex{};
@@ -137,7 +183,7 @@ SandVertex SandSurface::vertex(int column, int row) const {
     vertex.row = static_cast<std::uint16_t>(std::min(row, rows_ + 1));
     vertex.normalEast = static_cast<std::int16_t>(-steep.x * scale);
     vertex.normalNorth = static_cast<std::int16_t>(-steep.y * scale);
-    vertex.open = static_cast<std::uint16_t>(openSky(x, y) * 65535);
+    vertex.open = static_cast<std::uint16_t>(open * 65535);
     vertex.mottling = static_cast<std::uint16_t>(mottlingAt(x, y) * 257);
     return vertex;
 }

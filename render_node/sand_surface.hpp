@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "sand/height_field.hpp"
@@ -58,6 +59,8 @@ public:
 
     /// A vertex of the grid. A column or row beyond the grid repeats its last one.
     [[nodiscard]] SandVertex vertex(int column, int row) const;
+    /// The same for neighbours in a row, from this column on; several times as fast.
+    void vertices(int firstColumn, int row, std::span<SandVertex> out) const;
     /// How steeply the sand rises there towards east and north.
     [[nodiscard]] glm::vec2 slope(int vertexColumn, int vertexRow) const;
     /// Slow change of shade from place to place, 0 … 1.
@@ -65,7 +68,7 @@ public:
 
 private:
     [[nodiscard]] float along(int vertex, int cells) const;
-    [[nodiscard]] float openSky(int column, int row) const;
+    [[nodiscard]] SandVertex vertexUnder(float open, int column, int row) const;
 
     int columns_, rows_;
     float cellSize_;

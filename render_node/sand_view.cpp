@@ -243,11 +243,8 @@ PixelRect SandView::changedPixels(const Camera& camera, glm::ivec2 size, EyeMemo
             add(cornersOf(boxOf(*force_, toolRadius_)));
         }
     }
-    for (const SandDamage::Part& part : mesh_.damageSince(memory.sand)) {
-        add(cornersOf(box_.withSides(part.box)));
-    }
-    for (const Box& box : mesh_.updateLevels(memory.levels, memory.sand, rule)) {
-        add(cornersOf(box));
+    for (const Box& box : mesh_.changesSince(memory.sand, memory.levels, rule)) {
+        add(cornersOf(box_.withSides(box)));
     }
     return static_cast<double>(changed.area()) > kMostOfAll * static_cast<double>(whole.area()) ? whole : changed;
 }

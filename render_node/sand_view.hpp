@@ -52,7 +52,7 @@ struct EyeMemory {
     std::optional<Tool> tool;
     std::optional<ForceArrow> force;
     lockstep::Layers layers;  // of those that change every pixel of sand
-    PixelRect covered{};  // that something else was drawn over since, and is to go
+    PixelRect covered{};      // that something else was drawn over since, and is to go
 };
 
 /// What draws the sand in one light.

@@ -14,6 +14,8 @@ struct Rect {
     [[nodiscard]] bool empty() const { return x0 >= x1 || y0 >= y1; }
     /// The part of it that lies in `other`.
     [[nodiscard]] Rect clippedTo(const Rect& other) const;
+    /// The smallest around both; an empty one counts for nothing.
+    [[nodiscard]] Rect joinedWith(const Rect& other) const;
     /// With `margin` more cells on every side.
     [[nodiscard]] Rect grownBy(int margin) const { return {x0 - margin, y0 - margin, x1 + margin, y1 + margin}; }
     friend bool operator==(const Rect&, const Rect&) = default;

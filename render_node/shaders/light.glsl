@@ -11,7 +11,7 @@ const vec3 kSunlight = vec3(1.02, 0.92, 0.76);
 const vec3 kSkylight = vec3(0.205, 0.235, 0.28);
 
 // In radii of the tool; render_node/tool_reach.cpp has the same numbers.
-const float kToolReach = 4.0;
+const float kToolReach = 2.5;
 const float kShadowLength = 20.0;
 const vec2 kPenumbra = vec2(0.08, 0.07);
 
@@ -32,7 +32,8 @@ float toolOcclusion(vec3 place, vec3 normal) {
     vec3 away = (uTool.xyz - place) / uTool.w;
     float square = max(dot(away, away), 1.0);
     float facing = clamp(0.4 + 0.6 * dot(normal, away) * inversesqrt(square), 0.0, 1.0);
-    float near = max(1.0 / square - 1.0 / (kToolReach * kToolReach), 0.0);
+    const float kAtReach = 1.0 / (kToolReach * kToolReach);
+    float near = max(1.0 / square - kAtReach, 0.0) / (1.0 - kAtReach);
     return facing * near * (0.75 + 0.25 * near);
 }
 

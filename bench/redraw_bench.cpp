@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a wall's frames cost while somebody digs, apart by what it is spent on: the sand's steps, taking over what they
+// changed, and drawing it, for all tiles together and for the one that has most to do. One process, a view of the sand
+// for each tile as each rank has its own. CPU time; LP_NUM_THREADS=0 keeps all of it in this thread.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "bench/timing.hpp"
+#include "files/command_line.hpp"
+#include "render_node/gl/gl_context.hpp"
+#include "render_node/sand_view.hpp"
+#include "sand/terrain.hpp"
+#include "walls/projection.hpp"
+#include "walls/wall.hpp"
+#include "walls/wall_file.hpp"
+
+namespace {
+
+struct Options {
+    std::string wall = "walls/configs/tiled_3x4.toml";
+    std::string scene = "scenes/writing.toml";
+    int frames = 120;
+    int rate = 30;  // [frame/s]
+};
+
+/// A tile as a rank has it.
+struct Tile {
+    render_node::SandView view;
+    struct Eye {
+        render_node::Camera camera;
+        render_node::EyeTarget target;
+        render_node::EyeMemory memory;
+    };
+    std::vector<std::unique_ptr<Eye>> eyes;
+};
+
+std::vector<std::unique_ptr<Tile>> tilesOf(const walls::Wall& wall, const sand::Scene& scene) {
+    const sand::HeightField& field = scene.terrain;
+    const glm::dmat4 sceneToRoom =
+        walls::stageToRoom(wall.stage, field.columns() * field.cellSize(), field.rows() * field.cellSize(),
+                           scene.referenceHeight() * field.unit());
+    std::vector<std::unique_ptr<Tile>> tiles;
+    for (const walls::Tile& tile : wall.tiles) {
+        tiles.push_back(std::make_unique<Tile>(render_node::SandView(scene, sceneToRoom)));
+        for (const walls::Eye eye : walls::eyesOf(wall.stereo)) {
+            const walls::View seen = walls::viewOf(wall, tile, eye);
+            tiles.back()->eyes.push_back(std::make_unique<Tile::Eye>(
+                render_node::Camera{seen.viewProjection, seen.eye},
+                render_node::EyeTarget(tile.pixels.x, tile.pixels.y), render_node::EyeMemory{}));
+        }
+    }
+    return tiles;
+}
+
+/// Rings of all sizes at half a side a second, half a radius deep: as scripts/wall_rates.py has a hand dig.
+sand::ProbePoint handAt(const sand::Rules& rules, std::int32_t level, double seconds) {
+    double left = 0.5 * seconds;
+    double radius = 0.6;
+    while (left > 2 * std::numbers::pi * radius) {
+        left -= 2 * std::numbers::pi * radius;
+        radius = radius > 0.13 ? radius - 0.04 : 0.6;
+    }
+    const double half = rules.columns / 2.0 * sand::kProbePerCell;
+    constexpr std::int32_t kUnitsPerProbe = sand::kUnitsPerCell / sand::kProbePerCell;
+    return {static_cast<std::int32_t>(half * (1 + radius * std::cos(left / radius))),
+            static_cast<std::int32_t>(half * (1 + radius * std::sin(left / radius))),
+            level / kUnitsPerProbe + rules.toolRadius / 2};
+}
+
+int measure(const Options& options) {
+    const walls::Wall wall = walls::loadWall(options.wall);
+    const sand::Scene scene = sand::loadScene(options.scene);
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const std::vector<std::unique_ptr<Tile>> tiles = tilesOf(wall, scene);
+    sand::Terrain terrain(scene);
+    const std::int32_t level = scene.referenceHeight();
+    std::vector<double> stepMs, updateMs, drawMs, busiestMs, viewMs, views, shares;
+    constexpr int kWarmUp = 30;  // [frame]: shaders, buffers, the first bank
+    for (int frame = 0; frame < kWarmUp + options.frames; ++frame) {
+        const double steps = bench::secondsOf([&] {
+            for (int i = 0; i < scene.rules.stepsPerSecond / options.rate; ++i) {
+                sand::Step step{1, terrain.stepNumber() + 1, true, {}};
+                step.path = {handAt(scene.rules, level, static_cast<double>(step.number) / scene.rules.stepsPerSecond)};
+                terrain.apply(step);
+            }
+            (void)terrain.stateHash();
+        });
+        const sand::Rect damage = terrain.takeDamage();
+        double update = 0, draw = 0, busiest = 0, drawn = 0, pixels = 0, all = 0;
+        for (const auto& tile : tiles) {
+            const double one = bench::secondsOf([&] {
+                tile->view.update(terrain.field(), damage);
+                tile->view.setTool(terrain.probe(), terrain.engaged());
+            });
+            double both = 0;
+            for (const auto& eye : tile->eyes) {
+                render_node::PixelRect changed;
+                const double spent = bench::secondsOf([&] {
+                    changed = tile->view.drawIfChanged(eye->camera, eye->target, eye->memory);
+                    eye->target.finish();
+                });
+                both += spent;
+                all += eye->target.width() * eye->target.height();
+                if (!changed.empty()) {
+                    pixels += static_cast<double>(changed.area());
+                    ++drawn;
+                    if (frame >= kWarmUp) {
+                        viewMs.push_back(1e3 * spent);
+                    }
+                }
+            }
+            update += one;
+            draw += both;
+            busiest = std::max(busiest, one + both);
+        }
+        if (frame >= kWarmUp) {
+            stepMs.push_back(1e3 * steps);
+            updateMs.push_back(1e3 * update);
+            drawMs.push_back(1e3 * draw);
+            busiestMs.push_back(1e3 * busiest);
+            views.push_back(drawn);
+            shares.push_back(100 * pixels / all);
+        }
+    }
+    const auto row = [](const char* what, const std::vector<double>& values) {
+        fmt::print("{:44} {:8.2f} {:8.2f}\n", what, bench::quantile(values, 0.5), bench::quantile(values, 0.99));
+    };
+    fmt::print("{} frames at {} a second of {}, {}, {}\n", options.frames, options.rate, wall.name, scene.name,
+               context->renderer());
+    fmt::print("{:44} {:>8} {:>8}\n", "", "p50", "p99");
+    row("steps of one replica [ms/frame]", stepMs);
+    row("taking over what changed, all tiles [ms/frame]", updateMs);
+    row("drawing, all tiles [ms/frame]", drawMs);
+    row("the busiest tile, both eyes [ms/frame]", busiestMs);
+    row("a view that is drawn [ms]", viewMs);
+    row("views drawn [1/frame]", views);
+    row("pixels drawn [% of the wall]", shares);
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    Options options;
+    CLI::App app("What a wall's frames cost while somebody digs, in CPU time.", "redraw_bench");
+    app.add_option("--wall", options.wall, "wall file")->capture_default_str();
+    app.add_option("--scene", options.scene, "scene file")->capture_default_str();
+    app.add_option("--frames", options.frames, "how many")->check(CLI::Range(1, 100000))->capture_default_str();
+    app.add_option("--rate", options.rate, "frames a second of the wall")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    return files::runMain(app, argc, argv, [&] { return measure(options); });
+}
