@@ -81,12 +81,16 @@ int measure(const Options& options) {
     sand::Terrain terrain(scene);
     const std::int32_t level = scene.referenceHeight();
     std::vector<double> stepMs, updateMs, drawMs, busiestMs, viewMs, views, shares;
-    constexpr int kWarmUp = 30;  // [frame]: shaders, buffers, the first bank
+    constexpr int kSamples = 17;  // of the hand in a step
+    constexpr int kWarmUp = 30;   // [frame]: shaders, buffers, the first bank
     for (int frame = 0; frame < kWarmUp + options.frames; ++frame) {
         const double steps = bench::secondsOf([&] {
             for (int i = 0; i < scene.rules.stepsPerSecond / options.rate; ++i) {
                 sand::Step step{1, terrain.stepNumber() + 1, true, {}};
-                step.path = {handAt(scene.rules, level, static_cast<double>(step.number) / scene.rules.stepsPerSecond)};
+                for (int sample = 1; sample <= kSamples; ++sample) {
+                    const double at = static_cast<double>(step.number) + static_cast<double>(sample) / kSamples;
+                    step.path.push_back(handAt(scene.rules, level, at / scene.rules.stepsPerSecond));
+                }
                 terrain.apply(step);
             }
             (void)terrain.stateHash();

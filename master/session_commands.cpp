@@ -231,6 +231,7 @@ std::string Session::status() const {
                  {"step", terrain_.stepNumber()},
                  {"fps", fps_},
                  {"ranks", wall_.ranks()},
+                 {"slowest", slowestRank(rankStatistics_.recentDrag(), names_)},
                  {"linked", sequencer_.linked()},
                  {"paused", paused_},
                  {"pattern", std::string(lockstep::patternName(views_.pattern()))},

@@ -109,14 +109,7 @@ ordered_json jsonOf(const Summary& summary) {
                                                    {"p99", report.hapticPeriodUsP99},
                                                    {"max", report.hapticPeriodUsMax}}
                                     : ordered_json{{"p50", nullptr}, {"p99", nullptr}, {"max", nullptr}};
-    if (summary.drag) {
-        json["slowest"] = {{"rank", summary.drag->rank},
-                           {"name", summary.rankNames[static_cast<std::size_t>(summary.drag->rank)]},
-                           {"share", summary.drag->share},
-                           {"wall_waited_ms", summary.drag->keptMs}};
-    } else {
-        json["slowest"] = nullptr;
-    }
+    json["slowest"] = slowestRank(summary.drag, summary.rankNames);
     json["broadcast_bytes"] = spread(summary.broadcastBytes);
     json["haptic"] = hapticPart(summary);
     if (const auto& head = summary.tracking) {
@@ -153,6 +146,16 @@ std::string describeDrag(const Summary& summary) {
 }
 
 }  // namespace
+
+ordered_json slowestRank(const std::optional<lockstep::Drag>& drag, const std::vector<std::string>& rankNames) {
+    if (!drag) {
+        return nullptr;
+    }
+    return {{"rank", drag->rank},
+            {"name", rankNames[static_cast<std::size_t>(drag->rank)]},
+            {"share", drag->share},
+            {"wall_waited_ms", drag->keptMs}};
+}
 
 void writeSummary(const Summary& summary, const std::filesystem::path& file) {
     std::ofstream stream(file);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,6 +51,10 @@ struct Summary {
     std::optional<lockstep::Drag> drag;                          // who kept the wall waiting, if anyone
     std::int64_t masterResidentBytes = 0;
 };
+
+/// Who keeps the wall waiting, as summary.json and `ctl status` have it: null where no rank stands out.
+[[nodiscard]] nlohmann::ordered_json slowestRank(const std::optional<lockstep::Drag>& drag,
+                                                 const std::vector<std::string>& rankNames);
 
 /// Writes summary.json. Throws files::InputError when it cannot.
 void writeSummary(const Summary& summary, const std::filesystem::path& file);

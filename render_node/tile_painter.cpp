@@ -58,7 +58,7 @@ void TilePainter::paint(sand::Terrain& terrain, const lockstep::ViewState& view,
     sand_.setLayers(view.layers);
     sand_.setSceneToRoom(glm::make_mat4(view.sceneToRoom.data()));
     sand_.update(terrain.field(), terrain.takeDamage());
-    if (terrain.stepNumber() > 0) {
+    if (terrain.probe() != sand::ProbePoint{}) {  // a hand has been somewhere
         sand_.setTool(terrain.probe(), terrain.engaged(), terrain.toolRadius());
     }
     if (!view.layers.shows(lockstep::Layer::force)) {

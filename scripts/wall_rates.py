@@ -91,7 +91,7 @@ def still_row(out, scene_file, seconds):
     first = 2 * summary["ranks"]
     drawn = views(summary, "in_part", "whole") - first
     return "settled, nothing moves", f"{drawn} of {views(summary, 'skipped', 'in_part', 'whole') - first} views drawn", \
-        f"{frames / summary['seconds']:.1f} frames a second; apart from the first frame's {first}; 2 show the tool when it comes"
+        f"{frames / summary['seconds']:.1f} frames a second; apart from the first frame's {first}"
 
 
 def dig_row(out, scene_file, strokes, seconds, rate, what):

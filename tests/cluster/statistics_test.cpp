@@ -38,6 +38,23 @@ TEST_F(WallStatistics, NameTheRankThatIsSlowOnAStillWall) {
     EXPECT_EQ(result["divergences"], 0);
 }
 
+TEST_F(WallStatistics, TellAnOperatorWhoIsSlowNow) {
+    const auto session =
+        start(stillWall(1, 2, {"--frames", "100000", "--no-pictures", "--inject", "slow:rank=2,ms=60,frame=2"}));
+    ASSERT_TRUE(session->waitForOutput("no hand", 60)) << session->output();
+    nlohmann::json slowest;
+    for (int tries = 0; tries < 100 && !slowest.is_object(); ++tries) {
+        const support::Ran ran = support::runCommand(SANDWALL_SOURCE_DIR "/scripts/sandwall ctl " + out() + " status");
+        ASSERT_EQ(ran.status, 0) << ran.output;
+        slowest = nlohmann::json::parse(ran.output)["slowest"];
+    }
+    ASSERT_TRUE(slowest.is_object()) << "nobody stands out";
+    EXPECT_EQ(slowest["rank"], 2);
+    EXPECT_NE(slowest["name"].get<std::string>().find("tile r1c2"), std::string::npos) << slowest;
+    EXPECT_EQ(support::runCommand(SANDWALL_SOURCE_DIR "/scripts/sandwall ctl " + out() + " stop").status, 0);
+    EXPECT_EQ(session->wait(60), 0) << session->output();
+}
+
 TEST_F(WallStatistics, AreShownInThePicturesWhenTheyAreAskedFor) {
     std::vector<pictures::Image> walls;
     for (const bool shown : {false, true}) {
