@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Lets libFuzzer look for inputs that break what reads bytes from outside, under the address and undefined sanitizers.
+#
+# usage: scripts/fuzz.sh [SECONDS [NAME...]]     600 seconds each, and all of tests/fuzz, when nothing is said
+#
+# What it finds to be interesting is kept in build/fuzz/corpus/NAME for the next time. An input that breaks something
+# is left there too, named crash-..., and the exit status is 1.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+seconds=${1:-600}
+shift || true
+scripts/install_dependencies.sh --with-tests
+cmake --preset fuzz >/dev/null
+names=("$@")
+if [[ ${#names[@]} -eq 0 ]]; then
+    for source in tests/fuzz/*_fuzz.cpp; do
+        names+=("$(basename "$source" _fuzz.cpp)")
+    done
+fi
+
+cmake --build build/fuzz --parallel "$(nproc)" --target fuzz_seeds "${names[@]/#/fuzz_}" >/dev/null
+corpus=build/fuzz/corpus
+build/fuzz/bin/fuzz_seeds "$corpus/written"
+status=0
+echo "| fuzzer | seconds | executions | corpus | findings |"
+echo "|---|---|---|---|---|"
+for name in "${names[@]}"; do
+    mkdir -p "$corpus/$name"
+    seeds=()
+    for folder in "$corpus/written/$name" "tests/fuzz/corpus/$name"; do
+        [[ -d $folder ]] && seeds+=("$folder")
+    done
+    [[ $name == wall ]] && seeds+=(walls/configs walls/configs/broken)
+    log=$corpus/$name.log
+    build/fuzz/bin/"fuzz_$name" -max_total_time="$seconds" -rss_limit_mb=4096 -timeout=20 -max_len=8192 \
+        -print_final_stats=1 -artifact_prefix="$corpus/$name/" "$corpus/$name" "${seeds[@]}" 2>"$log" || true
+    executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
+    findings=$(find "$corpus/$name" -name 'crash-*' -o -name 'oom-*' -o -name 'timeout-*' -o -name 'leak-*' | wc -l)
+    inputs=$(find "$corpus/$name" -type f | wc -l)
+    echo "| $name | $seconds | ${executions:-?} | $((inputs - findings)) | $findings |"
+    if [[ $findings -gt 0 || -z $executions ]]; then
+        status=1
+        grep -m 5 -E 'ERROR|runtime error|what\(\)|SUMMARY' "$log" >&2 || tail -n 5 "$log" >&2
+    fi
+done
+exit $status

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+// An ESRI ASCII grid.
+#include "fuzz_target.hpp"
+#include "sand/esri_grid.hpp"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const fuzz::MemoryFile file({data, size});
+    fuzz::takeOrRefuse([&] { (void)sand::withoutEmptyEdges(sand::readEsriGrid(file.path())); });
+    return 0;
+}

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// A recorded hand as CSV, and a list of strokes; and the hand that comes of them.
+#include <sstream>
+
+#include "fuzz_target.hpp"
+#include "haptic_bridge/devices/strokes.hpp"
+#include "haptic_bridge/devices/trace.hpp"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string text(fuzz::textOf({data, size}));
+    fuzz::takeOrRefuse([&] {
+        haptic_bridge::StrokeDevice device(haptic_bridge::Strokes::parse(text, "hand.strokes"));
+        (void)device.read(0.1);
+        (void)device.read(1e9);
+    });
+    fuzz::takeOrRefuse([&] {
+        std::istringstream stream(text);
+        const haptic_bridge::HandSettings settings;
+        haptic_bridge::TraceDevice device(haptic_bridge::Trace::parse(stream, "hand.csv", settings), settings, 2, 2,
+                                          0.01);
+        (void)device.read(0.1);
+        (void)device.read(1e9);
+    });
+    return 0;
+}

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// A journal as somebody hands it over: as it is, or put together from records whose checksums are right, so that what
+// lies behind them is reached as well.
+#include <xxhash.h>
+
+#include "fuzz_target.hpp"
+#include "master/recording.hpp"
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+/// The header of a session of 8 x 8 cells.
+files::Bytes header() {
+    files::ByteWriter writer;
+    writer.put(std::uint32_t{0x4c4a5753});
+    writer.put(std::uint32_t{3});
+    writer.putText("build");
+    writer.putBlock(samples::flatScene(8, 8).encode());
+    writer.put(XXH3_64bits(writer.bytes().data(), writer.bytes().size()));
+    return writer.take();
+}
+
+/// Pieces of the input as records, the first byte of each its type.
+files::Bytes journalOf(fuzz::Input input) {
+    files::ByteWriter writer;
+    static const files::Bytes kHeader = header();
+    writer.putBytes(kHeader);
+    for (const fuzz::Input body : fuzz::piecesOf(input)) {
+        if (!body.empty()) {
+            writer.put(static_cast<std::uint32_t>(body.size() - 1));
+            writer.putBytes(body);
+            writer.put(XXH3_64bits(body.data(), body.size()));
+        }
+    }
+    return writer.take();
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    if (size == 0) {
+        return 0;
+    }
+    const fuzz::Input input = fuzz::Input(data, size).subspan(1);
+    const bool whole = (data[0] & 1U) != 0;
+    const files::Bytes made = whole ? files::Bytes{} : journalOf(input);
+    const fuzz::MemoryFile file(whole ? input : fuzz::Input(made));
+    fuzz::takeOrRefuse([&] {
+        master::Journal journal = master::readJournal(file.path());
+        const master::Recording recording(std::move(journal), file.path(), 30);
+        (void)recording.stepsOf(1);
+    });
+    return 0;
+}

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs a fuzzer without libFuzzer: every file of a corpus as it is, then so many changed ones, the same on every run.
+// A crash leaves the input in crash-input beside, and its seed and number are printed before it is tried.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+#include "fuzz_target.hpp"
+
+namespace {
+
+using files::Bytes;
+
+class Mutator {
+public:
+    Mutator(std::vector<Bytes> corpus, std::uint64_t seed) : corpus_(std::move(corpus)), random_(seed) {}
+
+    Bytes next() {
+        Bytes bytes = corpus_[below(corpus_.size())];
+        for (std::size_t changes = 1 + below(4); changes > 0; --changes) {
+            change(bytes);
+        }
+        return bytes;
+    }
+
+private:
+    std::size_t below(std::size_t end) { return end == 0 ? 0 : random_() % end; }
+
+    void change(Bytes& bytes) {
+        const std::size_t at = below(bytes.size() + 1);
+        const auto place = bytes.begin() + static_cast<std::ptrdiff_t>(at);
+        const std::size_t length = std::min(1 + below(1U << below(8)), bytes.size() - at);
+        switch (below(6)) {
+            case 0:  // a flipped bit
+                if (at < bytes.size()) {
+                    bytes[at] ^= static_cast<std::uint8_t>(1U << below(8));
+                }
+                break;
+            case 1:  // something left out
+                bytes.erase(place, place + static_cast<std::ptrdiff_t>(length));
+                break;
+            case 2: {  // something said twice
+                const Bytes twice(place, place + static_cast<std::ptrdiff_t>(length));
+                bytes.insert(place, twice.begin(), twice.end());
+                break;
+            }
+            case 3:  // cut short
+                bytes.resize(at);
+                break;
+            case 4: {  // a number as large or as odd as can be
+                constexpr std::array<std::uint64_t, 6> kOdd{
+                    0, ~0ULL, 0x7fffffffffffffffULL, 0x80000000ULL, 0x7ff8000000000000ULL, 1ULL << 28U};
+                const std::uint64_t odd = kOdd[below(kOdd.size())];
+                for (std::size_t i = 0; i < std::min<std::size_t>(8, bytes.size() - at); ++i) {
+                    bytes[at + i] = static_cast<std::uint8_t>(odd >> (8 * i));
+                }
+                break;
+            }
+            default: {  // the end of another
+                const Bytes& other = corpus_[below(corpus_.size())];
+                bytes.resize(at);
+                const auto from = static_cast<std::ptrdiff_t>(below(other.size() + 1));
+                bytes.insert(bytes.end(), other.begin() + from, other.end());
+            }
+        }
+    }
+
+    std::vector<Bytes> corpus_;
+    std::mt19937_64 random_;
+};
+
+std::vector<Bytes> corpusOf(const std::vector<std::filesystem::path>& folders) {
+    std::vector<std::filesystem::path> found;
+    for (const auto& folder : folders) {
+        for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+            if (entry.is_regular_file()) {
+                found.push_back(entry.path());
+            }
+        }
+    }
+    std::sort(found.begin(), found.end());  // folders list in any order
+    std::vector<Bytes> corpus;
+    for (const auto& file : found) {
+        std::ifstream stream(file, std::ios::binary);
+        corpus.emplace_back(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+    }
+    return corpus;
+}
+
+constexpr const char* kCrashInput = "crash-input";
+
+/// Keeps each input before it is tried, so that it is there when the program ends in the middle of it.
+class Runner {
+public:
+    Runner() : kept_(open(kCrashInput, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)) {}
+    ~Runner() {
+        close(kept_);
+        std::filesystem::remove(kCrashInput);
+    }
+    Runner(const Runner&) = delete;
+    Runner& operator=(const Runner&) = delete;
+
+    void run(const Bytes& input) const {
+        if (pwrite(kept_, input.data(), input.size(), 0) != static_cast<ssize_t>(input.size()) ||
+            ftruncate(kept_, static_cast<off_t>(input.size())) != 0) {
+            throw std::runtime_error("the input cannot be kept in crash-input");
+        }
+        LLVMFuzzerTestOneInput(input.data(), input.size());
+    }
+
+private:
+    int kept_;
+};
+
+}  // namespace
+
+int main(int count, char** words) {
+    if (count < 3) {
+        fmt::print(stderr, "usage: {} CHANGES FOLDER...\n", words[0]);
+        return 2;
+    }
+    const long changes = std::strtol(words[1], nullptr, 10);
+    const std::vector<Bytes> corpus = corpusOf({words + 2, words + count});
+    if (corpus.empty()) {
+        fmt::print(stderr, "{}: the corpus is empty\n", words[0]);
+        return 1;
+    }
+    constexpr std::uint64_t kSeed = 20261122;
+    fmt::print("{} inputs of the corpus, {} changed ones of seed {}\n", corpus.size(), changes, kSeed);
+    std::fflush(stdout);
+    const Runner runner;
+    for (const Bytes& input : corpus) {
+        runner.run(input);
+    }
+    Mutator mutator(corpus, kSeed);
+    for (long i = 0; i < changes; ++i) {
+        runner.run(mutator.next());
+    }
+    return 0;
+}

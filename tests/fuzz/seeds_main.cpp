@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes the corpora of what is no text, as the programs of today write it: FOLDER/wire, journal, state, head, wall.
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "fuzz_target.hpp"
+#include "haptic_bridge/protocol.hpp"
+#include "master/journal.hpp"
+#include "sand/terrain.hpp"
+#include "tests/support/sand_samples.hpp"
+#include "tracking/dtrack.hpp"
+#include "tracking/opentrack.hpp"
+#include "walls/wall.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using files::Bytes;
+
+class Folder {
+public:
+    Folder(const fs::path& parent, const std::string& name) : path_(parent / name) { fs::create_directories(path_); }
+
+    /// `before` are the bytes by which the fuzzer is told what the rest is.
+    void add(const Bytes& seed, std::initializer_list<std::uint8_t> before = {}) {
+        Bytes all(before);
+        all.insert(all.end(), seed.begin(), seed.end());
+        std::ofstream(path_ / ("seed" + std::to_string(++count_)), std::ios::binary)
+            .write(reinterpret_cast<const char*>(all.data()), static_cast<std::streamsize>(all.size()));
+    }
+
+private:
+    fs::path path_;
+    int count_ = 0;
+};
+
+Bytes piece(const Bytes& bytes) {
+    Bytes all{static_cast<std::uint8_t>(bytes.size() & 255U), static_cast<std::uint8_t>(bytes.size() >> 8U)};
+    all.insert(all.end(), bytes.begin(), bytes.end());
+    return all;
+}
+
+sand::Step step(std::uint64_t number) {
+    return {.epoch = 1, .number = number, .engaged = true, .path = {{600, 700, 100}, {700, 650, 50}, {-9, 0, 1 << 20}}};
+}
+
+void writeWire(Folder folder) {
+    using namespace haptic_bridge;
+    sand::Step tuned = step(2);
+    tuned.edit = sand::Edit::tuned({1000, 1001, 4, 512});
+    sand::Step loaded = step(3);
+    loaded.edit = sand::Edit::loaded({1, 2, 3});
+    const Identity identity{kProtocolVersion, sand::kAlgorithmVersion, 5, "scene"};
+    const std::vector<Message> all{Hello{identity},
+                                   Welcome{identity, 60},
+                                   Refusal{RefusalCode::scene, "no"},
+                                   Start{1, 2, 3},
+                                   Ready{},
+                                   NeedState{},
+                                   State{{1, 2, 3, 4}},
+                                   StepMessage{1, 2, step(1)},
+                                   StepMessage{1, 2, tuned},
+                                   StepMessage{1, 2, loaded},
+                                   TimingTest{1, 20},
+                                   Shown{7, 16000000},
+                                   TimingEcho{1},
+                                   Ping{5},
+                                   Pong{5, 6},
+                                   Report{},
+                                   Bye{"enough"},
+                                   EditRequest{sand::Edit::undo}};
+    Bytes stream;
+    for (const Message& message : all) {
+        const Bytes one = encode(message);
+        folder.add(one, {3});
+        stream.insert(stream.end(), one.begin(), one.end());
+    }
+    folder.add(stream, {3 + 4 * 16});
+}
+
+void writeJournal(Folder folder, const fs::path& scratch) {
+    const sand::Scene scene = samples::flatScene(8, 8);
+    {
+        master::JournalWriter journal(scratch, scene, "build");
+        journal.append({1, 17, {step(1), step(2)}});
+        journal.append({2, 18, {step(3)}});
+        journal.finish(3, 19);
+    }
+    std::ifstream stream(scratch, std::ios::binary);
+    folder.add(Bytes(std::istreambuf_iterator<char>(stream), {}), {1});
+    fs::remove(scratch);
+    // The same records without their checksums.
+    files::ByteWriter frame;
+    frame.put(std::uint8_t{1});
+    frame.putVarint(1);
+    frame.put(std::uint64_t{17});
+    frame.putVarint(2);
+    sand::encode(step(1), frame);
+    sand::encode(step(2), frame);
+    files::ByteWriter end;
+    end.put(std::uint8_t{2});
+    end.put(std::uint64_t{2});
+    end.put(std::uint64_t{19});
+    Bytes records = piece(frame.take());
+    const Bytes last = piece(end.take());
+    records.insert(records.end(), last.begin(), last.end());
+    folder.add(records, {0});
+}
+
+void writeState(Folder folder) {
+    const sand::Scene scene = samples::flatScene(24, 16);
+    sand::Terrain terrain(scene);
+    for (std::uint64_t number = 1; number <= 3; ++number) {
+        terrain.apply(step(number));
+    }
+    folder.add(terrain.encodeState(), {0});
+    folder.add(terrain.copySand().encode(), {1});
+    folder.add(scene.encode(), {2});
+    folder.add(terrain.copySand().encode(), {3});
+}
+
+void writeHead(Folder folder) {
+    const tracking::Pose pose{{0.1, 1.7, 2}, {1, 0, 0}};
+    folder.add(piece(tracking::opentrackPacket(pose)), {0});
+    Bytes packets = piece(tracking::dtrackPacket(pose, 7, 1));
+    const Bytes next = piece(tracking::dtrackPacket(pose, 8, 1));
+    packets.insert(packets.end(), next.begin(), next.end());
+    folder.add(packets, {1});
+    const std::string trace = "time,x,y,z\n0,0.1,1.7,2\n0.5,0.2,1.7,2\n";
+    folder.add(Bytes(trace.begin(), trace.end()), {2});
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+    if (count != 2) {
+        std::cerr << "usage: " << words[0] << " FOLDER\n";
+        return 2;
+    }
+    const fs::path folder = words[1];
+    writeWire({folder, "wire"});
+    writeJournal({folder, "journal"}, folder / "scratch.journal");
+    writeState({folder, "state"});
+    writeHead({folder, "head"});
+    Folder walls(folder, "wall");
+    for (const auto& file : fs::directory_iterator(SANDWALL_SOURCE_DIR "/walls/configs")) {
+        if (file.is_regular_file()) {
+            walls.add(walls::loadWall(file.path()).encode());
+        }
+    }
+}

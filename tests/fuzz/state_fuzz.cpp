@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// A state sent to a replica, sand that was saved, and the scene that a journal or a master begins with. Compressed or
+// not: behind the compression lies what a flipped bit would never reach.
+#include <zstd.h>
+
+#include "fuzz_target.hpp"
+#include "sand/terrain.hpp"
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+files::Bytes compressed(fuzz::Input bytes) {
+    files::Bytes packed(ZSTD_compressBound(bytes.size()));
+    packed.resize(ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), 1));
+    return packed;
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    if (size == 0) {
+        return 0;
+    }
+    static const sand::Scene kScene = samples::flatScene(24, 16);
+    const fuzz::Input raw = fuzz::Input(data, size).subspan(1);
+    const files::Bytes packed = (data[0] & 4U) != 0 ? compressed(raw) : files::Bytes(raw.begin(), raw.end());
+    fuzz::takeOrRefuse([&] {
+        switch (data[0] & 3U) {
+            case 0: {
+                sand::Terrain terrain(kScene);
+                terrain.decodeState(packed);
+                terrain.apply({.epoch = 1, .number = terrain.stepNumber() + 1, .engaged = true, .path = {{0, 0, 0}}});
+                break;
+            }
+            case 1:
+                (void)sand::SandCopy::decode(packed, kScene.terrain);
+                break;
+            case 2:
+                (void)sand::Scene::decode(packed);
+                break;
+            default: {
+                sand::Terrain terrain(kScene);
+                terrain.apply(
+                    {.epoch = 1, .number = 1, .engaged = false, .path = {}, .edit = sand::Edit::loaded(packed)});
+            }
+        }
+    });
+    return 0;
+}

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// A wall file, and the wall that a master sends its ranks.
+#include "fuzz_target.hpp"
+#include "walls/wall.hpp"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const fuzz::Input input(data, size);
+    fuzz::takeOrRefuse([&] { (void)walls::parseWall(fuzz::textOf(input), "wall.toml"); });
+    fuzz::takeOrRefuse([&] { (void)walls::Wall::decode(input); });
+    return 0;
+}
