@@ -30,6 +30,8 @@ public:
     [[nodiscard]] virtual const ArmPhysics* physics() const { return nullptr; }
     /// [scene unit/m] of a body's movement: the guards' limits hold for forces after this.
     [[nodiscard]] virtual double scale() const { return 1; }
+    /// Where a body was read last, in its own axes [m], and whether it answered; a recording has no such place.
+    [[nodiscard]] virtual ArmReading reading() const { return {}; }
     /// Whether a recording is over: from then on it hovers where it is.
     [[nodiscard]] virtual bool finished(double time) const = 0;
 };

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+
+#include "files/input_error.hpp"
+#include "haptic_bridge/devices/arm_presets.hpp"
+#include "haptic_bridge/devices/simulated_arm.hpp"
+#include "haptic_bridge/devices/strokes.hpp"
+
+namespace haptic_bridge {
+namespace {
+
+// The forearm of a person who draws, relaxed: a few hundred N/m, damped to about half of the critical.
+constexpr Grip kUsualGrip{300, 5};
+
+struct Spec {
+    std::string text;
+    std::size_t begin;  // of what has not been read
+
+    [[noreturn]] void fail(const std::string& what) const { throw files::InputError("--device " + text + ": " + what); }
+    [[nodiscard]] std::string_view next() {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        const std::string_view word = std::string_view(text).substr(begin, end - begin);
+        begin = end + 1;
+        return word;
+    }
+    [[nodiscard]] bool more() const { return begin <= text.size(); }
+    [[nodiscard]] double number(std::string_view key, std::string_view word, double lowest, double highest) const {
+        double value = 0;
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+        if (error != std::errc{} || end != word.data() + word.size() || !(value >= lowest && value <= highest)) {
+            fail(fmt::format("{} needs a number from {} to {}, got '{}'", key, lowest, highest, word));
+        }
+        return value;
+    }
+};
+
+Strokes readStrokes(const Spec& spec, const std::string& file) {
+    if (file == "gis") {
+        return Strokes::parse(gisStrokes(), "gis.strokes");
+    }
+    std::ifstream stream(file, std::ios::binary);
+    // Opening a folder succeeds; reading it does not.
+    if (!stream || (stream.peek(), stream.bad())) {
+        spec.fail(fmt::format("{} cannot be read; give path=gis, or a stroke list that is there", file));
+    }
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    return Strokes::parse(text, file);
+}
+
+SimulatedArm::Path pathAlong(const Strokes& strokes, const StrokeSpace& space) {
+    return [device = std::make_shared<StrokeDevice>(strokes), space](double time) {
+        const Pose pose = device->read(time);
+        return SimulatedArm::Target{{pose.x * space.halfSide, pose.y * space.halfSide, (pose.z - 1) * space.radius},
+                                    pose.engaged};
+    };
+}
+
+}  // namespace
+
+std::unique_ptr<SimulatedArm> openSimulatedArm(const std::string& text, const StrokeSpace& space) {
+    Spec spec{text, std::string_view(text).starts_with("sim:") ? std::size_t{4} : std::size_t{0}};
+    const std::string_view name = spec.next();
+    auto physics = armPreset(name);
+    if (!physics) {
+        spec.fail(fmt::format("'{}' is none of touch, falcon, omega.3, delta.3", name));
+    }
+    Grip grip = kUsualGrip;
+    SimulatedArm::Path path;
+    double delay = physics->delayTicks;
+    struct Key {
+        std::string_view name;
+        double& number;
+        double lowest, highest;
+    };
+    const std::array<Key, 9> keys{{{"grip", grip.stiffness, 0, 1e5},
+                                   {"grip_damping", grip.damping, 0, 1e3},
+                                   {"delay", delay, 0, 10},
+                                   {"damping", physics->damping, 0, 1e3},
+                                   {"mass", physics->mass, 1e-3, 1e2},
+                                   {"friction", physics->friction, 0, 1e2},
+                                   {"resolution", physics->resolution, 0, 1e-2},
+                                   {"max_force", physics->maxForce, 0, 1e3},
+                                   {"stiffness", physics->maxStiffness, 0, 1e6}}};
+    while (spec.more()) {
+        const std::string_view word = spec.next();
+        const auto equals = word.find('=');
+        const std::string_view value = equals == std::string_view::npos ? "" : word.substr(equals + 1);
+        const auto key =
+            std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.name == word.substr(0, equals); });
+        if (word.substr(0, equals) == "path") {
+            path = pathAlong(readStrokes(spec, std::string(value)), space);
+        } else if (key != keys.end()) {
+            key->number = spec.number(key->name, value, key->lowest, key->highest);
+        } else {
+            spec.fail(
+                fmt::format("'{}' is none of path, grip, grip_damping, delay, damping, mass, friction, "
+                            "resolution, max_force, stiffness",
+                            word.substr(0, equals)));
+        }
+    }
+    if (delay != std::floor(delay)) {
+        spec.fail(fmt::format("delay counts whole ticks, got {}", delay));
+    }
+    physics->delayTicks = static_cast<int>(delay);
+    return std::make_unique<SimulatedArm>(*physics, grip, std::move(path));
+}
+
+}  // namespace haptic_bridge
