@@ -2,15 +2,47 @@
 #include "haptic_bridge/hand.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
+#include "haptic_bridge/devices/arm_presets.hpp"
 #include "haptic_bridge/monotonic.hpp"
-#include "sand/force/contact_force.hpp"
 
 namespace haptic_bridge {
+namespace {
 
-Hand::Hand(const sand::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum)
-    : model_(scene.force), device_(std::move(device)), mapping_(scene, datum) {
+/// [scene unit], of one step of a quantised place.
+double probeStep(const sand::Scene& scene) { return scene.terrain.cellSize() / sand::kProbePerCell; }
+
+ForceLimits limitsFor(const sand::Scene& scene, const Device& device, const LawAtRadius& law) {
+    const double friction = static_cast<double>(scene.rules.threshold) / sand::kUnitsPerCell;
+    if (const ArmPhysics* arm = device.physics()) {
+        return ForceLimits::of(*arm, device.scale(), law, friction, probeStep(scene) / device.scale());
+    }
+    const double side = std::min(scene.rules.columns, scene.rules.rows) * scene.terrain.cellSize();
+    const double scale = side / kTouchField;
+    ArmPhysics touch = touchPreset();
+    touch.name = "a recording, felt as with a Touch";
+    touch.resolution = 0;
+    ForceLimits limits = ForceLimits::of(touch, scale, law, friction, probeStep(scene) / scale);
+    limits.fastestThing = std::numeric_limits<double>::infinity();  // a list of strokes presses within a tick
+    return limits;
+}
+
+}  // namespace
+
+Hand::Hand(const sand::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum, Guards::Mode mode)
+    : Hand(scene, std::move(device), datum, mode, lawAtRadius(scene)) {}
+
+Hand::Hand(const sand::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum, Guards::Mode mode,
+           const LawAtRadius& law)
+    : model_(scene.force),
+      device_(std::move(device)),
+      mapping_(scene, device_->physics() != nullptr ? HandSettings::Datum::level : datum),
+      guards_(limitsFor(scene, *device_, law), mode),
+      armVelocity_(guards_.limits().arm.resolution),
+      velocity_(guards_.limits().resolution * guards_.limits().scale),
+      words_(guards_.limits().inWords("k_s", scene.force.stiffness, law)) {
     last_ = mapping_.probe(Pose{}).value_or(sand::ProbePoint{});
 }
 
@@ -18,30 +50,48 @@ HandSample Hand::tick(double deviceTime, std::int64_t nowNs, const Surface& surf
     const Pose pose = device_->read(deviceTime);
     const auto probe = mapping_.probe(pose);
     last_ = probe.value_or(last_);
-    const HandSample sample{nowNs, last_, pose.engaged && probe.has_value()};
-    const sand::force::Vec3 place = mapping_.place(last_);
-    updateVelocity(deviceTime, place);
+    const bool present = device_->reading().present;
+    const HandSample sample{nowNs, last_, pose.engaged && probe.has_value() && present};
 
     const std::int64_t begin = monotonicNs();
-    sand::force::Vec3 force;
+    fillTick(deviceTime, surface, sample);
+    const double perMetre = guards_.limits().scale;
+    // On the device's clock, which a recording of ticks keeps, so that a replay finds the same.
+    Guards::Reading reading{deviceTime,
+                            present,
+                            sample.engaged,
+                            static_cast<double>(nowNs - surface.timeNs) * 1e-9,
+                            (1 / perMetre) * tick_.place,
+                            (1 / perMetre) * tick_.velocity,
+                            {}};
+    if (!probe) {
+        reading.place.x = std::numeric_limits<double>::quiet_NaN();
+    }
     if (sample.engaged) {
-        const double age = static_cast<double>(nowNs - surface.timeNs) * 1e-9;
-        const auto felt = model_.at(surface.patch, surface.step, surface.tool, place, deviceTime);
-        const auto tangential = velocity_ - dot(velocity_, felt.normal) * felt.normal;
-        force = sand::force::guarded(felt.push - felt.drag * tangential, age);
+        reading.felt = model_.at(surface.patch, surface.step, surface.tool, tick_.place, deviceTime);
+    }
+    const Guards::Forces forces = guards_.tick(reading);
+    tick_.lawful = forces.lawful;
+    tick_.sent = forces.sent;
+    tick_.guards = forces.acted;
+    tick_.surfaceAge = reading.surfaceAge;
+    counts_.add(forces.acted);
+    if (sample.engaged) {
         forceCost_.add(monotonicNs() - begin);
     }
-    device_->sendForce(force);
+    device_->sendForce(forces.sent);
     return sample;
 }
 
-void Hand::updateVelocity(double deviceTime, sand::force::Vec3 place) {
-    const std::size_t oldest = ticks_ < kWindow ? 0 : ticks_ % kWindow;
-    const auto [time, from] = places_[oldest];
-    const double span = deviceTime - time;
-    velocity_ = ticks_ > 0 && span > 0 ? (1 / (60 * span)) * (place - from) : sand::force::Vec3{};
-    places_[ticks_ % kWindow] = {deviceTime, place};
-    ++ticks_;
+void Hand::fillTick(double deviceTime, const Surface& surface, const HandSample& sample) {
+    tick_.time = deviceTime;
+    tick_.armPlace = device_->reading().place;
+    tick_.armVelocity = armVelocity_.add(deviceTime, tick_.armPlace);
+    tick_.place = mapping_.place(last_);
+    tick_.velocity = velocity_.add(deviceTime, tick_.place);
+    tick_.surfaceStep = surface.step;
+    tick_.sample = sample.at;
+    tick_.engaged = sample.engaged;
 }
 
 }  // namespace haptic_bridge

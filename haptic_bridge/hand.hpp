@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "haptic_bridge/devices/device.hpp"
+#include "haptic_bridge/guards/guards.hpp"
+#include "haptic_bridge/guards/velocity_window.hpp"
 #include "haptic_bridge/hand_mapping.hpp"
 #include "haptic_bridge/latest.hpp"
 #include "haptic_bridge/live_histogram.hpp"
 #include "haptic_bridge/path_builder.hpp"
+#include "haptic_bridge/tick.hpp"
 #include "sand/force/force_model.hpp"
 
 namespace haptic_bridge {
@@ -21,34 +25,50 @@ struct Surface {
     std::int64_t timeNs = 0;    // monotonic, of the step
 };
 
-/// One tick of the force loop: read the device, quantise, compute the force, send it.
+/// One tick of the force loop: read the device, quantise, ask the law, guard, send.
 ///
-/// Used by one thread: the force thread in real time, the sand's own under a virtual clock.
+/// A body's heights are metres, so they count from a level: over a surface that goes up and down with the hand, a
+/// force would not be the one that its path works against. A recording is guarded as a Touch that reaches over the
+/// whole field would be.
+///
+/// Used by one thread: the force thread in real time, the sand's own under a virtual clock. A tick asks for no memory
+/// and waits for nobody.
 class Hand {
 public:
-    static constexpr double kTick = 1e-3;  // [s]
+    static constexpr double kTick = ForceLimits::kTick;  // [s]
 
-    Hand(const sand::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum);
+    Hand(const sand::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum,
+         Guards::Mode mode = Guards::Mode::on);
 
     /// `deviceTime` [s] is what the device is read at; now and surface.timeNs are on one clock.
     HandSample tick(double deviceTime, std::int64_t nowNs, const Surface& surface);
 
-    [[nodiscard]] const LiveHistogram& forceCost() const { return forceCost_; }  // any thread
+    /// All of the tick before: for the thread that ticks.
+    [[nodiscard]] const Tick& lastTick() const { return tick_; }
+    /// What was limited, and why: lines for a person.
+    [[nodiscard]] const std::vector<std::string>& limitsInWords() const { return words_; }
+    [[nodiscard]] const Guards& guards() const { return guards_; }
     [[nodiscard]] bool finished(double deviceTime) const { return device_->finished(deviceTime); }
+    // Any thread:
+    [[nodiscard]] const LiveHistogram& forceCost() const { return forceCost_; }  // law and guards, of engaged ticks
+    [[nodiscard]] const GuardCounts& guardCounts() const { return counts_; }     // [tick]
 
 private:
-    void updateVelocity(double deviceTime, sand::force::Vec3 place);
+    Hand(const sand::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum, Guards::Mode mode,
+         const LawAtRadius& law);
+    void fillTick(double deviceTime, const Surface& surface, const HandSample& sample);
 
     sand::force::ForceModel model_;
     std::unique_ptr<Device> device_;
     HandMapping mapping_;
+    Guards guards_;
+    VelocityWindow armVelocity_;  // [m/s], of the device's axes
+    VelocityWindow velocity_;     // [scene unit/s]
+    std::vector<std::string> words_;
     sand::ProbePoint last_;
-    // Velocity over a window of 15 ticks: a difference over one tick is mostly the device's resolution.
-    static constexpr std::size_t kWindow = 16;
-    std::array<std::pair<double, sand::force::Vec3>, kWindow> places_{};
-    std::size_t ticks_ = 0;
-    sand::force::Vec3 velocity_;  // [scene unit per 1/60 s]
+    Tick tick_;
     LiveHistogram forceCost_;
+    GuardCounts counts_;
 };
 
 }  // namespace haptic_bridge

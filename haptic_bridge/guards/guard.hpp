@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <string_view>
+
+namespace haptic_bridge {
+
+/// What may change a force before it is sent, in the order of Tick::guards' bits, lowest first.
+enum class Guard : std::uint8_t {
+    notANumber,  // a place or force that is no number: nothing is sent
+    stiffness,   // the law is stiffer than the device bears
+    damping,     // friction grows faster with speed than the device bears
+    friction,    // friction is greater than what the sand can hold
+    slew,        // the force grows faster than the stiffness and the fastest hand explain
+    passivity,   // the loop has given the hand more energy than it took: damped
+    clamp,       // more than the device's greatest force
+    ramp,        // within two seconds of a start or a gap
+    stale,       // the sand was last heard of too long ago: nothing is sent
+    missed,      // the loop has missed ticks: nothing is sent
+    lost,        // the device does not answer: nothing is sent
+    jumped       // the device claims to have moved faster than anything can: nothing is sent
+};
+inline constexpr std::size_t kGuards = 12;
+inline constexpr std::array<std::string_view, kGuards> kGuardNames{"not_a_number", "stiffness", "damping", "friction",
+                                                                   "slew",         "passivity", "clamp",   "ramp",
+                                                                   "stale",        "missed",    "lost",    "jumped"};
+
+[[nodiscard]] constexpr std::uint32_t bit(Guard guard) { return 1U << static_cast<unsigned>(guard); }
+
+/// Ticks in which each guard acted. One writer, any number of readers; nobody waits.
+class GuardCounts {
+public:
+    void add(std::uint32_t acted) {
+        for (std::size_t i = 0; i < kGuards; ++i) {
+            if ((acted >> i & 1U) != 0) {
+                counts_[i].store(counts_[i].load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+            }
+        }
+    }
+    [[nodiscard]] std::array<std::uint64_t, kGuards> all() const {
+        std::array<std::uint64_t, kGuards> result{};
+        for (std::size_t i = 0; i < kGuards; ++i) {
+            result[i] = counts_[i].load(std::memory_order_relaxed);
+        }
+        return result;
+    }
+
+private:
+    std::array<std::atomic<std::uint64_t>, kGuards> counts_{};
+};
+
+}  // namespace haptic_bridge

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/guards/guards.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "haptic_bridge/guards/limited_law.hpp"
+
+namespace haptic_bridge {
+
+using sand::force::Vec3;
+
+Guards::Forces Guards::tick(const Reading& reading) {
+    Forces forces;
+    if (reading.engaged) {
+        forces.lawful = lawfulForce(reading.felt, reading.velocity, limits_.scale);
+    }
+    if (!begun_) {
+        begun_ = true;
+        time_ = rampFrom_ = reading.time;
+        place_ = reading.place;
+    }
+    const double span = reading.time - time_;
+    forces.acted = faults(reading, span, forces.lawful);
+    time_ = reading.time;
+    place_ = reading.place;
+    if (mode_ == Mode::literal) {
+        forces.acted &= bit(Guard::notANumber) | bit(Guard::lost);
+        forces.sent = forces.acted == 0 ? forces.lawful : Vec3{};
+        return forces;
+    }
+    if (forces.acted != 0) {
+        restart(reading.time);
+        // Old sand that nobody touches is no event.
+        forces.acted &= reading.engaged ? ~0U : ~bit(Guard::stale);
+        return forces;
+    }
+
+    passivity_.observe(reading.place, reading.velocity, span);
+    Vec3 force;
+    if (reading.engaged) {
+        force = limitedForce(reading.felt, reading.velocity, limits_, forces.acted);
+    }
+    force = slew_.follow(force, forces.acted);
+    if (norm(force) > 0) {
+        force = force + passivity_.control(reading.velocity, forces.acted);
+    }
+    const double size = norm(force);
+    if (size > limits_.maxForce) {
+        forces.acted |= bit(Guard::clamp);
+        force = (limits_.maxForce / size) * force;
+    }
+    const double share = std::min((reading.time - rampFrom_) / ForceLimits::kRamp, 1.0);
+    if (share < 1 && size > 0) {
+        forces.acted |= bit(Guard::ramp);
+        force = share * force;
+    }
+    passivity_.sent(force);
+    forces.sent = force;
+    return forces;
+}
+
+/// What makes a tick one in which nothing may be sent.
+std::uint32_t Guards::faults(const Reading& reading, double span, Vec3 lawful) const {
+    std::uint32_t acted = 0;
+    const bool numbers = std::isfinite(norm(lawful)) && std::isfinite(norm(reading.place)) &&
+                         std::isfinite(norm(reading.velocity)) && std::isfinite(reading.felt.stiffness);
+    acted |= numbers ? 0 : bit(Guard::notANumber);
+    acted |= reading.present ? 0 : bit(Guard::lost);
+    acted |= reading.surfaceAge <= ForceLimits::kStaleSurface ? 0 : bit(Guard::stale);
+    acted |= span >= 0 && span <= ForceLimits::kGap ? 0 : bit(Guard::missed);
+    const double farthest = limits_.fastestThing * std::max(span, ForceLimits::kTick) + 2 * limits_.resolution;
+    acted |= !(norm(reading.place - place_) > farthest) ? 0 : bit(Guard::jumped);
+    return acted;
+}
+
+void Guards::restart(double time) {
+    rampFrom_ = time;
+    slew_.restart();
+    passivity_.restart();
+}
+
+}  // namespace haptic_bridge
