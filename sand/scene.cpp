@@ -75,6 +75,7 @@ files::Bytes Scene::encode() const {
     }
     writer.put(static_cast<std::uint8_t>(look.hillShade ? 1 : 0));
     writer.put(look.detail);
+    force.encodeRest(writer);
     return writer.take();
 }
 
@@ -103,10 +104,13 @@ Scene Scene::decode(std::span<const std::uint8_t> bytes) {
             throw files::FormatError("a scene whose ground is not that of its rules");
         }
     }
-    // Journals of before there were hill-shade and levels of detail end here.
+    // Journals end where what came later had not been thought of: hill-shade and levels of detail, then more forces.
     if (!reader.atEnd()) {
         scene.look.hillShade = reader.get<std::uint8_t>() != 0;
         scene.look.detail = reader.get<double>();
+    }
+    if (!reader.atEnd()) {
+        scene.force.decodeRest(reader);
     }
     return scene;
 }

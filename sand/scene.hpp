@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "files/byte_stream.hpp"
+#include "sand/force_constants.hpp"
 #include "sand/ground.hpp"
 #include "sand/height_field.hpp"
 #include "sand/material.hpp"
@@ -44,14 +45,6 @@ struct Rules {
     /// What server and master compare: equal digests mean equal sand from equal steps.
     [[nodiscard]] std::uint64_t digest() const;
     friend bool operator==(const Rules&, const Rules&) = default;
-};
-
-/// Constants of the first paper's force law, in the units its text implies (docs/forces.md).
-struct ForceConstants {
-    double stiffness = 1000;     // k_s [N]
-    double depthExponent = 0.5;  // k_c [1/scene unit]
-    double friction = 10;        // k_f [frame/scene unit], speed per 1/60 s; the sphere's friction area k_a is inside
-    friend bool operator==(const ForceConstants&, const ForceConstants&) = default;
 };
 
 /// What to look at, not what to compute: never part of a digest.

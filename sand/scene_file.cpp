@@ -59,11 +59,12 @@ void readTool(const files::TomlTable& file, Scene& scene) {
 }
 
 void readForce(const files::TomlTable& file, Scene& scene) {
-    if (const auto force = file.table("force")) {
-        scene.force.stiffness = force->numberOr("stiffness", scene.force.stiffness, {0, 1e9});
-        scene.force.depthExponent = force->numberOr("depth_exponent", scene.force.depthExponent, {0, 1e6});
-        scene.force.friction = force->numberOr("friction", scene.force.friction, {0, 1e9});
-        force->finish();
+    const double side = std::max(scene.terrain.columns(), scene.terrain.rows()) * scene.terrain.cellSize();
+    const std::optional<files::TomlTable> force = file.table("force");
+    if (force) {
+        scene.force = ForceConstants::read(*force, side);
+    } else {
+        scene.force.unitLength = side;
     }
 }
 

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/force_constants.hpp"
+
+#include <array>
+
+namespace sand {
+namespace {
+
+struct Key {
+    const char* name;
+    double ForceConstants::*constant;
+    files::Range range;
+};
+
+constexpr double kTiny = 1e-9, kHuge = 1e9;
+
+// The first three are the oldest, which a scene's encoding keeps apart.
+constexpr std::size_t kOldest = 3;
+constexpr std::array kKeys{
+    Key{"stiffness", &ForceConstants::stiffness, {0, kHuge}},
+    Key{"depth_exponent", &ForceConstants::depthExponent, {0, 1e6}},
+    Key{"friction", &ForceConstants::friction, {0, kHuge}},
+    Key{"friction_area", &ForceConstants::frictionArea, {0, 1e6}},
+    Key{"max_force", &ForceConstants::maxForce, {0, 1e6}},
+    Key{"tolerance", &ForceConstants::tolerance, {0, 1}},
+    Key{"unit_length", &ForceConstants::unitLength, files::kPositive},
+    Key{"friction_coefficient", &ForceConstants::frictionCoefficient, {0, 1e3}},
+    Key{"friction_speed", &ForceConstants::frictionSpeed, {kTiny, kHuge}},
+    Key{"validity", &ForceConstants::validity, {0, 2}},
+    Key{"recovery_time", &ForceConstants::recoveryTime, {0, 10}},
+};
+
+template <class Choice>
+Choice decodeChoice(files::ByteReader& reader, int choices) {
+    const auto value = reader.get<std::uint8_t>();
+    if (value >= choices) {
+        throw files::FormatError("a scene with a force law that nobody knows");
+    }
+    return static_cast<Choice>(value);
+}
+
+}  // namespace
+
+ForceConstants ForceConstants::read(const files::TomlTable& table, double side) {
+    ForceConstants result;
+    result.unitLength = side;
+    for (const Key& key : kKeys) {
+        result.*key.constant = table.numberOr(key.name, result.*key.constant, key.range);
+    }
+    result.law = static_cast<ForceLaw>(table.choiceOr("law", {"repulse", "control_points"}, 0));
+    result.between = static_cast<Between>(table.choiceOr("between", {"local", "hold", "interpolate"}, 0));
+    result.literal = table.flagOr("literal", false);
+    result.frictionDirection =
+        static_cast<FrictionDirection>(table.choiceOr("friction_direction", {"tangential", "full", "vertical"}, 0));
+    if (!result.literal && result.frictionDirection != FrictionDirection::tangential) {
+        table.fail("friction_direction",
+                   "friction_direction other than tangential is for comparison: set literal = true beside it");
+    }
+    table.finish();
+    return result;
+}
+
+void ForceConstants::encodeRest(files::ByteWriter& writer) const {
+    for (std::size_t i = kOldest; i < kKeys.size(); ++i) {
+        writer.put(this->*kKeys.at(i).constant);
+    }
+    writer.put(static_cast<std::uint8_t>(law));
+    writer.put(static_cast<std::uint8_t>(between));
+    writer.put(static_cast<std::uint8_t>(frictionDirection));
+    writer.put(static_cast<std::uint8_t>(literal ? 1 : 0));
+}
+
+void ForceConstants::decodeRest(files::ByteReader& reader) {
+    for (std::size_t i = kOldest; i < kKeys.size(); ++i) {
+        const auto [lowest, highest] = kKeys.at(i).range;
+        const double value = this->*kKeys.at(i).constant = reader.get<double>();
+        if (!(value >= lowest && value <= highest)) {
+            throw files::FormatError("a scene with a force constant out of range");
+        }
+    }
+    law = decodeChoice<ForceLaw>(reader, 2);
+    between = decodeChoice<Between>(reader, 3);
+    frictionDirection = decodeChoice<FrictionDirection>(reader, 3);
+    literal = decodeChoice<int>(reader, 2) != 0;
+}
+
+}  // namespace sand

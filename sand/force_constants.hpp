@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "files/byte_stream.hpp"
+#include "files/toml_table.hpp"
+
+namespace sand {
+
+/// Whose law the hand feels: the first paper's, or the second's.
+enum class ForceLaw : std::uint8_t { repulse, controlPoints };
+/// What is felt between two steps of the sand (sand/force/force_model.hpp).
+enum class Between : std::uint8_t { local, hold, interpolate };
+/// What of the velocity friction is against. The first paper calls it vertical and describes a drag.
+enum class FrictionDirection : std::uint8_t { tangential, full, vertical };
+
+/// Constants of both papers' force laws (docs/forces.md). Forces are no state of the sand: never part of a digest.
+struct ForceConstants {
+    // First paper.
+    double stiffness = 1000;     // k_s [N]
+    double depthExponent = 0.5;  // k_c [1/scene unit]
+    double friction = 10;        // k_f [frame/scene unit], a frame being 1/60 s
+    double frictionArea = 1;     // k_a [sphere's]: the printed k_f holds with 1
+    FrictionDirection frictionDirection = FrictionDirection::tangential;
+    // Second paper, in coordinates of which 1 is unitLength.
+    double maxForce = 10;            // F_M [N]
+    double tolerance = 1e-3;         // z_tol [unitLength]
+    double unitLength = 1;           // [scene unit]; a scene file's default is the longer side of its field
+    double frictionCoefficient = 0;  // mu [1]; 0: friction does not depend on the speed
+    double frictionSpeed = 0.5;      // [scene unit/s], at which that friction is mu times the normal force
+    // Either.
+    ForceLaw law = ForceLaw::repulse;
+    bool literal = false;  // as printed, jumps and all; for comparison
+    Between between = Between::local;
+    double validity = 0.5;      // [tool reach], how far the local model is believed from where it was made
+    double recoveryTime = 0.2;  // [s], time constant with which a new local model takes over
+
+    /// [force] of a scene file, whose field's longer side is `side` [scene unit]. Throws files::InputError.
+    static ForceConstants read(const files::TomlTable& table, double side);
+    /// What a scene's encoding ends with. The three oldest constants stand elsewhere in it.
+    void encodeRest(files::ByteWriter& writer) const;
+    /// Throws files::FormatError for numbers that no scene file gives.
+    void decodeRest(files::ByteReader& reader);
+    friend bool operator==(const ForceConstants&, const ForceConstants&) = default;
+};
+
+}  // namespace sand
