@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render_node/tool_force.hpp"
 
+#include "sand/force/law.hpp"
+
 namespace render_node {
 
 using sand::force::Vec3;
@@ -22,8 +24,9 @@ std::optional<ForceArrow> ToolForce::arrow(const sand::Terrain& terrain) {
         return std::nullopt;
     }
     const sand::force::SurfacePatch patch(terrain.field(), probe, radius);
-    const auto contact = sand::force::measureContact(patch, centre, radius);
-    const Vec3 whole = sand::force::contactForce(constants_, contact, velocity_);
+    const auto tool = sand::force::Contour::sphere(radius);
+    const auto felt = sand::force::respond(constants_, patch, tool, centre);
+    const Vec3 whole = sand::force::lawfulForce(felt, velocity_);
     const Vec3 force = sand::force::guarded(whole, 0, kMostNewtons);
     const double newtons = sand::force::norm(force);
     if (newtons < kFewestNewtons) {

@@ -13,8 +13,9 @@ inline constexpr double kArrowPerNewton = 1.5;                     // [tool radi
 inline constexpr double kMostNewtons = sand::force::kDeviceLimit;  // no arrow is longer than that of this force
 inline constexpr double kFewestNewtons = 0.02;                     // no arrow for less
 
-/// The force on the tool, from a rank's own replica: the hand's, but for a velocity that is known once a frame only. It
-/// reads the sand and never changes it. All ranks that are asked in the same frames answer alike.
+/// The force on the tool by the scene's law, from a rank's own replica: the hand's, but for a velocity that is known
+/// once a frame only, and for what guards a device. It reads the sand and never changes it. All ranks that are asked in
+/// the same frames answer alike.
 class ToolForce {
 public:
     explicit ToolForce(const sand::ForceConstants& constants) : constants_(constants) {}

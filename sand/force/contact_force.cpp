@@ -32,48 +32,65 @@ const std::array<Direction, kRadii * kAngles>& ring() {
 
 }  // namespace
 
-Contact measureContact(const SurfacePatch& patch, Vec3 centre, double radius) {
+Contact measureContact(const SurfacePatch& patch, Vec3 centre, const Contour& tool) {
     Contact contact;
-    if (patch.empty() || !(radius > 0)) {
+    if (patch.empty() || !(tool.reach > 0)) {
         return contact;
     }
-    double sum = 0, momentX = 0, momentY = 0, square = 0;
+    Dual sum, momentX, momentY;
+    double square = 0;
     int inside = 0;
     for (const Direction& point : ring()) {
-        const double dx = radius * point.x, dy = radius * point.y;
+        const double dx = tool.reach * point.x, dy = tool.reach * point.y;
         if (!patch.overField(centre.x + dx, centre.y + dy)) {
             continue;
         }
-        const double height = patch.height(centre.x + dx, centre.y + dy);
+        const Dual height = patch.tangent(centre.x + dx, centre.y + dy);
         ++inside;
-        sum += height;
-        momentX += (height - centre.z) * dx;
-        momentY += (height - centre.z) * dy;
+        sum = sum + height;
+        momentX = momentX + dx * (height + -centre.z);
+        momentY = momentY + dy * (height + -centre.z);
         square += dx * dx + dy * dy;
     }
     if (inside == 0) {
         return contact;
     }
     contact.share = static_cast<double>(inside) / (kRadii * kAngles);
-    contact.depth = std::max(0.0, sum / inside - (centre.z - radius));
+    const Dual underside{centre.z + tool.lowest, {0, 0, 1}};
+    contact.depth = (1.0 / inside) * sum - underside;
     // Least squares over a whole ring: Σdx² = Σdy² = square/2, the mixed sums vanish. Over the rim they do not, and the
     // force there is vertical.
-    const bool whole = inside == kRadii * kAngles;
-    const double slopeX = whole ? 2 * momentX / square : 0, slopeY = whole ? 2 * momentY / square : 0;
-    const double flat = 1 / std::sqrt(1 + slopeX * slopeX + slopeY * slopeY);
-    const double t = std::clamp(contact.depth / radius, 0.0, 1.0);
-    const double upright = t * t * (3 - 2 * t);
-    const Vec3 surface{-slopeX * flat, -slopeY * flat, flat};
-    const Vec3 blend = (1 - upright) * surface + upright * Vec3{0, 0, 1};
-    contact.normal = (1 / norm(blend)) * blend;
+    if (inside == kRadii * kAngles) {
+        contact.slopeX = (2 / square) * momentX;
+        contact.slopeY = (2 / square) * momentY;
+    }
     return contact;
 }
 
-Vec3 contactForce(const ForceConstants& constants, const Contact& contact, Vec3 velocity) {
+Response contactForce(const ForceConstants& constants, const Contour& tool, const Contact& contact) {
+    Response felt;
+    felt.direction = constants.literal ? constants.frictionDirection : FrictionDirection::tangential;
+    if (!(contact.share > 0) || !(tool.reach > 0)) {
+        return felt;
+    }
+    const Dual t = clamped((1 / tool.reach) * contact.depth);
+    const Dual upright = t * t * (3 - 2 * t);
+    const Dual flat = Dual{1, {}} / sqrt(contact.slopeX * contact.slopeX + contact.slopeY * contact.slopeY + 1);
+    const Dual lean = (1 - upright) * flat;
+    const Dual x = lean * (0 - contact.slopeX), y = lean * (0 - contact.slopeY), z = lean + upright;
+    const Dual length = sqrt(x * x + y * y + z * z);
+    felt.normal = (1 / length.value) * Vec3{x.value, y.value, z.value};
+    if (!(contact.depth.value > 0)) {
+        return felt;
+    }
     // expm1 is the bracket that the paper's print lost: without it the force at depth 0 would be k_s.
-    const double push = contact.share * constants.stiffness * std::expm1(constants.depthExponent * contact.depth);
-    const Vec3 tangential = velocity - dot(velocity, contact.normal) * contact.normal;
-    return push * contact.normal - (constants.friction * push) * tangential;
+    const Dual size = contact.share * constants.stiffness * expm1(constants.depthExponent * contact.depth);
+    const Dual scale = size / length;
+    const Dual forceX = scale * x, forceY = scale * y, forceZ = scale * z;
+    felt.push = {forceX.value, forceY.value, forceZ.value};
+    felt.drag = constants.friction * constants.frictionArea * size.value;
+    felt.stiffness = steepness(forceX, forceY, forceZ);
+    return felt;
 }
 
 Vec3 guarded(Vec3 force, double surfaceAge, double limit) {

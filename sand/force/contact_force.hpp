@@ -1,27 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "sand/force/gauges.hpp"
+#include "sand/force/response.hpp"
 #include "sand/force/surface_patch.hpp"
 #include "sand/force/vec3.hpp"
-#include "sand/scene.hpp"
+#include "sand/force_constants.hpp"
 
 /// What the hand feels. Forces read the sand and never change it; they may use libm.
 namespace sand::force {
 
-/// The tool and the sand around it, reduced to what the force depends on.
+/// What the first paper's law reads off the ring from one to two reaches around the tool, outside its outline whatever
+/// its shape: nothing overlaps, for the tool has pushed the sand aside.
 struct Contact {
-    double depth = 0;  // [scene unit] of the tool's lowest point under the ring around it, ≥ 0
-    Vec3 normal{0, 0, 1};
-    double share = 0;  // of the ring that lies over the field, 0 to 1
+    Dual depth;           // [scene unit] of the tool's lowest point under the ring's mean height; below 0 over it
+    Dual slopeX, slopeY;  // of the ring's plane
+    double share = 0;     // of the ring that lies over the field, 0 to 1
+
+    [[nodiscard]] Gauges gauges() const { return {4, {depth, slopeX, slopeY, {share, {}}}}; }
+    explicit Contact(const Gauges& gauges)
+        : depth(gauges.dials[0]), slopeX(gauges.dials[1]), slopeY(gauges.dials[2]), share(gauges.dials[3].value) {}
+    Contact() = default;
 };
+[[nodiscard]] Contact measureContact(const SurfacePatch& patch, Vec3 centre /* [scene unit] */, const Contour& tool);
 
-/// Measures the ring from one to two radii around the tool: its mean height and its slope. The normal turns from the
-/// surface's at depth 0 to the vertical at depth R.
-[[nodiscard]] Contact measureContact(const SurfacePatch& patch, Vec3 centre /* [scene unit] */, double radius);
-
-/// First paper, section 4: |F_r| = k_s (e^(k_c d) − 1) along the normal, and friction k_f v |F_r| against the
-/// tangential velocity [scene unit per 1/60 s]. Returns [N]. Not bounded; see guarded().
-[[nodiscard]] Vec3 contactForce(const ForceConstants& constants, const Contact& contact, Vec3 velocity);
+/// First paper, section 3: |F_r| = k_s (e^(k_c d) − 1) along the normal, which turns from the surface's at depth 0 to
+/// the vertical at depth R; friction k_f k_a v |F_r|. Equation 1 is printed without its bracket. Not bounded.
+[[nodiscard]] Response contactForce(const ForceConstants& constants, const Contour& tool, const Contact& contact);
 
 inline constexpr double kDeviceLimit = 3.3;     // [N], of a Touch
 inline constexpr double kStaleSurface = 0.050;  // [s]

@@ -1,18 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sand/force/force_model.hpp"
 
-#include <cmath>
-
-#include "sand/force/contact_force.hpp"
+#include "sand/force/law.hpp"
 
 namespace sand::force {
 
-Response ForceModel::at(const SurfacePatch& surface, std::uint64_t, const Contour& tool, Vec3 place, double) {
-    const Contact contact = measureContact(surface, place, tool.reach);
-    const Vec3 push = contactForce(constants_, contact, {});
-    const double most = contact.share * constants_.stiffness * constants_.depthExponent;
-    return {push, contact.normal, constants_.friction * norm(push),
-            most * std::exp(constants_.depthExponent * contact.depth)};
+Response ForceModel::at(const SurfacePatch& surface, std::uint64_t step, const Contour& tool, Vec3 place, double time) {
+    if (surface.empty() || !(tool.reach > 0)) {
+        known_ = false;
+        return {};
+    }
+    const bool forget = !known_ || time - time_ > kForget;
+    const bool replaced = forget || step != step_;
+    known_ = true;
+    step_ = step;
+    time_ = time;
+    if (constants_.between == Between::local) {
+        return respond(constants_, tool, local_.at(constants_, surface, replaced, forget, tool, place, time));
+    }
+    if (replaced) {
+        held_ = respond(constants_, surface, tool, place);
+    }
+    return constants_.between == Between::hold ? held_ : interpolation_.at(replaced, forget, constants_.literal, held_);
 }
 
 }  // namespace sand::force

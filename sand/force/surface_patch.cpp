@@ -33,15 +33,19 @@ SurfacePatch::SurfacePatch(const HeightField& field, ProbePoint centre, double t
     }
 }
 
-double SurfacePatch::height(double x, double y) const {
-    const double column = std::clamp((x - west_) / spacing_, 0.0, columns_ - 1.0);
-    const double row = std::clamp((y - south_) / spacing_, 0.0, rows_ - 1.0);
+Dual SurfacePatch::tangent(double x, double y) const {
+    const double freeColumn = (x - west_) / spacing_, freeRow = (y - south_) / spacing_;
+    const double column = std::clamp(freeColumn, 0.0, columns_ - 1.0);
+    const double row = std::clamp(freeRow, 0.0, rows_ - 1.0);
     const int i = std::min(static_cast<int>(column), std::max(columns_ - 2, 0));
     const int j = std::min(static_cast<int>(row), std::max(rows_ - 2, 0));
     const double u = column - i, v = row - j;
     const int right = columns_ > 1 ? 1 : 0, up = rows_ > 1 ? columns_ : 0;
     const float* node = heights_.data() + std::ptrdiff_t{j} * columns_ + i;
-    return (1 - v) * ((1 - u) * node[0] + u * node[right]) + v * ((1 - u) * node[up] + u * node[up + right]);
+    const double a = node[0], b = node[right], c = node[up], d = node[up + right];
+    const double east = (1 - v) * (b - a) + v * (d - c), north = (1 - u) * (c - a) + u * (d - b);
+    return {(1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * c + u * d),
+            {column == freeColumn ? east / spacing_ : 0, row == freeRow ? north / spacing_ : 0, 0}};
 }
 
 }  // namespace sand::force

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "sand/force/dual.hpp"
 #include "sand/height_field.hpp"
 #include "sand/step.hpp"
 
@@ -26,7 +27,9 @@ public:
         return x >= 0 && y >= 0 && x <= fieldWidth_ && y <= fieldHeight_;
     }
     /// Bilinear between the centres of cells; beyond the patch, its nearest node.
-    [[nodiscard]] double height(double x, double y) const;
+    [[nodiscard]] double height(double x, double y) const { return tangent(x, y).value; }
+    /// The same with its gradient, which is 0 across an edge of the patch.
+    [[nodiscard]] Dual tangent(double x, double y) const;
     [[nodiscard]] bool empty() const { return columns_ == 0; }
 
 private:

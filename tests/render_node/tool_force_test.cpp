@@ -34,16 +34,27 @@ TEST_F(Arrow, IsAsLongAsTheForceIsLarge) {
     const sand::force::SurfacePatch patch(terrain_.field(), terrain_.probe(), scene_.toolRadius());
     const double unit = scene_.terrain.cellSize() / sand::kProbePerCell;
     const auto probe = terrain_.probe();
-    const auto contact =
-        sand::force::measureContact(patch, {unit * probe.x, unit * probe.y, unit * probe.z}, scene_.toolRadius());
+    const auto contact = sand::force::measureContact(patch, {unit * probe.x, unit * probe.y, unit * probe.z},
+                                                     sand::force::Contour::sphere(scene_.toolRadius()));
     ASSERT_TRUE(light);
-    EXPECT_NEAR(newtons(*light), 100 * std::expm1(0.5 * contact.depth), 1e-4);
+    EXPECT_NEAR(newtons(*light), 100 * std::expm1(0.5 * contact.depth.value), 1e-4);
     EXPECT_GT(newtons(*light), 0.1);
     EXPECT_FALSE(light->longest);
     EXPECT_GT(light->to.z, light->from.z);
     EXPECT_NEAR(glm::length(light->from - glm::vec3(1, 1, 0.8F * kRadius)), kRadius, 1e-3) << "from the tool's surface";
     press({1, 1, 0.4F * kRadius});
     EXPECT_GT(newtons(*force.arrow(terrain_)), 1.2 * newtons(*light));
+}
+
+TEST_F(Arrow, FollowsTheScenesLaw) {
+    // Level sand and a light touch: dh is the depth over the unit length, all around.
+    scene_.force.law = sand::ForceLaw::controlPoints;
+    ToolForce force(scene_.force);
+    press({1, 1, 0.5F * kRadius});
+    const auto arrow = force.arrow(terrain_);
+    ASSERT_TRUE(arrow);
+    EXPECT_GT(newtons(*arrow), 10 * 0.4 * double{kRadius});
+    EXPECT_LT(newtons(*arrow), 10 * double{kRadius}) << "ten newtons a unit, not five hundred";
 }
 
 TEST_F(Arrow, EndsAtTheGreatestForceThatADeviceGives) {
