@@ -85,7 +85,8 @@ public:
     /// At most `most` steps, in order and without gaps, of the granted epoch only. When the queue is full (kMaxQueued),
     /// the network thread stops reading, and TCP holds the server back.
     [[nodiscard]] std::vector<TimedStep> drain(std::size_t most);
-    /// The wall has swapped, and shows this step. Lets the server go on, and answers timing tests.
+    /// The wall has swapped, and shows this step. Lets the server go on, and answers the timing tests that came before
+    /// the frame's steps were drained: like a step, a test that comes while a frame is drawn is in the next.
     void shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs);
     /// An operator asks: the server puts it into its next step. Without effect unless the server is linked.
     void request(const sand::Edit& edit);

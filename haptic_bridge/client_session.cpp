@@ -22,6 +22,7 @@ constexpr std::chrono::milliseconds kFirstBackOff{100}, kLastBackOff{2000};
 constexpr std::chrono::milliseconds kConnectTimeout{3000};
 constexpr std::chrono::milliseconds kSilence{10000};  // pongs come four times a second
 constexpr std::chrono::milliseconds kGoodbye{500};
+constexpr std::size_t kMaxTests = 64;  // a wall that stands still has no round trip to tell
 
 }  // namespace
 
@@ -116,7 +117,11 @@ void Client::Session::connected(Connection::Socket socket) {
     connection_->send(Hello{{kProtocolVersion, sand::kAlgorithmVersion, offer_.rulesDigest, offer_.sceneName}});
     heard_ = std::chrono::steady_clock::now();
     pings_ = 0;
-    tests_.clear();
+    {
+        const std::lock_guard lock(shelf.mutex);
+        shelf.tests.clear();
+        shelf.testsInFrame.clear();
+    }
     watch();
 }
 
@@ -233,6 +238,13 @@ std::vector<TimedStep> Client::Session::drain(std::size_t most) {
     const auto end = shelf.steps.begin() + static_cast<std::ptrdiff_t>(count);
     steps.assign(std::make_move_iterator(shelf.steps.begin()), std::make_move_iterator(end));
     shelf.steps.erase(shelf.steps.begin(), end);
+    const std::uint64_t next = shelf.steps.empty() ? ~std::uint64_t{0} : shelf.steps.front().step.number;
+    while (!shelf.tests.empty() && shelf.tests.front().after < next) {
+        if (shelf.testsInFrame.size() < kMaxTests) {
+            shelf.testsInFrame.push_back(shelf.tests.front().id);
+        }
+        shelf.tests.pop_front();
+    }
     if (shelf.full && shelf.steps.size() < kMaxQueued) {
         shelf.full = false;
         asio::post(io_, [this] {
@@ -245,14 +257,19 @@ std::vector<TimedStep> Client::Session::drain(std::size_t most) {
 }
 
 void Client::Session::shown(const Shown& frame) {
-    asio::post(io_, [this, frame] {
+    std::vector<std::uint32_t> tests;
+    {
+        const std::lock_guard lock(shelf.mutex);
+        tests.swap(shelf.testsInFrame);
+    }
+    asio::post(io_, [this, frame, tests = std::move(tests)] {
         if (!connection_ || link() != Link::linked) {
             return;
         }
         // A frame drawn before the hand-over's first step says nothing about the server's steps yet.
         connection_->send(Shown{std::clamp(frame.stepNumber, granted_.stepNumber, lastStep_), frame.frameIntervalNs});
-        for (const TimingTest& test : std::exchange(tests_, {})) {
-            connection_->send(TimingEcho{test.id});
+        for (const std::uint32_t id : tests) {
+            connection_->send(TimingEcho{id, Leg::shown});
         }
     });
 }
@@ -289,10 +306,7 @@ void Client::Session::receive(Message&& message) {
         const std::lock_guard lock(shelf.mutex);
         shelf.report = *report;
     } else if (const auto* test = std::get_if<TimingTest>(&message)) {
-        tests_.push_back(*test);
-        if (tests_.size() > 64) {  // a wall that stands still for a quarter of a minute has no round trip to tell
-            tests_.erase(tests_.begin());
-        }
+        accept(*test);
     } else if (auto* step = std::get_if<StepMessage>(&message)) {
         accept(std::move(*step));
     } else if (std::holds_alternative<NeedState>(message) && link() == Link::granting) {
@@ -324,6 +338,15 @@ void Client::Session::welcome(const Welcome& greeting) {
     clock_ = ClockOffset();
     tell(Link::offered, fmt::format("{}: connected, {} steps per second", peer_, greeting.stepsPerSecond));
     ping();
+}
+
+void Client::Session::accept(const TimingTest& test) {
+    connection_->send(TimingEcho{test.id, Leg::received});
+    const std::lock_guard lock(shelf.mutex);
+    shelf.tests.push_back({test.id, lastStep_});
+    if (shelf.tests.size() > kMaxTests) {
+        shelf.tests.pop_front();
+    }
 }
 
 void Client::Session::accept(StepMessage&& message) {

@@ -38,6 +38,12 @@ public:
         std::mutex mutex;
         LinkStatus status;
         std::deque<TimedStep> steps;
+        struct Test {
+            std::uint32_t id = 0;
+            std::uint64_t after = 0;  // number of the step before it
+        };
+        std::deque<Test> tests;                   // that wait for a frame, as steps do
+        std::vector<std::uint32_t> testsInFrame;  // to be echoed after the next swap
         std::optional<Report> report;
         LinkCounters counters;
         std::int64_t clockOffsetNs = 0;
@@ -62,6 +68,7 @@ private:
     void receive(Message&& message);
     void welcome(const Welcome& welcome);
     void accept(StepMessage&& message);
+    void accept(const TimingTest& test);
 
     const Address address_;
     const Offer offer_;
@@ -73,7 +80,6 @@ private:
     Start granted_;
     files::Bytes state_;
     std::uint64_t lastStep_ = 0;
-    std::vector<TimingTest> tests_;  // to be echoed after the next swap
     ClockOffset clock_;
     Milliseconds backOff_{};
     std::chrono::steady_clock::time_point heard_;

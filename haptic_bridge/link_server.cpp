@@ -18,13 +18,14 @@ constexpr int kMaxGuests = 16;
 }  // namespace
 
 LinkServer::LinkServer(asio::io_context& io, asio::ip::tcp::acceptor acceptor, Identity identity,
-                       std::uint32_t stepsPerSecond, Sources sources)
+                       std::uint32_t stepsPerSecond, Sources sources, TimingTests tests)
     : io_(io),
       acceptor_(std::move(acceptor)),
       pause_(io),
       identity_(std::move(identity)),
       stepsPerSecond_(stepsPerSecond),
-      sources_(std::move(sources)) {}
+      sources_(std::move(sources)),
+      tests_(tests) {}
 
 LinkServer::~LinkServer() = default;
 

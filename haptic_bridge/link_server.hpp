@@ -15,6 +15,14 @@ namespace haptic_bridge {
 
 class MasterLink;
 
+/// At which times a master is sent timing tests: at random, from a seed, because nothing in a session should differ by
+/// chance.
+struct TimingTests {
+    double perSecond = 4;  // mean
+    double after = 0;      // [s] from when the server numbers the steps: a wall's first frames compile shaders
+    std::uint32_t seed = 7;
+};
+
 /// The streaming thread: takes masters in, one at a time, and carries the sequencer's steps to them.
 ///
 /// Everything runs on the thread that runs `io`. A master that leaves, breaks or sends garbage ends its own link and
@@ -28,7 +36,7 @@ public:
 
     /// Takes over a listening acceptor.
     LinkServer(boost::asio::io_context& io, boost::asio::ip::tcp::acceptor acceptor, Identity identity,
-               std::uint32_t stepsPerSecond, Sources sources);
+               std::uint32_t stepsPerSecond, Sources sources, TimingTests tests = {});
     ~LinkServer();
 
     /// What the sequencer calls on its own thread; hands over to this one.
@@ -50,6 +58,7 @@ private:
     Identity identity_;
     std::uint32_t stepsPerSecond_;
     Sources sources_;
+    TimingTests tests_;
     Sequencer* sequencer_ = nullptr;
     std::shared_ptr<MasterLink> current_;  // the one that passed the handshake
     std::uint32_t sessions_ = 0;

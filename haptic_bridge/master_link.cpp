@@ -20,6 +20,11 @@ constexpr std::int64_t kGreetingNs = 3'000'000'000;  // a guest must greet withi
 constexpr std::int64_t kSilenceNs = 10'000'000'000;  // a master pings four times a second
 constexpr std::size_t kMaxTestsOut = 64;
 
+HalfRoundTrip told(const LiveHistogram& halves) {
+    return {halves.meanNs() * 1e-6, halves.stddevNs() * 1e-6, halves.percentileNs(0.50) * 1e-6,
+            halves.percentileNs(0.99) * 1e-6, halves.count()};
+}
+
 }  // namespace
 
 MasterLink::MasterLink(LinkServer& server, Connection::Socket socket)
@@ -27,7 +32,8 @@ MasterLink::MasterLink(LinkServer& server, Connection::Socket socket)
       connection_(std::make_shared<Connection>(std::move(socket))),
       reportTimer_(server.io_),
       testTimer_(server.io_),
-      watchTimer_(server.io_) {}
+      watchTimer_(server.io_),
+      random_(server.tests_.seed) {}
 
 void MasterLink::start() {
     ++server_.guests_;
@@ -84,7 +90,7 @@ void MasterLink::receive(Message&& message) {
         }
         server_.sequencer_->shown(*shown, monotonicNs());
     } else if (const auto* echo = std::get_if<TimingEcho>(&message); echo != nullptr && phase_ == Phase::linked) {
-        echoed(echo->id);
+        echoed(*echo);
     } else if (auto* request = std::get_if<EditRequest>(&message); request != nullptr && phase_ == Phase::linked) {
         server_.sequencer_->edit(std::move(*request));
     } else {
@@ -126,7 +132,7 @@ void MasterLink::ready() {
     connection_->expectLoads(true);
     log(fmt::format("linked, epoch {} from step {}", epoch_, firstStep_));
     connection_->send(Ready{});
-    tickTimingTest();
+    tickTimingTest(server_.tests_.after);
 }
 
 void MasterLink::needState() {
@@ -145,9 +151,10 @@ void MasterLink::step(files::Bytes message) {
     connection_->sendBytes(std::move(message));
 }
 
-void MasterLink::tickTimingTest() {
-    std::uniform_int_distribution<int> wait(150, 350);  // [ms], about four a second
-    testTimer_.expires_after(milliseconds(wait(random_)));
+void MasterLink::tickTimingTest(double pause) {
+    // Poisson arrivals see time averages: no phase of a frame is met more often than it lasts.
+    std::exponential_distribution<double> wait(server_.tests_.perSecond);  // [s]
+    testTimer_.expires_after(std::chrono::nanoseconds(static_cast<std::int64_t>((pause + wait(random_)) * 1e9)));
     testTimer_.async_wait([self = shared_from_this()](error_code error) {
         if (error || self->phase_ != Phase::linked) {
             return;
@@ -155,7 +162,7 @@ void MasterLink::tickTimingTest() {
         TimingTest test{++self->lastTest_, 0};
         const std::size_t bare = encode(test).size();
         test.padding = static_cast<std::uint32_t>(self->lastStepBytes_ > bare ? self->lastStepBytes_ - bare : 0);
-        self->testsOut_[test.id] = monotonicNs();
+        self->testsOut_[test.id].sentNs = monotonicNs();
         if (self->testsOut_.size() > kMaxTestsOut) {
             self->testsOut_.erase(self->testsOut_.begin());
         }
@@ -164,11 +171,17 @@ void MasterLink::tickTimingTest() {
     });
 }
 
-void MasterLink::echoed(std::uint32_t id) {
-    const auto test = testsOut_.find(id);
-    if (test != testsOut_.end()) {
-        halfRoundTrip_.add((monotonicNs() - test->second) / 2);
+void MasterLink::echoed(const TimingEcho& echo) {
+    const auto test = testsOut_.find(echo.id);
+    if (test == testsOut_.end()) {
+        return;
+    }
+    const std::int64_t half = (monotonicNs() - test->second.sentNs) / 2;
+    if (echo.leg == Leg::shown) {
+        toWall_.add(half);
         testsOut_.erase(test);
+    } else if (!std::exchange(test->second.received, true)) {
+        toMaster_.add(half);
     }
 }
 
@@ -184,10 +197,8 @@ void MasterLink::tickReport() {
 
 Report MasterLink::report() const {
     Report report = server_.sources_.report();
-    report.halfRoundTripMsMean = halfRoundTrip_.meanNs() * 1e-6;
-    report.halfRoundTripMsStddev = halfRoundTrip_.stddevNs() * 1e-6;
-    report.halfRoundTripMsP50 = halfRoundTrip_.percentileNs(0.50) * 1e-6;
-    report.halfRoundTripMsP99 = halfRoundTrip_.percentileNs(0.99) * 1e-6;
+    report.toWall = told(toWall_);
+    report.toMaster = told(toMaster_);
     report.stepBytesMean = steps_ == 0 ? 0 : static_cast<double>(stepBytes_) / static_cast<double>(steps_);
     report.steps = steps_;
     return report;

@@ -29,12 +29,12 @@ private:
 
     void receive(Message&& message);
     void greet(const Hello& hello);
-    void echoed(std::uint32_t id);
+    void echoed(const TimingEcho& echo);
     void refuse(const Refusal& refusal);
     void outOfTurn();
     void end(const std::string& why);
     void tickReport();
-    void tickTimingTest();
+    void tickTimingTest(double pause /* [s] */ = 0);
     void watch();
     void log(const std::string& what) const;
     [[nodiscard]] Report report() const;
@@ -50,10 +50,13 @@ private:
     std::uint64_t steps_ = 0, stepBytes_ = 0;
     std::size_t lastStepBytes_ = 0;
     std::uint32_t lastTest_ = 0;
-    std::map<std::uint32_t, std::int64_t> testsOut_;  // by id: when sent [ns]
-    LiveHistogram halfRoundTrip_;
-    // Random, so that tests do not beat with frames; seeded, because nothing in a session should differ by chance.
-    std::minstd_rand random_{7};
+    struct TestOut {
+        std::int64_t sentNs = 0;
+        bool received = false;
+    };
+    std::map<std::uint32_t, TestOut> testsOut_;  // by id
+    LiveHistogram toWall_, toMaster_;            // half of the round trips
+    std::minstd_rand random_;
 };
 
 }  // namespace haptic_bridge

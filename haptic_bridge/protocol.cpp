@@ -93,7 +93,10 @@ void put(const Shown& shown, files::ByteWriter& writer) {
     writer.put(shown.stepNumber);
     writer.put(shown.frameIntervalNs);
 }
-void put(const TimingEcho& echo, files::ByteWriter& writer) { writer.put(echo.id); }
+void put(const TimingEcho& echo, files::ByteWriter& writer) {
+    writer.put(echo.id);
+    writer.put(static_cast<std::uint8_t>(echo.leg));
+}
 void put(const Ping& ping, files::ByteWriter& writer) { writer.put(ping.masterNs); }
 void put(const Pong& pong, files::ByteWriter& writer) {
     writer.put(pong.masterNs);
@@ -102,13 +105,14 @@ void put(const Pong& pong, files::ByteWriter& writer) {
 /// The one list of a report's numbers, in the order of the wire.
 template <class AnyReport, class Visit>
 void eachNumber(AnyReport& report, const Visit& visit) {
-    for (auto* number :
-         {&report.hapticPeriodUsP50, &report.hapticPeriodUsP99, &report.hapticPeriodUsMax, &report.forceUsP50,
-          &report.forceUsP99, &report.halfRoundTripMsMean, &report.halfRoundTripMsStddev, &report.halfRoundTripMsP50,
-          &report.halfRoundTripMsP99, &report.stepBytesMean}) {
+    for (auto* number : {&report.hapticPeriodUsP50, &report.hapticPeriodUsP99, &report.hapticPeriodUsMax,
+                         &report.forceUsP50, &report.forceUsP99, &report.toWall.msMean, &report.toWall.msStddev,
+                         &report.toWall.msP50, &report.toWall.msP99, &report.toMaster.msMean, &report.toMaster.msStddev,
+                         &report.toMaster.msP50, &report.toMaster.msP99, &report.stepBytesMean}) {
         visit(*number);
     }
-    for (auto* number : {&report.steps, &report.stepsWithheld, &report.samplesDropped}) {
+    for (auto* number :
+         {&report.steps, &report.stepsWithheld, &report.samplesDropped, &report.toWall.count, &report.toMaster.count}) {
         visit(*number);
     }
 }
@@ -162,7 +166,14 @@ void get(Shown& shown, files::ByteReader& reader) {
     shown.stepNumber = reader.get<std::uint64_t>();
     shown.frameIntervalNs = reader.get<std::int64_t>();
 }
-void get(TimingEcho& echo, files::ByteReader& reader) { echo.id = reader.get<std::uint32_t>(); }
+void get(TimingEcho& echo, files::ByteReader& reader) {
+    echo.id = reader.get<std::uint32_t>();
+    const auto leg = reader.get<std::uint8_t>();
+    if (leg != static_cast<std::uint8_t>(Leg::received) && leg != static_cast<std::uint8_t>(Leg::shown)) {
+        throw files::FormatError("an echo of leg " + std::to_string(leg));
+    }
+    echo.leg = static_cast<Leg>(leg);
+}
 void get(Ping& ping, files::ByteReader& reader) { ping.masterNs = reader.get<std::int64_t>(); }
 void get(Pong& pong, files::ByteReader& reader) {
     pong.masterNs = reader.get<std::int64_t>();

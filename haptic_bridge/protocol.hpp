@@ -17,7 +17,7 @@
 namespace haptic_bridge {
 
 inline constexpr std::uint32_t kMagic = 0x42485753;  // "SWHB" as it stands on the wire
-inline constexpr std::uint32_t kProtocolVersion = 4;
+inline constexpr std::uint32_t kProtocolVersion = 5;
 inline constexpr std::uint16_t kDefaultPort = 7750;
 inline constexpr std::size_t kMaxMessage = 64 * 1024;  // [byte], type and payload
 // [byte], of a State, and of an EditRequest or Step with sand that is loaded; and only when one is expected. A field of
@@ -59,8 +59,14 @@ struct Shown {
     std::int64_t frameIntervalNs = 0;  // since the frame before
     friend bool operator==(const Shown&, const Shown&) = default;
 };
+/// How far a timing test has come.
+enum class Leg : std::uint8_t {
+    received = 1,  // the master has it
+    shown,         // the wall has swapped a frame that began after that
+};
 struct TimingEcho {
     std::uint32_t id = 0;
+    Leg leg = Leg::received;
     friend bool operator==(const TimingEcho&, const TimingEcho&) = default;
 };
 struct Ping {
@@ -96,7 +102,7 @@ struct StepMessage {
     sand::Step step;
     friend bool operator==(const StepMessage&, const StepMessage&) = default;
 };
-/// As long on the wire as the step message before it, to be answered when the wall has swapped.
+/// As long on the wire as the step message before it, to be answered once for each Leg.
 struct TimingTest {
     std::uint32_t id = 0;
     std::uint32_t padding = 0;  // [byte]
@@ -107,11 +113,17 @@ struct Pong {
     std::int64_t serverNs = 0;
     friend bool operator==(const Pong&, const Pong&) = default;
 };
+/// Half of the way of timing tests there and back, of this link.
+struct HalfRoundTrip {
+    double msMean = 0, msStddev = 0, msP50 = 0, msP99 = 0;
+    std::uint64_t count = 0;
+    friend bool operator==(const HalfRoundTrip&, const HalfRoundTrip&) = default;
+};
 /// What the server has measured since the link came up. A quantity not measured yet is 0.
 struct Report {
     double hapticPeriodUsP50 = 0, hapticPeriodUsP99 = 0, hapticPeriodUsMax = 0;  // 0 under --pace fast
     double forceUsP50 = 0, forceUsP99 = 0;                                       // one force evaluation
-    double halfRoundTripMsMean = 0, halfRoundTripMsStddev = 0, halfRoundTripMsP50 = 0, halfRoundTripMsP99 = 0;
+    HalfRoundTrip toWall, toMaster;                                              // answered when shown, when received
     double stepBytesMean = 0;          // step messages, length prefix included
     std::uint64_t steps = 0;           // sent
     std::uint64_t stepsWithheld = 0;   // due, but the wall was a whole window behind

@@ -28,6 +28,7 @@ struct Options {
     std::vector<std::string> map;
     Pace pace = Pace::realtime;
     int sandThreads = 1;
+    TimingTests tests;
     bool dieWithParent = false;
 };
 
@@ -111,7 +112,7 @@ void serve(const Options& options) {
     const Identity identity{kProtocolVersion, sand::kAlgorithmVersion, scene.rules.digest(), scene.name};
     std::function<Report()> measure;
     LinkServer server(io, std::move(acceptor), identity, static_cast<std::uint32_t>(scene.rules.stepsPerSecond),
-                      {[&measure] { return measure(); }, print});
+                      {[&measure] { return measure(); }, print}, options.tests);
     // The sand and force threads end before the link they report to.
     const workers::WorkerPool pool(options.sandThreads);
     Sequencer sequencer(scene, options.pace, hand, channel, server.output(), {.executor = pool.lend()});
@@ -144,6 +145,12 @@ Options parse(int count, char** words) {
             CLI::CheckedTransformer(std::map<std::string, Pace>{{"realtime", Pace::realtime}, {"fast", Pace::fast}}));
     app.add_option("--listen", options.listen, "ADDRESS:PORT; port 0 takes any free one");
     app.add_option("--port-file", options.portFile, "written when the server listens: the port's number");
+    app.add_option("--timing-tests", options.tests.perSecond,
+                   "timing tests a second, at random times (default: 4; docs/latency.md)")
+        ->check(CLI::Range(0.1, 100.0));
+    app.add_option("--timing-after", options.tests.after, "[s] of a link before the first (default: 0)")
+        ->check(CLI::Range(0.0, 3600.0));
+    app.add_option("--timing-seed", options.tests.seed, "of those times (default: 7)");
     workers::addSandThreads(app, options.sandThreads);
     app.add_flag("--die-with-parent", options.dieWithParent, "end when the program that started this one ends");
     try {

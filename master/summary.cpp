@@ -28,15 +28,21 @@ double framesPerSecond(const Summary& summary) {
     return summary.seconds > 0 ? static_cast<double>(summary.frames - 1) / summary.seconds : 0;
 }
 
+ordered_json halfRoundTrip(const haptic_bridge::HalfRoundTrip& trip) {
+    return {{"mean", trip.msMean},
+            {"stddev", trip.msStddev},
+            {"p50", trip.msP50},
+            {"p99", trip.msP99},
+            {"count", trip.count}};
+}
+
 ordered_json hapticPart(const Summary& summary) {
     ordered_json part = ordered_json::object();
     part["reconnects"] = summary.link.reconnects;
     if (const auto& report = summary.haptic) {
         part["force_us"] = {{"p50", report->forceUsP50}, {"p99", report->forceUsP99}};
-        part["half_round_trip_ms"] = {{"mean", report->halfRoundTripMsMean},
-                                      {"stddev", report->halfRoundTripMsStddev},
-                                      {"p50", report->halfRoundTripMsP50},
-                                      {"p99", report->halfRoundTripMsP99}};
+        part["half_round_trip_ms"] = halfRoundTrip(report->toWall);
+        part["half_round_trip_to_master_ms"] = halfRoundTrip(report->toMaster);
         part["step_message_bytes"] = report->stepBytesMean;
         part["steps_withheld"] = report->stepsWithheld;
         part["samples_dropped"] = report->samplesDropped;
@@ -182,9 +188,10 @@ std::string describe(const Summary& summary) {
     }
     if (summary.haptic && summary.haptic->hapticPeriodUsMax > 0) {
         text += fmt::format(
-            "  haptics   period p50 {:.0f} us, p99 {:.0f} us; force p99 {:.2f} us; half round trip {:.1f} ms\n",
+            "  haptics   period p50 {:.0f} us, p99 {:.0f} us; force p99 {:.2f} us; half round trip {:.1f} ms, "
+            "{:.1f} ms to the master\n",
             summary.haptic->hapticPeriodUsP50, summary.haptic->hapticPeriodUsP99, summary.haptic->forceUsP99,
-            summary.haptic->halfRoundTripMsMean);
+            summary.haptic->toWall.msMean, summary.haptic->toMaster.msMean);
     }
     double slowest = 0;
     std::int64_t memory = 0;

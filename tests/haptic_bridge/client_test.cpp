@@ -28,22 +28,29 @@ public:
             (void)!::send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL);
         }
         void send(const Message& message) const { send(encode(message)); }
-        /// Reads until a message of this kind comes; false when the client has gone.
-        template <class Kind>
-        bool await() {
+        /// The next message, or nothing when the client has gone.
+        std::optional<Message> next() {
             while (true) {
-                while (const auto message = reader.next()) {
-                    if (std::holds_alternative<Kind>(*message)) {
-                        return true;
-                    }
+                if (auto message = reader.next()) {
+                    return message;
                 }
                 std::array<std::uint8_t, 4096> chunk{};
                 const ssize_t count = recv(socket, chunk.data(), chunk.size(), 0);
                 if (count <= 0) {
-                    return false;
+                    return std::nullopt;
                 }
                 reader.feed(std::span(chunk).first(static_cast<std::size_t>(count)));
             }
+        }
+        /// Reads until a message of this kind comes; nothing when the client has gone.
+        template <class Kind>
+        std::optional<Kind> await() {
+            while (const auto message = next()) {
+                if (const Kind* wanted = std::get_if<Kind>(&*message)) {
+                    return *wanted;
+                }
+            }
+            return std::nullopt;
         }
     };
 
@@ -224,6 +231,41 @@ TEST(Client, GivesUpTheLinkOverAMissingStep) {
         << client.link().message;
     EXPECT_EQ(client.drain(10).size(), 1U);
     EXPECT_TRUE(reaches(client, Link::offered)) << "it must come back";
+}
+
+TEST(Client, AnswersATimingTestAtOnceAndAgainWhenAFrameThatTookItIsShown) {
+    std::atomic<bool> received = false;
+    std::atomic<int> framesBefore = -1;
+    FakeServer server([&](FakeServer::Guest& guest) {
+        if (!linkUp(guest)) {
+            return;
+        }
+        guest.send(stepOf(1, 1));
+        guest.send(stepOf(1, 2));
+        guest.send(TimingTest{5, 40});
+        guest.send(stepOf(1, 3));
+        received = guest.await<TimingEcho>() == TimingEcho{5, Leg::received};
+        for (int frames = 0; const auto message = guest.next();) {
+            frames += std::holds_alternative<Shown>(*message) ? 1 : 0;
+            if (*message == Message(TimingEcho{5, Leg::shown})) {
+                framesBefore = frames;
+                break;
+            }
+        }
+        guest.await<Bye>();
+    });
+    Client client(server.address(), kOffer);
+    grantWhenOffered(client, 1, 0);
+    ASSERT_TRUE(eventually([&] { return client.counters().stepsIn == 3; }));
+    EXPECT_TRUE(eventually([&] { return received.load(); })) << "before any frame";
+    client.shown(0, 1);  // began before the test came
+    EXPECT_EQ(client.drain(1).size(), 1U);
+    client.shown(1, 1);  // took the steps before it in part
+    EXPECT_EQ(client.drain(1).size(), 1U);
+    client.shown(2, 1);  // took all that came before it
+    client.shown(3, 1);
+    EXPECT_TRUE(eventually([&] { return framesBefore >= 0; }));
+    EXPECT_EQ(framesBefore, 3);
 }
 
 TEST(Client, HoldsAFloodBackAndLosesNothing) {

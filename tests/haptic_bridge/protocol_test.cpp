@@ -17,6 +17,8 @@ std::vector<Message> oneOfEach() {
     Report report;
     report.hapticPeriodUsP50 = 1000.5;
     report.forceUsP99 = 2.25;
+    report.toWall = {13.6, 9.8, 12, 40, 70};
+    report.toMaster = {0.2, 0.1, 0.15, 1, 71};
     report.stepBytesMean = 84;
     report.steps = 9;
     report.stepsWithheld = 4;
@@ -31,7 +33,7 @@ std::vector<Message> oneOfEach() {
             StepMessage{-5, 17, someStep()},
             TimingTest{7, 50},
             Shown{41, 16'666'667},
-            TimingEcho{7},
+            TimingEcho{7, Leg::shown},
             Ping{123},
             Pong{123, -9},
             report,
@@ -76,6 +78,14 @@ TEST(Protocol, RefusesEveryTruncationAndEveryTrailingByte) {
             longer.push_back(0);
             EXPECT_THROW((void)decode(longer), files::FormatError) << message.index();
         }
+    }
+}
+
+TEST(Protocol, RefusesAnEchoOfNoLeg) {
+    files::Bytes framed = encode(TimingEcho{7, Leg::shown});
+    for (const int leg : {0, 3, 255}) {
+        framed.back() = static_cast<std::uint8_t>(leg);
+        EXPECT_THROW((void)decode(withoutLength(framed)), files::FormatError) << leg;
     }
 }
 

@@ -108,7 +108,9 @@ TEST_F(HapticServer, WritesWithARecordedHand) {
 }
 
 TEST_F(HapticServer, RunsInRealTimeAndReports) {
-    ServerProcess server(folder_, ServerProcess::usual(sceneFile_, folder_, 0, "realtime"));
+    std::vector<std::string> arguments = ServerProcess::usual(sceneFile_, folder_, 0, "realtime");
+    arguments.insert(arguments.end(), {"--timing-tests", "20"});
+    ServerProcess server(folder_, arguments);
     Client client(server.address(), offerOf(scene_));
     Wall wall(scene_);
     ASSERT_TRUE(wall.follow(client, 90)) << client.link().message << "\n" << server.errors();
@@ -119,13 +121,17 @@ TEST_F(HapticServer, RunsInRealTimeAndReports) {
     const haptic_bridge::Report report = *client.report();
     EXPECT_GT(report.hapticPeriodUsP50, 0);
     EXPECT_GT(report.forceUsP50, 0);
-    EXPECT_GT(report.halfRoundTripMsP50, 0);
+    EXPECT_GT(report.toWall.count, 0U);
+    EXPECT_GE(report.toMaster.count, report.toWall.count);
+    EXPECT_GT(report.toWall.msP50, 0);
+    EXPECT_GT(report.toMaster.msP50, 0);
     EXPECT_GT(report.stepBytesMean, 0);
     std::printf(
         "haptic period us p50 %.0f p99 %.0f max %.0f; force us p50 %.2f p99 %.2f; half round trip ms mean %.3f "
-        "stddev %.3f; step message %.0f bytes\n",
+        "stddev %.3f, to the master %.3f stddev %.3f; step message %.0f bytes\n",
         report.hapticPeriodUsP50, report.hapticPeriodUsP99, report.hapticPeriodUsMax, report.forceUsP50,
-        report.forceUsP99, report.halfRoundTripMsMean, report.halfRoundTripMsStddev, report.stepBytesMean);
+        report.forceUsP99, report.toWall.msMean, report.toWall.msStddev, report.toMaster.msMean,
+        report.toMaster.msStddev, report.stepBytesMean);
 }
 
 TEST_F(HapticServer, GetsFewerStepsThroughASlowWallAndLosesNone) {
@@ -275,6 +281,46 @@ TEST_F(HapticServer, AnswersGarbageHalfMessagesAndOtherVersionsWithAReason) {
     Wall wall(scene_);
     EXPECT_TRUE(wall.follow(client, 20)) << client.link().message << "\n" << server.errors();
     EXPECT_EQ(server.stop(SIGINT), 0) << server.errors();
+}
+
+TEST_F(HapticServer, SendsTimingTestsAsLongAsAStepAndCountsEachLegOnce) {
+    std::vector<std::string> arguments = ServerProcess::usual(sceneFile_, folder_);
+    arguments.insert(arguments.end(), {"--timing-tests", "50"});
+    ServerProcess server(folder_, arguments);
+    using namespace haptic_bridge;
+    const Identity mine{kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), "small"};
+    RawPeer master(server.port());
+    master.send(Hello{mine});
+    master.send(Start{1, 0, sand::Terrain(scene_).stateHash()});
+    std::size_t step = 0;
+    int tests = 0;
+    while (tests < 3) {
+        const auto message = master.receive();
+        ASSERT_TRUE(message) << server.errors();
+        if (std::holds_alternative<StepMessage>(*message)) {
+            step = encode(*message).size();
+        } else if (const auto* test = std::get_if<TimingTest>(&*message)) {
+            EXPECT_EQ(encode(*test).size(), step) << "a probe message's length";
+            EXPECT_EQ(test->id, static_cast<std::uint32_t>(++tests));
+            master.send(TimingEcho{test->id, Leg::received});
+            master.send(TimingEcho{test->id, Leg::received});
+            if (tests != 2) {
+                master.send(TimingEcho{test->id, Leg::shown});
+                master.send(TimingEcho{test->id, Leg::shown});
+            }
+        }
+    }
+    master.send(TimingEcho{99, Leg::shown});
+    master.send(Bye{"done"});
+    std::optional<Report> report;
+    while (const auto message = master.receive()) {
+        if (const auto* told = std::get_if<Report>(&*message)) {
+            report = *told;
+        }
+    }
+    ASSERT_TRUE(report);
+    EXPECT_EQ(report->toMaster.count, 3U);
+    EXPECT_EQ(report->toWall.count, 2U);
 }
 
 /// What the server printed before it gave up, expected with exit status 2.

@@ -61,6 +61,18 @@ TEST(Summary, NamesTheRankThatDragsTheWall) {
     EXPECT_EQ(json["per_rank"][0]["frames_differed"], 0);
 }
 
+TEST(Summary, TellsBothHalfRoundTripsApart) {
+    master::Summary summary = draggedWall(false);
+    summary.haptic.emplace();
+    summary.haptic->toWall = {13.6, 9.8, 12, 40, 70};
+    summary.haptic->toMaster = {0.2, 0.1, 0.15, 1, 71};
+    const nlohmann::json haptic = written(summary)["haptic"];
+    const nlohmann::json toWall = {{"mean", 13.6}, {"stddev", 9.8}, {"p50", 12.}, {"p99", 40.}, {"count", 70}};
+    const nlohmann::json toMaster = {{"mean", 0.2}, {"stddev", 0.1}, {"p50", 0.15}, {"p99", 1.}, {"count", 71}};
+    EXPECT_EQ(haptic["half_round_trip_ms"], toWall);
+    EXPECT_EQ(haptic["half_round_trip_to_master_ms"], toMaster);
+}
+
 TEST(Summary, NamesNobodyWhereNoneStandsOut) {
     const master::Summary summary = draggedWall(false);
     EXPECT_EQ(master::describe(summary).find("\n  slowest   "), std::string::npos) << master::describe(summary);
