@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// The impaired link as a program, for sessions that are started by hand or by a benchmark.
+#include <fmt/format.h>
+#include <sys/prctl.h>
+
+#include <CLI/CLI.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <csignal>
+#include <cstdio>
+#include <optional>
+
+#include "files/command_line.hpp"
+#include "haptic_bridge/client.hpp"
+#include "tests/impaired_link/impaired_link.hpp"
+
+namespace {
+
+struct Options {
+    std::string to;
+    std::uint16_t port = 0;
+    bool dieWithParent = false;
+    impaired_link::Impairment link;
+};
+
+void addOptions(CLI::App& app, Options& options) {
+    impaired_link::Impairment& link = options.link;
+    const auto milliseconds = CLI::Range(0.0, 60'000.0);
+    app.add_option("--to", options.to, "HOST:PORT that connections are handed on to")->required();
+    app.add_option("--port", options.port, "on 127.0.0.1; 0, the default, takes any free one");
+    app.add_option("--delay", link.delayMs, "[ms] that everything takes at least")->check(milliseconds);
+    app.add_option("--jitter", link.jitterMs, "[ms] that it takes longer at most, evenly spread")->check(milliseconds);
+    app.add_option("--loss", link.stallShare, "share of pieces that are lost once")->check(CLI::Range(0.0, 1.0));
+    app.add_option("--stall", link.stallMs, "[ms] until what was lost is sent again")->check(milliseconds);
+    app.add_option("--reset-after", link.resetAfter, "bytes after which a connection is reset; 0: never");
+    app.add_option("--resets", link.resets, "connections to be reset, at most")->capture_default_str();
+    app.add_option("--seed", link.seed, "of all that is random")->capture_default_str();
+    app.add_flag("--die-with-parent", options.dieWithParent, "end when the program that started this one ends");
+}
+
+int run(const Options& options) {
+    if (options.dieWithParent) {
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+    }
+    const auto to = haptic_bridge::Address::parse(options.to, "--to");
+    boost::asio::io_context io;
+    boost::asio::signal_set signals(io, SIGINT, SIGTERM);
+    signals.async_wait([](boost::system::error_code, int) {});
+    std::optional<impaired_link::ImpairedLink> link;
+    try {
+        link.emplace(options.link, to.host, to.port, options.port);
+    } catch (const boost::system::system_error& error) {
+        throw files::InputError(fmt::format("--port {}: {}", options.port, error.code().message()));
+    }
+    fmt::print("listening on 127.0.0.1:{}\n", link->port());
+    std::fflush(stdout);
+    io.run();
+    fmt::print("{} connections, {} stalls, {} resets\n", link->connections(), link->stalls(), link->resets());
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("Hands TCP connections on with delay, jitter, stalls and resets, as a bad network would.",
+                 "sandwall-impaired-link");
+    Options options;
+    addOptions(app, options);
+    return files::runMain(app, argc, argv, [&] { return run(options); });
+}
