@@ -3,6 +3,7 @@
 #include <array>
 
 #include "bench/curves.hpp"
+#include "bench/latency.hpp"
 #include "files/command_line.hpp"
 
 namespace {
@@ -92,7 +93,14 @@ int main(int argc, char** argv) {
     for (std::size_t i = 0; i < curves.size(); ++i) {
         addOptions(*app.add_subcommand(curves[i].name, curves[i].what), curves[i], settings[i]);
     }
+    CLI::App& latency =
+        *app.add_subcommand("latency", "half round trip from the hand to whole walls, beside the floor");
+    latency.prefix_command();  // its options are the script's
+    latency.set_help_flag();
     return files::runMain(app, argc, argv, [&] {
+        if (latency.parsed()) {
+            bench::becomeLatency(latency.remaining());
+        }
         for (std::size_t i = 0; i < curves.size(); ++i) {
             if (app.got_subcommand(curves[i].name)) {
                 settings[i].commandLine = "sandwall-bench";

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a message and a frame cost without sand, pictures and waiting: the floor beside which latencies are told.
+#include <fmt/format.h>
+#include <mpi.h>
+#include <sys/prctl.h>
+
+#include <CLI/CLI.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/read.hpp>
+#include <boost/asio/write.hpp>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <random>
+#include <thread>
+
+#include "files/command_line.hpp"
+#include "haptic_bridge/client.hpp"
+#include "haptic_bridge/live_histogram.hpp"
+#include "haptic_bridge/monotonic.hpp"
+
+namespace {
+
+using boost::asio::ip::tcp;
+using haptic_bridge::LiveHistogram;
+using haptic_bridge::monotonicNs;
+
+constexpr double kMeanPause = 0.005;  // [s] between echoes: both ends sleep, as they do in a session
+
+struct Options {
+    std::string to;
+    int bytes = 74;  // of the message, or of the frame
+    double seconds = 3;
+    std::uint32_t seed = 7;
+};
+
+void print(const LiveHistogram& times) {
+    fmt::print("{{\"mean_ms\": {}, \"stddev_ms\": {}, \"p99_ms\": {}, \"count\": {}}}\n", times.meanNs() * 1e-6,
+               times.stddevNs() * 1e-6, times.percentileNs(0.99) * 1e-6, times.count());
+}
+
+/// Sends every connection's bytes back, one connection after another, until it is ended.
+int echo() {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    boost::asio::io_context io;
+    tcp::acceptor acceptor(io, tcp::endpoint(boost::asio::ip::address_v4::loopback(), 0));
+    fmt::print("listening on 127.0.0.1:{}\n", acceptor.local_endpoint().port());
+    std::fflush(stdout);
+    for (;;) {
+        tcp::socket guest = acceptor.accept();
+        guest.set_option(tcp::no_delay(true));
+        std::vector<std::uint8_t> chunk(64 * 1024);
+        boost::system::error_code error;
+        while (!error) {
+            const std::size_t count = guest.read_some(boost::asio::buffer(chunk), error);
+            if (!error) {
+                boost::asio::write(guest, boost::asio::buffer(chunk, count), error);
+            }
+        }
+    }
+}
+
+/// Half of the round trip of messages at random times.
+int message(const Options& options) {
+    const auto to = haptic_bridge::Address::parse(options.to, "--to");
+    boost::asio::io_context io;
+    tcp::socket socket(io);
+    socket.connect({boost::asio::ip::make_address(to.host), to.port});
+    socket.set_option(tcp::no_delay(true));
+    std::mt19937 random(options.seed);
+    std::exponential_distribution<double> pause(1 / kMeanPause);
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(options.bytes));
+    LiveHistogram half;
+    for (const std::int64_t end = monotonicNs() + static_cast<std::int64_t>(options.seconds * 1e9);
+         monotonicNs() < end;) {
+        std::this_thread::sleep_for(std::chrono::duration<double>(pause(random)));
+        const std::int64_t sent = monotonicNs();
+        boost::asio::write(socket, boost::asio::buffer(bytes));
+        boost::asio::read(socket, boost::asio::buffer(bytes));
+        half.add((monotonicNs() - sent) / 2);
+    }
+    print(half);
+    return 0;
+}
+
+/// A broadcast and a barrier, as rank 0 sees them; the others do nothing else.
+int frame(const Options& options) {
+    MPI_Init(nullptr, nullptr);
+    int rank = 0;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(options.bytes), 1);
+    LiveHistogram whole;
+    std::int64_t end = 0;
+    for (int round = 0; bytes[0] != 0; ++round) {
+        constexpr int kWarmUp = 10;  // in which connections are made
+        const std::int64_t began = monotonicNs();
+        end = round == kWarmUp ? began + static_cast<std::int64_t>(options.seconds * 1e9) : end;
+        bytes[0] = round > kWarmUp && began > end ? 0 : 1;
+        MPI_Bcast(bytes.data(), options.bytes, MPI_BYTE, 0, MPI_COMM_WORLD);
+        MPI_Barrier(MPI_COMM_WORLD);
+        if (round >= kWarmUp) {
+            whole.add(monotonicNs() - began);
+        }
+    }
+    if (rank == 0) {
+        print(whole);
+    }
+    MPI_Finalize();
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("A bare message over TCP, and a bare broadcast and barrier over MPI: mean and spread, as JSON.",
+                 "sandwall-latency-floor");
+    app.require_subcommand(1);
+    Options options;
+    auto& echoes = *app.add_subcommand("echo", "answer messages, until ended");
+    auto& messages = *app.add_subcommand("message", "half of the round trip to an echo, at random times");
+    auto& frames = *app.add_subcommand("frame", "a broadcast and a barrier; under mpirun");
+    messages.add_option("--to", options.to, "ADDRESS:PORT of the echo")->required();
+    for (CLI::App* command : {&messages, &frames}) {
+        command->add_option("--bytes", options.bytes, "of a message")->check(CLI::Range(1, 1 << 20));
+        command->add_option("--seconds", options.seconds, "to measure")->check(CLI::Range(0.1, 600.0));
+        command->add_option("--seed", options.seed, "of the random times");
+    }
+    return files::runMain(app, argc, argv, [&] {
+        return echoes.parsed() ? echo() : messages.parsed() ? message(options) : frame(options);
+    });
+}

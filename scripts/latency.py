@@ -1,0 +1,346 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Measures latency as the first paper did, on this machine alone: half of the round trip of a test message.
+
+Runs whole sessions for the paper's three walls, directly and over a link that stands in for a wireless one, and prints a
+table in Markdown. What `sandwall-bench latency` runs; docs/latency.md tells how to read it.
+"""
+
+import argparse
+import ctypes
+import json
+import math
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import dataclass
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+BIN = pathlib.Path(os.environ.get("SANDWALL_BIN", ROOT / "build" / "release" / "bin"))
+PROGRAMS = ("sandwall-haptic-server", "sandwall-master", "sandwall-render-node", "sandwall-check", "sandwall-impaired-link",
+            "sandwall-latency-floor")
+SCENE = ROOT / "scenes" / "sandbox.toml"
+FLOOR_SECONDS = 3  # at most
+START_SECONDS = 120  # of a session, on a machine that is busy
+TESTS_PER_SECOND = 20
+REFRESH = 60  # Hz, on every wall
+# What stands in for a wireless network: a piece takes 3 to 9 ms, and one in fifty is lost and sent again.
+WIRELESS = {"delay": 3, "jitter": 6, "loss": 0.02, "stall": 40}
+BAD_INPUT = 2
+
+
+@dataclass
+class Wall:
+    name: str
+    file: str
+    nodes: int  # in the paper
+    paper: dict  # by link: mean and standard deviation [ms]
+
+
+@dataclass
+class Load:
+    name: str
+    divisor: int  # of the wall file's pixels
+    stereo: bool
+    digs: bool
+
+
+WALLS = [Wall("portable", "portable.toml", 1, {"wired": (16.2, 9.8), "wireless": (24.9, 14.8)}),
+         Wall("FLEX", "flex_cave.toml", 4, {"wired": (9.7, 5.6), "wireless": (16.0, 12.3)}),
+         Wall("tiled wall", "tiled_3x4.toml", 13, {"wired": (13.6, 9.8), "wireless": (16.2, 14.0)})]
+LOADS = [Load("digging", 2, True, True), Load("still", 16, False, False)]
+LINKS = {"direct": "wired", "impaired": "wireless"}  # and what they stand for
+
+
+class Failed(Exception):
+    """One line for a person."""
+
+
+class Helper:
+    """A program that runs beside the sessions, and says where it listens. Ended by its process id."""
+
+    def __init__(self, *command):
+        self.process = subprocess.Popen([str(word) for word in command], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                        stderr=subprocess.DEVNULL, text=True, start_new_session=True)
+        said = self.process.stdout.readline()
+        if not said.startswith("listening on "):
+            self.stop()
+            raise Failed(f"{command[0]}: did not start")
+        self.address = said.split()[-1]
+
+    def stop(self):
+        self.process.terminate()
+        try:
+            self.process.communicate(timeout=5)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.stop()
+
+
+def impaired(address, seed):
+    """A link to `address` that stands in for a wireless one."""
+    options = [word for key, value in WIRELESS.items() for word in ("--" + key, value)]
+    return Helper(BIN / "sandwall-impaired-link", "--to", address, "--seed", seed, "--die-with-parent", *options)
+
+
+class Through:
+    """An address, or that of an impaired link to it."""
+
+    def __init__(self, link, address, seed):
+        self.helper = impaired(address, seed) if link == "impaired" else None
+        self.address = self.helper.address if self.helper else address
+
+    def __enter__(self):
+        return self.address
+
+    def __exit__(self, *_):
+        if self.helper:
+            self.helper.stop()
+
+
+def circles(seconds):
+    """Strokes that never end in `seconds`: rings of all sizes, at 2 cells of 512 a step."""
+    lines, lasts, ring = ["speed 0.5", "depth 0.5", "stroke", "point 0.6 0"], 0.0, 0
+    while lasts < seconds:
+        radius = 0.6 - 0.04 * (ring % 13)
+        lines.append(f"arc 0 0 {radius:.2f} {radius:.2f} 0 360")
+        lasts += 2 * math.pi * radius / 0.5
+        ring += 1
+    return "\n".join(lines) + "\n"
+
+
+def smaller(folder, wall, load):
+    """The wall's file with fewer pixels, and what one eye of its first tile has."""
+    text = (ROOT / "walls" / "configs" / wall.file).read_text()
+    sizes = []
+
+    def divide(match):
+        sizes.append((int(match[2]) // load.divisor, int(match[3]) // load.divisor))
+        return f"{match[1]}pixels = [{sizes[-1][0]}, {sizes[-1][1]}]"
+
+    file = folder / f"{load.divisor}_{wall.file}"
+    file.write_text(re.sub(r"^((?:tile_)?)pixels = \[(\d+), (\d+)\]", divide, text, flags=re.MULTILINE))
+    return file, max(sizes)
+
+
+def await_text(process, log, text, seconds):
+    deadline = time.monotonic() + seconds
+    while text not in log.read_text(errors="replace"):
+        if process.poll() is not None or time.monotonic() > deadline:
+            raise Failed(f"the session did not say '{text}': {log.read_text(errors='replace').strip()[-300:]}")
+        time.sleep(0.05)
+
+
+def die_with_parent():
+    """In the launcher, before it begins: it ends its ranks in order when this script dies, however that happens."""
+    PR_SET_PDEATHSIG = 1
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+
+
+def session(folder, wall_file, load, haptic, args, scene=SCENE):
+    """Runs a wall for so long, and returns its summary."""
+    log, out = folder / "log.txt", folder / "out"
+    command = [ROOT / "scripts" / "sandwall", "run", "--here", "--wall", wall_file, "--scene", scene, "--haptic", haptic, "--out", out,
+               "--no-pictures", "--gl", "osmesa", "--refresh", REFRESH, "--frame-timeout", START_SECONDS]
+    command += [] if load.stereo else ["--mono"]
+    with log.open("w") as said:
+        run = subprocess.Popen([str(word) for word in command], stdin=subprocess.PIPE, stdout=said, stderr=subprocess.STDOUT, text=True,
+                               env=dict(os.environ, SANDWALL_BIN=str(BIN)), start_new_session=True, preexec_fn=die_with_parent)
+    try:
+        await_text(run, log, "linked, epoch", START_SECONDS)
+        time.sleep(args.warm_up + args.seconds)
+        run.stdin.write("stop\n")
+        run.stdin.flush()
+        if run.wait(timeout=START_SECONDS) != 0:
+            raise Failed(f"the session failed: {log.read_text(errors='replace').strip()[-300:]}")
+    except subprocess.TimeoutExpired:
+        raise Failed("the session did not end") from None
+    finally:
+        if run.poll() is None:
+            run.terminate()  # it ends its ranks in order
+            try:
+                run.wait(timeout=START_SECONDS)
+            except subprocess.TimeoutExpired:
+                run.kill()
+    return json.loads((out / "summary.json").read_text())
+
+
+def floor(*words):
+    said = subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=START_SECONDS,
+                          env=dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                                   OMPI_MCA_mpi_yield_when_idle="1"))
+    if said.returncode != 0:
+        raise Failed(f"{' '.join(map(str, words))}: {said.stderr.strip()[-300:]}")
+    return json.loads(said.stdout.splitlines()[-1])
+
+
+def message_floor(link, size, args):
+    with Helper(BIN / "sandwall-latency-floor", "echo") as echo, Through(link, echo.address, args.seed) as address:
+        return floor(BIN / "sandwall-latency-floor", "message", "--to", address, "--bytes", size,
+                     "--seconds", min(FLOOR_SECONDS, args.seconds), "--seed", args.seed)
+
+
+def frame_floor(ranks, size, args):
+    return floor("mpirun", "-q", "--oversubscribe", "--bind-to", "none", "--mca", "btl", "self,vader", "-n", ranks + 1,
+                 BIN / "sandwall-latency-floor", "frame", "--bytes", size, "--seconds", min(FLOOR_SECONDS, args.seconds))
+
+
+def measure(wall, link, load, args):
+    """One row: a session, and right after it the floor with messages and frames as long as the session's."""
+    with tempfile.TemporaryDirectory(prefix="sandwall-latency-") as name:
+        folder = pathlib.Path(name)
+        strokes = folder / "hand.strokes"
+        # Without end; or one prick, and then a hand that hovers.
+        strokes.write_text(circles(args.warm_up + args.seconds + START_SECONDS) if load.digs else "stroke\npoint 0 0\n")
+        wall_file, pixels = smaller(folder, wall, load)
+        with Helper(BIN / "sandwall-haptic-server", "--scene", SCENE, "--device", f"script:{strokes}", "--listen", "127.0.0.1:0",
+                    "--timing-tests", TESTS_PER_SECOND, "--timing-after", args.warm_up, "--timing-seed", args.seed,
+                    "--die-with-parent") as server, Through(link, server.address, args.seed) as haptic:
+            summary = session(folder, wall_file, load, haptic, args)
+    haptic = summary["haptic"]
+    if "half_round_trip_ms" not in haptic or haptic["half_round_trip_ms"]["count"] == 0:
+        raise Failed(f"{wall.name}: no timing test was answered")
+    message = message_floor(link, round(haptic["step_message_bytes"]), args)
+    frame = frame_floor(summary["ranks"], round(summary["broadcast_bytes"]["p50"]), args)
+    return {"wall": wall.name, "nodes": wall.nodes, "ranks": summary["ranks"], "link": link, "load": load.name,
+            "eye_pixels": f"{pixels[0]}x{pixels[1]}", "paper_mean": wall.paper[LINKS[link]][0], "paper_stddev": wall.paper[LINKS[link]][1],
+            **spread("wall", haptic["half_round_trip_ms"]), **spread("master", haptic["half_round_trip_to_master_ms"]),
+            "floor_message_mean": message["mean_ms"], "floor_message_stddev": message["stddev_ms"],
+            "floor_frame_mean": frame["mean_ms"], "floor_frame_stddev": frame["stddev_ms"],
+            "floor_mean": message["mean_ms"] + frame["mean_ms"] / 2, "frame_mean": summary["frame_ms"]["mean"],
+            "step_bytes": haptic["step_message_bytes"], "reconnects": haptic["reconnects"],
+            "divergences": summary["divergences"] + summary["server_divergences"]}
+
+
+def spread(leg, trip):
+    return {f"{leg}_mean": trip["mean"], f"{leg}_stddev": trip["stddev"], f"{leg}_p50": trip["p50"], f"{leg}_p99": trip["p99"],
+            f"{leg}_count": trip["count"]}
+
+
+def pm(mean, deviation, digits=1):
+    return f"{mean:.{digits}f} ± {deviation:.{digits}f}"
+
+
+HEADER = ["wall, nodes in the paper", "link", "shows", "the paper", "wall has swapped", "master has it", "floor: message",
+          "floor: broadcast + barrier", "floor: half of all", "frame", "tests"]
+
+
+def cells(row):
+    stands_for = {"direct": "direct (wired)", "impaired": "impaired (stands in for wireless)"}[row["link"]]
+    return [f"{row['wall']}, {row['nodes']}", stands_for, f"{row['load']}, {row['eye_pixels'].replace('x', ' × ')}",
+            pm(row["paper_mean"], row["paper_stddev"]), pm(row["wall_mean"], row["wall_stddev"]),
+            pm(row["master_mean"], row["master_stddev"], 2), pm(row["floor_message_mean"], row["floor_message_stddev"], 2),
+            pm(row["floor_frame_mean"], row["floor_frame_stddev"], 3), f"{row['floor_mean']:.2f}", f"{row['frame_mean']:.1f}",
+            str(row["wall_count"])]
+
+
+def processor():
+    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("model name"):
+            return line.split(":")[1].strip()
+    return "unknown processor"
+
+
+def notes(args, before):
+    cores = len(os.sched_getaffinity(0))
+    return [f"machine: {processor()}, {cores} cores that the haptic server, the master and all render ranks share; pictures by OSMesa on the "
+            f"same cores; load average {before:.1f} before and {os.getloadavg()[0]:.1f} after",
+            f"all in ms, mean ± standard deviation; {TESTS_PER_SECOND} test messages a second, at random (Poisson) times of seed {args.seed}, "
+            f"for {args.seconds:g} s after {args.warm_up:g} s of warm-up; walls at {REFRESH} frames a second",
+            "impaired: every piece takes {delay} to {late} ms, {loss:.0%} of them {stall} ms more, with all behind them; seed ".format(
+                late=WIRELESS["delay"] + WIRELESS["jitter"], **WIRELESS) + f"{args.seed}; it stands in for a wireless network, and is none",
+            "digging: the paper's tool on 512² cells, both eyes; still: settled sand, one eye, so that hardly anything is drawn; pixels are an eye's"]
+
+
+def write_csv(file, rows, said, command):
+    lines = [f"# {line}" for line in [*said, f"command: {command}", time.strftime("date: %Y-%m-%dT%H:%M:%SZ", time.gmtime())]]
+    lines.append(",".join(rows[0]))
+    for row in rows:
+        lines.append(",".join(f"{value:.6g}" if isinstance(value, float) else str(value) for value in row.values()))
+    file.write_text("\n".join(lines) + "\n")
+
+
+class Parser(argparse.ArgumentParser):
+    """Says in one line what is wrong."""
+
+    def error(self, message):
+        self.exit(BAD_INPUT, f"{self.prog}: {message}; try --help\n")
+
+    def chosen(self, option, text, known):
+        names = text.split(",")
+        for name in names:
+            if name not in known:
+                self.error(f"{option}: '{name}' is none of {', '.join(known)}")
+        return [value for name, value in known.items() if name in names]
+
+
+def parse():
+    parser = Parser(prog="sandwall-bench latency", description=__doc__)
+    parser.add_argument("--seconds", type=float, default=20, help="of each of the sessions, warm-up apart (default: 20)")
+    parser.add_argument("--seed", type=int, default=7, help="of the random times and of the impaired link (default: 7)")
+    parser.add_argument("--warm-up", type=float, default=5, help="seconds of each in which shaders are compiled and ranks fall into step (default: 5)")
+    parser.add_argument("--walls", default="portable,FLEX,tiled wall", help="some of these, separated by commas (default: all)")
+    parser.add_argument("--links", default="direct,impaired", help="the same (default: both)")
+    parser.add_argument("--loads", default="digging,still", help="the same (default: both)")
+    parser.add_argument("--out", type=pathlib.Path, help="the same as CSV")
+    args = parser.parse_args()
+    for option, least in (("seconds", 1), ("warm_up", 0)):
+        value = getattr(args, option)
+        if not least <= value <= 3600:
+            parser.error(f"--{option.replace('_', '-')} {value:g}: {least} to 3600")
+    if not 0 <= args.seed < 2**32:
+        parser.error(f"--seed {args.seed}: 0 to 4294967295")
+    args.walls = parser.chosen("--walls", args.walls, {wall.name: wall for wall in WALLS})
+    args.links = parser.chosen("--links", args.links, {link: link for link in LINKS})
+    args.loads = parser.chosen("--loads", args.loads, {load.name: load for load in LOADS})
+    if args.out and not args.out.parent.is_dir():
+        parser.error(f"--out {args.out}: there is no such folder")
+    for program in PROGRAMS:
+        if not (BIN / program).is_file():
+            parser.error(f"{BIN / program}: not built yet; cmake --build build/release")
+    return args
+
+
+def stop_on_signals():
+    def end(*_):
+        raise KeyboardInterrupt
+    signal.signal(signal.SIGTERM, end)
+
+
+def main():
+    args = parse()
+    stop_on_signals()
+    before = os.getloadavg()[0]
+    rows = []
+    print("| " + " | ".join(HEADER) + " |\n|" + "---|" * len(HEADER), flush=True)
+    try:
+        for load in args.loads:
+            for wall in args.walls:
+                for link in args.links:
+                    rows.append(measure(wall, link, load, args))
+                    print("| " + " | ".join(cells(rows[-1])) + " |", flush=True)
+    except Failed as complaint:
+        print(f"sandwall-bench latency: {complaint}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
+    said = notes(args, before)
+    print("\n" + "\n".join(f"- {line}" for line in said))
+    if args.out:
+        write_csv(args.out, rows, said, "sandwall-bench latency " + " ".join(sys.argv[1:]))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
