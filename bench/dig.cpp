@@ -69,7 +69,7 @@ double behind(const sand::HeightField& field, const sand::HeightField& rest) { r
 Lag lagOf(sand::Terrain& terrain, const Stroke& stroke) {
     Lag lag;
     const sand::HeightField end = terrain.field();
-    const sand::Obstacle tool = sand::SphereTool(terrain.rules().toolRadius).obstacle(end, terrain.probe());
+    const sand::Obstacle tool = sand::Tool(terrain.toolShape()).obstacle(end, terrain.probe());
     sand::HeightField held = end;
     sand::Erosion(held, terrain.rules()).sweep(held, kMostSweeps, &tool);
     sand::HeightField lifted = end;

@@ -24,7 +24,7 @@ struct Costs {
 Costs measure(int side, double radius, bool skipSettled, int runs) {
     const sand::HeightField level(side, side, 1.0);
     const sand::Rules rules = rulesFor(level, kTalus);
-    const sand::SphereTool tool(static_cast<std::int32_t>(radius * sand::kProbePerCell));
+    const sand::Tool tool({.radius = static_cast<std::int32_t>(radius * sand::kProbePerCell)});
     const sand::ProbePoint at = probeAt(side / 2.0, side / 2.0, 0);
     sand::Erosion::Options options;
     options.skipSettled = skipSettled;

@@ -20,7 +20,7 @@ std::uint64_t hashAfterEdits(int side, std::uint32_t seed, sand::Scheme scheme, 
     sand::Rules rules = rulesFor(field, 0.6745, 1e-3);
     rules.scheme = scheme;
     sand::Erosion erosion(field, rules, options);
-    const sand::SphereTool tool(5 * sand::kProbePerCell);
+    const sand::Tool tool({.radius = 5 * sand::kProbePerCell});
     const auto within = [&](int cells) {
         return static_cast<std::int32_t>(random() % static_cast<std::uint32_t>(cells * sand::kProbePerCell));
     };

@@ -46,7 +46,7 @@ Cost measure(int side, bool withBedrock, Happening happening, const Settings& se
     const sand::Rules rules = rulesFor(start, kTalus);
     sand::Erosion::Options options;
     options.ground = ground ? &*ground : nullptr;
-    const sand::SphereTool tool(3 * sand::kProbePerCell);
+    const sand::Tool tool({.radius = 3 * sand::kProbePerCell});
     const sand::ProbePoint middle{side * sand::kProbePerCell / 2, side * sand::kProbePerCell / 2, 0};
 
     Cost cost;

@@ -17,8 +17,8 @@ namespace master {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x4c4a5753;  // "SWJL"
-constexpr std::uint32_t kVersion = 3;
-constexpr std::uint32_t kOldestVersion = 1;  // which knew settle alone of the edits; 2 no tune and no load
+constexpr std::uint32_t kVersion = 4;
+constexpr std::uint32_t kOldestVersion = 1;  // which knew settle alone of the edits; 2 no tune and no load; 3 only spheres
 constexpr std::uint8_t kFrameRecord = 1;
 constexpr std::uint8_t kEndRecord = 2;
 

@@ -33,7 +33,7 @@ constexpr std::array<VerbName, 17> kVerbs{{{"status", "", Verb::status},
                                            {"hide", "LAYER", Verb::hide},
                                            {"eye-separation", "METRES", Verb::eyeSeparation},
                                            {"stereo", "MODE", Verb::stereo},
-                                           {"tool", "RADIUS", Verb::tool},
+                                           {"tool", "[SHAPE] [KEY=VALUE]", Verb::tool},
                                            {"material", "KEY VALUE", Verb::material},
                                            {"save", "NAME", Verb::save},
                                            {"load", "NAME", Verb::load},
@@ -74,13 +74,45 @@ double parseNumber(std::string_view what, std::string_view text) {
     return *number;
 }
 
+/// SHAPE, or the radius alone, and KEY=VALUE, in any order.
+sand::ToolChange parseTool(std::string_view text) {
+    sand::ToolChange change;
+    while (!text.empty()) {
+        const std::size_t space = text.find(' ');
+        const std::string_view word = text.substr(0, space);
+        text = space == std::string_view::npos ? "" : text.substr(space + 1);
+        const std::size_t equals = word.find('=');
+        const std::string_view key = word.substr(0, std::min<std::size_t>(equals, 80));
+        const std::string_view value = equals == std::string_view::npos ? "" : word.substr(equals + 1);
+        if (key == "radius" || key == "width" || key == "heading") {
+            auto& number = key == "radius" ? change.radius : key == "width" ? change.width : change.heading;
+            number = parseNumber(fmt::format("a tool's {}", key), value);
+        } else if (key == "foot" && (value == "left" || value == "right")) {
+            change.leftFoot = value == "left";
+        } else if (const auto kind = sand::toolNamed(word)) {
+            change.kind = kind;
+        } else if (const auto radius = numberIn(word)) {
+            change.radius = radius;
+        } else if (!word.empty()) {
+            std::string shapes;
+            for (int i = 0; i < sand::kToolKinds; ++i) {
+                shapes += fmt::format("{}, ", sand::toolName(static_cast<sand::ToolKind>(i)));
+            }
+            throw files::InputError(
+                fmt::format("a tool is one of {}or has radius=, width=, heading=, foot=left or right, got '{}'", shapes,
+                            word.substr(0, 80)));
+        }
+    }
+    return change;
+}
+
 void parseArgument(std::string_view argument, Command& command) {
     switch (command.verb) {
         case Verb::eyeSeparation:
             command.number = parseSeparation(argument);
             break;
         case Verb::tool:
-            command.number = parseNumber("a tool's radius", argument);
+            command.tool = parseTool(argument);
             break;
         case Verb::material: {
             const std::size_t space = argument.find(' ');

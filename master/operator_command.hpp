@@ -8,6 +8,7 @@
 
 #include "lockstep/layer.hpp"
 #include "lockstep/test_pattern.hpp"
+#include "sand/material.hpp"
 #include "walls/wall.hpp"
 
 namespace master {
@@ -39,7 +40,8 @@ struct Command {
     Verb verb = Verb::status;
     std::optional<lockstep::Pattern> pattern;  // of Verb::pattern; none: the next one
     lockstep::Layer layer{};                   // of Verb::show and Verb::hide
-    double number = 0;                         // of Verb::eyeSeparation [m], Verb::tool [scene unit], Verb::material
+    double number = 0;                         // of Verb::eyeSeparation [m], Verb::material
+    sand::ToolChange tool{};                   // of Verb::tool
     std::string word;                          // of Verb::material, which number; of Verb::save and Verb::load
     walls::Stereo stereo{};                    // of Verb::stereo
 };

@@ -108,7 +108,7 @@ void Session::carryOut(const Command& command, std::optional<Client> client) {
         case Verb::settle:
             return askEdit(sand::Edit::settle, client);
         case Verb::tool:
-            return askMaterial(sand::withTool(material_, command.number, grid_), client);
+            return askMaterial(sand::withTool(material_, command.tool, grid_), client);
         case Verb::material:
             return askMaterial(sand::withNumber(material_, command.word, command.number, grid_), client);
         case Verb::save:
@@ -238,6 +238,8 @@ std::string Session::status() const {
                  {"stereo", std::string(walls::stereoName(shown_.stereo))},
                  {"eye_separation", views_.eyeSeparation()},
                  {"tool_radius", terrain_.toolRadius()},
+                 {"tool_shape", std::string(sand::toolName(terrain_.toolShape().kind))},
+                 {"tool_heading", sand::degreesOf(terrain_.heading())},
                  {"material", materialNow(material_)},
                  {"state_hash", fmt::format("{:016x}", hash_)},
                  {"divergences", summary_.divergences},

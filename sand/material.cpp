@@ -39,6 +39,28 @@ std::int32_t sweepsFor(Scheme scheme, double radius /* [cell] */, double settlin
     return static_cast<std::int32_t>(std::clamp(std::ceil(sweeps), 4.0, double{kMostSweeps}));
 }
 
+/// What of the tool's shape cannot be.
+std::optional<MaterialFault> toolFaultOf(const Material& material, const MaterialGrid& grid) {
+    const std::string_view name = toolName(material.toolKind);
+    if (material.toolWidth && isRound(material.toolKind)) {
+        return MaterialFault{"width", fmt::format("a {} is as wide as it is long; leave width out", name)};
+    }
+    // Written so that what is no number is out of range.
+    if (const double width = material.toolWidth.value_or(1); !(width >= kNarrowestTool && width <= 1)) {
+        return MaterialFault{"width", fmt::format("a tool's width over its length must be within [{}, 1], got {}",
+                                                  kNarrowestTool, width)};
+    }
+    if (material.leftFoot && material.toolKind != ToolKind::footprint) {
+        return MaterialFault{"foot", fmt::format("left and right are of a footprint, not of this {}", name)};
+    }
+    const double length = 2 * material.toolRadius;
+    if (const double side = grid.longerSide * grid.cellSize; material.toolKind != ToolKind::sphere && length > side) {
+        return MaterialFault{"radius", fmt::format("a {} of radius {} is {} long, and the field {}", name,
+                                                   material.toolRadius, length, side)};
+    }
+    return std::nullopt;
+}
+
 Material checked(const Material& material, const MaterialGrid& grid) {
     if (const auto fault = faultOf(material, grid)) {
         throw files::InputError(fault->message);
@@ -57,6 +79,9 @@ std::optional<MaterialFault> faultOf(const Material& material, const MaterialGri
     if (!(cells <= kLargestTool)) {
         return MaterialFault{"radius", fmt::format("a tool of radius {} is {:.4g} cells of {}; {} is the most",
                                                    material.toolRadius, cells, grid.cellSize, kLargestTool)};
+    }
+    if (auto fault = toolFaultOf(material, grid)) {
+        return fault;
     }
     if (material.wetTalusNow() < material.dryTalus) {
         return MaterialFault{"wet_talus_deg", fmt::format("wet_talus_deg must be at least talus_deg = {}, got {}",
@@ -79,6 +104,12 @@ Tuning tuningOf(const Material& material, const MaterialGrid& grid) {
     tuning.startThreshold = static_cast<std::int32_t>(std::min(start, double{kLargestThreshold}));
     tuning.toolRadius =
         static_cast<std::int32_t>(std::floor(material.toolRadius / grid.cellSize * kProbePerCell + 0.5));
+    tuning.toolKind = material.toolKind;
+    if (!isRound(material.toolKind)) {
+        const double width = material.toolWidth.value_or(usualWidth(material.toolKind));
+        tuning.toolHalfWidth = static_cast<std::int32_t>(std::floor(width * tuning.toolRadius + 0.5));
+    }
+    tuning.toolHeading = headingOf(material.toolHeading, material.leftFoot).value_or(Heading{});
     tuning.sweepsPerStep = sweepsFor(grid.scheme, static_cast<double>(tuning.toolRadius) / kProbePerCell,
                                      material.settlingSeconds, grid.stepsPerSecond);
     return tuning;
@@ -101,13 +132,24 @@ Material withNumber(Material material, std::string_view word, double value, cons
     throw files::InputError(fmt::format("a material has no '{}'; there are {}", word, known));
 }
 
-Material withTool(Material material, double radius, const MaterialGrid& grid) {
+Material withTool(Material material, const ToolChange& change, const MaterialGrid& grid) {
     // A scene without a tool to speak of may be; a tool that vanishes under somebody's hand may not.
     const double least = grid.cellSize / kProbePerCell;
-    if (!(radius >= least)) {
-        throw files::InputError(fmt::format("a tool's radius must be at least {:.3g}, got {}", least, radius));
+    if (change.radius && !(*change.radius >= least)) {
+        throw files::InputError(fmt::format("a tool's radius must be at least {:.3g}, got {}", least, *change.radius));
     }
-    material.toolRadius = radius;
+    if (change.heading && !headingOf(*change.heading)) {
+        throw files::InputError("a tool's heading must be a number of degrees");
+    }
+    if (change.kind && *change.kind != material.toolKind) {
+        material.toolKind = *change.kind;
+        material.toolWidth.reset();
+        material.leftFoot = false;
+    }
+    material.toolRadius = change.radius.value_or(material.toolRadius);
+    material.toolWidth = change.width ? change.width : material.toolWidth;
+    material.toolHeading = change.heading.value_or(material.toolHeading);
+    material.leftFoot = change.leftFoot.value_or(material.leftFoot);
     return checked(material, grid);
 }
 

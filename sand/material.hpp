@@ -20,7 +20,11 @@ struct Material {
     double cohesionLength = 0;       // [scene unit], how high a bank stands at w = 1
     double band = 0.001;             // share of the threshold beyond which sand at rest starts to slide
     double settlingSeconds = 0.1;    // until sand beside the tool rests
-    double toolRadius = 0.01;        // [scene unit]; the default is the first paper's sphere
+    double toolRadius = 0.01;        // [scene unit], half of its length; the default is the first paper's sphere
+    ToolKind toolKind = ToolKind::sphere;
+    std::optional<double> toolWidth;  // over its length; none: the kind's usual one
+    double toolHeading = 0;           // [deg] from east, counter-clockwise; where a footprint's toes point
+    bool leftFoot = false;            // a footprint is of a right foot, unless
 
     /// The talus is dryTalus + w (wetTalus - dryTalus), and a bank whose step from a cell to the next is at most
     /// w · cohesionLength stands. Both grow with w, and w = 0 is dry sand.
@@ -44,9 +48,10 @@ struct MaterialGrid {
     Scheme scheme;
     int stepsPerSecond;
     double cellSize;  // [scene unit]
+    int longerSide;   // of the field [cell]
 };
 struct MaterialFault {
-    std::string key;  // of [material], or "radius" of [tool]
+    std::string key;  // of [material], or "radius", "width" or "foot" of [tool]
     std::string message;
 };
 /// Why these numbers, each within its own range, cannot stand together.
@@ -58,7 +63,18 @@ struct MaterialFault {
 /// An operator's command: the material with one number changed. Throws files::InputError with the keys there are or
 /// the range, in one line.
 [[nodiscard]] Material withNumber(Material material, std::string_view word, double value, const MaterialGrid& grid);
-/// The same for the tool [scene unit].
-[[nodiscard]] Material withTool(Material material, double radius, const MaterialGrid& grid);
+inline constexpr double kNarrowestTool = 0.05;  // width over length
+
+/// What an operator changes of the tool; what is left out stays as it is, but for the width of another kind, which is
+/// then its usual one.
+struct ToolChange {
+    std::optional<ToolKind> kind{};
+    std::optional<double> radius{};   // [scene unit]
+    std::optional<double> width{};    // over the length
+    std::optional<double> heading{};  // [deg]
+    std::optional<bool> leftFoot{};
+};
+/// The same for the tool.
+[[nodiscard]] Material withTool(Material material, const ToolChange& change, const MaterialGrid& grid);
 
 }  // namespace sand

@@ -12,13 +12,17 @@ void Rules::tune(const Tuning& tuning) {
     startThreshold = tuning.startThreshold;
     sweepsPerStep = tuning.sweepsPerStep;
     toolRadius = tuning.toolRadius;
+    toolKind = tuning.toolKind;
+    toolHalfWidth = tuning.toolHalfWidth;
+    toolHeading = tuning.toolHeading;
 }
 
 void Rules::encode(files::ByteWriter& writer) const {
     for (const std::int32_t number :
-         {columns, rows, aspect, threshold, startThreshold, sweepsPerStep, stepsPerSecond, toolRadius}) {
+         {columns, rows, aspect, threshold, startThreshold, sweepsPerStep, stepsPerSecond}) {
         writer.put(number);
     }
+    tuning().tool().encode(writer);
     writer.put(static_cast<std::uint8_t>(scheme));
     writer.put(static_cast<std::uint8_t>(rim));
     writer.put(ground);
@@ -27,12 +31,17 @@ void Rules::encode(files::ByteWriter& writer) const {
 Rules Rules::decode(files::ByteReader& reader) {
     Rules rules;
     for (std::int32_t* number : {&rules.columns, &rules.rows, &rules.aspect, &rules.threshold, &rules.startThreshold,
-                                 &rules.sweepsPerStep, &rules.stepsPerSecond, &rules.toolRadius}) {
+                                 &rules.sweepsPerStep, &rules.stepsPerSecond}) {
         *number = reader.get<std::int32_t>();
         if (*number < 0) {
             throw files::FormatError("a scene with a negative rule");
         }
     }
+    const ToolRules tool = ToolRules::decode(reader);
+    rules.toolRadius = tool.shape.radius;
+    rules.toolKind = tool.shape.kind;
+    rules.toolHalfWidth = tool.shape.halfWidth;
+    rules.toolHeading = tool.heading;
     const auto scheme = reader.get<std::uint8_t>();
     const auto rim = reader.get<std::uint8_t>();
     const bool sides = rules.columns >= 1 && rules.columns <= kMaxSide && rules.rows >= 1 && rules.rows <= kMaxSide;

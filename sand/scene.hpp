@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -33,11 +34,17 @@ struct Rules {
     std::int32_t sweepsPerStep = 0;
     std::int32_t stepsPerSecond = 0;
     std::int32_t toolRadius = 0;  // [probe unit]
+    ToolKind toolKind = ToolKind::sphere;
+    std::int32_t toolHalfWidth = 0;  // [probe unit], as in ToolShape
+    Heading toolHeading{};           // until a hand turns it
     Scheme scheme = Scheme::isotropic;
     Rim rim = Rim::closed;
     std::uint64_t ground = 0;  // Ground::digest(), 0 without rock and walls
 
-    [[nodiscard]] Tuning tuning() const { return {threshold, startThreshold, sweepsPerStep, toolRadius}; }
+    [[nodiscard]] ToolShape toolShape() const { return {toolKind, toolRadius, toolHalfWidth}; }
+    [[nodiscard]] Tuning tuning() const {
+        return {threshold, startThreshold, sweepsPerStep, toolRadius, toolKind, toolHalfWidth, toolHeading};
+    }
     void tune(const Tuning& tuning);
 
     void encode(files::ByteWriter& writer) const;
@@ -72,7 +79,9 @@ struct Scene {
         return rules.toolRadius * terrain.cellSize() / kProbePerCell;
     }
     /// What a material is used with here.
-    [[nodiscard]] MaterialGrid grid() const { return {rules.scheme, rules.stepsPerSecond, terrain.cellSize()}; }
+    [[nodiscard]] MaterialGrid grid() const {
+        return {rules.scheme, rules.stepsPerSecond, terrain.cellSize(), std::max(rules.columns, rules.rows)};
+    }
     /// The mean height the session starts with [unit]: devices hover and dig relative to it.
     [[nodiscard]] std::int32_t referenceHeight() const;
 

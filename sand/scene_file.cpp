@@ -40,11 +40,35 @@ void readMaterial(const files::TomlTable& file, Scene& scene) {
     table.finish();
 }
 
+std::vector<std::string_view> toolNames() {
+    std::vector<std::string_view> names;
+    for (int kind = 0; kind < kToolKinds; ++kind) {
+        names.push_back(toolName(static_cast<ToolKind>(kind)));
+    }
+    return names;
+}
+
+void readShape(const files::TomlTable& tool, Material& material) {
+    material.toolKind = static_cast<ToolKind>(tool.choiceOr("shape", toolNames(), 0));
+    if (const double width = tool.numberOr("width", 1, {kNarrowestTool, 1}); tool.has("width")) {
+        material.toolWidth = width;
+    }
+    material.toolHeading = tool.numberOr("heading_deg", 0, {-360, 360});
+    material.leftFoot = tool.choiceOr("foot", {"right", "left"}, 0) == 1;
+}
+
 void readTool(const files::TomlTable& file, Scene& scene) {
     const std::optional<files::TomlTable> tool = file.table("tool");
     double& radius = scene.material.toolRadius;
     radius = tool ? tool->numberOr("radius", radius, files::kPositive) : radius;
-    if (const auto fault = faultOf(scene.material, scene.grid()); fault && fault->key == "radius") {
+    if (tool) {
+        readShape(*tool, scene.material);
+    }
+    const auto fault = faultOf(scene.material, scene.grid());
+    if (fault && tool && tool->has(fault->key)) {
+        tool->fail(fault->key, fault->message);
+    }
+    if (fault && fault->key == "radius") {
         const std::string message = fault->message + ": set radius in [tool]";
         tool ? tool->fail("radius", message) : file.fail("tool", message);
     }

@@ -6,6 +6,18 @@
 #include <utility>
 
 namespace sand {
+namespace {
+
+// Beside the edit in a step's flags.
+constexpr int kEngaged = 0x01, kTurned = 0x40, kMirrored = 0x80;
+
+int flagsOf(const Step& step) {
+    const int edit = 2 * static_cast<int>(step.edit.kind);
+    const int turned = step.heading ? kTurned + (step.heading->mirrored ? kMirrored : 0) : 0;
+    return edit + (step.engaged ? kEngaged : 0) + turned;
+}
+
+}  // namespace
 
 Edit Edit::tuned(const Tuning& tuning) {
     Edit edit(Kind::tune);
@@ -50,7 +62,7 @@ Edit decodeDetails(Edit::Kind kind, files::ByteReader& reader) {
 void encode(const Step& step, files::ByteWriter& writer) {
     writer.putVarint(step.epoch);
     writer.putVarint(step.number);
-    writer.put(static_cast<std::uint8_t>((step.engaged ? 1 : 0) + 2 * static_cast<int>(step.edit.kind)));
+    writer.put(static_cast<std::uint8_t>(flagsOf(step)));
     writer.put(static_cast<std::uint8_t>(step.path.size()));
     ProbePoint last;
     for (const ProbePoint& point : step.path) {
@@ -58,6 +70,9 @@ void encode(const Step& step, files::ByteWriter& writer) {
         writer.putSigned(std::int64_t{point.y} - last.y);
         writer.putSigned(std::int64_t{point.z} - last.z);
         last = point;
+    }
+    if (step.heading) {
+        step.heading->encode(writer);
     }
     encodeDetails(step.edit, writer);
 }
@@ -83,10 +98,12 @@ Step decodeStep(files::ByteReader& reader) {
     step.number = reader.getVarint();
     const auto flags = reader.get<std::uint8_t>();
     const auto count = reader.get<std::uint8_t>();
-    if (flags >= 2 * kEdits || count > kMaxPathPoints) {
+    const int edit = flags % kTurned / 2;
+    const bool turned = (flags & kTurned) != 0, mirrored = (flags & kMirrored) != 0;
+    if (edit >= kEdits || (mirrored && !turned) || count > kMaxPathPoints) {
         throw files::FormatError("a step with " + std::to_string(count) + " points, flags " + std::to_string(flags));
     }
-    step.engaged = flags % 2 == 1;
+    step.engaged = (flags & kEngaged) != 0;
     step.path.reserve(count);
     ProbePoint last;
     for (int i = 0; i < count; ++i) {
@@ -95,7 +112,10 @@ Step decodeStep(files::ByteReader& reader) {
         last.z = addChecked(last.z, reader.getSigned());
         step.path.push_back(last);
     }
-    step.edit = decodeDetails(static_cast<Edit::Kind>(flags / 2), reader);
+    if (turned) {
+        step.heading = Heading::decode(reader, mirrored);
+    }
+    step.edit = decodeDetails(static_cast<Edit::Kind>(edit), reader);
     return step;
 }
 

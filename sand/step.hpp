@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "files/byte_stream.hpp"
@@ -64,7 +65,8 @@ struct Step {
     std::uint64_t number = 0;
     bool engaged = false;  // the tool touches; otherwise it hovers and leaves the sand alone
     std::vector<ProbePoint> path;
-    Edit edit = Edit::none;  // done after the tool's displacement, before the sweeps
+    Edit edit = Edit::none;                         // done after the tool's displacement, before the sweeps
+    std::optional<Heading> heading = std::nullopt;  // of the tool from the path's first point on; none: as it was
     friend bool operator==(const Step&, const Step&) = default;
 };
 

@@ -13,7 +13,7 @@
 namespace sand {
 namespace {
 
-constexpr std::uint32_t kStateVersion = 4;
+constexpr std::uint32_t kStateVersion = 5;
 constexpr int kSweepsToRest = 1 << 20;  // more than any field that is worth waiting for
 
 Rect around(const Rect& a, const Rect& b) {
@@ -48,6 +48,7 @@ Terrain::Terrain(const Scene& scene, const Erosion::Options& options)
       field_(scene.terrain),
       erosion_(field_, rules_, options_),
       hash_(field_),
+      heading_(scene.rules.toolHeading),
       damage_(field_.bounds()) {
     files::ByteWriter writer;
     encodeCells(field_.cells(), field_.bounds(), writer);
@@ -73,9 +74,12 @@ void Terrain::apply(const Step& step) {
         throw std::logic_error("Terrain::apply: step " + std::to_string(step.number) + " after step " +
                                std::to_string(stepNumber_));
     }
-    const SphereTool tool(rules_.toolRadius);
     const bool wasEngaged = engaged_;
     const ProbePoint before = probe_;
+    const Tool toolBefore(rules_.toolShape(), heading_);
+    const bool turned = step.heading && *step.heading != heading_;
+    heading_ = step.heading.value_or(heading_);
+    const Tool tool(rules_.toolShape(), heading_);
     if (step.engaged && !wasEngaged) {
         beforeStroke_.keep(field_, erosion_.inertia(), outflow_);
     }
@@ -88,6 +92,9 @@ void Terrain::apply(const Step& step) {
         }
         probe_ = to;
     }
+    if (turned && wasEngaged && step.engaged && step.path.empty()) {
+        drag(tool, probe_, probe_);  // turned on the spot
+    }
     engaged_ = step.engaged;
     stepNumber_ = step.number;
 
@@ -98,10 +105,10 @@ void Terrain::apply(const Step& step) {
     } else if (putBack(step.edit)) {
         return;
     }
-    const Obstacle here = engaged_ ? SphereTool(rules_.toolRadius).obstacle(field_, probe_) : Obstacle{};
-    if (wasEngaged && (!engaged_ || probe_ != before)) {
+    const Obstacle here = engaged_ ? Tool(rules_.toolShape(), heading_).obstacle(field_, probe_) : Obstacle{};
+    if (wasEngaged && (!engaged_ || turned || probe_ != before)) {
         // Sand that the tool held back may flow again.
-        erosion_.touch(tool.obstacle(field_, before).cells);
+        erosion_.touch(toolBefore.cells(field_, before));
     }
     outflow_ += erosion_.sweep(field_, rules_.sweepsPerStep, engaged_ ? &here : nullptr);
     for (const Rect& block : erosion_.takeMoved()) {
@@ -109,20 +116,22 @@ void Terrain::apply(const Step& step) {
     }
 }
 
-void Terrain::drag(const SphereTool& tool, const ProbePoint& from, const ProbePoint& to) {
-    const SphereTool::Displacement done = tool.drag(field_, rules_.rim, ground_.get(), from, to);
+void Terrain::drag(const Tool& tool, const ProbePoint& from, const ProbePoint& to) {
+    const Tool::Displacement done = tool.drag(field_, rules_.rim, ground_.get(), from, to);
     erosion_.touch(done.cells);
     touch(done.cells);
     outflow_ += done.outflow;
 }
 
 void Terrain::tune(const Tuning& tuning) {
-    const bool otherTool = tuning.toolRadius != rules_.toolRadius;
+    // A hand that has turned its tool keeps it turned, unless the operator turns it.
+    heading_ = tuning.toolHeading != rules_.toolHeading ? tuning.toolHeading : heading_;
+    const bool otherTool = tuning.tool() != rules_.tuning().tool();
     rules_.tune(tuning);
     // Wakes everything: sand may stand too steep now, or have been held back by a larger tool.
     erosion_.changeRules(rules_);
     if (engaged_ && otherTool) {
-        drag(SphereTool(rules_.toolRadius), probe_, probe_);
+        drag(Tool(rules_.toolShape(), heading_), probe_, probe_);
     }
 }
 
@@ -190,6 +199,14 @@ std::uint64_t Terrain::stateHash() {
         for (const std::int32_t number : {now.threshold, now.startThreshold, now.sweepsPerStep, now.toolRadius}) {
             fold(static_cast<std::uint32_t>(number));
         }
+        if (!now.tool().plain()) {
+            fold(static_cast<std::uint64_t>(now.toolKind));
+            fold(static_cast<std::uint32_t>(now.toolHalfWidth));
+            fold(now.toolHeading.bits());
+        }
+    }
+    if (heading_ != sceneRules_.toolHeading) {  // likewise
+        fold(heading_.bits());
     }
     return hash;
 }
@@ -213,7 +230,8 @@ files::Bytes Terrain::encodeState() const {
     for (const std::int32_t coordinate : {probe_.x, probe_.y, probe_.z}) {
         writer.put(coordinate);
     }
-    writer.put(std::int32_t{engaged_ ? 1 : 0});
+    writer.put(std::int32_t{(engaged_ ? 1 : 0) + (heading_.mirrored ? 2 : 0)});
+    heading_.encode(writer);
     rules_.tuning().encode(writer);
     writer.putBlock(canUndo() ? beforeStroke_.kept()->encode() : files::Bytes());
     writer.putBytes(copySand().encode());
@@ -233,7 +251,9 @@ void Terrain::decodeState(std::span<const std::uint8_t> bytes) {
             throw files::FormatError("a state with its tool out of reach");
         }
     }
-    const bool engaged = reader.get<std::int32_t>() != 0;
+    const auto flags = reader.get<std::int32_t>();
+    const bool engaged = (flags & 1) != 0;
+    const Heading heading = Heading::decode(reader, (flags & 2) != 0);
     const Tuning tuning = Tuning::decode(reader);
     const auto beforeStroke = reader.getBlock();
     std::optional<SandCopy> stroke;
@@ -249,6 +269,7 @@ void Terrain::decodeState(std::span<const std::uint8_t> bytes) {
     stepNumber_ = number;
     engaged_ = engaged;
     probe_ = probe;
+    heading_ = heading;
     beforeStroke_ = {};
     if (stroke) {
         beforeStroke_.keep(std::move(*stroke));

@@ -42,6 +42,8 @@ public:
     [[nodiscard]] double toolRadius() const {                        // [scene unit]
         return rules_.toolRadius * field_.cellSize() / kProbePerCell;
     }
+    [[nodiscard]] ToolShape toolShape() const { return rules_.toolShape(); }
+    [[nodiscard]] Heading heading() const { return heading_; }  // of the tool, as rules or a hand turned it last
     [[nodiscard]] bool engaged() const { return engaged_; }
     /// Whether an undo would change anything. A stroke is the steps in which the tool touches, from the first after one
     /// in which it hovered; only the last is kept, until an undo, a reset or a load.
@@ -78,7 +80,7 @@ private:
     void settleNow();
     void tune(const Tuning& tuning);
     /// The tool goes on from where it is, or stays and presses.
-    void drag(const SphereTool& tool, const ProbePoint& from, const ProbePoint& to);
+    void drag(const Tool& tool, const ProbePoint& from, const ProbePoint& to);
     /// Does reset, undo or load; false when there was nothing to do.
     bool putBack(const Edit& edit);
     void replaceSand(const SandCopy& sand);
@@ -92,6 +94,7 @@ private:
     std::uint64_t stepNumber_ = 0;
     std::int64_t outflow_ = 0;
     ProbePoint probe_;
+    Heading heading_;
     bool engaged_ = false;
     std::shared_ptr<const files::Bytes> start_;  // the scene's heights, compressed; copies of a replica share them
     KeptSand beforeStroke_;                      // the last one

@@ -2,28 +2,16 @@
 #include "sand/tool.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 
 namespace sand {
 namespace {
 
 constexpr std::int32_t kHalfCell = kProbePerCell / 2;
-constexpr std::int32_t kUnitsPerProbe = kUnitsPerCell / kProbePerCell;
-
-/// Horizontal offset of a cell's centre from the tool's [probe unit].
-struct Offset {
-    std::int64_t x, y;
-    [[nodiscard]] std::int64_t squared() const { return x * x + y * y; }
-};
 
 Offset offsetOf(ProbePoint at, int column, int row) {
     return {std::int64_t{column} * kProbePerCell + kHalfCell - at.x,
             std::int64_t{row} * kProbePerCell + kHalfCell - at.y};
-}
-
-int cellOf(std::int64_t coordinate /* [probe unit] */) {
-    return static_cast<int>(coordinate >> kProbeBits);  // rounds down, below zero too
 }
 
 /// A cell that takes some of the sand the tool pushes away.
@@ -33,28 +21,31 @@ struct Receiver {
     bool outside;
 };
 
-/// The cells in a ring of two cells around the tool. With a drag direction, those ahead, by the cosine of their angle
-/// to it; without one, all of them alike. Walls and cells beyond a closed rim do not count; beyond an open one they
-/// swallow.
-std::vector<Receiver> receivers(const Rect& bounds, Rim rim, const Ground* ground, ProbePoint at, std::int64_t radius,
-                                Offset ahead) {
-    const std::int64_t outer = radius + 2 * kProbePerCell;
+/// The cells in a ring of two cells around the tool. With a drag direction, those ahead; without one, all of them
+/// alike. Walls and cells beyond a closed rim do not count; beyond an open one they swallow.
+std::vector<Receiver> receivers(const Rect& bounds, Rim rim, const Ground* ground, ProbePoint at,
+                                const TurnedShape& shape, const Offset& ahead) {
     const bool everywhere = ahead.x == 0 && ahead.y == 0;
+    const Rect around = shape.cellsThatTake(at.x, at.y);
     std::vector<Receiver> ring;
-    for (int y = cellOf(at.y - outer); y <= cellOf(at.y + outer); ++y) {
-        for (int x = cellOf(at.x - outer); x <= cellOf(at.x + outer); ++x) {
+    for (int y = around.y0; y < around.y1; ++y) {
+        for (int x = around.x0; x < around.x1; ++x) {
             const Offset offset = offsetOf(at, x, y);
             const bool outside = x < bounds.x0 || x >= bounds.x1 || y < bounds.y0 || y >= bounds.y1;
-            if (offset.squared() < radius * radius || offset.squared() > outer * outer ||
-                (outside && rim == Rim::closed) || (!outside && ground != nullptr && ground->isWall(x, y))) {
+            if ((outside && rim == Rim::closed) || !shape.takes(offset) || shape.covers(offset) ||
+                (!outside && ground != nullptr && ground->isWall(x, y))) {
                 continue;
             }
-            // The drag is at most a cell and the ring at most 2^14 cells away: the product stays below 2^32.
-            const std::int64_t weight = everywhere ? 1 : offset.x * ahead.x + offset.y * ahead.y;
+            const std::int64_t weight = everywhere ? 1 : shape.share(offset, ahead);
             if (weight > 0) {
                 ring.push_back({x, y, weight, outside});
             }
         }
+    }
+    if (shape.hasHeading()) {
+        std::sort(ring.begin(), ring.end(), [&](const Receiver& a, const Receiver& b) {
+            return shape.before(offsetOf(at, a.column, a.row), offsetOf(at, b.column, b.row));
+        });
     }
     return ring;
 }
@@ -69,7 +60,7 @@ std::vector<std::int64_t> shares(const std::vector<Receiver>& ring, std::int64_t
     std::vector<std::int64_t> result;
     std::int64_t rest = amount;
     for (const Receiver& receiver : ring) {
-        // 128 bits: an amount below 2^56 times a weight below 2^32.
+        // 128 bits: an amount below 2^56 times a weight below 2^36.
         __extension__ using Wide = __int128;
         result.push_back(static_cast<std::int64_t>(static_cast<Wide>(amount) * receiver.weight / total));
         rest -= result.back();
@@ -82,36 +73,22 @@ std::vector<std::int64_t> shares(const std::vector<Receiver>& ring, std::int64_t
 
 }  // namespace
 
-Rect SphereTool::footprint(ProbePoint at, int margin) const {
-    return {cellOf(std::int64_t{at.x} - radius_) - margin, cellOf(std::int64_t{at.y} - radius_) - margin,
-            cellOf(std::int64_t{at.x} + radius_) + margin + 1, cellOf(std::int64_t{at.y} + radius_) + margin + 1};
+Rect Tool::cells(const HeightField& field, ProbePoint at) const {
+    return shape_.cellsAround(at.x, at.y, 0).clippedTo(field.bounds());
 }
 
-std::int32_t SphereTool::underside(ProbePoint at, int column, int row) const {
-    const std::int64_t height = std::int64_t{radius_} * radius_ - offsetOf(at, column, row).squared();
-    if (height <= 0) {
-        return Obstacle::kFree;
-    }
-    // IEEE square root of an exact integer: one right answer everywhere.
-    const double root = std::sqrt(static_cast<double>(height));
-    const auto under = std::int64_t{at.z} * kUnitsPerProbe - static_cast<std::int64_t>(root * kUnitsPerProbe);
-    return static_cast<std::int32_t>(std::clamp<std::int64_t>(under, -kMaxHeight, kMaxHeight));
-}
-
-std::int32_t SphereTool::cutTo(const HeightField& field, const Ground* ground, ProbePoint at, int column,
-                               int row) const {
+std::int32_t Tool::cutTo(const HeightField& field, const Ground* ground, ProbePoint at, int column, int row) const {
     const std::int32_t height = field.height(column, row);
+    const std::int32_t underside = shape_.underside(at.z, offsetOf(at, column, row));
     if (ground == nullptr) {
-        return std::min(height, underside(at, column, row));
+        return std::min(height, underside);
     }
-    return ground->isWall(column, row)
-               ? height
-               : std::min(height, std::max(underside(at, column, row), ground->bedrock(column, row)));
+    return ground->isWall(column, row) ? height : std::min(height, std::max(underside, ground->bedrock(column, row)));
 }
 
-SphereTool::Displacement SphereTool::press(HeightField& field, Rim rim, const Ground* ground, ProbePoint at,
-                                           std::int64_t dx, std::int64_t dy) const {
-    const Rect cells = footprint(at, 0).clippedTo(field.bounds());
+Tool::Displacement Tool::press(HeightField& field, Rim rim, const Ground* ground, ProbePoint at,
+                               const Offset& ahead) const {
+    const Rect cells = this->cells(field, at);
     std::int64_t taken = 0;
     for (int y = cells.y0; y < cells.y1; ++y) {
         for (int x = cells.x0; x < cells.x1; ++x) {
@@ -121,9 +98,9 @@ SphereTool::Displacement SphereTool::press(HeightField& field, Rim rim, const Gr
     if (taken == 0) {
         return {};
     }
-    std::vector<Receiver> ring = receivers(field.bounds(), rim, ground, at, radius_, {dx, dy});
+    std::vector<Receiver> ring = receivers(field.bounds(), rim, ground, at, shape_, ahead);
     if (ring.empty()) {  // dragged against a closed rim: it escapes to the sides and behind
-        ring = receivers(field.bounds(), rim, ground, at, radius_, {0, 0});
+        ring = receivers(field.bounds(), rim, ground, at, shape_, {0, 0});
     }
     if (ring.empty()) {  // the tool is larger than the field: there is nowhere to put the sand
         return {};
@@ -139,7 +116,7 @@ SphereTool::Displacement SphereTool::press(HeightField& field, Rim rim, const Gr
             field.setHeight(x, y, cutTo(field, ground, at, x, y));
         }
     }
-    Displacement result{footprint(at, 3).clippedTo(field.bounds()), 0};
+    Displacement result{shape_.cellsAround(at.x, at.y, 3 * kProbePerCell).clippedTo(field.bounds()), 0};
     for (std::size_t i = 0; i < ring.size(); ++i) {
         if (ring[i].outside) {
             result.outflow += share[i];
@@ -151,8 +128,7 @@ SphereTool::Displacement SphereTool::press(HeightField& field, Rim rim, const Gr
     return result;
 }
 
-SphereTool::Displacement SphereTool::drag(HeightField& field, Rim rim, const Ground* ground, ProbePoint from,
-                                          ProbePoint to) const {
+Tool::Displacement Tool::drag(HeightField& field, Rim rim, const Ground* ground, ProbePoint from, ProbePoint to) const {
     const std::int64_t dx = std::int64_t{to.x} - from.x;
     const std::int64_t dy = std::int64_t{to.y} - from.y;
     const std::int64_t dz = std::int64_t{to.z} - from.z;
@@ -163,12 +139,12 @@ SphereTool::Displacement SphereTool::drag(HeightField& field, Rim rim, const Gro
         const ProbePoint at{static_cast<std::int32_t>(from.x + dx * i / steps),
                             static_cast<std::int32_t>(from.y + dy * i / steps),
                             static_cast<std::int32_t>(from.z + dz * i / steps)};
-        if (footprint(at, 0).clippedTo(field.bounds()).empty()) {
+        if (cells(field, at).empty()) {
             continue;
         }
         // A direction in whole probe units of one sub-step would lose its angle when the hand is slow.
         const std::int64_t scale = std::max<std::int64_t>(longest / kProbePerCell, 1);
-        const Displacement one = press(field, rim, ground, at, dx / scale, dy / scale);
+        const Displacement one = press(field, rim, ground, at, {dx / scale, dy / scale});
         if (!one.cells.empty()) {
             all.cells = {std::min(all.cells.x0, one.cells.x0), std::min(all.cells.y0, one.cells.y0),
                          std::max(all.cells.x1, one.cells.x1), std::max(all.cells.y1, one.cells.y1)};
@@ -178,12 +154,12 @@ SphereTool::Displacement SphereTool::drag(HeightField& field, Rim rim, const Gro
     return all;
 }
 
-Obstacle SphereTool::obstacle(const HeightField& field, ProbePoint at) const {
+Obstacle Tool::obstacle(const HeightField& field, ProbePoint at) const {
     Obstacle result;
-    result.cells = footprint(at, 0).clippedTo(field.bounds());
+    result.cells = cells(field, at);
     for (int y = result.cells.y0; y < result.cells.y1; ++y) {
         for (int x = result.cells.x0; x < result.cells.x1; ++x) {
-            result.underside.push_back(underside(at, x, y));
+            result.underside.push_back(shape_.underside(at.z, offsetOf(at, x, y)));
         }
     }
     return result;

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "sand/height_field.hpp"
 #include "sand/scene.hpp"
 #include "sand/step.hpp"
+#include "sand/tool_shape.hpp"
 
 namespace sand {
 
@@ -15,19 +15,17 @@ namespace sand {
 struct Obstacle {
     Rect cells;                           // where the underside is defined
     std::vector<std::int32_t> underside;  // [unit], row by row over `cells`; kFree beside the tool
-    static constexpr std::int32_t kFree = std::numeric_limits<std::int32_t>::max();
+    static constexpr std::int32_t kFree = TurnedShape::kFree;
 
     [[nodiscard]] std::int32_t at(int column, int row) const {
         return underside[static_cast<std::size_t>((row - cells.y0) * (cells.x1 - cells.x0) + column - cells.x0)];
     }
 };
 
-/// The paper's sphere: it takes out what lies above its underside and puts it down ahead (first paper, section 3).
-///
-/// All arithmetic is on integers and on IEEE square roots of exact integers: the same on every machine.
-class SphereTool {
+/// A tool in the sand: it takes out what lies above its underside and puts it down ahead (first paper, section 3).
+class Tool {
 public:
-    explicit SphereTool(std::int32_t radius /* [probe unit] */) : radius_(radius) {}
+    explicit Tool(const ToolShape& shape, const Heading& heading = {}) : shape_(shape, heading) {}
 
     /// What one drag did to the sand.
     struct Displacement {
@@ -41,18 +39,16 @@ public:
 
     /// The tool at rest at `at`, as seen by flowing sand.
     [[nodiscard]] Obstacle obstacle(const HeightField& field, ProbePoint at) const;
+    /// The cells that its underside may cover there.
+    [[nodiscard]] Rect cells(const HeightField& field, ProbePoint at) const;
 
 private:
-    Displacement press(HeightField& field, Rim rim, const Ground* ground, ProbePoint at, std::int64_t dx,
-                       std::int64_t dy) const;
+    Displacement press(HeightField& field, Rim rim, const Ground* ground, ProbePoint at, const Offset& ahead) const;
     /// The height to which the tool takes a cell down: its underside, or the rock beneath.
     [[nodiscard]] std::int32_t cutTo(const HeightField& field, const Ground* ground, ProbePoint at, int column,
                                      int row) const;
-    [[nodiscard]] Rect footprint(ProbePoint at, int margin) const;
-    /// Height of the sphere's underside over the centre of a cell [unit], or Obstacle::kFree beside it.
-    [[nodiscard]] std::int32_t underside(ProbePoint at, int column, int row) const;
 
-    std::int32_t radius_;
+    TurnedShape shape_;
 };
 
 }  // namespace sand

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "files/byte_stream.hpp"
+#include "sand/tool_shape.hpp"
 
 namespace sand {
 
@@ -11,31 +12,32 @@ inline constexpr std::int32_t kLargestThreshold = 1 << 30;     // [unit]; differ
 inline constexpr std::int32_t kLargestToolRadius = 2048 << 8;  // [probe unit], 2048 cells
 inline constexpr std::int32_t kMostSweeps = 4096;              // per step
 
+/// A tool as rules name it. Encoded as its radius alone where it is a sphere that heads east, as journals of before
+/// there were other tools have it; else as −1 − radius, kind, half width and heading.
+struct ToolRules {
+    ToolShape shape;
+    Heading heading;  // until a hand turns it
+
+    void encode(files::ByteWriter& writer) const;
+    /// Throws files::FormatError for a tool that no scene file gives.
+    static ToolRules decode(files::ByteReader& reader);
+    [[nodiscard]] bool plain() const { return shape.kind == ToolKind::sphere && heading == Heading{}; }
+    friend bool operator==(const ToolRules&, const ToolRules&) = default;
+};
+
 /// The rules that an operator may change while sand lies: derived once (material.hpp), then sent as numbers.
 struct Tuning {
     std::int32_t threshold = 0, startThreshold = 0;  // [unit]
     std::int32_t sweepsPerStep = 0;
     std::int32_t toolRadius = 0;  // [probe unit]
+    ToolKind toolKind = ToolKind::sphere;
+    std::int32_t toolHalfWidth = 0;  // [probe unit], as in ToolShape
+    Heading toolHeading{};           // until a hand turns it
 
-    void encode(files::ByteWriter& writer) const {
-        for (const std::int32_t number : {threshold, startThreshold, sweepsPerStep, toolRadius}) {
-            writer.put(number);
-        }
-    }
+    [[nodiscard]] ToolRules tool() const { return {{toolKind, toolRadius, toolHalfWidth}, toolHeading}; }
+    void encode(files::ByteWriter& writer) const;
     /// Throws files::FormatError for numbers that no scene file gives.
-    static Tuning decode(files::ByteReader& reader) {
-        Tuning tuning;
-        for (std::int32_t* number :
-             {&tuning.threshold, &tuning.startThreshold, &tuning.sweepsPerStep, &tuning.toolRadius}) {
-            *number = reader.get<std::int32_t>();
-        }
-        const auto within = [](std::int32_t number, std::int32_t most) { return number >= 0 && number <= most; };
-        if (!within(tuning.startThreshold, kLargestThreshold) || !within(tuning.threshold, tuning.startThreshold) ||
-            !within(tuning.sweepsPerStep, kMostSweeps) || !within(tuning.toolRadius, kLargestToolRadius)) {
-            throw files::FormatError("a material or tool out of range");
-        }
-        return tuning;
-    }
+    static Tuning decode(files::ByteReader& reader);
     friend bool operator==(const Tuning&, const Tuning&) = default;
 };
 

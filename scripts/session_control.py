@@ -71,7 +71,8 @@ def add_parser(commands, remainder):
     """Adds `ctl` to the launcher's commands; `remainder` is argparse's word for all that is left."""
     parser = commands.add_parser("ctl", help="command a running session",
                                  description="Commands a session that runs on this machine: status, pause, resume, reset, undo, settle, "
-                                             "tool RADIUS, material KEY VALUE, save NAME, load NAME, stereo MODE, pattern NAME|none|next, "
+                                             "tool [SHAPE] [radius=R] [width=W] [heading=DEG] [foot=left|right], tool RADIUS, material KEY VALUE, "
+                                             "save NAME, load NAME, stereo MODE, pattern NAME|none|next, "
                                              "show LAYER, hide LAYER, eye-separation METRES, capture, stop; docs/operator.md.")
     parser.set_defaults(run=ctl)
     parser.add_argument("session", metavar="SESSION", help="the --out folder of the session")

@@ -142,11 +142,13 @@ TEST_F(Operator, ChangesToolMaterialAndSandOfTwelveRanksAndAReplayEndsInTheSameH
     EXPECT_EQ(awaitStatus(canUndo)["ranks"], 12);
     EXPECT_EQ(ask("save dug-1")["file"], "saves/dug-1.sand");
     const std::uint64_t undone = ask("undo")["step"];  // first: the hand's strokes end after seconds
-    ask("tool 0.08");
+    ask("tool footprint radius=0.08 heading=60");
     ask("material talus 20");
     ask("material humidity 0.25");
     nlohmann::json now = ask("status");
     EXPECT_NEAR(now["tool_radius"].get<double>(), 0.08, 1e-3);
+    EXPECT_EQ(now["tool_shape"], "footprint");
+    EXPECT_NEAR(now["tool_heading"].get<double>(), 60, 0.01);
     EXPECT_EQ(now["material"]["talus"], 20);
     EXPECT_EQ(now["material"]["humidity"], 0.25);
     ask("settle");
@@ -261,7 +263,8 @@ TEST_F(Operator, IsToldWhatCannotBeDoneAndTheSessionGoesOn) {
     expectRefusal("eye-separation -0.1", "eye-separation must be 0 to 0.5 metres, got '-0.1'");
     expectRefusal("tool 0", "a tool's radius must be at least");
     expectRefusal("tool 1e9", "is the most");
-    expectRefusal("tool wide", "a tool's radius must be a number, got 'wide'");
+    expectRefusal("tool footprint radius=7", "and the field");
+    expectRefusal("tool wide", "a tool is one of sphere, circle");
     expectRefusal("material talus", "material needs KEY VALUE");
     expectRefusal("material talus 90", "talus must be within [0, 90), got 90");
     expectRefusal("material colour 3", "a material has no 'colour'; there are talus");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ten thousand edits on every rank, each sweeping in its own way; all meet after every edit and compare hashes.
+// Ten thousand edits on every rank, each sweeping in its own way; all meet after every edit and compare hashes. With
+// any argument, a thousand with tools of every shape.
 #include <fmt/format.h>
 #include <mpi.h>
 
@@ -12,7 +13,7 @@
 
 namespace {
 
-constexpr std::uint64_t kEdits = 10000;
+constexpr std::uint64_t kEdits = 10000, kWildEdits = 1000;
 constexpr std::array kThreads{1, 2, 3, 7};
 constexpr std::array kBlocks{16, 32, 64};
 
@@ -25,7 +26,7 @@ sand::Scene smallScene() {
 }
 
 /// The first edit after which ranks differ, or 0; `all` takes in every hash.
-std::uint64_t editAll(int rank, std::uint64_t& all) {
+std::uint64_t editAll(int rank, bool wild, std::uint64_t& all) {
     const auto way = static_cast<std::size_t>(rank);
     workers::WorkerPool team(kThreads.at(way % kThreads.size()));
     const sand::Scene scene = smallScene();
@@ -33,8 +34,9 @@ std::uint64_t editAll(int rank, std::uint64_t& all) {
                                   .path = way % 2 == 0 ? sand::CodePath::automatic : sand::CodePath::baseline,
                                   .executor = team.lend()});
     std::mt19937 random(53);
-    for (std::uint64_t edit = 1; edit <= kEdits; ++edit) {
-        terrain.apply(samples::randomStep(edit, scene.rules, random));
+    for (std::uint64_t edit = 1; edit <= (wild ? kWildEdits : kEdits); ++edit) {
+        terrain.apply(wild ? samples::wildStep(edit, scene.rules, random)
+                           : samples::randomStep(edit, scene.rules, random));
         const std::uint64_t hash = terrain.stateHash();
         // Equal where the largest hash and the largest complement belong to one.
         const std::array<std::uint64_t, 2> mine{hash, ~hash};
@@ -55,7 +57,7 @@ int main(int argc, char** argv) {
     int rank = 0;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     std::uint64_t all = 0;
-    const std::uint64_t differing = editAll(rank, all);
+    const std::uint64_t differing = editAll(rank, argc > 1, all);
     if (rank == 0) {
         fmt::print("{}\n",
                    differing == 0 ? fmt::format("{:016x}", all) : fmt::format("ranks differ after {}", differing));

@@ -45,7 +45,7 @@ TEST(OperatorCommand, EveryVerbIsRead) {
     EXPECT_DOUBLE_EQ(parseCommand("eye-separation 0.5").number, 0.5);
     EXPECT_DOUBLE_EQ(parseCommand("eye-separation 0").number, 0);
     EXPECT_EQ(parseCommand("stereo anaglyph").stereo, walls::Stereo::anaglyphColour);
-    EXPECT_DOUBLE_EQ(parseCommand("tool 0.02").number, 0.02);
+    EXPECT_EQ(parseCommand("tool 0.02").tool.radius, 0.02);
     EXPECT_EQ(parseCommand("material talus 30").word, "talus");
     EXPECT_DOUBLE_EQ(parseCommand("material talus 30").number, 30);
     EXPECT_EQ(parseCommand("save a-B_1").word, "a-B_1");
@@ -55,7 +55,8 @@ TEST(OperatorCommand, EveryVerbIsRead) {
 TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
     EXPECT_EQ(complaint("dance"),
               "'dance' is no command; these are: status, pause, resume, reset, undo, settle, pattern NAME, "
-              "show LAYER, hide LAYER, eye-separation METRES, stereo MODE, tool RADIUS, material KEY VALUE, save NAME, "
+              "show LAYER, hide LAYER, eye-separation METRES, stereo MODE, tool [SHAPE] [KEY=VALUE], material KEY "
+              "VALUE, save NAME, "
               "load NAME, "
               "capture, stop");
     EXPECT_EQ(complaint("").substr(0, 16), "'' is no command");
@@ -63,7 +64,12 @@ TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
     EXPECT_EQ(complaint("pattern"), "pattern needs NAME");
     EXPECT_EQ(complaint("material talus"), "material needs KEY VALUE");
     EXPECT_EQ(complaint("material talus steep"), "talus must be a number, got 'steep'");
-    EXPECT_EQ(complaint("tool 1e999"), "a tool's radius must be a number, got '1e999'");
+    EXPECT_EQ(complaint("tool radius=1e999"), "a tool's radius must be a number, got '1e999'");
+    EXPECT_EQ(complaint("tool heading=nan"), "a tool's heading must be a number, got 'nan'");
+    EXPECT_EQ(complaint("tool 1e999"),
+              "a tool is one of sphere, circle, rectangle, ellipse, ellipsoid, footprint, or has radius=, width=, "
+              "heading=, foot=left or right, got '1e999'");
+    EXPECT_NE(complaint("tool footprint foot=both").find("got 'foot=both'"), std::string::npos);
     for (const std::string name : {"..", "../x", "/tmp/x", "a b", "a.sand"}) {
         EXPECT_EQ(complaint("save " + name), "a name has 1 to 64 letters, digits, - and _, got '" + name + "'");
         EXPECT_EQ(complaint("load " + name), complaint("save " + name));

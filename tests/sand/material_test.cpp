@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "files/input_error.hpp"
 #include "sand/terrain.hpp"
 #include "tests/sand/scene_fixture.hpp"
@@ -32,7 +34,12 @@ TEST_F(SceneFile, AnOperatorsNumbersBecomeTheRulesOfAFileThatSaysThem) {
     same(plain.material, "");
     same(sand::withNumber(plain.material, "talus", 20, grid), "talus_deg = 20\n");
     same(sand::withNumber(plain.material, "talus_deg", 50, grid), "talus_deg = 50\n");
-    same(sand::withTool(plain.material, 0.05, grid), "[tool]\nradius = 0.05\n");
+    same(sand::withTool(plain.material, {.radius = 0.05}, grid), "[tool]\nradius = 0.05\n");
+    const sand::Material oval =
+        sand::withTool(plain.material, {.kind = sand::ToolKind::ellipse, .width = 0.3, .heading = -45}, grid);
+    same(oval, "[tool]\nshape = \"ellipse\"\nwidth = 0.3\nheading_deg = -45\n");
+    same(sand::withTool(oval, {.kind = sand::ToolKind::footprint, .leftFoot = true}, grid),
+         "[tool]\nshape = \"footprint\"\nfoot = \"left\"\nheading_deg = -45\n");
     sand::Material wet = sand::withNumber(plain.material, "humidity", 0.5, grid);
     wet = sand::withNumber(wet, "wet-talus", 60, grid);
     wet = sand::withNumber(wet, "cohesion", 0.03, grid);
@@ -46,7 +53,7 @@ TEST_F(SceneFile, AnOperatorsNumbersAreRefusedWhereAFileWouldBe) {
         return complaintOf([&] { (void)sand::withNumber(scene.material, word, value, scene.grid()); });
     };
     const auto tool = [&](double radius) {
-        return complaintOf([&] { (void)sand::withTool(scene.material, radius, scene.grid()); });
+        return complaintOf([&] { (void)sand::withTool(scene.material, {.radius = radius}, scene.grid()); });
     };
     EXPECT_EQ(number("talus", 90), "talus must be within [0, 90), got 90");
     EXPECT_EQ(number("talus", 41), "wet_talus_deg must be at least talus_deg = 41, got 40");
@@ -56,6 +63,15 @@ TEST_F(SceneFile, AnOperatorsNumbersAreRefusedWhereAFileWouldBe) {
     EXPECT_EQ(tool(10), "a tool of radius 10 is 2560 cells of 0.00390625; 2048 is the most");
     EXPECT_EQ(tool(0).find("a tool's radius must be at least 1.53e-05, got 0"), 0U) << tool(0);
     EXPECT_NE(tool(-1), "nothing");
+    const auto changed = [&](const sand::ToolChange& change) {
+        return complaintOf([&] { (void)sand::withTool(scene.material, change, scene.grid()); });
+    };
+    EXPECT_EQ(changed({.kind = sand::ToolKind::footprint, .radius = 1.5}),
+              "a footprint of radius 1.5 is 3 long, and the field 2");
+    EXPECT_EQ(changed({.width = 0.5}), "a sphere is as wide as it is long; leave width out");
+    EXPECT_EQ(changed({.kind = sand::ToolKind::ellipse, .width = 0.01}),
+              "a tool's width over its length must be within [0.05, 1], got 0.01");
+    EXPECT_EQ(changed({.heading = std::nan("")}), "a tool's heading must be a number of degrees");
 }
 
 /// A pile at rest, and its talus halved by an operator.

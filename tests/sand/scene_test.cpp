@@ -52,6 +52,27 @@ TEST_F(SceneFile, AToolOutOfScaleIsRefusedOrWarnedOf) {
     EXPECT_EQ(sand::loadScene(write("s.toml", kFlat + "[tool]\nradius = 0.003\n")).warnings.size(), 1U);
 }
 
+TEST_F(SceneFile, AToolHasAShapeAWidthAndAHeading) {
+    const sand::Scene scene = sand::loadScene(
+        write("s.toml", kFlat + "[tool]\nshape = \"footprint\"\nradius = 0.1\nheading_deg = 90\nfoot = \"left\"\n"));
+    EXPECT_EQ(scene.rules.toolShape(), (sand::ToolShape{sand::ToolKind::footprint, 6554, 2622}));
+    EXPECT_EQ(scene.rules.toolHeading, (sand::Heading{0, sand::Heading::kLength, true}));
+    EXPECT_EQ(sand::Scene::decode(scene.encode()).rules, scene.rules);
+    const sand::Scene plain = sand::loadScene(write("p.toml", kFlat + "[tool]\nshape = \"sphere\"\nradius = 0.1\n"));
+    EXPECT_NE(plain.rules.digest(), scene.rules.digest()) << "server and master must have the same tool";
+    EXPECT_EQ(scene.encode().size(), plain.encode().size() + 9);
+    const auto tool = [&](const std::string& keys) { return complaint(kFlat + "[tool]\n" + keys); };
+    EXPECT_EQ(tool("shape = \"cube\"\n"),
+              "s.toml:5: shape must be one of sphere, circle, rectangle, ellipse, ellipsoid, footprint, got 'cube'");
+    EXPECT_EQ(tool("shape = \"ellipse\"\nwidth = 2\n"), "s.toml:6: width must be within [0.05, 1], got 2");
+    EXPECT_EQ(tool("width = 0.5\n"), "s.toml:5: a sphere is as wide as it is long; leave width out");
+    EXPECT_EQ(tool("heading_deg = nan\n"), "s.toml:5: heading_deg must be a finite number");
+    EXPECT_EQ(tool("shape = \"ellipse\"\nfoot = \"left\"\n"),
+              "s.toml:6: left and right are of a footprint, not of this ellipse");
+    EXPECT_EQ(tool("shape = \"footprint\"\nradius = 1.5\n"),
+              "s.toml:6: a footprint of radius 1.5 is 3 long, and the field 2");
+}
+
 TEST_F(SceneFile, ALevelOfDetailThatCannotHoldItsErrorIsRefused) {
     EXPECT_EQ(sand::loadScene(write("s.toml", kFlat + "[look]\ndetail = 0\n")).look.detail, 0);
     const sand::Scene scene = sand::loadScene(write("s.toml", kFlat + "[look]\ndetail = 2.5\n"));

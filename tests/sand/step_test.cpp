@@ -48,6 +48,51 @@ TEST(Step, EveryEditSurvivesAndNoOtherIsRead) {
     EXPECT_THROW((void)sand::decodeStep(reader), files::FormatError);
 }
 
+// What a session of spheres wrote before there were other tools, byte for byte: old journals are still read, and a
+// sphere's steps have not grown.
+TEST(Step, OfASphereIsWrittenAsItAlwaysWas) {
+    sand::Step step{3, 300, true, {{5, -6, 70}}, sand::Edit::tuned({7, 11, 13, 17})};
+    const files::Bytes before{3, 0xac, 2, 9, 1, 10, 11, 0x8c, 1, 7, 0, 0, 0, 11, 0, 0, 0, 13, 0, 0, 0, 17, 0, 0, 0};
+    EXPECT_EQ(bytesOf(step), before);
+    files::ByteReader reader(before);
+    EXPECT_EQ(sand::decodeStep(reader), step);
+    step.heading = *sand::headingOf(30, true);
+    EXPECT_EQ(bytesOf(step).size(), before.size() + 4) << "only a step that turns the tool says how";
+}
+
+TEST(Step, AHeadingAndEveryToolSurviveAndWhatIsNoneIsRefused) {
+    for (int kind = 0; kind < sand::kToolKinds; ++kind) {
+        for (const bool mirrored : {false, true}) {
+            sand::Tuning tuning{7, 11, 13, 2000};
+            tuning.toolKind = static_cast<sand::ToolKind>(kind);
+            tuning.toolHalfWidth = sand::isRound(tuning.toolKind) ? 0 : 700;
+            tuning.toolHeading = *sand::headingOf(77, mirrored);
+            sand::Step step{1, 2, true, {{5, 6, 7}}, sand::Edit::tuned(tuning)};
+            step.heading = *sand::headingOf(-123, !mirrored);
+            const files::Bytes bytes = bytesOf(step);
+            files::ByteReader reader(bytes);
+            EXPECT_EQ(sand::decodeStep(reader), step);
+            for (std::size_t length = 0; length < bytes.size(); ++length) {
+                files::ByteReader cut{std::span(bytes).first(length)};
+                EXPECT_THROW((void)sand::decodeStep(cut), files::FormatError) << length;
+            }
+        }
+    }
+    const auto refused = [](const sand::Step& step) {
+        const files::Bytes bytes = bytesOf(step);
+        files::ByteReader reader(bytes);
+        EXPECT_THROW((void)sand::decodeStep(reader), files::FormatError);
+    };
+    sand::Step crooked{1, 2, true, {}};
+    crooked.heading = sand::Heading{100, 100};
+    refused(crooked);
+    sand::Tuning wide{7, 11, 13, 17, sand::ToolKind::ellipse, 18};
+    refused({1, 2, true, {}, sand::Edit::tuned(wide)});
+    wide.toolHalfWidth = 3;
+    wide.toolKind = static_cast<sand::ToolKind>(sand::kToolKinds);
+    refused({1, 2, true, {}, sand::Edit::tuned(wide)});
+}
+
 TEST(Step, SeventeenSamplesOfAHandFitInEightyBytes) {
     sand::Step step{3, 1000000, true, {}};
     for (int i = 0; i < 17; ++i) {  // 1.5 cells in a step of 1/60 s

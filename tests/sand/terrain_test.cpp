@@ -52,7 +52,7 @@ TEST(Terrain, AHeldToolComesToRest) {
     const sand::HeightField rest = terrain.field();
     terrain.apply({1, ++number, true, {}});
     EXPECT_TRUE(sameHeights(terrain.field(), rest));
-    const sand::Obstacle ball = sand::SphereTool(scene.rules.toolRadius).obstacle(rest, terrain.probe());
+    const sand::Obstacle ball = sand::Tool(scene.rules.toolShape()).obstacle(rest, terrain.probe());
     std::size_t next = 0;
     for (int y = ball.cells.y0; y < ball.cells.y1; ++y) {
         for (int x = ball.cells.x0; x < ball.cells.x1; ++x) {

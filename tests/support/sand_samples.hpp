@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <utility>
 
 #include "sand/scene.hpp"
 #include "sand/terrain.hpp"
@@ -63,6 +65,26 @@ inline sand::Step randomStep(std::uint64_t number, const sand::Rules& rules, std
     const auto points = random() % 4;
     for (unsigned i = 0; i < points; ++i) {
         step.path.push_back({within(rules.columns), within(rules.rows), within(4)});
+    }
+    return step;
+}
+
+/// As randomStep(), now and then turned or with another tool.
+inline sand::Step wildStep(std::uint64_t number, const sand::Rules& rules, std::mt19937& random) {
+    sand::Step step = randomStep(number, rules, random);
+    if (random() % 3 == 0) {
+        // Whole numbers, where libm cannot differ from host to host.
+        constexpr std::array<std::pair<int, int>, 5> kWays{
+            {{16384, 0}, {0, -16384}, {11585, 11585}, {-8192, 14189}, {-16381, -286}}};
+        const auto& [x, y] = kWays.at(random() % kWays.size());
+        step.heading = sand::Heading{static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), random() % 2 == 0};
+    }
+    if (random() % 7 == 0) {
+        sand::Tuning tuning = rules.tuning();
+        tuning.toolKind = static_cast<sand::ToolKind>(random() % sand::kToolKinds);
+        tuning.toolRadius = static_cast<std::int32_t>(random() % (20 * sand::kProbePerCell));
+        tuning.toolHalfWidth = sand::isRound(tuning.toolKind) ? 0 : tuning.toolRadius / 3;
+        step.edit = sand::Edit::tuned(tuning);
     }
     return step;
 }
