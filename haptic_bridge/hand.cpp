@@ -51,7 +51,7 @@ HandSample Hand::tick(double deviceTime, std::int64_t nowNs, const Surface& surf
     const auto probe = mapping_.probe(pose);
     last_ = probe.value_or(last_);
     const bool present = device_->reading().present;
-    const HandSample sample{nowNs, last_, pose.engaged && probe.has_value() && present};
+    const HandSample sample{nowNs, last_, pose.engaged && probe.has_value() && present, mapping_.heading(pose)};
 
     const std::int64_t begin = monotonicNs();
     fillTick(deviceTime, surface, sample);

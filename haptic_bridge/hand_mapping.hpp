@@ -15,6 +15,10 @@ public:
 
     /// Poses beyond reach are clamped to sand::kMaxProbe. A pose that holds no number gives nothing.
     [[nodiscard]] std::optional<sand::ProbePoint> probe(const Pose& pose) const;
+    /// Nothing for a hand that does not turn the tool, or turns it by what is no number.
+    [[nodiscard]] static std::optional<sand::Heading> heading(const Pose& pose) {
+        return pose.heading ? sand::headingOf(*pose.heading, pose.leftFoot) : std::nullopt;
+    }
     /// The tool's centre [scene unit], from the south-west corner and from height 0.
     [[nodiscard]] sand::force::Vec3 place(sand::ProbePoint at) const;
 

@@ -48,6 +48,7 @@ std::int64_t PathBuilder::take(sand::Step& step) {
         const HandSample sample = waiting_.front();
         waiting_.pop_front();
         readNs = sample.timeNs;
+        step.heading = sample.heading ? sample.heading : step.heading;
         // A hand that engages where it hovers must press there, though it has not moved.
         if (sample.at != last_ || (changed && path.empty())) {
             path.push_back(sample.at);

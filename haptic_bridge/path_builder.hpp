@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "sand/step.hpp"
@@ -14,6 +15,7 @@ struct HandSample {
     std::int64_t timeNs = 0;  // monotonic
     sand::ProbePoint at;
     bool engaged = false;
+    std::optional<sand::Heading> heading = std::nullopt;  // none: the hand does not turn the tool
 };
 
 /// Gathers hand samples and cuts them into the paths of steps.
@@ -27,8 +29,8 @@ public:
     static constexpr std::size_t kMaxWaiting = 4096;
 
     void add(const HandSample& sample);
-    /// Fills engaged and path. Returns when the last point was read [ns], 0 when no sample waited: the hand is then
-    /// where it was, engaged as it was.
+    /// Fills engaged, path, and heading with the last that the hand gave. Returns when the last point was read [ns], 0
+    /// when no sample waited: the hand is then where it was, engaged as it was.
     std::int64_t take(sand::Step& step);
     /// Forgets what waits, and where the hand was.
     void restart(sand::ProbePoint at, bool engaged);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "haptic_bridge/monotonic.hpp"
+#include "sand/force/tool_contour.hpp"
 
 namespace haptic_bridge {
 namespace {
@@ -168,6 +169,10 @@ void Sequencer::makeStep() {
             gatherVirtual();
         }
         const std::int64_t readNs = path_.take(message.step);
+        std::optional<sand::Heading>& heading = message.step.heading;
+        if (sand::isRound(terrain_.toolShape().kind) || heading == terrain_.heading()) {
+            heading.reset();  // nothing that the sand would notice
+        }
         if (pace_ == Pace::realtime && readNs != 0) {
             message.serverTimeNs = readNs;
         }
@@ -182,16 +187,17 @@ void Sequencer::makeStep() {
 
 void Sequencer::publishSurface() {
     const double radius = terrain_.toolRadius();
+    const auto tool = sand::force::contourOf(terrain_.toolShape(), terrain_.heading(), terrain_.field().cellSize());
     const sand::force::SurfacePatch patch(terrain_.field(), terrain_.probe(), radius);
     if (pace_ == Pace::fast) {
         virtualSurface_.patch = patch;
-        virtualSurface_.tool = sand::force::Contour::sphere(radius);
+        virtualSurface_.tool = tool;
         virtualSurface_.step = terrain_.stepNumber();
         return;
     }
     Surface& next = channel_.surface.next();
     next.patch = patch;
-    next.tool = sand::force::Contour::sphere(radius);
+    next.tool = tool;
     next.step = terrain_.stepNumber();
     next.timeNs = monotonicNs();
     channel_.surface.publish();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "haptic_bridge/devices/arm.hpp"
 #include "sand/force/vec3.hpp"
 
@@ -13,6 +15,9 @@ namespace haptic_bridge {
 struct Pose {
     double x = 0, y = 0, z = 2;
     bool engaged = false;  // may touch the sand; otherwise the tool hovers
+    /// Which way the hand turns the tool [deg] from east, counter-clockwise; none: it stays as it is.
+    std::optional<double> heading = std::nullopt;
+    bool leftFoot = false;  // with a heading: the tool's left and right are exchanged
 };
 
 /// A haptic device, or what stands in for one. Used by one thread.

@@ -63,7 +63,15 @@ void addArc(const Line& line, std::vector<Strokes::Point>& points) {
     }
 }
 
-/// Reads line by line; speed and depth hold for the strokes that begin after them.
+/// [deg]; nothing from a place to itself.
+std::optional<double> courseOf(Strokes::Point from, Strokes::Point to) {
+    if (from.x == to.x && from.y == to.y) {
+        return std::nullopt;
+    }
+    return std::atan2(to.y - from.y, to.x - from.x) * 180 / std::numbers::pi;
+}
+
+/// Reads line by line; speed, depth and the way the tool is turned hold for the strokes that begin after them.
 class StrokeReader {
 public:
     void take(const Line& line) {
@@ -71,7 +79,7 @@ public:
         if (word == "stroke") {
             line.expect(0, "nothing");
             closeStroke(line);
-            strokes_.strokes.push_back({{}, speed_, depth_});
+            strokes_.strokes.push_back({{}, speed_, depth_, turn_});
         } else if (word == "speed") {
             line.expect(1, "HALF_SIDES_PER_SECOND");
             speed_ = line.value(1, 1e-6, 1e6);
@@ -89,8 +97,12 @@ public:
             points(line).push_back({line.coordinate(1), line.coordinate(2)});
         } else if (word == "arc") {
             addArc(line, points(line));
-        } else {
-            line.fail(fmt::format("'{}' is none of stroke, point, arc, speed, depth, travel, lift", word));
+        } else if (word == "hold") {
+            line.expect(1, "SECONDS");
+            lastPoint(line).hold = line.value(1, 0, 3600);
+        } else if (!takeTurn(line)) {
+            line.fail(fmt::format(
+                "'{}' is none of stroke, point, arc, hold, speed, depth, travel, lift, heading, follow, foot", word));
         }
     }
     [[nodiscard]] Strokes finish(const Line& end) {
@@ -102,6 +114,33 @@ public:
     }
 
 private:
+    /// Whether the line says how the tool is turned.
+    bool takeTurn(const Line& line) {
+        const std::string_view word = line.words[0];
+        if (word == "heading") {
+            line.expect(1, "DEGREES");
+            turn_.heading = line.value(1, -3600, 3600);
+            turn_.follow = false;
+        } else if (word == "follow") {
+            line.expect(0, "nothing");
+            turn_.follow = true;
+        } else if (word == "foot") {
+            line.expect(1, "left or right");
+            if (line.words[1] != "left" && line.words[1] != "right") {
+                line.fail(fmt::format("'foot' needs left or right, got '{}'", line.words[1]));
+            }
+            turn_.leftFoot = line.words[1] == "left";
+        } else {
+            return false;
+        }
+        return true;
+    }
+    Strokes::Point& lastPoint(const Line& line) {
+        if (points(line).empty()) {
+            line.fail(fmt::format("'{}' before the first point of its stroke", line.words[0]));
+        }
+        return points(line).back();
+    }
     std::vector<Strokes::Point>& points(const Line& line) {
         if (strokes_.strokes.empty()) {
             line.fail(fmt::format("'{}' before the first 'stroke'", line.words[0]));
@@ -116,6 +155,7 @@ private:
 
     Strokes strokes_;
     double speed_ = 1, depth_ = 0.5;
+    Strokes::Turn turn_;
 };
 
 }  // namespace
@@ -136,19 +176,35 @@ Strokes Strokes::parse(std::string_view text, const std::string& name) {
 
 StrokeDevice::StrokeDevice(const Strokes& strokes) : hoverHeight_(1 + strokes.lift) {
     const Strokes::Point first = strokes.strokes.front().points.front();
-    knots_.push_back({0, first.x, first.y, hoverHeight_, false});
+    knots_.push_back({0, first.x, first.y, hoverHeight_, false, std::nullopt, false});
     for (const Strokes::Stroke& stroke : strokes.strokes) {
-        moveTo(stroke.points.front(), strokes.travel, hoverHeight_, false);
+        // In the air it is turned as the stroke begins.
+        Strokes::Turn before = stroke.turn;
+        if (stroke.turn.follow && stroke.points.size() > 1) {
+            before.heading = courseOf(stroke.points[0], stroke.points[1]);
+        }
+        before.follow = false;
+        moveTo(stroke.points.front(), strokes.travel, hoverHeight_, false, before);
         for (const Strokes::Point& point : stroke.points) {
-            moveTo(point, stroke.speed, 1 - stroke.depth, true);
+            moveTo(point, stroke.speed, 1 - stroke.depth, true, stroke.turn);
         }
     }
 }
 
-void StrokeDevice::moveTo(Strokes::Point to, double speed, double z, bool engaged) {
-    const Knot& from = knots_.back();
+void StrokeDevice::moveTo(Strokes::Point to, double speed, double z, bool engaged, const Strokes::Turn& turn) {
+    const Knot from = knots_.back();
     const double distance = std::hypot(to.x - from.x, to.y - from.y);
-    knots_.push_back({from.time + distance / speed, to.x, to.y, z, engaged});
+    std::optional<double> heading = turn.heading ? turn.heading : from.heading;
+    if (turn.follow) {
+        const auto course = courseOf({from.x, from.y}, to);
+        heading = course ? course : from.heading;
+    }
+    const bool leftFoot = heading.has_value() && turn.leftFoot;
+    const double arrived = from.time + distance / speed;
+    knots_.push_back({arrived, to.x, to.y, z, engaged, heading, leftFoot});
+    if (to.hold > 0 && engaged) {
+        knots_.push_back({arrived + to.hold, to.x, to.y, z, engaged, heading, leftFoot});
+    }
 }
 
 Pose StrokeDevice::read(double time) {
@@ -156,13 +212,15 @@ Pose StrokeDevice::read(double time) {
         ++next_;
     }
     if (next_ == knots_.size()) {
-        return {knots_.back().x, knots_.back().y, hoverHeight_, false};
+        const Knot& last = knots_.back();
+        return {last.x, last.y, hoverHeight_, false, last.heading, last.leftFoot};
     }
     const Knot& from = knots_[next_ - 1];
     const Knot& to = knots_[next_];
     const double span = to.time - from.time;
     const double share = span > 0 ? std::clamp((time - from.time) / span, 0.0, 1.0) : 1.0;
-    return {from.x + share * (to.x - from.x), from.y + share * (to.y - from.y), to.z, to.engaged};
+    return {
+        from.x + share * (to.x - from.x), from.y + share * (to.y - from.y), to.z, to.engaged, to.heading, to.leftFoot};
 }
 
 }  // namespace haptic_bridge

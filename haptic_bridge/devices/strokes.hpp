@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,11 +14,19 @@ namespace haptic_bridge {
 struct Strokes {
     struct Point {
         double x = 0, y = 0;
+        double hold = 0;  // [s] that the tool rests there
+    };
+    /// Which way the tool is turned along a stroke.
+    struct Turn {
+        std::optional<double> heading = std::nullopt;  // [deg]; none: as it was before
+        bool follow = false;                           // along the stroke instead
+        bool leftFoot = false;
     };
     struct Stroke {
         std::vector<Point> points;  // at least one
         double speed = 1;           // [half side / s]
         double depth = 0.5;         // [tool radius] of the underside under the surface
+        Turn turn{};
     };
     std::vector<Stroke> strokes;  // at least one
     double travel = 4;            // [half side / s] between strokes
@@ -46,8 +55,10 @@ private:
         double x, y;
         double z;
         bool engaged;
+        std::optional<double> heading;  // [deg]
+        bool leftFoot;
     };
-    void moveTo(Strokes::Point to, double speed, double z, bool engaged);
+    void moveTo(Strokes::Point to, double speed, double z, bool engaged, const Strokes::Turn& turn);
 
     std::vector<Knot> knots_;
     double hoverHeight_;

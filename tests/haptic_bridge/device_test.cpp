@@ -157,6 +157,30 @@ TEST(StrokeDevice, DrawsAtItsSpeedLiftsBetweenAndHoversAtTheEnd) {
     EXPECT_NEAR(over.y, 1, 1e-12);
 }
 
+TEST(StrokeDevice, TurnsItsToolAsTheFileSaysAndHoldsAStamp) {
+    StrokeDevice device(
+        Strokes::parse("speed 1\ntravel 1\nstroke\npoint 0 0\npoint 1 0\nheading 30\nfoot left\nstroke\npoint 1 1\n"
+                       "hold 0.5\nfollow\nfoot right\nstroke\npoint 1 1\npoint 1 2\npoint 0 2\n",
+                       "walk"));
+    EXPECT_FALSE(device.read(0.5).heading.has_value()) << "nobody has turned it yet";
+    EXPECT_EQ(device.read(1.5).heading, 30) << "in the air, for the stroke to come";
+    const Pose stamp = device.read(2.3);
+    EXPECT_TRUE(stamp.engaged);
+    EXPECT_TRUE(stamp.leftFoot);
+    EXPECT_NEAR(device.read(3.0).heading.value_or(0), 90, 1e-9);
+    EXPECT_NEAR(std::abs(device.read(4.0).heading.value_or(0)), 180, 1e-9) << "round the corner";
+    EXPECT_FALSE(device.read(4.0).leftFoot);
+    EXPECT_DOUBLE_EQ(device.duration(), 4.5);
+}
+
+TEST(HandMapping, TakesNoHeadingFromAHandThatGivesNoneOrNoNumber) {
+    EXPECT_FALSE(HandMapping::heading({}).has_value());
+    for (const double bad : {std::nan(""), HUGE_VAL}) {
+        EXPECT_FALSE(HandMapping::heading({0, 0, 0, true, bad}).has_value());
+    }
+    EXPECT_EQ(HandMapping::heading({0, 0, 0, true, 90, true}), (sand::Heading{0, sand::Heading::kLength, true}));
+}
+
 TEST(StrokeDevice, WritesGisInLessThanFourSeconds) {
     const Strokes gis = Strokes::parse(gisStrokes(), "gis.strokes");
     EXPECT_EQ(gis.strokes.size(), 3U);

@@ -64,6 +64,22 @@ TEST(PathBuilder, LeavesOutWhereTheHandRestsButNotWherePressed) {
     EXPECT_TRUE(held.path.empty());
 }
 
+TEST(PathBuilder, GivesTheLastHeadingOfItsSamples) {
+    PathBuilder builder;
+    const auto east = sand::headingOf(0), north = sand::headingOf(90);
+    builder.add({1, {1, 0, 0}, true, east});
+    builder.add({2, {2, 0, 0}, true, north});
+    builder.add({3, {3, 0, 0}, true});
+    builder.add({4, {4, 0, 0}, false, east});
+    sand::Step step, lifted, resting;
+    builder.take(step);
+    EXPECT_EQ(step.heading, north);
+    builder.take(lifted);
+    EXPECT_EQ(lifted.heading, east) << "of the samples behind the lift";
+    builder.take(resting);
+    EXPECT_FALSE(resting.heading.has_value());
+}
+
 TEST(PathBuilder, ThinsALongPathEvenly) {
     PathBuilder builder;
     for (int x = 1; x <= 1000; ++x) {

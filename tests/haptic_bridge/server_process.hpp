@@ -175,6 +175,7 @@ struct Wall {
             divergences += terrain.stateHash() != timed.serverHash ? 1 : 0;
             longest = std::max(longest, timed.step.path.size());
             engaged += timed.step.engaged ? 1 : 0;
+            turns += timed.step.heading ? 1 : 0;
             if (timed.step.edit.any()) {
                 edits.push_back(timed.step.edit);
             }
@@ -185,7 +186,7 @@ struct Wall {
 
     sand::Terrain terrain;
     std::uint32_t epoch = 0;
-    int divergences = 0, outOfOrder = 0, engaged = 0, strokes = 0;
+    int divergences = 0, outOfOrder = 0, engaged = 0, strokes = 0, turns = 0;
     std::size_t longest = 0;
     std::vector<sand::Edit> edits;
 };

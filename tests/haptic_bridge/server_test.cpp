@@ -107,6 +107,28 @@ TEST_F(HapticServer, WritesWithARecordedHand) {
     EXPECT_EQ(wall.terrain.field().height(78, 48), scene_.terrain.height(78, 48));
 }
 
+// A hand that turns its tool says so when it turns, and not of a ball, for which it makes no difference.
+TEST_F(HapticServer, TurnsTheToolThatHasAHeading) {
+    const std::string walk = folder_.write("walk.strokes",
+                                           "follow\nstroke\npoint -0.5 0\npoint 0.5 0\npoint 0.5 0.5\n"
+                                           "heading 200\nfoot left\nstroke\npoint 0 -0.5\nhold 0.2\n");
+    for (const std::string shape : {"sphere", "ellipse"}) {
+        std::string text = kSmallScene;
+        text.replace(text.find("radius"), 0, "shape = \"" + shape + "\"\n");
+        std::vector<std::string> arguments = ServerProcess::usual(folder_.write("walk.toml", text), folder_);
+        arguments[3] = "script:" + walk;
+        const sand::Scene scene = sand::loadScene(arguments[1]);
+        ServerProcess server(folder_, arguments);
+        Client client(server.address(), offerOf(scene));
+        Wall wall(scene);
+        ASSERT_TRUE(wall.follow(client, 160)) << client.link().message << "\n" << server.errors();
+        EXPECT_EQ(wall.divergences, 0);
+        EXPECT_EQ(wall.strokes, 2);
+        EXPECT_EQ(wall.turns, shape == "sphere" ? 0 : 2) << "east as the scene has it, north, and 200 degrees";
+        EXPECT_EQ(wall.terrain.heading(), shape == "sphere" ? sand::Heading{} : *sand::headingOf(200, true));
+    }
+}
+
 TEST_F(HapticServer, RunsInRealTimeAndReports) {
     std::vector<std::string> arguments = ServerProcess::usual(sceneFile_, folder_, 0, "realtime");
     arguments.insert(arguments.end(), {"--timing-tests", "20"});

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/force/tool_contour.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "sand/height_field.hpp"
+
+namespace sand::force {
+namespace {
+
+constexpr int kFine = 512;  // places that stand in for the outline
+
+/// In the tool's own axes, with half its length and half its width as units; z in radii over its lowest point.
+using Places = std::vector<Vec3>;
+
+Vec3 onCircle(double turn) { return {std::cos(2 * std::numbers::pi * turn), std::sin(2 * std::numbers::pi * turn), 0}; }
+
+/// The last place of the sole along a ray from its middle.
+Vec3 soleAlong(const Vec3& ray) {
+    Vec3 farthest;
+    double reach = 0;
+    for (const SolePiece& piece : solePieces()) {
+        // The ray in the frame in which the piece is a unit circle: |t d - c| = 1, the larger t.
+        const double dx = ray.x / piece.halfLength, dy = ray.y / piece.halfWidth;
+        const double cx = piece.along / piece.halfLength, cy = piece.across / piece.halfWidth;
+        const double a = dx * dx + dy * dy, b = dx * cx + dy * cy, c = cx * cx + cy * cy - 1;
+        const double root = b * b - a * c;
+        if (root >= 0 && (b + std::sqrt(root)) / a > reach) {
+            reach = (b + std::sqrt(root)) / a;
+            farthest = {reach * ray.x, reach * ray.y, piece.lift + piece.bulge};
+        }
+    }
+    return farthest;
+}
+
+Vec3 outlineAt(ToolKind kind, double turn) {
+    const Vec3 place = onCircle(turn);
+    if (kind == ToolKind::rectangle) {
+        return (1 / std::max(std::abs(place.x), std::abs(place.y))) * place;
+    }
+    return kind == ToolKind::footprint ? soleAlong(place) : place;
+}
+
+/// kPoints of them, so that the way from one to the next along the others is the same.
+Places evenly(const Places& outline) {
+    std::vector<double> way{0};  // [scene unit] to each, and back to the first
+    const auto flat = [](const Vec3& a, const Vec3& b) { return std::hypot(a.x - b.x, a.y - b.y); };
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+        way.push_back(way.back() + flat(outline[i], outline[(i + 1) % outline.size()]));
+    }
+    Places even;
+    std::size_t at = 0;
+    for (int i = 0; i < Contour::kPoints; ++i) {
+        const double here = way.back() * i / Contour::kPoints;
+        while (way[at + 1] < here) {
+            ++at;
+        }
+        const double length = way[at + 1] - way[at];
+        const double share = length > 0 ? (here - way[at]) / length : 0;
+        const Vec3 from = outline[at], to = outline[(at + 1) % outline.size()];
+        even.push_back(from + share * (to - from));
+    }
+    return even;
+}
+
+}  // namespace
+
+Contour contourOf(const ToolShape& shape, const Heading& heading, double cellSize) {
+    const double unit = cellSize / kProbePerCell;
+    const double radius = unit * shape.radius;
+    if (isRound(shape.kind)) {
+        return Contour::sphere(radius);
+    }
+    const double width = unit * shape.halfWidth;
+    Places outline;
+    for (int i = 0; i < kFine; ++i) {
+        const Vec3 place = outlineAt(shape.kind, static_cast<double>(i) / kFine);
+        outline.push_back({radius * place.x, width * place.y, radius * (place.z - 1)});
+    }
+    const double cosine = static_cast<double>(heading.x) / Heading::kLength;
+    const double sine = static_cast<double>(heading.y) / Heading::kLength;
+    Places even = evenly(outline);
+    Contour contour{{}, 0, -radius};
+    for (std::size_t i = 0; i < even.size(); ++i) {
+        // A mirrored tool's points run clockwise: they are taken from the last to the first.
+        const Vec3 place = even[heading.mirrored ? (even.size() - i) % even.size() : i];
+        const double across = heading.mirrored ? -place.y : place.y;
+        contour.points[i] = {cosine * place.x - sine * across, sine * place.x + cosine * across, place.z};
+        contour.reach = std::max(contour.reach, std::hypot(place.x, place.y));
+    }
+    return contour;
+}
+
+}  // namespace sand::force
