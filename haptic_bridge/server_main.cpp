@@ -103,7 +103,10 @@ void serve(const Options& options) {
         print("warning: " + warning);
     }
     const HandSettings settings = HandSettings::parse(options.map);
-    Hand hand(scene, openDevice(options.device, settings, scene), settings.datum);
+    std::unique_ptr<Device> device = openDevice(options.device, settings, scene);
+    const auto datum =
+        settings.datum.value_or(device->physics() ? HandSettings::Datum::level : HandSettings::Datum::surface);
+    Hand hand(scene, std::move(device), datum);
     HandChannel channel;
 
     asio::io_context io;

@@ -20,6 +20,8 @@ struct Pose {
     bool leftFoot = false;  // with a heading: the tool's left and right are exchanged
 };
 
+class TroubleCounts;
+
 /// A haptic device, or what stands in for one. Used by one thread.
 class Device {
 public:
@@ -37,6 +39,10 @@ public:
     [[nodiscard]] virtual double scale() const { return 1; }
     /// Where a body was read last, in its own axes [m], and whether it answered; a recording has no such place.
     [[nodiscard]] virtual ArmReading reading() const { return {}; }
+    /// What the device has done wrong, any thread; null for what does nothing wrong.
+    [[nodiscard]] virtual const TroubleCounts* troubles() const { return nullptr; }
+    /// Any thread: of the force that is sent, this share, 0 to 1, reaches the body; a change is ramped.
+    virtual void shareForce(double /* share */) {}
     /// Whether a recording is over: from then on it hovers where it is.
     [[nodiscard]] virtual bool finished(double time) const = 0;
 };

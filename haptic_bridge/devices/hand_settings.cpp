@@ -78,6 +78,18 @@ void readTime(const Option& option, HandSettings& settings) {
     settings.secondsPerTick = unit->second;
 }
 
+void readEngage(const Option& option, HandSettings& settings) {
+    if (option.value == "near") {
+        settings.engage = HandSettings::Engage::near;
+    } else if (option.value == "always") {
+        settings.engage = HandSettings::Engage::always;
+    } else if (option.value == "button") {
+        settings.engage = HandSettings::Engage::button;
+    } else {
+        option.fail("is near, always or button");
+    }
+}
+
 void apply(const Option& option, HandSettings& settings) {
     const auto either = [&option](std::string_view first, std::string_view second) {
         if (option.value != first && option.value != second) {
@@ -101,12 +113,17 @@ void apply(const Option& option, HandSettings& settings) {
         settings.origin = {option.number(words[0]), option.number(words[1]), option.number(words[2])};
     } else if (option.key == "depth") {
         settings.depth = option.number(option.value);
+    } else if (option.key == "drift") {
+        settings.drift = option.number(option.value);
+        if (!(settings.drift >= 0 && settings.drift <= 1)) {
+            option.fail("lies between 0 and 1");
+        }
     } else if (option.key == "engage") {
-        settings.engage = either("near", "always") ? HandSettings::Engage::near : HandSettings::Engage::always;
+        readEngage(option, settings);
     } else if (option.key == "datum") {
         settings.datum = either("surface", "level") ? HandSettings::Datum::surface : HandSettings::Datum::level;
     } else {
-        option.fail("the keys are columns, time, axes, scale, vertical, origin, depth, engage and datum");
+        option.fail("the keys are columns, time, axes, scale, vertical, origin, depth, drift, engage and datum");
     }
 }
 

@@ -17,8 +17,8 @@ struct HandSettings {
         int column = 0;
         double sign = 1;
     };
-    enum class Engage { near, always };   // near: the underside is lower than one radius over the surface
-    enum class Datum { surface, level };  // heights count from the starting surface below the hand, or from its mean
+    enum class Engage { near, always, button };  // near: the underside is lower than one radius over the surface
+    enum class Datum { surface, level };         // heights count from the starting surface below the hand, or from its mean
 
     std::array<std::string, 4> columns{"time", "x", "y", "z"};
     double secondsPerTick = 1;                                     // of numeric times
@@ -28,8 +28,9 @@ struct HandSettings {
     std::optional<sand::force::Vec3> origin;  // [unit of the trace], east, north, up: over the field's centre; else the
                                               // centre of the bounding box and the median height
     double depth = 0.5;  // [tool radius], of the underside, under the surface at the origin's height
-    Engage engage = Engage::near;
-    Datum datum = Datum::surface;
+    double drift = 0;              // [reach per reach moved], of an arm's workspace to where the hand works
+    std::optional<Engage> engage;  // nothing: near for a recording, always for an arm
+    std::optional<Datum> datum;    // nothing: surface for what has no body, level for an arm
 
     /// Reads KEY=VALUE texts. Throws files::InputError that names option, key and the keys there are.
     static HandSettings parse(const std::vector<std::string>& options);

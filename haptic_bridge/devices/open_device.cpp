@@ -35,6 +35,9 @@ std::unique_ptr<Device> openDevice(const std::string& spec, const HandSettings& 
         return std::make_unique<StrokeDevice>(Strokes::parse(text, what));
     }
     if (kind == "trace" && !what.empty()) {
+        if (settings.engage == HandSettings::Engage::button) {
+            throw files::InputError("--map engage=button: a trace records no buttons; give near or always");
+        }
         std::ifstream file = open(what);
         const double cell = scene.terrain.cellSize();
         return std::make_unique<TraceDevice>(Trace::parse(file, what, settings), settings,

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/devices/mapped_device.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "files/input_error.hpp"
+
+namespace haptic_bridge {
+
+using sand::force::Vec3;
+
+namespace {
+
+constexpr double kFittedShare = 0.8;  // of the field's shorter side, when no scale is given
+
+double& part(Vec3& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+
+double halfSide(const sand::Scene& scene) {
+    return std::min(scene.terrain.columns(), scene.terrain.rows()) * scene.terrain.cellSize() / 2;
+}
+
+}  // namespace
+
+MappedDevice::MappedDevice(std::unique_ptr<Arm> arm, const HandSettings& settings, const sand::Scene& scene)
+    : arm_(std::move(arm)),
+      settings_(settings),
+      scale_(settings.scale.value_or(kFittedShare * halfSide(scene) / arm_->physics().reach)),
+      horizontal_(scale_ / halfSide(scene)),
+      vertical_(scale_ * settings.verticalScale / scene.toolRadius()),
+      origin_(settings.origin.value_or(Vec3{})),
+      check_(kFarthestShare * arm_->physics().reach, troubles_) {
+    if (settings.datum == HandSettings::Datum::surface) {
+        // On a slope such a mapping bends the hand's space, and a force along it would do work on a closed path.
+        throw files::InputError("--map datum=surface: is for recordings; an arm feels the sand at its own height, level");
+    }
+}
+
+double MappedDevice::scale() const { return scale_ * std::max(1.0, settings_.verticalScale); }
+
+Vec3 MappedDevice::turned(Vec3 place) const {
+    const auto along = [&](const HandSettings::Axis& axis) { return axis.sign * part(place, axis.column); };
+    return {along(settings_.axes[0]), along(settings_.axes[1]), along(settings_.axes[2])};
+}
+
+void MappedDevice::moveOrigin(const ArmReading& reading, Vec3 place) {
+    const Vec3 moved = known_ ? place - last_ : Vec3{};
+    if (reading.second) {
+        origin_ = origin_ + moved;
+    } else if (!feels_) {  // where a force acts, a moving origin would put energy into the hand
+        const double share = settings_.drift * norm(moved) / arm_->physics().reach;
+        origin_ = origin_ - share * Vec3{place.x, place.y, 0};
+    }
+}
+
+void MappedDevice::rampForce(double seconds, double wanted) {
+    const double most = seconds / (wanted > gain_ ? kRampSeconds : kFadeSeconds);
+    gain_ += std::clamp(wanted - gain_, -most, most);
+}
+
+Pose MappedDevice::read(double time) {
+    const ArmReading reading = arm_->read(time);
+    if (!reading.present) {
+        troubles_.count(Trouble::absent);
+    }
+    const double passed = std::clamp(time - time_, 0.0, kFadeSeconds);
+    time_ = std::max(time_, time);
+    if (!reading.present || !check_.accept(time, reading.place)) {
+        reading_.present = false;
+        gain_ = 0;
+        pose_.engaged = false;
+        return pose_;
+    }
+    reading_ = reading;
+    const Vec3 place = turned(reading.place);
+    moveOrigin(reading, place);
+    last_ = place;
+    known_ = true;
+    rampForce(passed, reading.second ? 0 : std::clamp(share_.load(std::memory_order_relaxed), 0.0, 1.0));
+
+    const Vec3 from = place - origin_;
+    pose_.x = from.x * horizontal_;
+    pose_.y = from.y * horizontal_;
+    pose_.z = 1 - settings_.depth + from.z * vertical_;
+    switch (settings_.engage.value_or(HandSettings::Engage::always)) {
+        case HandSettings::Engage::near:
+            pose_.engaged = pose_.z < 2;
+            break;
+        case HandSettings::Engage::always:
+            pose_.engaged = true;
+            break;
+        case HandSettings::Engage::button:
+            // The clutch holds a stroke: letting go of the button under it would lift the tool unseen.
+            pose_.engaged = reading.second ? pose_.engaged : reading.first;
+            break;
+    }
+    return pose_;
+}
+
+void MappedDevice::sendForce(Vec3 force) {
+    feels_ = force.x != 0 || force.y != 0 || force.z != 0;
+    if (!reading_.present) {
+        arm_->push({});
+        return;
+    }
+    const double vertical = settings_.verticalScale, longest = std::max(1.0, vertical);
+    const Vec3 felt = (gain_ / longest) * Vec3{force.x, force.y, vertical * force.z};
+    Vec3 pushed;
+    part(pushed, settings_.axes[0].column) = settings_.axes[0].sign * felt.x;
+    part(pushed, settings_.axes[1].column) = settings_.axes[1].sign * felt.y;
+    part(pushed, settings_.axes[2].column) = settings_.axes[2].sign * felt.z;
+    arm_->push(pushed);
+}
+
+}  // namespace haptic_bridge
