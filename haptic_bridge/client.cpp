@@ -68,6 +68,20 @@ void Client::shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs) {
 
 void Client::request(const sand::Edit& edit) { session_->request({edit}); }
 
+void Client::shareForce(double share) { session_->shareForce(share); }
+
+std::vector<files::Bytes> Client::drainTicks() {
+    const std::lock_guard lock(session_->shelf.mutex);
+    return std::exchange(session_->shelf.ticks, {});
+}
+
+std::vector<TimedPosition> Client::drainPositions() { return session_->drainPositions(); }
+
+std::uint64_t Client::floods() const {
+    const std::lock_guard lock(session_->shelf.mutex);
+    return session_->shelf.floods;
+}
+
 std::int64_t Client::clockOffsetNs() const {
     const std::lock_guard lock(session_->shelf.mutex);
     return session_->shelf.clockOffsetNs;

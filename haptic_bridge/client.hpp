@@ -37,6 +37,7 @@ enum class Link : std::uint8_t {
     offered,     // the handshake fits: call grant()
     granting,    // grant() is under way
     linked,      // the server numbers the steps of the granted epoch
+    streaming,   // the server has no sand and streams positions: the master numbers the steps
     lost,        // was offered or more, and is gone; tried again for ever
     stopped
 };
@@ -52,6 +53,12 @@ struct TimedStep {
     std::int64_t serverTimeNs = 0;  // server's clock, when the hand was read last
     std::uint64_t serverHash = 0;   // state hash of the server's replica after the step
     std::int64_t receivedNs = 0;    // this host's monotonic clock
+};
+
+/// Where a hand was, from a server that streams positions.
+struct TimedPosition {
+    Position position;
+    std::int64_t receivedNs = 0;  // this host's monotonic clock
 };
 
 struct LinkCounters {
@@ -90,6 +97,14 @@ public:
     void shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs);
     /// An operator asks: the server puts it into its next step. Without effect unless the server is linked.
     void request(const sand::Edit& edit);
+    /// Of its forces, the hand feels this share from now on, 0 to 1. Without effect unless the server is linked.
+    void shareForce(double share);
+    /// Pieces of the server's tick track, for the journal; what is left when the link has ended, too.
+    [[nodiscard]] std::vector<files::Bytes> drainTicks();
+    /// What a streaming server has sent, in order; when kMaxPositions wait, the network thread stops reading.
+    [[nodiscard]] std::vector<TimedPosition> drainPositions();
+    /// How often that was so.
+    [[nodiscard]] std::uint64_t floods() const;
     /// Server's clock − this host's clock [ns]; 0 before the first exchange.
     [[nodiscard]] std::int64_t clockOffsetNs() const;
     /// The server's latest measurements; kept when the link is lost.
@@ -100,7 +115,8 @@ public:
     /// Says goodbye, waits at most half a second for the server's last report, and ends the network thread.
     void stop();
 
-    static constexpr std::size_t kMaxQueued = 1024;  // [step]
+    static constexpr std::size_t kMaxQueued = 1024;      // [step]
+    static constexpr std::size_t kMaxPositions = 16384;  // a second of a device that is read 16 times a millisecond
 
 private:
     class Session;

@@ -22,7 +22,8 @@ constexpr std::chrono::milliseconds kFirstBackOff{100}, kLastBackOff{2000};
 constexpr std::chrono::milliseconds kConnectTimeout{3000};
 constexpr std::chrono::milliseconds kSilence{10000};  // pongs come four times a second
 constexpr std::chrono::milliseconds kGoodbye{500};
-constexpr std::size_t kMaxTests = 64;  // a wall that stands still has no round trip to tell
+constexpr std::size_t kMaxTests = 64;         // a wall that stands still has no round trip to tell
+constexpr std::size_t kMaxTickPieces = 4096;  // half an hour of them; a session that keeps none takes none out
 
 }  // namespace
 
@@ -133,7 +134,8 @@ void Client::Session::failed(const std::string& why) {
 
 void Client::Session::closed(const std::string& why) {
     const Link before = link();
-    const bool wasUp = before == Link::offered || before == Link::granting || before == Link::linked;
+    const bool wasUp =
+        before == Link::offered || before == Link::granting || before == Link::linked || before == Link::streaming;
     if (stopping_) {
         io_.stop();
         return;
@@ -246,14 +248,35 @@ std::vector<TimedStep> Client::Session::drain(std::size_t most) {
         shelf.tests.pop_front();
     }
     if (shelf.full && shelf.steps.size() < kMaxQueued) {
-        shelf.full = false;
-        asio::post(io_, [this] {
-            if (connection_) {
-                connection_->resume();
-            }
-        });
+        resumeReading();
     }
     return steps;
+}
+
+std::vector<TimedPosition> Client::Session::drainPositions() {
+    const std::lock_guard lock(shelf.mutex);
+    if (shelf.full) {
+        resumeReading();
+    }
+    return std::exchange(shelf.positions, {});
+}
+
+/// Under the shelf's mutex.
+void Client::Session::resumeReading() {
+    shelf.full = false;
+    asio::post(io_, [this] {
+        if (connection_) {
+            connection_->resume();
+        }
+    });
+}
+
+void Client::Session::shareForce(double share) {
+    asio::post(io_, [this, share] {
+        if (connection_ && link() == Link::linked) {
+            connection_->send(ForceShare{share});
+        }
+    });
 }
 
 void Client::Session::shown(const Shown& frame) {
@@ -296,6 +319,10 @@ void Client::Session::receive(Message&& message) {
         connection_->close("it says goodbye: " + bye->reason);
     } else if (const auto* greeting = std::get_if<Welcome>(&message)) {
         welcome(*greeting);
+    } else if (const auto* positions = std::get_if<PositionGreeting>(&message)) {
+        greet(*positions);
+    } else if (const auto* position = std::get_if<Position>(&message); position && link() == Link::streaming) {
+        accept(*position);
     } else if (link() < Link::offered || link() > Link::linked) {
         connection_->close("it did not greet", true);
     } else if (const auto* pong = std::get_if<Pong>(&message)) {
@@ -309,6 +336,11 @@ void Client::Session::receive(Message&& message) {
         accept(*test);
     } else if (auto* step = std::get_if<StepMessage>(&message)) {
         accept(std::move(*step));
+    } else if (auto* piece = std::get_if<TickPiece>(&message)) {
+        const std::lock_guard lock(shelf.mutex);
+        if (shelf.ticks.size() < kMaxTickPieces) {
+            shelf.ticks.push_back(std::move(piece->bytes));
+        }
     } else if (std::holds_alternative<NeedState>(message) && link() == Link::granting) {
         connection_->send(State{std::move(state_)});
         state_.clear();
@@ -346,6 +378,43 @@ void Client::Session::accept(const TimingTest& test) {
     shelf.tests.push_back({test.id, lastStep_});
     if (shelf.tests.size() > kMaxTests) {
         shelf.tests.pop_front();
+    }
+}
+
+void Client::Session::greet(const PositionGreeting& greeting) {
+    if (link() >= Link::offered && link() <= Link::streaming) {
+        connection_->close("it sent a message out of turn", true);
+        return;
+    }
+    if (greeting.protocol != kProtocolVersion) {
+        refuse(
+            fmt::format("refused: it streams positions in protocol version {}, the master speaks {}; "
+                        "docs/protocol.md has the present one",
+                        greeting.protocol, kProtocolVersion));
+        return;
+    }
+    {
+        const std::lock_guard lock(shelf.mutex);
+        shelf.counters.reconnects += everWelcomed_ ? 1 : 0;
+        shelf.positions.clear();
+    }
+    everWelcomed_ = true;
+    backOff_ = kFirstBackOff;
+    tell(Link::streaming,
+         fmt::format("{}: connected, '{}' streams positions; the master numbers the steps", peer_, greeting.name));
+}
+
+void Client::Session::accept(const Position& position) {
+    bool full = false;
+    {
+        const std::lock_guard lock(shelf.mutex);
+        shelf.positions.push_back({position, monotonicNs()});
+        full = shelf.positions.size() >= kMaxPositions && !shelf.full;
+        shelf.full = shelf.full || full;
+        shelf.floods += full ? 1 : 0;
+    }
+    if (full) {
+        connection_->pause();
     }
 }
 

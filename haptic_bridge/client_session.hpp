@@ -31,6 +31,8 @@ public:
     std::vector<TimedStep> drain(std::size_t most);
     void shown(const Shown& frame);
     void request(const EditRequest& request);
+    void shareForce(double share);
+    std::vector<TimedPosition> drainPositions();
     void stop();
 
     /// What callers see, under its mutex.
@@ -44,6 +46,9 @@ public:
         };
         std::deque<Test> tests;                   // that wait for a frame, as steps do
         std::vector<std::uint32_t> testsInFrame;  // to be echoed after the next swap
+        std::vector<files::Bytes> ticks;
+        std::vector<TimedPosition> positions;
+        std::uint64_t floods = 0;
         std::optional<Report> report;
         LinkCounters counters;
         std::int64_t clockOffsetNs = 0;
@@ -69,6 +74,9 @@ private:
     void welcome(const Welcome& welcome);
     void accept(StepMessage&& message);
     void accept(const TimingTest& test);
+    void greet(const PositionGreeting& greeting);
+    void accept(const Position& position);
+    void resumeReading();
 
     const Address address_;
     const Offer offer_;

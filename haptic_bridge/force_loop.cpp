@@ -38,6 +38,7 @@ void ForceLoop::run() {
 
     std::int64_t due = monotonicNs(), last = due;
     std::int64_t handTimeNs = 0;  // runs while a master is linked
+    std::uint32_t sitting = 0;
     while (!stopping_) {
         due += kTickNs;
         sleepUntil(due);
@@ -48,8 +49,19 @@ void ForceLoop::run() {
         due = now - due > kGiveUpNs ? now : due;
         const bool moving = channel_.moving.load(std::memory_order_acquire);
         handTimeNs += moving ? elapsed : 0;
-        const HandSample sample = hand_.tick(static_cast<double>(handTimeNs) * 1e-9, now, channel_.surface.latest());
-        if (moving && !channel_.samples.push(sample)) {
+        const double handTime = static_cast<double>(handTimeNs) * 1e-9;
+        if (!moving) {
+            hand_.rest(handTime);
+            continue;
+        }
+        if (const std::uint32_t latest = channel_.sitting; latest != sitting) {
+            sitting = latest;
+            channel_.beginSitting(hand_);
+        }
+        const Surface& surface = channel_.surface.latest();
+        const HandSample sample = hand_.tick(handTime, now, surface);
+        channel_.keep(now, surface);
+        if (!channel_.samples.push(sample)) {
             channel_.overflow.fetch_add(1, std::memory_order_relaxed);
         }
     }

@@ -36,14 +36,28 @@ Hand::Hand(const sand::Scene& scene, std::unique_ptr<Device> device, HandSetting
 
 Hand::Hand(const sand::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum, Guards::Mode mode,
            const LawAtRadius& law)
-    : model_(scene.force),
+    : constants_(scene.force),
+      model_(scene.force),
       device_(std::move(device)),
       mapping_(scene, device_->physics() != nullptr ? HandSettings::Datum::level : datum),
       guards_(limitsFor(scene, *device_, law), mode),
       armVelocity_(guards_.limits().arm.resolution),
       velocity_(guards_.limits().resolution * guards_.limits().scale),
       words_(guards_.limits().inWords("k_s", scene.force.stiffness, law)) {
+    restart();
+}
+
+void Hand::restart() {
+    model_ = sand::force::ForceModel(constants_);
+    guards_.forget();
+    armVelocity_.restart();
+    velocity_.restart();
     last_ = mapping_.probe(Pose{}).value_or(sand::ProbePoint{});
+}
+
+void Hand::rest(double deviceTime) {
+    (void)device_->read(deviceTime);
+    device_->sendForce({});
 }
 
 HandSample Hand::tick(double deviceTime, std::int64_t nowNs, const Surface& surface) {

@@ -42,6 +42,10 @@ public:
 
     /// `deviceTime` [s] is what the device is read at; now and surface.timeNs are on one clock.
     HandSample tick(double deviceTime, std::int64_t nowNs, const Surface& surface);
+    /// Nobody is linked: the device is read, so that its troubles are told, and gets no force.
+    void rest(double deviceTime);
+    /// Forgets every tick before, as if it had just been made: what follows depends on the ticks of one link alone.
+    void restart();
 
     /// All of the tick before: for the thread that ticks.
     [[nodiscard]] const Tick& lastTick() const { return tick_; }
@@ -58,6 +62,7 @@ private:
          const LawAtRadius& law);
     void fillTick(double deviceTime, const Surface& surface, const HandSample& sample);
 
+    const sand::ForceConstants constants_;
     sand::force::ForceModel model_;
     std::unique_ptr<Device> device_;
     HandMapping mapping_;

@@ -32,6 +32,10 @@ public:
     struct Sources {
         std::function<Report()> report;               // the parts of a report that the link does not measure itself
         std::function<void(const std::string&)> log;  // one line for a person
+        /// Pieces of the tick track that are there for the master's journal; with `all`, waits for the last ones. Empty
+        /// where nothing is recorded.
+        std::function<std::vector<files::Bytes>(bool all)> ticks = {};
+        std::function<void(double share)> shareForce = {};  // an operator's wish
     };
 
     /// Takes over a listening acceptor.

@@ -93,6 +93,10 @@ void MasterLink::receive(Message&& message) {
         echoed(*echo);
     } else if (auto* request = std::get_if<EditRequest>(&message); request != nullptr && phase_ == Phase::linked) {
         server_.sequencer_->edit(std::move(*request));
+    } else if (const auto* force = std::get_if<ForceShare>(&message); force != nullptr && phase_ == Phase::linked) {
+        if (server_.sources_.shareForce) {
+            server_.sources_.shareForce(force->share);
+        }
     } else {
         outOfTurn();
     }
@@ -142,7 +146,17 @@ void MasterLink::needState() {
 
 void MasterLink::unusable(const std::string& why) { refuse({RefusalCode::state, why}); }
 
+void MasterLink::sendTicks(bool all) {
+    if (!server_.sources_.ticks) {
+        return;
+    }
+    for (files::Bytes& piece : server_.sources_.ticks(all)) {
+        connection_->send(TickPiece{std::move(piece)});
+    }
+}
+
 void MasterLink::step(files::Bytes message) {
+    sendTicks(false);
     ++steps_;
     if (message.size() <= kMaxMessage) {  // not one with sand that is loaded: timing tests are as long as the last
         stepBytes_ += message.size();
@@ -207,6 +221,9 @@ Report MasterLink::report() const {
 void MasterLink::sayGoodbye(const std::string& reason) {
     if (phase_ == Phase::over) {
         return;
+    }
+    if (phase_ == Phase::linked) {
+        sendTicks(true);
     }
     connection_->send(report());
     connection_->send(Bye{reason});

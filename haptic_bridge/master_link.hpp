@@ -33,6 +33,7 @@ private:
     void refuse(const Refusal& refusal);
     void outOfTurn();
     void end(const std::string& why);
+    void sendTicks(bool all);
     void tickReport();
     void tickTimingTest(double pause /* [s] */ = 0);
     void watch();

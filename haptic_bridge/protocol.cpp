@@ -124,6 +124,20 @@ void put(const EditRequest& request, files::ByteWriter& writer) {
     writer.put(static_cast<std::uint8_t>(request.edit.kind));
     sand::encodeDetails(request.edit, writer);
 }
+void put(const ForceShare& force, files::ByteWriter& writer) { writer.put(force.share); }
+void put(const TickPiece& piece, files::ByteWriter& writer) { writer.putBytes(piece.bytes); }
+void put(const PositionGreeting& greeting, files::ByteWriter& writer) {
+    writer.put(kMagic);
+    writer.put(greeting.protocol);
+    writer.putText(std::string_view(greeting.name).substr(0, kMaxSceneName));
+}
+void put(const Position& position, files::ByteWriter& writer) {
+    writer.put(position.timeNs);
+    writer.put(position.x);
+    writer.put(position.y);
+    writer.put(position.z);
+    writer.put(static_cast<std::uint8_t>(position.engaged));
+}
 
 void get(Hello& hello, files::ByteReader& reader) { hello.master = getIdentity(reader); }
 void get(Welcome& welcome, files::ByteReader& reader) {
@@ -194,6 +208,38 @@ void get(EditRequest& request, files::ByteReader& reader) {
         throw files::FormatError("a request for edit " + std::to_string(edit));
     }
     request.edit = sand::decodeDetails(static_cast<sand::Edit::Kind>(edit), reader);
+}
+void get(ForceShare& force, files::ByteReader& reader) {
+    force.share = reader.get<double>();
+    if (!(force.share >= 0 && force.share <= 1)) {
+        throw files::FormatError("a share of the force that is not within 0 and 1");
+    }
+}
+void get(TickPiece& piece, files::ByteReader& reader) {
+    const auto bytes = reader.getBytes(reader.rest().size());
+    piece.bytes.assign(bytes.begin(), bytes.end());
+}
+void get(PositionGreeting& greeting, files::ByteReader& reader) {
+    if (reader.get<std::uint32_t>() != kMagic) {
+        throw files::FormatError("a greeting without the magic word SWHB");
+    }
+    greeting.protocol = reader.get<std::uint32_t>();
+    if (greeting.protocol != kProtocolVersion) {
+        reader.getBytes(reader.rest().size());
+        return;
+    }
+    greeting.name = getLine(reader);
+    if (greeting.name.size() > kMaxSceneName) {
+        throw files::FormatError("a device name of " + std::to_string(greeting.name.size()) + " bytes");
+    }
+}
+/// Numbers that are none pass: a device that sends them is told of, and not cut off.
+void get(Position& position, files::ByteReader& reader) {
+    position.timeNs = reader.get<std::int64_t>();
+    position.x = reader.get<double>();
+    position.y = reader.get<double>();
+    position.z = reader.get<double>();
+    position.engaged = reader.get<std::uint8_t>() != 0;
 }
 
 template <std::size_t index = 0>

@@ -78,6 +78,11 @@ struct EditRequest {
     sand::Edit edit;
     friend bool operator==(const EditRequest&, const EditRequest&) = default;
 };
+/// An operator of the wall asks: of its forces, the hand feels this share from now on.
+struct ForceShare {
+    double share = 1;  // 0 to 1
+    friend bool operator==(const ForceShare&, const ForceShare&) = default;
+};
 
 // Server to master.
 struct Welcome {
@@ -130,6 +135,26 @@ struct Report {
     std::uint64_t samplesDropped = 0;  // hand samples that no step holds: thinned out, or the queue was full
     friend bool operator==(const Report&, const Report&) = default;
 };
+/// A piece of the tick track, for the master's journal (tick_track.hpp).
+struct TickPiece {
+    files::Bytes bytes;
+    friend bool operator==(const TickPiece&, const TickPiece&) = default;
+};
+
+// From a server that has no sand: it streams where the hand is, and the master numbers the steps.
+/// Instead of a Welcome, and without having read the Hello.
+struct PositionGreeting {
+    std::uint32_t protocol = kProtocolVersion;
+    std::string name;  // of the device, for a person
+    friend bool operator==(const PositionGreeting&, const PositionGreeting&) = default;
+};
+/// In hand space (docs/devices.md).
+struct Position {
+    std::int64_t timeNs = 0;  // of the server's clock; never runs backwards
+    double x = 0, y = 0, z = 0;
+    bool engaged = false;
+    friend bool operator==(const Position&, const Position&) = default;
+};
 
 // Either way.
 struct Bye {
@@ -138,8 +163,9 @@ struct Bye {
 };
 
 /// In the order of their type bytes, which count from 1.
-using Message = std::variant<Hello, Welcome, Refusal, Start, Ready, NeedState, State, StepMessage, TimingTest, Shown,
-                             TimingEcho, Ping, Pong, Report, Bye, EditRequest>;
+using Message =
+    std::variant<Hello, Welcome, Refusal, Start, Ready, NeedState, State, StepMessage, TimingTest, Shown, TimingEcho,
+                 Ping, Pong, Report, Bye, EditRequest, ForceShare, TickPiece, PositionGreeting, Position>;
 
 /// The message as it goes over the wire: length, type, payload.
 [[nodiscard]] files::Bytes encode(const Message& message);

@@ -5,8 +5,9 @@
 #include <chrono>
 #include <utility>
 
+#include "haptic_bridge/devices/sand_watcher.hpp"
 #include "haptic_bridge/monotonic.hpp"
-#include "sand/force/tool_contour.hpp"
+#include "haptic_bridge/surface_of.hpp"
 
 namespace haptic_bridge {
 namespace {
@@ -17,14 +18,16 @@ constexpr std::int64_t kMillisecond = 1'000'000;  // [ns]
 }  // namespace
 
 Sequencer::Sequencer(const sand::Scene& scene, Pace pace, Hand& hand, HandChannel& channel, Output output,
-                     const sand::Erosion::Options& sweeps)
+                     const sand::Erosion::Options& sweeps, SandWatcher* watcher)
     : scene_(scene),
       pace_(pace),
       hand_(hand),
       channel_(channel),
       output_(std::move(output)),
       terrain_(scene, sweeps),
-      clock_(scene.rules.stepsPerSecond) {
+      clock_(scene.rules.stepsPerSecond),
+      watcher_(watcher) {
+    showSand();
     thread_ = std::thread([this] { run(); });
 }
 
@@ -129,6 +132,11 @@ void Sequencer::begin() {
     path_.restart(terrain_.probe(), false);
     clock_.start(monotonicNs());
     publishSurface();
+    showSand();
+    ++channel_.sitting;
+    if (pace_ == Pace::fast) {
+        channel_.beginSitting(hand_);
+    }
     channel_.moving = true;
     output_.ready(session_);
 }
@@ -151,6 +159,7 @@ void Sequencer::gatherVirtual() {
         const auto now = static_cast<std::int64_t>(millisecond) * kMillisecond;
         virtualSurface_.timeNs = now;
         path_.add(hand_.tick(static_cast<double>(millisecond) * Hand::kTick, now, virtualSurface_));
+        channel_.keep(now, virtualSurface_);
     }
 }
 
@@ -182,25 +191,25 @@ void Sequencer::makeStep() {
     message.stateHash = terrain_.stateHash();
     output_.step(session_, encode(message));
     publishSurface();
+    showSand();
     clock_.advance(monotonicNs());
 }
 
 void Sequencer::publishSurface() {
-    const double radius = terrain_.toolRadius();
-    const auto tool = sand::force::contourOf(terrain_.toolShape(), terrain_.heading(), terrain_.field().cellSize());
-    const sand::force::SurfacePatch patch(terrain_.field(), terrain_.probe(), radius);
     if (pace_ == Pace::fast) {
-        virtualSurface_.patch = patch;
-        virtualSurface_.tool = tool;
-        virtualSurface_.step = terrain_.stepNumber();
+        takeSurface(terrain_, virtualSurface_);
         return;
     }
     Surface& next = channel_.surface.next();
-    next.patch = patch;
-    next.tool = tool;
-    next.step = terrain_.stepNumber();
+    takeSurface(terrain_, next);
     next.timeNs = monotonicNs();
     channel_.surface.publish();
+}
+
+void Sequencer::showSand() {
+    if (watcher_ != nullptr) {
+        watcher_->stepped(terrain_);
+    }
 }
 
 }  // namespace haptic_bridge

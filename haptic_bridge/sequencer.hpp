@@ -13,6 +13,7 @@
 #include "haptic_bridge/hand.hpp"
 #include "haptic_bridge/protocol.hpp"
 #include "haptic_bridge/step_clock.hpp"
+#include "haptic_bridge/tick_recorder.hpp"
 #include "sand/terrain.hpp"
 
 namespace haptic_bridge {
@@ -25,6 +26,21 @@ struct HandChannel {
     std::atomic<std::uint64_t> overflow{0};  // samples that found the queue full
     Latest<Surface> surface;                 // sand to force thread
     std::atomic<bool> moving{false};         // the hand's recording runs; it rests while nobody is linked
+    std::atomic<std::uint32_t> sitting{0};   // counts the links: the hand begins anew with each
+    TickRecorder* recorder = nullptr;        // of every tick, when somebody wants them
+
+    // For the thread that ticks.
+    void beginSitting(Hand& hand) const {
+        hand.restart();
+        if (recorder != nullptr) {
+            recorder->begin();
+        }
+    }
+    void keep(std::int64_t nowNs, const Surface& felt) const {
+        if (recorder != nullptr) {
+            recorder->add(nowNs, felt);
+        }
+    }
 };
 
 /// The sand thread: owns the server's replica, and numbers the steps while a master is linked.
@@ -46,8 +62,9 @@ public:
     };
 
     /// Under Pace::fast `hand` is ticked by this thread, and must not be used by another.
+    /// `watcher` may be null: told of the sand after every step, on the sand thread.
     Sequencer(const sand::Scene& scene, Pace pace, Hand& hand, HandChannel& channel, Output output,
-              const sand::Erosion::Options& sweeps = {});
+              const sand::Erosion::Options& sweeps = {}, SandWatcher* watcher = nullptr);
     ~Sequencer();
     Sequencer(const Sequencer&) = delete;
     Sequencer& operator=(const Sequencer&) = delete;
@@ -90,6 +107,7 @@ private:
     void gatherVirtual();
     void makeStep();
     void publishSurface();
+    void showSand();
 
     const sand::Scene& scene_;
     const Pace pace_;
@@ -112,7 +130,8 @@ private:
     sand::Edit edit_;  // for the next step
     std::uint64_t shown_ = 0;
     std::uint64_t virtualSteps_ = 0;  // made under the fast pace since the first start
-    bool liftFirst_ = false;          // the first step of an epoch lifts a tool that was left in the sand
+    SandWatcher* watcher_ = nullptr;
+    bool liftFirst_ = false;  // the first step of an epoch lifts a tool that was left in the sand
     bool stopping_ = false;
     std::atomic<std::uint64_t> withheld_{0}, dropped_{0};
     std::thread thread_;

@@ -6,15 +6,19 @@
 
 #include <CLI/CLI.hpp>
 #include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 
 #include "files/input_error.hpp"
 #include "haptic_bridge/client.hpp"
+#include "haptic_bridge/devices/device_troubles.hpp"
 #include "haptic_bridge/devices/open_device.hpp"
 #include "haptic_bridge/force_loop.hpp"
 #include "haptic_bridge/link_server.hpp"
+#include "haptic_bridge/monotonic.hpp"
+#include "haptic_bridge/tick_recorder.hpp"
 #include "workers/sand_threads.hpp"
 
 namespace {
@@ -30,6 +34,9 @@ struct Options {
     int sandThreads = 1;
     TimingTests tests;
     bool dieWithParent = false;
+    std::string record;
+    bool force = true;
+    double forceScale = 1;
 };
 
 void print(const std::string& line) {
@@ -97,17 +104,65 @@ Report measured(const Hand& hand, const ForceLoop* loop, const Sequencer& sequen
     return report;
 }
 
+/// Tells a person what the device does wrong, twice a second at most; the loop itself must not wait for a terminal.
+class DeviceWatch {
+public:
+    DeviceWatch(asio::io_context& io, const std::string& device, const Device& watched)
+        : timer_(io), teller_("device " + device), device_(watched) {
+        if (device_.troubles() != nullptr) {
+            look();
+        }
+    }
+
+private:
+    void look() {
+        timer_.expires_after(std::chrono::milliseconds(500));
+        timer_.async_wait([this](error_code error) {
+            if (!error) {
+                for (const std::string& line :
+                     teller_.lines(*device_.troubles(), static_cast<double>(monotonicNs()) * 1e-9)) {
+                    print(line);
+                }
+                look();
+            }
+        });
+    }
+
+    asio::steady_timer timer_;
+    TroubleTeller teller_;
+    const Device& device_;
+};
+
+std::function<std::vector<files::Bytes>(bool)> ticksOf(std::optional<TickRecorder>& recorder) {
+    if (!recorder) {
+        return {};
+    }
+    return [&recorder](bool all) {
+        if (all) {
+            recorder->flush();
+        }
+        return recorder->takePieces();
+    };
+}
+
 void serve(const Options& options) {
     const sand::Scene scene = sand::loadScene(options.scene);
     for (const std::string& warning : scene.warnings) {
         print("warning: " + warning);
     }
     const HandSettings settings = HandSettings::parse(options.map);
-    std::unique_ptr<Device> device = openDevice(options.device, settings, scene);
+    auto device = std::make_unique<NotedDevice>(openDevice(options.device, settings, scene));
+    NotedDevice& noted = *device;
+    noted.shareForce(options.force ? options.forceScale : 0);
     const auto datum =
         settings.datum.value_or(device->physics() ? HandSettings::Datum::level : HandSettings::Datum::surface);
     Hand hand(scene, std::move(device), datum);
     HandChannel channel;
+    std::optional<TickRecorder> recorder;
+    if (!options.record.empty()) {
+        recorder.emplace(TickRecorder::Options{options.record, options.pace == Pace::fast, print}, hand, noted, datum);
+        channel.recorder = &*recorder;
+    }
 
     asio::io_context io;
     asio::ip::tcp::acceptor acceptor = listenAt(io, options.listen);
@@ -115,13 +170,17 @@ void serve(const Options& options) {
     const Identity identity{kProtocolVersion, sand::kAlgorithmVersion, scene.rules.digest(), scene.name};
     std::function<Report()> measure;
     LinkServer server(io, std::move(acceptor), identity, static_cast<std::uint32_t>(scene.rules.stepsPerSecond),
-                      {[&measure] { return measure(); }, print}, options.tests);
+                      {[&measure] { return measure(); }, print, ticksOf(recorder),
+                       [&noted](double share) { noted.shareForce(share); }},
+                      options.tests);
     // The sand and force threads end before the link they report to.
     const workers::WorkerPool pool(options.sandThreads);
-    Sequencer sequencer(scene, options.pace, hand, channel, server.output(), {.executor = pool.lend()});
+    Sequencer sequencer(scene, options.pace, hand, channel, server.output(), {.executor = pool.lend()},
+                        noted.watcher());
     const auto loop = options.pace == Pace::realtime ? std::make_unique<ForceLoop>(hand, channel) : nullptr;
     measure = [&] { return measured(hand, loop.get(), sequencer); };
 
+    DeviceWatch watch(io, options.device, noted);
     asio::signal_set signals(io, SIGINT, SIGTERM);
     signals.async_wait([&server](error_code error, int) {
         if (!error) {
@@ -140,12 +199,20 @@ Options parse(int count, char** words) {
     Options options;
     CLI::App app("Feels the sand at 1 kHz, and streams what the hand does to a wall's master.");
     app.add_option("--scene", options.scene, "scene file, the same as the wall's")->required();
-    app.add_option("--device", options.device, "script:gis, script:FILE or trace:FILE.csv")->required();
+    app.add_option("--device", options.device,
+                   "script:gis, script:FILE, trace:FILE.csv, driver:FILE.so, sim:PRESET, mouse or spacenav")
+        ->required();
     app.add_option("--map", options.map, "KEY=VALUE, how a trace lies over the sand (docs/devices.md); repeatable")
         ->allow_extra_args(false);
     app.add_option("--pace", options.pace, "realtime, or fast: a virtual clock, as quick as the wall")
         ->transform(
             CLI::CheckedTransformer(std::map<std::string, Pace>{{"realtime", Pace::realtime}, {"fast", Pace::fast}}));
+    app.add_option("--record", options.record,
+                   "a CSV file: one row per tick, and the same ticks go into the session's journal");
+    app.add_option("--force", options.force, "on or off: whether an arm feels anything at the start")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, bool>{{"on", true}, {"off", false}}));
+    app.add_option("--force-scale", options.forceScale, "0 to 1: the share of the force that an arm feels")
+        ->check(CLI::Range(0.0, 1.0));
     app.add_option("--listen", options.listen, "ADDRESS:PORT; port 0 takes any free one");
     app.add_option("--port-file", options.portFile, "written when the server listens: the port's number");
     app.add_option("--timing-tests", options.tests.perSecond,

@@ -6,10 +6,12 @@
 #include <unistd.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include "files/input_error.hpp"
 
@@ -18,9 +20,12 @@ namespace {
 
 constexpr std::uint32_t kMagic = 0x4c4a5753;  // "SWJL"
 constexpr std::uint32_t kVersion = 4;
-constexpr std::uint32_t kOldestVersion = 1;  // which knew settle alone of the edits; 2 no tune and no load; 3 only spheres
+// 1 knew settle alone of the edits; 2 no tune and no load; 3 only spheres, and no ticks.
+constexpr std::uint32_t kOldestVersion = 1;
 constexpr std::uint8_t kFrameRecord = 1;
 constexpr std::uint8_t kEndRecord = 2;
+constexpr std::uint8_t kTicksRecord = 3;
+constexpr std::size_t kMostWaiting = 1 << 20;  // [byte] of ticks, while no step is made
 
 std::uint64_t checksum(std::span<const std::uint8_t> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
 
@@ -59,6 +64,8 @@ void readRecord(files::ByteReader& reader, Journal& journal) {
         JournalEnd& end = journal.end.emplace();
         end.step = payload.get<std::uint64_t>();
         end.hash = payload.get<std::uint64_t>();
+    } else if (body[0] == kTicksRecord) {
+        journal.ticks.emplace_back(body.begin() + 1, body.end());
     } else {
         throw files::FormatError(fmt::format("a record of unknown type {}", body[0]));
     }
@@ -71,7 +78,7 @@ bool holdsRecords(std::span<const std::uint8_t> rest) {
     for (std::size_t at = 1; at + kAround <= rest.size(); ++at) {
         std::memcpy(&length, &rest[at], sizeof length);
         const std::uint8_t type = rest[at + sizeof length];
-        if (length > rest.size() - at - kAround || (type != kFrameRecord && type != kEndRecord)) {
+        if (length > rest.size() - at - kAround || type < kFrameRecord || type > kTicksRecord) {
             continue;
         }
         const std::span<const std::uint8_t> body = rest.subspan(at + sizeof length, std::size_t{length} + 1);
@@ -124,7 +131,7 @@ void JournalWriter::writeAll(const files::Bytes& bytes) {
     size_ += static_cast<std::int64_t>(bytes.size());
 }
 
-void JournalWriter::appendRecord(std::uint8_t type, const files::Bytes& payload) {
+void JournalWriter::putRecord(std::uint8_t type, const files::Bytes& payload) {
     files::ByteWriter body;
     body.put(type);
     body.putBytes(payload);
@@ -132,7 +139,27 @@ void JournalWriter::appendRecord(std::uint8_t type, const files::Bytes& payload)
     record.put(static_cast<std::uint32_t>(payload.size()));
     record.putBytes(body.bytes());
     record.put(checksum(body.bytes()));
-    writeAll(record.bytes());
+    const files::Bytes& bytes = record.bytes();
+    const std::size_t end = waiting_.size();
+    waiting_.resize(end + bytes.size());
+    std::copy(bytes.begin(), bytes.end(), waiting_.begin() + static_cast<std::ptrdiff_t>(end));
+}
+
+void JournalWriter::writeWaiting() {
+    const files::Bytes bytes = std::exchange(waiting_, {});
+    writeAll(bytes);
+}
+
+void JournalWriter::appendRecord(std::uint8_t type, const files::Bytes& payload) {
+    putRecord(type, payload);
+    writeWaiting();
+}
+
+void JournalWriter::keepTicks(const files::Bytes& piece) {
+    putRecord(kTicksRecord, piece);
+    if (waiting_.size() > kMostWaiting) {
+        writeWaiting();
+    }
 }
 
 void JournalWriter::append(const JournalFrame& frame) {

@@ -34,16 +34,22 @@ public:
     /// Returns when the steps are on disk. Throws files::InputError when the disk refuses them: the file then ends with
     /// the frame before, and is to be left alone.
     void append(const JournalFrame& frame);
+    /// A piece of the haptic server's tick track: on disk with the next steps, or when there is much of it. Throws as
+    /// append() does.
+    void keepTicks(const files::Bytes& piece);
     /// The session ended here, on purpose.
     void finish(std::uint64_t step, std::uint64_t hash);
 
 private:
     void appendRecord(std::uint8_t type, const files::Bytes& payload);
+    void putRecord(std::uint8_t type, const files::Bytes& payload);
+    void writeWaiting();
     void writeAll(const files::Bytes& bytes);
 
     std::filesystem::path file_;
     int descriptor_ = -1;
     std::int64_t size_ = 0;  // [byte], of what is on disk, whole
+    files::Bytes waiting_;   // whole records that are not
 };
 
 /// What the last record of a whole session holds.
@@ -56,8 +62,9 @@ struct Journal {
     sand::Scene scene;
     std::string buildId;
     std::vector<JournalFrame> frames;
-    std::optional<JournalEnd> end;  // absent when the session was cut off
-    std::int64_t tornBytes = 0;     // at the end of the file, behind the last whole record; left out
+    std::vector<files::Bytes> ticks;  // pieces of the haptic server's tick track, when it recorded
+    std::optional<JournalEnd> end;    // absent when the session was cut off
+    std::int64_t tornBytes = 0;       // at the end of the file, behind the last whole record; left out
 };
 
 /// Throws files::InputError for a file that is missing, no journal, of another version, or damaged before its end.

@@ -22,7 +22,7 @@ struct VerbName {
     Verb verb;
 };
 
-constexpr std::array<VerbName, 17> kVerbs{{{"status", "", Verb::status},
+constexpr std::array<VerbName, 18> kVerbs{{{"status", "", Verb::status},
                                            {"pause", "", Verb::pause},
                                            {"resume", "", Verb::resume},
                                            {"reset", "", Verb::reset},
@@ -38,6 +38,7 @@ constexpr std::array<VerbName, 17> kVerbs{{{"status", "", Verb::status},
                                            {"save", "NAME", Verb::save},
                                            {"load", "NAME", Verb::load},
                                            {"capture", "", Verb::capture},
+                                           {"force", "on|off|scale SHARE", Verb::force},
                                            {"stop", "", Verb::stop}}};
 
 std::string knownVerbs() {
@@ -106,6 +107,20 @@ sand::ToolChange parseTool(std::string_view text) {
     return change;
 }
 
+/// Of the force, what the hand feels; "on" is all of it.
+double parseShare(std::string_view text) {
+    if (text == "on" || text == "off") {
+        return text == "on" ? 1 : 0;
+    }
+    constexpr std::string_view kScale = "scale ";
+    const std::optional<double> share = text.starts_with(kScale) ? numberIn(text.substr(kScale.size())) : std::nullopt;
+    if (!share || *share < 0 || *share > 1) {
+        throw files::InputError(
+            fmt::format("force needs on, off or scale SHARE with a share of 0 to 1, got '{}'", text.substr(0, 80)));
+    }
+    return *share;
+}
+
 void parseArgument(std::string_view argument, Command& command) {
     switch (command.verb) {
         case Verb::eyeSeparation:
@@ -130,6 +145,9 @@ void parseArgument(std::string_view argument, Command& command) {
                 throw files::InputError(
                     fmt::format("a name has 1 to 64 letters, digits, - and _, got '{}'", argument.substr(0, 80)));
             }
+            break;
+        case Verb::force:
+            command.number = parseShare(argument);
             break;
         case Verb::stereo:
             command.stereo = walls::stereoNamed(std::string(argument.substr(0, 80)));

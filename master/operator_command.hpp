@@ -32,6 +32,7 @@ enum class Verb : std::uint8_t {
     save,
     load,
     capture,
+    force,
     stop
 };
 
@@ -40,7 +41,7 @@ struct Command {
     Verb verb = Verb::status;
     std::optional<lockstep::Pattern> pattern;  // of Verb::pattern; none: the next one
     lockstep::Layer layer{};                   // of Verb::show and Verb::hide
-    double number = 0;                         // of Verb::eyeSeparation [m], Verb::material
+    double number = 0;                         // of Verb::eyeSeparation [m], Verb::material, Verb::force [share]
     sand::ToolChange tool{};                   // of Verb::tool
     std::string word;                          // of Verb::material, which number; of Verb::save and Verb::load
     walls::Stereo stereo{};                    // of Verb::stereo

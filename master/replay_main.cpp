@@ -2,10 +2,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <fstream>
 #include <limits>
 
 #include "files/command_line.hpp"
 #include "files/input_error.hpp"
+#include "haptic_bridge/tick_replay.hpp"
 #include "master/journal.hpp"
 #include "sand/esri_grid.hpp"
 #include "sand/terrain.hpp"
@@ -15,13 +17,63 @@ namespace {
 struct Options {
     std::string file;
     bool hash = false;
-    std::string heights;
+    std::string heights, forces;
     std::uint64_t until = std::numeric_limits<std::uint64_t>::max();
 };
 
+/// Recomputes the rows of sandwall-haptic-server --record while the steps are replayed.
+class Forces {
+public:
+    Forces(const master::Journal& journal, const Options& options) : options_(options), replay_(journal.scene, {}) {
+        if (options.forces.empty()) {
+            return;
+        }
+        try {
+            replay_ = haptic_bridge::TickReplay(journal.scene, journal.ticks);
+        } catch (const files::FormatError& error) {
+            throw files::InputError(fmt::format("{}: its tick track cannot be read: {}", options.file, error.what()));
+        }
+        if (replay_.empty()) {
+            throw files::InputError(fmt::format(
+                "{}: holds no tick track; a session keeps one whose haptic server was started with --record",
+                options.file));
+        }
+        stream_.open(options.forces, std::ios::binary);
+        rows_ = haptic_bridge::tickTitles();
+    }
+    void feel(const sand::Terrain& terrain) {
+        if (options_.forces.empty()) {
+            return;
+        }
+        replay_.feel(terrain, rows_);
+        stream_ << rows_;
+        rows_.clear();
+    }
+    void finish() {
+        if (options_.forces.empty()) {
+            return;
+        }
+        stream_.close();
+        if (!stream_) {
+            throw files::InputError(fmt::format("{}: cannot be written", options_.forces));
+        }
+        if (replay_.left() > 0) {
+            fmt::print(stderr, "{}: the last {} ticks felt steps that the session did not show, and were left out\n",
+                       options_.file, replay_.left());
+        }
+    }
+
+private:
+    const Options& options_;
+    haptic_bridge::TickReplay replay_;
+    std::ofstream stream_;
+    std::string rows_;
+};
+
 /// Applies the journal's steps and checks the session's hashes on the way. Returns how many frames differed.
-int replay(const master::Journal& journal, std::uint64_t until, sand::Terrain& terrain) {
+int replay(const master::Journal& journal, std::uint64_t until, sand::Terrain& terrain, Forces& forces) {
     int differing = 0;
+    forces.feel(terrain);
     for (const master::JournalFrame& frame : journal.frames) {
         if (frame.steps.empty() || terrain.stepNumber() >= until) {
             continue;
@@ -33,6 +85,7 @@ int replay(const master::Journal& journal, std::uint64_t until, sand::Terrain& t
         for (const sand::Step& step : frame.steps) {
             if (step.number <= until) {
                 terrain.apply(step);
+                forces.feel(terrain);
             }
         }
     }
@@ -59,7 +112,9 @@ int run(const Options& options) {
         fmt::print(stderr, "{}: has no orderly end; the session was cut off\n", options.file);
     }
     sand::Terrain terrain(journal.scene);
-    int differing = replay(journal, options.until, terrain);
+    Forces forces(journal, options);
+    int differing = replay(journal, options.until, terrain, forces);
+    forces.finish();
     if (options.until != std::numeric_limits<std::uint64_t>::max() && terrain.stepNumber() < options.until) {
         throw files::InputError(
             fmt::format("{}: ends at step {}, before --until {}", options.file, terrain.stepNumber(), options.until));
@@ -89,6 +144,9 @@ int main(int argc, char** argv) {
     app.add_option("FILE", options.file, "session.journal of a session")->required();
     app.add_flag("--hash", options.hash, "print the state hash after the last step");
     app.add_option("--heights", options.heights, "write the heights then, as an ESRI ASCII grid");
+    app.add_option(
+        "--forces", options.forces,
+        "recompute what a hand felt at every tick, from a session recorded with --record, into this CSV file");
     app.add_option("--until", options.until, "stop after this step");
     return files::runMain(
         app, argc, argv, [&] { return run(options); }, files::kExitBadInput);

@@ -28,7 +28,8 @@ Sequencer::Sequencer(std::optional<haptic_bridge::Address> server, const sand::S
       stepsPerSecond_(scene.rules.stepsPerSecond),
       pace_(pace),
       source_(server_ ? Source::starting : Source::own),
-      waitingSinceNs_(nowNs()) {
+      waitingSinceNs_(nowNs()),
+      positions_(scene) {
     if (server_) {
         client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_);
     } else {
@@ -71,8 +72,13 @@ void Sequencer::followLink(const sand::Terrain& terrain, std::uint64_t stateHash
     }
     const haptic_bridge::LinkStatus status = client_->link();
     sayLink(status);
+    followPositions(status, terrain);
     if (status.link == Link::linked) {
         source_ = Source::server;
+    } else if (status.link == Link::streaming) {
+        if (source_ != Source::own) {
+            takeOver("");
+        }
     } else if (status.link == Link::offered) {
         grant(terrain, stateHash);
     } else if (source_ == Source::granting && status.link == Link::granting) {
@@ -89,6 +95,20 @@ void Sequencer::followLink(const sand::Terrain& terrain, std::uint64_t stateHash
         }
     } else if (source_ != Source::own) {
         takeOver("lost");
+    }
+}
+
+void Sequencer::followPositions(const haptic_bridge::LinkStatus& status, const sand::Terrain& terrain) {
+    if (status.link != Link::streaming) {
+        positions_.end();
+        return;
+    }
+    if (!positions_.streaming()) {
+        positions_.begin(terrain);
+    }
+    positions_.add(client_->drainPositions(), nowNs());
+    for (const std::string& line : positions_.troubles(client_->floods(), nowNs())) {
+        fmt::print(stderr, "{}\n", line);
     }
 }
 
@@ -110,6 +130,12 @@ void Sequencer::passEdits(const std::vector<TimedStep>& steps) {
             edits_.pop_front();
             toldEpoch_ = 0;
         }
+    }
+    if (source_ != Source::server) {
+        toldShare_ = 1;  // as a server begins
+    } else if (toldShare_ != share_) {
+        client_->shareForce(share_);
+        toldShare_ = share_;
     }
     // One at a time: the server keeps one for its next step. A link that was lost took along what it was asked for.
     if (source_ == Source::server && !edits_.empty() && toldEpoch_ != epoch_) {
@@ -150,6 +176,7 @@ std::vector<TimedStep> Sequencer::stepsDue(const sand::Terrain& terrain, std::ui
             TimedStep& own = steps.emplace_back();
             own.step.epoch = epoch_;
             own.step.number = terrain.stepNumber() + 1 + i;
+            positions_.fill(own.step);
             own.step.edit = i < edits_.size() ? edits_[i] : sand::Edit();
         }
     }
@@ -162,7 +189,20 @@ void Sequencer::shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs) {
     }
 }
 
+void Sequencer::shareForce(double share) { share_ = share; }
+
+std::vector<files::Bytes> Sequencer::ticks() {
+    std::vector<files::Bytes> pieces = std::exchange(ticks_, {});
+    if (client_) {
+        for (files::Bytes& piece : client_->drainTicks()) {
+            pieces.push_back(std::move(piece));
+        }
+    }
+    return pieces;
+}
+
 void Sequencer::leaveServer() {
+    ticks_ = ticks();
     earlierReport_ = report();
     earlierLinks_ = counters();
     ++earlierLinks_.reconnects;

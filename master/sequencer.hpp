@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "haptic_bridge/client.hpp"
+#include "master/position_source.hpp"
 #include "sand/terrain.hpp"
 
 namespace master {
@@ -17,8 +18,8 @@ enum class Pace : std::uint8_t { realtime, fast };
 
 /// Gives every step its number, or leaves that to the haptic server: exactly one of them per epoch.
 ///
-/// While a server is linked it numbers; else the master does, with a hovering tool, so that sand never freezes in
-/// mid-slide. Every change is a new epoch. Main thread only.
+/// While a server with sand of its own is linked it numbers; else the master does, with the tool where a server without
+/// sand says, or hovering, so that sand never freezes in mid-slide. Every change is a new epoch. Main thread only.
 class Sequencer {
 public:
     /// At the start a haptic server is waited for this long before the master numbers by itself [s].
@@ -39,12 +40,19 @@ public:
     /// before.
     void request(sand::Edit edit) { edits_.push_back(std::move(edit)); }
 
+    /// Of a server's forces, the hand feels this share from now on, 0 to 1; told to every server that is linked later.
+    void shareForce(double share);
+    /// Pieces of the server's tick track that have come since this was asked last, for the journal.
+    [[nodiscard]] std::vector<files::Bytes> ticks();
+
     /// The server's replica holds other sand than the wall: it is let go, and starts again from the wall's state.
     void distrustServer();
 
     /// Whether steps are still awaited from a server that has only just started.
     [[nodiscard]] bool starting() const { return source_ == Source::starting; }
     [[nodiscard]] bool linked() const { return source_ == Source::server; }
+    /// Whether a server without sand says where the hand is.
+    [[nodiscard]] bool streaming() const { return source_ == Source::own && positions_.streaming(); }
     [[nodiscard]] std::uint32_t epoch() const { return epoch_; }
     /// How far the server's clock is ahead of ours [ns].
     [[nodiscard]] std::int64_t clockOffsetNs() const { return client_ ? client_->clockOffsetNs() : 0; }
@@ -62,6 +70,7 @@ private:
     void takeOver(const std::string& why);
     void leaveServer();
     [[nodiscard]] std::size_t ownStepsDue();
+    void followPositions(const haptic_bridge::LinkStatus& status, const sand::Terrain& terrain);
     void passEdits(const std::vector<haptic_bridge::TimedStep>& steps);
     [[nodiscard]] std::vector<haptic_bridge::TimedStep> stepsDue(const sand::Terrain& terrain, std::uint64_t stateHash,
                                                                  std::size_t most);
@@ -78,7 +87,11 @@ private:
     haptic_bridge::LinkCounters earlierLinks_;
     std::optional<haptic_bridge::Report> earlierReport_;
     std::deque<sand::Edit> edits_;  // asked for, and in no step yet
-    std::uint32_t toldEpoch_ = 0;   // in which the server was asked for the first of them
+    PositionSource positions_;
+    std::vector<files::Bytes> ticks_;  // of a server that was let go
+    double share_ = 1;                 // of the force
+    double toldShare_ = 1;             // that the server knows
+    std::uint32_t toldEpoch_ = 0;      // in which the server was asked for the first of them
     double ownStepsOwed_ = 0;
     std::int64_t lastOwnNs_ = 0;
 };

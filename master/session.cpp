@@ -25,7 +25,7 @@ using lockstep::nowNs;
 constexpr std::size_t kMostStepsPerFrame = 8;  // a long catch-up is spread over frames
 constexpr std::size_t kMostStepsPerFastFrame = 4;
 constexpr double kFastPatience = 0.1;  // [s] that a fast session waits for a step before it shows a frame without
-constexpr double kLate = 1.5;         // times its period that a late frame takes at least
+constexpr double kLate = 1.5;          // times its period that a late frame takes at least
 constexpr double kAuditSeconds = 1.0;  // in which all of memory is hashed again, whatever the frame rate
 
 /// What a session before has left in the folder must not pass for this one's, whatever becomes of this one.
@@ -199,6 +199,19 @@ void Session::keepJournal(const JournalFrame& frame) {
     }
 }
 
+void Session::keepTicks() {
+    for (const files::Bytes& piece : sequencer_.ticks()) {
+        try {
+            if (journal_) {
+                journal_->keepTicks(piece);
+            }
+        } catch (const files::InputError& error) {
+            fmt::print(stderr, "sandwall: {}; the session goes on without\n", error.what());
+            journal_.reset();
+        }
+    }
+}
+
 void Session::endJournal() {
     try {
         if (journal_) {
@@ -218,6 +231,7 @@ bool Session::showFrame() {
     const lockstep::FrameMessage message = barrier_.begin(prepare(steps), bytes);
     const std::int64_t broadcast = nowNs();
     summary_.broadcastBytes.add(static_cast<double>(bytes));
+    keepTicks();
     if (journal_ && !message.steps.empty()) {
         // The ranks draw meanwhile; none of them swaps before the master has come to the barrier.
         keepJournal({message.frame, hashBefore, message.steps});
@@ -306,9 +320,10 @@ void Session::sayProgress(bool last) {
     const std::string of = options_.steps == kNoLimit ? "" : fmt::format("/{}", options_.steps);
     fmt::print("frame {}  step {}{}  {:.1f} fps  skew {:.0f} us  hashes agree  {}\n", frame_, terrain_.stepNumber(), of,
                fps_, lastSkewUs_,
-               options_.recording    ? "recorded"
-               : sequencer_.linked() ? "hand linked"
-                                     : (sequencer_.starting() ? "waiting for a hand" : "no hand"));
+               options_.recording       ? "recorded"
+               : sequencer_.linked()    ? "hand linked"
+               : sequencer_.streaming() ? "hand streams"
+                                        : (sequencer_.starting() ? "waiting for a hand" : "no hand"));
     std::fflush(stdout);
     lastProgress_ = now;
     lastProgressFrame_ = frame_;
@@ -337,9 +352,13 @@ void Session::reportDisagreement(lockstep::Verdict verdict) {
     tell(lines, options_.out / "divergence.txt");
 }
 
-void Session::finish() {
+void Session::finish(bool agreed) {
     const lockstep::Watched watched(barrier_.watchdog());
     sequencer_.stop();
+    keepTicks();  // the last come with the goodbye
+    if (agreed) {
+        endJournal();
+    }
     summary_.frames = frame_;
     summary_.steps = terrain_.stepNumber();
     summary_.stateHash = hash_;
@@ -372,10 +391,7 @@ int Session::run() {
     }
     finishErrands(true);
     control_.reset();  // whoever asks now finds no session
-    if (agreed) {
-        endJournal();
-    }
-    finish();
+    finish(agreed);
     int status = agreed && !strayed_ ? 0 : 1;
     try {
         writeSummary(summary_, options_.out / "summary.json");

@@ -100,6 +100,7 @@ private:
     [[nodiscard]] std::vector<haptic_bridge::TimedStep> awaitSteps();
     [[nodiscard]] bool showFrame();
     void keepJournal(const JournalFrame& frame);
+    void keepTicks();
     void endJournal();
     void applySteps(const std::vector<haptic_bridge::TimedStep>& steps);
     void compareWithRecording();
@@ -109,7 +110,7 @@ private:
                         std::int64_t swapped);
     void sayProgress(bool last);
     void reportDisagreement(lockstep::Verdict verdict);
-    void finish();
+    void finish(bool agreed);
 
     const lockstep::Cluster& cluster_;
     const walls::Wall& wall_;

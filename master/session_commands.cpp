@@ -132,6 +132,9 @@ void Session::carryOut(const Command& command, std::optional<Client> client) {
         case Verb::eyeSeparation:
             views_.separateEyes(command.number);
             break;
+        case Verb::force:
+            sequencer_.shareForce(command.number);
+            break;
         case Verb::stereo:
             changeStereo(command.stereo);
             break;
@@ -233,6 +236,7 @@ std::string Session::status() const {
                  {"ranks", wall_.ranks()},
                  {"slowest", slowestRank(rankStatistics_.recentDrag(), names_)},
                  {"linked", sequencer_.linked()},
+                 {"streaming", sequencer_.streaming()},
                  {"paused", paused_},
                  {"pattern", std::string(lockstep::patternName(views_.pattern()))},
                  {"stereo", std::string(walls::stereoName(shown_.stereo))},

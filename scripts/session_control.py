@@ -73,7 +73,7 @@ def add_parser(commands, remainder):
                                  description="Commands a session that runs on this machine: status, pause, resume, reset, undo, settle, "
                                              "tool [SHAPE] [radius=R] [width=W] [heading=DEG] [foot=left|right], tool RADIUS, material KEY VALUE, "
                                              "save NAME, load NAME, stereo MODE, pattern NAME|none|next, "
-                                             "show LAYER, hide LAYER, eye-separation METRES, capture, stop; docs/operator.md.")
+                                             "show LAYER, hide LAYER, eye-separation METRES, capture, force on|off|scale SHARE, stop; docs/operator.md.")
     parser.set_defaults(run=ctl)
     parser.add_argument("session", metavar="SESSION", help="the --out folder of the session")
     parser.add_argument("words", metavar="VERB", nargs=remainder, help="what to do, and with what")

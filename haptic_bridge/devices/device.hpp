@@ -20,6 +20,7 @@ struct Pose {
     bool leftFoot = false;  // with a heading: the tool's left and right are exchanged
 };
 
+class SandWatcher;
 class TroubleCounts;
 
 /// A haptic device, or what stands in for one. Used by one thread.
@@ -41,6 +42,8 @@ public:
     [[nodiscard]] virtual ArmReading reading() const { return {}; }
     /// What the device has done wrong, any thread; null for what does nothing wrong.
     [[nodiscard]] virtual const TroubleCounts* troubles() const { return nullptr; }
+    /// Who wants to see the sand; null for most.
+    [[nodiscard]] virtual SandWatcher* watcher() { return nullptr; }
     /// Any thread: of the force that is sent, this share, 0 to 1, reaches the body; a change is ramped.
     virtual void shareForce(double /* share */) {}
     /// Whether a recording is over: from then on it hovers where it is.

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sand/force/contact_force.hpp"
+#include "sand/force/vec3.hpp"
 
 namespace haptic_bridge {
 
@@ -18,7 +18,7 @@ struct HandSettings {
         double sign = 1;
     };
     enum class Engage { near, always, button };  // near: the underside is lower than one radius over the surface
-    enum class Datum { surface, level };         // heights count from the starting surface below the hand, or from its mean
+    enum class Datum { surface, level };  // heights count from the starting surface below the hand, or from its mean
 
     std::array<std::string, 4> columns{"time", "x", "y", "z"};
     double secondsPerTick = 1;                                     // of numeric times
@@ -27,7 +27,7 @@ struct HandSettings {
     double verticalScale = 1;                 // of the vertical, relative to scale
     std::optional<sand::force::Vec3> origin;  // [unit of the trace], east, north, up: over the field's centre; else the
                                               // centre of the bounding box and the median height
-    double depth = 0.5;  // [tool radius], of the underside, under the surface at the origin's height
+    double depth = 0.5;            // [tool radius], of the underside, under the surface at the origin's height
     double drift = 0;              // [reach per reach moved], of an arm's workspace to where the hand works
     std::optional<Engage> engage;  // nothing: near for a recording, always for an arm
     std::optional<Datum> datum;    // nothing: surface for what has no body, level for an arm

@@ -32,7 +32,8 @@ MappedDevice::MappedDevice(std::unique_ptr<Arm> arm, const HandSettings& setting
       check_(kFarthestShare * arm_->physics().reach, troubles_) {
     if (settings.datum == HandSettings::Datum::surface) {
         // On a slope such a mapping bends the hand's space, and a force along it would do work on a closed path.
-        throw files::InputError("--map datum=surface: is for recordings; an arm feels the sand at its own height, level");
+        throw files::InputError(
+            "--map datum=surface: is for recordings; an arm feels the sand at its own height, level");
     }
 }
 

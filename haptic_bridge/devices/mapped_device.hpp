@@ -43,9 +43,9 @@ private:
 
     std::unique_ptr<Arm> arm_;
     HandSettings settings_;
-    double scale_;                 // [scene unit/m], of the horizontal
+    double scale_;                  // [scene unit/m], of the horizontal
     double horizontal_, vertical_;  // hand space per metre
-    sand::force::Vec3 origin_;     // [m], east, north, up: over the field's centre
+    sand::force::Vec3 origin_;      // [m], east, north, up: over the field's centre
     TroubleCounts troubles_;
     ReadingCheck check_;
     std::atomic<double> share_{1};  // of the force that is asked for, 0 to 1

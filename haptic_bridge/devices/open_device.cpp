@@ -5,6 +5,14 @@
 #include <iterator>
 
 #include "files/input_error.hpp"
+#include "haptic_bridge/devices/device_module.hpp"
+#include "haptic_bridge/devices/mapped_device.hpp"
+#include "haptic_bridge/devices/mouse.hpp"
+#if __has_include("haptic_bridge/devices/simulated_arm.hpp")
+#include "haptic_bridge/devices/simulated_arm.hpp"
+#define SANDWALL_HAS_SIMULATED_ARM
+#endif
+#include "haptic_bridge/devices/spacenav.hpp"
 #include "haptic_bridge/devices/strokes.hpp"
 #include "haptic_bridge/devices/trace.hpp"
 
@@ -18,6 +26,16 @@ std::ifstream open(const std::string& file) {
         throw files::InputError(file + ": cannot be read; give --device a file that is there");
     }
     return stream;
+}
+
+std::unique_ptr<Device> openTrace(const std::string& what, const HandSettings& settings, const sand::Scene& scene) {
+    if (settings.engage == HandSettings::Engage::button) {
+        throw files::InputError("--map engage=button: a trace records no buttons; give near or always");
+    }
+    std::ifstream file = open(what);
+    const double cell = scene.terrain.cellSize();
+    return std::make_unique<TraceDevice>(Trace::parse(file, what, settings), settings, scene.terrain.columns() * cell,
+                                         scene.terrain.rows() * cell, scene.toolRadius());
 }
 
 }  // namespace
@@ -35,16 +53,25 @@ std::unique_ptr<Device> openDevice(const std::string& spec, const HandSettings& 
         return std::make_unique<StrokeDevice>(Strokes::parse(text, what));
     }
     if (kind == "trace" && !what.empty()) {
-        if (settings.engage == HandSettings::Engage::button) {
-            throw files::InputError("--map engage=button: a trace records no buttons; give near or always");
-        }
-        std::ifstream file = open(what);
-        const double cell = scene.terrain.cellSize();
-        return std::make_unique<TraceDevice>(Trace::parse(file, what, settings), settings,
-                                             scene.terrain.columns() * cell, scene.terrain.rows() * cell,
-                                             scene.toolRadius());
+        return openTrace(what, settings, scene);
     }
-    throw files::InputError("--device " + spec + ": unknown device; give script:gis, script:FILE or trace:FILE.csv");
+    if (kind == "driver" && !what.empty()) {
+        return std::make_unique<MappedDevice>(openArmModule(what), settings, scene);
+    }
+#ifdef SANDWALL_HAS_SIMULATED_ARM
+    if (kind == "sim") {
+        return std::make_unique<MappedDevice>(openSimulatedArm(spec), settings, scene);
+    }
+#endif
+    if (spec == "mouse") {
+        return std::make_unique<MouseDevice>([&] { return openPictureWindow("Sandwall: " + scene.name, 720, 720); });
+    }
+    if (kind == "spacenav" && (spec == kind || !what.empty())) {
+        return std::make_unique<SpacenavDevice>(what.empty() ? "libspnav.so.0" : what);
+    }
+    throw files::InputError("--device " + spec +
+                            ": unknown device; give script:gis, script:FILE, trace:FILE.csv, driver:FILE.so, "
+                            "sim:PRESET, mouse or spacenav");
 }
 
 }  // namespace haptic_bridge

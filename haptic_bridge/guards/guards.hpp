@@ -33,6 +33,8 @@ public:
         std::uint32_t acted = 0;         // a bit for each guard
     };
     [[nodiscard]] Forces tick(const Reading& reading);
+    /// The next tick is the first again.
+    void forget() { begun_ = false; }
 
     [[nodiscard]] const ForceLimits& limits() const { return limits_; }
     [[nodiscard]] const PassivityObserver& passivity() const { return passivity_; }

@@ -175,6 +175,71 @@ TEST(Client, RefusesGarbageAndTriesAgain) {
     EXPECT_TRUE(eventually([&] { return server.guests() >= 2; })) << "it must try again";
 }
 
+TEST(Client, TakesPositionsFromAServerWithoutSand) {
+    FakeServer server([](FakeServer::Guest& guest) {
+        guest.send(PositionGreeting{kProtocolVersion, "glove"});  // without having read the Hello
+        for (int i = 0; i < 3; ++i) {
+            guest.send(Position{i, 0.1 * i, 0, 0, true});
+        }
+        guest.await<Bye>();
+    });
+    Client client(server.address(), kOffer);
+    ASSERT_TRUE(reaches(client, Link::streaming)) << client.link().message;
+    EXPECT_NE(client.link().message.find("'glove' streams positions"), std::string::npos) << client.link().message;
+    std::vector<TimedPosition> got;
+    ASSERT_TRUE(eventually([&] {
+        for (const TimedPosition& position : client.drainPositions()) {
+            got.push_back(position);
+        }
+        return got.size() == 3;
+    }));
+    EXPECT_EQ(got[2].position, (Position{2, 0.2, 0, 0, true}));
+}
+
+TEST(Client, HoldsAFloodOfPositionsBack) {
+    FakeServer server([](FakeServer::Guest& guest) {
+        guest.send(PositionGreeting{kProtocolVersion, "hose"});
+        files::Bytes many;
+        for (int i = 0; i < 1000; ++i) {
+            const files::Bytes one = encode(Position{i, 0, 0, 0, false});
+            many.insert(many.end(), one.begin(), one.end());
+        }
+        for (int i = 0; i < 400; ++i) {
+            guest.send(std::span<const std::uint8_t>(many));
+        }
+    });
+    Client client(server.address(), kOffer);
+    ASSERT_TRUE(eventually([&] { return client.floods() == 1; }));
+    std::size_t most = 0, all = 0;
+    ASSERT_TRUE(eventually([&] {
+        const std::size_t count = client.drainPositions().size();
+        most = std::max(most, count);
+        all += count;
+        return all >= 100'000;
+    }));
+    // What a chunk of the socket holds beyond the bound is still taken in.
+    EXPECT_LE(most, Client::kMaxPositions + 64 * 1024 / 38);
+}
+
+TEST(Client, RefusesPositionsOfAnotherVersionOrOutOfTurn) {
+    FakeServer other([](FakeServer::Guest& guest) {
+        guest.send(PositionGreeting{kProtocolVersion + 1, "glove"});
+        guest.await<Bye>();
+    });
+    const Client client(other.address(), kOffer);
+    ASSERT_TRUE(reaches(client, Link::refused));
+    EXPECT_NE(client.link().message.find("protocol version"), std::string::npos) << client.link().message;
+    FakeServer turncoat([](FakeServer::Guest& guest) {
+        if (linkUp(guest)) {
+            guest.send(PositionGreeting{kProtocolVersion, "glove"});
+            guest.await<Bye>();
+        }
+    });
+    Client linked(turncoat.address(), kOffer);
+    grantWhenOffered(linked, 1, 10);
+    ASSERT_TRUE(eventually([&] { return linked.link().message.find("out of turn") != std::string::npos; }));
+}
+
 TEST(Client, KeepsTheStepsBeforeHalfAMessage) {
     FakeServer server([](FakeServer::Guest& guest) {
         if (linkUp(guest)) {

@@ -24,7 +24,8 @@ constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 class Mapped : public testing::Test {
 protected:
     void map(const std::vector<std::string>& options) {
-        device_ = std::make_unique<MappedDevice>(std::make_unique<FakeArm>(state_), HandSettings::parse(options), scene_);
+        device_ =
+            std::make_unique<MappedDevice>(std::make_unique<FakeArm>(state_), HandSettings::parse(options), scene_);
     }
     Pose at(Vec3 place) {
         state_.reading.place = place;

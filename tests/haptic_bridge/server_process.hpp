@@ -138,6 +138,7 @@ public:
         kill(pid_, signal);
         return wait();
     }
+    [[nodiscard]] pid_t pid() const { return pid_; }
     [[nodiscard]] std::string errors() const { return folder_.read("err"); }
     [[nodiscard]] std::string output() const { return folder_.read("out"); }
 

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/devices/device_module.hpp"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include "files/input_error.hpp"
+
+namespace haptic_bridge {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Never closed: drivers leave threads behind that outlive any device.
+void* load(const fs::path& file, const std::string& option, const std::string& advice) {
+    void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (handle == nullptr) {
+        const char* reason = dlerror();
+        throw files::InputError(fmt::format("{}: {}; {}", option,
+                                            reason == nullptr ? file.string() + " cannot be loaded" : reason, advice));
+    }
+    return handle;
+}
+
+template <class Function>
+Function* find(void* handle, const char* symbol, const fs::path& file) {
+    void* address = dlsym(handle, symbol);
+    if (address == nullptr) {
+        throw files::InputError(
+            fmt::format("{}: defines no {}; build it against this version of Sandwall "
+                        "(docs/devices.md)",
+                        file.string(), symbol));
+    }
+    return reinterpret_cast<Function*>(address);
+}
+
+/// What a module's function makes; its exceptions become the user's.
+template <class Make>
+auto made(const std::string& option, const Make& make) {
+    try {
+        auto thing = make();
+        if (!thing) {
+            throw files::InputError("the driver has opened nothing");
+        }
+        return thing;
+    } catch (const std::exception& error) {
+        throw files::InputError(fmt::format("{}: {}", option, error.what()));
+    }
+}
+
+}  // namespace
+
+std::unique_ptr<Arm> openArmModule(const std::string& spec) {
+    const std::size_t ending = spec.find(".so");
+    const std::size_t colon = spec.find(':', ending == std::string::npos ? 0 : ending);
+    const std::string option = "--device driver:" + spec;
+    // As a path: the loader looks for a bare name elsewhere, and not here.
+    const fs::path file = fs::absolute(spec.substr(0, colon));
+    const std::string what = colon == std::string::npos ? "" : spec.substr(colon + 1);
+    void* handle = load(file, option, "give a driver's module, and its libraries where the loader finds them");
+    const auto open = find<OpenArm>(handle, kArmSymbol, file);
+    return made(option, [&] { return std::unique_ptr<Arm>(open(what.c_str())); });
+}
+
+std::unique_ptr<PictureWindow> openPictureWindow(const std::string& title, int width, int height) {
+    std::error_code none;
+    const fs::path bin = fs::read_symlink("/proc/self/exe", none).parent_path();
+    for (const fs::path& folder : {bin, bin.parent_path() / "lib" / "sandwall"}) {
+        const fs::path file = folder / "sandwall-window.so";
+        if (fs::exists(file, none)) {
+            void* handle = load(file, "--device mouse", "install Debian's libglfw3");
+            const auto open = find<OpenPictureWindow>(handle, kPictureWindowSymbol, file);
+            return made("--device mouse",
+                        [&] { return std::unique_ptr<PictureWindow>(open(title.c_str(), width, height)); });
+        }
+    }
+    throw files::InputError("--device mouse: there is no sandwall-window.so in " + bin.string() +
+                            "; build Sandwall with Debian's libglfw3-dev");
+}
+
+}  // namespace haptic_bridge

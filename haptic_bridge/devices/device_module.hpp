@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "haptic_bridge/devices/arm.hpp"
+#include "haptic_bridge/devices/picture_window.hpp"
+
+namespace haptic_bridge {
+
+/// What a driver's module defines, with C linkage, and what is looked for in it. `what` stands behind the file's name
+/// in
+/// --device. Throws std::exception with a line for a person when the device is not there.
+inline constexpr const char* kArmSymbol = "sandwallArm1";
+using OpenArm = Arm*(const char* what);
+
+/// "FILE.so" or "FILE.so:WHAT": loads a driver and opens its arm. Throws files::InputError that begins with --device
+/// when the file is no such module or the arm cannot be opened. Modules stay loaded.
+[[nodiscard]] std::unique_ptr<Arm> openArmModule(const std::string& spec);
+
+/// The window of the mouse, from sandwall-window.so beside this program: nothing else maps GLFW or GL. Throws
+/// files::InputError when it is missing, or there is no display.
+[[nodiscard]] std::unique_ptr<PictureWindow> openPictureWindow(const std::string& title, int width, int height);
+
+}  // namespace haptic_bridge

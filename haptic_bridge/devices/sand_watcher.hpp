@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "sand/terrain.hpp"
+
+namespace haptic_bridge {
+
+/// A device that shows the sand: told by the sand thread after its steps. Copies what it needs, and never waits.
+class SandWatcher {
+public:
+    SandWatcher() = default;
+    virtual ~SandWatcher() = default;
+    SandWatcher(const SandWatcher&) = delete;
+    SandWatcher& operator=(const SandWatcher&) = delete;
+    virtual void stepped(const sand::Terrain& terrain) = 0;
+};
+
+}  // namespace haptic_bridge

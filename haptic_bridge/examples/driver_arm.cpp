@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// A driver for Sandwall, to start your own from: `sandwall-haptic-server --device driver:FILE.so`. What a maker's
+// library does stands in `maker`, six functions; docs/devices.md says what they are called in the usual libraries.
+//
+//     g++ -std=c++20 -O2 -shared -fPIC -I SANDWALL driver_arm.cpp -o my_driver.so -lYOURS
+#include <atomic>
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+
+#include "haptic_bridge/devices/arm.hpp"
+#include "haptic_bridge/devices/device_module.hpp"
+#include "haptic_bridge/latest.hpp"
+
+/// Replace these bodies by calls of your library; as they stand, they are an arm that nobody holds.
+namespace maker {
+inline bool open(const char*) { return true; }
+inline void close() {}
+inline bool readPlace(double& x, double& y, double& z) {
+    x = y = z = 0;
+    return true;
+}
+inline bool button(int) { return false; }
+inline bool setForce(double, double, double) { return true; }
+inline const char* lastError() { return "no device"; }
+}  // namespace maker
+
+namespace {
+
+using haptic_bridge::ArmPhysics;
+using haptic_bridge::ArmReading;
+using sand::force::Vec3;
+
+/// Talks to the device on a thread of its own, because a driver may wait for its hardware and the force loop must not.
+class DriverArm : public haptic_bridge::Arm {
+public:
+    explicit DriverArm(const char* what) {
+        if (!maker::open(what)) {
+            throw std::runtime_error(maker::lastError());
+        }
+        // From the data sheet. What is said here is what the guards rely on: rather too little damping than too much.
+        physics_.name = "my device";
+        physics_.mass = 0.2;           // [kg], apparent at the tip
+        physics_.damping = 1.0;        // [N s/m]
+        physics_.friction = 0.3;       // [N]
+        physics_.resolution = 2e-5;    // [m]
+        physics_.maxForce = 8;         // [N]
+        physics_.reach = 0.06;         // [m]
+        physics_.maxStiffness = 2000;  // [N/m]
+        physics_.delayTicks = 1;       // this thread adds up to one
+        thread_ = std::thread([this] { talk(); });
+    }
+    ~DriverArm() override {
+        stopping_ = true;
+        thread_.join();
+        maker::setForce(0, 0, 0);
+        maker::close();
+    }
+
+    [[nodiscard]] const ArmPhysics& physics() const override { return physics_; }
+    [[nodiscard]] ArmReading read(double) override { return reading_.latest(); }
+    void push(Vec3 force) override {
+        force_.next() = force;
+        force_.publish();
+    }
+
+private:
+    void talk() {
+        auto due = std::chrono::steady_clock::now();
+        while (!stopping_) {
+            ArmReading& reading = reading_.next();
+            reading.present = maker::readPlace(reading.place.x, reading.place.y, reading.place.z);  // [m]
+            reading.first = maker::button(0);
+            reading.second = maker::button(1);
+            reading_.publish();
+            const Vec3 force = force_.latest();
+            maker::setForce(force.x, force.y, force.z);  // [N]
+            due += std::chrono::milliseconds(1);
+            std::this_thread::sleep_until(due);
+        }
+    }
+
+    ArmPhysics physics_;
+    haptic_bridge::Latest<ArmReading> reading_;  // device to force loop
+    haptic_bridge::Latest<Vec3> force_;          // and back
+    std::atomic<bool> stopping_{false};
+    std::thread thread_;
+};
+
+}  // namespace
+
+extern "C" haptic_bridge::Arm* sandwallArm1(const char* what) { return new DriverArm(what); }

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "haptic_bridge/hand.hpp"
+#include "sand/force/tool_contour.hpp"
+#include "sand/terrain.hpp"
+
+namespace haptic_bridge {
+
+/// What a hand feels of the sand after the terrain's last step, but for the time: one way to make it, for whoever makes
+/// steps and for whoever replays them.
+inline void takeSurface(const sand::Terrain& terrain, Surface& surface) {
+    const double radius = terrain.toolRadius();
+    surface.patch = sand::force::SurfacePatch(terrain.field(), terrain.probe(), radius);
+    surface.tool = sand::force::contourOf(terrain.toolShape(), terrain.heading(), terrain.field().cellSize());
+    surface.step = terrain.stepNumber();
+}
+
+}  // namespace haptic_bridge
