@@ -78,7 +78,7 @@ class ServerProcess {
 public:
     ServerProcess(const Folder& folder, std::vector<std::string> arguments) : folder_(folder) {
         std::filesystem::remove(folder.file("port"));
-        arguments.insert(arguments.begin(), std::string(SANDWALL_BIN_DIR) + "/sandwall-haptic-server");
+        arguments.insert(arguments.begin(), SANDWALL_BIN_DIR "/sandwall-haptic-server");
         pid_ = fork();
         if (pid_ == 0) {
             std::vector<char*> words;

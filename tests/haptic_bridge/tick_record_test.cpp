@@ -40,7 +40,7 @@ protected:
             takeSurface(terrain_, surface_);
             for (int tick = 0; tick < 16; ++tick) {
                 ++ticks_;
-                const double turn = ticks_ * 0.004;
+                const double turn = static_cast<double>(ticks_) * 0.004;
                 state_.reading.place = {0.05 * std::cos(turn), 0.05 * std::sin(turn), 0.01 * std::sin(3 * turn)};
                 state_.reading.present = ticks_ % 100 != 99;
                 if (ticks_ % 130 == 0) {

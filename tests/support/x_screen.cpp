@@ -102,4 +102,21 @@ void XScreen::type(unsigned long window, char key) const {
     XSync(display_.get(), False);
 }
 
+void XScreen::point(unsigned long window, int x, int y) const {
+    XWarpPointer(display_.get(), None, window, 0, 0, 0, 0, x, y);
+    XSync(display_.get(), False);
+}
+
+void XScreen::button(unsigned long window, unsigned int number, bool down) const {
+    XEvent event{};
+    event.xbutton.type = down ? ButtonPress : ButtonRelease;
+    event.xbutton.display = display_.get();
+    event.xbutton.window = window;
+    event.xbutton.root = root_;
+    event.xbutton.same_screen = True;
+    event.xbutton.button = number;
+    XSendEvent(display_.get(), window, False, down ? ButtonPressMask : ButtonReleaseMask, &event);
+    XSync(display_.get(), False);
+}
+
 }  // namespace support

@@ -29,6 +29,10 @@ public:
     void askToClose(unsigned long window) const;
     /// A key press and release: 't', or 27 for Escape.
     void type(unsigned long window, char key) const;
+    /// Moves the pointer to a place of the window.
+    void point(unsigned long window, int x, int y) const;
+    /// Presses or lets go of a button: 1 is the left one, 4 and 5 are the wheel's notches away and near.
+    void button(unsigned long window, unsigned int number, bool down) const;
 
 private:
     struct Close {
