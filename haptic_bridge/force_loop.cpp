@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "haptic_bridge/force_loop.hpp"
 
+#include <fmt/format.h>
 #include <pthread.h>
 #include <sys/prctl.h>
 #include <time.h>
+
+#include <algorithm>
+#include <cstring>
 
 #include "haptic_bridge/monotonic.hpp"
 
@@ -11,7 +15,6 @@ namespace haptic_bridge {
 namespace {
 
 constexpr std::int64_t kTickNs = 1'000'000;
-constexpr std::int64_t kGiveUpNs = 100 * kTickNs;  // farther behind than this, missed ticks are not caught up
 
 void sleepUntil(std::int64_t whenNs) {
     const timespec when{whenNs / 1'000'000'000, whenNs % 1'000'000'000};
@@ -23,6 +26,11 @@ void sleepUntil(std::int64_t whenNs) {
 
 ForceLoop::ForceLoop(Hand& hand, HandChannel& channel) : hand_(hand), channel_(channel) {
     thread_ = std::thread([this] { run(); });
+    const sched_param priority{.sched_priority = 10};
+    const int error = pthread_setschedparam(thread_.native_handle(), SCHED_FIFO, &priority);
+    if (error != 0) {
+        priorityRefused_ = std::strerror(error);
+    }
 }
 
 ForceLoop::~ForceLoop() {
@@ -31,9 +39,6 @@ ForceLoop::~ForceLoop() {
 }
 
 void ForceLoop::run() {
-    // Where the host allows it, before other threads; where it does not, as good as can be.
-    const sched_param priority{.sched_priority = 10};
-    pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
     prctl(PR_SET_TIMERSLACK, 1UL);
 
     std::int64_t due = monotonicNs(), last = due;
@@ -46,7 +51,10 @@ void ForceLoop::run() {
         const std::int64_t elapsed = now - last;
         last = now;
         period_.add(elapsed);
-        due = now - due > kGiveUpNs ? now : due;
+        const std::int64_t late = std::max<std::int64_t>(now - due, 0) / kTickNs;  // [tick]
+        due += late * kTickNs;
+        missed_.store(missed_.load(std::memory_order_relaxed) + static_cast<std::uint64_t>(late),
+                      std::memory_order_relaxed);
         const bool moving = channel_.moving.load(std::memory_order_acquire);
         handTimeNs += moving ? elapsed : 0;
         const double handTime = static_cast<double>(handTimeNs) * 1e-9;
@@ -64,7 +72,19 @@ void ForceLoop::run() {
         if (!channel_.samples.push(sample)) {
             channel_.overflow.fetch_add(1, std::memory_order_relaxed);
         }
+        computing_.add(monotonicNs() - now);
     }
+}
+
+std::string ForceLoop::summary() const {
+    const std::uint64_t ticks = period_.count(), due = ticks + missed();
+    return fmt::format(
+        "force loop: {} ticks, period p50 {:.0f} us, p99 {:.0f} us, max {:.0f} us; computing p50 {:.1f} us, p99 {:.1f} "
+        "us; "
+        "missed {} deadlines, {:.2g} per mille",
+        ticks, period_.percentileNs(0.5) * 1e-3, period_.percentileNs(0.99) * 1e-3, period_.maxNs() * 1e-3,
+        computing_.percentileNs(0.5) * 1e-3, computing_.percentileNs(0.99) * 1e-3, missed(),
+        due == 0 ? 0.0 : 1000.0 * static_cast<double>(missed()) / static_cast<double>(due));
 }
 
 }  // namespace haptic_bridge

@@ -111,9 +111,12 @@ void eachNumber(AnyReport& report, const Visit& visit) {
                          &report.toMaster.msP50, &report.toMaster.msP99, &report.stepBytesMean}) {
         visit(*number);
     }
-    for (auto* number :
-         {&report.steps, &report.stepsWithheld, &report.samplesDropped, &report.toWall.count, &report.toMaster.count}) {
+    for (auto* number : {&report.steps, &report.stepsWithheld, &report.samplesDropped, &report.ticks,
+                         &report.ticksMissed, &report.toWall.count, &report.toMaster.count}) {
         visit(*number);
+    }
+    for (auto& number : report.guards) {
+        visit(number);
     }
 }
 void put(const Report& report, files::ByteWriter& writer) {

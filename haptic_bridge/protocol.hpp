@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -8,6 +9,7 @@
 #include <variant>
 
 #include "files/byte_stream.hpp"
+#include "haptic_bridge/guards/guard.hpp"
 #include "sand/scene.hpp"
 #include "sand/step.hpp"
 
@@ -129,10 +131,13 @@ struct Report {
     double hapticPeriodUsP50 = 0, hapticPeriodUsP99 = 0, hapticPeriodUsMax = 0;  // 0 under --pace fast
     double forceUsP50 = 0, forceUsP99 = 0;                                       // one force evaluation
     HalfRoundTrip toWall, toMaster;                                              // answered when shown, when received
-    double stepBytesMean = 0;          // step messages, length prefix included
-    std::uint64_t steps = 0;           // sent
-    std::uint64_t stepsWithheld = 0;   // due, but the wall was a whole window behind
-    std::uint64_t samplesDropped = 0;  // hand samples that no step holds: thinned out, or the queue was full
+    double stepBytesMean = 0;                     // step messages, length prefix included
+    std::uint64_t steps = 0;                      // sent
+    std::uint64_t stepsWithheld = 0;              // due, but the wall was a whole window behind
+    std::uint64_t samplesDropped = 0;             // hand samples that no step holds: thinned out, or the queue was full
+    std::uint64_t ticks = 0;                      // of the force loop; 0 under --pace fast
+    std::uint64_t ticksMissed = 0;                // deadlines, each a tick
+    std::array<std::uint64_t, kGuards> guards{};  // ticks in which each guard acted, as kGuardNames
     friend bool operator==(const Report&, const Report&) = default;
 };
 /// A piece of the tick track, for the master's journal (tick_track.hpp).

@@ -31,6 +31,7 @@ struct Options {
     std::string scene, device, listen = "127.0.0.1:7750", portFile;
     std::vector<std::string> map;
     Pace pace = Pace::realtime;
+    Guards::Mode guards = Guards::Mode::on;
     int sandThreads = 1;
     TimingTests tests;
     bool dieWithParent = false;
@@ -96,11 +97,14 @@ Report measured(const Hand& hand, const ForceLoop* loop, const Sequencer& sequen
         report.hapticPeriodUsP50 = loop->period().percentileNs(0.50) * 1e-3;
         report.hapticPeriodUsP99 = loop->period().percentileNs(0.99) * 1e-3;
         report.hapticPeriodUsMax = loop->period().maxNs() * 1e-3;
+        report.ticks = loop->period().count();
+        report.ticksMissed = loop->missed();
     }
     report.forceUsP50 = hand.forceCost().percentileNs(0.50) * 1e-3;
     report.forceUsP99 = hand.forceCost().percentileNs(0.99) * 1e-3;
     report.stepsWithheld = sequencer.withheld();
     report.samplesDropped = sequencer.dropped();
+    report.guards = hand.guardCounts().all();
     return report;
 }
 
@@ -156,7 +160,7 @@ void serve(const Options& options) {
     noted.shareForce(options.force ? options.forceScale : 0);
     const auto datum =
         settings.datum.value_or(device->physics() ? HandSettings::Datum::level : HandSettings::Datum::surface);
-    Hand hand(scene, std::move(device), datum);
+    Hand hand(scene, std::move(device), datum, options.guards);
     HandChannel channel;
     std::optional<TickRecorder> recorder;
     if (!options.record.empty()) {
@@ -179,6 +183,9 @@ void serve(const Options& options) {
                         noted.watcher());
     const auto loop = options.pace == Pace::realtime ? std::make_unique<ForceLoop>(hand, channel) : nullptr;
     measure = [&] { return measured(hand, loop.get(), sequencer); };
+    if (loop != nullptr && !loop->priorityRefused().empty()) {
+        print("no real-time priority for the force loop: " + loop->priorityRefused());
+    }
 
     DeviceWatch watch(io, options.device, noted);
     asio::signal_set signals(io, SIGINT, SIGTERM);
@@ -189,9 +196,19 @@ void serve(const Options& options) {
     });
     server.serve(sequencer);
     writePortFile(options.portFile, endpoint.port());
+    for (const std::string& line : hand.limitsInWords()) {
+        print(line);
+    }
+    if (options.guards == Guards::Mode::literal) {
+        print("warning: --guards literal sends the law without any limit; for simulated arms only");
+    }
     fmt::print("listening on {}\n", textOf(endpoint));
     std::fflush(stdout);
     io.run();
+    if (loop != nullptr) {
+        print(loop->summary());
+    }
+    print(hand.guardCounts().inWords());
 }
 
 /// The program's options; exits by itself after --help.
@@ -213,6 +230,9 @@ Options parse(int count, char** words) {
         ->transform(CLI::CheckedTransformer(std::map<std::string, bool>{{"on", true}, {"off", false}}));
     app.add_option("--force-scale", options.forceScale, "0 to 1: the share of the force that an arm feels")
         ->check(CLI::Range(0.0, 1.0));
+    app.add_option("--guards", options.guards, "on, or literal: the law as its paper has it, for simulated arms only")
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, Guards::Mode>{{"on", Guards::Mode::on}, {"literal", Guards::Mode::literal}}));
     app.add_option("--listen", options.listen, "ADDRESS:PORT; port 0 takes any free one");
     app.add_option("--port-file", options.portFile, "written when the server listens: the port's number");
     app.add_option("--timing-tests", options.tests.perSecond,

@@ -46,6 +46,11 @@ ordered_json hapticPart(const Summary& summary) {
         part["step_message_bytes"] = report->stepBytesMean;
         part["steps_withheld"] = report->stepsWithheld;
         part["samples_dropped"] = report->samplesDropped;
+        part["ticks"] = report->ticks;
+        part["ticks_missed"] = report->ticksMissed;
+        for (std::size_t i = 0; i < haptic_bridge::kGuards; ++i) {
+            part["guarded_ticks"][std::string(haptic_bridge::kGuardNames[i])] = report->guards[i];
+        }
     }
     return part;
 }

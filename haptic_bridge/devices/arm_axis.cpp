@@ -76,13 +76,21 @@ double firstStop(const Motion& motion, Motion::State start, double drift, double
 void ArmAxis::advance(const Body& body, double force, Target target, double time) {
     constexpr int kMostStops = 16;  // of one call; an arm that stops more often has come to rest
     for (int stops = 0; time > 0 && stops < kMostStops; ++stops) {
-        const double y = place - target.place;
-        const double pull = force + body.grip.damping * target.velocity - body.grip.stiffness * y;  // on an arm at rest
+        // On an arm at rest, and how fast that grows while the target goes on.
+        const double pull = force + body.grip.damping * target.velocity - body.grip.stiffness * (place - target.place);
+        const double growth = body.grip.stiffness * target.velocity;
         const bool moves = velocity != 0;
+        double direction = (moves ? velocity : pull) > 0 ? 1 : -1;
         if (!moves && std::abs(pull) <= body.friction) {
-            return;  // it sticks; a target that goes on is felt at the next call
+            direction = growth > 0 ? 1 : -1;
+            const double held = growth != 0 ? (body.friction - direction * pull) / std::abs(growth) : time;
+            if (held >= time) {
+                return;
+            }
+            target.place += target.velocity * held;
+            time -= held;
         }
-        const double direction = (moves ? velocity : pull) > 0 ? 1 : -1;
+        const double y = place - target.place;
         // Seen from the target, which moves evenly, the forcing is constant.
         const Motion motion{body.mass, body.damping + body.grip.damping, body.grip.stiffness,
                             force - direction * body.friction - body.damping * target.velocity};

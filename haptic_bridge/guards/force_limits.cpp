@@ -5,11 +5,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "haptic_bridge/guards/velocity_window.hpp"
 #include "sand/force/force_model.hpp"
 
 namespace haptic_bridge {
+namespace {
+
+constexpr double kRest = 1e-3;  // [m/s], below which an arm rests
+constexpr double kQuiet = 0.6;  // a relay is no sine: measured chatter is up to 1.4 times as fast
+
+/// As a person writes a number: 19, 130, 0.19.
+double rounded(double number, int digits = 2) {
+    if (!(std::abs(number) > 0) || !std::isfinite(number)) {
+        return number;
+    }
+    const double unit = std::pow(10.0, std::floor(std::log10(std::abs(number))) + 1 - digits);
+    return std::round(number / unit) * unit;
+}
+
+}  // namespace
 
 LawAtRadius lawAtRadius(const sand::Scene& scene) {
     const double radius = scene.toolRadius();
@@ -25,7 +41,7 @@ LawAtRadius lawAtRadius(const sand::Scene& scene) {
     sand::force::ForceModel model(scene.force);
     sand::force::Response response;
     // A model that works between two surfaces may take a while to trust the first.
-    for (int tick = 0; tick < 1000; ++tick) {
+    for (int tick = 0; tick < 200; ++tick) {
         response = model.at(patch, 1, tool, {middle, middle, 0}, tick * ForceLimits::kTick);
     }
     return {response.stiffness, response.drag, norm(response.push)};
@@ -36,8 +52,16 @@ ForceLimits ForceLimits::of(const ArmPhysics& arm, double scale, const LawAtRadi
     ForceLimits limits;
     limits.arm = arm;
     limits.scale = scale;
+    limits.resolution = arm.resolution + probeStep;
     const double delay = arm.delayTicks * kTick;
-    limits.stiffness = std::min(arm.maxStiffness, arm.damping / (kTick / 2 + delay)) / 2;
+    const double sampled = arm.damping / (kTick / 2 + delay);  // where a sampled spring diverges
+    limits.stiffness = std::min(arm.maxStiffness, sampled) / 2;
+    if (arm.friction < limits.stiffness * limits.resolution / 2) {
+        // A weight that rests between two steps of the encoder sees a relay of K times a step. It chatters at the
+        // amplitude where a relay is as stiff as the limit, 2 K step/π over that, and at the limit's frequency.
+        const double quiet = kRest * std::numbers::pi / 2 * std::sqrt(sampled * arm.mass) / limits.resolution;
+        limits.stiffness = std::min(limits.stiffness, kQuiet * quiet);
+    }
     // A damper is stable while B < m over the age of the velocity, or somewhat more; the longest window is the oldest.
     limits.damping = arm.mass / (kTick / 2 + delay + VelocityWindow::kLongest * kTick / 2);
     limits.internalFriction = internalFriction;
@@ -46,28 +70,26 @@ ForceLimits ForceLimits::of(const ArmPhysics& arm, double scale, const LawAtRadi
     limits.gain = asked > limits.stiffness ? limits.stiffness / asked : 1;
     limits.lawStiffness = limits.gain * asked;
     limits.slew = limits.lawStiffness * kFastestHand * kTick;
-    limits.resolution = arm.resolution + probeStep;
     return limits;
 }
 
 std::vector<std::string> ForceLimits::inWords(const std::string& name, double constant, const LawAtRadius& law) const {
     const double asked = law.stiffness * scale;
-    const std::string device = fmt::format("{:.3g} scene units per metre of {}", scale, arm.name);
-    const std::string bears = fmt::format("{:.3g} N/m, half of what {}", stiffness,
-                                          2 * stiffness < arm.maxStiffness
-                                              ? fmt::format("{:.3g} N s/m of damping and {} tick{} of delay bear",
-                                                            arm.damping, arm.delayTicks, arm.delayTicks == 1 ? "" : "s")
-                                              : std::string("its maker allows"));
-    const std::string first = gain < 1
-                                  ? fmt::format("{} {:.3g} → {:.2g}: at {} it asks for {:.4g} N/m, and is given {}",
-                                                name, constant, gain * constant, device, asked, bears)
-                                  : fmt::format("{} {:.3g} as it is: at {} it asks for {:.3g} N/m, and may ask for {}",
-                                                name, constant, device, asked, bears);
+    const double sampled = arm.damping / (kTick / 2 + arm.delayTicks * kTick);
+    const double half = std::min(arm.maxStiffness, sampled) / 2;
+    const std::string why =
+        stiffness < half ? fmt::format("what its encoder's step of {:g} um lets rest", 1e6 * arm.resolution)
+        : arm.maxStiffness <= sampled ? std::string("half of what its maker allows")
+                                      : fmt::format("half of what {:g} N s/m of damping and {} tick{} of delay bear",
+                                                    arm.damping, arm.delayTicks, arm.delayTicks == 1 ? "" : "s");
     const double drag = gain * law.drag * scale / 60;
-    return {first,
-            fmt::format("friction {:.2g} N s/m at one radius' depth, at most {:.2g} N s/m and {:.2g} of the push; "
-                        "at most {:.3g} N, growing by at most {:.2g} N a tick",
-                        drag, damping, internalFriction, maxForce, slew)};
+    return {
+        fmt::format("{} {:g} {}: {} at {:.3g} scene units per metre is asked for {:.4g} N/m, and bears {:.3g} N/m, {}",
+                    name, constant, gain < 1 ? fmt::format("→ {:g}", rounded(gain * constant)) : "as it is", arm.name,
+                    scale, asked, stiffness, why),
+        fmt::format("friction {:g} N s/m at one radius' depth, at most {:g} N s/m and {:g} of the push; at most "
+                    "{:g} N, growing by at most {:g} N a tick",
+                    rounded(drag), rounded(damping), rounded(internalFriction), maxForce, rounded(slew))};
 }
 
 }  // namespace haptic_bridge

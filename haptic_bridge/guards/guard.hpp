@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace haptic_bridge {
@@ -46,6 +47,17 @@ public:
             result[i] = counts_[i].load(std::memory_order_relaxed);
         }
         return result;
+    }
+    /// "guards acted in ticks: stiffness 812, ramp 30", in one line.
+    [[nodiscard]] std::string inWords() const {
+        std::string text;
+        const auto counts = all();
+        for (std::size_t i = 0; i < kGuards; ++i) {
+            if (counts[i] > 0) {
+                text += (text.empty() ? "" : ", ") + std::string(kGuardNames[i]) + ' ' + std::to_string(counts[i]);
+            }
+        }
+        return "guards acted in ticks: " + (text.empty() ? "none" : text);
     }
 
 private:

@@ -10,6 +10,15 @@ namespace haptic_bridge {
 
 using sand::force::Vec3;
 
+namespace {
+
+Vec3 shortened(Vec3 vector, double most) {
+    const double size = norm(vector);
+    return size > most ? (most / size) * vector : vector;
+}
+
+}  // namespace
+
 Guards::Forces Guards::tick(const Reading& reading) {
     Forces forces;
     if (reading.engaged) {
@@ -36,20 +45,20 @@ Guards::Forces Guards::tick(const Reading& reading) {
         return forces;
     }
 
-    passivity_.observe(reading.place, reading.velocity, span);
+    passivity_.observe(reading.place, span);
     Vec3 force;
     if (reading.engaged) {
         force = limitedForce(reading.felt, reading.velocity, limits_, forces.acted);
     }
     force = slew_.follow(force, forces.acted);
-    if (norm(force) > 0) {
-        force = force + passivity_.control(reading.velocity, forces.acted);
-    }
+    // Damping may hold a push back, not turn it into a pull; and it comes no faster than a force may.
+    const double pushed = std::max(dot(force, reading.felt.normal), 0.0);
+    const Vec3 damping = pushed > 0 ? passivity_.control(reading.velocity, forces.acted) : Vec3{};
+    damping_ = shortened(damping_ + shortened(damping - damping_, limits_.slew / 2), pushed);
+    force = force + damping_;
     const double size = norm(force);
-    if (size > limits_.maxForce) {
-        forces.acted |= bit(Guard::clamp);
-        force = (limits_.maxForce / size) * force;
-    }
+    forces.acted |= size > limits_.maxForce ? bit(Guard::clamp) : 0;
+    force = shortened(force, limits_.maxForce);
     const double share = std::min((reading.time - rampFrom_) / ForceLimits::kRamp, 1.0);
     if (share < 1 && size > 0) {
         forces.acted |= bit(Guard::ramp);
@@ -78,6 +87,7 @@ void Guards::restart(double time) {
     rampFrom_ = time;
     slew_.restart();
     passivity_.restart();
+    damping_ = {};
 }
 
 }  // namespace haptic_bridge

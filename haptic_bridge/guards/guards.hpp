@@ -48,8 +48,8 @@ private:
     Slew slew_;
     PassivityObserver passivity_;
     bool begun_ = false;
-    double time_ = 0, rampFrom_ = 0;  // [s]
-    sand::force::Vec3 place_;
+    double time_ = 0, rampFrom_ = 0;     // [s]
+    sand::force::Vec3 place_, damping_;  // [m], [N] of the observer's
 };
 
 }  // namespace haptic_bridge

@@ -11,7 +11,7 @@ namespace {
 using sand::force::Vec3;
 
 constexpr double kFramesPerSecond = 60;
-constexpr double kMatters = 0.95;  // less is left, and a guard has acted
+constexpr double kMatters = 0.97;  // less is left, and a guard has acted
 
 Vec3 across(Vec3 normal, Vec3 velocity) { return velocity - dot(velocity, normal) * normal; }
 

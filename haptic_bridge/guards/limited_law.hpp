@@ -11,7 +11,7 @@ namespace haptic_bridge {
                                             double scale /* [scene unit/m] */);
 
 /// The same law, made no stiffer and no more viscous than the limits say: constants lowered, so that it keeps its
-/// shape. Sets the bits of the guards that took more than a twentieth away.
+/// shape. Sets the bits of the guards that took more than three hundredths away.
 [[nodiscard]] sand::force::Vec3 limitedForce(const sand::force::Response& felt, sand::force::Vec3 velocity,
                                              const ForceLimits& limits, std::uint32_t& acted);
 

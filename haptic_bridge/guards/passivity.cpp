@@ -12,6 +12,7 @@ using sand::force::Vec3;
 namespace {
 
 constexpr double kArmsShare = 0.75;
+constexpr double kMemory = 0.5;  // [s]
 
 }  // namespace
 
@@ -19,22 +20,23 @@ PassivityObserver::PassivityObserver(const ForceLimits& limits)
     : stiffness_(limits.lawStiffness),
       damping_(kArmsShare * limits.arm.damping),
       most_(limits.damping),
-      // One step of the encoder under the greatest force is noise, not energy.
-      tolerance_(limits.maxForce * limits.resolution),
+      // Two steps of the encoder under the greatest force are noise, not energy.
+      tolerance_(2 * limits.maxForce * limits.resolution),
       delay_(std::min(static_cast<std::size_t>(std::max(limits.arm.delayTicks, 0)), kMostDelay - 1)) {}
 
-void PassivityObserver::observe(Vec3 place, Vec3 velocity, double span) {
-    if (begun_) {
+void PassivityObserver::observe(Vec3 place, double span) {
+    if (begun_ && span > 0) {
         const Vec3 acted = sent_[(newest_ + kMostDelay - delay_) % kMostDelay];
-        const double given = dot(acted, place - place_);
+        const Vec3 way = place - place_;
+        const double given = dot(acted, way);
         returned_ += given;
-        surplus_ += given - damping_ * dot(velocity, velocity) * span;
+        // The way itself, and not the velocity: what a coarse encoder adds to a spring's leak it adds to both.
+        surplus_ += given - damping_ * dot(way, way) / span;
     }
     begun_ = true;
     place_ = place;
-    const Vec3 last = sent_[newest_];
-    const double held = stiffness_ > 0 ? dot(last, last) / (2 * stiffness_) : 0;
-    surplus_ = std::max(surplus_, -held);
+    // What was not taken back by now, the arm and the hand have: it does not make the loop any less stable.
+    surplus_ -= surplus_ > 0 ? std::clamp(span / kMemory, 0.0, 1.0) * surplus_ : 0;
 }
 
 Vec3 PassivityObserver::control(Vec3 velocity, std::uint32_t& acted) const {
@@ -49,6 +51,12 @@ Vec3 PassivityObserver::control(Vec3 velocity, std::uint32_t& acted) const {
 void PassivityObserver::sent(Vec3 force) {
     newest_ = (newest_ + 1) % kMostDelay;
     sent_[newest_] = force;
+    double greatest = 0;  // of those on their way, squared
+    for (std::size_t ago = 0; ago <= delay_; ++ago) {
+        const Vec3 under = sent_[(newest_ + kMostDelay - ago) % kMostDelay];
+        greatest = std::max(greatest, dot(under, under));
+    }
+    surplus_ = std::max(surplus_, stiffness_ > 0 ? -greatest / (2 * stiffness_) : 0);
 }
 
 void PassivityObserver::restart() {

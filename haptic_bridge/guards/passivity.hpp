@@ -19,7 +19,7 @@ public:
     explicit PassivityObserver(const ForceLimits& limits);
 
     /// Where the tip is now [m], after it moved for `span` [s] under the force that acted.
-    void observe(sand::force::Vec3 place, sand::force::Vec3 velocity, double span);
+    void observe(sand::force::Vec3 place, double span);
     /// The damping force that takes the surplus back within a tick; 0 when there is none.
     [[nodiscard]] sand::force::Vec3 control(sand::force::Vec3 velocity, std::uint32_t& acted) const;
     /// What goes to the device now.

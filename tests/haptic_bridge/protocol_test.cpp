@@ -23,6 +23,8 @@ std::vector<Message> oneOfEach() {
     report.steps = 9;
     report.stepsWithheld = 4;
     report.samplesDropped = 1;
+    report.ticksMissed = 3;
+    report.guards.back() = 7;
     return {Hello{identity},
             Welcome{identity, 60},
             Refusal{RefusalCode::busy, "busy"},

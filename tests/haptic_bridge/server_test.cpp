@@ -147,6 +147,12 @@ TEST_F(HapticServer, RunsInRealTimeAndReports) {
     EXPECT_GE(report.toMaster.count, report.toWall.count);
     EXPECT_GT(report.toWall.msP50, 0);
     EXPECT_GT(report.toMaster.msP50, 0);
+    EXPECT_GT(report.ticks, 0U);
+    EXPECT_GT(report.guards[static_cast<std::size_t>(haptic_bridge::Guard::stiffness)], 0U) << "the scene's constants";
+    EXPECT_EQ(server.stop(SIGTERM), 0);
+    for (const char* line : {"k_s 1000 → 18: ", "force loop: ", " per mille", "guards acted in ticks: stiffness "}) {
+        EXPECT_NE(server.errors().find(line), std::string::npos) << server.errors();
+    }
     EXPECT_GT(report.stepBytesMean, 0);
     std::printf(
         "haptic period us p50 %.0f p99 %.0f max %.0f; force us p50 %.2f p99 %.2f; half round trip ms mean %.3f "
