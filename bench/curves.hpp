@@ -22,6 +22,8 @@ void budget(const Settings& settings, Csv& csv);
 void parts(const Settings& settings, Csv& csv);
 void rest(const Settings& settings, Csv& csv);
 void restMoving(const Settings& settings, Csv& csv);
+void forceRate(const Settings& settings, Csv& csv);
+void forceWork(const Settings& settings, Csv& csv);
 void hashes(const Settings& settings, Csv& csv);
 void explain(const Settings& settings, Csv& csv);
 

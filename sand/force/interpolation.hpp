@@ -9,10 +9,10 @@ namespace sand::force {
 
 /// The second paper's equation 9, of which only the prose is left: F_out = F_old + (F − F_old) min(it/itp, 1).
 ///
-/// F is the law's at the last surface's arrival, F_old the one before. `it` counts the haptic frames since, `itp` those
-/// between the two surfaces before: 16 or 17 at either paper's rates. It is a delay of a whole frame of the sand.
-/// Printed, F_old is F before the update; where the last frame was short that jumps by what it had left to go, so that
-/// only `literal` starts there and otherwise F_old is what was sent last.
+/// F is the law's at the last surface's arrival, F_old the one before. `it` counts the haptic frames since, this
+/// one included, `itp` those between the two surfaces before: 16 or 17 at either paper's rates. It is a delay of a
+/// whole frame of the sand. Printed, F_old is F before the update; where the last frame was short that jumps by what it
+/// had left to go, so that only `literal` starts there and otherwise F_old is what was sent last.
 class Interpolation {
 public:
     /// Once a tick. `next` is looked at when `replaced`.
@@ -26,8 +26,8 @@ public:
             previousFrames_ = frames_;
             frames_ = 0;
         }
-        const double part = frames_ < previousFrames_ ? static_cast<double>(frames_) / previousFrames_ : 1;
         ++frames_;
+        const double part = frames_ < previousFrames_ ? static_cast<double>(frames_) / previousFrames_ : 1;
         out_ = to_;
         out_.push = from_.push + part * (to_.push - from_.push);
         out_.drag = from_.drag + part * (to_.drag - from_.drag);

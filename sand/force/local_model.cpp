@@ -7,7 +7,9 @@
 namespace sand::force {
 namespace {
 
-constexpr double kTooShort = 0.02;  // [tool reach]: from a shorter way nothing can be learnt
+constexpr double kShortestWay = 0.1;  // [tool reach], from which something can be learnt
+constexpr double kMotion = 0.003;     // [s], over which the tool's motion is averaged: a tick's is mostly resolution
+constexpr double kSlowest = 0.1;      // of the rate of recovery, whatever the tool does
 
 }  // namespace
 
@@ -17,29 +19,55 @@ Gauges LocalModel::at(const ForceConstants& constants, const SurfacePatch& surfa
     const double moved = std::hypot(step.x, step.y);  // across; up and down the tangent is exact
     // A hand that leaps has no business with the sand it came from.
     const bool unknown = forget || !(moved < 2 * tool.reach);
-    const double kept = constants.recoveryTime > 0 ? std::exp((time_ - time) / constants.recoveryTime) : 0;
-    for (double& debt : debt_) {
-        debt *= kept;
-    }
+    const double span = time - time_;
+    motion_ = unknown ? Vec3{} : motion_ + (1 - std::exp(-span / kMotion)) * (place - place_ - motion_);
     time_ = time;
-    if (unknown || replaced || !(moved <= constants.validity * tool.reach)) {
-        const Gauges before = tangent_, carried = carriedBy(step);
+    place_ = place;
+    if (unknown) {
+        tangent_ = mark_ = measure(constants, surface, tool, place);
+        origin_ = markPlace_ = place;
+        // Control points lie where the tool pushes: nothing there is believed before it has come true.
+        share_.fill(constants.law == ForceLaw::repulse ? 1 : 0);
+        debt_.fill(0);
+    } else if (replaced || !(moved <= constants.validity * tool.reach)) {
+        const Gauges carried = carriedBy(step);
         tangent_ = measure(constants, surface, tool, place);
         origin_ = place;
-        if (unknown) {
-            // Control points lie where the tool pushes: nothing there is believed before it has come true.
-            share_.fill(constants.law == ForceLaw::repulse ? 1 : 0);
-            debt_.fill(0);
-        } else {
-            for (std::size_t i = 0; i < tangent_.count; ++i) {
-                debt_[i] = constants.recoveryTime > 0 ? carried.dials[i].value - tangent_.dials[i].value : 0;
-            }
-            if (replaced && moved > kTooShort * tool.reach) {
-                learn(before, step);
-            }
+        for (std::size_t i = 0; i < tangent_.count; ++i) {
+            debt_[i] = carried.dials[i].value - tangent_.dials[i].value;
+        }
+        const Vec3 way = place - markPlace_;
+        if (replaced && std::hypot(way.x, way.y) > kShortestWay * tool.reach) {
+            learn(mark_, way);
+            mark_ = tangent_;
+            markPlace_ = place;
         }
     }
-    return carriedBy(place - origin_);
+    recover(constants, tool, span);
+    return carriedBy(place_ - origin_);
+}
+
+/// Less of the debt, and hardly less of it while the force would change along with the motion.
+void LocalModel::recover(const ForceConstants& constants, const Contour& tool, double span) {
+    if (!(constants.recoveryTime > 0)) {
+        debt_.fill(0);
+        return;
+    }
+    const Vec3 step = place_ - origin_;
+    const Vec3 before = respond(constants, tool, carriedBy(step)).push;
+    const auto owed = debt_;
+    const auto pay = [&](double rate) {
+        const double kept = std::exp(-span * rate / constants.recoveryTime);
+        for (std::size_t i = 0; i < debt_.size(); ++i) {
+            debt_[i] = kept * owed[i];
+        }
+    };
+    pay(1);
+    const Vec3 change = respond(constants, tool, carriedBy(step)).push - before;
+    const double power = dot(change, motion_);
+    if (power > 0) {
+        pay(std::max(1 - power / (norm(change) * norm(motion_)), kSlowest));
+    }
 }
 
 Gauges LocalModel::carriedBy(Vec3 step) const {

@@ -108,16 +108,17 @@ TEST(Interpolation, ArrivesAfterAsManyFramesAsTheLastSurfaceLasted) {
     for (int it = 1; it < 17; ++it) {
         EXPECT_EQ(at(false, true, 9), 1) << "the only force there is";
     }
-    for (int it = 0; it < 16; ++it) {
-        EXPECT_NEAR(at(it == 0, true, 2), 1 + it / 17.0, 1e-12) << "itp is 17";
+    for (int it = 1; it <= 16; ++it) {
+        EXPECT_NEAR(at(it == 1, true, 2), 1 + it / 17.0, 1e-12) << "itp is 17";
     }
-    EXPECT_NEAR(at(true, true, 4), 2, 1e-12) << "printed: from F, which was not reached; itp is 16 now";
-    for (int it = 1; it < 20; ++it) {
+    EXPECT_NEAR(at(true, true, 4), 2 + 2 / 16.0, 1e-12) << "printed: from F, which was not reached; itp is 16 now";
+    for (int it = 2; it <= 20; ++it) {
         EXPECT_NEAR(at(false, true, 0), 2 + 2 * std::min(it / 16.0, 1.0), 1e-12);
     }
-    EXPECT_NEAR(at(true, false, 8), 4, 1e-12);
-    EXPECT_NEAR(at(false, false, 8), 4 + 4 / 20.0, 1e-12);
-    EXPECT_NEAR(at(true, false, 0), 4 + 4 / 20.0, 1e-12) << "otherwise from what was sent last";
+    EXPECT_NEAR(at(true, false, 8), 4 + 4 / 20.0, 1e-12);
+    EXPECT_NEAR(at(false, false, 8), 4 + 8 / 20.0, 1e-12);
+    EXPECT_NEAR(at(true, false, 0), (4 + 8 / 20.0) / 2, 1e-12) << "otherwise from what was sent last; itp is 2";
+    EXPECT_EQ(at(true, true, 3), 3) << "a surface every frame leaves nothing to interpolate";
 }
 
 }  // namespace

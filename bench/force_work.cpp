@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a force that has no potential gives or takes on a path that closes.
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "bench/curves.hpp"
+#include "bench/timing.hpp"
+#include "sand/force/force_model.hpp"
+
+namespace bench {
+namespace {
+
+using sand::force::Vec3;
+
+constexpr double kRadius = 0.01;  // [scene unit], the first paper's
+constexpr int kCells = 10;        // per radius
+constexpr int kTicks = 20000;     // of a turn: twenty seconds
+
+sand::force::SurfacePatch slopePatch(int side, double slope) {
+    sand::HeightField field(side, side, kRadius / kCells);
+    for (int row = 0; row < side; ++row) {
+        for (int column = 0; column < side; ++column) {
+            field.setHeight(column, row,
+                            static_cast<std::int32_t>(slope * (column + 0.5 - side / 2.0) * sand::kUnitsPerCell));
+        }
+    }
+    const std::int32_t middle = side * sand::kProbePerCell / 2;
+    return {field, {middle, middle, 0}, kRadius};
+}
+
+struct Work {
+    double net = 0, exchanged = 0;  // [N · scene unit]
+};
+
+/// A circle in the plane of the slope's steepest line and the vertical, from `shallow` to a radius deeper.
+Work around(const sand::ForceConstants& constants, const sand::force::SurfacePatch& patch, int side, double shallow) {
+    const double middle = kRadius * side / kCells / 2;
+    const auto tool = sand::force::Contour::sphere(kRadius);
+    sand::force::ForceModel model(constants);
+    Work work;
+    Vec3 from, before;
+    for (int tick = 0; tick <= kTicks; ++tick) {
+        const double turn = 2 * std::numbers::pi * tick / kTicks;
+        const double depth = kRadius * (shallow + 0.5 - 0.5 * std::cos(turn));
+        const Vec3 to{middle + kRadius / 2 * std::sin(turn), middle, kRadius - depth};
+        const Vec3 now = model.at(patch, 1, tool, to, 1e-3 * tick).push;
+        if (tick > 0) {
+            const double part = dot(0.5 * (before + now), to - from);
+            work.net += part;
+            work.exchanged += std::abs(part);
+        }
+        from = to;
+        before = now;
+    }
+    return work;
+}
+
+}  // namespace
+
+void forceWork(const Settings& settings, Csv& csv) {
+    csv.note(
+        "a sphere goes once, in twenty seconds, round a circle of a radius across that stands on the slope's "
+        "steepest line; the sand lies still, and there is no friction");
+    csv.note(
+        "shallow: least depth [radius]; net: work that comes out of the turn [N scene unit], positive when the hand "
+        "gains; exchanged: sum of |work| along it; share: |net| over exchanged");
+    csv.columns("law,N,slope,shallow,net,exchanged,share");
+    for (const int side : settings.sizes) {
+        for (const auto law : {sand::ForceLaw::repulse, sand::ForceLaw::controlPoints}) {
+            const char* name = law == sand::ForceLaw::repulse ? "repulse" : "control points";
+            progress("{}, N = {}", name, side);
+            sand::ForceConstants constants;
+            constants.law = law;
+            constants.unitLength = kRadius * side / kCells;
+            for (const double slope : {0.0, 0.1, 0.25, 0.5}) {
+                const auto patch = slopePatch(side, slope);
+                for (const double shallow : {0.0, 0.5, 1.0}) {
+                    const Work work = around(constants, patch, side, shallow);
+                    csv.row(name, side, slope, shallow, work.net, work.exchanged, std::abs(work.net) / work.exchanged);
+                }
+            }
+        }
+    }
+}
+
+}  // namespace bench
