@@ -28,7 +28,7 @@ struct Method {
 };
 constexpr std::array kMethods{Method{"eq. 9", sand::Between::interpolate, 0}, Method{"hold", sand::Between::hold, 0},
                               Method{"local", sand::Between::local, 0.05},
-                              Method{"local, no recovery", sand::Between::local, 0}};
+                              Method{"local at once", sand::Between::local, 0}};
 
 /// The hand that is followed: it writes a bent eight and presses and lifts meanwhile, between a third of a radius deep
 /// and one, at up to half a radius in a sixtieth of a second.
@@ -150,7 +150,7 @@ void measure(const char* law, const sand::ForceConstants& constants, int side, i
             slowest.push_back(1e6 * quantile(drag.followers[i].seconds, 0.99));
         }
         const double error = std::sqrt(first.square / (kTicks - kSettled));
-        csv.row(law, side, first.name, 1000 / first.every, error, error / size, first.most, first.jump, drags[0].jump,
+        csv.row(law, side, first.name, 1000.0 / first.every, error, error / size, first.most, first.jump, drags[0].jump,
                 spreadOf(micro).median, spreadOf(micro).lowest, spreadOf(micro).highest, spreadOf(slowest).median);
     }
 }
@@ -162,7 +162,7 @@ void forceRate(const Settings& settings, Csv& csv) {
         fmt::format("a sphere of {} cells writes an eight for {} s, a third to one radius deep, in sand that steps "
                     "a thousand times a second",
                     kCells, kTicks / 1000));
-    csv.note("truth: the law at every tick on the sand of that tick; a rate is how often a model sees that sand");
+    csv.note("truth: the law at every tick on the sand of that tick; rate: how often a model sees that sand [1/s]");
     csv.note(
         "rms, most: |push - truth| [N]; share: rms over the rms of truth; jump: most change of push in a tick [N]");
     csv.note("us: CPU time of one thread per tick, the copy of the sand included; p99: of a tick without it");

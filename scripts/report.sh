@@ -105,6 +105,8 @@ measure() {
     curve mass-drift --sizes 128 -- --sizes 64
     curve certificate --sizes 32,64,128,256 -- --sizes 32,64
     curve budget --sizes 64,128,256 -- --sizes 64
+    curve force-rate --sizes 256 --runs 10 -- --sizes 256 --runs 2
+    curve force-work --sizes 256 -- --sizes 256
     curve parts --sizes 512,1024,2048 --runs 10 -- --sizes 512 --runs 3
     curve explain scenes/dunes.toml -- scenes/dunes.toml
     hash_table

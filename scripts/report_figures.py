@@ -301,3 +301,23 @@ def detail(table):
         label(axis, "draw time, share of bound 0", name, logx=False, logy=False)
     legend_below(figure, axes)
     return figure
+
+
+def force_rate(table):
+    figure, axes = panels(2)
+    size = table.distinct("N")[0]
+    for method, colour, marker in zip(table.distinct("method"), SERIES, MARKERS):
+        for law, line in (("repulse", "-"), ("control points", "--")):
+            # An error of nothing, of a method that sees every tick's sand, has no place on a logarithmic axis.
+            rows = [row for row in table.where(N=size, method=method, law=law) if row["share"] > 1e-9]
+            for axis, x in zip(axes, ("rate", "us_median")):
+                axis.plot([row[x] for row in rows], [100 * row["share"] for row in rows], color=colour, marker=marker,
+                          linestyle=line, label=f"{method}, {law}")
+    for axis, name in zip(axes, ("surfaces per second", "CPU time per tick, copy of the sand included [µs]")):
+        label(axis, name, "error of the force, RMS [%]")
+        percents(axis)
+    axes[0].axvline(60, color="#777777", linewidth=1)
+    sizes_on(axes[0], [15, 30, 60, 125, 250, 500, 1000])
+    sizes_on(axes[1], [1, 2, 5, 10])
+    legend_below(figure, axes, 2)
+    return figure

@@ -263,6 +263,33 @@ def detail(tables):
                       "triangles", "chunks above level 0"], rows))
 
 
+def force_rate(tables):
+    table = tables["force-rate"]
+    rate = min(table.distinct("rate"), key=lambda r: abs(r - 60))
+    lines = [[r["law"], r["method"], f"{r['rms']:.3g}", percent(r["share"]), f"{r['most']:.2g}", f"{r['jump']:.2g}",
+              f"{r['truth_jump']:.2g}", f"{r['us_median']:.2g}", f"{r['us_p99']:.2g}"]
+             for r in table.rows if r["rate"] == rate]
+    return ("What is felt between two surfaces of the sand, against the law evaluated at every tick on that tick's sand, "
+            "while the hand writes, presses and lifts; *jump* is the most that the force changes from a tick to the next. "
+            "*local* is the default. *local at once*, without its recovery, is the most exact and leaps at every surface; what recovery "
+            "is for is stability, and [forces.md](../forces.md) says how much there is of that: hold and eq. 9 bear 60 and "
+            f"31 N/m where local bears 1000. The second law pays most for it: its control points lie where the tool cuts a wall a "
+            "cell thick, whose unrest recovery turns into an error of one sign. Where that counts more than stiffness, a "
+            f"scene takes hold or eq. 9. At {rate:g} surfaces per second:\n\n" +
+            markdown(["law", "method", "RMS error [N]", "share", "most [N]", "jump [N]", "jump of truth [N]", "µs per tick",
+                      "p99 [µs]"], lines))
+
+
+def force_work(tables):
+    lines = [[r["law"], f"{r['slope']:g}", f"{r['shallow']:g}", f"{1e3 * r['net']:.3g}", percent(r["share"])]
+             for r in tables["force-work"].rows]
+    return ("Once round a circle that stands on the slope, a radius across, in sand that lies still; friction apart. On "
+            "level sand neither law does work on a path that closes. On a slope neither has a potential: the first turns "
+            "its force with the depth, the second pushes aside by the depth. Negative: the hand loses. The other way "
+            "round it gains as much, which is what the passivity observer is for.\n\n" +
+            markdown(["law", "slope", "least depth [R]", "net work [mN · scene unit]", "share of what is exchanged"], lines))
+
+
 def hashes(tables):
     lines, seen = [], {}
     for name, table in tables.items():
@@ -306,5 +333,7 @@ SECTIONS = [
     Section("What a scene does not need", None, ["parts"], parts),
     Section("A scene explained", None, ["explain"], explain),
     Section("Picture error against draw time", "detail", ["detail"], detail),
+    Section("Force between surfaces", "force_rate", ["force-rate"], force_rate),
+    Section("Work of the force", None, ["force-work"], force_work),
     Section("One hash", None, [], hashes),
 ]

@@ -141,6 +141,8 @@ TEST(SampledLoop, NeverGainsFromSandThatIsDisplacedAndSlidesUnderIt) {
         }
         constants.recoveryTime = 0;  // every surface felt at once
         const Session shaken = pulledAndReleased(constants);
+        std::printf("at once: sand gave %.3g mJ, hand and weight %.3g, damping took %.3g; at the end %.3g m/s\n",
+                    1e3 * shaken.given, 1e3 * shaken.handWork, 1e3 * shaken.loss, shaken.fastest.back());
         EXPECT_GT(shaken.fastest.back(), 1e-2) << "then why recover slowly?";
         EXPECT_GT(shaken.given, shaken.handWork);
     }
