@@ -70,8 +70,6 @@ def session_rows(file):
     yield "resident memory per render rank", f"{memory:.0f} MiB", f"frame buffers {ranks[0]['frame_buffer_bytes'] / 2**20:.0f} MiB of it"
     yield "frame message", f"{message['p50']:.0f} bytes (p99 {message['p99']:.0f})", "at most 8 steps"
     yield "step message over TCP", f"{haptic['step_message_bytes']:.0f} bytes", ""
-    trip = haptic["half_round_trip_ms"]
-    yield "half round trip, swap included", f"{trip['mean']:.1f} ± {trip['stddev']:.1f} ms", "first paper, wired: 13.6 ± 9.8 ms on its wall"
     period = summary["haptic_period_us"]
     yield "haptic period", f"p50 {period['p50']:.0f} µs, p99 {period['p99']:.0f} µs", ""
     skew = summary["skew_us"]

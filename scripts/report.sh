@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Measures the sand, draws the curves and writes docs/report: README.md, pictures, and the tables they come from.
 #
-#   scripts/report.sh           all of it, some 40 minutes on two cores
+#   scripts/report.sh           all of it, some 50 minutes on two cores
 #   scripts/report.sh --quick   smaller fields and fewer runs, at most five minutes
 #   scripts/report.sh --draw    the pictures and the text again, from the tables that are there
 set -euo pipefail
@@ -74,6 +74,12 @@ PYTHON
     done
 }
 
+# From the hand to whole walls, directly and over an impaired link.
+latency_table() {
+    echo "== latency"
+    "$bench" latency --out "$data/latency.csv" >"$out/progress.txt" 2>&1 || { cat "$out/progress.txt" >&2; exit 1; }
+}
+
 # Pictures of a large field at each level of detail.
 detail_curve() {
     local options=(--sizes 1024,2048 --runs 5 --frames 12)
@@ -111,6 +117,7 @@ measure() {
     curve explain scenes/dunes.toml -- scenes/dunes.toml
     hash_table
     [[ $quick == yes ]] || rank_table
+    [[ $quick == yes ]] || latency_table
     curve rest --sizes 512 --runs 10 -- --sizes 512 --runs 1
     curve rest-moving --sizes 256,512 --runs 10 -- --sizes 256 --runs 1
     detail_curve

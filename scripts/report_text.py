@@ -4,6 +4,7 @@
 from dataclasses import dataclass
 from typing import Callable, Optional
 
+from latency import HEADER as LATENCY_HEADER, cells as latency_cells
 from report_data import held, least_seconds, markdown, percent
 
 PUBLIC = ["float32 N4 in place", "float32 N4 Jacobi", "float32 N8 Jacobi", "float32 N8 sqrt2 Jacobi"]
@@ -290,6 +291,17 @@ def force_work(tables):
             markdown(["law", "slope", "least depth [R]", "net work [mN · scene unit]", "share of what is exchanged"], lines))
 
 
+def latency(tables):
+    if "latency" not in tables:
+        return "Left out of the quick report: `sandwall-bench latency` measures it, in some ten minutes."
+    table = tables["latency"]
+    return ("Half of the round trip of a test message as long as a step's, at random times, until the wall has swapped and until "
+            "the master has it; [what each column is](../latency.md).\n\n" +
+            markdown(LATENCY_HEADER, [latency_cells(row) for row in table.rows]) + "\n\n" +
+            "\n".join(f"- {note}" for note in table.notes if not note.startswith(("command: ", "date: "))) +
+            f"\n\n*[latency](data/latency.csv): `{table.fact('command')}`*")
+
+
 def hashes(tables):
     lines, seen = [], {}
     for name, table in tables.items():
@@ -335,5 +347,6 @@ SECTIONS = [
     Section("Picture error against draw time", "detail", ["detail"], detail),
     Section("Force between surfaces", "force_rate", ["force-rate"], force_rate),
     Section("Work of the force", None, ["force-work"], force_work),
+    Section("From the hand to the wall", None, [], latency),
     Section("One hash", None, [], hashes),
 ]
