@@ -47,6 +47,16 @@ public:
         return 0;
     }
 
+    /// Calls visit(lowest [ns], count) for every bucket that is not empty, from the shortest on.
+    template <class Visit>
+    void eachBucket(const Visit& visit) const {
+        for (std::size_t i = 0; i < buckets_.size(); ++i) {
+            if (const std::uint64_t count = buckets_[i].load(std::memory_order_relaxed); count > 0) {
+                visit(lowestOf(i), count);
+            }
+        }
+    }
+
 private:
     static constexpr unsigned kBits = 7;  // 2^7 buckets an octave
 
@@ -55,11 +65,13 @@ private:
         const unsigned shift = width > kBits + 1 ? width - kBits - 1 : 0;
         return (std::size_t{shift} << kBits) + static_cast<std::size_t>(value >> shift);
     }
+    static std::size_t shiftOf(std::size_t bucket) { return std::max<std::size_t>(bucket >> kBits, 1) - 1; }
+    static double lowestOf(std::size_t bucket) {
+        const std::size_t shift = shiftOf(bucket);
+        return std::ldexp(static_cast<double>(bucket - (shift << kBits)), static_cast<int>(shift));
+    }
     static double middleOf(std::size_t bucket) {
-        const std::size_t octave = bucket >> kBits;
-        const std::size_t shift = octave > 1 ? octave - 1 : 0;
-        const double lowest = std::ldexp(static_cast<double>(bucket - (shift << kBits)), static_cast<int>(shift));
-        return lowest + (std::ldexp(1.0, static_cast<int>(shift)) - 1) / 2;
+        return lowestOf(bucket) + (std::ldexp(1.0, static_cast<int>(shiftOf(bucket))) - 1) / 2;
     }
     template <class Number>
     static void bump(std::atomic<Number>& number, Number by) {

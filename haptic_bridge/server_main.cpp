@@ -19,6 +19,7 @@
 #include "haptic_bridge/link_server.hpp"
 #include "haptic_bridge/monotonic.hpp"
 #include "haptic_bridge/tick_recorder.hpp"
+#include "haptic_bridge/timings.hpp"
 #include "workers/sand_threads.hpp"
 
 namespace {
@@ -28,7 +29,7 @@ using boost::system::error_code;
 using namespace haptic_bridge;
 
 struct Options {
-    std::string scene, device, listen = "127.0.0.1:7750", portFile;
+    std::string scene, device, listen = "127.0.0.1:7750", portFile, timings;
     std::vector<std::string> map;
     Pace pace = Pace::realtime;
     Guards::Mode guards = Guards::Mode::on;
@@ -209,6 +210,9 @@ void serve(const Options& options) {
         print(loop->summary());
     }
     print(hand.guardCounts().inWords());
+    if (!options.timings.empty() && loop) {
+        writeTimings(options.timings, {{"period", &loop->period()}, {"force", &hand.forceCost()}});
+    }
 }
 
 /// The program's options; exits by itself after --help.
@@ -235,6 +239,9 @@ Options parse(int count, char** words) {
             std::map<std::string, Guards::Mode>{{"on", Guards::Mode::on}, {"literal", Guards::Mode::literal}}));
     app.add_option("--listen", options.listen, "ADDRESS:PORT; port 0 takes any free one");
     app.add_option("--port-file", options.portFile, "written when the server listens: the port's number");
+    app.add_option(
+        "--timings", options.timings,
+        "CSV file, written at the end: how often each period of the force loop and each cost of a force came");
     app.add_option("--timing-tests", options.tests.perSecond,
                    "timing tests a second, at random times (default: 4; docs/latency.md)")
         ->check(CLI::Range(0.1, 100.0));

@@ -135,6 +135,24 @@ TEST(Latest, HandsOverWholeValuesAndTheNewest) {
     EXPECT_EQ(backwards, 0);
 }
 
+TEST(LiveHistogram, EveryDurationIsInABucketThatBeginsAtMostAPercentBelow) {
+    haptic_bridge::LiveHistogram histogram;
+    const std::vector<std::int64_t> durations{0, 1, 127, 128, 255, 256, 257, 999'999, 1'000'000, 5'000'000'000};
+    for (const std::int64_t duration : durations) {
+        histogram.add(duration);
+    }
+    std::size_t i = 0;
+    histogram.eachBucket([&](double lowest, std::uint64_t count) {
+        for (; count > 0; --count, ++i) {
+            ASSERT_LT(i, durations.size());
+            const auto duration = static_cast<double>(durations[i]);
+            EXPECT_LE(lowest, duration);
+            EXPECT_GE(lowest, duration * (1 - 1.0 / 128));
+        }
+    });
+    EXPECT_EQ(i, durations.size());
+}
+
 TEST(LiveHistogram, PercentilesAreWithinAPercent) {
     haptic_bridge::LiveHistogram histogram;
     EXPECT_EQ(histogram.percentileNs(0.5), 0);
