@@ -21,7 +21,7 @@ struct Receiver {
     bool outside;
 };
 
-/// The cells in a ring of two cells around the tool. With a drag direction, those ahead; without one, all of them
+/// The cells around the tool that take sand. With a drag direction, those ahead; without one, all of them
 /// alike. Walls and cells beyond a closed rim do not count; beyond an open one they swallow.
 std::vector<Receiver> receivers(const Rect& bounds, Rim rim, const Ground* ground, ProbePoint at,
                                 const TurnedShape& shape, const Offset& ahead) {
@@ -116,7 +116,7 @@ Tool::Displacement Tool::press(HeightField& field, Rim rim, const Ground* ground
             field.setHeight(x, y, cutTo(field, ground, at, x, y));
         }
     }
-    Displacement result{shape_.cellsAround(at.x, at.y, 3 * kProbePerCell).clippedTo(field.bounds()), 0};
+    Displacement result{shape_.cellsChanged(at.x, at.y).clippedTo(field.bounds()), 0};
     for (std::size_t i = 0; i < ring.size(); ++i) {
         if (ring[i].outside) {
             result.outflow += share[i];

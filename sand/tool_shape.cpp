@@ -39,6 +39,7 @@ TurnedShape::TurnedShape(const ToolShape& shape, const Heading& heading)
       heading_(heading),
       length_(shape.radius),
       width_(shape.halfWidth),
+      ring_(kRing + (shape.kind == ToolKind::sphere ? 0 : (isRound(shape.kind) ? shape.radius : shape.halfWidth) / 4)),
       scale_(1 /
              std::sqrt(static_cast<double>(std::int64_t{heading.x} * heading.x + std::int64_t{heading.y} * heading.y))),
       east_(shape.radius),
@@ -91,12 +92,16 @@ std::int32_t TurnedShape::longUnderside(std::int32_t z, const Offset& offset) co
 
 bool TurnedShape::longTakes(const Offset& offset) const {
     const Place place = placeOf(offset);
+    const auto ring = static_cast<double>(ring_);
     if (shape_.kind == ToolKind::rectangle) {
-        return std::abs(place.along) <= length_ + kRing && std::abs(place.across) <= width_ + kRing;
+        return std::abs(place.along) <= length_ + ring && std::abs(place.across) <= width_ + ring;
     }
     const auto parts = pieces();
-    return std::count_if(parts.begin(), parts.end(),
-                         [&](const SolePiece& piece) { return levelOf(piece, place, kRing) <= 1; }) == 1;
+    const auto within = [&](double grown) {
+        return std::count_if(parts.begin(), parts.end(),
+                             [&](const SolePiece& piece) { return levelOf(piece, place, grown) <= 1; });
+    };
+    return within(ring) >= 1 && within(ring / 2) <= 1;
 }
 
 /// Of the outline beside a place, of any length.
@@ -105,12 +110,13 @@ TurnedShape::Place TurnedShape::normalAt(const Place& place) const {
         const bool end = std::abs(place.along) - length_ > std::abs(place.across) - width_;
         return end ? Place{place.along, 0} : Place{0, place.across};
     }
+    const auto ring = static_cast<double>(ring_);
     Place normal{};
     double nearest = std::numeric_limits<double>::infinity();
     for (const SolePiece& piece : pieces()) {
-        if (const double level = levelOf(piece, place, kRing); level < nearest) {
+        if (const double level = levelOf(piece, place, ring); level < nearest) {
             nearest = level;
-            const double length = piece.halfLength * length_ + kRing, width = piece.halfWidth * width_ + kRing;
+            const double length = piece.halfLength * length_ + ring, width = piece.halfWidth * width_ + ring;
             normal = {(place.along - piece.along * length_) / (length * length),
                       (place.across - piece.across * width_) / (width * width)};
         }

@@ -91,9 +91,10 @@ public:
         return isRound(shape_.kind) ? offset.squared() < std::int64_t{shape_.radius} * shape_.radius
                                     : longUnderside(0, offset) != kFree;
     }
-    /// Whether a place beside the tool takes sand: within two cells of its outline, and not squeezed in between two toes.
+    /// Whether a place beside the tool takes sand: within two cells of a sphere's outline, and of any other's within an
+    /// eighth of its width more, or large stamps would pile a wall around them; but not squeezed in between two toes.
     [[nodiscard]] bool takes(const Offset& offset) const {
-        const std::int64_t outer = std::int64_t{shape_.radius} + kRing;
+        const std::int64_t outer = shape_.radius + ring_;
         return isRound(shape_.kind) ? offset.squared() <= outer * outer : longTakes(offset);
     }
     /// How much of the sand that a drag pushes away goes to a place beside the tool: by the cosine of the outline's
@@ -111,8 +112,10 @@ public:
     /// The same with all that take sand.
     [[nodiscard]] Rect cellsThatTake(std::int64_t x, std::int64_t y) const {
         // A corner that grows to both sides comes farther out by the root of two.
-        return cellsAround(x, y, isRound(shape_.kind) ? kRing : kRing * 3 / 2);
+        return cellsAround(x, y, isRound(shape_.kind) ? ring_ : ring_ * 3 / 2);
     }
+    /// The same, and a cell more.
+    [[nodiscard]] Rect cellsChanged(std::int64_t x, std::int64_t y) const { return cellsAround(x, y, ring_ * 3 / 2); }
 
 private:
     static constexpr std::int64_t kRing = 2 * kProbePerCell;  // [probe unit]
@@ -149,6 +152,7 @@ private:
     ToolShape shape_;
     Heading heading_;
     double length_, width_;      // half of them [probe unit]
+    std::int64_t ring_;          // how far from the outline it lays sand down [probe unit]
     double scale_;               // one over the length of the heading
     std::int64_t east_, north_;  // how far it reaches [probe unit]
 };
