@@ -27,7 +27,10 @@ SandView::SandView(const sand::Scene& scene, const glm::dmat4& sceneToRoom)
     : sceneToRoom_(sceneToRoom),
       look_(scene.look),
       cellSize_(static_cast<float>(scene.terrain.cellSize())),
+      probeUnit_(scene.terrain.cellSize() / sand::kProbePerCell),
       toolRadius_(static_cast<float>(scene.toolRadius())),
+      toolShape_(scene.rules.toolShape()),
+      toolHeading_(scene.rules.toolHeading),
       sunlit_("sunlit.glsl"),
       woodProgram_("solid.vert.glsl", "wood.frag.glsl"),
       toolProgram_("solid.vert.glsl", "tool.frag.glsl"),
@@ -45,11 +48,14 @@ void SandView::update(const sand::HeightField& field, sand::Rect damage) {
 
 void SandView::setTool(sand::ProbePoint centre, bool engaged) {
     const glm::dvec3 cells = glm::dvec3(centre.x, centre.y, centre.z) / double{sand::kProbePerCell};
-    tool_ = EyeMemory::Tool{glm::vec3(cells * double{cellSize_}), engaged, toolRadius_};
+    tool_ = EyeMemory::Tool{glm::vec3(cells * double{cellSize_}), engaged, toolRadius_, toolShape_, toolHeading_};
 }
 
-void SandView::setTool(sand::ProbePoint centre, bool engaged, double radius) {
-    toolRadius_ = static_cast<float>(radius);
+void SandView::setTool(sand::ProbePoint centre, bool engaged, const sand::ToolShape& shape,
+                       const sand::Heading& heading) {
+    toolShape_ = shape;
+    toolHeading_ = heading;
+    toolRadius_ = static_cast<float>(shape.radius * probeUnit_);
     setTool(centre, engaged);
 }
 
@@ -67,11 +73,26 @@ void SandView::prepare(const GlProgram& program, const Camera& camera) const {
     program.set("uEye", glm::vec3(glm::inverse(sceneToRoom_) * glm::dvec4(camera.eye, 1)));
     program.set("uSun", glm::normalize(toVector(look_.sunDirection)));
     program.set("uSand", toVector(look_.sandColour));
-    program.set("uTool", tool_ && toolRadius_ > 0 ? glm::vec4(tool_->centre, toolRadius_) : kNoTool);
+    prepareTool(program);
     program.set("uGrain", 0);
     const double metresPerUnit = glm::length(glm::dvec3(sceneToRoom_[0]));
     program.set("uGrainScale", static_cast<float>(metresPerUnit / (kGrainSide * kGrainTexel)));
     program.set("uModel", glm::vec4(0, 0, 0, 1));
+}
+
+void SandView::prepareTool(const GlProgram& program) const {
+    if (!tool_ || !(toolRadius_ > 0)) {
+        program.set("uTool", kNoTool);
+    } else if (isBall(*tool_)) {
+        program.set("uTool", glm::vec4(tool_->centre, toolRadius_));
+    } else {
+        const ToolLight light = lightOf(*tool_);
+        const glm::dvec3 sun = light.toBall * glm::dvec3(glm::normalize(toVector(look_.sunDirection)));
+        program.set("uTool", glm::vec4(glm::vec3(light.centre), static_cast<float>(light.radius)));
+        program.set("uToolSpace", glm::mat3(light.toBall));
+        program.set("uToolSun", glm::vec3(glm::normalize(sun)));
+        program.set("uToolStep", static_cast<float>(1 / (glm::length(sun) * light.radius)));
+    }
 }
 
 void SandView::prepareSurface(const GlProgram& program, const Camera& camera) const {
@@ -80,9 +101,14 @@ void SandView::prepareSurface(const GlProgram& program, const Camera& camera) co
     program.set("uCells", glm::vec2(mesh_.surface().columns(), mesh_.surface().rows()));
 }
 
-Box SandView::ballOf(const EyeMemory::Tool& tool) const {
-    const double radius = 1.01 * double{tool.radius};  // more, for what GL's floats may round
-    return {glm::dvec3(tool.centre) - radius, glm::dvec3(tool.centre) + radius};
+Box SandView::bodyOf(const EyeMemory::Tool& tool) {
+    const Box box = boxOfTool(tool.shape);
+    return {glm::dvec3(tool.centre) + double{tool.radius} * box.low,
+            glm::dvec3(tool.centre) + double{tool.radius} * box.high};
+}
+
+ToolLight SandView::lightOf(const EyeMemory::Tool& tool) {
+    return {tool.shape, tool.heading, glm::dvec3(tool.centre), double{tool.radius}};
 }
 
 void SandView::draw(const Camera& camera, const EyeTarget& target) {
@@ -116,17 +142,19 @@ void SandView::drawWithin(const PixelRect& pixels, const Camera& camera, const E
     if (layers_.shows(lockstep::Layer::wireframe)) {
         drawWires(camera, sceneToPart, rule);
     }
-    prepare(woodProgram_, camera);
+    const GlProgram& wood = woodProgram();
+    prepare(wood, camera);
     box_.drawBoards();
-    woodProgram_.drawn();
+    wood.drawn();
     glDisable(GL_SCISSOR_TEST);
 }
 
-void SandView::drawTool(const Camera& camera, const glm::dmat4& sceneToPart) const {
-    if (tool_ && toolRadius_ > 0 && (!culling_ || inFrustum(ballOf(*tool_), sceneToPart))) {
+void SandView::drawTool(const Camera& camera, const glm::dmat4& sceneToPart) {
+    if (tool_ && toolRadius_ > 0 && (!culling_ || inFrustum(bodyOf(*tool_), sceneToPart))) {
         prepare(toolProgram_, camera);
         toolProgram_.set("uModel", glm::vec4(tool_->centre, toolRadius_));
         toolProgram_.set("uEngaged", tool_->engaged ? 1.0F : 0.0F);
+        toolMesh_.show(tool_->shape, tool_->heading);
         toolMesh_.draw();
         toolProgram_.drawn();
     }
@@ -140,11 +168,31 @@ void SandView::drawForce(const Camera& camera) {
     forceView_->draw(*force_, toolRadius_);
 }
 
-void SandView::drawSand(const Camera& camera, const glm::dmat4& sceneToPart, const LevelRule& rule) {
-    if (layers_.shows(lockstep::Layer::hillShade) && !hillShaded_) {
-        hillShaded_.emplace("hill_shade.glsl");
+const SandPrograms& SandView::sandPrograms() {
+    const bool hillShade = layers_.shows(lockstep::Layer::hillShade);
+    const bool ball = !tool_ || isBall(*tool_);
+    if (ball && !hillShade) {
+        return sunlit_;
     }
-    const SandPrograms& programs = layers_.shows(lockstep::Layer::hillShade) ? *hillShaded_ : sunlit_;
+    std::optional<SandPrograms>& programs = ball ? hillShaded_ : hillShade ? stampHillShaded_ : stampSunlit_;
+    if (!programs) {
+        programs.emplace(hillShade ? "hill_shade.glsl" : "sunlit.glsl", ball ? "ball.glsl" : "stamp.glsl");
+    }
+    return *programs;
+}
+
+const GlProgram& SandView::woodProgram() {
+    if (!tool_ || isBall(*tool_)) {
+        return woodProgram_;
+    }
+    if (!stampWood_) {
+        stampWood_.emplace(ProgramFiles{"solid.vert.glsl", "wood.frag.glsl", {}, {}, "stamp.glsl"});
+    }
+    return *stampWood_;
+}
+
+void SandView::drawSand(const Camera& camera, const glm::dmat4& sceneToPart, const LevelRule& rule) {
+    const SandPrograms& programs = sandPrograms();
     prepareSurface(programs.near, camera);
     prepareSurface(programs.far, camera);
     // A shadow finer than the mesh takes a software renderer time for every pixel that asks: only where there is one.
@@ -185,7 +233,8 @@ void SandView::drawWires(const Camera& camera, const glm::dmat4& sceneToPart, co
 }
 
 ToolReach SandView::reachOf(const EyeMemory::Tool& tool) const {
-    return {glm::dvec3(tool.centre), double{tool.radius}, glm::normalize(toVector(look_.sunDirection))};
+    const ToolLight light = lightOf(tool);
+    return {light.centre, light.radius, glm::normalize(toVector(look_.sunDirection))};
 }
 
 /// What a tool changes, as convex hulls: itself with the sand that it dims, and its shadow.
@@ -207,6 +256,10 @@ std::vector<std::vector<glm::dvec3>> SandView::hullsOf(const EyeMemory::Tool& to
     };
     add(hulls[0], reach.closeBy(double{sand.lowest}, highest));
     std::ranges::for_each(shadow, [&](const Box& box) { add(hulls[1], box); });
+    if (!isBall(tool)) {  // its handle and corners reach farther than its light
+        const auto corners = cornersOf(bodyOf(tool));
+        hulls.emplace_back(corners.begin(), corners.end());
+    }
     return hulls;
 }
 

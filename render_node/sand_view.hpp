@@ -15,6 +15,7 @@
 #include "render_node/pixel_rect.hpp"
 #include "render_node/sand_box.hpp"
 #include "render_node/sand_mesh.hpp"
+#include "render_node/tool_light.hpp"
 #include "render_node/tool_mesh.hpp"
 #include "render_node/tool_reach.hpp"
 #include "sand/scene.hpp"
@@ -42,6 +43,8 @@ struct EyeMemory {
         glm::vec3 centre;  // [scene unit]
         bool engaged;
         float radius;  // [scene unit]
+        sand::ToolShape shape;
+        sand::Heading heading;
         friend bool operator==(const Tool&, const Tool&) = default;
     };
     bool drawn = false;  // reset to draw anew whatever has changed
@@ -58,10 +61,10 @@ struct EyeMemory {
 /// What draws the sand in one light.
 struct SandPrograms {
     /// `light` is a file of shaders/.
-    explicit SandPrograms(std::string_view light)
+    explicit SandPrograms(std::string_view light, std::string_view tool = "ball.glsl")
         : far({"sand.vert.glsl", "sand.frag.glsl", light}),
-          near({"sand.vert.glsl", "near.frag.glsl", light}),
-          sides({"side.vert.glsl", "near.frag.glsl", light}) {}
+          near({"sand.vert.glsl", "near.frag.glsl", light, {}, tool}),
+          sides({"side.vert.glsl", "near.frag.glsl", light, {}, tool}) {}
     GlProgram far, near;  // the surface, beyond the tool's reach and within
     GlProgram sides;
 };
@@ -84,8 +87,8 @@ public:
     void update(const sand::HeightField& field, sand::Rect damage);
     /// Where the tool's centre is. No tool is drawn before the first call.
     void setTool(sand::ProbePoint centre, bool engaged);
-    /// The same for a tool of another radius than the scene's or that of before [scene unit].
-    void setTool(sand::ProbePoint centre, bool engaged, double radius);
+    /// The same for another tool than the scene's or that of before, or one that was turned.
+    void setTool(sand::ProbePoint centre, bool engaged, const sand::ToolShape& shape, const sand::Heading& heading);
 
     /// Hill-shade and wireframe; other layers are not drawn here. What a layer needs of GL is made when it is first
     /// drawn, which throws std::runtime_error when a shader does not compile.
@@ -111,22 +114,30 @@ public:
 
 private:
     void prepare(const GlProgram& program, const Camera& camera) const;
+    void prepareTool(const GlProgram& program) const;
     void prepareSurface(const GlProgram& program, const Camera& camera) const;
-    void drawTool(const Camera& camera, const glm::dmat4& sceneToPart) const;
+    void drawTool(const Camera& camera, const glm::dmat4& sceneToPart);
     void drawForce(const Camera& camera);
     void drawSand(const Camera& camera, const glm::dmat4& sceneToPart, const LevelRule& rule);
     void drawWires(const Camera& camera, const glm::dmat4& sceneToPart, const LevelRule& rule);
     void drawWithin(const PixelRect& pixels, const Camera& camera, const EyeTarget& target);
     [[nodiscard]] LevelRule ruleFor(const Camera& camera, glm::ivec2 size) const;
     [[nodiscard]] PixelRect changedPixels(const Camera& camera, glm::ivec2 size, EyeMemory& memory);
-    [[nodiscard]] Box ballOf(const EyeMemory::Tool& tool) const;
+    [[nodiscard]] const SandPrograms& sandPrograms();
+    [[nodiscard]] const GlProgram& woodProgram();
+    [[nodiscard]] static ToolLight lightOf(const EyeMemory::Tool& tool);
+    [[nodiscard]] static Box bodyOf(const EyeMemory::Tool& tool);
+    [[nodiscard]] static bool isBall(const EyeMemory::Tool& tool) { return tool.shape.kind == sand::ToolKind::sphere; }
     [[nodiscard]] ToolReach reachOf(const EyeMemory::Tool& tool) const;
     [[nodiscard]] std::vector<std::vector<glm::dvec3>> hullsOf(const EyeMemory::Tool& tool) const;
 
     glm::dmat4 sceneToRoom_;
     sand::Look look_;
     float cellSize_;    // [scene unit]
+    double probeUnit_;  // [scene unit]
     float toolRadius_;  // [scene unit], of the tool now
+    sand::ToolShape toolShape_;
+    sand::Heading toolHeading_;
     std::optional<EyeMemory::Tool> tool_;
     std::optional<ForceArrow> force_;
     lockstep::Layers layers_;
@@ -134,7 +145,9 @@ private:
     DrawCounts counts_;
 
     SandPrograms sunlit_;
-    std::optional<SandPrograms> hillShaded_;  // since the layer was first drawn, as those below
+    std::optional<SandPrograms> hillShaded_;                     // since the layer was first drawn, as those below
+    std::optional<SandPrograms> stampSunlit_, stampHillShaded_;  // since a tool was, that is no ball
+    std::optional<GlProgram> stampWood_;
     std::optional<GlProgram> wireProgram_;
     std::optional<ForceArrowView> forceView_;
     GlProgram woodProgram_, toolProgram_;

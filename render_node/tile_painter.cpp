@@ -59,7 +59,7 @@ void TilePainter::paint(sand::Terrain& terrain, const lockstep::ViewState& view,
     sand_.setSceneToRoom(glm::make_mat4(view.sceneToRoom.data()));
     sand_.update(terrain.field(), terrain.takeDamage());
     if (terrain.probe() != sand::ProbePoint{}) {  // a hand has been somewhere
-        sand_.setTool(terrain.probe(), terrain.engaged(), terrain.toolRadius());
+        sand_.setTool(terrain.probe(), terrain.engaged(), terrain.toolShape(), terrain.heading());
     }
     if (!view.layers.shows(lockstep::Layer::force)) {
         force_.reset();

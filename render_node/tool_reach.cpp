@@ -7,7 +7,7 @@
 namespace render_node {
 namespace {
 
-// As in shaders/light.glsl, in radii; a hundredth more, for what GL's floats may round.
+// As in shaders/light.glsl, ball.glsl and stamp.glsl, in radii; a hundredth more, for what GL's floats may round.
 constexpr double kReach = 2.5 * 1.01;
 constexpr double kShadowLength = 20.0 * 1.01;
 constexpr double kPenumbra = 0.08 + 0.01, kPenumbraGrowth = 0.07;

@@ -65,7 +65,7 @@ GlProgram::GlProgram(const ShaderSource& vertex, const ShaderSource& light, cons
 }
 
 GlProgram::GlProgram(const ProgramFiles& files) {
-    std::vector<const ShaderSource*> parts{&shaderSource("light.glsl")};
+    std::vector<const ShaderSource*> parts{&shaderSource("light.glsl"), &shaderSource(files.tool)};
     if (!files.look.empty()) {
         parts.push_back(&shaderSource(files.look));
     }

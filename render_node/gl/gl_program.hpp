@@ -25,8 +25,9 @@ struct ShaderSource {
 /// Names of embedded files that make a program.
 struct ProgramFiles {
     std::string_view vertex, fragment;
-    std::string_view look{};      // put before both, behind light.glsl
-    std::string_view geometry{};  // between them
+    std::string_view look{};              // put before both, behind light.glsl and the tool's
+    std::string_view geometry{};          // between them
+    std::string_view tool = "ball.glsl";  // put before both, behind light.glsl: the light that the tool takes
 };
 
 /// Linked shaders and their uniforms.
@@ -50,6 +51,9 @@ public:
     void set(const char* name, const glm::vec2& value) const { glUniform2fv(find(name), 1, &value[0]); }
     void set(const char* name, const glm::vec3& value) const { glUniform3fv(find(name), 1, &value[0]); }
     void set(const char* name, const glm::vec4& value) const { glUniform4fv(find(name), 1, &value[0]); }
+    void set(const char* name, const glm::mat3& value) const {
+        glUniformMatrix3fv(find(name), 1, GL_FALSE, &value[0][0]);
+    }
     void set(const char* name, const glm::mat4& value) const {
         glUniformMatrix4fv(find(name), 1, GL_FALSE, &value[0][0]);
     }

@@ -15,26 +15,10 @@ const float kToolReach = 2.5;
 const float kShadowLength = 20.0;
 const vec2 kPenumbra = vec2(0.08, 0.07);
 
-// How much of the sun the tool takes: all close behind it; its shadow widens and fades with the distance, and ends.
-// Exactly 0 where there is none: what is drawn without asking equals what is drawn with it (ToolReach).
-float toolShadow(vec3 place) {
-    vec3 away = (uTool.xyz - place) / uTool.w;
-    float along = dot(away, uSun);
-    float miss = sqrt(max(dot(away, away) - along * along, 0.0));
-    float blur = kPenumbra.x + kPenumbra.y * max(along, 0.0);
-    float behind = smoothstep(-0.2, 0.2, along) * (1.0 - smoothstep(2.0, kShadowLength, along));
-    return (1.0 - smoothstep(1.0 - blur, 1.0 + blur, miss)) * behind;
-}
-
-// How much of the light from all around the tool takes: the share of the sky that a ball hides (its solid angle by the
-// cosine), no less than a part of it beside the ball, for sand that lies up against it; 0 beyond kToolReach radii.
-float toolOcclusion(vec3 place, vec3 normal) {
-    vec3 away = (uTool.xyz - place) / uTool.w;
-    float square = max(dot(away, away), 1.0);
-    float facing = clamp(0.4 + 0.6 * dot(normal, away) * inversesqrt(square), 0.0, 1.0);
+// How near a place is to the tool, by the square of its distance [radius]: 1 in touch, exactly 0 from kToolReach on.
+float toolNearness(float square) {
     const float kAtReach = 1.0 / (kToolReach * kToolReach);
-    float near = max(1.0 / square - kAtReach, 0.0) / (1.0 - kAtReach);
-    return facing * near * (0.75 + 0.25 * near);
+    return max(1.0 / square - kAtReach, 0.0) / (1.0 - kAtReach);
 }
 
 // A rough surface under a share of the sun, and the sky; where little sky is seen, its own kind throws light back.

@@ -295,7 +295,8 @@ TEST_F(Redraw, FollowsAToolThatChangesItsSizeWhereItIs) {
     const sand::ProbePoint place = sample::probeAt(scene, {0.8, 0.9, 0.1});
     Pixels before;
     for (const double radius : {0.05, 0.12, 0.02, 0.08}) {
-        view.setTool(place, true, radius);
+        const auto probes = static_cast<std::int32_t>(radius / scene.terrain.cellSize() * sand::kProbePerCell);
+        view.setTool(place, true, {.radius = probes}, {});
         view.drawIfChanged(above, inParts, memory);
         const Pixels now = inParts.read();
         ASSERT_TRUE(now == sample::draw(view, above, whole)) << "radius " << radius;
@@ -303,6 +304,41 @@ TEST_F(Redraw, FollowsAToolThatChangesItsSizeWhereItIs) {
         before = now;
     }
     EXPECT_TRUE(view.drawIfChanged(above, inParts, memory).empty());
+}
+
+// Tools of every shape, lifted, dragged, turned on the spot and switched while they stand in the sand, low over the rim
+// too, whose boards take their shadow.
+TEST_F(Redraw, FollowsToolsOfEveryShapeAsTheyTurnAndAreSwitched) {
+    sand::Scene scene = sample::duneScene(128);
+    scene.rules.toolRadius = static_cast<std::int32_t>(0.14 / scene.terrain.cellSize() * sand::kProbePerCell);
+    sand::Terrain terrain(scene);
+    SandView view(scene, glm::dmat4(1));
+    const render_node::Camera slanted = sample::camera({1, -0.9, 1.3}, {1, 0.9, 0});
+    const EyeTarget inParts(200, 150), whole(200, 150);
+    render_node::EyeMemory memory;
+    Tally tally;
+    for (int i = 0; i < 120; ++i) {
+        sand::Step step{.epoch = 1, .number = terrain.stepNumber() + 1, .engaged = i % 20 >= 6, .path = {}};
+        const double along = (i % 40) / 40.0, height = step.engaged ? 0.16 : 0.3 + 0.02 * (i % 20);
+        if (i % 20 < 15) {
+            step.path = {sample::probeAt(scene, {0.3 + 1.75 * along, 0.5 + 0.1 * (i / 20), height})};
+        }
+        step.heading = sand::headingOf(7.0 * i, i % 3 == 0);
+        if (i % 10 == 8) {
+            sand::Tuning tuning = scene.rules.tuning();
+            tuning.toolKind = static_cast<sand::ToolKind>((i / 10) % sand::kToolKinds);
+            tuning.toolHalfWidth = sand::isRound(tuning.toolKind) ? 0 : tuning.toolRadius / 3;
+            step.edit = sand::Edit::tuned(tuning);
+        }
+        terrain.apply(step);
+        view.update(terrain.field(), terrain.takeDamage());
+        view.setTool(terrain.probe(), terrain.engaged(), terrain.toolShape(), terrain.heading());
+        const PixelRect drawn = view.drawIfChanged(slanted, inParts, memory);
+        (drawn.empty() ? tally.skipped : drawn.area() < 200 * 150 ? tally.inPart : tally.whole) += 1;
+        ASSERT_TRUE(inParts.read() == sample::draw(view, slanted, whole))
+            << sand::toolName(terrain.toolShape().kind) << " in step " << i;
+    }
+    EXPECT_GT(tally.inPart, 60);
 }
 
 TEST_F(Redraw, OfRestingSandDrawsNothing) {
