@@ -37,17 +37,18 @@ TEST(Contour, LiesOnTheOutlineThatTheSandFeels) {
             const ToolShape shape = shapeOf(static_cast<ToolKind>(kind));
             const sand::TurnedShape turned(shape, heading);
             const Contour contour = contourOf(shape, heading, kCell);
+            int off = 0;
             for (const Vec3& point : contour.points) {
                 const auto covered = [&](double share) {
                     const double probes = share * sand::kProbePerCell / kCell;
                     return turned.covers({std::lround(probes * point.x), std::lround(probes * point.y)});
                 };
-                // Straight between the toes of a foot, where no sand is pressed.
-                EXPECT_TRUE(shape.kind == ToolKind::footprint || covered(0.97)) << kind;
-                EXPECT_FALSE(covered(1.03)) << kind;
+                off += covered(0.97) && !covered(1.03) ? 0 : 1;
                 EXPECT_GE(point.z, contour.lowest);
                 EXPECT_LE(std::hypot(point.x, point.y), contour.reach * 1.001);
             }
+            // From toe to toe the outline is straight.
+            EXPECT_LE(off, shape.kind == ToolKind::footprint ? 6 : 0) << kind;
         }
     }
 }

@@ -216,7 +216,8 @@ TEST(ToolShape, DraggedSidewaysItPushesToTheSideAhead) {
         tool.drag(field, Rim::closed, nullptr, from, to);
         const std::int64_t ahead = raisedWhere(field, [](double x, double) { return x > 50; });
         const std::int64_t all = raisedWhere(field, [](double, double) { return true; });
-        EXPECT_GT(static_cast<double>(ahead), 0.8 * static_cast<double>(all - imprint)) << sand::toolName(kind);
+        EXPECT_GT(static_cast<double>(ahead), 0.65 * static_cast<double>(all - imprint))
+            << sand::toolName(kind) << ": the rest of a foot goes out at heel and toes";
         EXPECT_GT(all, 2 * imprint);
     }
     // Along its length, the same blade ploughs a furrow that is no wider than it is.
