@@ -19,6 +19,7 @@ struct Receiver {
     int column, row;
     std::int64_t weight;
     bool outside;
+    std::int64_t share = 0;  // [unit]
 };
 
 /// The cells around the tool that take sand. With a drag direction, those ahead; without one, all of them
@@ -32,7 +33,7 @@ std::vector<Receiver> receivers(const Rect& bounds, Rim rim, const Ground* groun
         for (int x = around.x0; x < around.x1; ++x) {
             const Offset offset = offsetOf(at, x, y);
             const bool outside = x < bounds.x0 || x >= bounds.x1 || y < bounds.y0 || y >= bounds.y1;
-            if ((outside && rim == Rim::closed) || !shape.takes(offset) || shape.covers(offset) ||
+            if ((outside && rim == Rim::closed) || shape.covers(offset) || !shape.takes(offset) ||
                 (!outside && ground != nullptr && ground->isWall(x, y))) {
                 continue;
             }
@@ -42,33 +43,31 @@ std::vector<Receiver> receivers(const Rect& bounds, Rim rim, const Ground* groun
             }
         }
     }
-    if (shape.hasHeading()) {
-        std::sort(ring.begin(), ring.end(), [&](const Receiver& a, const Receiver& b) {
-            return shape.before(offsetOf(at, a.column, a.row), offsetOf(at, b.column, b.row));
-        });
-    }
     return ring;
 }
 
 /// Gives `amount` to the receivers by weight. The remainder of the division, fewer units than there are receivers, goes
-/// one unit each to the first of them.
-std::vector<std::int64_t> shares(const std::vector<Receiver>& ring, std::int64_t amount) {
+/// one unit each to the first of them: by rows, or in the order of a tool that has a heading, which turns with it.
+void shareOut(std::vector<Receiver>& ring, std::int64_t amount, ProbePoint at, const TurnedShape& shape) {
     std::int64_t total = 0;
     for (const Receiver& receiver : ring) {
         total += receiver.weight;
     }
-    std::vector<std::int64_t> result;
     std::int64_t rest = amount;
-    for (const Receiver& receiver : ring) {
+    for (Receiver& receiver : ring) {
         // 128 bits: an amount below 2^56 times a weight below 2^36.
         __extension__ using Wide = __int128;
-        result.push_back(static_cast<std::int64_t>(static_cast<Wide>(amount) * receiver.weight / total));
-        rest -= result.back();
+        receiver.share = static_cast<std::int64_t>(static_cast<Wide>(amount) * receiver.weight / total);
+        rest -= receiver.share;
+    }
+    if (shape.hasHeading()) {
+        std::nth_element(ring.begin(), ring.begin() + rest, ring.end(), [&](const Receiver& a, const Receiver& b) {
+            return shape.before(offsetOf(at, a.column, a.row), offsetOf(at, b.column, b.row));
+        });
     }
     for (std::size_t i = 0; rest > 0; ++i, --rest) {
-        ++result[i];
+        ++ring[i].share;
     }
-    return result;
 }
 
 }  // namespace
@@ -105,9 +104,9 @@ Tool::Displacement Tool::press(HeightField& field, Rim rim, const Ground* ground
     if (ring.empty()) {  // the tool is larger than the field: there is nowhere to put the sand
         return {};
     }
-    const std::vector<std::int64_t> share = shares(ring, taken);
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-        if (!ring[i].outside && field.height(ring[i].column, ring[i].row) + share[i] > kMaxHeight) {
+    shareOut(ring, taken, at, shape_);
+    for (const Receiver& receiver : ring) {
+        if (!receiver.outside && field.height(receiver.column, receiver.row) + receiver.share > kMaxHeight) {
             return {};  // no room left in 32 bits: the sand stays, and the tool passes through it
         }
     }
@@ -117,12 +116,12 @@ Tool::Displacement Tool::press(HeightField& field, Rim rim, const Ground* ground
         }
     }
     Displacement result{shape_.cellsChanged(at.x, at.y).clippedTo(field.bounds()), 0};
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-        if (ring[i].outside) {
-            result.outflow += share[i];
+    for (const Receiver& receiver : ring) {
+        if (receiver.outside) {
+            result.outflow += receiver.share;
         } else {
-            const std::int64_t raised = field.height(ring[i].column, ring[i].row) + share[i];
-            field.setHeight(ring[i].column, ring[i].row, static_cast<std::int32_t>(raised));
+            const std::int64_t raised = field.height(receiver.column, receiver.row) + receiver.share;
+            field.setHeight(receiver.column, receiver.row, static_cast<std::int32_t>(raised));
         }
     }
     return result;

@@ -10,6 +10,8 @@ namespace {
 constexpr std::array<std::string_view, kToolKinds> kNames{"sphere",  "circle",    "rectangle",
                                                           "ellipse", "ellipsoid", "footprint"};
 
+constexpr double kBeside = 4;  // more than any level within a piece's rectangle
+
 constexpr std::array<SolePiece, 1> kPlate{{{0, 0, 1, 1, 0, 0}}};
 
 // Heel; outer side, which the arch leaves on the ground; ball, inner and outer; toes from the great one on.
@@ -61,9 +63,12 @@ std::span<const SolePiece> TurnedShape::pieces() const {
 }
 
 double TurnedShape::levelOf(const SolePiece& piece, const Place& place, double grown) const {
-    const double along = (place.along - piece.along * length_) / (piece.halfLength * length_ + grown);
-    const double across = (place.across - piece.across * width_) / (piece.halfWidth * width_ + grown);
-    return along * along + across * across;
+    const double along = place.along - piece.along * length_, across = place.across - piece.across * width_;
+    const double length = piece.halfLength * length_ + grown, width = piece.halfWidth * width_ + grown;
+    if (std::abs(along) > length || std::abs(across) > width) {
+        return kBeside;  // without a division: of nine pieces, most are far away
+    }
+    return along / length * (along / length) + across / width * (across / width);
 }
 
 std::int32_t TurnedShape::longUnderside(std::int32_t z, const Offset& offset) const {
@@ -96,12 +101,14 @@ bool TurnedShape::longTakes(const Offset& offset) const {
     if (shape_.kind == ToolKind::rectangle) {
         return std::abs(place.along) <= length_ + ring && std::abs(place.across) <= width_ + ring;
     }
-    const auto parts = pieces();
-    const auto within = [&](double grown) {
-        return std::count_if(parts.begin(), parts.end(),
-                             [&](const SolePiece& piece) { return levelOf(piece, place, grown) <= 1; });
-    };
-    return within(ring) >= 1 && within(ring / 2) <= 1;
+    int near = 0, beside = 0;
+    for (const SolePiece& piece : pieces()) {
+        if (levelOf(piece, place, ring) <= 1) {
+            ++near;
+            beside += levelOf(piece, place, ring / 2) <= 1 ? 1 : 0;
+        }
+    }
+    return near >= 1 && beside <= 1;
 }
 
 /// Of the outline beside a place, of any length.
