@@ -34,6 +34,26 @@ Vec3 soleAlong(const Vec3& ray) {
     return farthest;
 }
 
+/// Without the gaps between toes: straight from one to the next.
+Places bridged(const Places& outline) {
+    const double ball = 0.4 * std::max_element(outline.begin(), outline.end(), [](const Vec3& a, const Vec3& b) {
+                                  return a.x < b.x;
+                              })->x;
+    Places result;
+    for (const Vec3& place : outline) {
+        // A place to the right of the way from the one before last to here lies in a gap.
+        while (result.size() >= 2 && result[result.size() - 2].x > ball) {
+            const Vec3 way = place - result[result.size() - 2], last = result.back() - result[result.size() - 2];
+            if (way.x * last.y - way.y * last.x < 0) {
+                break;
+            }
+            result.pop_back();
+        }
+        result.push_back(place);
+    }
+    return result;
+}
+
 Vec3 outlineAt(ToolKind kind, double turn) {
     const Vec3 place = onCircle(turn);
     if (kind == ToolKind::rectangle) {
@@ -75,12 +95,12 @@ Contour contourOf(const ToolShape& shape, const Heading& heading, double cellSiz
     const double width = unit * shape.halfWidth;
     Places outline;
     for (int i = 0; i < kFine; ++i) {
-        const Vec3 place = outlineAt(shape.kind, static_cast<double>(i) / kFine);
+        const Vec3 place = outlineAt(shape.kind, 0.5 + static_cast<double>(i) / kFine);  // from the heel on
         outline.push_back({radius * place.x, width * place.y, radius * (place.z - 1)});
     }
     const double cosine = static_cast<double>(heading.x) / Heading::kLength;
     const double sine = static_cast<double>(heading.y) / Heading::kLength;
-    Places even = evenly(outline);
+    const Places even = evenly(shape.kind == ToolKind::footprint ? bridged(outline) : outline);
     Contour contour{{}, 0, -radius};
     for (std::size_t i = 0; i < even.size(); ++i) {
         // A mirrored tool's points run clockwise: they are taken from the last to the first.

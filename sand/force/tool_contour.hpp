@@ -6,8 +6,8 @@
 
 namespace sand::force {
 
-/// The tool's control points as it is turned now, evenly along its outline from where it heads on; those of a
-/// footprint lie on the outline as seen from its middle, toes and all. Asked after every step, not at every tick.
+/// The tool's control points as it is turned now, evenly along its outline; that of a footprint goes
+/// straight from toe to toe. Asked after every step, not at every tick.
 [[nodiscard]] Contour contourOf(const ToolShape& shape, const Heading& heading, double cellSize /* [scene unit] */);
 
 }  // namespace sand::force
