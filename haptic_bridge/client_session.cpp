@@ -18,7 +18,6 @@ using boost::system::error_code;
 
 namespace {
 
-constexpr std::chrono::milliseconds kFirstBackOff{100}, kLastBackOff{2000};
 constexpr std::chrono::milliseconds kConnectTimeout{3000};
 constexpr std::chrono::milliseconds kSilence{10000};  // pongs come four times a second
 constexpr std::chrono::milliseconds kGoodbye{500};
@@ -253,14 +252,6 @@ std::vector<TimedStep> Client::Session::drain(std::size_t most) {
     return steps;
 }
 
-std::vector<TimedPosition> Client::Session::drainPositions() {
-    const std::lock_guard lock(shelf.mutex);
-    if (shelf.full) {
-        resumeReading();
-    }
-    return std::exchange(shelf.positions, {});
-}
-
 /// Under the shelf's mutex.
 void Client::Session::resumeReading() {
     shelf.full = false;
@@ -378,43 +369,6 @@ void Client::Session::accept(const TimingTest& test) {
     shelf.tests.push_back({test.id, lastStep_});
     if (shelf.tests.size() > kMaxTests) {
         shelf.tests.pop_front();
-    }
-}
-
-void Client::Session::greet(const PositionGreeting& greeting) {
-    if (link() >= Link::offered && link() <= Link::streaming) {
-        connection_->close("it sent a message out of turn", true);
-        return;
-    }
-    if (greeting.protocol != kProtocolVersion) {
-        refuse(
-            fmt::format("refused: it streams positions in protocol version {}, the master speaks {}; "
-                        "docs/protocol.md has the present one",
-                        greeting.protocol, kProtocolVersion));
-        return;
-    }
-    {
-        const std::lock_guard lock(shelf.mutex);
-        shelf.counters.reconnects += everWelcomed_ ? 1 : 0;
-        shelf.positions.clear();
-    }
-    everWelcomed_ = true;
-    backOff_ = kFirstBackOff;
-    tell(Link::streaming,
-         fmt::format("{}: connected, '{}' streams positions; the master numbers the steps", peer_, greeting.name));
-}
-
-void Client::Session::accept(const Position& position) {
-    bool full = false;
-    {
-        const std::lock_guard lock(shelf.mutex);
-        shelf.positions.push_back({position, monotonicNs()});
-        full = shelf.positions.size() >= kMaxPositions && !shelf.full;
-        shelf.full = shelf.full || full;
-        shelf.floods += full ? 1 : 0;
-    }
-    if (full) {
-        connection_->pause();
     }
 }
 

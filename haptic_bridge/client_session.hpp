@@ -59,6 +59,7 @@ public:
 private:
     using Timer = boost::asio::steady_timer;
     using Milliseconds = std::chrono::milliseconds;
+    static constexpr Milliseconds kFirstBackOff{100}, kLastBackOff{2000};
 
     void tell(Link link, const std::string& message);
     [[nodiscard]] Link link();

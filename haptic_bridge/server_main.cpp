@@ -138,11 +138,11 @@ private:
     const Device& device_;
 };
 
-std::function<std::vector<files::Bytes>(bool)> ticksOf(std::optional<TickRecorder>& recorder) {
-    if (!recorder) {
+std::function<std::vector<files::Bytes>(bool)> ticksOf(TickRecorder* recorder) {
+    if (recorder == nullptr) {
         return {};
     }
-    return [&recorder](bool all) {
+    return [recorder](bool all) {
         if (all) {
             recorder->flush();
         }
@@ -163,10 +163,11 @@ void serve(const Options& options) {
         settings.datum.value_or(device->physics() ? HandSettings::Datum::level : HandSettings::Datum::surface);
     Hand hand(scene, std::move(device), datum, options.guards);
     HandChannel channel;
-    std::optional<TickRecorder> recorder;
+    std::unique_ptr<TickRecorder> recorder;
     if (!options.record.empty()) {
-        recorder.emplace(TickRecorder::Options{options.record, options.pace == Pace::fast, print}, hand, noted, datum);
-        channel.recorder = &*recorder;
+        recorder = std::make_unique<TickRecorder>(
+            TickRecorder::Options{options.record, options.pace == Pace::fast, print}, hand, noted, datum);
+        channel.recorder = recorder.get();
     }
 
     asio::io_context io;
@@ -175,7 +176,7 @@ void serve(const Options& options) {
     const Identity identity{kProtocolVersion, sand::kAlgorithmVersion, scene.rules.digest(), scene.name};
     std::function<Report()> measure;
     LinkServer server(io, std::move(acceptor), identity, static_cast<std::uint32_t>(scene.rules.stepsPerSecond),
-                      {[&measure] { return measure(); }, print, ticksOf(recorder),
+                      {[&measure] { return measure(); }, print, ticksOf(recorder.get()),
                        [&noted](double share) { noted.shareForce(share); }},
                       options.tests);
     // The sand and force threads end before the link they report to.

@@ -27,7 +27,9 @@ struct HandSettings {
     double verticalScale = 1;                 // of the vertical, relative to scale
     std::optional<sand::force::Vec3> origin;  // [unit of the trace], east, north, up: over the field's centre; else the
                                               // centre of the bounding box and the median height
-    double depth = 0.5;            // [tool radius], of the underside, under the surface at the origin's height
+    // [tool radius], of the underside, under the surface at the origin's height; nothing: 0.5 for a recording, 0 for an
+    // arm
+    std::optional<double> depth;
     double drift = 0;              // [reach per reach moved], of an arm's workspace to where the hand works
     std::optional<Engage> engage;  // nothing: near for a recording, always for an arm
     std::optional<Datum> datum;    // nothing: surface for what has no body, level for an arm

@@ -25,7 +25,7 @@ double halfSide(const sand::Scene& scene) {
 MappedDevice::MappedDevice(std::unique_ptr<Arm> arm, const HandSettings& settings, const sand::Scene& scene)
     : arm_(std::move(arm)),
       settings_(settings),
-      scale_(settings.scale.value_or(kFittedShare * halfSide(scene) / arm_->physics().reach)),
+      scale_(scaleFor(arm_->physics(), settings, scene)),
       horizontal_(scale_ / halfSide(scene)),
       vertical_(scale_ * settings.verticalScale / scene.toolRadius()),
       origin_(settings.origin.value_or(Vec3{})),
@@ -35,6 +35,10 @@ MappedDevice::MappedDevice(std::unique_ptr<Arm> arm, const HandSettings& setting
         throw files::InputError(
             "--map datum=surface: is for recordings; an arm feels the sand at its own height, level");
     }
+}
+
+double MappedDevice::scaleFor(const ArmPhysics& arm, const HandSettings& settings, const sand::Scene& scene) {
+    return settings.scale.value_or(kFittedShare * halfSide(scene) / arm.reach);
 }
 
 double MappedDevice::scale() const { return scale_ * std::max(1.0, settings_.verticalScale); }
@@ -82,7 +86,7 @@ Pose MappedDevice::read(double time) {
     const Vec3 from = place - origin_;
     pose_.x = from.x * horizontal_;
     pose_.y = from.y * horizontal_;
-    pose_.z = 1 - settings_.depth + from.z * vertical_;
+    pose_.z = 1 - settings_.depth.value_or(0) + from.z * vertical_;
     switch (settings_.engage.value_or(HandSettings::Engage::always)) {
         case HandSettings::Engage::near:
             pose_.engaged = pose_.z < 2;

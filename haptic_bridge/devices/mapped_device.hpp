@@ -27,6 +27,9 @@ public:
     /// The arm over this scene. Throws files::InputError for settings that an arm cannot have.
     MappedDevice(std::unique_ptr<Arm> arm, const HandSettings& settings, const sand::Scene& scene);
 
+    /// [scene unit/m] that an arm gets over this scene.
+    [[nodiscard]] static double scaleFor(const ArmPhysics& arm, const HandSettings& settings, const sand::Scene& scene);
+
     [[nodiscard]] Pose read(double time) override;
     void sendForce(sand::force::Vec3 force) override;
     [[nodiscard]] const ArmPhysics* physics() const override { return &arm_->physics(); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "haptic_bridge/devices/open_device.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 
@@ -27,6 +28,16 @@ std::ifstream open(const std::string& file) {
     }
     return stream;
 }
+
+#ifdef SANDWALL_HAS_SIMULATED_ARM
+/// Its stroke list is in hand space, so the arm is asked for its reach before it is told how large that is.
+std::unique_ptr<Device> openSimulated(const std::string& spec, const HandSettings& settings, const sand::Scene& scene) {
+    const double scale = MappedDevice::scaleFor(openSimulatedArm(spec)->physics(), settings, scene);
+    const double half = std::min(scene.terrain.columns(), scene.terrain.rows()) * scene.terrain.cellSize() / 2;
+    const StrokeSpace space{half / scale, scene.toolRadius() / (scale * settings.verticalScale)};
+    return std::make_unique<MappedDevice>(openSimulatedArm(spec, space), settings, scene);
+}
+#endif
 
 std::unique_ptr<Device> openTrace(const std::string& what, const HandSettings& settings, const sand::Scene& scene) {
     if (settings.engage == HandSettings::Engage::button) {
@@ -60,7 +71,7 @@ std::unique_ptr<Device> openDevice(const std::string& spec, const HandSettings& 
     }
 #ifdef SANDWALL_HAS_SIMULATED_ARM
     if (kind == "sim") {
-        return std::make_unique<MappedDevice>(openSimulatedArm(spec), settings, scene);
+        return openSimulated(spec, settings, scene);
     }
 #endif
     if (spec == "mouse") {

@@ -203,7 +203,8 @@ Pose TraceDevice::read(double time) {
     const double share = span > 0 ? std::clamp((time - from.time) / span, 0.0, 1.0) : 1.0;
     const sand::force::Vec3 before = turned(from.place), after = turned(to.place);
     const sand::force::Vec3 place = before + share * (after - before) - origin_;
-    Pose pose{place.x * horizontal_, place.y * horizontal_, 1 - settings_.depth + place.z * vertical_, false};
+    Pose pose{place.x * horizontal_, place.y * horizontal_, 1 - settings_.depth.value_or(0.5) + place.z * vertical_,
+              false};
     const double underside = pose.z - 1;  // [tool radius] over the surface
     pose.engaged = !finished(time) && (settings_.engage == HandSettings::Engage::always || underside < 1);
     return pose;

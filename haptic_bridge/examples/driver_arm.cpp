@@ -11,6 +11,7 @@
 #include "haptic_bridge/devices/arm.hpp"
 #include "haptic_bridge/devices/device_module.hpp"
 #include "haptic_bridge/latest.hpp"
+#include "haptic_bridge/monotonic.hpp"
 
 /// Replace these bodies by calls of your library; as they stand, they are an arm that nobody holds.
 namespace maker {
@@ -58,21 +59,35 @@ public:
     }
 
     [[nodiscard]] const ArmPhysics& physics() const override { return physics_; }
-    [[nodiscard]] ArmReading read(double) override { return reading_.latest(); }
+    [[nodiscard]] ArmReading read(double) override {
+        const Seen& seen = seen_.latest();
+        ArmReading reading = seen.reading;
+        // A library that hangs must not pass for a hand that rests.
+        reading.present = reading.present && haptic_bridge::monotonicNs() - seen.timeNs < kPatienceNs;
+        return reading;
+    }
     void push(Vec3 force) override {
         force_.next() = force;
         force_.publish();
     }
 
 private:
+    static constexpr std::int64_t kPatienceNs = 50'000'000;
+    struct Seen {
+        ArmReading reading;
+        std::int64_t timeNs = haptic_bridge::monotonicNs();
+    };
+
     void talk() {
         auto due = std::chrono::steady_clock::now();
         while (!stopping_) {
-            ArmReading& reading = reading_.next();
+            Seen& seen = seen_.next();
+            ArmReading& reading = seen.reading;
             reading.present = maker::readPlace(reading.place.x, reading.place.y, reading.place.z);  // [m]
             reading.first = maker::button(0);
             reading.second = maker::button(1);
-            reading_.publish();
+            seen.timeNs = haptic_bridge::monotonicNs();
+            seen_.publish();
             const Vec3 force = force_.latest();
             maker::setForce(force.x, force.y, force.z);  // [N]
             due += std::chrono::milliseconds(1);
@@ -81,8 +96,8 @@ private:
     }
 
     ArmPhysics physics_;
-    haptic_bridge::Latest<ArmReading> reading_;  // device to force loop
-    haptic_bridge::Latest<Vec3> force_;          // and back
+    haptic_bridge::Latest<Seen> seen_;   // device to force loop
+    haptic_bridge::Latest<Vec3> force_;  // and back
     std::atomic<bool> stopping_{false};
     std::thread thread_;
 };

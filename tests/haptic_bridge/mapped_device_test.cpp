@@ -59,7 +59,7 @@ TEST_F(Mapped, FitsTheReachIntoTheField) {
     const Pose pose = at({0.1, 0, 0});
     EXPECT_DOUBLE_EQ(pose.x, 0.8);
     EXPECT_DOUBLE_EQ(pose.y, 0);
-    EXPECT_DOUBLE_EQ(pose.z, 0.5) << "the default depth";
+    EXPECT_DOUBLE_EQ(pose.z, 1) << "the tool touches";
     EXPECT_TRUE(pose.engaged);
     EXPECT_DOUBLE_EQ(device_->scale(), 0.8 * half_ / 0.1);
 }
@@ -71,7 +71,7 @@ TEST_F(Mapped, TurnsPlacesAndTurnsForcesBack) {
     const Pose pose = at({0.01, 0.02, 0.03});
     EXPECT_DOUBLE_EQ(pose.x, 0.01 * 2 / half_);
     EXPECT_DOUBLE_EQ(pose.y, -0.03 * 2 / half_);
-    EXPECT_DOUBLE_EQ(pose.z, 0.5 + 0.02 * 2 / scene_.toolRadius());
+    EXPECT_DOUBLE_EQ(pose.z, 1 + 0.02 * 2 / scene_.toolRadius());
     expectEqual(feel({1, 2, 3}), {1, 3, -2});
     EXPECT_DOUBLE_EQ(device_->scale(), 2) << "newtons are felt as they are; only stiffness scales";
 }

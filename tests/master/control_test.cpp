@@ -50,6 +50,10 @@ TEST(OperatorCommand, EveryVerbIsRead) {
     EXPECT_DOUBLE_EQ(parseCommand("material talus 30").number, 30);
     EXPECT_EQ(parseCommand("save a-B_1").word, "a-B_1");
     EXPECT_EQ(parseCommand("load a-B_1").verb, Verb::load);
+    EXPECT_EQ(parseCommand("force off").verb, Verb::force);
+    EXPECT_DOUBLE_EQ(parseCommand("force off").number, 0);
+    EXPECT_DOUBLE_EQ(parseCommand("force on").number, 1);
+    EXPECT_DOUBLE_EQ(parseCommand("force scale 0.25").number, 0.25);
 }
 
 TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
@@ -58,7 +62,7 @@ TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
               "show LAYER, hide LAYER, eye-separation METRES, stereo MODE, tool [SHAPE] [KEY=VALUE], material KEY "
               "VALUE, save NAME, "
               "load NAME, "
-              "capture, stop");
+              "capture, force on|off|scale SHARE, stop");
     EXPECT_EQ(complaint("").substr(0, 16), "'' is no command");
     EXPECT_EQ(complaint("undo twice"), "undo takes no argument, got 'twice'");
     EXPECT_EQ(complaint("pattern"), "pattern needs NAME");
@@ -70,6 +74,10 @@ TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
               "a tool is one of sphere, circle, rectangle, ellipse, ellipsoid, footprint, or has radius=, width=, "
               "heading=, foot=left or right, got '1e999'");
     EXPECT_NE(complaint("tool footprint foot=both").find("got 'foot=both'"), std::string::npos);
+    for (const std::string value : {"scale 1.5", "scale -1", "scale", "scale nan", "half"}) {
+        EXPECT_EQ(complaint("force " + value),
+                  "force needs on, off or scale SHARE with a share of 0 to 1, got '" + value + "'");
+    }
     for (const std::string name : {"..", "../x", "/tmp/x", "a b", "a.sand"}) {
         EXPECT_EQ(complaint("save " + name), "a name has 1 to 64 letters, digits, - and _, got '" + name + "'");
         EXPECT_EQ(complaint("load " + name), complaint("save " + name));

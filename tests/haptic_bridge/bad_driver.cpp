@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "haptic_bridge/devices/device_module.hpp"
+
+namespace {
+
+using haptic_bridge::ArmReading;
+using sand::force::Vec3;
+
+/// Presses into the sand, and after half a second does what it is asked for. "press:FILE" goes on, and writes how hard
+/// it was pushed at the most.
+class BadArm : public haptic_bridge::Arm {
+public:
+    explicit BadArm(std::string what) : what_(std::move(what)) {
+        if (what_ == "throws") {
+            throw std::runtime_error("the device on USB 3 is taken");
+        }
+        physics_.name = "bad";
+        physics_.reach = 0.1;
+    }
+    ~BadArm() override {
+        if (what_.starts_with("press:")) {
+            std::ofstream(what_.substr(6)) << largest_ << '\n';
+        }
+    }
+    [[nodiscard]] const haptic_bridge::ArmPhysics& physics() const override { return physics_; }
+    [[nodiscard]] ArmReading read(double time) override {
+        ArmReading reading;
+        reading.place = {0.02 * std::cos(time), 0.02 * std::sin(time), -0.002};
+        const bool bad = time > 0.5;
+        if (bad && what_ == "stops") {
+            reading.present = false;
+        } else if (bad && what_ == "nan") {
+            reading.place.y = std::numeric_limits<double>::quiet_NaN();
+        } else if (bad && what_ == "jumps" && (++reads_ / 10) % 2 == 0) {
+            reading.place.x += 1;
+        }
+        return reading;
+    }
+    void push(Vec3 force) override { largest_ = std::max(largest_, norm(force)); }
+
+private:
+    std::string what_;
+    haptic_bridge::ArmPhysics physics_;
+    int reads_ = 0;
+    double largest_ = 0;
+};
+
+}  // namespace
+
+extern "C" haptic_bridge::Arm* sandwallArm1(const char* what) { return new BadArm(what); }
