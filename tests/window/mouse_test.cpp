@@ -118,8 +118,8 @@ TEST_F(Mouse, ShowsTheSandTheToolAndTheForce) {
     const pictures::Image expected = imageOf(painted(terrain_, hand));
     const bool shown = screen_->comesToShow(expected, 0, 0);
     if (const char* keep = getenv("SANDWALL_KEEP_PICTURES")) {
-        pictures::writePng(screen_->picture(0, 0, kSide, kSide), std::filesystem::path(keep) / "mouse.png");
-        pictures::writePng(expected, std::filesystem::path(keep) / "mouse_expected.png");
+        pictures::writePng(std::filesystem::path(keep) / "mouse.png", screen_->picture(0, 0, kSide, kSide));
+        pictures::writePng(std::filesystem::path(keep) / "mouse_expected.png", expected);
     }
     EXPECT_TRUE(shown);
     hand.force = {};
