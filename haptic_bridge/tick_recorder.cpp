@@ -23,7 +23,10 @@ constexpr std::size_t kMostPieces = 4096;  // a master that takes none is not th
 }  // namespace
 
 TickRecorder::TickRecorder(Options options, const Hand& hand, const NotedDevice& device, HandSettings::Datum datum)
-    : options_(std::move(options)), hand_(hand), device_(device), header_(device.header(datum)) {
+    : options_(std::move(options)),
+      hand_(hand),
+      device_(device),
+      header_(device.header(datum, hand.guards().mode() == Guards::Mode::literal)) {
     descriptor_ = open(options_.file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     if (descriptor_ < 0) {
         throw files::InputError(fmt::format("--record {}: cannot be made ({}); give a file in a folder that is there",

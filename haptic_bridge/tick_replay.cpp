@@ -38,7 +38,8 @@ TickReplay::TickReplay(const sand::Scene& scene, const std::vector<files::Bytes>
 void TickReplay::begin(const TrackPiece& piece) {
     auto player = std::make_unique<Player>(piece.header);
     player_ = player.get();
-    hand_ = std::make_unique<Hand>(*scene_, std::move(player), piece.header.datum);
+    hand_ = std::make_unique<Hand>(*scene_, std::move(player), piece.header.datum,
+                                   piece.header.literal ? Guards::Mode::literal : Guards::Mode::on);
 }
 
 void TickReplay::tick(const TickInput& input, const sand::Terrain& terrain, std::string& rows) {

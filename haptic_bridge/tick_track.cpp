@@ -44,6 +44,7 @@ void putHeader(const TrackHeader& header, files::ByteWriter& writer) {
     writer.put(static_cast<std::int32_t>(header.physics.delayTicks));
     writer.put(header.scale);
     writer.put(static_cast<std::uint8_t>(header.datum));
+    writer.put(static_cast<std::uint8_t>(header.literal));
 }
 
 TrackHeader getHeader(files::ByteReader& reader) {
@@ -54,6 +55,7 @@ TrackHeader getHeader(files::ByteReader& reader) {
     header.physics.delayTicks = reader.get<std::int32_t>();
     header.scale = reader.get<double>();
     header.datum = static_cast<HandSettings::Datum>(reader.get<std::uint8_t>() & 1);
+    header.literal = reader.get<std::uint8_t>() != 0;
     return header;
 }
 
@@ -116,9 +118,9 @@ TrackPiece decodeTrackPiece(std::span<const std::uint8_t> bytes) {
     return piece;
 }
 
-TrackHeader NotedDevice::header(HandSettings::Datum datum) const {
+TrackHeader NotedDevice::header(HandSettings::Datum datum, bool literal) const {
     const ArmPhysics* physics = device_->physics();
-    return {physics != nullptr, physics != nullptr ? *physics : ArmPhysics{}, device_->scale(), datum};
+    return {physics != nullptr, physics != nullptr ? *physics : ArmPhysics{}, device_->scale(), datum, literal};
 }
 
 std::string tickTitles() {

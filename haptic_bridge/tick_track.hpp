@@ -29,6 +29,7 @@ struct TrackHeader {
     ArmPhysics physics;
     double scale = 1;  // Device::scale()
     HandSettings::Datum datum = HandSettings::Datum::surface;
+    bool literal = false;  // Guards::Mode::literal
 };
 
 /// A piece of the track, as a message carries it and a journal keeps it: of one sitting, from a link's start to its
@@ -62,7 +63,7 @@ public:
     [[nodiscard]] bool finished(double time) const override { return device_->finished(time); }
 
     [[nodiscard]] const Pose& pose() const { return pose_; }
-    [[nodiscard]] TrackHeader header(HandSettings::Datum datum) const;
+    [[nodiscard]] TrackHeader header(HandSettings::Datum datum, bool literal) const;
 
 private:
     std::unique_ptr<Device> device_;

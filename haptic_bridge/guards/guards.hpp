@@ -36,6 +36,7 @@ public:
     /// The next tick is the first again.
     void forget() { begun_ = false; }
 
+    [[nodiscard]] Mode mode() const { return mode_; }
     [[nodiscard]] const ForceLimits& limits() const { return limits_; }
     [[nodiscard]] const PassivityObserver& passivity() const { return passivity_; }
 
