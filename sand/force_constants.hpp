@@ -33,7 +33,7 @@ struct ForceConstants {
     ForceLaw law = ForceLaw::repulse;
     bool literal = false;  // as printed, jumps and all; for comparison
     Between between = Between::local;
-    double validity = 0.5;      // [tool reach], how far the local model is believed from where it was made
+    double validity = 0.5;       // [tool reach], how far the local model is believed from where it was made
     double recoveryTime = 0.05;  // [s], time constant with which a new local model takes over
 
     /// [force] of a scene file, whose field's longer side is `side` [scene unit]. Throws files::InputError.
