@@ -25,6 +25,8 @@ void restMoving(const Settings& settings, Csv& csv);
 void forceRate(const Settings& settings, Csv& csv);
 void forceWork(const Settings& settings, Csv& csv);
 void hashes(const Settings& settings, Csv& csv);
+void stability(const Settings& settings, Csv& csv);
+void guardedSweep(const Settings& settings, Csv& csv);
 void explain(const Settings& settings, Csv& csv);
 
 }  // namespace bench

@@ -11,7 +11,7 @@ namespace {
 struct Curve {
     const char* name;
     const char* what;
-    std::vector<int> sizes;  // [cell]; a curve without measures a scene
+    std::vector<int> sizes;  // [cell]; a curve without measures a scene, one of size 0 neither
     int runs;
     void (*measure)(const bench::Settings&, bench::Csv&);
 };
@@ -58,6 +58,16 @@ std::vector<Curve> allCurves() {
          {512, 1024, 2048},
          10,
          bench::parts},
+        {"stability",
+         "stiffest springs that arms come to rest on, literal and guarded, against the theory; one run: two dampings",
+         {0},
+         10,
+         bench::stability},
+        {"guarded-sweep",
+         "the first paper's constants on every arm, guarded and literal; one run: a corner of it",
+         {0},
+         10,
+         bench::guardedSweep},
         {"explain",
          "what a scene loads and runs, what it leaves out, and what each part costs",
          {},
@@ -79,6 +89,9 @@ void addOptions(CLI::App& command, const Curve& curve, bench::Settings& settings
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     command.add_option("--seed", settings.seed, "of everything that is random")->capture_default_str();
+    if (curve.sizes == std::vector<int>{0}) {
+        return;
+    }
     if (curve.sizes.empty()) {
         command.add_option("SCENE", settings.scene, "a scene file")->required();
         return;

@@ -114,6 +114,8 @@ measure() {
     curve force-rate --sizes 256 --runs 10 -- --sizes 256 --runs 2
     curve force-work --sizes 256 -- --sizes 256
     curve parts --sizes 512,1024,2048 --runs 10 -- --sizes 512 --runs 3
+    curve stability --runs 10 -- --runs 1
+    curve guarded-sweep --runs 10 -- --runs 1
     curve explain scenes/dunes.toml -- scenes/dunes.toml
     hash_table
     [[ $quick == yes ]] || rank_table

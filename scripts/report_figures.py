@@ -287,6 +287,31 @@ def budget(table):
     return figure
 
 
+def stability(table):
+    names = table.distinct("arm")
+    figure, axes = panels(len(names))
+    marks = {0: ("o", "-"), 1: ("^", "--")}
+    for axis, name in zip(axes, names):
+        for delay in table.distinct("delay"):
+            rows = table.where(arm=name, delay=delay)
+            b = [row["b"] for row in rows]
+            marker, line = marks[delay]
+            ticks = "no delay" if delay == 0 else "a tick of delay"
+            axis.plot(b, [row["theory"] for row in rows], color="#777777", linestyle=line,
+                      label=f"b/(T/2 + t_d), {ticks}")
+            axis.plot(b, [row["textbook"] for row in rows], color="#000000", marker=marker, markerfacecolor="none",
+                      markersize=7, linestyle="none", label=f"mass and damping alone, measured, {ticks}")
+            axis.plot(b, [row["literal"] for row in rows], color="#D55E00", marker=marker, linestyle=line,
+                      label=f"with encoder, friction and motor, measured, {ticks}")
+            axis.plot(b, [row["guarded"] for row in rows], color="#0072B2", marker=marker, linestyle=line,
+                      label=f"guarded: K given to any law, {ticks}")
+        axis.axhline(6281, color="#009E73", linewidth=1, label="the first paper's constants")
+        label(axis, "damping b [N s/m]", "stiffness [N/m]", name)
+        axis.set_ylim(10, 1e5)
+    legend_below(figure, axes, 3)
+    return figure
+
+
 def detail(table):
     figure, axes = panels(2)
     for axis, (column, name, factor) in zip(axes, (("bad", "pixels beyond 8 levels [%]", 100),

@@ -241,6 +241,31 @@ def parts(tables):
             markdown(["N", "bedrock", "state", "µs per step of 16 sweeps", "sweeps run", "memory [MiB]"], lines))
 
 
+def stability(tables):
+    table, sweep = tables["stability"], tables["guarded-sweep"]
+    apart = max(abs(r["textbook"] / r["theory"] - 1) for r in table.rows)
+    least = min(r["bears"] for r in table.rows)
+    lines = []
+    for name in sweep.distinct("arm"):
+        for hand in sweep.distinct("hand"):
+            rows = sweep.where(arm=name, hand=hand)
+            trials = sum(r["trials"] for r in rows)
+            lines.append([name, hand, trials, f"{sum(r['rest'] * r['trials'] for r in rows):.0f}",
+                          f"{max(r['force'] for r in rows):.3g} of {rows[0]['max_force']:g} N",
+                          percent(max(r["deviation"] for r in rows)), percent(min(r["unlimited"] for r in rows)),
+                          f"{sum(r['literal_rest'] * r['trials'] for r in rows):.0f}",
+                          f"{max(r['literal_force'] for r in rows):.3g} N"])
+    return (f"The stiffest spring on which an arm comes to rest, by its damping. Mass and damping alone diverge within "
+            f"{percent(apart)} of b/(T/2 + t_d). A coarse encoder moves the limit of the whole arm down, Coulomb's "
+            f"friction and a motor that saturates move it up: what a Touch bears beyond the theory it owes to its 0.26 N of "
+            f"friction. Behind the guards an arm rests whatever a law asks for (tried up to {least:.3g} N/m), because it "
+            f"gets half of what the theory allows, or of what its maker does.\n\nThe first paper's constants in full, over "
+            f"damping, delay, depth and speed; *unlimited* is the least share of ticks in the sand in which nothing but "
+            f"the lowered constants acts, and there the force differs from the law by at most the *deviation*:\n\n" +
+            markdown(["arm", "", "trials", "guarded: rest", "most force", "deviation", "unlimited", "literal: rest",
+                      "most asked"], lines))
+
+
 def explain(tables):
     table = tables["explain"]
     lines = []
@@ -342,6 +367,7 @@ SECTIONS = [
     Section("Mass", "mass_drift", ["mass-drift"], mass_drift),
     Section("The certificate", "certificate", ["certificate"], certificate),
     Section("Where one pile's error comes from", "budget", ["budget"], budget),
+    Section("Springs that an arm bears", "stability", ["stability", "guarded-sweep"], stability),
     Section("What a scene does not need", None, ["parts"], parts),
     Section("A scene explained", None, ["explain"], explain),
     Section("Picture error against draw time", "detail", ["detail"], detail),
