@@ -189,6 +189,8 @@ TEST_F(Mapped, ABadReadingLiftsTheHandAndTakesTheForceAway) {
         EXPECT_FALSE(during.engaged);
         EXPECT_DOUBLE_EQ(during.x, before.x) << "it stays where it was";
         expectEqual(feel({0, 0, 2}), {});
+        EXPECT_FALSE(device_->reading().present) << "the guards must know";
+        EXPECT_DOUBLE_EQ(device_->reading().place.x, 0.01) << "and never see what is no place";
         EXPECT_EQ(device_->troubles()->of(trouble), 1U);
         // Back, and for an arm that has jumped: there.
         state_.reading = {{trouble == Trouble::jump ? 1 : 0.01, 0, 0}, false, false, true};
