@@ -55,6 +55,7 @@ Guards::Forces Guards::tick(const Reading& reading) {
     const double pushed = std::max(dot(force, reading.felt.normal), 0.0);
     const Vec3 damping = pushed > 0 ? passivity_.control(reading.velocity, forces.acted) : Vec3{};
     damping_ = shortened(damping_ + shortened(damping - damping_, limits_.slew / 2), pushed);
+    forces.acted |= norm(damping_) > 0 ? bit(Guard::passivity) : 0;
     force = force + damping_;
     const double size = norm(force);
     forces.acted |= size > limits_.maxForce ? bit(Guard::clamp) : 0;
