@@ -72,6 +72,9 @@ Link Client::Session::link() {
 }
 
 void Client::Session::connect() {
+    if (stopping_) {  // the retry was due already when it was cancelled: going on would take the goodbye's timer
+        return;
+    }
     // One answer of the two below wins; the other finds `done` set.
     const auto done = std::make_shared<bool>(false);
     const auto socket = std::make_shared<tcp::socket>(io_);
