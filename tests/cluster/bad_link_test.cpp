@@ -14,8 +14,8 @@ TEST_F(BadLink, TheWallGoesOnOverDelayJitterStallsAndAReset) {
         folder_ / "server.txt");
     ASSERT_TRUE(server.waitForOutput("listening on 127.0.0.1:", 20));
     const impaired_link::ImpairedLink link(
-        {.delayMs = 20, .jitterMs = 10, .stallShare = 0.02, .stallMs = 60, .resetAfter = 8'000, .seed = 4},
-        "127.0.0.1", static_cast<std::uint16_t>(std::stoi(read("port"))));
+        {.delayMs = 20, .jitterMs = 10, .stallShare = 0.02, .stallMs = 60, .resetAfter = 8'000, .seed = 4}, "127.0.0.1",
+        static_cast<std::uint16_t>(std::stoi(read("port"))));
     const Ended ended =
         runToEnd({"--wall", wall(1, 2), "--scene", sceneFile, "--haptic", "127.0.0.1:" + std::to_string(link.port()),
                   "--out", out(), "--steps", "240", "--no-pictures"});
