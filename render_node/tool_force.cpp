@@ -2,6 +2,7 @@
 #include "render_node/tool_force.hpp"
 
 #include "sand/force/law.hpp"
+#include "sand/force/tool_contour.hpp"
 
 namespace render_node {
 
@@ -24,7 +25,7 @@ std::optional<ForceArrow> ToolForce::arrow(const sand::Terrain& terrain) {
         return std::nullopt;
     }
     const sand::force::SurfacePatch patch(terrain.field(), probe, radius);
-    const auto tool = sand::force::Contour::sphere(radius);
+    const auto tool = sand::force::contourOf(terrain.toolShape(), terrain.heading(), terrain.field().cellSize());
     const auto felt = sand::force::respond(constants_, patch, tool, centre);
     const Vec3 whole = sand::force::lawfulForce(felt, velocity_);
     const Vec3 force = sand::force::guarded(whole, 0, kMostNewtons);

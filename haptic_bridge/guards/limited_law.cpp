@@ -13,12 +13,10 @@ using sand::force::Vec3;
 constexpr double kFramesPerSecond = 60;
 constexpr double kMatters = 0.97;  // less is left, and a guard has acted
 
-Vec3 across(Vec3 normal, Vec3 velocity) { return velocity - dot(velocity, normal) * normal; }
-
 }  // namespace
 
 Vec3 lawfulForce(const sand::force::Response& felt, Vec3 velocity, double scale) {
-    return felt.push - (felt.drag * scale / kFramesPerSecond) * across(felt.normal, velocity);
+    return sand::force::lawfulForce(felt, (scale / kFramesPerSecond) * velocity);
 }
 
 Vec3 limitedForce(const sand::force::Response& felt, Vec3 velocity, const ForceLimits& limits, std::uint32_t& acted) {
@@ -30,7 +28,7 @@ Vec3 limitedForce(const sand::force::Response& felt, Vec3 velocity, const ForceL
     const double pressed = norm(push);
     acted |= gain < kMatters && pressed > 0 ? bit(Guard::stiffness) : 0;
 
-    const Vec3 slip = across(felt.normal, velocity);
+    const Vec3 slip = sand::force::rubbing(felt, velocity);
     const double speed = norm(slip);
     const double asked = gain * felt.drag * limits.scale / kFramesPerSecond;  // [N · s/m]
     const double soft = asked / (1 + 2 * asked * ForceLimits::kTick / limits.arm.mass);
