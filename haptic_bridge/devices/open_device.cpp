@@ -9,10 +9,7 @@
 #include "haptic_bridge/devices/device_module.hpp"
 #include "haptic_bridge/devices/mapped_device.hpp"
 #include "haptic_bridge/devices/mouse.hpp"
-#if __has_include("haptic_bridge/devices/simulated_arm.hpp")
 #include "haptic_bridge/devices/simulated_arm.hpp"
-#define SANDWALL_HAS_SIMULATED_ARM
-#endif
 #include "haptic_bridge/devices/spacenav.hpp"
 #include "haptic_bridge/devices/strokes.hpp"
 #include "haptic_bridge/devices/trace.hpp"
@@ -29,7 +26,6 @@ std::ifstream open(const std::string& file) {
     return stream;
 }
 
-#ifdef SANDWALL_HAS_SIMULATED_ARM
 /// Its stroke list is in hand space, so the arm is asked for its reach before it is told how large that is.
 std::unique_ptr<Device> openSimulated(const std::string& spec, const HandSettings& settings, const sand::Scene& scene) {
     const double scale = MappedDevice::scaleFor(openSimulatedArm(spec)->physics(), settings, scene);
@@ -37,7 +33,6 @@ std::unique_ptr<Device> openSimulated(const std::string& spec, const HandSetting
     const StrokeSpace space{half / scale, scene.toolRadius() / (scale * settings.verticalScale)};
     return std::make_unique<MappedDevice>(openSimulatedArm(spec, space), settings, scene);
 }
-#endif
 
 std::unique_ptr<Device> openTrace(const std::string& what, const HandSettings& settings, const sand::Scene& scene) {
     if (settings.engage == HandSettings::Engage::button) {
@@ -69,11 +64,9 @@ std::unique_ptr<Device> openDevice(const std::string& spec, const HandSettings& 
     if (kind == "driver" && !what.empty()) {
         return std::make_unique<MappedDevice>(openArmModule(what), settings, scene);
     }
-#ifdef SANDWALL_HAS_SIMULATED_ARM
     if (kind == "sim") {
         return openSimulated(spec, settings, scene);
     }
-#endif
     if (spec == "mouse") {
         return std::make_unique<MouseDevice>([&] { return openPictureWindow("Sandwall: " + scene.name, 720, 720); });
     }
