@@ -21,7 +21,6 @@ namespace {
 constexpr std::chrono::milliseconds kConnectTimeout{3000};
 constexpr std::chrono::milliseconds kSilence{10000};  // pongs come four times a second
 constexpr std::chrono::milliseconds kGoodbye{500};
-constexpr std::size_t kMaxTests = 64;         // a wall that stands still has no round trip to tell
 constexpr std::size_t kMaxTickPieces = 4096;  // half an hour of them; a session that keeps none takes none out
 
 }  // namespace
@@ -235,58 +234,10 @@ void Client::Session::grant(Start start, files::Bytes state) {
     });
 }
 
-std::vector<TimedStep> Client::Session::drain(std::size_t most) {
-    std::vector<TimedStep> steps;
-    const std::lock_guard lock(shelf.mutex);
-    const std::size_t count = std::min(most, shelf.steps.size());
-    const auto end = shelf.steps.begin() + static_cast<std::ptrdiff_t>(count);
-    steps.assign(std::make_move_iterator(shelf.steps.begin()), std::make_move_iterator(end));
-    shelf.steps.erase(shelf.steps.begin(), end);
-    const std::uint64_t next = shelf.steps.empty() ? ~std::uint64_t{0} : shelf.steps.front().step.number;
-    while (!shelf.tests.empty() && shelf.tests.front().after < next) {
-        if (shelf.testsInFrame.size() < kMaxTests) {
-            shelf.testsInFrame.push_back(shelf.tests.front().id);
-        }
-        shelf.tests.pop_front();
-    }
-    if (shelf.full && shelf.steps.size() < kMaxQueued) {
-        resumeReading();
-    }
-    return steps;
-}
-
-/// Under the shelf's mutex.
-void Client::Session::resumeReading() {
-    shelf.full = false;
-    asio::post(io_, [this] {
-        if (connection_) {
-            connection_->resume();
-        }
-    });
-}
-
 void Client::Session::shareForce(double share) {
     asio::post(io_, [this, share] {
         if (connection_ && link() == Link::linked) {
             connection_->send(ForceShare{share});
-        }
-    });
-}
-
-void Client::Session::shown(const Shown& frame) {
-    std::vector<std::uint32_t> tests;
-    {
-        const std::lock_guard lock(shelf.mutex);
-        tests.swap(shelf.testsInFrame);
-    }
-    asio::post(io_, [this, frame, tests = std::move(tests)] {
-        if (!connection_ || link() != Link::linked) {
-            return;
-        }
-        // A frame drawn before the hand-over's first step says nothing about the server's steps yet.
-        connection_->send(Shown{std::clamp(frame.stepNumber, granted_.stepNumber, lastStep_), frame.frameIntervalNs});
-        for (const std::uint32_t id : tests) {
-            connection_->send(TimingEcho{id, Leg::shown});
         }
     });
 }
@@ -364,44 +315,6 @@ void Client::Session::welcome(const Welcome& greeting) {
     clock_ = ClockOffset();
     tell(Link::offered, fmt::format("{}: connected, {} steps per second", peer_, greeting.stepsPerSecond));
     ping();
-}
-
-void Client::Session::accept(const TimingTest& test) {
-    connection_->send(TimingEcho{test.id, Leg::received});
-    const std::lock_guard lock(shelf.mutex);
-    shelf.tests.push_back({test.id, lastStep_});
-    if (shelf.tests.size() > kMaxTests) {
-        shelf.tests.pop_front();
-    }
-}
-
-void Client::Session::accept(StepMessage&& message) {
-    const sand::Step& step = message.step;
-    const std::uint64_t number = step.number;
-    const bool linked = link() == Link::linked;
-    bool full = false;
-    {
-        const std::lock_guard lock(shelf.mutex);
-        if (!linked || step.epoch != granted_.epoch) {
-            ++shelf.counters.stepsForeign;
-            return;
-        }
-        if (number <= lastStep_) {
-            ++shelf.counters.stepsStale;
-            return;
-        }
-        if (number == lastStep_ + 1) {
-            lastStep_ = number;
-            ++shelf.counters.stepsIn;
-            shelf.steps.push_back({std::move(message.step), message.serverTimeNs, message.stateHash, monotonicNs()});
-            full = shelf.full = shelf.steps.size() >= kMaxQueued;
-        }
-    }
-    if (lastStep_ < number) {
-        connection_->close(fmt::format("step {} came after step {}", number, lastStep_));
-    } else if (full) {
-        connection_->pause();
-    }
 }
 
 }  // namespace haptic_bridge

@@ -29,6 +29,13 @@ ForceLimits limitsFor(const sand::Scene& scene, const Device& device, const LawA
     return limits;
 }
 
+/// The constant that the gain lowers: a law is proportional to it.
+std::vector<std::string> inWords(const sand::ForceConstants& constants, const ForceLimits& limits,
+                                 const LawAtRadius& law) {
+    return constants.law == sand::ForceLaw::repulse ? limits.inWords("k_s", constants.stiffness, law)
+                                                    : limits.inWords("F_M", constants.maxForce, law);
+}
+
 }  // namespace
 
 Hand::Hand(const sand::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum, Guards::Mode mode)
@@ -43,7 +50,7 @@ Hand::Hand(const sand::Scene& scene, std::unique_ptr<Device> device, HandSetting
       guards_(limitsFor(scene, *device_, law), mode),
       armVelocity_(guards_.limits().arm.resolution),
       velocity_(guards_.limits().resolution * guards_.limits().scale),
-      words_(guards_.limits().inWords("k_s", scene.force.stiffness, law)) {
+      words_(inWords(scene.force, guards_.limits(), law)) {
     restart();
 }
 

@@ -26,8 +26,9 @@ Guards::Forces Guards::tick(const Reading& reading) {
     }
     if (!begun_) {
         begun_ = true;
-        time_ = rampFrom_ = reading.time;
+        time_ = reading.time;
         place_ = reading.place;
+        restart(reading.time);
     }
     const double span = reading.time - time_;
     forces.acted = faults(reading, span, forces.lawful);

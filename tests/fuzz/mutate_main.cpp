@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs a fuzzer without libFuzzer: every file of a corpus as it is, then so many changed ones, the same on every run.
-// A crash leaves the input in crash-input beside, and its seed and number are printed before it is tried.
+// An input that ends the program is left beside, in crash-input.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>

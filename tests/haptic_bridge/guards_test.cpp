@@ -287,6 +287,32 @@ TEST(Guards, ClampByTheNorm) {
     EXPECT_NE(forces.acted & bit(Guard::clamp), 0U);
 }
 
+TEST(Guards, ForgettingIsBeingNew) {
+    const auto forces = [](Guards& guards, double from) {
+        std::vector<Vec3> sent;
+        for (int tick = 0; tick < 3000; ++tick) {
+            Guards::Reading reading;
+            reading.time = from + tick * kTick;
+            reading.engaged = true;
+            reading.place = {0, 0, 0.0005 * std::sin(0.3 * tick)};
+            reading.velocity = {0.02, 0, 0.15 * std::cos(0.3 * tick)};
+            reading.felt.push = {0, 0, 1};
+            reading.felt.stiffness = 500;
+            reading.felt.drag = 2;
+            sent.push_back(guards.tick(reading).sent);
+        }
+        return sent;
+    };
+    Guards guards(touchLimits());
+    const std::vector<Vec3> first = forces(guards, 0);
+    guards.forget();
+    const std::vector<Vec3> again = forces(guards, 0);
+    EXPECT_GT(norm(first.back()), 0);
+    for (std::size_t tick = 0; tick < first.size(); ++tick) {
+        ASSERT_EQ(norm(again[tick] - first[tick]), 0) << "tick " << tick;
+    }
+}
+
 TEST(Guards, LiterallyAreThePapersLaw) {
     Guards guards(touchLimits(), Guards::Mode::literal);
     Guards::Reading reading;
