@@ -296,7 +296,7 @@ TEST(Guards, ForgettingIsBeingNew) {
             reading.engaged = true;
             reading.place = {0, 0, 0.0005 * std::sin(0.3 * tick)};
             reading.velocity = {0.02, 0, 0.15 * std::cos(0.3 * tick)};
-            reading.felt.push = {0, 0, 1};
+            reading.felt.push = {0, 0, 100};  // several ticks of slew
             reading.felt.stiffness = 500;
             reading.felt.drag = 2;
             sent.push_back(guards.tick(reading).sent);
