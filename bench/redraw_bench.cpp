@@ -73,6 +73,61 @@ sand::ProbePoint handAt(const sand::Rules& rules, std::int32_t level, double sec
             level / kUnitsPerProbe + rules.toolRadius / 2};
 }
 
+/// The steps of one frame, at as many samples of the hand as a device gives.
+void dig(sand::Terrain& terrain, std::int32_t level, int steps) {
+    constexpr int kSamples = 17;  // in a step
+    for (int i = 0; i < steps; ++i) {
+        sand::Step step{1, terrain.stepNumber() + 1, true, {}};
+        for (int sample = 1; sample <= kSamples; ++sample) {
+            const double at = static_cast<double>(step.number) + static_cast<double>(sample) / kSamples;
+            step.path.push_back(handAt(terrain.rules(), level, at / terrain.rules().stepsPerSecond));
+        }
+        terrain.apply(step);
+    }
+    (void)terrain.stateHash();
+}
+
+struct Measured {
+    std::vector<double> stepMs, updateMs, drawMs, busiestMs;  // a frame
+    std::vector<double> views, shares;                        // a frame
+    std::vector<double> viewMs;                               // a view
+};
+
+/// Takes over what changed and draws it, tile by tile.
+void show(const std::vector<std::unique_ptr<Tile>>& tiles, sand::Terrain& terrain, Measured& measured) {
+    const sand::Rect damage = terrain.takeDamage();
+    double update = 0, draw = 0, busiest = 0, drawn = 0, pixels = 0, all = 0;
+    for (const auto& tile : tiles) {
+        const double taken = bench::secondsOf([&] {
+            tile->view.update(terrain.field(), damage);
+            tile->view.setTool(terrain.probe(), terrain.engaged());
+        });
+        double both = 0;
+        for (const auto& eye : tile->eyes) {
+            render_node::PixelRect changed;
+            const double spent = bench::secondsOf([&] {
+                changed = tile->view.drawIfChanged(eye->camera, eye->target, eye->memory);
+                eye->target.finish();
+            });
+            both += spent;
+            all += eye->target.width() * eye->target.height();
+            if (!changed.empty()) {
+                pixels += static_cast<double>(changed.area());
+                ++drawn;
+                measured.viewMs.push_back(1e3 * spent);
+            }
+        }
+        update += taken;
+        draw += both;
+        busiest = std::max(busiest, taken + both);
+    }
+    measured.updateMs.push_back(1e3 * update);
+    measured.drawMs.push_back(1e3 * draw);
+    measured.busiestMs.push_back(1e3 * busiest);
+    measured.views.push_back(drawn);
+    measured.shares.push_back(100 * pixels / all);
+}
+
 int measure(const Options& options) {
     const walls::Wall wall = walls::loadWall(options.wall);
     const sand::Scene scene = sand::loadScene(options.scene);
@@ -80,71 +135,29 @@ int measure(const Options& options) {
     const std::vector<std::unique_ptr<Tile>> tiles = tilesOf(wall, scene);
     sand::Terrain terrain(scene);
     const std::int32_t level = scene.referenceHeight();
-    std::vector<double> stepMs, updateMs, drawMs, busiestMs, viewMs, views, shares;
-    constexpr int kSamples = 17;  // of the hand in a step
-    constexpr int kWarmUp = 30;   // [frame]: shaders, buffers, the first bank
+    Measured measured;
+    constexpr int kWarmUp = 30;  // [frame]: shaders, buffers, the first bank
     for (int frame = 0; frame < kWarmUp + options.frames; ++frame) {
-        const double steps = bench::secondsOf([&] {
-            for (int i = 0; i < scene.rules.stepsPerSecond / options.rate; ++i) {
-                sand::Step step{1, terrain.stepNumber() + 1, true, {}};
-                for (int sample = 1; sample <= kSamples; ++sample) {
-                    const double at = static_cast<double>(step.number) + static_cast<double>(sample) / kSamples;
-                    step.path.push_back(handAt(scene.rules, level, at / scene.rules.stepsPerSecond));
-                }
-                terrain.apply(step);
-            }
-            (void)terrain.stateHash();
-        });
-        const sand::Rect damage = terrain.takeDamage();
-        double update = 0, draw = 0, busiest = 0, drawn = 0, pixels = 0, all = 0;
-        for (const auto& tile : tiles) {
-            const double one = bench::secondsOf([&] {
-                tile->view.update(terrain.field(), damage);
-                tile->view.setTool(terrain.probe(), terrain.engaged());
-            });
-            double both = 0;
-            for (const auto& eye : tile->eyes) {
-                render_node::PixelRect changed;
-                const double spent = bench::secondsOf([&] {
-                    changed = tile->view.drawIfChanged(eye->camera, eye->target, eye->memory);
-                    eye->target.finish();
-                });
-                both += spent;
-                all += eye->target.width() * eye->target.height();
-                if (!changed.empty()) {
-                    pixels += static_cast<double>(changed.area());
-                    ++drawn;
-                    if (frame >= kWarmUp) {
-                        viewMs.push_back(1e3 * spent);
-                    }
-                }
-            }
-            update += one;
-            draw += both;
-            busiest = std::max(busiest, one + both);
+        if (frame == kWarmUp) {
+            measured = {};
         }
-        if (frame >= kWarmUp) {
-            stepMs.push_back(1e3 * steps);
-            updateMs.push_back(1e3 * update);
-            drawMs.push_back(1e3 * draw);
-            busiestMs.push_back(1e3 * busiest);
-            views.push_back(drawn);
-            shares.push_back(100 * pixels / all);
-        }
+        const int steps = scene.rules.stepsPerSecond / options.rate;
+        measured.stepMs.push_back(1e3 * bench::secondsOf([&] { dig(terrain, level, steps); }));
+        show(tiles, terrain, measured);
     }
     const auto row = [](const char* what, const std::vector<double>& values) {
-        fmt::print("{:44} {:8.2f} {:8.2f}\n", what, bench::quantile(values, 0.5), bench::quantile(values, 0.99));
+        fmt::print("{:48} {:8.2f} {:8.2f}\n", what, bench::quantile(values, 0.5), bench::quantile(values, 0.99));
     };
     fmt::print("{} frames at {} a second of {}, {}, {}\n", options.frames, options.rate, wall.name, scene.name,
                context->renderer());
-    fmt::print("{:44} {:>8} {:>8}\n", "", "p50", "p99");
-    row("steps of one replica [ms/frame]", stepMs);
-    row("taking over what changed, all tiles [ms/frame]", updateMs);
-    row("drawing, all tiles [ms/frame]", drawMs);
-    row("the busiest tile, both eyes [ms/frame]", busiestMs);
-    row("a view that is drawn [ms]", viewMs);
-    row("views drawn [1/frame]", views);
-    row("pixels drawn [% of the wall]", shares);
+    fmt::print("{:48} {:>8} {:>8}\n", "", "p50", "p99");
+    row("steps of one replica [ms/frame]", measured.stepMs);
+    row("taking over what changed, all tiles [ms/frame]", measured.updateMs);
+    row("drawing, all tiles [ms/frame]", measured.drawMs);
+    row("the busiest tile, both eyes [ms/frame]", measured.busiestMs);
+    row("a view that is drawn [ms]", measured.viewMs);
+    row("views drawn [1/frame]", measured.views);
+    row("pixels drawn [% of the wall]", measured.shares);
     return 0;
 }
 
