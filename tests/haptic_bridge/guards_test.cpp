@@ -7,8 +7,10 @@
 #include <random>
 
 #include "haptic_bridge/devices/arm_presets.hpp"
+#include "haptic_bridge/devices/strokes.hpp"
 #include "haptic_bridge/guards/limited_law.hpp"
 #include "haptic_bridge/guards/velocity_window.hpp"
+#include "haptic_bridge/hand.hpp"
 #include "tests/support/arm_loop.hpp"
 #include "tests/support/arm_on_sand.hpp"
 
@@ -70,6 +72,17 @@ TEST(ForceLimits, AreHalfOfWhatTheArmBearsInWords) {
     const ForceLimits free = ForceLimits::of(touchPreset(), test::kScale, soft, 0.67);
     EXPECT_EQ(free.gain, 1);
     EXPECT_EQ(free.inWords("k_s", 10, soft)[0].substr(0, 17), "k_s 10 as it is: ");
+}
+
+TEST(ForceLimits, NameTheConstantOfTheSceneLaw) {
+    const auto words = [](sand::ForceLaw law) {
+        sand::Scene scene = test::levelSand();
+        scene.force.law = law;
+        auto strokes = std::make_unique<StrokeDevice>(Strokes::parse(gisStrokes(), "gis.strokes"));
+        return Hand(scene, std::move(strokes), HandSettings::Datum::surface).limitsInWords().front();
+    };
+    EXPECT_EQ(words(sand::ForceLaw::repulse).substr(0, 9), "k_s 1000 ");
+    EXPECT_EQ(words(sand::ForceLaw::controlPoints).substr(0, 7), "F_M 10 ");
 }
 
 TEST(ForceLimits, BearLessWhereAnEncodersStepWouldChatter) {
