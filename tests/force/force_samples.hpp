@@ -77,4 +77,13 @@ inline sand::Scene levelScene(std::int32_t sweepsPerStep = 40) {
     return scene;
 }
 
+inline sand::ForceConstants constantsOf(sand::ForceLaw law, sand::Between between = sand::Between::local) {
+    sand::ForceConstants constants;
+    constants.law = law;
+    constants.between = between;
+    constants.unitLength = kSide * kCell;
+    return constants;
+}
+inline constexpr std::array kLaws{sand::ForceLaw::repulse, sand::ForceLaw::controlPoints};
+
 }  // namespace samples
