@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "files/whole_file.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -36,6 +37,19 @@ WholeFile::~WholeFile() {
     }
 }
 
+void WholeFile::keepSynced() {
+    stream_.flush();
+    const int descriptor = beside_.empty() ? -1 : ::open(beside_.c_str(), O_WRONLY | O_CLOEXEC);
+    if (!stream_ || (descriptor >= 0 && ::fsync(descriptor) != 0)) {
+        fail();
+    }
+    if (descriptor >= 0) {
+        ::close(descriptor);
+    }
+    keep();
+    syncFolderOf(target_);
+}
+
 void WholeFile::keep() {
     stream_.close();
     if (!stream_) {
@@ -51,6 +65,15 @@ void WholeFile::keep() {
             fail();
         }
         beside_.clear();
+    }
+}
+
+void syncFolderOf(const std::filesystem::path& file) {
+    const std::filesystem::path folder = file.parent_path().empty() ? "." : file.parent_path();
+    const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor >= 0) {
+        (void)::fsync(descriptor);
+        ::close(descriptor);
     }
 }
 

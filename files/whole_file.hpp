@@ -21,6 +21,8 @@ public:
 
     [[nodiscard]] std::ostream& stream() { return stream_; }
     void keep();
+    /// As keep(), and on the disk when it returns: also after a loss of power.
+    void keepSynced();
 
 private:
     [[noreturn]] void fail() const;
@@ -30,5 +32,8 @@ private:
     std::filesystem::path beside_;  // empty where target_ is written to directly
     std::ofstream stream_;
 };
+
+/// Names that were given or taken in this file's folder are on the disk when it returns, where folders can be synced.
+void syncFolderOf(const std::filesystem::path& file);
 
 }  // namespace files

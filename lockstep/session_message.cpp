@@ -28,6 +28,7 @@ files::Bytes SessionMessage::encode() const {
         writer.put(one.frame);
         writer.put(one.frames);
     }
+    writer.putBlock(state);
     return writer.take();
 }
 
@@ -60,6 +61,8 @@ SessionMessage SessionMessage::decode(std::span<const std::uint8_t> bytes) {
         one.frame = reader.get<std::uint64_t>();
         one.frames = reader.get<std::uint64_t>();
     }
+    const auto state = reader.getBlock();
+    session.state.assign(state.begin(), state.end());
     return session;
 }
 

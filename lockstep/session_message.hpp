@@ -42,6 +42,7 @@ struct SessionMessage {
     std::optional<SkewedView> skew;
     std::int32_t spoiltShader = 0;  // the rank that is to find one of its shaders broken, for tests; 0 for none
     std::vector<SlowDrawing> slow{};
+    files::Bytes state{};  // sand::Terrain::encodeState, where a session goes on; empty: as the scene begins
 
     [[nodiscard]] files::Bytes encode() const;
     static SessionMessage decode(std::span<const std::uint8_t> bytes);

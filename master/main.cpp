@@ -33,6 +33,7 @@ struct Options {
     int spoiltShader = 0;
     bool noPictures = false;
     master::SessionOptions session;
+    bool resume = false;
     int sandThreads = 1;
 };
 
@@ -67,8 +68,35 @@ struct World {
     lockstep::SessionMessage message;
 };
 
-/// The scene of the file named, or of the journal that is to be replayed.
+/// Where the session in --out stopped, if there is one.
+void resume(Options& options) {
+    const std::filesystem::path journal = std::filesystem::path(options.out) / "session.journal";
+    std::optional<master::ResumedSession> resumed = master::readSession(journal, options.scene);
+    if (!resumed) {
+        fmt::print(stderr, "sandwall: {}: nothing to resume; the session begins\n", journal.string());
+        return;
+    }
+    if (resumed->cutBytes > 0) {
+        fmt::print(stderr, "sandwall: {}: the last {} bytes are no whole record and are cut off\n", journal.string(),
+                   resumed->cutBytes);
+    }
+    fmt::print(stderr, "sandwall: {}: goes on after step {}, frame {}: {} and {} steps behind it\n", journal.string(),
+               resumed->step, resumed->frame,
+               resumed->checkpointStep == 0 ? std::string("the scene")
+                                            : fmt::format("the checkpoint of step {}", resumed->checkpointStep),
+               resumed->replayedSteps);
+    options.session.resumed = std::make_shared<const master::ResumedSession>(std::move(*resumed));
+}
+
+/// The scene of the file named, or of the journal that is to be replayed or gone on with.
 sand::Scene loadScene(Options& options) {
+    if (options.resume) {
+        resume(options);
+        if (options.session.resumed) {
+            options.scene = options.scene.empty() ? options.out : options.scene;  // for complaints
+            return options.session.resumed->scene;
+        }
+    }
     if (options.replay.empty()) {
         if (options.scene.empty()) {
             throw files::InputError("sandwall-master: name a --scene, or a journal to --replay");
@@ -137,7 +165,8 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
                      std::nullopt,
                      std::nullopt,
                      options.spoiltShader,
-                     {}};
+                     {},
+                     options.session.resumed ? options.session.resumed->state : files::Bytes()};
     for (const std::string& text : options.injections) {
         master::inject(text, world.wall.ranks(), world.message);
     }
@@ -224,6 +253,16 @@ void describeOptions(CLI::App& app, Options& options) {
     app.add_option("--skew-view", options.skew, "for tests: rank=R,frame=F shows that rank another view");
 }
 
+void describeResume(CLI::App& app, Options& options) {
+    CLI::Option* resume = app.add_flag("--resume", options.resume, "go on with the session in --out, if there is one");
+    resume->excludes(app.get_option("--replay"));
+    master::Failure& failure = options.session.failure;
+    app.add_option("--failed-at", failure.noticed, "Unix time at which the failure was noticed that made it stop")
+        ->check(CLI::NonNegativeNumber)
+        ->needs(resume);
+    app.add_option("--failure", failure.what, "what had failed, for the record")->needs(resume);
+}
+
 void describeReplay(CLI::App& app, Options& options) {
     CLI::Option* replay =
         app.add_option("--replay", options.replay, "journal of a session, shown again instead of a scene");
@@ -254,6 +293,7 @@ int main(int argc, char** argv) {
     Options options;
     describeOptions(app, options);
     describeReplay(app, options);
+    describeResume(app, options);
     bool parsed = false;
     const int status = files::runMain(app, argc, argv, [&] {
         parsed = true;

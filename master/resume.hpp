@@ -3,7 +3,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <string>
 
+#include "master/journal_reader.hpp"
 #include "sand/terrain.hpp"
 
 namespace master {
@@ -20,5 +23,25 @@ struct RestoredSand {
 /// the journal cannot be read, ends before `step`, or disagrees with the hashes it holds. Any thread.
 [[nodiscard]] RestoredSand restoreSand(const std::filesystem::path& journal, std::uint64_t step,
                                        const sand::Erosion::Options& sweeps = {});
+
+/// A session that stopped, and all that it takes to go on.
+struct ResumedSession {
+    sand::Scene scene;
+    sand::Material material;  // with all that its operator had asked for
+    JournalPlace place;       // where its journal goes on
+    std::uint64_t frame = 0;  // the last in the journal
+    std::uint32_t epoch = 0;  // the last
+    std::uint64_t edits = 0;
+    std::uint64_t step = 0, hash = 0;  // the sand
+    files::Bytes state;                // as well, sand::Terrain::encodeState
+    std::int64_t cutBytes = 0;         // behind the last whole record of the journal: left out
+    std::uint64_t checkpointStep = 0, replayedSteps = 0;
+};
+
+/// Reads the session that `journal` holds; changes nothing. Nothing when there is none. A `scene` file that is named
+/// must describe its scene. Throws files::InputError for a journal that cannot be gone on with, and says what can be
+/// done with it.
+[[nodiscard]] std::optional<ResumedSession> readSession(const std::filesystem::path& journal, const std::string& scene,
+                                                        const sand::Erosion::Options& sweeps = {});
 
 }  // namespace master

@@ -22,12 +22,14 @@ double secondsSince(std::int64_t then) { return static_cast<double>(nowNs() - th
 
 }  // namespace
 
-Sequencer::Sequencer(std::optional<haptic_bridge::Address> server, const sand::Scene& scene, Pace pace)
+Sequencer::Sequencer(std::optional<haptic_bridge::Address> server, const sand::Scene& scene, Pace pace,
+                     std::uint32_t epoch)
     : server_(std::move(server)),
       offer_{scene.rules.digest(), scene.name},
       stepsPerSecond_(scene.rules.stepsPerSecond),
       pace_(pace),
       source_(server_ ? Source::starting : Source::own),
+      epoch_(epoch),
       waitingSinceNs_(nowNs()),
       positions_(scene) {
     if (server_) {

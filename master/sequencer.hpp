@@ -28,7 +28,9 @@ public:
     static constexpr double kGrantWait = 5;
     static constexpr double kRetryWait = 30;  // [s] until it is tried again
 
-    Sequencer(std::optional<haptic_bridge::Address> server, const sand::Scene& scene, Pace pace);
+    /// Epochs begin above `epoch`, the last of a session that goes on.
+    Sequencer(std::optional<haptic_bridge::Address> server, const sand::Scene& scene, Pace pace,
+              std::uint32_t epoch = 0);
 
     /// At most `most` steps for the next frame, numbered on from the terrain's; none when nothing is due.
     [[nodiscard]] std::vector<haptic_bridge::TimedStep> next(const sand::Terrain& terrain, std::uint64_t stateHash,
@@ -81,7 +83,7 @@ private:
     Pace pace_;
     std::unique_ptr<haptic_bridge::Client> client_;
     Source source_;
-    std::uint32_t epoch_ = 0;
+    std::uint32_t epoch_;
     std::uint64_t linkChanges_ = 0;  // of which the user has been told
     std::int64_t waitingSinceNs_;    // for a server to answer, or to begin
     haptic_bridge::LinkCounters earlierLinks_;

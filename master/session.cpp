@@ -68,13 +68,13 @@ Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, con
       barrier_(cluster, names_, options_.frameTimeout),
       views_(wall, scene, options_.tracker),
       viewProof_(wall.encode()),
-      sequencer_(options_.server, scene, options_.pace),
+      sequencer_(options_.server, scene, options_.pace, options_.resumed ? options_.resumed->epoch : 0),
       operator_(options_.readInput),
       rankStatistics_(names_.size()) {
     if (options_.recording) {
         options_.steps = std::min(options_.steps, options_.recording->lastStep());
     } else {
-        journal_.emplace(options_.out / "session.journal", scene, lockstep::buildId());
+        beginJournal(scene);
         control_.emplace(options_.out);
     }
     if (options_.film) {
@@ -83,7 +83,7 @@ Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, con
     summary_.scene = scene.name;
     summary_.wall = wall.name;
     summary_.ranks = wall.ranks();
-    summary_.volumeInitial = terrain_.field().volume();
+    summary_.volumeInitial = scene.terrain.volume();
     for (const walls::Tile& tile : wall.tiles) {
         summary_.tileNames.push_back(tile.name);
     }
@@ -134,10 +134,11 @@ std::vector<TimedStep> Session::awaitSteps() {
     }
     const bool fast = options_.pace == Pace::fast;
     std::size_t most = fast ? kMostStepsPerFastFrame : kMostStepsPerFrame;
-    most = paused_ ? 0 : std::min<std::uint64_t>(most, options_.steps - terrain_.stepNumber());
+    const std::uint64_t left = options_.steps - std::min(options_.steps, terrain_.stepNumber());
+    most = paused_ ? 0 : std::min<std::uint64_t>(most, left);
     const std::int64_t since = nowNs();
     std::vector<TimedStep> steps = sequencer_.next(terrain_, hash_, most);
-    while (fast && !paused_ && steps.empty() && !operator_.stopAsked() &&
+    while (fast && most > 0 && steps.empty() && !operator_.stopAsked() &&
            static_cast<double>(nowNs() - since) * 1e-9 < kFastPatience) {
         sleepNs(500'000);
         steps = sequencer_.next(terrain_, hash_, most);
@@ -214,6 +215,7 @@ bool Session::showFrame() {
         reportDisagreement(verdict);
         return false;
     }
+    tellRecovery();
     measureSwaps(swapped);
     measureLatency(steps, broadcast, swapped);
     answerEdits(steps);
@@ -341,10 +343,14 @@ void Session::finish(bool agreed) {
     summary_.drag = rankStatistics_.drag();
     summary_.rankNames = names_;
     summary_.masterResidentBytes = lockstep::residentBytes();
+    summary_.recoveries = recoveriesOf(options_.out);
 }
 
 int Session::run() {
     forgetOldResults(options_.out);
+    if (!options_.resumed) {
+        forgetRecoveries(options_.out);
+    }
     bool agreed = true;
     while (agreed && !stopping_) {
         agreed = showFrame();

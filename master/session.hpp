@@ -22,6 +22,8 @@
 #include "master/operator_command.hpp"
 #include "master/operator_input.hpp"
 #include "master/recording.hpp"
+#include "master/recovery.hpp"
+#include "master/resume.hpp"
 #include "master/saved_sand.hpp"
 #include "master/sequencer.hpp"
 #include "master/summary.hpp"
@@ -48,9 +50,11 @@ struct SessionOptions {
     tracking::Source tracker;                             // where the head's pose comes from
     bool readInput = false;                               // "stop" on standard input, or its end, ends the session
     std::filesystem::path out;
-    sand::Erosion::Options sweeps;               // how the master's own replica is swept
-    std::shared_ptr<const Recording> recording;  // steps come from there, and no journal is written
-    bool film = false;                           // every frame becomes a picture, and there are no others
+    sand::Erosion::Options sweeps;                  // how the master's own replica is swept
+    std::shared_ptr<const Recording> recording;     // steps come from there, and no journal is written
+    std::shared_ptr<const ResumedSession> resumed;  // goes on where that one stopped
+    Failure failure;                                // that made it stop
+    bool film = false;                              // every frame becomes a picture, and there are no others
     std::optional<FilmEye> filmEye;
 };
 
@@ -71,7 +75,8 @@ private:
     void obeyOperator();
     void obey(const std::string& line, std::optional<ControlSocket::Client> client);
     void carryOut(const Command& command, std::optional<ControlSocket::Client> client);
-    void askEdit(sand::Edit edit, std::optional<ControlSocket::Client> client);
+    void askEdit(sand::Edit edit, std::optional<ControlSocket::Client> client,
+                 const std::optional<sand::Material>& material = std::nullopt);
     /// Only a material that is in a step's queue becomes the one that the next is made from.
     void askMaterial(const sand::Material& material, std::optional<ControlSocket::Client> client);
     void changeStereo(walls::Stereo stereo);
@@ -102,6 +107,8 @@ private:
     void keepJournal(const JournalFrame& frame);
     void keepTicks();
     void endJournal();
+    void beginJournal(const sand::Scene& scene);
+    void tellRecovery();
     void applySteps(const std::vector<haptic_bridge::TimedStep>& steps);
     void compareWithRecording();
     [[nodiscard]] lockstep::WallFigures wallFigures() const;
@@ -132,6 +139,7 @@ private:
     struct Asker {
         sand::Edit edit;
         std::optional<ControlSocket::Client> client;  // none: typed, or answered already
+        std::optional<sand::Material> material;       // that the edit makes the session's
     };
     struct Errand {
         std::future<ErrandDone> work;

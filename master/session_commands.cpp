@@ -147,7 +147,7 @@ void Session::carryOut(const Command& command, std::optional<Client> client) {
     }
 }
 
-void Session::askEdit(sand::Edit edit, std::optional<Client> client) {
+void Session::askEdit(sand::Edit edit, std::optional<Client> client, const std::optional<sand::Material>& material) {
     const auto loads = [](const Asker& asker) { return asker.edit.kind == sand::Edit::load; };
     if (edit.kind == sand::Edit::load && std::any_of(askers_.begin(), askers_.end(), loads)) {
         throw files::InputError("another load waits for its step already");  // each holds the whole sand
@@ -163,11 +163,11 @@ void Session::askEdit(sand::Edit edit, std::optional<Client> client) {
         client.reset();
     }
     sequencer_.request(edit);
-    askers_.push_back({std::move(edit), client});
+    askers_.push_back({std::move(edit), client, material});
 }
 
 void Session::askMaterial(const sand::Material& material, std::optional<Client> client) {
-    askEdit(sand::Edit::tuned(sand::tuningOf(material, grid_)), client);
+    askEdit(sand::Edit::tuned(sand::tuningOf(material, grid_)), client, material);
     material_ = material;
 }
 

@@ -25,7 +25,8 @@ ordered_json distribution(const lockstep::Statistics& figures) {
 }
 
 double framesPerSecond(const Summary& summary) {
-    return summary.seconds > 0 ? static_cast<double>(summary.frames - 1) / summary.seconds : 0;
+    const std::uint64_t shown = summary.frames - summary.framesBefore;
+    return summary.seconds > 0 ? static_cast<double>(shown - 1) / summary.seconds : 0;
 }
 
 ordered_json halfRoundTrip(const haptic_bridge::HalfRoundTrip& trip) {
@@ -61,7 +62,7 @@ double shareOf(std::size_t count, std::uint64_t frames) {
 
 ordered_json slowestPart(const Summary& summary, const lockstep::RankStatistics::Rank& rank) {
     return {{"frames", rank.keptMs.count()},
-            {"share", shareOf(rank.keptMs.count(), summary.frames)},
+            {"share", shareOf(rank.keptMs.count(), summary.frames - summary.framesBefore)},
             {"wall_waited_ms", spread(rank.keptMs)}};
 }
 
@@ -128,6 +129,10 @@ ordered_json jsonOf(const Summary& summary) {
                                  {"absent", head->absent},   {"lost", head->timesLost},  {"outside", head->outside}};
     }
     json["master_memory_bytes"] = summary.masterResidentBytes;
+    json["recoveries"] = ordered_json::array();
+    for (const std::string& recovery : summary.recoveries) {
+        json["recoveries"].push_back(ordered_json::parse(recovery));
+    }
     json["per_rank"] = ordered_json::array();
     for (std::size_t i = 0; i < summary.ranksReports.size(); ++i) {
         json["per_rank"].push_back(rankPart(summary, i));

@@ -50,6 +50,8 @@ struct Summary {
     std::vector<std::string> rankNames;                          // as well, as messages speak of them
     std::optional<lockstep::Drag> drag;                          // who kept the wall waiting, if anyone
     std::int64_t masterResidentBytes = 0;
+    std::uint64_t framesBefore = 0;       // of `frames`, before the session stopped and went on
+    std::vector<std::string> recoveries;  // of the session, an object of JSON each
 };
 
 /// Who keeps the wall waiting, as summary.json and `ctl status` have it: null where no rank stands out.

@@ -45,6 +45,9 @@ public:
         }
         const sand::Scene scene = sand::Scene::decode(message.scene);
         terrain_.emplace(scene, sweeps);
+        if (!message.state.empty()) {
+            terrain_->decodeState(message.state);
+        }
         painter_.emplace(shown_, shown_.tiles.at(static_cast<std::size_t>(cluster.rank() - 1)), scene,
                          lockstep::hostName());
     }

@@ -6,8 +6,8 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <algorithm>
 #include <csignal>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -108,38 +108,90 @@ TEST_F(JournalFile, AFullDiskLeavesTheFramesBeforeWhole) {
     EXPECT_EQ(journal.tornBytes, 0);
 }
 
-TEST_F(JournalFile, ATornTailLosesNothingButItself) {
-    const auto frames = writeSession(false);
-    const auto whole = std::filesystem::file_size(file_);
-    const std::size_t before = master::readJournal(file_).frames.size();
-    ASSERT_EQ(before, 10U);
-    for (std::uintmax_t cut = 1; cut < 20; ++cut) {
-        std::filesystem::resize_file(file_, whole - cut);
+// At every length that a file can have been cut to: refused within the header, else whole records and the rest counted.
+TEST_F(JournalFile, CutAnywhereItKeepsEveryRecordBeforeTheCut) {
+    std::vector<std::uintmax_t> ends;  // of the header, and of every frame
+    const sand::Scene scene = samples::flatScene(20, 10);
+    std::mt19937 random(48);
+    std::vector<master::JournalFrame> frames;
+    {
+        master::JournalWriter writer(file_, scene, "0123456789abcdef");
+        ends.push_back(std::filesystem::file_size(file_));
+        for (std::uint64_t number = 1; number <= 6; ++number) {
+            frames.push_back({number, random(), {samples::randomStep(number, scene.rules, random)}});
+            writer.append(frames.back());
+            ends.push_back(std::filesystem::file_size(file_));
+        }
+    }
+    for (std::uintmax_t cut = ends.back(); cut-- > 0;) {
+        std::filesystem::resize_file(file_, cut);
+        if (cut < ends.front()) {
+            EXPECT_THROW((void)master::readJournal(file_), files::InputError) << cut;
+            continue;
+        }
+        const auto whole = static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), cut) - ends.begin()) - 1;
         const master::Journal journal = master::readJournal(file_);
-        expectFrames(journal.frames, frames, 9);
-        EXPECT_GT(journal.tornBytes, 0);
-        EXPECT_FALSE(journal.end.has_value());
+        expectFrames(journal.frames, frames, whole);
+        EXPECT_EQ(journal.tornBytes, static_cast<std::int64_t>(cut - ends[whole])) << cut;
     }
 }
 
-TEST_F(JournalFile, RefusesDamageInItsMiddle) {
+/// Changes one bit of a file, and changes it back when it goes.
+class Flipped {
+public:
+    Flipped(const std::filesystem::path& file, std::streamoff at, int bit) : file_(file), at_(at), bit_(bit) { flip(); }
+    ~Flipped() { flip(); }
+    Flipped(const Flipped&) = delete;
+    Flipped& operator=(const Flipped&) = delete;
+
+private:
+    void flip() {
+        std::fstream stream(file_, std::ios::in | std::ios::out | std::ios::binary);
+        stream.seekg(at_);
+        const int before = stream.get();
+        stream.seekp(at_);
+        stream.put(static_cast<char>(before ^ 1 << bit_));
+    }
+    std::filesystem::path file_;
+    std::streamoff at_;
+    int bit_;
+};
+
+// Whatever the byte is a part of: header, length, type, payload or checksum.
+TEST_F(JournalFile, RefusesAFlippedBitOfAnyByteBeforeItsLastRecord) {
     writeSession(true);
     const auto size = static_cast<std::streamoff>(std::filesystem::file_size(file_));
-    std::fstream stream(file_, std::ios::in | std::ios::out | std::ios::binary);
-    const auto flip = [&](std::streamoff at) {
-        stream.seekg(at);
-        const int before = stream.get();
-        stream.seekp(at);
-        stream.put(static_cast<char>(before ^ 1));
-        stream.flush();
-    };
-    // Whatever it is a part of: length, type, payload or checksum.
-    for (std::streamoff at = size * 3 / 4; at < size * 3 / 4 + 100; ++at) {
-        flip(at);
+    const std::streamoff last = size - 29;  // the end: length, type, step, hash, checksum
+    for (std::streamoff at = 0; at < last; ++at) {
+        const Flipped flipped(file_, at, static_cast<int>(at % 8));
         EXPECT_THROW((void)master::readJournal(file_), files::InputError) << "byte " << at << " of " << size;
-        flip(at);
+    }
+    for (std::streamoff at = last; at < size; ++at) {
+        const Flipped flipped(file_, at, static_cast<int>(at % 8));
+        const master::Journal journal = master::readJournal(file_);
+        EXPECT_EQ(journal.frames.size(), 10U) << "byte " << at << " of " << size;
+        EXPECT_FALSE(journal.end.has_value());
+        EXPECT_EQ(journal.tornBytes, 29);
     }
     EXPECT_NO_THROW((void)master::readJournal(file_));
+}
+
+// One record of a session put into the place of another's: each is whole, and the chain is not.
+TEST_F(JournalFile, RefusesARecordThatWasLeftOut) {
+    const sand::Scene scene = samples::flatScene(20, 10);
+    std::vector<std::uintmax_t> ends;
+    {
+        master::JournalWriter writer(file_, scene, "0123456789abcdef");
+        for (std::uint64_t number = 1; number <= 4; ++number) {
+            writer.append({number, number, {{.epoch = 1, .number = number, .engaged = false, .path = {}}}});
+            ends.push_back(std::filesystem::file_size(file_));
+        }
+    }
+    std::ifstream stream(file_, std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+    bytes.erase(ends[0], ends[1] - ends[0]);
+    std::ofstream(file_, std::ios::binary) << bytes;
+    EXPECT_THROW((void)master::readJournal(file_), files::InputError);
 }
 
 TEST_F(JournalFile, KeepsTheJournalOfTheSessionBefore) {
@@ -171,34 +223,39 @@ TEST_F(JournalFile, ADiskThatRefusesIsNamed) {
     EXPECT_THROW(master::JournalWriter("/nowhere/session.journal", samples::flatScene(8, 8), "x"), files::InputError);
 }
 
-// Sessions of spheres are written as they were before there were other tools (tests/sand/step_test.cpp), so that this
-// file is one of version 3 but for the number.
-TEST_F(JournalFile, ReadsOnesFromBeforeThereWereOtherTools) {
+// As programs of before there were parts wrote it: checksums that do not hang together, and no number of the session.
+// Sessions of spheres are the same in versions 3 and 4 (tests/sand/step_test.cpp).
+TEST_F(JournalFile, ReadsOnesFromBeforeThereWereParts) {
     const auto frames = writeSession(true);
-    std::fstream stream(file_, std::ios::in | std::ios::out | std::ios::binary);
-    std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-    bytes[4] = 3;
-    const auto lengthAt = [&](std::size_t at) {
-        std::uint32_t length = 0;
-        std::memcpy(&length, &bytes[at], sizeof length);
-        return length;
-    };
-    const std::size_t scene = 8 + 4 + lengthAt(8), end = scene + 4 + lengthAt(scene);
-    const std::uint64_t checksum = XXH3_64bits(bytes.data(), end);
-    std::memcpy(&bytes[end], &checksum, sizeof checksum);
-    stream.seekp(0);
-    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    stream.close();
-    const master::Journal journal = master::readJournal(file_);
-    expectFrames(journal.frames, frames, frames.size());
-    EXPECT_TRUE(journal.end.has_value());
-    EXPECT_EQ(journal.scene.rules.toolKind, sand::ToolKind::sphere);
+    const sand::Scene scene = samples::flatScene(20, 10);
+    for (const std::uint32_t version : {3U, 4U}) {
+        files::ByteWriter writer;
+        writer.put(std::uint32_t{0x4c4a5753});
+        writer.put(version);
+        writer.putText("0123456789abcdef");
+        writer.putBlock(scene.encode());
+        writer.put(XXH3_64bits(writer.bytes().data(), writer.bytes().size()));
+        std::vector<master::JournalRecord> records(frames.begin(), frames.end());
+        records.emplace_back(master::JournalEnd{30, 77});
+        for (const master::JournalRecord& record : records) {
+            std::uint64_t chain = 0;
+            writer.putBytes(master::encodeRecord(record, chain));
+        }
+        const files::Bytes bytes = writer.take();
+        std::ofstream(file_, std::ios::binary)
+            .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+        const master::Journal journal = master::readJournal(file_);
+        expectFrames(journal.frames, frames, frames.size());
+        ASSERT_TRUE(journal.end.has_value());
+        EXPECT_EQ(journal.end->hash, 77U);
+        EXPECT_EQ(journal.scene.rules.toolKind, sand::ToolKind::sphere);
+    }
 }
 
 // The version stands behind the four bytes of the name, and in front of all that a later one may change.
 TEST_F(JournalFile, TellsTheVersionsItReads) {
-    for (const auto& [version, complaint] : {std::pair{1, "a journal whose header is damaged"},
-                                             {5, "a journal of version 5; this program reads 1 to 4"}}) {
+    for (const auto& [version, complaint] : {std::pair{0, "a journal of version 0; this program reads 1 to 5"},
+                                             {6, "a journal of version 6; this program reads 1 to 5"}}) {
         writeSession(true);
         std::fstream stream(file_, std::ios::in | std::ios::out | std::ios::binary);
         stream.seekp(4);

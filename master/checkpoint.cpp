@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/checkpoint.hpp"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <optional>
+
+#include "files/input_error.hpp"
+#include "files/whole_file.hpp"
+#include "sand/scene.hpp"
+
+namespace master {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint32_t kMagic = 0x50435753;  // "SWCP"
+constexpr std::uint32_t kVersion = 1;
+constexpr std::string_view kEnding = ".checkpoint";
+
+std::uint64_t checksum(std::span<const std::uint8_t> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
+
+fs::path folderOf(const fs::path& journal) { return journal.parent_path() / "checkpoints"; }
+
+std::optional<std::uint64_t> stepOf(const std::string& name) {
+    std::uint64_t step = 0;
+    const char* const last = name.data() + name.size();
+    const auto [end, error] = std::from_chars(name.data(), last, step);
+    const bool named = error == std::errc() && std::string_view(end, static_cast<std::size_t>(last - end)) == kEnding;
+    return named ? std::optional(step) : std::nullopt;
+}
+
+}  // namespace
+
+files::Bytes Checkpoint::encode() const {
+    files::ByteWriter writer;
+    writer.put(kMagic);
+    writer.put(kVersion);
+    writer.put(sand::kAlgorithmVersion);
+    writer.put(session);
+    writer.putText(buildId);
+    for (const std::uint64_t number : {sceneDigest, step, frame}) {
+        writer.put(number);
+    }
+    writer.put(epoch);
+    writer.put(stateHash);
+    writer.putBlock(state);
+    writer.put(checksum(writer.bytes()));
+    return writer.take();
+}
+
+Checkpoint Checkpoint::decode(std::span<const std::uint8_t> bytes) {
+    files::ByteReader reader(bytes);
+    if (reader.get<std::uint32_t>() != kMagic) {
+        throw files::FormatError("no checkpoint");
+    }
+    const auto version = reader.get<std::uint32_t>();
+    const auto algorithm = reader.get<std::uint32_t>();
+    if (version != kVersion || algorithm != sand::kAlgorithmVersion) {
+        throw files::FormatError(
+            fmt::format("a checkpoint of another version of Sandwall ({}, algorithm {})", version, algorithm));
+    }
+    Checkpoint checkpoint;
+    checkpoint.session = reader.get<std::uint64_t>();
+    checkpoint.buildId = reader.getText();
+    for (std::uint64_t* number : {&checkpoint.sceneDigest, &checkpoint.step, &checkpoint.frame}) {
+        *number = reader.get<std::uint64_t>();
+    }
+    checkpoint.epoch = reader.get<std::uint32_t>();
+    checkpoint.stateHash = reader.get<std::uint64_t>();
+    const auto state = reader.getBlock();
+    const std::size_t checked = bytes.size() - reader.rest().size();
+    if (reader.get<std::uint64_t>() != checksum(bytes.first(checked)) || !reader.atEnd()) {
+        throw files::FormatError("damaged: its checksum is wrong");
+    }
+    checkpoint.state.assign(state.begin(), state.end());
+    return checkpoint;
+}
+
+fs::path checkpointFile(const fs::path& journal, std::uint64_t step) {
+    return folderOf(journal) / fmt::format("{}{}", step, kEnding);
+}
+
+std::vector<std::uint64_t> checkpointsOf(const fs::path& journal) {
+    std::vector<std::uint64_t> steps;
+    std::error_code none;  // usually there is such a folder, and it need not be
+    for (const auto& entry : fs::directory_iterator(folderOf(journal), none)) {
+        if (const auto step = stepOf(entry.path().filename().string())) {
+            steps.push_back(*step);
+        }
+    }
+    std::sort(steps.begin(), steps.end(), std::greater<>());
+    return steps;
+}
+
+void writeCheckpoint(const fs::path& journal, const Checkpoint& checkpoint, std::size_t kept) {
+    std::error_code error;
+    fs::create_directories(folderOf(journal), error);
+    if (error) {
+        throw files::InputError(fmt::format("{}: cannot be made ({})", folderOf(journal).string(), error.message()));
+    }
+    const files::Bytes bytes = checkpoint.encode();
+    files::WholeFile file(checkpointFile(journal, checkpoint.step));
+    file.stream().write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    file.keepSynced();
+    const std::vector<std::uint64_t> steps = checkpointsOf(journal);
+    for (std::size_t i = kept; i < steps.size(); ++i) {
+        fs::remove(checkpointFile(journal, steps[i]), error);
+    }
+}
+
+Checkpoint readCheckpoint(const fs::path& file) {
+    std::error_code error;
+    const std::uintmax_t size = fs::is_regular_file(file, error) ? fs::file_size(file, error) : 0;
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream || error || size == 0) {
+        throw files::FormatError("cannot be read");
+    }
+    files::Bytes bytes(size);
+    stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+    bytes.resize(static_cast<std::size_t>(stream.gcount()));
+    return Checkpoint::decode(bytes);
+}
+
+}  // namespace master

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "master/journal_format.hpp"
+#include "master/journal_reader.hpp"
+#include "master/part_file.hpp"
+
+namespace master {
+
+inline constexpr std::int64_t kPartBytes = 256 << 20;
+
+/// Writes a session to disk before the wall shows it (docs/journal.md). One thread.
+///
+/// What throws, throws files::InputError; the file then ends with the record before, and the writer is to be left
+/// alone.
+class JournalWriter {
+public:
+    /// Makes the file, header and all; a journal that is there already is kept as FILE.previous, its parts as
+    /// FILE.previous.2 and so on. A part that has grown beyond `partBytes` is followed by another.
+    JournalWriter(const std::filesystem::path& file, const sand::Scene& scene, const std::string& buildId,
+                  std::int64_t partBytes = kPartBytes);
+    /// Goes on behind a whole record; what stands there is cut off.
+    JournalWriter(const JournalPlace& place, const std::string& buildId, std::int64_t partBytes = kPartBytes);
+
+    enum class Room : std::uint8_t {
+        reserved,  // what is appended next cannot find the disk full
+        none,      // it can be tried again
+        unknown    // this file system reserves nothing
+    };
+    /// Asks the file system for room for so many bytes more, before anybody relies on it; begins a new part where it
+    /// is time to. `now` is the sand after the last step that was appended. `why` says what is in the way.
+    [[nodiscard]] Room makeRoom(std::int64_t bytes, const JournalEnd& now, std::string& why);
+
+    /// Returns when the steps are on disk.
+    void append(const JournalFrame& frame);
+    /// What an operator has made of the material: on disk with the next steps.
+    void keepMaterial(const sand::Material& material);
+    /// A piece of the haptic server's tick track: on disk with the next steps, or when there is much of it.
+    void keepTicks(const files::Bytes& piece);
+    /// The session goes on here, having stopped.
+    void resume(const JournalResumed& resumed);
+    /// The session ended here, on purpose.
+    void finish(std::uint64_t step, std::uint64_t hash);
+
+    /// A number that no other session has.
+    [[nodiscard]] std::uint64_t session() const { return session_; }
+    /// What is written now.
+    [[nodiscard]] const std::filesystem::path& file() const { return file_.path(); }
+
+private:
+    void rotate(const JournalEnd& now);
+    void put(const JournalRecord& record);
+    void writeWaiting();
+
+    std::filesystem::path journal_;  // its first part
+    std::string buildId_;
+    std::int64_t partBytes_;
+    std::uint64_t session_;
+    std::uint32_t part_ = 1;
+    std::uint64_t chain_ = 0;
+    PartFile file_;
+    files::Bytes waiting_;  // whole records that are not on disk
+};
+
+}  // namespace master

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/part_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "files/input_error.hpp"
+#include "files/whole_file.hpp"
+
+namespace master {
+namespace {
+
+constexpr std::int64_t kReservedPiece = 1 << 20;  // [byte]
+
+}  // namespace
+
+PartFile::PartFile(std::filesystem::path path, int descriptor, std::int64_t size)
+    : path_(std::move(path)), descriptor_(descriptor), size_(size), reserved_(size) {}
+
+PartFile PartFile::make(const std::filesystem::path& path, std::span<const std::uint8_t> begin) {
+    // Under another name until its beginning is whole: a file of that name is a journal, whenever a crash comes.
+    std::error_code none;
+    const bool plain = !std::filesystem::exists(path, none) || std::filesystem::is_regular_file(path, none);
+    const std::string beside = plain ? path.string() + ".part" : path.string();
+    const auto refuse = [&path] {
+        throw files::InputError(
+            fmt::format("{}: cannot be made ({}); choose another --out", path.string(), std::strerror(errno)));
+    };
+    PartFile file(path, ::open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644), 0);
+    if (file.descriptor_ < 0) {
+        refuse();
+    }
+    try {
+        file.write(begin);
+        if (plain && rename(beside.c_str(), path.c_str()) != 0) {
+            refuse();
+        }
+    } catch (const files::InputError&) {
+        if (plain) {
+            unlink(beside.c_str());
+        }
+        throw;
+    }
+    files::syncFolderOf(path);
+    return file;
+}
+
+PartFile PartFile::open(const std::filesystem::path& path, std::int64_t size) {
+    PartFile file(path, ::open(path.c_str(), O_WRONLY | O_CLOEXEC), size);
+    if (file.descriptor_ < 0 || ftruncate(file.descriptor_, size) != 0 ||
+        lseek(file.descriptor_, size, SEEK_SET) != size || fdatasync(file.descriptor_) != 0) {
+        file.fail("the journal cannot be gone on with");
+    }
+    return file;
+}
+
+PartFile::PartFile(PartFile&& other) noexcept
+    : path_(std::move(other.path_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      size_(other.size_),
+      reserved_(other.reserved_) {}
+
+PartFile& PartFile::operator=(PartFile&& other) noexcept {
+    close();
+    path_ = std::move(other.path_);
+    descriptor_ = std::exchange(other.descriptor_, -1);
+    size_ = other.size_;
+    reserved_ = other.reserved_;
+    return *this;
+}
+
+PartFile::~PartFile() { close(); }
+
+void PartFile::close() {
+    if (descriptor_ < 0) {
+        return;
+    }
+    if (reserved_ > size_) {
+        [[maybe_unused]] const int given = ftruncate(descriptor_, size_);  // gives back what was reserved
+    }
+    ::close(std::exchange(descriptor_, -1));
+}
+
+void PartFile::fail(const char* what) const {
+    throw files::InputError(fmt::format("{}: {} ({})", path_.string(), what, std::strerror(errno)));
+}
+
+void PartFile::write(std::span<const std::uint8_t> bytes) {
+    const auto failWhole = [this] {
+        const int why = errno;
+        // What did get there is no record: the file then ends with the last whole one.
+        [[maybe_unused]] const int cut = ftruncate(descriptor_, size_);
+        [[maybe_unused]] const off_t back = lseek(descriptor_, size_, SEEK_SET);
+        reserved_ = size_;
+        errno = why;
+        fail("the journal cannot be written");
+    };
+    for (std::size_t done = 0; done < bytes.size();) {
+        const ssize_t count = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
+        if (count < 0 && errno != EINTR) {
+            failWhole();
+        }
+        done += count > 0 ? static_cast<std::size_t>(count) : 0;
+    }
+    if (fdatasync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) {  // pipes and the like cannot sync
+        failWhole();
+    }
+    size_ += static_cast<std::int64_t>(bytes.size());
+}
+
+int PartFile::reserve(std::int64_t bytes) {
+    if (reserved_ - size_ >= bytes) {
+        return 0;
+    }
+    // The size of the file stays what was written: a reader sees no hole. A piece at a time, for it is a system call.
+    for (const std::int64_t piece : {std::max(bytes, kReservedPiece), bytes}) {
+        if (fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, size_, piece) == 0) {
+            reserved_ = size_ + piece;
+            return 0;
+        }
+    }
+    return errno;
+}
+
+}  // namespace master

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/recovery.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace master {
+namespace {
+
+using nlohmann::ordered_json;
+
+double unixTime() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
+
+const double kStarted = unixTime();
+
+std::filesystem::path fileIn(const std::filesystem::path& folder) { return folder / "recoveries.jsonl"; }
+
+}  // namespace
+
+void tellRecovery(const Recovery& recovery, const std::filesystem::path& folder) {
+    const Failure& failure = recovery.failure;
+    const double seconds = unixTime() - (failure.noticed > 0 ? failure.noticed : kStarted);
+    fmt::print(stderr, "sandwall: first frame {:.2f} s after {}: step {}, frame {}\n", seconds, failure.what,
+               recovery.step, recovery.frame);
+    const ordered_json json{{"failure", failure.what},
+                            {"seconds_to_next_frame", seconds},
+                            {"step", recovery.step},
+                            {"frame", recovery.frame},
+                            {"state_hash", fmt::format("{:016x}", recovery.stateHash)},
+                            {"checkpoint_step", recovery.checkpointStep},
+                            {"replayed_steps", recovery.replayedSteps},
+                            {"cut_bytes", recovery.cutBytes}};
+    std::ofstream stream(fileIn(folder), std::ios::app);
+    stream << json.dump(-1, ' ', false, ordered_json::error_handler_t::replace) << '\n';
+    stream.close();
+    if (!stream) {
+        fmt::print(stderr, "sandwall: {}: cannot be written\n", fileIn(folder).string());
+    }
+}
+
+std::vector<std::string> recoveriesOf(const std::filesystem::path& folder) {
+    std::vector<std::string> lines;
+    std::ifstream stream(fileIn(folder));
+    for (std::string line; std::getline(stream, line);) {
+        if (ordered_json::accept(line)) {  // a crash may have torn one
+            lines.push_back(line);
+        }
+    }
+    return lines;
+}
+
+void forgetRecoveries(const std::filesystem::path& folder) {
+    std::error_code none;
+    std::filesystem::remove(fileIn(folder), none);
+}
+
+}  // namespace master
