@@ -117,14 +117,12 @@ void JournalWriter::writeWaiting() {
     }
 }
 
-void JournalWriter::keepTicks(const files::Bytes& piece) {
-    put(JournalTicks{piece});
+void JournalWriter::keep(const JournalRecord& record) {
+    put(record);
     if (waiting_.size() > kMostWaiting) {
         writeWaiting();
     }
 }
-
-void JournalWriter::keepMaterial(const sand::Material& material) { put(material); }
 
 void JournalWriter::append(const JournalFrame& frame) {
     put(frame);

@@ -37,10 +37,9 @@ public:
 
     /// Returns when the steps are on disk.
     void append(const JournalFrame& frame);
-    /// What an operator has made of the material: on disk with the next steps.
-    void keepMaterial(const sand::Material& material);
-    /// A piece of the haptic server's tick track: on disk with the next steps, or when there is much of it.
-    void keepTicks(const files::Bytes& piece);
+    /// Anything else: on disk with the next steps, or when there is much of it.
+    void keep(const JournalRecord& record);
+    void sync() { writeWaiting(); }
     /// The session goes on here, having stopped.
     void resume(const JournalResumed& resumed);
     /// The session ended here, on purpose.
@@ -48,6 +47,7 @@ public:
 
     /// A number that no other session has.
     [[nodiscard]] std::uint64_t session() const { return session_; }
+    [[nodiscard]] std::uint32_t part() const { return part_; }
     /// What is written now.
     [[nodiscard]] const std::filesystem::path& file() const { return file_.path(); }
 

@@ -34,6 +34,8 @@ struct Options {
     bool noPictures = false;
     master::SessionOptions session;
     bool resume = false;
+    std::string journal = "required";
+    std::int64_t partMegabytes = master::kPartBytes >> 20;
     int sandThreads = 1;
 };
 
@@ -71,6 +73,9 @@ struct World {
 /// Where the session in --out stopped, if there is one.
 void resume(Options& options) {
     const std::filesystem::path journal = std::filesystem::path(options.out) / "session.journal";
+    if (options.session.journal.policy == master::JournalPolicy::off) {
+        throw files::InputError("--resume: without a journal there is nothing to go on with; leave --journal off out");
+    }
     std::optional<master::ResumedSession> resumed = master::readSession(journal, options.scene);
     if (!resumed) {
         fmt::print(stderr, "sandwall: {}: nothing to resume; the session begins\n", journal.string());
@@ -90,6 +95,8 @@ void resume(Options& options) {
 
 /// The scene of the file named, or of the journal that is to be replayed or gone on with.
 sand::Scene loadScene(Options& options) {
+    options.session.journal.policy = master::parseJournalPolicy(options.journal);
+    options.session.journal.partBytes = options.partMegabytes << 20;
     if (options.resume) {
         resume(options);
         if (options.session.resumed) {
@@ -260,6 +267,14 @@ void describeResume(CLI::App& app, Options& options) {
     app.add_option("--failed-at", failure.noticed, "Unix time at which the failure was noticed that made it stop")
         ->check(CLI::NonNegativeNumber)
         ->needs(resume);
+    app.add_option("--journal", options.journal,
+                   "required: nothing is shown that is not on disk; best-effort: go on without; off (docs/journal.md)")
+        ->check(CLI::IsMember({"required", "best-effort", "off"}));
+    app.add_option("--checkpoint", options.session.journal.checkpointSeconds,
+                   "seconds from one checkpoint to the next, 0 for none")
+        ->check(CLI::Range(0.0, 86400.0));
+    app.add_option("--journal-part", options.partMegabytes, "MiB after which the journal goes on in another file")
+        ->check(CLI::Range(1, 1 << 20));
     app.add_option("--failure", failure.what, "what had failed, for the record")->needs(resume);
 }
 

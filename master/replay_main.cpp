@@ -9,6 +9,7 @@
 #include "files/input_error.hpp"
 #include "haptic_bridge/tick_replay.hpp"
 #include "master/journal.hpp"
+#include "master/journal_tools.hpp"
 #include "sand/esri_grid.hpp"
 #include "sand/terrain.hpp"
 
@@ -17,7 +18,8 @@ namespace {
 struct Options {
     std::string file;
     bool hash = false;
-    std::string heights, forces;
+    bool verify = false;
+    std::string heights, forces, steps, recovered;
     std::uint64_t until = std::numeric_limits<std::uint64_t>::max();
 };
 
@@ -103,6 +105,17 @@ void writeHeights(const sand::HeightField& field, const std::string& file) {
 }
 
 int run(const Options& options) {
+    if (!options.recovered.empty()) {
+        master::recoverJournal(options.file, options.recovered);
+        return 0;
+    }
+    if (!options.steps.empty()) {
+        master::exportSteps(options.file, options.steps);
+        return 0;
+    }
+    if (options.verify) {
+        return master::verifyJournal(options.file);
+    }
     const master::Journal journal = master::readJournal(options.file);
     if (journal.tornBytes > 0) {
         fmt::print(stderr, "{}: the last {} bytes are no whole record and were left out\n", options.file,
@@ -148,6 +161,12 @@ int main(int argc, char** argv) {
         "--forces", options.forces,
         "recompute what a hand felt at every tick, from a session recorded with --record, into this CSV file");
     app.add_option("--until", options.until, "stop after this step");
+    CLI::Option* verify = app.add_flag("--verify", options.verify, "check records, parts, hashes and checkpoints");
+    CLI::Option* steps = app.add_option("--export", options.steps, "write every step as a row of this CSV file");
+    CLI::Option* recover = app.add_option("--recover", options.recovered,
+                                          "write what is intact of a damaged journal as a journal of its own");
+    verify->excludes(steps)->excludes(recover);
+    steps->excludes(recover);
     return files::runMain(
         app, argc, argv, [&] { return run(options); }, files::kExitBadInput);
 }

@@ -63,20 +63,6 @@ std::uint64_t replayUntil(const fs::path& journal, std::uint64_t step, sand::Ter
     return terrain.stepNumber() - first;
 }
 
-/// The sand of a checkpoint. Throws files::FormatError when it is not this session's, or damaged.
-sand::Terrain sandOf(const fs::path& file, const JournalHeader& header, const sand::Terrain& start) {
-    const Checkpoint checkpoint = readCheckpoint(file);
-    if (checkpoint.session != header.session || checkpoint.sceneDigest != start.rules().digest()) {
-        throw files::FormatError("is of another session");
-    }
-    sand::Terrain terrain = start;
-    terrain.decodeState(checkpoint.state);
-    if (terrain.stepNumber() != checkpoint.step || terrain.stateHash() != checkpoint.stateHash) {
-        throw files::FormatError("its sand is not what it says");
-    }
-    return terrain;
-}
-
 /// What a journal tells without any sand being computed.
 struct Walk {
     ResumedSession& session;
@@ -112,6 +98,19 @@ void requireScene(const JournalReader& reader, const std::string& file) {
 
 }  // namespace
 
+sand::Terrain sandOfCheckpoint(const fs::path& file, const JournalHeader& header, const sand::Terrain& start) {
+    const Checkpoint checkpoint = readCheckpoint(file);
+    if (checkpoint.session != header.session || checkpoint.sceneDigest != start.rules().digest()) {
+        throw files::FormatError("is of another session");
+    }
+    sand::Terrain terrain = start;
+    terrain.decodeState(checkpoint.state);
+    if (terrain.stepNumber() != checkpoint.step || terrain.stateHash() != checkpoint.stateHash) {
+        throw files::FormatError("its sand is not what it says");
+    }
+    return terrain;
+}
+
 RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const sand::Erosion::Options& sweeps) {
     const JournalReader head(journal);
     const sand::Terrain start(sceneOf(head), sweeps);
@@ -119,7 +118,7 @@ RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const sand
         const fs::path file = checkpointFile(journal, at);
         try {
             if (at <= step) {
-                RestoredSand restored{sandOf(file, head.header(), start), at, 0};
+                RestoredSand restored{sandOfCheckpoint(file, head.header(), start), at, 0};
                 restored.replayedSteps = replayUntil(journal, step, restored.terrain);
                 return restored;
             }

@@ -24,6 +24,11 @@ struct RestoredSand {
 [[nodiscard]] RestoredSand restoreSand(const std::filesystem::path& journal, std::uint64_t step,
                                        const sand::Erosion::Options& sweeps = {});
 
+/// The sand of a checkpoint, of the session with this header, whose sand began as `start`. Throws files::FormatError
+/// when it is another's, or damaged.
+[[nodiscard]] sand::Terrain sandOfCheckpoint(const std::filesystem::path& file, const JournalHeader& header,
+                                             const sand::Terrain& start);
+
 /// A session that stopped, and all that it takes to go on.
 struct ResumedSession {
     sand::Scene scene;

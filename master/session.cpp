@@ -106,12 +106,12 @@ double Session::sessionTime() const {
 }
 
 std::int64_t Session::nextFrame() const {
-    const bool atOnce = options_.pace == Pace::fast && !paused_;
+    const bool atOnce = options_.pace == Pace::fast && !paused_ && !standing_;
     return atOnce ? 0 : frameStart_ + static_cast<std::int64_t>(1e9 * framePeriod());
 }
 
 void Session::waitForFrameTime() {
-    if (options_.pace == Pace::fast && !paused_) {
+    if (options_.pace == Pace::fast && !paused_ && !standing_) {
         return;
     }
     // From one grid of times, not from the last frame: the wall's clock must not drift with each late frame.
@@ -135,7 +135,7 @@ std::vector<TimedStep> Session::awaitSteps() {
     const bool fast = options_.pace == Pace::fast;
     std::size_t most = fast ? kMostStepsPerFastFrame : kMostStepsPerFrame;
     const std::uint64_t left = options_.steps - std::min(options_.steps, terrain_.stepNumber());
-    most = paused_ ? 0 : std::min<std::uint64_t>(most, left);
+    most = paused_ || !mayTakeSteps() ? 0 : std::min<std::uint64_t>(most, left);
     const std::int64_t since = nowNs();
     std::vector<TimedStep> steps = sequencer_.next(terrain_, hash_, most);
     while (fast && most > 0 && steps.empty() && !operator_.stopAsked() &&
@@ -199,7 +199,7 @@ bool Session::showFrame() {
     const std::int64_t broadcast = nowNs();
     summary_.broadcastBytes.add(static_cast<double>(bytes));
     keepTicks();
-    if (journal_ && !message.steps.empty()) {
+    if (!message.steps.empty()) {
         // The ranks draw meanwhile; none of them swaps before the master has come to the barrier.
         keepJournal({message.frame, hashBefore, message.steps});
     }
@@ -228,6 +228,9 @@ bool Session::showFrame() {
         steps.back().serverHash != hash_) {
         ++summary_.serverDivergences;
         sequencer_.distrustServer();
+    }
+    if (journal_) {
+        journal_->shown(terrain_, frame_, sequencer_.epoch(), hash_);
     }
     stopping_ = message.stop;
     return true;
@@ -324,9 +327,7 @@ void Session::finish(bool agreed) {
     const lockstep::Watched watched(barrier_.watchdog());
     sequencer_.stop();
     keepTicks();  // the last come with the goodbye
-    if (agreed) {
-        endJournal();
-    }
+    endJournal(agreed);
     summary_.frames = frame_;
     summary_.steps = terrain_.stepNumber();
     summary_.stateHash = hash_;

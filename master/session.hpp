@@ -18,7 +18,7 @@
 #include "lockstep/view_agreement.hpp"
 #include "master/control_socket.hpp"
 #include "master/film.hpp"
-#include "master/journal.hpp"
+#include "master/journal_keeper.hpp"
 #include "master/operator_command.hpp"
 #include "master/operator_input.hpp"
 #include "master/recording.hpp"
@@ -50,6 +50,7 @@ struct SessionOptions {
     tracking::Source tracker;                             // where the head's pose comes from
     bool readInput = false;                               // "stop" on standard input, or its end, ends the session
     std::filesystem::path out;
+    JournalOptions journal;
     sand::Erosion::Options sweeps;                  // how the master's own replica is swept
     std::shared_ptr<const Recording> recording;     // steps come from there, and no journal is written
     std::shared_ptr<const ResumedSession> resumed;  // goes on where that one stopped
@@ -106,8 +107,12 @@ private:
     [[nodiscard]] bool showFrame();
     void keepJournal(const JournalFrame& frame);
     void keepTicks();
-    void endJournal();
+    void endJournal(bool agreed);
     void beginJournal(const sand::Scene& scene);
+    /// Whether the disk has room for the steps of the next frame.
+    [[nodiscard]] bool mayTakeSteps();
+    /// Leaves word for whoever supervises, and returns with nothing shown: the job ends.
+    [[noreturn]] void endForDisk(const DiskFailure& failure);
     void tellRecovery();
     void applySteps(const std::vector<haptic_bridge::TimedStep>& steps);
     void compareWithRecording();
@@ -131,7 +136,7 @@ private:
     lockstep::FrameBarrier barrier_;
     ViewSource views_;
     lockstep::ViewProof viewProof_;
-    std::optional<JournalWriter> journal_;  // none for a recording, which has one
+    std::optional<JournalKeeper> journal_;  // none for a recording, which has one
     std::optional<Film> film_;
     Sequencer sequencer_;
     OperatorInput operator_;
@@ -150,6 +155,7 @@ private:
     std::deque<Asker> askers_;  // whose edits are in no step yet
     Clients captures_;          // who wants pictures of the next frame
     bool paused_ = false;       // no steps are taken
+    bool standing_ = false;     // likewise, for want of room on the disk
     double fps_ = 0;            // over the last second or so
     Summary summary_;
     lockstep::RankStatistics rankStatistics_;

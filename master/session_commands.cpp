@@ -251,7 +251,9 @@ std::string Session::status() const {
                  {"edits", summary_.edits},
                  {"edits_waiting", askers_.size()},
                  {"can_undo", terrain_.canUndo()},
-                 {"journal", journal_.has_value()}});
+                 {"journal", journal_ && journal_->written()},
+                 {"journal_policy", std::string(journalPolicyName(options_.journal.policy))},
+                 {"journal_state", std::string(journal_ ? journal_->state() : "off")}});
 }
 
 }  // namespace master

@@ -3,26 +3,29 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "files/input_error.hpp"
+#include "files/whole_file.hpp"
 #include "lockstep/build_id.hpp"
 #include "master/session.hpp"
 
 namespace master {
+namespace {
+
+constexpr std::int64_t kFrameBytes = 1 << 16;  // more than the steps of a frame, but for sand that is loaded
+
+}  // namespace
 
 void Session::beginJournal(const sand::Scene& scene) {
-    const std::filesystem::path file = options_.out / "session.journal";
-    if (!options_.resumed) {
-        journal_.emplace(file, scene, lockstep::buildId());
-        return;
+    const ResumedSession* resumed = options_.resumed.get();
+    if (resumed != nullptr) {
+        terrain_.decodeState(resumed->state);
+        material_ = resumed->material;
+        frame_ = summary_.framesBefore = resumed->frame;
+        summary_.edits = resumed->edits;
     }
-    const ResumedSession& resumed = *options_.resumed;
-    terrain_.decodeState(resumed.state);
-    material_ = resumed.material;
-    frame_ = summary_.framesBefore = resumed.frame;
-    summary_.edits = resumed.edits;
-    journal_.emplace(resumed.place, lockstep::buildId());
-    journal_->resume({resumed.frame, {resumed.step, resumed.hash}, resumed.cutBytes, options_.failure.what});
+    journal_.emplace(options_.out, options_.journal, scene, resumed, options_.failure.what, lockstep::buildId());
 }
 
 void Session::tellRecovery() {
@@ -35,45 +38,81 @@ void Session::tellRecovery() {
                          options_.out);
 }
 
+bool Session::mayTakeSteps() {
+    std::int64_t bytes = kFrameBytes;
+    for (const Asker& asker : askers_) {
+        bytes += asker.edit.sand ? static_cast<std::int64_t>(asker.edit.sand->size()) : 0;
+    }
+    standing_ = journal_ && !journal_->mayTake(bytes, {terrain_.stepNumber(), hash_});
+    return !standing_;
+}
+
 void Session::keepJournal(const JournalFrame& frame) {
-    try {
-        for (const sand::Step& step : frame.steps) {
-            for (const Asker& asker : askers_) {
-                if (asker.material && asker.edit == step.edit) {
-                    journal_->keepMaterial(*asker.material);
-                    break;
-                }
+    if (!journal_) {
+        return;
+    }
+    std::vector<sand::Material> materials;
+    for (const sand::Step& step : frame.steps) {
+        for (const Asker& asker : askers_) {
+            if (asker.material && asker.edit == step.edit) {
+                materials.push_back(*asker.material);
+                break;
             }
         }
-        journal_->append(frame);
-    } catch (const files::InputError& error) {
-        // A full disk must not end a show; what is missing can be seen from the journal itself, which has no end.
-        fmt::print(stderr, "sandwall: {}; it ends before frame {}, and the session goes on without\n", error.what(),
-                   frame.frame);
-        journal_.reset();
+    }
+    try {
+        journal_->keep(frame, materials);
+    } catch (const DiskFailure& failure) {
+        endForDisk(failure);
     }
 }
 
 void Session::keepTicks() {
-    for (const files::Bytes& piece : sequencer_.ticks()) {
-        try {
-            if (journal_) {
-                journal_->keepTicks(piece);
-            }
-        } catch (const files::InputError& error) {
-            fmt::print(stderr, "sandwall: {}; the session goes on without\n", error.what());
-            journal_.reset();
+    const std::vector<files::Bytes> pieces = sequencer_.ticks();
+    try {
+        if (journal_) {
+            journal_->keepTicks(pieces);
         }
+    } catch (const DiskFailure& failure) {
+        endForDisk(failure);
     }
 }
 
-void Session::endJournal() {
+void Session::endForDisk(const DiskFailure& failure) {
+    const std::string message = fmt::format(
+        "{}, which is not shown: the session ends (--journal best-effort would go on without)", failure.what());
     try {
-        if (journal_) {
-            journal_->finish(terrain_.stepNumber(), hash_);
-        }
+        files::WholeFile file(options_.out / "failure.json");
+        file.stream() << nlohmann::ordered_json{{"what", "disk"},
+                                                {"rank", lockstep::kMaster},
+                                                {"host", lockstep::hostName()},
+                                                {"tile", nullptr},
+                                                {"message", message}}
+                             .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+                      << '\n';
+        file.keepSynced();
     } catch (const files::InputError& error) {
-        fmt::print(stderr, "sandwall: {}; it holds every step, and no end\n", error.what());
+        fmt::print(stderr, "sandwall: {}\n", error.what());
+    }
+    throw DiskFailure(message);
+}
+
+void Session::endJournal(bool agreed) {
+    if (!journal_) {
+        return;
+    }
+    if (agreed) {
+        journal_->finish({terrain_.stepNumber(), hash_});
+    }
+    Summary::Journal& told = summary_.journal;
+    told.policy = journalPolicyName(journal_->policy());
+    told.state = journal_->state();
+    told.parts = journal_->parts();
+    told.checkpointsFailed = journal_->checkpointsFailed();
+    told.stands = journal_->stands();
+    told.stoodSeconds = journal_->stoodSeconds();
+    for (const double ms : journal_->copyMs()) {
+        told.checkpointMs.add(ms);
     }
 }
 

@@ -56,6 +56,16 @@ ordered_json hapticPart(const Summary& summary) {
     return part;
 }
 
+ordered_json journalPart(const Summary::Journal& journal) {
+    return {{"policy", journal.policy},
+            {"state", journal.state},
+            {"parts", journal.parts},
+            {"checkpoints", journal.checkpointMs.count()},
+            {"checkpoints_failed", journal.checkpointsFailed},
+            {"checkpoint_copy_ms", spread(journal.checkpointMs)},
+            {"full_disk", {{"times", journal.stands}, {"seconds", journal.stoodSeconds}}}};
+}
+
 double shareOf(std::size_t count, std::uint64_t frames) {
     return frames == 0 ? 0 : static_cast<double>(count) / static_cast<double>(frames);
 }
@@ -129,6 +139,7 @@ ordered_json jsonOf(const Summary& summary) {
                                  {"absent", head->absent},   {"lost", head->timesLost},  {"outside", head->outside}};
     }
     json["master_memory_bytes"] = summary.masterResidentBytes;
+    json["journal"] = journalPart(summary.journal);
     json["recoveries"] = ordered_json::array();
     for (const std::string& recovery : summary.recoveries) {
         json["recoveries"].push_back(ordered_json::parse(recovery));

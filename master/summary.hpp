@@ -50,7 +50,15 @@ struct Summary {
     std::vector<std::string> rankNames;                          // as well, as messages speak of them
     std::optional<lockstep::Drag> drag;                          // who kept the wall waiting, if anyone
     std::int64_t masterResidentBytes = 0;
-    std::uint64_t framesBefore = 0;       // of `frames`, before the session stopped and went on
+    std::uint64_t framesBefore = 0;  // of `frames`, before the session stopped and went on
+    struct Journal {
+        std::string policy = "off", state = "off";
+        std::uint64_t parts = 0;            // written so far
+        lockstep::Statistics checkpointMs;  // that each checkpoint kept the master from the next frame
+        std::uint64_t checkpointsFailed = 0;
+        std::uint64_t stands = 0;  // times that the sand stood for want of room on the disk
+        double stoodSeconds = 0;
+    } journal;
     std::vector<std::string> recoveries;  // of the session, an object of JSON each
 };
 

@@ -223,7 +223,7 @@ void Terrain::audit(int tiles) {
 
 Rect Terrain::takeDamage() { return std::exchange(damage_, Rect{}); }
 
-files::Bytes Terrain::encodeState() const {
+StateCopy Terrain::copyState() const {
     files::ByteWriter writer;
     writer.put(kStateVersion);
     writer.put(stepNumber_);
@@ -233,8 +233,14 @@ files::Bytes Terrain::encodeState() const {
     writer.put(std::int32_t{(engaged_ ? 1 : 0) + (heading_.mirrored ? 2 : 0)});
     heading_.encode(writer);
     rules_.tuning().encode(writer);
-    writer.putBlock(canUndo() ? beforeStroke_.kept()->encode() : files::Bytes());
-    writer.putBytes(copySand().encode());
+    return {writer.take(), canUndo() ? std::optional(*beforeStroke_.kept()) : std::nullopt, copySand()};
+}
+
+files::Bytes StateCopy::encode() const {
+    files::ByteWriter writer;
+    writer.putBytes(head);
+    writer.putBlock(beforeStroke ? beforeStroke->encode() : files::Bytes());
+    writer.putBytes(sand.encode());
     return writer.take();
 }
 

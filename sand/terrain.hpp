@@ -15,6 +15,16 @@
 
 namespace sand {
 
+/// The whole state of a replica, for whoever compresses it on another thread.
+struct StateCopy {
+    files::Bytes head;  // all but the sand
+    std::optional<SandCopy> beforeStroke;
+    SandCopy sand;
+
+    /// What Terrain::decodeState takes (compressed).
+    [[nodiscard]] files::Bytes encode() const;
+};
+
 /// A replica: the sand, and the one function that changes it.
 ///
 /// Two replicas that start from one scene and apply the same steps are equal bit for bit, whatever the compiler, the
@@ -67,8 +77,9 @@ public:
 
     /// The sand now, for whoever compresses it on another thread.
     [[nodiscard]] SandCopy copySand() const { return {field_, erosion_.inertia(), outflow_}; }
+    [[nodiscard]] StateCopy copyState() const;
     /// The whole state, for a replica that must start from here (compressed).
-    [[nodiscard]] files::Bytes encodeState() const;
+    [[nodiscard]] files::Bytes encodeState() const { return copyState().encode(); }
     /// Throws files::FormatError when the bytes are no state of this scene; the replica is then unchanged.
     void decodeState(std::span<const std::uint8_t> bytes);
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A journal as somebody hands it over: as it is, or put together from records whose checksums are right, so that what
 // lies behind them is reached as well.
-#include <xxhash.h>
-
 #include "fuzz_target.hpp"
 #include "master/recording.hpp"
 #include "tests/support/sand_samples.hpp"
@@ -10,26 +8,26 @@
 namespace {
 
 /// The header of a session of 8 x 8 cells.
-files::Bytes header() {
-    files::ByteWriter writer;
-    writer.put(std::uint32_t{0x4c4a5753});
-    writer.put(std::uint32_t{3});
-    writer.putText("build");
-    writer.putBlock(samples::flatScene(8, 8).encode());
-    writer.put(XXH3_64bits(writer.bytes().data(), writer.bytes().size()));
-    return writer.take();
+files::Bytes header(std::uint64_t& chain) {
+    master::JournalHeader header;
+    header.session = 1;
+    header.buildId = "build";
+    header.scene = samples::flatScene(8, 8).encode();
+    header.material = sand::Material();
+    return master::encodeHeader(header, chain);
 }
 
 /// Pieces of the input as records, the first byte of each its type.
 files::Bytes journalOf(fuzz::Input input) {
     files::ByteWriter writer;
-    static const files::Bytes kHeader = header();
-    writer.putBytes(kHeader);
+    std::uint64_t chain = 0;
+    writer.putBytes(header(chain));
     for (const fuzz::Input body : fuzz::piecesOf(input)) {
         if (!body.empty()) {
             writer.put(static_cast<std::uint32_t>(body.size() - 1));
             writer.putBytes(body);
-            writer.put(XXH3_64bits(body.data(), body.size()));
+            chain = master::recordChecksum(body, chain);
+            writer.put(chain);
         }
     }
     return writer.take();

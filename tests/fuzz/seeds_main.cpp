@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the corpora of what is no text, as the programs of today write it: FOLDER/wire, journal, state, head, wall.
+// Writes the corpora of what is no text, as the programs of today write it: FOLDER/wire, journal, checkpoint, state,
+// head, wall.
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 
 #include "fuzz_target.hpp"
 #include "haptic_bridge/protocol.hpp"
+#include "master/checkpoint.hpp"
 #include "master/journal.hpp"
 #include "sand/terrain.hpp"
 #include "tests/support/sand_samples.hpp"
@@ -84,8 +86,10 @@ void writeJournal(Folder folder, const fs::path& scratch) {
     {
         master::JournalWriter journal(scratch, scene, "build");
         journal.append({1, 17, {step(1), step(2)}});
+        journal.keep(sand::Material());
         journal.append({2, 18, {step(3)}});
         journal.finish(3, 19);
+        journal.resume({2, {3, 19}, 7, "a kill"});
     }
     std::ifstream stream(scratch, std::ios::binary);
     folder.add(Bytes(std::istreambuf_iterator<char>(stream), {}), {1});
@@ -106,6 +110,18 @@ void writeJournal(Folder folder, const fs::path& scratch) {
     const Bytes last = piece(end.take());
     records.insert(records.end(), last.begin(), last.end());
     folder.add(records, {0});
+}
+
+void writeCheckpoints(Folder folder) {
+    sand::Terrain terrain(samples::flatScene(24, 16));
+    for (std::uint64_t number = 1; number <= 3; ++number) {
+        terrain.apply(step(number));
+        const master::Checkpoint checkpoint{1,      "build", terrain.rules().digest(), number,
+                                            number, 1,       terrain.stateHash(),      terrain.encodeState()};
+        const Bytes bytes = checkpoint.encode();
+        folder.add(bytes, {0});
+        folder.add(Bytes(bytes.begin(), bytes.end() - 8), {1});  // without its checksum
+    }
 }
 
 void writeState(Folder folder) {
@@ -141,6 +157,7 @@ int main(int count, char** words) {
     const fs::path folder = words[1];
     writeWire({folder, "wire"});
     writeJournal({folder, "journal"}, folder / "scratch.journal");
+    writeCheckpoints({folder, "checkpoint"});
     writeState({folder, "state"});
     writeHead({folder, "head"});
     Folder walls(folder, "wall");

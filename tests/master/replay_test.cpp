@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <random>
 
+#include "master/checkpoint.hpp"
 #include "master/journal.hpp"
 #include "sand/esri_grid.hpp"
 #include "sand/terrain.hpp"
@@ -67,6 +70,94 @@ TEST_F(Replay, SaysWhereASessionDiffers) {
     const support::Ran ran = support::runProgram("sandwall-replay", journal());
     EXPECT_EQ(ran.status, 1);
     EXPECT_NE(ran.output.find("before frame 10, after step 18: the session had "), std::string::npos) << ran.output;
+}
+
+TEST_F(Replay, VerifiesAllThatAJournalSays) {
+    const sand::Terrain terrain = record();
+    const std::uint64_t session = master::JournalReader(journal()).header().session;
+    const auto keep = [&](const sand::Terrain& sand) {
+        sand::Terrain copy = sand;
+        master::writeCheckpoint(
+            journal(),
+            {session, "test", sand.rules().digest(), sand.stepNumber(), 20, 1, copy.stateHash(), copy.encodeState()},
+            3);
+    };
+    keep(terrain);
+    const support::Ran good = support::runProgram("sandwall-replay", journal() + " --verify");
+    EXPECT_EQ(good.status, 0) << good.output;
+    for (const char* line :
+         {"records      21 whole, ", "chain        whole", "parts        1\n", "tail         whole\n",
+          "steps        40 without a gap, in frames 1 to 20, epochs to 1", "hashes       21 of 21 as the replay",
+          "checkpoint   of step 40: the replay's sand\n", "end          in order, at step 40"}) {
+        EXPECT_NE(good.output.find(line), std::string::npos) << line << "\n" << good.output;
+    }
+    // The same step, and other sand.
+    sand::Terrain other(samples::flatScene(40, 30));
+    for (std::uint64_t number = 1; number <= 40; ++number) {
+        other.apply({.epoch = 1, .number = number, .engaged = false, .path = {}});
+    }
+    keep(other);
+    const support::Ran bad = support::runProgram("sandwall-replay", journal() + " --verify");
+    EXPECT_EQ(bad.status, 1) << bad.output;
+    EXPECT_NE(bad.output.find("of step 40: other sand than the replay's"), std::string::npos) << bad.output;
+    record(1);
+    EXPECT_EQ(support::runProgram("sandwall-replay", journal() + " --verify").status, 1);
+    std::filesystem::resize_file(journal(), 20);
+    EXPECT_EQ(support::runProgram("sandwall-replay", journal() + " --verify").status, 2);
+}
+
+TEST_F(Replay, WritesEveryStepAsARow) {
+    sand::Scene scene = samples::flatScene(40, 30);
+    {
+        master::JournalWriter writer(journal(), scene, "test");
+        sand::Tuning tuning = scene.rules.tuning();
+        tuning.toolKind = sand::ToolKind::circle;
+        tuning.toolRadius = 3 * sand::kProbePerCell;
+        const sand::Step first{.epoch = 7, .number = 1, .engaged = true, .path = {{256, 512, -64}, {384, 0, 0}}};
+        const sand::Step second{
+            .epoch = 7, .number = 2, .engaged = false, .path = {}, .edit = sand::Edit::tuned(tuning)};
+        const sand::Step third{.epoch = 8,
+                               .number = 3,
+                               .engaged = false,
+                               .path = {},
+                               .edit = sand::Edit::undo,
+                               .heading = sand::Heading{0, 16384}};
+        writer.append({5, 0, {first, second}});
+        writer.append({9, 0, {third}});
+    }
+    const std::string file = (folder_ / "steps.csv").string();
+    ASSERT_EQ(support::runProgram("sandwall-replay", journal() + " --export " + file).status, 0);
+    std::ifstream stream(file);
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}),
+              "epoch,number,frame,engaged,tool,radius,heading,path,edit\n"
+              "7,1,5,1,sphere,4,0,1 2 -0.25;1.5 0 0,\n"
+              "7,2,5,0,sphere,4,0,,tune\n"
+              "8,3,9,0,circle,3,90,,undo\n");
+}
+
+TEST_F(Replay, RecoversWhatStandsBeforeTheDamage) {
+    sand::Terrain terrain = record();
+    const auto middle = static_cast<std::streamoff>(std::filesystem::file_size(journal()) * 3 / 4);
+    std::fstream stream(journal(), std::ios::in | std::ios::out | std::ios::binary);
+    stream.seekg(middle);
+    const int before = stream.get();
+    stream.seekp(middle);
+    stream.put(static_cast<char>(before ^ 16));
+    stream.close();
+    const std::string file = (folder_ / "new" / "session.journal").string();
+    EXPECT_EQ(support::runProgram("sandwall-replay", journal()).status, 2);
+    const support::Ran ran = support::runProgram("sandwall-replay", journal() + " --recover " + file);
+    EXPECT_EQ(ran.status, 0) << ran.output;
+    EXPECT_NE(ran.output.find("damaged at byte"), std::string::npos) << ran.output;
+    EXPECT_NE(ran.output.find("bytes are lost"), std::string::npos) << ran.output;
+    const master::Journal kept = master::readJournal(file);
+    ASSERT_GT(kept.frames.size(), 5U);
+    ASSERT_LT(kept.frames.size(), 20U);
+    EXPECT_EQ(kept.scene.encode(), samples::flatScene(40, 30).encode());
+    EXPECT_EQ(support::runProgram("sandwall-replay", file + " --verify").status, 0);
+    const support::Ran again = support::runProgram("sandwall-replay", journal() + " --recover " + file);
+    EXPECT_EQ(again.status, 2);
+    EXPECT_NE(again.output.find("is there already"), std::string::npos) << again.output;
 }
 
 TEST_F(Replay, RefusesAStepThatIsNotThere) {

@@ -196,7 +196,7 @@ TEST_F(Resume, KnowsWhatTheOperatorMadeOfTheMaterial) {
     wetter.toolWidth = 0.5;
     {
         master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
-        writer.keepMaterial(wetter);
+        writer.keep(wetter);
         record(writer, 1);
     }
     EXPECT_EQ(master::readSession(journal(), "")->material, wetter);

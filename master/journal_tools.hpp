@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+namespace master {
+
+/// What sandwall-replay does with a journal beside replaying it. All of it is read record by record, so that memory
+/// does not grow with the session. All throw files::InputError for a journal that cannot be used.
+
+/// Checks all that a journal says of itself, and checkpoints beside it: a line on standard output for each. Returns 0
+/// when all agrees, and 1 when the sand or a checkpoint differs.
+[[nodiscard]] int verifyJournal(const std::filesystem::path& journal);
+
+/// Every step as a row of a CSV file (docs/journal.md).
+void exportSteps(const std::filesystem::path& journal, const std::filesystem::path& file);
+
+/// Writes what is intact of a journal, of any version, as a journal of its own, and says on standard output what is
+/// lost. Refuses a file that is there.
+void recoverJournal(const std::filesystem::path& journal, const std::filesystem::path& file);
+
+}  // namespace master

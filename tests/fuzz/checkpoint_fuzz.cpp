@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// A checkpoint as it lies on a disk, or with a checksum that is right, so that what lies behind it is reached as well:
+// the state that a replica would take.
+#include <xxhash.h>
+
+#include "fuzz_target.hpp"
+#include "master/checkpoint.hpp"
+#include "sand/terrain.hpp"
+#include "tests/support/sand_samples.hpp"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    if (size == 0) {
+        return 0;
+    }
+    static const sand::Scene kScene = samples::flatScene(24, 16);
+    const fuzz::Input input = fuzz::Input(data, size).subspan(1);
+    files::ByteWriter bytes;
+    bytes.putBytes(input);
+    if ((data[0] & 1U) != 0) {
+        bytes.put(XXH3_64bits(input.data(), input.size()));
+    }
+    const fuzz::MemoryFile file(bytes.bytes());
+    fuzz::takeOrRefuse([&] {
+        const master::Checkpoint checkpoint = master::readCheckpoint(file.path());
+        sand::Terrain terrain(kScene);
+        terrain.decodeState(checkpoint.state);
+        (void)terrain.stateHash();
+    });
+    return 0;
+}
