@@ -18,12 +18,14 @@ namespace {
 /// `sandwall ctl` on a session that runs.
 class Operator : public SessionTest {
 protected:
-    void begin(const std::string& device, const std::string& waitFor, const std::string& stereo = "passive") {
-        beginOn(wall(1, 2, stereo), device, waitFor);
+    void begin(const std::string& device, const std::string& waitFor, const std::string& stereo = "passive",
+               const std::string& journal = "required") {
+        beginOn(wall(1, 2, stereo), device, waitFor, journal);
     }
-    void beginOn(const std::string& wallFile, const std::string& device, const std::string& waitFor) {
+    void beginOn(const std::string& wallFile, const std::string& device, const std::string& waitFor,
+                 const std::string& journal = "required") {
         session_ = start({"--wall", wallFile, "--scene", scene(), "--device", device, "--steps", "1000000", "--out",
-                          out(), "--no-pictures"});
+                          out(), "--no-pictures", "--journal", journal});
         ASSERT_TRUE(session_->waitForOutput(waitFor, 120)) << session_->output();
     }
     [[nodiscard]] support::Ran ctl(const std::string& words) const {
@@ -193,8 +195,8 @@ TEST_F(Operator, ChangesTheStereoModeOfARunningWall) {
     endAndReplay(0);
 }
 
-TEST_F(Operator, AFolderThatFillsUpEndsTheJournalAndNotTheSession) {
-    begin("none", "no hand");
+TEST_F(Operator, WithBestEffortAFolderThatFillsUpEndsTheJournalAndNotTheSession) {
+    begin("none", "no hand", "passive", "best-effort");
     limitFiles(64);
     awaitStatus([](const nlohmann::json& now) { return !now.value("journal", true); });
     EXPECT_TRUE(session_->waitForOutput("the journal cannot be written (File too large); it ends before frame", 60))
@@ -206,6 +208,7 @@ TEST_F(Operator, AFolderThatFillsUpEndsTheJournalAndNotTheSession) {
     ask("save full");
     EXPECT_GT(ask("load full")["step"], 0);
     EXPECT_FALSE(ask("status")["journal"]);
+    EXPECT_EQ(ask("status")["journal_state"], "failed");
     ask("stop");
     EXPECT_EQ(session_->wait(120), 0) << session_->output();
     EXPECT_EQ(summary()["divergences"], 0);
