@@ -40,16 +40,26 @@ def hosts_of_wall(lines, wall):
 
 
 def hosts_of_file(path, ranks):
-    """The same from a file: `HOST` or `HOST slots=N` a line, filled in the order of ranks; the master takes no slot."""
-    hosts = slots_of_file(path)
+    """The same from a file: `HOST [slots=N] [spare]` a line, filled in the order of ranks; the master takes no slot."""
+    hosts = [host for host, slots, spare in entries_of_file(path) if not spare for _ in range(slots)]
     if len(hosts) < ranks:
         raise BadInput(f"{path}: {len(hosts)} slots are too few for the wall's {ranks} render ranks; add hosts, or slots=N")
     return hosts[:ranks]
 
 
+def spares_of_file(path):
+    """(host, slots) of every host in a file that draws only when another cannot."""
+    return [(host, slots) for host, slots, spare in entries_of_file(path) if spare]
+
+
 def slots_of_file(path):
-    """The host of every slot in a file of hosts."""
-    hosts = []
+    """The host of every slot in a file of hosts, spares too."""
+    return [host for host, slots, _ in entries_of_file(path) for _ in range(slots)]
+
+
+def entries_of_file(path):
+    """(host, slots, whether it is a spare) of every line of a file of hosts."""
+    entries = []
     try:
         with open(path, encoding="utf-8") as file:
             lines = file.read().split("\n")
@@ -58,9 +68,12 @@ def slots_of_file(path):
     for number, line in enumerate(lines, start=1):
         words = line.split("#")[0].split()
         if words:
-            slots = slots_of(words[1:], f"{path}:{number}")
-            hosts += [checked_host(words[0], f"{path}:{number}")] * slots
-    return hosts
+            where = f"{path}:{number}"
+            spare = "spare" in words[1:]
+            if spare:
+                words.remove("spare")
+            entries.append((checked_host(words[0], where), slots_of(words[1:], where), spare))
+    return entries
 
 
 def slots_of(words, where):
@@ -69,7 +82,7 @@ def slots_of(words, where):
         return 1
     match = re.fullmatch(r"slots=([0-9]{1,6})", words[0])
     if len(words) > 1 or not match:
-        raise BadInput(f"{where}: '{' '.join(words)[:80]}' is not slots=N")
+        raise BadInput(f"{where}: '{' '.join(words)[:80]}' is neither slots=N nor spare")
     slots = int(match[1])
     if not 1 <= slots <= MOST_SLOTS:
         raise BadInput(f"{where}: slots must be from 1 to {MOST_SLOTS}, got {slots}")
@@ -122,30 +135,45 @@ def remote_shell():
 
 
 def require_reachable(hosts, node):
-    """Asks every other host for the program, all at once: what mpirun says of a host it cannot reach fills a screen."""
+    """Refuses a host that cannot run a rank: what mpirun says of one fills a screen."""
+    for complaint in complaints(hosts, node).values():
+        raise BadInput(complaint)
+
+
+def complaints(hosts, node):
+    """Asks every other host for the program, all at once; why it cannot run a rank, for each that cannot."""
     agent = remote_shell()
     others = sorted(set(hosts) - {HERE}, key=hosts.index)
-    try:
-        asked = [subprocess.Popen([*agent, host, f"test -x {shlex.quote(node)}"], stdin=subprocess.DEVNULL,
-                                  stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace")
-                 for host in others]
-    except OSError as error:
-        raise BadInput(f"{agent[0]}: cannot be run; install openssh-client, or name another in OMPI_MCA_plm_rsh_agent") from error
+    asked = []
+    found = {}
     deadline = time.monotonic() + REACH_SECONDS
     try:
+        for host in others:
+            asked.append(subprocess.Popen([*agent, host, f"test -x {shlex.quote(node)}"], stdin=subprocess.DEVNULL,
+                                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace"))
         for host, process in zip(others, asked):
-            rank = hosts.index(host) + 1
-            try:
-                said = process.communicate(timeout=max(0, deadline - time.monotonic()))[1].strip().split("\n")[-1]
-            except subprocess.TimeoutExpired as error:
-                raise BadInput(f"{host} (rank {rank}): no answer within {REACH_SECONDS} s; docs/hosts.md") from error
-            if process.returncode == 1 and not said:
-                raise BadInput(f"{host} (rank {rank}): has no {node}; install the same build at the same path on every host")
-            if process.returncode != 0:
-                raise BadInput(f"{host} (rank {rank}): cannot be reached: {said or f'{agent[0]} failed'}; docs/hosts.md")
+            complaint = complaint_of(process, node, deadline, agent)
+            if complaint:
+                found[host] = f"{host} (rank {hosts.index(host) + 1}): {complaint}"
+    except OSError as error:
+        raise BadInput(f"{agent[0]}: cannot be run; install openssh-client, or name another in OMPI_MCA_plm_rsh_agent") from error
     finally:
         for process in asked:
             if process.poll() is None:
                 process.kill()
                 process.wait()
             process.stderr.close()
+    return found
+
+
+def complaint_of(process, node, deadline, agent):
+    """What is wrong with the host that this process asks, or None."""
+    try:
+        said = process.communicate(timeout=max(0, deadline - time.monotonic()))[1].strip().split("\n")[-1]
+    except subprocess.TimeoutExpired:
+        return f"no answer within {REACH_SECONDS} s; docs/hosts.md"
+    if process.returncode == 1 and not said:
+        return f"has no {node}; install the same build at the same path on every host"
+    if process.returncode != 0:
+        return f"cannot be reached: {said or f'{agent[0]} failed'}; docs/hosts.md"
+    return None

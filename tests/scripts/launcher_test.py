@@ -162,7 +162,7 @@ class Input(LauncherTest):
         for _ in range(3):
             ended = self.start(["-"], stdin=theirs)
             self.assertEqual((ended.returncode, ended.stderr), (0, ""))
-            self.assertTrue(ended.stdout.startswith("mpirun -q "))
+            self.assertTrue(ended.stdout.startswith("mpirun --tag-output "))
 
     def test_a_session_ends_quietly_while_its_input_is_open(self):
         theirs, ours = os.pipe()

@@ -47,9 +47,9 @@ class HostsOfFile(unittest.TestCase):
         self.assertIn("FILE: 0 slots are too few", self.hosts("", 1))
 
     def test_the_line_of_a_mistake_is_named(self):
-        self.assertEqual(self.hosts("a\nb slot=2\n", 2), "FILE:2: 'slot=2' is not slots=N")
-        self.assertEqual(self.hosts("a slots=2 b\n", 2), "FILE:1: 'slots=2 b' is not slots=N")
-        self.assertEqual(self.hosts("a slots=-1\n", 2), "FILE:1: 'slots=-1' is not slots=N")
+        self.assertEqual(self.hosts("a\nb slot=2\n", 2), "FILE:2: 'slot=2' is neither slots=N nor spare")
+        self.assertEqual(self.hosts("a slots=2 b\n", 2), "FILE:1: 'slots=2 b' is neither slots=N nor spare")
+        self.assertEqual(self.hosts("a slots=-1\n", 2), "FILE:1: 'slots=-1' is neither slots=N nor spare")
         self.assertEqual(self.hosts("a slots=0\n", 2), "FILE:1: slots must be from 1 to 1024, got 0")
         self.assertEqual(self.hosts("a slots=9999\n", 2), "FILE:1: slots must be from 1 to 1024, got 9999")
         self.assertIn("FILE:3: 'a,b' is no host name", self.hosts("\n\na,b\n", 2))
