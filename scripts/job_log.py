@@ -7,6 +7,7 @@ import os
 import pathlib
 import re
 import sys
+import time
 
 KEPT_TRIES = 8
 LAST_LINES = 8  # of each rank, for a report
@@ -21,7 +22,7 @@ BANNER = re.compile(rb"-{60,}")
 MPIRUNS_OWN = re.compile(rb"\[[\w.-]+:\d+\]|mpirun: ")
 SIGNALLED = re.compile(rb"process rank (\d+) with PID \d+ on node (\S+) exited on\s+signal (\d+)")
 EXITED = re.compile(rb"Process name: \[\[\d+,\d+\],(\d+)\]\s+Exit code:\s+(\d+)")
-PROGRESS = re.compile(rb"frame (\d+)  step (\d+)")
+PROGRESS = re.compile(rb"frame (\d+)  step (\d+)(?:.*  ([a-z ]+)$)?")
 ENDING = b"ending the job"
 
 
@@ -110,6 +111,8 @@ class JobLog:
         self.mpiruns = b""  # everything that mpirun itself said
         self.ending = None  # the line with which a process ended the job
         self.frame = self.step = None  # shown last, as far as was said
+        self.told = 0.0  # when, by the monotonic clock
+        self.hand = None  # when a hand was linked last
 
     def follow(self, ended=False):
         """Shows and reads what has been said since."""
@@ -127,6 +130,9 @@ class JobLog:
             self.ending = line.decode(errors="replace")
         elif stream is self.out and (progress := PROGRESS.match(line)):
             self.frame, self.step = int(progress[1]), int(progress[2])
+            self.told = time.monotonic()
+            if progress[3] in (b"hand linked", b"hand streams"):
+                self.hand = time.monotonic()
 
     def signalled(self):
         """(rank, signal) of the process that a signal ended first, as mpirun has it."""

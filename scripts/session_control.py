@@ -12,14 +12,14 @@ PATIENCE_SECONDS = 120  # a capture of a large wall takes its time
 LONGEST_ANSWER = 1 << 16
 
 
-def connect(session):
+def connect(session, patience=PATIENCE_SECONDS):
     """A connection to the master of the session in this folder."""
     try:
         folder = os.open(session, os.O_PATH | os.O_DIRECTORY | os.O_CLOEXEC)
     except OSError as error:
         raise BadInput(f"{session}: cannot be opened ({error.strerror}); name the --out folder of a session") from None
     peer = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-    peer.settimeout(PATIENCE_SECONDS)
+    peer.settimeout(patience)
     try:
         # By its folder's descriptor: a socket's own path holds 107 bytes.
         peer.connect(f"/proc/self/fd/{folder}/{SOCKET}")
@@ -34,16 +34,16 @@ def connect(session):
     return peer
 
 
-def ask(session, line):
+def ask(session, line, patience=PATIENCE_SECONDS):
     """The master's answer to a line, as text."""
-    with connect(session) as peer:
+    with connect(session, patience) as peer:
         answer = b""
         try:
             peer.sendall(line.encode(errors="surrogateescape") + b"\n")
             while len(answer) < LONGEST_ANSWER and (piece := peer.recv(4096)):
                 answer += piece
         except socket.timeout:
-            raise BadInput(f"{session}: no answer within {PATIENCE_SECONDS} s") from None
+            raise BadInput(f"{session}: no answer within {patience} s") from None
         except (ConnectionResetError, BrokenPipeError):
             pass  # what it has said before counts
     return answer.decode(errors="replace").strip()

@@ -4,6 +4,7 @@
 import collections
 import dataclasses
 import json
+import os
 import pathlib
 import shutil
 import signal
@@ -18,6 +19,7 @@ from rank_hosts import BadInput
 BAD_INPUT = 2
 FAILED = 1
 FIRST_WAIT, LONGEST_WAIT = 1, 8  # seconds before the second restart in a row, and at most
+SERVER_HUNG_SECONDS = 10  # without a link to a server that had one, while the wall goes on
 JOURNAL = "session.journal"
 
 
@@ -134,6 +136,7 @@ class Supervisor:
         self.failures = []
         self.server = self.job = None
         self.server_due = None  # when it is started again
+        self.server_hung = False
         self.gave_up = False
 
     def run(self):
@@ -156,11 +159,9 @@ class Supervisor:
             if not self.resume:
                 shutil.rmtree(folder, ignore_errors=True)
             folder.mkdir(parents=True, exist_ok=True)
-            job_log.JobLog(folder, 0).close()
-            job_log.forget_tries(folder, job_log.KEPT_TRIES)
         except OSError:
             return pathlib.Path(otherwise)
-        return folder
+        return folder if os.access(folder, os.W_OK | os.X_OK) else pathlib.Path(otherwise)
 
     def tries(self):
         before = self.journal_identity()
@@ -208,19 +209,30 @@ class Supervisor:
     def look_after_server(self):
         """Starts the haptic server again, on its port, when it has died; the master links to it by itself."""
         status = self.server.process.poll()
-        if status in (None, 0):
-            return
-        if self.server_due is None:
-            failure = Failure(f"the haptic server {how_ended(status)}")
+        if status is None:
+            self.end_hung_server()
+        elif self.server_due is not None:
+            if time.monotonic() >= self.server_due:
+                self.server_due = None
+                self.server.start()
+        else:
+            hung = "was hung" if self.server_hung else how_ended(status)
+            failure = Failure(f"the haptic server {hung}")
             failure.shown = shown_by(self.job.log)
+            self.server_hung = False
             if self.may_go_on(failure, showed_a_frame=True):
                 self.server_due = time.monotonic() + self.allowance.wait()
             else:
                 self.gave_up = True
                 self.job.stop()
-        elif time.monotonic() >= self.server_due:
-            self.server_due = None
-            self.server.start()
+
+    def end_hung_server(self):
+        """Kills one that runs and has lost its link for long: what has stopped inside it does not heal."""
+        log = self.job.log
+        if log.hand is not None and time.monotonic() - log.hand > SERVER_HUNG_SECONDS and log.told > log.hand + SERVER_HUNG_SECONDS / 2:
+            log.hand = None  # a new one has not been linked yet
+            self.server_hung = True
+            self.server.process.kill()
 
     def may_go_on(self, failure, showed_a_frame):
         """Says who failed, and whether what failed is started again; else reports."""

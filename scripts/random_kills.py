@@ -1,0 +1,191 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Kills processes of a session at random times, and proves that nothing is lost and the sand stays the same.
+
+Each kill ends a render rank, the master or the haptic server with a random signal (STOP: it hangs). The session must go on
+each time, with no step lost that was shown, and its last state hash must be that of an undisturbed replay of its journal.
+Exit status 0, or 1 when it is not so. docs/recovery.md
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import random
+import signal
+import statistics
+import subprocess
+import sys
+import time
+
+sys.dont_write_bytecode = True
+import processes
+import session_control
+from rank_hosts import BadInput
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SIGNALS = ("KILL", "SEGV", "ABRT", "TERM", "BUS", "STOP")
+PROGRAMS = {"rank": "sandwall-render-node", "master": "sandwall-master", "server": "sandwall-haptic-server"}
+PATIENCE_SECONDS = 180
+LONGEST_CALM = 2.5  # seconds of frames between two kills
+
+
+class Violation(Exception):
+    """What must not happen."""
+
+
+class Session:
+    """A session of scripts/sandwall under its supervisor."""
+
+    def __init__(self, args):
+        self.out = pathlib.Path(args.out)
+        self.out.mkdir(parents=True, exist_ok=True)
+        self.log = open(self.out / "random_kills.log", "wb")
+        self.command = [str(ROOT / "scripts" / "sandwall"), "run", "--wall", args.wall, "--scene", args.scene, "--out", args.out,
+                        "--device", "script:gis", "--no-pictures", "--frame-timeout", str(args.frame_timeout),
+                        "--restarts", "100000", "--restart-window", "0.001", *args.options]
+        self.launcher = None
+
+    def start(self, *more):
+        self.launcher = subprocess.Popen([*self.command, *more], stdin=subprocess.DEVNULL, stdout=self.log, stderr=self.log,
+                                         preexec_fn=processes.die_with_parent)
+
+    def status(self):
+        """What `ctl status` answers, or None while no master does."""
+        try:
+            found = json.loads(session_control.ask(self.out, "status", patience=5))
+            return found if found.get("ok") else None
+        except (BadInput, ValueError, OSError):
+            return None
+
+    def wait(self, what, condition):
+        """What `condition` makes of the status, as soon as it is true."""
+        deadline = time.monotonic() + PATIENCE_SECONDS
+        while time.monotonic() < deadline:
+            if self.launcher.poll() is not None:
+                raise Violation(f"the session has ended with status {self.launcher.returncode}; {self.log.name}")
+            if (status := self.status()) and (found := condition(status)):
+                return found
+            time.sleep(0.01)
+        raise Violation(f"{what}: not within {PATIENCE_SECONDS} s; {self.log.name}")
+
+    def recoveries(self):
+        """The recoveries that the master has written down, each as soon as its first frame was shown."""
+        try:
+            return [json.loads(line) for line in (self.out / "recoveries.jsonl").read_text().splitlines()]
+        except FileNotFoundError:
+            return []
+
+    def links(self):
+        """How often the master was linked to a haptic server."""
+        return sum(line.startswith(b"haptic link: ") and b": linked, " in line for line in pathlib.Path(self.log.name).open("rb"))
+
+    def processes(self, which):
+        """Process ids of a kind; render ranks in the order they were started."""
+        found = []
+        for entry in pathlib.Path("/proc").iterdir():
+            try:
+                command = (entry / "cmdline").read_bytes().split(b"\0")[0].decode() if entry.name.isdigit() else ""
+                if command.endswith("/" + PROGRAMS[which]) and self.owns(entry):
+                    found.append(int(entry.name))
+            except OSError:
+                pass  # gone
+        return sorted(found)
+
+    def owns(self, entry):
+        parent = (entry / "stat").read_text().rpartition(")")[2].split()[1]
+        return int(parent) == self.launcher.pid or f"{processes.MARK}={self.launcher.pid}-".encode() in (entry / "environ").read_bytes()
+
+    def end(self):
+        """Ends it in order; its exit status."""
+        self.launcher.send_signal(signal.SIGINT)
+        return self.launcher.wait(PATIENCE_SECONDS)
+
+
+def strike(session, which, name, chance):
+    """Kills one, waits until the wall goes on, and says so; the seconds until then."""
+    victims = session.processes(which)
+    if not victims:
+        raise Violation(f"no {which} runs")
+    victim = chance.randrange(len(victims))
+    before, links = len(session.recoveries()), session.links()
+    shown = session.wait("status", lambda status: status)
+    began = time.monotonic()
+    os.kill(victims[victim], signal.Signals["SIG" + name])
+    who = f"rank {victim + 1}" if which == "rank" else which
+    if which == "server":
+        session.wait("a hand", lambda _: session.links() > links)
+        seconds, then = time.monotonic() - began, "hand linked again"
+    else:
+        session.wait("frames again", lambda _: len(session.recoveries()) > before)
+        seconds = time.monotonic() - began
+        recovery = session.recoveries()[before]
+        resumed = recovery["checkpoint_step"] + recovery["replayed_steps"]
+        if resumed < shown["step"]:
+            raise Violation(f"step {shown['step']} was shown, and only {resumed} came back")
+        then = (f"resumed at step {resumed} (checkpoint {recovery['checkpoint_step']}), "
+                f"{recovery['seconds_to_next_frame']:.2f} s of it after it was noticed")
+    print(f"{who:8} SIG{name:4}  shown: frame {shown['frame']}, step {shown['step']}; {seconds:6.2f} s  {then}", flush=True)
+    return seconds
+
+
+def check_end(session, status):
+    """The sand of the wall is that of an undisturbed replay."""
+    if status != 0:
+        raise Violation(f"the session ended with status {status}; {session.log.name}")
+    summary = json.loads((session.out / "summary.json").read_text())
+    folder = pathlib.Path(os.environ.get("SANDWALL_BIN", ROOT / "build" / "release" / "bin"))
+    replayed = subprocess.run([folder / "sandwall-replay", session.out / "session.journal", "--hash"], capture_output=True, text=True)
+    found = (replayed.stdout.split() or [""])[-1]
+    if replayed.returncode != 0 or found != summary["state_hash"]:
+        raise Violation(f"the wall ended with {summary['state_hash']}, an undisturbed replay with '{found}' "
+                        f"(status {replayed.returncode}) {replayed.stderr.strip()}")
+    print(f"{summary['steps']} steps: {summary['state_hash']} on the wall and of an undisturbed replay; "
+          f"{summary['divergences']} divergences, {len(session.recoveries())} recoveries")
+
+
+def times(name, seconds):
+    if seconds:
+        print(f"{len(seconds):3} {name}: median {statistics.median(seconds):.2f} s, worst {max(seconds):.2f} s")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--kills", type=int, default=5)
+    parser.add_argument("--seed", type=int, default=None, help="of victims, signals and times (default: a random one, printed)")
+    parser.add_argument("--wall", default=str(ROOT / "walls/configs/desktop.toml"))
+    parser.add_argument("--scene", default=str(ROOT / "scenes/sandbox.toml"))
+    parser.add_argument("--out", required=True)
+    parser.add_argument("--victims", default="rank,master,server", help="of rank, master, server (default: all)")
+    parser.add_argument("--signals", default=",".join(SIGNALS))
+    parser.add_argument("--frame-timeout", type=float, default=3, help="seconds after which a rank that hangs is given up")
+    parser.add_argument("options", nargs="*", help="after --: more options of sandwall run")
+    args = parser.parse_args()
+    seed = args.seed if args.seed is not None else random.randrange(1 << 32)
+    print(f"seed {seed}", flush=True)
+    chance = random.Random(seed)
+    session = Session(args)
+    frames, hands = [], []
+    try:
+        session.start()
+        for _ in range(args.kills):
+            session.wait("a hand", lambda status: status["linked"])
+            time.sleep(chance.uniform(0, LONGEST_CALM))
+            which, name = chance.choice(args.victims.split(",")), chance.choice(args.signals.split(","))
+            (hands if which == "server" else frames).append(strike(session, which, name, chance))
+        check_end(session, session.end())
+    except Violation as violation:
+        print(f"random_kills.py: seed {seed}: {violation}", file=sys.stderr)
+        return 1
+    finally:
+        if session.launcher and session.launcher.poll() is None:
+            session.launcher.send_signal(signal.SIGINT)
+            session.launcher.send_signal(signal.SIGINT)
+            session.launcher.wait(PATIENCE_SECONDS)
+    times("kills of the job, to the next frame", frames)
+    times("kills of the haptic server, to the next linked hand", hands)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
