@@ -172,6 +172,8 @@ def main():
             session.wait("a hand", lambda status: status["linked"])
             time.sleep(chance.uniform(0, LONGEST_CALM))
             which, name = chance.choice(args.victims.split(",")), chance.choice(args.signals.split(","))
+            if (which, name) == ("master", "TERM"):
+                name = "KILL"  # the master takes TERM for a wish: it ends the session in order
             (hands if which == "server" else frames).append(strike(session, which, name, chance))
         check_end(session, session.end())
     except Violation as violation:

@@ -1,0 +1,133 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# A cluster on one machine: every host is a network namespace with a name, an address and a link of 1 Gbit/s of its own, and
+# a session runs over TCP between them, a render rank a host. Needs root. Leaves nothing behind; docs/cluster.md.
+set -euo pipefail
+
+usage() {
+    cat >&2 <<'END'
+usage: scripts/emulate_cluster.sh --out DIR [--wall FILE] [--scene FILE] [--spares N] [--cut HOST@SECONDS] [-- OPTION...]
+       scripts/emulate_cluster.sh --tear-down      # what a killed run has left behind
+  --wall, --scene   default: walls/configs/tiled_3x4.toml, scenes/writing.toml
+  --spares N        hosts that draw only when another cannot (default: 0)
+  --cut node03@10   takes that host's link down, so many seconds after the first frame; repeatable
+  --rate RATE       of every link, both ways (default: 1gbit)
+  OPTION            more options of sandwall run, such as --steps 600
+END
+    exit 2
+}
+
+root=$(cd "$(dirname "$0")/.." && pwd)
+bin=${SANDWALL_BIN:-$root/build/release/bin}
+wall=$root/walls/configs/tiled_3x4.toml scene=$root/scenes/writing.toml
+out='' spares=0 rate=1gbit cuts=() more=()
+network=10.77.0
+prefix=sandwall-emulated-
+
+# remove PREFIX: ends what runs in the namespaces of that name, and removes them; their links go with them.
+remove() {
+    local name
+    for name in $(ip netns list | awk -v prefix="$1" 'index($1, prefix) == 1 { print $1 }'); do
+        ip netns pids "$name" | xargs --no-run-if-empty kill -KILL 2>/dev/null || true
+        ip netns delete "$name" || true
+    done
+}
+
+need() { command -v "$1" >/dev/null || { echo "emulate_cluster.sh: no $1; scripts/install_dependencies.sh" >&2; exit 2; }; }
+
+while [[ $# -gt 0 ]]; do
+    case "$1" in
+        --out) out=${2:?}; shift 2 ;;
+        --wall) wall=${2:?}; shift 2 ;;
+        --scene) scene=${2:?}; shift 2 ;;
+        --spares) spares=${2:?}; shift 2 ;;
+        --cut) [[ ${2:?} =~ ^node[0-9]+@[0-9.]+$ ]] || usage; cuts+=("$2"); shift 2 ;;
+        --rate) rate=${2:?}; shift 2 ;;
+        --tear-down) need ip; remove "$prefix"; exit 0 ;;
+        --) shift; more=("$@"); break ;;
+        *) usage ;;
+    esac
+done
+[[ -n $out ]] || usage
+need ip; need tc; need unshare
+[[ $EUID -eq 0 ]] || { echo "emulate_cluster.sh: only root may make network namespaces; run it with sudo" >&2; exit 2; }
+
+ranks=$("$bin/sandwall-check" "$wall" --ranks)
+mine=$prefix$$-
+folder=$(mktemp -d /tmp/sandwall-emulated-XXXXXX)
+helpers=()
+tear_down() {
+    [[ ${#helpers[@]} -eq 0 ]] || kill "${helpers[@]}" 2>/dev/null || true
+    remove "$mine"
+    rm -rf "$folder"
+}
+trap tear_down EXIT
+trap 'exit 130' INT TERM HUP
+
+# The master's host holds the switch.
+ip netns add "${mine}head" || { echo "emulate_cluster.sh: this machine makes no network namespaces" >&2; exit 2; }
+ip -n "${mine}head" link set lo up
+ip -n "${mine}head" link add switch type bridge
+ip -n "${mine}head" address add "$network.1/24" dev switch
+ip -n "${mine}head" link set switch up
+
+# add_host NUMBER: a namespace with a cable to the switch.
+add_host() {
+    local name
+    name=$(printf 'node%02d' "$1")
+    ip netns add "$mine$name"
+    ip -n "$mine$name" link set lo up
+    ip -n "${mine}head" link add "$name" type veth peer name eth0 netns "$mine$name"
+    ip -n "${mine}head" link set "$name" master switch up
+    ip -n "$mine$name" address add "$network.$((10 + $1))/24" dev eth0
+    ip -n "$mine$name" link set eth0 up
+    tc -n "${mine}head" qdisc add dev "$name" root tbf rate "$rate" burst 256kb latency 50ms
+    tc -n "$mine$name" qdisc add dev eth0 root tbf rate "$rate" burst 256kb latency 50ms
+    echo "$name $network.$((10 + $1))" >>"$folder/addresses"
+}
+for ((host = 1; host <= ranks + spares; ++host)); do
+    add_host "$host"
+    printf 'node%02d%s\n' "$host" "$([[ $host -gt $ranks ]] && echo ' spare')" >>"$folder/hosts"
+done
+
+# In ssh's place. A port that nobody listens at is refused at once by a host that can be reached. Open MPI shares folders
+# and memory within a machine, which these hosts must not. The launcher must not know their processes either.
+cat >"$folder/agent" <<END
+#!/bin/bash
+host=\$1; shift
+address=\$(sed -n "s/^\$host //p" "$folder/addresses")
+said=\$(timeout 3 bash -c "exec 3<>/dev/tcp/\$address/1" 2>&1)
+case \$said in *refused*) ;; *) echo "connect to host \$host (\$address): No route to host" >&2; exit 255 ;; esac
+export TMPDIR="$folder/tmp-\$host" OMPI_MCA_btl_vader_backing_directory="$folder/tmp-\$host"
+unset SANDWALL_JOB
+mkdir -p "\$TMPDIR"
+exec ip netns exec "$mine\$host" unshare --uts sh -c "hostname \$host; \$*"
+END
+chmod +x "$folder/agent"
+
+# cut HOST SECONDS: takes a host's cable out, so long after the first frame.
+cut() {
+    until [[ -S $out/control ]]; do sleep 0.1; done
+    sleep "$2"
+    ip -n "${mine}head" link set "$1" down
+    echo "emulate_cluster.sh: the link of $1 is down" >&2
+}
+rm -f "$out/control"
+for one in "${cuts[@]}"; do
+    cut "${one%@*}" "${one#*@}" &
+    helpers+=($!)
+done
+
+echo "emulate_cluster.sh: $ranks hosts and $spares spares at $rate, one render rank each, the master on one more" >&2
+export OMPI_MCA_plm_rsh_agent=$folder/agent TMPDIR=$folder/tmp-head
+mkdir -p "$TMPDIR"
+status=0
+ip netns exec "${mine}head" unshare --uts sh -c 'hostname head; exec "$@"' sh "$root/scripts/sandwall" run \
+    --wall "$wall" --scene "$scene" --out "$out" --hosts "$folder/hosts" --network "$network.0/24" "${more[@]}" &
+session=$!
+trap 'kill -INT $session 2>/dev/null' INT TERM HUP
+# A wait that a signal ends is not the end of the session.
+while kill -0 "$session" 2>/dev/null; do
+    wait "$session" && status=0 || status=$?
+done
+exit "$status"
