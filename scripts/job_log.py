@@ -23,7 +23,8 @@ MPIRUNS_OWN = re.compile(rb"\[[\w.-]+:\d+\]|mpirun: ")
 SIGNALLED = re.compile(rb"process rank (\d+) with PID \d+ on node (\S+) exited on\s+signal (\d+)")
 EXITED = re.compile(rb"Process name: \[\[\d+,\d+\],(\d+)\]\s+Exit code:\s+(\d+)")
 PROGRESS = re.compile(rb"frame (\d+)  step (\d+)(?:.*  ([a-z ]+)$)?")
-ENDING = b"ending the job"
+# The watchdog's last words: "sandwall: frame 7 waits for rank 3 (tile c) on node03 for 4.1 s; ..., ending the job"
+ENDING = re.compile(r"sandwall: .*waits? for (.*) for [\d.]+ s; .*ending the job")
 
 
 class Stream:
@@ -87,7 +88,7 @@ class Stream:
         if BANNER.fullmatch(line):
             self.in_banner = not self.in_banner
             return True
-        return self.in_banner or MPIRUNS_OWN.match(line) is not None
+        return self.in_banner or not line or MPIRUNS_OWN.match(line) is not None
 
     def show(self, line):
         try:
@@ -109,7 +110,7 @@ class JobLog:
         self.err = Stream(f"{self.path}.err", sys.stderr)
         self.said = collections.defaultdict(lambda: collections.deque(maxlen=LAST_LINES))  # by rank; None: mpirun
         self.mpiruns = b""  # everything that mpirun itself said
-        self.ending = None  # the line with which a process ended the job
+        self.ending = None  # whom a process waited for in vain that has ended the job
         self.frame = self.step = None  # shown last, as far as was said
         self.told = 0.0  # when, by the monotonic clock
         self.hand = None  # when a hand was linked last
@@ -126,8 +127,8 @@ class JobLog:
         self.said[rank].append(line.decode(errors="replace"))
         if stream is self.err and rank is None:
             self.mpiruns = (self.mpiruns + line + b"\n")[-LONGEST_LINE:]
-        elif stream is self.err and ENDING in line and self.ending is None:
-            self.ending = line.decode(errors="replace")
+        elif stream is self.err and self.ending is None and (ending := ENDING.fullmatch(line.decode(errors="replace"))):
+            self.ending = ending[1].split(" after frame ")[0]
         elif stream is self.out and (progress := PROGRESS.match(line)):
             self.frame, self.step = int(progress[1]), int(progress[2])
             self.told = time.monotonic()

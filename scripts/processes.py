@@ -15,6 +15,7 @@ from rank_hosts import BadInput
 SERVER_START_SECONDS = 20
 ORDERLY_END_SECONDS = 120  # pictures of a large wall take their time
 KILL_SECONDS = 5
+GONE_SECONDS = 2  # that mpirun may take when a process has said that it ends the job
 LOOK_SECONDS = 0.05
 LONGEST_LINE = 1024  # of what is typed; the master reads no longer ones
 MARK = "SANDWALL_JOB"  # in the environment of a job's processes
@@ -139,11 +140,11 @@ class Job:
                   file=sys.stderr, flush=True)
             self.stop()
         if self.deadline is None and self.log and self.log.ending:
-            self.deadline = now + KILL_SECONDS  # mpirun waits for a host that has gone
+            self.deadline = now + GONE_SECONDS  # mpirun waits for a host that has gone
         if self.deadline is not None and not self.terminated and (stop.count > 1 or now > self.deadline):
             self.signal(signal.SIGTERM)
             self.terminated = True
-            self.deadline = now + KILL_SECONDS
+            self.deadline = now + (KILL_SECONDS if self.asked else GONE_SECONDS)
         elif self.terminated and now > self.deadline:
             self.signal(signal.SIGKILL)
         return None

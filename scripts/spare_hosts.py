@@ -24,8 +24,8 @@ class SessionHosts:
         return socket.gethostname() if host == rank_hosts.HERE else host
 
     def rank_in(self, text):
-        """The render rank that a line of the master names, or None."""
-        found = re.search(r"\bfor rank (\d+)\b", text)
+        """The first render rank that the master has waited for, or None."""
+        found = re.match(r"rank (\d+)\b", text)
         rank = int(found[1]) if found else 0
         return rank if 1 <= rank <= len(self.names) else None
 

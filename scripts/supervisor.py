@@ -81,7 +81,7 @@ def failure_of_job(status, log, hosts, told):
         rank = signalled[0]
         text = f"{name(rank)} died of {signal_name(signalled[1])}"
     elif log.ending:
-        text = log.ending.removeprefix("sandwall: ")[:300]
+        text = f"{log.ending[:300]} hung"
         rank = hosts.rank_in(text)
     elif exited:
         rank = exited[0]

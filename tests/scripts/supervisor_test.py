@@ -85,10 +85,20 @@ class Restarts(Supervised):
         self.tries("progress 7 6; ends 1 3", "exit 0")
         self.assertIn(f"sandwall: rank 1 on {HOST} ended with status 3; starting again", self.ended(["-"])[2])
 
-    def test_a_job_that_the_watchdog_ended_is_told_in_its_words(self):
-        self.tries("progress 7 6; complain 0 'sandwall: waits for rank 2 (tile b) on x for 3.0 s, ending the job'; ends 0 1", "exit 0")
-        self.assertIn("sandwall: waits for rank 2 (tile b) on x for 3.0 s, ending the job; starting again",
-                      self.ended(["-", "-"])[2])
+    def test_who_hung_is_told_by_the_last_words_of_the_watchdog(self):
+        words = "for 3.0 s; the limit is 3 s, ending the job"
+        self.tries(f"progress 7 6; complain 0 'sandwall: frame 8 waits for rank 2 (tile b) on x {words}'; ends 0 1",
+                   f"progress 9 8; complain 1 'sandwall: rank 1 waits for the master after frame 9 {words}'; ends 1 1", "exit 0")
+        error = self.ended(["-", "-"])[2]
+        self.assertIn("sandwall: rank 2 (tile b) on x hung; starting again", error)
+        self.assertIn("sandwall: the master hung; starting again", error)
+
+    def test_an_mpirun_that_waits_for_a_host_that_has_gone_is_killed(self):
+        self.tries("""progress 7 6; trap '' TERM
+complain 0 'sandwall: frame 8 waits for rank 2 (tile b) on x for 3.0 s; the limit is 3 s, ending the job'; while :; do sleep 0.1; done""", "exit 0")
+        status, _, error = self.ended(["-", "-"])
+        self.assertEqual(status, 0, error)
+        self.assertIn("sandwall: rank 2 (tile b) on x hung; starting again", error)
 
     def test_what_the_master_has_written_down_goes_before_what_mpirun_noticed(self):
         self.tries("""progress 7 6; told '{"what": "hung", "rank": 1, "message": "rank 1 (tile a) on x hung"}'; ends 0 1""", "exit 0")
