@@ -12,6 +12,7 @@ import json
 import os
 import pathlib
 import random
+import re
 import signal
 import statistics
 import subprocess
@@ -81,16 +82,17 @@ class Session:
         return sum(line.startswith(b"haptic link: ") and b": linked, " in line for line in pathlib.Path(self.log.name).open("rb"))
 
     def processes(self, which):
-        """Process ids of a kind; render ranks in the order they were started."""
-        found = []
+        """Process id by rank, of the render ranks, the master or the haptic server (0)."""
+        found = {}
         for entry in pathlib.Path("/proc").iterdir():
             try:
                 command = (entry / "cmdline").read_bytes().split(b"\0")[0].decode() if entry.name.isdigit() else ""
                 if command.endswith("/" + PROGRAMS[which]) and self.owns(entry):
-                    found.append(int(entry.name))
+                    rank = re.search(rb"\0OMPI_COMM_WORLD_RANK=(\d+)\0", (entry / "environ").read_bytes())
+                    found[int(rank[1]) if rank else 0] = int(entry.name)
             except OSError:
                 pass  # gone
-        return sorted(found)
+        return found
 
     def owns(self, entry):
         parent = (entry / "stat").read_text().rpartition(")")[2].split()[1]
@@ -107,12 +109,12 @@ def strike(session, which, name, chance):
     victims = session.processes(which)
     if not victims:
         raise Violation(f"no {which} runs")
-    victim = chance.randrange(len(victims))
+    victim = chance.choice(sorted(victims))
     before, links = len(session.recoveries()), session.links()
     shown = session.wait("status", lambda status: status)
     began = time.monotonic()
     os.kill(victims[victim], signal.Signals["SIG" + name])
-    who = f"rank {victim + 1}" if which == "rank" else which
+    who = f"rank {victim}" if which == "rank" else which
     if which == "server":
         session.wait("a hand", lambda _: session.links() > links)
         seconds, then = time.monotonic() - began, "hand linked again"
@@ -123,6 +125,9 @@ def strike(session, which, name, chance):
         resumed = recovery["checkpoint_step"] + recovery["replayed_steps"]
         if resumed < shown["step"]:
             raise Violation(f"step {shown['step']} was shown, and only {resumed} came back")
+        named = ("the master" if which == "master" else f"rank {victim} ", "hung" if name == "STOP" else f"died of SIG{name}")
+        if not (recovery["failure"].startswith(named[0]) and recovery["failure"].endswith(named[1])):
+            raise Violation(f"{who} was ended by SIG{name}, and was said to be: {recovery['failure']}")
         then = (f"resumed at step {resumed} (checkpoint {recovery['checkpoint_step']}), "
                 f"{recovery['seconds_to_next_frame']:.2f} s of it after it was noticed")
     print(f"{who:8} SIG{name:4}  shown: frame {shown['frame']}, step {shown['step']}; {seconds:6.2f} s  {then}", flush=True)
