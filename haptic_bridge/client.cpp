@@ -46,8 +46,23 @@ std::string Address::text() const {
     return (six ? "[" + host + "]" : host) + ":" + std::to_string(port);
 }
 
-Client::Client(Address address, Offer offer)
-    : session_(std::make_unique<Session>(std::move(address), std::move(offer))) {}
+void LinkCounters::add(const LinkCounters& other) {
+    reconnects += other.reconnects;
+    bytesIn += other.bytesIn;
+    bytesOut += other.bytesOut;
+    stepsIn += other.stepsIn;
+    stepsStale += other.stepsStale;
+    stepsForeign += other.stepsForeign;
+    catchUps += other.catchUps;
+    snapshots += other.snapshots;
+    refusedHere += other.refusedHere;
+    for (std::size_t i = 0; i < refused.size(); ++i) {
+        refused[i] += other.refused[i];
+    }
+}
+
+Client::Client(Address address, Offer offer, LinkSecurity security)
+    : session_(std::make_unique<Session>(std::move(address), std::move(offer), std::move(security))) {}
 
 Client::~Client() = default;
 
@@ -56,8 +71,9 @@ LinkStatus Client::link() const {
     return session_->shelf.status;
 }
 
-void Client::grant(std::uint32_t epoch, std::uint64_t stepNumber, std::uint64_t stateHash, files::Bytes state) {
-    session_->grant({epoch, stepNumber, stateHash}, std::move(state));
+void Client::grant(std::uint32_t epoch, std::uint64_t stepNumber, std::uint64_t stateHash, files::Bytes state,
+                   StepRing recent) {
+    session_->grant({epoch, stepNumber, stateHash}, std::move(state), std::move(recent));
 }
 
 std::vector<TimedStep> Client::drain(std::size_t most) { return session_->drain(most); }

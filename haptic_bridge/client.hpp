@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "files/byte_stream.hpp"
+#include "haptic_bridge/handshake.hpp"
 #include "haptic_bridge/protocol.hpp"
+#include "haptic_bridge/step_ring.hpp"
 #include "sand/step.hpp"
 
 namespace haptic_bridge {
@@ -67,6 +69,11 @@ struct LinkCounters {
     std::uint64_t stepsIn = 0;       // accepted
     std::uint64_t stepsStale = 0;    // late or doubled: recognised by number, left out
     std::uint64_t stepsForeign = 0;  // of another epoch: left out
+    std::uint64_t catchUps = 0;      // hand-overs by the steps that the server lacked
+    std::uint64_t snapshots = 0;     // and by the whole sand
+    std::uint64_t refusedHere = 0;   // by the server: it would not have this master
+    RefusalCounts refused{};         // servers that this master would not have, as kRefusalNames
+    void add(const LinkCounters& other);
 };
 
 /// The master's end of the link: connects by itself, for ever, and hands over steps in order.
@@ -79,16 +86,18 @@ struct LinkCounters {
 /// server numbers no steps: what it had sent is still there to drain(), and then the master numbers on, in a new epoch.
 class Client {
 public:
-    Client(Address address, Offer offer);
+    /// Without a secret in `security` only servers on this machine are spoken to.
+    Client(Address address, Offer offer, LinkSecurity security = {});
     ~Client();
     Client(const Client&) = delete;
     Client& operator=(const Client&) = delete;
 
     [[nodiscard]] LinkStatus link() const;
     /// Makes the server the sequencer of `epoch` from its next step, stepNumber + 1, on. `state` is
-    /// sand::Terrain::encodeState() at stepNumber, sent only when the server's replica is elsewhere. Drops steps that
-    /// were not drained. Without effect unless the link is offered.
-    void grant(std::uint32_t epoch, std::uint64_t stepNumber, std::uint64_t stateHash, files::Bytes state);
+    /// sand::Terrain::encodeState() at stepNumber, sent only when the server's replica is elsewhere, and not on the
+    /// way of the steps in `recent`. Drops steps that were not drained. Without effect unless the link is offered.
+    void grant(std::uint32_t epoch, std::uint64_t stepNumber, std::uint64_t stateHash, files::Bytes state,
+               StepRing recent = {});
     /// At most `most` steps, in order and without gaps, of the granted epoch only. When the queue is full (kMaxQueued),
     /// the network thread stops reading, and TCP holds the server back.
     [[nodiscard]] std::vector<TimedStep> drain(std::size_t most);

@@ -10,15 +10,20 @@
 namespace haptic_bridge {
 
 void Client::Session::greet(const PositionGreeting& greeting) {
-    if (link() >= Link::offered && link() <= Link::streaming) {
-        connection_->close("it sent a message out of turn", true);
+    if (up()) {
+        connection_->close("it sent a message out of turn", RefusalCode::garbage);
         return;
     }
     if (greeting.protocol != kProtocolVersion) {
         refuse(
             fmt::format("refused: it streams positions in protocol version {}, the master speaks {}; "
                         "docs/protocol.md has the present one",
-                        greeting.protocol, kProtocolVersion));
+                        greeting.protocol, kProtocolVersion),
+            RefusalCode::protocol);
+        return;
+    }
+    if (!handshake_->accepts(greeting)) {
+        refuse("refused: " + handshake_->because().text, handshake_->because().code);
         return;
     }
     {

@@ -8,6 +8,7 @@
 #include <boost/asio/post.hpp>
 #include <utility>
 
+#include "haptic_bridge/link_options.hpp"
 #include "haptic_bridge/monotonic.hpp"
 
 namespace haptic_bridge {
@@ -25,7 +26,8 @@ constexpr std::size_t kMaxTickPieces = 4096;  // half an hour of them; a session
 
 }  // namespace
 
-Client::Session::Session(Address address, Offer offer) : address_(std::move(address)), offer_(std::move(offer)) {
+Client::Session::Session(Address address, Offer offer, LinkSecurity security)
+    : address_(std::move(address)), offer_(std::move(offer)), security_(std::move(security)) {
     backOff_ = kFirstBackOff;
     tell(Link::connecting, "haptic server " + address_.text() + ": connecting");
     asio::post(io_, [this] { connect(); });
@@ -111,12 +113,10 @@ void Client::Session::connect() {
 }
 
 void Client::Session::connected(Connection::Socket socket) {
-    connection_ = std::make_shared<Connection>(std::move(socket));
+    connection_ = std::make_shared<Connection>(std::move(socket), security_.tls ? security_.tls->open() : nullptr);
     peer_ = "haptic server " + address_.text();
-    connection_->start(
-        {[this](Message&& message) { receive(std::move(message)); },
-         [this](const std::string& why, bool garbage) { garbage ? refuse("closed, " + why) : closed(why); }});
-    connection_->send(Hello{{kProtocolVersion, sand::kAlgorithmVersion, offer_.rulesDigest, offer_.sceneName}});
+    handshake_.reset();
+    connection_->limit(kMaxGreeting);
     heard_ = std::chrono::steady_clock::now();
     pings_ = 0;
     {
@@ -125,6 +125,30 @@ void Client::Session::connected(Connection::Socket socket) {
         shelf.testsInFrame.clear();
     }
     watch();
+    connection_->start({[this](Message&& message) { receive(std::move(message)); },
+                        [this](const std::string& why, Connection::Fault fault) {
+                            fault ? refuse("closed, " + why, fault) : closed(why);
+                        },
+                        false, [this] { greet(); }});
+}
+
+void Client::Session::greet() {
+    if (!security_.proves() && !isLoopback(connection_->address())) {
+        refuse("is not on this machine: a link over a network needs --secret-file on both sides (docs/security.md)",
+               RefusalCode::secret);
+        return;
+    }
+    const Identity mine{kProtocolVersion, sand::kAlgorithmVersion, offer_.rulesDigest, offer_.sceneName};
+    handshake_.emplace(security_, mine, Role::move, connection_->binding());
+    connection_->send(handshake_->hello());
+}
+
+void Client::Session::prove(const Challenge& challenge) {
+    if (const auto proof = handshake_->answer(challenge)) {
+        connection_->send(*proof);
+    } else {
+        refuse("refused: " + handshake_->because().text, handshake_->because().code);
+    }
 }
 
 void Client::Session::failed(const std::string& why) {
@@ -150,7 +174,14 @@ void Client::Session::closed(const std::string& why) {
     retry();
 }
 
-void Client::Session::refuse(const std::string& why) {
+void Client::Session::refuse(const std::string& why, Connection::Fault fault) {
+    {
+        const std::lock_guard lock(shelf.mutex);
+        shelf.counters.refusedHere += fault ? 0 : 1;
+        if (fault) {
+            ++shelf.counters.refused[static_cast<std::size_t>(*fault) - 1];
+        }
+    }
     tell(Link::refused, fmt::format("{}: {}", peer_, why));
     backOff_ = kLastBackOff;
     if (stopping_) {
@@ -212,7 +243,7 @@ void Client::Session::ping() {
     });
 }
 
-void Client::Session::grant(Start start, files::Bytes state) {
+void Client::Session::grant(Start start, files::Bytes state, StepRing recent) {
     {
         const std::lock_guard lock(shelf.mutex);
         if (shelf.status.link != Link::offered) {
@@ -222,13 +253,15 @@ void Client::Session::grant(Start start, files::Bytes state) {
         shelf.status.link = Link::granting;
         shelf.steps.clear();
     }
-    asio::post(io_, [this, start, state = std::move(state)]() mutable {
+    asio::post(io_, [this, start, state = std::move(state), recent = std::move(recent)]() mutable {
         if (link() != Link::granting || !connection_) {
             return;
         }
         granted_ = start;
         lastStep_ = start.stepNumber;
         state_ = std::move(state);
+        recent_ = std::move(recent);
+        handOvers_ = 0;
         tell(Link::granting, fmt::format("{}: handing over at step {}", peer_, start.stepNumber));
         connection_->send(start);
     });
@@ -259,17 +292,21 @@ void Client::Session::receive(Message&& message) {
         shelf.counters.bytesOut = connection_->bytesOut();
     }
     if (const auto* refusal = std::get_if<Refusal>(&message)) {
-        refuse("refuses: " + refusal->text);
+        refuse("refuses: " + refusal->text, std::nullopt);
     } else if (const auto* bye = std::get_if<Bye>(&message)) {
         connection_->close("it says goodbye: " + bye->reason);
-    } else if (const auto* greeting = std::get_if<Welcome>(&message)) {
+    } else if (!handshake_) {
+        connection_->close("it sent a message out of turn", RefusalCode::garbage);
+    } else if (const auto* challenge = std::get_if<Challenge>(&message); challenge != nullptr && !up()) {
+        prove(*challenge);
+    } else if (const auto* greeting = std::get_if<Welcome>(&message); greeting != nullptr && !up()) {
         welcome(*greeting);
     } else if (const auto* positions = std::get_if<PositionGreeting>(&message)) {
         greet(*positions);
     } else if (const auto* position = std::get_if<Position>(&message); position && link() == Link::streaming) {
         accept(*position);
     } else if (link() < Link::offered || link() > Link::linked) {
-        connection_->close("it did not greet", true);
+        connection_->close("it did not greet", RefusalCode::garbage);
     } else if (const auto* pong = std::get_if<Pong>(&message)) {
         clock_.add(pong->masterNs, pong->serverNs, monotonicNs());
         const std::lock_guard lock(shelf.mutex);
@@ -286,16 +323,37 @@ void Client::Session::receive(Message&& message) {
         if (shelf.ticks.size() < kMaxTickPieces) {
             shelf.ticks.push_back(std::move(piece->bytes));
         }
-    } else if (std::holds_alternative<NeedState>(message) && link() == Link::granting) {
-        connection_->send(State{std::move(state_)});
-        state_.clear();
+    } else if (const auto* need = std::get_if<NeedState>(&message);
+               need != nullptr && link() == Link::granting && handOvers_ < 2) {
+        handOver(*need);
     } else if (std::holds_alternative<Ready>(message) && link() == Link::granting) {
-        state_.clear();
+        state_ = {};
+        recent_ = {};
         backOff_ = kFirstBackOff;
         tell(Link::linked,
              fmt::format("{}: linked, epoch {} from step {}", peer_, granted_.epoch, granted_.stepNumber + 1));
     } else {
-        connection_->close("it sent a message out of turn", true);
+        connection_->close("it sent a message out of turn", RefusalCode::garbage);
+    }
+}
+
+/// By the steps that the server lacks, where those are known; by all of the sand else, or when it asks again.
+void Client::Session::handOver(const NeedState& need) {
+    constexpr std::size_t kPerMessage = 16;  // the longest step is some 1.5 KiB
+    const auto steps = handOvers_++ == 0 ? recent_.since(need, granted_.stepNumber) : std::nullopt;
+    {
+        const std::lock_guard lock(shelf.mutex);
+        ++(steps ? shelf.counters.catchUps : shelf.counters.snapshots);
+    }
+    if (!steps) {
+        handOvers_ = 2;
+        connection_->send(State{std::exchange(state_, {})});
+        return;
+    }
+    for (std::size_t begin = 0; begin < steps->size(); begin += kPerMessage) {
+        const std::size_t end = std::min(begin + kPerMessage, steps->size());
+        const auto at = [&](std::size_t i) { return steps->begin() + static_cast<std::ptrdiff_t>(i); };
+        connection_->send(CatchUp{end == steps->size(), {at(begin), at(end)}});
     }
 }
 
@@ -303,9 +361,14 @@ void Client::Session::welcome(const Welcome& greeting) {
     const Identity mine{kProtocolVersion, sand::kAlgorithmVersion, offer_.rulesDigest, offer_.sceneName};
     // The server judged as well; a server that does not is no reason to show sand that differs from what is felt.
     if (const auto refusal = refusalFor(greeting.server, mine)) {
-        refuse("refused: " + refusal->text);
+        refuse("refused: " + refusal->text, refusal->code);
         return;
     }
+    if (!handshake_->accepts(greeting)) {
+        refuse("refused: " + handshake_->because().text, handshake_->because().code);
+        return;
+    }
+    connection_->limit(kMaxMessage);
     {
         const std::lock_guard lock(shelf.mutex);
         shelf.counters.reconnects += everWelcomed_ ? 1 : 0;

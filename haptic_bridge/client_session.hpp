@@ -22,12 +22,12 @@ namespace haptic_bridge {
 /// callers. Members that end in an underscore and stand below `shelf` belong to the network thread.
 class Client::Session {
 public:
-    Session(Address address, Offer offer);
+    Session(Address address, Offer offer, LinkSecurity security);
     ~Session() { stop(); }
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
-    void grant(Start start, files::Bytes state);
+    void grant(Start start, files::Bytes state, StepRing recent);
     std::vector<TimedStep> drain(std::size_t most);
     void shown(const Shown& frame);
     void request(const EditRequest& request);
@@ -67,7 +67,11 @@ private:
     void connected(Connection::Socket socket);
     void failed(const std::string& why);
     void closed(const std::string& why);
-    void refuse(const std::string& why);
+    void greet();
+    void refuse(const std::string& why, Connection::Fault fault);
+    void prove(const Challenge& challenge);
+    [[nodiscard]] bool up() { return link() >= Link::offered && link() <= Link::streaming; }
+    void handOver(const NeedState& need);
     void retry();
     void watch();
     void ping();
@@ -81,6 +85,8 @@ private:
 
     const Address address_;
     const Offer offer_;
+    const LinkSecurity security_;
+    std::optional<MasterHandshake> handshake_;
     boost::asio::io_context io_;
     boost::asio::ip::tcp::resolver resolver_{io_};
     Timer retryTimer_{io_}, pingTimer_{io_}, watchTimer_{io_};
@@ -88,6 +94,8 @@ private:
     std::string peer_;
     Start granted_;
     files::Bytes state_;
+    StepRing recent_;
+    int handOvers_ = 0;  // answers to NeedState since the grant
     std::uint64_t lastStep_ = 0;
     ClockOffset clock_;
     Milliseconds backOff_{};

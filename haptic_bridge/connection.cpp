@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "haptic_bridge/connection.hpp"
 
+#include <algorithm>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/write.hpp>
-#include <chrono>
 #include <sstream>
 #include <utility>
 
@@ -11,6 +11,15 @@ namespace haptic_bridge {
 
 namespace asio = boost::asio;
 using boost::system::error_code;
+using Clock = std::chrono::steady_clock;
+
+namespace {
+
+constexpr std::chrono::milliseconds kThrottle{20};
+// What TLS begins every record with: change of cipher, alert, handshake, data; a client's first is a handshake.
+constexpr std::uint8_t kFirstRecord = 20, kHandshake = 22, kLastRecord = 23;
+
+}  // namespace
 
 std::string textOf(const asio::ip::tcp::endpoint& endpoint) {
     std::ostringstream text;
@@ -18,21 +27,35 @@ std::string textOf(const asio::ip::tcp::endpoint& endpoint) {
     return text.str();
 }
 
-Connection::Connection(Socket socket) : socket_(std::move(socket)), linger_(socket_.get_executor()) {
+Connection::Connection(Socket socket, std::unique_ptr<TlsSession> tls)
+    : socket_(std::move(socket)),
+      tls_(std::move(tls)),
+      linger_(socket_.get_executor()),
+      throttle_(socket_.get_executor()),
+      counted_(Clock::now()) {
     error_code ignored;
     // A step must not wait for the acknowledgement of the one before.
     socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
     const auto endpoint = socket_.remote_endpoint(ignored);
     peer_ = ignored ? "an unknown address" : textOf(endpoint);
+    address_ = endpoint.address();
 }
 
 void Connection::start(Handlers handlers) {
     handlers_ = std::move(handlers);
+    if (tls_ && !handlers_.server) {
+        files::Bytes first;
+        tls_->begin(first);
+        push(std::move(first), false);
+    }
     read();
+    if (!tls_ && handlers_.ready) {
+        handlers_.ready();
+    }
 }
 
 void Connection::read() {
-    if (!open_ || reading_ || paused_) {
+    if (!open_ || reading_ || paused_ || throttling_) {
         return;
     }
     reading_ = true;
@@ -46,22 +69,111 @@ void Connection::read() {
             self->close((error == asio::error::eof ? "the connection ended" : error.message()) + where);
             return;
         }
-        self->bytesIn_ += count;
         if (!self->finishing_) {
-            self->reader_.feed(std::span(self->chunk_).first(count));
-            self->deliver();
+            self->take(count);
         }
+        self->bytesIn_ += count;
         self->read();
     });
 }
 
+void Connection::take(std::size_t count) {
+    const auto bytes = ByteSpan(chunk_).first(count);
+    if (bytesIn_ == 0 && speaksOtherwise(bytes)) {
+        return;
+    }
+    if (!tls_) {
+        reader_.feed(bytes);
+        deliver();
+        return;
+    }
+    const bool before = tls_->established();
+    files::Bytes plain, reply;
+    std::string trouble;
+    try {
+        tls_->receive(bytes, plain, reply);
+    } catch (const std::runtime_error& error) {
+        trouble = error.what();
+    }
+    if (!reply.empty()) {
+        push(std::move(reply), false);
+    }
+    if (!trouble.empty()) {
+        close("TLS failed: " + trouble, RefusalCode::tls);
+        return;
+    }
+    if (!before && tls_->established() && open_ && handlers_.ready) {
+        const auto ready = handlers_.ready;
+        ready();
+    }
+    reader_.feed(plain);
+    deliver();
+}
+
+/// Whether the first byte tells that one side speaks TLS and the other does not; this end then says so and closes.
+bool Connection::speaksOtherwise(ByteSpan first) {
+    const bool version = first.size() < 2 || first[1] == 3;
+    const bool isTls = version && (tls_ && !handlers_.server ? first[0] >= kFirstRecord && first[0] <= kLastRecord
+                                                             : first[0] == kHandshake);
+    if (isTls == (tls_ != nullptr)) {
+        return false;
+    }
+    if (tls_ && !handlers_.server) {
+        close("it does not speak TLS; start it with --tls, or this side without", RefusalCode::tls);
+    } else if (tls_) {
+        tls_ = nullptr;  // the answer must be understood
+        refuse(RefusalCode::tls, "this server speaks TLS alone; give your side --tls and --secret-file",
+               "it does not speak TLS");
+    } else if (handlers_.server) {
+        refuse(RefusalCode::tls, "this server speaks no TLS; start it with --tls, or your side without",
+               "it speaks TLS, this server does not; both take --tls or neither");
+    } else {
+        close("it speaks TLS; give this side --tls, too", RefusalCode::tls);
+    }
+    return true;
+}
+
+void Connection::refuse(RefusalCode code, const std::string& answer, const std::string& why) {
+    send(Refusal{code, answer});
+    const auto closed = std::move(handlers_.closed);
+    finish();
+    closed(why, code);
+}
+
+/// Counts the message that comes next; false when it must wait.
+bool Connection::mayDeliver() {
+    if (allowed_ < 1) {
+        const Clock::time_point now = Clock::now();
+        allowed_ = std::min(rate_, allowed_ + std::chrono::duration<double>(now - counted_).count() * rate_);
+        counted_ = now;
+    }
+    if (allowed_ >= 1) {
+        return true;
+    }
+    ++throttles_;
+    throttling_ = true;
+    throttle_.expires_after(kThrottle);
+    throttle_.async_wait([self = shared_from_this()](error_code error) {
+        if (!error && self->open_) {
+            self->throttling_ = false;
+            self->deliver();
+            self->read();
+        }
+    });
+    return false;
+}
+
 void Connection::deliver() {
     try {
-        while (open_ && !paused_ && !finishing_) {
+        while (open_ && !paused_ && !throttling_ && !finishing_) {
+            if (!mayDeliver()) {
+                return;
+            }
             std::optional<Message> message = reader_.next();
             if (!message) {
                 return;
             }
+            allowed_ -= 1;
             if (handlers_.message) {
                 // A copy: the handler may close the connection, which releases the handlers.
                 const auto handle = handlers_.message;
@@ -70,14 +182,11 @@ void Connection::deliver() {
         }
     } catch (const files::FormatError& error) {
         const std::string why = std::string("it sent ") + error.what();
-        if (!handlers_.answerGarbage) {
-            close(why, true);
+        if (!handlers_.server) {
+            close(why, RefusalCode::garbage);
             return;
         }
-        send(Refusal{RefusalCode::garbage, std::string("this is a Sandwall haptic server; you sent ") + error.what()});
-        const auto closed = std::move(handlers_.closed);
-        finish();
-        closed(why, true);
+        refuse(RefusalCode::garbage, std::string("this is a Sandwall haptic server; you sent ") + error.what(), why);
     }
 }
 
@@ -92,19 +201,30 @@ void Connection::sendBytes(files::Bytes bytes) {
     if (!open_ || finishing_) {
         return;
     }
-    unsentBytes_ += bytes.size();
-    if (unsentBytes_ > kMaxUnsent) {
-        close("it does not read what is sent to it");
+    const bool isLong = bytes.size() > kMaxMessage + sizeof(std::uint32_t);
+    if (tls_) {
+        files::Bytes sealed;
+        tls_->seal(bytes, sealed);
+        bytes = std::move(sealed);
+    }
+    push(std::move(bytes), isLong);
+}
+
+void Connection::push(files::Bytes bytes, bool isLong) {
+    longUnsent_ += isLong ? 1 : 0;
+    unsentBytes_ += isLong ? 0 : bytes.size();
+    if (unsentBytes_ > maxUnsent_ || longUnsent_ > 1) {
+        close("it does not read what is sent to it", RefusalCode::limit);
         return;
     }
-    unsent_.push_back(std::move(bytes));
+    unsent_.push_back({std::move(bytes), isLong});
     if (unsent_.size() == 1) {
         write();
     }
 }
 
 void Connection::write() {
-    asio::async_write(socket_, asio::buffer(unsent_.front()),
+    asio::async_write(socket_, asio::buffer(unsent_.front().bytes),
                       [self = shared_from_this()](error_code error, std::size_t count) {
                           if (!self->open_) {
                               return;
@@ -114,7 +234,9 @@ void Connection::write() {
                               return;
                           }
                           self->bytesOut_ += count;
-                          self->unsentBytes_ -= count;
+                          const bool isLong = self->unsent_.front().isLong;
+                          self->longUnsent_ -= isLong ? 1 : 0;
+                          self->unsentBytes_ -= isLong ? 0 : count;
                           self->unsent_.pop_front();
                           if (!self->unsent_.empty()) {
                               self->write();
@@ -135,7 +257,9 @@ void Connection::finish() {
     if (unsent_.empty()) {
         endSending();
     }
+    throttling_ = false;
     resume();
+    read();
 }
 
 void Connection::endSending() {
@@ -145,14 +269,14 @@ void Connection::endSending() {
     socket_.shutdown(Socket::shutdown_send, ignored);
 }
 
-void Connection::close(const std::string& why, bool garbage) {
+void Connection::close(const std::string& why, Fault fault) {
     if (!open_) {
         return;
     }
     const auto closed = std::move(handlers_.closed);
     shut();
     if (closed) {
-        closed(why, garbage);
+        closed(why, fault);
     }
 }
 
@@ -160,6 +284,7 @@ void Connection::shut() {
     open_ = false;
     error_code ignored;
     linger_.cancel(ignored);
+    throttle_.cancel(ignored);
     socket_.shutdown(Socket::shutdown_both, ignored);
     socket_.close(ignored);
     handlers_ = {};

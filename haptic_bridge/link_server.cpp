@@ -4,28 +4,26 @@
 #include <boost/asio/post.hpp>
 #include <utility>
 
+#include "haptic_bridge/link_options.hpp"
 #include "haptic_bridge/master_link.hpp"
+#include "haptic_bridge/monotonic.hpp"
 
 namespace haptic_bridge {
 
 namespace asio = boost::asio;
 using boost::system::error_code;
 
-namespace {
-
-constexpr int kMaxGuests = 16;
-
-}  // namespace
-
 LinkServer::LinkServer(asio::io_context& io, asio::ip::tcp::acceptor acceptor, Identity identity,
-                       std::uint32_t stepsPerSecond, Sources sources, TimingTests tests)
+                       std::uint32_t stepsPerSecond, Sources sources, TimingTests tests,
+                       LinkSecurity security)
     : io_(io),
       acceptor_(std::move(acceptor)),
       pause_(io),
       identity_(std::move(identity)),
       stepsPerSecond_(stepsPerSecond),
       sources_(std::move(sources)),
-      tests_(tests) {}
+      tests_(tests),
+      security_(std::move(security)) {}
 
 LinkServer::~LinkServer() = default;
 
@@ -43,7 +41,9 @@ Sequencer::Output LinkServer::output() {
         });
     };
     return {[hand](std::uint32_t session) { hand(session, [](MasterLink& link) { link.ready(); }); },
-            [hand](std::uint32_t session) { hand(session, [](MasterLink& link) { link.needState(); }); },
+            [hand](std::uint32_t session, NeedState need) {
+                hand(session, [need](MasterLink& link) { link.needState(need); });
+            },
             [hand](std::uint32_t session, std::string why) {
                 hand(session, [why = std::move(why)](MasterLink& link) { link.unusable(why); });
             },
@@ -72,11 +72,48 @@ void LinkServer::accept() {
             });
             return;
         }
-        if (guests_ < kMaxGuests) {
-            std::make_shared<MasterLink>(*this, std::move(socket))->start();
-        }
+        admit(std::move(socket));
         accept();
     });
+}
+
+void LinkServer::admit(Connection::Socket socket) {
+    error_code gone;
+    const asio::ip::address address = socket.remote_endpoint(gone).address();
+    if (gone) {
+        return;
+    }
+    const auto sameAddress = guests_.find(address);
+    const bool many = sameAddress != guests_.end() && sameAddress->second >= kMaxGuestsOfOne && !isLoopback(address);
+    if (!limits_.mayCome(address, monotonicNs())) {
+        refused(RefusalCode::limit, address, "comes too often, and is not answered for a while");
+    } else if (guestCount_ >= kMaxGuests || many) {
+        refused(RefusalCode::limit, address, "is one of too many that have not greeted, and is not answered");
+    } else {
+        std::make_shared<MasterLink>(*this, std::move(socket))->start();
+    }
+}
+
+void LinkServer::refused(RefusalCode code, const asio::ip::address& address, const std::string& line) {
+    const std::int64_t now = monotonicNs();
+    if (code != RefusalCode::limit && code != RefusalCode::busy) {
+        limits_.refused(address, now);
+    }
+    if (const auto text = refusals_.add(code, address.to_string(), address.to_string() + ": " + line, now)) {
+        sources_.log(*text);
+    }
+}
+
+void LinkServer::guestCame(const asio::ip::address& address) {
+    ++guestCount_;
+    ++guests_[address];
+}
+
+void LinkServer::guestWent(const asio::ip::address& address) {
+    --guestCount_;
+    if (--guests_[address] == 0) {
+        guests_.erase(address);
+    }
 }
 
 void LinkServer::shut(const std::string& reason) {
@@ -84,6 +121,9 @@ void LinkServer::shut(const std::string& reason) {
     error_code ignored;
     acceptor_.close(ignored);
     std::weak_ptr<Connection> last;
+    for (const auto& watcher : std::set(watchers_)) {
+        watcher->sayGoodbye(reason);
+    }
     if (current_) {
         last = current_->connection();
         current_->sayGoodbye(reason);

@@ -5,10 +5,14 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <functional>
+#include <map>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "haptic_bridge/connection.hpp"
+#include "haptic_bridge/guest_limits.hpp"
+#include "haptic_bridge/handshake.hpp"
 #include "haptic_bridge/sequencer.hpp"
 
 namespace haptic_bridge {
@@ -23,10 +27,11 @@ struct TimingTests {
     std::uint32_t seed = 7;
 };
 
-/// The streaming thread: takes masters in, one at a time, and carries the sequencer's steps to them.
+/// The streaming thread: takes masters in, one at a time, and carries the sequencer's steps to them and to watchers.
 ///
 /// Everything runs on the thread that runs `io`. A master that leaves, breaks or sends garbage ends its own link and
-/// nothing else; the next one may come.
+/// nothing else; the next one may come. Who has not proved what the server asks for costs little: kMaxGuests of them
+/// at once, kMaxGuestsOfOne of one address beyond this machine, and as often as GuestLimits lets them.
 class LinkServer {
 public:
     struct Sources {
@@ -40,7 +45,7 @@ public:
 
     /// Takes over a listening acceptor.
     LinkServer(boost::asio::io_context& io, boost::asio::ip::tcp::acceptor acceptor, Identity identity,
-               std::uint32_t stepsPerSecond, Sources sources, TimingTests tests = {});
+               std::uint32_t stepsPerSecond, Sources sources, TimingTests tests = {}, LinkSecurity security = {});
     ~LinkServer();
 
     /// What the sequencer calls on its own thread; hands over to this one.
@@ -49,10 +54,19 @@ public:
     void serve(Sequencer& sequencer);
     /// Says goodbye to the master and stops listening; stops the io context when that has arrived, or after 0.6 s.
     void shut(const std::string& reason);
+    [[nodiscard]] const RefusalCounts& refused() const { return refusals_.counts(); }
+
+    static constexpr int kMaxGuests = 16;      // connections that have not been welcomed yet
+    static constexpr int kMaxGuestsOfOne = 4;  // of those, from one address beyond this machine
+    static constexpr std::size_t kMaxWatchers = 8;
 
 private:
     friend class MasterLink;
     void accept();
+    void admit(Connection::Socket socket);
+    void refused(RefusalCode code, const boost::asio::ip::address& address, const std::string& line);
+    void guestCame(const boost::asio::ip::address& address);
+    void guestWent(const boost::asio::ip::address& address);
     void stopWhenGone(const std::weak_ptr<Connection>& last, int polls);
     [[nodiscard]] std::shared_ptr<MasterLink> linked(std::uint32_t session) const;
 
@@ -63,10 +77,15 @@ private:
     std::uint32_t stepsPerSecond_;
     Sources sources_;
     TimingTests tests_;
+    LinkSecurity security_;
     Sequencer* sequencer_ = nullptr;
-    std::shared_ptr<MasterLink> current_;  // the one that passed the handshake
+    std::shared_ptr<MasterLink> current_;  // the one that passed the handshake and may move
+    std::set<std::shared_ptr<MasterLink>> watchers_;
+    GuestLimits limits_;
+    RefusalLog refusals_;
     std::uint32_t sessions_ = 0;
-    int guests_ = 0;  // connections that have not greeted yet
+    std::map<boost::asio::ip::address, int> guests_;  // connections that have not been welcomed yet
+    int guestCount_ = 0;
     bool shutting_ = false;
 };
 

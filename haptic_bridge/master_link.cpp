@@ -19,6 +19,8 @@ namespace {
 constexpr std::int64_t kGreetingNs = 3'000'000'000;  // a guest must greet within
 constexpr std::int64_t kSilenceNs = 10'000'000'000;  // a master pings four times a second
 constexpr std::size_t kMaxTestsOut = 64;
+constexpr double kWatcherRate = 50;                      // [1/s]; it has nothing to say but four pings
+constexpr std::size_t kWatcherUnsent = 256 * 1024;       // [byte]; about half a minute of steps
 
 HalfRoundTrip told(const LiveHistogram& halves) {
     return {halves.meanNs() * 1e-6, halves.stddevNs() * 1e-6, halves.percentileNs(0.50) * 1e-6,
@@ -29,22 +31,27 @@ HalfRoundTrip told(const LiveHistogram& halves) {
 
 MasterLink::MasterLink(LinkServer& server, Connection::Socket socket)
     : server_(server),
-      connection_(std::make_shared<Connection>(std::move(socket))),
+      connection_(std::make_shared<Connection>(std::move(socket),
+                                               server.security_.tls ? server.security_.tls->open() : nullptr)),
       reportTimer_(server.io_),
       testTimer_(server.io_),
       watchTimer_(server.io_),
+      handshake_(server.security_),
       random_(server.tests_.seed) {}
 
 void MasterLink::start() {
-    ++server_.guests_;
+    server_.guestCame(connection_->address());
     heardNs_ = monotonicNs();
+    connection_->limit(kMaxGreeting);
     connection_->start({[self = shared_from_this()](Message&& message) { self->receive(std::move(message)); },
-                        [self = shared_from_this()](const std::string& why, bool) { self->end(why); }, true});
+                        [self = shared_from_this()](const std::string& why, Connection::Fault fault) { self->end(why, fault); },
+                        true});
     watch();
 }
 
 void MasterLink::log(const std::string& what) const {
-    server_.sources_.log(fmt::format("master {}: {}", connection_->peer(), what));
+    server_.sources_.log(
+        fmt::format("{} {}: {}", role_ == Role::move ? "master" : "watcher", connection_->peer(), what));
 }
 
 void MasterLink::watch() {
@@ -54,9 +61,11 @@ void MasterLink::watch() {
             return;
         }
         const std::int64_t silence = monotonicNs() - self->heardNs_;
-        const std::int64_t most = self->phase_ == Phase::greeting ? kGreetingNs : kSilenceNs;
+        const std::int64_t most = self->phase_ <= Phase::proving ? kGreetingNs : kSilenceNs;
         if (silence > most) {
-            self->connection_->close(fmt::format("silent for {} s", most / 1'000'000'000));
+            self->connection_->close(
+                fmt::format("silent for {} s", most / 1'000'000'000),
+                self->phase_ <= Phase::proving ? Connection::Fault(RefusalCode::limit) : std::nullopt);
             return;
         }
         self->watch();
@@ -67,31 +76,45 @@ void MasterLink::receive(Message&& message) {
     if (phase_ == Phase::over) {
         return;
     }
-    heardNs_ = phase_ == Phase::greeting ? heardNs_ : monotonicNs();
-    if (const auto* hello = std::get_if<Hello>(&message); hello != nullptr && phase_ == Phase::greeting) {
-        greet(*hello);
-    } else if (phase_ == Phase::greeting) {
-        outOfTurn();
+    heardNs_ = phase_ <= Phase::proving ? heardNs_ : monotonicNs();
+    if (phase_ == Phase::greeting) {
+        const auto* hello = std::get_if<Hello>(&message);
+        hello != nullptr ? greet(*hello) : outOfTurn();
+    } else if (phase_ == Phase::proving) {
+        const auto* proof = std::get_if<Proof>(&message);
+        proof != nullptr ? judge(*proof) : outOfTurn();
     } else if (const auto* ping = std::get_if<Ping>(&message)) {
         connection_->send(Pong{ping->masterNs, monotonicNs()});
     } else if (std::holds_alternative<Bye>(message)) {
-        sayGoodbye("the master has said goodbye");
-    } else if (const auto* start = std::get_if<Start>(&message); start != nullptr && phase_ == Phase::waiting) {
+        sayGoodbye(role_ == Role::move ? "the master has said goodbye" : "the watcher has said goodbye");
+    } else if (phase_ == Phase::watching) {
+        refuse({RefusalCode::role, "who watches only listens; that takes the secret of role move"});
+    } else {
+        receiveLinked(std::move(message));
+    }
+}
+
+void MasterLink::receiveLinked(Message&& message) {
+    if (const auto* start = std::get_if<Start>(&message); start != nullptr && phase_ == Phase::waiting) {
         phase_ = Phase::granting;
         epoch_ = start->epoch;
         firstStep_ = start->stepNumber + 1;
         server_.sequencer_->start(session_, *start);
     } else if (auto* state = std::get_if<State>(&message); state != nullptr && phase_ == Phase::granting) {
         server_.sequencer_->state(std::move(state->bytes));
+    } else if (auto* catchUp = std::get_if<CatchUp>(&message); catchUp != nullptr && phase_ == Phase::granting) {
+        server_.sequencer_->catchUp(std::move(*catchUp));
     } else if (const auto* shown = std::get_if<Shown>(&message); shown != nullptr && phase_ == Phase::linked) {
         if (shown->stepNumber + 1 > firstStep_ + steps_) {
-            connection_->close(fmt::format("it claims to show step {}, which was not sent", shown->stepNumber), true);
+            connection_->close(fmt::format("it claims to show step {}, which was not sent", shown->stepNumber),
+                               RefusalCode::garbage);
             return;
         }
         server_.sequencer_->shown(*shown, monotonicNs());
     } else if (const auto* echo = std::get_if<TimingEcho>(&message); echo != nullptr && phase_ == Phase::linked) {
         echoed(*echo);
     } else if (auto* request = std::get_if<EditRequest>(&message); request != nullptr && phase_ == Phase::linked) {
+        connection_->expectLoads(request->edit.kind != sand::Edit::load);  // one at a time: until it is in a step
         server_.sequencer_->edit(std::move(*request));
     } else if (const auto* force = std::get_if<ForceShare>(&message); force != nullptr && phase_ == Phase::linked) {
         if (server_.sources_.shareForce) {
@@ -103,28 +126,69 @@ void MasterLink::receive(Message&& message) {
 }
 
 void MasterLink::greet(const Hello& hello) {
-    if (const auto refusal = refusalFor(server_.identity_, hello.master)) {
+    // A watcher has no sand that could differ.
+    const bool versionAlone = hello.role == Role::watch && hello.master.protocol == kProtocolVersion;
+    if (const auto refusal = versionAlone ? std::nullopt : refusalFor(server_.identity_, hello.master)) {
         refuse(*refusal);
         return;
     }
-    if (server_.current_) {
+    if (const auto refusal = handshake_.refusalFor(hello, connection_->overTls())) {
+        refuse(*refusal);
+        return;
+    }
+    role_ = hello.role;
+    scene_ = hello.master.sceneName;
+    if (const auto challenge = handshake_.challenge(hello, server_.identity_, connection_->binding())) {
+        phase_ = Phase::proving;
+        connection_->send(*challenge);
+    } else {
+        welcome();
+    }
+}
+
+void MasterLink::judge(const Proof& proof) {
+    if (!handshake_.accepts(proof)) {
+        refuse({RefusalCode::secret,
+                fmt::format("the secret of role {} is another here; give both sides the same --secret-file",
+                            nameOf(role_))});
+        return;
+    }
+    welcome();
+}
+
+/// Only now is it told who else is here: before, nobody knows who asks.
+void MasterLink::welcome() {
+    if (role_ == Role::move && server_.current_) {
         refuse({RefusalCode::busy, fmt::format("busy: the master at {} is linked; one wall at a time",
                                                server_.current_->connection_->peer())});
         return;
     }
-    --server_.guests_;
-    phase_ = Phase::waiting;
-    session_ = ++server_.sessions_;
-    server_.current_ = shared_from_this();
-    connection_->send(Welcome{server_.identity_, server_.stepsPerSecond_});
-    log(fmt::format("welcome, scene '{}'", hello.master.sceneName));
+    if (role_ == Role::watch && server_.watchers_.size() >= LinkServer::kMaxWatchers) {
+        refuse({RefusalCode::busy, fmt::format("busy: {} watch already", LinkServer::kMaxWatchers)});
+        return;
+    }
+    server_.guestWent(connection_->address());
+    if (role_ == Role::move) {
+        phase_ = Phase::waiting;
+        session_ = ++server_.sessions_;
+        server_.current_ = shared_from_this();
+        connection_->limit(kMaxMessage);
+    } else {
+        phase_ = Phase::watching;
+        server_.watchers_.insert(shared_from_this());
+        connection_->setRate(kWatcherRate);
+        connection_->setMaxUnsent(kWatcherUnsent);
+    }
+    connection_->send(Welcome{server_.identity_, server_.stepsPerSecond_, role_, handshake_.mac()});
+    log(fmt::format("welcome, scene '{}'{}{}", scene_, server_.security_.proves() ? ", secret proved" : "",
+                    connection_->overTls() ? ", TLS 1.3" : ""));
     tickReport();
 }
 
 void MasterLink::refuse(const Refusal& refusal) {
     connection_->send(refusal);
     const auto kept = connection_;
-    end("refused: " + refusal.text);
+    end("refused: " + refusal.text, refusal.code);
     kept->finish();
 }
 
@@ -139,9 +203,9 @@ void MasterLink::ready() {
     tickTimingTest(server_.tests_.after);
 }
 
-void MasterLink::needState() {
+void MasterLink::needState(const NeedState& need) {
     connection_->expectState(true);
-    connection_->send(NeedState{});
+    connection_->send(need);
 }
 
 void MasterLink::unusable(const std::string& why) { refuse({RefusalCode::state, why}); }
@@ -162,7 +226,17 @@ void MasterLink::step(files::Bytes message) {
         stepBytes_ += message.size();
         lastStepBytes_ = message.size();
     }
+    connection_->expectLoads(true);
+    for (const auto& watcher : std::set(server_.watchers_)) {  // a copy: who does not read leaves
+        watcher->watchStep(message);
+    }
     connection_->sendBytes(std::move(message));
+}
+
+void MasterLink::watchStep(const files::Bytes& message) {
+    if (message.size() <= kMaxMessage) {  // not sand that is loaded: the master alone has asked for so much
+        connection_->sendBytes(files::Bytes(message));
+    }
 }
 
 void MasterLink::tickTimingTest(double pause) {
@@ -215,6 +289,7 @@ Report MasterLink::report() const {
     report.toMaster = told(toMaster_);
     report.stepBytesMean = steps_ == 0 ? 0 : static_cast<double>(stepBytes_) / static_cast<double>(steps_);
     report.steps = steps_;
+    report.refused = server_.refused();
     return report;
 }
 
@@ -232,17 +307,25 @@ void MasterLink::sayGoodbye(const std::string& reason) {
     kept->finish();
 }
 
-void MasterLink::end(const std::string& why) {
+void MasterLink::end(const std::string& why, Connection::Fault fault) {
     if (phase_ == Phase::over) {
         return;
     }
     const auto kept = shared_from_this();
-    log(why);
-    server_.guests_ -= phase_ == Phase::greeting ? 1 : 0;
+    const bool guest = phase_ <= Phase::proving;
+    if (fault) {
+        server_.refused(*fault, connection_->address(), fmt::format("{}: {}", guest ? "a guest" : role_ == Role::move ? "the master" : "a watcher", why));
+    } else if (!guest) {
+        log(why);
+    }
+    if (guest) {
+        server_.guestWent(connection_->address());
+    }
     phase_ = Phase::over;
     reportTimer_.cancel();
     testTimer_.cancel();
     watchTimer_.cancel();
+    server_.watchers_.erase(kept);
     if (server_.current_.get() == this) {
         server_.current_ = nullptr;
         server_.sequencer_->release();

@@ -15,7 +15,7 @@ public:
     void start();
 
     void ready();
-    void needState();
+    void needState(const NeedState& need);
     void unusable(const std::string& why);
     void step(files::Bytes message);
     /// Sends the last report and a goodbye, then closes.
@@ -25,14 +25,18 @@ public:
     [[nodiscard]] std::weak_ptr<Connection> connection() const { return connection_; }
 
 private:
-    enum class Phase { greeting, waiting, granting, linked, over };
+    enum class Phase { greeting, proving, waiting, granting, linked, watching, over };
 
     void receive(Message&& message);
+    void receiveLinked(Message&& message);
     void greet(const Hello& hello);
+    void judge(const Proof& proof);
+    void welcome();
+    void watchStep(const files::Bytes& message);
     void echoed(const TimingEcho& echo);
     void refuse(const Refusal& refusal);
     void outOfTurn();
-    void end(const std::string& why);
+    void end(const std::string& why, Connection::Fault fault = std::nullopt);
     void sendTicks(bool all);
     void tickReport();
     void tickTimingTest(double pause /* [s] */ = 0);
@@ -43,6 +47,9 @@ private:
     LinkServer& server_;
     std::shared_ptr<Connection> connection_;
     boost::asio::steady_timer reportTimer_, testTimer_, watchTimer_;
+    ServerHandshake handshake_;
+    Role role_ = Role::move;
+    std::string scene_;
     Phase phase_ = Phase::greeting;
     std::uint32_t session_ = 0;
     std::uint32_t epoch_ = 0;

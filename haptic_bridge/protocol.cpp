@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 #include <utility>
@@ -11,6 +12,7 @@ namespace haptic_bridge {
 namespace {
 
 constexpr std::size_t kLengthBytes = sizeof(std::uint32_t);
+constexpr std::size_t kMaxKept = 1024 * 1024;  // [byte], of a buffer that holds nothing
 
 template <class Kind>
 constexpr std::uint8_t typeOf() {
@@ -63,10 +65,43 @@ Identity getIdentity(files::ByteReader& reader) {
     return identity;
 }
 
-void put(const Hello& hello, files::ByteWriter& writer) { putIdentity(hello.master, writer); }
+constexpr std::uint8_t kProves = 1, kOverTls = 2;  // flags of a Hello
+
+Role getRole(files::ByteReader& reader) {
+    const auto role = reader.get<std::uint8_t>();
+    if (role != static_cast<std::uint8_t>(Role::move) && role != static_cast<std::uint8_t>(Role::watch)) {
+        throw files::FormatError("role " + std::to_string(role));
+    }
+    return static_cast<Role>(role);
+}
+void get(std::array<std::uint8_t, 32>& bytes, files::ByteReader& reader) {
+    const auto read = reader.getBytes(bytes.size());
+    std::copy(read.begin(), read.end(), bytes.begin());
+}
+
+void put(const Hello& hello, files::ByteWriter& writer) {
+    putIdentity(hello.master, writer);
+    writer.put(static_cast<std::uint8_t>(hello.role));
+    writer.put(static_cast<std::uint8_t>((hello.proves ? kProves : 0) | (hello.tls ? kOverTls : 0)));
+    writer.putBytes(hello.nonce);
+}
+void put(const Challenge& challenge, files::ByteWriter& writer) {
+    putIdentity(challenge.server, writer);
+    writer.putBytes(challenge.nonce);
+}
+void put(const Proof& proof, files::ByteWriter& writer) { writer.putBytes(proof.mac); }
+void put(const CatchUp& catchUp, files::ByteWriter& writer) {
+    writer.put(static_cast<std::uint8_t>(catchUp.last));
+    writer.put(static_cast<std::uint16_t>(catchUp.steps.size()));
+    for (const sand::Step& step : catchUp.steps) {
+        sand::encode(step, writer);
+    }
+}
 void put(const Welcome& welcome, files::ByteWriter& writer) {
     putIdentity(welcome.server, writer);
     writer.put(welcome.stepsPerSecond);
+    writer.put(static_cast<std::uint8_t>(welcome.role));
+    writer.putBytes(welcome.mac);
 }
 void put(const Refusal& refusal, files::ByteWriter& writer) {
     writer.put(static_cast<std::uint8_t>(refusal.code));
@@ -78,7 +113,10 @@ void put(const Start& start, files::ByteWriter& writer) {
     writer.put(start.stateHash);
 }
 void put(const Ready&, files::ByteWriter&) {}
-void put(const NeedState&, files::ByteWriter&) {}
+void put(const NeedState& need, files::ByteWriter& writer) {
+    writer.put(need.stepNumber);
+    writer.put(need.stateHash);
+}
 void put(const State& state, files::ByteWriter& writer) { writer.putBytes(state.bytes); }
 void put(const StepMessage& message, files::ByteWriter& writer) {
     writer.put(message.serverTimeNs);
@@ -118,6 +156,9 @@ void eachNumber(AnyReport& report, const Visit& visit) {
     for (auto& number : report.guards) {
         visit(number);
     }
+    for (auto& number : report.refused) {
+        visit(number);
+    }
 }
 void put(const Report& report, files::ByteWriter& writer) {
     eachNumber(report, [&writer](auto number) { writer.put(number); });
@@ -133,6 +174,7 @@ void put(const PositionGreeting& greeting, files::ByteWriter& writer) {
     writer.put(kMagic);
     writer.put(greeting.protocol);
     writer.putText(std::string_view(greeting.name).substr(0, kMaxSceneName));
+    writer.putBytes(greeting.mac);
 }
 void put(const Position& position, files::ByteWriter& writer) {
     writer.put(position.timeNs);
@@ -142,17 +184,48 @@ void put(const Position& position, files::ByteWriter& writer) {
     writer.put(static_cast<std::uint8_t>(position.engaged));
 }
 
-void get(Hello& hello, files::ByteReader& reader) { hello.master = getIdentity(reader); }
+void get(Hello& hello, files::ByteReader& reader) {
+    hello.master = getIdentity(reader);
+    if (hello.master.protocol == kProtocolVersion) {
+        hello.role = getRole(reader);
+        const auto flags = reader.get<std::uint8_t>();
+        if ((flags & ~(kProves | kOverTls)) != 0) {
+            throw files::FormatError("a greeting with flags " + std::to_string(flags));
+        }
+        hello.proves = (flags & kProves) != 0;
+        hello.tls = (flags & kOverTls) != 0;
+        get(hello.nonce, reader);
+    }
+}
+void get(Challenge& challenge, files::ByteReader& reader) {
+    challenge.server = getIdentity(reader);
+    if (challenge.server.protocol == kProtocolVersion) {
+        get(challenge.nonce, reader);
+    }
+}
+void get(Proof& proof, files::ByteReader& reader) { get(proof.mac, reader); }
+void get(CatchUp& catchUp, files::ByteReader& reader) {
+    const auto last = reader.get<std::uint8_t>();
+    if (last > 1) {
+        throw files::FormatError("a catch-up that is neither the last nor another");
+    }
+    catchUp.last = last == 1;
+    for (auto count = reader.get<std::uint16_t>(); count > 0; --count) {
+        catchUp.steps.push_back(sand::decodeStep(reader));
+    }
+}
 void get(Welcome& welcome, files::ByteReader& reader) {
     welcome.server = getIdentity(reader);
     if (welcome.server.protocol == kProtocolVersion) {
         welcome.stepsPerSecond = reader.get<std::uint32_t>();
+        welcome.role = getRole(reader);
+        get(welcome.mac, reader);
     }
 }
 void get(Refusal& refusal, files::ByteReader& reader) {
     const auto code = reader.get<std::uint8_t>();
     if (code < static_cast<std::uint8_t>(RefusalCode::garbage) ||
-        code > static_cast<std::uint8_t>(RefusalCode::state)) {
+        code > static_cast<std::uint8_t>(RefusalCode::limit)) {
         throw files::FormatError("a refusal with code " + std::to_string(code));
     }
     refusal.code = static_cast<RefusalCode>(code);
@@ -164,7 +237,10 @@ void get(Start& start, files::ByteReader& reader) {
     start.stateHash = reader.get<std::uint64_t>();
 }
 void get(Ready&, files::ByteReader&) {}
-void get(NeedState&, files::ByteReader&) {}
+void get(NeedState& need, files::ByteReader& reader) {
+    need.stepNumber = reader.get<std::uint64_t>();
+    need.stateHash = reader.get<std::uint64_t>();
+}
 void get(State& state, files::ByteReader& reader) {
     const auto bytes = reader.getBytes(reader.rest().size());
     state.bytes.assign(bytes.begin(), bytes.end());
@@ -235,6 +311,7 @@ void get(PositionGreeting& greeting, files::ByteReader& reader) {
     if (greeting.name.size() > kMaxSceneName) {
         throw files::FormatError("a device name of " + std::to_string(greeting.name.size()) + " bytes");
     }
+    get(greeting.mac, reader);
 }
 /// Numbers that are none pass: a device that sends them is told of, and not cut off.
 void get(Position& position, files::ByteReader& reader) {
@@ -259,6 +336,8 @@ Message decodeType(std::uint8_t type, files::ByteReader& reader) {
 }
 
 }  // namespace
+
+std::string_view nameOf(Role role) { return role == Role::move ? "move" : "watch"; }
 
 files::Bytes encode(const Message& message) {
     files::ByteWriter payload;
@@ -319,6 +398,9 @@ void MessageReader::feed(std::span<const std::uint8_t> bytes) {
     if (begin_ > 0) {
         buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(begin_));
         begin_ = 0;
+        if (buffer_.empty() && buffer_.capacity() > kMaxKept) {
+            buffer_ = files::Bytes();  // what a State needed once is not held for ever
+        }
     }
     const std::size_t end = buffer_.size();
     buffer_.resize(end + bytes.size());
@@ -331,9 +413,9 @@ std::optional<Message> MessageReader::next() {
         return std::nullopt;
     }
     const auto length = files::ByteReader(stream).get<std::uint32_t>();
-    const bool longMessage = length > kMaxMessage;
+    const bool longMessage = length > most_;
     if (length == 0 || length > kMaxState || (longMessage && !stateExpected_ && !loadsExpected_)) {
-        throw files::FormatError(fmt::format("a message of {} bytes, {} is the most", length, kMaxMessage));
+        throw files::FormatError(fmt::format("a message of {} bytes, {} is the most", length, most_));
     }
     if (longMessage && stream.size() > kLengthBytes && !mayBeLong(stream[kLengthBytes])) {
         throw files::FormatError(fmt::format("a message of {} bytes that holds no sand", length));

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "files/byte_stream.hpp"
 #include "haptic_bridge/guards/guard.hpp"
@@ -19,9 +20,10 @@
 namespace haptic_bridge {
 
 inline constexpr std::uint32_t kMagic = 0x42485753;  // "SWHB" as it stands on the wire
-inline constexpr std::uint32_t kProtocolVersion = 5;
+inline constexpr std::uint32_t kProtocolVersion = 6;
 inline constexpr std::uint16_t kDefaultPort = 7750;
 inline constexpr std::size_t kMaxMessage = 64 * 1024;  // [byte], type and payload
+inline constexpr std::size_t kMaxGreeting = 1024;      // [byte], of a message before the other side is known
 // [byte], of a State, and of an EditRequest or Step with sand that is loaded; and only when one is expected. A field of
 // 8192 cells a side compresses to about 150 MiB.
 inline constexpr std::size_t kMaxState = 256 * 1024 * 1024;
@@ -37,11 +39,26 @@ struct Identity {
     friend bool operator==(const Identity&, const Identity&) = default;
 };
 
-enum class RefusalCode : std::uint8_t { garbage = 1, protocol, algorithm, scene, busy, state };
+enum class RefusalCode : std::uint8_t { garbage = 1, protocol, algorithm, scene, busy, state, secret, role, tls, limit };
+inline constexpr std::array<std::string_view, 10> kRefusalNames{"garbage", "protocol", "algorithm", "scene", "busy",
+                                                                "state",   "secret",   "role",      "tls",   "limit"};
+/// How often each kind was refused, as kRefusalNames.
+using RefusalCounts = std::array<std::uint64_t, kRefusalNames.size()>;
+
+/// What somebody who connects may do; each has a secret of its own.
+enum class Role : std::uint8_t { move = 1, watch };  // move the probe and number steps, or be told of them
+[[nodiscard]] std::string_view nameOf(Role role);
+
+using Nonce = std::array<std::uint8_t, 32>;    // fresh random bytes for one connection
+using MacBytes = std::array<std::uint8_t, 32>;  // HMAC-SHA-256
 
 // Master to server.
 struct Hello {
     Identity master;
+    Role role = Role::move;
+    bool proves = false;  // it has a secret of that role, and wants proof of the server's
+    bool tls = false;     // it speaks TLS, as it believes
+    Nonce nonce{};
     friend bool operator==(const Hello&, const Hello&) = default;
 };
 /// The master hands over the numbering: the server's first step is stepNumber + 1 of `epoch`.
@@ -86,10 +103,30 @@ struct ForceShare {
     friend bool operator==(const ForceShare&, const ForceShare&) = default;
 };
 
+/// Answers a Challenge.
+struct Proof {
+    MacBytes mac{};
+    friend bool operator==(const Proof&, const Proof&) = default;
+};
+/// Steps that a server's replica lacks, after a NeedState that names one the master knows.
+struct CatchUp {
+    bool last = false;  // no more follow
+    std::vector<sand::Step> steps;
+    friend bool operator==(const CatchUp&, const CatchUp&) = default;
+};
+
 // Server to master.
+/// Answers a Hello that proves a secret.
+struct Challenge {
+    Identity server;  // of a server without sand its device's name alone
+    Nonce nonce{};
+    friend bool operator==(const Challenge&, const Challenge&) = default;
+};
 struct Welcome {
     Identity server;
     std::uint32_t stepsPerSecond = 0;
+    Role role = Role::move;  // that is granted
+    MacBytes mac{};          // the server's proof; zeros without a secret
     friend bool operator==(const Welcome&, const Welcome&) = default;
 };
 struct Refusal {
@@ -101,6 +138,7 @@ struct Ready {
     friend bool operator==(const Ready&, const Ready&) = default;
 };
 struct NeedState {
+    std::uint64_t stepNumber = 0, stateHash = 0;  // where the server's replica is; a hash of 0: nowhere that helps
     friend bool operator==(const NeedState&, const NeedState&) = default;
 };
 struct StepMessage {
@@ -138,6 +176,7 @@ struct Report {
     std::uint64_t ticks = 0;                      // of the force loop; 0 under --pace fast
     std::uint64_t ticksMissed = 0;                // deadlines, each a tick
     std::array<std::uint64_t, kGuards> guards{};  // ticks in which each guard acted, as kGuardNames
+    RefusalCounts refused{};                      // by the server since it started
     friend bool operator==(const Report&, const Report&) = default;
 };
 /// A piece of the tick track, for the master's journal (tick_track.hpp).
@@ -151,6 +190,7 @@ struct TickPiece {
 struct PositionGreeting {
     std::uint32_t protocol = kProtocolVersion;
     std::string name;  // of the device, for a person
+    MacBytes mac{};    // the server's proof; zeros without a secret
     friend bool operator==(const PositionGreeting&, const PositionGreeting&) = default;
 };
 /// In hand space (docs/devices.md).
@@ -170,7 +210,7 @@ struct Bye {
 /// In the order of their type bytes, which count from 1.
 using Message =
     std::variant<Hello, Welcome, Refusal, Start, Ready, NeedState, State, StepMessage, TimingTest, Shown, TimingEcho,
-                 Ping, Pong, Report, Bye, EditRequest, ForceShare, TickPiece, PositionGreeting, Position>;
+                 Ping, Pong, Report, Bye, EditRequest, ForceShare, TickPiece, PositionGreeting, Position, Challenge, Proof, CatchUp>;
 
 /// The message as it goes over the wire: length, type, payload.
 [[nodiscard]] files::Bytes encode(const Message& message);
@@ -193,6 +233,8 @@ public:
     void expectState(bool expected) { stateExpected_ = expected; }
     /// Sand to be loaded may come, in messages up to kMaxState long.
     void expectLoads(bool expected) { loadsExpected_ = expected; }
+    /// Ordinary messages may be this long from now on [byte]; at first kMaxMessage.
+    void limit(std::size_t most) { most_ = most; }
     /// Whether the stream stands in the middle of a message.
     [[nodiscard]] bool midMessage() const { return begin_ < buffer_.size(); }
 
@@ -200,7 +242,7 @@ private:
     [[nodiscard]] bool mayBeLong(std::uint8_t type) const;
 
     files::Bytes buffer_;
-    std::size_t begin_ = 0;
+    std::size_t begin_ = 0, most_ = kMaxMessage;
     bool stateExpected_ = false, loadsExpected_ = false;
 };
 

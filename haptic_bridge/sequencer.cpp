@@ -86,7 +86,7 @@ void Sequencer::obey(Granted& command) {
         begin();
     } else {
         phase_ = Phase::awaitingState;
-        output_.needState(session_);
+        output_.needState(session_, {terrain_.stepNumber(), terrain_.stateHash()});
     }
 }
 
@@ -106,6 +106,27 @@ void Sequencer::obey(State& command) {
         return;
     }
     begin();
+}
+
+void Sequencer::obey(CatchUp& command) {
+    if (phase_ != Phase::awaitingState) {
+        return;
+    }
+    bool fits = true;
+    for (const sand::Step& step : command.steps) {
+        fits = fits && step.number == terrain_.stepNumber() + 1 && step.number <= start_.stepNumber;
+        if (fits) {
+            terrain_.apply(step);
+        }
+    }
+    if (fits && !command.last) {
+        return;
+    }
+    if (fits && terrain_.stepNumber() == start_.stepNumber && terrain_.stateHash() == start_.stateHash) {
+        begin();
+    } else {
+        output_.needState(session_, {});  // the whole sand, whatever is here
+    }
 }
 
 void Sequencer::obey(Frame& command) {
@@ -166,6 +187,7 @@ void Sequencer::gatherVirtual() {
 void Sequencer::makeStep() {
     if (blocked()) {  // in real time only: the fast pace waits instead
         ++withheld_;
+        publishSurface();  // the same sand, but not a stale one: a hand goes on to feel a wall that waits
         clock_.advance(monotonicNs());
         return;
     }

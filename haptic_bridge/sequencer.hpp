@@ -56,7 +56,7 @@ public:
     /// Called on the sand thread; `session` is the one given to start().
     struct Output {
         std::function<void(std::uint32_t session)> ready;
-        std::function<void(std::uint32_t session)> needState;
+        std::function<void(std::uint32_t session, NeedState need)> needState;
         std::function<void(std::uint32_t session, std::string why)> unusable;  // the state sent does not fit
         std::function<void(std::uint32_t session, files::Bytes stepMessage)> step;
     };
@@ -72,6 +72,7 @@ public:
     // From any thread; the answer comes through Output.
     void start(std::uint32_t session, const Start& start) { post(Granted{session, start}); }
     void state(files::Bytes bytes) { post(State{std::move(bytes)}); }
+    void catchUp(CatchUp steps) { post(std::move(steps)); }
     void shown(const Shown& frame, std::int64_t nowNs) { post(Frame{frame, nowNs}); }
     void edit(EditRequest request) { post(std::move(request)); }
     void release() { post(Released{}); }
@@ -90,13 +91,14 @@ private:
     };
     struct Released {};
     struct Stop {};
-    using Command = std::variant<Granted, State, Frame, EditRequest, Released, Stop>;
+    using Command = std::variant<Granted, State, CatchUp, Frame, EditRequest, Released, Stop>;
 
     void post(Command command);
     void run();
     bool waitForWork();
     void obey(Granted& command);
     void obey(State& command);
+    void obey(CatchUp& command);
     void obey(Frame& command);
     void obey(EditRequest& request) { edit_ = std::move(request.edit); }
     void obey(Released&);

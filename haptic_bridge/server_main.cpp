@@ -16,6 +16,7 @@
 #include "haptic_bridge/devices/device_troubles.hpp"
 #include "haptic_bridge/devices/open_device.hpp"
 #include "haptic_bridge/force_loop.hpp"
+#include "haptic_bridge/link_options.hpp"
 #include "haptic_bridge/link_server.hpp"
 #include "haptic_bridge/monotonic.hpp"
 #include "haptic_bridge/tick_recorder.hpp"
@@ -39,6 +40,7 @@ struct Options {
     std::string record;
     bool force = true;
     double forceScale = 1;
+    LinkOptions link;
 };
 
 void print(const std::string& line) {
@@ -46,7 +48,7 @@ void print(const std::string& line) {
     std::fflush(stderr);
 }
 
-asio::ip::tcp::acceptor listenAt(asio::io_context& io, const std::string& text) {
+asio::ip::tcp::acceptor listenAt(asio::io_context& io, const std::string& text, bool secret) {
     const Address address = Address::parse(text, "--listen");
     error_code error;
     const auto host = asio::ip::make_address(address.host == "localhost" ? "127.0.0.1" : address.host, error);
@@ -54,6 +56,11 @@ asio::ip::tcp::acceptor listenAt(asio::io_context& io, const std::string& text) 
         throw files::InputError("--listen: '" + address.host +
                                 "' is no IP address; write one such as 127.0.0.1, or "
                                 "0.0.0.0 for every network");
+    }
+    if (!secret && !isLoopback(host)) {
+        throw files::InputError("--listen " + text +
+                                ": others can reach that address, so a --secret-file is needed (docs/security.md); "
+                                "127.0.0.1 needs none");
     }
     const asio::ip::tcp::endpoint endpoint(host, address.port);
     asio::ip::tcp::acceptor acceptor(io);
@@ -151,6 +158,7 @@ std::function<std::vector<files::Bytes>(bool)> ticksOf(TickRecorder* recorder) {
 }
 
 void serve(const Options& options) {
+    const LinkSecurity security = options.link.forServer();
     const sand::Scene scene = sand::loadScene(options.scene);
     for (const std::string& warning : scene.warnings) {
         print("warning: " + warning);
@@ -171,14 +179,14 @@ void serve(const Options& options) {
     }
 
     asio::io_context io;
-    asio::ip::tcp::acceptor acceptor = listenAt(io, options.listen);
+    asio::ip::tcp::acceptor acceptor = listenAt(io, options.listen, security.proves());
     const auto endpoint = acceptor.local_endpoint();
     const Identity identity{kProtocolVersion, sand::kAlgorithmVersion, scene.rules.digest(), scene.name};
     std::function<Report()> measure;
     LinkServer server(io, std::move(acceptor), identity, static_cast<std::uint32_t>(scene.rules.stepsPerSecond),
                       {[&measure] { return measure(); }, print, ticksOf(recorder.get()),
                        [&noted](double share) { noted.shareForce(share); }},
-                      options.tests);
+                      options.tests, security);
     // The sand and force threads end before the link they report to.
     const workers::WorkerPool pool(options.sandThreads);
     Sequencer sequencer(scene, options.pace, hand, channel, server.output(), {.executor = pool.lend()},
@@ -249,6 +257,7 @@ Options parse(int count, char** words) {
     app.add_option("--timing-after", options.tests.after, "[s] of a link before the first (default: 0)")
         ->check(CLI::Range(0.0, 3600.0));
     app.add_option("--timing-seed", options.tests.seed, "of those times (default: 7)");
+    options.link.addTo(app, true);
     workers::addSandThreads(app, options.sandThreads);
     app.add_flag("--die-with-parent", options.dieWithParent, "end when the program that started this one ends");
     try {

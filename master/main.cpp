@@ -9,6 +9,7 @@
 
 #include "files/command_line.hpp"
 #include "files/input_error.hpp"
+#include "haptic_bridge/link_options.hpp"
 #include "lockstep/build_id.hpp"
 #include "lockstep/clock_sync.hpp"
 #include "lockstep/session_message.hpp"
@@ -36,6 +37,7 @@ struct Options {
     bool resume = false;
     std::string journal = "required";
     std::int64_t partMegabytes = master::kPartBytes >> 20;
+    haptic_bridge::LinkOptions link;
     int sandThreads = 1;
 };
 
@@ -151,6 +153,8 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
     }
     if (options.haptic != "none") {
         options.session.server = haptic_bridge::Address::parse(options.haptic, "--haptic");
+        options.session.security = options.link.forClient(haptic_bridge::Role::move);
+        haptic_bridge::requireSecret(*options.session.server, options.session.security, "--haptic");
     }
     options.session.pace = options.pace == "fast" || options.session.film ? master::Pace::fast : master::Pace::realtime;
     options.session.pictures = !options.noPictures;
@@ -233,6 +237,7 @@ void describeOptions(CLI::App& app, Options& options) {
     app.add_option("--wall", options.wall, "wall file")->required();
     app.add_option("--out", options.out, "folder for journal, pictures and summary")->required();
     app.add_option("--haptic", options.haptic, "HOST:PORT of the haptic server, or none")->default_val("none");
+    options.link.addTo(app, false);
     app.add_option("--pace", options.pace, "realtime: at the wall's refresh rate; fast: as fast as it goes")
         ->check(CLI::IsMember({"realtime", "fast"}));
     app.add_option("--refresh", session.refreshHz, "frames per second, instead of the wall file's")

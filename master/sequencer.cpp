@@ -23,9 +23,10 @@ double secondsSince(std::int64_t then) { return static_cast<double>(nowNs() - th
 }  // namespace
 
 Sequencer::Sequencer(std::optional<haptic_bridge::Address> server, const sand::Scene& scene, Pace pace,
-                     std::uint32_t epoch)
+                     std::uint32_t epoch, haptic_bridge::LinkSecurity security)
     : server_(std::move(server)),
       offer_{scene.rules.digest(), scene.name},
+      security_(std::move(security)),
       stepsPerSecond_(scene.rules.stepsPerSecond),
       pace_(pace),
       source_(server_ ? Source::starting : Source::own),
@@ -33,7 +34,7 @@ Sequencer::Sequencer(std::optional<haptic_bridge::Address> server, const sand::S
       waitingSinceNs_(nowNs()),
       positions_(scene) {
     if (server_) {
-        client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_);
+        client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_, security_);
     } else {
         takeOver("");
     }
@@ -51,7 +52,7 @@ void Sequencer::takeOver(const std::string& why) {
 
 void Sequencer::grant(const sand::Terrain& terrain, std::uint64_t stateHash) {
     ++epoch_;
-    client_->grant(epoch_, terrain.stepNumber(), stateHash, terrain.encodeState());
+    client_->grant(epoch_, terrain.stepNumber(), stateHash, terrain.encodeState(), recent_);
     source_ = Source::granting;
     waitingSinceNs_ = nowNs();
 }
@@ -67,7 +68,7 @@ void Sequencer::sayLink(const haptic_bridge::LinkStatus& status) {
 
 void Sequencer::followLink(const sand::Terrain& terrain, std::uint64_t stateHash) {
     if (!client_ && server_ && secondsSince(waitingSinceNs_) > kRetryWait) {
-        client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_);
+        client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_, security_);
     }
     if (!client_) {
         return;
@@ -147,8 +148,19 @@ void Sequencer::passEdits(const std::vector<TimedStep>& steps) {
 }
 
 std::vector<TimedStep> Sequencer::next(const sand::Terrain& terrain, std::uint64_t stateHash, std::size_t most) {
+    if (server_) {
+        recent_.reached(terrain.stepNumber(), stateHash);
+    }
     std::vector<TimedStep> steps = stepsDue(terrain, stateHash, most);
     passEdits(steps);
+    for (const TimedStep& timed : steps) {
+        if (server_) {
+            recent_.add(timed.step);
+            if (source_ == Source::server) {
+                recent_.reached(timed.step.number, timed.serverHash);  // proved by the wall, or the server is let go
+            }
+        }
+    }
     return steps;
 }
 
@@ -215,7 +227,8 @@ void Sequencer::leaveServer() {
 
 void Sequencer::distrustServer() {
     leaveServer();
-    client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_);
+    recent_ = {};  // it holds what that server has said of the sand
+    client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_, security_);
     takeOver("the server's sand differs from the wall's, it must start again from the wall's");
 }
 
@@ -227,13 +240,7 @@ std::optional<haptic_bridge::Report> Sequencer::report() const {
 haptic_bridge::LinkCounters Sequencer::counters() const {
     haptic_bridge::LinkCounters sum = earlierLinks_;
     if (client_) {
-        const haptic_bridge::LinkCounters now = client_->counters();
-        sum.reconnects += now.reconnects;
-        sum.bytesIn += now.bytesIn;
-        sum.bytesOut += now.bytesOut;
-        sum.stepsIn += now.stepsIn;
-        sum.stepsStale += now.stepsStale;
-        sum.stepsForeign += now.stepsForeign;
+        sum.add(client_->counters());
     }
     return sum;
 }

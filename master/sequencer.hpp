@@ -30,7 +30,7 @@ public:
 
     /// Epochs begin above `epoch`, the last of a session that goes on.
     Sequencer(std::optional<haptic_bridge::Address> server, const sand::Scene& scene, Pace pace,
-              std::uint32_t epoch = 0);
+              std::uint32_t epoch = 0, haptic_bridge::LinkSecurity security = {});
 
     /// At most `most` steps for the next frame, numbered on from the terrain's; none when nothing is due.
     [[nodiscard]] std::vector<haptic_bridge::TimedStep> next(const sand::Terrain& terrain, std::uint64_t stateHash,
@@ -79,6 +79,8 @@ private:
 
     std::optional<haptic_bridge::Address> server_;
     haptic_bridge::Offer offer_;
+    haptic_bridge::LinkSecurity security_;
+    haptic_bridge::StepRing recent_;
     int stepsPerSecond_;
     Pace pace_;
     std::unique_ptr<haptic_bridge::Client> client_;

@@ -68,7 +68,8 @@ Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, con
       barrier_(cluster, names_, options_.frameTimeout),
       views_(wall, scene, options_.tracker),
       viewProof_(wall.encode()),
-      sequencer_(options_.server, scene, options_.pace, options_.resumed ? options_.resumed->epoch : 0),
+      sequencer_(options_.server, scene, options_.pace, options_.resumed ? options_.resumed->epoch : 0,
+                 options_.security),
       operator_(options_.readInput),
       rankStatistics_(names_.size()) {
     if (options_.recording) {

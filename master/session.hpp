@@ -38,6 +38,7 @@ inline constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::ma
 /// How a session runs.
 struct SessionOptions {
     std::optional<haptic_bridge::Address> server;
+    haptic_bridge::LinkSecurity security;  // of the link with it
     Pace pace = Pace::realtime;
     std::optional<double> refreshHz;   // frames per second; none: the wall file's
     std::uint64_t steps = kNoLimit;    // ends when exactly this many have been shown

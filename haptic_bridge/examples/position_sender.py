@@ -2,22 +2,28 @@
 # SPDX-License-Identifier: Apache-2.0
 """Streams where a hand is to the master of a wall, from a server that has no sand: put your device into hand().
 
-    python3 position_sender.py --listen 0.0.0.0:7750        on the machine with the device, of whatever system
-    scripts/sandwall run ... --haptic MACHINE:7750          on the wall's
+    python3 position_sender.py --listen 0.0.0.0:7750 --secret-file FILE     on the machine with the device
+    scripts/sandwall run ... --haptic MACHINE:7750 --secret-file FILE       on the wall's
 
-The master connects, this server greets and sends positions; whatever the master says need not be read. It numbers the
-steps, moves the sand, and lifts the tool when positions stay away. docs/protocol.md has every byte. Standard library.
+The master connects, this server greets and sends positions; whatever the master says then need not be read. It numbers
+the steps, moves the sand, and lifts the tool when positions stay away. On 127.0.0.1 no secret is needed. docs/protocol.md
+has every byte, docs/security.md the file. Standard library, whatever the system.
 """
 
 import argparse
+import hmac
+import ipaddress
 import math
+import secrets
 import socket
 import struct
 import sys
 import time
 
-MAGIC, PROTOCOL = b"SWHB", 5
-POSITION_GREETING, POSITION = 19, 20
+MAGIC, PROTOCOL = b"SWHB", 6
+HELLO, REFUSAL, POSITION_GREETING, POSITION, CHALLENGE, PROOF = 1, 3, 19, 20, 21, 22
+MOVE, PROVES, REFUSED_SECRET = 1, 1, 7
+LONGEST_GREETING, PATIENCE = 1024, 3  # bytes, seconds
 
 
 def message(kind, payload):
@@ -25,9 +31,53 @@ def message(kind, payload):
     return struct.pack("<IB", 1 + len(payload), kind) + payload
 
 
-def greeting(device):
+def greeting(device, proof=bytes(32)):
     name = device.encode()
-    return message(POSITION_GREETING, MAGIC + struct.pack("<II", PROTOCOL, len(name)) + name)
+    return message(POSITION_GREETING, MAGIC + struct.pack("<II", PROTOCOL, len(name)) + name + proof)
+
+
+def receive(master):
+    """A whole message as it came, of one who is not known yet."""
+    def read(count):
+        data = b""
+        while len(data) < count:
+            piece = master.recv(count - len(data))
+            if not piece:
+                raise OSError("it has gone")
+            data += piece
+        return data
+    length = read(4)
+    count = struct.unpack("<I", length)[0]
+    if not 1 <= count <= LONGEST_GREETING:
+        raise OSError(f"a greeting of {count} bytes")
+    return length + read(count)
+
+
+def refuse(master, text):
+    master.sendall(message(REFUSAL, struct.pack("<BI", REFUSED_SECRET, len(text)) + text.encode()))
+    raise OSError(text)
+
+
+def prove(master, device, secret):
+    """Sees that the master knows the secret; returns the proof that this server knows it, too."""
+    hello = receive(master)
+    if hello[4] != HELLO or len(hello) < 63 or hello[5:9] != MAGIC or hello[9:13] != struct.pack("<I", PROTOCOL):
+        raise OSError("no greeting of this protocol")
+    role, flags = hello[-34], hello[-33]
+    if role != MOVE or flags != PROVES:
+        refuse(master, "this server asks for a secret of role move, without TLS; give your side --secret-file, too")
+    name = device.encode()
+    challenge = message(CHALLENGE, MAGIC + struct.pack("<IIQI", PROTOCOL, 0, 0, len(name)) + name + secrets.token_bytes(32))
+    master.sendall(challenge)
+
+    def proof_of(side):
+        label = b"sandwall 6 " + side
+        said = struct.pack("<I", len(label)) + label + hello + challenge + struct.pack("<I", 0)
+        return hmac.digest(secret, said, "sha256")
+    answer = receive(master)
+    if answer[4] != PROOF or not hmac.compare_digest(answer[5:], proof_of(b"master")):
+        refuse(master, "the secret of role move is another here; give both sides the same --secret-file")
+    return proof_of(b"server")
 
 
 def position(seconds, x, y, z, touches):
@@ -47,10 +97,12 @@ def hand(seconds):
     return x, y, 0.0 if touches else 3.0, touches
 
 
-def stream(master, rate):
+def stream(master, rate, secret):
     """Sends positions until the master has gone; the times are this machine's, and never run backwards."""
     master.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-    master.sendall(greeting("circles"))
+    master.settimeout(PATIENCE)
+    master.sendall(greeting("circles", prove(master, "circles", secret)) if secret else greeting("circles"))
+    master.settimeout(None)
     begin = due = time.monotonic()
     while True:
         now = time.monotonic()
@@ -59,12 +111,25 @@ def stream(master, rate):
         time.sleep(max(0.0, due - time.monotonic()))
 
 
+def secret_of(file):
+    """Of role move, as it stands in the file."""
+    with open(file, encoding="ascii") as lines:
+        for words in map(str.split, lines):
+            if len(words) == 2 and words[0] == "move" and len(words[1]) >= 16:
+                return words[1].encode()
+    sys.exit(f"{file}: holds no line: move SECRET, of at least 16 characters")
+
+
 def main():
     parser = argparse.ArgumentParser(description="Streams a hand's positions to the master of a wall.")
     parser.add_argument("--listen", default="127.0.0.1:7750", metavar="ADDRESS:PORT", help="port 0 takes any free one")
     parser.add_argument("--rate", type=float, default=500, help="positions a second")
+    parser.add_argument("--secret-file", metavar="FILE", help="line: move SECRET, the same as the wall's")
     args = parser.parse_args()
     address, _, port = args.listen.rpartition(":")
+    secret = secret_of(args.secret_file) if args.secret_file else None
+    if not secret and not ipaddress.ip_address(address).is_loopback:
+        sys.exit(f"--listen {args.listen}: others can reach that address, so a --secret-file is needed")
     with socket.create_server((address, int(port))) as listener:
         print("listening on %s:%d" % listener.getsockname()[:2], flush=True)
         while True:  # the next master may come when one has gone
@@ -72,7 +137,7 @@ def main():
             print("master", where[0], "linked", file=sys.stderr)
             try:
                 with master:
-                    stream(master, args.rate)
+                    stream(master, args.rate, secret)
             except OSError as error:
                 print("master", where[0], "gone:", error, file=sys.stderr)
 

@@ -54,8 +54,13 @@ void writeWire(Folder folder) {
     sand::Step loaded = step(3);
     loaded.edit = sand::Edit::loaded({1, 2, 3});
     const Identity identity{kProtocolVersion, sand::kAlgorithmVersion, 5, "scene"};
-    const std::vector<Message> all{Hello{identity},
-                                   Welcome{identity, 60},
+    const std::vector<Message> all{Hello{identity, Role::watch, true, true, {1}},
+                                   Challenge{identity, {2}},
+                                   Proof{{3}},
+                                   Welcome{identity, 60, Role::watch, {4}},
+                                   CatchUp{false, {step(1), step(2)}},
+                                   CatchUp{true, {step(3)}},
+                                   PositionGreeting{kProtocolVersion, "glove", {5}},
                                    Refusal{RefusalCode::scene, "no"},
                                    Start{1, 2, 3},
                                    Ready{},

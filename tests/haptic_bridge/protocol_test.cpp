@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <random>
 
 namespace {
@@ -25,12 +26,13 @@ std::vector<Message> oneOfEach() {
     report.samplesDropped = 1;
     report.ticksMissed = 3;
     report.guards.back() = 7;
-    return {Hello{identity},
-            Welcome{identity, 60},
+    report.refused.back() = 6;
+    return {Hello{identity, Role::watch, true, true, {1, 2}},
+            Welcome{identity, 60, Role::watch, {3, 4}},
             Refusal{RefusalCode::busy, "busy"},
             Start{2, 40, 99},
             Ready{},
-            NeedState{},
+            NeedState{8, 9},
             State{{1, 2, 3}},
             StepMessage{-5, 17, someStep()},
             TimingTest{7, 50},
@@ -43,8 +45,11 @@ std::vector<Message> oneOfEach() {
             EditRequest{sand::Edit::undo},
             ForceShare{0.25},
             TickPiece{{4, 5}},
-            PositionGreeting{kProtocolVersion, "glove"},
-            Position{-7, 0.5, -0.25, 1.5, true}};
+            PositionGreeting{kProtocolVersion, "glove", {5}},
+            Position{-7, 0.5, -0.25, 1.5, true},
+            Challenge{identity, {6}},
+            Proof{{7}},
+            CatchUp{true, {someStep(), someStep()}}};
 }
 
 std::span<const std::uint8_t> withoutLength(const files::Bytes& framed) {
@@ -65,9 +70,14 @@ TEST(Protocol, EveryMessageComesBackAsItWent) {
 TEST(Protocol, BytesOnTheWireAreThoseOfTheDocument) {
     EXPECT_EQ(encode(Shown{0x0102, 3}),
               (files::Bytes{17, 0, 0, 0, 10, 2, 1, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0, 0, 0, 0, 0}));
-    const files::Bytes hello = encode(Hello{{1, 1, 2, "a"}});
-    EXPECT_EQ(hello, (files::Bytes{26, 0, 0, 0, 1, 'S', 'W', 'H', 'B', 1, 0, 0, 0, 1, 0,
-                                   0,  0, 2, 0, 0, 0,   0,   0,   0,   0, 1, 0, 0, 0, 'a'}));
+    files::Bytes hello{60, 0, 0, 0, 1, 'S', 'W', 'H', 'B', 6, 0, 0, 0, 1,   0, 0,
+                       0,  2, 0, 0, 0, 0,   0,   0,   0,   1, 0, 0, 0, 'a', 2, 3};
+    for (std::uint8_t i = 0; i < 32; ++i) {
+        hello.push_back(i);
+    }
+    Nonce nonce;
+    std::iota(nonce.begin(), nonce.end(), std::uint8_t{0});
+    EXPECT_EQ(encode(Hello{{6, 1, 2, "a"}, Role::watch, true, true, nonce}), hello);
 }
 
 TEST(Protocol, RefusesEveryTruncationAndEveryTrailingByte) {

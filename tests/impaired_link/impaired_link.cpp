@@ -97,6 +97,9 @@ private:
 
     void take(Way& way, std::size_t count) {
         way.ended = count == 0;
+        if (link_.tap_) {
+            link_.tap_(std::span<const std::uint8_t>(way.chunk).first(count), &way == &there_);
+        }
         bytes_ += count;
         const Impairment& impairment = link_.impairment_;
         if (impairment.resetAfter > 0 && bytes_ >= impairment.resetAfter && link_.resets_ < impairment.resets) {
@@ -167,10 +170,12 @@ private:
     std::uint64_t bytes_ = 0;
 };
 
-ImpairedLink::ImpairedLink(const Impairment& impairment, std::string host, std::uint16_t port, std::uint16_t listenPort)
+ImpairedLink::ImpairedLink(const Impairment& impairment, std::string host, std::uint16_t port, std::uint16_t listenPort,
+                           Tap tap)
     : impairment_(impairment),
       host_(std::move(host)),
       targetPort_(port),
+      tap_(std::move(tap)),
       acceptor_(io_, tcp::endpoint(asio::ip::address_v4::loopback(), listenPort)) {
     port_ = acceptor_.local_endpoint().port();
     accept();

@@ -5,6 +5,8 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <string>
 #include <thread>
 
@@ -18,8 +20,12 @@ namespace impaired_link {
 /// thread of its own, which ends with it; connections that still stand are closed.
 class ImpairedLink {
 public:
+    /// Sees all that passes, on the link's thread; `there` when it comes from who has connected.
+    using Tap = std::function<void(std::span<const std::uint8_t> bytes, bool there)>;
+
     /// Throws boost::system::system_error when it cannot listen. Port 0 takes any free one.
-    ImpairedLink(const Impairment& impairment, std::string host, std::uint16_t port, std::uint16_t listenPort = 0);
+    ImpairedLink(const Impairment& impairment, std::string host, std::uint16_t port, std::uint16_t listenPort = 0,
+                 Tap tap = {});
     ~ImpairedLink();
     ImpairedLink(const ImpairedLink&) = delete;
     ImpairedLink& operator=(const ImpairedLink&) = delete;
@@ -41,6 +47,7 @@ private:
     const Impairment impairment_;
     const std::string host_;
     const std::uint16_t targetPort_;
+    const Tap tap_;
     boost::asio::io_context io_;
     boost::asio::ip::tcp::acceptor acceptor_;
     std::uint16_t port_ = 0;

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/guest_limits.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace haptic_bridge {
+namespace {
+
+void refill(double& allowed, std::int64_t& countedNs, std::int64_t nowNs) {
+    const double seconds = static_cast<double>(std::max<std::int64_t>(0, nowNs - countedNs)) * 1e-9;
+    allowed = std::min(GuestLimits::kBurst, allowed + seconds * GuestLimits::kPerSecond);
+    countedNs = nowNs;
+}
+
+}  // namespace
+
+GuestLimits::Visits& GuestLimits::visitsOf(const boost::asio::ip::address& address, std::int64_t nowNs) {
+    if (!visits_.contains(address) && visits_.size() >= kAddresses) {
+        std::erase_if(visits_, [nowNs](const auto& entry) {
+            Visits visits = entry.second;
+            refill(visits.allowed, visits.countedNs, nowNs);
+            return visits.allowed >= kBurst;  // as one who has never come
+        });
+    }
+    const bool kept = visits_.contains(address) || visits_.size() < kAddresses;
+    Visits& visits = kept ? visits_.try_emplace(address, Visits{kBurst, nowNs}).first->second : others_;
+    refill(visits.allowed, visits.countedNs, nowNs);
+    return visits;
+}
+
+bool GuestLimits::mayCome(const boost::asio::ip::address& address, std::int64_t nowNs) {
+    Visits& visits = visitsOf(address, nowNs);
+    if (visits.allowed < 1) {
+        return false;
+    }
+    visits.allowed -= 1;
+    return true;
+}
+
+void GuestLimits::refused(const boost::asio::ip::address& address, std::int64_t nowNs) {
+    Visits& visits = visitsOf(address, nowNs);
+    visits.allowed = std::max(kDeepest, visits.allowed - kPenalty);
+}
+
+std::optional<std::string> RefusalLog::add(RefusalCode code, const std::string& address, const std::string& line,
+                                           std::int64_t nowNs) {
+    ++counts_[static_cast<std::size_t>(code) - 1];
+    std::pair key{address, code};
+    if (!said_.contains(key) && said_.size() >= kRemembered) {
+        std::erase_if(said_, [nowNs](const auto& entry) { return nowNs - entry.second.ns >= kQuietNs; });
+        if (said_.size() >= kRemembered) {
+            key = {"", code};
+        }
+    }
+    const auto [said, first] = said_.try_emplace(key, Said{nowNs, 0});
+    if (!first && nowNs - said->second.ns < kQuietNs) {
+        ++said->second.more;
+        return std::nullopt;
+    }
+    const std::uint64_t more = said->second.more;
+    said->second = {nowNs, 0};
+    return more == 0 ? line : fmt::format("{} (and {} more of that kind since it was said last)", line, more);
+}
+
+}  // namespace haptic_bridge

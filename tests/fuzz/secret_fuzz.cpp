@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// The file that says who may come in.
+#include "files/input_error.hpp"
+#include "fuzz_target.hpp"
+#include "haptic_bridge/secret_file.hpp"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    fuzz::takeOrRefuse([&] {
+        const std::string_view text(reinterpret_cast<const char*>(data), size);
+        const haptic_bridge::Secrets secrets = haptic_bridge::parseSecrets(text, "secrets");
+        for (const auto& secret : {secrets.move, secrets.watch}) {
+            if (secret && (secret->size() < haptic_bridge::kMinSecret || secret->size() > haptic_bridge::kMaxSecret ||
+                           text.find(*secret) == std::string_view::npos)) {
+                throw std::logic_error("a secret that is none");
+            }
+        }
+    });
+    return 0;
+}
