@@ -87,7 +87,7 @@ void LinkServer::admit(Connection::Socket socket) {
     const bool many = sameAddress != guests_.end() && sameAddress->second >= kMaxGuestsOfOne && !isLoopback(address);
     if (!limits_.mayCome(address, monotonicNs())) {
         refused(RefusalCode::limit, address, "comes too often, and is not answered for a while");
-    } else if (guestCount_ >= kMaxGuests || many) {
+    } else if (guestCount_ >= kMaxGuests || *connections_ >= kMaxConnections || many) {
         refused(RefusalCode::limit, address, "is one of too many that have not greeted, and is not answered");
     } else {
         std::make_shared<MasterLink>(*this, std::move(socket))->start();

@@ -59,6 +59,7 @@ public:
     static constexpr int kMaxGuests = 16;      // connections that have not been welcomed yet
     static constexpr int kMaxGuestsOfOne = 4;  // of those, from one address beyond this machine
     static constexpr std::size_t kMaxWatchers = 8;
+    static constexpr int kMaxConnections = 64;  // of all kinds, those included that are being closed
 
 private:
     friend class MasterLink;
@@ -86,6 +87,7 @@ private:
     std::uint32_t sessions_ = 0;
     std::map<boost::asio::ip::address, int> guests_;  // connections that have not been welcomed yet
     int guestCount_ = 0;
+    std::shared_ptr<int> connections_ = std::make_shared<int>(0);
     bool shutting_ = false;
 };
 

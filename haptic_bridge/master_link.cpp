@@ -22,6 +22,15 @@ constexpr std::size_t kMaxTestsOut = 64;
 constexpr double kWatcherRate = 50;                      // [1/s]; it has nothing to say but four pings
 constexpr std::size_t kWatcherUnsent = 256 * 1024;       // [byte]; about half a minute of steps
 
+/// One more of `count` for so long as it lives.
+std::shared_ptr<Connection> counted(std::unique_ptr<Connection> connection, const std::shared_ptr<int>& count) {
+    ++*count;
+    return {connection.release(), [count](Connection* gone) {
+                delete gone;
+                --*count;
+            }};
+}
+
 HalfRoundTrip told(const LiveHistogram& halves) {
     return {halves.meanNs() * 1e-6, halves.stddevNs() * 1e-6, halves.percentileNs(0.50) * 1e-6,
             halves.percentileNs(0.99) * 1e-6, halves.count()};
@@ -31,8 +40,9 @@ HalfRoundTrip told(const LiveHistogram& halves) {
 
 MasterLink::MasterLink(LinkServer& server, Connection::Socket socket)
     : server_(server),
-      connection_(std::make_shared<Connection>(std::move(socket),
-                                               server.security_.tls ? server.security_.tls->open() : nullptr)),
+      connection_(counted(std::make_unique<Connection>(std::move(socket),
+                                                       server.security_.tls ? server.security_.tls->open() : nullptr),
+                          server.connections_)),
       reportTimer_(server.io_),
       testTimer_(server.io_),
       watchTimer_(server.io_),

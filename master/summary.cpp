@@ -40,6 +40,13 @@ ordered_json halfRoundTrip(const haptic_bridge::HalfRoundTrip& trip) {
 ordered_json hapticPart(const Summary& summary) {
     ordered_json part = ordered_json::object();
     part["reconnects"] = summary.link.reconnects;
+    part["hand_overs"] = {{"by_steps", summary.link.catchUps}, {"by_state", summary.link.snapshots}};
+    part["refused_by_server"] = summary.link.refusedHere;
+    for (std::size_t i = 0; i < haptic_bridge::kRefusalNames.size(); ++i) {
+        const std::string kind(haptic_bridge::kRefusalNames[i]);
+        part["refused"]["servers"][kind] = summary.link.refused[i];
+        part["refused"]["guests"][kind] = summary.haptic ? summary.haptic->refused[i] : 0;
+    }
     if (const auto& report = summary.haptic) {
         part["force_us"] = {{"p50", report->forceUsP50}, {"p99", report->forceUsP99}};
         part["half_round_trip_ms"] = halfRoundTrip(report->toWall);
@@ -136,7 +143,8 @@ ordered_json jsonOf(const Summary& summary) {
     json["haptic"] = hapticPart(summary);
     if (const auto& head = summary.tracking) {
         json["head_tracking"] = {{"packets", head->packets}, {"refused", head->refused}, {"old", head->old},
-                                 {"absent", head->absent},   {"lost", head->timesLost},  {"outside", head->outside}};
+                                 {"absent", head->absent},   {"lost", head->timesLost},  {"outside", head->outside},
+                                 {"strangers", head->strangers}};
     }
     json["master_memory_bytes"] = summary.masterResidentBytes;
     json["journal"] = journalPart(summary.journal);

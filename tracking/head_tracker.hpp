@@ -19,6 +19,7 @@ struct Counters {
     std::uint64_t absent = 0;     // in order, but the tracker does not see the head
     std::uint64_t timesLost = 0;  // no pose for half a second
     std::uint64_t outside = 0;    // poses not in front of every screen: left out
+    std::uint64_t strangers = 0;  // from an address that is not the tracker's: left out
     friend bool operator==(const Counters&, const Counters&) = default;
 };
 

@@ -40,18 +40,24 @@ struct Reader {
         return *result;
     }
 
-    /// Reads origin=, axes= or eyes=; false when the word is none of them.
+    /// Reads origin=, axes=, eyes= or from=; false when the word is none of them.
     bool placed(std::string_view word) {
         const auto equals = word.find('=');
         const std::string_view key = word.substr(0, equals);
         const std::string_view value = equals == std::string_view::npos ? "" : word.substr(equals + 1);
-        if (equals == std::string_view::npos || (key != "origin" && key != "axes" && key != "eyes")) {
+        if (equals == std::string_view::npos || (key != "origin" && key != "axes" && key != "eyes" && key != "from")) {
             return false;
         }
         if (key == "origin") {
             source.origin = point(key, value, kFarthestOrigin);
         } else if (key == "eyes") {
             source.eyes = point(key, value, kLargestHead);
+        } else if (key == "from") {
+            boost::system::error_code error;
+            source.from = boost::asio::ip::make_address(std::string(value), error).to_string();
+            if (error) {
+                fail(fmt::format("from={} is no IP address; write the tracker's, such as from=192.168.1.20", value));
+            }
         } else if (const std::optional<glm::dmat3> axes = axesOf(value)) {
             source.axes = *axes;
         } else {

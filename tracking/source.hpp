@@ -20,7 +20,8 @@ namespace tracking {
 ///     dtrack:[HOST:]PORT[:BODY]
 ///     vrpn:NAME@HOST
 ///
-/// and behind it, after blanks, any of  origin=X,Y,Z  axes=x,-z,y  eyes=RIGHT,UP,BACK  (docs/head_tracking.md).
+/// and behind it, after blanks, any of  origin=X,Y,Z  axes=x,-z,y  eyes=RIGHT,UP,BACK  from=ADDRESS
+/// (docs/head_tracking.md).
 struct Source {
     enum class Kind : std::uint8_t { none, trace, opentrack, dtrack, vrpn };
 
@@ -28,6 +29,7 @@ struct Source {
     std::string text;                  // without what stands behind it; for messages
     std::filesystem::path file;        // of a trace
     std::string host = "127.0.0.1";    // an address of this machine to listen on; to send to, for a sender
+    std::string from;                  // the only address that packets are taken from; empty: any, on loopback
     std::uint16_t port = 0;            // 0: any free one, for tests
     int body = 0;                      // of DTrack, counted from 0 as in its packets
     std::string device;                // of VRPN: NAME@HOST

@@ -15,12 +15,20 @@ using boost::system::error_code;
 namespace {
 
 constexpr std::size_t kLargestDatagram = 65536;  // UDP has room for a little less, so none is ever cut
+constexpr int kMostStrangers = 64;                // that are read over in one call
 
 }  // namespace
 
-UdpReceiver::UdpReceiver(const std::string& host, std::uint16_t port, const std::string& who)
+UdpReceiver::UdpReceiver(const std::string& host, std::uint16_t port, const std::string& from, const std::string& who)
     : buffer_(kLargestDatagram) {
     const asio::ip::udp::endpoint endpoint(asio::ip::make_address(host), port);
+    if (!from.empty()) {
+        from_ = asio::ip::make_address(from);
+    } else if (!endpoint.address().is_loopback()) {
+        throw files::InputError(
+            fmt::format("{}: others can reach {}; name the one tracker's address behind it, such as from=192.168.1.20",
+                        who, host));
+    }
     error_code error;
     socket_.open(endpoint.protocol(), error);
     if (!error) {
@@ -40,13 +48,19 @@ UdpReceiver::UdpReceiver(const std::string& host, std::uint16_t port, const std:
 }
 
 std::optional<std::span<const std::uint8_t>> UdpReceiver::next() {
-    error_code error;
-    asio::ip::udp::endpoint from;
-    const std::size_t size = socket_.receive_from(asio::buffer(buffer_), from, 0, error);
-    if (error) {  // none is there, or something is wrong: either way the next frame looks again
-        return std::nullopt;
+    for (int i = 0; i < kMostStrangers; ++i) {
+        error_code error;
+        asio::ip::udp::endpoint from;
+        const std::size_t size = socket_.receive_from(asio::buffer(buffer_), from, 0, error);
+        if (error) {  // none is there, or something is wrong: either way the next frame looks again
+            return std::nullopt;
+        }
+        if (!from_ || from.address() == *from_) {
+            return std::span<const std::uint8_t>(buffer_).first(size);
+        }
+        ++strangers_;
     }
-    return std::span<const std::uint8_t>(buffer_).first(size);
+    return std::nullopt;
 }
 
 UdpSender::UdpSender(const std::string& host, std::uint16_t port) : to_(asio::ip::make_address(host), port) {

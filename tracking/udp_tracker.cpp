@@ -8,7 +8,7 @@ namespace tracking {
 UdpTracker::UdpTracker(const Source& source, const RoomMapping& mapping, std::unique_ptr<PacketReader> reader, Say say,
                        Clock clock)
     : mapping_(mapping),
-      receiver_(source.host, source.port, source.text),
+      receiver_(source.host, source.port, source.from, source.text),
       reader_(std::move(reader)),
       clock_(std::move(clock)),
       presence_(source.text, std::move(say)) {}
@@ -49,6 +49,7 @@ std::optional<Pose> UdpTracker::newest(double) {
 Counters UdpTracker::counters() const {
     Counters counters = counters_;
     counters.timesLost = presence_.timesLost();
+    counters.strangers = receiver_.strangers();
     return counters;
 }
 

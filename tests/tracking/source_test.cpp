@@ -32,6 +32,12 @@ TEST(TrackingSource, ListensOnLoopbackUnlessAnAddressIsGiven) {
     EXPECT_EQ(parse("dtrack:[::1]:5000").port, 5000);
 }
 
+TEST(TrackingSource, TakesTheTrackersOwnAddress) {
+    EXPECT_EQ(parse("opentrack:4242").from, "");
+    EXPECT_EQ(parse("dtrack:0.0.0.0:5000 from=192.168.1.20").from, "192.168.1.20");
+    expectComplaint("opentrack:4242 from=cave", "no IP address");
+}
+
 TEST(TrackingSource, TakesABodyBehindThePort) {
     EXPECT_EQ(parse("dtrack:5000").body, 0);
     EXPECT_EQ(parse("dtrack:5000:3").body, 3);

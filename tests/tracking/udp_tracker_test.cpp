@@ -70,6 +70,21 @@ TEST_F(UdpTrackerTest, CountsAndIgnoresWhatIsNoPacket) {
     EXPECT_EQ(tracker->counters().refused, 5U);
 }
 
+TEST_F(UdpTrackerTest, ListensBeyondThisMachineToOneAddressAlone) {
+    const std::string line = test::refusal([&] { open("opentrack:0.0.0.0:0"); });
+    EXPECT_NE(line.find("from="), std::string::npos) << line;
+    open("opentrack:0.0.0.0:0 from=127.0.0.2 origin=0,0,0");
+    sender->send(test::doubles({0, 10, 0, 0, 0, 0}));
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    while (tracker->counters().strangers == 0 && std::chrono::steady_clock::now() < end) {
+        EXPECT_FALSE(tracker->newest(0));
+    }
+    EXPECT_EQ(tracker->counters().strangers, 1U);
+    open("opentrack:0.0.0.0:0 from=127.0.0.1 origin=0,0,0");
+    sender->send(test::doubles({0, 10, 0, 0, 0, 0}));
+    EXPECT_TRUE(lookUntil(1));
+}
+
 TEST_F(UdpTrackerTest, DropsWhatTheNetworkReordered) {
     open("dtrack:0");
     for (const unsigned frame : {1U, 3U, 2U, 3U}) {

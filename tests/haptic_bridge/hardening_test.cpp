@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// That the flags of cmake/Hardening.cmake reach what is built.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+namespace {
+
+std::string outputOf(const std::string& command) {
+    std::string text;
+    FILE* pipe = popen(command.c_str(), "r");
+    std::array<char, 4096> piece{};
+    while (pipe != nullptr && fgets(piece.data(), piece.size(), pipe) != nullptr) {
+        text += piece.data();
+    }
+    return pipe != nullptr && pclose(pipe) == 0 ? text : "";
+}
+
+bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST(Hardening, EveryProgramAndModuleHasIt) {
+    int files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(SANDWALL_BIN_DIR)) {
+        const std::string name = entry.path().filename().string();
+        if (name.rfind("sandwall-", 0) != 0 || name.find('.', 9) != name.find(".so", 9)) {
+            continue;
+        }
+        SCOPED_TRACE(name);
+        const std::string told = outputOf("readelf -hldW " + entry.path().string());
+        if (told.empty()) {
+            continue;  // a script
+        }
+        ++files;
+        EXPECT_TRUE(holds(told, "DYN (")) << "position-independent";
+        EXPECT_TRUE(holds(told, "GNU_RELRO"));
+        EXPECT_TRUE(holds(told, "BIND_NOW") || holds(told, "NOW"));
+        const std::size_t stack = told.find("GNU_STACK");
+        ASSERT_NE(stack, std::string::npos);
+        EXPECT_FALSE(holds(told.substr(stack, told.find('\n', stack) - stack), "RWE"));
+    }
+    EXPECT_GE(files, 3);
+    const std::string symbols = outputOf("readelf --dyn-syms -W " SANDWALL_BIN_DIR "/sandwall-haptic-server");
+    EXPECT_TRUE(holds(symbols, "__stack_chk_fail"));
+#ifdef SANDWALL_RELEASE
+    EXPECT_TRUE(holds(symbols, "_chk@")) << "fortified calls";
+#endif
+}
+
+}  // namespace

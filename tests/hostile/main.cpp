@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Somebody who means no good, as a program (scripts/hostile.sh).
+#include <fmt/format.h>
+#include <sys/prctl.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+
+#include "files/command_line.hpp"
+#include "haptic_bridge/client.hpp"
+#include "tests/hostile/attack.hpp"
+
+int main(int argc, char** argv) {
+    CLI::App app("Sends what nobody should to a haptic server, or to the master that connects.", "sandwall-hostile");
+    std::string scene;
+    std::uint16_t server = 0;
+    std::uint64_t frames = 1'000'000;
+    std::uint32_t seed = 1;
+    app.add_option("--scene", scene, "scene file, to greet in good order")->required();
+    app.add_option("--server", server, "port of a server on this machine; without, it is a server itself");
+    app.add_option("--frames", frames, "how many");
+    app.add_option("--seed", seed, "of all of them");
+    return files::runMain(app, argc, argv, [&] {
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        const sand::Scene known = sand::loadScene(scene);
+        const haptic_bridge::Identity identity{haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion,
+                                               known.rules.digest(), known.name};
+        if (server != 0) {
+            hostile::Frames made(seed, identity);
+            const hostile::Done done = hostile::attackServer(server, made, frames, [] { return true; });
+            fmt::print("seed {}: {} frames over {} connections, {} refusals read\n", seed, done.frames,
+                       done.connections, done.refusals);
+            return 0;
+        }
+        hostile::FalseServer falseServer(seed, identity, frames);
+        fmt::print("listening on 127.0.0.1:{}\n", falseServer.port());
+        std::fflush(stdout);
+        while (!falseServer.done()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        }
+        fmt::print("seed {}: {} frames over {} connections\n", seed, falseServer.frames(), falseServer.connections());
+        return 0;
+    });
+}
