@@ -118,6 +118,8 @@ std::uint32_t Client::stepsPerSecond() const {
     return session_->shelf.stepsPerSecond;
 }
 
+void Client::drill(LinkDrill drill, std::chrono::milliseconds length) { session_->drill(drill, length); }
+
 void Client::stop() { session_->stop(); }
 
 }  // namespace haptic_bridge

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -76,6 +77,12 @@ struct LinkCounters {
     void add(const LinkCounters& other);
 };
 
+/// Faults of the link on purpose.
+enum class LinkDrill : std::uint8_t {
+    garbage,  // the server is sent bytes that are no message
+    silence   // nothing is read or sent for a while, as when a cable is pulled
+};
+
 /// The master's end of the link: connects by itself, for ever, and hands over steps in order.
 ///
 /// Has a network thread of its own. Every member may be called from any thread, returns at once and, whatever the
@@ -121,6 +128,8 @@ public:
     [[nodiscard]] LinkCounters counters() const;
     /// From the server's scene, once offered; 0 before.
     [[nodiscard]] std::uint32_t stepsPerSecond() const;
+    /// Does that to the connection there is, if there is one; `length` is of a silence.
+    void drill(LinkDrill drill, std::chrono::milliseconds length);
     /// Says goodbye, waits at most half a second for the server's last report, and ends the network thread.
     void stop();
 

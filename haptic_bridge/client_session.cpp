@@ -118,6 +118,7 @@ void Client::Session::connected(Connection::Socket socket) {
     handshake_.reset();
     connection_->limit(kMaxGreeting);
     heard_ = std::chrono::steady_clock::now();
+    silentUntil_ = {};
     pings_ = 0;
     {
         const std::lock_guard lock(shelf.mutex);
@@ -237,7 +238,9 @@ void Client::Session::ping() {
     pingTimer_.async_wait([this](error_code error) {
         if (!error && connection_) {
             ++pings_;
-            connection_->send(Ping{monotonicNs()});
+            if (!silent()) {
+                connection_->send(Ping{monotonicNs()});
+            }
             ping();
         }
     });

@@ -32,6 +32,7 @@ public:
     void shown(const Shown& frame);
     void request(const EditRequest& request);
     void shareForce(double share);
+    void drill(LinkDrill drill, std::chrono::milliseconds length);
     std::vector<TimedPosition> drainPositions();
     void stop();
 
@@ -82,6 +83,7 @@ private:
     void greet(const PositionGreeting& greeting);
     void accept(const Position& position);
     void resumeReading();
+    [[nodiscard]] bool silent() const;  // on purpose
 
     const Address address_;
     const Offer offer_;
@@ -89,7 +91,7 @@ private:
     std::optional<MasterHandshake> handshake_;
     boost::asio::io_context io_;
     boost::asio::ip::tcp::resolver resolver_{io_};
-    Timer retryTimer_{io_}, pingTimer_{io_}, watchTimer_{io_};
+    Timer retryTimer_{io_}, pingTimer_{io_}, watchTimer_{io_}, drillTimer_{io_};
     std::shared_ptr<Connection> connection_;
     std::string peer_;
     Start granted_;
@@ -99,7 +101,7 @@ private:
     std::uint64_t lastStep_ = 0;
     ClockOffset clock_;
     Milliseconds backOff_{};
-    std::chrono::steady_clock::time_point heard_;
+    std::chrono::steady_clock::time_point heard_, silentUntil_;
     int pings_ = 0;
     bool everWelcomed_ = false, stopping_ = false;
     std::thread thread_;

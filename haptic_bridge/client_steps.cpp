@@ -82,7 +82,7 @@ std::vector<TimedStep> Client::Session::drain(std::size_t most) {
 void Client::Session::resumeReading() {
     shelf.full = false;
     asio::post(io_, [this] {
-        if (connection_) {
+        if (connection_ && !silent()) {
             connection_->resume();
         }
     });
@@ -95,7 +95,7 @@ void Client::Session::shown(const Shown& frame) {
         tests.swap(shelf.testsInFrame);
     }
     asio::post(io_, [this, frame, tests = std::move(tests)] {
-        if (!connection_ || link() != Link::linked) {
+        if (!connection_ || silent() || link() != Link::linked) {
             return;
         }
         // A frame drawn before the hand-over's first step says nothing about the server's steps yet.
