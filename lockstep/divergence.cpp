@@ -7,19 +7,21 @@
 namespace lockstep {
 namespace {
 
-struct Account {
-    std::uint64_t hash = 0;
-    std::vector<std::uint64_t> tiles;
-};
+Account accountOf(sand::Terrain& terrain) {
+    Account account{terrain.stateHash(), {}};
+    account.tiles = terrain.hashTiles().tileHashes();
+    return account;
+}
 
-std::vector<Account> gatherAccounts(const Cluster& cluster, sand::Terrain& terrain) {
+std::vector<Account> collectAccounts(FrameBarrier& barrier, sand::Terrain& terrain) {
+    const Account mine = accountOf(terrain);
     files::ByteWriter writer;
-    writer.put(terrain.stateHash());
-    for (const std::uint64_t tile : terrain.hashTiles().tileHashes()) {
+    writer.put(mine.hash);
+    for (const std::uint64_t tile : mine.tiles) {
         writer.put(tile);
     }
     std::vector<Account> accounts;
-    for (const files::Bytes& bytes : cluster.gather(writer.take())) {
+    for (const files::Bytes& bytes : barrier.collect(writer.take())) {
         files::ByteReader reader(bytes);
         Account& account = accounts.emplace_back();
         account.hash = reader.get<std::uint64_t>();
@@ -30,51 +32,83 @@ std::vector<Account> gatherAccounts(const Cluster& cluster, sand::Terrain& terra
     return accounts;
 }
 
-/// The heights of one tile of every rank, by rank.
-std::vector<files::Bytes> gatherTile(const Cluster& cluster, const sand::Terrain& terrain, int tile) {
-    files::ByteWriter writer;
+std::vector<std::int32_t> heightsOf(const sand::Terrain& terrain, int tile) {
+    std::vector<std::int32_t> heights;
     if (tile >= 0) {
         const sand::Rect cells = terrain.hashTiles().cellsOf(tile);
         for (int y = cells.y0; y < cells.y1; ++y) {
-            for (int x = cells.x0; x < cells.x1; ++x) {
-                writer.put(terrain.field().height(x, y));
-            }
+            heights.insert(heights.end(), terrain.field().row(y) + cells.x0, terrain.field().row(y) + cells.x1);
         }
     }
-    return cluster.gather(writer.take());
+    return heights;
 }
 
-/// Sets the hash that most ranks have; on a tie the master's if it is among the first, else the smallest.
-void findMajority(const std::vector<Account>& accounts, Divergence& result) {
+/// The heights of one tile of every rank, by rank, at the master.
+std::vector<std::vector<std::int32_t>> collectHeights(FrameBarrier& barrier, const sand::Terrain& terrain, int tile) {
+    files::ByteWriter writer;
+    for (const std::int32_t height : heightsOf(terrain, tile)) {
+        writer.put(height);
+    }
+    std::vector<std::vector<std::int32_t>> all;
+    for (const files::Bytes& bytes : barrier.collect(writer.take())) {
+        files::ByteReader reader(bytes);
+        std::vector<std::int32_t>& heights = all.emplace_back();
+        while (!reader.atEnd()) {
+            heights.push_back(reader.get<std::int32_t>());
+        }
+    }
+    return all;
+}
+
+/// At the master: what is right, and what its tiles hash to.
+Account judge(const std::vector<Account>& accounts, const Arbiter& arbiter, Divergence& result) {
+    const Vote vote = countVotes(accounts);
+    result.rightHash = vote.hash;
+    if (vote.tie) {
+        result.journal = arbiter ? arbiter() : nullptr;
+        result.judge = result.journal ? Divergence::Judge::journal : Divergence::Judge::master;
+        result.rightHash = result.journal ? result.journal->stateHash() : accounts[kMaster].hash;
+    }
+    const auto right = [&](const Account& account) { return account.hash == result.rightHash; };
+    result.agreeing = static_cast<int>(std::count_if(accounts.begin(), accounts.end(), right));
+    if (result.agreeing == 0) {
+        return accountOf(*result.journal);
+    }
+    result.journal.reset();  // a rank has it
+    const auto first = std::find_if(accounts.begin(), accounts.end(), right);
+    result.source = static_cast<int>(first - accounts.begin());
+    return *first;
+}
+
+}  // namespace
+
+Vote countVotes(const std::vector<Account>& accounts) {
     std::map<std::uint64_t, int> votes;
     for (const Account& account : accounts) {
         ++votes[account.hash];
     }
+    Vote result;
     for (const auto& [hash, count] : votes) {
         if (count > result.agreeing || (count == result.agreeing && hash == accounts[kMaster].hash)) {
-            result.majorityHash = hash;
+            result.hash = hash;
             result.agreeing = count;
         }
     }
     result.tie =
         std::count_if(votes.begin(), votes.end(), [&](const auto& vote) { return vote.second == result.agreeing; }) > 1;
+    return result;
 }
 
-}  // namespace
-
-std::optional<Divergence> findDivergence(const Cluster& cluster, sand::Terrain& terrain) {
-    const std::vector<Account> accounts = gatherAccounts(cluster, terrain);
+std::optional<Divergence> findDivergence(FrameBarrier& barrier, sand::Terrain& terrain, const Arbiter& arbiter) {
+    terrain.audit(terrain.hashTiles().tileCount());
+    const std::vector<Account> accounts = collectAccounts(barrier, terrain);
     Divergence result;
-    std::size_t right = 0;
-    if (cluster.isMaster()) {
-        findMajority(accounts, result);
-        while (accounts[right].hash != result.majorityHash) {
-            ++right;
-        }
+    if (barrier.cluster().isMaster()) {
+        const Account right = judge(accounts, arbiter, result);
         for (std::size_t rank = 0; rank < accounts.size(); ++rank) {
-            if (accounts[rank].hash != result.majorityHash) {
+            if (accounts[rank].hash != result.rightHash) {
                 const auto& mine = accounts[rank].tiles;
-                const auto differing = std::mismatch(mine.begin(), mine.end(), accounts[right].tiles.begin()).first;
+                const auto differing = std::mismatch(mine.begin(), mine.end(), right.tiles.begin()).first;
                 Divergence::Odd& odd = result.odd.emplace_back();
                 odd.rank = static_cast<int>(rank);
                 odd.hash = accounts[rank].hash;
@@ -83,20 +117,24 @@ std::optional<Divergence> findDivergence(const Cluster& cluster, sand::Terrain& 
         }
     }
     // The cells of the first odd rank's tile, from everyone: how much differs says bit flip or bug.
-    int tile = result.odd.empty() ? -1 : result.odd.front().tile;
-    MPI_Bcast(&tile, 1, MPI_INT, kMaster, cluster.frames());
-    const std::vector<files::Bytes> heights = gatherTile(cluster, terrain, tile);
-    if (!cluster.isMaster()) {
+    files::ByteWriter writer;
+    writer.put(result.odd.empty() ? -1 : result.odd.front().tile);
+    const files::Bytes told = barrier.tellAll(writer.take());
+    const int tile = files::ByteReader(told).get<int>();
+    const auto heights = collectHeights(barrier, terrain, tile);
+    if (!barrier.cluster().isMaster()) {
         return std::nullopt;
     }
+    const auto right =
+        result.journal ? heightsOf(*result.journal, tile) : heights[static_cast<std::size_t>(result.source)];
     for (Divergence::Odd& odd : result.odd) {
         if (odd.tile < 0) {
             continue;
         }
         odd.cells = terrain.hashTiles().cellsOf(odd.tile);
         const auto& wrong = heights[static_cast<std::size_t>(odd.rank)];
-        for (std::size_t i = 0; odd.tile == tile && i < wrong.size(); i += sizeof(std::int32_t)) {
-            odd.cellsDiffering += std::equal(&wrong[i], &wrong[i] + sizeof(std::int32_t), &heights[right][i]) ? 0 : 1;
+        for (std::size_t i = 0; odd.tile == tile && i < wrong.size(); ++i) {
+            odd.cellsDiffering += wrong[i] == right[i] ? 0 : 1;
         }
     }
     return result;

@@ -6,7 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstring>
+#include <numeric>
+#include <random>
 #include <thread>
+#include <utility>
 
 #include "lockstep/patience.hpp"
 
@@ -15,6 +19,7 @@ namespace {
 
 enum Tag : int { kFrameTag = 10, kRestTag, kArrivalTag, kVerdictTag };
 constexpr int kArrivalBytes = static_cast<int>(sizeof(Arrival));
+constexpr int kCutShort = -1;  // the length of a message that was longer than there was room
 
 /// How the master ends a frame.
 struct Ending {
@@ -30,18 +35,38 @@ Watchdog::Role roleOf(const Cluster& cluster) {
 
 }  // namespace
 
-FrameBarrier::FrameBarrier(const Cluster& cluster, std::vector<std::string> names, double limitSeconds)
+FrameBarrier::FrameBarrier(const Cluster& cluster, std::vector<std::string> names, double limitSeconds,
+                           LastWords lastWords)
     : cluster_(cluster),
       names_(std::move(names)),
       arrivals_(cluster.isMaster() ? static_cast<std::size_t>(cluster.size()) : 0),
-      requests_(arrivals_.size(), MPI_REQUEST_NULL),
+      ranks_(cluster.isMaster() ? static_cast<std::size_t>(cluster.renderRanks()) : 0),
       missing_(std::make_unique<std::atomic<bool>[]>(arrivals_.size() + 1)) {
-    watchdog_ = std::make_unique<Watchdog>([this] { return describeWait(); }, limitSeconds, roleOf(cluster));
+    std::iota(ranks_.begin(), ranks_.end(), 1);
+    if (cluster.isMaster()) {
+        // An arrival that is too long must not end the master before it has said whose it is.
+        MPI_Comm_set_errhandler(cluster.arrivals(), MPI_ERRORS_RETURN);
+    }
+    watchdog_ = std::make_unique<Watchdog>([this] { return describeWait(); }, limitSeconds, roleOf(cluster),
+                                           [this, lastWords = std::move(lastWords)](const std::string& line) {
+                                               if (lastWords) {
+                                                   lastWords(firstMissing(), line);
+                                               }
+                                           });
     cluster.startUpIsOver();
     wakePunctually();
 }
 
 FrameBarrier::~FrameBarrier() = default;
+
+int FrameBarrier::firstMissing() const {
+    for (std::size_t rank = 1; rank < arrivals_.size(); ++rank) {
+        if (missing_[rank]) {
+            return static_cast<int>(rank);
+        }
+    }
+    return -1;
+}
 
 std::string FrameBarrier::describeWait() const {
     if (!cluster_.isMaster()) {
@@ -53,46 +78,53 @@ std::string FrameBarrier::describeWait() const {
             who += fmt::format("{}{}", who.empty() ? "" : ", ", names_[rank]);
         }
     }
-    return fmt::format("frame {} waits for {}", frame_.load(), who.empty() ? "reports and pictures" : who);
+    return fmt::format("frame {} waits for {}", frame_.load(), who.empty() ? busyWith_.load() : who);
 }
 
-void FrameBarrier::awaitEach() {
-    for (std::size_t rank = 1; rank < arrivals_.size(); ++rank) {
-        missing_[rank] = true;
+/// Until all requests are done. At the master `ranks` are those at their other ends; `lengths` are what was received.
+void FrameBarrier::await(std::span<MPI_Request> requests, std::span<const int> ranks, std::vector<int>* lengths) {
+    const auto miss = [&](std::size_t which, bool missing) {
+        if (cluster_.isMaster()) {
+            missing_[static_cast<std::size_t>(ranks[which])] = missing;
+        }
+    };
+    for (std::size_t i = 0; i < requests.size(); ++i) {
+        miss(i, true);
     }
     Patience patience;
-    for (std::size_t done = 1; done < arrivals_.size();) {
+    for (std::size_t done = 0; done < requests.size();) {
         int which = MPI_UNDEFINED;
         int found = 0;
-        MPI_Testany(static_cast<int>(requests_.size()), requests_.data(), &which, &found, MPI_STATUS_IGNORE);
-        if (found != 0 && which != MPI_UNDEFINED) {
-            missing_[static_cast<std::size_t>(which)] = false;
-            ++done;
-        } else {
+        MPI_Status status;
+        const int error = MPI_Testany(static_cast<int>(requests.size()), requests.data(), &which, &found, &status);
+        if ((found == 0 && error == MPI_SUCCESS) || which == MPI_UNDEFINED) {
             patience.rest();
+            continue;
+        }
+        const auto index = static_cast<std::size_t>(which);
+        miss(index, false);
+        ++done;
+        if (lengths != nullptr) {
+            int& length = (*lengths)[index] = kCutShort;
+            if (error == MPI_SUCCESS) {
+                MPI_Get_count(&status, MPI_BYTE, &length);
+            }
         }
     }
 }
 
 void FrameBarrier::sendToAll(const void* data, std::size_t bytes, int tag) {
-    for (std::size_t rank = 1; rank < requests_.size(); ++rank) {
-        MPI_Isend(data, static_cast<int>(bytes), MPI_BYTE, static_cast<int>(rank), tag, cluster_.frames(),
-                  &requests_[rank]);
+    std::vector<MPI_Request> requests(ranks_.size(), MPI_REQUEST_NULL);
+    for (std::size_t i = 0; i < ranks_.size(); ++i) {
+        MPI_Isend(data, static_cast<int>(bytes), MPI_BYTE, ranks_[i], tag, cluster_.frames(), &requests[i]);
     }
-    awaitEach();
+    await(requests, ranks_);
 }
 
-void FrameBarrier::receiveFromMaster(void* data, std::size_t bytes, int tag) const {
+void FrameBarrier::receiveFromMaster(void* data, std::size_t bytes, int tag) {
     MPI_Request request = MPI_REQUEST_NULL;
     MPI_Irecv(data, static_cast<int>(bytes), MPI_BYTE, kMaster, tag, cluster_.frames(), &request);
-    Patience patience;
-    for (int there = 0;;) {
-        MPI_Test(&request, &there, MPI_STATUS_IGNORE);
-        if (there != 0) {
-            return;
-        }
-        patience.rest();
-    }
+    await({&request, 1}, {});
 }
 
 FrameMessage FrameBarrier::begin(const FrameMessage& fromMaster, std::size_t& bytes) {
@@ -126,28 +158,65 @@ FrameMessage FrameBarrier::begin(const FrameMessage& fromMaster, std::size_t& by
     return FrameMessage::decode(message);
 }
 
+/// At the master: everyone's arrival, and who sent something else.
+void FrameBarrier::receiveArrivals(std::uint64_t frame) {
+    using Letter = std::array<std::uint8_t, 256>;  // room for what is no arrival
+    std::vector<Letter> letters(ranks_.size());
+    std::vector<MPI_Request> requests(ranks_.size(), MPI_REQUEST_NULL);
+    std::vector<int> lengths(ranks_.size());
+    for (std::size_t i = 0; i < ranks_.size(); ++i) {
+        MPI_Irecv(letters[i].data(), static_cast<int>(sizeof(Letter)), MPI_BYTE, ranks_[i], kArrivalTag,
+                  cluster_.arrivals(), &requests[i]);
+    }
+    await(requests, ranks_, &lengths);
+    nonsense_.clear();
+    for (std::size_t i = 0; i < ranks_.size(); ++i) {
+        Arrival& arrival = arrivals_[i + 1];
+        std::memcpy(&arrival, letters[i].data(), sizeof arrival);
+        if (lengths[i] == kArrivalBytes && arrival.frame == frame) {
+            continue;
+        }
+        nonsense_.push_back(
+            {ranks_[i],
+             fmt::format("frame {}: {} sent what is no arrival at that frame ({})", frame, names_[i + 1],
+                         lengths[i] == kCutShort       ? "far too long"
+                         : lengths[i] != kArrivalBytes ? fmt::format("{} bytes and not {}", lengths[i], kArrivalBytes)
+                                                       : fmt::format("of frame {}", arrival.frame))});
+        arrival = {.frame = frame};
+    }
+}
+
+void FrameBarrier::sendArrival(const Arrival& mine) {
+    if (!std::exchange(garbles_, false)) {
+        MPI_Send(&mine, kArrivalBytes, MPI_BYTE, kMaster, kArrivalTag, cluster_.arrivals());
+        return;
+    }
+    constexpr std::array<std::size_t, 3> kLengths{sizeof(Arrival), 200, 4000};
+    std::minstd_rand noise(static_cast<unsigned>(mine.frame));
+    files::Bytes bytes(kLengths.at(mine.frame % kLengths.size()));
+    std::generate(bytes.begin(), bytes.end(), [&] { return static_cast<std::uint8_t>(noise() >> 8); });
+    MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, kMaster, kArrivalTag, cluster_.arrivals());
+}
+
 Verdict FrameBarrier::meet(const Arrival& mine, std::int64_t nextFrame) {
     const Watched watched(*watchdog_);
     frame_ = mine.frame;
     Ending ending;
     if (cluster_.isMaster()) {
         arrivals_[kMaster] = mine;
-        for (std::size_t rank = 1; rank < arrivals_.size(); ++rank) {
-            MPI_Irecv(&arrivals_[rank], kArrivalBytes, MPI_BYTE, static_cast<int>(rank), kArrivalTag,
-                      cluster_.arrivals(), &requests_[rank]);
-        }
-        awaitEach();
+        receiveArrivals(mine.frame);
         const auto differs = [&](auto hash) {
             return std::any_of(arrivals_.begin(), arrivals_.end(),
                                [&](const Arrival& arrival) { return arrival.*hash != mine.*hash; });
         };
-        ending.verdict = differs(&Arrival::stateHash)  ? Verdict::otherSand
-                         : differs(&Arrival::viewHash) ? Verdict::otherView
-                                                       : Verdict::equal;
+        ending.verdict = !nonsense_.empty()             ? Verdict::nonsense
+                         : differs(&Arrival::stateHash) ? Verdict::otherSand
+                         : differs(&Arrival::viewHash)  ? Verdict::otherView
+                                                        : Verdict::equal;
         ending.quiet = std::max<std::int64_t>(0, nextFrame - nowNs());
         sendToAll(&ending, sizeof ending, kVerdictTag);
     } else {
-        MPI_Send(&mine, kArrivalBytes, MPI_BYTE, kMaster, kArrivalTag, cluster_.arrivals());
+        sendArrival(mine);
         receiveFromMaster(&ending, sizeof ending, kVerdictTag);
         quietUntil_ = nowNs() + ending.quiet;
     }

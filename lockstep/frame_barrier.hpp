@@ -3,7 +3,9 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,7 +30,8 @@ struct Arrival {
 enum class Verdict : std::uint8_t {
     equal,
     otherSand,  // state hashes differ: findDivergence() tells where
-    otherView   // the sand is equal, but not what some rank sees it by
+    otherView,  // the sand is equal, but not what some rank sees it by
+    nonsense    // some rank has sent what is no arrival at this frame: FrameBarrier::nonsense()
 };
 
 /// How a frame begins and ends on every rank: one message from the master to all, and the barrier before the swap,
@@ -43,9 +46,13 @@ public:
     /// Frame messages up to this size travel whole; longer ones send their rest behind [byte].
     static constexpr std::size_t kOneMessage = 1024;
 
+    /// Who is missing when a wait has run into its limit (-1: nobody in particular), and the line that was said of it.
+    using LastWords = std::function<void(int rank, const std::string& line)>;
+
     /// `names` is how each rank is spoken of, by rank; only the master needs it. A frame that takes longer than
-    /// `limitSeconds` ends the job. Ends the cluster's own start-up watch.
-    FrameBarrier(const Cluster& cluster, std::vector<std::string> names, double limitSeconds);
+    /// `limitSeconds` ends the job, at the master after `lastWords`, which is called on the watchdog's thread. Ends the
+    /// cluster's own start-up watch.
+    FrameBarrier(const Cluster& cluster, std::vector<std::string> names, double limitSeconds, LastWords lastWords = {});
     ~FrameBarrier();
 
     /// Collective: begins a frame. The master gives the message; everyone gets it. Sets `bytes` to its length.
@@ -58,21 +65,49 @@ public:
     /// At the master: what the ranks said at the last barrier, by rank; its own first.
     [[nodiscard]] const std::vector<Arrival>& arrivals() const { return arrivals_; }
 
+    /// At the master: who sent nonsense to the last barrier, a line each with the rank's name.
+    struct Nonsense {
+        int rank = 0;
+        std::string line;
+    };
+    [[nodiscard]] const std::vector<Nonsense>& nonsense() const { return nonsense_; }
+    /// For a drill: this rank comes to the next barrier with random bytes.
+    void garble() { garbles_ = true; }
+
+    /// Collective among those concerned: the bytes of rank `from` to each of `to`, who get them; others get nothing
+    /// and may leave it out. Whom the master waits for is named, as at the barrier.
+    [[nodiscard]] files::Bytes pass(int from, const std::vector<int>& to, const files::Bytes& bytes);
+    /// Collective: everyone's bytes at the master, by rank; others get nothing. Named likewise.
+    [[nodiscard]] std::vector<files::Bytes> collect(const files::Bytes& mine);
+    /// Collective: the master's bytes to everyone. Named likewise.
+    [[nodiscard]] files::Bytes tellAll(const files::Bytes& fromMaster);
+
+    [[nodiscard]] const Cluster& cluster() const { return cluster_; }
+    /// What the master is at while it waits for no rank, such as "its journal"; text that lives on.
+    void busyWith(const char* what) { busyWith_ = what; }
+    static constexpr const char* kAtTheEnd = "reports and pictures";
+
     /// Watches waits outside the frame loop too, such as for reports and pictures.
     [[nodiscard]] Watchdog& watchdog() { return *watchdog_; }
 
 private:
     void sendToAll(const void* data, std::size_t bytes, int tag);
-    void receiveFromMaster(void* data, std::size_t bytes, int tag) const;
-    void awaitEach();
+    void receiveFromMaster(void* data, std::size_t bytes, int tag);
+    void await(std::span<MPI_Request> requests, std::span<const int> ranks, std::vector<int>* lengths = nullptr);
+    void receiveArrivals(std::uint64_t frame);
+    void sendArrival(const Arrival& mine);
     [[nodiscard]] std::string describeWait() const;
+    [[nodiscard]] int firstMissing() const;
 
     const Cluster& cluster_;
     std::vector<std::string> names_;
     std::vector<Arrival> arrivals_;
-    std::vector<MPI_Request> requests_;             // one per rank, at the master
+    std::vector<Nonsense> nonsense_;
+    std::vector<int> ranks_;                        // all but the master, at the master
     std::unique_ptr<std::atomic<bool>[]> missing_;  // by rank; read by the watchdog's thread
+    std::atomic<const char*> busyWith_{kAtTheEnd};
     std::atomic<std::uint64_t> frame_{0};
+    bool garbles_ = false;
     std::int64_t quietUntil_ = 0;  // [ns], at a rank: no frame begins before
     std::unique_ptr<Watchdog> watchdog_;
 };

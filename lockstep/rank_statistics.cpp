@@ -2,6 +2,7 @@
 #include "lockstep/rank_statistics.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace lockstep {
 namespace {
@@ -66,9 +67,7 @@ void RankStatistics::add(std::span<const Arrival> arrivals, bool swapsCount) {
         recent_.emplace_back();
     }
     recent_[frames_++ % kRecent] = last.value_or(LastToCome{});
-    for (Rank& rank : ranks_) {
-        ++rank.agreed;
-    }
+    addOdd(std::exchange(healedNow_, {}));
     lastSwapsUs_.clear();
     const auto earlier = [](const Arrival& a, const Arrival& b) { return a.lastSwap < b.lastSwap; };
     const std::int64_t first = std::min_element(arrivals.begin() + 1, arrivals.end(), earlier)->lastSwap;
@@ -86,6 +85,13 @@ void RankStatistics::addOdd(std::span<const int> ranks) {
     for (std::size_t rank = 0; rank < ranks_.size(); ++rank) {
         const bool odd = std::find(ranks.begin(), ranks.end(), static_cast<int>(rank)) != ranks.end();
         ++(odd ? ranks_[rank].differed : ranks_[rank].agreed);
+    }
+}
+
+void RankStatistics::addHealed(std::span<const int> ranks) {
+    for (const int rank : ranks) {
+        ++ranks_[static_cast<std::size_t>(rank)].healed;
+        healedNow_.push_back(rank);
     }
 }
 

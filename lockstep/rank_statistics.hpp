@@ -33,12 +33,15 @@ public:
     /// After a barrier. `arrivals` by rank, the master's first; their lastSwap is of the frame before, and left out
     /// where `swapsCount` is not set or the frame before was none.
     void add(std::span<const Arrival> arrivals, bool swapsCount);
-    /// Ranks whose sand or view was another one.
+    /// Ranks whose sand or view was another one, in a frame that ended the session.
     void addOdd(std::span<const int> ranks);
+    /// Ranks whose sand was another one in the frame that add() is called for next, and was healed.
+    void addHealed(std::span<const int> ranks);
 
     struct Rank {
         Rank();
         std::uint64_t agreed = 0, differed = 0;  // frames
+        std::uint64_t healed = 0;                // of those in which it differed
         Statistics keptMs;                       // frames for which the wall waited, and how long [ms]
         Statistics swapUs;                       // after the first swap of the frame [us]
     };
@@ -56,6 +59,7 @@ public:
 
 private:
     std::vector<Rank> ranks_;
+    std::vector<int> healedNow_;  // in the frame that is to be added
     std::uint64_t frames_ = 0;
     std::vector<std::uint32_t> lastSwapsUs_;
     std::vector<LastToCome> recent_;  // a ring; byMs 0 for a tie

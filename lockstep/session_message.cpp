@@ -8,25 +8,15 @@ files::Bytes SessionMessage::encode() const {
     writer.putBlock(scene);
     writer.putBlock(wall);
     writer.put(frameTimeout);
-    writer.put(static_cast<std::uint8_t>(fault.has_value() ? 1 : 0));
-    if (fault) {
-        writer.put(fault->rank);
-        writer.put(fault->frame);
-        writer.put(fault->column);
-        writer.put(fault->row);
-    }
     writer.put(static_cast<std::uint8_t>(skew.has_value() ? 1 : 0));
     if (skew) {
         writer.put(skew->rank);
         writer.put(skew->frame);
     }
     writer.put(spoiltShader);
-    writer.putVarint(slow.size());
-    for (const SlowDrawing& one : slow) {
-        writer.put(one.rank);
-        writer.put(one.milliseconds);
-        writer.put(one.frame);
-        writer.put(one.frames);
+    writer.putVarint(faults.size());
+    for (const Fault& fault : faults) {
+        fault.encode(writer);
     }
     writer.putBlock(state);
     return writer.take();
@@ -41,25 +31,14 @@ SessionMessage SessionMessage::decode(std::span<const std::uint8_t> bytes) {
     session.wall.assign(wall.begin(), wall.end());
     session.frameTimeout = reader.get<double>();
     if (reader.get<std::uint8_t>() != 0) {
-        session.fault.emplace();
-        session.fault->rank = reader.get<int>();
-        session.fault->frame = reader.get<std::uint64_t>();
-        session.fault->column = reader.get<int>();
-        session.fault->row = reader.get<int>();
-    }
-    if (reader.get<std::uint8_t>() != 0) {
         session.skew.emplace();
         session.skew->rank = reader.get<int>();
         session.skew->frame = reader.get<std::uint64_t>();
     }
     session.spoiltShader = reader.get<std::int32_t>();
-    const std::uint64_t slow = reader.getVarint();
-    for (std::uint64_t i = 0; i < slow; ++i) {
-        SlowDrawing& one = session.slow.emplace_back();
-        one.rank = reader.get<int>();
-        one.milliseconds = reader.get<std::uint32_t>();
-        one.frame = reader.get<std::uint64_t>();
-        one.frames = reader.get<std::uint64_t>();
+    const std::uint64_t faults = reader.getVarint();
+    for (std::uint64_t i = 0; i < faults; ++i) {
+        session.faults.push_back(Fault::decode(reader));
     }
     const auto state = reader.getBlock();
     session.state.assign(state.begin(), state.end());

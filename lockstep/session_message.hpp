@@ -2,35 +2,19 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "lockstep/cluster.hpp"
+#include "lockstep/fault.hpp"
 
 namespace lockstep {
 
-/// A fault made on purpose, so that tests can see it found: one bit of one cell of one rank flips before a frame.
-struct BitFlip {
-    int rank = 0;
-    std::uint64_t frame = 0;
-    int column = 0, row = 0;
-};
-
-/// Another: one rank sees one frame from a metre beside where the master sent it.
+/// A fault for tests: one rank sees one frame from a metre beside where the master sent it.
 struct SkewedView {
     int rank = 0;
     std::uint64_t frame = 0;
-};
-
-/// A third: one rank takes longer to draw, for some frames or from one on.
-struct SlowDrawing {
-    int rank = 0;
-    std::uint32_t milliseconds = 0;
-    std::uint64_t frame = 1;                                           // the first that is slow
-    std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();  // how many are
-    friend bool operator==(const SlowDrawing&, const SlowDrawing&) = default;
 };
 
 /// What every rank is told before the first frame. Ranks read no file: the scene and the wall come from the master.
@@ -38,11 +22,10 @@ struct SessionMessage {
     files::Bytes scene;       // sand::Scene::encode
     files::Bytes wall;        // walls::Wall::encode
     double frameTimeout = 0;  // [s] without a sign of the master, after which a rank ends
-    std::optional<BitFlip> fault;
     std::optional<SkewedView> skew;
     std::int32_t spoiltShader = 0;  // the rank that is to find one of its shaders broken, for tests; 0 for none
-    std::vector<SlowDrawing> slow{};
-    files::Bytes state{};  // sand::Terrain::encodeState, where a session goes on; empty: as the scene begins
+    std::vector<Fault> faults{};    // made on purpose
+    files::Bytes state{};           // sand::Terrain::encodeState, where a session goes on; empty: as the scene begins
 
     [[nodiscard]] files::Bytes encode() const;
     static SessionMessage decode(std::span<const std::uint8_t> bytes);

@@ -13,6 +13,7 @@ void WallFigures::encode(files::ByteWriter& writer) const {
     }
     writer.putVarint(agreed);
     writer.putVarint(divergences);
+    writer.putVarint(healed);
     writer.putVarint(swaps.size());
     for (const std::uint32_t swap : swaps) {
         writer.putVarint(swap);
@@ -30,6 +31,7 @@ WallFigures WallFigures::decode(files::ByteReader& reader) {
     }
     figures.agreed = reader.getVarint();
     figures.divergences = reader.getVarint();
+    figures.healed = reader.getVarint();
     const std::uint64_t swaps = reader.getVarint();
     for (std::uint64_t i = 0; i < swaps; ++i) {
         figures.swaps.push_back(static_cast<std::uint32_t>(reader.getVarint()));

@@ -22,7 +22,8 @@ struct WallFigures {
     double frameMs = 0;                // from swap to swap; 0 when there is none yet
     std::optional<Drag> slowest;       // of the last frames; none where no rank stands out
     std::uint64_t agreed = 0;          // frames in which all hashes were equal
-    std::uint64_t divergences = 0;     // frames in which they were not
+    std::uint64_t divergences = 0;     // frames in which they were not, at first
+    std::uint64_t healed = 0;          // times that a rank took the right sand from another
     std::vector<std::uint32_t> swaps;  // by rank from 1: after the first swap of a frame [us]; empty when unknown
 
     void encode(files::ByteWriter& writer) const;

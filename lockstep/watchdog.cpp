@@ -22,8 +22,13 @@ constexpr double kOthersAfterRank = 1;  // [s] that ranks which say nothing leav
 
 }  // namespace
 
-Watchdog::Watchdog(std::function<std::string()> describe, double limitSeconds, Role role)
-    : describe_(std::move(describe)), limit_(limitSeconds), role_(role), thread_([this] { look(); }) {}
+Watchdog::Watchdog(std::function<std::string()> describe, double limitSeconds, Role role,
+                   std::function<void(const std::string&)> lastWords)
+    : describe_(std::move(describe)),
+      limit_(limitSeconds),
+      role_(role),
+      lastWords_(std::move(lastWords)),
+      thread_([this] { look(); }) {}
 
 Watchdog::~Watchdog() {
     {
@@ -61,9 +66,13 @@ void Watchdog::look() {
         const double limit = startingUp_ ? std::max(limit_, kStartUpLimit) : limit_;
         if (seconds > limit + patience) {
             if (speaks) {
-                fmt::print(stderr, "sandwall: {} for {:.1f} s; the limit is {:.0f} s, ending the job\n", describe_(),
-                           seconds + later, limit);
+                const std::string line = fmt::format("{} for {:.1f} s; the limit is {:.0f} s, ending the job",
+                                                     describe_(), seconds + later, limit);
+                fmt::print(stderr, "sandwall: {}\n", line);
                 std::fflush(stderr);
+                if (lastWords_) {
+                    lastWords_(line);
+                }
             }
             std::_Exit(1);
         }

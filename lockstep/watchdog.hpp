@@ -23,8 +23,10 @@ public:
     enum class Role { master, firstRank, otherRank };
 
     /// `describe` names what is waited for; it runs on the watchdog's thread and must only read atomics. Of the ranks
-    /// only the first speaks.
-    Watchdog(std::function<std::string()> describe, double limitSeconds, Role role);
+    /// only the first speaks. `lastWords` runs there too, with the line that was said, before the process ends: it may
+    /// write to disk, and nothing that the main thread changes may be in it.
+    Watchdog(std::function<std::string()> describe, double limitSeconds, Role role,
+             std::function<void(const std::string&)> lastWords = {});
     ~Watchdog();
     Watchdog(const Watchdog&) = delete;
     Watchdog& operator=(const Watchdog&) = delete;
@@ -40,6 +42,7 @@ private:
     std::function<std::string()> describe_;
     double limit_;
     Role role_;
+    std::function<void(const std::string&)> lastWords_;
     std::atomic<bool> startingUp_{true};
     std::atomic<std::int64_t> armedAt_{0};  // [ns], 0 when nobody waits
     std::mutex mutex_;

@@ -20,17 +20,26 @@ std::string placeOf(const lockstep::Divergence::Odd& odd) {
 
 std::vector<std::string> describeDivergence(const DivergedFrame& diverged, const std::vector<std::string>& names,
                                             const std::filesystem::path& journal) {
+    using Judge = lockstep::Divergence::Judge;
     const lockstep::Divergence& divergence = diverged.divergence;
+    const std::string when = fmt::format("frame {}, step {}", diverged.frame, diverged.step);
+    if (divergence.odd.empty()) {
+        return {fmt::format("{}: hashes differed; computed afresh from memory, all are {:016x}", when,
+                            divergence.rightHash)};
+    }
     std::vector<std::string> lines;
     for (const lockstep::Divergence::Odd& odd : divergence.odd) {
-        lines.push_back(
-            fmt::format("frame {}, step {}: {} holds other sand than {} of {} ranks: {:016x} and not "
-                        "{:016x}, {}",
-                        diverged.frame, diverged.step, names[static_cast<std::size_t>(odd.rank)], divergence.agreeing,
-                        names.size(), odd.hash, divergence.majorityHash, placeOf(odd)));
+        lines.push_back(fmt::format("{}: {} holds other sand than {} of {} ranks: {:016x} and not {:016x}, {}", when,
+                                    names[static_cast<std::size_t>(odd.rank)], divergence.agreeing, names.size(),
+                                    odd.hash, divergence.rightHash, placeOf(odd)));
     }
-    if (divergence.tie) {
-        lines.emplace_back("no hash has a majority; the master's was taken for right");
+    if (divergence.judge != Judge::majority) {
+        lines.push_back(
+            divergence.judge == Judge::journal
+                ? fmt::format("{}: no hash has a majority; the journal says {:016x}", when, divergence.rightHash)
+                : fmt::format("{}: no hash has a majority, and no journal can tell; the master's was "
+                              "taken for right",
+                              when));
     }
     const std::filesystem::path replay =
         std::filesystem::read_symlink("/proc/self/exe").parent_path() / "sandwall-replay";
@@ -40,7 +49,7 @@ std::vector<std::string> describeDivergence(const DivergedFrame& diverged, const
 }
 
 void tell(const std::vector<std::string>& lines, const std::filesystem::path& file) {
-    std::ofstream kept(file);
+    std::ofstream kept(file, std::ios::app);
     for (const std::string& line : lines) {
         fmt::print(stderr, "sandwall: {}\n", line);
         kept << line << '\n';

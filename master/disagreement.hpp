@@ -14,16 +14,16 @@ namespace master {
 struct DivergedFrame {
     std::uint64_t frame = 0;
     std::uint64_t step = 0;
-    lockstep::Divergence divergence;
+    const lockstep::Divergence& divergence;
 };
 
-/// Who differs and where, a line each, and how to compute the right hash again from the journal. `names` are those of
-/// the ranks, the master's first.
+/// Who differs and where, a line each, who says what is right where no hash has a majority, and how to compute that
+/// hash again from the journal. `names` are those of the ranks, the master's first.
 [[nodiscard]] std::vector<std::string> describeDivergence(const DivergedFrame& diverged,
                                                           const std::vector<std::string>& names,
                                                           const std::filesystem::path& journal);
 
-/// Prints the lines on standard error, and keeps them in a file.
+/// Prints the lines on standard error, and adds them to a file.
 void tell(const std::vector<std::string>& lines, const std::filesystem::path& file);
 
 }  // namespace master

@@ -2,32 +2,47 @@
 #include "master/injection.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <limits>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "files/input_error.hpp"
 
 namespace master {
 namespace {
 
-constexpr std::string_view kInjections = "slow:rank=R,ms=MS[,frame=FIRST][,frames=COUNT]";
-constexpr std::uint64_t kMostMilliseconds = 10'000;
+constexpr std::uint64_t kMostMilliseconds = 10'000;   // of slow drawing
+constexpr std::uint64_t kLongestPartition = 600'000;  // [ms]
+constexpr std::uint64_t kMostSignal = 31;
 constexpr std::uint64_t kMostFrames = std::numeric_limits<std::uint64_t>::max();
+
+using Kind = lockstep::Fault::Kind;
+
+/// How each kind is written, in the order of Kind.
+constexpr std::array<std::string_view, lockstep::kFaultNames.size()> kUsage{
+    "slow:rank=R,ms=MS[,frame=FIRST][,frames=COUNT]",
+    "diverge:rank=R,frame=F[,column=C,row=W]",
+    "die:rank=R,frame=F[,signal=S]",
+    "hang:rank=R,frame=F",
+    "garbage:frame=F[,rank=R]",
+    "partition:ms=MS,frame=F[,rank=R]"};
 
 /// A number that a kind of fault takes.
 struct Key {
     std::string_view name;
-    std::uint64_t most;  // 1 is the least of every one
+    std::uint64_t least, most;
     std::uint64_t* value;
     bool needed = true;
     bool given = false;
 };
 
-void readNumber(std::string_view pair, std::span<Key> keys, const std::string& text) {
+void readNumber(std::string_view pair, std::span<Key> keys, const std::string& text, std::string_view usage) {
     const std::size_t equals = pair.find('=');
     for (Key& key : keys) {
         if (equals == std::string_view::npos || pair.substr(0, equals) != key.name || key.given) {
@@ -35,52 +50,92 @@ void readNumber(std::string_view pair, std::span<Key> keys, const std::string& t
         }
         const std::string_view digits = pair.substr(equals + 1);
         const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), *key.value);
-        if (error != std::errc() || end != digits.data() + digits.size() || *key.value < 1 || *key.value > key.most) {
-            const std::string most =
-                key.most == kMostFrames ? "a whole number from 1" : fmt::format("1 to {}", key.most);
+        if (error != std::errc() || end != digits.data() + digits.size() || *key.value < key.least ||
+            *key.value > key.most) {
+            const std::string most = key.most == kMostFrames ? fmt::format("a whole number from {}", key.least)
+                                                             : fmt::format("{} to {}", key.least, key.most);
             throw files::InputError(fmt::format("--inject {}: {} must be {}, got '{}'", text, key.name, most, digits));
         }
         key.given = true;
         return;
     }
-    throw files::InputError(fmt::format("--inject {}: '{}' is not understood; write {}", text, pair, kInjections));
+    throw files::InputError(fmt::format("--inject {}: '{}' is not understood; write {}", text, pair, usage));
 }
 
 /// Reads KEY=NUMBER,KEY=NUMBER,… into the values of the keys.
-void readNumbers(std::string_view pairs, std::span<Key> keys, const std::string& text) {
+void readNumbers(std::string_view pairs, std::span<Key> keys, const std::string& text, std::string_view usage) {
     while (!pairs.empty()) {
         const std::size_t comma = pairs.find(',');
-        readNumber(pairs.substr(0, comma), keys, text);
+        readNumber(pairs.substr(0, comma), keys, text, usage);
         pairs = comma == std::string_view::npos ? std::string_view() : pairs.substr(comma + 1);
     }
     for (const Key& key : keys) {
         if (key.needed && !key.given) {
-            throw files::InputError(fmt::format("--inject {}: {} is missing; write {}", text, key.name, kInjections));
+            throw files::InputError(fmt::format("--inject {}: {} is missing; write {}", text, key.name, usage));
         }
     }
 }
 
-lockstep::SlowDrawing readSlow(std::string_view pairs, int ranks, const std::string& text) {
-    lockstep::SlowDrawing slow;
-    std::uint64_t rank = 0, milliseconds = 0;
-    std::array<Key, 4> keys{{{"rank", static_cast<std::uint64_t>(ranks), &rank},
-                             {"ms", kMostMilliseconds, &milliseconds},
-                             {"frame", kMostFrames, &slow.frame, false},
-                             {"frames", kMostFrames, &slow.frames, false}}};
-    readNumbers(pairs, keys, text);
-    slow.rank = static_cast<int>(rank);
-    slow.milliseconds = static_cast<std::uint32_t>(milliseconds);
-    return slow;
+Kind kindOf(const std::string& text) {
+    const std::size_t colon = text.find(':');
+    const auto* const name =
+        std::find(lockstep::kFaultNames.begin(), lockstep::kFaultNames.end(), std::string_view(text).substr(0, colon));
+    if (name == lockstep::kFaultNames.end() || colon == std::string::npos) {
+        throw files::InputError(fmt::format("--inject {}: no such fault; write {}", text, fmt::join(kUsage, ", or ")));
+    }
+    return static_cast<Kind>(name - lockstep::kFaultNames.begin());
 }
 
 }  // namespace
 
-void inject(const std::string& text, int ranks, lockstep::SessionMessage& message) {
-    const std::size_t colon = text.find(':');
-    if (text.substr(0, colon) != "slow" || colon == std::string::npos) {
-        throw files::InputError(fmt::format("--inject {}: no such fault; write {}", text, kInjections));
+lockstep::Fault parseFault(const std::string& text, const FaultTargets& targets) {
+    lockstep::Fault fault;
+    fault.kind = kindOf(text);
+    const auto ranks = static_cast<std::uint64_t>(targets.ranks);
+    const auto last = [](int count) { return static_cast<std::uint64_t>(count) - 1; };
+    std::uint64_t rank = 0, milliseconds = 0, signal = static_cast<std::uint64_t>(fault.signal), column = 0, row = 0;
+    const Key frame{"frame", 1, kMostFrames, &fault.frame};
+    const Key ofAll{"rank", 0, ranks, &rank};
+    std::vector<Key> keys;
+    switch (fault.kind) {
+        case Kind::slow:
+            keys = {{"rank", 1, ranks, &rank},
+                    {"ms", 1, kMostMilliseconds, &milliseconds},
+                    {"frame", 1, kMostFrames, &fault.frame, false},
+                    {"frames", 1, kMostFrames, &fault.frames, false}};
+            break;
+        case Kind::diverge:
+            keys = {ofAll,
+                    frame,
+                    {"column", 0, last(targets.columns), &column, false},
+                    {"row", 0, last(targets.rows), &row, false}};
+            break;
+        case Kind::die:
+            keys = {ofAll, frame, {"signal", 1, kMostSignal, &signal, false}};
+            break;
+        case Kind::hang:
+            keys = {ofAll, frame};
+            break;
+        case Kind::garbage:
+            keys = {{"rank", 1, ranks, &rank, false}, frame};
+            break;
+        case Kind::partition:
+            keys = {{"rank", 1, ranks, &rank, false}, frame, {"ms", 1, kLongestPartition, &milliseconds}};
+            break;
     }
-    message.slow.push_back(readSlow(std::string_view(text).substr(colon + 1), ranks, text));
+    readNumbers(std::string_view(text).substr(text.find(':') + 1), keys, text,
+                kUsage.at(static_cast<std::size_t>(fault.kind)));
+    fault.rank = keys.front().given ? static_cast<int>(rank) : lockstep::Fault::kLink;
+    if (fault.rank == lockstep::Fault::kLink && !targets.link) {
+        throw files::InputError(fmt::format(
+            "--inject {}: without a rank it strikes the link to the haptic server, and there is none; name a rank",
+            text));
+    }
+    fault.milliseconds = static_cast<std::uint32_t>(milliseconds);
+    fault.signal = static_cast<int>(signal);
+    fault.column = static_cast<int>(column);
+    fault.row = static_cast<int>(row);
+    return fault;
 }
 
 }  // namespace master

@@ -3,12 +3,19 @@
 
 #include <string>
 
-#include "lockstep/session_message.hpp"
+#include "lockstep/fault.hpp"
 
 namespace master {
 
-/// Adds a fault made on purpose to what the ranks are told. `text` is KIND:KEY=NUMBER,KEY=NUMBER,… as --inject takes
-/// it (docs/operator.md), for a wall of so many render ranks. Throws files::InputError that says what can be written.
-void inject(const std::string& text, int ranks, lockstep::SessionMessage& message);
+/// What a fault can strike.
+struct FaultTargets {
+    int ranks = 0;              // that draw
+    int columns = 0, rows = 0;  // [cell], of the sand
+    bool link = false;          // whether there is a haptic server to be linked to
+};
+
+/// Reads a fault made on purpose: KIND:KEY=NUMBER,KEY=NUMBER,… as --inject takes it (docs/operator.md). Throws
+/// files::InputError that says what can be written.
+[[nodiscard]] lockstep::Fault parseFault(const std::string& text, const FaultTargets& targets);
 
 }  // namespace master

@@ -30,7 +30,7 @@ struct Options {
     std::string pattern = "none";
     std::vector<std::string> layers;
     std::vector<std::string> injections;
-    std::string fault, skew;
+    std::string skew;
     int spoiltShader = 0;
     bool noPictures = false;
     master::SessionOptions session;
@@ -40,19 +40,6 @@ struct Options {
     haptic_bridge::LinkOptions link;
     int sandThreads = 1;
 };
-
-/// "rank=5,frame=20,column=100,row=200"
-lockstep::BitFlip parseFault(const std::string& text) {
-    lockstep::BitFlip flip;
-    int used = 0;
-    if (std::sscanf(text.c_str(), "rank=%d,frame=%lu,column=%d,row=%d%n", &flip.rank, &flip.frame, &flip.column,
-                    &flip.row, &used) != 4 ||
-        used != static_cast<int>(text.size())) {
-        throw files::InputError(
-            fmt::format("--flip-bit: '{}' is not rank=R,frame=F,column=C,row=W with whole numbers", text));
-    }
-    return flip;
-}
 
 /// "rank=5,frame=20"
 lockstep::SkewedView parseSkew(const std::string& text) {
@@ -174,19 +161,18 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
                      world.wall.encode(),
                      options.session.frameTimeout,
                      std::nullopt,
-                     std::nullopt,
                      options.spoiltShader,
                      {},
                      options.session.resumed ? options.session.resumed->state : files::Bytes()};
+    const master::FaultTargets targets{world.wall.ranks(), world.scene.rules.columns, world.scene.rules.rows,
+                                       options.session.server.has_value()};
     for (const std::string& text : options.injections) {
-        master::inject(text, world.wall.ranks(), world.message);
+        options.session.drills.push_back({text, master::parseFault(text, targets)});
     }
-    if (!options.fault.empty()) {
-        const lockstep::BitFlip& flip = world.message.fault.emplace(parseFault(options.fault));
-        if (flip.rank < 1 || flip.rank > world.wall.ranks() || flip.column < 0 || flip.row < 0 ||
-            flip.column >= world.scene.rules.columns || flip.row >= world.scene.rules.rows) {
-            throw files::InputError(fmt::format("--flip-bit: {} names no render rank or no cell", options.fault));
-        }
+    options.session.drills =
+        master::withoutDone(std::move(options.session.drills), options.session.out, options.resume);
+    for (const master::Drill& drill : options.session.drills) {
+        world.message.faults.push_back(drill.fault);
     }
     if (!options.skew.empty()) {
         world.message.skew = parseSkew(options.skew);
@@ -259,8 +245,6 @@ void describeOptions(CLI::App& app, Options& options) {
     app.add_flag("--control-stdin", session.readInput,
                  "obeys lines on standard input (docs/operator.md); its end is a stop");
     app.add_option("--inject", options.injections, "a fault on purpose, such as slow:rank=5,ms=30 (docs/operator.md)");
-    app.add_option("--flip-bit", options.fault,
-                   "for tests: rank=R,frame=F,column=C,row=W flips one bit of that replica");
     app.add_option("--spoil-shader", options.spoiltShader, "for tests: a shader of that rank does not compile");
     app.add_option("--skew-view", options.skew, "for tests: rank=R,frame=F shows that rank another view");
 }

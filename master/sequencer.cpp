@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -161,6 +162,7 @@ std::vector<TimedStep> Sequencer::next(const sand::Terrain& terrain, std::uint64
             }
         }
     }
+    startDrills();
     return steps;
 }
 
@@ -230,6 +232,17 @@ void Sequencer::distrustServer() {
     recent_ = {};  // it holds what that server has said of the sand
     client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_, security_);
     takeOver("the server's sand differs from the wall's, it must start again from the wall's");
+}
+
+void Sequencer::startDrills() {
+    if (!client_ || !(linked() || streaming())) {
+        return;
+    }
+    for (const lockstep::Fault& fault : std::exchange(drills_, {})) {
+        const bool silence = fault.kind == lockstep::Fault::Kind::partition;
+        client_->drill(silence ? haptic_bridge::LinkDrill::silence : haptic_bridge::LinkDrill::garbage,
+                       std::chrono::milliseconds(fault.milliseconds));
+    }
 }
 
 std::optional<haptic_bridge::Report> Sequencer::report() const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "haptic_bridge/client.hpp"
+#include "lockstep/fault.hpp"
 #include "master/position_source.hpp"
 #include "sand/terrain.hpp"
 
@@ -50,6 +51,9 @@ public:
     /// The server's replica holds other sand than the wall: it is let go, and starts again from the wall's state.
     void distrustServer();
 
+    /// A fault of the link on purpose: garbage, or a partition. It befalls the link when there is one.
+    void drill(const lockstep::Fault& fault) { drills_.push_back(fault); }
+
     /// Whether steps are still awaited from a server that has only just started.
     [[nodiscard]] bool starting() const { return source_ == Source::starting; }
     [[nodiscard]] bool linked() const { return source_ == Source::server; }
@@ -67,6 +71,7 @@ private:
     enum class Source : std::uint8_t { starting, server, granting, own };
 
     void followLink(const sand::Terrain& terrain, std::uint64_t stateHash);
+    void startDrills();
     void sayLink(const haptic_bridge::LinkStatus& status);
     void grant(const sand::Terrain& terrain, std::uint64_t stateHash);
     void takeOver(const std::string& why);
@@ -92,10 +97,11 @@ private:
     std::optional<haptic_bridge::Report> earlierReport_;
     std::deque<sand::Edit> edits_;  // asked for, and in no step yet
     PositionSource positions_;
-    std::vector<files::Bytes> ticks_;  // of a server that was let go
-    double share_ = 1;                 // of the force
-    double toldShare_ = 1;             // that the server knows
-    std::uint32_t toldEpoch_ = 0;      // in which the server was asked for the first of them
+    std::vector<files::Bytes> ticks_;      // of a server that was let go
+    std::vector<lockstep::Fault> drills_;  // that wait for a link
+    double share_ = 1;                     // of the force
+    double toldShare_ = 1;                 // that the server knows
+    std::uint32_t toldEpoch_ = 0;          // in which the server was asked for the first of them
     double ownStepsOwed_ = 0;
     std::int64_t lastOwnNs_ = 0;
 };

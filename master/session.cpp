@@ -12,7 +12,6 @@
 #include "files/input_error.hpp"
 #include "lockstep/build_id.hpp"
 #include "lockstep/session_message.hpp"
-#include "master/disagreement.hpp"
 #include "master/start_up.hpp"
 #include "master/wall_pictures.hpp"
 
@@ -31,8 +30,8 @@ constexpr double kAuditSeconds = 1.0;  // in which all of memory is hashed again
 /// What a session before has left in the folder must not pass for this one's, whatever becomes of this one.
 void forgetOldResults(const std::filesystem::path& folder) {
     std::error_code none;  // usually there is nothing
-    for (const char* name :
-         {"summary.json", "divergence.txt", "wall.png", "wall_left.png", "wall_right.png", "wall_anaglyph.png"}) {
+    for (const char* name : {"summary.json", "divergence.txt", "failure.json", "wall.png", "wall_left.png",
+                             "wall_right.png", "wall_anaglyph.png"}) {
         std::filesystem::remove(folder / name, none);
     }
     std::vector<std::filesystem::path> tiles;
@@ -46,6 +45,14 @@ void forgetOldResults(const std::filesystem::path& folder) {
         std::filesystem::remove(tile, none);
     }
     Film::forget(folder);
+}
+
+std::vector<lockstep::Fault> faultsOf(const std::vector<Drill>& drills) {
+    std::vector<lockstep::Fault> faults;
+    for (const Drill& drill : drills) {
+        faults.push_back(drill.fault);
+    }
+    return faults;
 }
 
 void sleepNs(std::int64_t ns) { std::this_thread::sleep_for(std::chrono::nanoseconds(ns)); }
@@ -65,12 +72,16 @@ Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, con
       options_(std::move(options)),
       terrain_(scene, options_.sweeps),
       names_(namesOf(cluster, wall)),
-      barrier_(cluster, names_, options_.frameTimeout),
+      barrier_(cluster, names_, options_.frameTimeout,
+               [this](int rank, const std::string& line) {
+                   (void)writeFailure(failureOf("hung", rank, line), options_.out);
+               }),
       views_(wall, scene, options_.tracker),
       viewProof_(wall.encode()),
       sequencer_(options_.server, scene, options_.pace, options_.resumed ? options_.resumed->epoch : 0,
                  options_.security),
       operator_(options_.readInput),
+      faults_(faultsOf(options_.drills), lockstep::kMaster),
       rankStatistics_(names_.size()) {
     if (options_.recording) {
         options_.steps = std::min(options_.steps, options_.recording->lastStep());
@@ -182,10 +193,10 @@ void Session::compareWithRecording() {
     }
     const auto recorded = options_.recording->hashAfter(terrain_.stepNumber());
     if (recorded && *recorded != terrain_.stateHash()) {
-        fmt::print(stderr,
-                   "after step {}: the session had {:016x}, now it is {:016x}; the recording is of another version or "
-                   "damaged, and ends here\n",
-                   terrain_.stepNumber(), *recorded, terrain_.stateHash());
+        strayLine_ = fmt::format(
+            "after step {}: the session had {:016x}, now it is {:016x}; the recording is of another version or "
+            "damaged, and ends here",
+            terrain_.stepNumber(), *recorded, terrain_.stateHash());
         strayed_ = true;
     }
 }
@@ -196,7 +207,9 @@ bool Session::showFrame() {
     std::vector<TimedStep> steps = awaitSteps();
     const std::uint64_t hashBefore = hash_;
     std::size_t bytes = 0;
-    const lockstep::FrameMessage message = barrier_.begin(prepare(steps), bytes);
+    const lockstep::FrameMessage prepared = prepare(steps);
+    startDrills();
+    const lockstep::FrameMessage message = barrier_.begin(prepared, bytes);
     const std::int64_t broadcast = nowNs();
     summary_.broadcastBytes.add(static_cast<double>(bytes));
     keepTicks();
@@ -204,18 +217,16 @@ bool Session::showFrame() {
         // The ranks draw meanwhile; none of them swaps before the master has come to the barrier.
         keepJournal({message.frame, hashBefore, message.steps});
     }
+    faults_.strike(message.frame, terrain_);
     applySteps(steps);
     terrain_.audit(static_cast<int>(message.auditTiles));
     hash_ = terrain_.stateHash();
 
-    const lockstep::Verdict verdict =
-        barrier_.meet({message.frame, nowNs(), lastSwap_, 0, hash_, viewProof_.hash(message.view)}, nextFrame());
-    const std::int64_t swapped = nowNs();
-    if (verdict != lockstep::Verdict::equal) {
-        ++summary_.divergences;
-        reportDisagreement(verdict);
+    const lockstep::Arrival mine{message.frame, nowNs(), lastSwap_, 0, hash_, viewProof_.hash(message.view)};
+    if (!reachAgreement(barrier_.meet(mine, nextFrame()), mine)) {
         return false;
     }
+    const std::int64_t swapped = nowNs();
     tellRecovery();
     measureSwaps(swapped);
     measureLatency(steps, broadcast, swapped);
@@ -239,7 +250,8 @@ bool Session::showFrame() {
 
 lockstep::WallFigures Session::wallFigures() const {
     const std::uint64_t agreed = rankStatistics_.frames();
-    return {lastFrameMs_, rankStatistics_.recentDrag(), agreed, summary_.divergences, rankStatistics_.lastSwapsUs()};
+    return {lastFrameMs_,    rankStatistics_.recentDrag(), agreed, summary_.divergences,
+            summary_.healed, rankStatistics_.lastSwapsUs()};
 }
 
 void Session::measureSwaps(std::int64_t now) {
@@ -299,29 +311,6 @@ void Session::sayProgress(bool last) {
     std::fflush(stdout);
     lastProgress_ = now;
     lastProgressFrame_ = frame_;
-}
-
-void Session::reportDisagreement(lockstep::Verdict verdict) {
-    const lockstep::Watched watched(barrier_.watchdog());
-    std::vector<std::string> lines;
-    std::vector<int> odd;
-    if (verdict == lockstep::Verdict::otherSand) {
-        const lockstep::Divergence divergence = *lockstep::findDivergence(cluster_, terrain_);
-        lines =
-            describeDivergence({frame_, terrain_.stepNumber(), divergence}, names_, options_.out / "session.journal");
-        for (const lockstep::Divergence::Odd& one : divergence.odd) {
-            odd.push_back(one.rank);
-        }
-    } else {
-        lines = lockstep::describeOtherViews(barrier_.arrivals(), names_);
-        for (std::size_t rank = 1; rank < names_.size(); ++rank) {
-            if (barrier_.arrivals()[rank].viewHash != barrier_.arrivals()[lockstep::kMaster].viewHash) {
-                odd.push_back(static_cast<int>(rank));
-            }
-        }
-    }
-    rankStatistics_.addOdd(odd);
-    tell(lines, options_.out / "divergence.txt");
 }
 
 void Session::finish(bool agreed) {

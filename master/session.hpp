@@ -17,6 +17,8 @@
 #include "lockstep/rank_statistics.hpp"
 #include "lockstep/view_agreement.hpp"
 #include "master/control_socket.hpp"
+#include "master/drills.hpp"
+#include "master/failure_report.hpp"
 #include "master/film.hpp"
 #include "master/journal_keeper.hpp"
 #include "master/operator_command.hpp"
@@ -58,6 +60,7 @@ struct SessionOptions {
     Failure failure;                                // that made it stop
     bool film = false;                              // every frame becomes a picture, and there are no others
     std::optional<FilmEye> filmEye;
+    std::vector<Drill> drills;  // still to happen
 };
 
 /// The frame loop of the master: number, broadcast, journal, apply, agree, swap; 60 times a second if the wall can.
@@ -122,7 +125,16 @@ private:
     void measureLatency(const std::vector<haptic_bridge::TimedStep>& steps, std::int64_t broadcast,
                         std::int64_t swapped);
     void sayProgress(bool last);
-    void reportDisagreement(lockstep::Verdict verdict);
+    /// Until all agree; false when the session has to end, which has then been said.
+    bool reachAgreement(lockstep::Verdict verdict, lockstep::Arrival mine);
+    bool healSand(bool again);
+    [[nodiscard]] std::unique_ptr<sand::Terrain> sandOfJournal();
+    [[nodiscard]] std::optional<int> brokenAmong(const std::vector<int>& odd) const;
+    [[nodiscard]] std::string giveUp(int rank, bool again);
+    void reportOtherViews();
+    void reportNonsense();
+    [[nodiscard]] FailureReport failureOf(const std::string& what, int rank, const std::string& line) const;
+    void startDrills();
     void finish(bool agreed);
 
     const lockstep::Cluster& cluster_;
@@ -153,11 +165,12 @@ private:
         bool capture = false;
     };
     std::vector<Errand> errands_;
-    std::deque<Asker> askers_;  // whose edits are in no step yet
-    Clients captures_;          // who wants pictures of the next frame
-    bool paused_ = false;       // no steps are taken
-    bool standing_ = false;     // likewise, for want of room on the disk
-    double fps_ = 0;            // over the last second or so
+    std::deque<Asker> askers_;             // whose edits are in no step yet
+    Clients captures_;                     // who wants pictures of the next frame
+    bool paused_ = false;                  // no steps are taken
+    bool standing_ = false;                // likewise, for want of room on the disk
+    double fps_ = 0;                       // over the last second or so
+    const lockstep::FaultsOfRank faults_;  // of the master itself
     Summary summary_;
     lockstep::RankStatistics rankStatistics_;
     double lastFrameMs_ = 0;
@@ -168,7 +181,8 @@ private:
     std::uint64_t lastProgressFrame_ = 0;
     double lastSkewUs_ = 0;
     bool stopping_ = false;
-    bool strayed_ = false;  // from the recording
+    bool strayed_ = false;   // from the recording
+    std::string strayLine_;  // how, while it may still be the master's own memory that strayed
 };
 
 }  // namespace master

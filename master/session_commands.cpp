@@ -247,6 +247,7 @@ std::string Session::status() const {
                  {"material", materialNow(material_)},
                  {"state_hash", fmt::format("{:016x}", hash_)},
                  {"divergences", summary_.divergences},
+                 {"healed", summary_.healed},
                  {"server_divergences", summary_.serverDivergences},
                  {"edits", summary_.edits},
                  {"edits_waiting", askers_.size()},

@@ -2,11 +2,7 @@
 // What a session writes to its journal, and how it goes on when the disk refuses.
 #include <fmt/format.h>
 
-#include <cstdio>
-#include <nlohmann/json.hpp>
-
 #include "files/input_error.hpp"
-#include "files/whole_file.hpp"
 #include "lockstep/build_id.hpp"
 #include "master/session.hpp"
 
@@ -81,19 +77,7 @@ void Session::keepTicks() {
 void Session::endForDisk(const DiskFailure& failure) {
     const std::string message = fmt::format(
         "{}, which is not shown: the session ends (--journal best-effort would go on without)", failure.what());
-    try {
-        files::WholeFile file(options_.out / "failure.json");
-        file.stream() << nlohmann::ordered_json{{"what", "disk"},
-                                                {"rank", lockstep::kMaster},
-                                                {"host", lockstep::hostName()},
-                                                {"tile", nullptr},
-                                                {"message", message}}
-                             .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-                      << '\n';
-        file.keepSynced();
-    } catch (const files::InputError& error) {
-        fmt::print(stderr, "sandwall: {}\n", error.what());
-    }
+    (void)writeFailure(failureOf("disk", lockstep::kMaster, message), options_.out);
     throw DiskFailure(message);
 }
 

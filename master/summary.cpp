@@ -97,6 +97,7 @@ ordered_json rankPart(const Summary& summary, std::size_t index) {
             {"swap_us", spread(seen.swapUs)},
             {"frames_agreed", seen.agreed},
             {"frames_differed", seen.differed},
+            {"healed", seen.healed},
             {"views",
              {{"skipped", report.viewsSkipped},
               {"in_part", report.viewsInPart},
@@ -115,6 +116,8 @@ ordered_json jsonOf(const Summary& summary) {
     json["ranks"] = summary.ranks;
     json["state_hash"] = fmt::format("{:016x}", summary.stateHash);
     json["divergences"] = summary.divergences;
+    json["healed"] = summary.healed;
+    json["master_healed"] = summary.rankStatistics.empty() ? 0 : summary.rankStatistics.front().healed;
     json["server_divergences"] = summary.serverDivergences;
     json["volume_initial"] = summary.volumeInitial;
     json["volume_final"] = summary.volumeFinal;
@@ -142,8 +145,8 @@ ordered_json jsonOf(const Summary& summary) {
     json["broadcast_bytes"] = spread(summary.broadcastBytes);
     json["haptic"] = hapticPart(summary);
     if (const auto& head = summary.tracking) {
-        json["head_tracking"] = {{"packets", head->packets}, {"refused", head->refused}, {"old", head->old},
-                                 {"absent", head->absent},   {"lost", head->timesLost},  {"outside", head->outside},
+        json["head_tracking"] = {{"packets", head->packets},    {"refused", head->refused}, {"old", head->old},
+                                 {"absent", head->absent},      {"lost", head->timesLost},  {"outside", head->outside},
                                  {"strangers", head->strangers}};
     }
     json["master_memory_bytes"] = summary.masterResidentBytes;
@@ -204,11 +207,11 @@ void writeSummary(const Summary& summary, const std::filesystem::path& file) {
 std::string describe(const Summary& summary) {
     std::string text = fmt::format(
         "{} on {}: {} steps in {} frames, {:.1f} fps, {} render ranks\n"
-        "  sand      state hash {:016x}, {} divergences, volume {} + outflow {} = {} at the start: {}\n"
+        "  sand      state hash {:016x}, {} divergences, {} healed, volume {} + outflow {} = {} at the start: {}\n"
         "  wall      swap skew p50 {:.0f} us, p99 {:.0f} us, max {:.0f} us; frame message p50 {:.0f} bytes\n",
         summary.scene, summary.wall, summary.steps, summary.frames, framesPerSecond(summary), summary.ranks,
-        summary.stateHash, summary.divergences, summary.volumeFinal, summary.volumeOutflow, summary.volumeInitial,
-        summary.volumeFinal + summary.volumeOutflow == summary.volumeInitial ? "exact" : "WRONG",
+        summary.stateHash, summary.divergences, summary.healed, summary.volumeFinal, summary.volumeOutflow,
+        summary.volumeInitial, summary.volumeFinal + summary.volumeOutflow == summary.volumeInitial ? "exact" : "WRONG",
         summary.skewUs.percentile(0.5), summary.skewUs.percentile(0.99), summary.skewUs.largest(),
         summary.broadcastBytes.percentile(0.5));
     if (summary.latency.wholeWay.count() > 0) {

@@ -32,8 +32,9 @@ struct Summary {
     std::uint64_t edits = 0;  // steps in which an operator asked something of the sand
     int ranks = 0;
     std::uint64_t stateHash = 0;
-    std::uint64_t divergences = 0;                                       // frames on which the ranks' sand differed
-    std::uint64_t serverDivergences = 0;                                 // frames on which the haptic server's did
+    std::uint64_t divergences = 0;        // frames on which the ranks' sand differed
+    std::uint64_t healed = 0;             // times that a rank took the right sand from another
+    std::uint64_t serverDivergences = 0;  // frames on which the haptic server's did
     std::int64_t volumeInitial = 0, volumeFinal = 0, volumeOutflow = 0;  // [unit · cell]
     double seconds = 0;                                                  // from the first frame to the last
     lockstep::Statistics frameMs;                                        // from swap to swap

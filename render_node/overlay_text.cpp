@@ -57,7 +57,8 @@ std::vector<TileStatistics::Line> TileStatistics::longLines() const {
     std::vector<Line> lines{{fmt::format("{} ON {}", nameOf(rank_), host_)},
                             {fmt::format("{:.1f} FPS, FRAME {}", mean > 0 ? 1000 / mean : 0, frame_)}};
     if (wall_.divergences > 0) {
-        lines.push_back({fmt::format("HASHES DIFFERED IN {} FRAMES", wall_.divergences), Line::Kind::bad});
+        lines.push_back(
+            {fmt::format("DIFFERED IN {} FRAMES, HEALED {}", wall_.divergences, wall_.healed), Line::Kind::bad});
     } else {
         lines.push_back({fmt::format("HASHES AGREED IN {} FRAMES", wall_.agreed), Line::Kind::good});
     }

@@ -53,6 +53,11 @@ void TilePainter::showAs(const walls::Wall& wall, const walls::Tile& tile) {
     overlay_.reset();
 }
 
+void TilePainter::drawAnew() {
+    memories_.assign(memories_.size(), {});
+    shown_.assign(shown_.size(), lockstep::Pattern::none);
+}
+
 void TilePainter::paint(sand::Terrain& terrain, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye,
                         const TileFigures& figures) {
     sand_.setLayers(view.layers);

@@ -41,6 +41,9 @@ public:
     /// From now on as another stereo mode of the same wall, on the same outputs. `wall` and `tile` must outlive it.
     void showAs(const walls::Wall& wall, const walls::Tile& tile);
 
+    /// Has the next paint() draw every eye whole: what was drawn of the sand cannot be trusted.
+    void drawAnew();
+
     /// Brings every eye that differs up to date with `terrain` as `view` sees it, or with its test pattern, and puts
     /// them together; with `oneEye` only that which the frame shows, the left one in even frames. `figures` are shown
     /// over the sand where the view has Layer::statistics. Does not wait for GL.

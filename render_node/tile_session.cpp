@@ -3,10 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <memory>
 #include <optional>
-#include <thread>
 #include <vector>
 
 #include "lockstep/build_id.hpp"
@@ -14,6 +12,7 @@
 #include "lockstep/divergence.hpp"
 #include "lockstep/frame_barrier.hpp"
 #include "lockstep/frame_message.hpp"
+#include "lockstep/healing.hpp"
 #include "lockstep/screenshots.hpp"
 #include "lockstep/session_message.hpp"
 #include "lockstep/statistics.hpp"
@@ -34,6 +33,7 @@ public:
                 const sand::Erosion::Options& sweeps)
         : cluster_(cluster),
           message_(message),
+          faults_(message.faults, cluster.rank()),
           wall_(walls::Wall::decode(message.wall)),
           shown_(wall_),
           tile_(wall_.tiles.at(static_cast<std::size_t>(cluster.rank() - 1))),
@@ -56,7 +56,7 @@ public:
     /// As the master speaks of it.
     [[nodiscard]] std::string name() const { return fmt::format("rank {} (tile {})", tile_.rank, tile_.name); }
 
-    /// Frames until the last one, or until replicas differ.
+    /// Frames until the last one, or until the ranks cannot agree.
     void run() {
         const std::int64_t clockAhead = lockstep::clockAheadOfMaster(cluster_);
         lockstep::FrameBarrier barrier(cluster_, {}, message_.frameTimeout);
@@ -70,27 +70,27 @@ public:
             changeStereo(frame.view);
             const std::int64_t start = nowNs();
             figures.wall = std::move(frame.figures).value_or(lockstep::WallFigures{});
-            // Known of the frame before, whose mode may have been another.
-            const bool inTurn = context_->showsEyesInTurn() && shown_.stereo == walls::Stereo::active;
-            painter_->paint(*terrain_, frame.view, frame.frame, inTurn && !frame.capture, figures);
-            context_->present(painter_->outputs(), frame.frame);
-            drawSlowly(frame.frame);
+            draw(frame, figures);
+            faults_.delay(frame.frame);
             const std::int64_t drawn = nowNs();
             figures.drawMs = static_cast<double>(drawn - start) * 1e-6;
             drawMs_.add(figures.drawMs);
             const std::uint64_t hash = terrain_->stateHash();
             const std::int64_t arrived = nowNs();
-            const lockstep::Verdict verdict = barrier.meet({frame.frame, arrived - clockAhead, lastSwap, drawn - start,
-                                                            hash, viewProof_.hash(frame.view), firstKey()});
+            if (faults_.garbles(frame.frame)) {
+                barrier.garble();
+            }
+            const lockstep::Arrival mine{frame.frame, arrived - clockAhead,        lastSwap,  drawn - start,
+                                         hash,        viewProof_.hash(frame.view), firstKey()};
+            if (!agree(barrier, mine, frame, figures)) {
+                (void)lockstep::gatherReports(cluster_, report());
+                return;
+            }
             // Nobody comes here before all have agreed. Off screen, to swap is to let the pictures count.
             context_->swap();
             lastSwap = nowNs() - clockAhead;
             figures.waitMs = static_cast<double>(nowNs() - arrived) * 1e-6;
             waitMs_.add(figures.waitMs);
-            if (verdict != lockstep::Verdict::equal) {
-                leave(verdict);
-                return;
-            }
             more = !frame.stop;
             if (frame.stop) {
                 (void)lockstep::gatherReports(cluster_, report());
@@ -103,22 +103,39 @@ public:
 
 private:
     void applyFaults(lockstep::FrameMessage& frame) {
-        const int rank = cluster_.rank();
-        if (const auto& flip = message_.fault; flip && flip->rank == rank && flip->frame == frame.frame) {
-            terrain_->corrupt(flip->column, flip->row);
-        }
-        if (const auto& skew = message_.skew; skew && skew->rank == rank && skew->frame == frame.frame) {
+        faults_.strike(frame.frame, *terrain_);
+        if (const auto& skew = message_.skew; skew && skew->rank == cluster_.rank() && skew->frame == frame.frame) {
             frame.view.head[0] += 1;
         }
     }
 
-    /// A fault on purpose. It sleeps: a slow graphics card leaves the cores alone, too.
-    void drawSlowly(std::uint64_t frame) const {
-        for (const lockstep::SlowDrawing& slow : message_.slow) {
-            if (slow.rank == cluster_.rank() && frame >= slow.frame && frame - slow.frame < slow.frames) {
-                std::this_thread::sleep_for(std::chrono::milliseconds(slow.milliseconds));
+    /// What the wall shows of a frame, as the sand now is.
+    void draw(const lockstep::FrameMessage& frame, const TileFigures& figures) {
+        // Known of the frame before, whose mode may have been another.
+        const bool inTurn = context_->showsEyesInTurn() && shown_.stereo == walls::Stereo::active;
+        painter_->paint(*terrain_, frame.view, frame.frame, inTurn && !frame.capture, figures);
+        context_->present(painter_->outputs(), frame.frame);
+    }
+
+    /// Meets the others with what was drawn; where sand differs, has it healed and meets them again. False: the master
+    /// says why the session ends, and ends with the status for it.
+    bool agree(lockstep::FrameBarrier& barrier, lockstep::Arrival mine, const lockstep::FrameMessage& frame,
+               const TileFigures& figures) {
+        lockstep::Verdict verdict = barrier.meet(mine);
+        while (verdict == lockstep::Verdict::otherSand) {
+            (void)lockstep::findDivergence(barrier, *terrain_);
+            const lockstep::Healing healing = lockstep::heal(barrier, *terrain_);
+            if (healing == lockstep::Healing::ended) {
+                return false;
             }
+            if (healing == lockstep::Healing::healed) {
+                painter_->drawAnew();
+                draw(frame, figures);
+            }
+            mine.stateHash = terrain_->stateHash();
+            verdict = barrier.meet(mine);
         }
+        return verdict == lockstep::Verdict::equal;
     }
 
     /// As the operator has it; the master has looked whether the outputs can show that.
@@ -140,14 +157,6 @@ private:
     [[nodiscard]] char firstKey() {
         const std::string keys = context_->takeKeys();
         return keys.empty() ? '\0' : keys.front();
-    }
-
-    /// The master says what differs, and ends with the status for it.
-    void leave(lockstep::Verdict verdict) {
-        if (verdict == lockstep::Verdict::otherSand) {
-            (void)lockstep::findDivergence(cluster_, *terrain_);
-        }
-        (void)lockstep::gatherReports(cluster_, report());
     }
 
     void sendPictures() const {
@@ -180,6 +189,7 @@ private:
 
     const lockstep::Cluster& cluster_;
     const lockstep::SessionMessage& message_;
+    lockstep::FaultsOfRank faults_;
     walls::Wall wall_;   // as the session began
     walls::Wall shown_;  // in the mode of the last frame; the painter looks at it
     const walls::Tile& tile_;

@@ -90,32 +90,6 @@ TEST_F(Lockstep, ASessionLeavesItsPicturesAndItsFigures) {
     EXPECT_GT(result["haptic_period_us"]["p50"].get<double>(), 0);
 }
 
-TEST_F(Lockstep, AnIdleFlippedBitIsNamedWithRankAndTile) {
-    const Ended ended =
-        runToEnd({"--wall", wall(2, 2), "--scene", scene(), "--device", "script:gis", "--pace", "fast", "--steps",
-                  "100000", "--out", out(), "--flip-bit", "rank=3,frame=20,column=5,row=120"});
-    EXPECT_EQ(ended.status, 1) << ended.output;
-    EXPECT_NE(ended.output.find("rank 3 (tile r2c1) on " + host() + " holds other sand than 4 of 5 ranks"),
-              std::string::npos)
-        << ended.output;
-    EXPECT_NE(ended.output.find("first in hash tile 12 (columns 0..31, rows 96..127), 1 cells of it"),
-              std::string::npos)
-        << ended.output;
-    EXPECT_EQ(summary()["divergences"], 1);
-    // The command it prints gives the hash that it says is right.
-    const std::string before = "reproduce the right hash with: ";
-    const auto at = ended.output.find(before);
-    ASSERT_NE(at, std::string::npos) << ended.output;
-    const std::string command =
-        ended.output.substr(at + before.size(), ended.output.find('\n', at) - at - before.size());
-    support::ChildProcess replay({"/bin/sh", "-c", command}, folder_ / "replay.txt");
-    EXPECT_EQ(replay.wait(60), 0);
-    const std::string printed = replay.output();
-    ASSERT_GE(printed.size(), 17U);
-    EXPECT_NE(ended.output.find("and not " + printed.substr(printed.size() - 17, 16)), std::string::npos)
-        << ended.output << printed;
-}
-
 TEST_F(Lockstep, ARankThatSeesAnotherViewIsNamed) {
     const Ended ended = runToEnd({"--wall", wall(1, 3), "--scene", scene(), "--device", "script:gis", "--pace", "fast",
                                   "--steps", "100000", "--out", out(), "--skew-view", "rank=2,frame=20"});

@@ -34,7 +34,7 @@ TEST(FrameMessage, SurvivesItsEncoding) {
 
 lockstep::FrameMessage observed() {
     lockstep::FrameMessage message = digging();
-    message.figures = {16.7, lockstep::Drag{5, 0.97, 30.1}, 99999, 1, {0, 131, 20571, 4}};
+    message.figures = {16.7, lockstep::Drag{5, 0.97, 30.1}, 99999, 1, 2, {0, 131, 20571, 4}};
     return message;
 }
 
@@ -70,25 +70,26 @@ TEST(FrameMessage, RefusesEveryTruncation) {
 }
 
 TEST(SessionMessage, SurvivesItsEncoding) {
-    const lockstep::SessionMessage message{{1, 2, 3},
-                                           {4, 5},
-                                           12.5,
-                                           lockstep::BitFlip{3, 99, 7, 8},
-                                           lockstep::SkewedView{2, 98},
-                                           4,
-                                           {{5, 30, 7, 9}, {1, 2}}};
+    using Fault = lockstep::Fault;
+    const lockstep::SessionMessage message{
+        {1, 2, 3},
+        {4, 5},
+        12.5,
+        lockstep::SkewedView{2, 98},
+        4,
+        {{.kind = Fault::Kind::slow, .rank = 5, .frame = 7, .frames = 9, .milliseconds = 30},
+         {.kind = Fault::Kind::diverge, .rank = 0, .frame = 99, .column = 7, .row = 8},
+         {.kind = Fault::Kind::die, .rank = 2, .signal = 11},
+         {.kind = Fault::Kind::partition, .rank = Fault::kLink, .frame = 3, .milliseconds = 1}}};
     const lockstep::SessionMessage copy = lockstep::SessionMessage::decode(message.encode());
     EXPECT_EQ(copy.scene, message.scene);
     EXPECT_EQ(copy.wall, message.wall);
     EXPECT_EQ(copy.frameTimeout, 12.5);
-    ASSERT_TRUE(copy.fault.has_value());
-    EXPECT_EQ(copy.fault->frame, 99U);
-    EXPECT_EQ(copy.fault->row, 8);
     ASSERT_TRUE(copy.skew.has_value());
     EXPECT_EQ(copy.skew->rank, 2);
     EXPECT_EQ(copy.skew->frame, 98U);
     EXPECT_EQ(copy.spoiltShader, 4);
-    EXPECT_EQ(copy.slow, message.slow);
+    EXPECT_EQ(copy.faults, message.faults);
 }
 
 }  // namespace

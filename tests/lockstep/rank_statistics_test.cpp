@@ -154,4 +154,19 @@ TEST(RankStatistics, CountTheFramesInWhichARankAgreed) {
     EXPECT_EQ(statistics.ranks()[2].differed, 1U);
 }
 
+TEST(RankStatistics, CountAHealedFrameOnce) {
+    RankStatistics statistics(4);
+    statistics.addHealed(std::vector{0, 2});
+    statistics.add(frameOf({1, 1, 1}), true);
+    statistics.add(frameOf({1, 1, 1}), true);
+    EXPECT_EQ(statistics.frames(), 2U);
+    for (const std::size_t rank : {0U, 2U}) {
+        EXPECT_EQ(statistics.ranks()[rank].agreed, 1U);
+        EXPECT_EQ(statistics.ranks()[rank].differed, 1U);
+        EXPECT_EQ(statistics.ranks()[rank].healed, 1U);
+    }
+    EXPECT_EQ(statistics.ranks()[1].agreed, 2U);
+    EXPECT_EQ(statistics.ranks()[1].healed, 0U);
+}
+
 }  // namespace

@@ -42,7 +42,7 @@ lockstep::ViewState viewOf(const walls::Wall& wall, const sand::Scene& scene, bo
 /// As the master tells them of a wall whose rank 5 is slow.
 TileFigures figuresOf(std::uint64_t frame) {
     const double draw = 2 + static_cast<double>(frame * 7 % 5);
-    return {draw, 31 - draw, {33.3, lockstep::Drag{5, 0.97, 30.1}, frame - 1, 0, {0, 12, 500, 7, 90, 131}}};
+    return {draw, 31 - draw, {33.3, lockstep::Drag{5, 0.97, 30.1}, frame - 1, 0, 0, {0, 12, 500, 7, 90, 131}}};
 }
 
 /// Outside of `rect`, by its pixels from below, every byte is the same.
@@ -256,8 +256,9 @@ TEST(OverlayText, AccusesNobodyWhereNoneStandsOut) {
     lockstep::WallFigures figures = figuresOf(200).wall;
     figures.slowest.reset();
     figures.divergences = 2;
+    figures.healed = 3;
     EXPECT_EQ(joined(wordsOf(5, TileStatistics::kLetters, figures)),
-              "RANK 5 r2c1 ON a-host-with-a-lon\n30.0 FPS, FRAME 200\nHASHES DIFFERED IN 2 FRAMES\n"
+              "RANK 5 r2c1 ON a-host-with-a-lon\n30.0 FPS, FRAME 200\nDIFFERED IN 2 FRAMES, HEALED 3\n"
               "SLOWEST: NO RANK STANDS OUT\n");
     EXPECT_EQ(joined(wordsOf(5, 15, figures)), "R5 30.0 FPS\nSLOWEST -\nDRAW 31.2 MS\nDIFFERED 2\n");
     figures.slowest = lockstep::Drag{0, 0.5, 12};

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lockstep/fault.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <iterator>
+#include <thread>
+
+namespace lockstep {
+
+void Fault::encode(files::ByteWriter& writer) const {
+    writer.put(static_cast<std::uint8_t>(kind));
+    writer.put(rank);
+    writer.put(frame);
+    writer.put(frames);
+    writer.put(milliseconds);
+    writer.put(signal);
+    writer.put(column);
+    writer.put(row);
+}
+
+Fault Fault::decode(files::ByteReader& reader) {
+    Fault fault;
+    fault.kind = static_cast<Kind>(reader.get<std::uint8_t>());
+    fault.rank = reader.get<int>();
+    fault.frame = reader.get<std::uint64_t>();
+    fault.frames = reader.get<std::uint64_t>();
+    fault.milliseconds = reader.get<std::uint32_t>();
+    fault.signal = reader.get<int>();
+    fault.column = reader.get<int>();
+    fault.row = reader.get<int>();
+    return fault;
+}
+
+FaultsOfRank::FaultsOfRank(const std::vector<Fault>& all, int rank) {
+    std::copy_if(all.begin(), all.end(), std::back_inserter(faults_),
+                 [rank](const Fault& fault) { return fault.rank == rank; });
+}
+
+void FaultsOfRank::strike(std::uint64_t frame, sand::Terrain& terrain) const {
+    for (const Fault& fault : faults_) {
+        if (fault.frame != frame) {
+            continue;
+        }
+        if (fault.kind == Fault::Kind::die) {
+            std::raise(fault.signal);
+        } else if (fault.kind == Fault::Kind::diverge) {
+            terrain.corrupt(fault.column, fault.row);
+        }
+        while (fault.kind == Fault::Kind::hang) {
+            std::this_thread::sleep_for(std::chrono::hours(1));
+        }
+    }
+}
+
+void FaultsOfRank::delay(std::uint64_t frame) const {
+    for (const Fault& fault : faults_) {
+        const bool slow = fault.kind == Fault::Kind::slow && frame >= fault.frame && frame - fault.frame < fault.frames;
+        if (slow || (fault.kind == Fault::Kind::partition && frame == fault.frame)) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(fault.milliseconds));
+        }
+    }
+}
+
+bool FaultsOfRank::garbles(std::uint64_t frame) const {
+    return std::any_of(faults_.begin(), faults_.end(), [frame](const Fault& fault) {
+        return fault.kind == Fault::Kind::garbage && fault.frame == frame;
+    });
+}
+
+}  // namespace lockstep

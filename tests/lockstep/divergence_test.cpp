@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lockstep/divergence.hpp"
+
+#include <gtest/gtest.h>
+
+#include "lockstep/healing.hpp"
+
+namespace {
+
+lockstep::Vote voteOf(const std::vector<std::uint64_t>& hashes) {
+    std::vector<lockstep::Account> accounts;
+    for (const std::uint64_t hash : hashes) {
+        accounts.push_back({hash, {}});
+    }
+    return lockstep::countVotes(accounts);
+}
+
+TEST(Vote, GoesToTheMajorityAndTheMasterHasOne) {
+    EXPECT_EQ(voteOf({7, 3, 3}).hash, 3U) << "the master is the odd one";
+    EXPECT_EQ(voteOf({7, 3, 3}).agreeing, 2);
+    EXPECT_FALSE(voteOf({7, 3, 3}).tie);
+    EXPECT_EQ(voteOf({3, 3, 7, 8}).hash, 3U) << "more than any other, if not more than half";
+    EXPECT_FALSE(voteOf({3, 3, 7, 8}).tie);
+}
+
+TEST(Vote, IsATieWhereNoneHasMore) {
+    EXPECT_TRUE(voteOf({7, 3}).tie);
+    EXPECT_EQ(voteOf({7, 3}).hash, 7U) << "the master's, for want of better";
+    EXPECT_TRUE(voteOf({9, 3, 3, 7, 7}).tie);
+    EXPECT_TRUE(voteOf({1, 2, 3}).tie);
+    EXPECT_FALSE(voteOf({5, 5, 5}).tie) << "hashes that agree again when they are computed afresh";
+}
+
+TEST(Remedy, SurvivesItsEncoding) {
+    const lockstep::Remedy remedy{true, 3, {0, 2}};
+    EXPECT_EQ(lockstep::Remedy::decode(remedy.encode()), remedy);
+    EXPECT_EQ(lockstep::Remedy::decode(lockstep::Remedy{}.encode()), lockstep::Remedy{});
+}
+
+}  // namespace

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/drills.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "master/failure_report.hpp"
+
+namespace {
+
+using lockstep::Fault;
+using master::Drill;
+
+class Drills : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string name = (std::filesystem::temp_directory_path() / "sandwall-drills-XXXXXX").string();
+        ASSERT_NE(mkdtemp(name.data()), nullptr);
+        folder_ = name;
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    [[nodiscard]] std::string read(const std::string& name) const {
+        std::ifstream stream(folder_ / name);
+        return {std::istreambuf_iterator<char>(stream), {}};
+    }
+
+    std::filesystem::path folder_;
+    const std::vector<Drill> drills_{{"die", {.kind = Fault::Kind::die, .rank = 2, .frame = 5}},
+                                     {"slow", {.kind = Fault::Kind::slow, .rank = 1, .frame = 5}},
+                                     {"garbage", {.kind = Fault::Kind::garbage, .frame = 7}}};
+};
+
+TEST_F(Drills, AreOnDiskBeforeTheirFrame) {
+    EXPECT_TRUE(master::beginDrills(drills_, 4, folder_).empty());
+    EXPECT_EQ(read("drills.done"), "");
+    EXPECT_TRUE(master::beginDrills(drills_, 5, folder_).empty()) << "a rank's is not the link's";
+    EXPECT_EQ(read("drills.done"), "die\n");
+    EXPECT_EQ(master::beginDrills(drills_, 7, folder_), std::vector{drills_[2].fault});
+    EXPECT_EQ(read("drills.done"), "die\ngarbage\n");
+}
+
+TEST_F(Drills, HappenOnceInASessionThatIsTakenUpAgain) {
+    (void)master::beginDrills(drills_, 5, folder_);
+    const std::vector<Drill> left = master::withoutDone(drills_, folder_, true);
+    ASSERT_EQ(left.size(), 2U);
+    EXPECT_EQ(left[0].text, "slow") << "which is no event";
+    EXPECT_EQ(left[1].text, "garbage");
+}
+
+TEST_F(Drills, OfAnEarlierSessionAreForgotten) {
+    (void)master::beginDrills(drills_, 5, folder_);
+    EXPECT_EQ(master::withoutDone(drills_, folder_, false).size(), 3U);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "drills.done"));
+}
+
+TEST_F(Drills, LeaveAReportThatIsWhole) {
+    ASSERT_TRUE(master::writeFailure({"broken", 2, "node\x80", "r1c2", "a line"}, folder_));
+    const nlohmann::json json = nlohmann::json::parse(read("failure.json"));
+    EXPECT_EQ(json["what"], "broken");
+    EXPECT_EQ(json["rank"], 2);
+    EXPECT_EQ(json["tile"], "r1c2");
+    EXPECT_EQ(json["message"], "a line");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "failure.json.new"));
+    EXPECT_FALSE(master::writeFailure({"broken", 2, "node", "r1c2", "a line"}, folder_ / "none"));
+}
+
+}  // namespace
