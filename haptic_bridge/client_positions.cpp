@@ -15,11 +15,10 @@ void Client::Session::greet(const PositionGreeting& greeting) {
         return;
     }
     if (greeting.protocol != kProtocolVersion) {
-        refuse(
-            fmt::format("refused: it streams positions in protocol version {}, the master speaks {}; "
-                        "docs/protocol.md has the present one",
-                        greeting.protocol, kProtocolVersion),
-            RefusalCode::protocol);
+        refuse(fmt::format("refused: it streams positions in protocol version {}, the master speaks {}; "
+                           "docs/protocol.md has the present one",
+                           greeting.protocol, kProtocolVersion),
+               RefusalCode::protocol);
         return;
     }
     if (!handshake_->accepts(greeting)) {

@@ -46,7 +46,7 @@ void GuestLimits::refused(const boost::asio::ip::address& address, std::int64_t 
 
 std::optional<std::string> RefusalLog::add(RefusalCode code, const std::string& address, const std::string& line,
                                            std::int64_t nowNs) {
-    ++counts_[static_cast<std::size_t>(code) - 1];
+    count(code);
     std::pair key{address, code};
     if (!said_.contains(key) && said_.size() >= kRemembered) {
         std::erase_if(said_, [nowNs](const auto& entry) { return nowNs - entry.second.ns >= kQuietNs; });

@@ -42,6 +42,7 @@ public:
     /// Nothing when it has been said already; how many were not said meanwhile stands behind `line`.
     [[nodiscard]] std::optional<std::string> add(RefusalCode code, const std::string& address, const std::string& line,
                                                  std::int64_t nowNs);
+    void count(RefusalCode code) { ++counts_[static_cast<std::size_t>(code) - 1]; }
     [[nodiscard]] const RefusalCounts& counts() const { return counts_; }
 
 private:

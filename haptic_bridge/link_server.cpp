@@ -14,8 +14,7 @@ namespace asio = boost::asio;
 using boost::system::error_code;
 
 LinkServer::LinkServer(asio::io_context& io, asio::ip::tcp::acceptor acceptor, Identity identity,
-                       std::uint32_t stepsPerSecond, Sources sources, TimingTests tests,
-                       LinkSecurity security)
+                       std::uint32_t stepsPerSecond, Sources sources, TimingTests tests, LinkSecurity security)
     : io_(io),
       acceptor_(std::move(acceptor)),
       pause_(io),
@@ -99,7 +98,9 @@ void LinkServer::refused(RefusalCode code, const asio::ip::address& address, con
     if (code != RefusalCode::limit && code != RefusalCode::busy) {
         limits_.refused(address, now);
     }
-    if (const auto text = refusals_.add(code, address.to_string(), address.to_string() + ": " + line, now)) {
+    if (line.empty()) {
+        refusals_.count(code);
+    } else if (const auto text = refusals_.add(code, address.to_string(), address.to_string() + ": " + line, now)) {
         sources_.log(*text);
     }
 }

@@ -65,6 +65,7 @@ private:
     friend class MasterLink;
     void accept();
     void admit(Connection::Socket socket);
+    /// Counts it, and says so unless `line` is empty.
     void refused(RefusalCode code, const boost::asio::ip::address& address, const std::string& line);
     void guestCame(const boost::asio::ip::address& address);
     void guestWent(const boost::asio::ip::address& address);

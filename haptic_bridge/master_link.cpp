@@ -19,8 +19,8 @@ namespace {
 constexpr std::int64_t kGreetingNs = 3'000'000'000;  // a guest must greet within
 constexpr std::int64_t kSilenceNs = 10'000'000'000;  // a master pings four times a second
 constexpr std::size_t kMaxTestsOut = 64;
-constexpr double kWatcherRate = 50;                      // [1/s]; it has nothing to say but four pings
-constexpr std::size_t kWatcherUnsent = 256 * 1024;       // [byte]; about half a minute of steps
+constexpr double kWatcherRate = 50;                 // [1/s]; it has nothing to say but four pings
+constexpr std::size_t kWatcherUnsent = 256 * 1024;  // [byte]; about half a minute of steps
 
 /// One more of `count` for so long as it lives.
 std::shared_ptr<Connection> counted(std::unique_ptr<Connection> connection, const std::shared_ptr<int>& count) {
@@ -53,9 +53,10 @@ void MasterLink::start() {
     server_.guestCame(connection_->address());
     heardNs_ = monotonicNs();
     connection_->limit(kMaxGreeting);
-    connection_->start({[self = shared_from_this()](Message&& message) { self->receive(std::move(message)); },
-                        [self = shared_from_this()](const std::string& why, Connection::Fault fault) { self->end(why, fault); },
-                        true});
+    connection_->start(
+        {[self = shared_from_this()](Message&& message) { self->receive(std::move(message)); },
+         [self = shared_from_this()](const std::string& why, Connection::Fault fault) { self->end(why, fault); },
+         true});
     watch();
 }
 
@@ -190,8 +191,10 @@ void MasterLink::welcome() {
         connection_->setMaxUnsent(kWatcherUnsent);
     }
     connection_->send(Welcome{server_.identity_, server_.stepsPerSecond_, role_, handshake_.mac()});
-    log(fmt::format("welcome, scene '{}'{}{}", scene_, server_.security_.proves() ? ", secret proved" : "",
-                    connection_->overTls() ? ", TLS 1.3" : ""));
+    if (role_ == Role::move) {
+        log(fmt::format("welcome, scene '{}'{}{}", scene_, server_.security_.proves() ? ", secret proved" : "",
+                        connection_->overTls() ? ", TLS 1.3" : ""));
+    }
     tickReport();
 }
 
@@ -323,10 +326,14 @@ void MasterLink::end(const std::string& why, Connection::Fault fault) {
     }
     const auto kept = shared_from_this();
     const bool guest = phase_ <= Phase::proving;
-    if (fault) {
-        server_.refused(*fault, connection_->address(), fmt::format("{}: {}", guest ? "a guest" : role_ == Role::move ? "the master" : "a watcher", why));
-    } else if (!guest) {
+    // Masters come one at a time and are told of whenever they go; of guests and watchers a flood may come.
+    const bool master = !guest && role_ == Role::move;
+    if (master) {
         log(why);
+    }
+    if (fault) {
+        const std::string who = guest ? "a guest: " : "a watcher: ";
+        server_.refused(*fault, connection_->address(), master ? "" : who + why);
     }
     if (guest) {
         server_.guestWent(connection_->address());

@@ -39,7 +39,18 @@ struct Identity {
     friend bool operator==(const Identity&, const Identity&) = default;
 };
 
-enum class RefusalCode : std::uint8_t { garbage = 1, protocol, algorithm, scene, busy, state, secret, role, tls, limit };
+enum class RefusalCode : std::uint8_t {
+    garbage = 1,
+    protocol,
+    algorithm,
+    scene,
+    busy,
+    state,
+    secret,
+    role,
+    tls,
+    limit
+};
 inline constexpr std::array<std::string_view, 10> kRefusalNames{"garbage", "protocol", "algorithm", "scene", "busy",
                                                                 "state",   "secret",   "role",      "tls",   "limit"};
 /// How often each kind was refused, as kRefusalNames.
@@ -49,7 +60,7 @@ using RefusalCounts = std::array<std::uint64_t, kRefusalNames.size()>;
 enum class Role : std::uint8_t { move = 1, watch };  // move the probe and number steps, or be told of them
 [[nodiscard]] std::string_view nameOf(Role role);
 
-using Nonce = std::array<std::uint8_t, 32>;    // fresh random bytes for one connection
+using Nonce = std::array<std::uint8_t, 32>;     // fresh random bytes for one connection
 using MacBytes = std::array<std::uint8_t, 32>;  // HMAC-SHA-256
 
 // Master to server.
@@ -208,9 +219,9 @@ struct Bye {
 };
 
 /// In the order of their type bytes, which count from 1.
-using Message =
-    std::variant<Hello, Welcome, Refusal, Start, Ready, NeedState, State, StepMessage, TimingTest, Shown, TimingEcho,
-                 Ping, Pong, Report, Bye, EditRequest, ForceShare, TickPiece, PositionGreeting, Position, Challenge, Proof, CatchUp>;
+using Message = std::variant<Hello, Welcome, Refusal, Start, Ready, NeedState, State, StepMessage, TimingTest, Shown,
+                             TimingEcho, Ping, Pong, Report, Bye, EditRequest, ForceShare, TickPiece, PositionGreeting,
+                             Position, Challenge, Proof, CatchUp>;
 
 /// The message as it goes over the wire: length, type, payload.
 [[nodiscard]] files::Bytes encode(const Message& message);

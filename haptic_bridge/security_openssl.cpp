@@ -24,7 +24,7 @@ struct Frees {
 };
 using Context = std::unique_ptr<SSL_CTX, Frees<SSL_CTX_free>>;
 
-constexpr std::size_t kBinding = 32;  // [byte]
+constexpr std::size_t kBinding = 32;               // [byte]
 constexpr long kValidity = 365L * 24 * 3600 * 20;  // [s]; nobody judges it, and clocks on a stage are often wrong
 
 /// What OpenSSL complains of first; the rest is forgotten.

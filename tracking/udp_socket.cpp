@@ -15,7 +15,7 @@ using boost::system::error_code;
 namespace {
 
 constexpr std::size_t kLargestDatagram = 65536;  // UDP has room for a little less, so none is ever cut
-constexpr int kMostStrangers = 64;                // that are read over in one call
+constexpr int kMostStrangers = 64;               // that are read over in one call
 
 }  // namespace
 
@@ -25,9 +25,8 @@ UdpReceiver::UdpReceiver(const std::string& host, std::uint16_t port, const std:
     if (!from.empty()) {
         from_ = asio::ip::make_address(from);
     } else if (!endpoint.address().is_loopback()) {
-        throw files::InputError(
-            fmt::format("{}: others can reach {}; name the one tracker's address behind it, such as from=192.168.1.20",
-                        who, host));
+        throw files::InputError(fmt::format(
+            "{}: others can reach {}; name the one tracker's address behind it, such as from=192.168.1.20", who, host));
     }
     error_code error;
     socket_.open(endpoint.protocol(), error);

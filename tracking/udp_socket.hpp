@@ -17,8 +17,8 @@ public:
     /// `host` is an IP address; datagrams are taken from the address `from` alone, which may be left empty where `host`
     /// is loopback. Throws files::InputError that begins with `who` when it is, and when the port cannot be had.
     UdpReceiver(const std::string& host, std::uint16_t port, const std::string& from, const std::string& who);
-    /// The next datagram, whole, valid until the next call; nothing when none is there. A failure counts as none, and so
-    /// does one from elsewhere.
+    /// The next datagram, whole, valid until the next call; nothing when none is there. A failure counts as none, and
+    /// so does one from elsewhere.
     [[nodiscard]] std::optional<std::span<const std::uint8_t>> next();
     [[nodiscard]] std::uint16_t port() const { return port_; }
     [[nodiscard]] std::uint64_t strangers() const { return strangers_; }  // datagrams from elsewhere

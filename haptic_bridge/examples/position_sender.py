@@ -128,6 +128,7 @@ def main():
     args = parser.parse_args()
     address, _, port = args.listen.rpartition(":")
     secret = secret_of(args.secret_file) if args.secret_file else None
+    address = "127.0.0.1" if address == "localhost" else address
     if not secret and not ipaddress.ip_address(address).is_loopback:
         sys.exit(f"--listen {args.listen}: others can reach that address, so a --secret-file is needed")
     with socket.create_server((address, int(port))) as listener:

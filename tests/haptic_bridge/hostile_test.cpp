@@ -41,13 +41,15 @@ TEST_F(Hostile, ThousandsOfFramesDoNotTouchWhoIsLinkedToTheServer) {
         done = hostile::attackServer(server.port(), frames, 4000, [&] { return !over; });
         over = true;
     });
-    const bool followed = eventually([&] {
-        for (const auto& timed : client.drain(100)) {
-            wall.apply(timed);
-        }
-        client.shown(wall.terrain.stepNumber(), 16'666'667);
-        return over.load();
-    }, 240000ms);
+    const bool followed = eventually(
+        [&] {
+            for (const auto& timed : client.drain(100)) {
+                wall.apply(timed);
+            }
+            client.shown(wall.terrain.stepNumber(), 16'666'667);
+            return over.load();
+        },
+        240000ms);
     over = true;
     attacker.join();
     EXPECT_TRUE(followed);
@@ -69,11 +71,14 @@ TEST_F(Hostile, AMasterTakesNothingFromAServerThatIsNone) {
     hostile::FalseServer server(seed_, identity_, 30'000);
     Client client({"127.0.0.1", server.port()}, offerOf(scene_));
     std::size_t most = 0;
-    EXPECT_TRUE(eventually([&] {
-        most = std::max(most, client.drainPositions().size());
-        EXPECT_TRUE(client.drain(100).empty()) << "nobody was granted anything";
-        return server.done();
-    }, 240000ms)) << server.frames();
+    EXPECT_TRUE(eventually(
+        [&] {
+            most = std::max(most, client.drainPositions().size());
+            EXPECT_TRUE(client.drain(100).empty()) << "nobody was granted anything";
+            return server.done();
+        },
+        240000ms))
+        << server.frames();
     EXPECT_LE(most, Client::kMaxPositions + 64 * 1024 / 38);
     EXPECT_EQ(client.counters().stepsIn, 0U);
     const LinkCounters counters = client.counters();

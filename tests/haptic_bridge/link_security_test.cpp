@@ -104,7 +104,9 @@ TEST(SecretFile, NamesTheLineAndNeverTheSecret) {
         {"move 0123456789abcdef 0123456789abcdef", "secrets:1: holds more"},
         {"move 0123456789abcdef\nmove 0123456789abcdeg", "secrets:2: a second secret of role move"},
         {"move 0123456789abcdef\nwatch 0123456789abcdef", "secrets: has one secret for both roles"},
-        {"move 0123456789\001" "bcdef", "secrets:1: a secret with characters"},
+        {"move 0123456789\001"
+         "bcdef",
+         "secrets:1: a secret with characters"},
         {"# nothing", "secrets: holds no secret"},
     };
     for (const auto& [text, complaint] : wrong) {
@@ -384,6 +386,34 @@ TEST_F(LinkSecurityTest, AWatcherSeesTheStepsAndMovesNothing) {
     EXPECT_EQ(master.report()->refused[static_cast<std::size_t>(RefusalCode::role) - 1], 1U);
 }
 
+TEST_F(LinkSecurityTest, TheProgramThatWatchesPrintsWhereTheProbeIs) {
+    const std::string watchers = secretFile("watchers", "watch " + quoted(kWatch) + "\n");
+    ServerProcess server(folder_, arguments({"--secret-file", both_, "--tls"}, "realtime"));
+    Client master(server.address(), offerOf(scene_), client(both_, true));
+    Wall wall(scene_);
+    ASSERT_TRUE(wall.follow(master, 10)) << master.link().message;
+    const auto watch = [&](const std::string& options) {
+        const std::string command = "timeout 60 " SANDWALL_BIN_DIR "/sandwall-watch " + server.address().text() +
+                                    " --lines 2 " + options + " >" + folder_.file("watch") + " 2>&1 &";
+        EXPECT_EQ(std::system(command.c_str()), 0);
+        EXPECT_TRUE(eventually([&] {
+            for (const auto& timed : master.drain(100)) {
+                wall.apply(timed);
+            }
+            master.shown(wall.terrain.stepNumber(), 16'666'667);
+            const std::string told = folder_.read("watch");
+            return told.find("steps/s", told.find("steps/s") + 1) != std::string::npos ||
+                   told.find("127.0.0.1") != std::string::npos;
+        }));
+        return folder_.read("watch");
+    };
+    const std::string told = watch("--tls --secret-file " + watchers);
+    EXPECT_EQ(told.find("scene 'small', 60 steps per second\nstep "), 0U) << told;
+    EXPECT_NE(told.find("probe at "), std::string::npos) << told;
+    EXPECT_NE(watch("").find("this server speaks TLS alone"), std::string::npos);
+    EXPECT_EQ(wall.divergences + wall.outOfOrder, 0);
+}
+
 TEST_F(LinkSecurityTest, WhoWatchesAndDoesNotReadIsCutOff) {
     ServerProcess server(folder_, arguments({}));
     Client master(server.address(), offerOf(scene_));
@@ -535,12 +565,17 @@ TEST_F(LinkSecurityTest, TheExampleOfAPositionServerProvesItsSecret) {
         return static_cast<std::uint16_t>(std::atoi(text.substr(text.rfind(':') + 1).c_str()));
     };
     const std::string wrong = secretFile("wrong", "move another-secret-entirely\n");
-    for (const auto& [option, file, fits] : std::vector<std::tuple<std::string, std::string, bool>>{
-             {"--secret-file " + both_, both_, true}, {"--secret-file " + both_, wrong, false},
-             {"--secret-file " + both_, "", false}, {"", both_, false}, {"", "", true}}) {
+    for (const auto& [option, file, fits] :
+         std::vector<std::tuple<std::string, std::string, bool>>{{"--secret-file " + both_, both_, true},
+                                                                 {"--secret-file " + both_, wrong, false},
+                                                                 {"--secret-file " + both_, "", false},
+                                                                 {"", both_, false},
+                                                                 {"", "", true}}) {
         // Ends with the shell's timeout whatever happens to this test.
-        FILE* sender = popen(("timeout 60 " + run.substr(5) + option + " 2>/dev/null & echo $! >" +
-                              folder_.file("pid") + "; wait").c_str(), "r");
+        FILE* sender =
+            popen(("timeout 60 " + run.substr(5) + option + " 2>/dev/null & echo $! >" + folder_.file("pid") + "; wait")
+                      .c_str(),
+                  "r");
         ASSERT_NE(sender, nullptr);
         const Address address{"127.0.0.1", port(sender)};
         {
