@@ -13,7 +13,7 @@
 
 namespace master {
 
-/// A session read back, all of it: about 350 bytes a step and 65 a tick of the track.
+/// A session read back, all of it: about 400 bytes a step and 65 a tick of the track.
 struct Journal {
     sand::Scene scene;
     std::string buildId;
