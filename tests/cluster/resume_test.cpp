@@ -16,8 +16,8 @@ namespace {
 class Resuming : public SessionTest {
 protected:
     std::unique_ptr<support::ChildProcess> begin(const std::vector<std::string>& more) {
-        std::vector<std::string> arguments{"--wall", wall(1, 2),      "--scene",      scene(), "--out",
-                                           out(),    "--no-pictures", "--checkpoint", "0.2"};
+        std::vector<std::string> arguments{"--wall",        wall(1, 2),     "--scene", scene(),      "--out", out(),
+                                           "--no-pictures", "--checkpoint", "0.2",     "--restarts", "0"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         auto session = start(arguments);
         EXPECT_TRUE(session->waitForOutput("hashes agree", 120)) << session->output();
@@ -89,7 +89,7 @@ TEST_F(Resuming, ASessionGoesOnWhereItStopped) {
     EXPECT_GT(before[0]["checkpoint_step"], 0);
     const std::uint64_t end = before[0]["step"].get<std::uint64_t>() + 400;
     const Ended ended = runToEnd({"--wall", wall(1, 2), "--out", out(), "--no-pictures", "--resume", "--steps",
-                                  std::to_string(end), "--pace", "fast"});
+                                  std::to_string(end), "--pace", "fast", "--restarts", "0"});
     ASSERT_EQ(ended.status, 0) << ended.output;
     const nlohmann::json told = summary();
     EXPECT_EQ(told["steps"], end);
@@ -109,7 +109,8 @@ TEST_F(Resuming, ASessionGoesOnWhereItStopped) {
     const std::string other = write("other.toml",
                                     "name = \"other\"\n[field]\ncolumns = 128\nrows = 128\n[terrain]\n"
                                     "height = 0.2\n[material]\n[tool]\nradius = 0.04\n");
-    const Ended refused = runToEnd({"--wall", wall(1, 2), "--scene", other, "--out", out(), "--resume"});
+    const Ended refused =
+        runToEnd({"--wall", wall(1, 2), "--scene", other, "--out", out(), "--resume", "--restarts", "0"});
     EXPECT_EQ(refused.status, 2) << refused.output;
     EXPECT_NE(refused.output.find("other.toml: is not the scene of the session in"), std::string::npos)
         << refused.output;

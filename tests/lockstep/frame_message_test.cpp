@@ -80,7 +80,8 @@ TEST(SessionMessage, SurvivesItsEncoding) {
         {{.kind = Fault::Kind::slow, .rank = 5, .frame = 7, .frames = 9, .milliseconds = 30},
          {.kind = Fault::Kind::diverge, .rank = 0, .frame = 99, .column = 7, .row = 8},
          {.kind = Fault::Kind::die, .rank = 2, .signal = 11},
-         {.kind = Fault::Kind::partition, .rank = Fault::kLink, .frame = 3, .milliseconds = 1}}};
+         {.kind = Fault::Kind::partition, .rank = Fault::kLink, .frame = 3, .milliseconds = 1}},
+        {6, 7, 8}};
     const lockstep::SessionMessage copy = lockstep::SessionMessage::decode(message.encode());
     EXPECT_EQ(copy.scene, message.scene);
     EXPECT_EQ(copy.wall, message.wall);
@@ -90,6 +91,7 @@ TEST(SessionMessage, SurvivesItsEncoding) {
     EXPECT_EQ(copy.skew->frame, 98U);
     EXPECT_EQ(copy.spoiltShader, 4);
     EXPECT_EQ(copy.faults, message.faults);
+    EXPECT_EQ(copy.state, message.state);
 }
 
 }  // namespace
