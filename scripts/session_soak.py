@@ -1,0 +1,161 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Runs a session at full rate for minutes or hours, and shows that nothing grows, leaks or gets lost.
+
+Samples resident memory, file descriptors and threads of every process; ends the session in order; compares the wall's last
+state hash and steps with a replay of the journal. Prints a table in markdown. Exit status 1 where descriptors or threads
+change after the warm-up, memory grows, or sand or steps differ. docs/recovery.md
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import time
+
+sys.dont_write_bytecode = True
+import processes
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+NAMES = ("mpirun", "sandwall-master", "sandwall-render-node", "sandwall-haptic-server")
+MOST_GROWTH = 1.0  # MiB an hour that a process may grow by, beside its share of noise
+START_SECONDS = 120
+
+
+def family(launcher):
+    """{process: name} of the session's programs."""
+    found = {}
+    for entry in pathlib.Path("/proc").iterdir():
+        try:
+            name = pathlib.Path((entry / "cmdline").read_bytes().split(b"\0")[0].decode()).name if entry.name.isdigit() else ""
+            if name in NAMES:
+                parent = int((entry / "stat").read_text().rpartition(")")[2].split()[1])
+                environment = (entry / "environ").read_bytes()
+                if parent == launcher or f"{processes.MARK}={launcher}-".encode() in environment:
+                    rank = re.search(rb"\0OMPI_COMM_WORLD_RANK=(\d+)\0", environment)
+                    found[int(entry.name)] = f"{name} (rank {int(rank[1])})" if rank else name
+        except OSError:
+            pass  # gone
+    return found
+
+
+def sample(process):
+    """(resident MiB, file descriptors, threads) of a process."""
+    status = pathlib.Path(f"/proc/{process}/status").read_text()
+    return (int(re.search(r"VmRSS:\s+(\d+) kB", status)[1]) / 1024, len(os.listdir(f"/proc/{process}/fd")),
+            int(re.search(r"Threads:\s+(\d+)", status)[1]))
+
+
+def slope(times, values):
+    """Of the straight line through these, by least squares."""
+    middle, mean = sum(times) / len(times), sum(values) / len(values)
+    spread = sum((time - middle) ** 2 for time in times)
+    return sum((time - middle) * (value - mean) for time, value in zip(times, values)) / spread if spread else 0.0
+
+
+class Track:
+    """The samples of one process after the warm-up."""
+
+    def __init__(self, name):
+        self.name, self.times, self.samples = name, [], []
+
+    def add(self, now, values):
+        self.times.append(now)
+        self.samples.append(values)
+
+    def row(self):
+        memory, descriptors, threads = zip(*self.samples)
+        self.growth = 3600 * slope(self.times, memory)
+        self.constant = len(set(descriptors)) == 1 and len(set(threads)) == 1
+        return (f"| {self.name} | {memory[0]:.1f} | {memory[-1]:.1f} | {max(memory) - min(memory):.2f} | {self.growth:+.2f} | "
+                f"{span(descriptors)} | {span(threads)} |")
+
+    def grows(self):
+        """Whether the last quarter of the samples holds more than the second, by more than may be."""
+        memory = [values[0] for values in self.samples]
+        quarter = max(1, len(memory) // 4)
+        hours = (self.times[-1] - self.times[0]) / 3600
+        return max(memory[-quarter:]) - max(memory[quarter:2 * quarter]) > MOST_GROWTH * max(hours, 1) / 2 + 0.5
+
+
+def span(values):
+    return str(values[0]) if len(set(values)) == 1 else f"{min(values)} to {max(values)}"
+
+
+def follow(launcher, minutes, period, warm_up):
+    """Samples all processes until the time is over; the tracks."""
+    tracks = {}
+    deadline = time.monotonic() + START_SECONDS
+    while len(members := family(launcher.pid)) < 4 and time.monotonic() < deadline and launcher.poll() is None:
+        time.sleep(0.5)
+    began = time.monotonic()
+    while (now := time.monotonic() - began) < 60 * minutes:
+        if launcher.poll() is not None:
+            raise SystemExit(f"session_soak.py: the session has ended after {now:.0f} s with status {launcher.returncode}")
+        members = family(launcher.pid) if now < warm_up else members
+        if now >= warm_up:
+            for process, name in members.items():
+                tracks.setdefault(process, Track(name)).add(now, sample(process))
+        time.sleep(period)
+    return sorted(tracks.values(), key=lambda track: track.name)
+
+
+def replayed(out):
+    folder = pathlib.Path(os.environ.get("SANDWALL_BIN", ROOT / "build" / "release" / "bin"))
+    ran = subprocess.run([folder / "sandwall-replay", out / "session.journal", "--hash"], capture_output=True, text=True)
+    return (ran.stdout.split() or [ran.stderr.strip() or "nothing"])[-1]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--minutes", type=float, default=60)
+    parser.add_argument("--wall", default=str(ROOT / "walls/configs/desktop.toml"))
+    parser.add_argument("--scene", default=str(ROOT / "scenes/sandbox.toml"))
+    parser.add_argument("--device", default="script:gis")
+    parser.add_argument("--out", required=True)
+    parser.add_argument("--period", type=float, default=5, help="seconds between two samples (default: 5)")
+    parser.add_argument("--warm-up", type=float, default=None, help="seconds before the first that counts (default: a quarter, at most 120)")
+    parser.add_argument("options", nargs="*", help="after --: more options of sandwall run")
+    args = parser.parse_args()
+    warm_up = min(120, 15 * args.minutes) if args.warm_up is None else args.warm_up
+    out = pathlib.Path(args.out)
+    out.mkdir(parents=True, exist_ok=True)
+    command = [str(ROOT / "scripts/sandwall"), "run", "--wall", args.wall, "--scene", args.scene, "--device", args.device,
+               "--out", args.out, "--restarts", "0", "--no-pictures", *args.options]
+    with open(out / "session_soak.log", "wb") as log:
+        launcher = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, preexec_fn=processes.die_with_parent)
+        try:
+            tracks = follow(launcher, args.minutes, args.period, warm_up)
+        finally:
+            launcher.send_signal(signal.SIGINT)
+            status = launcher.wait(300)
+    summary = json.loads((out / "summary.json").read_text())
+    print(f"{args.minutes:g} minutes, a sample every {args.period:g} s after {warm_up:g} s of warm-up\n")
+    print("| process | first [MiB] | last [MiB] | max − min [MiB] | slope [MiB/h] | file descriptors | threads |")
+    print("|---|---|---|---|---|---|---|")
+    for track in tracks:
+        print(track.row())
+    found = replayed(out)
+    link = summary["haptic"]
+    print(f"\n| session | |\n|---|---|\n| frames, steps | {summary['frames']}, {summary['steps']} |\n"
+          f"| frames a second | {summary['fps']:.2f} |\n| late frames | {summary['late_frames']} ({100 * summary['late_frames'] / summary['frames']:.2f} %) |\n"
+          f"| links of the hand made again | {link['reconnects']} |\n| divergences of ranks, of the haptic server | {summary['divergences']}, {summary['server_divergences']} |\n"
+          f"| state hash on the wall, of a replay of the journal | {summary['state_hash']}, {found} |")
+    complaints = [f"{track.name}: descriptors or threads change" for track in tracks if not track.constant]
+    complaints += [f"{track.name}: memory grows" for track in tracks if track.grows()]
+    # The server counts the steps, hashes its own sand after each, and the master compares: a lost one would show.
+    complaints += ["steps were lost: the server's sand differs"] if summary["server_divergences"] else []
+    complaints += ["ranks differed"] if summary["divergences"] else []
+    complaints += ["a replay of the journal differs"] if found != summary["state_hash"] else []
+    complaints += [f"the session ended with status {status}"] if status else []
+    for complaint in complaints:
+        print(f"session_soak.py: {complaint}", file=sys.stderr)
+    return 1 if complaints else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
