@@ -13,7 +13,7 @@ packages=(
     libtomlplusplus-dev libcli11-dev libfmt-dev             # files, options, messages
     libxxhash-dev libzstd-dev libpng-dev nlohmann-json3-dev # hashes, states, pictures, summaries
     libssl-dev                                              # who may come in over a network
-    libgtest-dev libbenchmark-dev xvfb iproute2             # tests and benchmarks
+    libgtest-dev libbenchmark-dev xvfb iproute2             # tests and benchmarks; an emulated cluster
 )
 # The tests also build with clang, for the proof that the state hash does not depend on the compiler.
 # The report draws its curves with matplotlib.
