@@ -24,7 +24,13 @@ SIGNALLED = re.compile(rb"process rank (\d+) with PID \d+ on node (\S+) exited o
 EXITED = re.compile(rb"Process name: \[\[\d+,\d+\],(\d+)\]\s+Exit code:\s+(\d+)")
 PROGRESS = re.compile(rb"frame (\d+)  step (\d+)(?:.*  ([a-z ]+)$)?")
 # The watchdog's last words: "sandwall: frame 7 waits for rank 3 (tile c) on node03 for 4.1 s; ..., ending the job"
-ENDING = re.compile(r"sandwall: .*waits? for (.*) for [\d.]+ s; .*ending the job")
+ENDING = re.compile(r"(?:sandwall: )?.*waits? for (.*) for [\d.]+ s; .*ending the job")
+
+
+def waited_for(line):
+    """Whom a watchdog has waited for in vain, as its last words have it: "rank 3 (tile c) on node03"; None of other words."""
+    ending = ENDING.fullmatch(line)
+    return ending[1].split(" after frame ")[0] if ending else None
 
 
 class Stream:
@@ -127,8 +133,8 @@ class JobLog:
         self.said[rank].append(line.decode(errors="replace"))
         if stream is self.err and rank is None:
             self.mpiruns = (self.mpiruns + line + b"\n")[-LONGEST_LINE:]
-        elif stream is self.err and self.ending is None and (ending := ENDING.fullmatch(line.decode(errors="replace"))):
-            self.ending = ending[1].split(" after frame ")[0]
+        elif stream is self.err and self.ending is None:
+            self.ending = waited_for(line.decode(errors="replace"))
         elif stream is self.out and (progress := PROGRESS.match(line)):
             self.frame, self.step = int(progress[1]), int(progress[2])
             self.told = time.monotonic()

@@ -76,7 +76,9 @@ def failure_of_job(status, log, hosts, told):
     if told.get("what") in ("broken", "hung", "disk"):
         rank = told.get("rank") if isinstance(told.get("rank"), int) else None
         lost = told["what"] == "broken"
-        text = " ".join(str(told.get("message") or f"{name(rank or 0)}: {told['what']}").split())[:300]
+        said = " ".join(str(told.get("message") or f"{name(rank or 0)}: {told['what']}").split())[:300]
+        hung = job_log.waited_for(said)
+        text = f"{hung} hung" if hung else said
     elif signalled:
         rank = signalled[0]
         text = f"{name(rank)} died of {signal_name(signalled[1])}"
@@ -165,6 +167,8 @@ class Supervisor:
 
     def tries(self):
         before = self.journal_identity()
+        if self.supervised:
+            taken(self.out / "failure.json")  # what another session has left
         words = ["--resume"] if self.resume else []
         number = (job_log.earlier_tries(self.logs) or [0])[-1] if self.logs else 0
         while True:

@@ -101,7 +101,7 @@ complain 0 'sandwall: frame 8 waits for rank 2 (tile b) on x for 3.0 s; the limi
         self.assertIn("sandwall: rank 2 (tile b) on x hung; starting again", error)
 
     def test_what_the_master_has_written_down_goes_before_what_mpirun_noticed(self):
-        self.tries("""progress 7 6; told '{"what": "hung", "rank": 1, "message": "rank 1 (tile a) on x hung"}'; ends 0 1""", "exit 0")
+        self.tries("""progress 7 6; told '{"what": "hung", "rank": 1, "message": "frame 8 waits for rank 1 (tile a) on x for 2.1 s; the limit is 2 s, ending the job"}'; ends 0 1""", "exit 0")
         self.assertIn("sandwall: rank 1 (tile a) on x hung; starting again", self.ended(["-"])[2])
         self.assertFalse((self.folder / "out" / "failure.json").exists(), "it would be found again")
 
