@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "haptic_bridge/link_server.hpp"
 
+#include <algorithm>
 #include <boost/asio/post.hpp>
 #include <utility>
 
@@ -82,15 +83,26 @@ void LinkServer::admit(Connection::Socket socket) {
     if (gone) {
         return;
     }
-    const auto sameAddress = guests_.find(address);
-    const bool many = sameAddress != guests_.end() && sameAddress->second >= kMaxGuestsOfOne && !isLoopback(address);
     if (!limits_.mayCome(address, monotonicNs())) {
         refused(RefusalCode::limit, address, "comes too often, and is not answered for a while");
-    } else if (guestCount_ >= kMaxGuests || *connections_ >= kMaxConnections || many) {
-        refused(RefusalCode::limit, address, "is one of too many that have not greeted, and is not answered");
-    } else {
-        std::make_shared<MasterLink>(*this, std::move(socket))->start();
+        return;
     }
+    if (tooManyOf(address) || *connections_ >= kMaxConnections) {
+        refused(RefusalCode::limit, address, "is one of too many that have not greeted, and is not answered");
+        return;
+    }
+    if (guests_.size() >= kMaxGuests) {
+        // Not the newcomer: sixteen who say nothing would keep out the master. A greeting takes milliseconds.
+        guests_.front()->makeRoom();
+    }
+    guests_.push_back(std::make_shared<MasterLink>(*this, std::move(socket)));
+    std::shared_ptr(guests_.back())->start();
+}
+
+bool LinkServer::tooManyOf(const asio::ip::address& address) const {
+    const auto same =
+        std::count_if(guests_.begin(), guests_.end(), [&](const auto& guest) { return guest->address() == address; });
+    return same >= kMaxGuestsOfOne && !isLoopback(address);
 }
 
 void LinkServer::refused(RefusalCode code, const asio::ip::address& address, const std::string& line) {
@@ -105,16 +117,8 @@ void LinkServer::refused(RefusalCode code, const asio::ip::address& address, con
     }
 }
 
-void LinkServer::guestCame(const asio::ip::address& address) {
-    ++guestCount_;
-    ++guests_[address];
-}
-
-void LinkServer::guestWent(const asio::ip::address& address) {
-    --guestCount_;
-    if (--guests_[address] == 0) {
-        guests_.erase(address);
-    }
+void LinkServer::guestWent(const MasterLink& guest) {
+    std::erase_if(guests_, [&](const auto& one) { return one.get() == &guest; });
 }
 
 void LinkServer::shut(const std::string& reason) {
@@ -122,6 +126,9 @@ void LinkServer::shut(const std::string& reason) {
     error_code ignored;
     acceptor_.close(ignored);
     std::weak_ptr<Connection> last;
+    for (const auto& guest : std::list(guests_)) {
+        guest->makeRoom();
+    }
     for (const auto& watcher : std::set(watchers_)) {
         watcher->sayGoodbye(reason);
     }

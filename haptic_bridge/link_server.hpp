@@ -5,7 +5,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <functional>
-#include <map>
+#include <list>
 #include <memory>
 #include <set>
 #include <string>
@@ -31,7 +31,8 @@ struct TimingTests {
 ///
 /// Everything runs on the thread that runs `io`. A master that leaves, breaks or sends garbage ends its own link and
 /// nothing else; the next one may come. Who has not proved what the server asks for costs little: kMaxGuests of them
-/// at once, kMaxGuestsOfOne of one address beyond this machine, and as often as GuestLimits lets them.
+/// at once, of whom the oldest goes when another comes, kMaxGuestsOfOne of one address beyond this machine, and as
+/// often as GuestLimits lets them.
 class LinkServer {
 public:
     struct Sources {
@@ -56,8 +57,8 @@ public:
     void shut(const std::string& reason);
     [[nodiscard]] const RefusalCounts& refused() const { return refusals_.counts(); }
 
-    static constexpr int kMaxGuests = 16;      // connections that have not been welcomed yet
-    static constexpr int kMaxGuestsOfOne = 4;  // of those, from one address beyond this machine
+    static constexpr std::size_t kMaxGuests = 16;  // connections that have not been welcomed yet
+    static constexpr int kMaxGuestsOfOne = 4;      // of those, from one address beyond this machine
     static constexpr std::size_t kMaxWatchers = 8;
     static constexpr int kMaxConnections = 64;  // of all kinds, those included that are being closed
 
@@ -67,8 +68,8 @@ private:
     void admit(Connection::Socket socket);
     /// Counts it, and says so unless `line` is empty.
     void refused(RefusalCode code, const boost::asio::ip::address& address, const std::string& line);
-    void guestCame(const boost::asio::ip::address& address);
-    void guestWent(const boost::asio::ip::address& address);
+    [[nodiscard]] bool tooManyOf(const boost::asio::ip::address& address) const;
+    void guestWent(const MasterLink& guest);
     void stopWhenGone(const std::weak_ptr<Connection>& last, int polls);
     [[nodiscard]] std::shared_ptr<MasterLink> linked(std::uint32_t session) const;
 
@@ -86,8 +87,7 @@ private:
     GuestLimits limits_;
     RefusalLog refusals_;
     std::uint32_t sessions_ = 0;
-    std::map<boost::asio::ip::address, int> guests_;  // connections that have not been welcomed yet
-    int guestCount_ = 0;
+    std::list<std::shared_ptr<MasterLink>> guests_;  // who has not been welcomed yet, the oldest first
     std::shared_ptr<int> connections_ = std::make_shared<int>(0);
     bool shutting_ = false;
 };

@@ -50,7 +50,6 @@ MasterLink::MasterLink(LinkServer& server, Connection::Socket socket)
       random_(server.tests_.seed) {}
 
 void MasterLink::start() {
-    server_.guestCame(connection_->address());
     heardNs_ = monotonicNs();
     connection_->limit(kMaxGreeting);
     connection_->start(
@@ -58,6 +57,11 @@ void MasterLink::start() {
          [self = shared_from_this()](const std::string& why, Connection::Fault fault) { self->end(why, fault); },
          true});
     watch();
+}
+
+void MasterLink::makeRoom() {
+    const auto kept = shared_from_this();
+    connection_->close("others wait, and it has not greeted yet", RefusalCode::limit);
 }
 
 void MasterLink::log(const std::string& what) const {
@@ -178,7 +182,7 @@ void MasterLink::welcome() {
         refuse({RefusalCode::busy, fmt::format("busy: {} watch already", LinkServer::kMaxWatchers)});
         return;
     }
-    server_.guestWent(connection_->address());
+    server_.guestWent(*this);
     if (role_ == Role::move) {
         phase_ = Phase::waiting;
         session_ = ++server_.sessions_;
@@ -336,7 +340,7 @@ void MasterLink::end(const std::string& why, Connection::Fault fault) {
         server_.refused(*fault, connection_->address(), master ? "" : who + why);
     }
     if (guest) {
-        server_.guestWent(connection_->address());
+        server_.guestWent(*this);
     }
     phase_ = Phase::over;
     reportTimer_.cancel();

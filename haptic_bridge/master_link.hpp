@@ -18,10 +18,13 @@ public:
     void needState(const NeedState& need);
     void unusable(const std::string& why);
     void step(files::Bytes message);
+    /// Of a guest: ends at once.
+    void makeRoom();
     /// Sends the last report and a goodbye, then closes.
     void sayGoodbye(const std::string& reason);
 
     [[nodiscard]] std::uint32_t session() const { return session_; }
+    [[nodiscard]] boost::asio::ip::address address() const { return connection_->address(); }
     [[nodiscard]] std::weak_ptr<Connection> connection() const { return connection_; }
 
 private:
