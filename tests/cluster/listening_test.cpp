@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What of a session on one host can be reached from others.
+#include <cstdio>
 #include <regex>
 #include <set>
 #include <sstream>
 
 #include "tests/cluster/session_fixture.hpp"
-#include "tests/support/run_program.hpp"
 
 namespace {
 
