@@ -22,6 +22,7 @@ BANNER = re.compile(rb"-{60,}")
 MPIRUNS_OWN = re.compile(rb"\[[\w.-]+:\d+\]|mpirun: ")
 SIGNALLED = re.compile(rb"process rank (\d+) with PID \d+ on node (\S+) exited on\s+signal (\d+)")
 EXITED = re.compile(rb"Process name: \[\[\d+,\d+\],(\d+)\]\s+Exit code:\s+(\d+)")
+BACKTRACE = re.compile(rb"\[[\w.-]+:\d+\] \[ *\d+\] ")  # of Open MPI, for a process that a signal ends
 PROGRESS = re.compile(rb"frame (\d+)  step (\d+)(?:.*  ([a-z ]+)$)?")
 # The watchdog's last words: "sandwall: frame 7 waits for rank 3 (tile c) on node03 for 4.1 s; ..., ending the job"
 ENDING = re.compile(r"(?:sandwall: )?.*waits? for (.*) for [\d.]+ s; .*ending the job")
@@ -130,7 +131,8 @@ class JobLog:
                     stream.show(line)
 
     def read(self, rank, line, stream):
-        self.said[rank].append(line.decode(errors="replace"))
+        if not BACKTRACE.match(line):  # a deep one would leave no room for what was said before
+            self.said[rank].append(line.decode(errors="replace"))
         if stream is self.err and rank is None:
             self.mpiruns = (self.mpiruns + line + b"\n")[-LONGEST_LINE:]
         elif stream is self.err and self.ending is None:
