@@ -3,10 +3,14 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <thread>
 #include <utility>
 
 #include "files/input_error.hpp"
@@ -16,6 +20,18 @@ namespace master {
 namespace {
 
 constexpr std::int64_t kReservedPiece = 1 << 20;  // [byte]
+constexpr int kLockTries = 50;                    // a tenth of a second each: a master that was killed is gone by then
+
+/// Whether nobody else writes the file, from now on until it is closed. File systems without locks say yes.
+bool lock(int descriptor, int tries) {
+    while (flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+        if (--tries <= 0) {
+            return false;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return true;
+}
 
 }  // namespace
 
@@ -35,6 +51,7 @@ PartFile PartFile::make(const std::filesystem::path& path, std::span<const std::
     if (file.descriptor_ < 0) {
         refuse();
     }
+    (void)lock(file.descriptor_, 1);  // a new file, which nobody else can have
     try {
         file.write(begin);
         if (plain && rename(beside.c_str(), path.c_str()) != 0) {
@@ -52,6 +69,9 @@ PartFile PartFile::make(const std::filesystem::path& path, std::span<const std::
 
 PartFile PartFile::open(const std::filesystem::path& path, std::int64_t size) {
     PartFile file(path, ::open(path.c_str(), O_WRONLY | O_CLOEXEC), size);
+    if (file.descriptor_ >= 0 && !lock(file.descriptor_, kLockTries)) {
+        throw files::InputError(fmt::format("{}: another session writes it; stop that one first", path.string()));
+    }
     if (file.descriptor_ < 0 || ftruncate(file.descriptor_, size) != 0 ||
         lseek(file.descriptor_, size, SEEK_SET) != size || fdatasync(file.descriptor_) != 0) {
         file.fail("the journal cannot be gone on with");

@@ -13,7 +13,8 @@ class PartFile {
 public:
     /// A file that begins with these bytes, on disk: it has its name when they are. Replaces what is there.
     static PartFile make(const std::filesystem::path& path, std::span<const std::uint8_t> begin);
-    /// Goes on at `size`; what stands behind is cut off.
+    /// Goes on at `size`; what stands behind is cut off. Waits five seconds for another process that writes the file,
+    /// and then refuses.
     static PartFile open(const std::filesystem::path& path, std::int64_t size);
     PartFile(PartFile&& other) noexcept;
     PartFile& operator=(PartFile&& other) noexcept;

@@ -241,6 +241,20 @@ TEST_F(Resume, RefusesAnotherSceneThanTheSessions) {
     EXPECT_EQ(refusal(other, file.string()), "not refused");
 }
 
+// Two that write one journal would each destroy what the other has shown.
+TEST_F(Resume, RefusesASessionThatStillRuns) {
+    const auto session = master::readSession(journal(), "");
+    const master::JournalWriter running(session->place, "test");
+    const auto size = std::filesystem::file_size(journal());
+    try {
+        const master::JournalWriter second(session->place, "test");
+        ADD_FAILURE() << "not refused";
+    } catch (const files::InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("another session writes it"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(std::filesystem::file_size(journal()), size);
+}
+
 TEST_F(Resume, WithoutAJournalThereIsNothingToGoOnWith) {
     EXPECT_FALSE(master::readSession(folder_ / "nowhere" / "session.journal", "").has_value());
 }
