@@ -10,7 +10,7 @@ import sys
 import time
 
 KEPT_TRIES = 8
-LAST_LINES = 8  # of each rank, for a report
+LAST_LINES = 16  # of each rank, for a report
 LONGEST_LINE = 1 << 16  # bytes that are held back for the rest of a line
 RESERVE = 1 << 18  # bytes of disk for what is said when the disk is full
 FALLOC_FL_KEEP_SIZE = 1

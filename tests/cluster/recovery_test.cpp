@@ -29,7 +29,7 @@ TEST_F(Recovery, FiveRandomKillsLoseNothing) {
     // script compares what was shown with what came back, and the last hash with an undisturbed replay.
     const Ended ended = script("random_kills.py",
                                {"--kills", "5", "--seed", "337", "--wall", wall(1, 2, "mono"), "--scene", scene(),
-                                "--out", out(), "--frame-timeout", "3"},
+                                "--out", out(), "--frame-timeout", "8"},
                                280);
     EXPECT_EQ(ended.status, 0) << ended.output << read("out/random_kills.log");
     EXPECT_NE(ended.output.find(" on the wall and of an undisturbed replay"), std::string::npos) << ended.output;
@@ -66,19 +66,23 @@ TEST_F(Recovery, ARankThatDiesTooOftenIsNamedInTheReport) {
     EXPECT_EQ(session->wait(60), 1) << session->output();
     EXPECT_TRUE(support::waitUntilGone(family, 10).empty()) << "processes left running";
     const std::string report = read("out/log/report.txt");
-    for (const char* word : {"the session is given up", " on ", "died of SIGBUS; shown: frame ", "Signal: Bus error"}) {
+    for (const char* word :
+         {"the session is given up", " on ", "died of SIGBUS; shown: frame ", "End of error message"}) {
         EXPECT_NE(report.find(word), std::string::npos) << word << "\n" << report;
     }
 }
 
 TEST_F(Recovery, ASpareTakesThePlaceOfAHostThatIsCutOff) {
-    if (geteuid() != 0 || support::runCommand("unshare --net --uts true").status != 0 ||
-        support::runCommand("ip netns list && tc -V").status != 0) {
-        GTEST_SKIP() << "network namespaces need root, and a machine that allows them";
+    const support::Ran probe = support::runCommand(
+        "n=sandwall-probe-$$; ip netns add $n && ip netns exec $n unshare --uts true && "
+        "ip -n $n link add a type veth peer name b && ip -n $n link add s type bridge && "
+        "tc -n $n qdisc add dev a root tbf rate 1gbit burst 256kb latency 50ms; s=$?; ip netns delete $n; exit $s");
+    if (probe.status != 0) {
+        GTEST_SKIP() << "network namespaces need root, and a machine that allows them: " << probe.output;
     }
     const Ended ended = script("emulate_cluster.sh",
                                {"--out", out(), "--wall", wall(1, 2, "mono"), "--scene", scene(), "--spares", "1",
-                                "--cut", "node02@1", "--", "--steps", "400", "--frame-timeout", "3", "--no-pictures"},
+                                "--cut", "node02@1", "--", "--steps", "400", "--frame-timeout", "6", "--no-pictures"},
                                200);
     ASSERT_EQ(ended.status, 0) << ended.output;
     EXPECT_NE(ended.output.find("rank 2 (tile r1c2) on node02 hung"), std::string::npos) << ended.output;
