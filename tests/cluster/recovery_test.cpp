@@ -75,8 +75,8 @@ TEST_F(Recovery, ARankThatDiesTooOftenIsNamedInTheReport) {
 TEST_F(Recovery, ASpareTakesThePlaceOfAHostThatIsCutOff) {
     const support::Ran probe = support::runCommand(
         "n=sandwall-probe-$$; ip netns add $n && ip netns exec $n unshare --uts true && "
-        "ip -n $n link add a type veth peer name b && ip -n $n link add s type bridge && "
-        "tc -n $n qdisc add dev a root tbf rate 1gbit burst 256kb latency 50ms; s=$?; ip netns delete $n; exit $s");
+        "ip -n $n link add veth0 type veth peer name veth1 && ip -n $n link add switch0 type bridge && "
+        "tc -n $n qdisc add dev veth0 root tbf rate 1gbit burst 256kb latency 50ms; s=$?; ip netns delete $n; exit $s");
     if (probe.status != 0) {
         GTEST_SKIP() << "network namespaces need root, and a machine that allows them: " << probe.output;
     }
