@@ -18,6 +18,7 @@ void Fault::encode(files::ByteWriter& writer) const {
     writer.put(signal);
     writer.put(column);
     writer.put(row);
+    writer.put(bit);
 }
 
 Fault Fault::decode(files::ByteReader& reader) {
@@ -30,6 +31,7 @@ Fault Fault::decode(files::ByteReader& reader) {
     fault.signal = reader.get<int>();
     fault.column = reader.get<int>();
     fault.row = reader.get<int>();
+    fault.bit = reader.get<int>();
     return fault;
 }
 
@@ -46,7 +48,7 @@ void FaultsOfRank::strike(std::uint64_t frame, sand::Terrain& terrain) const {
         if (fault.kind == Fault::Kind::die) {
             std::raise(fault.signal);
         } else if (fault.kind == Fault::Kind::diverge) {
-            terrain.corrupt(fault.column, fault.row);
+            terrain.corrupt(fault.column, fault.row, fault.bit);
         }
         while (fault.kind == Fault::Kind::hang) {
             std::this_thread::sleep_for(std::chrono::hours(1));

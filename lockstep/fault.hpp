@@ -29,9 +29,9 @@ struct Fault {
     std::uint64_t frame = 1;  // at the beginning of which it strikes
     // Of `slow` alone: in how many frames from then on.
     std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();
-    std::uint32_t milliseconds = 0;  // of `slow` and `partition`
-    int signal = 9;                  // of `die`
-    int column = 0, row = 0;         // of `diverge`
+    std::uint32_t milliseconds = 0;    // of `slow` and `partition`
+    int signal = 9;                    // of `die`
+    int column = 0, row = 0, bit = 0;  // of `diverge`: of the cell's height, 0 being the lowest
 
     void encode(files::ByteWriter& writer) const;
     /// Throws files::FormatError when cut short.
@@ -46,7 +46,7 @@ class FaultsOfRank {
 public:
     FaultsOfRank(const std::vector<Fault>& all, int rank);
 
-    /// When a frame begins: dies, never returns, or flips the lowest bit of a cell behind the hash's back.
+    /// When a frame begins: dies, never returns, or flips a bit of a cell behind the hash's back.
     void strike(std::uint64_t frame, sand::Terrain& terrain) const;
     /// When it has been drawn: sleeps, which leaves the cores alone as a slow graphics card does.
     void delay(std::uint64_t frame) const;

@@ -85,7 +85,7 @@ public:
     [[nodiscard]] const Cluster& cluster() const { return cluster_; }
     /// What the master is at while it waits for no rank, such as "its journal"; text that lives on.
     void busyWith(const char* what) { busyWith_ = what; }
-    static constexpr const char* kAtTheEnd = "reports and pictures";
+    static constexpr const char* kPictures = "pictures";
 
     /// Watches waits outside the frame loop too, such as for reports and pictures.
     [[nodiscard]] Watchdog& watchdog() { return *watchdog_; }
@@ -105,7 +105,7 @@ private:
     std::vector<Nonsense> nonsense_;
     std::vector<int> ranks_;                        // all but the master, at the master
     std::unique_ptr<std::atomic<bool>[]> missing_;  // by rank; read by the watchdog's thread
-    std::atomic<const char*> busyWith_{kAtTheEnd};
+    std::atomic<const char*> busyWith_{kPictures};
     std::atomic<std::uint64_t> frame_{0};
     bool garbles_ = false;
     std::int64_t quietUntil_ = 0;  // [ns], at a rank: no frame begins before

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lockstep/session_message.hpp"
 
+#include "lockstep/frame_barrier.hpp"
+
 namespace lockstep {
 
 files::Bytes SessionMessage::encode() const {
@@ -86,7 +88,7 @@ bool agreeToGoOn(const Cluster& cluster, bool master) {
     return goOn != 0;
 }
 
-std::vector<RankReport> gatherReports(const Cluster& cluster, const RankReport& mine) {
+std::vector<RankReport> gatherReports(FrameBarrier& barrier, const RankReport& mine) {
     files::ByteWriter writer;
     writer.putText(mine.host);
     writer.putText(mine.renderer);
@@ -99,7 +101,7 @@ std::vector<RankReport> gatherReports(const Cluster& cluster, const RankReport& 
         writer.put(count);
     }
     writer.put(mine.pixelShare);
-    const std::vector<files::Bytes> all = cluster.gather(writer.take());
+    const std::vector<files::Bytes> all = barrier.collect(writer.take());
     std::vector<RankReport> result;
     for (std::size_t rank = 1; rank < all.size(); ++rank) {
         files::ByteReader reader(all[rank]);

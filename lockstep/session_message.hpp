@@ -11,6 +11,8 @@
 
 namespace lockstep {
 
+class FrameBarrier;
+
 /// A fault for tests: one rank sees one frame from a metre beside where the master sent it.
 struct SkewedView {
     int rank = 0;
@@ -67,7 +69,8 @@ struct RankReport {
     double pixelShare = 0;  // of all views' pixels, drawn
 };
 
-/// Collective: the render ranks' reports, by rank from 1, at the master; others get nothing. The master gives any.
-[[nodiscard]] std::vector<RankReport> gatherReports(const Cluster& cluster, const RankReport& mine);
+/// Collective: the render ranks' reports, by rank from 1, at the master; others get nothing. The master gives any. Who
+/// is waited for is named.
+[[nodiscard]] std::vector<RankReport> gatherReports(FrameBarrier& barrier, const RankReport& mine);
 
 }  // namespace lockstep

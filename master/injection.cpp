@@ -20,6 +20,7 @@ namespace {
 constexpr std::uint64_t kMostMilliseconds = 10'000;   // of slow drawing
 constexpr std::uint64_t kLongestPartition = 600'000;  // [ms]
 constexpr std::uint64_t kMostSignal = 31;
+constexpr std::uint64_t kHighestBit = 27;  // heights are below 2^28
 constexpr std::uint64_t kMostFrames = std::numeric_limits<std::uint64_t>::max();
 
 using Kind = lockstep::Fault::Kind;
@@ -27,7 +28,7 @@ using Kind = lockstep::Fault::Kind;
 /// How each kind is written, in the order of Kind.
 constexpr std::array<std::string_view, lockstep::kFaultNames.size()> kUsage{
     "slow:rank=R,ms=MS[,frame=FIRST][,frames=COUNT]",
-    "diverge:rank=R,frame=F[,column=C,row=W]",
+    "diverge:rank=R,frame=F[,column=C,row=W,bit=B]",
     "die:rank=R,frame=F[,signal=S]",
     "hang:rank=R,frame=F",
     "garbage:frame=F[,rank=R]",
@@ -93,7 +94,8 @@ lockstep::Fault parseFault(const std::string& text, const FaultTargets& targets)
     fault.kind = kindOf(text);
     const auto ranks = static_cast<std::uint64_t>(targets.ranks);
     const auto last = [](int count) { return static_cast<std::uint64_t>(count) - 1; };
-    std::uint64_t rank = 0, milliseconds = 0, signal = static_cast<std::uint64_t>(fault.signal), column = 0, row = 0;
+    std::uint64_t rank = 0, milliseconds = 0, signal = static_cast<std::uint64_t>(fault.signal), column = 0, row = 0,
+                  bit = 0;
     const Key frame{"frame", 1, kMostFrames, &fault.frame};
     const Key ofAll{"rank", 0, ranks, &rank};
     std::vector<Key> keys;
@@ -108,7 +110,8 @@ lockstep::Fault parseFault(const std::string& text, const FaultTargets& targets)
             keys = {ofAll,
                     frame,
                     {"column", 0, last(targets.columns), &column, false},
-                    {"row", 0, last(targets.rows), &row, false}};
+                    {"row", 0, last(targets.rows), &row, false},
+                    {"bit", 0, kHighestBit, &bit, false}};
             break;
         case Kind::die:
             keys = {ofAll, frame, {"signal", 1, kMostSignal, &signal, false}};
@@ -135,6 +138,7 @@ lockstep::Fault parseFault(const std::string& text, const FaultTargets& targets)
     fault.signal = static_cast<int>(signal);
     fault.column = static_cast<int>(column);
     fault.row = static_cast<int>(row);
+    fault.bit = static_cast<int>(bit);
     return fault;
 }
 

@@ -329,7 +329,7 @@ void Session::finish(bool agreed) {
         summary_.tracking = views_.viewer().counters();
     }
     summary_.link = sequencer_.counters();
-    summary_.ranksReports = lockstep::gatherReports(cluster_, {});
+    summary_.ranksReports = lockstep::gatherReports(barrier_, {});
     summary_.rankStatistics = rankStatistics_.ranks();
     summary_.drag = rankStatistics_.drag();
     summary_.rankNames = names_;

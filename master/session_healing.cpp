@@ -100,7 +100,7 @@ std::unique_ptr<sand::Terrain> Session::sandOfJournal() {
     } catch (const std::exception& error) {  // the ranks wait for an answer, whatever it is
         fmt::print(stderr, "sandwall: {}\n", error.what());
     }
-    barrier_.busyWith(lockstep::FrameBarrier::kAtTheEnd);
+    barrier_.busyWith(lockstep::FrameBarrier::kPictures);
     return sand;
 }
 

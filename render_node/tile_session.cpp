@@ -83,7 +83,7 @@ public:
             const lockstep::Arrival mine{frame.frame, arrived - clockAhead,        lastSwap,  drawn - start,
                                          hash,        viewProof_.hash(frame.view), firstKey()};
             if (!agree(barrier, mine, frame, figures)) {
-                (void)lockstep::gatherReports(cluster_, report());
+                (void)lockstep::gatherReports(barrier, report());
                 return;
             }
             // Nobody comes here before all have agreed. Off screen, to swap is to let the pictures count.
@@ -93,7 +93,7 @@ public:
             waitMs_.add(figures.waitMs);
             more = !frame.stop;
             if (frame.stop) {
-                (void)lockstep::gatherReports(cluster_, report());
+                (void)lockstep::gatherReports(barrier, report());
             }
             if (frame.capture) {
                 sendPictures();

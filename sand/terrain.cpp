@@ -282,6 +282,8 @@ void Terrain::decodeState(std::span<const std::uint8_t> bytes) {
     }
 }
 
-void Terrain::corrupt(int column, int row) { field_.setHeight(column, row, field_.height(column, row) ^ 1); }
+void Terrain::corrupt(int column, int row, int bit) {
+    field_.setHeight(column, row, field_.height(column, row) ^ (std::int32_t{1} << bit));
+}
 
 }  // namespace sand

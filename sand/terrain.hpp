@@ -83,8 +83,9 @@ public:
     /// Throws files::FormatError when the bytes are no state of this scene; the replica is then unchanged.
     void decodeState(std::span<const std::uint8_t> bytes);
 
-    /// Flips the lowest bit of one cell behind the hash's back: a fault for tests of the lockstep proof.
-    void corrupt(int column, int row);
+    /// Flips one bit of one cell's height behind the hash's back, the lowest being 0: a fault for tests and drills of
+    /// the lockstep proof.
+    void corrupt(int column, int row, int bit = 0);
 
 private:
     void touch(const Rect& cells);

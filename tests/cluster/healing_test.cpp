@@ -79,6 +79,28 @@ TEST_F(Healing, LeavesNoTraceInPicturesAndSand) {
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out/failure.json"));
 }
 
+// A column of sand four cells high stands in the midst of a dune that slides, in the frame whose pictures are kept.
+TEST_F(Healing, DrawsTheFrameInWhichItHappensAnew) {
+    const std::string dunes = write("dunes.toml",
+                                    "name = \"dunes\"\n[field]\ncolumns = 128\nrows = 128\n[terrain]\nkind = "
+                                    "\"dunes\"\ndune_height = 0.4\n[material]\ntalus_deg = 15\n[tool]\n");
+    const auto slide = [&](const std::string& folder, const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{"--wall", wall(1, 2), "--scene", dunes,   "--pace",
+                                           "fast",   "--frames", "20",      "--out", (folder_ / folder).string()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return runToEnd(arguments);
+    };
+    ASSERT_EQ(slide("undisturbed", {}).status, 0);
+    const Ended ended = slide("out", {"--inject", "diverge:rank=1,frame=20,column=40,row=64,bit=18", "--inject",
+                                      "diverge:rank=2,frame=20,column=40,row=64,bit=19"});
+    ASSERT_EQ(ended.status, 0) << ended.output;
+    EXPECT_NE(ended.output.find("frame 20: rank 1 (tile r1c1) on " + host() + " takes the sand of the "),
+              std::string::npos)
+        << ended.output;
+    EXPECT_EQ(summary()["state_hash"], json("undisturbed/summary.json")["state_hash"]);
+    expectEqualPictures("undisturbed", "out");
+}
+
 TEST_F(Healing, LetsTheJournalDecideATie) {
     const std::string wallFile = wall(1, 1);
     ASSERT_EQ(dig(wallFile, {}, "undisturbed").status, 0);

@@ -78,7 +78,7 @@ TEST(SessionMessage, SurvivesItsEncoding) {
         lockstep::SkewedView{2, 98},
         4,
         {{.kind = Fault::Kind::slow, .rank = 5, .frame = 7, .frames = 9, .milliseconds = 30},
-         {.kind = Fault::Kind::diverge, .rank = 0, .frame = 99, .column = 7, .row = 8},
+         {.kind = Fault::Kind::diverge, .rank = 0, .frame = 99, .column = 7, .row = 8, .bit = 9},
          {.kind = Fault::Kind::die, .rank = 2, .signal = 11},
          {.kind = Fault::Kind::partition, .rank = Fault::kLink, .frame = 3, .milliseconds = 1}},
         {6, 7, 8}};

@@ -26,8 +26,8 @@ TEST(Injection, OfSlowDrawingIsForTheRestOfTheSessionOrForSomeFrames) {
 TEST(Injection, KnowsEveryKindOfFault) {
     EXPECT_EQ(master::parseFault("diverge:rank=0,frame=9", kWall),
               (Fault{.kind = Fault::Kind::diverge, .rank = 0, .frame = 9}));
-    EXPECT_EQ(master::parseFault("diverge:rank=3,frame=9,column=199,row=99", kWall),
-              (Fault{.kind = Fault::Kind::diverge, .rank = 3, .frame = 9, .column = 199, .row = 99}));
+    EXPECT_EQ(master::parseFault("diverge:rank=3,frame=9,column=199,row=99,bit=20", kWall),
+              (Fault{.kind = Fault::Kind::diverge, .rank = 3, .frame = 9, .column = 199, .row = 99, .bit = 20}));
     EXPECT_EQ(master::parseFault("die:rank=0,frame=9", kWall),
               (Fault{.kind = Fault::Kind::die, .rank = 0, .frame = 9, .signal = 9}));
     EXPECT_EQ(master::parseFault("die:rank=12,frame=9,signal=11", kWall),
@@ -68,6 +68,7 @@ TEST(Injection, ThatCannotBeIsNamedInOneLine) {
                                      {"hang:rank=1,frame=1,ms=3", "'ms=3' is not understood"},
                                      {"diverge:rank=1,frame=1,column=200", "column must be 0 to 199, got '200'"},
                                      {"diverge:rank=1,frame=1,row=100", "row must be 0 to 99, got '100'"},
+                                     {"diverge:rank=1,frame=1,bit=28", "bit must be 0 to 27, got '28'"},
                                      {"garbage:rank=0,frame=1", "rank must be 1 to 12, got '0'"},
                                      {"partition:frame=1", "ms is missing"}}) {
         try {
