@@ -264,13 +264,13 @@ TEST_F(Keeper, APartThatWasOnlyMadeIsNoHarm) {
 /// Runs in a child that has a mount namespace with a file system of so many bytes at `folder`; its status, or 77 where
 /// this machine lets nobody have one.
 template <class Work>
-int onSmallDisk(const std::filesystem::path& folder, const char* size, const Work& work) {
+int onSmallDisk(const std::filesystem::path& folder, const char* size, const Work& work, unsigned long flags = 0) {
     const pid_t child = fork();
     if (child == 0) {
         const uid_t user = getuid();
         if (unshare(user == 0 ? CLONE_NEWNS : CLONE_NEWNS | CLONE_NEWUSER) != 0 ||
             mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
-            mount("none", folder.c_str(), "tmpfs", 0, size) != 0) {
+            mount("none", folder.c_str(), "tmpfs", flags, size) != 0) {
             _exit(77);
         }
         try {
@@ -321,6 +321,27 @@ TEST_F(Keeper, AFullDiskStopsTheSandUntilThereIsRoom) {
     });
     if (status == 77) {
         GTEST_SKIP() << "this machine lets nobody mount a small disk";
+    }
+    EXPECT_EQ(status, 0);
+}
+
+TEST_F(Keeper, AReadOnlyFolderIsNamed) {
+    const int status = onSmallDisk(
+        folder_, "size=4m",
+        [this] {
+            try {
+                begin({});
+                ADD_FAILURE() << "not refused";
+            } catch (const files::InputError& error) {
+                EXPECT_NE(
+                    std::string(error.what()).find("cannot be made (Read-only file system); choose another --out"),
+                    std::string::npos)
+                    << error.what();
+            }
+        },
+        MS_RDONLY);
+    if (status == 77) {
+        GTEST_SKIP() << "this machine lets nobody mount a disk";
     }
     EXPECT_EQ(status, 0);
 }
