@@ -2,6 +2,7 @@
 // What a session does when ranks differ: who is right, who is healed, and who is given up.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 
