@@ -41,6 +41,9 @@ std::vector<std::string> describeDivergence(const DivergedFrame& diverged, const
                               "taken for right",
                               when));
     }
+    if (journal.empty()) {
+        return lines;
+    }
     const std::filesystem::path replay =
         std::filesystem::read_symlink("/proc/self/exe").parent_path() / "sandwall-replay";
     lines.push_back(fmt::format("reproduce the right hash with: '{}' '{}' --until {} --hash", replay.string(),

@@ -18,7 +18,8 @@ struct DivergedFrame {
 };
 
 /// Who differs and where, a line each, who says what is right where no hash has a majority, and how to compute that
-/// hash again from the journal. `names` are those of the ranks, the master's first.
+/// hash again from the journal; of that nothing where `journal` is empty. `names` are those of the ranks, the master's
+/// first.
 [[nodiscard]] std::vector<std::string> describeDivergence(const DivergedFrame& diverged,
                                                           const std::vector<std::string>& names,
                                                           const std::filesystem::path& journal);

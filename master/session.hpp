@@ -128,6 +128,7 @@ private:
     /// Until all agree; false when the session has to end, which has then been said.
     bool reachAgreement(lockstep::Verdict verdict, lockstep::Arrival mine);
     bool healSand(bool again);
+    [[nodiscard]] std::filesystem::path writtenJournal() const;  // empty when there is none
     [[nodiscard]] std::unique_ptr<sand::Terrain> sandOfJournal();
     [[nodiscard]] std::optional<int> brokenAmong(const std::vector<int>& odd) const;
     [[nodiscard]] std::string giveUp(int rank, bool again);

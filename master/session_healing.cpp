@@ -55,7 +55,7 @@ bool Session::healSand(bool again) {
     lockstep::Divergence divergence = *lockstep::findDivergence(barrier_, terrain_, [this] { return sandOfJournal(); });
     const std::vector<int> odd = ranksOf(divergence);
     std::vector<std::string> lines =
-        describeDivergence({frame_, terrain_.stepNumber(), divergence}, names_, options_.out / "session.journal");
+        describeDivergence({frame_, terrain_.stepNumber(), divergence}, names_, writtenJournal());
     const std::optional<int> broken = again && !odd.empty() ? odd.front() : brokenAmong(odd);
     lockstep::Remedy remedy{!broken, divergence.source, odd};
     if (broken) {
@@ -88,16 +88,21 @@ bool Session::healSand(bool again) {
     return healing != lockstep::Healing::ended;
 }
 
+std::filesystem::path Session::writtenJournal() const {
+    // What lies in the folder of a session that writes none is another's, or ends too early.
+    return journal_ && journal_->written() ? options_.out / "session.journal" : std::filesystem::path();
+}
+
 std::unique_ptr<sand::Terrain> Session::sandOfJournal() {
-    if (!journal_) {
+    const std::filesystem::path journal = writtenJournal();
+    if (journal.empty()) {
         return nullptr;
     }
     const lockstep::Watched watched(barrier_.watchdog());
     barrier_.busyWith("the sand of its journal");
     std::unique_ptr<sand::Terrain> sand;
     try {
-        sand = std::make_unique<sand::Terrain>(
-            restoreSand(options_.out / "session.journal", terrain_.stepNumber(), options_.sweeps).terrain);
+        sand = std::make_unique<sand::Terrain>(restoreSand(journal, terrain_.stepNumber(), options_.sweeps).terrain);
     } catch (const std::exception& error) {  // the ranks wait for an answer, whatever it is
         fmt::print(stderr, "sandwall: {}\n", error.what());
     }
@@ -140,7 +145,9 @@ void Session::reportOtherViews() {
         }
     }
     rankStatistics_.addOdd(odd);
-    tell(lockstep::describeOtherViews(barrier_.arrivals(), names_), options_.out / "divergence.txt");
+    const std::vector<std::string> lines = lockstep::describeOtherViews(barrier_.arrivals(), names_);
+    tell(lines, options_.out / "divergence.txt");
+    (void)writeFailure(failureOf("broken", odd.front(), lines.front()), options_.out);
 }
 
 void Session::reportNonsense() {
