@@ -23,9 +23,9 @@ constexpr std::uint64_t kPerFlood = 20'000;
 class Socket {
 public:
     explicit Socket(int descriptor) : descriptor_(descriptor) {
-        const timeval patience{.tv_sec = 2, .tv_usec = 0};
-        setsockopt(descriptor_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-        setsockopt(descriptor_, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+        const timeval forAnswer{.tv_sec = 0, .tv_usec = 200'000}, forRoom{.tv_sec = 2, .tv_usec = 0};
+        setsockopt(descriptor_, SOL_SOCKET, SO_RCVTIMEO, &forAnswer, sizeof forAnswer);
+        setsockopt(descriptor_, SOL_SOCKET, SO_SNDTIMEO, &forRoom, sizeof forRoom);
     }
     ~Socket() { close(descriptor_); }
     Socket(const Socket&) = delete;
