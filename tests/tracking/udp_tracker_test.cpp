@@ -137,7 +137,9 @@ TEST_F(UdpTrackerTest, SaysThatAPortIsTaken) {
 
 TEST_F(UdpTrackerTest, SaysThatAnAddressIsNotOurs) {
     // Reserved for documentation: no machine has it.
-    EXPECT_NE(test::refusal([&] { open("opentrack:192.0.2.1:4242"); }).find("cannot listen on 192.0.2.1 port 4242"),
+    EXPECT_NE(test::refusal([&] {
+                  open("opentrack:192.0.2.1:4242 from=192.0.2.2");
+              }).find("cannot listen on 192.0.2.1 port 4242"),
               std::string::npos);
 }
 
