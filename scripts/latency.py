@@ -179,7 +179,7 @@ def session(folder, wall_file, load, haptic, args, scene=SCENE):
 def floor(*words):
     said = subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=START_SECONDS,
                           env=dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                                   OMPI_MCA_mpi_yield_when_idle="1"))
+                                   OMPI_MCA_mpi_yield_when_idle="1", HWLOC_COMPONENTS="-gl"))
     if said.returncode != 0:
         raise Failed(f"{' '.join(map(str, words))}: {said.stderr.strip()[-300:]}")
     return json.loads(said.stdout.splitlines()[-1])

@@ -111,7 +111,7 @@ def transport(hosts, network):
         network = checked_network(network)
         options += ["--mca", "btl_tcp_if_include", network, "--mca", "oob_tcp_if_include", network]
     # What is only in this machine's environment does not reach the others.
-    return options + ["--mca", "mpi_yield_when_idle", "1", "-x", "LP_NUM_THREADS"]
+    return options + ["--mca", "mpi_yield_when_idle", "1", "-x", "LP_NUM_THREADS", "-x", "HWLOC_COMPONENTS"]
 
 
 def programs(hosts, master, node):

@@ -59,7 +59,8 @@ TEST_F(BadInput, AFieldThatDoesNotFitTheMemoryIsRefused) {
 TEST_F(BadInput, AWallThatDoesNotFitTheRanksIsRefusedByTheMaster) {
     const std::string bin = SANDWALL_BIN_DIR;
     const std::string command =
-        "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 exec mpirun -q --oversubscribe --bind-to none"
+        "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 HWLOC_COMPONENTS=-gl exec mpirun -q "
+        "--oversubscribe --bind-to none"
         " --mca btl self,vader -n 1 " +
         bin + "/sandwall-master --scene " + scene() + " --wall " + wall(2, 2) + " --out " + out() + " : -n 3 " + bin +
         "/sandwall-render-node";

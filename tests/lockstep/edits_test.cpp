@@ -15,8 +15,9 @@ const std::string kOfSpheres = "104713705b65770e", kOfEveryTool = "07877fabb68c6
 void expectHash(std::initializer_list<int> numbersOfRanks, const std::string& arguments, const std::string& hash) {
     for (const int ranks : numbersOfRanks) {
         const support::Ran ran = support::runCommand(
-            "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_mpi_yield_when_idle=1 timeout 600 "
-            "mpirun -q --oversubscribe --bind-to none --mca btl self,vader --mca oob_tcp_if_include lo -n " +
+            "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_mpi_yield_when_idle=1 "
+            "HWLOC_COMPONENTS=-gl timeout 600 mpirun -q --oversubscribe --bind-to none --mca btl self,vader --mca "
+            "oob_tcp_if_include lo -n " +
             std::to_string(ranks) + " " SANDWALL_BIN_DIR "/edits_ranks" + arguments);
         EXPECT_EQ(ran.status, 0) << ran.output;
         EXPECT_EQ(ran.output, hash + "\n") << ranks << " ranks";
