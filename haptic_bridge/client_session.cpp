@@ -31,10 +31,25 @@ Client::Session::Session(Address address, Offer offer, LinkSecurity security)
     backOff_ = kFirstBackOff;
     tell(Link::connecting, "haptic server " + address_.text() + ": connecting");
     asio::post(io_, [this] { connect(); });
-    thread_ = std::thread([this] {
-        const auto work = asio::make_work_guard(io_);
-        io_.run();
-    });
+    thread_ = std::thread([this] { run(); });
+}
+
+/// Until io_ is stopped: whatever goes wrong costs the link, and neither this thread nor the wall.
+void Client::Session::run() {
+    const auto work = asio::make_work_guard(io_);
+    while (!io_.stopped()) {
+        try {
+            io_.run();
+        } catch (const std::exception& error) {
+            asio::post(io_, [this, why = std::string(error.what())] {
+                if (connection_) {
+                    connection_->close(why);
+                } else if (!stopping_) {
+                    failed(why);
+                }
+            });
+        }
+    }
 }
 
 void Client::Session::stop() {
@@ -353,10 +368,11 @@ void Client::Session::handOver(const NeedState& need) {
         connection_->send(State{std::exchange(state_, {})});
         return;
     }
+    const auto connection = connection_;  // sending may close it
     for (std::size_t begin = 0; begin < steps->size(); begin += kPerMessage) {
         const std::size_t end = std::min(begin + kPerMessage, steps->size());
         const auto at = [&](std::size_t i) { return steps->begin() + static_cast<std::ptrdiff_t>(i); };
-        connection_->send(CatchUp{end == steps->size(), {at(begin), at(end)}});
+        connection->send(CatchUp{end == steps->size(), {at(begin), at(end)}});
     }
 }
 

@@ -64,6 +64,7 @@ private:
 
     void tell(Link link, const std::string& message);
     [[nodiscard]] Link link();
+    void run();
     void connect();
     void connected(Connection::Socket socket);
     void failed(const std::string& why);

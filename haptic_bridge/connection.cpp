@@ -50,7 +50,8 @@ void Connection::start(Handlers handlers) {
     }
     read();
     if (!tls_ && handlers_.ready) {
-        handlers_.ready();
+        const auto ready = handlers_.ready;  // a copy: closing releases the handlers
+        ready();
     }
 }
 
@@ -87,11 +88,17 @@ void Connection::take(std::size_t count) {
         deliver();
         return;
     }
-    const bool before = tls_->established();
     files::Bytes plain, reply;
     std::string trouble;
+    bool first = false;
     try {
         tls_->receive(bytes, plain, reply);
+        // Once: a message of the handshake that comes in pieces makes it look unfinished again.
+        first = !told_ && tls_->established();
+        if (first) {
+            told_ = true;
+            binding_ = tls_->binding();
+        }
     } catch (const std::runtime_error& error) {
         trouble = error.what();
     }
@@ -102,7 +109,7 @@ void Connection::take(std::size_t count) {
         close("TLS failed: " + trouble, RefusalCode::tls);
         return;
     }
-    if (!before && tls_->established() && open_ && handlers_.ready) {
+    if (first && open_ && handlers_.ready) {
         const auto ready = handlers_.ready;
         ready();
     }
@@ -137,7 +144,9 @@ void Connection::refuse(RefusalCode code, const std::string& answer, const std::
     send(Refusal{code, answer});
     const auto closed = std::move(handlers_.closed);
     finish();
-    closed(why, code);
+    if (closed) {  // unless the answer was too much for who does not read: then it has been called
+        closed(why, code);
+    }
 }
 
 /// Counts the message that comes next; false when it must wait.
@@ -204,7 +213,12 @@ void Connection::sendBytes(files::Bytes bytes) {
     const bool isLong = bytes.size() > kMaxMessage + sizeof(std::uint32_t);
     if (tls_) {
         files::Bytes sealed;
-        tls_->seal(bytes, sealed);
+        try {
+            tls_->seal(bytes, sealed);
+        } catch (const std::runtime_error& error) {  // the other end may have begun what it does not finish
+            close(std::string("TLS failed: ") + error.what(), RefusalCode::tls);
+            return;
+        }
         bytes = std::move(sealed);
     }
     push(std::move(bytes), isLong);

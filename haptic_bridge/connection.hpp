@@ -66,8 +66,8 @@ public:
     [[nodiscard]] std::string peer() const { return peer_; }              // "127.0.0.1:40312"
     [[nodiscard]] boost::asio::ip::address address() const { return address_; }
     [[nodiscard]] bool overTls() const { return tls_ != nullptr; }
-    /// TlsSession::binding(), or nothing.
-    [[nodiscard]] files::Bytes binding() const { return tls_ ? tls_->binding() : files::Bytes(); }
+    /// TlsSession::binding() as it was when `ready` was called, or nothing.
+    [[nodiscard]] const files::Bytes& binding() const { return binding_; }
 
     static constexpr std::size_t kMaxUnsent = 1024 * 1024;  // [byte], of ordinary messages
     static constexpr double kMaxRate = 50'000;              // [1/s]; a device that streams positions makes 16000
@@ -91,6 +91,8 @@ private:
 
     Socket socket_;
     std::unique_ptr<TlsSession> tls_;
+    files::Bytes binding_;
+    bool told_ = false;  // that TLS is established
     boost::asio::steady_timer linger_, throttle_;
     Handlers handlers_;
     MessageReader reader_;

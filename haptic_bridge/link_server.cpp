@@ -72,7 +72,11 @@ void LinkServer::accept() {
             });
             return;
         }
-        admit(std::move(socket));
+        try {
+            admit(std::move(socket));
+        } catch (const std::exception& failure) {  // no memory for TLS, say
+            sources_.log(std::string("a guest cannot be answered: ") + failure.what());
+        }
         accept();
     });
 }

@@ -52,6 +52,7 @@ public:
     }
 
     void begin(files::Bytes& reply) override {
+        ERR_clear_error();
         (void)go(SSL_do_handshake(ssl_.get()), reply);
         take(reply);
     }

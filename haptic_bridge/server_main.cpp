@@ -214,7 +214,13 @@ void serve(const Options& options) {
     }
     fmt::print("listening on {}\n", textOf(endpoint));
     std::fflush(stdout);
-    io.run();
+    while (!io.stopped()) {
+        try {
+            io.run();
+        } catch (const std::exception& error) {  // of one link, whose silence then ends it
+            print(std::string("a link failed: ") + error.what());
+        }
+    }
     if (loop != nullptr) {
         print(loop->summary());
     }
