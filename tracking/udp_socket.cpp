@@ -2,9 +2,14 @@
 #include "tracking/udp_socket.hpp"
 
 #include <fmt/format.h>
+#include <linux/filter.h>
+#include <linux/sock_diag.h>
+#include <sys/socket.h>
 
+#include <array>
 #include <boost/asio/buffer.hpp>
 
+#include "files/byte_stream.hpp"
 #include "files/input_error.hpp"
 
 namespace tracking {
@@ -15,7 +20,41 @@ using boost::system::error_code;
 namespace {
 
 constexpr std::size_t kLargestDatagram = 65536;  // UDP has room for a little less, so none is ever cut
-constexpr int kMostStrangers = 64;               // that are read over in one call
+constexpr int kMostStrangers = 64;               // that are read over in one call, where the kernel lets them through
+
+asio::ip::address plain(const asio::ip::address& address) {
+    return address.is_v6() && address.to_v6().is_v4_mapped()
+               ? asio::ip::address(asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6()))
+               : address;
+}
+
+/// Lets the kernel leave out what comes from elsewhere, before it takes the room of what does not. A kernel that cannot
+/// lets it through to next().
+void filter(int socket, const asio::ip::address& from) {
+    // The source's address in the header, word by word; a word that differs drops the datagram.
+    const files::Bytes words = [&] {
+        if (from.is_v4()) {
+            const auto bytes = from.to_v4().to_bytes();
+            return files::Bytes(bytes.begin(), bytes.end());
+        }
+        const auto bytes = from.to_v6().to_bytes();
+        return files::Bytes(bytes.begin(), bytes.end());
+    }();
+    const auto first = static_cast<std::uint32_t>(SKF_NET_OFF) + (from.is_v4() ? 12U : 8U);
+    std::vector<sock_filter> program;
+    for (std::size_t i = 0; i < words.size(); i += 4) {
+        std::uint32_t word = 0;
+        for (std::size_t j = i; j < i + 4; ++j) {
+            word = word << 8U | words[j];
+        }
+        program.push_back(BPF_STMT(BPF_LD | BPF_W | BPF_ABS, first + static_cast<std::uint32_t>(i)));
+        program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, word, 1, 0));
+        program.push_back(BPF_STMT(BPF_RET | BPF_K, 0));
+    }
+    program.push_back(BPF_STMT(BPF_RET | BPF_K, ~0U));
+    const sock_fprog whole{static_cast<unsigned short>(program.size()), program.data()};
+    (void)setsockopt(socket, SOL_SOCKET, SO_ATTACH_FILTER, &whole, sizeof whole);
+}
 
 }  // namespace
 
@@ -23,13 +62,17 @@ UdpReceiver::UdpReceiver(const std::string& host, std::uint16_t port, const std:
     : buffer_(kLargestDatagram) {
     const asio::ip::udp::endpoint endpoint(asio::ip::make_address(host), port);
     if (!from.empty()) {
-        from_ = asio::ip::make_address(from);
+        from_ = plain(asio::ip::make_address(from));
     } else if (!endpoint.address().is_loopback()) {
         throw files::InputError(fmt::format(
             "{}: others can reach {}; name the one tracker's address behind it, such as from=192.168.1.20", who, host));
     }
     error_code error;
     socket_.open(endpoint.protocol(), error);
+    native_ = socket_.native_handle();
+    if (!error && from_) {
+        filter(native_, *from_);
+    }
     if (!error) {
         socket_.bind(endpoint, error);
     }
@@ -54,12 +97,19 @@ std::optional<std::span<const std::uint8_t>> UdpReceiver::next() {
         if (error) {  // none is there, or something is wrong: either way the next frame looks again
             return std::nullopt;
         }
-        if (!from_ || from.address() == *from_) {
+        if (!from_ || plain(from.address()) == *from_) {
             return std::span<const std::uint8_t>(buffer_).first(size);
         }
         ++strangers_;
     }
     return std::nullopt;
+}
+
+std::uint64_t UdpReceiver::strangers() const {
+    std::array<std::uint32_t, SK_MEMINFO_VARS> told{};
+    socklen_t size = sizeof told;
+    const bool known = from_ && getsockopt(native_, SOL_SOCKET, SO_MEMINFO, told.data(), &size) == 0;
+    return strangers_ + (known ? told[SK_MEMINFO_DROPS] : 0);
 }
 
 UdpSender::UdpSender(const std::string& host, std::uint16_t port) : to_(asio::ip::make_address(host), port) {

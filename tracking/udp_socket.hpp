@@ -21,7 +21,8 @@ public:
     /// so does one from elsewhere.
     [[nodiscard]] std::optional<std::span<const std::uint8_t>> next();
     [[nodiscard]] std::uint16_t port() const { return port_; }
-    [[nodiscard]] std::uint64_t strangers() const { return strangers_; }  // datagrams from elsewhere
+    /// Datagrams from elsewhere, and those for which the kernel had no room.
+    [[nodiscard]] std::uint64_t strangers() const;
 
 private:
     boost::asio::io_context io_;
@@ -30,6 +31,7 @@ private:
     std::uint64_t strangers_ = 0;
     std::vector<std::uint8_t> buffer_;
     std::uint16_t port_ = 0;
+    int native_ = -1;  // socket_, for what only reads its counts
 };
 
 /// Sends datagrams to one address. Throws files::InputError when the address cannot be sent to.
