@@ -14,6 +14,7 @@ import argparse
 import hmac
 import ipaddress
 import math
+import os
 import secrets
 import socket
 import struct
@@ -23,7 +24,7 @@ import time
 MAGIC, PROTOCOL = b"SWHB", 6
 HELLO, REFUSAL, POSITION_GREETING, POSITION, CHALLENGE, PROOF = 1, 3, 19, 20, 21, 22
 MOVE, PROVES, REFUSED_SECRET = 1, 1, 7
-LONGEST_GREETING, PATIENCE = 1024, 3  # bytes, seconds
+LONGEST_GREETING, PATIENCE, SILENCE = 1024, 3, 10  # bytes, seconds, seconds
 
 
 def message(kind, payload):
@@ -36,11 +37,12 @@ def greeting(device, proof=bytes(32)):
     return message(POSITION_GREETING, MAGIC + struct.pack("<II", PROTOCOL, len(name)) + name + proof)
 
 
-def receive(master):
+def receive(master, deadline):
     """A whole message as it came, of one who is not known yet."""
     def read(count):
         data = b""
         while len(data) < count:
+            master.settimeout(max(0.001, deadline - time.monotonic()))
             piece = master.recv(count - len(data))
             if not piece:
                 raise OSError("it has gone")
@@ -60,7 +62,8 @@ def refuse(master, text):
 
 def prove(master, device, secret):
     """Sees that the master knows the secret; returns the proof that this server knows it, too."""
-    hello = receive(master)
+    deadline = time.monotonic() + PATIENCE  # of all of it, however slowly it comes
+    hello = receive(master, deadline)
     if hello[4] != HELLO or len(hello) < 63 or hello[5:9] != MAGIC or hello[9:13] != struct.pack("<I", PROTOCOL):
         raise OSError("no greeting of this protocol")
     role, flags = hello[-34], hello[-33]
@@ -74,7 +77,7 @@ def prove(master, device, secret):
         label = b"sandwall 6 " + side
         said = struct.pack("<I", len(label)) + label + hello + challenge + struct.pack("<I", 0)
         return hmac.digest(secret, said, "sha256")
-    answer = receive(master)
+    answer = receive(master, deadline)
     if answer[4] != PROOF or not hmac.compare_digest(answer[5:], proof_of(b"master")):
         refuse(master, "the secret of role move is another here; give both sides the same --secret-file")
     return proof_of(b"server")
@@ -102,7 +105,7 @@ def stream(master, rate, secret):
     master.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     master.settimeout(PATIENCE)
     master.sendall(greeting("circles", prove(master, "circles", secret)) if secret else greeting("circles"))
-    master.settimeout(None)
+    master.settimeout(SILENCE)
     begin = due = time.monotonic()
     while True:
         now = time.monotonic()
@@ -114,6 +117,8 @@ def stream(master, rate, secret):
 def secret_of(file):
     """Of role move, as it stands in the file."""
     with open(file, encoding="ascii") as lines:
+        if os.name == "posix" and os.fstat(lines.fileno()).st_mode & 0o077:
+            sys.exit(f"{file}: others may read it; chmod 600 {file}")
         for words in map(str.split, lines):
             if len(words) == 2 and words[0] == "move" and len(words[1]) >= 16:
                 return words[1].encode()
