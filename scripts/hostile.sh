@@ -1,10 +1,21 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Runs a session undisturbed, then while somebody who means no good talks to its haptic server, then with such a one as
-# its haptic server; prints what that did to the frames, the memory and the sand.
+# its haptic server; prints what that did to the frames, the memory and the sand. Exit status 1 when the sand of a run
+# is not that of its journal, or the server's another, or the linked master lost its link.
 #
-# usage: scripts/hostile.sh [FRAMES [SEED]]     1000000 hostile frames each time, and the time as the seed
+# usage: scripts/hostile.sh [--tls] [FRAMES [SEED]]     1000000 hostile frames each time, and the time as the seed
+#        --secret-file FILE                             both roles; else --tls makes one
+# With a secret a false server can only send bad frames, one a connection: 30 of them.
 set -euo pipefail
+link=() secret='' tls=
+while [[ ${1:-} == --* ]]; do
+    case $1 in
+        --tls) tls=--tls; shift ;;
+        --secret-file) secret=$(realpath "$2"); shift 2 ;;
+        *) echo "$1: unknown; --tls or --secret-file FILE" >&2; exit 2 ;;
+    esac
+done
 cd "$(dirname "$0")/.."
 frames=${1:-1000000}
 seed=${2:-$(date +%s)}
@@ -12,6 +23,11 @@ wall=walls/configs/desktop.toml
 scene=scenes/writing.toml
 bin=${SANDWALL_BIN:-build/release/bin}
 folder=$(mktemp -d)
+if [[ -n $tls && -z $secret ]]; then
+    secret=$folder/secret
+    (umask 077; printf '%s %s\n' move "$(openssl rand -hex 32)" watch "$(openssl rand -hex 32)" >"$secret")
+fi
+[[ -z $secret ]] || link=(--secret-file "$secret" ${tls:+"$tls"})
 server=
 trap 'exec 3>&- 2>/dev/null; [[ -z $server ]] || kill "$server" 2>/dev/null || true; rm -rf "$folder"' EXIT
 
@@ -22,7 +38,7 @@ master_of() { pgrep -n -f "sandwall-master .*--out $folder/$1( |\$)"; }
 start_session() {
     mkfifo "$folder/$1.in"
     exec 3<>"$folder/$1.in"
-    scripts/sandwall run --wall "$wall" --scene "$scene" --haptic "$2" --out "$folder/$1" --no-pictures \
+    scripts/sandwall run --wall "$wall" --scene "$scene" --haptic "$2" "${link[@]}" --out "$folder/$1" --no-pictures \
         <"$folder/$1.in" >"$folder/$1.log" 2>&1 &
     session=$!
     sleep 5
@@ -35,22 +51,26 @@ end_session() {
     after=$(resident "$master")
     echo stop >&3
     wait "$session"
-    python3 - "$folder/$1/summary.json" "$1" "$before" "$after" "$("$bin/sandwall-replay" "$folder/$1/session.journal" --hash)" <<'PYTHON'
+    python3 - "$folder/$1/summary.json" "$1" "$before" "$after" \
+        "$("$bin/sandwall-replay" "$folder/$1/session.journal" --hash)" <<'PYTHON' || failed=1
 import json, sys
 file, name, before, after, replayed = sys.argv[1:]
 told = json.load(open(file))
 ms = told["frame_ms"]
 refused = told["haptic"].get("refused", {})
-count = {side: sum(kinds.values()) for side, kinds in refused.items()}
+count = {side: {kind: number for kind, number in kinds.items() if number} for side, kinds in refused.items()}
+divergences, reconnects = told["divergences"] + told["server_divergences"], told["haptic"]["reconnects"]
 same = "equal" if replayed.strip() == told["state_hash"] else "DIFFERENT"
 print(f'| {name} | {ms["p50"]:.2f} | {ms["p99"]:.2f} | {ms["max"]:.2f} | {told["frames"]} | {before} → {after} | '
-      f'{told["divergences"] + told["server_divergences"]} | {told["haptic"]["reconnects"]} | {count} | {same} |')
+      f'{divergences} | {reconnects} | {count} | {same} |')
+# A false server has no link that could be lost.
+sys.exit(same != "equal" or divergences > 0 or (reconnects > 0 and name != "against-master"))
 PYTHON
 }
 
 start_server() {
     rm -f "$folder/port"
-    "$bin/sandwall-haptic-server" --scene "$scene" --device script:gis --listen 127.0.0.1:0 --port-file "$folder/port" \
+    "$bin/sandwall-haptic-server" --scene "$scene" --device script:gis --listen 127.0.0.1:0 --port-file "$folder/port" "${link[@]}" \
         >"$folder/server.log" 2>&1 &
     server=$!
     while [[ ! -f $folder/port ]]; do sleep 0.1; done
@@ -60,17 +80,20 @@ start_server() {
 echo "seed $seed, $frames hostile frames each"
 echo "| run | frame p50 ms | p99 | max | frames | master MiB | divergences | reconnects | refused | hash of a replay |"
 echo "|---|---|---|---|---|---|---|---|---|---|"
+failed=0
 start_server
 start_session undisturbed "127.0.0.1:$port"
 sleep 20
 end_session undisturbed
 start_session "against-server" "127.0.0.1:$port"
 memory=$(resident "$server")
-"$bin/sandwall-hostile" --scene "$scene" --server "$port" --frames "$frames" --seed "$seed" >"$folder/hostile.log"
+"$bin/sandwall-hostile" --scene "$scene" --server "$port" --frames "$frames" --seed "$seed" "${link[@]}" \
+    >"$folder/hostile.log"
 memory="$memory → $(resident "$server") MiB in the server; $(<"$folder/hostile.log")"
 end_session "against-server"
 kill "$server"; wait "$server" || true; server=
-"$bin/sandwall-hostile" --scene "$scene" --frames "$frames" --seed "$seed" >"$folder/false.log" &
+"$bin/sandwall-hostile" --scene "$scene" --frames "$([[ -n $secret ]] && echo 30 || echo "$frames")" --seed "$seed" \
+    "${link[@]}" >"$folder/false.log" &
 false_server=$!
 while [[ ! -s $folder/false.log ]]; do sleep 0.1; done
 start_session "against-master" "$(sed -n 's/listening on //p' "$folder/false.log")"
@@ -79,3 +102,4 @@ end_session "against-master"
 echo
 echo "$memory"
 sed -n '/seed/p' "$folder/false.log"
+exit "$failed"

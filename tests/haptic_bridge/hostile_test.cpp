@@ -54,6 +54,7 @@ TEST_F(Hostile, ThousandsOfFramesDoNotTouchWhoIsLinkedToTheServer) {
     attacker.join();
     EXPECT_TRUE(followed);
     EXPECT_GE(done.frames, 4000U);
+    EXPECT_GT(done.read, 0U);
     EXPECT_GT(done.refusals, 0U);
     EXPECT_EQ(wall.divergences + wall.outOfOrder, 0);
     EXPECT_EQ(client.counters().reconnects, 0U);
@@ -61,6 +62,8 @@ TEST_F(Hostile, ThousandsOfFramesDoNotTouchWhoIsLinkedToTheServer) {
     client.stop();
     ASSERT_TRUE(client.report());
     EXPECT_GT(total(client.report()->refused), done.connections / 4) << "each is counted";
+    std::printf("%zu frames read, %zu refused unread\n", static_cast<std::size_t>(done.read),
+                static_cast<std::size_t>(done.frames - done.read));
     const std::string errors = server.errors();
     std::printf("%zu refusals, %zu lines about them\n", static_cast<std::size_t>(total(client.report()->refused)),
                 static_cast<std::size_t>(std::count(errors.begin(), errors.end(), '\n')));
@@ -68,21 +71,20 @@ TEST_F(Hostile, ThousandsOfFramesDoNotTouchWhoIsLinkedToTheServer) {
 }
 
 TEST_F(Hostile, AMasterTakesNothingFromAServerThatIsNone) {
-    hostile::FalseServer server(seed_, identity_, 30'000);
+    hostile::FalseServer server(seed_, identity_, 1'000'000'000);
     Client client({"127.0.0.1", server.port()}, offerOf(scene_));
     std::size_t most = 0;
+    const auto refused = [&] { return total(client.counters().refused) + client.counters().refusedHere; };
     EXPECT_TRUE(eventually(
         [&] {
             most = std::max(most, client.drainPositions().size());
             EXPECT_TRUE(client.drain(100).empty()) << "nobody was granted anything";
-            return server.done();
+            return server.positions() > 0 && refused() >= 3;
         },
         240000ms))
-        << server.frames();
+        << server.frames() << " frames, " << server.positions() << " positions, " << refused() << " refused";
     EXPECT_LE(most, Client::kMaxPositions + 64 * 1024 / 38);
     EXPECT_EQ(client.counters().stepsIn, 0U);
-    const LinkCounters counters = client.counters();
-    EXPECT_GT(total(counters.refused) + counters.refusedHere, 0U);
     client.stop();
 }
 

@@ -6,26 +6,24 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <memory>
+#include <mutex>
 #include <system_error>
+#include <vector>
 
 namespace hostile {
 
 using namespace haptic_bridge;
 
-namespace {
-
-constexpr int kPerConnection = 8;
-constexpr std::uint64_t kPerFlood = 20'000;
-
 class Socket {
 public:
     explicit Socket(int descriptor) : descriptor_(descriptor) {
-        const timeval forAnswer{.tv_sec = 0, .tv_usec = 200'000}, forRoom{.tv_sec = 2, .tv_usec = 0};
-        setsockopt(descriptor_, SOL_SOCKET, SO_RCVTIMEO, &forAnswer, sizeof forAnswer);
-        setsockopt(descriptor_, SOL_SOCKET, SO_SNDTIMEO, &forRoom, sizeof forRoom);
+        const timeval most{.tv_sec = 2, .tv_usec = 0};
+        setsockopt(descriptor_, SOL_SOCKET, SO_RCVTIMEO, &most, sizeof most);
+        setsockopt(descriptor_, SOL_SOCKET, SO_SNDTIMEO, &most, sizeof most);
     }
     ~Socket() { close(descriptor_); }
     Socket(const Socket&) = delete;
@@ -45,11 +43,13 @@ public:
         return ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL | flags) ==
                static_cast<ssize_t>(bytes.size());
     }
-    [[nodiscard]] bool readsRefusal() const {
+    /// What has come, or nothing when the other side has gone or stays silent.
+    [[nodiscard]] files::Bytes receive() const {
         std::array<std::uint8_t, 4096> answer{};
         const ssize_t count = recv(descriptor_, answer.data(), answer.size(), 0);
-        return count > 4 && answer[4] == 3;
+        return {answer.begin(), answer.begin() + std::max<ssize_t>(count, 0)};
     }
+    void endSending() const { shutdown(descriptor_, SHUT_WR); }
     /// Takes whatever is there, and waits for nothing.
     void drain() const {
         std::array<std::uint8_t, 4096> answer{};
@@ -60,6 +60,12 @@ public:
 private:
     int descriptor_;
 };
+
+namespace {
+
+constexpr int kGuests = 12;  // at once; of more the server sends the oldest away
+constexpr std::uint64_t kPerFlood = 20'000;
+constexpr std::uint32_t kLoopback = 127U << 24U;
 
 int newSocket() { return socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0); }
 
@@ -92,39 +98,168 @@ private:
 
 }  // namespace
 
-Done attackServer(std::uint16_t port, Frames& frames, std::uint64_t count, const std::function<bool()>& goOn) {
-    Done done;
-    constexpr std::uint32_t kLoopback = 127U << 24U;
-    Drip unknown(port, kLoopback + 2, encode(Hello{frames.identity()}));
-    Drip endless(port, kLoopback + 3, files::Bytes{255, 3, 0, 0});
-    while (done.frames < count && goOn()) {
-        ++done.connections;
-        if (done.connections % 64 == 0) {
-            unknown.drip();
-            endless.drip();
+namespace {
+
+/// One frame over a connection of its own, behind whatever it takes to be heard.
+class Visit {
+public:
+    Visit(const Socket& socket, const LinkSecurity& security) : socket_(socket), security_(security) {}
+
+    /// TLS, where the other side speaks it.
+    [[nodiscard]] bool agree(bool server = false) {
+        if (!security_.tls) {
+            return true;
         }
-        const Socket socket(newSocket());
-        if (!socket.connect(kLoopback + (1U << 16U) + frames.below(1U << 23U), port)) {
-            continue;
+        tls_ = security_.tls->open();
+        files::Bytes first;
+        if (!server) {
+            tls_->begin(first);
         }
-        files::Bytes bytes;
-        if (frames.below(2) == 0) {
-            const Role role = frames.below(4) == 0 ? Role::move : Role::watch;
-            bytes = encode(Hello{frames.identity(), role, false, false, {}});
+        bool open = first.empty() || socket_.send(first);
+        while (open && !tls_->established()) {
+            open = receive();
         }
-        for (int i = 0; i < kPerConnection; ++i, ++done.frames) {
-            const files::Bytes one = frames.next();
-            bytes.insert(bytes.end(), one.begin(), one.end());
+        return open;
+    }
+    /// As one who may watch; whether the server has said welcome.
+    [[nodiscard]] bool greet(const Identity& identity) {
+        MasterHandshake handshake(security_, identity, Role::watch, tls_ ? tls_->binding() : files::Bytes());
+        bool open = send(encode(handshake.hello()));
+        while (open) {
+            const auto message = reader_.next();
+            if (!message) {
+                open = receive();
+            } else if (const auto* challenge = std::get_if<Challenge>(&*message)) {
+                const auto proof = handshake.answer(*challenge);
+                open = proof && send(encode(*proof));
+            } else {
+                return std::holds_alternative<Welcome>(*message);
+            }
         }
-        if (socket.send(bytes) && done.connections % 4 == 0) {
-            done.refusals += socket.readsRefusal() ? 1 : 0;
+        return false;
+    }
+    [[nodiscard]] bool send(const files::Bytes& bytes) {
+        if (!tls_) {
+            return socket_.send(bytes);
+        }
+        files::Bytes sealed;
+        tls_->seal(bytes, sealed);
+        return socket_.send(sealed);
+    }
+    /// Says no more, and hears what the other side still says.
+    void end() {
+        socket_.endSending();
+        while (receive()) {
         }
     }
-    return done;
+    [[nodiscard]] std::uint64_t heard() const { return heard_; }  // [byte]
+    [[nodiscard]] bool refused() {
+        while (const auto message = reader_.next()) {
+            if (std::holds_alternative<Refusal>(*message)) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+private:
+    bool receive() {
+        const files::Bytes bytes = socket_.receive();
+        heard_ += bytes.size();
+        if (!tls_) {
+            reader_.feed(bytes);
+        } else if (!bytes.empty()) {
+            files::Bytes plain, reply;
+            tls_->receive(bytes, plain, reply);
+            reader_.feed(plain);
+            return reply.empty() || socket_.send(reply);
+        }
+        return !bytes.empty();
+    }
+
+    const Socket& socket_;
+    const LinkSecurity& security_;
+    std::unique_ptr<TlsSession> tls_;
+    MessageReader reader_;
+    std::uint64_t heard_ = 0;
+};
+
+/// What the guests share.
+struct Attack {
+    std::uint16_t port;
+    const LinkSecurity& security;
+    Frames& frames;
+    std::mutex mutex{};
+    Done done{};
+
+    void visit() {
+        files::Bytes frame;
+        std::uint32_t greeting = 0, from = 0;
+        {
+            const std::lock_guard lock(mutex);
+            frame = frames.next();
+            greeting = frames.below(3);
+            from = kLoopback + (1U << 16U) + frames.below(1U << 23U);
+        }
+        const Socket socket(newSocket());
+        if (!socket.connect(from, port)) {
+            return;
+        }
+        Visit guest(socket, security);
+        bool sent = false, welcome = false, refused = false;
+        try {
+            // Raw bytes; a frame in place of the greeting; one behind it.
+            const bool open = greeting == 0 || (guest.agree() && (greeting == 1 || guest.greet(frames.identity())));
+            welcome = greeting == 2 && open;
+            const std::uint64_t before = guest.heard();
+            sent = open && (greeting == 0 ? socket.send(frame) : guest.send(frame));
+            guest.end();
+            refused = guest.refused();
+            welcome = welcome || guest.heard() > before;
+        } catch (const std::runtime_error&) {  // an alert of TLS: an answer, too
+            welcome = true;
+        }
+        const std::lock_guard lock(mutex);
+        ++done.connections;
+        done.frames += sent ? 1 : 0;
+        done.read += sent && welcome ? 1 : 0;
+        done.refusals += refused ? 1 : 0;
+    }
+};
+
+}  // namespace
+
+Done attackServer(std::uint16_t port, Frames& frames, std::uint64_t count, const std::function<bool()>& goOn,
+                  const LinkSecurity& security) {
+    Attack attack{port, security, frames};
+    std::vector<std::thread> guests;
+    std::atomic<std::uint64_t> left{count};
+    std::atomic<bool> over{false};
+    for (int i = 0; i < kGuests; ++i) {
+        guests.emplace_back([&] {
+            while (!over && left > 0) {
+                attack.visit();
+                const std::lock_guard lock(attack.mutex);
+                left = count - std::min(count, attack.done.frames);
+            }
+        });
+    }
+    Drip unknown(port, kLoopback + 2, encode(Hello{frames.identity()}));
+    Drip endless(port, kLoopback + 3, files::Bytes{255, 3, 0, 0});
+    while (left > 0 && goOn()) {
+        unknown.drip();
+        endless.drip();
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    over = true;
+    for (std::thread& guest : guests) {
+        guest.join();
+    }
+    return attack.done;
 }
 
-FalseServer::FalseServer(std::uint32_t seed, Identity identity, std::uint64_t frames)
-    : frames_(seed, std::move(identity)), count_(frames), listener_(newSocket()) {
+FalseServer::FalseServer(std::uint32_t seed, Identity identity, std::uint64_t frames, LinkSecurity security)
+    : frames_(seed, std::move(identity)), count_(frames), security_(std::move(security)), listener_(newSocket()) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -159,26 +294,36 @@ void FalseServer::serve() {
 
 void FalseServer::talk(int guest) {
     const Socket socket(guest);
-    if (frames_.below(2) == 0) {
-        // Streams: the master takes positions, whatever they say.
-        bool heard = socket.send(encode(PositionGreeting{kProtocolVersion, "false"}));
-        for (std::uint64_t i = 0; heard && i < kPerFlood && !stopping_ && !done(); i += 100) {
-            files::Bytes many;
-            for (int j = 0; j < 100; ++j) {
-                const files::Bytes one = frames_.position();
-                many.insert(many.end(), one.begin(), one.end());
-            }
-            heard = socket.send(many);
-            sent_ += heard ? 100 : 0;
-            socket.drain();
+    Visit visit(socket, security_);
+    try {
+        if (!visit.agree(true)) {
+            return;
         }
-    } else if (frames_.below(2) == 0) {
-        Identity other = frames_.identity();
-        other.rulesDigest ^= 1;
-        (void)socket.send(encode(Welcome{frames_.below(2) == 0 ? other : frames_.identity(), 60, Role::watch, {}}));
+        if (!security_.proves() && frames_.below(2) == 0) {
+            flood(socket);
+        } else if (frames_.below(2) == 0) {
+            Identity other = frames_.identity();
+            other.rulesDigest ^= 1;
+            (void)visit.send(encode(Welcome{frames_.below(2) == 0 ? other : frames_.identity(), 60, Role::watch, {}}));
+        }
+        bad_ += visit.send(frames_.next()) ? 1 : 0;
+        visit.end();
+    } catch (const std::exception&) {  // of TLS, or what the master says
     }
-    for (int i = 0; i < kPerConnection && socket.send(frames_.next()); ++i) {
-        ++sent_;
+}
+
+/// The master takes positions, whatever they say.
+void FalseServer::flood(const Socket& socket) {
+    bool heard = socket.send(encode(PositionGreeting{kProtocolVersion, "false"}));
+    for (std::uint64_t i = 0; heard && i < kPerFlood && !stopping_ && !done(); i += 100) {
+        files::Bytes many;
+        for (int j = 0; j < 100; ++j) {
+            const files::Bytes one = frames_.position();
+            many.insert(many.end(), one.begin(), one.end());
+        }
+        heard = socket.send(many);
+        positions_ += heard ? 100 : 0;
+        socket.drain();
     }
 }
 

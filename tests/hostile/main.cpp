@@ -10,6 +10,7 @@
 
 #include "files/command_line.hpp"
 #include "haptic_bridge/client.hpp"
+#include "haptic_bridge/link_options.hpp"
 #include "tests/hostile/attack.hpp"
 
 int main(int argc, char** argv) {
@@ -18,10 +19,12 @@ int main(int argc, char** argv) {
     std::uint16_t server = 0;
     std::uint64_t frames = 1'000'000;
     std::uint32_t seed = 1;
+    haptic_bridge::LinkOptions link;
     app.add_option("--scene", scene, "scene file, to greet in good order")->required();
     app.add_option("--server", server, "port of a server on this machine; without, it is a server itself");
     app.add_option("--frames", frames, "how many");
     app.add_option("--seed", seed, "of all of them");
+    link.addTo(app, false);
     return files::runMain(app, argc, argv, [&] {
         prctl(PR_SET_PDEATHSIG, SIGKILL);
         const sand::Scene known = sand::loadScene(scene);
@@ -29,18 +32,20 @@ int main(int argc, char** argv) {
                                                known.rules.digest(), known.name};
         if (server != 0) {
             hostile::Frames made(seed, identity);
-            const hostile::Done done = hostile::attackServer(server, made, frames, [] { return true; });
-            fmt::print("seed {}: {} frames over {} connections, {} refusals read\n", seed, done.frames,
-                       done.connections, done.refusals);
+            const hostile::Done done = hostile::attackServer(
+                server, made, frames, [] { return true; }, link.forClient(haptic_bridge::Role::watch));
+            fmt::print("seed {}: {} frames over {} connections: {} read, {} refused unread; {} refusals heard\n", seed,
+                       done.frames, done.connections, done.read, done.frames - done.read, done.refusals);
             return 0;
         }
-        hostile::FalseServer falseServer(seed, identity, frames);
+        hostile::FalseServer falseServer(seed, identity, frames, link.forServer());
         fmt::print("listening on 127.0.0.1:{}\n", falseServer.port());
         std::fflush(stdout);
         while (!falseServer.done()) {
             std::this_thread::sleep_for(std::chrono::milliseconds(50));
         }
-        fmt::print("seed {}: {} frames over {} connections\n", seed, falseServer.frames(), falseServer.connections());
+        fmt::print("seed {}: {} frames and {} positions over {} connections\n", seed, falseServer.frames(),
+                   falseServer.positions(), falseServer.connections());
         return 0;
     });
 }
