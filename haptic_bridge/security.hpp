@@ -31,7 +31,7 @@ public:
     virtual void receive(ByteSpan bytes, files::Bytes& plain, files::Bytes& reply) = 0;
     /// Of a client: its first bytes.
     virtual void begin(files::Bytes& reply) = 0;
-    /// Once established: appends what carries `plain`.
+    /// Once established: appends what carries `plain`. Throws std::runtime_error when that cannot be, as before.
     virtual void seal(ByteSpan plain, files::Bytes& sealed) = 0;
     [[nodiscard]] virtual bool established() const = 0;
     /// Once established: the same 32 bytes at both ends of this connection and nowhere else (tls-exporter, RFC 9266).

@@ -8,6 +8,7 @@
 #include <openssl/ssl.h>
 #include <openssl/x509.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "haptic_bridge/security.hpp"
@@ -25,6 +26,7 @@ struct Frees {
 using Context = std::unique_ptr<SSL_CTX, Frees<SSL_CTX_free>>;
 
 constexpr std::size_t kBinding = 32;               // [byte]
+constexpr std::size_t kPiece = 16 * 1024;          // [byte], the most that a record of TLS holds
 constexpr long kValidity = 365L * 24 * 3600 * 20;  // [s]; nobody judges it, and clocks on a stage are often wrong
 
 /// What OpenSSL complains of first; the rest is forgotten.
@@ -59,6 +61,10 @@ public:
 
     void receive(ByteSpan bytes, files::Bytes& plain, files::Bytes& reply) override {
         ERR_clear_error();
+        if ((SSL_get_shutdown(ssl_.get()) & SSL_RECEIVED_SHUTDOWN) != 0) {
+            // OpenSSL reads nothing any more, and would keep all of it.
+            throw std::runtime_error("it went on after it had said its last");
+        }
         require(BIO_write(SSL_get_rbio(ssl_.get()), bytes.data(), static_cast<int>(bytes.size())) ==
                     static_cast<int>(bytes.size()),
                 "out of memory");
@@ -66,7 +72,7 @@ public:
             take(reply);
             return;
         }
-        std::array<std::uint8_t, 16 * 1024> piece{};
+        std::array<std::uint8_t, kPiece> piece{};
         while (true) {
             std::size_t count = 0;
             const int result = SSL_read_ex(ssl_.get(), piece.data(), piece.size(), &count);
@@ -80,10 +86,14 @@ public:
 
     void seal(ByteSpan plain, files::Bytes& sealed) override {
         ERR_clear_error();
-        std::size_t count = 0;
-        require(SSL_write_ex(ssl_.get(), plain.data(), plain.size(), &count) == 1 && count == plain.size(),
-                "cannot be sealed");
-        take(sealed);
+        // Piece by piece: what OpenSSL writes into never shrinks, and a state of the sand is large.
+        for (; !plain.empty(); plain = plain.subspan(std::min(plain.size(), kPiece))) {
+            const ByteSpan piece = plain.first(std::min(plain.size(), kPiece));
+            std::size_t count = 0;
+            require(SSL_write_ex(ssl_.get(), piece.data(), piece.size(), &count) == 1 && count == piece.size(),
+                    "cannot be sealed");
+            take(sealed);
+        }
     }
 
     [[nodiscard]] bool established() const override { return SSL_is_init_finished(ssl_.get()) == 1; }
