@@ -16,7 +16,20 @@ void refill(double& allowed, std::int64_t& countedNs, std::int64_t nowNs) {
 
 }  // namespace
 
-GuestLimits::Visits& GuestLimits::visitsOf(const boost::asio::ip::address& address, std::int64_t nowNs) {
+boost::asio::ip::address guestOf(const boost::asio::ip::address& address) {
+    if (address.is_v4()) {
+        return address;
+    }
+    if (address.to_v6().is_v4_mapped()) {
+        return boost::asio::ip::make_address_v4(boost::asio::ip::v4_mapped, address.to_v6());
+    }
+    auto bytes = address.to_v6().to_bytes();
+    std::fill(bytes.begin() + 8, bytes.end(), std::uint8_t{0});
+    return boost::asio::ip::address_v6(bytes);
+}
+
+GuestLimits::Visits& GuestLimits::visitsOf(const boost::asio::ip::address& from, std::int64_t nowNs) {
+    const auto address = guestOf(from);
     if (!visits_.contains(address) && visits_.size() >= kAddresses) {
         std::erase_if(visits_, [nowNs](const auto& entry) {
             Visits visits = entry.second;

@@ -10,8 +10,12 @@
 
 namespace haptic_bridge {
 
-/// How often somebody may come: kBurst times at once, then kPerSecond, by address; who is refused comes later still.
-/// Knows no clock.
+/// What counts as one guest: an IPv4 address, also one that is mapped into IPv6, or the /64 network of an IPv6 address,
+/// of which one machine may have as many as it likes.
+[[nodiscard]] boost::asio::ip::address guestOf(const boost::asio::ip::address& address);
+
+/// How often somebody may come: kBurst times at once, then kPerSecond, by guestOf() an address; who is refused comes
+/// later still. Knows no clock.
 class GuestLimits {
 public:
     static constexpr double kBurst = 16, kPerSecond = 8;

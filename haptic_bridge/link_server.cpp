@@ -104,8 +104,9 @@ void LinkServer::admit(Connection::Socket socket) {
 }
 
 bool LinkServer::tooManyOf(const asio::ip::address& address) const {
-    const auto same =
-        std::count_if(guests_.begin(), guests_.end(), [&](const auto& guest) { return guest->address() == address; });
+    const auto same = std::count_if(guests_.begin(), guests_.end(), [guest = guestOf(address)](const auto& one) {
+        return guestOf(one->address()) == guest;
+    });
     return same >= kMaxGuestsOfOne && !isLoopback(address);
 }
 
@@ -116,7 +117,8 @@ void LinkServer::refused(RefusalCode code, const asio::ip::address& address, con
     }
     if (line.empty()) {
         refusals_.count(code);
-    } else if (const auto text = refusals_.add(code, address.to_string(), address.to_string() + ": " + line, now)) {
+    } else if (const auto text =
+                   refusals_.add(code, guestOf(address).to_string(), address.to_string() + ": " + line, now)) {
         sources_.log(*text);
     }
 }
