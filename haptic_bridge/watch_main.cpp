@@ -52,7 +52,9 @@ public:
 
     void stop() {
         ended_ = "";
-        connection_->send(Bye{"enough seen"});
+        if (welcomed_) {
+            connection_->send(Bye{"enough seen"});
+        }
         connection_->finish();
         timer_.cancel();
     }
@@ -65,6 +67,7 @@ private:
     }
 
     void receive(const Message& message) {
+        heardNs_ = monotonicNs();
         if (const auto* refusal = std::get_if<Refusal>(&message)) {
             end("refuses: " + refusal->text);
         } else if (const auto* bye = std::get_if<Bye>(&message)) {
@@ -98,8 +101,12 @@ private:
             if (error) {
                 return;
             }
-            connection_->send(Ping{monotonicNs()});
+            if (monotonicNs() - heardNs_ > kSilenceNs) {
+                end(fmt::format("silent for {} s", kSilenceNs / 1'000'000'000));
+                return;
+            }
             if (welcomed_) {
+                connection_->send(Ping{monotonicNs()});
                 constexpr double kUnits = 256;  // to a cell
                 fmt::print("step {} {:016x}, probe at {:.2f} {:.2f} {:.2f} cells{}, {} steps/s, {} bytes/s\n",
                            last_.number, hash_, probe_.x / kUnits, probe_.y / kUnits, probe_.z / kUnits,
@@ -122,6 +129,8 @@ private:
         connection_->finish();
     }
 
+    static constexpr std::int64_t kSilenceNs = 10'000'000'000;  // a report comes once a second
+
     asio::steady_timer timer_;
     const LinkSecurity& security_;
     std::shared_ptr<Connection> connection_;
@@ -129,6 +138,7 @@ private:
     std::uint64_t linesLeft_, steps_ = 0, bytes_ = 0, hash_ = 0;
     sand::Step last_;
     sand::ProbePoint probe_;
+    std::int64_t heardNs_ = monotonicNs();
     bool welcomed_ = false;
     std::optional<std::string> ended_;
 };
