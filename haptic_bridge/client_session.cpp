@@ -60,11 +60,14 @@ void Client::Session::stop() {
         stopping_ = true;
         resolver_.cancel();
         retryTimer_.cancel();
-        if (connection_) {
-            connection_->resume();
+        const auto connection = connection_;  // what was held back may close it
+        if (connection) {
+            connection->resume();
+        }
+        if (connection_ && handshake_) {  // not in the middle of agreeing on TLS
             connection_->send(Bye{"the master has ended"});
         }
-        watchTimer_.expires_after(connection_ ? kGoodbye : Milliseconds(0));
+        watchTimer_.expires_after(connection_ && handshake_ ? kGoodbye : Milliseconds(0));
         watchTimer_.async_wait([this](error_code error) {
             if (!error) {
                 io_.stop();
@@ -357,7 +360,6 @@ void Client::Session::receive(Message&& message) {
 
 /// By the steps that the server lacks, where those are known; by all of the sand else, or when it asks again.
 void Client::Session::handOver(const NeedState& need) {
-    constexpr std::size_t kPerMessage = 16;  // the longest step is some 1.5 KiB
     const auto steps = handOvers_++ == 0 ? recent_.since(need, granted_.stepNumber) : std::nullopt;
     {
         const std::lock_guard lock(shelf.mutex);
@@ -369,8 +371,8 @@ void Client::Session::handOver(const NeedState& need) {
         return;
     }
     const auto connection = connection_;  // sending may close it
-    for (std::size_t begin = 0; begin < steps->size(); begin += kPerMessage) {
-        const std::size_t end = std::min(begin + kPerMessage, steps->size());
+    for (std::size_t begin = 0; begin < steps->size(); begin += kMaxCatchUp) {
+        const std::size_t end = std::min(begin + kMaxCatchUp, steps->size());
         const auto at = [&](std::size_t i) { return steps->begin() + static_cast<std::ptrdiff_t>(i); };
         connection->send(CatchUp{end == steps->size(), {at(begin), at(end)}});
     }

@@ -99,9 +99,10 @@ void Client::Session::shown(const Shown& frame) {
             return;
         }
         // A frame drawn before the hand-over's first step says nothing about the server's steps yet.
-        connection_->send(Shown{std::clamp(frame.stepNumber, granted_.stepNumber, lastStep_), frame.frameIntervalNs});
+        const auto connection = connection_;  // sending may close it
+        connection->send(Shown{std::clamp(frame.stepNumber, granted_.stepNumber, lastStep_), frame.frameIntervalNs});
         for (const std::uint32_t id : tests) {
-            connection_->send(TimingEcho{id, Leg::shown});
+            connection->send(TimingEcho{id, Leg::shown});
         }
     });
 }

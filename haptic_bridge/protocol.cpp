@@ -37,9 +37,12 @@ void putIdentity(const Identity& identity, files::ByteWriter& writer) {
 /// Texts of the other side are printed: one line of plain characters, whatever came.
 std::string getLine(files::ByteReader& reader) {
     std::string text = reader.getText();
-    for (char& character : text) {
-        if (static_cast<unsigned char>(character) < 0x20 || character == 0x7f) {
-            character = '?';
+    const auto at = [&text](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (at(i) < 0x20 || at(i) == 0x7f) {
+            text[i] = '?';
+        } else if (at(i) == 0xc2 && at(i + 1) >= 0x80 && at(i + 1) <= 0x9f) {  // U+0080 to U+009F
+            text[i] = text[i + 1] = '?';
         }
     }
     return text;
@@ -210,8 +213,15 @@ void get(CatchUp& catchUp, files::ByteReader& reader) {
         throw files::FormatError("a catch-up that is neither the last nor another");
     }
     catchUp.last = last == 1;
-    for (auto count = reader.get<std::uint16_t>(); count > 0; --count) {
+    auto count = reader.get<std::uint16_t>();
+    if (count > kMaxCatchUp) {
+        throw files::FormatError(fmt::format("a catch-up of {} steps, where {} are the most", count, kMaxCatchUp));
+    }
+    for (; count > 0; --count) {
         catchUp.steps.push_back(sand::decodeStep(reader));
+        if (catchUp.steps.back().edit.kind == sand::Edit::load) {
+            throw files::FormatError("a catch-up that loads sand");
+        }
     }
 }
 void get(Welcome& welcome, files::ByteReader& reader) {

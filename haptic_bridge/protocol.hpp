@@ -29,6 +29,7 @@ inline constexpr std::size_t kMaxGreeting = 1024;      // [byte], of a message b
 inline constexpr std::size_t kMaxState = 256 * 1024 * 1024;
 static_assert(sand::kMaxSandBytes + kMaxMessage <= kMaxState, "a load fits, with the path of its step");
 inline constexpr std::size_t kMaxSceneName = 256;  // [byte]
+inline constexpr std::size_t kMaxCatchUp = 16;     // steps, of some 1.5 KiB at most each
 
 /// What both sides must have alike before a step may pass.
 struct Identity {

@@ -144,6 +144,23 @@ TEST(Client, StopsWhileAServerStaysSilent) {
     client.stop();
 }
 
+// Nothing is agreed on yet that a goodbye could be sent over.
+TEST(Client, StopsWhileAServerStaysSilentBeforeTls) {
+    FakeServer server([](FakeServer::Guest& guest) {
+        std::array<std::uint8_t, 4096> chunk{};
+        while (recv(guest.socket, chunk.data(), chunk.size(), 0) > 0) {
+        }
+    });
+    LinkSecurity security;
+    security.functions = &loadSecurity("test");
+    security.secrets.move = "0123456789abcdef";
+    security.tls = security.functions->tlsClient();
+    Client client(server.address(), kOffer, security);
+    ASSERT_TRUE(eventually([&] { return server.guests() == 1; }));
+    client.stop();
+    EXPECT_EQ(client.link().link, Link::stopped);
+}
+
 TEST(Client, RefusesAServerOfAnotherVersionOrScene) {
     for (int which = 0; which < 3; ++which) {
         Identity other = kIdentity;

@@ -247,6 +247,20 @@ TEST(Protocol, RefusesWithTheReason) {
 TEST(Protocol, PrintsNoControlCharactersOfTheOtherSide) {
     const files::Bytes framed = encode(Bye{"bad\nline\x1b[31m"});
     EXPECT_EQ(std::get<Bye>(decode(withoutLength(framed))).reason, "bad?line?[31m");
+    const files::Bytes longer =
+        encode(Bye{"\xc2\x9b"
+                   "31m, caf\xc3\xa9, \xc2\xb5m\xc2"});
+    EXPECT_EQ(std::get<Bye>(decode(withoutLength(longer))).reason, "??31m, caf\xc3\xa9, \xc2\xb5m\xc2");
+}
+
+TEST(Protocol, RefusesACatchUpOfTooManyStepsOrWithSand) {
+    CatchUp most{true, std::vector<sand::Step>(kMaxCatchUp, someStep())};
+    EXPECT_NO_THROW((void)decode(withoutLength(encode(most))));
+    CatchUp more = most;
+    more.steps.push_back(someStep());
+    EXPECT_THROW((void)decode(withoutLength(encode(more))), files::FormatError);
+    most.steps[3].edit = sand::Edit::loaded({1, 2, 3});
+    EXPECT_THROW((void)decode(withoutLength(encode(most))), files::FormatError);
 }
 
 }  // namespace
