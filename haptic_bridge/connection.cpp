@@ -18,6 +18,7 @@ namespace {
 constexpr std::chrono::milliseconds kThrottle{20};
 // What TLS begins every record with: change of cipher, alert, handshake, data; a client's first is a handshake.
 constexpr std::uint8_t kFirstRecord = 20, kHandshake = 22, kLastRecord = 23;
+constexpr double kRecordBytes = 32;  // of TLS around a message, about
 
 }  // namespace
 
@@ -83,6 +84,10 @@ void Connection::take(std::size_t count) {
     if (bytesIn_ == 0 && speaksOtherwise(bytes)) {
         return;
     }
+    if (bytesIn_ + count > maxIn_) {
+        close("a greeting too long", RefusalCode::limit);
+        return;
+    }
     if (!tls_) {
         reader_.feed(bytes);
         deliver();
@@ -112,6 +117,9 @@ void Connection::take(std::size_t count) {
     if (first && open_ && handlers_.ready) {
         const auto ready = handlers_.ready;
         ready();
+    }
+    if (told_ && plain.size() < count) {  // records that never become a message cost time, too
+        allowed_ -= static_cast<double>(count - plain.size()) / kRecordBytes;
     }
     reader_.feed(plain);
     deliver();
@@ -266,7 +274,7 @@ void Connection::finish() {
     }
     finishing_ = true;
     handlers_ = {};
-    linger_.expires_after(std::chrono::milliseconds(500));
+    linger_.expires_after(lingers_);
     linger_.async_wait([self = shared_from_this()](error_code) { self->shut(); });
     if (unsent_.empty()) {
         endSending();

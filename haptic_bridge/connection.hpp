@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -52,12 +53,16 @@ public:
     void setMaxUnsent(std::size_t most) { maxUnsent_ = most; }
     /// Messages a second that are read at most, and as many at once; kMaxRate at first.
     void setRate(double perSecond) { rate_ = allowed_ = perSecond; }
+    /// [byte] that may come in all, without bound at first: who sends more is cut off.
+    void setMaxIn(std::uint64_t most) { maxIn_ = most; }
+    /// How long finish() waits for the other side at most; half a second at first.
+    void setLinger(std::chrono::milliseconds most) { lingers_ = most; }
     /// Reading stops after the message in hand, and goes on with resume(): TCP then holds the other side back.
     void pause() { paused_ = true; }
     void resume();
     /// Closes at once; `closed` is called with `why`, unless it was before.
     void close(const std::string& why, Fault fault = std::nullopt);
-    /// Closes when everything sent has arrived, or after half a second; `closed` is not called any more.
+    /// Closes when everything sent has arrived, or after setLinger(); `closed` is not called any more.
     void finish();
 
     [[nodiscard]] std::uint64_t bytesIn() const { return bytesIn_; }
@@ -71,6 +76,7 @@ public:
 
     static constexpr std::size_t kMaxUnsent = 1024 * 1024;  // [byte], of ordinary messages
     static constexpr double kMaxRate = 50'000;              // [1/s]; a device that streams positions makes 16000
+    static constexpr std::chrono::milliseconds kLinger{500};
 
 private:
     struct Unsent {
@@ -100,6 +106,8 @@ private:
     std::deque<Unsent> unsent_;
     std::size_t unsentBytes_ = 0, maxUnsent_ = kMaxUnsent;  // of ordinary messages
     int longUnsent_ = 0;
+    std::uint64_t maxIn_ = std::numeric_limits<std::uint64_t>::max();  // [byte]
+    std::chrono::milliseconds lingers_ = kLinger;
     std::uint64_t bytesIn_ = 0, bytesOut_ = 0, throttles_ = 0;
     double rate_ = kMaxRate, allowed_ = kMaxRate;  // [1/s], [message] that may come now
     std::chrono::steady_clock::time_point counted_;

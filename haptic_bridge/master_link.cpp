@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <utility>
 
 #include "haptic_bridge/monotonic.hpp"
+#include "haptic_bridge/step_ring.hpp"
 
 namespace haptic_bridge {
 
@@ -19,8 +21,9 @@ namespace {
 constexpr std::int64_t kGreetingNs = 3'000'000'000;  // a guest must greet within
 constexpr std::int64_t kSilenceNs = 10'000'000'000;  // a master pings four times a second
 constexpr std::size_t kMaxTestsOut = 64;
-constexpr double kWatcherRate = 50;                 // [1/s]; it has nothing to say but four pings
-constexpr std::size_t kWatcherUnsent = 256 * 1024;  // [byte]; about half a minute of steps
+constexpr std::uint64_t kMaxGuestBytes = 16 * 1024;  // a greeting takes some hundred, TLS some hundred more
+constexpr double kWatcherRate = 50;                  // [1/s]; it has nothing to say but four pings
+constexpr std::size_t kWatcherUnsent = 256 * 1024;   // [byte]; about half a minute of steps
 
 /// One more of `count` for so long as it lives.
 std::shared_ptr<Connection> counted(std::unique_ptr<Connection> connection, const std::shared_ptr<int>& count) {
@@ -52,6 +55,10 @@ MasterLink::MasterLink(LinkServer& server, Connection::Socket socket)
 void MasterLink::start() {
     heardNs_ = monotonicNs();
     connection_->limit(kMaxGreeting);
+    connection_->setMaxIn(kMaxGuestBytes);
+    if (*server_.connections_ > LinkServer::kMaxConnections / 2) {
+        connection_->setLinger(milliseconds(0));  // no place is kept for who is refused
+    }
     connection_->start(
         {[self = shared_from_this()](Message&& message) { self->receive(std::move(message)); },
          [self = shared_from_this()](const std::string& why, Connection::Fault fault) { self->end(why, fault); },
@@ -117,7 +124,9 @@ void MasterLink::receiveLinked(Message&& message) {
         server_.sequencer_->start(session_, *start);
     } else if (auto* state = std::get_if<State>(&message); state != nullptr && phase_ == Phase::granting) {
         server_.sequencer_->state(std::move(state->bytes));
-    } else if (auto* catchUp = std::get_if<CatchUp>(&message); catchUp != nullptr && phase_ == Phase::granting) {
+    } else if (auto* catchUp = std::get_if<CatchUp>(&message);
+               catchUp != nullptr && phase_ == Phase::granting && catchUpsLeft_ > 0) {
+        catchUpsLeft_ = catchUp->last ? 0 : catchUpsLeft_ - 1;
         server_.sequencer_->catchUp(std::move(*catchUp));
     } else if (const auto* shown = std::get_if<Shown>(&message); shown != nullptr && phase_ == Phase::linked) {
         if (shown->stepNumber + 1 > firstStep_ + steps_) {
@@ -183,6 +192,8 @@ void MasterLink::welcome() {
         return;
     }
     server_.guestWent(*this);
+    connection_->setMaxIn(std::numeric_limits<std::uint64_t>::max());
+    connection_->setLinger(Connection::kLinger);
     if (role_ == Role::move) {
         phase_ = Phase::waiting;
         session_ = ++server_.sessions_;
@@ -222,6 +233,8 @@ void MasterLink::ready() {
 
 void MasterLink::needState(const NeedState& need) {
     connection_->expectState(true);
+    // By steps at the first time alone; then it is the whole sand.
+    catchUpsLeft_ = std::exchange(askedForSteps_, true) ? 0 : StepRing::kSteps / kMaxCatchUp;
     connection_->send(need);
 }
 

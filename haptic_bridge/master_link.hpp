@@ -57,6 +57,8 @@ private:
     std::uint32_t session_ = 0;
     std::uint32_t epoch_ = 0;
     std::uint64_t firstStep_ = 0;
+    std::size_t catchUpsLeft_ = 0;  // that may still come
+    bool askedForSteps_ = false;
     std::int64_t heardNs_ = 0;
     std::uint64_t steps_ = 0, stepBytes_ = 0;
     std::size_t lastStepBytes_ = 0;
