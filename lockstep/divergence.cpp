@@ -94,8 +94,8 @@ Vote countVotes(const std::vector<Account>& accounts) {
             result.agreeing = count;
         }
     }
-    result.tie =
-        std::count_if(votes.begin(), votes.end(), [&](const auto& vote) { return vote.second == result.agreeing; }) > 1;
+    // Two that err alike may be more than any other: only more than half is a majority.
+    result.tie = 2 * result.agreeing <= static_cast<int>(accounts.size());
     return result;
 }
 
