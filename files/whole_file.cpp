@@ -39,12 +39,16 @@ WholeFile::~WholeFile() {
 
 void WholeFile::keepSynced() {
     stream_.flush();
-    const int descriptor = beside_.empty() ? -1 : ::open(beside_.c_str(), O_WRONLY | O_CLOEXEC);
-    if (!stream_ || (descriptor >= 0 && ::fsync(descriptor) != 0)) {
-        fail();
+    bool synced = stream_.good();
+    if (!beside_.empty()) {
+        const int descriptor = ::open(beside_.c_str(), O_WRONLY | O_CLOEXEC);
+        synced = synced && descriptor >= 0 && ::fsync(descriptor) == 0;
+        if (descriptor >= 0) {
+            ::close(descriptor);
+        }
     }
-    if (descriptor >= 0) {
-        ::close(descriptor);
+    if (!synced) {
+        fail();
     }
     keep();
     syncFolderOf(target_);
