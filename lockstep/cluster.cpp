@@ -52,6 +52,11 @@ Cluster::~Cluster() {
     MPI_Finalize();
 }
 
+void Cluster::mayTakeLong(bool may) const {
+    startUp_->setPatient(may);
+    startUp_->arm();  // what has been waited for is over, or not this yet
+}
+
 void Cluster::startUpIsOver() const { startUp_->disarm(); }
 
 files::Bytes Cluster::broadcast(const files::Bytes& fromMaster) const {

@@ -47,6 +47,9 @@ public:
     /// Collects everyone's bytes at the master, by rank; others get nothing. Collective.
     [[nodiscard]] std::vector<files::Bytes> gather(const files::Bytes& mine) const;
 
+    /// Until it is taken back, the start may take an hour: the master replays a journal, and ranks wait for it.
+    void mayTakeLong(bool may) const;
+
     /// From the start on a watchdog limits every wait; the frame barrier brings its own and calls this.
     void startUpIsOver() const;
 

@@ -49,7 +49,9 @@ SessionMessage SessionMessage::decode(std::span<const std::uint8_t> bytes) {
 
 std::optional<SessionMessage> broadcastSession(const Cluster& cluster,
                                                const std::optional<SessionMessage>& fromMaster) {
+    cluster.mayTakeLong(true);
     const files::Bytes bytes = cluster.broadcast(fromMaster ? fromMaster->encode() : files::Bytes{});
+    cluster.mayTakeLong(false);
     if (bytes.empty()) {
         return std::nullopt;
     }

@@ -16,6 +16,7 @@ namespace {
 constexpr double kFirstWord = 1;  // [s]
 constexpr double kStartUpFirstWord = 10;
 constexpr double kStartUpLimit = 120;
+constexpr double kPatientLimit = 3600;
 constexpr double kLongestLook = 0.5;
 constexpr double kRankAfterMaster = 3;  // so much later a rank does what the master would have done
 constexpr double kOthersAfterRank = 1;  // [s] that ranks which say nothing leave after the one that does
@@ -63,7 +64,7 @@ void Watchdog::look() {
         waited = (since == watched ? waited : 0) + std::min(sinceLook, kLongestLook);
         watched = since;
         const double seconds = waited - later;
-        const double limit = startingUp_ ? std::max(limit_, kStartUpLimit) : limit_;
+        const double limit = patient_ ? kPatientLimit : startingUp_ ? std::max(limit_, kStartUpLimit) : limit_;
         if (seconds > limit + patience) {
             if (speaks) {
                 const std::string line = fmt::format("{} for {:.1f} s; the limit is {:.0f} s, ending the job",

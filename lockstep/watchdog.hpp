@@ -35,6 +35,8 @@ public:
     void arm();
     void disarm();
     void startUpIsOver() { startingUp_ = false; }
+    /// Of a start that replays a journal: it speaks as ever, and has more patience still.
+    void setPatient(bool patient) { patient_ = patient; }
 
 private:
     void look();
@@ -43,7 +45,7 @@ private:
     double limit_;
     Role role_;
     std::function<void(const std::string&)> lastWords_;
-    std::atomic<bool> startingUp_{true};
+    std::atomic<bool> startingUp_{true}, patient_{false};
     std::atomic<std::int64_t> armedAt_{0};  // [ns], 0 when nobody waits
     std::mutex mutex_;
     std::condition_variable stop_;
