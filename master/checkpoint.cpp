@@ -99,6 +99,19 @@ std::vector<std::uint64_t> checkpointsOf(const fs::path& journal) {
     return steps;
 }
 
+void forgetHalves(const fs::path& journal) {
+    std::vector<fs::path> halves;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(folderOf(journal), none)) {
+        if (entry.path().extension() == ".part") {
+            halves.push_back(entry.path());
+        }
+    }
+    for (const fs::path& half : halves) {
+        fs::remove(half, none);
+    }
+}
+
 void writeCheckpoint(const fs::path& journal, const Checkpoint& checkpoint, std::size_t kept) {
     std::error_code error;
     fs::create_directories(folderOf(journal), error);

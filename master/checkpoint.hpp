@@ -30,6 +30,8 @@ struct Checkpoint {
 /// Those that lie beside the journal, the newest first: their steps.
 [[nodiscard]] std::vector<std::uint64_t> checkpointsOf(const std::filesystem::path& journal);
 
+/// Removes what a crash has left of checkpoints that were being written. While nobody writes one.
+void forgetHalves(const std::filesystem::path& journal);
 /// On disk when it returns, whole; then all but the newest `kept` are removed. Throws files::InputError. Any thread,
 /// one at a time.
 void writeCheckpoint(const std::filesystem::path& journal, const Checkpoint& checkpoint, std::size_t kept);

@@ -122,6 +122,12 @@ struct Encode {
     }
 };
 
+/// Whether what begins at `at` may be a record, or the beginning of one, or zeros, or the end. Cheap.
+bool mayFollow(std::span<const std::uint8_t> rest, std::size_t at) {
+    constexpr std::size_t kLength = sizeof(std::uint32_t);
+    return rest.size() - at <= kLength || rest[at + kLength] <= kContinued;
+}
+
 /// Whether a whole record begins at `at`.
 bool recordAt(std::span<const std::uint8_t> rest, std::size_t at, std::uint64_t chain) {
     std::uint32_t length = 0;
@@ -131,6 +137,9 @@ bool recordAt(std::span<const std::uint8_t> rest, std::size_t at, std::uint64_t 
     std::memcpy(&length, &rest[at], sizeof length);
     const std::uint8_t type = rest[at + sizeof length];
     if (length > rest.size() - at - kAroundPayload || type < kFrame || type > kContinued) {
+        return false;
+    }
+    if (!mayFollow(rest, at + kAroundPayload + length)) {  // a checksum of all the rest at every byte takes minutes
         return false;
     }
     const auto body = rest.subspan(at + sizeof length, std::size_t{length} + 1);

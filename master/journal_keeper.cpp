@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <stdexcept>
 #include <utility>
 
 #include "files/input_error.hpp"
@@ -45,26 +46,57 @@ JournalKeeper::JournalKeeper(const std::filesystem::path& out, const JournalOpti
         return;
     }
     if (resumed == nullptr) {
+        requireNoWriter();
         std::error_code none;  // of a session before
         std::filesystem::remove_all(checkpointFile(journal_, 0).parent_path(), none);
         writer_.emplace(journal_, scene, buildId_, options_.partBytes);
         return;
     }
-    for (const std::uint64_t step : checkpointsOf(journal_)) {
-        std::error_code none;
-        if (step > resumed->step && std::filesystem::remove(checkpointFile(journal_, step), none)) {
-            // That step will be another one: the checkpoint would pass for it.
-            fmt::print(stderr, "sandwall: {}: removed, the journal ends at step {}\n",
-                       checkpointFile(journal_, step).string(), resumed->step);
-        }
+    try {
+        writer_.emplace(resumed->place, buildId_, options_.partBytes);
+        writer_->resume({resumed->frame, {resumed->step, resumed->hash}, resumed->cutBytes, failure});
+    } catch (const std::runtime_error& error) {
+        refused(error.what());
+        return;
     }
-    writer_.emplace(resumed->place, buildId_, options_.partBytes);
-    writer_->resume({resumed->frame, {resumed->step, resumed->hash}, resumed->cutBytes, failure});
+    setAside(resumed->step);
     checkpointStep_ = resumed->checkpointStep;
     lastCheckpoint_ -= options_.checkpointSeconds;  // at once: who is killed again and again must not replay ever more
 }
 
 JournalKeeper::~JournalKeeper() { endCheckpoint(true); }
+
+void JournalKeeper::requireNoWriter() const {
+    std::uint32_t last = 1;
+    for (std::error_code none; std::filesystem::exists(partOf(journal_, last + 1), none);) {
+        ++last;
+    }
+    PartFile::requireNoWriter(partOf(journal_, last));
+}
+
+void JournalKeeper::refused(const std::string& why) {
+    writer_.reset();
+    if (options_.policy == JournalPolicy::required) {
+        throw std::runtime_error(why);  // and no bad input: what the disk refuses now it may take in a moment
+    }
+    fmt::print(stderr, "sandwall: {}, and the session goes on without a journal\n", why);
+}
+
+void JournalKeeper::setAside(std::uint64_t step) {
+    for (const std::uint64_t later : checkpointsOf(journal_)) {
+        const std::filesystem::path file = checkpointFile(journal_, later);
+        const std::filesystem::path aside = file.string() + ".beyond";
+        std::error_code error;
+        if (later > step) {
+            // That step will be another one: the checkpoint would pass for it. It is sand that the journal has lost.
+            std::filesystem::rename(file, aside, error);
+            ++checkpointsBeyond_;
+            fmt::print(stderr, "sandwall: {}: kept as {}: the journal ends before it, at step {}\n", file.string(),
+                       aside.filename().string(), step);
+        }
+    }
+    forgetHalves(journal_);
+}
 
 std::string_view JournalKeeper::state() const {
     return standing_ ? "no room" : writer_ ? "written" : options_.policy == JournalPolicy::off ? "off" : "failed";
@@ -132,8 +164,8 @@ void JournalKeeper::keep(const JournalFrame& frame, const std::vector<sand::Mate
 void JournalKeeper::keepTicks(const std::vector<files::Bytes>& pieces) {
     for (const files::Bytes& piece : pieces) {
         try {
-            if (writer_) {
-                writer_->keep(JournalTicks{piece});
+            if (writer_ && !writer_->keep(JournalTicks{piece}) && !std::exchange(ticksLeftOut_, true)) {
+                fmt::print(stderr, "sandwall: no room for the tick track; ticks are left out until there is\n");
             }
         } catch (const files::InputError& error) {
             giveUp(error.what());
@@ -175,6 +207,8 @@ void JournalKeeper::shown(const sand::Terrain& terrain, std::uint64_t frame, std
         }
     });
 }
+
+double JournalKeeper::stoodSeconds() const { return stoodSeconds_ + (standing_ ? now() - stoodSince_ : 0); }
 
 void JournalKeeper::finish(const JournalEnd& end) {
     endCheckpoint(true);

@@ -42,7 +42,8 @@ public:
 /// Main thread; checkpoints are compressed and written on another.
 class JournalKeeper {
 public:
-    /// Begins OUT/session.journal, or goes on with that of `resumed`. Throws files::InputError when it cannot.
+    /// Begins OUT/session.journal, or goes on with that of `resumed`. Throws files::InputError when it cannot be made,
+    /// std::runtime_error while another session writes it, and when it is not what was read any more.
     JournalKeeper(const std::filesystem::path& out, const JournalOptions& options, const sand::Scene& scene,
                   const ResumedSession* resumed, const std::string& failure, std::string buildId);
     ~JournalKeeper();
@@ -71,11 +72,16 @@ public:
     [[nodiscard]] std::uint64_t checkpointsFailed() const { return checkpointsFailed_; }
     /// How often, and how long altogether, the sand stood because the disk was full.
     [[nodiscard]] std::uint64_t stands() const { return stands_; }
-    [[nodiscard]] double stoodSeconds() const { return stoodSeconds_; }
+    [[nodiscard]] double stoodSeconds() const;
+    /// That a session before has left behind the end of its journal, which has lost steps; set aside.
+    [[nodiscard]] std::uint64_t checkpointsBeyond() const { return checkpointsBeyond_; }
 
 private:
     [[nodiscard]] bool hasRoom(std::int64_t bytes, const JournalEnd& now);
     void giveUp(const std::string& why);
+    void refused(const std::string& why);
+    void requireNoWriter() const;
+    void setAside(std::uint64_t step);
     void endCheckpoint(bool wait);
 
     JournalOptions options_;
@@ -91,7 +97,8 @@ private:
     std::uint64_t checkpointStep_ = 0;
     std::future<std::string> checkpoint_;  // that is being written; its complaint
     std::string complaint_;                // of the last one
-    std::uint64_t checkpointsFailed_ = 0;
+    std::uint64_t checkpointsFailed_ = 0, checkpointsBeyond_ = 0;
+    bool ticksLeftOut_ = false;
     std::vector<double> copyMs_;
 };
 

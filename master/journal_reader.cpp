@@ -75,6 +75,7 @@ void JournalReader::open(std::uint32_t part) {
     header_ = readHeader(stream_, size_, place_.chain, place_.offset);
     place_.session = header_.session;
     place_.part = part;
+    place_.seen = size_;
     stream_.seekg(place_.offset);
 }
 
@@ -85,13 +86,13 @@ void JournalReader::openNext(std::uint32_t part) {
     if (part != before.part + 1 || !fs::exists(file, none)) {
         fail(fmt::format("goes on in {}, which is missing; what stands before it is whole", file.filename().string()));
     }
-    earlierBytes_ += before.offset;
     try {
         open(part);
     } catch (const files::FormatError& error) {
         throw files::InputError(
             fmt::format("{}: {}; what stands in the part before is whole", file.string(), error.what()));
     }
+    earlierBytes_ += before.offset;
     if (header_.session != before.session || header_.part != part || header_.continues != before.chain) {
         throw files::InputError(fmt::format("{}: does not go on where {} ends; what stands there is whole",
                                             file.string(), partOf(before.journal, before.part).filename().string()));

@@ -20,6 +20,7 @@ struct JournalPlace {
     std::uint32_t part = 1;
     std::int64_t offset = 0;  // in that part [byte]
     std::uint64_t chain = 0;
+    std::int64_t seen = 0;  // how long that part was when it was read [byte]
 };
 
 /// Reads a session record by record, from part to part. Holds one record at a time. One thread.

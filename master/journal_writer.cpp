@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "master/journal_writer.hpp"
 
+#include <fmt/format.h>
+
 #include <cerrno>
 #include <cstring>
 #include <random>
@@ -14,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostWaiting = 1 << 20;  // [byte] of ticks, while no step is made
+constexpr std::size_t kMostHeld = 64 << 20;    // [byte] of ticks, while the disk is full: a quarter of an hour
 
 /// What a session before has left, out of the way of this one's.
 void keepPrevious(const fs::path& journal) {
@@ -25,7 +28,13 @@ void keepPrevious(const fs::path& journal) {
     for (std::uint32_t part = 2; fs::remove(partOf(kept, part), none); ++part) {
     }
     for (std::uint32_t part = 1; fs::is_regular_file(partOf(journal, part), none); ++part) {
-        fs::rename(partOf(journal, part), partOf(kept, part), none);
+        std::error_code error;
+        fs::rename(partOf(journal, part), partOf(kept, part), error);
+        if (error) {
+            throw files::InputError(fmt::format("{}: cannot be kept as {} ({}); choose another --out",
+                                                partOf(journal, part).string(), partOf(kept, part).filename().string(),
+                                                error.message()));
+        }
     }
 }
 
@@ -62,7 +71,7 @@ JournalWriter::JournalWriter(const JournalPlace& place, const std::string& build
       session_(place.session),
       part_(place.part),
       chain_(place.chain),
-      file_(PartFile::open(partOf(place.journal, place.part), place.offset)) {
+      file_(PartFile::open(partOf(place.journal, place.part), place.offset, place.seen)) {
     std::error_code none;  // one that was made, and not yet gone on with
     fs::remove(partOf(journal_, part_ + 1), none);
 }
@@ -117,11 +126,18 @@ void JournalWriter::writeWaiting() {
     }
 }
 
-void JournalWriter::keep(const JournalRecord& record) {
+bool JournalWriter::keep(const JournalRecord& record) {
+    if (waiting_.size() > kMostHeld && std::holds_alternative<JournalTicks>(record)) {
+        return false;
+    }
     put(record);
     if (waiting_.size() > kMostWaiting) {
-        writeWaiting();
+        const int error = file_.reserve(static_cast<std::int64_t>(waiting_.size()));
+        if (error != ENOSPC && error != EDQUOT) {
+            writeWaiting();
+        }
     }
+    return true;
 }
 
 void JournalWriter::append(const JournalFrame& frame) {

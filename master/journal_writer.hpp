@@ -23,7 +23,7 @@ public:
     /// FILE.previous.2 and so on. A part that has grown beyond `partBytes` is followed by another.
     JournalWriter(const std::filesystem::path& file, const sand::Scene& scene, const std::string& buildId,
                   std::int64_t partBytes = kPartBytes);
-    /// Goes on behind a whole record; what stands there is cut off.
+    /// Goes on behind a whole record; what stands there is cut off. Throws std::runtime_error as PartFile::open.
     JournalWriter(const JournalPlace& place, const std::string& buildId, std::int64_t partBytes = kPartBytes);
 
     enum class Room : std::uint8_t {
@@ -37,8 +37,9 @@ public:
 
     /// Returns when the steps are on disk.
     void append(const JournalFrame& frame);
-    /// Anything else: on disk with the next steps, or when there is much of it.
-    void keep(const JournalRecord& record);
+    /// Anything else: on disk with the next steps, or when there is much of it and room. False when so much waits for
+    /// room that this was left out.
+    bool keep(const JournalRecord& record);
     void sync() { writeWaiting(); }
     /// The session goes on here, having stopped.
     void resume(const JournalResumed& resumed);

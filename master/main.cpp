@@ -9,6 +9,7 @@
 
 #include "files/command_line.hpp"
 #include "files/input_error.hpp"
+#include "files/whole_file.hpp"
 #include "haptic_bridge/link_options.hpp"
 #include "lockstep/build_id.hpp"
 #include "lockstep/clock_sync.hpp"
@@ -118,6 +119,7 @@ sand::Scene loadScene(Options& options) {
 }
 
 World loadWorld(const lockstep::Cluster& cluster, Options& options) {
+    cluster.mayTakeLong(true);  // until the ranks have been told of it
     World world{loadScene(options), walls::loadWallAs(options.wall, options.stereo), {}};
     master::requireMemory(cluster, world.scene, options.scene + options.replay);
     if (world.wall.ranks() != cluster.renderRanks()) {
@@ -127,7 +129,9 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
             options.wall, world.wall.ranks(), world.wall.ranks(), cluster.renderRanks(), world.wall.ranks()));
     }
     std::error_code error;
-    std::filesystem::create_directories(options.out, error);
+    if (std::filesystem::create_directories(options.out, error)) {
+        files::syncFolderOf(std::filesystem::absolute(options.out));  // or a loss of power takes all that is in it
+    }
     if (error) {
         throw files::InputError(
             fmt::format("{}: cannot be made ({}); choose another --out", options.out, error.message()));
@@ -170,7 +174,7 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
         options.session.drills.push_back({text, master::parseFault(text, targets)});
     }
     options.session.drills =
-        master::withoutDone(std::move(options.session.drills), options.session.out, options.resume);
+        master::withoutDone(std::move(options.session.drills), options.session.out, options.session.resumed != nullptr);
     for (const master::Drill& drill : options.session.drills) {
         world.message.faults.push_back(drill.fault);
     }

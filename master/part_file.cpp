@@ -4,12 +4,14 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -31,6 +33,20 @@ bool lock(int descriptor, int tries) {
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
     return true;
+}
+
+void lockOrThrow(int descriptor, const std::filesystem::path& path) {
+    if (!lock(descriptor, kLockTries)) {
+        throw std::runtime_error(fmt::format("{}: another session writes it; stop that one first", path.string()));
+    }
+}
+
+/// Whether the path still names the file that is open, and nobody has written it meanwhile.
+bool isAsSeen(int descriptor, const std::filesystem::path& path, std::int64_t seen) {
+    struct stat mine {};
+    struct stat named {};
+    return fstat(descriptor, &mine) == 0 && stat(path.c_str(), &named) == 0 && mine.st_dev == named.st_dev &&
+           mine.st_ino == named.st_ino && mine.st_size == seen;
 }
 
 }  // namespace
@@ -67,16 +83,28 @@ PartFile PartFile::make(const std::filesystem::path& path, std::span<const std::
     return file;
 }
 
-PartFile PartFile::open(const std::filesystem::path& path, std::int64_t size) {
+PartFile PartFile::open(const std::filesystem::path& path, std::int64_t size, std::int64_t seen) {
     PartFile file(path, ::open(path.c_str(), O_WRONLY | O_CLOEXEC), size);
-    if (file.descriptor_ >= 0 && !lock(file.descriptor_, kLockTries)) {
-        throw files::InputError(fmt::format("{}: another session writes it; stop that one first", path.string()));
+    if (file.descriptor_ >= 0) {
+        lockOrThrow(file.descriptor_, path);
+        // What another session has written since it was read would be cut off without a word.
+        if (!isAsSeen(file.descriptor_, path, seen)) {
+            throw std::runtime_error(fmt::format("{}: has been written since it was read; start again", path.string()));
+        }
     }
     if (file.descriptor_ < 0 || ftruncate(file.descriptor_, size) != 0 ||
         lseek(file.descriptor_, size, SEEK_SET) != size || fdatasync(file.descriptor_) != 0) {
-        file.fail("the journal cannot be gone on with");
+        throw std::runtime_error(
+            fmt::format("{}: the journal cannot be gone on with ({})", path.string(), std::strerror(errno)));
     }
     return file;
+}
+
+void PartFile::requireNoWriter(const std::filesystem::path& path) {
+    const PartFile file(path, ::open(path.c_str(), O_RDONLY | O_CLOEXEC), 0);
+    if (file.descriptor_ >= 0) {
+        lockOrThrow(file.descriptor_, path);
+    }
 }
 
 PartFile::PartFile(PartFile&& other) noexcept
@@ -127,7 +155,7 @@ void PartFile::write(std::span<const std::uint8_t> bytes) {
         }
         done += count > 0 ? static_cast<std::size_t>(count) : 0;
     }
-    if (fdatasync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) {  // pipes and the like cannot sync
+    if (fdatasync(descriptor_) != 0 && errno != EINVAL) {  // pipes and the like cannot sync
         failWhole();
     }
     size_ += static_cast<std::int64_t>(bytes.size());

@@ -13,9 +13,12 @@ class PartFile {
 public:
     /// A file that begins with these bytes, on disk: it has its name when they are. Replaces what is there.
     static PartFile make(const std::filesystem::path& path, std::span<const std::uint8_t> begin);
-    /// Goes on at `size`; what stands behind is cut off. Waits five seconds for another process that writes the file,
-    /// and then refuses.
-    static PartFile open(const std::filesystem::path& path, std::int64_t size);
+    /// Goes on at `size`; what stands behind is cut off. `seen` is how long the file was when it was read. Waits five
+    /// seconds for another process that writes the file. Throws std::runtime_error, for it may be otherwise in a
+    /// moment: when that one goes on, when the file is not what was read any more, and when the disk refuses.
+    static PartFile open(const std::filesystem::path& path, std::int64_t size, std::int64_t seen);
+    /// Throws std::runtime_error, as open() does, while another process writes the file.
+    static void requireNoWriter(const std::filesystem::path& path);
     PartFile(PartFile&& other) noexcept;
     PartFile& operator=(PartFile&& other) noexcept;
     PartFile(const PartFile&) = delete;

@@ -19,6 +19,15 @@ const double kStarted = unixTime();
 
 std::filesystem::path fileIn(const std::filesystem::path& folder) { return folder / "recoveries.jsonl"; }
 
+bool endsInsideALine(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary | std::ios::ate);
+    if (!stream || stream.tellg() <= 0) {
+        return false;
+    }
+    stream.seekg(-1, std::ios::end);
+    return stream.get() != '\n';
+}
+
 }  // namespace
 
 void tellRecovery(const Recovery& recovery, const std::filesystem::path& folder) {
@@ -34,8 +43,9 @@ void tellRecovery(const Recovery& recovery, const std::filesystem::path& folder)
                             {"checkpoint_step", recovery.checkpointStep},
                             {"replayed_steps", recovery.replayedSteps},
                             {"cut_bytes", recovery.cutBytes}};
+    const bool torn = endsInsideALine(fileIn(folder));  // by a crash
     std::ofstream stream(fileIn(folder), std::ios::app);
-    stream << json.dump(-1, ' ', false, ordered_json::error_handler_t::replace) << '\n';
+    stream << (torn ? "\n" : "") << json.dump(-1, ' ', false, ordered_json::error_handler_t::replace) << '\n';
     stream.close();
     if (!stream) {
         fmt::print(stderr, "sandwall: {}: cannot be written\n", fileIn(folder).string());

@@ -67,9 +67,11 @@ std::uint64_t replayUntil(const fs::path& journal, std::uint64_t step, sand::Ter
 struct Walk {
     ResumedSession& session;
     const fs::path& journal;
+    std::optional<sand::Material> pending;  // of steps that follow: a crash may have torn them off
 
-    void operator()(const JournalFrame& frame) const {
+    void operator()(const JournalFrame& frame) {
         session.frame = std::max(session.frame, frame.frame);
+        session.material = std::exchange(pending, std::nullopt).value_or(session.material);
         for (const sand::Step& step : frame.steps) {
             if (step.number != session.step + 1) {
                 throw files::InputError(fmt::format("{}: step {} follows step {}; a part of the session is missing",
@@ -80,8 +82,11 @@ struct Walk {
             session.edits += step.edit.any() ? 1 : 0;
         }
     }
-    void operator()(const sand::Material& material) const { session.material = material; }
-    void operator()(const JournalResumed& resumed) const { session.frame = std::max(session.frame, resumed.frame); }
+    void operator()(const sand::Material& material) { pending = material; }
+    void operator()(const JournalResumed& resumed) {
+        session.frame = std::max(session.frame, resumed.frame);
+        pending.reset();
+    }
     void operator()(const JournalEnd&) const {}
     void operator()(const JournalTicks&) const {}
     void operator()(const JournalContinued&) const {}
@@ -151,8 +156,9 @@ std::optional<ResumedSession> readSession(const fs::path& journal, const std::st
     session.scene = sceneOf(reader);
     session.scene.material = session.material = reader.header().material.value_or(sand::Material());
     try {
+        Walk walk{session, journal, {}};
         while (const auto record = reader.next()) {
-            std::visit(Walk{session, journal}, *record);
+            std::visit(walk, *record);
         }
     } catch (const files::InputError& error) {
         throw files::InputError(fmt::format(

@@ -28,10 +28,13 @@ constexpr double kLate = 1.5;          // times its period that a late frame tak
 constexpr double kAuditSeconds = 1.0;  // in which all of memory is hashed again, whatever the frame rate
 
 /// What a session before has left in the folder must not pass for this one's, whatever becomes of this one.
-void forgetOldResults(const std::filesystem::path& folder) {
+void forgetOldResults(const std::filesystem::path& folder, bool resumed) {
     std::error_code none;  // usually there is nothing
-    for (const char* name : {"summary.json", "divergence.txt", "failure.json", "wall.png", "wall_left.png",
-                             "wall_right.png", "wall_anaglyph.png"}) {
+    if (!resumed) {
+        std::filesystem::remove(folder / "divergence.txt", none);
+    }
+    for (const char* name :
+         {"summary.json", "failure.json", "wall.png", "wall_left.png", "wall_right.png", "wall_anaglyph.png"}) {
         std::filesystem::remove(folder / name, none);
     }
     std::vector<std::filesystem::path> tiles;
@@ -204,6 +207,7 @@ void Session::compareWithRecording() {
 bool Session::showFrame() {
     waitForFrameTime();
     obeyOperator();
+    keepTicks();  // before room is asked for, which they need as well
     std::vector<TimedStep> steps = awaitSteps();
     const std::uint64_t hashBefore = hash_;
     std::size_t bytes = 0;
@@ -212,7 +216,6 @@ bool Session::showFrame() {
     const lockstep::FrameMessage message = barrier_.begin(prepared, bytes);
     const std::int64_t broadcast = nowNs();
     summary_.broadcastBytes.add(static_cast<double>(bytes));
-    keepTicks();
     if (!message.steps.empty()) {
         // The ranks draw meanwhile; none of them swaps before the master has come to the barrier.
         keepJournal({message.frame, hashBefore, message.steps});
@@ -256,13 +259,14 @@ lockstep::WallFigures Session::wallFigures() const {
 
 void Session::measureSwaps(std::int64_t now) {
     // The ranks tell when they swapped the frame before this one; the first has nothing to tell.
-    rankStatistics_.add(barrier_.arrivals(), lastSwap_ != 0 && frame_ > options_.settlingFrames + 1);
+    rankStatistics_.add(barrier_.arrivals(),
+                        lastSwap_ != 0 && frame_ - summary_.framesBefore > options_.settlingFrames + 1);
     if (lastSwap_ == 0) {
         firstSwap_ = now;
         return;
     }
     lastFrameMs_ = milliseconds(now - lastSwap_);
-    if (frame_ > options_.settlingFrames + 1) {
+    if (frame_ - summary_.framesBefore > options_.settlingFrames + 1) {
         summary_.frameMs.add(lastFrameMs_);
         const bool late = options_.pace == Pace::realtime && lastFrameMs_ > kLate * 1e3 * framePeriod();
         summary_.lateFrames += late ? 1 : 0;
@@ -316,7 +320,11 @@ void Session::sayProgress(bool last) {
 void Session::finish(bool agreed) {
     const lockstep::Watched watched(barrier_.watchdog());
     sequencer_.stop();
-    keepTicks();  // the last come with the goodbye
+    try {
+        keepTicks();                        // the last come with the goodbye
+    } catch (const DiskFailure& failure) {  // the ranks still have reports and pictures to send
+        fmt::print(stderr, "sandwall: {}\n", failure.what());
+    }
     endJournal(agreed);
     summary_.frames = frame_;
     summary_.steps = terrain_.stepNumber();
@@ -338,7 +346,7 @@ void Session::finish(bool agreed) {
 }
 
 int Session::run() {
-    forgetOldResults(options_.out);
+    forgetOldResults(options_.out, options_.resumed != nullptr);
     if (!options_.resumed) {
         forgetRecoveries(options_.out);
     }

@@ -93,6 +93,7 @@ void Session::endJournal(bool agreed) {
     told.state = journal_->state();
     told.parts = journal_->parts();
     told.checkpointsFailed = journal_->checkpointsFailed();
+    told.checkpointsBeyond = journal_->checkpointsBeyond();
     told.stands = journal_->stands();
     told.stoodSeconds = journal_->stoodSeconds();
     for (const double ms : journal_->copyMs()) {

@@ -69,6 +69,7 @@ ordered_json journalPart(const Summary::Journal& journal) {
             {"parts", journal.parts},
             {"checkpoints", journal.checkpointMs.count()},
             {"checkpoints_failed", journal.checkpointsFailed},
+            {"checkpoints_beyond", journal.checkpointsBeyond},
             {"checkpoint_copy_ms", spread(journal.checkpointMs)},
             {"full_disk", {{"times", journal.stands}, {"seconds", journal.stoodSeconds}}}};
 }

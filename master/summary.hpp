@@ -57,7 +57,8 @@ struct Summary {
         std::uint64_t parts = 0;            // written so far
         lockstep::Statistics checkpointMs;  // that each checkpoint kept the master from the next frame
         std::uint64_t checkpointsFailed = 0;
-        std::uint64_t stands = 0;  // times that the sand stood for want of room on the disk
+        std::uint64_t checkpointsBeyond = 0;  // left behind the end of a journal that has lost steps
+        std::uint64_t stands = 0;             // times that the sand stood for want of room on the disk
         double stoodSeconds = 0;
     } journal;
     std::vector<std::string> recoveries;  // of the session, an object of JSON each

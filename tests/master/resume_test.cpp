@@ -249,10 +249,40 @@ TEST_F(Resume, RefusesASessionThatStillRuns) {
     try {
         const master::JournalWriter second(session->place, "test");
         ADD_FAILURE() << "not refused";
-    } catch (const files::InputError& error) {
+    } catch (const std::runtime_error& error) {
         EXPECT_NE(std::string(error.what()).find("another session writes it"), std::string::npos) << error.what();
     }
     EXPECT_EQ(std::filesystem::file_size(journal()), size);
+}
+
+// A session that ends while the next one starts up has shown more than was read.
+TEST_F(Resume, CutsNothingThatWasWrittenSinceItWasRead) {
+    const auto session = master::readSession(journal(), "");
+    {
+        master::JournalWriter running(session->place, "test");
+        running.finish(session->step, session->hash);
+    }
+    const auto size = std::filesystem::file_size(journal());
+    try {
+        const master::JournalWriter second(session->place, "test");
+        ADD_FAILURE() << "not refused";
+    } catch (const std::runtime_error& error) {
+        EXPECT_NE(std::string(error.what()).find("written since it was read"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(std::filesystem::file_size(journal()), size);
+}
+
+// The operator's material is written before the step that brings it in.
+TEST_F(Resume, KnowsNoMaterialWhoseStepWasTornOff) {
+    const sand::Material before = master::readSession(journal(), "")->material;
+    {
+        master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
+        sand::Material wetter = before;
+        wetter.humidity = before.humidity == 0.5 ? 0.25 : 0.5;
+        (void)writer.keep(wetter);
+        writer.sync();
+    }
+    EXPECT_EQ(master::readSession(journal(), "")->material.humidity, before.humidity);
 }
 
 TEST_F(Resume, WithoutAJournalThereIsNothingToGoOnWith) {
