@@ -112,4 +112,19 @@ private:
     std::unique_ptr<Watchdog> watchdog_;
 };
 
+/// For a scope the master is busy with something of its own that may hang; watched, and named as any wait.
+class Busy {
+public:
+    Busy(FrameBarrier& barrier, const char* what) : barrier_(barrier), watched_(barrier.watchdog()) {
+        barrier_.busyWith(what);
+    }
+    ~Busy() { barrier_.busyWith(FrameBarrier::kPictures); }
+    Busy(const Busy&) = delete;
+    Busy& operator=(const Busy&) = delete;
+
+private:
+    FrameBarrier& barrier_;
+    Watched watched_;
+};
+
 }  // namespace lockstep

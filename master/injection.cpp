@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <csignal>
 #include <limits>
 #include <span>
 #include <string_view>
@@ -20,7 +21,9 @@ namespace {
 constexpr std::uint64_t kMostMilliseconds = 10'000;   // of slow drawing
 constexpr std::uint64_t kLongestPartition = 600'000;  // [ms]
 constexpr std::uint64_t kMostSignal = 31;
-constexpr std::uint64_t kHighestBit = 27;  // heights are below 2^28
+constexpr std::array<std::uint64_t, 8> kHarmless{SIGCHLD, SIGCONT, SIGURG,  SIGWINCH,  // ignored
+                                                 SIGSTOP, SIGTSTP, SIGTTIN, SIGTTOU};  // hang is for that
+constexpr std::uint64_t kHighestBit = 27;                                              // heights are below 2^28
 constexpr std::uint64_t kMostFrames = std::numeric_limits<std::uint64_t>::max();
 
 using Kind = lockstep::Fault::Kind;
@@ -133,6 +136,10 @@ lockstep::Fault parseFault(const std::string& text, const FaultTargets& targets)
         throw files::InputError(fmt::format(
             "--inject {}: without a rank it strikes the link to the haptic server, and there is none; name a rank",
             text));
+    }
+    if (std::find(kHarmless.begin(), kHarmless.end(), signal) != kHarmless.end()) {
+        throw files::InputError(
+            fmt::format("--inject {}: signal {} ends no process; write one that does, such as 9 or 11", text, signal));
     }
     fault.milliseconds = static_cast<std::uint32_t>(milliseconds);
     fault.signal = static_cast<int>(signal);

@@ -98,15 +98,13 @@ std::unique_ptr<sand::Terrain> Session::sandOfJournal() {
     if (journal.empty()) {
         return nullptr;
     }
-    const lockstep::Watched watched(barrier_.watchdog());
-    barrier_.busyWith("the sand of its journal");
+    const lockstep::Busy busy(barrier_, "the sand of its journal");
     std::unique_ptr<sand::Terrain> sand;
     try {
         sand = std::make_unique<sand::Terrain>(restoreSand(journal, terrain_.stepNumber(), options_.sweeps).terrain);
     } catch (const std::exception& error) {  // the ranks wait for an answer, whatever it is
         fmt::print(stderr, "sandwall: {}\n", error.what());
     }
-    barrier_.busyWith(lockstep::FrameBarrier::kPictures);
     return sand;
 }
 

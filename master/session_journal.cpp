@@ -47,6 +47,7 @@ void Session::keepJournal(const JournalFrame& frame) {
     if (!journal_) {
         return;
     }
+    const lockstep::Busy busy(barrier_, "the disk of its journal");
     std::vector<sand::Material> materials;
     for (const sand::Step& step : frame.steps) {
         for (const Asker& asker : askers_) {

@@ -63,6 +63,7 @@ TEST(Injection, ThatCannotBeIsNamedInOneLine) {
                                      {"slow:rank=5;ms=30", "rank must be 1 to 12, got '5;ms=30'"},
                                      {"die:rank=13,frame=1", "rank must be 0 to 12, got '13'"},
                                      {"die:rank=1", "frame is missing; write die:rank=R,frame=F[,signal=S]"},
+                                     {"die:rank=1,frame=1,signal=17", "signal 17 ends no process; write one that does"},
                                      {"die:rank=1,frame=1,signal=0", "signal must be 1 to 31, got '0'"},
                                      {"hang:frame=1", "rank is missing"},
                                      {"hang:rank=1,frame=1,ms=3", "'ms=3' is not understood"},
