@@ -48,12 +48,14 @@ protected:
         std::filesystem::current_path(before);
         return ran;
     }
-    /// Runs it to success, and returns its one line.
+    /// Runs it to success, and returns its one line; on a slow machine lines of progress stand before it.
     [[nodiscard]] nlohmann::json relax(const std::string& arguments) const {
         const support::Ran ran = run(arguments);
         EXPECT_EQ(ran.status, 0) << ran.output;
-        EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
-        return nlohmann::json::parse(ran.output, nullptr, false);
+        const std::size_t line = ran.output.find('{');
+        EXPECT_NE(line, std::string::npos) << ran.output;
+        EXPECT_EQ(ran.output.find('\n', line), ran.output.size() - 1) << ran.output;
+        return nlohmann::json::parse(ran.output.substr(std::min(line, ran.output.size())), nullptr, false);
     }
 
     std::filesystem::path folder_;
