@@ -11,7 +11,7 @@ namespace lockstep {
 class Statistics {
 public:
     /// `mostKept` figures are kept for the percentiles; it must be even.
-    explicit Statistics(std::size_t mostKept = 1 << 16) : mostKept_(mostKept) {}
+    explicit Statistics(std::size_t mostKept = 1 << 13) : mostKept_(mostKept) {}
 
     void add(double value);
 

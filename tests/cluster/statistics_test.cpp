@@ -95,13 +95,17 @@ TEST_F(WallStatistics, ComeAndGoAtTheOperatorsWish) {
     EXPECT_EQ(picture(3), picture(1)) << "hidden, they leave the sand as it was";
 }
 
+// At five frames a second each frame takes as many steps as one may, on a busy machine as on an idle one: its message
+// differs by the figures alone.
 TEST_F(WallStatistics, TravelOnlyWhileTheyAreShown) {
-    const Ended ended = runToEnd(stillWall(1, 2, {"--frames", "30", "--no-pictures"}));
-    ASSERT_EQ(ended.status, 0) << ended.output;
-    const double unobserved = summary()["broadcast_bytes"]["max"];
-    const Ended observed = runToEnd(stillWall(1, 2, {"--frames", "30", "--no-pictures", "--show", "statistics"}));
-    ASSERT_EQ(observed.status, 0) << observed.output;
-    EXPECT_GT(summary()["broadcast_bytes"]["p50"], unobserved);
+    const auto usualBytes = [this](std::vector<std::string> more) {
+        more.insert(more.end(), {"--frames", "11", "--refresh", "5", "--no-pictures"});
+        const Ended ended = runToEnd(stillWall(1, 2, more));
+        EXPECT_EQ(ended.status, 0) << ended.output;
+        return summary()["broadcast_bytes"]["p50"].get<double>();
+    };
+    const double unobserved = usualBytes({});
+    EXPECT_GT(usualBytes({"--show", "statistics"}), unobserved);
 }
 
 TEST_F(WallStatistics, AFaultThatCannotBeIsNamed) {
