@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "files/byte_stream.hpp"
+#include "sand/tin/mesh.hpp"
+
+namespace sand::tin {
+
+/// The sand of a TIN: a volume in every vertex, an exact integer, from which its height follows.
+///
+/// The surface is linear over each triangle. A vertex's share of the ground is a third of its triangles' area, so that
+/// the volumes' sum is the volume under the surface, exactly. One volume unit is a height unit (cell size / 2^16) on a
+/// sixth of a squared probe unit: height = volume / star, star being the sum of the doubled areas of the vertex's
+/// triangles [probe unit²]. |volume| of one vertex stays below 2^62; the whole is summed in 128 bits. Not thread-safe.
+class Layer {
+public:
+    explicit Layer(Mesh mesh);
+
+    [[nodiscard]] const Mesh& mesh() const { return mesh_; }
+    [[nodiscard]] const Triangles& triangles() const { return mesh_.triangles(); }
+    [[nodiscard]] const std::vector<std::int64_t>& volumes() const { return volumes_; }  // by vertex
+    [[nodiscard]] const std::vector<std::int64_t>& stars() const { return stars_; }      // by vertex [probe unit²]
+    /// By vertex [unit]: IEEE quotients of the two, the same on every machine.
+    [[nodiscard]] const std::vector<double>& heights() const { return heights_; }
+    [[nodiscard]] __int128 volume() const;
+
+    /// Erosion and tools move sand between vertices with this; the height follows.
+    void add(Vertex vertex, std::int64_t volume);
+    void setHeight(Vertex vertex, std::int32_t height /* [unit] */);  // changes the volume of the whole
+
+    /// As Mesh's, but that the sand is kept: the volume of the whole is exactly what it was. A new vertex lies on the
+    /// surface as it was. Where the mesh changes, all vertices of what changed rise or sink by one and the same height,
+    /// which is the volume between the old surface and the new one over their stars, and what integers cannot share is
+    /// dealt out a unit each by number. `largestRemap()` is that height.
+    Vertex insert(Place place);
+    bool remove(Vertex vertex);
+    std::vector<Vertex> constrain(Vertex from, Vertex to);
+    void release(Vertex a, Vertex b);
+    /// Several of these as one change: one remap over all that they touch when `edits` returns.
+    void edit(const std::function<void(Mesh&)>& edits);
+
+    /// The most that a vertex was moved by a remap since this was called last, and the bound stated for it [unit].
+    struct Remap {
+        double moved = 0, bound = 0;
+    };
+    [[nodiscard]] Remap takeLargestRemap();
+    /// As Mesh's: for whoever erodes it. Vertices that only rose or sank by a remap are among them.
+    [[nodiscard]] Mesh::Change takeChange();
+
+    /// Mesh, volumes and constraints as bytes (not compressed); equal layers give equal bytes.
+    void encode(files::ByteWriter& writer) const;
+    static Layer decode(files::ByteReader& reader);
+};
+
+}  // namespace sand::tin

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "sand/tin/triangles.hpp"
+
+namespace sand::tin {
+
+/// A constrained Delaunay triangulation of a rectangle whose vertices come, move and go.
+///
+/// Vertices 0 to 3 are the rectangle's corners, counter-clockwise from the south-west. Where four or more vertices lie
+/// on a circle, the diagonals go out from the one that is first in order of Place: the mesh is a function of vertices
+/// and constraints alone, whatever came before. Not thread-safe.
+class Mesh {
+public:
+    /// Throws std::invalid_argument unless both sides are within [1, 2^22].
+    Mesh(std::int32_t width, std::int32_t depth);
+    ~Mesh();
+    Mesh(Mesh&&) noexcept;
+    Mesh& operator=(Mesh&&) noexcept;
+
+    [[nodiscard]] const Triangles& triangles() const;
+    [[nodiscard]] int vertexCount() const;
+
+    /// The vertex there: a new one, or the one that was there already. Places outside the field: std::invalid_argument.
+    /// A place on a constrained edge splits it; both halves are constrained.
+    Vertex insert(Place place);
+    /// The same for many at once, faster: as if inserted one after the other (numbers are given in this order).
+    std::vector<Vertex> insert(std::span<const Place> places);
+    /// Takes a vertex out, with the constraints that end in it. A corner stays, and a vertex on the rim joins its two
+    /// rim edges again. False when it stays.
+    bool remove(Vertex vertex);
+    /// Makes every edge between these places constrained, with vertices where it crosses others: a crossing is put on
+    /// the nearest lattice place before, and both constraints bend to it. Vertices on the way split it. Returns the
+    /// vertices along the constraint, both ends included. Nothing when both are one.
+    std::vector<Vertex> constrain(Vertex from, Vertex to);
+    /// The edge between two vertices is an ordinary one again; nothing when it is none, or lies on the rim.
+    void release(Vertex a, Vertex b);
+    [[nodiscard]] bool isConstrained(Vertex a, Vertex b) const;
+    /// All constrained edges but the rim's, smaller vertex first, in order.
+    [[nodiscard]] std::vector<std::pair<Vertex, Vertex>> constraints() const;
+
+    /// Slots whose triangles are not what they were when this was called last, dead ones among them, and the vertices
+    /// that came, went, or have another star: each once, in ascending order.
+    struct Change {
+        std::vector<std::int32_t> triangles;
+        std::vector<Vertex> vertices;
+    };
+    [[nodiscard]] Change takeChange();
+
+    /// Rebuilds a mesh from what makes it one, for replicas that start in the middle: vertices keep their numbers
+    /// (`places` by vertex, nothing where no such vertex lives). Throws std::invalid_argument when it is none.
+    static Mesh restore(std::int32_t width, std::int32_t depth, std::span<const std::optional<Place>> places,
+                        std::span<const std::pair<Vertex, Vertex>> constraints);
+
+private:
+    struct Cgal;  // only mesh.cpp knows the library
+    std::unique_ptr<Cgal> cgal_;
+};
+
+}  // namespace sand::tin

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "sand/tin/triangles.hpp"
+
+namespace sand::tin {
+
+/// A TIN as whoever draws or feels it sees it; nothing here needs the module that the TIN itself lives in.
+struct SurfaceView {
+    const Triangles& triangles;
+    const std::vector<double>& heights;  // by vertex [unit = cell size / 2^16]; anything where no vertex lives
+};
+
+/// What differs from when it was asked for last.
+struct SurfaceDamage {
+    bool whole = false;                   // everything: the lists are then empty
+    std::vector<std::int32_t> triangles;  // slots whose corners or constraints changed, or that came or went, ascending
+    std::vector<Vertex> vertices;         // that came, went, rose or sank, ascending
+};
+
+}  // namespace sand::tin
