@@ -126,7 +126,8 @@ void explainSteps(const sand::Scene& scene, const Settings& settings, Explanatio
     rows.step("settled; hovering", timeSteps(terrain, std::vector<sand::Step>(runs), hash), "no block is visited");
 
     progress("small edits and digging");
-    const std::int32_t z = terrain.field().height(scene.rules.columns / 2, scene.rules.rows / 2) / 256;
+    const std::int32_t z = static_cast<std::int32_t>(
+        terrain.surface().height(scene.rules.columns * 128.0, scene.rules.rows * 128.0) / 256);
     const auto at = [&](double share) {
         return sand::ProbePoint{static_cast<std::int32_t>(scene.rules.columns * share * kProbePerCell),
                                 scene.rules.rows * kProbePerCell / 2, z};

@@ -111,7 +111,7 @@ void compressed(benchmark::State& state) {
     scene.rules.columns = scene.rules.rows = side;
     const sand::Terrain terrain(scene);
     for (auto _ : state) {
-        benchmark::DoNotOptimize(terrain.copySand().encode());
+        benchmark::DoNotOptimize(terrain.copySand()->encode());
     }
 }
 BENCHMARK(compressed)->Arg(512)->Arg(2048)->Unit(benchmark::kMillisecond);

@@ -12,7 +12,7 @@ namespace haptic_bridge {
 inline void takeSurface(const sand::Terrain& terrain, Surface& surface) {
     const double radius = terrain.toolRadius();
     surface.patch = sand::force::SurfacePatch(terrain.field(), terrain.probe(), radius);
-    surface.tool = sand::force::contourOf(terrain.toolShape(), terrain.heading(), terrain.field().cellSize());
+    surface.tool = sand::force::contourOf(terrain.toolShape(), terrain.heading(), terrain.cellSize());
     surface.step = terrain.stepNumber();
 }
 

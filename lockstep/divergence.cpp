@@ -33,14 +33,7 @@ std::vector<Account> collectAccounts(FrameBarrier& barrier, sand::Terrain& terra
 }
 
 std::vector<std::int32_t> heightsOf(const sand::Terrain& terrain, int tile) {
-    std::vector<std::int32_t> heights;
-    if (tile >= 0) {
-        const sand::Rect cells = terrain.hashTiles().cellsOf(tile);
-        for (int y = cells.y0; y < cells.y1; ++y) {
-            heights.insert(heights.end(), terrain.field().row(y) + cells.x0, terrain.field().row(y) + cells.x1);
-        }
-    }
-    return heights;
+    return tile >= 0 ? terrain.valuesOf(tile) : std::vector<std::int32_t>();
 }
 
 /// The heights of one tile of every rank, by rank, at the master.

@@ -141,7 +141,7 @@ private:
 
 SandPlace SandPlace::of(const sand::Scene& scene) {
     return {scene.name,         scene.rules.columns,      scene.rules.rows,
-            scene.rules.aspect, scene.terrain.cellSize(), scene.rules.ground};
+            scene.rules.aspect, scene.terrain.cellSize(), scene.rules.ground ^ scene.rules.tin};
 }
 
 bool isSaveName(std::string_view name) {
@@ -170,7 +170,7 @@ void writeSavedSand(const std::filesystem::path& file, const SavedSand& saved) {
     unnamed.name();
 }
 
-SavedSand readSavedSand(const std::filesystem::path& file, const SandPlace& place) {
+SavedSand readSavedSand(const std::filesystem::path& file, const SandPlace& place, const sand::SurfaceReader& read) {
     std::error_code error;
     const std::uintmax_t size = std::filesystem::is_regular_file(file, error) ? file_size(file, error) : 0;
     std::ifstream stream(file, std::ios::binary);
@@ -187,7 +187,7 @@ SavedSand readSavedSand(const std::filesystem::path& file, const SandPlace& plac
         SavedSand saved = decode(bytes);
         requireSamePlace(saved.place, place);
         // Whole, before anybody is sent it: who applies a step cannot refuse it any more.
-        (void)sand::SandCopy::decode(saved.sand, sand::HeightField(place.columns, place.rows, place.cellSize));
+        (void)read(saved.sand);
         return saved;
     } catch (const files::FormatError& failure) {
         throw files::InputError(fmt::format("{}: {}; nothing was loaded", file.string(), failure.what()));

@@ -16,7 +16,7 @@ struct SandPlace {
     std::string scene;
     std::int32_t columns = 0, rows = 0, aspect = 0;
     double cellSize = 0;       // [scene unit]
-    std::uint64_t ground = 0;  // Rules::ground
+    std::uint64_t ground = 0;  // Rules::ground, or a TIN's
 
     static SandPlace of(const sand::Scene& scene);
 };
@@ -30,13 +30,14 @@ struct SandPlace {
 struct SavedSand {
     SandPlace place;
     std::uint64_t step = 0, stateHash = 0;  // of the session when it was saved
-    files::Bytes sand;                      // sand::SandCopy::encode
+    files::Bytes sand;                      // sand::SurfaceCopy::encode
 };
 
 /// On disk when it returns, or what was there before still is (docs/operator.md has the format). Makes the folder.
 /// Throws files::InputError in one line.
 void writeSavedSand(const std::filesystem::path& file, const SavedSand& saved);
-/// Only sand of that place, and whole. Throws files::InputError in one line.
-[[nodiscard]] SavedSand readSavedSand(const std::filesystem::path& file, const SandPlace& place);
+/// Only sand of that place, and whole as `read` sees it. Throws files::InputError in one line.
+[[nodiscard]] SavedSand readSavedSand(const std::filesystem::path& file, const SandPlace& place,
+                                      const sand::SurfaceReader& read);
 
 }  // namespace master

@@ -98,7 +98,8 @@ Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, con
     summary_.scene = scene.name;
     summary_.wall = wall.name;
     summary_.ranks = wall.ranks();
-    summary_.volumeInitial = scene.terrain.volume();
+    // A resumed terrain has lost and won since.
+    summary_.volumeInitial = scene.tin != nullptr ? sand::Terrain(scene).volume() : scene.terrain.volume();
     for (const walls::Tile& tile : wall.tiles) {
         summary_.tileNames.push_back(tile.name);
     }
@@ -329,7 +330,7 @@ void Session::finish(bool agreed) {
     summary_.frames = frame_;
     summary_.steps = terrain_.stepNumber();
     summary_.stateHash = hash_;
-    summary_.volumeFinal = terrain_.field().volume();
+    summary_.volumeFinal = terrain_.volume();
     summary_.volumeOutflow = terrain_.outflow();
     summary_.seconds = static_cast<double>(lastSwap_ - firstSwap_) * 1e-9;
     summary_.haptic = sequencer_.report();

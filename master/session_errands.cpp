@@ -32,7 +32,7 @@ void Session::startErrand(std::function<ErrandDone()> work, Clients clients, boo
 void Session::save(const std::string& name, std::optional<Client> client) {
     requireFewErrands();
     // Copied here, which takes a fraction of a frame; compressed and written beside the frames.
-    auto copy = std::make_shared<const sand::SandCopy>(terrain_.copySand());
+    auto copy = terrain_.copySand();
     SavedSand saved{place_, terrain_.stepNumber(), hash_, {}};
     startErrand(
         [copy = std::move(copy), saved = std::move(saved), file = saveFile(options_.out, name)]() mutable {
@@ -53,8 +53,8 @@ void Session::save(const std::string& name, std::optional<Client> client) {
 void Session::load(const std::string& name, std::optional<Client> client) {
     requireFewErrands();
     startErrand(
-        [file = saveFile(options_.out, name), place = place_] {
-            return ErrandDone{{}, sand::Edit::loaded(readSavedSand(file, place).sand)};
+        [file = saveFile(options_.out, name), place = place_, read = terrain_.sandReader()] {
+            return ErrandDone{{}, sand::Edit::loaded(readSavedSand(file, place, read).sand)};
         },
         {client});
 }

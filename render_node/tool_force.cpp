@@ -9,7 +9,7 @@ namespace render_node {
 using sand::force::Vec3;
 
 std::optional<ForceArrow> ToolForce::arrow(const sand::Terrain& terrain) {
-    const double unit = terrain.field().cellSize() / sand::kProbePerCell;
+    const double unit = terrain.cellSize() / sand::kProbePerCell;
     const double radius = unit * terrain.rules().toolRadius;
     const sand::ProbePoint probe = terrain.probe();
     const Vec3 centre{unit * probe.x, unit * probe.y, unit * probe.z};
@@ -25,7 +25,7 @@ std::optional<ForceArrow> ToolForce::arrow(const sand::Terrain& terrain) {
         return std::nullopt;
     }
     const sand::force::SurfacePatch patch(terrain.field(), probe, radius);
-    const auto tool = sand::force::contourOf(terrain.toolShape(), terrain.heading(), terrain.field().cellSize());
+    const auto tool = sand::force::contourOf(terrain.toolShape(), terrain.heading(), terrain.cellSize());
     const auto felt = sand::force::respond(constants_, patch, tool, centre);
     const Vec3 whole = sand::force::lawfulForce(felt, velocity_);
     const Vec3 force = sand::force::guarded(whole, 0, kMostNewtons);

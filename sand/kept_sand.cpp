@@ -29,12 +29,12 @@ files::Bytes SandCopy::encode() const {
     return writer.take();
 }
 
-SandCopy SandCopy::decode(std::span<const std::uint8_t> bytes, const HeightField& like) {
+SandCopy SandCopy::decode(std::span<const std::uint8_t> bytes, int columns, int rows, double cellSize) {
     files::ByteReader reader(bytes);
     const auto outflow = reader.get<std::int64_t>();
-    SandCopy copy{HeightField(like.columns(), like.rows(), like.cellSize()), {}, outflow};
+    SandCopy copy(HeightField(columns, rows, cellSize), {}, outflow);
     decodeCells(reader, copy.field.bounds(), kMaxHeight, copy.field.cells());
-    copy.inertia = Inertia::decode(reader, like.columns(), like.rows());
+    copy.inertia = Inertia::decode(reader, columns, rows);
     if (!reader.atEnd()) {
         throw files::FormatError("sand with more behind it");
     }
@@ -69,7 +69,7 @@ std::vector<Rect> KeptSand::takeTouched() {
 
 void KeptSand::keep(const HeightField& field, Inertia inertia, std::int64_t outflow) {
     if (!copy_) {
-        copy_ = SandCopy{field, std::move(inertia), outflow};
+        copy_.emplace(field, std::move(inertia), outflow);
         tilesAcross_ = tilesIn(field.columns());
         touched_.assign(static_cast<std::size_t>(tilesAcross_) * static_cast<std::size_t>(tilesIn(field.rows())), 0);
     } else {
@@ -82,9 +82,9 @@ void KeptSand::keep(const HeightField& field, Inertia inertia, std::int64_t outf
     kept_ = true;
 }
 
-void KeptSand::keep(SandCopy copy) {
+void KeptSand::keep(const SandCopy& copy) {
     copy_.reset();
-    keep(copy.field, std::move(copy.inertia), copy.outflow);
+    keep(copy.field, copy.inertia, copy.outflow);
     touch(copy_->field.bounds());  // nobody knows how far the field has come since
 }
 

@@ -4,23 +4,28 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sand/height_field.hpp"
 #include "sand/inertia.hpp"
+#include "sand/surface.hpp"
 
 namespace sand {
 
-/// Sand without its rules and its tool: what is saved, loaded and put back.
-struct SandCopy {
+/// The sand of a height field.
+class SandCopy final : public SurfaceCopy {
+public:
+    SandCopy(HeightField heights, Inertia fluxes, std::int64_t over)
+        : field(std::move(heights)), inertia(std::move(fluxes)), outflow(over) {}
+
+    [[nodiscard]] files::Bytes encode() const override;
+    /// Of a field like this one. Throws files::FormatError when the bytes are none, or go on behind it.
+    static SandCopy decode(std::span<const std::uint8_t> bytes, int columns, int rows, double cellSize);
+
     HeightField field;
     Inertia inertia;
     std::int64_t outflow = 0;  // [unit · cell]
-
-    /// Compressed.
-    [[nodiscard]] files::Bytes encode() const;
-    /// Of a field like this one. Throws files::FormatError when the bytes are none, or go on behind it.
-    static SandCopy decode(std::span<const std::uint8_t> bytes, const HeightField& like);
 };
 
 /// The sand before a stroke, for an undo.
@@ -32,7 +37,7 @@ public:
     /// These cells may now differ from what is kept.
     void touch(const Rect& cells);
     void keep(const HeightField& field, Inertia inertia, std::int64_t outflow);
-    void keep(SandCopy copy);
+    void keep(const SandCopy& copy);
     /// Nothing is there to put back any more; what was copied still spares the next keep() most of its work.
     void forget() { kept_ = false; }
 

@@ -6,6 +6,11 @@
 #include "sand/grid_codec.hpp"
 
 namespace sand {
+namespace {
+
+constexpr unsigned kTinFlag = 0x80;  // beside the scheme: scenes of height fields are the bytes they always were
+
+}  // namespace
 
 void Rules::tune(const Tuning& tuning) {
     threshold = tuning.threshold;
@@ -23,9 +28,12 @@ void Rules::encode(files::ByteWriter& writer) const {
         writer.put(number);
     }
     tuning().tool().encode(writer);
-    writer.put(static_cast<std::uint8_t>(scheme));
+    writer.put(static_cast<std::uint8_t>(static_cast<unsigned>(scheme) | (tin != 0 ? kTinFlag : 0U)));
     writer.put(static_cast<std::uint8_t>(rim));
     writer.put(ground);
+    if (tin != 0) {
+        writer.put(tin);
+    }
 }
 
 Rules Rules::decode(files::ByteReader& reader) {
@@ -42,7 +50,8 @@ Rules Rules::decode(files::ByteReader& reader) {
     rules.toolKind = tool.shape.kind;
     rules.toolHalfWidth = tool.shape.halfWidth;
     rules.toolHeading = tool.heading;
-    const auto scheme = reader.get<std::uint8_t>();
+    const auto coded = reader.get<std::uint8_t>();
+    const unsigned scheme = coded & ~kTinFlag;
     const auto rim = reader.get<std::uint8_t>();
     const bool sides = rules.columns >= 1 && rules.columns <= kMaxSide && rules.rows >= 1 && rules.rows <= kMaxSide;
     if (!sides || rules.aspect < 1 || scheme > 2 || rim > 1 || rules.stepsPerSecond < 1) {
@@ -51,6 +60,9 @@ Rules Rules::decode(files::ByteReader& reader) {
     rules.scheme = static_cast<Scheme>(scheme);
     rules.rim = static_cast<Rim>(rim);
     rules.ground = reader.get<std::uint64_t>();
+    if ((coded & kTinFlag) != 0 && (rules.tin = reader.get<std::uint64_t>()) == 0) {
+        throw files::FormatError("a TIN without a digest");
+    }
     return rules;
 }
 
@@ -61,6 +73,9 @@ std::uint64_t Rules::digest() const {
 }
 
 std::int32_t Scene::referenceHeight() const {
+    if (tin != nullptr) {
+        return tin->meanHeight;
+    }
     const std::int64_t cells = std::int64_t{terrain.columns()} * terrain.rows();
     return static_cast<std::int32_t>(terrain.volume() / cells);
 }
@@ -79,6 +94,9 @@ files::Bytes Scene::encode() const {
     }
     writer.put(terrain.cellSize());
     encodeCells(terrain.cells(), terrain.bounds(), writer);
+    if (tin != nullptr) {
+        tin->encode(writer);
+    }
     if (ground != nullptr) {
         encodeCells(ground->cells(), terrain.bounds(), writer);
     }
@@ -105,8 +123,15 @@ Scene Scene::decode(std::span<const std::uint8_t> bytes) {
     if (!(cellSize > 0)) {
         throw files::FormatError("a scene without a cell size");
     }
-    scene.terrain = HeightField(scene.rules.columns, scene.rules.rows, cellSize);
+    const bool grid = scene.rules.tin == 0;
+    scene.terrain = HeightField(grid ? scene.rules.columns : 1, grid ? scene.rules.rows : 1, cellSize);
     decodeCells(reader, scene.terrain.bounds(), kMaxHeight, scene.terrain.cells());
+    if (!grid) {
+        scene.tin = std::make_shared<const tin::Start>(tin::Start::decode(reader));
+        if (scene.tin->digest() != scene.rules.tin || scene.rules.ground != 0) {
+            throw files::FormatError("a scene whose TIN is not that of its rules");
+        }
+    }
     if (scene.rules.ground != 0) {
         scene.ground = std::make_shared<const Ground>(Ground::decode(reader, scene.terrain));
         if (scene.ground->digest() != scene.rules.ground) {

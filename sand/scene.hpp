@@ -14,6 +14,7 @@
 #include "sand/ground.hpp"
 #include "sand/height_field.hpp"
 #include "sand/material.hpp"
+#include "sand/tin/start.hpp"
 #include "sand/tuning.hpp"
 
 namespace sand {
@@ -40,6 +41,7 @@ struct Rules {
     Scheme scheme = Scheme::isotropic;
     Rim rim = Rim::closed;
     std::uint64_t ground = 0;  // Ground::digest(), 0 without rock and walls
+    std::uint64_t tin = 0;     // tin::Start::digest(), 0 for a height field; then columns and rows are nominal
 
     [[nodiscard]] ToolShape toolShape() const { return {toolKind, toolRadius, toolHalfWidth}; }
     [[nodiscard]] Tuning tuning() const {
@@ -70,10 +72,11 @@ struct Scene {
     Rules rules;
     ForceConstants force;
     Look look;
-    HeightField terrain{1, 1, 1.0};        // as the session starts
-    std::shared_ptr<const Ground> ground;  // null without rock and walls
-    std::vector<std::string> warnings;     // one line each, for whoever loads it to print
-    Material material;                     // what the rules were derived from; not encoded, as the warnings are not
+    HeightField terrain{1, 1, 1.0};         // as the session starts; of a TIN one cell, for its nominal size
+    std::shared_ptr<const tin::Start> tin;  // likewise; null for a height field
+    std::shared_ptr<const Ground> ground;   // null without rock and walls
+    std::vector<std::string> warnings;      // one line each, for whoever loads it to print
+    Material material;                      // what the rules were derived from; not encoded, as the warnings are not
 
     [[nodiscard]] double toolRadius() const {  // [scene unit]
         return rules.toolRadius * terrain.cellSize() / kProbePerCell;

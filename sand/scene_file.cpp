@@ -83,7 +83,7 @@ void readTool(const files::TomlTable& file, Scene& scene) {
 }
 
 void readForce(const files::TomlTable& file, Scene& scene) {
-    const double side = std::max(scene.terrain.columns(), scene.terrain.rows()) * scene.terrain.cellSize();
+    const double side = std::max(scene.rules.columns, scene.rules.rows) * scene.terrain.cellSize();
     const std::optional<files::TomlTable> force = file.table("force");
     if (force) {
         scene.force = ForceConstants::read(*force, side);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sand/height_field.hpp"
+#include "sand/surface.hpp"
 
 namespace sand {
 
@@ -14,7 +15,7 @@ inline constexpr int kHashTile = 32;  // [cell], side of a hash tile
 ///
 /// A tile's index is its seed, so that exchanged tiles do not cancel. The tiling is part of the definition and does
 /// not follow the blocks that erosion works in.
-class StateHash {
+class StateHash final : public HashTiles {
 public:
     explicit StateHash(const HeightField& field);
 
@@ -27,15 +28,13 @@ public:
     /// The tile is known to be corrupt somewhere that its hash does not reach: makes it differ.
     void spoil(int tile);
 
-    [[nodiscard]] int tileCount() const { return static_cast<int>(hashes_.size()); }
-    [[nodiscard]] const std::vector<std::uint64_t>& tileHashes() const { return hashes_; }  // row by row, south first
-    [[nodiscard]] Rect cellsOf(int tile) const;
+    /// Tiles go row by row, south first.
+    [[nodiscard]] Rect cellsOf(int tile) const override;
 
 private:
     void rehash(const HeightField& field, int tile);
 
     int columns_, rows_, tilesAcross_;
-    std::vector<std::uint64_t> hashes_;
     std::vector<std::uint8_t> dirty_;
     std::uint64_t sum_ = 0;
     int nextAudited_ = 0;

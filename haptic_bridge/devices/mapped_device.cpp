@@ -17,7 +17,7 @@ constexpr double kFittedShare = 0.8;  // of the field's shorter side, when no sc
 double& part(Vec3& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
 double halfSide(const sand::Scene& scene) {
-    return std::min(scene.terrain.columns(), scene.terrain.rows()) * scene.terrain.cellSize() / 2;
+    return std::min(scene.rules.columns, scene.rules.rows) * scene.terrain.cellSize() / 2;
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ std::ifstream open(const std::string& file) {
 /// Its stroke list is in hand space, so the arm is asked for its reach before it is told how large that is.
 std::unique_ptr<Device> openSimulated(const std::string& spec, const HandSettings& settings, const sand::Scene& scene) {
     const double scale = MappedDevice::scaleFor(openSimulatedArm(spec)->physics(), settings, scene);
-    const double half = std::min(scene.terrain.columns(), scene.terrain.rows()) * scene.terrain.cellSize() / 2;
+    const double half = std::min(scene.rules.columns, scene.rules.rows) * scene.terrain.cellSize() / 2;
     const StrokeSpace space{half / scale, scene.toolRadius() / (scale * settings.verticalScale)};
     return std::make_unique<MappedDevice>(openSimulatedArm(spec, space), settings, scene);
 }
@@ -40,8 +40,8 @@ std::unique_ptr<Device> openTrace(const std::string& what, const HandSettings& s
     }
     std::ifstream file = open(what);
     const double cell = scene.terrain.cellSize();
-    return std::make_unique<TraceDevice>(Trace::parse(file, what, settings), settings, scene.terrain.columns() * cell,
-                                         scene.terrain.rows() * cell, scene.toolRadius());
+    return std::make_unique<TraceDevice>(Trace::parse(file, what, settings), settings, scene.rules.columns * cell,
+                                         scene.rules.rows * cell, scene.toolRadius());
 }
 
 }  // namespace

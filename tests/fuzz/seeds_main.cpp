@@ -136,9 +136,9 @@ void writeState(Folder folder) {
         terrain.apply(step(number));
     }
     folder.add(terrain.encodeState(), {0});
-    folder.add(terrain.copySand().encode(), {1});
+    folder.add(terrain.copySand()->encode(), {1});
     folder.add(scene.encode(), {2});
-    folder.add(terrain.copySand().encode(), {3});
+    folder.add(terrain.copySand()->encode(), {3});
 }
 
 void writeHead(Folder folder) {

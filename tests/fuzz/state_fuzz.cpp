@@ -33,7 +33,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
                 break;
             }
             case 1:
-                (void)sand::SandCopy::decode(packed, kScene.terrain);
+                (void)sand::SandCopy::decode(packed, kScene.terrain.columns(), kScene.terrain.rows(),
+                                             kScene.terrain.cellSize());
                 break;
             case 2:
                 (void)sand::Scene::decode(packed);

@@ -162,7 +162,7 @@ TEST_F(HapticServer, DoesWhatAnOperatorAsksAndTakesTheWallsMaterialWhenItComesBa
     tuning.threshold /= 2;
     // The second is no sand of this field and changes nothing, but it is as long as that of a large one.
     const std::vector<sand::Edit> asked{sand::Edit::tuned(tuning), sand::Edit::loaded(files::Bytes(300'000, 7)),
-                                        sand::Edit::loaded(sand::Terrain(scene_).copySand().encode())};
+                                        sand::Edit::loaded(sand::Terrain(scene_).copySand()->encode())};
     for (const sand::Edit& edit : asked) {
         client.request(edit);
         ASSERT_TRUE(wall.follow(client, wall.terrain.stepNumber() + 40)) << client.link().message;

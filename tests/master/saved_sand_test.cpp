@@ -29,11 +29,11 @@ protected:
     [[nodiscard]] SavedSand sand() const {
         sand::Terrain terrain(scene_);
         terrain.apply({1, 1, true, {{8000, 8000, 0}}, sand::Edit::none});
-        return {SandPlace::of(scene_), 1, terrain.stateHash(), terrain.copySand().encode()};
+        return {SandPlace::of(scene_), 1, terrain.stateHash(), terrain.copySand()->encode()};
     }
     [[nodiscard]] std::string complaint(const sand::Scene& scene) const {
         try {
-            (void)master::readSavedSand(file_, SandPlace::of(scene));
+            (void)master::readSavedSand(file_, SandPlace::of(scene), sand::Terrain(scene).sandReader());
         } catch (const files::InputError& error) {
             return error.what();
         }
@@ -54,7 +54,7 @@ TEST_F(SavedSandFile, GivesBackWhatWasSavedAndLeavesNothingBeside) {
     for (int i = 0; i < 2; ++i) {  // the second replaces the first
         master::writeSavedSand(file_, saved);
     }
-    const SavedSand read = master::readSavedSand(file_, SandPlace::of(scene_));
+    const SavedSand read = master::readSavedSand(file_, SandPlace::of(scene_), sand::Terrain(scene_).sandReader());
     EXPECT_EQ(read.sand, saved.sand);
     EXPECT_EQ(read.step, 1U);
     EXPECT_EQ(read.stateHash, saved.stateHash);

@@ -171,7 +171,7 @@ TEST(Load, PutsBackHeightsOutflowAndInertiaAndForgetsTheStroke) {
     }
     ASSERT_FALSE(terrain.settled()) << "sand at rest has no inertia to lose";
     Terrain other(terrain);
-    const Edit load = Edit::loaded(terrain.copySand().encode());
+    const Edit load = Edit::loaded(terrain.copySand()->encode());
     hand.stroke(32);
     hand.hover(load);
     EXPECT_TRUE(sameHeights(terrain.field(), other.field()));
@@ -186,10 +186,10 @@ TEST(Load, PutsBackHeightsOutflowAndInertiaAndForgetsTheStroke) {
 }
 
 TEST(Load, OfBytesThatAreNoSandOfThisFieldIsAStepLikeAnyOther) {
-    const files::Bytes whole = Terrain(slidingScene()).copySand().encode();
+    const files::Bytes whole = Terrain(slidingScene()).copySand()->encode();
     files::Bytes longer = whole;
     longer.push_back(0);
-    const files::Bytes larger = Terrain(samples::flatScene(65, 64)).copySand().encode();
+    const files::Bytes larger = Terrain(samples::flatScene(65, 64)).copySand()->encode();
     for (const files::Bytes& bytes : {files::Bytes(), files::Bytes(whole.begin(), whole.end() - 1), longer, larger}) {
         Terrain terrain(slidingScene());
         Terrain other(terrain);

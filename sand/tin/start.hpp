@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "files/byte_stream.hpp"
+#include "sand/tin/triangles.hpp"
+
+namespace sand::tin {
+
+/// How finely a TIN follows its terrain and its tools; part of what a scene computes with.
+struct Settings {
+    std::int32_t spacing = kLatticePerCell;  // [probe unit], between the points a tool puts into the sand
+    std::int32_t maxError = 1 << 12;         // [unit], by which coarsening may move the surface
+    std::int32_t mostVertices = 1 << 18;     // refinement stops there
+    bool keepConstraints = false;            // of a tool that has left
+    friend bool operator==(const Settings&, const Settings&) = default;
+};
+
+/// The TIN a session starts with: vertices, their heights, and edges that must be there. Computed once by whoever loads
+/// the scene; every replica triangulates it alike.
+struct Start {
+    std::int32_t width = 0, depth = 0;  // [probe unit]; the first four places are the corners, as Mesh's
+    std::vector<Place> places;
+    std::vector<std::int32_t> heights;                   // [unit], by place
+    std::vector<std::pair<Vertex, Vertex>> constraints;  // each with the smaller first
+    std::int32_t meanHeight = 0;                         // [unit], under the surface: where devices hover
+    Settings settings;
+
+    void encode(files::ByteWriter& writer) const;
+    /// Throws files::FormatError for bytes that are none: places beside the field or twice, edges of nobody.
+    static Start decode(files::ByteReader& reader);
+    /// Equal digests mean equal sand from equal steps; never 0.
+    [[nodiscard]] std::uint64_t digest() const;
+};
+
+}  // namespace sand::tin
