@@ -24,7 +24,7 @@ std::optional<ForceArrow> ToolForce::arrow(const sand::Terrain& terrain) {
     if (!terrain.engaged() || !(radius > 0)) {
         return std::nullopt;
     }
-    const sand::force::SurfacePatch patch(terrain.field(), probe, radius);
+    const sand::force::SurfacePatch patch(terrain);
     const auto tool = sand::force::contourOf(terrain.toolShape(), terrain.heading(), terrain.cellSize());
     const auto felt = sand::force::respond(constants_, patch, tool, centre);
     const Vec3 whole = sand::force::lawfulForce(felt, velocity_);

@@ -8,6 +8,7 @@
 #include "sand/material.hpp"
 #include "sand/scene.hpp"
 #include "sand/scene_terrain.hpp"
+#include "sand/scene_tin.hpp"
 #include "sand/terrain.hpp"
 
 namespace sand {
@@ -129,6 +130,7 @@ Scene loadScene(const std::filesystem::path& file) {
     scene.rules.stepsPerSecond = toml.integerOr("steps_per_second", 60, 1, 1000);
     scene.rules.rim = static_cast<Rim>(toml.choiceOr("rim", {"closed", "open"}, 0));
     const bool settle = readTerrain(toml, scene);
+    readTin(toml, scene);
     readTool(toml, scene);
     readMaterial(toml, scene);
     readForce(toml, scene);
@@ -137,7 +139,7 @@ Scene loadScene(const std::filesystem::path& file) {
     if (settle) {
         Terrain terrain(scene);
         terrain.apply({.epoch = 1, .number = 1, .engaged = false, .path = {}, .edit = Edit::settle});
-        scene.terrain = terrain.field();
+        startFrom(terrain, scene);
     }
     return scene;
 }

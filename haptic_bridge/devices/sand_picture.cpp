@@ -108,20 +108,21 @@ void paintSand(const SandSketch& sand, const SketchFrame& frame, Picture& pictur
 }  // namespace
 
 void SandSketch::take(const sand::Terrain& terrain) {
-    const sand::HeightField& field = terrain.field();
-    const int every = (std::max(field.columns(), field.rows()) + kMostSide - 1) / kMostSide;
-    columns = (field.columns() + every - 1) / every;
-    rows = (field.rows() + every - 1) / every;
+    const sand::Rules& field = terrain.rules();
+    const int every = (std::max(field.columns, field.rows) + kMostSide - 1) / kMostSide;
+    columns = (field.columns + every - 1) / every;
+    rows = (field.rows + every - 1) / every;
     heights.resize(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
     std::size_t next = 0;
     for (int row = 0; row < rows; ++row) {
         for (int column = 0; column < columns; ++column) {
             // In kept cells, so that slopes are slopes.
-            heights[next++] = static_cast<float>(field.height(column * every, row * every)) /
+            heights[next++] = static_cast<float>(terrain.surface().height((column * every + 0.5) * sand::kProbePerCell,
+                                                                          (row * every + 0.5) * sand::kProbePerCell)) /
                               static_cast<float>(sand::kUnitsPerCell * every);
         }
     }
-    toolRadius = terrain.toolRadius() / (std::min(field.columns(), field.rows()) * field.cellSize() / 2);
+    toolRadius = terrain.toolRadius() / (std::min(field.columns, field.rows) * terrain.cellSize() / 2);
     step = terrain.stepNumber();
 }
 

@@ -6,8 +6,8 @@
 
 namespace sand::force {
 
-SurfacePatch::SurfacePatch(const HeightField& field, ProbePoint centre, double toolRadius) {
-    const double cell = field.cellSize();
+template <class HeightOf>
+void SurfacePatch::sample(int columns, int rows, double cell, ProbePoint centre, double toolRadius, HeightOf heightOf) {
     const int reach = static_cast<int>(std::ceil(std::max(4 * toolRadius / cell, 8.0)));  // [cell]
     const int stride = (2 * reach + 1 + kMaxSideNodes - 1) / kMaxSideNodes;
     const int half = reach / stride;
@@ -15,22 +15,42 @@ SurfacePatch::SurfacePatch(const HeightField& field, ProbePoint centre, double t
         const int middle = std::clamp(static_cast<int>(coordinate >> kProbeBits), 0, cells - 1);
         return middle - half * stride;
     };
-    const int x0 = firstCell(centre.x, field.columns());
-    const int y0 = firstCell(centre.y, field.rows());
+    const int x0 = firstCell(centre.x, columns);
+    const int y0 = firstCell(centre.y, rows);
     columns_ = rows_ = 2 * half + 1;
     spacing_ = stride * cell;
     west_ = (x0 + 0.5) * cell;
     south_ = (y0 + 0.5) * cell;
-    fieldWidth_ = field.columns() * cell;
-    fieldHeight_ = field.rows() * cell;
+    fieldWidth_ = columns * cell;
+    fieldHeight_ = rows * cell;
+    const double unit = cell / kUnitsPerCell;  // [scene unit]
     std::size_t node = 0;
     for (int j = 0; j < rows_; ++j) {
-        const std::int32_t* row = field.row(std::clamp(y0 + j * stride, 0, field.rows() - 1));
+        const int row = std::clamp(y0 + j * stride, 0, rows - 1);
         for (int i = 0; i < columns_; ++i) {
-            const int column = std::clamp(x0 + i * stride, 0, field.columns() - 1);
-            heights_[node++] = static_cast<float>(row[column] * field.unit());
+            const int column = std::clamp(x0 + i * stride, 0, columns - 1);
+            heights_[node++] = static_cast<float>(heightOf(column, row) * unit);
         }
     }
+}
+
+SurfacePatch::SurfacePatch(const HeightField& field, ProbePoint centre, double toolRadius) {
+    sample(field.columns(), field.rows(), field.cellSize(), centre, toolRadius,
+           [&](int column, int row) { return field.height(column, row); });
+}
+
+SurfacePatch::SurfacePatch(const Terrain& terrain) {
+    if (terrain.tinView() == nullptr) {
+        const HeightField& field = terrain.field();
+        sample(field.columns(), field.rows(), field.cellSize(), terrain.probe(), terrain.toolRadius(),
+               [&](int column, int row) { return field.height(column, row); });
+        return;
+    }
+    const Rules& rules = terrain.rules();
+    sample(rules.columns, rules.rows, terrain.cellSize(), terrain.probe(), terrain.toolRadius(),
+           [&](int column, int row) {
+               return terrain.surface().height((column + 0.5) * kProbePerCell, (row + 0.5) * kProbePerCell);
+           });
 }
 
 Dual SurfacePatch::tangent(double x, double y) const {
