@@ -8,6 +8,7 @@
 
 #include "files/byte_stream.hpp"
 #include "sand/scene.hpp"
+#include "sand/surface.hpp"
 
 namespace master {
 

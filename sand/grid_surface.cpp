@@ -39,11 +39,14 @@ void GridSurface::touch(const Rect& cells) {
     }
 }
 
-void GridSurface::drag(const HeldTool& tool, const ProbePoint& from, const ProbePoint& to) {
-    const Tool::Displacement done = Tool(tool.shape, tool.heading).drag(field_, rules_.rim, ground_.get(), from, to);
-    erosion_.touch(done.cells);
-    touch(done.cells);
-    outflow_ += done.outflow;
+void GridSurface::drag(const HeldTool& tool, std::span<const ProbePoint> path) {
+    const Tool held(tool.shape, tool.heading);
+    for (std::size_t i = 1; i < path.size(); ++i) {
+        const Tool::Displacement done = held.drag(field_, rules_.rim, ground_.get(), path[i - 1], path[i]);
+        erosion_.touch(done.cells);
+        touch(done.cells);
+        outflow_ += done.outflow;
+    }
 }
 
 void GridSurface::release(const HeldTool& tool, const ProbePoint& at) {

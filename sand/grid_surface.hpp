@@ -22,7 +22,7 @@ public:
     [[nodiscard]] const Ground* ground() const { return ground_.get(); }
     [[nodiscard]] const Erosion& erosion() const { return erosion_; }
 
-    void drag(const HeldTool& tool, const ProbePoint& from, const ProbePoint& to) override;
+    void drag(const HeldTool& tool, std::span<const ProbePoint> path) override;
     void release(const HeldTool& tool, const ProbePoint& at) override;
     void sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) override;
     void changeRules(const Rules& rules) override;

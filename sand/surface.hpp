@@ -62,12 +62,12 @@ public:
     virtual ~Surface() = default;
     [[nodiscard]] virtual std::unique_ptr<Surface> clone() const = 0;
 
-    /// The tool goes on from where it is, or stays and presses.
-    virtual void drag(const HeldTool& tool, const ProbePoint& from, const ProbePoint& to) = 0;
+    /// The tool goes along a path of two points or more, from the first, where it is; it presses where two are one.
+    virtual void drag(const HeldTool& tool, std::span<const ProbePoint> path) = 0;
     /// Sand that the tool held back there may flow again.
     virtual void release(const HeldTool& tool, const ProbePoint& at) = 0;
     /// The tool has left the sand.
-    virtual void leave() {}
+    virtual void leave(const HeldTool&) {}
     /// Lets the sand slide; around `tool` when it is not null, which stands at `at`.
     virtual void sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) = 0;
     /// Everything may move from now on.

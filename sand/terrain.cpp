@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sand/terrain.hpp"
 
+#include <array>
 #include <bit>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "sand/tin_module.hpp"
 
@@ -75,17 +77,16 @@ void Terrain::apply(const Step& step) {
     if (step.engaged && !wasEngaged) {
         surface_->keep();
     }
-    for (std::size_t i = 0; i < step.path.size(); ++i) {
-        const ProbePoint to = step.path[i];
-        // A hand that has just engaged comes from nowhere: its first point presses and does not drag.
-        const bool arrived = !wasEngaged && i == 0;
+    if (!step.path.empty()) {
         if (step.engaged) {
-            surface_->drag(tool(), arrived ? to : probe_, to);
+            // A hand that has just engaged comes from nowhere: its first point presses and does not drag.
+            std::vector<ProbePoint> path{wasEngaged ? probe_ : step.path.front()};
+            path.insert(path.end(), step.path.begin(), step.path.end());
+            surface_->drag(tool(), path);
         }
-        probe_ = to;
-    }
-    if (turned && wasEngaged && step.engaged && step.path.empty()) {
-        surface_->drag(tool(), probe_, probe_);  // turned on the spot
+        probe_ = step.path.back();
+    } else if (turned && wasEngaged && step.engaged) {
+        press();  // turned on the spot
     }
     engaged_ = step.engaged;
     stepNumber_ = step.number;
@@ -102,7 +103,7 @@ void Terrain::apply(const Step& step) {
         surface_->release(toolBefore, before);
     }
     if (wasEngaged && !engaged_) {
-        surface_->leave();
+        surface_->leave(toolBefore);
     }
     const HeldTool here = tool();
     surface_->sweep(rules_.sweepsPerStep, engaged_ ? &here : nullptr, probe_);
@@ -115,8 +116,13 @@ void Terrain::tune(const Tuning& tuning) {
     rules_.tune(tuning);
     surface_->changeRules(rules_);
     if (engaged_ && otherTool) {
-        surface_->drag(tool(), probe_, probe_);
+        press();
     }
+}
+
+void Terrain::press() {
+    const std::array<ProbePoint, 2> here{probe_, probe_};
+    surface_->drag(tool(), here);
 }
 
 bool Terrain::putBack(const Edit& edit) {

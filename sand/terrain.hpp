@@ -106,6 +106,7 @@ private:
     [[nodiscard]] const GridSurface& grid() const;
     [[nodiscard]] HeldTool tool() const { return {rules_.toolShape(), heading_}; }
     void tune(const Tuning& tuning);
+    void press();
     /// Does reset, undo or load; false when there was nothing to do.
     bool putBack(const Edit& edit);
 

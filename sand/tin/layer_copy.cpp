@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/layer_copy.hpp"
+
+#include <zstd.h>
+
+#include <string>
+#include <utility>
+
+namespace sand::tin {
+namespace {
+
+constexpr std::uint64_t kMostPlain = std::uint64_t{1} << 30;  // [byte], of some thirty million vertices
+
+}  // namespace
+
+void LayerState::encode(files::ByteWriter& writer) const {
+    writer.put(outflow);
+    writer.put(nextToGo);
+    imprint.encode(writer);
+}
+
+LayerState LayerState::decode(files::ByteReader& reader) {
+    LayerState state;
+    state.outflow = reader.get<std::int64_t>();
+    state.nextToGo = reader.get<Vertex>();
+    if (state.nextToGo < 0) {
+        throw files::FormatError("a TIN that was to be thinned out from nobody on");
+    }
+    state.imprint = Imprint::decode(reader);
+    return state;
+}
+
+LayerCopy::LayerCopy(const Layer& layer, LayerState state) : state_(std::move(state)) {
+    files::ByteWriter writer;
+    layer.encode(writer);
+    plain_ = writer.take();
+}
+
+LayerCopy::LayerCopy(std::span<const std::uint8_t> packed, std::int32_t width, std::int32_t depth) {
+    files::ByteReader reader(packed);
+    state_ = LayerState::decode(reader);
+    const auto size = reader.get<std::uint64_t>();
+    if (size > kMostPlain) {
+        throw files::FormatError("a TIN of too many bytes");
+    }
+    const auto rest = reader.rest();
+    plain_.resize(size);
+    if (ZSTD_decompress(plain_.data(), plain_.size(), rest.data(), rest.size()) != size) {
+        throw files::FormatError("a TIN that does not unpack to its size");
+    }
+    const Layer whole = layer();  // throws for bytes that are none
+    if (whole.triangles().width != width || whole.triangles().depth != depth) {
+        throw files::FormatError("a TIN of another field");
+    }
+}
+
+files::Bytes LayerCopy::encode() const {
+    files::ByteWriter writer;
+    state_.encode(writer);
+    writer.put(static_cast<std::uint64_t>(plain_.size()));
+    files::Bytes packed(ZSTD_compressBound(plain_.size()));
+    const std::size_t used = ZSTD_compress(packed.data(), packed.size(), plain_.data(), plain_.size(), 1);
+    if (ZSTD_isError(used) != 0) {
+        throw files::FormatError(std::string("zstd: ") + ZSTD_getErrorName(used));
+    }
+    packed.resize(used);
+    writer.putBytes(packed);
+    return writer.take();
+}
+
+Layer LayerCopy::layer() const {
+    files::ByteReader reader(plain_);
+    Layer layer = Layer::decode(reader);
+    if (!reader.atEnd()) {
+        throw files::FormatError("a TIN with more behind it");
+    }
+    return layer;
+}
+
+}  // namespace sand::tin

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "sand/surface.hpp"
+#include "sand/tin/layer.hpp"
+#include "sand/tin/tool.hpp"
+
+namespace sand::tin {
+
+/// What of a TIN is state beside its layer.
+struct LayerState {
+    Imprint imprint;           // of the tool that stands in it
+    Vertex nextToGo = 0;       // where coarsening goes on
+    std::int64_t outflow = 0;  // [volume unit] lost over an open rim
+
+    void encode(files::ByteWriter& writer) const;
+    /// Throws files::FormatError.
+    static LayerState decode(files::ByteReader& reader);
+};
+
+/// The sand of a TIN as bytes: what is saved, loaded and put back.
+class LayerCopy final : public SurfaceCopy {
+public:
+    LayerCopy(const Layer& layer, LayerState state);
+    /// Throws files::FormatError for bytes that are no TIN of this size, or go on behind it.
+    LayerCopy(std::span<const std::uint8_t> packed, std::int32_t width, std::int32_t depth);
+
+    [[nodiscard]] files::Bytes encode() const override;
+    [[nodiscard]] Layer layer() const;
+    [[nodiscard]] const LayerState& state() const { return state_; }
+
+private:
+    files::Bytes plain_;  // the layer
+    LayerState state_;
+};
+
+}  // namespace sand::tin

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/tin_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sand::tin {
+namespace {
+
+constexpr int kRemovalsPerStep = 64;
+constexpr int kSweepsToRest = 1 << 20;  // more than any TIN that is worth waiting for
+constexpr int kSweepsAtOnce = 64;
+
+DetailRules detailOf(const Settings& settings) {
+    DetailRules rules;
+    rules.spacing = settings.spacing;
+    rules.maxError = settings.maxError;
+    rules.removals = settings.maxError > 0 ? kRemovalsPerStep : 0;
+    rules.maxVertices = settings.mostVertices;
+    rules.keepsConstraints = settings.keepConstraints;
+    return rules;
+}
+
+Layer layerOf(const Start& start) {
+    Mesh mesh(start.width, start.depth);
+    mesh.insert(start.places);  // the corners are there, and are the first four
+    for (const auto& [a, b] : start.constraints) {
+        mesh.constrain(a, b);
+    }
+    Layer layer(std::move(mesh));
+    for (std::size_t i = 0; i < start.heights.size(); ++i) {
+        layer.setHeight(static_cast<Vertex>(i), start.heights[i]);
+    }
+    return layer;
+}
+
+void addTo(std::vector<std::int32_t>& all, const std::vector<std::int32_t>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+}
+
+void sortOnce(std::vector<std::int32_t>& numbers) {
+    std::sort(numbers.begin(), numbers.end());
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
+
+}  // namespace
+
+TinSurface::TinSurface(const Scene& scene)
+    : start_(scene.tin),
+      detail_(detailOf(start_->settings)),
+      rim_(scene.rules.rim),
+      layer_(layerOf(*start_)),
+      erosion_(layer_, scene.rules.threshold, scene.rules.startThreshold),
+      hash_(layer_) {
+    (void)layer_.takeChange();
+}
+
+TinSurface::TinSurface(const TinSurface& other)
+    : start_(other.start_),
+      detail_(other.detail_),
+      rim_(other.rim_),
+      layer_(LayerCopy(other.layer_, other.state_).layer()),
+      state_(other.state_),
+      erosion_(layer_, other.erosion_.threshold(), other.erosion_.startThreshold()),
+      hash_(layer_),
+      kept_(other.kept_) {
+    (void)layer_.takeChange();
+}
+
+void TinSurface::meshChanged() {
+    const Mesh::Change change = layer_.takeChange();
+    if (change.triangles.empty() && change.vertices.empty()) {
+        return;
+    }
+    erosion_.changed(layer_, change);
+    hash_.touch(layer_, change.vertices);
+    hash_.constraintsChanged();
+    if (!damage_.whole) {
+        addTo(damage_.triangles, change.triangles);
+        addTo(damage_.vertices, change.vertices);
+    }
+}
+
+void TinSurface::sandMoved(const std::vector<Vertex>& vertices) {
+    hash_.touch(layer_, vertices);
+    if (!damage_.whole) {
+        addTo(damage_.vertices, vertices);
+    }
+}
+
+void TinSurface::drag(const HeldTool& tool, std::span<const ProbePoint> path) {
+    const Tool::Work done = toolOf(tool).drag(layer_, state_.imprint, rim_, path);
+    state_.outflow += static_cast<std::int64_t>(done.outflow);
+    hash_.constraintsChanged();
+    meshChanged();
+    sandMoved(done.touched);
+    erosion_.wake(done.touched);
+}
+
+void TinSurface::release(const HeldTool& tool, const ProbePoint& at) {
+    Window under;
+    under.look(layer_.triangles(), toolOf(tool).reach(at));
+    erosion_.wake(under.vertices());
+}
+
+void TinSurface::leave(const HeldTool& tool) {
+    toolOf(tool).leave(layer_, state_.imprint);
+    hash_.constraintsChanged();
+    meshChanged();
+}
+
+void TinSurface::sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) {
+    if (detail_.removals > 0) {
+        const Box keepOut = tool == nullptr ? Box{} : toolOf(*tool).reach(at);
+        if (coarsen(layer_, detail_, state_.nextToGo, keepOut) > 0) {
+            meshChanged();
+        }
+    }
+    moved_.clear();
+    if (tool != nullptr) {
+        const Underside under = toolOf(*tool).underside(at);
+        erosion_.sweep(layer_, sweeps, &under, moved_);
+    } else {
+        erosion_.sweep(layer_, sweeps, nullptr, moved_);
+    }
+    sandMoved(moved_);
+}
+
+void TinSurface::changeRules(const Rules& rules) { erosion_.changeThresholds(rules.threshold, rules.startThreshold); }
+
+void TinSurface::settle() {
+    for (int sweeps = 0; sweeps < kSweepsToRest && !erosion_.settled(); sweeps += kSweepsAtOnce) {
+        moved_.clear();
+        erosion_.sweep(layer_, kSweepsAtOnce, nullptr, moved_);
+        sandMoved(moved_);
+    }
+}
+
+void TinSurface::reset() { replace(LayerCopy(layerOf(*start_), {})); }
+
+void TinSurface::keep(const SurfaceCopy& copy) {
+    kept_ = std::make_shared<const LayerCopy>(dynamic_cast<const LayerCopy&>(copy));
+}
+
+std::shared_ptr<const SurfaceCopy> TinSurface::copy() const {
+    return std::make_shared<const LayerCopy>(layer_, state_);
+}
+
+SurfaceReader TinSurface::reader() const {
+    return [width = start_->width,
+            depth = start_->depth](std::span<const std::uint8_t> bytes) -> std::shared_ptr<const SurfaceCopy> {
+        return std::make_shared<const LayerCopy>(bytes, width, depth);
+    };
+}
+
+void TinSurface::replace(const SurfaceCopy& copy) {
+    const auto& sand = dynamic_cast<const LayerCopy&>(copy);
+    layer_ = sand.layer();
+    (void)layer_.takeChange();
+    state_ = sand.state();
+    erosion_ = Erosion(layer_, erosion_.threshold(), erosion_.startThreshold());
+    hash_ = VertexHash(layer_);
+    damage_ = {.whole = true, .triangles = {}, .vertices = {}};
+    lastFound_ = kNobody;
+}
+
+void TinSurface::audit(int tiles) {
+    for (int i = 0; i < std::min(tiles, hash_.tileCount()); ++i) {
+        hash_.auditNext(layer_);
+    }
+}
+
+std::vector<std::int32_t> TinSurface::valuesOf(int tile) const { return VertexHash::valuesOf(layer_, tile); }
+
+void TinSurface::corrupt(int column, int row, int bit) {
+    const Place place{(column * 2 + 1) * kLatticePerCell / 2, (row * 2 + 1) * kLatticePerCell / 2};
+    const Located found = locate(layer_.triangles(), place, lastFound_);
+    const Vertex vertex = layer_.triangles().triangles[static_cast<std::size_t>(found.triangle)].corner[0];
+    const std::int64_t volume = layer_.volumes()[static_cast<std::size_t>(vertex)];
+    layer_.add(vertex, (volume ^ (std::int64_t{1} << bit)) - volume);
+}
+
+double TinSurface::height(double x, double y) const {
+    const auto lattice = [](double place, std::int32_t most) {
+        return static_cast<std::int32_t>(std::clamp(std::floor(place + 0.5), 0.0, static_cast<double>(most)));
+    };
+    const Triangles& mesh = layer_.triangles();
+    const Located found = locate(mesh, {lattice(x, mesh.width), lattice(y, mesh.depth)}, lastFound_);
+    lastFound_ = found.triangle;
+    const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(found.triangle)];
+    double sum = 0, weights = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto weight = static_cast<double>(found.weights[k]);
+        sum += weight * layer_.heights()[static_cast<std::size_t>(triangle.corner[k])];
+        weights += weight;
+    }
+    return sum / weights;
+}
+
+SurfaceDamage TinSurface::takeTinDamage() {
+    sortOnce(damage_.triangles);
+    sortOnce(damage_.vertices);
+    return std::exchange(damage_, {});
+}
+
+}  // namespace sand::tin

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "sand/surface.hpp"
+#include "sand/tin/detail.hpp"
+#include "sand/tin/erosion.hpp"
+#include "sand/tin/layer_copy.hpp"
+#include "sand/tin/tool.hpp"
+#include "sand/tin/vertex_hash.hpp"
+#include "sand/tin/window.hpp"
+
+namespace sand::tin {
+
+/// Sand as a TIN: a layer, a tool that stands in it, and sand that slides.
+class TinSurface final : public Surface {
+public:
+    /// The sand that scene.tin starts with.
+    explicit TinSurface(const Scene& scene);
+    TinSurface(const TinSurface& other);
+    TinSurface& operator=(const TinSurface&) = delete;
+    [[nodiscard]] std::unique_ptr<Surface> clone() const override { return std::make_unique<TinSurface>(*this); }
+
+    [[nodiscard]] const Layer& layer() const { return layer_; }
+    [[nodiscard]] const Start& start() const { return *start_; }
+
+    void drag(const HeldTool& tool, std::span<const ProbePoint> path) override;
+    void release(const HeldTool& tool, const ProbePoint& at) override;
+    void leave(const HeldTool& tool) override;
+    void sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) override;
+    void changeRules(const Rules& rules) override;
+    void settle() override;
+    void reset() override;
+
+    void keep() override { kept_ = std::make_shared<const LayerCopy>(layer_, state_); }
+    void keep(const SurfaceCopy& copy) override;
+    void forget() override { kept_ = nullptr; }
+    [[nodiscard]] std::shared_ptr<const SurfaceCopy> kept() const override { return kept_; }
+    [[nodiscard]] bool hasKept() const override { return kept_ != nullptr; }
+    void putBackKept() override { replace(*kept_); }
+
+    [[nodiscard]] std::shared_ptr<const SurfaceCopy> copy() const override;
+    [[nodiscard]] SurfaceReader reader() const override;
+    void replace(const SurfaceCopy& copy) override;
+
+    [[nodiscard]] std::int64_t outflow() const override { return state_.outflow; }
+    [[nodiscard]] std::int64_t volume() const override { return static_cast<std::int64_t>(layer_.volume()); }
+    [[nodiscard]] bool settled() const override { return erosion_.settled(); }
+    [[nodiscard]] int age() const override { return 0; }
+
+    [[nodiscard]] std::uint64_t hash() override { return hash_.update(layer_, state_); }
+    void audit(int tiles) override;
+    [[nodiscard]] const HashTiles& hashTiles() const override { return hash_; }
+    [[nodiscard]] std::vector<std::int32_t> valuesOf(int tile) const override;
+    void corrupt(int column, int row, int bit) override;
+
+    [[nodiscard]] double height(double x, double y) const override;
+    [[nodiscard]] Rect takeDamage() override { return {}; }
+    [[nodiscard]] const SurfaceView* tinView() const override { return &view_; }
+    [[nodiscard]] SurfaceDamage takeTinDamage() override;
+
+private:
+    [[nodiscard]] Tool toolOf(const HeldTool& tool) const { return {tool.shape, tool.heading, detail_}; }
+    /// Tells hash, erosion and whoever draws what the layer has become.
+    void meshChanged();
+    void sandMoved(const std::vector<Vertex>& vertices);
+
+    std::shared_ptr<const Start> start_;
+    DetailRules detail_;
+    Rim rim_;
+    Layer layer_;
+    LayerState state_;
+    Erosion erosion_;
+    VertexHash hash_;
+    SurfaceView view_{layer_.triangles(), layer_.heights()};
+    std::shared_ptr<const LayerCopy> kept_;
+    SurfaceDamage damage_{.whole = true, .triangles = {}, .vertices = {}};
+    std::vector<Vertex> moved_;                 // scratch
+    mutable std::int32_t lastFound_ = kNobody;  // where the next question about a height is likely to be
+};
+
+}  // namespace sand::tin

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sand/surface.hpp"
+#include "sand/tin/layer_copy.hpp"
+
+namespace sand::tin {
+
+/// A hash of a layer that costs only what changed: the sum, modulo 2^64, of one number for every vertex, from its own
+/// number, its place and its volume, one for every constraint, and one for the state beside the layer.
+///
+/// A vertex belongs to the hash tile of its number; the last tile is the constraints' and the state's.
+class VertexHash final : public HashTiles {
+public:
+    explicit VertexHash(const Layer& layer);
+
+    /// These vertices may have come, gone, or changed.
+    void touch(const Layer& layer, const std::vector<Vertex>& vertices);
+    void constraintsChanged() { constraintsChanged_ = true; }
+    [[nodiscard]] std::uint64_t update(const Layer& layer, const LayerState& state);
+    /// Hashes the next tile again from memory.
+    void auditNext(const Layer& layer);
+
+    /// None: which vertices a tile holds says nothing of where they lie.
+    [[nodiscard]] Rect cellsOf(int) const override { return {}; }
+    [[nodiscard]] static std::vector<std::int32_t> valuesOf(const Layer& layer, int tile);
+
+private:
+    static constexpr int kTiles = 256;    // of vertices; one more is the constraints'
+    static constexpr int kTogether = 64;  // vertices with neighbouring numbers in a tile
+
+    [[nodiscard]] static std::size_t tileOf(Vertex vertex) {
+        return static_cast<std::size_t>(vertex / kTogether % kTiles);
+    }
+    template <class Visit>
+    static void forEachOf(const Layer& layer, int tile, Visit visit);
+    [[nodiscard]] static std::uint64_t hashOf(const Layer& layer, Vertex vertex);
+
+    std::vector<std::uint64_t> byVertex_;
+    bool constraintsChanged_ = true;
+    std::uint64_t constraints_ = 0;
+    int nextAudited_ = 0;
+};
+
+}  // namespace sand::tin
