@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "sand/tin/start_maker.hpp"
 
 namespace sand::tin {
 namespace {
@@ -19,19 +22,6 @@ DetailRules detailOf(const Settings& settings) {
     rules.maxVertices = settings.mostVertices;
     rules.keepsConstraints = settings.keepConstraints;
     return rules;
-}
-
-Layer layerOf(const Start& start) {
-    Mesh mesh(start.width, start.depth);
-    mesh.insert(start.places);  // the corners are there, and are the first four
-    for (const auto& [a, b] : start.constraints) {
-        mesh.constrain(a, b);
-    }
-    Layer layer(std::move(mesh));
-    for (std::size_t i = 0; i < start.heights.size(); ++i) {
-        layer.setHeight(static_cast<Vertex>(i), start.heights[i]);
-    }
-    return layer;
 }
 
 void addTo(std::vector<std::int32_t>& all, const std::vector<std::int32_t>& more) {

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/start_maker.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "sand/tin/simplify.hpp"
+
+namespace sand::tin {
+namespace {
+
+std::int32_t rounded(double height) {
+    return static_cast<std::int32_t>(
+        std::clamp(std::floor(height + 0.5), -static_cast<double>(kMaxHeight), static_cast<double>(kMaxHeight)));
+}
+
+std::int32_t meanHeight(const Start& start) {
+    const double area = 6.0 * start.width * start.depth;
+    return rounded(static_cast<double>(layerOf(start).volume()) / area);
+}
+
+std::size_t nearest(const std::vector<Place>& places, const Place& to) {
+    const auto squared = [&](const Place& place) {
+        const std::int64_t x = std::int64_t{place.x} - to.x, y = std::int64_t{place.y} - to.y;
+        return x * x + y * y;
+    };
+    const auto found = std::min_element(places.begin(), places.end(),
+                                        [&](const Place& a, const Place& b) { return squared(a) < squared(b); });
+    return static_cast<std::size_t>(found - places.begin());
+}
+
+}  // namespace
+
+Layer layerOf(const Start& start) {
+    Mesh mesh(start.width, start.depth);
+    mesh.insert(start.places);  // the corners are there, and are the first four
+    for (const auto& [a, b] : start.constraints) {
+        mesh.constrain(a, b);
+    }
+    Layer layer(std::move(mesh));
+    for (std::size_t i = 0; i < start.heights.size(); ++i) {
+        layer.setHeight(static_cast<Vertex>(i), start.heights[i]);
+    }
+    return layer;
+}
+
+Start follow(const HeightField& field, const Settings& settings) {
+    std::vector<double> heights;
+    heights.reserve(static_cast<std::size_t>(field.columns()) * static_cast<std::size_t>(field.rows()));
+    for (int row = 0; row < field.rows(); ++row) {
+        heights.insert(heights.end(), field.row(row), field.row(row) + field.columns());
+    }
+    Raster raster;
+    raster.heights = heights;
+    raster.columns = field.columns();
+    raster.rows = field.rows();
+    raster.first = {kLatticePerCell / 2, kLatticePerCell / 2};  // the middles of cells
+    Start start;
+    start.width = field.columns() * kLatticePerCell;
+    start.depth = field.rows() * kLatticePerCell;
+    start.settings = settings;
+    const Simplified chosen =
+        simplify(start.width, start.depth, raster, {static_cast<double>(settings.maxError), settings.mostVertices});
+    start.places = chosen.places;
+    for (const double height : chosen.heights) {
+        start.heights.push_back(rounded(height));
+    }
+    start.meanHeight = meanHeight(start);
+    return start;
+}
+
+Start join(const Start& given) {
+    Start start;
+    start.width = given.width;
+    start.depth = given.depth;
+    start.settings = given.settings;
+    for (const Place& corner :
+         std::array{Place{0, 0}, Place{given.width, 0}, Place{given.width, given.depth}, Place{0, given.depth}}) {
+        start.places.push_back(corner);
+        start.heights.push_back(given.heights[nearest(given.places, corner)]);
+    }
+    std::map<Place, Vertex> numbers;
+    for (Vertex corner = 0; corner < 4; ++corner) {
+        numbers.emplace(start.places[static_cast<std::size_t>(corner)], corner);
+    }
+    std::vector<Vertex> numberOf;
+    for (std::size_t i = 0; i < given.places.size(); ++i) {
+        const auto [found, fresh] = numbers.emplace(given.places[i], static_cast<Vertex>(start.places.size()));
+        if (fresh) {
+            start.places.push_back(given.places[i]);
+            start.heights.push_back(given.heights[i]);
+        }
+        numberOf.push_back(found->second);
+    }
+    for (const auto& [a, b] : given.constraints) {
+        const auto ends = std::minmax(numberOf[static_cast<std::size_t>(a)], numberOf[static_cast<std::size_t>(b)]);
+        if (ends.first != ends.second) {
+            start.constraints.emplace_back(ends);
+        }
+    }
+    start.meanHeight = meanHeight(start);
+    return start;
+}
+
+Start startOf(const Layer& layer, const Settings& settings) {
+    const Triangles& mesh = layer.triangles();
+    Start start;
+    start.width = mesh.width;
+    start.depth = mesh.depth;
+    start.settings = settings;
+    std::vector<Vertex> numberOf(mesh.triangleAt.size(), kNobody);
+    for (std::size_t i = 0; i < mesh.triangleAt.size(); ++i) {
+        if (mesh.alive(static_cast<Vertex>(i))) {
+            numberOf[i] = static_cast<Vertex>(start.places.size());
+            start.places.push_back(mesh.places[i]);
+            start.heights.push_back(rounded(layer.heights()[i]));
+        }
+    }
+    for (const auto& [a, b] : layer.mesh().constraints()) {
+        start.constraints.emplace_back(
+            std::minmax(numberOf[static_cast<std::size_t>(a)], numberOf[static_cast<std::size_t>(b)]));
+    }
+    start.meanHeight = meanHeight(start);
+    return start;
+}
+
+}  // namespace sand::tin
