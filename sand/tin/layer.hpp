@@ -26,7 +26,7 @@ public:
     [[nodiscard]] const std::vector<std::int64_t>& stars() const { return stars_; }      // by vertex [probe unit²]
     /// By vertex [unit]: IEEE quotients of the two, the same on every machine.
     [[nodiscard]] const std::vector<double>& heights() const { return heights_; }
-    [[nodiscard]] __int128 volume() const;
+    [[nodiscard]] Wide volume() const;
 
     /// Erosion and tools move sand between vertices with this; the height follows.
     void add(Vertex vertex, std::int64_t volume);

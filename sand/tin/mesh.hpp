@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <compare>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,6 +15,7 @@ namespace sand::tin {
 
 /// A constrained Delaunay triangulation of a rectangle whose vertices come, move and go.
 ///
+/// Edges are flipped until none has a vertex in the circle it should be free of (Lawson 1977), by integer predicates.
 /// Vertices 0 to 3 are the rectangle's corners, counter-clockwise from the south-west. Where four or more vertices lie
 /// on a circle, the diagonals go out from the one that is first in order of Place: the mesh is a function of vertices
 /// and constraints alone, whatever came before. Not thread-safe.
@@ -53,14 +56,30 @@ public:
     };
     [[nodiscard]] Change takeChange();
 
+    /// A triangle with the places its corners had: counter-clockwise from the smallest vertex.
+    struct Piece {
+        std::array<Vertex, 3> corner{};
+        std::array<Place, 3> place{};
+        friend auto operator<=>(const Piece&, const Piece&) = default;
+    };
+    /// Triangles that were there when this was called last and are no more, and the other way round; by which slots is
+    /// no matter. In ascending order; both cover the same ground. Nothing is noted before the first call, which returns
+    /// nothing, and takeChange() knows nothing of it.
+    struct Difference {
+        std::vector<Piece> went, came;
+    };
+    [[nodiscard]] Difference takeDifference();
+
     /// Rebuilds a mesh from what makes it one, for replicas that start in the middle: vertices keep their numbers
     /// (`places` by vertex, nothing where no such vertex lives). Throws std::invalid_argument when it is none.
     static Mesh restore(std::int32_t width, std::int32_t depth, std::span<const std::optional<Place>> places,
                         std::span<const std::pair<Vertex, Vertex>> constraints);
 
 private:
-    struct Cgal;  // only mesh.cpp knows the library
-    std::unique_ptr<Cgal> cgal_;
+    void requireInside(const Place& place) const;
+    void requireAlive(Vertex vertex) const;
+
+    std::unique_ptr<class Triangulation> triangulation_;
 };
 
 }  // namespace sand::tin

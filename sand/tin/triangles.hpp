@@ -10,6 +10,8 @@ namespace sand::tin {
 
 inline constexpr std::int32_t kLatticePerCell = 256;  // sand::kProbePerCell
 
+__extension__ using Wide = __int128;
+
 /// A place on the lattice all vertices lie on [probe unit = cell size / 256], from the field's south-west corner: x
 /// runs east, y north. Any two differences of such coordinates multiply exactly in 64 bits.
 struct Place {

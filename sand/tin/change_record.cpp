@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/change_record.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+namespace sand::tin {
+
+ChangeRecord::Slot ChangeRecord::slotNow(std::int32_t slot, const Triangles& mesh) {
+    const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(slot)];
+    Slot now{slot, triangle.alive(), {}, {}};
+    if (!now.alive) {
+        return now;
+    }
+    const auto first = static_cast<std::size_t>(std::min_element(triangle.corner.begin(), triangle.corner.end()) -
+                                                triangle.corner.begin());
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t from = (first + i) % 3;
+        now.before.corner[i] = triangle.corner[from];
+        now.before.place[i] = mesh.places[static_cast<std::size_t>(triangle.corner[from])];
+        now.constrained[i] = triangle.constrained[from];
+    }
+    return now;
+}
+
+void ChangeRecord::keep(std::int32_t slot, const Triangles& mesh) { before_.push_back(slotNow(slot, mesh)); }
+
+void ChangeRecord::clear() {
+    before_.clear();
+    ++turn_;
+}
+
+Mesh::Difference ChangeRecord::difference(const Triangles& mesh) const {
+    std::vector<Mesh::Piece> before, now;
+    before.reserve(before_.size());
+    now.reserve(before_.size());
+    for (const Slot& old : before_) {
+        const Slot slot = slotNow(old.slot, mesh);
+        if (old.alive && slot.alive && old.before == slot.before) {
+            continue;
+        }
+        if (old.alive) {
+            before.push_back(old.before);
+        }
+        if (slot.alive) {
+            now.push_back(slot.before);
+        }
+    }
+    std::sort(before.begin(), before.end());
+    std::sort(now.begin(), now.end());
+    // A triangle that only moved to another slot is no difference.
+    Mesh::Difference difference;
+    std::set_difference(before.begin(), before.end(), now.begin(), now.end(), std::back_inserter(difference.went));
+    std::set_difference(now.begin(), now.end(), before.begin(), before.end(), std::back_inserter(difference.came));
+    return difference;
+}
+
+Mesh::Difference ChangeRecord::takeDifference(const Triangles& mesh) {
+    Mesh::Difference taken = difference(mesh);
+    clear();
+    return taken;
+}
+
+Mesh::Change ChangeRecord::takeChange(const Triangles& mesh) {
+    Mesh::Change change;
+    for (const Slot& old : before_) {
+        const Slot slot = slotNow(old.slot, mesh);
+        if (old.alive != slot.alive || old.before != slot.before || old.constrained != slot.constrained) {
+            change.triangles.push_back(old.slot);
+        }
+    }
+    std::sort(change.triangles.begin(), change.triangles.end());
+    const Mesh::Difference difference = this->difference(mesh);
+    for (const auto* pieces : {&difference.went, &difference.came}) {
+        for (const Mesh::Piece& piece : *pieces) {
+            change.vertices.insert(change.vertices.end(), piece.corner.begin(), piece.corner.end());
+        }
+    }
+    std::sort(change.vertices.begin(), change.vertices.end());
+    change.vertices.erase(std::unique(change.vertices.begin(), change.vertices.end()), change.vertices.end());
+    clear();
+    return change;
+}
+
+}  // namespace sand::tin

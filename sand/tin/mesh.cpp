@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/mesh.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "sand/tin/spatial_order.hpp"
+#include "sand/tin/triangulation.hpp"
+
+namespace sand::tin {
+namespace {
+
+constexpr std::int32_t kMaxSide = 1 << 22;
+
+std::string toText(const Place& place) { return std::to_string(place.x) + ", " + std::to_string(place.y); }
+
+}  // namespace
+
+Mesh::Mesh(std::int32_t width, std::int32_t depth) {
+    if (width < 1 || depth < 1 || width > kMaxSide || depth > kMaxSide) {
+        throw std::invalid_argument("a mesh of " + std::to_string(width) + " by " + std::to_string(depth) +
+                                    " probe units: each must be within 1 and " + std::to_string(kMaxSide));
+    }
+    triangulation_ = std::make_unique<Triangulation>(width, depth);
+}
+
+Mesh::~Mesh() = default;
+Mesh::Mesh(Mesh&&) noexcept = default;
+Mesh& Mesh::operator=(Mesh&&) noexcept = default;
+
+const Triangles& Mesh::triangles() const { return triangulation_->mesh(); }
+
+int Mesh::vertexCount() const { return triangulation_->vertexCount(); }
+
+void Mesh::requireInside(const Place& place) const {
+    const Triangles& mesh = triangles();
+    if (place.x < 0 || place.y < 0 || place.x > mesh.width || place.y > mesh.depth) {
+        throw std::invalid_argument("a vertex at " + toText(place) + ", outside the field of " +
+                                    toText({mesh.width, mesh.depth}));
+    }
+}
+
+void Mesh::requireAlive(Vertex vertex) const {
+    if (!triangles().alive(vertex)) {
+        throw std::invalid_argument("no vertex " + std::to_string(vertex));
+    }
+}
+
+Vertex Mesh::insert(Place place) {
+    requireInside(place);
+    return triangulation_->insert(place);
+}
+
+std::vector<Vertex> Mesh::insert(std::span<const Place> places) {
+    std::for_each(places.begin(), places.end(), [this](const Place& place) { requireInside(place); });
+    const std::vector<std::uint32_t> order = spatialOrder(places);
+    // First who is new, then numbers in the order given, then the mesh in an order in which neighbours follow each
+    // other.
+    std::vector<Vertex> numbers(places.size(), kNobody);
+    for (const std::uint32_t index : order) {
+        const Located located = triangulation_->find(places[index]);
+        if (const std::size_t corner = cornerAt(located); corner < 3) {
+            numbers[index] = triangles().triangles[static_cast<std::size_t>(located.triangle)].corner[corner];
+        }
+    }
+    std::vector<std::uint32_t> byPlace(order);
+    std::sort(byPlace.begin(), byPlace.end(), [&places](std::uint32_t a, std::uint32_t b) {
+        return places[a] != places[b] ? places[a] < places[b] : a < b;
+    });
+    std::vector<std::uint32_t> first(places.size());  // the first of those at the same place
+    for (std::size_t i = 0; i < byPlace.size(); ++i) {
+        first[byPlace[i]] = i > 0 && places[byPlace[i]] == places[byPlace[i - 1]] ? first[byPlace[i - 1]] : byPlace[i];
+    }
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        numbers[i] = first[i] != i           ? numbers[first[i]]
+                     : numbers[i] != kNobody ? numbers[i]
+                                             : triangulation_->takeNumber();
+    }
+    for (const std::uint32_t index : order) {
+        triangulation_->insert(places[index], numbers[index]);
+    }
+    return numbers;
+}
+
+bool Mesh::remove(Vertex vertex) {
+    requireAlive(vertex);
+    if (vertex < 4) {
+        return false;
+    }
+    triangulation_->remove(vertex);
+    return true;
+}
+
+std::vector<Vertex> Mesh::constrain(Vertex from, Vertex to) {
+    requireAlive(from);
+    requireAlive(to);
+    return from == to ? std::vector<Vertex>() : triangulation_->constrain(from, to);
+}
+
+void Mesh::release(Vertex a, Vertex b) {
+    requireAlive(a);
+    requireAlive(b);
+    triangulation_->release(a, b);
+}
+
+bool Mesh::isConstrained(Vertex a, Vertex b) const {
+    requireAlive(a);
+    requireAlive(b);
+    const Side side = triangulation_->findEdge(a, b);
+    return side.slot != kNobody && triangulation_->isConstrained(side);
+}
+
+std::vector<std::pair<Vertex, Vertex>> Mesh::constraints() const {
+    std::vector<std::pair<Vertex, Vertex>> constraints;
+    for (const Triangle& triangle : triangles().triangles) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vertex a = triangle.corner[next(i)];
+            const Vertex b = triangle.corner[previous(i)];
+            if (triangle.constrained[i] && triangle.neighbour[i] != kNobody && a < b) {
+                constraints.emplace_back(a, b);
+            }
+        }
+    }
+    std::sort(constraints.begin(), constraints.end());
+    return constraints;
+}
+
+Mesh::Change Mesh::takeChange() { return triangulation_->changes.takeChange(triangles()); }
+
+Mesh::Difference Mesh::takeDifference() {
+    triangulation_->noteDifferences = true;
+    return triangulation_->differences.takeDifference(triangles());
+}
+
+Mesh Mesh::restore(std::int32_t width, std::int32_t depth, std::span<const std::optional<Place>> places,
+                   std::span<const std::pair<Vertex, Vertex>> constraints) {
+    Mesh mesh(width, depth);
+    for (std::size_t i = 0; i < 4; ++i) {
+        if (i >= places.size() || places[i] != mesh.triangles().places[i]) {
+            throw std::invalid_argument("the first four vertices are not the corners of the field");
+        }
+    }
+    std::vector<Place> there;
+    std::vector<Vertex> numbers;
+    Triangulation& triangulation = *mesh.triangulation_;
+    triangulation.reserveNumbers(places.size());
+    for (std::size_t i = 4; i < places.size(); ++i) {
+        const auto number = static_cast<Vertex>(i);
+        if (!places[i]) {
+            triangulation.giveBack(number);
+            continue;
+        }
+        mesh.requireInside(*places[i]);
+        there.push_back(*places[i]);
+        numbers.push_back(number);
+    }
+    for (const std::uint32_t index : spatialOrder(there)) {
+        if (triangulation.insert(there[index], numbers[index]) != numbers[index]) {
+            throw std::invalid_argument("two vertices at " + toText(there[index]));
+        }
+    }
+    for (const auto& [a, b] : constraints) {
+        const bool alive = mesh.triangles().alive(a) && mesh.triangles().alive(b) && a != b;
+        const Triangulation::Hit hit = alive ? triangulation.follow(a, b) : Triangulation::Hit();
+        if (!alive || hit.vertex != b) {
+            throw std::invalid_argument("no straight constraint from vertex " + std::to_string(a) + " to " +
+                                        std::to_string(b));
+        }
+        triangulation.carve(a, hit);
+    }
+    return mesh;
+}
+
+}  // namespace sand::tin
