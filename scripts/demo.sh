@@ -5,10 +5,12 @@ set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 
 out="$root/out/demo"
+scene=scenes/writing.toml
 while [[ $# -gt 0 ]]; do
     case "$1" in
         --out) out=$(realpath -m "${2:?--out needs a folder}"); shift 2 ;;
-        *) echo "usage: scripts/demo.sh [--out DIR]" >&2; exit 2 ;;
+        --scene) scene=$(realpath -e "${2:?--scene needs a scene file}"); shift 2 ;;
+        *) echo "usage: scripts/demo.sh [--scene FILE] [--out DIR]" >&2; exit 2 ;;
     esac
 done
 
@@ -20,6 +22,6 @@ cmake --build build/release
 mkdir -p "$out"
 scripts/make_hand_trace.py "$out/hand.csv"
 # The hand takes 12 seconds of 60 steps; a wall that cannot keep up gets fewer and longer ones, and shows the rest at rest.
-scripts/sandwall run --wall walls/configs/tiled_3x4.toml --scene scenes/writing.toml \
+scripts/sandwall run --wall walls/configs/tiled_3x4.toml --scene "$scene" \
     --device "trace:$out/hand.csv" --steps 720 --out "$out"
 echo "pictures and summary: $out (begin with wall_anaglyph.png and summary.json)"

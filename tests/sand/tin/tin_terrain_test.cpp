@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "files/input_error.hpp"
+#include "sand/terrain.hpp"
+
+namespace {
+
+using sand::Edit;
+using sand::Step;
+using sand::Terrain;
+
+/// A scene file as a person writes it: dunes of 64 x 64 nominal cells, as a TIN.
+class TinTerrain : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string name = (std::filesystem::temp_directory_path() / "sandwall-tin-XXXXXX").string();
+        ASSERT_NE(mkdtemp(name.data()), nullptr);
+        folder_ = name;
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    [[nodiscard]] sand::Scene scene(const std::string& tin = "max_error = 0.01\n", const std::string& more = "") const {
+        const std::filesystem::path file = folder_ / "scene.toml";
+        std::ofstream(file) << "[field]\ncolumns = 64\nwidth = 2.0\n[terrain]\nkind = \"dunes\"\nheight = 0.3\n"
+                               "dune_height = 0.15\ndune_length = 0.8\n"
+                            << more << "[tin]\n"
+                            << tin << "[material]\ntalus_deg = 34\nsettling_time = 0.1\n[tool]\nradius = 0.1\n";
+        return sand::loadScene(file);
+    }
+
+    std::filesystem::path folder_;
+};
+
+/// Strokes here and there, with everything a hand and an operator may do.
+std::vector<Step> session(std::uint32_t seed, int steps) {
+    std::mt19937 random(seed);
+    const auto below = [&](std::uint32_t most) { return static_cast<std::int32_t>(random() % most); };
+    std::vector<Step> all;
+    sand::ProbePoint at{64 * 128, 64 * 128, 2600};
+    for (int i = 0; i < steps; ++i) {
+        Step step{.epoch = 1, .number = static_cast<std::uint64_t>(i + 1), .engaged = i % 16 < 11, .path = {}};
+        for (int points = below(4); points > 0; --points) {
+            at = {std::clamp(at.x + below(601) - 300, -2000, 64 * 256 + 2000),
+                  std::clamp(at.y + below(601) - 300, -2000, 64 * 256 + 2000), 2400 + below(1200)};
+            step.path.push_back(at);
+        }
+        if (i % 16 == 0) {
+            at = {below(64 * 256), below(64 * 256), 3000};
+            step.path = {at};
+        }
+        step.edit = i % 50 == 49 ? Edit::undo : i == steps / 2 ? Edit::settle : Edit::none;
+        all.push_back(step);
+    }
+    return all;
+}
+
+TEST_F(TinTerrain, ASessionIsTheSameTwiceAndFromItsMiddle) {
+    const sand::Scene start = scene();
+    ASSERT_NE(start.tin, nullptr);
+    ASSERT_LT(start.tin->places.size(), 64U * 64U / 2);
+    Terrain whole(start), again(start), joined(start);
+    const std::vector<Step> steps = session(7, 120);
+    for (const Step& step : steps) {
+        whole.apply(step);
+        again.apply(step);
+        ASSERT_EQ(whole.stateHash(), again.stateHash()) << "step " << step.number;
+        ASSERT_EQ(whole.volume() + whole.outflow(), Terrain(start).volume()) << "step " << step.number;
+        if (step.number % 37 == 0) {
+            joined.decodeState(whole.encodeState());
+        } else if (step.number > 37) {
+            joined.apply(step);
+        }
+        if (step.number >= 37) {
+            ASSERT_EQ(joined.stateHash(), whole.stateHash()) << "step " << step.number;
+            ASSERT_EQ(joined.canUndo(), whole.canUndo());
+        }
+    }
+    EXPECT_EQ(joined.encodeState(), whole.encodeState());
+}
+
+TEST_F(TinTerrain, TravelsWholeWithItsScene) {
+    const sand::Scene start = scene("max_error = 0.02\nspacing = 0.05\nkeep_constraints = true\n");
+    const sand::Scene read = sand::Scene::decode(start.encode());
+    ASSERT_NE(read.tin, nullptr);
+    EXPECT_EQ(read.rules, start.rules);
+    EXPECT_EQ(read.tin->places, start.tin->places);
+    EXPECT_EQ(read.tin->settings, start.tin->settings);
+    EXPECT_EQ(Terrain(read).stateHash(), Terrain(start).stateHash());
+    EXPECT_EQ(read.referenceHeight(), start.referenceHeight());
+}
+
+TEST_F(TinTerrain, ResetUndoAndLoadPutTheSandBack) {
+    const sand::Scene start = scene();
+    Terrain terrain(start);
+    const std::int64_t volume = terrain.volume();
+    const auto untouched = terrain.surface().valuesOf(0);
+    const files::Bytes saved = terrain.copySand()->encode();
+    for (const Step& step : session(3, 20)) {
+        terrain.apply(step);
+    }
+    EXPECT_NE(terrain.surface().valuesOf(0), untouched);
+    terrain.apply({.epoch = 1, .number = 21, .engaged = false, .path = {}, .edit = Edit::reset});
+    EXPECT_EQ(terrain.surface().valuesOf(0), untouched);
+    EXPECT_EQ(terrain.copySand()->encode(), saved);
+    EXPECT_EQ(terrain.volume(), volume);
+    terrain.apply({.epoch = 1, .number = 22, .engaged = true, .path = {{8000, 8000, 2000}}});
+    ASSERT_NE(terrain.copySand()->encode(), saved);
+    terrain.apply({.epoch = 1, .number = 23, .engaged = false, .path = {}, .edit = Edit::undo});
+    EXPECT_EQ(terrain.copySand()->encode(), saved);
+    terrain.apply({.epoch = 1, .number = 24, .engaged = true, .path = {{8000, 8000, 2000}}});
+    terrain.apply({.epoch = 1, .number = 25, .engaged = false, .path = {}, .edit = Edit::loaded(saved)});
+    EXPECT_EQ(terrain.copySand()->encode(), saved);
+}
+
+TEST_F(TinTerrain, ComesToRestAndThenCostsNoChange) {
+    Terrain terrain(scene());
+    std::uint64_t number = 0;
+    terrain.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {{8000, 8000, 2300}, {8600, 8000, 2300}}});
+    while (number < 4000 && !terrain.settled()) {
+        terrain.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {}});
+    }
+    ASSERT_TRUE(terrain.settled()) << "a tool held still must not pump sand for ever";
+    (void)terrain.takeTinDamage();
+    const auto held = terrain.copySand()->encode();
+    terrain.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {}});
+    EXPECT_EQ(terrain.copySand()->encode(), held);
+    const sand::tin::SurfaceDamage damage = terrain.takeTinDamage();
+    EXPECT_TRUE(damage.triangles.empty() && damage.vertices.empty() && !damage.whole);
+}
+
+TEST_F(TinTerrain, AFlippedBitShowsInTheNextAudit) {
+    Terrain terrain(scene());
+    const std::uint64_t right = terrain.stateHash();
+    terrain.corrupt(40, 13, 3);
+    EXPECT_EQ(terrain.stateHash(), right) << "behind the hash's back";
+    terrain.audit(terrain.hashTiles().tileCount());
+    EXPECT_NE(terrain.stateHash(), right);
+}
+
+TEST_F(TinTerrain, DamageNamesAllThatChanged) {
+    Terrain terrain(scene());
+    ASSERT_TRUE(terrain.takeTinDamage().whole);
+    auto triangles = terrain.tinView()->triangles;
+    auto heights = terrain.tinView()->heights;
+    for (const Step& step : session(11, 40)) {
+        if (step.edit.any()) {
+            continue;
+        }
+        Step next = step;
+        next.number = terrain.stepNumber() + 1;
+        terrain.apply(next);
+        const sand::tin::SurfaceDamage damage = terrain.takeTinDamage();
+        ASSERT_FALSE(damage.whole);
+        const sand::tin::Triangles& now = terrain.tinView()->triangles;
+        for (std::size_t slot = 0; slot < now.triangles.size(); ++slot) {
+            const bool same = slot < triangles.triangles.size() &&
+                              triangles.triangles[slot].corner == now.triangles[slot].corner &&
+                              triangles.triangles[slot].constrained == now.triangles[slot].constrained;
+            ASSERT_TRUE(same || std::binary_search(damage.triangles.begin(), damage.triangles.end(),
+                                                   static_cast<std::int32_t>(slot)))
+                << "step " << next.number << ", slot " << slot;
+        }
+        for (std::size_t vertex = 0; vertex < now.triangleAt.size(); ++vertex) {
+            const bool alive = now.alive(static_cast<sand::tin::Vertex>(vertex));
+            const bool same = vertex < heights.size() &&
+                              alive == triangles.alive(static_cast<sand::tin::Vertex>(vertex)) &&
+                              (!alive || (heights[vertex] == terrain.tinView()->heights[vertex] &&
+                                          triangles.places[vertex] == now.places[vertex]));
+            ASSERT_TRUE(same || std::binary_search(damage.vertices.begin(), damage.vertices.end(),
+                                                   static_cast<sand::tin::Vertex>(vertex)))
+                << "step " << next.number << ", vertex " << vertex;
+        }
+        triangles = now;
+        heights = terrain.tinView()->heights;
+    }
+}
+
+TEST_F(TinTerrain, RefusesWhatItCannotHoldInOneLine) {
+    const auto complaint = [this](const std::string& tin, const std::string& more) -> std::string {
+        try {
+            (void)scene(tin, more);
+        } catch (const files::InputError& error) {
+            return error.what();
+        }
+        return "nothing";
+    };
+    for (const auto& [tin, more, part] :
+         {std::tuple{"max_error = -1\n", "", "max_error"}, std::tuple{"vertices = 3\n", "", "vertices"},
+          std::tuple{"spacing = 0\n", "", "spacing"}, std::tuple{"", "layer = 0.1\n", "neither rock nor"},
+          std::tuple{"colour = 1\n", "", "colour"}}) {
+        const std::string said = complaint(tin, more);
+        EXPECT_NE(said.find(part), std::string::npos) << said;
+        EXPECT_NE(said.find("scene.toml:"), std::string::npos) << said;
+        EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+    }
+}
+
+}  // namespace
