@@ -55,7 +55,22 @@ private:
     Csv& csv_;
 };
 
+void explainTinMemory(const sand::Scene& scene, Explanation& rows) {
+    const sand::Terrain terrain(scene);
+    const sand::tin::Triangles& mesh = terrain.tinView()->triangles;
+    const std::size_t perVertex = sizeof(sand::tin::Place) + 2 * sizeof(std::int32_t) + 4 * sizeof(std::int64_t);
+    rows.memory("vertices", mesh.places.size() * perVertex,
+                fmt::format("{} of them: place, volume, share of the ground, height, hash", mesh.places.size()));
+    rows.memory("triangles", mesh.triangles.size() * sizeof(sand::tin::Triangle),
+                fmt::format("{} of them: corners, neighbours, constraints", mesh.triangles.size()));
+    rows.memory("bedrock and walls", 0, "a TIN has none");
+}
+
 void explainMemory(const sand::Scene& scene, Explanation& rows) {
+    if (scene.tin != nullptr) {
+        explainTinMemory(scene, rows);
+        return;
+    }
     const sand::Erosion erosion(scene.terrain, scene.rules, sand::Erosion::Options{.ground = scene.ground.get()});
     const sand::StateHash hash(scene.terrain);
     rows.memory("heights",
@@ -71,8 +86,10 @@ void explainMemory(const sand::Scene& scene, Explanation& rows) {
 
 void explainRules(const sand::Scene& scene, Explanation& rows) {
     const sand::Rules& rules = scene.rules;
-    rows.rule("isotropic flux with inertia", rules.scheme == sand::Scheme::isotropic, "scheme = g");
-    rows.rule("four-neighbour flux", rules.scheme == sand::Scheme::n4, "only with scheme = n4");
+    const bool grid = scene.tin == nullptr;
+    rows.rule("flux over a TIN's edges", !grid, "only with [tin]: the scene's module is loaded");
+    rows.rule("isotropic flux with inertia", grid && rules.scheme == sand::Scheme::isotropic, "scheme = g");
+    rows.rule("four-neighbour flux", grid && rules.scheme == sand::Scheme::n4, "only with scheme = n4");
     rows.rule("layer limiter", scene.ground != nullptr, "only with bedrock or walls");
     rows.rule("non-square cells", rules.aspect != sand::kUnitsPerCell,
               "a law per axis: only where a cell is not square");
@@ -101,6 +118,16 @@ sand::Scene stirred(const sand::Scene& scene, std::uint32_t seed) {
     sand::Scene result = scene;
     const auto range = static_cast<std::uint32_t>(std::max(scene.rules.toolRadius / kProbePerCell, 1) * 4) *
                        static_cast<std::uint32_t>(sand::kUnitsPerCell);
+    if (scene.tin != nullptr) {
+        auto start = *scene.tin;
+        for (std::int32_t& height : start.heights) {
+            const auto noise = static_cast<std::int32_t>(random() % range);
+            height = std::min(height, sand::kMaxHeight - noise) + noise;
+        }
+        result.rules.tin = start.digest();
+        result.tin = std::make_shared<const sand::tin::Start>(std::move(start));
+        return result;
+    }
     for (int y = 0; y < scene.rules.rows; ++y) {
         for (int x = 0; x < scene.rules.columns; ++x) {
             const auto noise = static_cast<std::int32_t>(random() % range);
