@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ten thousand edits on every rank, each sweeping in its own way; all meet after every edit and compare hashes. With
-// any argument, a thousand with tools of every shape.
+// "tools" a thousand with tools of every shape, with "tin" as many on a TIN.
 #include <fmt/format.h>
 #include <mpi.h>
 
 #include <array>
 #include <random>
+#include <string_view>
 
 #include "sand/dunes.hpp"
+#include "sand/tin_module.hpp"
 #include "tests/support/sand_samples.hpp"
 #include "workers/worker_pool.hpp"
 
@@ -25,11 +27,21 @@ sand::Scene smallScene() {
     return scene;
 }
 
+sand::Scene smallTin() {
+    sand::Scene scene = smallScene();
+    auto start = sand::tinModule().follow(scene.terrain, {.spacing = 300, .maxError = 8000, .mostVertices = 2000});
+    scene.rules.tin = start.digest();
+    scene.tin = std::make_shared<const sand::tin::Start>(std::move(start));
+    scene.terrain = sand::HeightField(1, 1, scene.terrain.cellSize());
+    return scene;
+}
+
 /// The first edit after which ranks differ, or 0; `all` takes in every hash.
-std::uint64_t editAll(int rank, bool wild, std::uint64_t& all) {
+std::uint64_t editAll(int rank, std::string_view kind, std::uint64_t& all) {
     const auto way = static_cast<std::size_t>(rank);
     workers::WorkerPool team(kThreads.at(way % kThreads.size()));
-    const sand::Scene scene = smallScene();
+    const sand::Scene scene = kind == "tin" ? smallTin() : smallScene();
+    const bool wild = !kind.empty();
     sand::Terrain terrain(scene, {.blockSize = kBlocks.at(way % kBlocks.size()),
                                   .path = way % 2 == 0 ? sand::CodePath::automatic : sand::CodePath::baseline,
                                   .executor = team.lend()});
@@ -57,7 +69,7 @@ int main(int argc, char** argv) {
     int rank = 0;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     std::uint64_t all = 0;
-    const std::uint64_t differing = editAll(rank, argc > 1, all);
+    const std::uint64_t differing = editAll(rank, argc > 1 ? argv[1] : "", all);
     if (rank == 0) {
         fmt::print("{}\n",
                    differing == 0 ? fmt::format("{:016x}", all) : fmt::format("ranks differ after {}", differing));

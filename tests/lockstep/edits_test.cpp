@@ -8,7 +8,8 @@
 
 namespace {
 
-const std::string kOfSpheres = "104713705b65770e", kOfEveryTool = "07877fabb68c6f49";
+const std::string kOfSpheres = "104713705b65770e", kOfEveryTool = "07877fabb68c6f49",
+                  kOfTin = "?";
 
 /// The hash is that of one rank, which has nobody to differ from. Whoever changes the algorithm replaces it, as the
 /// golden hashes.
@@ -26,6 +27,7 @@ void expectHash(std::initializer_list<int> numbersOfRanks, const std::string& ar
 
 TEST(Edits, TenThousandHashAlikeOnOneToFourRanks) { expectHash({1, 2, 3, 4}, "", kOfSpheres); }
 TEST(Edits, WithEveryToolHashAlikeOnOneAndFourRanks) { expectHash({1, 4}, " tools", kOfEveryTool); }
+TEST(Edits, OfATinHashAlikeOnOneFourAndTwelveRanks) { expectHash({1, 4, 12}, " tin", kOfTin); }
 TEST(Edits, TenThousandHashAlikeOnFiveToEightRanks) { expectHash({5, 6, 7, 8}, "", kOfSpheres); }
 TEST(Edits, TenThousandHashAlikeOnNineToTwelveRanks) { expectHash({9, 10, 11, 12}, "", kOfSpheres); }
 
