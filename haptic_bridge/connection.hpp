@@ -13,6 +13,7 @@
 #include <optional>
 #include <string>
 
+#include "haptic_bridge/message_reader.hpp"
 #include "haptic_bridge/protocol.hpp"
 #include "haptic_bridge/security.hpp"
 

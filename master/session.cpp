@@ -52,6 +52,7 @@ void forgetOldResults(const std::filesystem::path& folder, bool resumed) {
 
 std::vector<lockstep::Fault> faultsOf(const std::vector<Drill>& drills) {
     std::vector<lockstep::Fault> faults;
+    faults.reserve(drills.size());
     for (const Drill& drill : drills) {
         faults.push_back(drill.fault);
     }

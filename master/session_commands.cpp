@@ -41,7 +41,7 @@ Json materialNow(const sand::Material& material) {
 /// capture_001, or the first after it that is not there; pictures of an earlier session stay.
 std::filesystem::path newCaptureFolder(const std::filesystem::path& out) {
     for (int number = 1;; ++number) {
-        const std::filesystem::path folder = out / fmt::format("capture_{:03}", number);
+        std::filesystem::path folder = out / fmt::format("capture_{:03}", number);
         std::error_code error;
         if (std::filesystem::create_directory(folder, error) || error) {
             return folder;  // one that cannot be made is told by the first picture

@@ -57,7 +57,7 @@ struct Inertial {
     }
 };
 
-/// Scheme G of NUMERICS: slope across the face from its two cells, slope along it as the mean of four differences.
+/// The law without inertia: slope across the face from its two cells, slope along it as the mean of four differences.
 struct Isotropic {
     static constexpr bool kNeedsAlong = true;
     AxisLaw axis;

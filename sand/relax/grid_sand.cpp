@@ -74,8 +74,8 @@ HeightScale scaleFor(const EsriGrid& surface, const Extremes& extremes) {
     return scale;
 }
 
-/// By which share slopes may rest too steep: there every flux is rounded to nothing. NUMERICS gives the excess over a
-/// threshold as (8 τ)^(1/3) + 4 where a face levels a quarter of a difference; `limit` is that share here.
+/// By which share slopes may rest too steep: there every flux is rounded to nothing. The excess over a threshold
+/// τ is at most (8 τ)^(1/3) + 4 where a face levels a quarter of a difference; `limit` is that share here.
 double steepening(double threshold, double limit) { return (std::cbrt(2 * threshold / limit) + 1 / limit) / threshold; }
 
 /// Of the axis that is worse off. The fluxes' shares are those of sand/erosion.cpp.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What comes over the haptic link: a stream cut anywhere, in either direction, states and loads expected or not.
 #include "fuzz_target.hpp"
+#include "haptic_bridge/message_reader.hpp"
 #include "haptic_bridge/protocol.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

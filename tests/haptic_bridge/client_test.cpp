@@ -10,6 +10,7 @@
 #include <functional>
 
 #include "files/input_error.hpp"
+#include "haptic_bridge/message_reader.hpp"
 #include "tests/haptic_bridge/server_process.hpp"
 
 namespace {

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <random>
 
+#include "haptic_bridge/message_reader.hpp"
+
 namespace {
 
 using namespace haptic_bridge;

@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 
+#include "haptic_bridge/message_reader.hpp"
 #include "haptic_bridge/protocol.hpp"
 
 namespace test {

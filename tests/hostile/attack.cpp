@@ -14,6 +14,8 @@
 #include <system_error>
 #include <vector>
 
+#include "haptic_bridge/message_reader.hpp"
+
 namespace hostile {
 
 using namespace haptic_bridge;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Leaving settled blocks alone must not show (NUMERICS, section 1, active blocks).
+// Leaving settled blocks alone must not show.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -39,7 +39,7 @@ HeightField nearCriticalPlane(int side, int block, std::mt19937& random) {
     return field;
 }
 
-// With edge neighbours only, NUMERICS lost sand in 84 of 3000 such runs; lumps alone never show it.
+// With edge neighbours only, a prototype lost sand in 84 of 3000 such runs; lumps alone never show it.
 TEST(ActiveBlocks, EqualFullSweepsOn3000NearCriticalPlanes) {
     constexpr int kRuns = samples::kSanitized ? 300 : 3000;
     constexpr std::array kBlocks{16, 32, 64};

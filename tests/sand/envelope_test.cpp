@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds for any heap of sand, smooth or rough (NUMERICS, section 1, O6 and the bound at rest).
+// What holds for any heap of sand, smooth or rough (its envelopes, and the bound at rest).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -75,7 +75,7 @@ TEST(Envelope, HoldsExactlyOnACylinder) {
 }
 
 // High noise levels to its mean, far inside. With noise of a few thresholds the slope from cell to cell is not what the
-// law's mean of four sees, and NUMERICS' 0.15 thresholds do not hold: over ten seeds, sand without inertia came 0.24
+// law's mean of four sees, and a bound of 0.15 thresholds does not hold: over ten seeds, sand without inertia came 0.24
 // outside on raw noise and 0.34 on averaged; with inertia, which carries a cell past its neighbours' mean, 0.81 and
 // 0.31.
 TEST(Envelope, HoldsOnRoughFieldsWithinAThreshold) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers that no sand can be made of (NUMERICS, section 6): an error that names file, line, key and range.
+// Numbers that no sand can be made of: an error that names file, line, key and range.
 #include <gtest/gtest.h>
 
 #include <limits>

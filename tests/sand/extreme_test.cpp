@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Angles, heights, cells and sizes at the ends of their ranges (NUMERICS, section 6).
+// Angles, heights, cells and sizes at the ends of their ranges.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tools of any size, anywhere (NUMERICS, section 6). A pose that is no number never becomes a step: the haptic side
-// refuses it before it is quantised (tests/haptic_bridge/device_test.cpp).
+// Tools of any size, anywhere. A pose that is no number never becomes a step: the haptic side refuses it before it is
+// quantised (tests/haptic_bridge/device_test.cpp).
 #include <gtest/gtest.h>
 
 #include <memory>

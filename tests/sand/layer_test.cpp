@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sand over bedrock and beside walls as the sweeps see it (NUMERICS, section 1, O8, and section 6, layers and cliffs).
+// Sand over bedrock and beside walls as the sweeps see it: thin layers, cliffs, and stable sand that stays.
 #include <gtest/gtest.h>
 
 #include <functional>

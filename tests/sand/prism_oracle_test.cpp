@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Walls of sand and tilted planes, along the grid's axes and across them (NUMERICS, section 1, O2 and O5).
+// Walls of sand and tilted planes, along the grid's axes and across them (oracles.hpp, O2 and O5).
 #include <gtest/gtest.h>
 
 #include <array>
@@ -54,7 +54,7 @@ struct Resolution {
     double allowed;
 };
 
-// Tolerances of NUMERICS.
+// Which share of the sand may be in the wrong place: less with smaller cells.
 constexpr std::array kResolutions{Resolution{64, 0.003}, Resolution{128, 0.0025}, Resolution{256, 0.0008}};
 
 TEST(PrismOracle, LowWallBecomesItsRampOnEitherAxis) {

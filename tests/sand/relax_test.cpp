@@ -69,8 +69,7 @@ TEST_F(Relax, TellsWhatItDidInOneLine) {
     EXPECT_EQ(json["volume_above"], 0.0);
     EXPECT_EQ(json["at_rest"], true);
     EXPECT_GT(json["seconds"], 0.0);
-    EXPECT_LE(json["steepest_over_talus"], 1.01)
-        << "NUMERICS: a threshold of 4096 units or more rests within a percent";
+    EXPECT_LE(json["steepest_over_talus"], 1.01) << "a threshold of 4096 units or more rests within a percent";
     EXPECT_GT(json["steepest_over_talus"], 0.9) << "a pile lies at its talus";
     EXPECT_NEAR(json["steepest_deg"], 45, 0.3);
     EXPECT_GE(json["certificate"]["bound"], json["certificate"]["gap"]);
@@ -167,7 +166,7 @@ TEST_F(Relax, StopsAfterAsManySweepsAsItIsTold) {
     EXPECT_EQ(json["volume_after"], start.volume());
 }
 
-// NUMERICS, O8: a 0.9 ramp along a bare cliff is stable, though the step down the cliff is as steep as can be.
+// A 0.9 ramp along a bare cliff is stable, though the step down the cliff is as steep as can be.
 TEST_F(Relax, StableSandBesideBareRockStays) {
     std::vector<double> surface, rock;
     for (int row = 0; row < 20; ++row) {
@@ -227,7 +226,7 @@ TEST_F(Relax, CellsThatAreNotSquareRestAtTheSameAngle) {
         steepestX = std::max(steepestX, alongX.heights[i - 1] - alongX.heights[i]);
         steepestY = std::max(steepestY, alongY.heights[i - 1] - alongY.heights[i]);
     }
-    // The excess that NUMERICS allows a threshold of 54991 units, where a face levels 0.47 of a difference: 66 units.
+    // The excess of a threshold of 54991 units, where a face levels 0.47 of a difference: 66 units.
     EXPECT_NEAR(steepestX, step, 66 * kUnit);
     EXPECT_NEAR(steepestY, step, 66 * kUnit);
 }
@@ -252,7 +251,7 @@ TEST_F(Relax, AngleZeroLevelsTheSand) {
     EXPECT_TRUE(json["steepest_over_talus"].is_null());
     const sand::EsriGrid out = sand::readEsriGrid(path("out.asc"));
     for (int x = 1; x < 8; ++x) {
-        EXPECT_LE(std::abs(out.at(x, 0) - out.at(x - 1, 0)), 5 * kUnit) << "NUMERICS: within 4 units per cell";
+        EXPECT_LE(std::abs(out.at(x, 0) - out.at(x - 1, 0)), 5 * kUnit) << "a talus of 0 rests within 4 units per cell";
     }
 }
 

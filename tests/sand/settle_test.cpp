@@ -64,14 +64,14 @@ double errorOfCylinder(int n, double heightPerRadius) {
     return oracles::distance(field, expected).misplaced;
 }
 
-// NUMERICS, O1: what plain sweeps must reach, and they take a hundred times as long.
+// O1: what plain sweeps must reach (pile_oracle_test.cpp), and they take a hundred times as long.
 TEST(Settle, CylinderBecomesItsFrustum) {
     EXPECT_LE(errorOfCylinder(64, 0.6), 0.003);
     EXPECT_LE(errorOfCylinder(128, 0.6), 0.001);
     EXPECT_LE(errorOfCylinder(256, 0.6), 0.0004);
 }
 
-// A cone's apex is one cell that holds a kink in every direction: NUMERICS allows it what it allows a frustum.
+// A cone's apex is one cell that holds a kink in every direction: it may be further off than a frustum.
 TEST(Settle, TallCylinderBecomesItsCone) {
     EXPECT_LE(errorOfCylinder(64, 3), 0.005);
     EXPECT_LE(errorOfCylinder(128, 3), 0.0025);
@@ -85,7 +85,7 @@ double errorOfPrism(int n, double heightPerWidth) {
     return oracles::distance(field, expected).misplaced;
 }
 
-// NUMERICS, O2: 0.25 % and 0.08 % at 128 and 256, for the low one and the tall one.
+// O2: 0.25 % and 0.08 % at 128 and 256, for the low one and the tall one.
 TEST(Settle, PrismBecomesItsRamp) {
     for (const double height : {1.0, 4.0}) {
         EXPECT_LE(errorOfPrism(128, height), 0.0025) << height;

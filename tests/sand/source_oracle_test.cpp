@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sand poured on one spot, and sand that falls off a table (NUMERICS, section 1, O3 and O4).
+// Sand poured on one spot, and sand that falls off a table (oracles.hpp, O3 and O4).
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sliding knows no direction, and rest is rest (NUMERICS, section 1, O7).
+// Sliding knows no direction, and rest is rest.
 #include <gtest/gtest.h>
 
 #include <random>

@@ -9,7 +9,7 @@
 
 #include "sand/height_field.hpp"
 
-/// Piles whose rest state is known in closed form (NUMERICS, section 1, O1 to O5), and how far a field is from one.
+/// Piles whose rest state is known in closed form, O1 to O5, and how far a field is from one.
 ///
 /// Lengths and heights are in cells, `talus` is the tangent of the angle of repose. A profile is any function of a
 /// point (x, y), where cell (i, j) covers [i, i + 1] x [j, j + 1]; a field holds the mean of it over each cell.
@@ -165,7 +165,7 @@ sand::HeightField fieldOf(int columns, int rows, const Profile& profile) {
 
 /// How far heights are from what they should be.
 struct Distance {
-    double misplaced = 0;  // sum of |error| over the sum of |expected|: NUMERICS' "share of sand in the wrong place"
+    double misplaced = 0;  // sum of |error| over the sum of |expected|: the share of sand in the wrong place
     double largest = 0;    // [cell], L-infinity
     double apex = 0;       // [cell], highest height found minus highest expected, signed
 };

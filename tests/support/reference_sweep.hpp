@@ -29,7 +29,7 @@ inline double alongRow(const sand::HeightField& field, int x, int y) {
     return east - west;
 }
 
-/// Scheme G of NUMERICS.
+/// The isotropic law without inertia (sand/erosion.hpp).
 struct Isotropic {
     std::int64_t operator()(double across, double along, double threshold) const {
         const double slope = std::sqrt(across * across + along * along / 16);

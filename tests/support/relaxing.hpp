@@ -105,7 +105,7 @@ inline double steepestExcess(const sand::HeightField& field, std::int32_t thresh
     return steepest - threshold;
 }
 
-/// NUMERICS, section 1: how far above the threshold a face may be at rest [unit], since a flux below one is none.
+/// How far above the threshold a face may be at rest [unit], since a flux below one is none.
 inline double restingExcess(std::int32_t threshold) { return std::cbrt(8.0 * threshold) + 4; }
 
 }  // namespace samples

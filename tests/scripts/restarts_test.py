@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What scripts/sandwall run does when a rank or mpirun dies: names it, starts again, and gives up at last."""
+
+import re
+import subprocess
+import time
+import unittest
+
+from supervisor_fixture import HOST, Supervised
+
+
+class Restarts(Supervised):
+    def test_a_rank_that_dies_is_named_and_the_session_goes_on(self):
+        self.tries("progress 7 6; complain 2 'last words'; dies 2 host 11", "progress 9 8; exit 0")
+        before = time.time()
+        status, printed, error = self.ended(["-", "-"])
+        self.assertEqual((status, printed), (0, "frame 7  step 6  60.0 fps\nframe 9  step 8  60.0 fps\n"))
+        self.assertEqual(error, f"last words\nsandwall: rank 2 on {HOST} died of SIGSEGV; "
+                         "starting again (1 of --restarts 3 in --restart-window 60)\n")
+        first, second = self.commands()
+        self.assertNotIn("--resume", first)
+        found = re.search(rf" --resume --failed-at (\S+) --failure rank 2 on {HOST} died of SIGSEGV : -n 2 ", second)
+        self.assertTrue(before <= float(found[1]) <= time.time(), second)
+
+    def test_the_master_is_called_so(self):
+        self.tries("progress 7 6; dies 0 host 9", "exit 0")
+        self.assertIn("sandwall: the master died of SIGKILL; starting again", self.ended(["-"])[2])
+
+    def test_a_rank_that_ends_by_itself_is_named_with_its_status(self):
+        self.tries("progress 7 6; ends 1 3", "exit 0")
+        self.assertIn(f"sandwall: rank 1 on {HOST} ended with status 3; starting again", self.ended(["-"])[2])
+
+    def test_who_hung_is_told_by_the_last_words_of_the_watchdog(self):
+        words = "for 3.0 s; the limit is 3 s, ending the job"
+        self.tries(f"progress 7 6; complain 0 'sandwall: frame 8 waits for rank 2 (tile b) on x {words}'; ends 0 1",
+                   f"progress 9 8; complain 1 'sandwall: rank 1 waits for the master after frame 9 {words}'; ends 1 1", "exit 0")
+        error = self.ended(["-", "-"])[2]
+        self.assertIn("sandwall: rank 2 (tile b) on x hung; starting again", error)
+        self.assertIn("sandwall: the master hung; starting again", error)
+
+    def test_an_mpirun_that_waits_for_a_host_that_has_gone_is_killed(self):
+        self.tries("""progress 7 6; trap '' TERM
+complain 0 'sandwall: frame 8 waits for rank 2 (tile b) on x for 3.0 s; the limit is 3 s, ending the job'; while :; do sleep 0.1; done""", "exit 0")
+        status, _, error = self.ended(["-", "-"])
+        self.assertEqual(status, 0, error)
+        self.assertIn("sandwall: rank 2 (tile b) on x hung; starting again", error)
+
+    def test_what_the_master_has_written_down_goes_before_what_mpirun_noticed(self):
+        self.tries("""progress 7 6; told '{"what": "hung", "rank": 1, "message": "frame 8 waits for rank 1 (tile a) on x for 2.1 s; the limit is 2 s, ending the job"}'; ends 0 1""", "exit 0")
+        self.assertIn("sandwall: rank 1 (tile a) on x hung; starting again", self.ended(["-"])[2])
+        self.assertFalse((self.folder / "out" / "failure.json").exists(), "it would be found again")
+
+    def test_a_killed_mpirun_is_named(self):
+        self.tries("progress 7 6; kill -KILL $$", "exit 0")
+        self.assertIn("sandwall: mpirun died of SIGKILL; starting again", self.ended(["-"])[2])
+
+    def test_an_orderly_end_and_bad_input_are_ends(self):
+        for status in (0, 2):
+            self.tries(f"complain 0 'that was it'; exit {status}")
+            self.assertEqual(self.ended(["-"]), (status, "", "that was it\n"))
+            (self.folder / "tries").unlink()
+
+    def test_without_restarts_the_first_failure_is_the_end(self):
+        self.tries("echo said; dies 1 host 11")
+        status, printed, _ = self.ended(["-"], "--restarts", "0")
+        self.assertEqual((status, printed), (139, "said\n"))
+        self.assertIn("-q --oversubscribe", self.commands()[0])
+        self.assertFalse((self.folder / "out" / "log").exists())
+
+    def test_a_journal_of_another_session_is_not_gone_on_with(self):
+        (self.folder / "out").mkdir()
+        (self.folder / "out" / "session.journal").write_text("yesterday's")
+        self.tries("dies 1 host 9", "exit 0")
+        self.assertEqual(self.ended(["-"])[0], 0)
+        self.assertNotIn("--resume", self.commands()[1])
+
+    def test_a_session_is_resumed_by_hand(self):
+        self.tries("dies 1 host 9", "exit 0")
+        self.assertEqual(self.ended(["-"], "--resume")[0], 0)
+        first, second = self.commands()
+        self.assertRegex(first, r"--resume : ")
+        self.assertRegex(second, r"--resume --failed-at ")
+
+    def test_a_scene_is_needed_but_for_what_the_journal_tells(self):
+        self.tries("exit 0")
+        command = self.command(["-"], "--resume")
+        at = command.index("--scene")
+        command[at:at + 2] = []
+        self.assertEqual(subprocess.run(command, env=self.environment, timeout=120, stdin=subprocess.DEVNULL).returncode, 0)
+        self.assertNotIn("--scene", self.commands()[0])
+        refused = subprocess.run([*command, "--device", "script:gis"], env=self.environment, timeout=120, text=True,
+                                 capture_output=True, stdin=subprocess.DEVNULL)
+        self.assertEqual((refused.returncode, refused.stderr), (2, "--scene: name one; only with --resume and without "
+                                                                "--device the journal's will do\n"))
+
+
+class GivenUp(Supervised):
+    def test_the_report_names_who_died_of_what_where_and_when_with_last_words(self):
+        text = "progress {0}7 {0}6; complain 1 'words of try {0}'; dies 1 host 6"
+        self.tries(*(text.format(number) for number in (1, 2, 3)))
+        status, _, error = self.ended(["-"], "--restarts", "2", "--restart-window", "600")
+        self.assertEqual((status, len(self.commands())), (1, 3))
+        report = error[error.index("sandwall: the session is given up"):]
+        self.assertIn("more failures than --restarts 2 in --restart-window 600 allows", report)
+        for number in (1, 2, 3):
+            self.assertRegex(report, rf"\d\d:\d\d:\d\d  rank 1 on {HOST} died of SIGABRT; shown: frame {number}7, step {number}6\n"
+                             rf" +\| words of try {number}\n")
+        self.assertEqual(report, (self.folder / "out/log/report.txt").read_text().replace(str(self.folder) + "/", ""))
+        self.assertIn("words of try 2", (self.folder / "out/log/try_2.err").read_text())
+
+    def test_tries_without_a_frame_are_counted_whatever_the_window(self):
+        self.tries(*["sleep 0.3; dies 1 host 6"] * 3)
+        status, _, error = self.ended(["-"], "--restarts", "1", "--restart-window", "0.1")
+        self.assertEqual((status, len(self.commands())), (1, 2), error)
+
+    def test_failures_far_apart_are_not_counted_together(self):
+        self.tries(*["progress 2 1; sleep 0.3; dies 1 host 6"] * 3, "exit 0")
+        status, _, error = self.ended(["-"], "--restarts", "1", "--restart-window", "0.1")
+        self.assertEqual((status, len(self.commands())), (0, 4), error)
+
+    def test_only_so_many_logs_are_kept(self):
+        self.tries(*["progress 2 1; dies 1 host 6"] * 11, "exit 0")
+        self.assertEqual(self.ended(["-"], "--restarts", "20", "--restart-window", "0.001")[0], 0)
+        kept = sorted(int(path.stem[4:]) for path in (self.folder / "out/log").glob("try_*.err"))
+        self.assertEqual(kept, list(range(5, 13)))
+
+
+if __name__ == "__main__":
+    unittest.main()

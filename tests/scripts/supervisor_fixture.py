@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: Apache-2.0
+"""scripts/sandwall run with an mpirun that dies as it is told."""
+
+import socket
+import subprocess
+import time
+
+from launcher_fixture import LauncherTest
+
+# Writes down its command, and does in its n-th start what try_n says.
+MPIRUN = """#!/bin/bash
+folder=$(dirname "$0")/..
+n=$(($(cat "$folder/tries" 2>/dev/null || echo 0) + 1)); echo $n > "$folder/tries"
+echo "$*" >> "$folder/commands"
+say() { echo "[1,$1]<stdout>:$2"; }
+complain() { echo "[1,$1]<stderr>:$2" >&2; }
+progress() { mkdir -p "$folder/out"; echo "$n" > "$folder/out/session.journal"; say 0 "frame $1  step $2  60.0 fps"; }
+line=--------------------------------------------------------------------------
+banner() { printf '%s\\n' $line "$@" $line >&2; }
+dies() { banner "Primary job  terminated normally"; banner "mpirun noticed that process rank $1 with PID 0 on node $2 exited on signal $3 (Made Up)."; exit $((128 + $3)); }
+ends() { banner "mpirun detected that one or more processes exited" "" "  Process name: [[5156,1],$1]" "  Exit code:    $2"; exit $2; }
+told() { mkdir -p "$folder/out"; echo "$1" > "$folder/out/failure.json"; }
+. "$folder/try_$n"
+"""
+HOST = socket.gethostname()
+
+
+class Supervised(LauncherTest):
+    def setUp(self):
+        super().setUp()
+        self.script("mpirun", MPIRUN)
+
+    def tries(self, *texts):
+        """What mpirun does at its first, second, ... start."""
+        for number, text in enumerate(texts, start=1):
+            self.write(f"try_{number}", text)
+
+    def commands(self):
+        return (self.folder / "commands").read_text().splitlines()
+
+    def ended(self, hosts, *options):
+        ended = self.start(hosts, *options)
+        return ended.returncode, ended.stdout, ended.stderr.replace(str(self.folder) + "/", "")
+
+    def wait_for(self, what, condition):
+        deadline = time.monotonic() + 60
+        while not condition():
+            self.assertLess(time.monotonic(), deadline, f"no {what}")
+            time.sleep(0.01)
+
+    def begin(self, hosts, *options):
+        process = subprocess.Popen(self.command(hosts, *options), env=self.environment, stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.stderr.close)
+        self.addCleanup(process.stdout.close)
+        self.addCleanup(process.kill)
+        return process
