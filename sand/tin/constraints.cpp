@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdlib>
 #include <deque>
 
 #include "sand/tin/triangulation.hpp"
@@ -31,6 +33,29 @@ Place nearestToCrossing(const Place& p, const Place& q, const Place& c, const Pl
         return static_cast<std::int32_t>(from + down);
     };
     return {along(p.x, q.x), along(p.y, q.y)};
+}
+
+/// Whether a way from p to q that bends to e bends by no more than a unit, and not back along any axis.
+bool isBeside(const Place& p, const Place& q, const Place& e) {
+    const bool between = std::min(p.x, q.x) <= e.x && e.x <= std::max(p.x, q.x) && std::min(p.y, q.y) <= e.y &&
+                         e.y <= std::max(p.y, q.y);
+    return between && std::abs(doubledArea(p, q, e)) <= std::max(std::abs(q.x - p.x), std::abs(q.y - p.y));
+}
+
+/// Where two edges that cross are to meet: at an end of one that is as good as on the other, else where they cross.
+/// Without those ends, edges that run almost along each other would cross again and again, ever nearer to where they
+/// part: one crossing in two rows of the lattice became 100,000.
+Place meetingPlace(const Place& p, const Place& q, const Place& c, const Place& d) {
+    if (isBeside(p, q, c)) {
+        return c;
+    }
+    if (isBeside(p, q, d)) {
+        return d;
+    }
+    if (isBeside(c, d, p)) {
+        return p;
+    }
+    return isBeside(c, d, q) ? q : nearestToCrossing(p, q, c, d);
 }
 
 }  // namespace
@@ -125,7 +150,7 @@ std::vector<Vertex> Triangulation::constrain(Vertex from, Vertex to) {
             continue;
         }
         const auto [c, d] = hit.edge;
-        const Place crossing = nearestToCrossing(place(a), place(b), place(c), place(d));
+        const Place crossing = meetingPlace(place(a), place(b), place(c), place(d));
         const Located where = find(crossing);
         const VertexPair split = edgeAt(where);  // a constraint there is made of two as well
         const Vertex middle = insertAt(where, crossing, kNobody);

@@ -15,7 +15,9 @@ namespace sand::tin {
 /// The surface is linear over each triangle. A vertex's share of the ground is a third of its triangles' area, so that
 /// the volumes' sum is the volume under the surface, exactly. One volume unit is a height unit (cell size / 2^16) on a
 /// sixth of a squared probe unit: height = volume / star, star being the sum of the doubled areas of the vertex's
-/// triangles [probe unit²]. |volume| of one vertex stays below 2^62; the whole is summed in 128 bits. Not thread-safe.
+/// triangles [probe unit²]. |volume| of one vertex stays below 2^62, which heights of 2^28 reach over a star of 2^34;
+/// the whole is summed in 128 bits. Whatever would go beyond throws std::overflow_error, and the layer is then of no
+/// use. Not thread-safe.
 class Layer {
 public:
     explicit Layer(Mesh mesh);
@@ -24,26 +26,31 @@ public:
     [[nodiscard]] const Triangles& triangles() const { return mesh_.triangles(); }
     [[nodiscard]] const std::vector<std::int64_t>& volumes() const { return volumes_; }  // by vertex
     [[nodiscard]] const std::vector<std::int64_t>& stars() const { return stars_; }      // by vertex [probe unit²]
-    /// By vertex [unit]: IEEE quotients of the two, the same on every machine.
+    /// By vertex [unit]: IEEE quotients of the two, the same on every machine, exact where they are integers.
     [[nodiscard]] const std::vector<double>& heights() const { return heights_; }
     [[nodiscard]] Wide volume() const;
 
     /// Erosion and tools move sand between vertices with this; the height follows.
     void add(Vertex vertex, std::int64_t volume);
     void setHeight(Vertex vertex, std::int32_t height /* [unit] */);  // changes the volume of the whole
+    // Both are for living vertices only.
 
     /// As Mesh's, but that the sand is kept: the volume of the whole is exactly what it was. A new vertex lies on the
-    /// surface as it was. Where the mesh changes, all vertices of what changed rise or sink by one and the same height,
-    /// which is the volume between the old surface and the new one over their stars, and what integers cannot share is
-    /// dealt out a unit each by number. `largestRemap()` is that height.
+    /// surface as it was. Where the mesh changes, all vertices of each piece of what changed rise or sink by one and
+    /// the same height, which is the volume between the old surface and the new one over their stars, and what integers
+    /// cannot share is dealt out a unit each by number. (A piece: triangles that hang together by vertices.)
     Vertex insert(Place place);
     bool remove(Vertex vertex);
     std::vector<Vertex> constrain(Vertex from, Vertex to);
     void release(Vertex a, Vertex b);
-    /// Several of these as one change: one remap over all that they touch when `edits` returns.
+    /// Several of these as one change: one remap over all that they touch when `edits` returns or throws. They leave
+    /// takeChange() and takeDifference() alone.
     void edit(const std::function<void(Mesh&)>& edits);
 
-    /// The most that a vertex was moved by a remap since this was called last, and the bound stated for it [unit].
+    /// The most that a vertex was moved by a remap since this was called last, a new one from where the surface was,
+    /// and the bound stated for it [unit]: three times the area of the piece that changed, over the sum of its
+    /// vertices' stars, of the difference between the highest and the lowest of the piece before; two volume units over
+    /// the smallest star for what integers round, and 2^-20 for what quotients do.
     struct Remap {
         double moved = 0, bound = 0;
     };
@@ -53,7 +60,18 @@ public:
 
     /// Mesh, volumes and constraints as bytes (not compressed); equal layers give equal bytes.
     void encode(files::ByteWriter& writer) const;
+    /// Throws files::FormatError when the bytes are no layer. Reads no further than its end.
     static Layer decode(files::ByteReader& reader);
+
+private:
+    void setVolume(Vertex vertex, std::int64_t volume);
+    void remap();
+
+    Mesh mesh_;
+    std::vector<std::int64_t> volumes_, stars_;
+    std::vector<double> heights_;
+    Remap largest_;
+    std::vector<Vertex> remapped_;  // since takeChange() was called last
 };
 
 }  // namespace sand::tin

@@ -39,8 +39,9 @@ public:
     /// rim edges again. False when it stays.
     bool remove(Vertex vertex);
     /// Makes every edge between these places constrained, with vertices where it crosses others: a crossing is put on
-    /// the nearest lattice place before, and both constraints bend to it. Vertices on the way split it. Returns the
-    /// vertices along the constraint, both ends included. Nothing when both are one.
+    /// the nearest lattice place before, or on an end of either within a unit of the other, and both constraints bend
+    /// to it; so do others that they come to cross. Vertices on the way split it. Returns the vertices along the
+    /// constraint, both ends included. Nothing when both are one.
     std::vector<Vertex> constrain(Vertex from, Vertex to);
     /// The edge between two vertices is an ordinary one again; nothing when it is none, or lies on the rim.
     void release(Vertex a, Vertex b);

@@ -230,13 +230,13 @@ std::string editAtRandom(Mesh& mesh, std::mt19937& random, int most) {
     const std::vector<Vertex> living = livingVertices(mesh);
     const auto any = [&] { return living[below(random, living.size())]; };
     switch (below(random, mesh.vertexCount() < most ? 8 : 16)) {
-        case 0:
-        case 1: {
+        case 0: {
             const Vertex from = any();
             const Vertex to = any();
             mesh.constrain(from, to);
             return fmt::format("constrain {} {}", from, to);
         }
+        case 1:
         case 2: {
             const auto constraints = mesh.constraints();
             if (!constraints.empty()) {
