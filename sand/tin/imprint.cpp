@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/imprint.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "sand/tuning.hpp"
+
+namespace sand::tin {
+namespace {
+
+constexpr std::uint64_t kMostPoints = 1024;  // of an outline: more than any tool has, with all that it crosses
+
+bool lives(const Triangles& mesh, const Imprint::Point& point) {
+    return mesh.alive(point.vertex) && mesh.places[static_cast<std::size_t>(point.vertex)] == point.place;
+}
+
+void encodePoint(const ProbePoint& point, files::ByteWriter& writer) {
+    writer.put(point.x);
+    writer.put(point.y);
+    writer.put(point.z);
+}
+
+std::uint64_t decodeCount(files::ByteReader& reader) {
+    const std::uint64_t count = reader.getVarint();
+    if (count > kMostPoints) {
+        throw files::FormatError("an imprint of " + std::to_string(count) + " points");
+    }
+    return count;
+}
+
+Imprint::Stand decodeStand(files::ByteReader& reader) {
+    Imprint::Stand stand;
+    stand.at.x = reader.get<std::int32_t>();
+    stand.at.y = reader.get<std::int32_t>();
+    stand.at.z = reader.get<std::int32_t>();
+    const auto kind = reader.get<std::uint8_t>();
+    stand.shape.kind = static_cast<ToolKind>(kind);
+    stand.shape.radius = reader.get<std::int32_t>();
+    stand.shape.halfWidth = reader.get<std::int32_t>();
+    stand.heading = Heading::decode(reader, reader.get<std::uint8_t>() != 0);
+    const bool near = std::max({std::abs(stand.at.x), std::abs(stand.at.y), std::abs(stand.at.z)}) <= kMaxProbe;
+    if (kind >= kToolKinds || !near || stand.shape.radius < 0 || stand.shape.radius > kLargestToolRadius ||
+        stand.shape.halfWidth < 0 || stand.shape.halfWidth > stand.shape.radius) {
+        throw files::FormatError("an imprint of a tool that no scene gives");
+    }
+    return stand;
+}
+
+}  // namespace
+
+void Imprint::putInto(Mesh& mesh, const PlacedOutline& outline, int maxVertices) {
+    if (mesh.vertexCount() + static_cast<int>(outline.points.size()) > maxVertices) {
+        return;
+    }
+    std::vector<Vertex> vertices;
+    for (const Place& place : outline.points) {
+        const int before = mesh.vertexCount();
+        vertices.push_back(mesh.insert(place));
+        if (mesh.vertexCount() > before) {
+            points.push_back({vertices.back(), place});
+        }
+    }
+    const auto vertexAt = [&](const Place& place) {
+        return vertices[static_cast<std::size_t>(std::find(outline.points.begin(), outline.points.end(), place) -
+                                                 outline.points.begin())];
+    };
+    for (const auto& [from, to] : outline.edges) {
+        const Vertex a = vertexAt(from), b = vertexAt(to);
+        if (mesh.isConstrained(a, b)) {
+            continue;
+        }
+        const std::vector<Vertex> along = mesh.constrain(a, b);
+        for (std::size_t i = 1; i < along.size(); ++i) {
+            edges.emplace_back(along[i - 1], along[i]);
+        }
+    }
+}
+
+void Imprint::takeOutOf(Mesh& mesh) {
+    const auto isOurs = [&](Vertex vertex) {
+        return std::any_of(points.begin(), points.end(), [&](const Point& point) { return point.vertex == vertex; });
+    };
+    for (const auto& [a, b] : edges) {
+        if (!isOurs(a) && !isOurs(b)) {  // the others go with their ends
+            mesh.release(a, b);
+        }
+    }
+    for (const Point& point : points) {
+        if (lives(mesh.triangles(), point)) {
+            mesh.remove(point.vertex);
+        }
+    }
+    *this = {};
+}
+
+void Imprint::encode(files::ByteWriter& writer) const {
+    writer.put(static_cast<std::uint8_t>(stand ? 1 : 0));
+    if (!stand) {
+        return;
+    }
+    encodePoint(stand->at, writer);
+    writer.put(static_cast<std::uint8_t>(stand->shape.kind));
+    writer.put(stand->shape.radius);
+    writer.put(stand->shape.halfWidth);
+    writer.put(static_cast<std::uint8_t>(stand->heading.mirrored ? 1 : 0));
+    stand->heading.encode(writer);
+    writer.putVarint(points.size());
+    for (const Point& point : points) {
+        writer.put(point.vertex);
+        writer.put(point.place.x);
+        writer.put(point.place.y);
+    }
+    writer.putVarint(edges.size());
+    for (const auto& [a, b] : edges) {
+        writer.put(a);
+        writer.put(b);
+    }
+}
+
+Imprint Imprint::decode(files::ByteReader& reader) {
+    Imprint imprint;
+    if (reader.get<std::uint8_t>() == 0) {
+        return imprint;
+    }
+    imprint.stand = decodeStand(reader);
+    for (std::uint64_t count = decodeCount(reader); count > 0; --count) {
+        Point point{};
+        point.vertex = reader.get<Vertex>();
+        point.place.x = reader.get<std::int32_t>();
+        point.place.y = reader.get<std::int32_t>();
+        imprint.points.push_back(point);
+    }
+    for (std::uint64_t count = decodeCount(reader); count > 0; --count) {
+        const auto a = reader.get<Vertex>();
+        imprint.edges.emplace_back(a, reader.get<Vertex>());
+    }
+    return imprint;
+}
+
+}  // namespace sand::tin

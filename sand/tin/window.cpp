@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/window.hpp"
+
+namespace sand::tin {
+namespace {
+
+Box around(const Triangles& mesh, const Triangle& triangle) {
+    const auto at = [&](std::size_t k) { return mesh.places[static_cast<std::size_t>(triangle.corner[k])]; };
+    const auto [a, b, c] = std::array{at(0), at(1), at(2)};
+    return {std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})};
+}
+
+bool overlap(const Box& a, const Box& b) { return a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 && b.y0 <= a.y1; }
+
+}  // namespace
+
+// A box is convex: the triangles that reach into it hang together by their edges, and so does the search, which goes on
+// through every triangle whose own box overlaps it.
+void Window::look(const Triangles& mesh, const Box& wanted) {
+    vertices_.clear();
+    triangles_.clear();
+    const Box box = wanted.clippedTo(mesh);
+    if (box.empty()) {
+        return;
+    }
+    seen_.resize(mesh.triangles.size());
+    seenVertices_.resize(mesh.places.size());
+    if (++look_ == 0) {
+        std::fill(seen_.begin(), seen_.end(), 0);
+        std::fill(seenVertices_.begin(), seenVertices_.end(), 0);
+        look_ = 1;
+    }
+    const Place middle{box.x0 + (box.x1 - box.x0) / 2, box.y0 + (box.y1 - box.y0) / 2};
+    const auto slots = static_cast<std::int32_t>(mesh.triangles.size());
+    const bool known = last_ >= 0 && last_ < slots && mesh.triangles[static_cast<std::size_t>(last_)].alive();
+    last_ = locate(mesh, middle, known ? last_ : kNobody).triangle;
+    const auto take = [&](std::int32_t slot) {
+        std::uint32_t& seen = seen_[static_cast<std::size_t>(slot)];
+        if (seen != look_ && overlap(around(mesh, mesh.triangles[static_cast<std::size_t>(slot)]), box)) {
+            triangles_.push_back(slot);
+        }
+        seen = look_;
+    };
+    take(last_);
+    for (std::size_t next = 0; next < triangles_.size(); ++next) {
+        const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(triangles_[next])];
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto corner = static_cast<std::size_t>(triangle.corner[k]);
+            if (seenVertices_[corner] != look_ && box.holds(mesh.places[corner])) {
+                vertices_.push_back(triangle.corner[k]);
+            }
+            seenVertices_[corner] = look_;
+            if (triangle.neighbour[k] != kNobody) {
+                take(triangle.neighbour[k]);
+            }
+        }
+    }
+    std::sort(vertices_.begin(), vertices_.end());
+}
+
+void findLink(const Triangles& mesh, Vertex vertex, Link& link) {
+    link.vertices.clear();
+    link.constrained = false;
+    const std::int32_t first = mesh.triangleAt[static_cast<std::size_t>(vertex)];
+    std::int32_t slot = first;
+    do {
+        const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(slot)];
+        const auto k = static_cast<std::size_t>(std::find(triangle.corner.begin(), triangle.corner.end(), vertex) -
+                                                triangle.corner.begin());
+        link.vertices.push_back(triangle.corner[(k + 1) % 3]);
+        link.constrained = link.constrained || triangle.constrained[(k + 1) % 3] || triangle.constrained[(k + 2) % 3];
+        slot = triangle.neighbour[(k + 1) % 3];
+    } while (slot != first && slot != kNobody);
+    link.closed = slot != kNobody;
+    std::rotate(link.vertices.begin(), std::min_element(link.vertices.begin(), link.vertices.end()),
+                link.vertices.end());
+}
+
+bool isNear(const Place& place, const Place& from, const Place& to, std::int32_t distance) {
+    const auto squared = [](std::int64_t x, std::int64_t y) { return x * x + y * y; };
+    const std::int64_t limit = std::int64_t{distance} * distance;
+    const std::int64_t dx = std::int64_t{to.x} - from.x, dy = std::int64_t{to.y} - from.y;
+    const std::int64_t px = std::int64_t{place.x} - from.x, py = std::int64_t{place.y} - from.y;
+    const std::int64_t along = px * dx + py * dy, length = squared(dx, dy);
+    if (along <= 0) {
+        return squared(px, py) < limit;
+    }
+    if (along >= length) {
+        return squared(px - dx, py - dy) < limit;
+    }
+    const auto across = static_cast<double>(dx * py - dy * px);
+    return across * across < static_cast<double>(limit) * static_cast<double>(length);
+}
+
+}  // namespace sand::tin

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/outline.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+namespace {
+
+using sand::Heading;
+using sand::ToolKind;
+using sand::ToolShape;
+using sand::tin::Outline;
+using sand::tin::Place;
+
+ToolShape shapeOf(int kind, std::int32_t radius) {
+    const auto which = static_cast<ToolKind>(kind);
+    const auto width = static_cast<std::int32_t>(radius * sand::usualWidth(which));
+    return {which, radius, sand::isRound(which) ? 0 : width};
+}
+
+std::string nameOf(const ToolShape& shape, const Heading& heading) {
+    return fmt::format("{} of radius {}, heading {} {}", sand::toolName(shape.kind), shape.radius, heading.x,
+                       heading.y);
+}
+
+template <class Check>
+void forEveryTool(const Check& check) {
+    for (int kind = 0; kind < sand::kToolKinds; ++kind) {
+        for (const std::int32_t radius : {100, 655, 3072, 100000}) {
+            for (const double degrees : {0.0, 17.3, 90.0, 211.0}) {
+                for (const bool mirrored : {false, true}) {
+                    const ToolShape shape = shapeOf(kind, radius);
+                    const Heading heading = *sand::headingOf(degrees, mirrored);
+                    SCOPED_TRACE(nameOf(shape, heading));
+                    check(shape, heading, Outline::of(shape, heading));
+                }
+            }
+        }
+    }
+}
+
+TEST(Outline, EveryPointLiesBelowTheTool) {
+    forEveryTool([](const ToolShape& shape, const Heading& heading, const Outline& outline) {
+        const sand::TurnedShape turned(shape, heading);
+        for (const Place& point : outline.points) {
+            EXPECT_TRUE(turned.covers({point.x, point.y})) << point.x << ' ' << point.y;
+        }
+        EXPECT_TRUE(shape.kind == ToolKind::footprint || !outline.points.empty());
+    });
+}
+
+TEST(Outline, EdgesMakeClosedRings) {
+    forEveryTool([](const ToolShape& shape, const Heading&, const Outline& outline) {
+        std::map<int, int> ends;
+        for (const auto& [a, b] : outline.edges) {
+            EXPECT_NE(a, b);
+            ++ends[a];
+            ++ends[b];
+        }
+        for (const auto& [point, count] : ends) {
+            const Place& place = outline.points[static_cast<std::size_t>(point)];
+            EXPECT_EQ(count, 2) << "edges end at " << place.x << ' ' << place.y;
+        }
+        if (shape.radius >= 655 && shape.kind != ToolKind::footprint) {
+            EXPECT_EQ(outline.edges.size(), 32U);
+        }
+    });
+}
+
+TEST(Outline, ASoleHasFivePartsWhoseOutlinesDoNotCross) {
+    const Outline outline = Outline::of(shapeOf(static_cast<int>(ToolKind::footprint), 3072), {});
+    std::vector<int> part(outline.points.size());
+    for (std::size_t i = 0; i < part.size(); ++i) {
+        part[i] = static_cast<int>(i);
+    }
+    std::size_t rings = 0;
+    for (const auto& [a, b] : outline.edges) {
+        const int from = part[static_cast<std::size_t>(a)], to = part[static_cast<std::size_t>(b)];
+        rings += from == to ? 1 : 0;  // the edge that closes a ring
+        std::replace(part.begin(), part.end(), from, to);
+    }
+    EXPECT_EQ(rings, 5U);  // four toes, and all the rest of the sole with the small one
+    for (const auto& [a, b] : outline.edges) {
+        for (const auto& [c, d] : outline.edges) {
+            const auto at = [&](int i) { return outline.points[static_cast<std::size_t>(i)]; };
+            const auto side = [&](int i, int j, int k) { return sand::tin::doubledArea(at(i), at(j), at(k)); };
+            const bool cross = (side(a, b, c) > 0) != (side(a, b, d) > 0) && (side(c, d, a) > 0) != (side(c, d, b) > 0);
+            EXPECT_FALSE(cross && a != c && a != d && b != c && b != d) << a << '-' << b << ' ' << c << '-' << d;
+        }
+    }
+}
+
+TEST(Outline, AToolTurnedByARightAngleHasItsPointsTurned) {
+    for (int kind = 0; kind < sand::kToolKinds; ++kind) {
+        const ToolShape shape = shapeOf(kind, 2000);
+        const Heading heading = *sand::headingOf(17.3);
+        const Heading turned{static_cast<std::int16_t>(-heading.y), heading.x, false};
+        const Outline before = Outline::of(shape, heading), after = Outline::of(shape, turned);
+        EXPECT_EQ(before.edges, after.edges);
+        std::vector<Place> expected, points = after.points;
+        for (const Place& point : before.points) {
+            expected.push_back(sand::isRound(shape.kind) ? point : Place{-point.y, point.x});
+        }
+        EXPECT_EQ(points, expected) << nameOf(shape, heading);
+    }
+}
+
+TEST(Outline, AToolOfNoSizeHasNoPoints) {
+    for (int kind = 0; kind < sand::kToolKinds; ++kind) {
+        for (const std::int32_t radius : {0, 1, 5, 20}) {
+            EXPECT_TRUE(Outline::of(shapeOf(kind, radius), {}).points.empty()) << nameOf(shapeOf(kind, radius), {});
+        }
+    }
+}
+
+TEST(Outline, EndsAtTheRim) {
+    sand::tin::Triangles field;
+    field.width = 5000;
+    field.depth = 3000;
+    for (int kind = 0; kind < sand::kToolKinds; ++kind) {
+        const Outline outline = Outline::of(shapeOf(kind, 2000), *sand::headingOf(33));
+        for (const auto& [x, y] : {std::pair{0, 0}, {5000, 10}, {4990, 3000}, {-10, 1500}, {2500, 1500}, {-5000, 0}}) {
+            const auto placed = sand::tin::placed(outline, x, y, field);
+            for (const auto& [from, to] : placed.edges) {
+                EXPECT_FALSE(from == to);
+                for (const Place& end : {from, to}) {
+                    EXPECT_TRUE(end.x >= 0 && end.y >= 0 && end.x <= field.width && end.y <= field.depth);
+                    EXPECT_EQ(std::count(placed.points.begin(), placed.points.end(), end), 1);
+                }
+                EXPECT_FALSE(from.x == to.x && (from.x == 0 || from.x == field.width)) << "an edge along the rim";
+            }
+        }
+        const auto corner = sand::tin::placed(outline, 0, 0, field);
+        const auto onRim = [](const Place& p) { return p.x == 0 || p.y == 0; };
+        EXPECT_GE(std::count_if(corner.points.begin(), corner.points.end(), onRim), 2) << kind;
+        EXPECT_TRUE(sand::tin::placed(outline, -5000, 0, field).points.empty());
+    }
+}
+
+}  // namespace

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "sand/tin/layer.hpp"
+#include "sand/tin/tool.hpp"
+
+namespace tin_samples {
+
+using sand::tin::Layer;
+using sand::tin::Place;
+using sand::tin::Vertex;
+
+/// A field of so many cells with a vertex in the middle of every square of `spacing` [probe unit], level at height 0.
+inline Layer levelLayer(int columns, int rows, std::int32_t spacing) {
+    const std::int32_t width = columns * sand::kProbePerCell, depth = rows * sand::kProbePerCell;
+    sand::tin::Mesh mesh(width, depth);
+    std::vector<Place> places;
+    for (std::int32_t y = spacing / 2; y <= depth; y += spacing) {
+        for (std::int32_t x = spacing / 2; x <= width; x += spacing) {
+            places.push_back({x, y});
+        }
+    }
+    mesh.insert(places);
+    Layer layer(std::move(mesh));
+    static_cast<void>(layer.takeChange());
+    return layer;
+}
+
+inline files::Bytes bytesOf(const Layer& layer) {
+    files::ByteWriter writer;
+    layer.encode(writer);
+    return writer.take();
+}
+
+/// Height of the linear surface [unit]. `near`: a triangle to look from first, then the one that was found.
+inline double heightAt(const Layer& layer, const Place& place, std::int32_t& near) {
+    const auto& mesh = layer.triangles();
+    const auto found = sand::tin::locate(mesh, place, near);
+    near = found.triangle;
+    const auto& corner = mesh.triangles[static_cast<std::size_t>(found.triangle)].corner;
+    double sum = 0, weights = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto weight = static_cast<double>(found.weights[k]);
+        sum += weight * layer.heights()[static_cast<std::size_t>(corner[k])];
+        weights += weight;
+    }
+    return sum / weights;
+}
+inline double heightAt(const Layer& layer, const Place& place) {
+    std::int32_t near = sand::tin::kNobody;
+    return heightAt(layer, place, near);
+}
+
+inline sand::ProbePoint probeAt(double x, double y, double z /* [cell] */) {
+    const auto probe = [](double cells) { return static_cast<std::int32_t>(std::floor(cells * sand::kProbePerCell)); };
+    return {probe(x), probe(y), probe(z)};
+}
+
+/// A nominal cell between the vertices where a tool works.
+inline sand::tin::DetailRules fineRules() {
+    sand::tin::DetailRules rules;
+    rules.spacing = sand::kProbePerCell;
+    return rules;
+}
+
+inline sand::ToolShape shapeOf(sand::ToolKind kind, double radius /* [cell] */) {
+    const auto size = static_cast<std::int32_t>(radius * sand::kProbePerCell);
+    return {kind, size, sand::isRound(kind) ? 0 : static_cast<std::int32_t>(size * sand::usualWidth(kind))};
+}
+
+template <class Visit>
+void forEachVertex(const Layer& layer, const Visit& visit) {
+    const auto& mesh = layer.triangles();
+    for (Vertex vertex = 0; vertex < static_cast<Vertex>(mesh.triangleAt.size()); ++vertex) {
+        if (mesh.alive(vertex)) {
+            visit(vertex, mesh.places[static_cast<std::size_t>(vertex)],
+                  layer.heights()[static_cast<std::size_t>(vertex)]);
+        }
+    }
+}
+
+}  // namespace tin_samples
