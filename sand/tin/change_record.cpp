@@ -8,42 +8,48 @@ namespace sand::tin {
 
 ChangeRecord::Slot ChangeRecord::slotNow(std::int32_t slot, const Triangles& mesh) {
     const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(slot)];
-    Slot now{slot, triangle.alive(), {}, {}};
-    if (!now.alive) {
-        return now;
-    }
+    Slot now{slot, {}, {}};
     const auto first = static_cast<std::size_t>(std::min_element(triangle.corner.begin(), triangle.corner.end()) -
                                                 triangle.corner.begin());
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t from = (first + i) % 3;
-        now.before.corner[i] = triangle.corner[from];
-        now.before.place[i] = mesh.places[static_cast<std::size_t>(triangle.corner[from])];
+        now.piece.corner[i] = triangle.corner[from];
+        now.piece.place[i] = mesh.places[static_cast<std::size_t>(triangle.corner[from])];
         now.constrained[i] = triangle.constrained[from];
     }
     return now;
 }
 
-void ChangeRecord::keep(std::int32_t slot, const Triangles& mesh) { before_.push_back(slotNow(slot, mesh)); }
+void ChangeRecord::keep(std::int32_t slot, const Triangles& mesh) {
+    if (alive(slot, mesh)) {
+        before_.push_back(slotNow(slot, mesh));
+    } else {
+        unused_.push_back(slot);
+    }
+}
 
 void ChangeRecord::clear() {
     before_.clear();
+    unused_.clear();
     ++turn_;
 }
 
 Mesh::Difference ChangeRecord::difference(const Triangles& mesh) const {
     std::vector<Mesh::Piece> before, now;
-    before.reserve(before_.size());
-    now.reserve(before_.size());
+    now.reserve(before_.size() + unused_.size());
     for (const Slot& old : before_) {
-        const Slot slot = slotNow(old.slot, mesh);
-        if (old.alive && slot.alive && old.before == slot.before) {
-            continue;
+        const bool lives = alive(old.slot, mesh);
+        const Slot slot = lives ? slotNow(old.slot, mesh) : Slot();
+        if (!lives || slot.piece != old.piece) {
+            before.push_back(old.piece);
+            if (lives) {
+                now.push_back(slot.piece);
+            }
         }
-        if (old.alive) {
-            before.push_back(old.before);
-        }
-        if (slot.alive) {
-            now.push_back(slot.before);
+    }
+    for (const std::int32_t slot : unused_) {
+        if (alive(slot, mesh)) {
+            now.push_back(slotNow(slot, mesh).piece);
         }
     }
     std::sort(before.begin(), before.end());
@@ -64,11 +70,17 @@ Mesh::Difference ChangeRecord::takeDifference(const Triangles& mesh) {
 Mesh::Change ChangeRecord::takeChange(const Triangles& mesh) {
     Mesh::Change change;
     for (const Slot& old : before_) {
+        if (!alive(old.slot, mesh)) {
+            change.triangles.push_back(old.slot);
+            continue;
+        }
         const Slot slot = slotNow(old.slot, mesh);
-        if (old.alive != slot.alive || old.before != slot.before || old.constrained != slot.constrained) {
+        if (old.piece != slot.piece || old.constrained != slot.constrained) {
             change.triangles.push_back(old.slot);
         }
     }
+    std::copy_if(unused_.begin(), unused_.end(), std::back_inserter(change.triangles),
+                 [&mesh](std::int32_t slot) { return alive(slot, mesh); });
     std::sort(change.triangles.begin(), change.triangles.end());
     const Mesh::Difference difference = this->difference(mesh);
     for (const auto* pieces : {&difference.went, &difference.came}) {

@@ -26,18 +26,21 @@ public:
 private:
     struct Slot {
         std::int32_t slot;
-        bool alive;
-        Mesh::Piece before;  // its corners begin with the smallest
+        Mesh::Piece piece;
         std::array<bool, 3> constrained;
     };
     void keep(std::int32_t slot, const Triangles& mesh);
     void clear();
-    [[nodiscard]] static Slot slotNow(std::int32_t slot, const Triangles& mesh);
+    [[nodiscard]] static bool alive(std::int32_t slot, const Triangles& mesh) {
+        return mesh.triangles[static_cast<std::size_t>(slot)].alive();
+    }
+    [[nodiscard]] static Slot slotNow(std::int32_t slot, const Triangles& mesh);  // alive
     [[nodiscard]] Mesh::Difference difference(const Triangles& mesh) const;
 
     std::vector<std::uint32_t> touched_;  // by slot: the turn in which it was touched last
     std::uint32_t turn_ = 1;
-    std::vector<Slot> before_;
+    std::vector<Slot> before_;          // that were triangles
+    std::vector<std::int32_t> unused_;  // that were none
 };
 
 }  // namespace sand::tin

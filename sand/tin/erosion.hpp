@@ -5,23 +5,39 @@
 #include <functional>
 #include <vector>
 
+#include "sand/tin/active_edges.hpp"
 #include "sand/tin/layer.hpp"
 
 namespace sand::tin {
 
-/// The highest that sand may lie over a place, for as long as a tool stands there [unit]; kFree beside the tool.
-using Underside = std::function<std::int32_t(Place)>;
+/// The highest that sand may lie over a place, for as long as a tool stands there [unit]; the largest number beside it.
+using Underside = ActiveEdges::Underside;
 
 /// Sand that slides where it is steeper than its talus, on a TIN.
 ///
-/// One sweep moves, over every edge at once, Q = trunc(c_e (u_i − u_j)) volume units, c_e = k_e (1 − g/m_e) where the
-/// surface at the edge is steeper than g, else nothing. k_e follows from clamped cotangent weights such that the sum of
-/// k_e over a vertex's edges is at most .9996 of its share of the ground, at both ends. Hence volume is exact, nothing
-/// rises above the highest or sinks below the lowest of its neighbours, and it comes to rest. The result is a function
-/// of layer and rules: not of slots, active sets or threads. Not thread-safe.
+/// One sweep moves, over every edge at once, Q = trunc((w_l c_l + w_r c_r)₊ (u_i − u_j)) volume units. Of the edge's
+/// two triangles c = .9 (1 − g²/m²), m being the triangle's slope, where that is steeper than g, else nothing; w is
+/// half the cotangent of the angle opposite the edge, times a step of the edge's own, such that what flows is at most
+/// k_e per height and the sum of k_e over a vertex's edges at most .9996 of its star, at both ends (weights.hpp). It is
+/// the descent of a convex energy, and rests where no triangle is steeper than g; with one slope per edge, the mean of
+/// its triangles', sand crept along kinks for a million sweeps.
+///
+/// - Volume is exact: Q is taken here and given there.
+/// - No new extremes: star_i u_i' = star_i u_i − Σ Q with |Q| ≤ k_e |u_i − u_j| and Σ k_e < star_i, so u_i' lies
+/// between
+///   the heights of i and its neighbours. An obstacle only makes Q smaller, to k_e (underside − u) at the most: for the
+///   same reason no vertex rises above it.
+/// - It ends: Σ V²/star falls in every sweep that moves anything. It changes by −2 Σ_e Q (u_i − u_j) + Σ_i (Σ
+/// Q)²/star_i,
+///   and (Σ Q)² ≤ Σ k_e Σ Q²/k_e ≤ .9996 star_i Σ Q²/k_e, which over both ends of an edge is less than 2 Q (u_i − u_j).
+///   With Σ c k_e bounded instead of Σ k_e, or one step for all, two vertices can swap for ever, or wait as long.
+///
+/// Sand at rest begins to slide beyond the start threshold; in the same call of sweep() it then slides, with all that
+/// it touches, until the threshold. The result of sweep() is a function of layer, rules and the number of sweeps: not
+/// of slots, active sets or threads, nor of what came before. Not thread-safe.
 class Erosion {
 public:
-    /// `threshold` and `startThreshold` as Rules': height units per cell size, sliding and starting to.
+    /// `threshold` and `startThreshold` as Rules': height units per cell size, sliding and starting to. All may move.
     Erosion(const Layer& layer, std::int32_t threshold, std::int32_t startThreshold);
 
     void changeThresholds(std::int32_t threshold, std::int32_t startThreshold);  // wakes everything
@@ -31,9 +47,20 @@ public:
     void wake(const std::vector<Vertex>& vertices);
 
     /// While `held` is given no flux raises a vertex above it. Vertices that moved are added to `moved`, ascending,
-    /// each once. Costs what moves: nothing once the sand lies still.
+    /// each once. Costs what moves: nothing once the sand lies still. Sand that an obstacle held back is looked at
+    /// again by the next call, so that nobody need wake it when the tool leaves.
     void sweep(Layer& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved);
+    /// Whether nothing moves any more as things are.
     [[nodiscard]] bool settled() const;
+
+private:
+    void watchWoken(const Layer& layer);
+
+    Slopes slopes_;
+    Weights weights_;
+    ActiveEdges active_;
+    std::vector<Vertex> woken_;
+    bool wakeAll_ = true;
 };
 
 }  // namespace sand::tin

@@ -54,9 +54,8 @@ Vertex Mesh::insert(Place place) {
 
 std::vector<Vertex> Mesh::insert(std::span<const Place> places) {
     std::for_each(places.begin(), places.end(), [this](const Place& place) { requireInside(place); });
-    const std::vector<std::uint32_t> order = spatialOrder(places);
-    // First who is new, then numbers in the order given, then the mesh in an order in which neighbours follow each
-    // other.
+    const auto [order, first] = spatialOrder(places);
+    // First who is there already, then numbers in the order given, then the mesh.
     std::vector<Vertex> numbers(places.size(), kNobody);
     for (const std::uint32_t index : order) {
         const Located located = triangulation_->find(places[index]);
@@ -64,18 +63,13 @@ std::vector<Vertex> Mesh::insert(std::span<const Place> places) {
             numbers[index] = triangles().triangles[static_cast<std::size_t>(located.triangle)].corner[corner];
         }
     }
-    std::vector<std::uint32_t> byPlace(order);
-    std::sort(byPlace.begin(), byPlace.end(), [&places](std::uint32_t a, std::uint32_t b) {
-        return places[a] != places[b] ? places[a] < places[b] : a < b;
-    });
-    std::vector<std::uint32_t> first(places.size());  // the first of those at the same place
-    for (std::size_t i = 0; i < byPlace.size(); ++i) {
-        first[byPlace[i]] = i > 0 && places[byPlace[i]] == places[byPlace[i - 1]] ? first[byPlace[i - 1]] : byPlace[i];
-    }
+    triangulation_->reserve(order.size());
     for (std::size_t i = 0; i < places.size(); ++i) {
-        numbers[i] = first[i] != i           ? numbers[first[i]]
-                     : numbers[i] != kNobody ? numbers[i]
-                                             : triangulation_->takeNumber();
+        if (first[i] != i) {
+            numbers[i] = numbers[first[i]];
+        } else if (numbers[i] == kNobody) {
+            numbers[i] = triangulation_->takeNumber();
+        }
     }
     for (const std::uint32_t index : order) {
         triangulation_->insert(places[index], numbers[index]);
@@ -155,9 +149,16 @@ Mesh Mesh::restore(std::int32_t width, std::int32_t depth, std::span<const std::
         there.push_back(*places[i]);
         numbers.push_back(number);
     }
-    for (const std::uint32_t index : spatialOrder(there)) {
-        if (triangulation.insert(there[index], numbers[index]) != numbers[index]) {
-            throw std::invalid_argument("two vertices at " + toText(there[index]));
+    const auto [order, first] = spatialOrder(there);
+    triangulation.reserve(order.size());
+    for (std::size_t i = 0; i < there.size(); ++i) {
+        if (first[i] != i) {
+            throw std::invalid_argument("two vertices at " + toText(there[i]));
+        }
+    }
+    for (const std::uint32_t index : order) {
+        if (triangulation.insert(there[index], numbers[index]) < 4) {
+            throw std::invalid_argument("a vertex at a corner of the field, " + toText(there[index]));
         }
     }
     for (const auto& [a, b] : constraints) {

@@ -43,6 +43,18 @@ void Triangulation::reserveNumbers(std::size_t count) {
     mesh_.triangleAt.resize(count, kNobody);
 }
 
+void Triangulation::reserve(std::size_t vertices) {
+    // Growing by halves at least, or many small batches would copy the whole each.
+    const auto grow = [](auto& all, std::size_t more) {
+        if (all.capacity() - all.size() < more) {
+            all.reserve(all.size() + std::max(more, all.size() / 2));
+        }
+    };
+    grow(mesh_.places, vertices);
+    grow(mesh_.triangleAt, vertices);
+    grow(mesh_.triangles, 2 * vertices);
+}
+
 void Triangulation::touch(std::int32_t slot) {
     changes.touch(slot, mesh_);
     if (noteDifferences) {

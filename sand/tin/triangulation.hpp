@@ -38,6 +38,8 @@ public:
     void giveBack(Vertex number);
     /// Numbers up to `count` exist from now on; none of them is free.
     void reserveNumbers(std::size_t count);
+    /// For as many more vertices.
+    void reserve(std::size_t vertices);
     /// The vertex at a place within the field; where there is none it gets this number, or else takes one.
     Vertex insert(const Place& place, Vertex number = kNobody) { return insertAt(find(place), place, number); }
     /// Where a place lies, found from where something was done last.

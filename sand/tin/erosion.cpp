@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/erosion.hpp"
+
+#include <algorithm>
+
+namespace sand::tin {
+namespace {
+
+constexpr double kProbePerCell = 256;
+constexpr int kSweepsTogether = 16;  // edges that have come to rest are looked at in vain so long
+
+}  // namespace
+
+Erosion::Erosion(const Layer&, std::int32_t threshold, std::int32_t startThreshold) {
+    changeThresholds(threshold, startThreshold);
+}
+
+void Erosion::changeThresholds(std::int32_t threshold, std::int32_t startThreshold) {
+    slopes_ = {threshold / kProbePerCell, std::max(threshold, startThreshold) / kProbePerCell};
+    active_.clear();
+    wakeAll_ = true;
+}
+
+void Erosion::changed(const Layer&, const Mesh::Change& change) {
+    weights_.forget(change.vertices);
+    for (const std::vector<Vertex>& woken : {active_.clear(), change.vertices}) {
+        wake(woken);
+    }
+}
+
+void Erosion::wake(const std::vector<Vertex>& vertices) {
+    woken_.insert(woken_.end(), vertices.begin(), vertices.end());
+}
+
+bool Erosion::settled() const { return active_.empty() && woken_.empty() && !wakeAll_; }
+
+void Erosion::sweep(Layer& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved) {
+    if (sweeps <= 0) {
+        return;
+    }
+    wake(active_.takeHeldBack());
+    active_.begin(layer, slopes_.start > slopes_.slide, held);
+    watchWoken(layer);
+    for (int done = 1; done <= sweeps && !active_.empty(); ++done) {
+        const bool still = !active_.sweep();
+        active_.spread(layer, slopes_, weights_);
+        if (still || (done % kSweepsTogether == 0 && active_.mostRest())) {
+            active_.store(layer, moved);
+            active_.forgetResting();
+        }
+    }
+    active_.store(layer, moved);
+    std::sort(moved.begin(), moved.end());
+    moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
+}
+
+void Erosion::watchWoken(const Layer& layer) {
+    if (wakeAll_) {
+        for (Vertex vertex = 0; vertex < static_cast<Vertex>(layer.triangles().places.size()); ++vertex) {
+            active_.watch(layer, slopes_, weights_, vertex);
+        }
+    }
+    for (const Vertex vertex : woken_) {
+        active_.watch(layer, slopes_, weights_, vertex);
+    }
+    wakeAll_ = false;
+    woken_.clear();
+}
+
+}  // namespace sand::tin

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/weights.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sand::tin {
+namespace {
+
+constexpr double kOne = 1048576;  // of the integer weights: 2^20
+constexpr double kMost = 8;       // cotangents of slivers have no bounds: a whole star would wait for one short edge
+constexpr double kSafe = 0.9996;  // what of the bound is used: the rest is room for roundings
+constexpr double kGrain = 0.5;    // [unit], how exactly a height is told
+
+const Triangle& triangleOf(const Triangles& mesh, std::int32_t slot) {
+    return mesh.triangles[static_cast<std::size_t>(slot)];
+}
+const Place& placeOf(const Triangles& mesh, Vertex vertex) { return mesh.places[static_cast<std::size_t>(vertex)]; }
+
+std::int64_t dot(const Place& origin, const Place& a, const Place& b) {
+    return std::int64_t{a.x - origin.x} * (b.x - origin.x) + std::int64_t{a.y - origin.y} * (b.y - origin.y);
+}
+
+/// Where in the neighbour beyond this side the way back is; only where there is one.
+Side across(const Triangles& mesh, Side side) {
+    const std::int32_t beyond = triangleOf(mesh, side.triangle).neighbour[static_cast<std::size_t>(side.corner)];
+    const auto& back = triangleOf(mesh, beyond).neighbour;
+    return {beyond, back[0] == side.triangle ? 0 : back[1] == side.triangle ? 1 : 2};
+}
+
+bool atRim(const Triangles& mesh, Side side) {
+    return triangleOf(mesh, side.triangle).neighbour[static_cast<std::size_t>(side.corner)] == kNobody;
+}
+
+/// A side's two ends, counter-clockwise, and the corner opposite.
+struct Corners {
+    Vertex apex, begin, end;
+};
+
+Corners cornersOf(const Triangles& mesh, Side side) {
+    const auto& corner = triangleOf(mesh, side.triangle).corner;
+    const auto k = static_cast<std::size_t>(side.corner);
+    return {corner[k], corner[(k + 1) % 3], corner[(k + 2) % 3]};
+}
+
+/// Half the cotangent of the angle opposite a side, times kOne.
+std::int64_t weight(const Triangles& mesh, Side side) {
+    const Corners c = cornersOf(mesh, side);
+    const Place& apex = placeOf(mesh, c.apex);
+    const Place& begin = placeOf(mesh, c.begin);
+    const Place& end = placeOf(mesh, c.end);
+    // Both are integers below 2^53, so that the quotient is rounded once.
+    const double cotangent =
+        static_cast<double>(dot(apex, begin, end)) / static_cast<double>(doubledArea(apex, begin, end));
+    return static_cast<std::int64_t>(std::clamp(0.5 * cotangent, -kMost, kMost) * kOne);
+}
+
+}  // namespace
+
+Side owner(const Triangles& mesh, Side side) {
+    const Corners c = cornersOf(mesh, side);
+    return c.begin < c.end || atRim(mesh, side) ? side : across(mesh, side);
+}
+
+void Weights::forget(std::span<const Vertex> vertices) {
+    for (const Vertex vertex : vertices) {
+        if (static_cast<std::size_t>(vertex) < steps_.size()) {
+            steps_[static_cast<std::size_t>(vertex)] = 0;
+        }
+    }
+}
+
+double Weights::step(const Triangles& mesh, std::span<const std::int64_t> stars, Vertex vertex) {
+    const auto v = static_cast<std::size_t>(vertex);
+    if (v >= steps_.size()) {
+        steps_.resize(mesh.places.size());
+    }
+    if (steps_[v] == 0) {
+        std::int64_t sum = 0;
+        aroundVertex(mesh, vertex, [&](std::int32_t slot, int corner) {
+            for (const int end : {1, 2}) {
+                sum += std::max<std::int64_t>(weight(mesh, {slot, (corner + end) % 3}), 0);
+            }
+        });
+        // Of a triangle's two angles beside this vertex one is acute; but so little that it counts as right?
+        sum = std::max<std::int64_t>(sum, 1);
+        steps_[v] = kSafe * static_cast<double>(stars[v]) / static_cast<double>(sum);
+    }
+    return steps_[v];
+}
+
+Edge Weights::edge(const Triangles& mesh, std::span<const std::int64_t> stars, Side side) {
+    const Corners c = cornersOf(mesh, side);
+    Edge edge{.from = std::min(c.begin, c.end),
+              .to = std::max(c.begin, c.end),
+              .leftFacet = side.triangle,
+              .rightFacet = side.triangle};
+    const double step = std::min(this->step(mesh, stars, edge.from), this->step(mesh, stars, edge.to));
+    edge.left = static_cast<double>(weight(mesh, side)) * step;
+    if (!atRim(mesh, side)) {
+        const Side other = across(mesh, side);
+        edge.rightFacet = other.triangle;
+        edge.right = static_cast<double>(weight(mesh, other)) * step;
+    }
+    return edge;
+}
+
+Facet facetOf(const Triangles& mesh, std::int32_t slot, const Slopes& slopes) {
+    const auto& corner = triangleOf(mesh, slot).corner;
+    const std::size_t least = corner[0] < corner[1] ? (corner[0] < corner[2] ? 0 : 2) : (corner[1] < corner[2] ? 1 : 2);
+    Facet facet;
+    facet.corner = {corner[least], corner[(least + 1) % 3], corner[(least + 2) % 3]};
+    const Place& origin = placeOf(mesh, facet.corner[0]);
+    const Place& first = placeOf(mesh, facet.corner[1]);
+    const Place& second = placeOf(mesh, facet.corner[2]);
+    const auto area = static_cast<double>(doubledArea(origin, first, second));
+    const auto firstSquared = static_cast<double>(dot(origin, first, first));
+    const auto secondSquared = static_cast<double>(dot(origin, second, second));
+    const auto product = static_cast<double>(dot(origin, first, second));
+    const auto thirdSquared = static_cast<double>(dot(first, second, second));
+    // A corner that is higher by one turns the slope by the length of the opposite side over the doubled area.
+    const double slack = kGrain * (std::sqrt(firstSquared) + std::sqrt(secondSquared) + std::sqrt(thirdSquared)) / area;
+    const double scale = area * (slopes.slide + slack);
+    facet.first = secondSquared / scale / scale;
+    facet.mixed = -2 * product / scale / scale;
+    facet.second = firstSquared / scale / scale;
+    const double start = (slopes.start + slack) / (slopes.slide + slack);
+    facet.start = start * start;
+    return facet;
+}
+
+}  // namespace sand::tin

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sand/tin/triangles.hpp"
+
+namespace sand::tin {
+
+/// What the law of sliding needs to know of a triangle: with d1 = u_1 − u_0 and d2 = u_2 − u_0, the heights of its
+/// corners, s = first d1² + mixed d1 d2 + second d2² is the square of its slope over the slope g at which it rests. It
+/// slides where s > 1.
+struct Facet {
+    std::array<Vertex, 3> corner{kNobody, kNobody, kNobody};  // counter-clockwise, the smallest first
+    double first = 0, mixed = 0, second = 0;                  // [1/unit²]
+    double start = 1;                                         // of s, where sand at rest begins to slide
+};
+
+/// And of an edge: of the height that its ends differ by, left · c_left + right · c_right flows, in volume, where c is
+/// how strongly each of its triangles slides, from 0 to 1.
+struct Edge {
+    Vertex from = kNobody, to = kNobody;                     // from < to
+    std::int32_t leftFacet = kNobody, rightFacet = kNobody;  // slots; at the rim both are the one there is
+    double left = 0, right = 0;  // [probe unit²]; one may be negative, opposite an obtuse angle
+};
+
+/// Slopes at which sand slides and starts to [unit per probe unit].
+struct Slopes {
+    double slide = 0, start = 0;
+};
+
+/// One side of a triangle: the edge opposite its corner.
+struct Side {
+    std::int32_t triangle = kNobody;  // slot
+    int corner = 0;
+};
+
+/// The side by which an edge is known: in its triangle it runs from the smaller vertex to the larger, or it has no
+/// other.
+[[nodiscard]] Side owner(const Triangles& mesh, Side side);
+
+/// The facet of a triangle. Heights are told apart by half a unit at best: it may be as much steeper than `slopes` as
+/// three heights, each off by that, make it. So a plane of the slope at which sand rests is at rest, and slivers
+/// freeze.
+[[nodiscard]] Facet facetOf(const Triangles& mesh, std::int32_t slot, const Slopes& slopes);
+
+/// Weights of a mesh's edges, such that sand neither overshoots nor depends on how the mesh is stored.
+///
+/// An edge's two parts are w · min(step_from, step_to), w being half the cotangent of the opposite angle, cut to
+/// kMost, and step_i = .9996 star_i / Σ_j w⁺_ij over the edges of vertex i, w⁺ being the sum of an edge's positive
+/// parts. What flows over an edge is hence at most k_ij per height, with Σ_j k_ij ≤ step_i Σ_j w⁺_ij = .9996 star_i at
+/// either end. The w are integers, so that their sum needs no order. Steps are kept until they are forgotten. Not
+/// thread-safe.
+class Weights {
+public:
+    /// These vertices came, went, or have another star.
+    void forget(std::span<const Vertex> vertices);
+    /// The edge of a side that owns it. Costs the stars of its ends, the first time.
+    [[nodiscard]] Edge edge(const Triangles& mesh, std::span<const std::int64_t> stars, Side side);
+
+private:
+    [[nodiscard]] double step(const Triangles& mesh, std::span<const std::int64_t> stars, Vertex vertex);
+
+    std::vector<double> steps_;  // by vertex [probe unit²]; 0: not known
+};
+
+/// Calls visit(slot, corner) for every triangle around a vertex, `corner` being the vertex's own.
+template <class Visit>
+void aroundVertex(const Triangles& mesh, Vertex vertex, const Visit& visit) {
+    const auto cornerOf = [vertex](const Triangle& triangle) {
+        return triangle.corner[0] == vertex ? 0 : triangle.corner[1] == vertex ? 1 : 2;
+    };
+    const std::int32_t first = mesh.triangleAt[static_cast<std::size_t>(vertex)];
+    for (const int turn : {1, 2}) {  // counter-clockwise until it closes or meets the rim, then the other way
+        std::int32_t slot = first;
+        do {
+            const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(slot)];
+            const int corner = cornerOf(triangle);
+            if (turn == 1 || slot != first) {
+                visit(slot, corner);
+            }
+            slot = triangle.neighbour[static_cast<std::size_t>((corner + turn) % 3)];
+        } while (slot != kNobody && slot != first);
+        if (slot == first) {
+            return;
+        }
+    }
+}
+
+}  // namespace sand::tin
