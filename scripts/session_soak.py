@@ -13,6 +13,7 @@ import os
 import pathlib
 import re
 import signal
+import statistics
 import subprocess
 import sys
 import time
@@ -69,17 +70,24 @@ class Track:
 
     def row(self):
         memory, descriptors, threads = zip(*self.samples)
+        self.medians = [statistics.median(part) for part in quarters(memory)]
         self.growth = 3600 * slope(self.times, memory)
         self.constant = len(set(descriptors)) == 1 and len(set(threads)) == 1
-        return (f"| {self.name} | {memory[0]:.1f} | {memory[-1]:.1f} | {max(memory) - min(memory):.2f} | {self.growth:+.2f} | "
-                f"{span(descriptors)} | {span(threads)} |")
+        return (f"| {self.name} | {' | '.join(f'{median:.1f}' for median in self.medians)} | {max(memory):.1f} | "
+                f"{self.growth:+.2f} | {span(descriptors)} | {span(threads)} |")
 
     def grows(self):
-        """Whether the last quarter of the samples holds more than the second, by more than may be."""
-        memory = [values[0] for values in self.samples]
-        quarter = max(1, len(memory) // 4)
+        """Whether the last quarter of the samples holds more than the second, by more than may be.
+
+        By medians: while a checkpoint is packed its copy of the sand lies beside the sand, in one sample or another.
+        """
         hours = (self.times[-1] - self.times[0]) / 3600
-        return max(memory[-quarter:]) - max(memory[quarter:2 * quarter]) > MOST_GROWTH * max(hours, 1) / 2 + 0.5
+        return self.medians[3] - self.medians[1] > MOST_GROWTH * max(hours, 1) / 2
+
+
+def quarters(values):
+    """Four parts of a list of four values or more, one after the other."""
+    return [values[len(values) * part // 4:len(values) * (part + 1) // 4] or values[-1:] for part in range(4)]
 
 
 def span(values):
@@ -135,8 +143,9 @@ def main():
             status = launcher.wait(300)
     summary = json.loads((out / "summary.json").read_text())
     print(f"{args.minutes:g} minutes, a sample every {args.period:g} s after {warm_up:g} s of warm-up\n")
-    print("| process | first [MiB] | last [MiB] | max − min [MiB] | slope [MiB/h] | file descriptors | threads |")
-    print("|---|---|---|---|---|---|---|")
+    print("Resident memory: medians of the four quarters of the time, and the most.\n")
+    print("| process | 1st [MiB] | 2nd | 3rd | 4th | most | slope [MiB/h] | file descriptors | threads |")
+    print("|---|---|---|---|---|---|---|---|---|")
     for track in tracks:
         print(track.row())
     found = replayed(out)

@@ -39,8 +39,10 @@ TinSurface::TinSurface(const Scene& scene)
     : start_(scene.tin),
       detail_(detailOf(start_->settings)),
       rim_(scene.rules.rim),
+      threshold_(scene.rules.threshold),
+      startThreshold_(scene.rules.startThreshold),
       layer_(layerOf(*start_)),
-      erosion_(layer_, scene.rules.threshold, scene.rules.startThreshold),
+      erosion_(layer_, threshold_, startThreshold_),
       hash_(layer_) {
     (void)layer_.takeChange();
 }
@@ -49,9 +51,11 @@ TinSurface::TinSurface(const TinSurface& other)
     : start_(other.start_),
       detail_(other.detail_),
       rim_(other.rim_),
+      threshold_(other.threshold_),
+      startThreshold_(other.startThreshold_),
       layer_(LayerCopy(other.layer_, other.state_).layer()),
       state_(other.state_),
-      erosion_(layer_, other.erosion_.threshold(), other.erosion_.startThreshold()),
+      erosion_(layer_, threshold_, startThreshold_),
       hash_(layer_),
       kept_(other.kept_) {
     (void)layer_.takeChange();
@@ -116,7 +120,11 @@ void TinSurface::sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) {
     sandMoved(moved_);
 }
 
-void TinSurface::changeRules(const Rules& rules) { erosion_.changeThresholds(rules.threshold, rules.startThreshold); }
+void TinSurface::changeRules(const Rules& rules) {
+    threshold_ = rules.threshold;
+    startThreshold_ = rules.startThreshold;
+    erosion_.changeThresholds(threshold_, startThreshold_);
+}
 
 void TinSurface::settle() {
     for (int sweeps = 0; sweeps < kSweepsToRest && !erosion_.settled(); sweeps += kSweepsAtOnce) {
@@ -148,7 +156,7 @@ void TinSurface::replace(const SurfaceCopy& copy) {
     layer_ = sand.layer();
     (void)layer_.takeChange();
     state_ = sand.state();
-    erosion_ = Erosion(layer_, erosion_.threshold(), erosion_.startThreshold());
+    erosion_ = Erosion(layer_, threshold_, startThreshold_);
     hash_ = VertexHash(layer_);
     damage_ = {.whole = true, .triangles = {}, .vertices = {}};
     lastFound_ = kNobody;

@@ -70,6 +70,7 @@ private:
     std::shared_ptr<const Start> start_;
     DetailRules detail_;
     Rim rim_;
+    std::int32_t threshold_, startThreshold_;
     Layer layer_;
     LayerState state_;
     Erosion erosion_;
