@@ -12,9 +12,8 @@
 namespace bench {
 namespace {
 
-constexpr int kSteps = 200;        // of a stroke
-constexpr int kMostAfter = 2000;   // steps that are waited for after lifting
-constexpr double kTalus = 0.6745;  // 34 degrees
+constexpr int kSteps = 200;       // of a stroke
+constexpr int kMostAfter = 2000;  // steps that are waited for after lifting
 
 struct Stroke {
     int side;

@@ -8,8 +8,7 @@
 namespace bench {
 namespace {
 
-constexpr double kTalus = 0.6745;  // 34 degrees, as the scenes have
-constexpr int kSweeps = 16;        // of one step
+constexpr int kStepSweeps = 16;  // of one step
 
 sand::ProbePoint probeAt(double x, double y, double z /* [cell] */) {
     const auto probe = [](double cells) { return static_cast<std::int32_t>(cells * sand::kProbePerCell); };
@@ -17,7 +16,7 @@ sand::ProbePoint probeAt(double x, double y, double z /* [cell] */) {
 }
 
 struct Costs {
-    std::vector<double> step;    // [s], the press and kSweeps sweeps
+    std::vector<double> step;    // [s], the press and kStepSweeps sweeps
     std::vector<double> toRest;  // [s], the press and all sweeps until nothing moves
 };
 
@@ -35,7 +34,7 @@ Costs measure(int side, double radius, bool skipSettled, int runs) {
         erosion.sweep(field, 2);
         const double before = cpuSeconds();
         erosion.touch(tool.drag(field, rules.rim, nullptr, at, at).cells);
-        erosion.sweep(field, kSweeps);
+        erosion.sweep(field, kStepSweeps);
         costs.step.push_back(cpuSeconds() - before);
         if (skipSettled) {
             erosion.sweep(field, kMostSweeps);
@@ -49,7 +48,7 @@ Costs measure(int side, double radius, bool skipSettled, int runs) {
 
 void edit(const Settings& settings, Csv& csv) {
     csv.note(fmt::format("an edit: a sphere of `radius` cells presses half of itself into level sand, then {} sweeps",
-                         kSweeps));
+                         kStepSweeps));
     csv.note("full: the same with every block visited in every sweep; the sand is the same, bit for bit");
     csv.note("CPU time of one thread");
     csv.columns("blocks,N,radius,ms_median,ms_min,ms_max,ms_to_rest");

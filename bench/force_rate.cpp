@@ -21,14 +21,14 @@ constexpr int kTicks = 3000;      // a thousand a second
 constexpr int kSettled = 200;     // [tick], until the error counts: the start is no model's fault
 constexpr std::array kRates{15, 30, 60, 125, 250, 500, 1000};  // [1/s]
 
-struct Method {
+struct ForceMethod {
     const char* name;
     sand::Between between;
     double recovery;  // [s]
 };
-constexpr std::array kMethods{Method{"eq. 9", sand::Between::interpolate, 0}, Method{"hold", sand::Between::hold, 0},
-                              Method{"local", sand::Between::local, 0.05},
-                              Method{"local at once", sand::Between::local, 0}};
+constexpr std::array kMethods{
+    ForceMethod{"eq. 9", sand::Between::interpolate, 0}, ForceMethod{"hold", sand::Between::hold, 0},
+    ForceMethod{"local", sand::Between::local, 0.05}, ForceMethod{"local at once", sand::Between::local, 0}};
 
 /// The hand that is followed: it writes a bent eight and presses and lifts meanwhile, between a third of a radius deep
 /// and one, at up to half a radius in a sixtieth of a second.
@@ -59,7 +59,7 @@ sand::Scene sceneOf(int side) {
 
 /// One model at one rate: what it sees and how wrong it is.
 struct Follower {
-    Follower(sand::ForceConstants constants, const Method& method, int rate)
+    Follower(sand::ForceConstants constants, const ForceMethod& method, int rate)
         : name(method.name), every(1000 / rate), model([&] {
               constants.between = method.between;
               constants.recoveryTime = method.recovery;
@@ -99,7 +99,7 @@ struct Drag {
     std::vector<double> patchSeconds;  // of the copies
 
     Drag(const sand::ForceConstants& constants, int side) {
-        for (const Method& method : kMethods) {
+        for (const ForceMethod& method : kMethods) {
             for (const int rate : kRates) {
                 followers.emplace_back(constants, method, rate);
             }

@@ -13,12 +13,12 @@ namespace {
 
 using sand::force::Vec3;
 
-constexpr double kRadius = 0.01;  // [scene unit], the first paper's
-constexpr int kCells = 10;        // per radius
-constexpr int kTicks = 20000;     // of a turn: twenty seconds
+constexpr double kTurnRadius = 0.01;  // [scene unit], the first paper's
+constexpr int kTurnCells = 10;        // per radius
+constexpr int kTurnTicks = 20000;     // of a turn: twenty seconds
 
 sand::force::SurfacePatch slopePatch(int side, double slope) {
-    sand::HeightField field(side, side, kRadius / kCells);
+    sand::HeightField field(side, side, kTurnRadius / kTurnCells);
     for (int row = 0; row < side; ++row) {
         for (int column = 0; column < side; ++column) {
             field.setHeight(column, row,
@@ -26,7 +26,7 @@ sand::force::SurfacePatch slopePatch(int side, double slope) {
         }
     }
     const std::int32_t middle = side * sand::kProbePerCell / 2;
-    return {field, {middle, middle, 0}, kRadius};
+    return {field, {middle, middle, 0}, kTurnRadius};
 }
 
 struct Work {
@@ -35,15 +35,15 @@ struct Work {
 
 /// A circle in the plane of the slope's steepest line and the vertical, from `shallow` to a radius deeper.
 Work around(const sand::ForceConstants& constants, const sand::force::SurfacePatch& patch, int side, double shallow) {
-    const double middle = kRadius * side / kCells / 2;
-    const auto tool = sand::force::Contour::sphere(kRadius);
+    const double middle = kTurnRadius * side / kTurnCells / 2;
+    const auto tool = sand::force::Contour::sphere(kTurnRadius);
     sand::force::ForceModel model(constants);
     Work work;
     Vec3 from, before;
-    for (int tick = 0; tick <= kTicks; ++tick) {
-        const double turn = 2 * std::numbers::pi * tick / kTicks;
-        const double depth = kRadius * (shallow + 0.5 - 0.5 * std::cos(turn));
-        const Vec3 to{middle + kRadius / 2 * std::sin(turn), middle, kRadius - depth};
+    for (int tick = 0; tick <= kTurnTicks; ++tick) {
+        const double turn = 2 * std::numbers::pi * tick / kTurnTicks;
+        const double depth = kTurnRadius * (shallow + 0.5 - 0.5 * std::cos(turn));
+        const Vec3 to{middle + kTurnRadius / 2 * std::sin(turn), middle, kTurnRadius - depth};
         const Vec3 now = model.at(patch, 1, tool, to, 1e-3 * tick).push;
         if (tick > 0) {
             const double part = dot(0.5 * (before + now), to - from);
@@ -72,7 +72,7 @@ void forceWork(const Settings& settings, Csv& csv) {
             progress("{}, N = {}", name, side);
             sand::ForceConstants constants;
             constants.law = law;
-            constants.unitLength = kRadius * side / kCells;
+            constants.unitLength = kTurnRadius * side / kTurnCells;
             for (const double slope : {0.0, 0.1, 0.25, 0.5}) {
                 const auto patch = slopePatch(side, slope);
                 for (const double shallow : {0.0, 0.5, 1.0}) {

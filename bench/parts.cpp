@@ -12,9 +12,8 @@
 namespace bench {
 namespace {
 
-constexpr int kSweeps = 16;        // per step
-constexpr int kDepth = 64;         // [cell], of the bedrock below the level sand
-constexpr double kTalus = 0.6745;  // 34 degrees
+constexpr int kSweeps = 16;  // per step
+constexpr int kDepth = 64;   // [cell], of the bedrock below the level sand
 
 enum class Happening { settled, smallEdit, everythingMoves };
 

@@ -24,6 +24,8 @@ public:
     [[nodiscard]] virtual std::vector<double> heights() const = 0;
 };
 
+inline constexpr double kTalus = 0.6745;  // 34 degrees, as the scenes have
+
 /// A way to bring sand to rest: ours, or one in common use.
 struct Method {
     std::string name;

@@ -19,7 +19,7 @@ struct Contender {
     std::int64_t sweeps = 0;
 };
 
-constexpr double kPatience = 60;  // [s] of all runs of one method: a slower one is run fewer times
+constexpr double kRestPatience = 60;  // [s] of all runs of one method: a slower one is run fewer times
 
 /// Every method in every round, so that a neighbour's load meets all of them alike.
 std::vector<Contender> race(const std::vector<Method>& all, const sand::HeightField& start, int runs,
@@ -31,7 +31,7 @@ std::vector<Contender> race(const std::vector<Method>& all, const sand::HeightFi
     for (int run = 0; run < runs; ++run) {
         progress("{}, N = {}, {} of {} runs", field, start.columns(), run + 1, runs);
         for (Contender& contender : contenders) {
-            if (std::accumulate(contender.seconds.begin(), contender.seconds.end(), 0.0) > kPatience) {
+            if (std::accumulate(contender.seconds.begin(), contender.seconds.end(), 0.0) > kRestPatience) {
                 continue;
             }
             std::unique_ptr<Relaxation> relaxation;
@@ -66,7 +66,7 @@ void write(Csv& csv, const std::string& field, int side, const std::vector<Conte
 }
 
 void begin(Csv& csv) {
-    csv.note(fmt::format("a method that has taken {} s in all is not run again", kPatience));
+    csv.note(fmt::format("a method that has taken {} s in all is not run again", kRestPatience));
     csv.note("ratio: median of `" + kToRest.front() + "` of the same field over this one's median");
     csv.columns("field,method,N,runs,sweeps,seconds_median,seconds_min,seconds_max,ratio,error");
 }

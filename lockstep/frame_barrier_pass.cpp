@@ -7,7 +7,7 @@
 namespace lockstep {
 namespace {
 
-enum Tag : int { kLengthTag = 20, kPieceTag };
+enum PassTag : int { kLengthTag = 20, kPieceTag };
 constexpr std::uint64_t kPiece = 1 << 30;  // [byte]: MPI counts in int
 
 }  // namespace

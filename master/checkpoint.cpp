@@ -20,11 +20,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint32_t kMagic = 0x50435753;  // "SWCP"
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kCheckpointMagic = 0x50435753;  // "SWCP"
+constexpr std::uint32_t kCheckpointVersion = 1;
 constexpr std::string_view kEnding = ".checkpoint";
 
-std::uint64_t checksum(std::span<const std::uint8_t> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
+std::uint64_t checkpointSum(std::span<const std::uint8_t> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
 
 fs::path folderOf(const fs::path& journal) { return journal.parent_path() / "checkpoints"; }
 
@@ -40,8 +40,8 @@ std::optional<std::uint64_t> stepOf(const std::string& name) {
 
 files::Bytes Checkpoint::encode() const {
     files::ByteWriter writer;
-    writer.put(kMagic);
-    writer.put(kVersion);
+    writer.put(kCheckpointMagic);
+    writer.put(kCheckpointVersion);
     writer.put(sand::kAlgorithmVersion);
     writer.put(session);
     writer.putText(buildId);
@@ -51,18 +51,18 @@ files::Bytes Checkpoint::encode() const {
     writer.put(epoch);
     writer.put(stateHash);
     writer.putBlock(state);
-    writer.put(checksum(writer.bytes()));
+    writer.put(checkpointSum(writer.bytes()));
     return writer.take();
 }
 
 Checkpoint Checkpoint::decode(std::span<const std::uint8_t> bytes) {
     files::ByteReader reader(bytes);
-    if (reader.get<std::uint32_t>() != kMagic) {
+    if (reader.get<std::uint32_t>() != kCheckpointMagic) {
         throw files::FormatError("no checkpoint");
     }
     const auto version = reader.get<std::uint32_t>();
     const auto algorithm = reader.get<std::uint32_t>();
-    if (version != kVersion || algorithm != sand::kAlgorithmVersion) {
+    if (version != kCheckpointVersion || algorithm != sand::kAlgorithmVersion) {
         throw files::FormatError(
             fmt::format("a checkpoint of another version of Sandwall ({}, algorithm {})", version, algorithm));
     }
@@ -76,7 +76,7 @@ Checkpoint Checkpoint::decode(std::span<const std::uint8_t> bytes) {
     checkpoint.stateHash = reader.get<std::uint64_t>();
     const auto state = reader.getBlock();
     const std::size_t checked = bytes.size() - reader.rest().size();
-    if (reader.get<std::uint64_t>() != checksum(bytes.first(checked)) || !reader.atEnd()) {
+    if (reader.get<std::uint64_t>() != checkpointSum(bytes.first(checked)) || !reader.atEnd()) {
         throw files::FormatError("damaged: its checksum is wrong");
     }
     checkpoint.state.assign(state.begin(), state.end());

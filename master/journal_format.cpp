@@ -10,12 +10,12 @@
 namespace master {
 namespace {
 
-constexpr std::uint32_t kMagic = 0x4c4a5753;  // "SWJL"
+constexpr std::uint32_t kJournalMagic = 0x4c4a5753;  // "SWJL"
 // 1 knew settle alone of the edits; 2 no tune and no load; 3 only spheres, and no ticks; 4 no parts and no chain.
 constexpr std::uint32_t kOldestVersion = 1;
 enum Type : std::uint8_t { kFrame = 1, kEnd, kTicks, kResumed, kMaterial, kContinued };
 
-std::uint64_t checksum(std::span<const std::uint8_t> bytes, std::uint64_t seed) {
+std::uint64_t chainedSum(std::span<const std::uint8_t> bytes, std::uint64_t seed) {
     return XXH3_64bits_withSeed(bytes.data(), bytes.size(), seed);  // seed 0 is XXH3_64bits
 }
 
@@ -145,14 +145,14 @@ bool recordAt(std::span<const std::uint8_t> rest, std::size_t at, std::uint64_t 
     const auto body = rest.subspan(at + sizeof length, std::size_t{length} + 1);
     std::uint64_t said = 0;
     std::memcpy(&said, body.data() + body.size(), sizeof said);
-    return said == checksum(body, chain);
+    return said == chainedSum(body, chain);
 }
 
 }  // namespace
 
 files::Bytes encodeHeader(const JournalHeader& header, std::uint64_t& chain) {
     files::ByteWriter writer;
-    for (const std::uint32_t number : {kMagic, kJournalVersion, header.part}) {
+    for (const std::uint32_t number : {kJournalMagic, kJournalVersion, header.part}) {
         writer.put(number);
     }
     for (const std::uint64_t number : {header.session, header.continues, header.sand.step, header.sand.hash}) {
@@ -165,7 +165,7 @@ files::Bytes encodeHeader(const JournalHeader& header, std::uint64_t& chain) {
         put(*header.material, material);
     }
     writer.putBlock(material.bytes());
-    chain = checksum(writer.bytes(), header.continues);
+    chain = chainedSum(writer.bytes(), header.continues);
     writer.put(chain);
     return writer.take();
 }
@@ -173,7 +173,7 @@ files::Bytes encodeHeader(const JournalHeader& header, std::uint64_t& chain) {
 JournalHeader decodeHeader(files::ByteReader& reader, std::uint64_t& chain) {
     const std::span<const std::uint8_t> all = reader.rest();
     JournalHeader header;
-    if (reader.get<std::uint32_t>() != kMagic) {
+    if (reader.get<std::uint32_t>() != kJournalMagic) {
         throw files::FormatError("no journal of Sandwall");
     }
     header.version = reader.get<std::uint32_t>();
@@ -193,7 +193,7 @@ JournalHeader decodeHeader(files::ByteReader& reader, std::uint64_t& chain) {
     const auto material = chained ? reader.getBlock() : std::span<const std::uint8_t>();
     const std::size_t checked = all.size() - reader.rest().size();
     chain = reader.get<std::uint64_t>();
-    if (chain != checksum(all.first(checked), header.continues)) {
+    if (chain != chainedSum(all.first(checked), header.continues)) {
         throw files::FormatError("a journal whose header is damaged");
     }
     header.scene.assign(scene.begin(), scene.end());
@@ -212,7 +212,7 @@ files::Bytes encodeRecord(const JournalRecord& record, std::uint64_t& chain) {
     files::ByteWriter writer;
     writer.put(static_cast<std::uint32_t>(body.size() - 1));
     writer.putBytes(body);
-    chain = checksum(body, chain);
+    chain = chainedSum(body, chain);
     writer.put(chain);
     return writer.take();
 }
@@ -237,7 +237,9 @@ JournalRecord decodeRecord(std::span<const std::uint8_t> body) {
     }
 }
 
-std::uint64_t recordChecksum(std::span<const std::uint8_t> body, std::uint64_t chain) { return checksum(body, chain); }
+std::uint64_t recordChecksum(std::span<const std::uint8_t> body, std::uint64_t chain) {
+    return chainedSum(body, chain);
+}
 
 bool holdsRecords(std::span<const std::uint8_t> rest, bool chained, std::uint64_t chain) {
     std::uint64_t before = 0;
@@ -247,7 +249,7 @@ bool holdsRecords(std::span<const std::uint8_t> rest, bool chained, std::uint64_
         std::memcpy(&length, rest.data(), sizeof length);
         if (length <= rest.size() - kAroundPayload) {
             const auto body = rest.subspan(sizeof length, std::size_t{length} + 1);
-            if (recordAt(rest, length + kAroundPayload, checksum(body, chain))) {
+            if (recordAt(rest, length + kAroundPayload, chainedSum(body, chain))) {
                 return true;
             }
         }

@@ -21,18 +21,18 @@
 namespace master {
 namespace {
 
-constexpr std::uint32_t kMagic = 0x44535753;  // "SWSD"
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kSavedMagic = 0x44535753;  // "SWSD"
+constexpr std::uint32_t kSavedVersion = 1;
 constexpr std::size_t kMostAround = 4096;  // [byte] that are not sand: the scene's name is the only text
 
-std::uint64_t checksum(std::span<const std::uint8_t> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
+std::uint64_t savedSum(std::span<const std::uint8_t> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
 
 std::string shortName(const std::string& scene) { return scene.substr(0, kMostAround / 2); }
 
 files::Bytes encode(const SavedSand& saved) {
     files::ByteWriter writer;
-    writer.put(kMagic);
-    writer.put(kVersion);
+    writer.put(kSavedMagic);
+    writer.put(kSavedVersion);
     writer.put(sand::kAlgorithmVersion);
     writer.putText(shortName(saved.place.scene));
     for (const std::int32_t number : {saved.place.columns, saved.place.rows, saved.place.aspect}) {
@@ -43,18 +43,18 @@ files::Bytes encode(const SavedSand& saved) {
     writer.put(saved.step);
     writer.put(saved.stateHash);
     writer.putBlock(saved.sand);
-    writer.put(checksum(writer.bytes()));
+    writer.put(savedSum(writer.bytes()));
     return writer.take();
 }
 
 SavedSand decode(std::span<const std::uint8_t> bytes) {
     files::ByteReader reader(bytes);
-    if (reader.get<std::uint32_t>() != kMagic) {
+    if (reader.get<std::uint32_t>() != kSavedMagic) {
         throw files::FormatError("no saved sand");
     }
     const auto version = reader.get<std::uint32_t>();
     const auto algorithm = reader.get<std::uint32_t>();
-    if (version != kVersion || algorithm != sand::kAlgorithmVersion) {
+    if (version != kSavedVersion || algorithm != sand::kAlgorithmVersion) {
         throw files::FormatError(
             fmt::format("saved by another version of Sandwall ({}, algorithm {})", version, algorithm));
     }
@@ -64,7 +64,7 @@ SavedSand decode(std::span<const std::uint8_t> bytes) {
     }
     const auto checked = bytes.first(bytes.size() - sizeof expected);
     std::memcpy(&expected, bytes.data() + checked.size(), sizeof expected);
-    if (checksum(checked) != expected) {
+    if (savedSum(checked) != expected) {
         throw files::FormatError("damaged: its checksum is wrong");
     }
     SavedSand saved;

@@ -16,7 +16,7 @@ constexpr double kTiny = 1e-9, kHuge = 1e9;
 
 // The first three are the oldest, which a scene's encoding keeps apart.
 constexpr std::size_t kOldest = 3;
-constexpr std::array kKeys{
+constexpr std::array kConstantKeys{
     Key{"stiffness", &ForceConstants::stiffness, {0, kHuge}},
     Key{"depth_exponent", &ForceConstants::depthExponent, {0, 1e6}},
     Key{"friction", &ForceConstants::friction, {0, kHuge}},
@@ -44,7 +44,7 @@ Choice decodeChoice(files::ByteReader& reader, int choices) {
 ForceConstants ForceConstants::read(const files::TomlTable& table, double side) {
     ForceConstants result;
     result.unitLength = side;
-    for (const Key& key : kKeys) {
+    for (const Key& key : kConstantKeys) {
         result.*key.constant = table.numberOr(key.name, result.*key.constant, key.range);
     }
     result.law = static_cast<ForceLaw>(table.choiceOr("law", {"repulse", "control_points"}, 0));
@@ -61,8 +61,8 @@ ForceConstants ForceConstants::read(const files::TomlTable& table, double side) 
 }
 
 void ForceConstants::encodeRest(files::ByteWriter& writer) const {
-    for (std::size_t i = kOldest; i < kKeys.size(); ++i) {
-        writer.put(this->*kKeys.at(i).constant);
+    for (std::size_t i = kOldest; i < kConstantKeys.size(); ++i) {
+        writer.put(this->*kConstantKeys.at(i).constant);
     }
     writer.put(static_cast<std::uint8_t>(law));
     writer.put(static_cast<std::uint8_t>(between));
@@ -71,9 +71,9 @@ void ForceConstants::encodeRest(files::ByteWriter& writer) const {
 }
 
 void ForceConstants::decodeRest(files::ByteReader& reader) {
-    for (std::size_t i = kOldest; i < kKeys.size(); ++i) {
-        const auto [lowest, highest] = kKeys.at(i).range;
-        const double value = this->*kKeys.at(i).constant = reader.get<double>();
+    for (std::size_t i = kOldest; i < kConstantKeys.size(); ++i) {
+        const auto [lowest, highest] = kConstantKeys.at(i).range;
+        const double value = this->*kConstantKeys.at(i).constant = reader.get<double>();
         if (!(value >= lowest && value <= highest)) {
             throw files::FormatError("a scene with a force constant out of range");
         }

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kLargestTool = double{kLargestToolRadius} / kProbePerCell;  // [cell]
 
-constexpr std::array<MaterialKey, 6> kKeys{{
+constexpr std::array<MaterialKey, 6> kMaterialKeys{{
     {"talus_deg", "talus", 0, 90, true, [](Material& m, double value) { m.dryTalus = value; }},
     {"wet_talus_deg", "wet-talus", 0, 90, true, [](Material& m, double value) { m.wetTalus = value; }},
     {"humidity", "humidity", 0, 1, false, [](Material& m, double value) { m.humidity = value; }},
@@ -72,7 +72,7 @@ Material checked(const Material& material, const MaterialGrid& grid) {
 
 double Material::talus() const { return dryTalus + humidity * (wetTalusNow() - dryTalus); }
 
-std::span<const MaterialKey> materialKeys() { return kKeys; }
+std::span<const MaterialKey> materialKeys() { return kMaterialKeys; }
 
 std::optional<MaterialFault> faultOf(const Material& material, const MaterialGrid& grid) {
     const double cells = material.toolRadius / grid.cellSize;
@@ -117,7 +117,7 @@ Tuning tuningOf(const Material& material, const MaterialGrid& grid) {
 
 Material withNumber(Material material, std::string_view word, double value, const MaterialGrid& grid) {
     std::string known;
-    for (const MaterialKey& key : kKeys) {
+    for (const MaterialKey& key : kMaterialKeys) {
         if (word == key.word || word == key.key) {
             // Written so that what is no number is out of range.
             if (!(value >= key.lowest && value <= key.highest) || (key.highestIsOut && value == key.highest)) {

@@ -13,7 +13,7 @@
 namespace tracking {
 namespace {
 
-constexpr double kMetresPerUnit = 0.001;
+constexpr double kMetresPerMillimetre = 0.001;
 constexpr std::uint32_t kReordered = 1000;  // frames: no network holds a packet back for longer than this many
 constexpr int kMaxBodies = 1000;
 
@@ -82,7 +82,7 @@ void readBodies(Cursor line, int wanted, Parsed& parsed) {
         // A body that is not seen has a negative quality, and zeros for numbers.
         if (parsed.good && number == wanted && quality >= 0) {
             const glm::dmat3 rotation(r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]);
-            parsed.head = Measured{glm::dvec3(place[0], place[1], place[2]) * kMetresPerUnit, rotation};
+            parsed.head = Measured{glm::dvec3(place[0], place[1], place[2]) * kMetresPerMillimetre, rotation};
         }
     }
     parsed.good = parsed.good && line.atEnd();
@@ -138,7 +138,7 @@ Reading DtrackReader::read(std::span<const std::uint8_t> packet, bool gone) {
 }
 
 files::Bytes dtrackPacket(const Pose& pose, std::uint32_t frame, int body) {
-    const glm::dvec3 place = pose.position / kMetresPerUnit;
+    const glm::dvec3 place = pose.position / kMetresPerMillimetre;
     const double yaw = glm::degrees(std::atan2(-pose.right.z, pose.right.x));
     const double roll = glm::degrees(std::asin(std::clamp(pose.right.y, -1.0, 1.0)));
     const glm::dmat3 r = rotationOf(yaw, 0, roll);

@@ -9,7 +9,7 @@ namespace tracking {
 namespace {
 
 constexpr std::size_t kPacketSize = 6 * sizeof(double);
-constexpr double kMetresPerUnit = 0.01;
+constexpr double kMetresPerCentimetre = 0.01;
 constexpr double kLargestAngle = 360;  // [degree]
 
 }  // namespace
@@ -28,16 +28,16 @@ Reading OpentrackReader::read(std::span<const std::uint8_t> packet, bool) {
             return {};
         }
     }
-    const Measured measured{glm::dvec3(-value[0], value[1], value[2]) * kMetresPerUnit,
+    const Measured measured{glm::dvec3(-value[0], value[1], value[2]) * kMetresPerCentimetre,
                             rotationOf(-value[3], value[4], value[5])};
     return plausible(measured) ? Reading{Reading::Kind::pose, measured} : Reading{};
 }
 
 files::Bytes opentrackPacket(const Pose& pose) {
     files::ByteWriter writer;
-    writer.put(-pose.position.x / kMetresPerUnit);
-    writer.put(pose.position.y / kMetresPerUnit);
-    writer.put(pose.position.z / kMetresPerUnit);
+    writer.put(-pose.position.x / kMetresPerCentimetre);
+    writer.put(pose.position.y / kMetresPerCentimetre);
+    writer.put(pose.position.z / kMetresPerCentimetre);
     writer.put(-glm::degrees(std::atan2(-pose.right.z, pose.right.x)));
     writer.put(0.0);
     writer.put(glm::degrees(std::asin(std::clamp(pose.right.y, -1.0, 1.0))));

@@ -24,7 +24,7 @@ constexpr SvgPage::Style kSandStyle{"#a8701a", "#e8b45a55", "6 4", 1.5};
 constexpr SvgPage::Style kSightStyle{"#888888", "none", "2 4", 1};
 constexpr SvgPage::Style kEyeStyle{"#b01e1e", "#ffffff", "", 1.5};
 
-std::vector<glm::dvec3> cornersOf(const Screen& s) { return {s.lowerLeft, s.lowerRight, s.upperRight(), s.upperLeft}; }
+std::vector<glm::dvec3> outlineOf(const Screen& s) { return {s.lowerLeft, s.lowerRight, s.upperRight(), s.upperLeft}; }
 
 std::vector<glm::dvec3> sandCorners(const Wall& wall) {
     const glm::dmat4 toRoom = stageToRoom(wall.stage, 1, 1, 0);
@@ -107,7 +107,7 @@ private:
 /// Rank, name and pixels at the upper left of a tile, as large as it has room for.
 void label(SvgPage& page, const Panel& panel, const Tile& tile) {
     glm::dvec2 low(1e9), high(-1e9);
-    for (const glm::dvec3 corner : cornersOf(tile.screen)) {
+    for (const glm::dvec3 corner : outlineOf(tile.screen)) {
         low = glm::min(low, panel.at(corner));
         high = glm::max(high, panel.at(corner));
     }
@@ -124,11 +124,11 @@ void label(SvgPage& page, const Panel& panel, const Tile& tile) {
 void drawTile(SvgPage& page, const Panel& panel, const Tile& tile, glm::dvec3 towards) {
     const glm::dvec3 normal = tile.screen.normal();
     if (std::abs(glm::dot(normal, towards)) > 0.2) {
-        panel.outline(page, cornersOf(tile.screen), kTileStyle);
+        panel.outline(page, outlineOf(tile.screen), kTileStyle);
         label(page, panel, tile);
         return;
     }
-    panel.outline(page, cornersOf(tile.screen), {"#333333", "none", "", 3});
+    panel.outline(page, outlineOf(tile.screen), {"#333333", "none", "", 3});
     const glm::dvec2 middle = (panel.at(tile.screen.lowerLeft) + panel.at(tile.screen.upperRight())) / 2.0;
     const glm::dvec2 away = panel.at(tile.screen.lowerLeft) - panel.at(tile.screen.lowerLeft + normal);
     const glm::dvec2 beside = glm::length(away) > 0 ? away / glm::length(away) : glm::dvec2(0);
@@ -242,7 +242,7 @@ std::string drawingOf(const Wall& wall) {
     Panel front(main.right(), -main.up()), plan(main.right(), main.normal());
     for (Panel* panel : {&front, &plan}) {
         for (const Tile& tile : wall.tiles) {
-            for (const glm::dvec3 corner : cornersOf(tile.screen)) {
+            for (const glm::dvec3 corner : outlineOf(tile.screen)) {
                 panel->hold(corner);
             }
         }

@@ -8,7 +8,7 @@ namespace haptic_bridge {
 namespace {
 
 constexpr double kPixelsPerNewton = 40;
-constexpr double kDeepest = 3;  // [tool radius], at the bar's end
+constexpr double kBarDepth = 3;  // [tool radius], at the bar's end
 
 std::uint32_t colour(double red, double green, double blue) {
     const auto level = [](double share) { return static_cast<std::uint32_t>(std::clamp(share, 0.0, 1.0) * 255 + 0.5); };
@@ -153,7 +153,7 @@ void paint(const SandSketch& sand, const SketchedHand& hand, Picture& picture) {
         painter.arrow(x, y, x + kPixelsPerNewton * hand.force.x, y - kPixelsPerNewton * hand.force.y, red);
         painter.bar(2, 2 * kPixelsPerNewton * hand.force.z / picture.height, red);
     }
-    painter.bar(picture.width - 8, -hand.depth / kDeepest, blue);
+    painter.bar(picture.width - 8, -hand.depth / kBarDepth, blue);
 }
 
 }  // namespace haptic_bridge

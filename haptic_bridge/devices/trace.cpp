@@ -13,7 +13,7 @@
 namespace haptic_bridge {
 namespace {
 
-constexpr double kFittedShare = 0.8;  // of the field, by a trace without a scale
+constexpr double kTracedShare = 0.8;  // of the field, by a trace without a scale
 constexpr double kLargest = 1e12;     // of a time or a coordinate
 
 std::vector<std::string_view> cutCells(std::string_view line) {
@@ -178,7 +178,7 @@ TraceDevice::TraceDevice(Trace trace, const HandSettings& settings, double field
     std::nth_element(up.begin(), middle, up.end());
     origin_ = settings.origin.value_or(sand::force::Vec3{(*west + *eastmost) / 2, (*south + *northmost) / 2, *middle});
     double scale = settings.scale.value_or(
-        kFittedShare * std::min(fieldWidth / std::max(width, 1e-9), fieldHeight / std::max(height, 1e-9)));
+        kTracedShare * std::min(fieldWidth / std::max(width, 1e-9), fieldHeight / std::max(height, 1e-9)));
     // A hand that never moved sideways has no size to fit.
     scale = !settings.scale && width <= 0 && height <= 0 ? 1 : scale;
     horizontal_ = scale / (std::min(fieldWidth, fieldHeight) / 2);

@@ -11,10 +11,6 @@
 
 namespace {
 
-constexpr int kLevels = 8;
-constexpr double kMostBad = 0.01;
-constexpr double kLong = 120;  // [s], for what takes a few on an idle machine
-
 /// Sessions that draw in memory, on EGL, and in windows on an X server of the test's own.
 class Displays : public SessionTest {
 protected:

@@ -7,8 +7,6 @@
 
 namespace {
 
-constexpr double kLong = 120;  // [s], for what takes a few on an idle machine
-
 class HeadTracking : public SessionTest {
 protected:
     std::string firstTile(const std::string& eye = "left") {

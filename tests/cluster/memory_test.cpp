@@ -11,7 +11,6 @@ namespace {
 
 // Of a rank, beside its frame buffers [byte]: also at its peak, while shaders compile.
 constexpr double kMost = 120e6;
-constexpr double kLong = 120;  // [s], for what takes a few on an idle machine
 
 /// Libraries of Mesa's and the windows' that a process has mapped: file names up to the first dot.
 std::set<std::string> librariesOf(pid_t process) {

@@ -9,9 +9,6 @@
 
 namespace {
 
-constexpr int kLevels = 8;
-constexpr double kMostBad = 0.01;
-
 walls::Wall config(const std::string& name, double factor) {
     return support::reduced(walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/" + name + ".toml"), factor);
 }

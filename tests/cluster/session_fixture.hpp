@@ -16,6 +16,10 @@
 
 #include "tests/support/child_process.hpp"
 
+inline constexpr double kLong = 120;      // [s], for what takes a few on an idle machine
+inline constexpr int kLevels = 8;         // of a channel, within which pictures are alike
+inline constexpr double kMostBad = 0.01;  // share of the pixels beyond that
+
 /// Whole sessions through scripts/sandwall, at sizes that two cores draw in moments.
 class SessionTest : public testing::Test {
 protected:

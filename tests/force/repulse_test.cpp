@@ -12,18 +12,18 @@ using namespace samples;
 using sand::ForceConstants;
 using sand::FrictionDirection;
 
-Response felt(const SurfacePatch& patch, Vec3 place, const ForceConstants& constants = {}) {
+Response pushed(const SurfacePatch& patch, Vec3 place, const ForceConstants& constants = {}) {
     return respond(constants, patch, Contour::sphere(kRadius), place);
 }
 
-double pushAt(double depth) { return norm(felt(levelPatch(), placeAt(depth)).push); }
+double pushAt(double depth) { return norm(pushed(levelPatch(), placeAt(depth)).push); }
 
 TEST(Repulse, IsThePapersAtOneRadius) {
     // 1000 (e^{0.005} − 1) = 5.0125 N.
     EXPECT_NEAR(pushAt(kRadius), 5.0125, 1e-3);
     const double slope = (pushAt(kRadius + 1e-5) - pushAt(kRadius - 1e-5)) / 2e-5;
     EXPECT_NEAR(slope, 500 * std::exp(0.005), 0.5);
-    EXPECT_NEAR(felt(levelPatch(), placeAt(kRadius)).stiffness, 500 * std::exp(0.005), 1e-3);
+    EXPECT_NEAR(pushed(levelPatch(), placeAt(kRadius)).stiffness, 500 * std::exp(0.005), 1e-3);
 }
 
 TEST(Repulse, IsNothingOverTheSandAndGrowsFromNothing) {
@@ -35,15 +35,15 @@ TEST(Repulse, IsNothingOverTheSandAndGrowsFromNothing) {
 }
 
 TEST(Repulse, IsNothingBesideTheField) {
-    EXPECT_EQ(norm(felt(levelPatch(), {-0.5, kMiddle, -1}).push), 0);
-    EXPECT_EQ(norm(felt(SurfacePatch{}, placeAt(kRadius)).push), 0);
+    EXPECT_EQ(norm(pushed(levelPatch(), {-0.5, kMiddle, -1}).push), 0);
+    EXPECT_EQ(norm(pushed(SurfacePatch{}, placeAt(kRadius)).push), 0);
     EXPECT_EQ(norm(respond({}, levelPatch(), Contour{}, placeAt(kRadius)).push), 0) << "no tool";
 }
 
 TEST(Repulse, TurnsFromTheSurfacesNormalToTheVertical) {
     constexpr double kSlope = 0.5;
     const SurfacePatch slope = slopePatch(kSlope);
-    const auto normalAt = [&](double depth) { return felt(slope, placeAt(depth)).normal; };
+    const auto normalAt = [&](double depth) { return pushed(slope, placeAt(depth)).normal; };
     const double flat = 1 / std::sqrt(1 + kSlope * kSlope);
     EXPECT_NEAR(normalAt(-1e-4).x, -kSlope * flat, 1e-3);
     EXPECT_NEAR(normalAt(-1e-4).z, flat, 1e-3);
@@ -55,7 +55,7 @@ TEST(Repulse, TurnsFromTheSurfacesNormalToTheVertical) {
 }
 
 TEST(Repulse, RubsAgainstTheTangentialVelocityOnly) {
-    const Response response = felt(levelPatch(), placeAt(kRadius));
+    const Response response = pushed(levelPatch(), placeAt(kRadius));
     const double push = norm(response.push);
     const Vec3 force = lawfulForce(response, {0.002, 0, -0.5});
     EXPECT_NEAR(force.x, -10 * 0.002 * push, 1e-9);
@@ -68,13 +68,13 @@ TEST(Repulse, RubsWithItsAreaAndLiterallyInAnyDirectionThePaperMayMean) {
     constants.frictionArea = 3;
     const SurfacePatch level = levelPatch();
     const Vec3 place = placeAt(kRadius), velocity{0.002, 0, -0.004};
-    EXPECT_NEAR(lawfulForce(felt(level, place, constants), velocity).x, -3 * 10 * 0.002 * pushAt(kRadius), 1e-9);
+    EXPECT_NEAR(lawfulForce(pushed(level, place, constants), velocity).x, -3 * 10 * 0.002 * pushAt(kRadius), 1e-9);
 
     const auto frictionOf = [&](FrictionDirection direction, bool literal) {
         constants = {};
         constants.frictionDirection = direction;
         constants.literal = literal;
-        const Response response = felt(level, place, constants);
+        const Response response = pushed(level, place, constants);
         return (1 / (10 * norm(response.push))) * (lawfulForce(response, velocity) - response.push);
     };
     const Vec3 full = frictionOf(FrictionDirection::full, true);
@@ -107,10 +107,10 @@ TEST(Repulse, KnowsItsJacobianOnRoughSand) {
         const Vec3 place = placeAt(0.6 * kRadius, 1e-5 * seed, 3e-5);
         double square = 0;
         for (const Vec3 step : {Vec3{kStep, 0, 0}, Vec3{0, kStep, 0}, Vec3{0, 0, kStep}}) {
-            const Vec3 change = felt(rough, place + step).push - felt(rough, place - step).push;
+            const Vec3 change = pushed(rough, place + step).push - pushed(rough, place - step).push;
             square += dot(change, change) / (4 * kStep * kStep);
         }
-        const Response response = felt(rough, place);
+        const Response response = pushed(rough, place);
         ASSERT_GT(norm(response.push), 0) << "seed " << seed;
         EXPECT_NEAR(response.stiffness, std::sqrt(square), 2e-3 * response.stiffness) << "seed " << seed;
     }

@@ -13,9 +13,9 @@ namespace {
 using namespace sand::force;
 using namespace samples;
 
-constexpr std::array kLaws{sand::ForceLaw::repulse, sand::ForceLaw::controlPoints};
+constexpr std::array kWorkedLaws{sand::ForceLaw::repulse, sand::ForceLaw::controlPoints};
 
-sand::ForceConstants constantsOf(sand::ForceLaw law) {
+sand::ForceConstants workedConstants(sand::ForceLaw law) {
     sand::ForceConstants constants;
     constants.law = law;
     constants.unitLength = kSide * kCell;
@@ -75,9 +75,9 @@ Work around(const sand::ForceConstants& constants, const SurfacePatch& patch, st
 
 TEST(Work, IsNothingOverAClosedPathOnLevelSand) {
     const SurfacePatch level = levelPatch();
-    for (const auto law : kLaws) {
+    for (const auto law : kWorkedLaws) {
         for (std::uint32_t seed = 1; seed <= 10; ++seed) {
-            const Work work = around(constantsOf(law), level, seed);
+            const Work work = around(workedConstants(law), level, seed);
             EXPECT_GT(work.exchanged, 1e-4) << "seed " << seed << ": the path misses the sand";
             EXPECT_LT(std::abs(work.net), 1e-6 * work.exchanged) << "seed " << seed;
         }
@@ -88,10 +88,10 @@ TEST(Work, IsNothingOverAClosedPathOnLevelSand) {
 // depth. What a loop gives or takes is bounded by what it exchanges, and `sandwall-bench force-work` reports it.
 TEST(Work, StaysAPartOfWhatIsExchangedOnSlopes) {
     const SurfacePatch slope = slopePatch(0.5);
-    for (const auto law : kLaws) {
+    for (const auto law : kWorkedLaws) {
         double most = 0;
         for (std::uint32_t seed = 1; seed <= 10; ++seed) {
-            const Work work = around(constantsOf(law), slope, seed);
+            const Work work = around(workedConstants(law), slope, seed);
             most = std::max(most, std::abs(work.net) / work.exchanged);
         }
         std::printf("on a slope of a half: at most %.3g of what is exchanged\n", most);
@@ -104,8 +104,8 @@ TEST(Push, PointsOutOfTheSandAndIsNothingOutsideIt) {
     const Contour tool = Contour::sphere(kRadius);
     std::mt19937 random(7);
     std::uniform_real_distribution<double> aside(-kRadius, kRadius), depth(-2 * kRadius, 2 * kRadius);
-    for (const auto law : kLaws) {
-        const sand::ForceConstants constants = constantsOf(law);
+    for (const auto law : kWorkedLaws) {
+        const sand::ForceConstants constants = workedConstants(law);
         int inside = 0, outside = 0;
         for (std::uint32_t seed = 1; seed <= 10; ++seed) {
             const SurfacePatch rough = roughPatch(seed);
@@ -137,8 +137,8 @@ TEST(Push, PointsOutOfTheSandAndIsNothingOutsideIt) {
 
 TEST(Push, GrowsFromNothingAndFallsToNothingAlongAnyPath) {
     const Contour tool = Contour::sphere(kRadius);
-    for (const auto law : kLaws) {
-        const sand::ForceConstants constants = constantsOf(law);
+    for (const auto law : kWorkedLaws) {
+        const sand::ForceConstants constants = workedConstants(law);
         const SurfacePatch rough = roughPatch(11);
         ForceModel model(constants);
         double last = 0, steepest = 0;

@@ -19,8 +19,7 @@ namespace {
 using namespace haptic_bridge;
 using sand::force::Response;
 using sand::force::Vec3;
-
-constexpr double kTick = 1e-3;
+using test::kTick;
 
 ForceLimits touchLimits() { return ForceLimits::of(touchPreset(), test::kScale, {500, 50, 5}, 0.67); }
 

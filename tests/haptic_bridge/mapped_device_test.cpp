@@ -17,7 +17,7 @@ using namespace haptic_bridge;
 using sand::force::Vec3;
 using test::FakeArm;
 
-constexpr double kTick = 1e-3;
+constexpr double kArmTick = 1e-3;
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 /// An arm of 0.1 m reach over a field of 40 x 30 cells, ticked at 1 kHz.
@@ -29,7 +29,7 @@ protected:
     }
     Pose at(Vec3 place) {
         state_.reading.place = place;
-        return device_->read(time_ += kTick);
+        return device_->read(time_ += kArmTick);
     }
     /// What the arm is pushed with.
     Vec3 feel(Vec3 force) {
@@ -125,14 +125,14 @@ TEST_F(Mapped, TheClutchHoldsTheToolWhileTheHandMoves) {
         EXPECT_DOUBLE_EQ(held.x, before.x);
         EXPECT_TRUE(held.engaged);
         const double force = feel({0, 0, 1}).z;
-        EXPECT_LE(last - force, kTick / MappedDevice::kFadeSeconds + 1e-12) << "no jump";
+        EXPECT_LE(last - force, kArmTick / MappedDevice::kFadeSeconds + 1e-12) << "no jump";
         last = force;
     }
     EXPECT_DOUBLE_EQ(last, 0);
     state_.reading.second = false;
     EXPECT_NEAR(at({-0.02, 0, 0}).x, before.x + 0.01 * 2 / half_, 1e-12) << "it goes on from there";
     EXPECT_GT(feel({0, 0, 1}).z, 0);
-    EXPECT_LE(feel({0, 0, 1}).z, kTick / MappedDevice::kRampSeconds + 1e-12);
+    EXPECT_LE(feel({0, 0, 1}).z, kArmTick / MappedDevice::kRampSeconds + 1e-12);
 }
 
 TEST_F(Mapped, TheWorkspaceDriftsToTheHandWhileNothingIsFelt) {
@@ -161,7 +161,7 @@ TEST_F(Mapped, ForceIsSwitchedWithARamp) {
         for (int i = 0; i < 1000; ++i) {
             (void)at({});
             const double now = feel({2, 0, 0}).x;
-            EXPECT_LE(std::abs(now - last), 2 * kTick / MappedDevice::kFadeSeconds + 1e-12) << "tick " << i;
+            EXPECT_LE(std::abs(now - last), 2 * kArmTick / MappedDevice::kFadeSeconds + 1e-12) << "tick " << i;
             last = now;
         }
         return last;
@@ -185,7 +185,7 @@ TEST_F(Mapped, ABadReadingLiftsTheHandAndTakesTheForceAway) {
         const Pose before = at({0.01, 0, 0});
         expectEqual(feel({0, 0, 2}), {0, 0, 2});
         state_.reading = reading;
-        const Pose during = device_->read(time_ += kTick);
+        const Pose during = device_->read(time_ += kArmTick);
         EXPECT_FALSE(during.engaged);
         EXPECT_DOUBLE_EQ(during.x, before.x) << "it stays where it was";
         expectEqual(feel({0, 0, 2}), {});
@@ -194,10 +194,10 @@ TEST_F(Mapped, ABadReadingLiftsTheHandAndTakesTheForceAway) {
         EXPECT_EQ(device_->troubles()->of(trouble), 1U);
         // Back, and for an arm that has jumped: there.
         state_.reading = {{trouble == Trouble::jump ? 1 : 0.01, 0, 0}, false, false, true};
-        EXPECT_TRUE(device_->read(time_ += kTick).engaged);
+        EXPECT_TRUE(device_->read(time_ += kArmTick).engaged);
         const double returned = feel({0, 0, 2}).z;
         EXPECT_GT(returned, 0);
-        EXPECT_LE(returned, 2 * kTick / MappedDevice::kRampSeconds + 1e-12);
+        EXPECT_LE(returned, 2 * kArmTick / MappedDevice::kRampSeconds + 1e-12);
     }
 }
 
@@ -226,7 +226,7 @@ TEST(Troubles, AreToldOnceNotAThousandTimesASecond) {
     std::string first;
     for (int tick = 0; tick < 25'000; ++tick) {
         counts.count(Trouble::noNumber);
-        for (const std::string& line : teller.lines(counts, tick * kTick)) {
+        for (const std::string& line : teller.lines(counts, tick * kArmTick)) {
             first = first.empty() ? line : first;
             ++told;
         }
@@ -240,7 +240,7 @@ TEST(Troubles, AnAbsentDeviceIsToldWhenItGoesAndWhenItIsBack) {
     TroubleTeller teller("device Touch");
     std::vector<std::string> told;
     const auto run = [&](double from, double to, bool away) {
-        for (double time = from; time < to; time += kTick) {
+        for (double time = from; time < to; time += kArmTick) {
             if (away) {
                 counts.count(Trouble::absent);
             }

@@ -15,9 +15,9 @@ namespace {
 using namespace haptic_bridge;
 using sand::force::Vec3;
 using test::growth;
+using test::kTick;
 using test::textbookArm;
 
-constexpr double kTick = 1e-3;
 constexpr double kPapersScale = 12.5;  // [scene unit/m]
 
 auto spring(double stiffness) {

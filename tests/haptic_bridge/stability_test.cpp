@@ -15,10 +15,10 @@ using namespace haptic_bridge;
 using sand::force::Vec3;
 using test::ArmSession;
 using test::kScale;
+using test::kTick;
 using test::Outcome;
 using test::Trial;
 
-constexpr double kTick = 1e-3;
 constexpr double kPapersTouch = test::kPapersRadius;  // [scene unit], of the centre, as the tool touches
 
 const sand::Scene& papersSand() {

@@ -18,11 +18,11 @@ using render_node::EyeTarget;
 using render_node::SandView;
 using sample::Pixels;
 
-constexpr int kWidth = 400, kHeight = 300;
+constexpr int kLookWidth = 400, kLookHeight = 300;
 
 double luminance(const glm::ivec3& colour) { return 0.2126 * colour.r + 0.7152 * colour.g + 0.0722 * colour.b; }
 
-double at(const Pixels& pixels, int x, int y) { return luminance(sample::pixel(pixels, kWidth, x, y)); }
+double at(const Pixels& pixels, int x, int y) { return luminance(sample::pixel(pixels, kLookWidth, x, y)); }
 
 double mean(const Pixels& pixels, int x0, int y0, int x1, int y1) {
     double sum = 0;
@@ -38,11 +38,11 @@ double mean(const Pixels& pixels, int x0, int y0, int x1, int y1) {
 double roughness(const Pixels& pixels, int y0, int y1) {
     double sum = 0;
     for (int y = y0; y < y1; ++y) {
-        for (int x = 1; x < kWidth; ++x) {
+        for (int x = 1; x < kLookWidth; ++x) {
             sum += std::pow(at(pixels, x, y) - at(pixels, x - 1, y), 2);
         }
     }
-    return std::sqrt(sum / ((kWidth - 1) * (y1 - y0)));
+    return std::sqrt(sum / ((kLookWidth - 1) * (y1 - y0)));
 }
 
 /// A plane that rises to the east (1 is 45 degrees) with the given seed in its rows.
@@ -68,7 +68,7 @@ lockstep::Layers layersOf(std::initializer_list<lockstep::Layer> shown) {
 class Look : public testing::Test {
 protected:
     std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
-    EyeTarget target_{kWidth, kHeight};
+    EyeTarget target_{kLookWidth, kLookHeight};
     render_node::Camera above_ = sample::camera({1, 1, 1.5}, {1, 1, 0});
 };
 
@@ -79,7 +79,7 @@ TEST_F(Look, GrainStaysOnItsSandWhenTheHeadMoves) {
     Pixels first;
     for (const glm::dvec3 eye : {glm::dvec3(1, 1, 0.8), {1.3, 0.7, 0.6}, {0.55, 1.3, 1.1}}) {
         const Pixels seen = sample::draw(view, {walls::viewOf(screen, eye, 0.05, 10).viewProjection, eye}, target_);
-        EXPECT_GT(roughness(seen, 0, kHeight), 4) << "no grains to see";
+        EXPECT_GT(roughness(seen, 0, kLookHeight), 4) << "no grains to see";
         first = first.empty() ? seen : first;
         int most = 0;
         for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -95,13 +95,13 @@ TEST_F(Look, GrainFadesWithTheDistanceWithoutAliasing) {
     SandView view(sample::flatScene(256, 256), glm::dmat4(1));
     const render_node::Camera along = sample::camera({1, -0.2, 0.35}, {1, 0.8, 0});
     const Pixels seen = sample::draw(view, along, target_);
-    const Pixels fine = sample::draw(view, along, EyeTarget(kFiner * kWidth, kFiner * kHeight));
+    const Pixels fine = sample::draw(view, along, EyeTarget(kFiner * kLookWidth, kFiner * kLookHeight));
     Pixels averaged;
-    for (int y = 0; y < kHeight; ++y) {
-        for (int x = 0; x < kWidth; ++x) {
+    for (int y = 0; y < kLookHeight; ++y) {
+        for (int x = 0; x < kLookWidth; ++x) {
             glm::ivec3 sum(0);
             for (int i = 0; i < kFiner * kFiner; ++i) {
-                sum += sample::pixel(fine, kFiner * kWidth, kFiner * x + i % kFiner, kFiner * y + i / kFiner);
+                sum += sample::pixel(fine, kFiner * kLookWidth, kFiner * x + i % kFiner, kFiner * y + i / kFiner);
             }
             for (int channel = 0; channel < 3; ++channel) {
                 averaged.push_back(static_cast<std::uint8_t>(sum[channel] / (kFiner * kFiner)));
@@ -131,7 +131,7 @@ TEST_F(Look, SlidSandIsDarkerAndWarmerThanLevelSand) {
         glm::dvec3 sum(0);
         for (int y = 140; y < 160; ++y) {
             for (int x = 100; x < 300; ++x) {
-                sum += glm::dvec3(sample::pixel(pixels, kWidth, x, y));
+                sum += glm::dvec3(sample::pixel(pixels, kLookWidth, x, y));
             }
         }
         return sum / 4000.0;
@@ -160,8 +160,8 @@ TEST_F(Look, ToolsShadowIsDarkerAndTighterTheCloserItComes) {
         view.setTool(sample::probeAt(scene, {1, 1, 0.05 * height}), false);
         const Pixels seen = sample::draw(view, beside, target_);
         std::vector<double> darker;
-        for (int y = kHeight / 2; y < kHeight; ++y) {
-            for (int x = 0; x < kWidth; ++x) {
+        for (int y = kLookHeight / 2; y < kLookHeight; ++y) {
+            for (int x = 0; x < kLookWidth; ++x) {
                 darker.push_back(at(ground, x, y) - at(seen, x, y));
             }
         }

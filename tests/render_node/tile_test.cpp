@@ -17,32 +17,33 @@ constexpr int kAcross = 4;  // tiles
 constexpr int kDown = 3;
 constexpr int kTileWidth = 256;
 constexpr int kTileHeight = 192;
-constexpr int kWidth = kAcross * kTileWidth;
-constexpr int kHeight = kDown * kTileHeight;
+constexpr int kWallWidth = kAcross * kTileWidth;
+constexpr int kWallHeight = kDown * kTileHeight;
 
 /// Pixel by pixel, whether the scene's distance jumps nearby: the places where tiles may differ from the whole.
 std::vector<bool> silhouettes(const EyeTarget& whole) {
-    std::vector<float> depth(static_cast<std::size_t>(kWidth) * kHeight);
+    std::vector<float> depth(static_cast<std::size_t>(kWallWidth) * kWallHeight);
     glBindFramebuffer(GL_FRAMEBUFFER, whole.framebuffer());
-    glReadPixels(0, 0, kWidth, kHeight, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
+    glReadPixels(0, 0, kWallWidth, kWallHeight, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
     const auto nearness = [&](int x, int yFromTop) {
-        const std::size_t at = static_cast<std::size_t>(kHeight - 1 - yFromTop) * kWidth + static_cast<std::size_t>(x);
+        const std::size_t at =
+            static_cast<std::size_t>(kWallHeight - 1 - yFromTop) * kWallWidth + static_cast<std::size_t>(x);
         return (30.05 - (2 * double{depth[at]} - 1) * 29.95) / (2 * 0.05 * 30);  // [1/m]
     };
     std::vector<bool> out(depth.size());
-    for (int y = 0; y < kHeight; ++y) {
-        for (int x = 0; x < kWidth; ++x) {
+    for (int y = 0; y < kWallHeight; ++y) {
+        for (int x = 0; x < kWallWidth; ++x) {
             // A plane seen in perspective is linear in 1/distance: what bends by more than 0.1 % is an edge.
             bool edge = false;
-            for (int v = std::max(1, y - 2); v <= std::min(kHeight - 2, y + 2); ++v) {
-                for (int u = std::max(1, x - 2); u <= std::min(kWidth - 2, x + 2); ++u) {
+            for (int v = std::max(1, y - 2); v <= std::min(kWallHeight - 2, y + 2); ++v) {
+                for (int u = std::max(1, x - 2); u <= std::min(kWallWidth - 2, x + 2); ++u) {
                     const double here = 2 * nearness(u, v);
                     const double bend = std::max(std::abs(nearness(u - 1, v) + nearness(u + 1, v) - here),
                                                  std::abs(nearness(u, v - 1) + nearness(u, v + 1) - here));
                     edge = edge || bend > 0.001 * here;
                 }
             }
-            out[static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x)] = edge;
+            out[static_cast<std::size_t>(y) * kWallWidth + static_cast<std::size_t>(x)] = edge;
         }
     }
     return out;
@@ -57,7 +58,7 @@ class TiledWall : public testing::Test {
 protected:
     /// The whole wall put together from its tiles, each drawn with a view of its own, as ranks do.
     Pixels tiled(const glm::dvec3& eye) {
-        Pixels wall(3UL * kWidth * kHeight);
+        Pixels wall(3UL * kWallWidth * kWallHeight);
         const EyeTarget target(kTileWidth, kTileHeight);
         for (int row = 0; row < kDown; ++row) {
             for (int column = 0; column < kAcross; ++column) {
@@ -70,7 +71,7 @@ protected:
                 chunksOfField_ = view.counts().chunksOfField;
                 for (int y = 0; y < kTileHeight; ++y) {
                     const auto from = tile.begin() + 3L * y * kTileWidth;
-                    const auto at = 3L * ((row * kTileHeight + y) * kWidth + column * kTileWidth);
+                    const auto at = 3L * ((row * kTileHeight + y) * kWallWidth + column * kTileWidth);
                     std::copy(from, from + 3 * kTileWidth, wall.begin() + at);
                 }
             }
@@ -91,24 +92,24 @@ protected:
                               int shift = 0) {
         int differ = 0;
         int elsewhere = 0;
-        for (int y = 0; y < kHeight; ++y) {
-            for (int x = shift; x < kWidth; ++x) {
-                const glm::ivec3 gap =
-                    glm::abs(sample::pixel(wall, kWidth, x, y) - sample::pixel(reference, kWidth, x - shift, y));
+        for (int y = 0; y < kWallHeight; ++y) {
+            for (int x = shift; x < kWallWidth; ++x) {
+                const glm::ivec3 gap = glm::abs(sample::pixel(wall, kWallWidth, x, y) -
+                                                sample::pixel(reference, kWallWidth, x - shift, y));
                 if (std::max({gap.r, gap.g, gap.b}) > 8) {
                     ++differ;
-                    const std::size_t at = static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x);
+                    const std::size_t at = static_cast<std::size_t>(y) * kWallWidth + static_cast<std::size_t>(x);
                     elsewhere += edges[at] ? 0 : 1;
                 }
             }
         }
-        constexpr double kPixels = double{kWidth} * kHeight;
+        constexpr double kPixels = double{kWallWidth} * kWallHeight;
         return {differ / kPixels, elsewhere / kPixels};
     }
 
     std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     sand::Scene scene_ = sample::duneScene(300);
-    EyeTarget wholeTarget_{kWidth, kHeight};
+    EyeTarget wholeTarget_{kWallWidth, kWallHeight};
     glm::dvec3 leftEye_{0.9675, -0.1, 0.75};
     glm::dvec3 rightEye_{1.0325, -0.1, 0.75};
     glm::dvec3 forward_{0, 1, -0.72};
@@ -124,7 +125,7 @@ TEST_F(TiledWall, EqualsTheWholeButForSilhouettes) {
     std::printf("share of pixels that differ: %.4f %%, away from silhouettes: %.4f %%\n", 100 * difference.share,
                 100 * difference.elsewhere);
     const auto edgePixels = std::count(edges.begin(), edges.end(), true);
-    EXPECT_LT(edgePixels, kWidth * kHeight / 10) << "everything counts as a silhouette";
+    EXPECT_LT(edgePixels, kWallWidth * kWallHeight / 10) << "everything counts as a silhouette";
     EXPECT_LE(difference.share, 0.01);
     EXPECT_EQ(difference.elsewhere, 0);
 }

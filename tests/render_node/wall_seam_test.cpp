@@ -17,10 +17,10 @@ using walls::Eye;
 using walls::PixelRect;
 using walls::Screen;
 
-constexpr int kLevels = 8;
-constexpr double kMostBad = 0.01;
+constexpr int kSeamLevels = 8;
+constexpr double kSeamMostBad = 0.01;
 constexpr double kBend = 0.001;  // of the distance, from pixel to pixel: more is a silhouette
-constexpr int kMostPixels = 700000;
+constexpr int kSeamMostPixels = 700000;
 
 /// A screen that one camera sees as a whole, and the parts of it that are drawn on their own.
 struct Whole {
@@ -83,7 +83,7 @@ std::vector<Whole> wholesOf(const walls::Wall& wall) {
 int reductionFor(const walls::Wall& wall) {
     const walls::Canvas canvas = walls::wallCanvas(wall);
     int by = 1;
-    while (std::int64_t{canvas.width} * canvas.height / (std::int64_t{by} * by) > kMostPixels) {
+    while (std::int64_t{canvas.width} * canvas.height / (std::int64_t{by} * by) > kSeamMostPixels) {
         by *= 2;
     }
     return by;
@@ -144,12 +144,12 @@ protected:
             };
             const Image got = sample::drawThrough(view, wall, screen, {rect.width, rect.height}, Eye::left);
             const Image expected = partOfImage(left);
-            const pictures::Comparison same = pictures::compare(expected, got, kLevels);
-            EXPECT_LE(same.badShare, kMostBad) << "part at " << rect.x << ", " << rect.y;
+            const pictures::Comparison same = pictures::compare(expected, got, kSeamLevels);
+            EXPECT_LE(same.badShare, kSeamMostBad) << "part at " << rect.x << ", " << rect.y;
             EXPECT_EQ(pictures::countOutside(same.bad, cropOf(edges, whole.pixels.x, rect)), 0)
                 << "part at " << rect.x << ", " << rect.y;
             const auto bad = [&](const Image& a, const Image& b) {
-                return static_cast<double>(pictures::compare(a, b, kLevels).badPixels);
+                return static_cast<double>(pictures::compare(a, b, kSeamLevels).badPixels);
             };
             count.pixels += static_cast<double>(got.pixels());
             count.bad += static_cast<double>(same.badPixels);
@@ -182,8 +182,8 @@ TEST_F(WallSeams, EveryTileOfEverySampleIsItsPartOfTheWhole) {
             "{:.1f} % are silhouettes\n",
             name, 100 * count.bad / count.pixels, 100 * count.badWhenMoved / count.pixels,
             100 * count.badInTheOtherEye / count.pixels, 100 * count.silhouettes / count.pixels);
-        EXPECT_GT(count.badWhenMoved, kMostBad * count.pixels);
-        EXPECT_GT(count.badInTheOtherEye, kMostBad * count.pixels);
+        EXPECT_GT(count.badWhenMoved, kSeamMostBad * count.pixels);
+        EXPECT_GT(count.badInTheOtherEye, kSeamMostBad * count.pixels);
         EXPECT_LT(count.silhouettes, 0.25 * count.pixels) << "everything counts as a silhouette";
     }
 }

@@ -15,7 +15,7 @@ namespace {
 using sand::Certificate;
 using sand::HeightField;
 
-sand::Rules rulesFor(const HeightField& field) {
+sand::Rules certifiedRules(const HeightField& field) {
     sand::Rules rules;
     rules.columns = field.columns();
     rules.rows = field.rows();
@@ -35,7 +35,7 @@ template <class Law>
 Certificate certificateOfSweeps(const HeightField& start, HeightField& rest, Law law) {
     const sand::NetFlux flux = reference::relax(rest, sand::kUnitsPerCell, law);
     expectFluxesLeadTo(start, rest, flux);
-    return certify(start, rest, flux, rulesFor(start));
+    return certify(start, rest, flux, certifiedRules(start));
 }
 
 // The theorem itself, on data for which no pile is "the" right one.
@@ -94,7 +94,7 @@ TEST(Certificate, FailsOnThePileOfFourNeighbours) {
 
 TEST(Certificate, OfAFieldAtRestIsZero) {
     const HeightField flat(9, 7, 1.0);
-    const Certificate certificate = certify(flat, flat, sand::NetFlux(9, 7), rulesFor(flat));
+    const Certificate certificate = certify(flat, flat, sand::NetFlux(9, 7), certifiedRules(flat));
     EXPECT_EQ(certificate.squaredDistance, 0);
     EXPECT_EQ(certificate.relative(), 0);
     EXPECT_EQ(certificate.steepest, sand::kUnitsPerCell);

@@ -17,7 +17,7 @@ using sand::ProbePoint;
 using sand::Rim;
 using sand::Terrain;
 
-ProbePoint at(double column, double row, double height /* [cell] */) {
+ProbePoint probeAt(double column, double row, double height /* [cell] */) {
     return {static_cast<std::int32_t>(column * kProbePerCell), static_cast<std::int32_t>(row * kProbePerCell),
             static_cast<std::int32_t>(height * kProbePerCell)};
 }
@@ -35,9 +35,10 @@ TEST(ExtremeTool, OutsideTheFieldItTouchesNothing) {
         const sand::Scene scene = sceneWith(4, rim);
         Terrain terrain(scene);
         std::uint64_t number = 0;
-        for (const ProbePoint point : {at(-4, 16, -1), at(49, 16, -1), at(20, -4, -1), at(20, 37, -1), at(20, 16, 4),
-                                       ProbePoint{sand::kMaxProbe, -sand::kMaxProbe, 0},
-                                       ProbePoint{-sand::kMaxProbe, sand::kMaxProbe, -sand::kMaxProbe}}) {
+        for (const ProbePoint point :
+             {probeAt(-4, 16, -1), probeAt(49, 16, -1), probeAt(20, -4, -1), probeAt(20, 37, -1), probeAt(20, 16, 4),
+              ProbePoint{sand::kMaxProbe, -sand::kMaxProbe, 0},
+              ProbePoint{-sand::kMaxProbe, sand::kMaxProbe, -sand::kMaxProbe}}) {
             terrain.apply({1, ++number, false, {point}});
             terrain.apply({1, ++number, true, {point}});
             EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain)) << "at " << point.x << ", " << point.y;
@@ -50,8 +51,8 @@ TEST(ExtremeTool, OutsideTheFieldItTouchesNothing) {
 TEST(ExtremeTool, AtACornerAndOnTheRimsItLosesNothing) {
     for (const Rim rim : kRims) {
         for (const double radius : {0.6, 2.56, 8.0, 20.0}) {
-            for (const ProbePoint point : {at(0, 0, -1), at(45, 33, -1), at(0, 33, 0), at(45, 0, 0), at(22, 0, -2),
-                                           at(0, 16, -2), at(44.5, 32.5, 0)}) {
+            for (const ProbePoint point : {probeAt(0, 0, -1), probeAt(45, 33, -1), probeAt(0, 33, 0), probeAt(45, 0, 0),
+                                           probeAt(22, 0, -2), probeAt(0, 16, -2), probeAt(44.5, 32.5, 0)}) {
                 const sand::Scene scene = sceneWith(radius, rim);
                 Terrain terrain(scene);
                 for (std::uint64_t i = 1; i <= 200; ++i) {
@@ -68,10 +69,10 @@ TEST(ExtremeTool, AtACornerAndOnTheRimsItLosesNothing) {
 TEST(ExtremeTool, LargerThanTheFieldItHasNowhereToPutTheSand) {
     const sand::Scene scene = sceneWith(2048, Rim::closed);
     Terrain terrain(scene);
-    terrain.apply({1, 1, true, {at(22, 16, 2000)}});
+    terrain.apply({1, 1, true, {probeAt(22, 16, 2000)}});
     EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain)) << "it passes through the sand";
     Terrain open(sceneWith(2048, Rim::open));
-    open.apply({1, 1, true, {at(22, 16, 2000)}});
+    open.apply({1, 1, true, {probeAt(22, 16, 2000)}});
     EXPECT_GT(open.outflow(), 0) << "over an open rim it clears the table";
     EXPECT_EQ(open.field().volume() + open.outflow(), 0);
 }
@@ -79,14 +80,14 @@ TEST(ExtremeTool, LargerThanTheFieldItHasNowhereToPutTheSand) {
 TEST(ExtremeTool, OfNoRadiusItDigsNothing) {
     const sand::Scene scene = sceneWith(0, Rim::closed);
     Terrain terrain(scene);
-    terrain.apply({1, 1, true, {at(5.5, 5.5, -3), at(40, 30, -3)}});
+    terrain.apply({1, 1, true, {probeAt(5.5, 5.5, -3), probeAt(40, 30, -3)}});
     EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain));
 }
 
 TEST(ExtremeTool, ThePapersOf256HundredthsDigsAFurrow) {
     Terrain terrain(sceneWith(2.56, Rim::closed));
     for (std::uint64_t i = 1; i <= 30; ++i) {
-        terrain.apply({1, i, true, {at(8 + static_cast<double>(i), 16.5, 1)}});
+        terrain.apply({1, i, true, {probeAt(8 + static_cast<double>(i), 16.5, 1)}});
     }
     EXPECT_LT(terrain.field().height(20, 16), -sand::kUnitsPerCell / 2);
     EXPECT_GT(samples::extremesOf(terrain.field()).highest, sand::kUnitsPerCell / 4);
@@ -96,8 +97,8 @@ TEST(ExtremeTool, ThePapersOf256HundredthsDigsAFurrow) {
 TEST(ExtremeTool, TeleportingItPloughsAllTheWay) {
     for (const Rim rim : kRims) {
         Terrain terrain(sceneWith(2.56, rim));
-        terrain.apply({1, 1, true, {at(4, 16.5, 1)}});
-        terrain.apply({1, 2, true, {at(40, 16.5, 1)}});
+        terrain.apply({1, 1, true, {probeAt(4, 16.5, 1)}});
+        terrain.apply({1, 2, true, {probeAt(40, 16.5, 1)}});
         for (const int column : {10, 20, 30}) {
             EXPECT_LT(terrain.field().height(column, 16), 0) << "no furrow at column " << column;
         }
@@ -113,7 +114,7 @@ TEST(ExtremeTool, HeldStillItLetsTheSweepsStop) {
         for (const double height : {0.0, 1.0, -3.0}) {
             Terrain terrain(sceneWith(radius, Rim::closed));
             std::uint64_t number = 0;
-            terrain.apply({1, ++number, true, {at(22.3, 16.1, height)}});
+            terrain.apply({1, ++number, true, {probeAt(22.3, 16.1, height)}});
             for (int i = 0; i < 2000 && !terrain.settled(); ++i) {
                 terrain.apply({1, ++number, true, {}});
             }
@@ -143,7 +144,7 @@ TEST(ExtremeTool, DiggingToBedrockStopsThere) {
     scene.rules.ground = ground->digest();
     Terrain terrain(scene);
     for (std::uint64_t i = 1; i <= 60; ++i) {
-        terrain.apply({1, i, true, {at(10 + 0.4 * static_cast<double>(i), 16.5, 2)}});
+        terrain.apply({1, i, true, {probeAt(10 + 0.4 * static_cast<double>(i), 16.5, 2)}});
         ASSERT_GE(samples::extremesOf(terrain.field()).lowest, -2 * sand::kUnitsPerCell) << "step " << i;
         ASSERT_EQ(terrain.field().volume(), 0);
     }

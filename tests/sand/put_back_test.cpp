@@ -15,7 +15,7 @@ using sand::kProbePerCell;
 using sand::Step;
 using sand::Terrain;
 
-sand::ProbePoint at(int column, int row, int height /* [cell] */) {
+sand::ProbePoint cellAt(int column, int row, int height /* [cell] */) {
     return {column * kProbePerCell, row * kProbePerCell, height * kProbePerCell};
 }
 
@@ -25,9 +25,9 @@ public:
     explicit Hand(Terrain& terrain) : terrain_(terrain) {}
 
     void hover(Edit edit = Edit::none) { terrain_.apply({1, terrain_.stepNumber() + 1, false, {}, edit}); }
-    void lift() { terrain_.apply({1, terrain_.stepNumber() + 1, false, {at(32, 32, 30)}, Edit::none}); }
+    void lift() { terrain_.apply({1, terrain_.stepNumber() + 1, false, {cellAt(32, 32, 30)}, Edit::none}); }
     void dig(int column, int row, Edit edit = Edit::none) {
-        terrain_.apply({1, terrain_.stepNumber() + 1, true, {at(column, row, 0)}, edit});
+        terrain_.apply({1, terrain_.stepNumber() + 1, true, {cellAt(column, row, 0)}, edit});
     }
     void stroke(int row) {
         for (int column = 16; column < 48; ++column) {

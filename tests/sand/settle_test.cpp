@@ -15,7 +15,7 @@ namespace {
 using sand::HeightField;
 using sand::Rules;
 
-Rules rulesFor(const HeightField& field, std::int32_t threshold = sand::kUnitsPerCell) {
+Rules settlingRules(const HeightField& field, std::int32_t threshold = sand::kUnitsPerCell) {
     Rules rules;
     rules.columns = field.columns();
     rules.rows = field.rows();
@@ -58,7 +58,7 @@ double errorOfCylinder(int n, double heightPerRadius) {
     const double middle = n / 2.0;
     HeightField field =
         oracles::fieldOf(n, n, oracles::around(middle, middle, [&](double r) { return pile.start(r); }));
-    EXPECT_GT(settleAndCheck(field, rulesFor(field)).iterations, 0) << "the projection was of no use";
+    EXPECT_GT(settleAndCheck(field, settlingRules(field)).iterations, 0) << "the projection was of no use";
     const auto expected =
         oracles::sampled(n, n, oracles::around(middle, middle, [&](double r) { return pile.rest(r); }));
     return oracles::distance(field, expected).misplaced;
@@ -80,7 +80,7 @@ TEST(Settle, TallCylinderBecomesItsCone) {
 double errorOfPrism(int n, double heightPerWidth) {
     const oracles::Prism pile(n / 8.0, heightPerWidth * n / 8.0);
     HeightField field = oracles::fieldOf(n, 8, [&](double x, double) { return pile.start(x - n / 2.0); });
-    settleAndCheck(field, rulesFor(field));
+    settleAndCheck(field, settlingRules(field));
     const auto expected = oracles::sampled(n, 8, [&](double x, double) { return pile.rest(x - n / 2.0); });
     return oracles::distance(field, expected).misplaced;
 }
@@ -95,7 +95,7 @@ TEST(Settle, PrismBecomesItsRamp) {
 
 TEST(Settle, RestIsAFixedPoint) {
     HeightField field = samples::cylinder(64, 16, 12);
-    const Rules rules = rulesFor(field);
+    const Rules rules = settlingRules(field);
     sand::settle(field, rules);
     const HeightField rest = field;
     const sand::Settled again = sand::settle(field, rules);
@@ -105,7 +105,7 @@ TEST(Settle, RestIsAFixedPoint) {
 
 // Sand that a start threshold holds is at rest; sand that it does not hold settles to the threshold.
 TEST(Settle, BandHoldsOrLetsGoOfEverything) {
-    Rules rules = rulesFor(HeightField(40, 30, 1.0));
+    Rules rules = settlingRules(HeightField(40, 30, 1.0));
     rules.startThreshold = rules.threshold * 5 / 4;
     for (const auto& [slope, moves] : {std::pair{1.2, false}, {1.3, true}}) {
         HeightField field = oracles::fieldOf(40, 30, [slope = slope](double x, double) { return slope * x; });
@@ -113,7 +113,7 @@ TEST(Settle, BandHoldsOrLetsGoOfEverything) {
         settleAndCheck(field, rules);
         EXPECT_EQ(sameHeights(field, start), !moves);
         if (moves) {
-            expectAtRest(field, rulesFor(field));
+            expectAtRest(field, settlingRules(field));
         }
     }
 }
@@ -122,7 +122,7 @@ TEST(Settle, BandHoldsOrLetsGoOfEverything) {
 TEST(Settle, SteepPlaneTurnsAboutItsCentroid) {
     const oracles::TiltedPlane plane(96, 3);
     HeightField field = oracles::fieldOf(96, 40, [&](double x, double) { return plane.start(x); });
-    settleAndCheck(field, rulesFor(field));
+    settleAndCheck(field, settlingRules(field));
     const auto expected = oracles::sampled(96, 40, [&](double x, double) { return plane.rest(x); });
     // The iteration stops at a gap of 1e-5 of the squared change, so the pile is within the root of 2e-5 of the change,
     // which is 55 cells on the mean and the pile 144 high.
@@ -135,7 +135,7 @@ TEST(Settle, OpenTableKeepsItsRoof) {
     const int n = 64;
     const oracles::OpenTable table(n, n);
     HeightField field = oracles::fieldOf(n, n, [](double, double) { return 60; });
-    Rules rules = rulesFor(field);
+    Rules rules = settlingRules(field);
     rules.rim = sand::Rim::open;
     const sand::Settled settled = settleAndCheck(field, rules);
     EXPECT_GT(settled.iterations, 0);
@@ -148,7 +148,7 @@ TEST(Settle, RoughFieldsKeepVolumeAndExtremes) {
     std::mt19937 random(23);
     for (const auto rim : {sand::Rim::closed, sand::Rim::open}) {
         HeightField field = samples::randomField(67, 45, 1 << 21, random);
-        Rules rules = rulesFor(field);
+        Rules rules = settlingRules(field);
         rules.rim = rim;
         settleAndCheck(field, rules);
     }
@@ -160,7 +160,7 @@ TEST(Settle, EndsWithSpikesOfEitherSign) {
         for (const int sign : {-1, 1}) {
             HeightField field(columns, rows, 1.0);
             field.setHeight(columns / 2, rows / 2, sign * sand::kMaxHeight);
-            settleAndCheck(field, rulesFor(field, 1 << 20));
+            settleAndCheck(field, settlingRules(field, 1 << 20));
         }
     }
 }
@@ -172,13 +172,13 @@ TEST(Settle, ChequerboardComesToRest) {
             field.setHeight(x, y, (x + y) % 2 == 0 ? sand::kMaxHeight : -sand::kMaxHeight);
         }
     }
-    settleAndCheck(field, rulesFor(field));
+    settleAndCheck(field, settlingRules(field));
 }
 
 TEST(Settle, AngleZeroComesToRest) {
     std::mt19937 random(19);
     HeightField field = samples::randomField(16, 16, 1 << 16, random);
-    settleAndCheck(field, rulesFor(field, 0));
+    settleAndCheck(field, settlingRules(field, 0));
     const auto [least, greatest] = extremes(field);
     EXPECT_LE(greatest - least, 4 * 30) << "4 units for each of 30 faces from corner to corner";
 }
@@ -186,7 +186,7 @@ TEST(Settle, AngleZeroComesToRest) {
 TEST(Settle, SandBelowAnOpenRimIsSwept) {
     HeightField field(30, 30, 1.0);
     field.setHeight(15, 15, -40 * sand::kUnitsPerCell);
-    Rules rules = rulesFor(field);
+    Rules rules = settlingRules(field);
     rules.rim = sand::Rim::open;
     const sand::Settled settled = settleAndCheck(field, rules);
     EXPECT_EQ(settled.iterations, 0);
@@ -196,7 +196,7 @@ TEST(Settle, SandBelowAnOpenRimIsSwept) {
 // Cells twice as long as wide: the same prism, along the one axis and along the other, must rest alike.
 TEST(Settle, LongCellsRestAtTheTalusAlongBothAxes) {
     const oracles::Prism pile(16, 16);
-    Rules rules = rulesFor(HeightField(8, 64, 1.0));
+    Rules rules = settlingRules(HeightField(8, 64, 1.0));
     rules.aspect = 2 * sand::kUnitsPerCell;
     HeightField field = oracles::fieldOf(8, 64, [&](double, double y) { return pile.start(2 * y - 64); });
     settleAndCheck(field, rules);
@@ -209,7 +209,7 @@ TEST(Settle, InstructionSetChangesNothing) {
     const HeightField start = samples::randomField(61, 47, 1 << 21, random);
     HeightField automatic = start;
     HeightField baseline = start;
-    const Rules rules = rulesFor(start);
+    const Rules rules = settlingRules(start);
     sand::settle(automatic, rules);
     sand::settle(baseline, rules, nullptr, sand::CodePath::baseline);
     EXPECT_TRUE(sameHeights(automatic, baseline));

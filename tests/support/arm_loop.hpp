@@ -8,6 +8,8 @@
 
 namespace test {
 
+inline constexpr double kTick = 1e-3;  // [s], of the force loop
+
 /// An arm as textbooks draw it: mass and damping, no friction, no encoder, no limits.
 inline haptic_bridge::ArmPhysics textbookArm(double damping, int delayTicks = 0, double mass = 0.05) {
     haptic_bridge::ArmPhysics arm;

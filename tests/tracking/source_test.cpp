@@ -6,13 +6,12 @@
 namespace {
 
 using namespace tracking;
-using Kind = Source::Kind;
 
-Source parse(const std::string& text) { return Source::parse(text, "--track"); }
+Source parseSource(const std::string& text) { return Source::parse(text, "--track"); }
 
 /// The complaint about a text, which must be one line, begin with the option and quote the text.
 std::string complaint(const std::string& text) {
-    const std::string line = test::refusal([&] { (void)parse(text); });
+    const std::string line = test::refusal([&] { (void)parseSource(text); });
     EXPECT_EQ(line.find("--track: '" + text), 0U) << line;
     EXPECT_EQ(line.find('\n'), std::string::npos) << line;
     return line;
@@ -23,57 +22,57 @@ void expectComplaint(const std::string& text, const std::string& about) {
 }
 
 TEST(TrackingSource, ListensOnLoopbackUnlessAnAddressIsGiven) {
-    EXPECT_EQ(parse("opentrack:4242").host, "127.0.0.1");
-    EXPECT_EQ(parse("opentrack:4242").port, 4242);
-    EXPECT_EQ(parse("opentrack:localhost:4242").host, "127.0.0.1");
-    EXPECT_EQ(parse("opentrack:0.0.0.0:65535").host, "0.0.0.0");
-    EXPECT_EQ(parse("opentrack:0.0.0.0:65535").port, 65535);
-    EXPECT_EQ(parse("dtrack:[::1]:5000").host, "::1");
-    EXPECT_EQ(parse("dtrack:[::1]:5000").port, 5000);
+    EXPECT_EQ(parseSource("opentrack:4242").host, "127.0.0.1");
+    EXPECT_EQ(parseSource("opentrack:4242").port, 4242);
+    EXPECT_EQ(parseSource("opentrack:localhost:4242").host, "127.0.0.1");
+    EXPECT_EQ(parseSource("opentrack:0.0.0.0:65535").host, "0.0.0.0");
+    EXPECT_EQ(parseSource("opentrack:0.0.0.0:65535").port, 65535);
+    EXPECT_EQ(parseSource("dtrack:[::1]:5000").host, "::1");
+    EXPECT_EQ(parseSource("dtrack:[::1]:5000").port, 5000);
 }
 
 TEST(TrackingSource, TakesTheTrackersOwnAddress) {
-    EXPECT_EQ(parse("opentrack:4242").from, "");
-    EXPECT_EQ(parse("dtrack:0.0.0.0:5000 from=192.168.1.20").from, "192.168.1.20");
+    EXPECT_EQ(parseSource("opentrack:4242").from, "");
+    EXPECT_EQ(parseSource("dtrack:0.0.0.0:5000 from=192.168.1.20").from, "192.168.1.20");
     expectComplaint("opentrack:4242 from=cave", "no IP address");
 }
 
 TEST(TrackingSource, TakesABodyBehindThePort) {
-    EXPECT_EQ(parse("dtrack:5000").body, 0);
-    EXPECT_EQ(parse("dtrack:5000:3").body, 3);
-    EXPECT_EQ(parse("dtrack:5000:3").port, 5000);
-    EXPECT_EQ(parse("dtrack:10.0.0.2:5001:2").host, "10.0.0.2");
-    EXPECT_EQ(parse("dtrack:10.0.0.2:5001:2").port, 5001);
-    EXPECT_EQ(parse("dtrack:10.0.0.2:5001:2").body, 2);
+    EXPECT_EQ(parseSource("dtrack:5000").body, 0);
+    EXPECT_EQ(parseSource("dtrack:5000:3").body, 3);
+    EXPECT_EQ(parseSource("dtrack:5000:3").port, 5000);
+    EXPECT_EQ(parseSource("dtrack:10.0.0.2:5001:2").host, "10.0.0.2");
+    EXPECT_EQ(parseSource("dtrack:10.0.0.2:5001:2").port, 5001);
+    EXPECT_EQ(parseSource("dtrack:10.0.0.2:5001:2").body, 2);
 }
 
 TEST(TrackingSource, KnowsEveryKind) {
-    EXPECT_EQ(parse("none").kind, Kind::none);
-    EXPECT_EQ(parse("opentrack:1").kind, Kind::opentrack);
-    EXPECT_EQ(parse("dtrack:1").kind, Kind::dtrack);
-    EXPECT_EQ(parse("vrpn:Head0@cave").kind, Kind::vrpn);
-    EXPECT_EQ(parse("vrpn:Head0@cave:3883").device, "Head0@cave:3883");
-    EXPECT_EQ(parse("trace:my head.csv").file, "my head.csv");
+    EXPECT_EQ(parseSource("none").kind, Source::Kind::none);
+    EXPECT_EQ(parseSource("opentrack:1").kind, Source::Kind::opentrack);
+    EXPECT_EQ(parseSource("dtrack:1").kind, Source::Kind::dtrack);
+    EXPECT_EQ(parseSource("vrpn:Head0@cave").kind, Source::Kind::vrpn);
+    EXPECT_EQ(parseSource("vrpn:Head0@cave:3883").device, "Head0@cave:3883");
+    EXPECT_EQ(parseSource("trace:my head.csv").file, "my head.csv");
     EXPECT_EQ(Source::parse("trace:head.csv", "wall.toml", "walls/lab").file, "walls/lab/head.csv");
     EXPECT_EQ(Source::parse("trace:/tmp/head.csv", "wall.toml", "walls/lab").file, "/tmp/head.csv");
 }
 
 TEST(TrackingSource, TakesPlaceAndAxesBehindIt) {
-    const Source source = parse("dtrack:5000 origin=0,1.5,-2  axes=x,z,-y eyes=0,-0.1,0");
+    const Source source = parseSource("dtrack:5000 origin=0,1.5,-2  axes=x,z,-y eyes=0,-0.1,0");
     EXPECT_EQ(source.port, 5000);
     EXPECT_EQ(source.text, "dtrack:5000");
     EXPECT_EQ(source.origin, glm::dvec3(0, 1.5, -2));
     EXPECT_EQ(source.axes, axesOf("x,z,-y"));
     EXPECT_EQ(source.eyes, glm::dvec3(0, -0.1, 0));
-    EXPECT_EQ(parse("trace:my head.csv origin=1,2,3").file, "my head.csv");
+    EXPECT_EQ(parseSource("trace:my head.csv origin=1,2,3").file, "my head.csv");
 }
 
 TEST(TrackingSource, CountsOpentrackFromTheRestingEyeAndOthersFromTheRoom) {
     const glm::dvec3 eye(0, 1.6, 2.5);
-    EXPECT_EQ(parse("opentrack:4242").mapping(eye).origin, eye);
-    EXPECT_EQ(parse("opentrack:4242 origin=0,1,0").mapping(eye).origin, glm::dvec3(0, 1, 0));
-    EXPECT_EQ(parse("dtrack:5000").mapping(eye).origin, glm::dvec3(0));
-    EXPECT_EQ(parse("trace:head.csv").mapping(eye).origin, glm::dvec3(0));
+    EXPECT_EQ(parseSource("opentrack:4242").mapping(eye).origin, eye);
+    EXPECT_EQ(parseSource("opentrack:4242 origin=0,1,0").mapping(eye).origin, glm::dvec3(0, 1, 0));
+    EXPECT_EQ(parseSource("dtrack:5000").mapping(eye).origin, glm::dvec3(0));
+    EXPECT_EQ(parseSource("trace:head.csv").mapping(eye).origin, glm::dvec3(0));
 }
 
 TEST(TrackingSource, SaysWhatIsWrongWithAPort) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "files/input_error.hpp"
 #include "walls/canvas.hpp"
 #include "walls/projection.hpp"
 #include "walls/wall.hpp"
@@ -25,6 +26,16 @@ inline std::vector<std::string> configNames() {
     }
     std::sort(names.begin(), names.end());
     return names;
+}
+
+/// What is said against the text of a wall.
+inline std::string complaint(const std::string& text) {
+    try {
+        (void)parseWall(text, "lab.toml");
+    } catch (const files::InputError& error) {
+        return error.what();
+    }
+    return "no complaint";
 }
 
 /// A 0.8 x 0.6 m screen of 800 x 600 pixels, straight before an eye 2 m away at the height of its middle.

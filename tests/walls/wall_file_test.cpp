@@ -53,15 +53,6 @@ int lineOf(const std::string& line) {
                    std::count(kWall.begin(), kWall.begin() + static_cast<std::ptrdiff_t>(kWall.find(line)), '\n'));
 }
 
-std::string complaint(const std::string& text) {
-    try {
-        (void)parseWall(text, "lab.toml");
-    } catch (const files::InputError& error) {
-        return error.what();
-    }
-    return "no complaint";
-}
-
 TEST(WallFile, NumbersTheGridFirstAndThenTheScreens) {
     const Wall wall = parseWall(kWall, "lab.toml");
     ASSERT_EQ(wall.ranks(), 7);

@@ -19,15 +19,6 @@ std::string wallWith(const std::string& mode, const std::string& more, const std
            more;
 }
 
-std::string complaint(const std::string& text) {
-    try {
-        (void)parseWall(text, "lab.toml");
-    } catch (const files::InputError& error) {
-        return error.what();
-    }
-    return "no complaint";
-}
-
 TEST(WallPlace, GivesEachTileItsMachineAndEachOutputItsMonitor) {
     const Wall wall = parseWall(wallWith("passive", R"(
 [[place]]
