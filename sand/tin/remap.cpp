@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <compare>
+#include <iterator>
 
 namespace sand::tin {
 namespace {
@@ -18,18 +19,20 @@ Wide dividedDown(Wide value, Wide divisor) {
 std::int64_t areaOf(const Mesh::Piece& piece) { return doubledArea(piece.place[0], piece.place[1], piece.place[2]); }
 
 /// A vertex by number and place: a number may have been given to another within one change.
-struct Node {
-    Vertex vertex;
+struct Key {
+    Vertex vertex = kNobody;
     Place place;
+    friend auto operator<=>(const Key&, const Key&) = default;
+};
+
+struct Node {
+    Vertex vertex = kNobody;
+    Place place;
+    std::uint32_t part = 0;  // the first node of what it hangs together with
     bool before = false, now = false;
-    std::int64_t went = 0, came = 0;  // of its star [probe unit²]
-    std::size_t part = 0;             // the first node of what it hangs together with
+    std::int64_t star = 0;  // of what is there now [probe unit²]
     Wide volume = 0;
     double height = 0;  // of the old surface
-
-    friend bool operator<(const Node& a, const Node& b) {
-        return a.vertex != b.vertex ? a.vertex < b.vertex : a.place < b.place;
-    }
 };
 
 /// What hangs together by vertices.
@@ -50,6 +53,7 @@ public:
 
     Remapped run() {
         gatherNodes();
+        gatherStars();
         gatherParts();
         for (Node& node : nodes_) {
             if (node.now) {
@@ -60,66 +64,75 @@ public:
     }
 
 private:
-    Node& nodeOf(const Mesh::Piece& piece, std::size_t corner) {
-        Node wanted;
-        wanted.vertex = piece.corner[corner];
-        wanted.place = piece.place[corner];
-        return *std::lower_bound(nodes_.begin(), nodes_.end(), wanted);
-    }
+    using Corners = std::array<std::uint32_t, 3>;  // nodes of a triangle
 
     void gatherNodes() {
+        std::vector<Key> keys;
+        keys.reserve(3 * (difference_.went.size() + difference_.came.size()));
         for (const auto* pieces : {&difference_.went, &difference_.came}) {
             for (const Mesh::Piece& piece : *pieces) {
                 for (std::size_t i = 0; i < 3; ++i) {
-                    Node node;
-                    node.vertex = piece.corner[i];
-                    node.place = piece.place[i];
-                    nodes_.push_back(node);
+                    keys.push_back({piece.corner[i], piece.place[i]});
                 }
             }
         }
-        std::sort(nodes_.begin(), nodes_.end());
-        const auto same = [](const Node& a, const Node& b) { return !(a < b); };  // they are in order
-        nodes_.erase(std::unique(nodes_.begin(), nodes_.end(), same), nodes_.end());
-        for (const Mesh::Piece& piece : difference_.went) {
+        std::sort(keys.begin(), keys.end());
+        keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+        nodes_.resize(keys.size());
+        for (std::size_t i = 0; i < keys.size(); ++i) {
+            nodes_[i].vertex = keys[i].vertex;
+            nodes_[i].place = keys[i].place;
+            nodes_[i].part = static_cast<std::uint32_t>(i);
+        }
+        const auto cornersOf = [&keys](const Mesh::Piece& piece) {
+            Corners corners{};
             for (std::size_t i = 0; i < 3; ++i) {
-                Node& node = nodeOf(piece, i);
+                const Key key{piece.corner[i], piece.place[i]};
+                corners[i] = static_cast<std::uint32_t>(std::lower_bound(keys.begin(), keys.end(), key) - keys.begin());
+            }
+            return corners;
+        };
+        std::transform(difference_.went.begin(), difference_.went.end(), std::back_inserter(went_), cornersOf);
+        std::transform(difference_.came.begin(), difference_.came.end(), std::back_inserter(came_), cornersOf);
+    }
+
+    void gatherStars() {
+        for (std::size_t i = 0; i < went_.size(); ++i) {
+            for (const std::uint32_t corner : went_[i]) {
+                Node& node = nodes_[corner];
+                node.star += (node.before ? 0 : stars_[at(node.vertex)]) - areaOf(difference_.went[i]);
                 node.before = true;
-                node.went += areaOf(piece);
             }
         }
-        for (const Mesh::Piece& piece : difference_.came) {
-            for (std::size_t i = 0; i < 3; ++i) {
-                Node& node = nodeOf(piece, i);
-                node.now = true;
-                node.came += areaOf(piece);
+        for (std::size_t i = 0; i < came_.size(); ++i) {
+            for (const std::uint32_t corner : came_[i]) {
+                nodes_[corner].star += areaOf(difference_.came[i]);
+                nodes_[corner].now = true;
             }
         }
     }
 
-    std::size_t first(std::size_t node) const {
+    std::uint32_t first(std::uint32_t node) {
         while (nodes_[node].part != node) {
+            nodes_[node].part = nodes_[nodes_[node].part].part;  // long ways are shorter the next time
             node = nodes_[node].part;
         }
         return node;
     }
 
     void gatherParts() {
-        for (std::size_t i = 0; i < nodes_.size(); ++i) {
-            nodes_[i].part = i;
-        }
-        for (const auto* pieces : {&difference_.went, &difference_.came}) {
-            for (const Mesh::Piece& piece : *pieces) {
-                for (std::size_t i = 1; i < 3; ++i) {
-                    const std::size_t a = first(static_cast<std::size_t>(&nodeOf(piece, 0) - nodes_.data()));
-                    const std::size_t b = first(static_cast<std::size_t>(&nodeOf(piece, i) - nodes_.data()));
+        for (const auto* triangles : {&went_, &came_}) {
+            for (const Corners& corners : *triangles) {
+                for (const std::uint32_t corner : {corners[1], corners[2]}) {
+                    const std::uint32_t a = first(corners[0]);
+                    const std::uint32_t b = first(corner);
                     nodes_[std::max(a, b)].part = std::min(a, b);
                 }
             }
         }
         parts_.resize(nodes_.size());
-        for (std::size_t i = 0; i < nodes_.size(); ++i) {
-            nodes_[i].part = first(i);
+        for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+            nodes_[i].part = nodes_[nodes_[i].part].part;  // the first of those before it is known
             if (!nodes_[i].before) {
                 continue;
             }
@@ -130,19 +143,18 @@ private:
             part.highest = part.empty ? height : std::max(part.highest, height);
             part.empty = false;
         }
-        for (const Mesh::Piece& piece : difference_.came) {
-            parts_[nodeOf(piece, 0).part].area += areaOf(piece);
+        for (std::size_t i = 0; i < came_.size(); ++i) {
+            parts_[nodes_[came_[i][0]].part].area += areaOf(difference_.came[i]);
         }
-    }
-
-    [[nodiscard]] std::int64_t starOf(const Node& node) const {
-        return node.before ? stars_[at(node.vertex)] - node.went + node.came : node.came;
     }
 
     /// The old surface there; of several triangles that share the place, in the first.
     [[nodiscard]] double oldHeight(const Place& place) const {
         for (const Mesh::Piece& piece : difference_.went) {
             const auto& [a, b, c] = piece.place;
+            if (std::min({a.x, b.x, c.x}) > place.x || std::max({a.x, b.x, c.x}) < place.x) {
+                continue;
+            }
             const std::int64_t u = doubledArea(b, c, place);
             const std::int64_t v = doubledArea(c, a, place);
             const std::int64_t w = doubledArea(a, b, place);
@@ -157,7 +169,7 @@ private:
     }
 
     void keepHeight(Node& node) {
-        const std::int64_t star = starOf(node);
+        const std::int64_t star = node.star;
         if (node.before) {
             node.height = heights_[at(node.vertex)];
             const std::int64_t old = stars_[at(node.vertex)];
@@ -184,9 +196,9 @@ private:
         for (Node& node : nodes_) {
             if (node.now) {
                 const Part& part = parts_[node.part];
-                const Wide part_ = dividedDown(part.missing * starOf(node), part.stars);
-                node.volume += part_;
-                left[node.part] -= part_;
+                const Wide dealt = dividedDown(part.missing * node.star, part.stars);
+                node.volume += dealt;
+                left[node.part] -= dealt;
             }
         }
         Remapped result;
@@ -201,7 +213,7 @@ private:
             const double reach = 3 * static_cast<double>(part.area) / static_cast<double>(part.stars);
             const double bound =
                 (part.highest - part.lowest) * reach + 2 / static_cast<double>(part.smallestStar) + 0x1p-20;
-            result.shares.push_back({node.vertex, starOf(node), node.volume + unit, node.height, bound});
+            result.shares.push_back({node.vertex, node.star, node.volume + unit, node.height, bound});
         }
         return result;
     }
@@ -210,7 +222,8 @@ private:
     const std::vector<std::int64_t>& volumes_;
     const std::vector<std::int64_t>& stars_;
     const std::vector<double>& heights_;
-    std::vector<Node> nodes_;  // in order
+    std::vector<Node> nodes_;  // in order of Key
+    std::vector<Corners> went_, came_;
     std::vector<Part> parts_;  // by their first node
 };
 
