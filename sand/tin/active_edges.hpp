@@ -43,21 +43,23 @@ public:
     [[nodiscard]] std::vector<Vertex> takeHeldBack();
 
 private:
-    template <bool kBand>
+    template <bool kBand, bool kHeld>
     void slide();
     template <bool kHeld>
     void flow();
     [[nodiscard]] std::int64_t underHeld(const Edge& edge, double difference, std::int64_t flux);
     [[nodiscard]] std::int32_t facetAt(const Layer& layer, const Slopes& slopes, std::int32_t slot);
     [[nodiscard]] std::int32_t localOf(const Layer& layer, Vertex vertex);
-    [[nodiscard]] double underside(std::int32_t local);
+    /// As Facet::steepness; but sand that fills the room below an obstacle is no slope for the sand beside it, which
+    /// leans on the obstacle: it would flow along it for ever.
+    [[nodiscard]] double steepnessAtHeld(const Facet& facet);
 
     struct Local {
         Vertex vertex = kNobody;
         Place place;
         bool watched = false;  // all edges that depend on it are here
         bool heldBack = false;
-        double underside = 0;  // [unit]; NaN: nobody has asked
+        double underside = 0;  // [unit], where an obstacle holds
     };
     struct Sand {
         std::int64_t volume = 0;

@@ -34,14 +34,16 @@ void Erosion::wake(const std::vector<Vertex>& vertices) {
 
 bool Erosion::settled() const { return active_.empty() && woken_.empty() && !wakeAll_; }
 
-void Erosion::sweep(Layer& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved) {
+int Erosion::sweep(Layer& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved) {
     if (sweeps <= 0) {
-        return;
+        return 0;
     }
     wake(active_.takeHeldBack());
     active_.begin(layer, slopes_.start > slopes_.slide, held);
     watchWoken(layer);
-    for (int done = 1; done <= sweeps && !active_.empty(); ++done) {
+    int done = 0;
+    while (done < sweeps && !active_.empty()) {
+        ++done;
         const bool still = !active_.sweep();
         active_.spread(layer, slopes_, weights_);
         if (still || (done % kSweepsTogether == 0 && active_.mostRest())) {
@@ -52,6 +54,7 @@ void Erosion::sweep(Layer& layer, int sweeps, const Underside* held, std::vector
     active_.store(layer, moved);
     std::sort(moved.begin(), moved.end());
     moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
+    return done;
 }
 
 void Erosion::watchWoken(const Layer& layer) {

@@ -49,7 +49,7 @@ public:
     /// While `held` is given no flux raises a vertex above it. Vertices that moved are added to `moved`, ascending,
     /// each once. Costs what moves: nothing once the sand lies still. Sand that an obstacle held back is looked at
     /// again by the next call, so that nobody need wake it when the tool leaves.
-    void sweep(Layer& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved);
+    int sweep(Layer& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved);
     /// Whether nothing moves any more as things are.
     [[nodiscard]] bool settled() const;
 

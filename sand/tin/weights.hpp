@@ -17,6 +17,10 @@ struct Facet {
     std::array<Vertex, 3> corner{kNobody, kNobody, kNobody};  // counter-clockwise, the smallest first
     double first = 0, mixed = 0, second = 0;                  // [1/unit²]
     double start = 1;                                         // of s, where sand at rest begins to slide
+    /// s.
+    [[nodiscard]] double steepness(double d1, double d2) const {
+        return first * d1 * d1 + (mixed * d1 + second * d2) * d2;
+    }
 };
 
 /// And of an edge: of the height that its ends differ by, left · c_left + right · c_right flows, in volume, where c is

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cylinders, walls of sand and sand that is poured, on meshes of every kind and turned (oracles.hpp).
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "sand/height_field.hpp"
+#include "sand/settle.hpp"
+#include "sand/tin/erosion.hpp"
+#include "sand/tin/settle.hpp"
+#include "tests/support/oracles.hpp"
+#include "tests/support/tin_piles.hpp"
+
+namespace {
+
+using namespace tin_piles;
+using oracles::Cylinder;
+
+constexpr std::int32_t kTalus = 65536;  // [unit per cell], 45 degrees
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+
+/// Settles, and expects that volume and extremes are kept.
+void settleAll(Layer& layer) {
+    const sand::tin::Wide volume = layer.volume();
+    const Extremes before = extremesOf(layer);
+    EXPECT_TRUE(sand::tin::settle(layer, kTalus, kTalus).atRest);
+    EXPECT_TRUE(layer.volume() == volume);
+    const Extremes after = extremesOf(layer);
+    EXPECT_GE(after.lowest, before.lowest);
+    EXPECT_LE(after.highest, before.highest);
+}
+
+/// A cylinder in the middle of n x n cells, at rest.
+Layer settledCylinder(Kind kind, int n, double degrees, const Cylinder& cylinder) {
+    Layer layer = layerOf(kind, n, degrees);
+    fill(layer, oracles::around(n / 2.0, n / 2.0, [&](double r) { return cylinder.start(r); }));
+    settleAll(layer);
+    return layer;
+}
+
+double misplacedOf(const Layer& layer, int n, const Cylinder& cylinder) {
+    return misplaced(layer, oracles::around(n / 2.0, n / 2.0, [&](double r) { return cylinder.rest(r); }));
+}
+
+struct Case {
+    Kind kind;
+    double degrees;
+    std::array<double, 2> low, tall;  // share misplaced on 64 x 64 and 128 x 128
+};
+
+// What is asked of random and jittered meshes of 4000 and 16,000 vertices is 2.4 % and 1.0 %, 1.7 % and 0.36 %.
+// Measured: jittered 0.46 and 0.155 %, of the cone 0.83 and 0.35 %; random 1.06 and 0.46 %, of the cone 2.4 and 1.0 %;
+// regular 0.52 and 0.16 % however it is turned, of the cone, 1.7 and 0.37 %. The bounds are these and a tenth.
+constexpr std::array kCases{Case{Kind::regular, 0, {0.0058, 0.0018}, {0.0188, 0.0080}},
+                            Case{Kind::regular, 22.5, {0.0058, 0.0018}, {0.0188, 0.0050}},
+                            Case{Kind::regular, 45, {0.0058, 0.0018}, {0.0188, 0.0080}},
+                            Case{Kind::jittered, 0, {0.0051, 0.0017}, {0.0092, 0.0036}},
+                            Case{Kind::jittered, 30, {0.0051, 0.0017}, {0.0092, 0.0036}},
+                            Case{Kind::random, 0, {0.0117, 0.0051}, {0.024, 0.010}}};
+
+TEST(TinPile, CylindersBecomeFrustumAndConeOnMeshesOfEveryKind) {
+    for (const Case& one : kCases) {
+        for (const std::size_t finer : {0U, 1U}) {
+            const int n = finer == 0 ? 64 : 128;
+            if (finer == 1 && kSanitized) {
+                continue;
+            }
+            const Cylinder low(0.25 * n, 0.15 * n), tall(0.15 * n, 0.45 * n);
+            EXPECT_LE(misplacedOf(settledCylinder(one.kind, n, one.degrees, low), n, low), one.low[finer])
+                << "frustum, " << nameOf(one.kind) << " turned by " << one.degrees << ", " << n;
+            EXPECT_LE(misplacedOf(settledCylinder(one.kind, n, one.degrees, tall), n, tall), one.tall[finer])
+                << "cone, " << nameOf(one.kind) << " turned by " << one.degrees << ", " << n;
+        }
+    }
+}
+
+TEST(TinPile, AWallOfSandBecomesItsRampInAnyDirection) {
+    for (const auto& [kind, allowed] :
+         {std::pair{Kind::regular, 0.0025}, {Kind::jittered, 0.0025}, {Kind::random, 0.0075}}) {
+        for (const double degrees : {0.0, 22.5, 45.0}) {
+            constexpr int kSide = 64;
+            const oracles::Prism wall(0.12 * kSide, 0.1 * kSide);
+            const oracles::Line line{kSide / 2.0, kSide / 2.0, degrees};
+            const auto inTheMiddle = [&](double x, double y) { return std::abs(line.along(x, y)) < 0.15 * kSide; };
+            Layer layer = layerOf(kind, kSide);
+            fill(layer, [&](double x, double y) {
+                return std::abs(line.along(x, y)) < 0.4 * kSide ? wall.start(line.across(x, y)) : 0;
+            });
+            settleAll(layer);
+            EXPECT_LE(misplaced(
+                          layer, [&](double x, double y) { return wall.rest(line.across(x, y)); }, inTheMiddle),
+                      allowed)
+                << nameOf(kind) << ", " << degrees;
+        }
+    }
+}
+
+// A tool far smaller than a cell pours on one vertex; steps of 64 sweeps between.
+TEST(TinPile, PouredSandIsACone) {
+    double coarser = 1;
+    for (const int n : {32, 64}) {
+        Layer layer = layerOf(Kind::jittered, n);
+        const sand::tin::Vertex top = layer.insert({n * kCell / 2, n * kCell / 2});
+        static_cast<void>(layer.takeChange());
+        const double foot = 0.3 * n;
+        const double volume = std::numbers::pi / 3 * foot * foot * foot;  // [cell³]
+        sand::tin::Erosion erosion(layer, kTalus, kTalus);
+        std::vector<sand::tin::Vertex> moved;
+        constexpr int kPortions = 200;
+        for (int i = 0; i < kPortions; ++i) {
+            layer.add(top, static_cast<std::int64_t>(6.0 * kCell * kCell * kHeight * volume / kPortions));
+            erosion.wake({top});
+            erosion.sweep(layer, 64, nullptr, moved);
+        }
+        erosion.sweep(layer, 1'000'000, nullptr, moved);
+        EXPECT_TRUE(erosion.settled());
+        const oracles::PouredCone cone(volume);
+        const double wrong =
+            misplaced(layer, oracles::around(n / 2.0, n / 2.0, [&](double r) { return cone.rest(r); }));
+        EXPECT_LE(wrong, 0.6 * coarser) << "does not converge, " << n;
+        coarser = wrong;
+    }
+    EXPECT_LE(coarser, 0.012);  // measured 0.9 %
+}
+
+/// Share of the sand between two surfaces, by heights at the middles of cells.
+double between(const Layer& one, const Layer& other, int n) {
+    double sum = 0, all = 0;
+    std::int32_t here = sand::tin::kNobody, there = sand::tin::kNobody;
+    for (int y = 0; y < n; ++y) {
+        for (int x = 0; x < n; ++x) {
+            const Place place{x * kCell + kCell / 2, y * kCell + kCell / 2};
+            const double height = heightAt(one, place, here);
+            sum += std::abs(height - heightAt(other, place, there));
+            all += height;
+        }
+    }
+    return sum / all;
+}
+
+// A grid cannot do that by itself: its axes show.
+TEST(TinPile, TurningTheMeshChangesThePileByLessThanItsError) {
+    constexpr int kSide = 64;
+    const Cylinder cylinder(0.25 * kSide, 0.15 * kSide);
+    const Layer straight = settledCylinder(Kind::jittered, kSide, 0, cylinder);
+    const double error = misplacedOf(straight, kSide, cylinder);
+    for (const double degrees : {9.0, 22.5, 45.0}) {
+        EXPECT_LE(between(straight, settledCylinder(Kind::jittered, kSide, degrees, cylinder), kSide), error)
+            << degrees;
+    }
+}
+
+TEST(TinPile, TheSamePileOnGridAndTinAgrees) {
+    constexpr int kSide = 64;
+    const Cylinder cylinder(0.25 * kSide, 0.15 * kSide);
+    const Layer layer = settledCylinder(Kind::jittered, kSide, 0, cylinder);
+    sand::HeightField field = oracles::fieldOf(
+        kSide, kSide, oracles::around(kSide / 2.0, kSide / 2.0, [&](double r) { return cylinder.start(r); }));
+    sand::Rules rules;
+    rules.columns = rules.rows = kSide;
+    rules.threshold = rules.startThreshold = kTalus;
+    sand::settle(field, rules);
+    double sum = 0, all = 0;
+    std::int32_t triangle = sand::tin::kNobody;
+    for (int y = 0; y < kSide; ++y) {
+        for (int x = 0; x < kSide; ++x) {
+            const double height = field.height(x, y) / kHeight;
+            sum += std::abs(height - heightAt(layer, {x * kCell + kCell / 2, y * kCell + kCell / 2}, triangle));
+            all += height;
+        }
+    }
+    EXPECT_LE(sum / all, 0.0051 + 0.003) << "the errors stated for either";
+}
+
+}  // namespace

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "sand/tin/layer.hpp"
+
+/// Meshes of every kind, piles on them, and how far sand lies from where it should. Lengths in cells of 256 probe
+/// units.
+namespace tin_piles {
+
+using sand::tin::Layer;
+using sand::tin::Place;
+using sand::tin::Vertex;
+
+inline constexpr int kCell = 256;         // [probe unit]
+inline constexpr double kHeight = 65536;  // [unit], of a cell
+
+enum class Kind : std::uint8_t { regular, jittered, random };
+
+inline const char* nameOf(Kind kind) {
+    constexpr std::array kNames{"regular", "jittered", "random"};
+    return kNames.at(static_cast<std::size_t>(kind));
+}
+
+/// In [0, 1), the same with every library.
+inline double chance(std::mt19937& random) { return static_cast<double>(random()) / 4294967296.0; }
+
+/// About n² vertices on n x n cells: a square lattice turned by `degrees` about the middle, the same with every vertex
+/// moved by up to a quarter of a cell each way, or independent places; and a vertex per cell along the rim.
+inline std::vector<Place> placesOf(Kind kind, int n, double degrees, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    const std::int32_t side = n * kCell;
+    std::vector<Place> places;
+    for (std::int32_t at = kCell; at < side; at += kCell) {
+        places.insert(places.end(), {{at, 0}, {at, side}, {0, at}, {side, at}});
+    }
+    if (kind == Kind::random) {
+        for (int i = 0; i < n * n; ++i) {
+            const auto x = static_cast<std::int32_t>(chance(random) * side);
+            places.push_back({x, static_cast<std::int32_t>(chance(random) * side)});
+        }
+        return places;
+    }
+    const double jitter = kind == Kind::jittered ? 0.5 : 0;
+    const double east = std::cos(degrees * std::numbers::pi / 180);
+    const double north = std::sin(degrees * std::numbers::pi / 180);
+    for (int row = -n; row <= 2 * n; ++row) {
+        for (int column = -n; column <= 2 * n; ++column) {
+            const double a = column - n / 2.0 + jitter * (chance(random) - 0.5);
+            const double b = row - n / 2.0 + jitter * (chance(random) - 0.5);
+            const double x = n / 2.0 + east * a - north * b;
+            const double y = n / 2.0 + north * a + east * b;
+            if (std::min({x, y, n - x, n - y}) > 0.4) {
+                places.push_back({static_cast<std::int32_t>(std::floor(x * kCell + 0.5)),
+                                  static_cast<std::int32_t>(std::floor(y * kCell + 0.5))});
+            }
+        }
+    }
+    return places;
+}
+
+inline Layer layerOf(Kind kind, int n, double degrees = 0, std::uint32_t seed = 1) {
+    sand::tin::Mesh mesh(n * kCell, n * kCell);
+    static_cast<void>(mesh.insert(placesOf(kind, n, degrees, seed)));
+    return Layer(std::move(mesh));
+}
+
+/// Calls visit(weights, x, y) for the centres of 256 equal parts of a triangle.
+template <class Visit>
+void everywhereIn(const std::array<Place, 3>& at, const Visit& visit) {
+    constexpr int kParts = 16;
+    const auto tell = [&](double a, double b) {
+        const std::array<double, 3> weights{a / kParts, b / kParts, 1 - (a + b) / kParts};
+        visit(weights, (weights[0] * at[0].x + weights[1] * at[1].x + weights[2] * at[2].x) / kCell,
+              (weights[0] * at[0].y + weights[1] * at[1].y + weights[2] * at[2].y) / kCell);
+    };
+    for (int i = 0; i < kParts; ++i) {
+        for (int j = 0; i + j < kParts; ++j) {
+            tell(i + 1 / 3.0, j + 1 / 3.0);
+            if (i + j + 1 < kParts) {
+                tell(i + 2 / 3.0, j + 2 / 3.0);
+            }
+        }
+    }
+}
+
+/// Calls visit(corners, doubled area [probe unit²], weights, x, y) all over the field.
+template <class Visit>
+void everywhere(const Layer& layer, const Visit& visit) {
+    const sand::tin::Triangles& mesh = layer.triangles();
+    for (const sand::tin::Triangle& triangle : mesh.triangles) {
+        if (triangle.alive()) {
+            std::array<Place, 3> at;
+            std::transform(triangle.corner.begin(), triangle.corner.end(), at.begin(),
+                           [&](Vertex corner) { return mesh.places[static_cast<std::size_t>(corner)]; });
+            const auto part = static_cast<double>(doubledArea(at[0], at[1], at[2])) / 256;
+            everywhereIn(at, [&](const std::array<double, 3>& weights, double x, double y) {
+                visit(triangle.corner, part, weights, x, y);
+            });
+        }
+    }
+}
+
+/// Makes the volume of every vertex what the profile z = f(x, y) [cell] has under the vertex's share of the surface.
+template <class Profile>
+void fill(Layer& layer, const Profile& profile) {
+    std::vector<double> volumes(layer.volumes().size());
+    everywhere(layer, [&](const std::array<Vertex, 3>& corner, double area, const auto& weights, double x, double y) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            volumes[static_cast<std::size_t>(corner[k])] += 3 * area * weights[k] * kHeight * profile(x, y);
+        }
+    });
+    for (std::size_t i = 0; i < volumes.size(); ++i) {
+        if (layer.triangles().alive(static_cast<Vertex>(i))) {
+            layer.add(static_cast<Vertex>(i),
+                      static_cast<std::int64_t>(std::floor(volumes[i] + 0.5)) - layer.volumes()[i]);
+        }
+    }
+}
+
+/// Volume between the surface and a profile, over that of the profile, where `counts(x, y)`.
+template <class Profile, class Counts>
+double misplaced(const Layer& layer, const Profile& profile, const Counts& counts) {
+    double wrong = 0;
+    double all = 0;
+    everywhere(layer, [&](const std::array<Vertex, 3>& corner, double area, const auto& weights, double x, double y) {
+        if (counts(x, y)) {
+            double height = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                height += weights[k] * layer.heights()[static_cast<std::size_t>(corner[k])] / kHeight;
+            }
+            const double expected = profile(x, y);
+            wrong += area * std::abs(height - expected);
+            all += area * expected;
+        }
+    });
+    return wrong / all;
+}
+
+template <class Profile>
+double misplaced(const Layer& layer, const Profile& profile) {
+    return misplaced(layer, profile, [](double, double) { return true; });
+}
+
+/// Height of the surface over a place [cell].
+inline double heightAt(const Layer& layer, Place place, std::int32_t& triangle) {
+    const sand::tin::Located there = locate(layer.triangles(), place, triangle);
+    triangle = there.triangle;
+    const auto& corner = layer.triangles().triangles[static_cast<std::size_t>(triangle)].corner;
+    double sum = 0;
+    double area = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto weight = static_cast<double>(there.weights[k]);
+        sum += weight * layer.heights()[static_cast<std::size_t>(corner[k])] / kHeight;
+        area += weight;
+    }
+    return sum / area;
+}
+
+/// The lowest and the highest height [unit].
+struct Extremes {
+    double lowest = std::numeric_limits<double>::max(), highest = std::numeric_limits<double>::lowest();
+};
+
+inline Extremes extremesOf(const Layer& layer) {
+    Extremes result;
+    for (Vertex vertex = 0; vertex < static_cast<Vertex>(layer.heights().size()); ++vertex) {
+        if (layer.triangles().alive(vertex)) {
+            const double height = layer.heights()[static_cast<std::size_t>(vertex)];
+            result = {std::min(result.lowest, height), std::max(result.highest, height)};
+        }
+    }
+    return result;
+}
+
+}  // namespace tin_piles
