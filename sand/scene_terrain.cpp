@@ -57,6 +57,11 @@ void checkCells(const files::TomlTable& terrain, const EsriGrid& raster) {
 HeightField fromSource(const files::TomlTable& file, const files::TomlTable& terrain, int kind, Scene& scene,
                        std::shared_ptr<Ground>& ground) {
     const TerrainSource source = readSource(file, terrain, kind);
+    if (!source.points.empty()) {
+        terrain.fail("kind",
+                     "points make a triangulated terrain: add [tin]; or make a raster of them, for kind = \"dem\": "
+                     "gdal_grid");
+    }
     checkCells(terrain, source.raster);
     // A grid of rock has the same cells, those at the edges too.
     const EsriGrid grid = terrain.has("bedrock") ? source.raster : withoutEmptyEdges(source.raster);

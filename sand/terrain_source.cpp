@@ -5,9 +5,11 @@
 
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "files/input_error.hpp"
 #include "sand/height_field.hpp"
+#include "sand/import/gsf_file.hpp"
 #include "sand/import/importer.hpp"
 
 namespace sand {
@@ -82,18 +84,44 @@ EsriGrid readFunction(const files::TomlTable& file, const files::TomlTable& terr
     }
 }
 
-enum Kind { kEsriAscii, kDem, kImage, kFunction };
+/// A scan is nanometres high: its width becomes a few scene units, and its heights grow with it and on request more.
+TerrainSource readScan(const files::TomlTable& terrain) {
+    const double width = terrain.numberOr("width", 2.0, files::kPositive);
+    const double exaggeration = terrain.numberOr("exaggeration", 1, files::kPositive);
+    TerrainSource source{.raster = readGsf(fileOf(terrain))};
+    EsriGrid& scan = source.raster;
+    Georeference& reference = source.georeference;
+    reference.lengthPerUnit = scan.cellSize * scan.columns / width;
+    reference.heightPerUnit = reference.lengthPerUnit / exaggeration;
+    scan.cellSize = width / scan.columns;
+    if (scan.cellDepth) {
+        *scan.cellDepth /= reference.lengthPerUnit;
+    }
+    for (double& height : scan.heights) {
+        height /= reference.heightPerUnit;
+        if (std::isinf(height)) {
+            terrain.fail("file", scan.file + " is too small for heights to be scaled; its XReal is in metres");
+        }
+    }
+    return source;
+}
 
-EsriGrid readRasterSource(const files::TomlTable& file, const files::TomlTable& terrain, int kind) {
+enum Kind { kEsriAscii, kDem, kImage, kFunction, kGsf, kPoints };
+
+TerrainSource readKind(const files::TomlTable& file, const files::TomlTable& terrain, int kind) {
     switch (kind) {
         case kDem:
-            return readDem(terrain);
+            return {.raster = readDem(terrain)};
         case kImage:
-            return readImage(terrain);
+            return {.raster = readImage(terrain)};
         case kFunction:
-            return readFunction(file, terrain);
+            return {.raster = readFunction(file, terrain)};
+        case kGsf:
+            return readScan(terrain);
+        case kPoints:
+            return {.points = readPoints(fileOf(terrain))};
         default:
-            return readEsriGrid(fileOf(terrain));
+            return {.raster = readEsriGrid(fileOf(terrain))};
     }
 }
 
@@ -107,7 +135,7 @@ Georeference TerrainSource::referenceAt(const EsriGrid& part) const {
 }
 
 const std::vector<std::string_view>& sourceKinds() {
-    static const std::vector<std::string_view> kKinds = {"esri_ascii", "dem", "image", "function"};
+    static const std::vector<std::string_view> kKinds = {"esri_ascii", "dem", "image", "function", "gsf", "points"};
     return kKinds;
 }
 
@@ -115,7 +143,7 @@ TerrainSource readSource(const files::TomlTable& file, const files::TomlTable& t
     if (kind != kFunction && file.has("field")) {
         file.fail("field", "[field] is for flat, dunes and functions; a file brings its own columns, rows and cells");
     }
-    TerrainSource source{.raster = readRasterSource(file, terrain, kind)};
+    TerrainSource source = readKind(file, terrain, kind);
     source.georeference.units = source.raster.units;
     source.georeference.datum = terrain.numberOr("datum", 0);
     return source;

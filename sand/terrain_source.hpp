@@ -7,13 +7,15 @@
 #include "files/toml_table.hpp"
 #include "sand/esri_grid.hpp"
 #include "sand/georeference.hpp"
+#include "sand/import/points_file.hpp"
 
 namespace sand {
 
-/// Heights from outside, as a scene names them: on a raster.
+/// Heights from outside, as a scene names them: on a raster, or at points.
 struct TerrainSource {
-    EsriGrid raster;              // cells, corner and heights in scene units, the datum not yet taken off
-    Georeference georeference{};  // but for the corner, which is the raster's: referenceAt()
+    EsriGrid raster{};            // cells, corner and heights in scene units, the datum not yet taken off
+    Points points{};              // in scene units, likewise; empty where there is a raster
+    Georeference georeference{};  // but for the corner: referenceAt()
 
     /// The georeference of a field whose south-west corner is that of `part`, a part of the raster.
     [[nodiscard]] Georeference referenceAt(const EsriGrid& part) const;
