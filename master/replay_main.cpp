@@ -4,13 +4,16 @@
 #include <CLI/CLI.hpp>
 #include <fstream>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "files/command_line.hpp"
 #include "files/input_error.hpp"
+#include "files/whole_file.hpp"
 #include "haptic_bridge/tick_replay.hpp"
 #include "master/journal.hpp"
 #include "master/journal_tools.hpp"
-#include "sand/esri_grid.hpp"
+#include "sand/import/raster_file.hpp"
+#include "sand/scene_raster.hpp"
 #include "sand/terrain.hpp"
 
 namespace {
@@ -19,7 +22,8 @@ struct Options {
     std::string file;
     bool hash = false;
     bool verify = false;
-    std::string heights, forces, steps, recovered;
+    bool volumes = false;
+    std::string heights, difference, mesh, forces, steps, recovered;
     std::uint64_t until = std::numeric_limits<std::uint64_t>::max();
 };
 
@@ -94,14 +98,39 @@ int replay(const master::Journal& journal, std::uint64_t until, sand::Terrain& t
     return differing;
 }
 
-void writeHeights(const sand::HeightField& field, const std::string& file) {
-    sand::EsriGrid grid{field.columns(), field.rows(), field.cellSize(), 0, 0, {}};
-    for (int y = field.rows() - 1; y >= 0; --y) {
-        for (int x = 0; x < field.columns(); ++x) {
-            grid.heights.push_back(sand::withFewDecimals(field.height(x, y) * field.unit(), field.unit()));
+/// Long before there is something to be written.
+void checkOutputs(const Options& options) {
+    if (!options.mesh.empty()) {
+        sand::checkMeshName(options.mesh);
+    }
+    for (const std::string& file : {options.heights, options.difference, options.mesh}) {
+        if (!file.empty()) {
+            const files::WholeFile canBeWritten(file);
         }
     }
-    sand::writeEsriGrid(grid, file);
+}
+
+void writeOutputs(const sand::HeightField& field, const sand::Scene& scene, const Options& options) {
+    if (!options.heights.empty()) {
+        sand::writeRaster(sand::heightsOf(field, scene), options.heights);
+    }
+    if (!options.difference.empty()) {
+        sand::writeRaster(sand::differenceOf(field, scene), options.difference);
+    }
+    if (!options.mesh.empty()) {
+        sand::writeMesh(sand::meshOf(field, scene), options.mesh);
+    }
+    if (options.volumes) {
+        const sand::Earthwork work = sand::earthworkOf(field, scene);
+        const auto both = [&](double unit) -> nlohmann::ordered_json {
+            return {{"cut", static_cast<double>(work.cut) * unit}, {"fill", static_cast<double>(work.fill) * unit}};
+        };
+        nlohmann::ordered_json json;
+        json["units"] = {{"cut", work.cut}, {"fill", work.fill}};
+        json["cubic_scene_units"] = both(work.unit);
+        json["cubic_metres"] = work.cubicMetres > 0 ? both(work.cubicMetres) : nullptr;
+        fmt::print("{}\n", json.dump());
+    }
 }
 
 int run(const Options& options) {
@@ -116,6 +145,7 @@ int run(const Options& options) {
     if (options.verify) {
         return master::verifyJournal(options.file);
     }
+    checkOutputs(options);
     const master::Journal journal = master::readJournal(options.file);
     if (journal.tornBytes > 0) {
         fmt::print(stderr, "{}: the last {} bytes are no whole record and were left out\n", options.file,
@@ -141,9 +171,7 @@ int run(const Options& options) {
     if (options.hash) {
         fmt::print("{:016x}\n", terrain.stateHash());
     }
-    if (!options.heights.empty()) {
-        writeHeights(terrain.field(), options.heights);
-    }
+    writeOutputs(terrain.field(), journal.scene, options);
     return differing == 0 ? 0 : 1;
 }
 
@@ -156,7 +184,11 @@ int main(int argc, char** argv) {
     Options options;
     app.add_option("FILE", options.file, "session.journal of a session")->required();
     app.add_flag("--hash", options.hash, "print the state hash after the last step");
-    app.add_option("--heights", options.heights, "write the heights then, as an ESRI ASCII grid");
+    app.add_option("--heights", options.heights,
+                   "write the heights then, where the terrain came from: a .tif, or an ESRI ASCII grid");
+    app.add_option("--difference", options.difference, "the same of how much higher the sand is than at the start");
+    app.add_option("--mesh", options.mesh, "write the surface as triangles: a .ply or .obj");
+    app.add_flag("--volumes", options.volumes, "print what was cut and filled since the start, as one line of JSON");
     app.add_option(
         "--forces", options.forces,
         "recompute what a hand felt at every tick, from a session recorded with --record, into this CSV file");

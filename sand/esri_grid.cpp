@@ -181,7 +181,11 @@ EsriGrid readEsriGrid(const std::filesystem::path& file) {
 }
 
 void EsriGrid::fail(int column, int rowFromSouth, const std::string& message) const {
-    const long line = lines.empty() ? 0 : lines[static_cast<std::size_t>(rows - 1 - rowFromSouth)];
+    if (lines.empty()) {
+        throw files::InputError(
+            fmt::format("{}: pixel {}, {} (from the north-west): {}", file, column + 1, rows - rowFromSouth, message));
+    }
+    const long line = lines[static_cast<std::size_t>(rows - 1 - rowFromSouth)];
     throw files::InputError(file, line, fmt::format("column {} of this row: {}", column + 1, message));
 }
 

@@ -7,11 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "sand/georeference.hpp"
 #include "sand/grid.hpp"
 
 namespace sand {
 
-/// A raster as ESRI ASCII grids hold it: rows from the north, cells that may have no data.
+/// A raster as ESRI ASCII grids hold it: rows from the north, cells that may have no data. Those that come from other
+/// formats say more of their units (sand/import/importer.hpp).
 struct EsriGrid {
     int columns = 0, rows = 0;
     double cellSize = 0;                 // of a cell from west to east [file's length unit]
@@ -20,7 +22,8 @@ struct EsriGrid {
     std::optional<double> cellDepth{};   // of a cell from south to north, where it is not cellSize
     std::optional<double> noData{};      // what stands for no data in the file
     std::string file{};                  // where it was read from, for messages
-    std::vector<long> lines{};           // of the file, in which each row begins, north first
+    std::vector<long> lines{};           // of the file, in which each row begins, north first; empty: no text
+    RasterUnits units{};                 // an ESRI ASCII grid says nothing of them
 
     [[nodiscard]] double at(int column, int rowFromSouth) const { return heights[index(column, rowFromSouth)]; }
     [[nodiscard]] bool isNoData(int column, int rowFromSouth) const { return std::isnan(at(column, rowFromSouth)); }
@@ -30,7 +33,7 @@ struct EsriGrid {
         return static_cast<std::size_t>(rows - 1 - rowFromSouth) * static_cast<std::size_t>(columns) +
                static_cast<std::size_t>(column);
     }
-    /// Throws files::InputError about this cell, with file and line.
+    /// Throws files::InputError about this cell, with file and line, or its row where there are no lines.
     [[noreturn]] void fail(int column, int rowFromSouth, const std::string& message) const;
 };
 

@@ -9,6 +9,20 @@ namespace sand {
 namespace {
 
 constexpr unsigned kTinFlag = 0x80;  // beside the scheme: scenes of height fields are the bytes they always were
+/// What may stand at the end of a scene, each with its length in bytes.
+enum class Part : std::uint8_t { georeference = 1 };
+
+void decodePart(files::ByteReader& reader, Scene& scene) {
+    const auto part = reader.get<std::uint8_t>();
+    files::ByteReader bytes(reader.getBlock());
+    if (part != static_cast<std::uint8_t>(Part::georeference)) {
+        throw files::FormatError("a scene with a part that this version does not know");
+    }
+    scene.georeference = Georeference::decode(bytes);
+    if (!bytes.atEnd()) {
+        throw files::FormatError("a scene with a part that is longer than it should be");
+    }
+}
 
 }  // namespace
 
@@ -103,6 +117,12 @@ files::Bytes Scene::encode() const {
     writer.put(static_cast<std::uint8_t>(look.hillShade ? 1 : 0));
     writer.put(look.detail);
     force.encodeRest(writer);
+    if (georeference != Georeference{}) {
+        files::ByteWriter part;
+        georeference.encode(part);
+        writer.put(static_cast<std::uint8_t>(Part::georeference));
+        writer.putBlock(part.bytes());
+    }
     return writer.take();
 }
 
@@ -145,6 +165,9 @@ Scene Scene::decode(std::span<const std::uint8_t> bytes) {
     }
     if (!reader.atEnd()) {
         scene.force.decodeRest(reader);
+    }
+    while (!reader.atEnd()) {
+        decodePart(reader, scene);
     }
     return scene;
 }

@@ -11,6 +11,7 @@
 
 #include "files/byte_stream.hpp"
 #include "sand/force_constants.hpp"
+#include "sand/georeference.hpp"
 #include "sand/ground.hpp"
 #include "sand/height_field.hpp"
 #include "sand/material.hpp"
@@ -75,6 +76,7 @@ struct Scene {
     HeightField terrain{1, 1, 1.0};         // as the session starts; of a TIN one cell, for its nominal size
     std::shared_ptr<const tin::Start> tin;  // likewise; null for a height field
     std::shared_ptr<const Ground> ground;   // null without rock and walls
+    Georeference georeference;              // where the terrain came from; as it begins where it came from nowhere
     std::vector<std::string> warnings;      // one line each, for whoever loads it to print
     Material material;                      // what the rules were derived from; not encoded, as the warnings are not
 

@@ -7,7 +7,8 @@
 #include <cmath>
 
 #include "sand/dunes.hpp"
-#include "sand/esri_grid.hpp"
+#include "sand/import/raster_file.hpp"
+#include "sand/terrain_source.hpp"
 
 namespace sand {
 namespace {
@@ -38,21 +39,34 @@ Ground& groundOf(std::shared_ptr<Ground>& ground, const HeightField& field) {
     return *ground;
 }
 
+/// Columns and rows of the field that the raster becomes.
+void checkCells(const files::TomlTable& terrain, const EsriGrid& raster) {
+    if (raster.aspect() != 1) {
+        const std::string advice =
+            raster.lines.empty() ? fmt::format("; resample it: gdalwarp -tr {0} {0} -r bilinear", raster.cellSize) : "";
+        terrain.fail("file", fmt::format("{} has cells of {} x {}; a scene's are square{}", raster.file,
+                                         raster.cellSize, *raster.cellDepth, advice));
+    }
+    if (raster.columns > kMaxSide || raster.rows > kMaxSide) {
+        terrain.fail("file", fmt::format("{} has {} x {} cells; a scene's are at most {} a side", raster.file,
+                                         raster.columns, raster.rows, kMaxSide));
+    }
+}
+
 /// Cells without data become walls, drawn as flats at the lowest height there is.
-HeightField fromEsriGrid(const files::TomlTable& file, const files::TomlTable& terrain,
-                         std::shared_ptr<Ground>& ground) {
-    if (file.has("field")) {
-        file.fail("field", "[field] is for flat and dunes; an ESRI grid brings its own columns, rows and cell size");
+HeightField fromSource(const files::TomlTable& file, const files::TomlTable& terrain, int kind, Scene& scene,
+                       std::shared_ptr<Ground>& ground) {
+    const TerrainSource source = readSource(file, terrain, kind);
+    if (!source.points.empty()) {
+        terrain.fail("kind",
+                     "points make a triangulated terrain: add [tin]; or make a raster of them, for kind = \"dem\": "
+                     "gdal_grid");
     }
-    const EsriGrid whole = readEsriGrid(terrain.folder() / terrain.text("file"));
-    if (whole.aspect() != 1) {
-        terrain.fail("file", fmt::format("{} has cells of {} x {}; a scene's are square", whole.file, whole.cellSize,
-                                         *whole.cellDepth));
-    }
+    checkCells(terrain, source.raster);
     // A grid of rock has the same cells, those at the edges too.
-    const EsriGrid trimmed = withoutEmptyEdges(whole);
-    const EsriGrid& grid = terrain.has("bedrock") ? whole : trimmed;
-    const double datum = terrain.numberOr("datum", 0);
+    const EsriGrid grid = terrain.has("bedrock") ? source.raster : withoutEmptyEdges(source.raster);
+    scene.georeference = source.referenceAt(grid);
+    const double datum = scene.georeference.datum;
     HeightField field(grid.columns, grid.rows, grid.cellSize);
     std::int32_t lowest = kMaxHeight;
     const auto forEachCell = [&](auto&& visit) {
@@ -62,9 +76,10 @@ HeightField fromEsriGrid(const files::TomlTable& file, const files::TomlTable& t
             }
         }
     };
+    const std::string key = terrain.has("file") ? "file" : "z";
     forEachCell([&](int column, int row, double height) {
         if (!std::isnan(height)) {
-            const std::int32_t units = heightUnits(terrain, "file", height - datum, field.unit());
+            const std::int32_t units = heightUnits(terrain, key, height - datum, field.unit());
             field.setHeight(column, row, units);
             lowest = std::min(lowest, units);
         }
@@ -128,7 +143,7 @@ void readBedrock(const files::TomlTable& terrain, const HeightField& field, std:
                 [&](int column, int row) { return std::max(field.height(column, row) - layer, -kMaxHeight); });
     }
     if (terrain.has("bedrock")) {
-        const EsriGrid rock = readEsriGrid(terrain.folder() / terrain.text("bedrock"));
+        const EsriGrid rock = readRaster(terrain.folder() / terrain.text("bedrock"));
         if (rock.columns != field.columns() || rock.rows != field.rows()) {
             terrain.fail("bedrock",
                          fmt::format("the rock has {} x {} cells, the terrain {} x {}: they must be the same",
@@ -152,9 +167,11 @@ void readBedrock(const files::TomlTable& terrain, const HeightField& field, std:
 
 bool readTerrain(const files::TomlTable& file, Scene& scene) {
     const files::TomlTable terrain = file.requiredTable("terrain");
-    const int kind = terrain.choiceOr("kind", {"flat", "dunes", "esri_ascii"}, 0);
+    std::vector<std::string_view> kinds{"flat", "dunes"};
+    kinds.insert(kinds.end(), sourceKinds().begin(), sourceKinds().end());
+    const int kind = terrain.choiceOr("kind", kinds, 0);
     std::shared_ptr<Ground> ground;
-    scene.terrain = kind == 2 ? fromEsriGrid(file, terrain, ground) : madeUp(file, terrain, kind == 1);
+    scene.terrain = kind < 2 ? madeUp(file, terrain, kind == 1) : fromSource(file, terrain, kind - 2, scene, ground);
     readBedrock(terrain, scene.terrain, ground);
     const bool settle = terrain.flagOr("settle", false);
     terrain.finish();

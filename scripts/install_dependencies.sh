@@ -12,6 +12,7 @@ packages=(
     libglfw3-dev libx11-dev libxrandr-dev libxcursor1       # windows, monitors by name, the hidden cursor
     libtomlplusplus-dev libcli11-dev libfmt-dev             # files, options, messages
     libxxhash-dev libzstd-dev libpng-dev nlohmann-json3-dev # hashes, states, pictures, summaries
+    libgdal-dev libmuparser-dev                             # terrain from rasters, pictures and formulas
     libssl-dev                                              # who may come in over a network
     libgtest-dev libbenchmark-dev xvfb iproute2             # tests and benchmarks; an emulated cluster
 )

@@ -17,6 +17,7 @@
 
 #include "files/command_line.hpp"
 #include "files/whole_file.hpp"
+#include "sand/import/raster_file.hpp"
 #include "sand/relax/relaxation.hpp"
 #include "sand/relax/steepness.hpp"
 #include "sand/state_hash.hpp"
@@ -181,10 +182,10 @@ ordered_json report(const GridSand& sand, const sand::EsriGrid& grid, const Opti
 
 int run(const Options& options) {
     check(options);
-    const sand::EsriGrid grid = sand::readEsriGrid(options.in);
+    const sand::EsriGrid grid = sand::readRaster(options.in, sand::namesGeoTiff(options.out));
     std::optional<sand::EsriGrid> bedrock;
     if (!options.bedrock.empty()) {
-        bedrock = sand::readEsriGrid(options.bedrock);
+        bedrock = sand::readRaster(options.bedrock);
     }
     GridSand sand = sand::relax::toSand(grid, bedrock ? &*bedrock : nullptr,
                                         {options.talus, options.band, schemeOf(options.scheme)});
@@ -194,7 +195,7 @@ int run(const Options& options) {
     }
     const std::int64_t volumeBefore = sand.volume();
     const Timed timed = relaxTimed(sand, options);
-    sand::writeEsriGrid(sand.toGrid(grid), options.out);
+    sand::writeRaster(sand.toGrid(grid), options.out);
     fmt::print("{}\n", report(sand, grid, options, volumeBefore, timed).dump());
     return 0;
 }
@@ -204,8 +205,10 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
     CLI::App app{"Lets the sand of a grid slide until it lies nowhere steeper than its talus.", "sandwall-relax"};
     Options options;
-    app.add_option("IN", options.in, "an ESRI ASCII grid of heights; cells without data are walls")->required();
-    app.add_option("OUT", options.out, "the grid at rest; may be IN")->required();
+    app.add_option("IN", options.in,
+                   "an ESRI ASCII grid of heights, a GeoTIFF or another raster; cells without data are walls")
+        ->required();
+    app.add_option("OUT", options.out, "the grid at rest, a GeoTIFF when it ends in .tif; may be IN")->required();
     app.add_option("--talus", options.talus, "steepest angle at which sand rests, in degrees, from 0 to below 90")
         ->required();
     app.add_option("--scheme", options.scheme, "g, g_plain, n4 or settle (docs/relax.md)")

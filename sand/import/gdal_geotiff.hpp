@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "sand/import/importer.hpp"
+
+namespace sand {
+
+/// Importer::geoTiff().
+[[nodiscard]] files::Bytes geoTiffOf(const EsriGrid& grid, const std::string& file);
+
+}  // namespace sand

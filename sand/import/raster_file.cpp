@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/import/raster_file.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "files/whole_file.hpp"
+#include "sand/import/importer.hpp"
+
+namespace sand {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string endingOf(const fs::path& file) {
+    std::string ending = file.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    return ending;
+}
+
+void write(const files::Bytes& bytes, const fs::path& file) {
+    files::WholeFile whole(file);
+    whole.stream().write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    whole.keep();
+}
+
+}  // namespace
+
+bool namesGeoTiff(const fs::path& file) {
+    const std::string ending = endingOf(file);
+    return ending == ".tif" || ending == ".tiff";
+}
+
+EsriGrid readRaster(const fs::path& file, bool withReference) {
+    const std::string ending = endingOf(file);
+    std::error_code none;
+    const bool text = ending.empty() || ending == ".asc" || ending == ".txt" || !fs::is_regular_file(file, none);
+    if (text && !(withReference && fs::exists(fs::path(file).replace_extension(".prj"), none))) {
+        return readEsriGrid(file);
+    }
+    return loadImporter(file.string()).readDem(file);
+}
+
+void writeRaster(const EsriGrid& grid, const fs::path& file) {
+    if (namesGeoTiff(file)) {
+        write(loadImporter(file.string()).geoTiff(grid, file.string()), file);
+        return;
+    }
+    writeEsriGrid(grid, file);
+    if (!grid.units.crs.empty()) {
+        const fs::path beside = fs::path(file).replace_extension(".prj");
+        const std::string text = loadImporter(file.string()).esriWkt(grid.units.crs, beside.string());
+        write({text.begin(), text.end()}, beside);
+    }
+}
+
+}  // namespace sand

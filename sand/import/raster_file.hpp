@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "sand/esri_grid.hpp"
+
+namespace sand {
+
+/// Whether the name asks for a GeoTIFF: .tif or .tiff.
+[[nodiscard]] bool namesGeoTiff(const std::filesystem::path& file);
+
+/// Reads .asc, .txt, names without an ending and what is no plain file as an ESRI ASCII grid, without GDAL, unless its
+/// reference system is wanted, which stands in a .prj file beside it; all else as Importer::readDem() does. Throws
+/// files::InputError.
+[[nodiscard]] EsriGrid readRaster(const std::filesystem::path& file, bool withReference = false);
+
+/// Writes a GeoTIFF with units and reference system, heights in its own unit; or for any other name an ESRI ASCII grid,
+/// heights in the unit of lengths, and its reference system, where it has one, into a .prj file beside it. What stood
+/// there is replaced when all is written. Throws files::InputError.
+void writeRaster(const EsriGrid& grid, const std::filesystem::path& file);
+
+}  // namespace sand

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Points of a survey as text.
+#include <cmath>
+
+#include "fuzz_target.hpp"
+#include "sand/import/points_file.hpp"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const fuzz::MemoryFile file({data, size});
+    fuzz::takeOrRefuse([&] {
+        const sand::Points points = sand::readPoints(file.path());
+        for (const auto& [x, y, z] : points) {
+            if (points.size() < 3 || !std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z)) {
+                throw std::logic_error("a cloud that is no terrain");
+            }
+        }
+    });
+    return 0;
+}

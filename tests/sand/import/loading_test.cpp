@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/sand/import/import_fixture.hpp"
+
+namespace {
+
+TEST_F(Import, OnlyScenesThatNameASourceMapItsLibraries) {
+    write("t.asc", "ncols 2\nnrows 1\ncellsize 1\n1 2\n");
+    const auto mapped = [&](const std::string& terrain) {
+        const support::Ran ran = support::runProgram("loading_probe", write("s.toml", text(terrain)).string());
+        EXPECT_EQ(ran.status, 0) << ran.output;
+        return ran.output;
+    };
+    const std::string none = "sandwall-import no\nlibgdal no\nlibmuparser no\nlibproj no\n";
+    EXPECT_EQ(mapped("[field]\n[terrain]"), none);
+    EXPECT_EQ(mapped("[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\""), none);
+    EXPECT_EQ(mapped("[field]\ncolumns = 4\n[terrain]\nkind = \"function\"\nx = [0, 1]\ny = [0, 1]\nz = \"x\""),
+              "sandwall-import mapped\nlibgdal mapped\nlibmuparser mapped\nlibproj mapped\n")
+        << "so that this test can fail";
+}
+
+TEST_F(Import, RelaxingTextMapsNoLibraryOfOtherFormats) {
+    writeRaster("t.tif", {.columns = 2, .rows = 1, .heights = {1, 2}});
+    write("t.asc", "ncols 2\nnrows 1\ncellsize 1\n1 2\n");
+    const auto relax = [&](const std::string& in, const std::string& out) {
+        const support::Ran ran = support::runCommand("LD_DEBUG=files " SANDWALL_BIN_DIR "/sandwall-relax " + path(in) +
+                                                     " " + path(out) + " --talus 30");
+        EXPECT_EQ(ran.status, 0) << ran.output;
+        return ran.output.find("libgdal") != std::string::npos;
+    };
+    EXPECT_FALSE(relax("t.asc", "out.asc"));
+    EXPECT_TRUE(relax("t.tif", "out.tif")) << "so that this test can fail";
+}
+
+TEST_F(Import, ARelaxedGeoTiffKeepsItsPlaceItsMaskAndWhatDidNotMove) {
+    writeRaster("t.tif", {.columns = 3,
+                          .rows = 3,
+                          .heights = {0.1, 0.2, 0.3, 8, -9999, 0.4, 0.5, 0.6, 0.7},
+                          .epsg = 32633,
+                          .type = GDT_Float64,
+                          .noData = -9999,
+                          .unit = "m"});
+    const support::Ran ran =
+        support::runProgram("sandwall-relax", path("t.tif") + " " + path("out.tif") + " --talus 34 --scheme n4");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    GDALDatasetH out = GDALOpen(path("out.tif").c_str(), GA_ReadOnly);
+    ASSERT_NE(out, nullptr);
+    std::array<double, 6> place{};
+    GDALGetGeoTransform(out, place.data());
+    EXPECT_EQ(place, (std::array<double, 6>{1000, 10, 0, 2000, 0, -10}));
+    EXPECT_NE(std::string(GDALGetProjectionRef(out)).find("32633"), std::string::npos);
+    GDALRasterBandH band = GDALGetRasterBand(out, 1);
+    EXPECT_STREQ(GDALGetRasterUnitType(band), "m");
+    std::array<double, 9> heights{};
+    std::array<unsigned char, 9> known{};
+    ASSERT_EQ(GDALRasterIO(band, GF_Read, 0, 0, 3, 3, heights.data(), 3, 3, GDT_Float64, 0, 0), CE_None);
+    ASSERT_EQ(GDALRasterIO(GDALGetMaskBand(band), GF_Read, 0, 0, 3, 3, known.data(), 3, 3, GDT_Byte, 0, 0), CE_None);
+    GDALClose(out);
+    EXPECT_EQ(known, (std::array<unsigned char, 9>{255, 255, 255, 255, 0, 255, 255, 255, 255}));
+    EXPECT_LT(heights[3], 7.5);
+    EXPECT_EQ(heights[8], 0.7) << "to the last digit";
+    EXPECT_EQ(support::runProgram("sandwall-relax", path("out.tif") + " " + path("again.tif") + " --talus 34").status,
+              0);
+}
+
+}  // namespace

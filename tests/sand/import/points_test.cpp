@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/import/points_file.hpp"
+#include "tests/sand/import/import_fixture.hpp"
+
+namespace {
+
+class PointsFile : public Import {
+protected:
+    [[nodiscard]] sand::Points read(const std::string& text) { return sand::readPoints(write("p.csv", text)); }
+    [[nodiscard]] std::string refused(const std::string& text) {
+        try {
+            (void)read(text);
+        } catch (const files::InputError& error) {
+            return std::string(error.what()).substr(folder_.string().size() + 1);
+        }
+        return "accepted";
+    }
+};
+
+TEST_F(PointsFile, AnySeparatorGivesTheSamePoints) {
+    const sand::Points points{{0, 0, 1.5}, {1, 0, -2}, {0, 1, 1e3}};
+    EXPECT_EQ(read("0,0,1.5\n1,0,-2\n0,1,1e3\n"), points);
+    EXPECT_EQ(read("x,y,z\n0, 0, 1.5\n1, 0, -2\n0, 1, 1e3"), points);
+    EXPECT_EQ(read("# a survey\r\n\r\neast;north;height\r\n0;0;1.5\r\n1;0;-2 # a stone\r\n0;1;+1e3\r\n"), points);
+    EXPECT_EQ(read("  0 0   1.5\n1\t0\t-2\n0 \t1 1e3\n"), points);
+}
+
+TEST_F(PointsFile, WhatIsSaidTwiceComesOnce) {
+    EXPECT_EQ(read("0 0 1\n1 0 2\n0 0 1\n0 1 3\n").size(), 3U);
+    EXPECT_EQ(refused("0 0 1\n1 0 2\n0 1 3\n0 0 1.5\n"),
+              "p.csv:4: x = 0, y = 0 has height 1.5, and 1 in line 1; keep "
+              "one of them");
+}
+
+TEST_F(PointsFile, ComplaintsNameLineAndValue) {
+    EXPECT_EQ(refused("0 0 1\n1 0\n"), "p.csv:2: x, y and z are wanted, got 2 values");
+    EXPECT_EQ(refused("0,0,1\n1,0,2,9\n"), "p.csv:2: x, y and z are wanted, got 4 values");
+    EXPECT_EQ(refused("0,0,1\n1,,2\n"), "p.csv:2: y must be a finite number, got ''");
+    EXPECT_EQ(refused("0;0;1\n1;0;2,5\n"), "p.csv:2: z must be a finite number, got '2,5'");
+    EXPECT_EQ(refused("0 0 nan\n"), "p.csv:1: z must be a finite number, got 'nan'");
+    EXPECT_EQ(refused("x y z\nx y z\n"), "p.csv:2: x must be a finite number, got 'x'");
+    EXPECT_EQ(refused("z,x,y\n1,2,3\n"), "p.csv:1: the columns must be x, y, z, and 'z' is number 1");
+    EXPECT_EQ(refused("id,e,n,h\n1,2,3,4\n"),
+              "p.csv:1: three columns are wanted, x, y, z, and 'id' begins a title of 4");
+}
+
+TEST_F(PointsFile, CloudsWithoutAnAreaAreNoTerrain) {
+    EXPECT_EQ(refused(""), "p.csv: holds 0 points at different places, and terrain takes at least 3");
+    EXPECT_EQ(refused("1 1 1\n1 1 1\n2 2 2\n"),
+              "p.csv: holds 2 points at different places, and terrain takes at least 3");
+    std::string line;
+    for (int i = 0; i < 50; ++i) {
+        line += fmt::format("{} {} {}\n", 0.1 * i, 0.3 * i + 7, i % 3);
+    }
+    EXPECT_EQ(refused(line), "p.csv: all 50 points lie on one line, and terrain needs an area");
+    EXPECT_EQ(read(line + "0 7.001 1\n").size(), 51U);
+}
+
+TEST_F(PointsFile, AFieldOfCellsAsksForATriangulation) {
+    write("p.csv", "0 0 1\n1 0 2\n0 1 3\n");
+    EXPECT_EQ(refusal("[terrain]\nkind = \"points\"\nfile = \"p.csv\"\n"),
+              "s.toml:2: points make a triangulated terrain: add [tin]; or make a raster of them, for kind = \"dem\": "
+              "gdal_grid");
+}
+
+}  // namespace
