@@ -13,7 +13,7 @@
 namespace sand {
 namespace {
 
-constexpr std::size_t kPiece = 1 << 20;  // [byte], about: what is written at once
+constexpr std::size_t kReadPiece = 1 << 20;  // [byte], about: what is written at once
 
 /// Writes what `append` puts into a piece for each of the elements, in pieces.
 template <class Elements, class Append>
@@ -25,7 +25,7 @@ void writeAll(const Elements& elements, std::ostream& stream, Append append) {
     };
     for (const auto& element : elements) {
         append(element, piece);
-        if (piece.size() > kPiece) {
+        if (piece.size() > kReadPiece) {
             flush();
         }
     }
