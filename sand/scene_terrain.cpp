@@ -8,6 +8,7 @@
 
 #include "sand/dunes.hpp"
 #include "sand/import/raster_file.hpp"
+#include "sand/scene_tin.hpp"
 #include "sand/terrain_source.hpp"
 
 namespace sand {
@@ -58,9 +59,12 @@ HeightField fromSource(const files::TomlTable& file, const files::TomlTable& ter
                        std::shared_ptr<Ground>& ground) {
     const TerrainSource source = readSource(file, terrain, kind);
     if (!source.points.empty()) {
-        terrain.fail("kind",
-                     "points make a triangulated terrain: add [tin]; or make a raster of them, for kind = \"dem\": "
-                     "gdal_grid");
+        if (!file.has("tin")) {
+            terrain.fail("kind",
+                         "points make a triangulated terrain: add [tin]; or make a raster of them, for kind = "
+                         "\"dem\": gdal_grid");
+        }
+        return layOutPoints(file, terrain, source.points, scene);
     }
     checkCells(terrain, source.raster);
     // A grid of rock has the same cells, those at the edges too.
@@ -175,8 +179,10 @@ bool readTerrain(const files::TomlTable& file, Scene& scene) {
     readBedrock(terrain, scene.terrain, ground);
     const bool settle = terrain.flagOr("settle", false);
     terrain.finish();
-    scene.rules.columns = scene.terrain.columns();
-    scene.rules.rows = scene.terrain.rows();
+    if (scene.tin == nullptr) {
+        scene.rules.columns = scene.terrain.columns();
+        scene.rules.rows = scene.terrain.rows();
+    }
     scene.rules.ground = ground == nullptr ? 0 : ground->digest();
     scene.ground = ground;
     return settle;

@@ -13,6 +13,18 @@ namespace {
 
 constexpr double kMostVolume = 4.6e18;  // 2^62 volume units, all of whose sums stay within 64 bits
 
+constexpr int kUsualSide = 512;  // nominal cells, of points that nobody says more of
+
+/// Whether volumes of heights up to `highest` [unit] fit over this field.
+void requireRange(const files::TomlTable& file, double highest, int columns, int rows, double unit) {
+    const double area = 6.0 * columns * rows * kProbePerCell * kProbePerCell;
+    if (highest * area > kMostVolume) {
+        file.fail("tin", fmt::format("heights of up to {} on {} x {} cells are more than a TIN's volumes can hold, {} "
+                                     "is the most; set 'datum', or fewer cells",
+                                     highest * unit, columns, rows, kMostVolume / area * unit));
+    }
+}
+
 tin::Settings readSettings(const files::TomlTable& tin, double cellSize) {
     tin::Settings settings;
     const double finest = cellSize / kProbePerCell;
@@ -34,9 +46,57 @@ void setTin(tin::Start start, Scene& scene) {
 
 }  // namespace
 
+HeightField layOutPoints(const files::TomlTable& file, const files::TomlTable& terrain, const Points& points,
+                         Scene& scene) {
+    double west = points[0][0], south = points[0][1], east = west, north = south, highest = 0;
+    for (const auto& [x, y, z] : points) {
+        west = std::min(west, x);
+        east = std::max(east, x);
+        south = std::min(south, y);
+        north = std::max(north, y);
+    }
+    const double longer = std::max(east - west, north - south);
+    const double cell = file.requiredTable("tin").numberOr("cell", longer / kUsualSide, {longer / kMaxSide, longer});
+    const auto cellsOf = [cell](double side) {
+        return std::clamp(static_cast<int>(std::ceil(side / cell)), 1, kMaxSide);
+    };
+    scene.rules.columns = cellsOf(east - west);
+    scene.rules.rows = cellsOf(north - south);
+    const HeightField one(1, 1, cell);
+    const double datum = terrain.numberOr("datum", 0);
+    auto start = std::make_shared<tin::Start>();
+    start->width = scene.rules.columns * kProbePerCell;
+    start->depth = scene.rules.rows * kProbePerCell;
+    const auto lattice = [cell](double length, std::int32_t most) {
+        return std::min(static_cast<std::int32_t>(std::floor(length / cell * kProbePerCell + 0.5)), most);
+    };
+    for (const auto& [x, y, z] : points) {
+        const double units = std::floor((z - datum) / one.unit() + 0.5);
+        highest = std::max(highest, std::abs(units));
+        start->places.push_back({lattice(x - west, start->width), lattice(y - south, start->depth)});
+        start->heights.push_back(static_cast<std::int32_t>(std::clamp(units, double{-kMaxHeight}, double{kMaxHeight})));
+    }
+    if (highest > kMaxHeight) {
+        terrain.fail("file",
+                     fmt::format("a height of {} from 'datum' is beyond the range of ±{} (4096 cells); set 'datum'",
+                                 highest * one.unit(), kMaxHeight * one.unit()));
+    }
+    requireRange(file, highest, scene.rules.columns, scene.rules.rows, one.unit());
+    scene.tin = start;
+    return one;
+}
+
 void readTin(const files::TomlTable& file, Scene& scene) {
     const auto tin = file.table("tin");
     if (!tin) {
+        return;
+    }
+    if (scene.tin != nullptr) {  // points, laid out already
+        tin::Start start = *scene.tin;
+        (void)tin->numberOr("cell", 1);  // has been read
+        start.settings = readSettings(*tin, scene.terrain.cellSize());
+        tin->finish();
+        setTin(tinModule().join(start), scene);
         return;
     }
     if (scene.ground != nullptr) {
@@ -51,13 +111,7 @@ void readTin(const files::TomlTable& file, Scene& scene) {
             highest = std::max(highest, std::abs(field.height(column, row)));
         }
     }
-    const double area = 6.0 * field.columns() * field.rows() * kProbePerCell * kProbePerCell;
-    if (highest * area > kMostVolume) {
-        file.fail("tin", fmt::format(
-                             "heights of up to {} on {} x {} cells are more than a TIN's volumes can hold, {} is "
-                             "the most; set 'datum', or fewer cells",
-                             highest * field.unit(), field.columns(), field.rows(), kMostVolume / area * field.unit()));
-    }
+    requireRange(file, highest, field.columns(), field.rows(), field.unit());
     const tin::Settings settings = readSettings(*tin, field.cellSize());
     tin->finish();
     setTin(tinModule().follow(field, settings), scene);

@@ -180,6 +180,25 @@ TEST_F(TinTerrain, DamageNamesAllThatChanged) {
     }
 }
 
+TEST_F(TinTerrain, IsMadeOfTheSurveyPointsThemselves) {
+    std::ofstream(folder_ / "survey.csv") << "x,y,z\n100,200,3\n110,200,5\n110,205,7\n104,202,4\n";
+    std::ofstream(folder_ / "points.toml") << "[terrain]\nkind = \"points\"\nfile = \"survey.csv\"\n[tin]\ncell = 0.5\n"
+                                              "[material]\ntalus_deg = 34\n[tool]\nradius = 1\n";
+    const sand::Scene read = sand::loadScene(folder_ / "points.toml");
+    ASSERT_NE(read.tin, nullptr);
+    EXPECT_EQ(read.rules.columns, 20);
+    EXPECT_EQ(read.rules.rows, 10);
+    ASSERT_EQ(read.tin->places.size(), 5U) << "four points, three of which are corners, and the fourth corner";
+    const Terrain terrain(read);
+    const auto height = [&](double x, double y) {
+        return terrain.surface().height((x - 100) / 0.5 * 256, (y - 200) / 0.5 * 256) * 0.5 / 65536;
+    };
+    EXPECT_DOUBLE_EQ(height(100, 200), 3);
+    EXPECT_DOUBLE_EQ(height(110, 200), 5);
+    EXPECT_DOUBLE_EQ(height(104, 202), 4);
+    EXPECT_DOUBLE_EQ(height(100, 205), 4) << "a corner that nobody measured is as high as the nearest point";
+}
+
 TEST_F(TinTerrain, RefusesWhatItCannotHoldInOneLine) {
     const auto complaint = [this](const std::string& tin, const std::string& more) -> std::string {
         try {
