@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sand/tin/window.hpp"
 
+#include <utility>
+
 namespace sand::tin {
 namespace {
 
@@ -14,6 +16,39 @@ bool overlap(const Box& a, const Box& b) { return a.x0 <= b.x1 && b.x0 <= a.x1 &
 
 }  // namespace
 
+void NumberSet::clear() {
+    std::fill(places_.begin(), places_.end(), kNobody);
+    count_ = 0;
+}
+
+bool NumberSet::insert(std::int32_t number) {
+    if (2 * count_ >= places_.size()) {
+        grow();
+    }
+    const bool isNew = put(number);
+    count_ += isNew ? 1 : 0;
+    return isNew;
+}
+
+bool NumberSet::put(std::int32_t number) {
+    const std::size_t last = places_.size() - 1;  // their count is a power of two
+    std::size_t at = static_cast<std::uint32_t>(number) * 0x9e3779b1U >> 8U & last;
+    while (places_[at] != kNobody && places_[at] != number) {
+        at = (at + 1) & last;
+    }
+    return std::exchange(places_[at], number) == kNobody;
+}
+
+void NumberSet::grow() {
+    std::vector<std::int32_t> before(2 * places_.size(), kNobody);
+    before.swap(places_);
+    for (const std::int32_t number : before) {
+        if (number != kNobody) {
+            put(number);
+        }
+    }
+}
+
 // A box is convex: the triangles that reach into it hang together by their edges, and so does the search, which goes on
 // through every triangle whose own box overlaps it.
 void Window::look(const Triangles& mesh, const Box& wanted) {
@@ -23,33 +58,25 @@ void Window::look(const Triangles& mesh, const Box& wanted) {
     if (box.empty()) {
         return;
     }
-    seen_.resize(mesh.triangles.size());
-    seenVertices_.resize(mesh.places.size());
-    if (++look_ == 0) {
-        std::fill(seen_.begin(), seen_.end(), 0);
-        std::fill(seenVertices_.begin(), seenVertices_.end(), 0);
-        look_ = 1;
-    }
+    seen_.clear();
+    seenVertices_.clear();
     const Place middle{box.x0 + (box.x1 - box.x0) / 2, box.y0 + (box.y1 - box.y0) / 2};
     const auto slots = static_cast<std::int32_t>(mesh.triangles.size());
     const bool known = last_ >= 0 && last_ < slots && mesh.triangles[static_cast<std::size_t>(last_)].alive();
     last_ = locate(mesh, middle, known ? last_ : kNobody).triangle;
     const auto take = [&](std::int32_t slot) {
-        std::uint32_t& seen = seen_[static_cast<std::size_t>(slot)];
-        if (seen != look_ && overlap(around(mesh, mesh.triangles[static_cast<std::size_t>(slot)]), box)) {
+        if (seen_.insert(slot) && overlap(around(mesh, mesh.triangles[static_cast<std::size_t>(slot)]), box)) {
             triangles_.push_back(slot);
         }
-        seen = look_;
     };
     take(last_);
     for (std::size_t next = 0; next < triangles_.size(); ++next) {
         const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(triangles_[next])];
         for (std::size_t k = 0; k < 3; ++k) {
-            const auto corner = static_cast<std::size_t>(triangle.corner[k]);
-            if (seenVertices_[corner] != look_ && box.holds(mesh.places[corner])) {
-                vertices_.push_back(triangle.corner[k]);
+            const Vertex corner = triangle.corner[k];
+            if (box.holds(mesh.places[static_cast<std::size_t>(corner)]) && seenVertices_.insert(corner)) {
+                vertices_.push_back(corner);
             }
-            seenVertices_[corner] = look_;
             if (triangle.neighbour[k] != kNobody) {
                 take(triangle.neighbour[k]);
             }

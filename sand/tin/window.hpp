@@ -32,6 +32,21 @@ struct Box {
     friend bool operator==(const Box&, const Box&) = default;
 };
 
+/// Numbers from 0 on, as many as are put in, and not as many as there could be.
+class NumberSet {
+public:
+    void clear();
+    /// Whether it is new.
+    bool insert(std::int32_t number);
+
+private:
+    void grow();
+    bool put(std::int32_t number);
+
+    std::vector<std::int32_t> places_ = std::vector<std::int32_t>(64, kNobody);
+    std::size_t count_ = 0;
+};
+
 /// What of a mesh lies around some place. Costs what lies there, and the way from where it was asked for last.
 class Window {
 public:
@@ -46,10 +61,8 @@ public:
 private:
     std::vector<Vertex> vertices_;
     std::vector<std::int32_t> triangles_;
-    // Only for speed: where to begin, and what has been seen in this look.
-    std::int32_t last_ = kNobody;
-    std::vector<std::uint32_t> seen_, seenVertices_;  // by slot, by number
-    std::uint32_t look_ = 0;
+    std::int32_t last_ = kNobody;  // where to begin: only for speed
+    NumberSet seen_, seenVertices_;
 };
 
 /// The vertices around one that lies inside the field, counter-clockwise from the smallest number, and whether any of
