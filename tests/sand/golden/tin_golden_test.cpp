@@ -52,7 +52,8 @@ std::uint64_t hashOfSession(std::int32_t threshold, std::int32_t startThreshold)
         const Vertex from = anyOf(layer, random);
         layer.constrain(from, anyOf(layer, random));
         layer.remove(anyOf(layer, random));
-        layer.setHeight(anyOf(layer, random), below(1 << 22, random));
+        const Vertex lifted = anyOf(layer, random);
+        layer.setHeight(lifted, below(1 << 22, random));
         erosion.changed(layer, layer.takeChange());
         const Vertex fallen = anyOf(layer, random);
         layer.add(fallen, layer.stars()[static_cast<std::size_t>(fallen)] * below(1 << 21, random));
@@ -74,8 +75,8 @@ std::uint64_t hashOfSession(std::int32_t threshold, std::int32_t startThreshold)
 
 // As those beside it: any compiler, level of optimisation and machine must print these.
 TEST(TinGolden, SessionHashesAreTheSameEverywhere) {
-    EXPECT_EQ(fmt::format("{:016x}", hashOfSession(65536, 65536)), "d7f972b7ea9cd160");
-    EXPECT_EQ(fmt::format("{:016x}", hashOfSession(40000, 50000)), "a542aa81b1793db3");
+    EXPECT_EQ(fmt::format("{:016x}", hashOfSession(65536, 65536)), "8d7ab136b15b4bc3");
+    EXPECT_EQ(fmt::format("{:016x}", hashOfSession(40000, 50000)), "3d8bc57a2dc396f9");
 }
 
 }  // namespace
