@@ -27,6 +27,8 @@ void forceWork(const Settings& settings, Csv& csv);
 void hashes(const Settings& settings, Csv& csv);
 void stability(const Settings& settings, Csv& csv);
 void guardedSweep(const Settings& settings, Csv& csv);
+void tinPiles(const Settings& settings, Csv& csv);
+void tinActive(const Settings& settings, Csv& csv);
 void explain(const Settings& settings, Csv& csv);
 
 }  // namespace bench

@@ -75,6 +75,12 @@ std::vector<Curve> allCurves() {
          bench::explain},
         {"certificate", "distance from the right pile: proved, and true", {32, 64, 128}, 1, bench::certificate},
         {"mass-drift", "sand that floats lose or invent, and integers do not", {128}, 1, bench::massDrift},
+        {"tin-piles",
+         "error of piles on a TIN against its vertices and seconds, for meshes of every kind and turned",
+         {32, 64, 128},
+         1,
+         bench::tinPiles},
+        {"tin-active", "milliseconds of 100 sweeps over 1000 vertices of a TIN", {500}, 10, bench::tinActive},
         {"budget", "where one pile's error comes from", {128}, 1, bench::budget},
     };
 }
