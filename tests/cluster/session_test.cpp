@@ -9,12 +9,16 @@
 
 namespace {
 
-using Lockstep = SessionTest;
+class Lockstep : public SessionTest {
+protected:
+    void expectOneHash(const std::string& scene, const std::vector<std::pair<int, int>>& walls);
+};
 
-TEST_F(Lockstep, OneFourAndThirteenRanksHashLikeTheirJournal) {
+/// A session of this scene on walls of so many rows and columns.
+void Lockstep::expectOneHash(const std::string& scene, const std::vector<std::pair<int, int>>& walls) {
     std::string expected;
-    for (const auto& [rows, columns] : {std::pair{1, 1}, {2, 2}, {3, 4}}) {
-        const Ended ended = runToEnd({"--wall", wall(rows, columns), "--scene", scene(), "--device", "script:gis",
+    for (const auto& [rows, columns] : walls) {
+        const Ended ended = runToEnd({"--wall", wall(rows, columns), "--scene", scene, "--device", "script:gis",
                                       "--pace", "fast", "--steps", "240", "--out", out(), "--no-pictures"});
         ASSERT_EQ(ended.status, 0) << ended.output;
         const nlohmann::json result = summary();
@@ -34,6 +38,12 @@ TEST_F(Lockstep, OneFourAndThirteenRanksHashLikeTheirJournal) {
         }
         EXPECT_EQ(hash, expected) << rows << " x " << columns << " ranks";
     }
+}
+
+TEST_F(Lockstep, OneFourAndThirteenRanksHashLikeTheirJournal) { expectOneHash(scene(), {{1, 1}, {2, 2}, {3, 4}}); }
+
+TEST_F(Lockstep, OneAndFourRanksOfATinHashLikeTheirJournal) {
+    expectOneHash(scene("[tin]\nmax_error = 0.001\nspacing = 0.02\n"), {{1, 1}, {2, 2}});
 }
 
 TEST_F(Lockstep, ThreadsInsideARankChangeNothing) {
