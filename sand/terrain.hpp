@@ -12,6 +12,7 @@
 #include "sand/scene.hpp"
 #include "sand/state_hash.hpp"
 #include "sand/step.hpp"
+#include "sand/tin/surface_view.hpp"
 
 namespace sand {
 
@@ -71,6 +72,10 @@ public:
 
     /// The cells that changed since this was called last: one rectangle around them, empty when nothing did.
     [[nodiscard]] Rect takeDamage();
+
+    /// The surface of a scene whose terrain is a TIN, null on a grid; field() and takeDamage() are then not for use.
+    [[nodiscard]] const tin::SurfaceView* tinView() const { return nullptr; }
+    [[nodiscard]] tin::SurfaceDamage takeTinDamage() { return {}; }
 
     /// What a replica of a field of this size takes at the very least, with the scene it starts from [byte].
     [[nodiscard]] static std::int64_t leastBytes(int columns, int rows);
