@@ -53,7 +53,7 @@ public:
         program_.set("uSceneToClip", glm::mat4(sceneToClip));
         program_.set("uCell", mesh_.surface().cellSize());
         program_.set("uCells", glm::vec2(mesh_.surface().columns(), mesh_.surface().rows()));
-        mesh_.draw(sceneToClip, true, {sceneToClip, {target.width(), target.height()}, 0});
+        mesh_.draw(sceneToClip, true, {sceneToClip, {target.width(), target.height()}, 0}, {});
     }
 
 private:

@@ -12,6 +12,11 @@ struct Box {
     glm::dvec3 low, high;  // [scene unit]
 };
 
+/// The smallest box around both.
+[[nodiscard]] inline Box around(const Box& a, const Box& b) {
+    return {glm::min(a.low, b.low), glm::max(a.high, b.high)};
+}
+
 [[nodiscard]] inline std::array<glm::dvec3, 8> cornersOf(const Box& box) {
     std::array<glm::dvec3, 8> corners;
     for (unsigned corner = 0; corner < 8; ++corner) {

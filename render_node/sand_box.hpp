@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "render_node/frustum.hpp"
-#include "render_node/sand_surface.hpp"
+#include "render_node/sand_rim.hpp"
 #include "render_node/solid_mesh.hpp"
 #include "sand/scene.hpp"
 
@@ -15,10 +15,11 @@ namespace render_node {
 /// All in scene units. One thread, its context current.
 class SandBox {
 public:
-    SandBox(const SandSurface& surface, sand::Rim rim);
+    /// Around sand whose lowest place is at `lowest`, of cells of that size [scene unit].
+    SandBox(const SandRim& cut, float lowest, double cellSize, sand::Rim rim);
 
-    /// These cells have changed: the sides follow when they touch the rim.
-    void update(const SandSurface& surface, const sand::Rect& cells);
+    /// The sides follow.
+    void update(const SandRim& cut) { makeSides(cut); }
     /// Whether a box lies over the sand, nowhere near the rim.
     [[nodiscard]] bool insideRim(const Box& box) const;
     /// A box in the scene, grown by all whose look depends on what is in it: a side is lit at its upper and lower ends,
@@ -34,8 +35,8 @@ public:
     void drawBoards() const { boards_.draw(); }
 
 private:
-    void makeSides(const SandSurface& surface);
-    void makeBoards(const SandSurface& surface, sand::Rim rim);
+    void makeSides(const SandRim& cut);
+    void makeBoards(const SandRim& cut, sand::Rim rim);
 
     /// A piece of a side.
     struct Run {

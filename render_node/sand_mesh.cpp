@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <string_view>
 
 namespace render_node {
 namespace {
@@ -24,15 +23,6 @@ int sideFor(int quads, int coarsest) {
     return coarsest > 0 ? kChunk : (quads + chunksFor(quads, 0) - 1) / chunksFor(quads, 0);
 }
 
-// llvmpipe keeps some 270 bytes for each triangle until it fills pixels, in scenes of 36 MB that it never returns: a
-// field of 512 x 512 cells held 110 MB. Filling pixels more often bounds that, and costs no time that can be measured.
-constexpr int kTrianglesPerFinish = 32768;
-
-bool drawnByLlvmpipe() {
-    const GLubyte* renderer = glGetString(GL_RENDERER);
-    return renderer != nullptr && std::string_view(reinterpret_cast<const char*>(renderer)).starts_with("llvmpipe");
-}
-
 }  // namespace
 
 SandMesh::SandMesh(const sand::HeightField& field, const glm::vec3& sun)
@@ -42,8 +32,7 @@ SandMesh::SandMesh(const sand::HeightField& field, const glm::vec3& sun)
       across_(chunksFor(field.columns() + 1, coarsest_)),
       down_(chunksFor(field.rows() + 1, coarsest_)),
       quadsAcross_(sideFor(field.columns() + 1, coarsest_)),
-      quadsDown_(sideFor(field.rows() + 1, coarsest_)),
-      software_(drawnByLlvmpipe()) {
+      quadsDown_(sideFor(field.rows() + 1, coarsest_)) {
     makeChunks();
     makeGroups();
     ever_ = groups_.front().heights;
@@ -116,7 +105,7 @@ void SandMesh::update(const sand::HeightField& field, const sand::Rect& cells) {
     ++revision_;
     for (const Change& change : changes) {
         const HeightRange heights = around(change.before, surface_.heights(change.vertices.grownBy(longestStride())));
-        damage_.add({revision_, change.vertices, heights});
+        damage_.add(revision_, {change.vertices, heights});
         ever_ = around(ever_, heights);
         markChanged(chunksAround(change.vertices), change.vertices);
     }
@@ -250,7 +239,7 @@ Box SandMesh::boxAround(const sand::Rect& vertices, const HeightRange& heights, 
 
 std::vector<Box> SandMesh::changesSince(std::uint64_t revision, DrawnLevels& levels, const LevelRule& rule) {
     std::vector<Box> changed;
-    for (const SandDamage::Part& part : damage_.since(revision)) {
+    for (const auto& [since, part] : damage_.since(revision)) {
         changed.push_back(boxAround(part.vertices, part.heights, strideAround(part.vertices, levels)));
     }
     updateLevels(levels, revision, rule, changed);
@@ -314,10 +303,15 @@ const SandMesh::Indices& SandMesh::indicesOf(const ChunkLevels& levels) {
     return made;
 }
 
+void SandMesh::prepare(const GlProgram& program) const {
+    program.set("uCell", surface_.cellSize());
+    program.set("uCells", glm::vec2(surface_.columns(), surface_.rows()));
+    program.set("uFirst", 0.5F);
+}
+
 SandMesh::Drawn SandMesh::draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
                                const std::function<void(const Box&)>& before) {
     Drawn drawn;
-    int waiting = 0;  // triangles
     ++choice_;
     visitSeen(sceneToClip, culling, [&](int x, int y) {
         const ChunkLevels levels = levelsOf(x, y, rule);
@@ -332,11 +326,7 @@ SandMesh::Drawn SandMesh::draw(const glm::dmat4& sceneToClip, bool culling, cons
         ++drawn.chunks;
         drawn.coarseChunks += levels.level > 0 ? 1 : 0;
         drawn.triangles += triangles;
-        waiting += triangles;
-        if (software_ && waiting >= kTrianglesPerFinish) {
-            glFinish();
-            waiting = 0;
-        }
+        pace_.drawn(triangles);
     });
     dropUnused();
     return drawn;

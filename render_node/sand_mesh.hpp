@@ -8,57 +8,52 @@
 #include <vector>
 
 #include "render_node/chunk_geometry.hpp"
+#include "render_node/damage_history.hpp"
+#include "render_node/drawn_surface.hpp"
 #include "render_node/frustum.hpp"
 #include "render_node/gl/gl_handle.hpp"
-#include "render_node/sand_damage.hpp"
 #include "render_node/sand_levels.hpp"
 #include "render_node/sand_surface.hpp"
+#include "render_node/triangle_pace.hpp"
 
 namespace render_node {
 
-/// The level at which each chunk was drawn; −1 where it was out of sight. Empty for a field that has no levels.
-using DrawnLevels = std::vector<std::int8_t>;
+/// Vertices of the grid that may look different, and the heights before and after of all triangles that reach there, of
+/// any level.
+struct ChangedVertices {
+    sand::Rect vertices;
+    HeightRange heights;
+    friend ChangedVertices around(const ChangedVertices& a, const ChangedVertices& b) {
+        return {a.vertices.joinedWith(b.vertices), render_node::around(a.heights, b.heights)};
+    }
+};
 
-/// The sand's triangles, in chunks of about 32 × 32 quads.
+/// The triangles of a height field, in chunks of about 32 × 32 quads.
 ///
 /// A software renderer is bound by vertices: only chunks that a camera sees are drawn, each at the coarsest level that
 /// the camera's rule allows, and only those are ever computed and sent to GL; a chunk is computed again when sand in
-/// its reach has changed and somebody looks at it. What nobody has looked at lately is dropped when it gets much. Every
-/// camera gets the same vertices. One thread, its context current.
-class SandMesh {
+/// its reach has changed and somebody looks at it. What nobody has looked at lately is dropped when it gets much.
+class SandMesh final : public DrawnSurface {
 public:
-    struct Drawn {
-        int chunks = 0;
-        int coarseChunks = 0;  // above level 0
-        int triangles = 0;
-    };
-
     /// `sun` points towards it and has length 1.
     SandMesh(const sand::HeightField& field, const glm::vec3& sun);
 
     /// Takes over the heights of these cells, which must lie within the field.
     void update(const sand::HeightField& field, const sand::Rect& cells);
 
-    /// Draws the chunks that reach into the frustum of `sceneToClip`, which may show a part of what `rule` is for; all
-    /// of them when `culling` is off. The program must be in use, or `before` choose one by the box of each chunk.
+    void prepare(const GlProgram& program) const override;
     Drawn draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
-               const std::function<void(const Box&)>& before = {});
-
-    /// The levels at which draw() draws all that reaches into this frustum, its neighbours' with them.
-    [[nodiscard]] DrawnLevels levelsWithin(const glm::dmat4& sceneToClip, const LevelRule& rule);
-    /// Where the picture differs from one that was drawn at that revision, of the same rule, at these levels. Brings
-    /// them up to date.
-    [[nodiscard]] std::vector<Box> changesSince(std::uint64_t revision, DrawnLevels& levels, const LevelRule& rule);
-
-    /// Counts the updates that changed something.
-    [[nodiscard]] std::uint64_t revision() const { return revision_; }
-    /// The lowest and the highest that any sand has been.
-    [[nodiscard]] HeightRange heightsEver() const { return ever_; }
+               const std::function<void(const Box&)>& before) override;
+    [[nodiscard]] DrawnLevels levelsWithin(const glm::dmat4& sceneToClip, const LevelRule& rule) override;
+    [[nodiscard]] std::vector<Box> changesSince(std::uint64_t revision, DrawnLevels& levels,
+                                                const LevelRule& rule) override;
+    [[nodiscard]] std::uint64_t revision() const override { return revision_; }
+    [[nodiscard]] HeightRange heightsEver() const override { return ever_; }
+    [[nodiscard]] SandRim rim() const override { return surface_.rim(); }
+    [[nodiscard]] int chunks() const override { return static_cast<int>(chunks_.size()); }
+    [[nodiscard]] std::size_t bytes() const override { return bytes_; }
 
     [[nodiscard]] const SandSurface& surface() const { return surface_; }
-    [[nodiscard]] int chunks() const { return static_cast<int>(chunks_.size()); }
-    /// Bytes of vertices and indices in GL.
-    [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
 private:
     struct Chunk {
@@ -116,14 +111,14 @@ private:
     int coarsest_;                 // level
     int across_, down_;            // chunks
     int quadsAcross_, quadsDown_;  // of every chunk
-    bool software_;                // drawn by llvmpipe, whose memory must be kept small
     std::vector<Chunk> chunks_;    // row by row from the south-west
     std::vector<Group> groups_;
     std::map<ChunkLevels, Indices> indices_;  // 16 bit
     std::size_t bytes_ = 0;
     std::uint64_t revision_ = 0;
     std::uint64_t choice_ = 0;  // counts what levels are chosen for
-    SandDamage damage_;
+    DamageHistory<ChangedVertices> damage_;
+    TrianglePace pace_;
     HeightRange ever_;
 };
 

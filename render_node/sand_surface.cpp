@@ -8,46 +8,6 @@
 #include "render_node/grain_texture.hpp"
 
 namespace render_node {
-namespace {
-
-struct Direction {
-    int east, north;
-    float length;
-};
-constexpr float kDiagonal = 1.41421356F;
-constexpr std::array<Direction, 8> kDirections{{{1, 0, 1},
-                                                {-1, 0, 1},
-                                                {0, 1, 1},
-                                                {0, -1, 1},
-                                                {1, 1, kDiagonal},
-                                                {-1, 1, kDiagonal},
-                                                {1, -1, kDiagonal},
-                                                {-1, -1, kDiagonal}}};
-constexpr std::array<int, 3> kDistances{2, 5, SandSurface::kReach};
-
-/// One minus the mean squared sine of the horizon over eight directions: the sky's light on level ground, for places
-/// side by side. `rise(place, east, north)` is how much higher sand so many cells away is [scene unit]. All places take
-/// one direction before the next, so that the compiler computes several at a time.
-template <class Rise>
-void openSky(std::span<float> open, float cellSize, const Rise& rise) {
-    std::fill(open.begin(), open.end(), 0.0F);
-    for (const Direction& direction : kDirections) {
-        for (std::size_t place = 0; place < open.size(); ++place) {
-            float steepest = 0;
-            for (const int distance : kDistances) {
-                const float there = rise(place, direction.east * distance, direction.north * distance);
-                steepest = std::max(steepest, there / (direction.length * static_cast<float>(distance)));
-            }
-            const float square = steepest / cellSize * (steepest / cellSize);
-            open[place] += square / (1 + square);
-        }
-    }
-    for (float& place : open) {
-        place = 1 - place / static_cast<float>(kDirections.size());
-    }
-}
-
-}  // namespace
 
 SandSurface::SandSurface(const sand::HeightField& field)
     : columns_(field.columns()),
@@ -109,6 +69,22 @@ float SandSurface::height(int column, int row) const {
     const auto x = static_cast<std::size_t>(std::clamp(column, 0, columns_ - 1));
     const auto y = static_cast<std::size_t>(std::clamp(row, 0, rows_ - 1));
     return heights_[y * static_cast<std::size_t>(columns_) + x];
+}
+
+SandRim SandSurface::rim() const {
+    SandRim rim;
+    const auto add = [&](std::size_t side, int column, int row) {
+        rim.sides[side].emplace_back(east(column), north(row), height(column - 1, row - 1));
+    };
+    for (int column = 0; column <= columns_ + 1; ++column) {
+        add(0, column, 0);
+        add(2, columns_ + 1 - column, rows_ + 1);
+    }
+    for (int row = 0; row <= rows_ + 1; ++row) {
+        add(1, columns_ + 1, row);
+        add(3, 0, rows_ + 1 - row);
+    }
+    return rim;
 }
 
 float SandSurface::along(int vertex, int cells) const {

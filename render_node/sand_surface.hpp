@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "render_node/open_sky.hpp"
+#include "render_node/sand_rim.hpp"
 #include "sand/height_field.hpp"
 
 namespace render_node {
@@ -37,7 +39,7 @@ struct HeightRange {
 class SandSurface {
 public:
     /// A vertex depends on cells up to this far from its own [cell].
-    static constexpr int kReach = 10;
+    static constexpr int kReach = kSkyDistances.back();
 
     explicit SandSurface(const sand::HeightField& field);
 
@@ -56,6 +58,13 @@ public:
     /// East (from a vertex column) or north (from a vertex row) of the field's corner [scene unit].
     [[nodiscard]] float east(int vertexColumn) const { return along(vertexColumn, columns_); }
     [[nodiscard]] float north(int vertexRow) const { return along(vertexRow, rows_); }
+
+    /// Where the field ends.
+    [[nodiscard]] SandRim rim() const;
+    /// Whether a change of these cells changes it.
+    [[nodiscard]] bool touchesRim(const sand::Rect& cells) const {
+        return !cells.empty() && (cells.x0 <= 0 || cells.y0 <= 0 || cells.x1 >= columns_ || cells.y1 >= rows_);
+    }
 
     /// A vertex of the grid. A column or row beyond the grid repeats its last one.
     [[nodiscard]] SandVertex vertex(int column, int row) const;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <functional>
 
+#include "render_node/tin_mesh.hpp"
+
 namespace render_node {
 namespace {
 
@@ -24,6 +26,14 @@ float encoded(float linear) {
 }  // namespace
 
 SandView::SandView(const sand::Scene& scene, const glm::dmat4& sceneToRoom)
+    : SandView(scene, sceneToRoom,
+               std::make_unique<SandMesh>(scene.terrain, glm::normalize(toVector(scene.look.sunDirection))), nullptr) {}
+
+SandView::SandView(const sand::Scene& scene, const sand::tin::SurfaceView& tin, const glm::dmat4& sceneToRoom)
+    : SandView(scene, sceneToRoom, nullptr, std::make_unique<TinMesh>(tin, scene.terrain.cellSize())) {}
+
+SandView::SandView(const sand::Scene& scene, const glm::dmat4& sceneToRoom, std::unique_ptr<SandMesh> grid,
+                   std::unique_ptr<TinMesh> tin)
     : sceneToRoom_(sceneToRoom),
       look_(scene.look),
       cellSize_(static_cast<float>(scene.terrain.cellSize())),
@@ -31,19 +41,39 @@ SandView::SandView(const sand::Scene& scene, const glm::dmat4& sceneToRoom)
       toolRadius_(static_cast<float>(scene.toolRadius())),
       toolShape_(scene.rules.toolShape()),
       toolHeading_(scene.rules.toolHeading),
-      sunlit_("sunlit.glsl"),
+      grid_(std::move(grid)),
+      tin_(std::move(tin)),
+      sunlit_(shaders(), "sunlit.glsl", "ball.glsl"),
       woodProgram_("solid.vert.glsl", "wood.frag.glsl"),
       toolProgram_("solid.vert.glsl", "tool.frag.glsl"),
       grain_(glm::vec2(glm::normalize(toVector(look_.sunDirection)))),
-      mesh_(scene.terrain, glm::normalize(toVector(look_.sunDirection))),
-      box_(mesh_.surface(), scene.rules.rim) {
-    counts_.chunksOfField = mesh_.chunks();
+      box_(surface().rim(), surface().heightsEver().lowest, double{cellSize_}, scene.rules.rim) {
+    counts_.chunksOfField = surface().chunks();
 }
+
+SandView::SandView(SandView&&) noexcept = default;
+SandView::~SandView() = default;
 
 void SandView::update(const sand::HeightField& field, sand::Rect damage) {
     const sand::Rect cells = damage.clippedTo(field.bounds());
-    mesh_.update(field, cells);
-    box_.update(mesh_.surface(), cells);
+    grid_->update(field, cells);
+    if (grid_->surface().touchesRim(cells)) {
+        box_.update(grid_->rim());
+    }
+}
+
+void SandView::update(const sand::tin::SurfaceView& tin, const sand::tin::SurfaceDamage& damage) {
+    if (tin_->update(tin, damage)) {
+        box_.update(tin_->rim());
+    }
+}
+
+DrawnSurface& SandView::surface() const {
+    return grid_ ? static_cast<DrawnSurface&>(*grid_) : static_cast<DrawnSurface&>(*tin_);
+}
+
+SurfaceShaders SandView::shaders() const {
+    return look_.flatShading ? SurfaceShaders{"facet.vert.glsl", "facet.geom.glsl"} : SurfaceShaders{"sand.vert.glsl"};
 }
 
 void SandView::setTool(sand::ProbePoint centre, bool engaged) {
@@ -97,8 +127,7 @@ void SandView::prepareTool(const GlProgram& program) const {
 
 void SandView::prepareSurface(const GlProgram& program, const Camera& camera) const {
     prepare(program, camera);
-    program.set("uCell", cellSize_);
-    program.set("uCells", glm::vec2(mesh_.surface().columns(), mesh_.surface().rows()));
+    surface().prepare(program);
 }
 
 Box SandView::bodyOf(const EyeMemory::Tool& tool) {
@@ -176,7 +205,7 @@ const SandPrograms& SandView::sandPrograms() {
     }
     std::optional<SandPrograms>& programs = ball ? hillShaded_ : hillShade ? stampHillShaded_ : stampSunlit_;
     if (!programs) {
-        programs.emplace(hillShade ? "hill_shade.glsl" : "sunlit.glsl", ball ? "ball.glsl" : "stamp.glsl");
+        programs.emplace(shaders(), hillShade ? "hill_shade.glsl" : "sunlit.glsl", ball ? "ball.glsl" : "stamp.glsl");
     }
     return *programs;
 }
@@ -205,7 +234,7 @@ void SandView::drawSand(const Camera& camera, const glm::dmat4& sceneToPart, con
             near = near || within;
         };
     }
-    const SandMesh::Drawn drawn = mesh_.draw(sceneToPart, culling_, rule, choose);
+    const DrawnSurface::Drawn drawn = surface().draw(sceneToPart, culling_, rule, choose);
     (near ? programs.near : programs.far).drawn();
     counts_.chunks = drawn.chunks;
     counts_.coarseChunks = drawn.coarseChunks;
@@ -226,7 +255,8 @@ void SandView::drawWires(const Camera& camera, const glm::dmat4& sceneToPart, co
     glPolygonOffset(-1, -1);  // a driver may compute depths a little differently behind a geometry shader
     glEnable(GL_BLEND);
     glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);  // a window may show through its alpha
-    mesh_.draw(sceneToPart, culling_, rule);
+    surface().draw(sceneToPart, culling_, rule, {});
+    surface().drawMarks(sceneToPart, culling_, [&](const GlProgram& program) { prepareSurface(program, camera); });
     glDisable(GL_BLEND);
     glDisable(GL_POLYGON_OFFSET_FILL);
     glDepthFunc(GL_LESS);
@@ -240,7 +270,7 @@ ToolReach SandView::reachOf(const EyeMemory::Tool& tool) const {
 /// What a tool changes, as convex hulls: itself with the sand that it dims, and its shadow.
 std::vector<std::vector<glm::dvec3>> SandView::hullsOf(const EyeMemory::Tool& tool) const {
     const ToolReach reach = reachOf(tool);
-    const HeightRange sand = mesh_.heightsEver();
+    const HeightRange sand = surface().heightsEver();
     const double highest = std::max(double{sand.highest}, box_.highest());
     // Down to the lowest sand there has been, unless it comes out again beyond the rim: nothing stops it in the
     // shaders.
@@ -264,7 +294,8 @@ std::vector<std::vector<glm::dvec3>> SandView::hullsOf(const EyeMemory::Tool& to
 }
 
 LevelRule SandView::ruleFor(const Camera& camera, glm::ivec2 size) const {
-    return {camera.roomToClip * sceneToRoom_, size, look_.detail};
+    // A facet shows how fine the mesh is.
+    return {camera.roomToClip * sceneToRoom_, size, look_.flatShading ? 0 : look_.detail};
 }
 
 PixelRect SandView::changedPixels(const Camera& camera, glm::ivec2 size, EyeMemory& memory) {
@@ -274,7 +305,7 @@ PixelRect SandView::changedPixels(const Camera& camera, glm::ivec2 size, EyeMemo
     const bool toolMoved = memory.tool != tool_;
     if (!memory.drawn || memory.roomToClip != camera.roomToClip || memory.eye != camera.eye ||
         memory.sceneToRoom != sceneToRoom_ || memory.layers != layers_) {
-        memory.levels = mesh_.levelsWithin(sceneToClip, rule);
+        memory.levels = surface().levelsWithin(sceneToClip, rule);
         return whole;
     }
     PixelRect changed = memory.covered;
@@ -296,7 +327,7 @@ PixelRect SandView::changedPixels(const Camera& camera, glm::ivec2 size, EyeMemo
             add(cornersOf(boxOf(*force_, toolRadius_)));
         }
     }
-    for (const Box& box : mesh_.changesSince(memory.sand, memory.levels, rule)) {
+    for (const Box& box : surface().changesSince(memory.sand, memory.levels, rule)) {
         add(cornersOf(box_.withSides(box)));
     }
     return static_cast<double>(changed.area()) > kMostOfAll * static_cast<double>(whole.area()) ? whole : changed;
@@ -311,7 +342,7 @@ PixelRect SandView::drawIfChanged(const Camera& camera, const EyeTarget& target,
               camera.roomToClip,
               sceneToRoom_,
               camera.eye,
-              mesh_.revision(),
+              surface().revision(),
               std::move(memory.levels),
               tool_,
               force_,

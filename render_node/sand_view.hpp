@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
 
 #include "lockstep/layer.hpp"
+#include "render_node/drawn_surface.hpp"
 #include "render_node/eye_target.hpp"
 #include "render_node/force_arrow.hpp"
 #include "render_node/gl/gl_program.hpp"
@@ -20,8 +22,11 @@
 #include "render_node/tool_reach.hpp"
 #include "sand/scene.hpp"
 #include "sand/step.hpp"
+#include "sand/tin/surface_view.hpp"
 
 namespace render_node {
+
+class TinMesh;
 
 /// One eye of one tile.
 struct Camera {
@@ -58,12 +63,18 @@ struct EyeMemory {
     PixelRect covered{};      // that something else was drawn over since, and is to go
 };
 
+/// The files that place the surface's vertices, and light them or whole triangles.
+struct SurfaceShaders {
+    std::string_view vertex;
+    std::string_view geometry{};
+};
+
 /// What draws the sand in one light.
 struct SandPrograms {
-    /// `light` is a file of shaders/.
-    explicit SandPrograms(std::string_view light, std::string_view tool = "ball.glsl")
-        : far({"sand.vert.glsl", "sand.frag.glsl", light}),
-          near({"sand.vert.glsl", "near.frag.glsl", light, {}, tool}),
+    /// `light` and `tool` are files of shaders/.
+    SandPrograms(const SurfaceShaders& surface, std::string_view light, std::string_view tool)
+        : far({surface.vertex, "sand.frag.glsl", light, surface.geometry}),
+          near({surface.vertex, "near.frag.glsl", light, surface.geometry, tool}),
           sides({"side.vert.glsl", "near.frag.glsl", light, {}, tool}) {}
     GlProgram far, near;  // the surface, beyond the tool's reach and within
     GlProgram sides;
@@ -79,12 +90,19 @@ class SandView {
 public:
     /// Takes heights, tool radius and look from the scene. Throws std::runtime_error when a shader does not compile.
     SandView(const sand::Scene& scene, const glm::dmat4& sceneToRoom);
+    /// The same for a scene whose terrain is a TIN, as the session starts; of scene.terrain the cell size alone counts.
+    SandView(const sand::Scene& scene, const sand::tin::SurfaceView& tin, const glm::dmat4& sceneToRoom);
+
+    SandView(SandView&&) noexcept;
+    ~SandView();
 
     /// Where the scene stands from now on.
     void setSceneToRoom(const glm::dmat4& sceneToRoom) { sceneToRoom_ = sceneToRoom; }
     /// Takes over the heights of `damage`, which may be empty or reach beyond the field. `field` must have the size
     /// of the scene's; it is copied, not kept.
     void update(const sand::HeightField& field, sand::Rect damage);
+    /// The same of a TIN.
+    void update(const sand::tin::SurfaceView& tin, const sand::tin::SurfaceDamage& damage);
     /// Where the tool's centre is. No tool is drawn before the first call.
     void setTool(sand::ProbePoint centre, bool engaged);
     /// The same for another tool than the scene's or that of before, or one that was turned.
@@ -105,7 +123,7 @@ public:
 
     [[nodiscard]] const DrawCounts& counts() const { return counts_; }
     /// Bytes this view has asked of GL for geometry so far.
-    [[nodiscard]] std::size_t geometryBytes() const { return mesh_.bytes(); }
+    [[nodiscard]] std::size_t geometryBytes() const { return surface().bytes(); }
     /// Draws every chunk, seen or not: for measurements of what culling gains.
     void setCulling(bool culling) { culling_ = culling; }
     /// How far the level of detail may shift the picture of any sand, in place of the scene's look.detail [pixel]. Who
@@ -113,6 +131,10 @@ public:
     void setDetail(double bound) { look_.detail = bound; }
 
 private:
+    SandView(const sand::Scene& scene, const glm::dmat4& sceneToRoom, std::unique_ptr<SandMesh> grid,
+             std::unique_ptr<TinMesh> tin);
+    [[nodiscard]] DrawnSurface& surface() const;
+    [[nodiscard]] SurfaceShaders shaders() const;
     void prepare(const GlProgram& program, const Camera& camera) const;
     void prepareTool(const GlProgram& program) const;
     void prepareSurface(const GlProgram& program, const Camera& camera) const;
@@ -144,6 +166,8 @@ private:
     bool culling_ = true;
     DrawCounts counts_;
 
+    std::unique_ptr<SandMesh> grid_;  // one of the two, whatever the terrain is made of
+    std::unique_ptr<TinMesh> tin_;
     SandPrograms sunlit_;
     std::optional<SandPrograms> hillShaded_;                     // since the layer was first drawn, as those below
     std::optional<SandPrograms> stampSunlit_, stampHillShaded_;  // since a tool was, that is no ball
@@ -152,7 +176,6 @@ private:
     std::optional<ForceArrowView> forceView_;
     GlProgram woodProgram_, toolProgram_;
     GrainTexture grain_;
-    SandMesh mesh_;
     SandBox box_;
     ToolMesh toolMesh_;
 };

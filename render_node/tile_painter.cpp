@@ -23,12 +23,13 @@ void ViewCounts::add(const PixelRect& drawn, const EyeTarget& target) {
     pixels += all;
 }
 
-TilePainter::TilePainter(const walls::Wall& wall, const walls::Tile& tile, const sand::Scene& scene, std::string host)
+TilePainter::TilePainter(const walls::Wall& wall, const walls::Tile& tile, const sand::Scene& scene, std::string host,
+                         const sand::tin::SurfaceView* tin)
     : wall_(&wall),
       tile_(&tile),
       host_(std::move(host)),
       forceConstants_(scene.force),
-      sand_(scene, glm::dmat4(1)),
+      sand_(tin != nullptr ? SandView(scene, *tin, glm::dmat4(1)) : SandView(scene, glm::dmat4(1))),
       composer_(wall.stereo, tile) {
     makeTargets();
 }
@@ -62,7 +63,11 @@ void TilePainter::paint(sand::Terrain& terrain, const lockstep::ViewState& view,
                         const TileFigures& figures) {
     sand_.setLayers(view.layers);
     sand_.setSceneToRoom(glm::make_mat4(view.sceneToRoom.data()));
-    sand_.update(terrain.field(), terrain.takeDamage());
+    if (const sand::tin::SurfaceView* tin = terrain.tinView()) {
+        sand_.update(*tin, terrain.takeTinDamage());
+    } else {
+        sand_.update(terrain.field(), terrain.takeDamage());
+    }
     if (terrain.probe() != sand::ProbePoint{}) {  // a hand has been somewhere
         sand_.setTool(terrain.probe(), terrain.engaged(), terrain.toolShape(), terrain.heading());
     }

@@ -45,11 +45,11 @@ public:
         }
         const sand::Scene scene = sand::Scene::decode(message.scene);
         terrain_.emplace(scene, sweeps);
-        if (!message.state.empty()) {
+        painter_.emplace(shown_, shown_.tiles.at(static_cast<std::size_t>(cluster.rank() - 1)), scene,
+                         lockstep::hostName(), terrain_->tinView());
+        if (!message.state.empty()) {  // behind the painter: the box that it draws follows from the scene's start
             terrain_->decodeState(message.state);
         }
-        painter_.emplace(shown_, shown_.tiles.at(static_cast<std::size_t>(cluster.rank() - 1)), scene,
-                         lockstep::hostName());
     }
 
     [[nodiscard]] const GlContext& context() const { return *context_; }

@@ -17,8 +17,6 @@ bool overlap(const Box& a, const Box& b) {
     return glm::all(glm::lessThanEqual(a.low, b.high)) && glm::all(glm::lessThanEqual(b.low, a.high));
 }
 
-Box around(const Box& a, const Box& b) { return {glm::min(a.low, b.low), glm::max(a.high, b.high)}; }
-
 }  // namespace
 
 double ToolReach::halfWidth(double along) const { return (1 + kPenumbra) * radius_ + kPenumbraGrowth * along; }

@@ -114,7 +114,7 @@ files::Bytes Scene::encode() const {
     if (ground != nullptr) {
         encodeCells(ground->cells(), terrain.bounds(), writer);
     }
-    writer.put(static_cast<std::uint8_t>(look.hillShade ? 1 : 0));
+    writer.put(static_cast<std::uint8_t>((look.hillShade ? 1 : 0) | (look.flatShading ? 2 : 0)));
     writer.put(look.detail);
     force.encodeRest(writer);
     if (georeference != Georeference{}) {
@@ -160,7 +160,9 @@ Scene Scene::decode(std::span<const std::uint8_t> bytes) {
     }
     // Journals end where what came later had not been thought of: hill-shade and levels of detail, then more forces.
     if (!reader.atEnd()) {
-        scene.look.hillShade = reader.get<std::uint8_t>() != 0;
+        const auto flags = reader.get<std::uint8_t>();
+        scene.look.hillShade = (flags & 1U) != 0;
+        scene.look.flatShading = (flags & 2U) != 0;
         scene.look.detail = reader.get<double>();
     }
     if (!reader.atEnd()) {

@@ -62,6 +62,7 @@ struct Look {
     std::vector<double> sandColour{0.80, 0.66, 0.45};        // linear-light RGB, of dry sand in full light
     std::vector<double> backgroundColour{0.10, 0.12, 0.15};  // linear-light RGB
     std::vector<double> sunDirection{-0.55, 0.35, 0.60};     // towards the sun, scene axes x east, y north, z up
+    bool flatShading = false;                                // each triangle is lit as one facet
     bool hillShade = false;                                  // shown as a map, until an operator says otherwise
     double detail =
         0.5;  // [pixel], how far a level of detail may shift the picture of any sand; 0: every cell is drawn

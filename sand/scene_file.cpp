@@ -102,6 +102,7 @@ void readLook(const files::TomlTable& file, Scene& scene) {
         scene.look.backgroundColour = look->numbersOr("background", scene.look.backgroundColour);
         scene.look.sunDirection = look->numbersOr("sun", scene.look.sunDirection);
         scene.look.hillShade = look->flagOr("hill_shade", scene.look.hillShade);
+        scene.look.flatShading = look->choiceOr("shading", {"smooth", "flat"}, 0) == 1;
         const auto& sun = scene.look.sunDirection;
         if (sun[0] == 0 && sun[1] == 0 && sun[2] == 0) {
             look->fail("sun", "sun must point somewhere, got [0, 0, 0]");

@@ -3,14 +3,15 @@
 // several times over. Only the tool's shadow may be finer. The position in the room is the same sum in every tile, so
 // that tiles join.
 layout(location = 0) in float aHeight;  // scene unit
-layout(location = 1) in vec2 aGrid;     // vertex column and row
+layout(location = 1) in vec2 aGrid;     // where it stands [cell]
 layout(location = 2) in vec2 aNormal;   // east and north
 layout(location = 3) in vec2 aShade;    // open sky, mottling
 
 uniform mat4 uSceneToRoom;
 uniform mat4 uRoomToClip;
-uniform float uCell;  // scene unit
-uniform vec2 uCells;  // columns and rows of the field
+uniform float uCell;   // scene unit
+uniform vec2 uCells;   // columns and rows of the field
+uniform float uFirst;  // of aGrid, where the field begins: vertices before it stand on its edge
 
 // The same in every program, so that what is drawn by one joins what is drawn by another.
 invariant gl_Position;
@@ -21,7 +22,7 @@ out vec3 vScene;
 out vec3 vNormal;
 
 void main() {
-    vec2 ground = clamp(aGrid - 0.5, vec2(0.0), uCells) * uCell;
+    vec2 ground = clamp(aGrid - uFirst, vec2(0.0), uCells) * uCell;
     vScene = vec3(ground, aHeight);
     vNormal = vec3(aNormal, sqrt(max(1.0 - dot(aNormal, aNormal), 0.0)));
     Shade shade = shadeOf(vNormal, aShade.x, aShade.y);

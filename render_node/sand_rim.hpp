@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+#include <vector>
+
+namespace render_node {
+
+/// The edge of a field, where its sand is cut.
+struct SandRim {
+    /// The vertices of the southern, eastern, northern and western side [scene unit], counter-clockwise from the corner
+    /// in the south-west; a corner is in both of its sides.
+    std::array<std::vector<glm::vec3>, 4> sides;
+
+    [[nodiscard]] float width() const { return sides[0].back().x; }
+    [[nodiscard]] float depth() const { return sides[1].back().y; }
+};
+
+}  // namespace render_node

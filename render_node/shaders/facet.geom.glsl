@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lights each triangle as one facet: from its own normal, and the mean of what its corners see of the sky.
+layout(triangles) in;
+layout(triangle_strip, max_vertices = 3) out;
+
+in vec3 vCorner[];
+in vec2 vShade[];
+out vec4 vColour;
+out vec2 vGrainAt;
+out vec3 vInShadow;
+out vec3 vScene;
+out vec3 vNormal;
+
+void main() {
+    vec3 normal = normalize(cross(vCorner[1] - vCorner[0], vCorner[2] - vCorner[0]));
+    vec2 mean = (vShade[0] + vShade[1] + vShade[2]) / 3.0;
+    Shade shade = shadeOf(normal, mean.x, mean.y);
+    for (int i = 0; i < 3; ++i) {
+        vColour = shade.colour;
+        vInShadow = shade.inShadow;
+        vGrainAt = grainAt(vCorner[i]);
+        vScene = vCorner[i];
+        vNormal = normal;
+        gl_Position = gl_in[i].gl_Position;
+        EmitVertex();
+    }
+}

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/tin_relief.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "sand/height_field.hpp"
+
+namespace render_node {
+namespace {
+
+using sand::tin::doubledArea;
+using sand::tin::Place;
+
+constexpr std::int64_t kCell = sand::kProbePerCell;
+
+constexpr int cellsOf(std::int32_t length) { return std::max<int>(1, static_cast<int>((length + kCell / 2) / kCell)); }
+
+std::int64_t floorOf(std::int64_t dividend, std::int64_t divisor /* positive */) {
+    return dividend >= 0 ? dividend / divisor : -((-dividend + divisor - 1) / divisor);
+}
+
+Place middleOf(std::int64_t column, std::int64_t row) {
+    return {static_cast<std::int32_t>(column * kCell + kCell / 2), static_cast<std::int32_t>(row * kCell + kCell / 2)};
+}
+
+struct Columns {
+    std::int64_t first, end;
+};
+
+/// Leaves of these columns of a row those whose middles are left of an edge; on it, where the edge leads south or west:
+/// of two triangles beside it, one has them.
+void clip(Columns& columns, std::int64_t row, const Place& from, const Place& to) {
+    const std::int64_t south = std::int64_t{from.y} - to.y;
+    const bool within = south > 0 || (south == 0 && to.x < from.x);
+    // The doubled area with the middle of a column is atFirst + south · kCell · column: of it, at least this is asked.
+    const std::int64_t atFirst = doubledArea(from, to, middleOf(0, row)) - (within ? 0 : 1);
+    const std::int64_t slope = south * kCell;
+    if (slope > 0) {
+        columns.first = std::max(columns.first, -floorOf(atFirst, slope));
+    } else if (slope < 0) {
+        columns.end = std::min(columns.end, floorOf(atFirst, -slope) + 1);
+    } else if (atFirst < 0) {
+        columns.end = columns.first;
+    }
+}
+
+}  // namespace
+
+TinRelief::TinRelief(std::int32_t width, std::int32_t depth)
+    : columns_(cellsOf(width)),
+      rows_(cellsOf(depth)),
+      tilesAcross_((columns_ + kTile - 1) / kTile),
+      heights_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)),
+      changed_(static_cast<std::size_t>(tilesAcross_) * static_cast<std::size_t>((rows_ + kTile - 1) / kTile)) {}
+
+void TinRelief::put(const std::array<ReliefCorner, 3>& corners) {
+    const auto& [a, b, c] = corners;
+    const auto [south, north] = std::minmax({a.place.y, b.place.y, c.place.y});
+    const auto whole = static_cast<double>(doubledArea(a.place, b.place, c.place));
+    const std::int64_t lastRow = std::min<std::int64_t>(rows_ - 1, floorOf(north - kCell / 2, kCell));
+    for (std::int64_t row = std::max<std::int64_t>(0, floorOf(south - kCell / 2, kCell)); row <= lastRow; ++row) {
+        Columns columns{0, columns_};
+        clip(columns, row, a.place, b.place);
+        clip(columns, row, b.place, c.place);
+        clip(columns, row, c.place, a.place);
+        for (std::int64_t column = columns.first; column < columns.end; ++column) {
+            const Place middle = middleOf(column, row);
+            const double sum = static_cast<double>(doubledArea(b.place, c.place, middle)) * a.height +
+                               static_cast<double>(doubledArea(c.place, a.place, middle)) * b.height +
+                               static_cast<double>(doubledArea(a.place, b.place, middle)) * c.height;
+            set(static_cast<int>(column), static_cast<int>(row), static_cast<float>(sum / whole));
+        }
+    }
+}
+
+void TinRelief::set(int column, int row, float height) {
+    float& here =
+        heights_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column)];
+    if (here == height) {
+        return;
+    }
+    here = height;
+    const int tile = row / kTile * tilesAcross_ + column / kTile;
+    sand::Rect& changed = changed_[static_cast<std::size_t>(tile)];
+    if (changed.empty()) {
+        changedTiles_.push_back(tile);
+    }
+    changed = changed.joinedWith({column, row, column + 1, row + 1});
+}
+
+float TinRelief::at(std::int32_t x, std::int32_t y) const {
+    const auto along = [](std::int32_t place, int cells, int& low, int& high) {
+        const std::int64_t from = place - kCell / 2;
+        const std::int64_t before = floorOf(from, kCell);
+        low = static_cast<int>(std::clamp<std::int64_t>(before, 0, cells - 1));
+        high = static_cast<int>(std::clamp<std::int64_t>(before + 1, 0, cells - 1));
+        return static_cast<float>(from - before * kCell) / static_cast<float>(kCell);
+    };
+    int west = 0, east = 0, south = 0, north = 0;
+    const float alongX = along(x, columns_, west, east);
+    const float alongY = along(y, rows_, south, north);
+    const float below = cell(west, south) + alongX * (cell(east, south) - cell(west, south));
+    const float above = cell(west, north) + alongX * (cell(east, north) - cell(west, north));
+    return below + alongY * (above - below);
+}
+
+std::vector<sand::Rect> TinRelief::takeChanged() {
+    std::vector<sand::Rect> all;
+    for (const int tile : changedTiles_) {
+        all.push_back(std::exchange(changed_[static_cast<std::size_t>(tile)], {}));
+    }
+    changedTiles_.clear();
+    return all;
+}
+
+}  // namespace render_node

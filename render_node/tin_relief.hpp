@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "sand/grid.hpp"
+#include "sand/tin/triangles.hpp"
+
+namespace render_node {
+
+/// A corner of a triangle, in the order that all replicas agree on.
+struct ReliefCorner {
+    sand::tin::Place place;
+    double height = 0;  // [unit]
+};
+
+/// The heights of a TIN over the middles of the field's cells: whoever asks how much sky a place sees looks around in
+/// it, which a walk through triangles would make slow.
+///
+/// A cell's height is a function of the triangle that lies there, whatever came before. Not thread-safe.
+class TinRelief {
+public:
+    TinRelief(std::int32_t width, std::int32_t depth /* [probe unit] */);
+
+    /// Takes over the cells over whose middles a triangle lies, counter-clockwise from above; of two that share a
+    /// middle, it is the same one's.
+    void put(const std::array<ReliefCorner, 3>& corners);
+    /// The height at a place, linear between four middles [unit]; beyond them that of the last.
+    [[nodiscard]] float at(std::int32_t x, std::int32_t y) const;
+
+    /// Rectangles of cells that have other heights than when this was called last, each within a tile of kTile cells.
+    [[nodiscard]] std::vector<sand::Rect> takeChanged();
+
+private:
+    static constexpr int kTile = 32;  // [cell]
+    void set(int column, int row, float height);
+    [[nodiscard]] float cell(int column, int row) const {
+        return heights_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+                        static_cast<std::size_t>(column)];
+    }
+
+    int columns_, rows_, tilesAcross_;
+    std::vector<float> heights_;       // [unit], row by row
+    std::vector<sand::Rect> changed_;  // of each tile
+    std::vector<int> changedTiles_;
+};
+
+}  // namespace render_node

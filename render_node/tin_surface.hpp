@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "render_node/box_bins.hpp"
+#include "render_node/frustum.hpp"
+#include "render_node/sand_rim.hpp"
+#include "render_node/sand_surface.hpp"
+#include "render_node/tin_relief.hpp"
+#include "sand/tin/surface_view.hpp"
+
+namespace render_node {
+
+/// A vertex of a TIN as the shader takes it.
+struct TinVertex {
+    float height = 0;                              // [scene unit]
+    std::int32_t x = -1, y = -1;                   // [probe unit]; −1 where no vertex lives
+    std::int16_t normalEast = 0, normalNorth = 0;  // 1/32767, of the mean of the triangles around, by their areas
+    std::uint16_t open = 0;                        // share of the sky that the vertex sees, 1/65535
+    std::uint16_t mottling = 0;                    // slow change of shade from place to place, 1/65535
+};
+static_assert(sizeof(TinVertex) == 20);
+
+/// A triangle of a TIN as it is drawn: its corners counter-clockwise from the smallest number on, so that all replicas
+/// compute it alike, whichever slots and corners their meshes have.
+struct TinTriangle {
+    std::array<sand::tin::Vertex, 3> corner{sand::tin::kNobody, sand::tin::kNobody, sand::tin::kNobody};
+    std::array<bool, 3> marked{};  // whether the edge across is a constraint, and none of the field's rim
+    [[nodiscard]] bool alive() const { return corner[0] != sand::tin::kNobody; }
+    friend bool operator==(const TinTriangle&, const TinTriangle&) = default;
+};
+
+/// Triangles that lie close together, for leaving out what a camera does not see.
+struct TinChunk {
+    std::vector<std::int32_t> slots;  // of its triangles
+    bool changed = false;             // others are in `slots`, or they are not in order: TinSurface::settle()
+    bool reshaped = false;            // since the box was measured
+    Box box;
+};
+
+/// The drawn surface of a TIN, on the CPU: vertices with their light, triangles by slot, and what of them changes.
+///
+/// All of it is a function of the TIN that it began with and the TIN now, whatever came between. Not thread-safe.
+class TinSurface {
+public:
+    TinSurface(const sand::tin::SurfaceView& tin, double cellSize /* [scene unit] */)
+        : TinSurface(tin, cellSize, chunkSideFor(tin.triangles)) {}
+
+    /// What an update changed.
+    struct Change {
+        bool whole = false;                       // everything is another
+        bool rim = false;                         // so is where the sand is cut
+        std::vector<sand::tin::Vertex> vertices;  // that are others, ascending
+        std::vector<Box> boxes;                   // around what looks different, before and after
+    };
+    [[nodiscard]] Change update(const sand::tin::SurfaceView& tin, const sand::tin::SurfaceDamage& damage);
+
+    [[nodiscard]] const std::vector<TinVertex>& vertices() const { return vertices_; }
+    [[nodiscard]] const std::vector<TinTriangle>& triangles() const { return triangles_; }  // by slot
+    [[nodiscard]] std::vector<TinChunk>& chunks() { return chunks_; }
+    /// Puts the triangles of a chunk in the order of their corners; says whether they are others than when this was
+    /// called last. Where wires cross at a ridge, the order in which they are drawn shows.
+    [[nodiscard]] bool settle(TinChunk& chunk);
+    /// The box around a chunk that has triangles.
+    [[nodiscard]] const Box& boxOf(TinChunk& chunk) const;
+    /// The lowest and the highest that any vertex has been.
+    [[nodiscard]] HeightRange heightsEver() const { return ever_; }
+    [[nodiscard]] SandRim rim() const;
+
+private:
+    using Vertex = sand::tin::Vertex;
+    struct InChunk {
+        int chunk = -1, at = 0;
+    };
+    TinSurface(const sand::tin::SurfaceView& tin, double cellSize, double chunkSide);
+    [[nodiscard]] static double chunkSideFor(const sand::tin::Triangles& mesh);
+    void grow(const sand::tin::Triangles& mesh);
+    [[nodiscard]] TinVertex placed(const sand::tin::SurfaceView& tin, Vertex vertex) const;
+    [[nodiscard]] std::vector<Vertex> moved(const sand::tin::SurfaceView& tin, std::span<const Vertex> asked) const;
+    [[nodiscard]] bool move(const sand::tin::SurfaceView& tin, std::span<const Vertex> vertices);
+    [[nodiscard]] bool keepRim(Vertex vertex, bool present);
+    void replace(std::int32_t slot, const TinTriangle& triangle);
+    void leaveChunk(std::int32_t slot);
+    [[nodiscard]] glm::dvec3 at(Vertex vertex) const;
+    [[nodiscard]] Box boxOf(const TinTriangle& triangle) const;
+    void addToRelief(const sand::tin::SurfaceView& tin, const TinTriangle& triangle);
+    bool lightFrom(const sand::tin::SurfaceView& tin, Vertex vertex);
+    bool openTo(const sand::tin::SurfaceView& tin, Vertex vertex);
+    [[nodiscard]] std::vector<Vertex> verticesAround(const std::vector<sand::Rect>& cells);
+    [[nodiscard]] std::vector<Vertex> relight(const sand::tin::SurfaceView& tin,
+                                              const std::vector<std::int32_t>& reshaped);
+    [[nodiscard]] TinTriangle& triangle(std::int32_t slot) { return triangles_[static_cast<std::size_t>(slot)]; }
+    [[nodiscard]] TinVertex& vertex(Vertex number) { return vertices_[static_cast<std::size_t>(number)]; }
+
+    double cellSize_, unit_, probe_;      // [scene unit]
+    std::int32_t width_, depth_;          // [probe unit]
+    int across_;                          // chunks
+    double chunkSide_;                    // [probe unit]
+    std::vector<TinVertex> vertices_;     // by number
+    std::vector<TinTriangle> triangles_;  // by slot
+    std::vector<InChunk> inChunk_;        // by slot
+    std::vector<TinChunk> chunks_;        // row by row from the south-west
+    TinRelief relief_;
+    BoxBins damaged_;
+    HeightRange ever_{};
+    std::array<std::map<std::int32_t, Vertex>, 4> rim_;  // south, east, north, west, by place along the side
+    std::vector<bool> seen_;                             // by vertex: scratch of verticesAround()
+};
+
+}  // namespace render_node
