@@ -20,7 +20,8 @@ class ActiveEdges {
 public:
     using Underside = std::function<std::int32_t(Place)>;
 
-    /// Takes the layer's sand as it is now, for a run of sweeps under this obstacle; nothing flows yet.
+    /// Takes the layer's sand as it is now, for a run of sweeps under this obstacle, or none; nothing flows yet.
+    /// `band`: sand at rest starts to slide later than sliding sand stops.
     void begin(const Layer& layer, bool band, const Underside* held);
     /// Watches every edge whose flux depends on this vertex.
     void watch(const Layer& layer, const Slopes& slopes, Weights& weights, Vertex vertex);
