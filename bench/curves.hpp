@@ -28,5 +28,7 @@ void hashes(const Settings& settings, Csv& csv);
 void stability(const Settings& settings, Csv& csv);
 void guardedSweep(const Settings& settings, Csv& csv);
 void explain(const Settings& settings, Csv& csv);
+void imprint(const Settings& settings, Csv& csv);
+void simplify(const Settings& settings, Csv& csv);
 
 }  // namespace bench

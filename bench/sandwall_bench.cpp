@@ -76,6 +76,12 @@ std::vector<Curve> allCurves() {
         {"certificate", "distance from the right pile: proved, and true", {32, 64, 128}, 1, bench::certificate},
         {"mass-drift", "sand that floats lose or invent, and integers do not", {128}, 1, bench::massDrift},
         {"budget", "where one pile's error comes from", {128}, 1, bench::budget},
+        {"tin-imprint", "milliseconds of a tool's work in a TIN, without the sweeps", {512}, 10, bench::imprint},
+        {"tin-simplify",
+         "error of a TIN of dunes, or of a raster, by its vertices and the seconds it takes",
+         {256, 1024},
+         10,
+         bench::simplify},
     };
 }
 
@@ -95,6 +101,9 @@ void addOptions(CLI::App& command, const Curve& curve, bench::Settings& settings
     if (curve.sizes.empty()) {
         command.add_option("SCENE", settings.scene, "a scene file")->required();
         return;
+    }
+    if (curve.measure == bench::simplify) {
+        command.add_option("--raster", settings.raster, "an ESRI ASCII grid, in place of dunes");
     }
     command.add_option("--sizes", settings.sizes, "sides of the square fields [cell], separated by commas")
         ->delimiter(',')
