@@ -20,6 +20,7 @@ struct Settings {
     int runs = 10;              // of everything that is timed
     std::uint32_t seed = 1;
     std::string scene;        // explain's
+    std::string raster;       // tin-simplify's, in place of dunes
     std::string commandLine;  // as typed, for the file's head
 };
 

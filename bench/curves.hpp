@@ -30,5 +30,7 @@ void guardedSweep(const Settings& settings, Csv& csv);
 void tinPiles(const Settings& settings, Csv& csv);
 void tinActive(const Settings& settings, Csv& csv);
 void explain(const Settings& settings, Csv& csv);
+void imprint(const Settings& settings, Csv& csv);
+void simplify(const Settings& settings, Csv& csv);
 
 }  // namespace bench

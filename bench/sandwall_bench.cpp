@@ -82,6 +82,12 @@ std::vector<Curve> allCurves() {
          bench::tinPiles},
         {"tin-active", "milliseconds of 100 sweeps over 1000 vertices of a TIN", {500}, 10, bench::tinActive},
         {"budget", "where one pile's error comes from", {128}, 1, bench::budget},
+        {"tin-imprint", "milliseconds of a tool's work in a TIN, without the sweeps", {512}, 10, bench::imprint},
+        {"tin-simplify",
+         "error of a TIN of dunes, or of a raster, by its vertices and the seconds it takes",
+         {256, 1024},
+         10,
+         bench::simplify},
     };
 }
 
@@ -101,6 +107,9 @@ void addOptions(CLI::App& command, const Curve& curve, bench::Settings& settings
     if (curve.sizes.empty()) {
         command.add_option("SCENE", settings.scene, "a scene file")->required();
         return;
+    }
+    if (curve.measure == bench::simplify) {
+        command.add_option("--raster", settings.raster, "an ESRI ASCII grid, in place of dunes");
     }
     command.add_option("--sizes", settings.sizes, "sides of the square fields [cell], separated by commas")
         ->delimiter(',')

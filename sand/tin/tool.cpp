@@ -10,6 +10,9 @@ namespace {
 constexpr std::size_t kMostPresses = 4096;         // of a chunk
 constexpr std::int32_t kWay = 16 * kProbePerCell;  // [probe unit], of a chunk's presses from one another, at the least
 
+/// [probe unit]: a hand that is sampled often moves less, and every press costs.
+constexpr std::int32_t kNoWay = kProbePerCell / 4;
+
 Offset offsetOf(const Place& place, const ProbePoint& at) {
     return {std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
 }
@@ -51,8 +54,8 @@ Box Tool::reach(const ProbePoint& at) const { return boxOf(turned_.cellsChanged(
 Tool::Work Tool::drag(Layer& layer, Imprint& imprint, Rim rim, std::span<const ProbePoint> path) {
     Work done;
     Chunk chunk;
-    const auto visit = [&](const ProbePoint& at, const Offset& ahead) {
-        const Box box = reach(at);
+    const auto add = [&](const Press& press) {
+        const Box box = reach(press.at);
         if (!overlaps(box, layer.triangles())) {
             return;
         }
@@ -63,11 +66,23 @@ Tool::Work Tool::drag(Layer& layer, Imprint& imprint, Rim rim, std::span<const P
             work(layer, imprint, rim, chunk, done);
             chunk = {};
         }
-        chunk.presses.push_back({at, ahead});
+        chunk.presses.push_back(press);
         chunk.box = chunk.box.joinedWith(box);
     };
-    for (std::size_t i = path.size() == 1 ? 0 : 1; i < path.size(); ++i) {
-        forEachSubstep(path[i == 0 ? 0 : i - 1], path[i], visit);
+    Press last{path.front(), {0, 0}}, pending = last;
+    bool waits = path.size() == 1;
+    for (std::size_t i = 1; i < path.size(); ++i) {
+        forEachSubstep(path[i - 1], path[i], [&](const ProbePoint& at, const Offset& ahead) {
+            pending = {at, ahead};
+            waits = std::max({std::abs(at.x - last.at.x), std::abs(at.y - last.at.y), last.at.z - at.z}) < kNoWay;
+            if (!waits) {
+                add(pending);
+                last = pending;
+            }
+        });
+    }
+    if (waits) {  // where the path ends the tool always presses
+        add(pending);
     }
     if (!chunk.presses.empty()) {
         chunk.last = chunk.presses.back().at == path.back();

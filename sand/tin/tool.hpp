@@ -29,12 +29,13 @@ public:
         Volume outflow = 0;           // pushed over an open rim; the layer has lost it
     };
 
-    /// Sweeps the tool along a path of one point or more, whose first is where it was, in sub-steps of at most a cell;
-    /// a path of one point presses there. The mesh is refined along the way, the imprint of before taken out, and the
-    /// outline put in where the path ends. Sand above the underside goes to the vertices ahead, as a grid's does to
-    /// its cells, each by its share of the ground; where there are none, to all around, or else to the neighbours of
-    /// those it came from. Where nothing could take it, it stays. Beside an open rim the ground beyond takes its part,
-    /// which flows out.
+    /// Sweeps the tool along a path of one point or more, whose first is where it was, in sub-steps of at most a cell,
+    /// without those that are neither a quarter of a cell farther nor deeper than the one before, nor the end; a path
+    /// of one point presses there. The mesh is refined along the way, the imprint of before taken out, and the outline
+    /// put in where the path ends. Sand above the underside goes to the vertices ahead, as a grid's does to its cells,
+    /// each by its share of the ground; where there are none, to all around, or else to the neighbours of those it came
+    /// from. Where nothing could take it, it stays. Beside an open rim the ground beyond takes its part, which flows
+    /// out.
     ///
     /// A tool held still changes nothing once it has pressed; a tool that does not reach the sand at all leaves it.
     Work drag(Layer& layer, Imprint& imprint, Rim rim, std::span<const ProbePoint> path);
