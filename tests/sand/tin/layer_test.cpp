@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
+#include <stdexcept>
 
 #include "mesh_checks.hpp"
 
@@ -88,22 +88,77 @@ TEST(Layer, KeepsAnInclinedPlaneWithinRounding) {
     }
 }
 
+files::Bytes bytesOf(const Layer& layer) {
+    files::ByteWriter writer;
+    layer.encode(writer);
+    return writer.take();
+}
+
+TEST(Layer, ReadsNoFurtherThanItsEnd) {
+    std::mt19937 random(6);
+    Layer layer = layerOf(500, 400, 60, random);
+    pile(layer, random, 1 << 20);
+    files::Bytes bytes = bytesOf(layer);
+    bytes.push_back(42);
+    files::ByteReader reader(bytes);
+    const Layer again = Layer::decode(reader);
+    ASSERT_EQ(reader.rest().size(), 1U);
+    EXPECT_EQ(again.volumes(), layer.volumes());
+    EXPECT_EQ(again.heights(), layer.heights());
+    EXPECT_EQ(again.stars(), layer.stars());
+    EXPECT_EQ(trianglesOf(again.mesh()), trianglesOf(layer.mesh()));
+    EXPECT_EQ(again.mesh().constraints(), layer.mesh().constraints());
+}
+
+/// Every byte in turn cut off or changed: refused, or a layer that is a sound one.
+TEST(Layer, RefusesDamagedBytesOrReadsAnotherSoundLayer) {
+    std::mt19937 random(7);
+    Layer layer = layerOf(60, 50, 30, random);
+    pile(layer, random, 1 << 20);
+    const files::Bytes whole = bytesOf(layer);
+    int taken = 0, refused = 0;
+    const auto tryOn = [&](const files::Bytes& bytes) {
+        files::ByteReader reader(bytes);
+        try {
+            ASSERT_EQ(whatIsWrong(Layer::decode(reader).mesh()), "");
+            ++taken;
+        } catch (const files::FormatError&) {
+            ++refused;
+        }
+    };
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+        const int before = taken;
+        tryOn(files::Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(i)));
+        ASSERT_EQ(taken, before) << "cut after " << i;
+        for (const int flip : {1, 2, 0x40, 0x80, 0xff}) {
+            files::Bytes damaged = whole;
+            damaged[i] = static_cast<std::uint8_t>(damaged[i] ^ flip);
+            tryOn(damaged);
+        }
+    }
+    EXPECT_GT(taken, 0) << "seed 7";
+    EXPECT_GT(refused, static_cast<int>(whole.size())) << "seed 7";
+}
+
+TEST(Layer, RefusesMoreSandThanItCanCount) {
+    Layer layer(Mesh(1 << 18, 1 << 18));
+    EXPECT_THROW(layer.setHeight(0, 1 << 30), std::overflow_error);
+    layer.setHeight(0, 1 << 20);
+    EXPECT_THROW(layer.add(0, std::int64_t{1} << 62), std::overflow_error);
+}
+
 TEST(Layer, IsAFunctionOfTheEditsAndNotOfTheSlots) {
     std::mt19937 random(5);
     Layer layer = layerOf(500, 400, 60, random);
     pile(layer, random, 1 << 20);
-    files::ByteWriter start;
-    layer.encode(start);
-    files::ByteReader reader(start.bytes());
+    const files::Bytes start = bytesOf(layer);
+    files::ByteReader reader(start);
     Layer restored = Layer::decode(reader);
     std::mt19937 same = random;
     for (int i = 0; i < 1000; ++i) {
         editAtRandom(layer, random, 80);
         editAtRandom(restored, same, 80);
-        files::ByteWriter one, other;
-        layer.encode(one);
-        restored.encode(other);
-        ASSERT_EQ(one.bytes(), other.bytes()) << "edit " << i;
+        ASSERT_EQ(bytesOf(layer), bytesOf(restored)) << "edit " << i;
     }
 }
 
