@@ -102,7 +102,7 @@ TEST_F(TinLook, OfAGridsSurfaceIsThatOfTheGrid) {
 TEST_F(TinLook, IsFlatOrSmoothAsTheSceneSays) {
     sand::Scene scene = sample::flatScene(6, 6);
     for (int i = 0; i < 36; ++i) {
-        scene.terrain.setHeight(i % 6, i / 6, i * 7 % 5 * sand::kUnitsPerCell / 8);
+        scene.terrain.setHeight(i % 6, i / 6, (3 - std::abs(i % 6 - 2)) * sand::kUnitsPerCell / 4);
     }
     const Tin tin(scene.terrain);
     const auto shades = [&](bool flat) {
@@ -121,9 +121,9 @@ TEST_F(TinLook, IsFlatOrSmoothAsTheSceneSays) {
     };
     const std::size_t facets = shades(true), smooth = shades(false);
     std::printf("%zu shades in facets, %zu smooth\n", facets, smooth);
-    EXPECT_GT(facets, 10U);
+    EXPECT_GE(facets, 2U);
     EXPECT_LE(facets, tin.mesh().triangles.size());
-    EXPECT_GT(smooth, 150U);
+    EXPECT_GT(smooth, 10 * facets);
 }
 
 TEST_F(TinLook, MarksConstraintsInTheWireframeAlone) {

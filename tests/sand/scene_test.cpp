@@ -115,8 +115,16 @@ TEST_F(SceneFile, EsriGridErrorsNameTheGridsLine) {
     EXPECT_EQ(complaintOf("depth 3\n"), "t.asc:1: 'depth' is no key of an ESRI ASCII grid");
 }
 
+TEST_F(SceneFile, FlatShadingSurvivesItsEncodingAndIsNoHillShade) {
+    const sand::Scene scene = sand::loadScene(write("s.toml", kFlat + "[look]\nshading = \"flat\"\n"));
+    const sand::Look look = sand::Scene::decode(scene.encode()).look;
+    EXPECT_TRUE(look.flatShading);
+    EXPECT_FALSE(look.hillShade);
+}
+
 TEST_F(SceneFile, ShadedLikeAMapSurvivesItsEncodingAndOlderOnesAreNot) {
     const sand::Scene scene = sand::loadScene(write("s.toml", kFlat + "[look]\nhill_shade = true\n"));
+    EXPECT_FALSE(sand::Scene::decode(scene.encode()).look.flatShading);
     files::Bytes bytes = scene.encode();
     EXPECT_TRUE(sand::Scene::decode(bytes).look.hillShade);
     files::ByteWriter later;
