@@ -14,11 +14,11 @@ namespace {
 using sand::tin::Layer;
 using sand::tin::Place;
 
-constexpr double kRadius = 16.8;  // [cell]: about 1000 cells below a round tool and in the ring beside it
-constexpr double kDepth = 2;      // [cell]
-constexpr int kSamples = 16;      // of the hand, in one step
-constexpr double kWay = 1.5;      // [cell], of one step
-constexpr int kEach = 10;         // imprints a run, and steps of its drag
+constexpr double kToolRadius = 16.8;  // [cell]: about 1000 cells below a round tool and in the ring beside it
+constexpr double kDepth = 2;          // [cell]
+constexpr int kSamples = 16;          // of the hand, in one step
+constexpr double kWay = 1.5;          // [cell], of one step
+constexpr int kEach = 10;             // imprints a run, and steps of its drag
 
 /// A vertex somewhere in the middle half of every cell, level sand.
 Layer jittered(int side, std::mt19937& random) {
@@ -37,7 +37,7 @@ Layer jittered(int side, std::mt19937& random) {
     return Layer(std::move(mesh));
 }
 
-sand::ProbePoint probeAt(double x, double y, double z /* [cell] */) {
+sand::ProbePoint handAt(double x, double y, double z /* [cell] */) {
     const auto probe = [](double cells) { return static_cast<std::int32_t>(std::floor(cells * sand::kProbePerCell)); };
     return {probe(x), probe(y), probe(z)};
 }
@@ -54,7 +54,7 @@ int verticesNear(const Layer& layer, const sand::TurnedShape& shape, const sand:
 
 void measure(int side, sand::ToolKind kind, bool refines, const Settings& settings, Csv& csv) {
     std::mt19937 random(settings.seed);
-    const auto radius = static_cast<std::int32_t>(kRadius * sand::kProbePerCell);
+    const auto radius = static_cast<std::int32_t>(kToolRadius * sand::kProbePerCell);
     const auto half = static_cast<std::int32_t>(radius * sand::usualWidth(kind));
     const sand::ToolShape shape{kind, radius, sand::isRound(kind) ? 0 : half};
     sand::tin::DetailRules rules;
@@ -66,11 +66,11 @@ void measure(int side, sand::ToolKind kind, bool refines, const Settings& settin
         vertices = layer.mesh().vertexCount();
         const auto somewhere = [&] {
             const auto cells = static_cast<double>(random() % 65536) / 65536;
-            return 2 * kRadius + cells * (side - 4 * kRadius);
+            return 2 * kToolRadius + cells * (side - 4 * kToolRadius);
         };
         for (int i = 0; i < kEach; ++i) {
             const double x = somewhere();
-            const sand::ProbePoint at = probeAt(x, somewhere(), kRadius - kDepth);
+            const sand::ProbePoint at = handAt(x, somewhere(), kToolRadius - kDepth);
             near = verticesNear(layer, sand::TurnedShape(shape), at);
             sand::tin::Imprint imprint;
             imprints.push_back(secondsOf([&] {
@@ -82,11 +82,11 @@ void measure(int side, sand::ToolKind kind, bool refines, const Settings& settin
         }
         sand::tin::Imprint imprint;
         sand::tin::Tool tool(shape, {}, rules);
-        double x = 2 * kRadius;
+        double x = 2 * kToolRadius;
         for (int i = 0; i < kEach; ++i, x += kWay) {
             std::vector<sand::ProbePoint> path;
             for (int sample = 0; sample <= kSamples; ++sample) {
-                path.push_back(probeAt(x + kWay * sample / kSamples, side / 2.0, kRadius - kDepth));
+                path.push_back(handAt(x + kWay * sample / kSamples, side / 2.0, kToolRadius - kDepth));
             }
             steps.push_back(secondsOf([&] { tool.drag(layer, imprint, sand::Rim::closed, path); }));
             static_cast<void>(layer.takeChange());
@@ -102,7 +102,7 @@ void measure(int side, sand::ToolKind kind, bool refines, const Settings& settin
 
 void imprint(const Settings& settings, Csv& csv) {
     csv.note(fmt::format("a tool of radius {} cells, {} cells deep, in a TIN of a vertex a cell; no sweeps; CPU time",
-                         kRadius, kDepth));
+                         kToolRadius, kDepth));
     csv.note("imprint: put somewhere, its outline's edges constrained");
     csv.note(fmt::format("drag: a step of {} cells and {} samples, the imprint before taken out", kWay, kSamples));
     csv.note(
@@ -111,7 +111,7 @@ void imprint(const Settings& settings, Csv& csv) {
     for (const int side : settings.sizes) {
         for (const sand::ToolKind kind : {sand::ToolKind::circle, sand::ToolKind::ellipse, sand::ToolKind::footprint}) {
             for (const bool refines : {false, true}) {
-                if (side < 6 * kRadius) {
+                if (side < 6 * kToolRadius) {
                     continue;
                 }
                 progress("N = {}, {}", side, sand::toolName(kind));

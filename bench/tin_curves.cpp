@@ -14,7 +14,7 @@ namespace {
 using tin_piles::Kind;
 using tin_piles::Layer;
 
-constexpr std::int32_t kTalus = 65536;  // [unit per cell], 45 degrees
+constexpr std::int32_t kSteepest = 65536;  // [unit per cell], 45 degrees
 
 struct Shape {
     const char* name;
@@ -27,7 +27,7 @@ void measurePile(Kind kind, int side, double degrees, const Shape& shape, const 
     Layer layer = tin_piles::layerOf(kind, side, degrees, settings.seed);
     tin_piles::fill(layer, oracles::around(side / 2.0, side / 2.0, [&](double r) { return cylinder.start(r); }));
     const sand::tin::Wide before = layer.volume();
-    sand::tin::Erosion erosion(layer, kTalus, kTalus);
+    sand::tin::Erosion erosion(layer, kSteepest, kSteepest);
     std::vector<sand::tin::Vertex> moved;
     constexpr int kMost = 100'000;
     int sweeps = 0;
@@ -65,7 +65,7 @@ void tinActive(const Settings& settings, Csv& csv) {
     constexpr int kSweeps = 100;
     for (const int side : settings.sizes) {
         Layer layer = tin_piles::layerOf(Kind::jittered, side, 0, settings.seed);
-        sand::tin::Erosion erosion(layer, kTalus, kTalus);
+        sand::tin::Erosion erosion(layer, kSteepest, kSteepest);
         std::vector<sand::tin::Vertex> moved;
         erosion.sweep(layer, 1, nullptr, moved);
         for (int run = 0; run < settings.runs; ++run) {
@@ -77,7 +77,7 @@ void tinActive(const Settings& settings, Csv& csv) {
                 if (away < 18) {
                     raised.push_back(v);
                 }
-                layer.setHeight(v, away < 18 ? static_cast<std::int32_t>(1.5 * kTalus * (18 - away)) : 0);
+                layer.setHeight(v, away < 18 ? static_cast<std::int32_t>(1.5 * kSteepest * (18 - away)) : 0);
             }
             const auto milliseconds = [&] {
                 moved.clear();

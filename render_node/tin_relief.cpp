@@ -12,16 +12,19 @@ namespace {
 using sand::tin::doubledArea;
 using sand::tin::Place;
 
-constexpr std::int64_t kCell = sand::kProbePerCell;
+constexpr std::int64_t kCellSide = sand::kProbePerCell;
 
-constexpr int cellsOf(std::int32_t length) { return std::max<int>(1, static_cast<int>((length + kCell / 2) / kCell)); }
+constexpr int cellsOf(std::int32_t length) {
+    return std::max<int>(1, static_cast<int>((length + kCellSide / 2) / kCellSide));
+}
 
 std::int64_t floorOf(std::int64_t dividend, std::int64_t divisor /* positive */) {
     return dividend >= 0 ? dividend / divisor : -((-dividend + divisor - 1) / divisor);
 }
 
 Place middleOf(std::int64_t column, std::int64_t row) {
-    return {static_cast<std::int32_t>(column * kCell + kCell / 2), static_cast<std::int32_t>(row * kCell + kCell / 2)};
+    return {static_cast<std::int32_t>(column * kCellSide + kCellSide / 2),
+            static_cast<std::int32_t>(row * kCellSide + kCellSide / 2)};
 }
 
 struct Columns {
@@ -33,9 +36,10 @@ struct Columns {
 void clip(Columns& columns, std::int64_t row, const Place& from, const Place& to) {
     const std::int64_t south = std::int64_t{from.y} - to.y;
     const bool within = south > 0 || (south == 0 && to.x < from.x);
-    // The doubled area with the middle of a column is atFirst + south · kCell · column: of it, at least this is asked.
+    // The doubled area with the middle of a column is atFirst + south · kCellSide · column: of it, at least this is
+    // asked.
     const std::int64_t atFirst = doubledArea(from, to, middleOf(0, row)) - (within ? 0 : 1);
-    const std::int64_t slope = south * kCell;
+    const std::int64_t slope = south * kCellSide;
     if (slope > 0) {
         columns.first = std::max(columns.first, -floorOf(atFirst, slope));
     } else if (slope < 0) {
@@ -58,8 +62,9 @@ void TinRelief::put(const std::array<ReliefCorner, 3>& corners) {
     const auto& [a, b, c] = corners;
     const auto [south, north] = std::minmax({a.place.y, b.place.y, c.place.y});
     const auto whole = static_cast<double>(doubledArea(a.place, b.place, c.place));
-    const std::int64_t lastRow = std::min<std::int64_t>(rows_ - 1, floorOf(north - kCell / 2, kCell));
-    for (std::int64_t row = std::max<std::int64_t>(0, floorOf(south - kCell / 2, kCell)); row <= lastRow; ++row) {
+    const std::int64_t lastRow = std::min<std::int64_t>(rows_ - 1, floorOf(north - kCellSide / 2, kCellSide));
+    for (std::int64_t row = std::max<std::int64_t>(0, floorOf(south - kCellSide / 2, kCellSide)); row <= lastRow;
+         ++row) {
         Columns columns{0, columns_};
         clip(columns, row, a.place, b.place);
         clip(columns, row, b.place, c.place);
@@ -91,11 +96,11 @@ void TinRelief::set(int column, int row, float height) {
 
 float TinRelief::at(std::int32_t x, std::int32_t y) const {
     const auto along = [](std::int32_t place, int cells, int& low, int& high) {
-        const std::int64_t from = place - kCell / 2;
-        const std::int64_t before = floorOf(from, kCell);
+        const std::int64_t from = place - kCellSide / 2;
+        const std::int64_t before = floorOf(from, kCellSide);
         low = static_cast<int>(std::clamp<std::int64_t>(before, 0, cells - 1));
         high = static_cast<int>(std::clamp<std::int64_t>(before + 1, 0, cells - 1));
-        return static_cast<float>(from - before * kCell) / static_cast<float>(kCell);
+        return static_cast<float>(from - before * kCellSide) / static_cast<float>(kCellSide);
     };
     int west = 0, east = 0, south = 0, north = 0;
     const float alongX = along(x, columns_, west, east);

@@ -24,7 +24,7 @@ constexpr double kUnitsPerProbe = double{sand::kUnitsPerCell} / sand::kProbePerC
 constexpr double kTrianglesPerChunk = 512;
 constexpr double kMostChunksAcross = 64;
 // How far a place looks, and the cell beyond that its last look is between [cell].
-constexpr int kReach = kSkyDistances.back() + 2;
+constexpr int kLightReach = kSkyDistances.back() + 2;
 
 template <class Number>
 void sortOnce(std::vector<Number>& numbers) {
@@ -393,7 +393,7 @@ bool TinSurface::openTo(const SurfaceView& tin, Vertex number) {
 std::vector<Vertex> TinSurface::verticesAround(const std::vector<sand::Rect>& cells) {
     std::vector<Vertex> found;
     for (const sand::Rect& rect : cells) {
-        const sand::Rect reach = rect.grownBy(kReach);
+        const sand::Rect reach = rect.grownBy(kLightReach);
         for (TinChunk& chunk : chunks_) {
             if (chunk.slots.empty()) {
                 continue;

@@ -8,7 +8,7 @@ namespace render_node {
 namespace {
 
 // As in shaders/light.glsl, ball.glsl and stamp.glsl, in radii; a hundredth more, for what GL's floats may round.
-constexpr double kReach = 2.5 * 1.01;
+constexpr double kSkyReach = 2.5 * 1.01;
 constexpr double kShadowLength = 20.0 * 1.01;
 constexpr double kPenumbra = 0.08 + 0.01, kPenumbraGrowth = 0.07;
 constexpr int kPieces = 6;  // of the shadow, to bound it more closely than by its widest end
@@ -27,7 +27,7 @@ Box ToolReach::shadowAt(double along) const {
 }
 
 bool ToolReach::meets(const Box& box) const {
-    if (overlap(box, {centre_ - kReach * radius_, centre_ + kReach * radius_})) {
+    if (overlap(box, {centre_ - kSkyReach * radius_, centre_ + kSkyReach * radius_})) {
         return true;
     }
     const double piece = kShadowLength * radius_ / kPieces;
@@ -40,7 +40,7 @@ bool ToolReach::meets(const Box& box) const {
 }
 
 Box ToolReach::closeBy(double lowest, double highest) const {
-    const double reach = kReach * radius_;
+    const double reach = kSkyReach * radius_;
     // High above everything, its ball of dimmed places meets little of it, or nothing.
     const double above = std::max(0.0, centre_.z - highest);
     const double wide = std::max(1.01 * radius_, std::sqrt(std::max(0.0, reach * reach - above * above)));

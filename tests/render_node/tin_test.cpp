@@ -18,7 +18,7 @@ using render_node::SandView;
 using sample::Pixels;
 using sample::Tin;
 
-constexpr int kWidth = 400, kHeight = 300;
+constexpr int kPictureWidth = 400, kPictureHeight = 300;
 
 lockstep::Layers layersOf(std::initializer_list<Layer> shown) {
     lockstep::Layers layers;
@@ -51,14 +51,14 @@ private:
     static inline PFNGLSHADERSOURCEPROC original_ = nullptr;
 };
 
-struct Difference {
+struct Unlike {
     int most = 0;      // of a channel
     double mean = 0;   // of all channels
     double share = 0;  // of channels that differ by more than 8
 };
 
-Difference compare(const Pixels& a, const Pixels& b) {
-    Difference found;
+Unlike compare(const Pixels& a, const Pixels& b) {
+    Unlike found;
     for (std::size_t i = 0; i < a.size(); ++i) {
         const int apart = std::abs(int{a[i]} - int{b[i]});
         found.most = std::max(found.most, apart);
@@ -73,7 +73,7 @@ Difference compare(const Pixels& a, const Pixels& b) {
 class TinLook : public testing::Test {
 protected:
     std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
-    EyeTarget target_{kWidth, kHeight};
+    EyeTarget target_{kPictureWidth, kPictureHeight};
     render_node::Camera above_ = sample::camera({1, 1, 1.5}, {1, 1, 0});
     render_node::Camera slanted_ = sample::camera({1, -0.9, 1.3}, {1, 0.9, 0});
 };
@@ -89,7 +89,7 @@ TEST_F(TinLook, OfAGridsSurfaceIsThatOfTheGrid) {
             one->setTool(sample::probeAt(scene, {0.8, 0.7, 0.1}), false);
             one->setLayers(map ? layersOf({Layer::hillShade}) : layersOf({}));
         }
-        const Difference apart = compare(sample::draw(grid, slanted_, target_), sample::draw(view, slanted_, target_));
+        const Unlike apart = compare(sample::draw(grid, slanted_, target_), sample::draw(view, slanted_, target_));
         std::printf("hill-shade %d: at most %d, %.3f in the mean, %.4f %% by more than 8\n", map, apart.most,
                     apart.mean, 100 * apart.share);
         EXPECT_LT(apart.mean, 0.3);
@@ -113,7 +113,7 @@ TEST_F(TinLook, IsFlatOrSmoothAsTheSceneSays) {
         std::set<int> found;
         for (int y = 75; y < 225; ++y) {
             for (int x = 100; x < 300; ++x) {
-                const glm::ivec3 colour = sample::pixel(seen, kWidth, x, y);
+                const glm::ivec3 colour = sample::pixel(seen, kPictureWidth, x, y);
                 found.insert(colour.r * 65536 + colour.g * 256 + colour.b);
             }
         }
@@ -134,7 +134,7 @@ TEST_F(TinLook, MarksConstraintsInTheWireframeAlone) {
     const auto reddest = [&](const Pixels& seen) {
         int most = -255;
         for (int i = -2; i <= 2; ++i) {
-            const glm::ivec3 at = sample::pixel(seen, kWidth, 200 + static_cast<int>((middle.x - 1) / 0.00375),
+            const glm::ivec3 at = sample::pixel(seen, kPictureWidth, 200 + static_cast<int>((middle.x - 1) / 0.00375),
                                                 150 - static_cast<int>((middle.y - 1) / 0.00375) + i);
             most = std::max(most, at.r - 2 * at.g);
         }
