@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sand/tin_module.hpp"
+
 namespace haptic_bridge {
 
 HandMapping::HandMapping(const sand::Scene& scene, HandSettings::Datum datum)
@@ -11,7 +13,11 @@ HandMapping::HandMapping(const sand::Scene& scene, HandSettings::Datum datum)
       datum_(datum),
       halfSide_(std::min(scene.rules.columns, scene.rules.rows) / 2.0),
       radius_(static_cast<double>(scene.rules.toolRadius) / sand::kProbePerCell),
-      reference_(static_cast<double>(scene.referenceHeight()) / sand::kUnitsPerCell) {}
+      reference_(static_cast<double>(scene.referenceHeight()) / sand::kUnitsPerCell) {
+    if (datum_ != HandSettings::Datum::level && scene.tin != nullptr) {
+        tin_ = sand::tinModule().surface(scene);
+    }
+}
 
 double HandMapping::surface(double x, double y) const {
     if (datum_ == HandSettings::Datum::level) {
@@ -23,6 +29,11 @@ double HandMapping::surface(double x, double y) const {
     double sum = 0;
     for (int j = -kHalf; j <= kHalf; ++j) {
         for (int i = -kHalf; i <= kHalf; ++i) {
+            if (tin_ != nullptr) {
+                sum += tin_->height((x + radius_ * i / kHalf) * sand::kProbePerCell,
+                                    (y + radius_ * j / kHalf) * sand::kProbePerCell);
+                continue;
+            }
             const double across = std::clamp(x + radius_ * i / kHalf, 0.5, field.columns() - 0.5) - 0.5;
             const double along = std::clamp(y + radius_ * j / kHalf, 0.5, field.rows() - 0.5) - 0.5;
             const int column = std::min(static_cast<int>(across), field.columns() - 1);

@@ -5,6 +5,7 @@
 #include "haptic_bridge/devices/hand_settings.hpp"
 #include "sand/scene.hpp"
 #include "sand/step.hpp"
+#include "sand/surface.hpp"
 
 namespace haptic_bridge {
 
@@ -27,9 +28,10 @@ private:
 
     const sand::Scene& scene_;
     HandSettings::Datum datum_;
-    double halfSide_;   // [cell], of the shorter side
-    double radius_;     // [cell]
-    double reference_;  // [cell]
+    double halfSide_;                           // [cell], of the shorter side
+    double radius_;                             // [cell]
+    double reference_;                          // [cell]
+    std::shared_ptr<const sand::Surface> tin_;  // as the scene starts; null unless the hand follows a TIN
 };
 
 }  // namespace haptic_bridge

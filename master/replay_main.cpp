@@ -15,6 +15,7 @@
 #include "sand/import/raster_file.hpp"
 #include "sand/scene_raster.hpp"
 #include "sand/terrain.hpp"
+#include "sand/tin_raster.hpp"
 
 namespace {
 
@@ -110,15 +111,12 @@ void checkOutputs(const Options& options) {
     }
 }
 
-void writeOutputs(const sand::HeightField& field, const sand::Scene& scene, const Options& options) {
+void writeRasters(const sand::HeightField& field, const sand::Scene& scene, const Options& options) {
     if (!options.heights.empty()) {
         sand::writeRaster(sand::heightsOf(field, scene), options.heights);
     }
     if (!options.difference.empty()) {
         sand::writeRaster(sand::differenceOf(field, scene), options.difference);
-    }
-    if (!options.mesh.empty()) {
-        sand::writeMesh(sand::meshOf(field, scene), options.mesh);
     }
     if (options.volumes) {
         const sand::Earthwork work = sand::earthworkOf(field, scene);
@@ -130,6 +128,19 @@ void writeOutputs(const sand::HeightField& field, const sand::Scene& scene, cons
         json["cubic_scene_units"] = both(work.unit);
         json["cubic_metres"] = work.cubicMetres > 0 ? both(work.cubicMetres) : nullptr;
         fmt::print("{}\n", json.dump());
+    }
+}
+
+void writeOutputs(const sand::Terrain& terrain, const sand::Scene& scene, const Options& options) {
+    const sand::tin::SurfaceView* tin = terrain.tinView();
+    if (!options.mesh.empty()) {
+        sand::writeMesh(tin != nullptr ? sand::meshOf(*tin, scene) : sand::meshOf(terrain.field(), scene),
+                        options.mesh);
+    }
+    if (tin == nullptr) {
+        writeRasters(terrain.field(), scene, options);
+    } else if (!options.heights.empty() || !options.difference.empty() || options.volumes) {
+        writeRasters(sand::sampled(terrain), sand::sampledScene(scene), options);
     }
 }
 
@@ -171,7 +182,7 @@ int run(const Options& options) {
     if (options.hash) {
         fmt::print("{:016x}\n", terrain.stateHash());
     }
-    writeOutputs(terrain.field(), journal.scene, options);
+    writeOutputs(terrain, journal.scene, options);
     return differing == 0 ? 0 : 1;
 }
 

@@ -12,10 +12,9 @@ namespace master {
 
 ViewSource::ViewSource(const walls::Wall& wall, const sand::Scene& scene, const tracking::Source& source)
     : viewer_(wall, source, [](const std::string& line) { fmt::print(stderr, "sandwall: {}\n", line); }) {
-    const sand::HeightField& field = scene.terrain;
-    const glm::dmat4 toRoom =
-        walls::stageToRoom(wall.stage, field.columns() * field.cellSize(), field.rows() * field.cellSize(),
-                           scene.referenceHeight() * field.unit());
+    const double cell = scene.terrain.cellSize();
+    const glm::dmat4 toRoom = walls::stageToRoom(wall.stage, scene.rules.columns * cell, scene.rules.rows * cell,
+                                                 scene.referenceHeight() * scene.terrain.unit());
     show(wall.stereo);
     std::copy_n(glm::value_ptr(toRoom), state_.sceneToRoom.size(), state_.sceneToRoom.begin());
 }

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "sand/import/mesh_file.hpp"
+#include "sand/terrain.hpp"
+
+namespace sand {
+
+/// A TIN's surface at the middles of its nominal cells, rounded to whole units.
+[[nodiscard]] HeightField sampled(const Terrain& terrain);
+
+/// The scene of a TIN with the heights it starts with as a field of nominal cells, for whoever compares rasters.
+[[nodiscard]] Scene sampledScene(const Scene& scene);
+
+/// A TIN's own triangles, in the units of the scene's source.
+[[nodiscard]] Mesh meshOf(const tin::SurfaceView& tin, const Scene& scene);
+
+}  // namespace sand
