@@ -30,6 +30,8 @@ tin::Settings readSettings(const files::TomlTable& tin, double cellSize) {
     const double finest = cellSize / kProbePerCell;
     const double spacing = tin.numberOr("spacing", cellSize, {finest, 1e9});
     settings.spacing = static_cast<std::int32_t>(std::min(std::floor(spacing / finest + 0.5), double{kMaxProbe}));
+    const double widest = tin.numberOr("widest", 16 * cellSize, {0, 1e9});
+    settings.widest = static_cast<std::int32_t>(std::min(std::floor(widest / finest + 0.5), double{kMaxProbe}));
     const double error = tin.numberOr("max_error", cellSize / 16, {0, 1e9});
     settings.maxError = static_cast<std::int32_t>(
         std::min(std::floor(error / cellSize * kUnitsPerCell + 0.5), static_cast<double>(kMaxHeight)));

@@ -136,11 +136,12 @@ int coarsen(Layer& layer, const DetailRules& rules, Vertex& next, const Box& kee
         return 0;
     }
     const auto count = static_cast<Vertex>(layer.triangles().triangleAt.size());
-    const std::int64_t looks = std::min<std::int64_t>(std::int64_t{rules.removals} * kLooksPerRemoval, count);
+    const std::int64_t looks =
+        std::min<std::int64_t>(std::int64_t{rules.removals} * kLooksPerRemoval, count - rules.firstToGo);
     Link link;
     int removed = 0;
     for (std::int64_t look = 0; look < looks && removed < rules.removals; ++look, ++next) {
-        next = next >= count ? 0 : next;
+        next = next >= count || next < rules.firstToGo ? rules.firstToGo : next;
         const Triangles& mesh = layer.triangles();
         if (!mesh.alive(next) || keepOut.holds(mesh.places[static_cast<std::size_t>(next)])) {
             continue;
@@ -159,6 +160,7 @@ int coarsen(Layer& layer, const DetailRules& rules, Vertex& next, const Box& kee
 void DetailRules::encode(files::ByteWriter& writer) const {
     writer.put(spacing);
     writer.put(maxError);
+    writer.put(firstToGo);
     writer.put(removals);
     writer.put(maxVertices);
     writer.put(static_cast<std::uint8_t>(keepsConstraints ? 1 : 0));
@@ -168,13 +170,14 @@ DetailRules DetailRules::decode(files::ByteReader& reader) {
     DetailRules rules;
     rules.spacing = reader.get<std::int32_t>();
     rules.maxError = reader.get<double>();
+    rules.firstToGo = reader.get<Vertex>();
     rules.removals = reader.get<std::int32_t>();
     rules.maxVertices = reader.get<std::int32_t>();
     const auto keeps = reader.get<std::uint8_t>();
     rules.keepsConstraints = keeps == 1;
     const bool sound = rules.spacing >= 0 && rules.spacing <= (1 << 22) && rules.maxError >= 0 &&
-                       rules.maxError <= kMaxHeight && rules.removals >= 0 && rules.removals <= 65536 &&
-                       rules.maxVertices >= 4 && keeps <= 1;
+                       rules.maxError <= kMaxHeight && rules.firstToGo >= 0 && rules.removals >= 0 &&
+                       rules.removals <= 65536 && rules.maxVertices >= 4 && keeps <= 1;
     if (!sound) {
         throw files::FormatError("rules of a TIN's detail that no scene gives");
     }

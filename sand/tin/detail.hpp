@@ -18,6 +18,7 @@ namespace sand::tin {
 struct DetailRules {
     std::int32_t spacing = 0;            // [probe unit], of the lattice that is put where the tool works; 0: none
     double maxError = 0;                 // [unit], by which one removal may change the surface; 0: nothing is removed
+    Vertex firstToGo = 0;                // vertices of smaller numbers stay
     std::int32_t removals = 0;           // at most so many a step
     std::int32_t maxVertices = 1 << 22;  // refinement and outlines stop here
     bool keepsConstraints = false;       // of a tool that has left

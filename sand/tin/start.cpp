@@ -43,7 +43,7 @@ void requireCorners(const Start& start) {
 }  // namespace
 
 void Start::encode(files::ByteWriter& writer) const {
-    for (const std::int32_t number : {width, depth, meanHeight, settings.spacing, settings.maxError,
+    for (const std::int32_t number : {width, depth, meanHeight, settings.spacing, settings.widest, settings.maxError,
                                       settings.mostVertices, std::int32_t{settings.keepConstraints ? 1 : 0}}) {
         writer.put(number);
     }
@@ -67,6 +67,7 @@ Start Start::decode(files::ByteReader& reader) {
     start.depth = between(reader, 1, kLongest);
     start.meanHeight = between(reader, -kMaxHeight, kMaxHeight);
     start.settings.spacing = between(reader, 1, kLongest);
+    start.settings.widest = between(reader, 0, kLongest);
     start.settings.maxError = between(reader, 0, kMaxHeight);
     start.settings.mostVertices = between(reader, 4, kMostVertices);
     start.settings.keepConstraints = between(reader, 0, 1) != 0;

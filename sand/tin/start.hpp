@@ -13,13 +13,15 @@ namespace sand::tin {
 /// How finely a TIN follows its terrain and its tools; part of what a scene computes with.
 struct Settings {
     std::int32_t spacing = kLatticePerCell;  // [probe unit], between the points a tool puts into the sand
+    std::int32_t widest = 0;                 // [probe unit], between points at the start; 0: as far as they like
     std::int32_t maxError = 1 << 12;         // [unit], by which coarsening may move the surface
     std::int32_t mostVertices = 1 << 18;     // refinement stops there
     bool keepConstraints = false;            // of a tool that has left
     friend bool operator==(const Settings&, const Settings&) = default;
 };
 
-/// The TIN a session starts with: vertices, their heights, and edges that must be there. Computed once by whoever loads
+/// The TIN a session starts with: vertices, their heights, and edges that must be there. Its vertices stay; those that
+/// a tool has put between them may go again. Computed once by whoever loads
 /// the scene; every replica triangulates it alike.
 struct Start {
     std::int32_t width = 0, depth = 0;  // [probe unit]; the first four places are the corners, as Mesh's

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "sand/tin/simplify.hpp"
 
@@ -29,6 +30,26 @@ std::size_t nearest(const std::vector<Place>& places, const Place& to) {
     const auto found = std::min_element(places.begin(), places.end(),
                                         [&](const Place& a, const Place& b) { return squared(a) < squared(b); });
     return static_cast<std::size_t>(found - places.begin());
+}
+
+/// Middles of cells at settings.widest, where no vertex is: without them level ground is two triangles, and a furrow's
+/// bank hangs on the field's far corners by slivers, which sand slides over badly and light shows as rays.
+void addLattice(const HeightField& field, Start& start) {
+    const std::int32_t every = start.settings.widest / kLatticePerCell;
+    if (every < 1) {
+        return;
+    }
+    const std::set<Place> there(start.places.begin(), start.places.end());
+    for (int row = every / 2; row < field.rows(); row += every) {
+        for (int column = every / 2; column < field.columns(); column += every) {
+            const Place place{column * kLatticePerCell + kLatticePerCell / 2,
+                              row * kLatticePerCell + kLatticePerCell / 2};
+            if (!there.contains(place)) {
+                start.places.push_back(place);
+                start.heights.push_back(field.height(column, row));
+            }
+        }
+    }
 }
 
 }  // namespace
@@ -67,6 +88,7 @@ Start follow(const HeightField& field, const Settings& settings) {
     for (const double height : chosen.heights) {
         start.heights.push_back(rounded(height));
     }
+    addLattice(field, start);
     start.meanHeight = meanHeight(start);
     return start;
 }

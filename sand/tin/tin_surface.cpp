@@ -14,8 +14,10 @@ constexpr int kRemovalsPerStep = 64;
 constexpr int kSweepsToRest = 1 << 20;  // more than any TIN that is worth waiting for
 constexpr int kSweepsAtOnce = 64;
 
-DetailRules detailOf(const Settings& settings) {
+DetailRules detailOf(const Start& start) {
+    const Settings& settings = start.settings;
     DetailRules rules;
+    rules.firstToGo = static_cast<Vertex>(start.places.size());
     rules.spacing = settings.spacing;
     rules.maxError = settings.maxError;
     rules.removals = settings.maxError > 0 ? kRemovalsPerStep : 0;
@@ -37,7 +39,7 @@ void sortOnce(std::vector<std::int32_t>& numbers) {
 
 TinSurface::TinSurface(const Scene& scene)
     : start_(scene.tin),
-      detail_(detailOf(start_->settings)),
+      detail_(detailOf(*start_)),
       rim_(scene.rules.rim),
       threshold_(scene.rules.threshold),
       startThreshold_(scene.rules.startThreshold),

@@ -181,7 +181,7 @@ TEST_F(TinTerrain, DamageNamesAllThatChanged) {
 }
 
 TEST_F(TinTerrain, IsMadeOfTheSurveyPointsThemselves) {
-    std::ofstream(folder_ / "survey.csv") << "x,y,z\n100,200,3\n110,200,5\n110,205,7\n104,202,4\n";
+    std::ofstream(folder_ / "survey.csv") << "x,y,z\n100,200,3\n110,200,5\n110,205,7\n104,203,4\n";
     std::ofstream(folder_ / "points.toml") << "[terrain]\nkind = \"points\"\nfile = \"survey.csv\"\n[tin]\ncell = 0.5\n"
                                               "[material]\ntalus_deg = 34\n[tool]\nradius = 1\n";
     const sand::Scene read = sand::loadScene(folder_ / "points.toml");
@@ -195,7 +195,7 @@ TEST_F(TinTerrain, IsMadeOfTheSurveyPointsThemselves) {
     };
     EXPECT_DOUBLE_EQ(height(100, 200), 3);
     EXPECT_DOUBLE_EQ(height(110, 200), 5);
-    EXPECT_DOUBLE_EQ(height(104, 202), 4);
+    EXPECT_DOUBLE_EQ(height(104, 203), 4);
     EXPECT_DOUBLE_EQ(height(100, 205), 4) << "a corner that nobody measured is as high as the nearest point";
 }
 
