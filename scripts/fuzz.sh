@@ -33,7 +33,8 @@ for name in "${names[@]}"; do
     done
     [[ $name == wall ]] && seeds+=(walls/configs walls/configs/broken)
     log=$corpus/$name.log
-    build/fuzz/bin/"fuzz_$name" -max_total_time="$seconds" -rss_limit_mb=4096 -timeout=20 -max_len=8192 \
+    # The largest tool, dragged from as far away as a step may be, takes 5 s here; beside other work much more.
+    build/fuzz/bin/"fuzz_$name" -max_total_time="$seconds" -rss_limit_mb=4096 -timeout=120 -max_len=8192 \
         -print_final_stats=1 -artifact_prefix="$corpus/$name/" "$corpus/$name" "${seeds[@]}" 2>"$log" || true
     executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
     findings=$(find "$corpus/$name" -name 'crash-*' -o -name 'oom-*' -o -name 'timeout-*' -o -name 'leak-*' | wc -l)
