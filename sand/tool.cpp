@@ -27,11 +27,20 @@ struct Receiver {
 std::vector<Receiver> receivers(const Rect& bounds, Rim rim, const Ground* ground, ProbePoint at,
                                 const TurnedShape& shape, const Offset& ahead) {
     const bool everywhere = ahead.x == 0 && ahead.y == 0;
-    const Rect around = shape.cellsThatTake(at.x, at.y);
+    Rect around = shape.cellsThatTake(at.x, at.y);
+    if (rim == Rim::closed) {
+        around = around.clippedTo(bounds);
+    }
     std::vector<Receiver> ring;
     for (int y = around.y0; y < around.y1; ++y) {
         for (int x = around.x0; x < around.x1; ++x) {
             const Offset offset = offsetOf(at, x, y);
+            if (offset.x < 0 && !shape.hasHeading() && shape.covers(offset)) {
+                // What is round covers the row until the same distance on the other side: under a tool as large as may
+                // be lie millions of cells.
+                x += static_cast<int>(-2 * offset.x / kProbePerCell);
+                continue;
+            }
             const bool outside = x < bounds.x0 || x >= bounds.x1 || y < bounds.y0 || y >= bounds.y1;
             if ((outside && rim == Rim::closed) || shape.covers(offset) || !shape.takes(offset) ||
                 (!outside && ground != nullptr && ground->isWall(x, y))) {

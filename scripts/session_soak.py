@@ -72,7 +72,8 @@ class Track:
         memory, descriptors, threads = zip(*self.samples)
         self.medians = [statistics.median(part) for part in quarters(memory)]
         self.growth = 3600 * slope(self.times, memory)
-        self.constant = len(set(descriptors)) == 1 and len(set(threads)) == 1
+        # A checkpoint is packed by a thread that comes for it and goes.
+        self.constant = len(set(descriptors)) == 1 and len({statistics.median(part) for part in quarters(threads)}) == 1
         return (f"| {self.name} | {' | '.join(f'{median:.1f}' for median in self.medians)} | {max(memory):.1f} | "
                 f"{self.growth:+.2f} | {span(descriptors)} | {span(threads)} |")
 
