@@ -24,7 +24,7 @@ build() {
 scripts/install_dependencies.sh --with-tests
 build release
 build asan-sand
-build clang-sand sand_tests sand_golden_tests
+build clang-sand sand_tests sand_golden_tests tin_tests
 for variant in g++-O0 g++-O2 clang-O0; do
     build "golden-$variant" sand_golden_tests
 done
