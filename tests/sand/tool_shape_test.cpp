@@ -137,10 +137,27 @@ struct Way {
     }
 };
 
+/// What a scene's sand is after a press, a drag and a turn of its tool; seen the way `way` looks at it.
+sand::HeightField dug(const sand::Scene& scene, const std::vector<ProbePoint>& path, double degrees, const Way& way) {
+    sand::Terrain terrain(scene);
+    for (std::uint64_t i = 1; i <= 12; ++i) {
+        sand::Step step{.epoch = 1, .number = i, .engaged = true, .path = {}};
+        step.heading = way.of(heading(degrees + (i > 6 ? 20 : 0)));
+        if (i <= path.size()) {
+            step.path = {way.of(path[i - 1])};
+        }
+        terrain.apply(step);
+    }
+    return terrain.field();
+}
+
 // A quarter of a turn is an exchange and a mirroring. Round tools are left out: their last odd units go by rows, as
 // they always have.
 TEST(ToolShape, TurnedOrMirroredItDoesTheSameTurnedOrMirrored) {
     std::mt19937 random(61);
+    // Values are the release build's to compare; two ways show the sanitizers all of the code.
+    const std::vector<unsigned> ways =
+        samples::kSanitized ? std::vector{3U, 6U} : std::vector{1U, 2U, 3U, 4U, 5U, 6U, 7U};
     for (const ToolKind kind : kTurned) {
         for (const double degrees : {0.0, 33.0, 90.0, -140.0}) {
             sand::Scene scene = samples::flatScene(75, 52, 0);
@@ -151,29 +168,16 @@ TEST(ToolShape, TurnedOrMirroredItDoesTheSameTurnedOrMirrored) {
             const std::vector<ProbePoint> path{{probes(20.2), probes(24.7), probes(9)},
                                                {probes(43.9), probes(31.4), probes(7)},
                                                {probes(41.0), probes(3.3), probes(8)}};
-            for (unsigned bits = 0; bits < 8; ++bits) {
+            const sand::HeightField first = dug(scene, path, degrees, Way{0, 75, 52});
+            ASSERT_FALSE(sameHeights(first, scene.terrain));
+            for (const unsigned bits : ways) {
                 const Way way{bits, 75, 52};
                 sand::Scene image = scene;
                 image.terrain = way.of(scene.terrain);
                 image.rules.columns = image.terrain.columns();
                 image.rules.rows = image.terrain.rows();
-                sand::Terrain first(scene), second(image);
-                for (std::uint64_t i = 1; i <= 12; ++i) {
-                    sand::Step step{.epoch = 1, .number = i, .engaged = true, .path = {}};
-                    step.heading = heading(degrees + (i > 6 ? 20 : 0));
-                    if (i <= path.size()) {
-                        step.path = {path[i - 1]};
-                    }
-                    first.apply(step);
-                    step.heading = way.of(*step.heading);
-                    for (ProbePoint& point : step.path) {
-                        point = way.of(point);
-                    }
-                    second.apply(step);
-                }
-                ASSERT_TRUE(sameHeights(way.of(first.field()), second.field()))
+                ASSERT_TRUE(sameHeights(way.of(first), dug(image, path, degrees, way)))
                     << sand::toolName(kind) << " by " << degrees << " degrees, way " << bits;
-                ASSERT_FALSE(sameHeights(first.field(), scene.terrain));
             }
         }
     }
