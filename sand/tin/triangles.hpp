@@ -17,6 +17,7 @@ __extension__ using Wide = __int128;
 struct Place {
     std::int32_t x = 0, y = 0;
     friend bool operator==(const Place&, const Place&) = default;
+    // clang-tidy 14 complains of the 0 it finds in here itself. NOLINTNEXTLINE(modernize-use-nullptr)
     friend auto operator<=>(const Place&, const Place&) = default;
 };
 
