@@ -61,6 +61,7 @@ private:
 struct ChunkLevels {
     int level = 0;
     std::array<int, 4> edges{};
+    // clang-tidy 14 complains of the 0 it finds in here itself. NOLINTNEXTLINE(modernize-use-nullptr)
     friend auto operator<=>(const ChunkLevels&, const ChunkLevels&) = default;
 };
 

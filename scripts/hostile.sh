@@ -32,6 +32,19 @@ server=
 trap 'exec 3>&- 2>/dev/null; [[ -z $server ]] || kill "$server" 2>/dev/null || true; rm -rf "$folder"' EXIT
 
 resident() { awk '/VmRSS/ {printf "%.1f", $2 / 1024}' "/proc/$1/status"; }
+
+# resident_meanwhile PID WORKER: at the start, after each quarter of the time that WORKER took, and at the end [MiB]
+resident_meanwhile() {
+    local seen=()
+    while kill -0 "$2" 2>/dev/null; do
+        seen+=("$(resident "$1")")
+        sleep 1
+    done
+    local last=$((${#seen[@]} - 1)) quarter
+    for quarter in 0 1 2 3 4; do
+        printf '%s%s' "${seen[$((last * quarter / 4))]}" "$([[ $quarter == 4 ]] || echo ' → ')"
+    done
+}
 master_of() { pgrep -n -f "sandwall-master .*--out $folder/$1( |\$)"; }
 
 # start_session NAME HOST:PORT: with its own standard input, over which it is stopped
@@ -86,10 +99,12 @@ start_session undisturbed "127.0.0.1:$port"
 sleep 20
 end_session undisturbed
 start_session "against-server" "127.0.0.1:$port"
-memory=$(resident "$server")
 "$bin/sandwall-hostile" --scene "$scene" --server "$port" --frames "$frames" --seed "$seed" "${link[@]}" \
-    >"$folder/hostile.log"
-memory="$memory → $(resident "$server") MiB in the server; $(<"$folder/hostile.log")"
+    >"$folder/hostile.log" &
+hostile=$!
+memory=$(resident_meanwhile "$server" "$hostile")
+wait "$hostile"
+memory="the server, by quarters of that time: $memory MiB; $(<"$folder/hostile.log")"
 end_session "against-server"
 kill "$server"; wait "$server" || true; server=
 "$bin/sandwall-hostile" --scene "$scene" --frames "$([[ -n $secret ]] && echo 30 || echo "$frames")" --seed "$seed" \

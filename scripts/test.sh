@@ -36,4 +36,5 @@ for folder in "${folders[@]}"; do
     echo "subdirs($folder)"
 done >build/CTestTestfile.cmake
 echo "== testing"
-ctest --test-dir build --output-on-failure --no-tests=error --parallel 2
+# Most tests take two of these places, those that only wait take one (tests/CMakeLists.txt).
+ctest --test-dir build --output-on-failure --no-tests=error --parallel 4
