@@ -81,6 +81,7 @@ std::vector<Curve> allCurves() {
          1,
          bench::tinPiles},
         {"tin-active", "milliseconds of 100 sweeps over 1000 vertices of a TIN", {500}, 10, bench::tinActive},
+        {"tin-step", "milliseconds of a step on a TIN, part by part, with 64 sweeps", {500}, 10, bench::tinStep},
         {"budget", "where one pile's error comes from", {128}, 1, bench::budget},
         {"tin-imprint", "milliseconds of a tool's work in a TIN, without the sweeps", {512}, 10, bench::imprint},
         {"tin-simplify",

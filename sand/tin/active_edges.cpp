@@ -2,74 +2,84 @@
 #include "sand/tin/active_edges.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <utility>
+#include <limits>
 
 namespace sand::tin {
 namespace {
 
-// A triangle slides by c = kPush (s − 1)/(s + 1), s = m²/g²: near g as 1 − g/m does, without its root. Sweeps descend
-// the energy whose derivative is m c, and a descent neither overshoots nor swings while step times curvature is at most
-// 2: Σ k ≤ star allows 1, and m c bends by at most 1.25 kPush. With 1 − g²/m² and 0.9, of curvature 1.8, sand swings.
-constexpr double kPush = 0.8;
-// Sand stays where its slope is steeper than g by less than a part in 2048: it would creep there for many thousand
-// sweeps, at heights that nobody tells apart. A grid's rest slopes are off by three times as much.
-constexpr double kRest = 1 + 1.0 / 1024;
+constexpr std::int32_t kNoUnderside = std::numeric_limits<std::int32_t>::max();
 
 std::size_t index(std::int32_t number) { return static_cast<std::size_t>(number); }
 
-/// `value` or zero, without a branch: processors foresee sand badly, and to be wrong costs as much as ten such
-/// products.
-double onlyIf(bool condition, double value) {
-    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(value) & -static_cast<std::uint64_t>(condition));
+/// The side with its corner counted from the triangle's smallest vertex on: a slot may turn its corners unnoticed.
+Side counted(const Triangles& mesh, Side side) {
+    const auto& [a, b, c] = mesh.triangles[index(side.triangle)].corner;
+    const int least = a < b ? (a < c ? 0 : 2) : (b < c ? 1 : 2);
+    return {side.triangle, (side.corner - least + 3) % 3};
 }
 
-double heightOf(std::int64_t volume, double star) { return static_cast<double>(volume) / star; }
-
 }  // namespace
+
+std::vector<Vertex> ActiveEdges::takeReleased(const Underside* held) {
+    std::vector<Vertex> released;
+    std::erase_if(heldBack_, [&](const Held& one) {
+        if ((held != nullptr ? (*held)(one.place) : kNoUnderside) == one.underside) {
+            return false;
+        }
+        released.push_back(one.vertex);
+        isHeldBack_[index(one.vertex)] = 0;
+        return true;
+    });
+    return released;
+}
+
+double ActiveEdges::undersideAt(Vertex vertex, const Place& place) {
+    const std::int32_t underside = held_ != nullptr ? (*held_)(place) : kNoUnderside;
+    if (underside == kNoUnderside) {
+        return MovingSand::kFree;
+    }
+    if (isHeldBack_[index(vertex)] == 0) {
+        isHeldBack_[index(vertex)] = 1;
+        heldBack_.push_back({vertex, place, underside});
+    }
+    return underside;
+}
 
 void ActiveEdges::begin(const Layer& layer, bool band, const Underside* held) {
     band_ = band;
     held_ = held;
-    for (std::size_t i = 0; i < locals_.size(); ++i) {
-        Local& local = locals_[i];
-        local.underside = held_ != nullptr ? (*held_)(local.place) : 0;
-        sands_[i].volume = layer.volumes()[index(local.vertex)];
-        heights_[i] = heightOf(sands_[i].volume, sands_[i].star);
+    const std::size_t count = layer.triangles().places.size();
+    local_.resize(std::max(local_.size(), count), kNobody);
+    isHeldBack_.resize(local_.size(), 0);
+    facet_.resize(std::max(facet_.size(), layer.triangles().triangles.size()), kNobody);
+    watchedSides_.resize(facet_.size(), 0);
+    sand_.restart();
+    for (std::size_t i = 0; i < vertices_.size(); ++i) {
+        const auto vertex = index(vertices_[i]);
+        sand_.place(i, layer.volumes()[vertex], layer.stars()[vertex],
+                    undersideAt(vertices_[i], layer.triangles().places[vertex]));
     }
-    std::fill(flowed_.begin(), flowed_.end(), 0);
 }
 
 std::int32_t ActiveEdges::localOf(const Layer& layer, Vertex vertex) {
-    if (index(vertex) >= local_.size()) {
-        local_.resize(layer.triangles().places.size(), kNobody);
+    const auto at = index(vertex);
+    if (local_[at] == kNobody) {
+        local_[at] =
+            sand_.addVertex(layer.volumes()[at], layer.stars()[at], undersideAt(vertex, layer.triangles().places[at]));
+        vertices_.push_back(vertex);
     }
-    std::int32_t& local = local_[index(vertex)];
-    if (local == kNobody) {
-        local = static_cast<std::int32_t>(locals_.size());
-        locals_.push_back({.vertex = vertex,
-                           .place = layer.triangles().places[index(vertex)],
-                           .underside = held_ != nullptr ? (*held_)(layer.triangles().places[index(vertex)]) : 0.0});
-        sands_.push_back({layer.volumes()[index(vertex)], static_cast<double>(layer.stars()[index(vertex)])});
-        heights_.push_back(heightOf(sands_.back().volume, sands_.back().star));
-        inflow_.push_back({});
-        flowed_.push_back(0);
-    }
-    return local;
+    return local_[at];
 }
 
 std::int32_t ActiveEdges::facetAt(const Layer& layer, const Slopes& slopes, std::int32_t slot) {
     std::int32_t& number = facet_[index(slot)];
     if (number == kNobody) {
-        number = static_cast<std::int32_t>(facets_.size());
-        facets_.push_back(facetOf(layer.triangles(), slot, slopes));
-        slots_.push_back(slot);
-        sliding_.push_back(0);
-        for (Vertex& corner : facets_.back().corner) {
+        Facet facet = facetOf(layer.triangles(), slot, slopes);
+        for (Vertex& corner : facet.corner) {
             corner = localOf(layer, corner);
         }
+        number = sand_.addFacet(facet);
+        slots_.push_back(slot);
     }
     return number;
 }
@@ -80,244 +90,140 @@ void ActiveEdges::watch(const Layer& layer, const Slopes& slopes, Weights& weigh
         return;
     }
     const std::int32_t self = localOf(layer, vertex);
-    if (locals_[index(self)].watched) {
+    if (sand_.isWatched(index(self))) {
         return;
     }
-    locals_[index(self)].watched = true;
-    watchedSides_.resize(std::max(watchedSides_.size(), mesh.triangles.size()));
-    facet_.resize(watchedSides_.size(), kNobody);
+    sand_.setWatched(index(self), true);
     aroundVertex(mesh, vertex, [&](std::int32_t slot, int) {
         for (int corner = 0; corner < 3; ++corner) {
             const Side side = owner(mesh, {slot, corner});
+            const Side named = counted(mesh, side);
             std::uint8_t& watched = watchedSides_[index(side.triangle)];
-            if ((watched >> side.corner & 1) == 0) {
-                watched = static_cast<std::uint8_t>(watched | 1 << side.corner);
+            if ((watched >> named.corner & 1) == 0) {
+                watched = static_cast<std::uint8_t>(watched | 1 << named.corner);
                 Edge edge = weights.edge(mesh, layer.stars(), side);
                 edge.from = localOf(layer, edge.from);
                 edge.to = localOf(layer, edge.to);
                 edge.leftFacet = facetAt(layer, slopes, edge.leftFacet);
                 edge.rightFacet = facetAt(layer, slopes, edge.rightFacet);
-                edges_.push_back(edge);
-                sides_.push_back(side);
+                sand_.addEdge(edge);
+                sides_.push_back(named);
             }
         }
     });
 }
 
-double ActiveEdges::steepnessAtHeld(const Facet& facet) {
-    std::array<double, 3> height{};
-    std::array<bool, 3> full{};
-    for (std::size_t k = 0; k < 3; ++k) {
-        const auto corner = index(facet.corner[k]);
-        height[k] = heights_[corner];
-        full[k] = height[k] > locals_[corner].underside - 1;
-        locals_[corner].heldBack |= full[k];
-    }
-    std::array<double, 3> leaning = height;
-    for (std::size_t k = 0; k < 3; ++k) {
-        if (full[k]) {
-            leaning[k] = std::max(height[k], std::min(height[(k + 1) % 3], height[(k + 2) % 3]));
+// Where no volume changes no height does, and a flux is what it was; but with a band, sand that flows through moves
+// what it touches.
+bool ActiveEdges::sweep(const Layer& layer, const Slopes& slopes, Weights& weights) {
+    const SweepResult result = sand_.sweep(held_ != nullptr, band_);
+    if (result.spread || (band_ && result.moved)) {
+        const std::vector<std::uint8_t> flowed = sand_.flowed();
+        for (std::size_t i = 0; i < flowed.size(); ++i) {
+            if (flowed[i] != 0 && !sand_.isWatched(i)) {
+                watch(layer, slopes, weights, vertices_[i]);
+            }
         }
     }
-    return facet.steepness(leaning[1] - leaning[0], leaning[2] - leaning[0]);
+    return result.moved;
 }
 
-template <bool kBand, bool kHeld>
-void ActiveEdges::slide() {
-    const double* const height = heights_.data();
-    double* sliding = sliding_.data();
-    for (const Facet& facet : facets_) {
-        const auto [a, b, c] = facet.corner;
-        double steepness = facet.steepness(height[b] - height[a], height[c] - height[a]);
-        if constexpr (kHeld) {
-            steepness = steepnessAtHeld(facet);
-        }
-        double rest = kRest;
-        if constexpr (kBand) {
-            rest = (flowed_[index(a)] | flowed_[index(b)] | flowed_[index(c)]) != 0 ? kRest : facet.start;
-        }
-        *sliding++ = onlyIf(steepness > rest, kPush - 2 * kPush / (steepness + 1));
-    }
-}
-
-template <bool kHeld>
-void ActiveEdges::flow() {
-    const double* const height = heights_.data();
-    const double* const sliding = sliding_.data();
-    Inflow* const inflow = inflow_.data();
-    for (const Edge& edge : edges_) {
-        const double share = edge.left * sliding[edge.leftFacet] + edge.right * sliding[edge.rightFacet];
-        const double difference = height[edge.from] - height[edge.to];
-        auto flux = static_cast<std::int64_t>(onlyIf(share > 0, share) * difference);
-        if constexpr (kHeld) {
-            flux = underHeld(edge, difference, flux);
-        }
-        inflow[edge.from].net -= flux;
-        inflow[edge.from].any |= flux;
-        inflow[edge.to].net += flux;
-        inflow[edge.to].any |= flux;
-    }
-}
-
-std::int64_t ActiveEdges::underHeld(const Edge& edge, double difference, std::int64_t flux) {
-    if (flux == 0) {
-        return 0;
-    }
-    const std::int32_t lower = difference > 0 ? edge.to : edge.from;
-    const double limit = std::max(edge.left, 0.0) + std::max(edge.right, 0.0);
-    Local& below = locals_[index(lower)];
-    const auto room = static_cast<std::int64_t>(limit * std::max(below.underside - heights_[index(lower)], 0.0));
-    if (std::abs(flux) <= room) {
-        return flux;
-    }
-    below.heldBack = true;
-    return flux < 0 ? -room : room;
-}
-
-bool ActiveEdges::sweep() {
-    if (held_ != nullptr) {
-        band_ ? slide<true, true>() : slide<false, true>();
-        flow<true>();
-    } else {
-        band_ ? slide<true, false>() : slide<false, false>();
-        flow<false>();
-    }
-    Inflow* const inflows = inflow_.data();
-    Sand* const sands = sands_.data();
-    double* const heights = heights_.data();
-    std::uint8_t* const flowed = flowed_.data();
-    std::int64_t any = 0;
-    const std::size_t count = locals_.size();
-    for (std::size_t i = 0; i < count; ++i) {
-        any |= inflows[i].any;
-        flowed[i] = inflows[i].any != 0;
-        sands[i].volume += inflows[i].net;
-        heights[i] = heightOf(sands[i].volume, sands[i].star);
-        inflows[i] = {};
-    }
-    return any != 0;
-}
-
-void ActiveEdges::spread(const Layer& layer, const Slopes& slopes, Weights& weights) {
-    for (std::size_t i = 0; i < locals_.size(); ++i) {
-        if (flowed_[i] != 0 && !locals_[i].watched) {
-            watch(layer, slopes, weights, locals_[i].vertex);
+void ActiveEdges::store(Layer& layer, std::vector<Vertex>& moved) const {
+    for (std::size_t i = 0; i < vertices_.size(); ++i) {
+        const Vertex vertex = vertices_[i];
+        if (const std::int64_t risen = sand_.volume(i) - layer.volumes()[index(vertex)]; risen != 0) {
+            layer.add(vertex, risen);
+            moved.push_back(vertex);
         }
     }
 }
 
-void ActiveEdges::store(Layer& layer, std::vector<Vertex>& moved) {
-    for (std::size_t i = 0; i < locals_.size(); ++i) {
-        Local& local = locals_[i];
-        if (const std::int64_t risen = sands_[i].volume - layer.volumes()[index(local.vertex)]; risen != 0) {
-            layer.add(local.vertex, risen);
-            moved.push_back(local.vertex);
-        }
-        if (local.heldBack) {
-            heldBack_.push_back(local.vertex);
-            local.heldBack = false;
-        }
-    }
-}
-
-bool ActiveEdges::mostRest() const {
-    const auto flowed = std::count_if(flowed_.begin(), flowed_.end(), [](std::uint8_t one) { return one != 0; });
+bool ActiveEdges::mostRest() {
+    const auto& flowed = sand_.flowed();
     // Of what is watched around a lump of 1000 vertices, 85 % have flowed.
-    return static_cast<std::size_t>(2 * flowed) < flowed_.size();
+    return 2 * std::count(flowed.begin(), flowed.end(), 1) < static_cast<std::ptrdiff_t>(flowed.size());
+}
+
+void ActiveEdges::keepEdges(const std::vector<std::uint8_t>& kept) {
+    std::size_t edges = 0;
+    for (std::size_t i = 0; i < sides_.size(); ++i) {
+        if (kept[i] != 0) {
+            sides_[edges++] = sides_[i];
+        } else {
+            std::uint8_t& watched = watchedSides_[index(sides_[i].triangle)];
+            watched = static_cast<std::uint8_t>(watched & ~(1 << sides_[i].corner));
+        }
+    }
+    sides_.resize(edges);
+    const MovingSand::Renumbering now = sand_.keepEdges(kept);
+    const auto renumber = [](std::vector<std::int32_t>& names, const std::vector<std::int32_t>& by,
+                             std::vector<std::int32_t>& local, std::size_t count) {
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            local[index(names[i])] = by[i];
+            if (by[i] != kNobody) {
+                names[index(by[i])] = names[i];
+            }
+        }
+        names.resize(count);
+    };
+    renumber(vertices_, now.vertices, local_, sand_.vertexCount());
+    renumber(slots_, now.facets, facet_, sand_.facetCount());
 }
 
 void ActiveEdges::forgetResting() {
-    // What is kept is numbered anew, in the order in which the edges that stay name it.
-    ActiveEdges kept;
-    std::vector<std::int32_t> locals(locals_.size(), kNobody), facets(facets_.size(), kNobody);
-    const auto flowed = [this](std::int32_t local) { return flowed_[index(local)] != 0; };
-    const auto keepLocal = [&](std::int32_t& number) {
-        std::int32_t& now = locals[index(number)];
-        if (now == kNobody) {
-            now = static_cast<std::int32_t>(kept.locals_.size());
-            kept.locals_.push_back(locals_[index(number)]);
-            kept.locals_.back().watched = flowed(number);
-            kept.sands_.push_back(sands_[index(number)]);
-            kept.heights_.push_back(heights_[index(number)]);
-            kept.flowed_.push_back(flowed_[index(number)]);
+    const std::vector<std::uint8_t> flowed = sand_.flowed();
+    std::vector<std::uint8_t> facetFlows(sand_.facetCount()), kept(sand_.edgeCount());
+    for (std::size_t i = 0; i < facetFlows.size(); ++i) {
+        for (const Vertex corner : sand_.facet(static_cast<std::int32_t>(i)).corner) {
+            facetFlows[i] |= flowed[index(corner)];
         }
-        number = now;
-    };
-    const auto keepFacet = [&](std::int32_t& number) {
-        std::int32_t& now = facets[index(number)];
-        if (now == kNobody) {
-            now = static_cast<std::int32_t>(kept.facets_.size());
-            kept.facets_.push_back(facets_[index(number)]);
-            kept.slots_.push_back(slots_[index(number)]);
-            for (Vertex& corner : kept.facets_.back().corner) {
-                keepLocal(corner);
+    }
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+        const Edge edge = sand_.edge(i);
+        kept[i] = facetFlows[index(edge.leftFacet)] | facetFlows[index(edge.rightFacet)];
+    }
+    for (std::size_t i = 0; i < flowed.size(); ++i) {
+        sand_.setWatched(i, flowed[i] != 0);
+    }
+    keepEdges(kept);
+}
+
+std::vector<Vertex> ActiveEdges::meshChanged(const Mesh::Change& change) {
+    std::erase_if(heldBack_, [&](const Held& one) {
+        const bool gone = std::binary_search(change.vertices.begin(), change.vertices.end(), one.vertex);
+        isHeldBack_[index(one.vertex)] = gone ? 0 : 1;
+        return gone;
+    });
+    std::vector<std::uint8_t> staleVertices(sand_.vertexCount()), staleFacets(sand_.facetCount());
+    for (const Vertex vertex : change.vertices) {
+        if (index(vertex) < local_.size() && local_[index(vertex)] != kNobody) {
+            staleVertices[index(local_[index(vertex)])] = 1;
+        }
+    }
+    for (const std::int32_t slot : change.triangles) {
+        if (index(slot) < facet_.size() && facet_[index(slot)] != kNobody) {
+            staleFacets[index(facet_[index(slot)])] = 1;
+        }
+    }
+    std::vector<Vertex> ends;
+    std::vector<std::uint8_t> kept(sand_.edgeCount());
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+        const Edge edge = sand_.edge(i);
+        kept[i] = (staleVertices[index(edge.from)] | staleVertices[index(edge.to)] |
+                   staleFacets[index(edge.leftFacet)] | staleFacets[index(edge.rightFacet)]) == 0;
+        if (kept[i] == 0) {
+            ends.insert(ends.end(), {vertices_[index(edge.from)], vertices_[index(edge.to)]});
+            for (const std::int32_t facet : {edge.leftFacet, edge.rightFacet}) {
+                for (const std::int32_t corner : sand_.facet(facet).corner) {
+                    sand_.setWatched(index(corner), false);
+                }
             }
         }
-        number = now;
-    };
-    for (std::size_t e = 0; e < edges_.size(); ++e) {
-        Edge edge = edges_[e];
-        const auto flows = [&](std::int32_t facet) {
-            const auto& corner = facets_[index(facet)].corner;
-            return flowed(corner[0]) || flowed(corner[1]) || flowed(corner[2]);
-        };
-        if (!flows(edge.leftFacet) && !flows(edge.rightFacet)) {
-            std::uint8_t& watched = watchedSides_[index(sides_[e].triangle)];
-            watched = static_cast<std::uint8_t>(watched & ~(1 << sides_[e].corner));
-            continue;
-        }
-        keepLocal(edge.from);
-        keepLocal(edge.to);
-        keepFacet(edge.leftFacet);
-        keepFacet(edge.rightFacet);
-        kept.edges_.push_back(edge);
-        kept.sides_.push_back(sides_[e]);
     }
-    for (std::size_t i = 0; i < locals_.size(); ++i) {
-        local_[index(locals_[i].vertex)] = locals[i];
-    }
-    for (std::size_t i = 0; i < facets_.size(); ++i) {
-        facet_[index(slots_[i])] = facets[i];
-    }
-    edges_.swap(kept.edges_);
-    sides_.swap(kept.sides_);
-    locals_.swap(kept.locals_);
-    facets_.swap(kept.facets_);
-    slots_.swap(kept.slots_);
-    sands_.swap(kept.sands_);
-    heights_.swap(kept.heights_);
-    flowed_.swap(kept.flowed_);
-    sliding_.assign(facets_.size(), 0);
-    inflow_.assign(locals_.size(), {});
+    keepEdges(kept);
+    return ends;
 }
 
-std::vector<Vertex> ActiveEdges::clear() {
-    std::vector<Vertex> result;
-    for (std::size_t i = 0; i < locals_.size(); ++i) {
-        if (flowed_[i] != 0) {
-            result.push_back(locals_[i].vertex);
-        }
-        local_[index(locals_[i].vertex)] = kNobody;
-    }
-    for (const Side& side : sides_) {
-        watchedSides_[index(side.triangle)] = 0;
-    }
-    for (const std::int32_t slot : slots_) {
-        facet_[index(slot)] = kNobody;
-    }
-    edges_.clear();
-    sides_.clear();
-    facets_.clear();
-    slots_.clear();
-    sliding_.clear();
-    locals_.clear();
-    sands_.clear();
-    heights_.clear();
-    inflow_.clear();
-    flowed_.clear();
-    return result;
-}
-
-std::vector<Vertex> ActiveEdges::takeHeldBack() { return std::exchange(heldBack_, {}); }
+void ActiveEdges::clear() { keepEdges(std::vector<std::uint8_t>(sand_.edgeCount(), 0)); }
 
 }  // namespace sand::tin

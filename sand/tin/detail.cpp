@@ -129,6 +129,19 @@ int refine(Mesh& mesh, const DetailRules& rules, const Box& box, const std::func
     return static_cast<int>(places.size());
 }
 
+namespace {
+
+std::int64_t candidates(const Layer& layer, const DetailRules& rules) {
+    return static_cast<std::int64_t>(layer.triangles().triangleAt.size()) - rules.firstToGo;
+}
+
+/// Vertices that a step looks at, unless it removes as many as it may before.
+std::int64_t looksOfStep(const Layer& layer, const DetailRules& rules) {
+    return std::clamp<std::int64_t>(candidates(layer, rules), 0, std::int64_t{rules.removals} * kLooksPerRemoval);
+}
+
+}  // namespace
+
 // The triangles before and after span the same vertices, but for the one that goes: all lie within `far` of a plane,
 // and so do both surfaces, which are 2 far apart at most. The remap moves them by the mean of that at most.
 int coarsen(Layer& layer, const DetailRules& rules, Vertex& next, const Box& keepOut) {
@@ -136,8 +149,7 @@ int coarsen(Layer& layer, const DetailRules& rules, Vertex& next, const Box& kee
         return 0;
     }
     const auto count = static_cast<Vertex>(layer.triangles().triangleAt.size());
-    const std::int64_t looks =
-        std::min<std::int64_t>(std::int64_t{rules.removals} * kLooksPerRemoval, count - rules.firstToGo);
+    const std::int64_t looks = looksOfStep(layer, rules);
     Link link;
     int removed = 0;
     for (std::int64_t look = 0; look < looks && removed < rules.removals; ++look, ++next) {
@@ -155,6 +167,24 @@ int coarsen(Layer& layer, const DetailRules& rules, Vertex& next, const Box& kee
         }
     }
     return removed;
+}
+
+int Coarsening::step(Layer& layer, const DetailRules& rules, Vertex& next, const Box& keepOut) {
+    inVain_ = keepOut == keepOut_ ? inVain_ : 0;
+    keepOut_ = keepOut;
+    const std::int64_t looks = rules.maxError > 0 ? looksOfStep(layer, rules) : 0;
+    if (inVain_ < candidates(layer, rules)) {
+        const int removed = coarsen(layer, rules, next, keepOut);
+        inVain_ = removed > 0 ? 0 : inVain_ + looks;
+        return removed;
+    }
+    if (looks > 0) {  // where coarsen() would stop
+        const std::int64_t end = candidates(layer, rules) + rules.firstToGo;
+        const std::int64_t first = next >= end || next < rules.firstToGo ? 0 : next - rules.firstToGo;
+        const std::int64_t last = (first + looks - 1) % candidates(layer, rules);
+        next = static_cast<Vertex>(rules.firstToGo + last + 1);
+    }
+    return 0;
 }
 
 void DetailRules::encode(files::ByteWriter& writer) const {

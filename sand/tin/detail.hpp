@@ -46,4 +46,16 @@ int refine(Mesh& mesh, const DetailRules& rules, const Box& box, const std::func
 /// the other add up. `keepOut`: where the tool works. Returns how many went.
 int coarsen(Layer& layer, const DetailRules& rules, Vertex& next, const Box& keepOut);
 
+/// The same, step by step, for nothing once all were looked at in vain and nothing has changed since. What it knows is
+/// no state: without it a step does and leaves the same.
+class Coarsening {
+public:
+    void wake() { inVain_ = 0; }  // mesh or sand are others now
+    int step(Layer& layer, const DetailRules& rules, Vertex& next, const Box& keepOut);
+
+private:
+    std::int64_t inVain_ = 0;  // vertices looked at one after the other of which none could go
+    Box keepOut_;
+};
+
 }  // namespace sand::tin

@@ -11,21 +11,24 @@ constexpr int kSweepsTogether = 16;  // edges that have come to rest are looked 
 
 }  // namespace
 
+Slopes slopesOf(std::int32_t threshold, std::int32_t startThreshold) {
+    return {threshold / kProbePerCell, std::max(threshold, startThreshold) / kProbePerCell};
+}
+
 Erosion::Erosion(const Layer&, std::int32_t threshold, std::int32_t startThreshold) {
     changeThresholds(threshold, startThreshold);
 }
 
 void Erosion::changeThresholds(std::int32_t threshold, std::int32_t startThreshold) {
-    slopes_ = {threshold / kProbePerCell, std::max(threshold, startThreshold) / kProbePerCell};
+    slopes_ = slopesOf(threshold, startThreshold);
     active_.clear();
     wakeAll_ = true;
 }
 
 void Erosion::changed(const Layer&, const Mesh::Change& change) {
     weights_.forget(change.vertices);
-    for (const std::vector<Vertex>& woken : {active_.clear(), change.vertices}) {
-        wake(woken);
-    }
+    wake(active_.meshChanged(change));
+    wake(change.vertices);
 }
 
 void Erosion::wake(const std::vector<Vertex>& vertices) {
@@ -38,14 +41,13 @@ int Erosion::sweep(Layer& layer, int sweeps, const Underside* held, std::vector<
     if (sweeps <= 0) {
         return 0;
     }
-    wake(active_.takeHeldBack());
+    wake(active_.takeReleased(held));
     active_.begin(layer, slopes_.start > slopes_.slide, held);
     watchWoken(layer);
     int done = 0;
     while (done < sweeps && !active_.empty()) {
         ++done;
-        const bool still = !active_.sweep();
-        active_.spread(layer, slopes_, weights_);
+        const bool still = !active_.sweep(layer, slopes_, weights_);
         if (still || (done % kSweepsTogether == 0 && active_.mostRest())) {
             active_.store(layer, moved);
             active_.forgetResting();

@@ -13,6 +13,9 @@ namespace sand::tin {
 /// The highest that sand may lie over a place, for as long as a tool stands there [unit]; the largest number beside it.
 using Underside = ActiveEdges::Underside;
 
+/// Of thresholds as Rules has them [unit per cell].
+[[nodiscard]] Slopes slopesOf(std::int32_t threshold, std::int32_t startThreshold);
+
 /// Sand that slides where it is steeper than its talus, on a TIN.
 ///
 /// One sweep moves, over every edge at once, Q = trunc((w_l c_l + w_r c_r)₊ (u_i − u_j)) volume units. Of the edge's
@@ -46,9 +49,11 @@ public:
     /// These may move again, mesh and sand being as they were.
     void wake(const std::vector<Vertex>& vertices);
 
-    /// While `held` is given no flux raises a vertex above it. Vertices that moved are added to `moved`, ascending,
-    /// each once. Costs what moves: nothing once the sand lies still. Sand that an obstacle held back is looked at
-    /// again by the next call, so that nobody need wake it when the tool leaves.
+    /// While `held` is given no flux raises a vertex above it. Who puts it down, or moves it, wakes the vertices that
+    /// are higher than a unit below it: sand beside them may lean on it now. Vertices that moved are added to `moved`,
+    /// ascending, each once. Costs what moves: next to nothing once the sand lies still. Sand under an obstacle is
+    /// looked at again by the next call for which it is another one there, so that nobody need wake it when the tool
+    /// leaves.
     int sweep(Layer& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved);
     /// Whether nothing moves any more as things are.
     [[nodiscard]] bool settled() const;

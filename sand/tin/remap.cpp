@@ -5,6 +5,8 @@
 #include <cmath>
 #include <compare>
 #include <iterator>
+#include <limits>
+#include <optional>
 
 namespace sand::tin {
 namespace {
@@ -43,6 +45,57 @@ struct Part {
     std::int64_t smallestStar = 0;
     double lowest = 0, highest = 0;
     bool empty = true;
+};
+
+/// Which of some triangles hold a place. Strips of the field from west to east, each with the triangles that reach into
+/// it: where a tool works thousands are looked through for hundreds of places.
+class Strips {
+public:
+    explicit Strips(const std::vector<Mesh::Piece>& pieces) : pieces_(pieces) {
+        west_ = std::numeric_limits<std::int32_t>::max();
+        std::int32_t east = std::numeric_limits<std::int32_t>::min();
+        for (const Mesh::Piece& piece : pieces_) {
+            west_ = std::min(west_, westOf(piece));
+            east = std::max(east, eastOf(piece));
+        }
+        const std::size_t count = std::clamp<std::size_t>(pieces_.size() / kTogether, 1, kMost);
+        width_ = pieces_.empty() ? 1 : (east - west_) / static_cast<std::int32_t>(count) + 1;
+        strips_.resize(count);
+        for (std::uint32_t i = 0; i < pieces_.size(); ++i) {
+            for (std::size_t at = strip(westOf(pieces_[i])); at <= strip(eastOf(pieces_[i])); ++at) {
+                strips_[at].push_back(i);
+            }
+        }
+    }
+
+    /// The first triangle in order that visit(piece) is true for, or null; only such are asked as may hold the place.
+    template <class Visit>
+    [[nodiscard]] const Mesh::Piece* first(const Place& place, const Visit& visit) const {
+        const std::size_t at = strip(place.x);
+        if (place.x < west_ || at >= strips_.size()) {
+            return nullptr;
+        }
+        const auto found = std::find_if(strips_[at].begin(), strips_[at].end(), [&](std::uint32_t i) {
+            const auto& [a, b, c] = pieces_[i].place;
+            return std::min({a.y, b.y, c.y}) <= place.y && std::max({a.y, b.y, c.y}) >= place.y && visit(pieces_[i]);
+        });
+        return found == strips_[at].end() ? nullptr : &pieces_[*found];
+    }
+
+private:
+    static constexpr std::size_t kTogether = 8, kMost = 256;
+
+    static std::int32_t westOf(const Mesh::Piece& piece) {
+        return std::min({piece.place[0].x, piece.place[1].x, piece.place[2].x});
+    }
+    static std::int32_t eastOf(const Mesh::Piece& piece) {
+        return std::max({piece.place[0].x, piece.place[1].x, piece.place[2].x});
+    }
+    [[nodiscard]] std::size_t strip(std::int32_t x) const { return static_cast<std::size_t>((x - west_) / width_); }
+
+    const std::vector<Mesh::Piece>& pieces_;
+    std::int32_t west_, width_;
+    std::vector<std::vector<std::uint32_t>> strips_;  // of each, in order
 };
 
 class Remapping {
@@ -149,21 +202,21 @@ private:
     }
 
     /// The old surface there; of several triangles that share the place, in the first.
-    [[nodiscard]] double oldHeight(const Place& place) const {
-        for (const Mesh::Piece& piece : difference_.went) {
-            const auto& [a, b, c] = piece.place;
-            if (std::min({a.x, b.x, c.x}) > place.x || std::max({a.x, b.x, c.x}) < place.x) {
-                continue;
-            }
-            const std::int64_t u = doubledArea(b, c, place);
-            const std::int64_t v = doubledArea(c, a, place);
-            const std::int64_t w = doubledArea(a, b, place);
-            if (u >= 0 && v >= 0 && w >= 0) {
-                const double lowest = heights_[at(piece.corner[0])];
-                const double rise = static_cast<double>(v) * (heights_[at(piece.corner[1])] - lowest) +
-                                    static_cast<double>(w) * (heights_[at(piece.corner[2])] - lowest);
-                return lowest + rise / static_cast<double>(u + v + w);
-            }
+    [[nodiscard]] double oldHeight(const Place& place) {
+        if (!strips_) {
+            strips_.emplace(difference_.went);
+        }
+        std::array<std::int64_t, 3> weight{};
+        const Mesh::Piece* piece = strips_->first(place, [&](const Mesh::Piece& one) {
+            const auto& [a, b, c] = one.place;
+            weight = {doubledArea(b, c, place), doubledArea(c, a, place), doubledArea(a, b, place)};
+            return weight[0] >= 0 && weight[1] >= 0 && weight[2] >= 0;
+        });
+        if (piece != nullptr) {
+            const double lowest = heights_[at(piece->corner[0])];
+            const double rise = static_cast<double>(weight[1]) * (heights_[at(piece->corner[1])] - lowest) +
+                                static_cast<double>(weight[2]) * (heights_[at(piece->corner[2])] - lowest);
+            return lowest + rise / static_cast<double>(weight[0] + weight[1] + weight[2]);
         }
         return 0;  // not reached: what came covers the ground of what went
     }
@@ -222,7 +275,8 @@ private:
     const std::vector<std::int64_t>& volumes_;
     const std::vector<std::int64_t>& stars_;
     const std::vector<double>& heights_;
-    std::vector<Node> nodes_;  // in order of Key
+    std::optional<Strips> strips_;  // of what went, once somebody asks
+    std::vector<Node> nodes_;       // in order of Key
     std::vector<Corners> went_, came_;
     std::vector<Part> parts_;  // by their first node
 };

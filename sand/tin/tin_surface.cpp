@@ -70,14 +70,31 @@ void TinSurface::meshChanged() {
     }
     erosion_.changed(layer_, change);
     hash_.touch(layer_, change.vertices);
-    hash_.constraintsChanged();
+    hash_.touchTriangles(layer_, change.triangles);
+    coarsening_.wake();
     if (!damage_.whole) {
         addTo(damage_.triangles, change.triangles);
         addTo(damage_.vertices, change.vertices);
     }
 }
 
+/// Sand that fills the room below a tool: that beside it leans on the tool now.
+void TinSurface::wakeFull(const Underside& under, const Box& reach) {
+    Window near;
+    near.look(layer_.triangles(), reach);
+    std::vector<Vertex> full;
+    std::copy_if(near.vertices().begin(), near.vertices().end(), std::back_inserter(full), [&](Vertex vertex) {
+        const auto i = static_cast<std::size_t>(vertex);
+        return layer_.heights()[i] > under(layer_.triangles().places[i]) - 1.0;
+    });
+    erosion_.wake(full);
+}
+
 void TinSurface::sandMoved(const std::vector<Vertex>& vertices) {
+    if (vertices.empty()) {
+        return;
+    }
+    coarsening_.wake();
     hash_.touch(layer_, vertices);
     if (!damage_.whole) {
         addTo(damage_.vertices, vertices);
@@ -87,7 +104,6 @@ void TinSurface::sandMoved(const std::vector<Vertex>& vertices) {
 void TinSurface::drag(const HeldTool& tool, std::span<const ProbePoint> path) {
     const Tool::Work done = toolOf(tool).drag(layer_, state_.imprint, rim_, path);
     state_.outflow += static_cast<std::int64_t>(done.outflow);
-    hash_.constraintsChanged();
     meshChanged();
     sandMoved(done.touched);
     erosion_.wake(done.touched);
@@ -101,22 +117,28 @@ void TinSurface::release(const HeldTool& tool, const ProbePoint& at) {
 
 void TinSurface::leave(const HeldTool& tool) {
     toolOf(tool).leave(layer_, state_.imprint);
-    hash_.constraintsChanged();
     meshChanged();
 }
 
 void TinSurface::sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) {
     if (detail_.removals > 0) {
         const Box keepOut = tool == nullptr ? Box{} : toolOf(*tool).reach(at);
-        if (coarsen(layer_, detail_, state_.nextToGo, keepOut) > 0) {
+        if (coarsening_.step(layer_, detail_, state_.nextToGo, keepOut) > 0) {
             meshChanged();
         }
     }
     moved_.clear();
     if (tool != nullptr) {
-        const Underside under = toolOf(*tool).underside(at);
+        const Tool here = toolOf(*tool);
+        const Underside under = here.underside(at);
+        const Imprint::Stand stand{at, tool->shape, tool->heading};
+        if (held_ != stand) {
+            held_ = stand;
+            wakeFull(under, here.reach(at));
+        }
         erosion_.sweep(layer_, sweeps, &under, moved_);
     } else {
+        held_.reset();
         erosion_.sweep(layer_, sweeps, nullptr, moved_);
     }
     sandMoved(moved_);
@@ -129,6 +151,7 @@ void TinSurface::changeRules(const Rules& rules) {
 }
 
 void TinSurface::settle() {
+    held_.reset();
     for (int sweeps = 0; sweeps < kSweepsToRest && !erosion_.settled(); sweeps += kSweepsAtOnce) {
         moved_.clear();
         erosion_.sweep(layer_, kSweepsAtOnce, nullptr, moved_);
@@ -160,6 +183,8 @@ void TinSurface::replace(const SurfaceCopy& copy) {
     state_ = sand.state();
     erosion_ = Erosion(layer_, threshold_, startThreshold_);
     hash_ = VertexHash(layer_);
+    held_.reset();
+    coarsening_.wake();
     damage_ = {.whole = true, .triangles = {}, .vertices = {}};
     lastFound_ = kNobody;
 }

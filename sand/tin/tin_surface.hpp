@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "sand/surface.hpp"
@@ -50,7 +51,7 @@ public:
     [[nodiscard]] bool settled() const override { return erosion_.settled(); }
     [[nodiscard]] int age() const override { return 0; }
 
-    [[nodiscard]] std::uint64_t hash() override { return hash_.update(layer_, state_); }
+    [[nodiscard]] std::uint64_t hash() override { return hash_.update(state_); }
     void audit(int tiles) override;
     [[nodiscard]] const HashTiles& hashTiles() const override { return hash_; }
     [[nodiscard]] std::vector<std::int32_t> valuesOf(int tile) const override;
@@ -65,6 +66,7 @@ private:
     [[nodiscard]] Tool toolOf(const HeldTool& tool) const { return {tool.shape, tool.heading, detail_}; }
     /// Tells hash, erosion and whoever draws what the layer has become.
     void meshChanged();
+    void wakeFull(const Underside& under, const Box& reach);
     void sandMoved(const std::vector<Vertex>& vertices);
 
     std::shared_ptr<const Start> start_;
@@ -73,11 +75,13 @@ private:
     std::int32_t threshold_, startThreshold_;
     Layer layer_;
     LayerState state_;
+    Coarsening coarsening_;
     Erosion erosion_;
     VertexHash hash_;
     SurfaceView view_{layer_.triangles(), layer_.heights()};
     std::shared_ptr<const LayerCopy> kept_;
     SurfaceDamage damage_{.whole = true, .triangles = {}, .vertices = {}};
+    std::optional<Imprint::Stand> held_;        // the obstacle of the last sweeps: only to save work
     std::vector<Vertex> moved_;                 // scratch
     mutable std::int32_t lastFound_ = kNobody;  // where the next question about a height is likely to be
 };

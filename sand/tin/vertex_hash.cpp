@@ -28,6 +28,7 @@ VertexHash::VertexHash(const Layer& layer) {
     std::vector<Vertex> all(layer.triangles().triangleAt.size());
     std::iota(all.begin(), all.end(), 0);
     touch(layer, all);
+    hashConstraints(layer);
 }
 
 std::uint64_t VertexHash::hashOf(const Layer& layer, Vertex vertex) {
@@ -50,14 +51,38 @@ void VertexHash::touch(const Layer& layer, const std::vector<Vertex>& vertices) 
     }
 }
 
-std::uint64_t VertexHash::update(const Layer& layer, const LayerState& state) {
-    if (constraintsChanged_) {
-        constraints_ = 0;
-        for (const auto& [a, b] : layer.mesh().constraints()) {
-            constraints_ += mixed(2, together(a, b));
+/// A constraint is owned by the triangle in which it runs from its smaller vertex to the larger.
+std::uint64_t VertexHash::constraintsOf(const Layer& layer, std::int32_t slot) {
+    const Triangle& triangle = layer.triangles().triangles[static_cast<std::size_t>(slot)];
+    std::uint64_t sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vertex a = triangle.corner[(k + 1) % 3], b = triangle.corner[(k + 2) % 3];
+        if (a < b && triangle.constrained[k] && triangle.neighbour[k] != kNobody) {
+            sum += mixed(2, together(a, b));
         }
-        constraintsChanged_ = false;
     }
+    return sum;
+}
+
+void VertexHash::touchTriangles(const Layer& layer, const std::vector<std::int32_t>& slots) {
+    bySlot_.resize(std::max(bySlot_.size(), layer.triangles().triangles.size()), 0);
+    for (const std::int32_t slot : slots) {
+        const std::uint64_t now = constraintsOf(layer, slot);
+        std::uint64_t& before = bySlot_[static_cast<std::size_t>(slot)];
+        constraints_ += now - before;
+        before = now;
+    }
+}
+
+void VertexHash::hashConstraints(const Layer& layer) {
+    bySlot_.assign(layer.triangles().triangles.size(), 0);
+    constraints_ = 0;
+    for (std::size_t slot = 0; slot < bySlot_.size(); ++slot) {
+        constraints_ += bySlot_[slot] = constraintsOf(layer, static_cast<std::int32_t>(slot));
+    }
+}
+
+std::uint64_t VertexHash::update(const LayerState& state) {
     files::ByteWriter writer;
     state.encode(writer);
     hashes_.back() = constraints_ + XXH3_64bits(writer.bytes().data(), writer.bytes().size());
@@ -78,7 +103,7 @@ void VertexHash::auditNext(const Layer& layer) {
     const int tile = nextAudited_;
     nextAudited_ = (nextAudited_ + 1) % (kTiles + 1);
     if (tile == kTiles) {
-        constraintsChanged_ = true;
+        hashConstraints(layer);
         return;
     }
     byVertex_.resize(std::max(byVertex_.size(), layer.triangles().triangleAt.size()), 0);

@@ -19,8 +19,9 @@ public:
 
     /// These vertices may have come, gone, or changed.
     void touch(const Layer& layer, const std::vector<Vertex>& vertices);
-    void constraintsChanged() { constraintsChanged_ = true; }
-    [[nodiscard]] std::uint64_t update(const Layer& layer, const LayerState& state);
+    /// These triangles may have come, gone, or been constrained otherwise, by slot.
+    void touchTriangles(const Layer& layer, const std::vector<std::int32_t>& slots);
+    [[nodiscard]] std::uint64_t update(const LayerState& state);
     /// Hashes the next tile again from memory.
     void auditNext(const Layer& layer);
 
@@ -39,8 +40,11 @@ private:
     static void forEachOf(const Layer& layer, int tile, Visit visit);
     [[nodiscard]] static std::uint64_t hashOf(const Layer& layer, Vertex vertex);
 
+    [[nodiscard]] static std::uint64_t constraintsOf(const Layer& layer, std::int32_t slot);
+    void hashConstraints(const Layer& layer);
+
     std::vector<std::uint64_t> byVertex_;
-    bool constraintsChanged_ = true;
+    std::vector<std::uint64_t> bySlot_;  // of the constraints that a triangle owns
     std::uint64_t constraints_ = 0;
     int nextAudited_ = 0;
 };

@@ -105,11 +105,22 @@ Edge Weights::edge(const Triangles& mesh, std::span<const std::int64_t> stars, S
     return edge;
 }
 
-Facet facetOf(const Triangles& mesh, std::int32_t slot, const Slopes& slopes) {
-    const auto& corner = triangleOf(mesh, slot).corner;
+double slackOf(const Place& a, const Place& b, const Place& c) {
+    const auto length = [](const Place& from, const Place& to) {
+        return std::sqrt(static_cast<double>(dot(from, to, to)));
+    };
+    // A corner that is higher by one turns the slope by the length of the opposite side over the doubled area.
+    return kGrain * (length(a, b) + length(a, c) + length(b, c)) / static_cast<double>(doubledArea(a, b, c));
+}
+
+std::array<Vertex, 3> smallestFirst(const std::array<Vertex, 3>& corner) {
     const std::size_t least = corner[0] < corner[1] ? (corner[0] < corner[2] ? 0 : 2) : (corner[1] < corner[2] ? 1 : 2);
+    return {corner[least], corner[(least + 1) % 3], corner[(least + 2) % 3]};
+}
+
+Facet facetOf(const Triangles& mesh, std::int32_t slot, const Slopes& slopes) {
     Facet facet;
-    facet.corner = {corner[least], corner[(least + 1) % 3], corner[(least + 2) % 3]};
+    facet.corner = smallestFirst(triangleOf(mesh, slot).corner);
     const Place& origin = placeOf(mesh, facet.corner[0]);
     const Place& first = placeOf(mesh, facet.corner[1]);
     const Place& second = placeOf(mesh, facet.corner[2]);
@@ -117,9 +128,7 @@ Facet facetOf(const Triangles& mesh, std::int32_t slot, const Slopes& slopes) {
     const auto firstSquared = static_cast<double>(dot(origin, first, first));
     const auto secondSquared = static_cast<double>(dot(origin, second, second));
     const auto product = static_cast<double>(dot(origin, first, second));
-    const auto thirdSquared = static_cast<double>(dot(first, second, second));
-    // A corner that is higher by one turns the slope by the length of the opposite side over the doubled area.
-    const double slack = kGrain * (std::sqrt(firstSquared) + std::sqrt(secondSquared) + std::sqrt(thirdSquared)) / area;
+    const double slack = slackOf(origin, first, second);
     const double scale = area * (slopes.slide + slack);
     facet.first = secondSquared / scale / scale;
     facet.mixed = -2 * product / scale / scale;

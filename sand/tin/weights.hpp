@@ -46,9 +46,15 @@ struct Side {
 /// other.
 [[nodiscard]] Side owner(const Triangles& mesh, Side side);
 
-/// The facet of a triangle. Heights are told apart by half a unit at best: it may be as much steeper than `slopes` as
-/// three heights, each off by that, make it. So a plane of the slope at which sand rests is at rest, and slivers
-/// freeze.
+/// The corners of a triangle counter-clockwise from the smallest: however a slot turns them.
+[[nodiscard]] std::array<Vertex, 3> smallestFirst(const std::array<Vertex, 3>& corner);
+
+/// How much steeper than its slopes a triangle may be [unit per probe unit]. Heights are told apart by half a unit at
+/// best: as much as three heights, each off by that, make it. So a plane of the slope at which sand rests is at rest,
+/// and slivers freeze.
+[[nodiscard]] double slackOf(const Place& a, const Place& b, const Place& c);
+
+/// The facet of a triangle, with this slack.
 [[nodiscard]] Facet facetOf(const Triangles& mesh, std::int32_t slot, const Slopes& slopes);
 
 /// Weights of a mesh's edges, such that sand neither overshoots nor depends on how the mesh is stored.

@@ -133,6 +133,39 @@ TEST(TinDetail, NoRemovalMovesTheSurfaceByMoreThanItMay) {
     EXPECT_LT(removed, 60);
 }
 
+TEST(TinDetail, CoarseningThatSleepsLeavesWhatOneThatLooksAgainLeaves) {
+    Layer awake = levelLayer(24, 24, 256), sleepy = levelLayer(24, 24, 256);
+    const DetailRules rules = rulesOf(256, 2, 3);
+    Vertex next = 0, sleepyNext = 0;
+    sand::tin::Coarsening coarsening;
+    const auto both = [&](int steps, const Box& keepOut) {
+        int removed = 0;
+        for (int step = 0; step < steps; ++step) {
+            const int here = coarsening.step(sleepy, rules, sleepyNext, keepOut);
+            EXPECT_EQ(here, sand::tin::coarsen(awake, rules, next, keepOut));
+            EXPECT_EQ(sleepyNext, next);
+            removed += here;
+        }
+        EXPECT_EQ(bytesOf(sleepy), bytesOf(awake));
+        return removed;
+    };
+    for (Layer* layer : {&awake, &sleepy}) {
+        forEachVertex(*layer, [&](Vertex vertex, const Place& place, double) {
+            layer->setHeight(vertex, place.x / 64 * (place.x / 64) + place.y / 9);
+        });
+    }
+    EXPECT_EQ(both(100, kNowhere), 0) << "bent too much";
+    for (Layer* layer : {&awake, &sleepy}) {
+        forEachVertex(*layer, [&](Vertex vertex, const Place& place, double) {
+            layer->setHeight(vertex, place.x < 3000 ? 0 : place.x / 64 * (place.x / 64));
+        });
+    }
+    coarsening.wake();
+    EXPECT_GT(both(100, {0, 0, 1500, 3000}), 10);
+    EXPECT_GT(both(100, kNowhere), 10) << "the tool is elsewhere";
+    EXPECT_EQ(both(100, kNowhere), 0);
+}
+
 TEST(TinDetail, WithoutAnErrorNothingGoes) {
     Layer layer = levelLayer(10, 10, 256);
     const files::Bytes before = bytesOf(layer);

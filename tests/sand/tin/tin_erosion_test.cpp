@@ -197,8 +197,20 @@ TEST(TinErosion, ARestoredReplicaGoesOnAlikeWhileTheMeshChanges) {
         edit(other, same);
         erosion.changed(layer, layer.takeChange());
         fresh.changed(other, other.takeChange());
-        erosion.sweep(layer, 20, nullptr, moved);
-        fresh.sweep(other, 20, nullptr, moved);
+        // A tool stands there, moves on, and is away for some steps.
+        const sand::tin::Underside held = [step](Place place) {
+            const bool under = std::hypot(place.x - 1000.0 - 20 * (step / 4), place.y - 1000.0) < 600;
+            return under ? 1 << 15 : std::numeric_limits<std::int32_t>::max();
+        };
+        const sand::tin::Underside* const tool = step % 16 < 12 ? &held : nullptr;
+        for (const Vertex vertex : mesh_checks::livingVertices(layer.mesh())) {
+            const auto i = static_cast<std::size_t>(vertex);
+            if (tool != nullptr && layer.heights()[i] > held(layer.triangles().places[i]) - 1.0) {
+                erosion.wake({vertex});
+            }
+        }
+        erosion.sweep(layer, 20, tool, moved);
+        fresh.sweep(other, 20, tool, moved);
         ASSERT_EQ(bytesOf(layer), bytesOf(other)) << "seeds 13 and 17, step " << step;
     }
 }

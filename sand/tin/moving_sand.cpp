@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/moving_sand.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sand::tin {
+namespace {
+
+// Of stars times heights. A vertex's fluxes together are at most twice that, and below 2^53 doubles count exactly.
+constexpr double kExact = 0x1p51;
+
+std::size_t index(std::int32_t number) { return static_cast<std::size_t>(number); }
+
+template <class... Values>
+void keepMarked(const std::vector<std::int32_t>& now, std::size_t count, std::vector<Values>&... arrays) {
+    const auto keep = [&](auto& values) {
+        for (std::size_t i = 0; i < now.size(); ++i) {
+            if (now[i] != kNobody) {
+                values[index(now[i])] = values[i];
+            }
+        }
+        values.resize(count);
+    };
+    (keep(arrays), ...);
+}
+
+/// Numbers what is marked, and returns how many that are.
+std::size_t numberMarked(std::vector<std::int32_t>& marks) {
+    std::int32_t count = 0;
+    for (std::int32_t& mark : marks) {
+        mark = mark != kNobody ? count++ : kNobody;
+    }
+    return index(count);
+}
+
+}  // namespace
+
+void MovingSand::notice(std::int64_t volume, std::int64_t star) {
+    largestStar_ = std::max(largestStar_, static_cast<double>(star));
+    greatestHeight_ = std::max(greatestHeight_, std::abs(static_cast<double>(volume) / static_cast<double>(star)));
+    if (!isWide_ && largestStar_ * greatestHeight_ >= kExact) {
+        widen();
+    }
+}
+
+void MovingSand::widen() {
+    isWide_ = true;
+    std::transform(volumes_.begin(), volumes_.end(), wide_.begin(),
+                   [](double volume) { return static_cast<std::int64_t>(volume); });
+}
+
+std::int32_t MovingSand::addVertex(std::int64_t volume, std::int64_t star, double underside) {
+    const auto number = static_cast<std::int32_t>(vertexCount());
+    notice(volume, star);
+    volumes_.push_back(static_cast<double>(volume));
+    wide_.push_back(volume);
+    stars_.push_back(static_cast<double>(star));
+    heights_.push_back(static_cast<double>(volume) / static_cast<double>(star));
+    undersides_.push_back(underside);
+    inflow_.push_back(0);
+    unwatched_.push_back(~std::uint64_t{0});
+    return number;
+}
+
+std::int32_t MovingSand::addFacet(const Facet& facet) {
+    const auto number = static_cast<std::int32_t>(facetCount());
+    first_.push_back(facet.corner[0]);
+    second_.push_back(facet.corner[1]);
+    third_.push_back(facet.corner[2]);
+    squared_.push_back(facet.first);
+    mixed_.push_back(facet.mixed);
+    squaredAcross_.push_back(facet.second);
+    start_.push_back(facet.start);
+    sliding_.push_back(0);
+    return number;
+}
+
+void MovingSand::addEdge(const Edge& edge) {
+    from_.push_back(edge.from);
+    to_.push_back(edge.to);
+    left_.push_back(edge.leftFacet);
+    right_.push_back(edge.rightFacet);
+    leftWeights_.push_back(edge.left);
+    rightWeights_.push_back(edge.right);
+    fluxes_.push_back(0);
+}
+
+Facet MovingSand::facet(std::int32_t number) const {
+    Facet facet;
+    facet.corner = {first_[index(number)], second_[index(number)], third_[index(number)]};
+    return facet;
+}
+
+Edge MovingSand::edge(std::size_t number) const {
+    return {.from = from_[number], .to = to_[number], .leftFacet = left_[number], .rightFacet = right_[number]};
+}
+
+void MovingSand::restart() {
+    largestStar_ = greatestHeight_ = 0;
+    isWide_ = alwaysWide_;
+    std::fill(fluxes_.begin(), fluxes_.end(), 0.0);
+}
+
+void MovingSand::place(std::size_t vertex, std::int64_t volume, std::int64_t star, double underside) {
+    volumes_[vertex] = static_cast<double>(volume);
+    stars_[vertex] = static_cast<double>(star);
+    heights_[vertex] = volumes_[vertex] / stars_[vertex];
+    undersides_[vertex] = underside;
+    notice(volume, star);
+    wide_[vertex] = volume;
+}
+
+const std::vector<std::uint8_t>& MovingSand::flowed() {
+    flowed_.assign(vertexCount(), 0);
+    for (std::size_t i = 0; i < edgeCount(); ++i) {
+        const std::uint8_t flows = fluxes_[i] != 0 ? 1 : 0;
+        flowed_[index(from_[i])] |= flows;
+        flowed_[index(to_[i])] |= flows;
+    }
+    return flowed_;
+}
+
+void MovingSand::findRests() {
+    flowed();
+    rest_.resize(facetCount());
+    for (std::size_t i = 0; i < facetCount(); ++i) {
+        const bool slides = (flowed_[index(first_[i])] | flowed_[index(second_[i])] | flowed_[index(third_[i])]) != 0;
+        rest_[i] = slides ? kRest : start_[i];
+    }
+}
+
+SweepResult MovingSand::sweep(bool held, bool band) {
+    if (band) {
+        findRests();
+    }
+    const SweepFluxes sweep{.facets = facetCount(),
+                            .edges = edgeCount(),
+                            .heights = heights_.data(),
+                            .undersides = held ? undersides_.data() : nullptr,
+                            .first = first_.data(),
+                            .second = second_.data(),
+                            .third = third_.data(),
+                            .squared = squared_.data(),
+                            .mixed = mixed_.data(),
+                            .squaredAcross = squaredAcross_.data(),
+                            .rest = band ? rest_.data() : nullptr,
+                            .sliding = sliding_.data(),
+                            .from = from_.data(),
+                            .to = to_.data(),
+                            .left = left_.data(),
+                            .right = right_.data(),
+                            .leftWeights = leftWeights_.data(),
+                            .rightWeights = rightWeights_.data(),
+                            .fluxes = fluxes_.data()};
+    v3_ ? v3::sweepFluxes(sweep) : baseline::sweepFluxes(sweep);
+    if (isWide_) {
+        return moveWide();
+    }
+    const SweepSand sand{.vertices = vertexCount(),
+                         .edges = edgeCount(),
+                         .from = from_.data(),
+                         .to = to_.data(),
+                         .fluxes = fluxes_.data(),
+                         .stars = stars_.data(),
+                         .unwatched = unwatched_.data(),
+                         .inflow = inflow_.data(),
+                         .volumes = volumes_.data(),
+                         .heights = heights_.data()};
+    return v3_ ? v3::moveSand(sand) : baseline::moveSand(sand);
+}
+
+SweepResult MovingSand::moveWide() {
+    wideInflow_.assign(vertexCount(), 0);
+    for (std::size_t i = 0; i < edgeCount(); ++i) {
+        const auto flux = static_cast<std::int64_t>(fluxes_[i]);
+        wideInflow_[index(from_[i])] -= flux;
+        wideInflow_[index(to_[i])] += flux;
+    }
+    SweepResult result;
+    for (std::size_t i = 0; i < vertexCount(); ++i) {
+        result.moved = result.moved || wideInflow_[i] != 0;
+        result.spread = result.spread || (wideInflow_[i] != 0 && !isWatched(i));
+        wide_[i] += wideInflow_[i];
+        heights_[i] = static_cast<double>(wide_[i]) / stars_[i];
+    }
+    return result;
+}
+
+MovingSand::Renumbering MovingSand::keepEdges(const std::vector<std::uint8_t>& kept) {
+    Renumbering now{std::vector<std::int32_t>(vertexCount(), kNobody),
+                    std::vector<std::int32_t>(facetCount(), kNobody)};
+    std::vector<std::int32_t> edges(edgeCount(), kNobody);
+    for (std::size_t i = 0; i < edgeCount(); ++i) {
+        if (kept[i] != 0) {
+            edges[i] = 0;
+            now.facets[index(left_[i])] = now.facets[index(right_[i])] = 0;
+        }
+    }
+    for (std::size_t i = 0; i < facetCount(); ++i) {
+        if (now.facets[i] != kNobody) {
+            now.vertices[index(first_[i])] = now.vertices[index(second_[i])] = now.vertices[index(third_[i])] = 0;
+        }
+    }
+    keepMarked(edges, numberMarked(edges), from_, to_, left_, right_, leftWeights_, rightWeights_, fluxes_);
+    keepMarked(now.facets, numberMarked(now.facets), first_, second_, third_, squared_, mixed_, squaredAcross_, start_,
+               sliding_);
+    keepMarked(now.vertices, numberMarked(now.vertices), volumes_, stars_, heights_, undersides_, inflow_, unwatched_,
+               wide_);
+    const auto renumber = [](std::vector<std::int32_t>& names, const std::vector<std::int32_t>& by) {
+        std::transform(names.begin(), names.end(), names.begin(), [&by](std::int32_t name) { return by[index(name)]; });
+    };
+    for (auto* ends : {&from_, &to_, &first_, &second_, &third_}) {
+        renumber(*ends, now.vertices);
+    }
+    renumber(left_, now.facets);
+    renumber(right_, now.facets);
+    return now;
+}
+
+void MovingSand::clear() { *this = MovingSand(v3_, alwaysWide_); }
+
+}  // namespace sand::tin

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "sand/code_path.hpp"
+#include "sand/tin/sweep_kernel.hpp"
+#include "sand/tin/weights.hpp"
+
+namespace sand::tin {
+
+/// Sand that sweeps move: vertices, facets and edges by numbers of their own, 0, 1, 2 …, side by side in memory.
+///
+/// Volumes are whole numbers, and so are fluxes. As long as the largest star times the greatest height is below 2^51
+/// they and all their sums are exact as doubles, which processors move four at a time; beyond, they are 64-bit
+/// integers, for the same result. Not thread-safe.
+class MovingSand {
+public:
+    static constexpr double kFree = 0x1p40;  // [unit], an underside where there is no obstacle: above all sand
+
+    /// `wide` has integers from the start: for tests.
+    explicit MovingSand(bool v3 = machineHasV3(), bool wide = false) : v3_(v3), alwaysWide_(wide) {}
+
+    std::int32_t addVertex(std::int64_t volume, std::int64_t star, double underside = kFree);
+    /// Corners, ends and facets by their numbers here.
+    std::int32_t addFacet(const Facet& facet);
+    void addEdge(const Edge& edge);
+
+    [[nodiscard]] std::size_t vertexCount() const { return stars_.size(); }
+    [[nodiscard]] std::size_t facetCount() const { return sliding_.size(); }
+    [[nodiscard]] std::size_t edgeCount() const { return from_.size(); }
+    [[nodiscard]] std::int64_t volume(std::size_t vertex) const {
+        return isWide_ ? wide_[vertex] : static_cast<std::int64_t>(volumes_[vertex]);
+    }
+    [[nodiscard]] Facet facet(std::int32_t number) const;  // its corners
+    [[nodiscard]] Edge edge(std::size_t number) const;     // its ends and facets
+
+    /// Forgets what the last sweep moved. Each vertex is to be placed before the next.
+    void restart();
+    void place(std::size_t vertex, std::int64_t volume, std::int64_t star, double underside);
+    /// Told of a vertex whose edges are all here, and of one that misses some (as all do at first).
+    void setWatched(std::size_t vertex, bool watched) { unwatched_[vertex] = watched ? 0 : ~std::uint64_t{0}; }
+    [[nodiscard]] bool isWatched(std::size_t vertex) const { return unwatched_[vertex] == 0; }
+
+    /// One sweep; `held`: undersides hold; `band`: facets at rest start to slide later than sliding ones stop.
+    SweepResult sweep(bool held, bool band);
+    /// By vertex: whether sand flowed at one of its edges in the last sweep. Until the next call of anything.
+    const std::vector<std::uint8_t>& flowed();
+
+    /// Where facets and vertices are after some edges went; kNobody: no edge needs it any more.
+    struct Renumbering {
+        std::vector<std::int32_t> vertices, facets;
+    };
+    /// Keeps these edges (a byte each) and what they need, in the order in which they are.
+    Renumbering keepEdges(const std::vector<std::uint8_t>& kept);
+    void clear();
+
+private:
+    void notice(std::int64_t volume, std::int64_t star);
+    void widen();
+    SweepResult moveWide();
+    void findRests();
+
+    bool v3_, alwaysWide_;
+    bool isWide_ = alwaysWide_;
+    double largestStar_ = 0, greatestHeight_ = 0;
+    std::vector<double> volumes_, stars_, heights_, undersides_, inflow_;  // by vertex
+    std::vector<std::uint64_t> unwatched_;
+    std::vector<std::int64_t> wide_, wideInflow_;
+    std::vector<std::uint8_t> flowed_;
+    std::vector<std::int32_t> first_, second_, third_;  // by facet
+    std::vector<double> squared_, mixed_, squaredAcross_, start_, rest_, sliding_;
+    std::vector<std::int32_t> from_, to_, left_, right_;  // by edge
+    std::vector<double> leftWeights_, rightWeights_, fluxes_;
+};
+
+}  // namespace sand::tin

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiled once for every x86-64 and once for x86-64-v3, with -O3, as the sweeps of a grid are.
+#include "sand/tin/sweep_kernel.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace sand::tin::SANDWALL_CODE_PATH {
+namespace {
+
+/// What a corner counts as for the slope: sand that fills the room below an obstacle leans on it, and is no slope for
+/// the sand beside it, which would flow along it for ever.
+double leaning(double height, double underside, double one, double other) {
+    const double beside = one < other ? one : other;
+    return height > underside - 1 && beside > height ? beside : height;
+}
+
+template <bool kHeld, bool kBand>
+void slide(std::size_t count, const double* __restrict heights, const double* __restrict undersides,
+           const std::int32_t* __restrict first, const std::int32_t* __restrict second,
+           const std::int32_t* __restrict third, const double* __restrict squared, const double* __restrict mixed,
+           const double* __restrict squaredAcross, const double* __restrict rest, double* __restrict sliding) {
+    for (std::size_t i = 0; i < count; ++i) {
+        double a = heights[first[i]], b = heights[second[i]], c = heights[third[i]];
+        if constexpr (kHeld) {
+            const double wasA = a, wasB = b, wasC = c;
+            a = leaning(wasA, undersides[first[i]], wasB, wasC);
+            b = leaning(wasB, undersides[second[i]], wasC, wasA);
+            c = leaning(wasC, undersides[third[i]], wasA, wasB);
+        }
+        const double d1 = b - a, d2 = c - a;
+        const double steepness = squared[i] * d1 * d1 + (mixed[i] * d1 + squaredAcross[i] * d2) * d2;
+        const double push = kPush - 2 * kPush / (steepness + 1);
+        sliding[i] = steepness > (kBand ? rest[i] : kRest) ? push : 0.0;
+    }
+}
+
+template <bool kHeld>
+void flow(std::size_t count, const double* __restrict heights, const double* __restrict undersides,
+          const std::int32_t* __restrict from, const std::int32_t* __restrict to, const std::int32_t* __restrict left,
+          const std::int32_t* __restrict right, const double* __restrict leftWeights,
+          const double* __restrict rightWeights, const double* __restrict sliding, double* __restrict fluxes) {
+    for (std::size_t i = 0; i < count; ++i) {
+        const double share = leftWeights[i] * sliding[left[i]] + rightWeights[i] * sliding[right[i]];
+        const double one = heights[from[i]], other = heights[to[i]];
+        double flux = std::trunc((share > 0 ? share : 0.0) * (one - other));
+        if constexpr (kHeld) {
+            const double most = std::max(leftWeights[i], 0.0) + std::max(rightWeights[i], 0.0);
+            const double overOne = undersides[from[i]], overOther = undersides[to[i]];
+            const double above = (one > other ? overOther : overOne) - (one > other ? other : one);
+            const double room = std::trunc(most * std::max(above, 0.0));
+            flux = std::max(std::min(flux, room), -room);
+        }
+        fluxes[i] = flux;
+    }
+}
+
+/// A height is a quotient, rounded once.
+std::uint64_t settleUp(std::size_t count, const double* __restrict inflow, const double* __restrict stars,
+                       const std::uint64_t* __restrict unwatched, double* __restrict volumes,
+                       double* __restrict heights, std::uint64_t& spread) {
+    std::uint64_t moved = 0, beyond = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto bits = std::bit_cast<std::uint64_t>(inflow[i] + 0.0);  // minus zero is none either
+        moved |= bits;
+        beyond |= bits & unwatched[i];
+        volumes[i] += inflow[i];
+        heights[i] = volumes[i] / stars[i];
+    }
+    spread = beyond;
+    return moved;
+}
+
+}  // namespace
+
+void sweepFluxes(const SweepFluxes& s) {
+    const auto slideAs = [&s](const auto& law) {
+        law(s.facets, s.heights, s.undersides, s.first, s.second, s.third, s.squared, s.mixed, s.squaredAcross, s.rest,
+            s.sliding);
+    };
+    if (s.undersides != nullptr) {
+        s.rest != nullptr ? slideAs(slide<true, true>) : slideAs(slide<true, false>);
+        flow<true>(s.edges, s.heights, s.undersides, s.from, s.to, s.left, s.right, s.leftWeights, s.rightWeights,
+                   s.sliding, s.fluxes);
+    } else {
+        s.rest != nullptr ? slideAs(slide<false, true>) : slideAs(slide<false, false>);
+        flow<false>(s.edges, s.heights, s.undersides, s.from, s.to, s.left, s.right, s.leftWeights, s.rightWeights,
+                    s.sliding, s.fluxes);
+    }
+}
+
+SweepResult moveSand(const SweepSand& sand) {
+    std::fill(sand.inflow, sand.inflow + sand.vertices, 0.0);
+    for (std::size_t i = 0; i < sand.edges; ++i) {
+        const double flux = sand.fluxes[i];
+        sand.inflow[sand.from[i]] -= flux;
+        sand.inflow[sand.to[i]] += flux;
+    }
+    std::uint64_t spread = 0;
+    const std::uint64_t moved =
+        settleUp(sand.vertices, sand.inflow, sand.stars, sand.unwatched, sand.volumes, sand.heights, spread);
+    return {moved != 0, spread != 0};
+}
+
+}  // namespace sand::tin::SANDWALL_CODE_PATH

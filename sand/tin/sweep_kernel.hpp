@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace sand::tin {
+
+// A triangle slides by c = kPush (s − 1)/(s + 1), s = m²/g²: near g as 1 − g/m does, without its root. Sweeps descend
+// the energy whose derivative is m c, and a descent neither overshoots nor swings while step times curvature is at most
+// 2: Σ k ≤ star allows 1, and m c bends by at most 1.25 kPush. With 1 − g²/m² and 0.9, of curvature 1.8, sand swings.
+inline constexpr double kPush = 0.8;
+// Sand stays where its slope is steeper than g by less than a part in 2048: it would creep there for many thousand
+// sweeps, at heights that nobody tells apart. A grid's rest slopes are off by three times as much.
+inline constexpr double kRest = 1 + 1.0 / 1024;
+
+/// One sweep over facets and edges (weights.hpp), each kind of number in an array of its own; corners, ends and facets
+/// by their place in these arrays. Nothing overlaps.
+struct SweepFluxes {
+    std::size_t facets, edges;
+    const double* heights;                          // by vertex [unit]
+    const double* undersides;                       // by vertex [unit], where an obstacle holds; null without one
+    const std::int32_t *first, *second, *third;     // by facet: its corners
+    const double *squared, *mixed, *squaredAcross;  // by facet: Facet's first, mixed, second
+    const double* rest;                             // by facet: the steepness at which it rests; null: kRest
+    double* sliding;                                // by facet: how strongly it slides, 0 to 1; written
+    const std::int32_t *from, *to, *left, *right;   // by edge: ends and facets
+    const double *leftWeights, *rightWeights;       // by edge [probe unit²]
+    double* fluxes;                                 // by edge: volume from `from` to `to`, whole; written
+};
+
+/// What the fluxes make of the sand: volumes, whole numbers below 2^53 as all their sums are, and heights.
+struct SweepSand {
+    std::size_t vertices, edges;
+    const std::int32_t *from, *to;   // by edge
+    const double* fluxes;            // by edge
+    const double* stars;             // by vertex [probe unit²]
+    const std::uint64_t* unwatched;  // by vertex: all bits, or none
+    double* inflow;                  // by vertex; written
+    double* volumes;                 // by vertex
+    double* heights;                 // by vertex [unit]
+};
+
+struct SweepResult {
+    bool moved = false;   // some volume changed
+    bool spread = false;  // that of one that is not watched did
+};
+
+// One source, compiled twice (sand/tin/CMakeLists.txt): the same numbers, bit for bit.
+namespace baseline {
+void sweepFluxes(const SweepFluxes& sweep);
+SweepResult moveSand(const SweepSand& sand);
+}  // namespace baseline
+namespace v3 {
+void sweepFluxes(const SweepFluxes& sweep);
+SweepResult moveSand(const SweepSand& sand);
+}  // namespace v3
+
+}  // namespace sand::tin

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "sand/tin/erosion.hpp"
+#include "tests/support/tin_piles.hpp"
+
+namespace {
+
+using namespace tin_piles;
+using sand::tin::Facet;
+using sand::tin::MovingSand;
+
+constexpr std::int32_t kTalus = 65536;  // [unit per cell], 45 degrees
+
+/// All of a layer, by its own numbers.
+MovingSand everythingOf(const Layer& layer, bool obstacle, MovingSand sand) {
+    const sand::tin::Triangles& mesh = layer.triangles();
+    const sand::tin::Slopes slopes = sand::tin::slopesOf(kTalus, kTalus * 5 / 4);
+    sand::tin::Weights weights;
+    for (std::size_t i = 0; i < mesh.places.size(); ++i) {
+        const bool under = obstacle && mesh.places[i].x < 8 * kCell;
+        sand.addVertex(layer.volumes()[i], layer.stars()[i], under ? 2 * kTalus : MovingSand::kFree);
+    }
+    const auto slots = static_cast<std::int32_t>(mesh.triangles.size());
+    for (std::int32_t slot = 0; slot < slots; ++slot) {
+        sand.addFacet(facetOf(mesh, slot, slopes));
+    }
+    for (std::int32_t slot = 0; slot < slots; ++slot) {
+        for (int corner = 0; corner < 3; ++corner) {
+            const sand::tin::Side side = owner(mesh, {slot, corner});
+            if (side.triangle == slot && side.corner == corner) {
+                sand.addEdge(weights.edge(mesh, layer.stars(), side));
+            }
+        }
+    }
+    return sand;
+}
+
+std::vector<std::int64_t> volumesOf(const MovingSand& sand) {
+    std::vector<std::int64_t> volumes(sand.vertexCount());
+    for (std::size_t i = 0; i < volumes.size(); ++i) {
+        volumes[i] = sand.volume(i);
+    }
+    return volumes;
+}
+
+TEST(MovingSand, DoublesAndIntegersAndEveryCodePathMoveTheSameSand) {
+    Layer layer = layerOf(Kind::random, 16);
+    fill(layer, [](double x, double y) { return std::hypot(x - 8, y - 8) < 5 ? 12.0 : 0.0; });
+    for (const bool held : {false, true}) {
+        for (const bool band : {false, true}) {
+            MovingSand doubles = everythingOf(layer, held, MovingSand(false));
+            MovingSand integers = everythingOf(layer, held, MovingSand(false, true));
+            MovingSand fast = everythingOf(layer, held, MovingSand(sand::machineHasV3()));
+            for (int sweep = 0; sweep < 200; ++sweep) {
+                const bool moved = doubles.sweep(held, band).moved;
+                ASSERT_EQ(integers.sweep(held, band).moved, moved);
+                ASSERT_EQ(fast.sweep(held, band).moved, moved);
+                ASSERT_EQ(volumesOf(integers), volumesOf(doubles)) << held << band << ", sweep " << sweep;
+                ASSERT_EQ(volumesOf(fast), volumesOf(doubles)) << held << band << ", sweep " << sweep;
+            }
+            EXPECT_NE(volumesOf(doubles), layer.volumes()) << "nothing moved";
+        }
+    }
+}
+
+TEST(MovingSand, CountsInIntegersWhatDoublesWouldRound) {
+    MovingSand sand;
+    const std::int64_t star = std::int64_t{1} << 34, volume = (star << 20) + 1;  // an odd number beyond 2^53
+    for (const std::int64_t each : {std::int64_t{0}, volume, std::int64_t{7}}) {
+        sand.addVertex(each, star);
+    }
+    sand.addFacet({.corner = {0, 1, 2}, .first = 1, .mixed = 0, .second = 1});
+    sand.addEdge({.from = 0, .to = 1, .leftFacet = 0, .rightFacet = 0, .left = 0.1 * static_cast<double>(star)});
+    EXPECT_TRUE(sand.sweep(false, false).moved);
+    EXPECT_NE(sand.volume(1), volume);
+    EXPECT_EQ(sand.volume(0) + sand.volume(1) + sand.volume(2), volume + 7);
+}
+
+}  // namespace
