@@ -123,6 +123,10 @@ measure() {
     curve rest --sizes 512 --runs 10 -- --sizes 512 --runs 1
     curve rest-moving --sizes 256,512 --runs 10 -- --sizes 256 --runs 1
     detail_curve
+    curve tin-piles --sizes 32,64,128,256 -- --sizes 32,64
+    curve tin-simplify --sizes 256,1024 --runs 10 -- --sizes 256,1024 --runs 1
+    curve tin-imprint --sizes 512 --runs 10 -- --sizes 512 --runs 2
+    curve tin-active --sizes 500 --runs 10 -- --sizes 500 --runs 3
     rm -f "$out/progress.txt"
 }
 

@@ -346,3 +346,44 @@ def force_rate(table):
     sizes_on(axes[1], [1, 2, 5, 10])
     legend_below(figure, axes, 2)
     return figure
+
+
+def tin_piles(table):
+    figure, axes = panels(2)
+    names = {"low": PILES["low"], "tall": "tall pile, H/R = 3"}
+    for mesh, colour, marker in zip(table.distinct("mesh"), SERIES, MARKERS):
+        for pile, line in (("low", "-"), ("tall", "--")):
+            sizes = table.distinct("N", mesh=mesh, pile=pile)
+            turns = [table.where(mesh=mesh, pile=pile, N=size) for size in sizes]
+            errors = [[100 * row["error"] for row in rows] for rows in turns]
+            for axis, x in zip(axes, ("vertices", "seconds")):
+                middle = [sum(row[x] for row in rows) / len(rows) for rows in turns]
+                axis.plot(middle, [sum(some) / len(some) for some in errors], color=colour, marker=marker,
+                          linestyle=line, label=f"{mesh} mesh, {names[pile]}")
+                axis.fill_between(middle, [min(some) for some in errors], [max(some) for some in errors], color=colour,
+                                  alpha=0.2, linewidth=0)
+    label(axes[0], "vertices", "sand in the wrong place at rest [%]", "by the mesh; shaded: turned by 0 … 45°")
+    label(axes[1], "time to rest [s], one thread", "sand in the wrong place at rest [%]", "by the time")
+    for axis in axes:
+        percents(axis)
+    legend_below(figure, axes, 3)
+    return figure
+
+
+def tin_simplify(table):
+    figure, axes = panels(3)
+    for size, colour, marker in zip(table.distinct("columns"), SERIES, MARKERS):
+        rows = table.where(columns=size)
+        for axis, error, name in ((axes[0], "max", "largest error"), (axes[1], "rms", "RMS error")):
+            for prefix, vertices, line, what in (("", "vertices", "-", "TIN"), ("grid_", "grid_vertices", "--", "grid")):
+                axis.plot([row[vertices] for row in rows], [100 * row[prefix + error] / row["relief"] for row in rows],
+                          color=colour, marker=marker, linestyle=line, label=f"{what} of {size}² samples")
+            label(axis, "vertices", f"{name} [% of the relief]", name)
+        for error, line in (("max", "-"), ("rms", ":")):
+            axes[2].plot([row["ms_median"] for row in rows], [100 * row[error] / row["relief"] for row in rows],
+                         color=colour, marker=marker, linestyle=line, label=f"TIN of {size}², {error}")
+    label(axes[2], "time [ms], one thread", "error [% of the relief]", "by the time it takes")
+    for axis in axes:
+        percents(axis)
+        axis.legend()
+    return figure

@@ -81,8 +81,11 @@ void Imprint::takeOutOf(Mesh& mesh) {
     const auto isOurs = [&](Vertex vertex) {
         return std::any_of(points.begin(), points.end(), [&](const Point& point) { return point.vertex == vertex; });
     };
+    // Edges go with their ends, where those are ours; what a state from outside says of vertices that never were is
+    // nothing either.
+    const Triangles& there = mesh.triangles();
     for (const auto& [a, b] : edges) {
-        if (!isOurs(a) && !isOurs(b)) {  // the others go with their ends
+        if (!isOurs(a) && !isOurs(b) && there.alive(a) && there.alive(b)) {
             mesh.release(a, b);
         }
     }

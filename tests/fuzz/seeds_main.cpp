@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes the corpora of what is no text, as the programs of today write it: FOLDER/wire, journal, checkpoint, state,
-// head, wall.
+// tin, head, wall.
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -10,7 +11,9 @@
 #include "master/checkpoint.hpp"
 #include "master/journal.hpp"
 #include "sand/terrain.hpp"
+#include "sand/tin/tin_surface.hpp"
 #include "tests/support/sand_samples.hpp"
+#include "tin_scene.hpp"
 #include "tracking/dtrack.hpp"
 #include "tracking/opentrack.hpp"
 #include "walls/wall.hpp"
@@ -141,6 +144,28 @@ void writeState(Folder folder) {
     folder.add(terrain.copySand()->encode(), {3});
 }
 
+void writeTin(Folder folder) {
+    const sand::Scene scene = fuzz::tinScene();
+    sand::tin::TinSurface surface(scene);
+    const sand::HeldTool tool{scene.rules.toolShape(), {}};
+    const auto add = [&] {
+        folder.add(surface.copy()->encode(), {1});
+        files::ByteWriter plain;
+        dynamic_cast<const sand::tin::LayerCopy&>(*surface.copy()).state().encode(plain);
+        surface.layer().encode(plain);
+        folder.add(plain.take(), {0});
+    };
+    add();
+    surface.drag(tool, std::array{sand::ProbePoint{1000, 1000, 200}, sand::ProbePoint{2000, 1500, 100}});
+    add();  // with an imprint
+    surface.leave(tool);
+    surface.sweep(8, nullptr, {});
+    add();
+    files::ByteWriter start;
+    scene.tin->encode(start);
+    folder.add(start.take(), {2});
+}
+
 void writeHead(Folder folder) {
     const tracking::Pose pose{{0.1, 1.7, 2}, {1, 0, 0}};
     folder.add(piece(tracking::opentrackPacket(pose)), {0});
@@ -164,6 +189,7 @@ int main(int count, char** words) {
     writeJournal({folder, "journal"}, folder / "scratch.journal");
     writeCheckpoints({folder, "checkpoint"});
     writeState({folder, "state"});
+    writeTin({folder, "tin"});
     writeHead({folder, "head"});
     Folder walls(folder, "wall");
     for (const auto& file : fs::directory_iterator(SANDWALL_SOURCE_DIR "/walls/configs")) {

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "files/input_error.hpp"
+#include "sand/relax/tin_sand.hpp"
+
+namespace sand::relax {
+namespace {
+
+constexpr double kMostOblongCell = 1000;      // longer over shorter side
+constexpr double kLatticeSide = 524288;       // [lattice step], 2^19: what a field's side comes near to
+constexpr double kMostLatticeSide = 4194304;  // 2^22: what a mesh takes
+constexpr std::int32_t kLeastSpacing = 4, kMostSpacing = 4096;
+
+/// Lattice steps on a cell's sides: a power of two on the shorter one.
+tin::Place spacingOf(const EsriGrid& raster) {
+    const double ratio = std::max(raster.aspect(), 1 / raster.aspect());
+    if (!(ratio <= kMostOblongCell)) {
+        throw files::InputError(fmt::format("{}: cells of {} x {} are too oblong; sides must be within 1 : {}",
+                                            raster.file, raster.cellSize, raster.cellDepth.value_or(raster.cellSize),
+                                            kMostOblongCell));
+    }
+    const bool wide = raster.aspect() < 1;
+    const double longest = std::max(raster.columns * (wide ? ratio : 1.0), raster.rows * (wide ? 1.0 : ratio));
+    std::int32_t shorter = kMostSpacing;
+    while (shorter > kLeastSpacing && shorter * longest > kLatticeSide) {
+        shorter /= 2;
+    }
+    if (shorter * longest > kMostLatticeSide) {
+        throw files::InputError(fmt::format("{}: {} x {} cells are too many for a TIN; make them coarser: gdalwarp -tr",
+                                            raster.file, raster.columns, raster.rows));
+    }
+    const auto longer = static_cast<std::int32_t>(std::floor(shorter * ratio + 0.5));
+    return wide ? tin::Place{longer, shorter} : tin::Place{shorter, longer};
+}
+
+}  // namespace
+
+Thinned thin(const EsriGrid& raster, const tin::SimplifyGoal& goal) {
+    if (std::min(raster.columns, raster.rows) < 2) {
+        throw files::InputError(fmt::format("{}: {} x {} cells with data have no area between their middles",
+                                            raster.file, raster.columns, raster.rows));
+    }
+    const tin::Place spacing = spacingOf(raster);
+    std::vector<double> heights;
+    heights.reserve(raster.heights.size());
+    for (int row = 0; row < raster.rows; ++row) {
+        for (int column = 0; column < raster.columns; ++column) {
+            if (raster.isNoData(column, row)) {
+                raster.fail(column, row,
+                            "no data inside the raster, and a TIN has no walls; fill the gap: gdal_fillnodata.py");
+            }
+            heights.push_back(raster.at(column, row));
+        }
+    }
+    // From middle to middle: beyond, the ground would be a strip without any vertex but the corners, and a cliff.
+    const tin::Raster samples{heights, raster.columns, raster.rows, {0, 0}, spacing};
+    const tin::Simplified chosen =
+        tin::simplify(spacing.x * (raster.columns - 1), spacing.y * (raster.rows - 1), samples, goal);
+    Thinned thinned{{}, raster.cellSize / spacing.x, chosen.maxError, chosen.rmsError};
+    for (std::size_t i = 0; i < chosen.places.size(); ++i) {
+        const double column = chosen.places[i].x / spacing.x + 0.5;
+        const double row = chosen.places[i].y / spacing.y + 0.5;
+        thinned.points.push_back({raster.westEdge + column * raster.cellSize,
+                                  raster.southEdge + row * raster.cellDepth.value_or(raster.cellSize),
+                                  chosen.heights[i]});
+    }
+    return thinned;
+}
+
+}  // namespace sand::relax

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// A TIN as a state, saved sand or a scene holds it: its layer, the imprint of a tool that stands in it, its start. What
+// is taken is said again and must be the same, and sand goes on from there: digging, sliding, thinning out.
+#include <zstd.h>
+
+#include <array>
+
+#include "fuzz_target.hpp"
+#include "sand/tin/tin_surface.hpp"
+#include "tin_scene.hpp"
+
+namespace {
+
+using sand::ProbePoint;
+using sand::tin::TinSurface;
+
+/// The bytes of a state, of which `plain` holds a LayerState and a layer one behind the other.
+files::Bytes packed(fuzz::Input plain) {
+    files::ByteReader reader(plain);
+    const auto state = sand::tin::LayerState::decode(reader);
+    const auto rest = reader.rest();
+    files::ByteWriter writer;
+    state.encode(writer);
+    writer.put(static_cast<std::uint64_t>(rest.size()));
+    files::Bytes layer(ZSTD_compressBound(rest.size()));
+    layer.resize(ZSTD_compress(layer.data(), layer.size(), rest.data(), rest.size(), 1));
+    writer.putBytes(layer);
+    return writer.take();
+}
+
+void require(bool good, const char* what) {
+    if (!good) {
+        throw std::logic_error(what);
+    }
+}
+
+void goOn(TinSurface& surface, const sand::Scene& scene) {
+    const sand::HeldTool tool{scene.rules.toolShape(), {}};
+    const auto outside = surface.outflow();
+    const auto volume = surface.layer().volume();
+    const std::array path{ProbePoint{1500, 1500, 300}, ProbePoint{2600, 1900, 200}};
+    surface.drag(tool, path);
+    surface.sweep(2, &tool, path.back());
+    surface.leave(tool);
+    surface.sweep(4, nullptr, path.back());
+    require(surface.layer().volume() + surface.outflow() == volume + outside, "sand was lost or made");
+    (void)surface.hash();
+}
+
+void takeState(fuzz::Input bytes) {
+    static const sand::Scene kScene = fuzz::tinScene();
+    TinSurface surface(kScene);
+    const auto copy = surface.reader()(bytes);
+    require(surface.reader()(copy->encode())->encode() == copy->encode(), "a state that is said otherwise again");
+    surface.replace(*copy);
+    const std::uint64_t hash = surface.hash();
+    surface.audit(1 << 20);
+    require(surface.hash() == hash, "a hash that is another from memory");
+    goOn(surface, kScene);
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    if (size == 0) {
+        return 0;
+    }
+    const fuzz::Input raw = fuzz::Input(data, size).subspan(1);
+    fuzz::takeOrRefuse([&] {
+        switch (data[0] & 3U) {
+            case 0:
+                takeState(packed(raw));
+                break;
+            case 1:
+                takeState(raw);
+                break;
+            default: {
+                files::ByteReader reader(raw);
+                const auto start = sand::tin::Start::decode(reader);
+                files::ByteWriter writer;
+                start.encode(writer);
+                files::ByteReader again(writer.bytes());
+                require(sand::tin::Start::decode(again).digest() == start.digest(), "a start that is another again");
+                if (start.places.size() < 1000) {
+                    (void)sand::tin::layerOf(start).volume();
+                }
+            }
+        }
+    });
+    return 0;
+}
