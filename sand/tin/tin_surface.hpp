@@ -75,7 +75,7 @@ private:
     LayerState state_;
     Erosion erosion_;
     VertexHash hash_;
-    SurfaceView view_{layer_.triangles(), layer_.heights()};
+    SurfaceView view_{layer_.triangles(), layer_.heights(), detail_.spacing};
     std::shared_ptr<const LayerCopy> kept_;
     SurfaceDamage damage_{.whole = true, .triangles = {}, .vertices = {}};
     std::vector<Vertex> moved_;                 // scratch
