@@ -22,6 +22,9 @@ bool overlap(const std::array<tin::Place, 3>& corner, const std::array<std::int3
         std::max({a.y, b.y, c.y}) < south) {
         return false;
     }
+    if (a.x >= west && a.x <= east && a.y >= south && a.y <= north) {
+        return true;  // as nearly all
+    }
     const std::array<tin::Place, 4> ends{{{west, south}, {east, south}, {east, north}, {west, north}}};
     for (std::size_t k = 0; k < 3; ++k) {
         if (std::ranges::all_of(
@@ -147,13 +150,16 @@ Facets::Facet Facets::facetOf(const tin::SurfaceView& tin, std::int32_t slot, co
 /// leads out of the square has another beside it that does not.
 const Facets::Facet& Facets::find(double x, double y) const {
     std::uint32_t chance = 1;
-    std::int32_t slot = last_;
+    std::int32_t slot = last_, before = -1;
     for (std::size_t steps = 4 * facets_.size();; --steps) {
         const Facet& facet = facets_[at(slot)];
         chance = chance * 1664525U + 1013904223U;
         std::size_t side = (chance >> 16U) % 3;
         std::int32_t next = -1;
         for (int tried = 0; tried < 3 && next < 0; ++tried, side = side == 2 ? 0 : side + 1) {
+            if (facet.beyond[side] < 0 || facet.beyond[side] == before) {
+                continue;  // nobody is there, or the walk came from there
+            }
             const std::size_t a = side == 2 ? 0 : side + 1, b = a == 2 ? 0 : a + 1;
             const double dx = double{facet.x[b]} - facet.x[a], dy = double{facet.y[b]} - facet.y[a];
             const double inside = dx * (y - facet.y[a]) - dy * (x - facet.x[a]);
@@ -165,6 +171,7 @@ const Facets::Facet& Facets::find(double x, double y) const {
             last_ = slot;
             return facet;
         }
+        before = slot;
         slot = next;
     }
 }

@@ -22,7 +22,7 @@ namespace sand::force {
 /// One thread at a time, reading too. Asks for no memory but in take().
 class Facets {
 public:
-    static constexpr std::size_t kMost = 1 << 16;  // 4 MiB
+    static constexpr std::size_t kMost = 4096;  // of more, a query and a copy would take too long
 
     /// All triangles that reach into the square of `reach` [probe unit] around a place; false, and none, when these are
     /// more than kMost. `unit` [scene unit] is a probe unit's.
