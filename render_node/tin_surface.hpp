@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -44,6 +45,13 @@ struct TinChunk {
     Box box;
 };
 
+/// Puts numbers in order, each once.
+template <class Number>
+void sortOnce(std::vector<Number>& numbers) {
+    std::sort(numbers.begin(), numbers.end());
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
+
 /// The drawn surface of a TIN, on the CPU: vertices with their light, triangles by slot, and what of them changes.
 ///
 /// All of it is a function of the TIN that it began with and the TIN now, whatever came between. Not thread-safe.
@@ -75,6 +83,7 @@ public:
 
 private:
     using Vertex = sand::tin::Vertex;
+    static constexpr int kCell = sand::tin::kLatticePerCell;
     struct InChunk {
         int chunk = -1, at = 0;
     };
@@ -89,6 +98,8 @@ private:
     void leaveChunk(std::int32_t slot);
     [[nodiscard]] glm::dvec3 at(Vertex vertex) const;
     [[nodiscard]] Box boxOf(const TinTriangle& triangle) const;
+    /// That of a grid of the same cells, linear between their middles.
+    [[nodiscard]] static std::uint16_t mottlingOf(std::int32_t x, std::int32_t y);
     void addToRelief(const sand::tin::SurfaceView& tin, const TinTriangle& triangle);
     bool lightFrom(const sand::tin::SurfaceView& tin, Vertex vertex);
     bool openTo(const sand::tin::SurfaceView& tin, Vertex vertex);

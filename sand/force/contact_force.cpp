@@ -20,9 +20,11 @@ const std::array<Direction, kRadii * kAngles>& ring() {
     static const auto points = [] {
         std::array<Direction, kRadii * kAngles> result{};
         for (int i = 0; i < kRadii * kAngles; ++i) {
-            const int circle = i / kAngles;
+            // To and fro across the ring: from one to the next is a short way, for whoever walks there.
+            const int ray = i / kRadii, along = i % kRadii;
+            const int circle = ray % 2 == 0 ? along : kRadii - 1 - along;
             const double radius = std::sqrt(1 + 3 * (circle + 0.5) / kRadii);
-            const double angle = 2 * std::numbers::pi * (i % kAngles + static_cast<double>(circle) / kRadii) / kAngles;
+            const double angle = 2 * std::numbers::pi * (ray + static_cast<double>(circle) / kRadii) / kAngles;
             result[static_cast<std::size_t>(i)] = {radius * std::cos(angle), radius * std::sin(angle)};
         }
         return result;

@@ -51,9 +51,10 @@ Gauges measureControlPoints(const ForceConstants& constants, const SurfacePatch&
     for (std::size_t i = 0; i < result.count; ++i) {
         const Vec3 at = place + tool.points[i];
         const Dual underside{at.z, {0, 0, 1}};
+        const Vec3 beside = at + patch.cutBeyond() * outward(tool.points[i]);
         // Just out of touch, so that a surface which replaces this one is not met with a leap.
         result.dials[i] = !patch.empty() && patch.overField(at.x, at.y)
-                              ? inUnits * (resting(patch.tangent(at.x, at.y)) - underside)
+                              ? inUnits * (resting(patch.tangent(beside.x, beside.y)) - underside)
                               : Dual{-constants.tolerance, {}};
     }
     return result;

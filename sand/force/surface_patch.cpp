@@ -6,9 +6,18 @@
 
 namespace sand::force {
 
+namespace {
+
+/// [cell]
+int reachOf(double toolRadius, double cell) {
+    return static_cast<int>(std::ceil(std::max(4 * toolRadius / cell, 8.0)));
+}
+
+}  // namespace
+
 template <class HeightOf>
 void SurfacePatch::sample(int columns, int rows, double cell, ProbePoint centre, double toolRadius, HeightOf heightOf) {
-    const int reach = static_cast<int>(std::ceil(std::max(4 * toolRadius / cell, 8.0)));  // [cell]
+    const int reach = reachOf(toolRadius, cell);
     const int stride = (2 * reach + 1 + kMaxSideNodes - 1) / kMaxSideNodes;
     const int half = reach / stride;
     const auto firstCell = [&](std::int32_t coordinate, int cells) {
@@ -19,6 +28,7 @@ void SurfacePatch::sample(int columns, int rows, double cell, ProbePoint centre,
     const int y0 = firstCell(centre.y, rows);
     columns_ = rows_ = 2 * half + 1;
     spacing_ = stride * cell;
+    cutBeyond_ = 0;
     west_ = (x0 + 0.5) * cell;
     south_ = (y0 + 0.5) * cell;
     fieldWidth_ = columns * cell;
@@ -39,21 +49,37 @@ SurfacePatch::SurfacePatch(const HeightField& field, ProbePoint centre, double t
            [&](int column, int row) { return field.height(column, row); });
 }
 
-SurfacePatch::SurfacePatch(const Terrain& terrain) {
-    if (terrain.tinView() == nullptr) {
-        const HeightField& field = terrain.field();
-        sample(field.columns(), field.rows(), field.cellSize(), terrain.probe(), terrain.toolRadius(),
-               [&](int column, int row) { return field.height(column, row); });
-        return;
-    }
-    const Rules& rules = terrain.rules();
-    sample(rules.columns, rules.rows, terrain.cellSize(), terrain.probe(), terrain.toolRadius(),
-           [&](int column, int row) {
-               return terrain.surface().height((column + 0.5) * kProbePerCell, (row + 0.5) * kProbePerCell);
-           });
+SurfacePatch::SurfacePatch(const tin::SurfaceView& tin, double cellSize, ProbePoint centre, double toolRadius) {
+    takeFacets(tin, cellSize, centre, toolRadius);
 }
 
-Dual SurfacePatch::tangent(double x, double y) const {
+bool SurfacePatch::takeFacets(const tin::SurfaceView& tin, double cellSize, ProbePoint centre, double toolRadius) {
+    const double probe = cellSize / kProbePerCell;  // [scene unit]
+    if (!facets_.take(tin, centre, reachOf(toolRadius, cellSize) * kProbePerCell, probe)) {
+        return false;
+    }
+    columns_ = rows_ = 0;
+    cutBeyond_ = 0.5 * tin.spacing * probe;
+    fieldWidth_ = tin.triangles.width * probe;
+    fieldHeight_ = tin.triangles.depth * probe;
+    return true;
+}
+
+void SurfacePatch::take(const Terrain& terrain) {
+    const double cell = terrain.cellSize(), radius = terrain.toolRadius();
+    if (terrain.tinView() == nullptr) {
+        const HeightField& field = terrain.field();
+        sample(field.columns(), field.rows(), cell, terrain.probe(), radius,
+               [&](int column, int row) { return field.height(column, row); });
+    } else if (!takeFacets(*terrain.tinView(), cell, terrain.probe(), radius)) {
+        const Rules& rules = terrain.rules();
+        sample(rules.columns, rules.rows, cell, terrain.probe(), radius, [&](int column, int row) {
+            return terrain.surface().height((column + 0.5) * kProbePerCell, (row + 0.5) * kProbePerCell);
+        });
+    }
+}
+
+Dual SurfacePatch::sampledTangent(double x, double y) const {
     const double freeColumn = (x - west_) / spacing_, freeRow = (y - south_) / spacing_;
     const double column = std::clamp(freeColumn, 0.0, columns_ - 1.0);
     const double row = std::clamp(freeRow, 0.0, rows_ - 1.0);

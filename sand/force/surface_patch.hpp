@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "sand/force/dual.hpp"
+#include "sand/force/facets.hpp"
 #include "sand/height_field.hpp"
 #include "sand/step.hpp"
 #include "sand/terrain.hpp"
@@ -14,35 +15,53 @@ namespace sand::force {
 /// A copy of the sand around the tool, small enough to be handed to a force thread after every step.
 ///
 /// It reaches four tool radii and at least eight cells from its centre, so that the hand may go on for a step; a
-/// large tool's patch takes every second or third cell. A TIN is sampled at its nominal cells' middles. Heights are
-/// [scene unit], positions [scene unit] from the field's south-west corner.
+/// large tool's patch takes every second or third cell. Of a TIN it takes the triangles (Facets), or, where these are
+/// more than Facets::kMost, its height at the nominal cells' middles. Heights are [scene unit], positions [scene unit]
+/// from the field's south-west corner. One thread at a time, reading too.
 class SurfacePatch {
 public:
     static constexpr int kMaxSideNodes = 96;
 
     SurfacePatch() = default;
     SurfacePatch(const HeightField& field, ProbePoint centre, double toolRadius /* [scene unit] */);
+    /// The triangles of a TIN of such nominal cells; empty where these are too many.
+    SurfacePatch(const tin::SurfaceView& tin, double cellSize, ProbePoint centre, double toolRadius);
     /// Around the tool.
-    explicit SurfacePatch(const Terrain& terrain);
+    explicit SurfacePatch(const Terrain& terrain) { take(terrain); }
+    /// The same in place of what it was: in the memory that it has.
+    void take(const Terrain& terrain);
 
     /// Whether (x, y) lies over the field.
     [[nodiscard]] bool overField(double x, double y) const {
         return x >= 0 && y >= 0 && x <= fieldWidth_ && y <= fieldHeight_;
     }
-    /// Bilinear between the centres of cells; beyond the patch, its nearest node.
+    /// Linear over a TIN's triangles, bilinear between the centres of cells; beyond the patch, its nearest place.
     [[nodiscard]] double height(double x, double y) const { return tangent(x, y).value; }
     /// The same with its gradient, which is 0 across an edge of the patch.
-    [[nodiscard]] Dual tangent(double x, double y) const;
-    [[nodiscard]] bool empty() const { return columns_ == 0; }
+    [[nodiscard]] Dual tangent(double x, double y) const {
+        return facets_.empty() ? sampledTangent(x, y) : facets_.tangent(x, y);
+    }
+    [[nodiscard]] bool empty() const { return columns_ == 0 && facets_.empty(); }
+    /// Where the sand stands that a tool with an upright side has cut [scene unit]: so far outside of its outline. On
+    /// cells the outline lies anywhere in the cut, which is a cell thick, in its middle on the average. On a TIN it is
+    /// the foot, and the cut is as thick as points lie apart.
+    [[nodiscard]] double cutBeyond() const { return cutBeyond_; }
+    /// The triangles of a TIN; none where heights are sampled.
+    [[nodiscard]] const Facets& facets() const { return facets_; }
 
 private:
     /// Of a field of so many cells of this size; `heightOf(column, row)` is [unit].
     template <class HeightOf>
     void sample(int columns, int rows, double cell, ProbePoint centre, double toolRadius, HeightOf heightOf);
 
+    bool takeFacets(const tin::SurfaceView& tin, double cellSize, ProbePoint centre, double toolRadius);
+    [[nodiscard]] Dual sampledTangent(double x, double y) const;
+
+    Facets facets_;
     int columns_ = 0, rows_ = 0;
     double west_ = 0, south_ = 0;  // of node (0,0)
     double spacing_ = 1;
+    double cutBeyond_ = 0;
     double fieldWidth_ = -1, fieldHeight_ = -1;
     std::array<float, kMaxSideNodes * kMaxSideNodes> heights_;
 };

@@ -11,6 +11,7 @@ namespace sand::tin {
 struct SurfaceView {
     const Triangles& triangles;
     const std::vector<double>& heights;  // by vertex [unit = cell size / 2^16]; anything where no vertex lives
+    std::int32_t spacing = kLatticePerCell;  // [probe unit], between the points that a tool puts into the sand
 };
 
 /// What differs from when it was asked for last.

@@ -78,7 +78,7 @@ private:
     Coarsening coarsening_;
     Erosion erosion_;
     VertexHash hash_;
-    SurfaceView view_{layer_.triangles(), layer_.heights()};
+    SurfaceView view_{layer_.triangles(), layer_.heights(), detail_.spacing};
     std::shared_ptr<const LayerCopy> kept_;
     SurfaceDamage damage_{.whole = true, .triangles = {}, .vertices = {}};
     std::optional<Imprint::Stand> held_;        // the obstacle of the last sweeps: only to save work

@@ -6,6 +6,7 @@
 #include <new>
 
 #include "tests/force/force_samples.hpp"
+#include "tests/sand/tin/tool_fixture.hpp"
 
 namespace {
 thread_local int asked = 0;
@@ -28,6 +29,10 @@ using namespace samples;
 
 TEST(ForceModel, AsksForNoMemory) {
     const SurfacePatch rough = roughPatch(1), level = levelPatch();
+    const sand::tin::Layer layer = tin_samples::levelLayer(kSide, kSide, 4 * sand::kProbePerCell);
+    const SurfacePatch tin({layer.triangles(), layer.heights()}, kCell, probeAt({kMiddle, kMiddle, 0}), kRadius);
+    ASSERT_FALSE(tin.facets().empty());
+    const std::array surfaces{&rough, &level, &tin};
     const Contour tool = Contour::sphere(kRadius);
     for (const auto law : {sand::ForceLaw::repulse, sand::ForceLaw::controlPoints}) {
         for (const auto between : {sand::Between::local, sand::Between::hold, sand::Between::interpolate}) {
@@ -40,7 +45,7 @@ TEST(ForceModel, AsksForNoMemory) {
             for (int tick = 0; tick < 100; ++tick) {
                 const int step = tick / 16;
                 sum += model
-                           .at(step % 2 == 0 ? rough : level, static_cast<std::uint64_t>(step), tool,
+                           .at(*surfaces[static_cast<std::size_t>(step % 3)], static_cast<std::uint64_t>(step), tool,
                                placeAt(kRadius, kRadius * tick / 20), tick * kTick)
                            .push.z;
             }

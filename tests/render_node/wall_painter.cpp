@@ -48,17 +48,33 @@ walls::Wall reduced(walls::Wall wall, int by) {
     return wall;
 }
 
+walls::Wall smallWall(const walls::Wall& full, int mostPixels) {
+    const walls::Canvas canvas = walls::wallCanvas(full);
+    const auto divides = [&](int by) {
+        return std::all_of(full.tiles.begin(), full.tiles.end(),
+                           [by](const walls::Tile& t) { return t.pixels.x % by == 0 && t.pixels.y % by == 0; });
+    };
+    int by = 1;
+    while (canvas.width / by * (canvas.height / by) > mostPixels || !divides(by)) {
+        ++by;
+    }
+    return reduced(full, by);
+}
+
 Image pictureOf(const render_node::EyeTarget& target) {
     Image image(target.width(), target.height());
     image.rgb = target.read();
     return image;
 }
 
+glm::dmat4 sceneToRoom(const walls::Wall& wall, const sand::Scene& scene) {
+    const double cell = scene.terrain.cellSize();
+    return walls::stageToRoom(wall.stage, scene.rules.columns * cell, scene.rules.rows * cell,
+                              static_cast<double>(scene.referenceHeight()) * cell / sand::kUnitsPerCell);
+}
+
 render_node::SandView makeView(const DugScene& dug, const walls::Wall& wall) {
-    const sand::HeightField& field = dug.scene.terrain;
-    render_node::SandView view(
-        dug.scene, walls::stageToRoom(wall.stage, field.columns() * field.cellSize(), field.rows() * field.cellSize(),
-                                      static_cast<double>(dug.scene.referenceHeight()) * field.unit()));
+    render_node::SandView view(dug.scene, sceneToRoom(wall, dug.scene));
     view.update(dug.terrain.field(), dug.terrain.field().bounds());
     view.setTool(dug.terrain.probe(), true);
     return view;
@@ -108,6 +124,14 @@ Image wallOfOutputs(const walls::Wall& wall, const std::vector<std::vector<Image
         }
     }
     return whole;
+}
+
+Image wallPicture(render_node::SandView& sand, const walls::Wall& wall) {
+    std::vector<std::vector<Image>> outputs;
+    for (const walls::Tile& tile : wall.tiles) {
+        outputs.push_back(outputsOf(sand, wall, tile));
+    }
+    return wallOfOutputs(wall, outputs);
 }
 
 Image patternOfWall(const walls::Wall& wall, lockstep::Pattern pattern, walls::Eye eye, std::uint64_t frame) {

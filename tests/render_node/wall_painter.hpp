@@ -44,6 +44,9 @@ inline std::filesystem::path wallFolder() { return std::filesystem::path(SANDWAL
 /// The same display with each side of a tile `by` times shorter in pixels, at least one.
 [[nodiscard]] walls::Wall reduced(walls::Wall wall, int by);
 
+/// The same display with as many pixels as divide those of every tile, and at most so many from end to end.
+[[nodiscard]] walls::Wall smallWall(const walls::Wall& full, int mostPixels);
+
 [[nodiscard]] Image pictureOf(const render_node::EyeTarget& target);
 
 /// Draws the sand as seen through one screen. `sand` must have the wall's stage (makeView). `depth` takes GL's depths,
@@ -51,6 +54,8 @@ inline std::filesystem::path wallFolder() { return std::filesystem::path(SANDWAL
 [[nodiscard]] Image drawThrough(render_node::SandView& sand, const walls::Wall& wall, const walls::Screen& screen,
                                 glm::ivec2 pixels, walls::Eye eye, std::vector<float>* depth = nullptr);
 [[nodiscard]] render_node::SandView makeView(const DugScene& dug, const walls::Wall& wall);
+/// Where the wall has the sand stand.
+[[nodiscard]] glm::dmat4 sceneToRoom(const walls::Wall& wall, const sand::Scene& scene);
 
 /// What the outputs of a tile show, in their order; an output that shows the eyes in turn gives the left, then the
 /// right.
@@ -60,6 +65,9 @@ inline std::filesystem::path wallFolder() { return std::filesystem::path(SANDWAL
 /// One picture of all that the wall's outputs show, bezels black: first outputs as they stand on the wall, second
 /// ones, or second eyes, below.
 [[nodiscard]] Image wallOfOutputs(const walls::Wall& wall, const std::vector<std::vector<Image>>& outputsByTile);
+
+/// All that the wall shows of the sand.
+[[nodiscard]] Image wallPicture(render_node::SandView& sand, const walls::Wall& wall);
 
 /// Every tile's pattern for one eye, put together.
 [[nodiscard]] Image patternOfWall(const walls::Wall& wall, lockstep::Pattern pattern, walls::Eye eye,

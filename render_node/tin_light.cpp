@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// The light on a TIN: normals, mottling, and how much sky its vertices see.
+#include <algorithm>
+
+#include "render_node/grain_texture.hpp"
+#include "render_node/open_sky.hpp"
+#include "render_node/tin_star.hpp"
+#include "render_node/tin_surface.hpp"
+#include "sand/height_field.hpp"
+
+namespace render_node {
+namespace {
+
+using sand::tin::Place;
+using sand::tin::SurfaceView;
+using sand::tin::Triangles;
+using sand::tin::Vertex;
+
+// Height units in a probe unit: normals are computed in these.
+constexpr double kUnitsPerProbe = double{sand::kUnitsPerCell} / sand::kProbePerCell;
+// How far a place looks, and the cell beyond that its last look is between [cell].
+constexpr int kLightReach = kSkyDistances.back() + 2;
+
+/// The mean normal of the triangles around a vertex by their areas, not of length 1 [unit²].
+glm::dvec3 normalAt(const SurfaceView& tin, Vertex vertex) {
+    const Triangles& mesh = tin.triangles;
+    const auto at = [&](Vertex corner) {
+        const Place& place = mesh.places[static_cast<std::size_t>(corner)];
+        return glm::dvec3(kUnitsPerProbe * place.x, kUnitsPerProbe * place.y,
+                          tin.heights[static_cast<std::size_t>(corner)]);
+    };
+    struct Pair {
+        Vertex first, second;
+    };
+    std::vector<Pair> around;
+    visitStar(mesh, vertex, [&](const StarTriangle& one) {
+        const auto& corner = mesh.triangles[static_cast<std::size_t>(one.slot)].corner;
+        around.push_back({corner[(one.corner + 1) % 3], corner[(one.corner + 2) % 3]});
+    });
+    // A sum of floats depends on where it begins: from the smallest neighbour on, around a vertex within the field.
+    if (around.front().first == around.back().second) {
+        std::ranges::rotate(around, std::ranges::min_element(around, {}, &Pair::first));
+    }
+    const glm::dvec3 here = at(vertex);
+    glm::dvec3 sum(0);
+    for (const Pair& pair : around) {
+        sum += glm::cross(at(pair.first) - here, at(pair.second) - here);
+    }
+    return sum;
+}
+
+}  // namespace
+
+std::uint16_t TinSurface::mottlingOf(std::int32_t x, std::int32_t y) {
+    const int fromX = std::max(0, x - kCell / 2), fromY = std::max(0, y - kCell / 2);
+    const int column = fromX / kCell, row = fromY / kCell, alongX = fromX % kCell, alongY = fromY % kCell;
+    const auto between = [&](int at) {
+        return mottlingAt(column, at) * (kCell - alongX) + mottlingAt(column + 1, at) * alongX;
+    };
+    const int sum = between(row) * (kCell - alongY) + between(row + 1) * alongY;  // of kCell² · 255
+    return static_cast<std::uint16_t>(static_cast<double>(sum) * 257 / (double{kCell} * kCell));
+}
+
+/// The vertices whose light is another since these triangles are; triangles around them are damaged.
+std::vector<Vertex> TinSurface::relight(const SurfaceView& tin, const std::vector<std::int32_t>& reshaped) {
+    std::vector<Vertex> corners;
+    for (const std::int32_t slot : reshaped) {
+        if (triangle(slot).alive()) {
+            addToRelief(tin, triangle(slot));
+            chunks_[static_cast<std::size_t>(inChunk_[static_cast<std::size_t>(slot)].chunk)].reshaped = true;
+            corners.insert(corners.end(), triangle(slot).corner.begin(), triangle(slot).corner.end());
+        }
+    }
+    sortOnce(corners);
+    std::vector<Vertex> others;
+    for (const Vertex number : corners) {
+        const bool otherNormal = lightFrom(tin, number);
+        const bool otherSky = openTo(tin, number);
+        if (otherNormal || otherSky) {
+            others.push_back(number);
+        }
+    }
+    for (const Vertex number : verticesAround(relief_.takeChanged())) {
+        if (openTo(tin, number)) {
+            others.push_back(number);
+        }
+    }
+    for (const Vertex number : others) {
+        visitStar(tin.triangles, number, [&](const StarTriangle& one) { damaged_.add(boxOf(triangle(one.slot))); });
+    }
+    return others;
+}
+
+void TinSurface::addToRelief(const SurfaceView& tin, const TinTriangle& triangle) {
+    if (triangle.alive()) {
+        const auto corner = [&](std::size_t i) {
+            const auto number = static_cast<std::size_t>(triangle.corner[i]);
+            return ReliefCorner{tin.triangles.places[number], tin.heights[number]};
+        };
+        relief_.put({corner(0), corner(1), corner(2)});
+    }
+}
+
+bool TinSurface::lightFrom(const SurfaceView& tin, Vertex number) {
+    const glm::dvec3 normal = 32767.0 * glm::normalize(normalAt(tin, number));
+    const auto east = static_cast<std::int16_t>(normal.x), north = static_cast<std::int16_t>(normal.y);
+    TinVertex& drawn = vertex(number);
+    const bool other = east != drawn.normalEast || north != drawn.normalNorth;
+    drawn.normalEast = east;
+    drawn.normalNorth = north;
+    return other;
+}
+
+bool TinSurface::openTo(const SurfaceView& tin, Vertex number) {
+    TinVertex& drawn = vertex(number);
+    const auto here = static_cast<float>(tin.heights[static_cast<std::size_t>(number)]);
+    float share = 0;
+    openSky({&share, 1}, static_cast<float>(sand::kUnitsPerCell), [&](std::size_t, int east, int north) {
+        return relief_.at(drawn.x + east * kCell, drawn.y + north * kCell) - here;
+    });
+    const auto open = static_cast<std::uint16_t>(share * 65535);
+    const bool other = open != drawn.open;
+    drawn.open = open;
+    return other;
+}
+
+/// The vertices, each once, that may see these cells of the relief.
+std::vector<Vertex> TinSurface::verticesAround(const std::vector<sand::Rect>& cells) {
+    std::vector<Vertex> found;
+    for (const sand::Rect& rect : cells) {
+        const sand::Rect reach = rect.grownBy(kLightReach);
+        for (TinChunk& chunk : chunks_) {
+            if (chunk.slots.empty()) {
+                continue;
+            }
+            const Box& box = boxOf(chunk);
+            if (box.low.x > reach.x1 * cellSize_ || box.high.x < reach.x0 * cellSize_ ||
+                box.low.y > reach.y1 * cellSize_ || box.high.y < reach.y0 * cellSize_) {
+                continue;
+            }
+            for (const std::int32_t slot : chunk.slots) {
+                for (const Vertex corner : triangle(slot).corner) {
+                    const TinVertex& drawn = vertex(corner);
+                    if (!seen_[static_cast<std::size_t>(corner)] && drawn.x >= reach.x0 * kCell &&
+                        drawn.x <= reach.x1 * kCell && drawn.y >= reach.y0 * kCell && drawn.y <= reach.y1 * kCell) {
+                        seen_[static_cast<std::size_t>(corner)] = true;
+                        found.push_back(corner);
+                    }
+                }
+            }
+        }
+    }
+    for (const Vertex corner : found) {
+        seen_[static_cast<std::size_t>(corner)] = false;
+    }
+    return found;
+}
+
+}  // namespace render_node

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "sand/force/dual.hpp"
+#include "sand/step.hpp"
+#include "sand/tin/surface_view.hpp"
+
+namespace sand::force {
+
+/// The triangles of a TIN around the tool: a copy, which whoever feels asks for heights while the mesh itself changes.
+///
+/// A place is found by walking from the triangle found last. It is rounded to 2^-16 of a cell first, so that all signs
+/// are exact, and a place on an edge or a vertex belongs to one triangle: what is found is a function of the mesh and
+/// the place alone. Within a triangle the height is off by at most the slope, summed over both axes, times 2^-17 of a
+/// cell.
+///
+/// One thread at a time, reading too. Asks for no memory but in take().
+class Facets {
+public:
+    static constexpr std::size_t kMost = 4096;  // of more, a query and a copy would take too long
+
+    /// All triangles that reach into the square of `reach` [probe unit] around a place; false, and none, when these are
+    /// more than kMost. `unit` [scene unit] is a probe unit's.
+    bool take(const tin::SurfaceView& tin, const ProbePoint& centre, std::int32_t reach, double unit);
+    void clear() { facets_.clear(); }
+    [[nodiscard]] bool empty() const { return facets_.empty(); }
+    [[nodiscard]] std::size_t size() const { return facets_.size(); }
+
+    /// Height there [scene unit] and its gradient; beyond the square the nearest place's, flat across its side. Not of
+    /// none.
+    [[nodiscard]] Dual tangent(double x, double y /* [scene unit] */) const;
+
+private:
+    /// Corners counter-clockwise [probe unit] from the middle: whole numbers below 2^23.
+    struct Facet {
+        std::array<float, 3> x, y;
+        std::array<std::int32_t, 3> beyond;  // across the edge opposite a corner; -1: none that reaches into the square
+        double height, east, north;          // at corner 0 [scene unit], and per probe unit
+    };
+    /// Which facet a triangle has become, by open addressing.
+    class Index {
+    public:
+        void clear();
+        /// The number put in with the slot before; `number`, and it is put in, when there is none.
+        std::int32_t put(std::int32_t slot, std::int32_t number);
+        [[nodiscard]] std::int32_t find(std::int32_t slot) const;  // -1: none
+
+    private:
+        [[nodiscard]] std::size_t placeOf(std::int32_t slot) const;
+        std::vector<std::pair<std::int32_t, std::int32_t>> places_;  // slot and number; -1: free
+        std::size_t count_ = 0;
+    };
+
+    bool findSlots(const tin::Triangles& mesh, const tin::Place& middle);
+    [[nodiscard]] Facet facetOf(const tin::SurfaceView& tin, std::int32_t slot, const tin::Place& middle) const;
+    [[nodiscard]] const Facet& find(double x, double y) const;
+
+    std::vector<Facet> facets_;
+    std::vector<std::int32_t> slots_;  // by facet
+    Index index_;
+    std::array<std::int32_t, 4> square_{};                // of the mesh: west, south, east, north [probe unit]
+    double middleX_ = 0, middleY_ = 0;                    // [probe unit]
+    double west_ = 0, south_ = 0, east_ = 0, north_ = 0;  // of the square, from the middle, a little within the field
+    double unit_ = 1;                                     // [scene unit], of a probe unit
+    mutable std::int32_t last_ = 0;
+};
+
+}  // namespace sand::force

@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Compares what one short session takes with several builds: time from start to end, processor time, memory.
+
+Sessions of a wall of two ranks with a recorded hand, of each build in turns; prints a table of medians. A build is named
+by its folder of programs, whose own scripts/sandwall starts it.
+
+usage: scripts/session_cost.py BIN [BIN ...] [--scene FILE] [--steps 60] [--runs 5]
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PROGRAMS = {"sandwall-render-node": "rank", "sandwall-master": "master", "sandwall-haptic-server": "haptic server"}
+POLL = 0.02  # s
+WALL = """[viewer]
+eye = [0.0, 1.6, 2.0]
+[stereo]
+mode = "passive"
+[grid]
+rows = 1
+columns = 2
+tile_size = [1.024, 0.768]
+tile_pixels = [512, 384]
+lower_left = [-1.024, 0.9, 0.0]
+[stage]
+centre = [0.0, 1.25, -0.3]
+width = 1.6
+tilt_deg = 40
+"""
+
+
+def peaks_of(root, peaks):
+    """Adds the highest resident memory so far of each program under a process [MB]."""
+    parents, names = {}, {}
+    for folder in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            status = dict(line.split(":\t", 1) for line in (folder / "status").read_text().splitlines() if ":\t" in line)
+            name = os.path.basename((folder / "cmdline").read_bytes().split(b"\0")[0].decode())
+            parents[int(folder.name)] = int(status["PPid"])
+            names[int(folder.name)] = name, int(status["VmHWM"].split()[0]) / 1024
+        except (OSError, KeyError, ValueError):
+            continue  # it has ended, or is a thread of the kernel
+    for process, (name, peak) in names.items():
+        ancestor = process
+        while ancestor in parents and ancestor != root:
+            ancestor = parents[ancestor]
+        if ancestor == root and name in PROGRAMS:
+            key = f"{PROGRAMS[name]}, peak [MB]"
+            peaks[key] = max(peaks.get(key, 0), peak)
+
+
+def session(folder, programs, scene, steps):
+    """What one session took, by name."""
+    launcher = programs.parent.parent.parent / "scripts" / "sandwall"
+    command = [launcher, "run", "--wall", folder / "wall.toml", "--scene", scene, "--device", "script:gis", "--pace", "fast",
+               "--steps", str(steps), "--out", folder / "out", "--no-pictures"]
+    before, begin, result = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic(), {}
+    with open(folder / "said.txt", "w") as said:
+        running = subprocess.Popen(command, env=dict(os.environ, SANDWALL_BIN=str(programs)), stdout=said, stderr=said)
+        while running.poll() is None:
+            peaks_of(running.pid, result)
+            time.sleep(POLL)
+    if running.returncode != 0:
+        sys.exit(f"{programs}: {(folder / 'said.txt').read_text()}")
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    result["begin to end [s]"] = time.monotonic() - begin
+    result["processor [s]"] = used.ru_utime + used.ru_stime - before.ru_utime - before.ru_stime
+    summary = json.loads((folder / "out" / "summary.json").read_text())
+    result["rank, at its end [MB]"] = max(rank["memory_bytes"] for rank in summary["per_rank"]) / 2**20
+    result["master, at its end [MB]"] = summary["master_memory_bytes"] / 2**20
+    return result
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("programs", nargs="+", type=pathlib.Path, metavar="BIN", help="a build's folder of programs")
+    parser.add_argument("--scene", type=pathlib.Path, default=ROOT / "scenes" / "writing.toml")
+    parser.add_argument("--steps", type=int, default=60)
+    parser.add_argument("--runs", type=int, default=5, help="of each build (default: 5)")
+    args = parser.parse_args()
+    rows = [[] for _ in args.programs]
+    with tempfile.TemporaryDirectory(prefix="sandwall-cost-") as name:
+        folder = pathlib.Path(name)
+        (folder / "wall.toml").write_text(WALL)
+        for _ in range(args.runs):
+            for programs, row in zip(args.programs, rows):
+                row.append(session(folder, programs.resolve(), args.scene.resolve(), args.steps))
+    print("| |" + "".join(f" {programs} |" for programs in args.programs) + "\n|---|" + "---|" * len(rows))
+    for what in rows[0][0]:
+        cells = []
+        for row in rows:
+            values = sorted(run[what] for run in row)
+            cells.append(f" {statistics.median(values):.2f} ({values[0]:.2f} to {values[-1]:.2f}) |")
+        print(f"| {what} |" + "".join(cells))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
