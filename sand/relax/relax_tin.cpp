@@ -72,7 +72,7 @@ nlohmann::ordered_json reportOf(const TinSand& sand, const Options& options, con
     json["steepest_deg"] =
         std::atan(steepness.steepest * sand.scale.unit / (sand.step * tin::kLatticePerCell)) * 180 / std::numbers::pi;
     json["too_steep_area"] = steepness.tooSteepArea;
-    json["state_hash"] = fmt::format("{:016x}", tin::VertexHash(sand.layer).update(sand.layer, {}));
+    json["state_hash"] = fmt::format("{:016x}", tin::VertexHash(sand.layer).update({}));
     return json;
 }
 
