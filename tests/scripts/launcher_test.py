@@ -126,8 +126,44 @@ class Refusals(LauncherTest):
                       self.refused(["-", "-"], "--hosts", hosts))
 
     def test_here_and_hosts_exclude_each_other(self):
-        self.assertEqual(self.start(["-"], "--here", "--hosts", "x").returncode, 2)
-        self.assertEqual(self.start(["-"], "--mono", "--stereo", "mono").returncode, 2)
+        self.assertIn("--hosts: not allowed with argument --here", self.refused(["-"], "--here", "--hosts", "x"))
+        self.assertIn("not allowed with argument", self.refused(["-"], "--mono", "--stereo", "mono"))
+
+    def test_a_number_that_is_none_or_too_small_is_refused(self):
+        for option, value in (("--restarts", "-1"), ("--restart-window", "nan"), ("--restart-window", "-5"),
+                              ("--checkpoint", "inf")):
+            self.assertEqual(self.refused(["-"], option, value),
+                             f"sandwall run: argument {option}: {value} must be 0 or more; try --help\n")
+
+    def test_a_secret_without_a_link_is_refused(self):
+        self.assertIn("--secret-file: there is no haptic link to secure", self.refused(["-"], "--secret-file", "none"))
+
+
+class OneFolder(LauncherTest):
+    def start_waiting(self):
+        """A session that waits for its end."""
+        self.script("mpirun", "#!/bin/sh\ntouch \"$STARTED\"; read -r line\n")
+        started = self.folder / "started"
+        process = subprocess.Popen(self.command(["-"], "--journal", "off"), env={**self.environment, "STARTED": started},
+                                   stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+        self.addCleanup(process.kill)
+        deadline = time.monotonic() + 60
+        while not started.exists() and time.monotonic() < deadline:
+            time.sleep(0.01)
+        return process
+
+    def test_a_second_session_is_refused_and_leaves_the_logs_of_the_first_alone(self):
+        first = self.start_waiting()
+        log = self.folder / "out" / "log" / "try_1.out"
+        log.write_text("of the first")
+        second = self.start(["-"])
+        self.assertEqual((second.returncode, second.stdout), (1, ""))
+        self.assertEqual(second.stderr, f"{self.folder / 'out'}: another session runs in this folder; stop that one "
+                         "first, or choose another --out\n")
+        self.assertEqual(log.read_text(), "of the first")
+        first.communicate("stop\n", timeout=60)
+        self.script("mpirun", MPIRUN)
+        self.assertEqual(self.start(["-"]).returncode, 0)
 
 
 class Input(LauncherTest):
