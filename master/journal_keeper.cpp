@@ -43,6 +43,8 @@ JournalKeeper::JournalKeeper(const std::filesystem::path& out, const JournalOpti
       sceneDigest_(scene.rules.digest()),
       lastCheckpoint_(now()) {
     if (options_.policy == JournalPolicy::off) {
+        requireNoWriter();
+        keepPreviousJournal(journal_);  // it would pass for this session's
         return;
     }
     if (resumed == nullptr) {

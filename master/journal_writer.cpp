@@ -18,8 +18,25 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostWaiting = 1 << 20;  // [byte] of ticks, while no step is made
 constexpr std::size_t kMostHeld = 64 << 20;    // [byte] of ticks, while the disk is full: a quarter of an hour
 
-/// What a session before has left, out of the way of this one's.
-void keepPrevious(const fs::path& journal) {
+std::uint64_t newSession() {
+    std::random_device random;
+    return std::uint64_t{random()} << 32U | random();
+}
+
+PartFile makeFirst(const fs::path& file, const sand::Scene& scene, const std::string& buildId, std::uint64_t session,
+                   std::uint64_t& chain) {
+    keepPreviousJournal(file);
+    JournalHeader header;
+    header.session = session;
+    header.buildId = buildId;
+    header.scene = scene.encode();
+    header.material = scene.material;
+    return PartFile::make(file, encodeHeader(header, chain));
+}
+
+}  // namespace
+
+void keepPreviousJournal(const fs::path& journal) {
     std::error_code none;  // usually there is no older one
     if (!fs::is_regular_file(journal, none)) {
         return;
@@ -37,24 +54,6 @@ void keepPrevious(const fs::path& journal) {
         }
     }
 }
-
-std::uint64_t newSession() {
-    std::random_device random;
-    return std::uint64_t{random()} << 32U | random();
-}
-
-PartFile makeFirst(const fs::path& file, const sand::Scene& scene, const std::string& buildId, std::uint64_t session,
-                   std::uint64_t& chain) {
-    keepPrevious(file);
-    JournalHeader header;
-    header.session = session;
-    header.buildId = buildId;
-    header.scene = scene.encode();
-    header.material = scene.material;
-    return PartFile::make(file, encodeHeader(header, chain));
-}
-
-}  // namespace
 
 JournalWriter::JournalWriter(const fs::path& file, const sand::Scene& scene, const std::string& buildId,
                              std::int64_t partBytes)

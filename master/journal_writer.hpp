@@ -13,14 +13,18 @@ namespace master {
 
 inline constexpr std::int64_t kPartBytes = 256 << 20;
 
+/// What a session before has left goes out of the way: its journal becomes FILE.previous, its parts FILE.previous.2 and
+/// so on. Throws files::InputError.
+void keepPreviousJournal(const std::filesystem::path& journal);
+
 /// Writes a session to disk before the wall shows it (docs/journal.md). One thread.
 ///
 /// What throws, throws files::InputError; the file then ends with the record before, and the writer is to be left
 /// alone.
 class JournalWriter {
 public:
-    /// Makes the file, header and all; a journal that is there already is kept as FILE.previous, its parts as
-    /// FILE.previous.2 and so on. A part that has grown beyond `partBytes` is followed by another.
+    /// Makes the file, header and all, after keepPreviousJournal(). A part that has grown beyond `partBytes` is
+    /// followed by another.
     JournalWriter(const std::filesystem::path& file, const sand::Scene& scene, const std::string& buildId,
                   std::int64_t partBytes = kPartBytes);
     /// Goes on behind a whole record; what stands there is cut off. Throws std::runtime_error as PartFile::open.

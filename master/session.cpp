@@ -86,7 +86,8 @@ Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, con
                  options_.security),
       operator_(options_.readInput),
       faults_(faultsOf(options_.drills), lockstep::kMaster),
-      rankStatistics_(names_.size()) {
+      rankStatistics_(names_.size()),
+      incidentFile_(options_.out, options_.resumed != nullptr) {
     if (options_.recording) {
         options_.steps = std::min(options_.steps, options_.recording->lastStep());
     } else {
@@ -110,7 +111,24 @@ Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, con
         fmt::print("head tracking listens on port {}\n", views_.viewer().port());
         std::fflush(stdout);
     }
+    summary_.divergences = incidentFile_.before().divergences;
+    summary_.healed = incidentFile_.before().healed;
+    summary_.serverDivergences = incidentFile_.before().serverDivergences;
     hash_ = terrain_.stateHash();
+}
+
+Incidents Session::incidents() const {
+    Incidents all = incidentFile_.before();
+    all.divergences = summary_.divergences;
+    all.healed = summary_.healed;
+    all.serverDivergences = summary_.serverDivergences;
+    const haptic_bridge::LinkCounters link = sequencer_.counters();
+    all.reconnects += link.reconnects;
+    for (std::size_t i = 0; i < all.refused.size(); ++i) {
+        all.refused[i] += link.refused[i];
+    }
+    all.stands += journal_ ? journal_->stands() : 0;
+    return all;
 }
 
 double Session::framePeriod() const { return 1 / options_.refreshHz.value_or(wall_.refreshHz); }
@@ -233,6 +251,7 @@ bool Session::showFrame() {
     }
     const std::int64_t swapped = nowNs();
     tellRecovery();
+    incidentFile_.keep(incidents(), swapped);
     measureSwaps(swapped);
     measureLatency(steps, broadcast, swapped);
     answerEdits(steps);
@@ -327,6 +346,7 @@ void Session::finish(bool agreed) {
     } catch (const DiskFailure& failure) {  // the ranks still have reports and pictures to send
         fmt::print(stderr, "sandwall: {}\n", failure.what());
     }
+    const Incidents all = incidents();
     endJournal(agreed);
     summary_.frames = frame_;
     summary_.steps = terrain_.stepNumber();
@@ -339,6 +359,9 @@ void Session::finish(bool agreed) {
         summary_.tracking = views_.viewer().counters();
     }
     summary_.link = sequencer_.counters();
+    summary_.link.reconnects = all.reconnects;
+    summary_.link.refused = all.refused;
+    summary_.journal.stands += incidentFile_.before().stands;
     summary_.ranksReports = lockstep::gatherReports(barrier_, {});
     summary_.rankStatistics = rankStatistics_.ranks();
     summary_.drag = rankStatistics_.drag();
@@ -370,7 +393,7 @@ int Session::run() {
         writeSummary(summary_, options_.out / "summary.json");
     } catch (const files::InputError& error) {  // the ranks still have pictures to send
         fmt::print(stderr, "sandwall: {}\n", error.what());
-        status = files::kExitBadInput;
+        status = 1;
     }
     if (agreed && film_) {
         film_->take(cluster_, barrier_.watchdog());

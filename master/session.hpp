@@ -20,6 +20,7 @@
 #include "master/drills.hpp"
 #include "master/failure_report.hpp"
 #include "master/film.hpp"
+#include "master/incidents.hpp"
 #include "master/journal_keeper.hpp"
 #include "master/operator_command.hpp"
 #include "master/operator_input.hpp"
@@ -121,6 +122,7 @@ private:
     void applySteps(const std::vector<haptic_bridge::TimedStep>& steps);
     void compareWithRecording();
     [[nodiscard]] lockstep::WallFigures wallFigures() const;
+    [[nodiscard]] Incidents incidents() const;  // since the session's beginning
     void measureSwaps(std::int64_t now);
     void measureLatency(const std::vector<haptic_bridge::TimedStep>& steps, std::int64_t broadcast,
                         std::int64_t swapped);
@@ -174,6 +176,7 @@ private:
     const lockstep::FaultsOfRank faults_;  // of the master itself
     Summary summary_;
     lockstep::RankStatistics rankStatistics_;
+    IncidentFile incidentFile_;
     double lastFrameMs_ = 0;
     std::uint64_t frame_ = 0;
     std::uint64_t hash_ = 0;                                      // of the state the wall shows

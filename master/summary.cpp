@@ -3,10 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "files/input_error.hpp"
+#include "files/whole_file.hpp"
 
 namespace master {
 namespace {
@@ -197,12 +196,9 @@ ordered_json slowestRank(const std::optional<lockstep::Drag>& drag, const std::v
 }
 
 void writeSummary(const Summary& summary, const std::filesystem::path& file) {
-    std::ofstream stream(file);
-    stream << jsonOf(summary).dump(2) << '\n';
-    stream.flush();
-    if (!stream) {
-        throw files::InputError(fmt::format("{}: cannot be written; check free space", file.string()));
-    }
+    files::WholeFile whole(file);
+    whole.stream() << jsonOf(summary).dump(2) << '\n';
+    whole.keep();
 }
 
 std::string describe(const Summary& summary) {

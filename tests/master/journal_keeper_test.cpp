@@ -116,6 +116,14 @@ TEST_F(Keeper, SwitchedOffItWritesNothing) {
     EXPECT_EQ(keeper_->state(), "off");
 }
 
+TEST_F(Keeper, SwitchedOffItLeavesNoJournalOfAnotherSessionInItsPlace) {
+    begin({});
+    ASSERT_TRUE(showFrame());
+    begin({.policy = master::JournalPolicy::off});
+    EXPECT_FALSE(std::filesystem::exists(journal()));
+    EXPECT_EQ(master::readJournal(folder_ / "session.journal.previous").frames.size(), 1U);
+}
+
 TEST_F(Keeper, AFolderThatCannotBeWrittenToIsNamed) {
     std::ofstream(folder_ / "file") << "in the way";
     try {

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "haptic_bridge/protocol.hpp"
+
+namespace master {
+
+/// What was healed or refused in a session, all its tries together: a try that is killed writes no summary.
+struct Incidents {
+    std::uint64_t divergences = 0, healed = 0, serverDivergences = 0;  // as in Summary
+    std::uint64_t reconnects = 0;                                      // of the hand
+    haptic_bridge::RefusalCounts refused{};                            // servers that the master would not have
+    std::uint64_t stands = 0;                                          // times that the sand stood for want of room
+    friend bool operator==(const Incidents&, const Incidents&) = default;
+};
+
+/// FOLDER/incidents.json, which is rewritten whenever something was added, and read by the try that goes on.
+class IncidentFile {
+public:
+    /// Of a session that begins anew nothing is kept; what cannot be read counts as nothing, and is said.
+    IncidentFile(const std::filesystem::path& folder, bool resumed);
+
+    /// Of the tries before.
+    [[nodiscard]] const Incidents& before() const { return before_; }
+    /// Writes them where they have changed, four times a second at most. A file that cannot be written is none.
+    void keep(const Incidents& sinceTheBeginning, std::int64_t nowNs);
+
+private:
+    std::filesystem::path file_;
+    Incidents before_, kept_;
+    std::int64_t writtenNs_ = 0;
+};
+
+}  // namespace master
