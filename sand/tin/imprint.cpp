@@ -39,7 +39,8 @@ Imprint::Stand decodeStand(files::ByteReader& reader) {
     stand.shape.radius = reader.get<std::int32_t>();
     stand.shape.halfWidth = reader.get<std::int32_t>();
     stand.heading = Heading::decode(reader, reader.get<std::uint8_t>() != 0);
-    const bool near = std::max({std::abs(stand.at.x), std::abs(stand.at.y), std::abs(stand.at.z)}) <= kMaxProbe;
+    const bool near = std::min({stand.at.x, stand.at.y, stand.at.z}) >= -kMaxProbe &&
+                      std::max({stand.at.x, stand.at.y, stand.at.z}) <= kMaxProbe;
     if (kind >= kToolKinds || !near || stand.shape.radius < 0 || stand.shape.radius > kLargestToolRadius ||
         stand.shape.halfWidth < 0 || stand.shape.halfWidth > stand.shape.radius) {
         throw files::FormatError("an imprint of a tool that no scene gives");
