@@ -230,7 +230,7 @@ TEST_F(Operator, IsToldAtOnceThatTheSandStandsForWantOfRoomAndNothingIsDoneLater
             return [state](const nlohmann::json& now) { return now.value("journal_state", "") == state; };
         };
         awaitStatus(journalIs("no room"));
-        for (const char* edit : {"settle", "reset", "tool 0.06", "material talus 20", "load level"}) {
+        for (const char* edit : {"settle", "material talus 20", "load level"}) {
             expectRefusal(edit, "the sand stands still: no room for the journal on the disk; nothing was done");
         }
         EXPECT_NE(ask("status")["material"]["talus"], 20);
