@@ -47,6 +47,7 @@ std::string Address::text() const {
 }
 
 void LinkCounters::add(const LinkCounters& other) {
+    links += other.links;
     reconnects += other.reconnects;
     bytesIn += other.bytesIn;
     bytesOut += other.bytesOut;
@@ -55,8 +56,8 @@ void LinkCounters::add(const LinkCounters& other) {
     stepsForeign += other.stepsForeign;
     catchUps += other.catchUps;
     snapshots += other.snapshots;
-    refusedHere += other.refusedHere;
     for (std::size_t i = 0; i < refused.size(); ++i) {
+        refusedHere[i] += other.refusedHere[i];
         refused[i] += other.refused[i];
     }
 }

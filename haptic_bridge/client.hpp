@@ -65,6 +65,7 @@ struct TimedPosition {
 };
 
 struct LinkCounters {
+    std::uint64_t links = 0;       // handshakes that fitted, of servers that stream positions, too
     std::uint64_t reconnects = 0;  // handshakes after the first
     std::uint64_t bytesIn = 0, bytesOut = 0;
     std::uint64_t stepsIn = 0;       // accepted
@@ -72,8 +73,8 @@ struct LinkCounters {
     std::uint64_t stepsForeign = 0;  // of another epoch: left out
     std::uint64_t catchUps = 0;      // hand-overs by the steps that the server lacked
     std::uint64_t snapshots = 0;     // and by the whole sand
-    std::uint64_t refusedHere = 0;   // by the server: it would not have this master
-    RefusalCounts refused{};         // servers that this master would not have, as kRefusalNames
+    RefusalCounts refusedHere{};     // by the server: it would not have this master, as kRefusalNames
+    RefusalCounts refused{};         // servers that this master would not have, as well
     void add(const LinkCounters& other);
 };
 

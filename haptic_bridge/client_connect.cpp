@@ -105,12 +105,9 @@ void Client::Session::closed(const std::string& why) {
 }
 
 void Client::Session::refuse(const std::string& why, Connection::Fault fault) {
-    {
+    if (fault) {
         const std::lock_guard lock(shelf.mutex);
-        shelf.counters.refusedHere += fault ? 0 : 1;
-        if (fault) {
-            ++shelf.counters.refused[static_cast<std::size_t>(*fault) - 1];
-        }
+        ++shelf.counters.refused[static_cast<std::size_t>(*fault) - 1];
     }
     tell(Link::refused, fmt::format("{}: {}", peer_, why));
     backOff_ = kLastBackOff;

@@ -27,6 +27,7 @@ void Client::Session::greet(const PositionGreeting& greeting) {
     }
     {
         const std::lock_guard lock(shelf.mutex);
+        ++shelf.counters.links;
         shelf.counters.reconnects += everWelcomed_ ? 1 : 0;
         shelf.positions.clear();
     }

@@ -190,6 +190,10 @@ void Client::Session::receive(Message&& message) {
         shelf.counters.bytesOut = connection_->bytesOut();
     }
     if (const auto* refusal = std::get_if<Refusal>(&message)) {
+        {
+            const std::lock_guard lock(shelf.mutex);
+            ++shelf.counters.refusedHere[static_cast<std::size_t>(refusal->code) - 1];
+        }
         refuse("refuses: " + refusal->text, std::nullopt);
     } else if (const auto* bye = std::get_if<Bye>(&message)) {
         connection_->close("it says goodbye: " + bye->reason);
@@ -269,6 +273,7 @@ void Client::Session::welcome(const Welcome& greeting) {
     connection_->limit(kMaxMessage);
     {
         const std::lock_guard lock(shelf.mutex);
+        ++shelf.counters.links;
         shelf.counters.reconnects += everWelcomed_ ? 1 : 0;
         shelf.stepsPerSecond = greeting.stepsPerSecond;
     }

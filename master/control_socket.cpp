@@ -209,13 +209,18 @@ void ControlSocket::serve() {
         std::array<char, 64> any{};
         while (::read(wake_[0], any.data(), any.size()) > 0) {
         }
+        bool ending = false;
         {
             const std::lock_guard lock(mutex_);
-            if (ending_) {
-                return;
-            }
+            ending = ending_;
         }
         collectAnswers();
+        if (ending) {  // who asked for the end has been answered a moment ago
+            for (auto& [client, guest] : guests_) {
+                (void)(guest.out.empty() || write(guest));
+            }
+            return;
+        }
         std::vector<Client> leaving;
         for (std::size_t i = 0; i < clients.size(); ++i) {
             Guest& guest = guests_.at(clients[i]);

@@ -170,17 +170,11 @@ files::Bytes encodeHeader(const JournalHeader& header, std::uint64_t& chain) {
     return writer.take();
 }
 
-JournalHeader decodeHeader(files::ByteReader& reader, std::uint64_t& chain) {
-    const std::span<const std::uint8_t> all = reader.rest();
-    JournalHeader header;
-    if (reader.get<std::uint32_t>() != kJournalMagic) {
-        throw files::FormatError("no journal of Sandwall");
-    }
-    header.version = reader.get<std::uint32_t>();
-    if (header.version < kOldestVersion || header.version > kJournalVersion) {
-        throw files::FormatError(fmt::format("a journal of version {}; this program reads {} to {}", header.version,
-                                             kOldestVersion, kJournalVersion));
-    }
+namespace {
+
+/// What stands behind magic and version.
+void decodeRest(JournalHeader& header, files::ByteReader& reader, std::span<const std::uint8_t> all,
+                std::uint64_t& chain) {
     const bool chained = header.version >= kChainedSince;
     if (chained) {
         header.part = reader.get<std::uint32_t>();
@@ -194,7 +188,7 @@ JournalHeader decodeHeader(files::ByteReader& reader, std::uint64_t& chain) {
     const std::size_t checked = all.size() - reader.rest().size();
     chain = reader.get<std::uint64_t>();
     if (chain != chainedSum(all.first(checked), header.continues)) {
-        throw files::FormatError("a journal whose header is damaged");
+        throw files::FormatError("its checksum is wrong");
     }
     header.scene.assign(scene.begin(), scene.end());
     if (!material.empty()) {
@@ -202,6 +196,26 @@ JournalHeader decodeHeader(files::ByteReader& reader, std::uint64_t& chain) {
         header.material = getMaterial(numbers);
     }
     chain = chained ? chain : 0;
+}
+
+}  // namespace
+
+JournalHeader decodeHeader(files::ByteReader& reader, std::uint64_t& chain) {
+    const std::span<const std::uint8_t> all = reader.rest();
+    JournalHeader header;
+    if (reader.get<std::uint32_t>() != kJournalMagic) {
+        throw files::FormatError("no journal of Sandwall");
+    }
+    header.version = reader.get<std::uint32_t>();
+    if (header.version < kOldestVersion || header.version > kJournalVersion) {
+        throw files::FormatError(fmt::format("a journal of version {}; this program reads {} to {}", header.version,
+                                             kOldestVersion, kJournalVersion));
+    }
+    try {
+        decodeRest(header, reader, all, chain);
+    } catch (const files::FormatError& error) {
+        throw HeaderLost(fmt::format("its header is cut off or damaged ({})", error.what()));
+    }
     return header;
 }
 

@@ -64,9 +64,15 @@ struct JournalHeader {
     std::optional<sand::Material> material;  // as the operator knows it; none in later parts and before version 5
 };
 
+/// Of a journal whose version is read, but no more of its header.
+class HeaderLost : public files::FormatError {
+public:
+    using files::FormatError::FormatError;
+};
+
 /// With its checksum, which begins the chain of the records behind it.
 [[nodiscard]] files::Bytes encodeHeader(const JournalHeader& header, std::uint64_t& chain);
-/// Throws files::FormatError in words that follow a file's name. The scene is not looked into.
+/// Throws files::FormatError, HeaderLost perhaps, in words that follow a file's name. The scene is not looked into.
 [[nodiscard]] JournalHeader decodeHeader(files::ByteReader& reader, std::uint64_t& chain);
 
 /// One whole record; `chain` is the checksum of the one before, and then its own.

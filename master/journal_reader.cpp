@@ -51,6 +51,9 @@ JournalReader::JournalReader(fs::path journal) {
     place_.journal = std::move(journal);
     try {
         open(1);
+    } catch (const HeaderLost& error) {
+        fail(fmt::format("{}; it holds the scene as the session began, without which nothing can be recovered",
+                         error.what()));
     } catch (const files::FormatError& error) {
         throw files::InputError(fmt::format("{}: {}", place_.journal.string(), error.what()));
     }

@@ -57,12 +57,25 @@ std::string pathText(const sand::Step& step, double unit) {
 
 }  // namespace
 
+void sayWhatIsMissing(const std::filesystem::path& journal, std::int64_t tornBytes, bool orderlyEnd) {
+    if (tornBytes > 0) {
+        fmt::print(stderr, "{}: the last {} bytes are no whole record and were left out\n", journal.string(),
+                   tornBytes);
+    }
+    if (!orderlyEnd) {
+        fmt::print(stderr, "{}: has no orderly end; the session was cut off\n", journal.string());
+    }
+}
+
 void exportSteps(const std::filesystem::path& journal, const std::filesystem::path& file) {
     JournalReader reader(journal);
     ExportedTool tool(sceneOf(reader));
     files::WholeFile out(file);
     out.stream() << "epoch,number,frame,engaged,tool,radius,heading,path,edit\n";
+    bool orderlyEnd = false;
     while (const auto record = reader.next()) {
+        orderlyEnd = std::holds_alternative<JournalEnd>(*record) ||
+                     (orderlyEnd && !std::holds_alternative<JournalResumed>(*record));
         const auto* frame = std::get_if<JournalFrame>(&*record);
         if (frame == nullptr) {
             continue;
@@ -76,6 +89,7 @@ void exportSteps(const std::filesystem::path& journal, const std::filesystem::pa
         }
     }
     out.keep();
+    sayWhatIsMissing(journal, reader.tornBytes(), orderlyEnd);
 }
 
 void recoverJournal(const std::filesystem::path& journal, const std::filesystem::path& file) {

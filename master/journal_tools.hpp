@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 
 namespace master {
@@ -12,7 +13,10 @@ namespace master {
 /// when all agrees, and 1 when the sand or a checkpoint differs.
 [[nodiscard]] int verifyJournal(const std::filesystem::path& journal);
 
-/// Every step as a row of a CSV file (docs/journal.md).
+/// Says on standard error what a journal that is read to its end lacks, if anything.
+void sayWhatIsMissing(const std::filesystem::path& journal, std::int64_t tornBytes, bool orderlyEnd);
+
+/// Every step as a row of a CSV file (docs/journal.md). Says on standard error what the journal lacks.
 void exportSteps(const std::filesystem::path& journal, const std::filesystem::path& file);
 
 /// Writes what is intact of a journal, of any version, as a journal of its own, and says on standard output what is

@@ -2,9 +2,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "files/command_line.hpp"
 #include "files/input_error.hpp"
@@ -25,7 +29,12 @@ struct Options {
     bool verify = false;
     bool volumes = false;
     std::string heights, difference, mesh, forces, steps, recovered;
-    std::uint64_t until = std::numeric_limits<std::uint64_t>::max();
+    std::optional<std::uint64_t> until;
+
+    /// Nothing is asked for but the replay itself.
+    [[nodiscard]] bool plain() const {
+        return !hash && !volumes && heights.empty() && difference.empty() && mesh.empty() && forces.empty();
+    }
 };
 
 /// Recomputes the rows of sandwall-haptic-server --record while the steps are replayed.
@@ -104,6 +113,11 @@ void checkOutputs(const Options& options) {
     if (!options.mesh.empty()) {
         sand::checkMeshName(options.mesh);
     }
+    for (const std::string& file : {options.heights, options.difference}) {
+        if (!file.empty()) {
+            sand::checkRasterName(file);
+        }
+    }
     for (const std::string& file : {options.heights, options.difference, options.mesh}) {
         if (!file.empty()) {
             const files::WholeFile canBeWritten(file);
@@ -158,20 +172,14 @@ int run(const Options& options) {
     }
     checkOutputs(options);
     const master::Journal journal = master::readJournal(options.file);
-    if (journal.tornBytes > 0) {
-        fmt::print(stderr, "{}: the last {} bytes are no whole record and were left out\n", options.file,
-                   journal.tornBytes);
-    }
-    if (!journal.end) {
-        fmt::print(stderr, "{}: has no orderly end; the session was cut off\n", options.file);
-    }
+    master::sayWhatIsMissing(options.file, journal.tornBytes, journal.end.has_value());
     sand::Terrain terrain(journal.scene);
     Forces forces(journal, options);
-    int differing = replay(journal, options.until, terrain, forces);
+    int differing = replay(journal, options.until.value_or(std::numeric_limits<std::uint64_t>::max()), terrain, forces);
     forces.finish();
-    if (options.until != std::numeric_limits<std::uint64_t>::max() && terrain.stepNumber() < options.until) {
+    if (options.until && terrain.stepNumber() < *options.until) {
         throw files::InputError(
-            fmt::format("{}: ends at step {}, before --until {}", options.file, terrain.stepNumber(), options.until));
+            fmt::format("{}: ends at step {}, before --until {}", options.file, terrain.stepNumber(), *options.until));
     }
     const bool whole = journal.end && journal.end->step == terrain.stepNumber();
     if (whole && journal.end->hash != terrain.stateHash()) {
@@ -182,8 +190,24 @@ int run(const Options& options) {
     if (options.hash) {
         fmt::print("{:016x}\n", terrain.stateHash());
     }
+    if (options.plain()) {
+        fmt::print("{}: {} steps replayed, state hash {:016x}; {}\n", options.file, terrain.stepNumber(),
+                   terrain.stateHash(), differing == 0 ? "no hash differs from the session's" : "hashes differ");
+    }
     writeOutputs(terrain, journal.scene, options);
     return differing == 0 ? 0 : 1;
+}
+
+/// What was printed to a full disk is no answer.
+void requirePrinted() {
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+        throw files::InputError(fmt::format("standard output: cannot be written ({})", std::strerror(errno)));
+    }
+}
+
+/// Of a number that CLI11 would wrap around.
+std::string notNegative(const std::string& text) {
+    return text.starts_with('-') ? "a step's number is 0 or more, got " + text : "";
 }
 
 }  // namespace
@@ -203,7 +227,7 @@ int main(int argc, char** argv) {
     app.add_option(
         "--forces", options.forces,
         "recompute what a hand felt at every tick, from a session recorded with --record, into this CSV file");
-    app.add_option("--until", options.until, "stop after this step");
+    app.add_option("--until", options.until, "stop after this step")->check(notNegative);
     CLI::Option* verify = app.add_flag("--verify", options.verify, "check records, parts, hashes and checkpoints");
     CLI::Option* steps = app.add_option("--export", options.steps, "write every step as a row of this CSV file");
     CLI::Option* recover = app.add_option("--recover", options.recovered,
@@ -211,5 +235,11 @@ int main(int argc, char** argv) {
     verify->excludes(steps)->excludes(recover);
     steps->excludes(recover);
     return files::runMain(
-        app, argc, argv, [&] { return run(options); }, files::kExitBadInput);
+        app, argc, argv,
+        [&] {
+            const int status = run(options);
+            requirePrinted();
+            return status;
+        },
+        files::kExitBadInput);
 }

@@ -114,8 +114,10 @@ private:
     void keepTicks();
     void endJournal(bool agreed);
     void beginJournal(const sand::Scene& scene);
-    /// Whether the disk has room for the steps of the next frame.
-    [[nodiscard]] bool mayTakeSteps();
+    /// Whether the disk has room for the steps of the next frame, with one more edit.
+    [[nodiscard]] bool mayTakeSteps(const sand::Edit& more = {});
+    /// A server may have their edits already, so that they cannot be taken back: they are done when there is room.
+    void tellWhoWaitsForRoom();
     /// Leaves word for whoever supervises, and returns with nothing shown: the job ends.
     [[noreturn]] void endForDisk(const DiskFailure& failure);
     void tellRecovery();

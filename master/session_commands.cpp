@@ -158,12 +158,26 @@ void Session::askEdit(sand::Edit edit, std::optional<Client> client, const std::
     if (askers_.size() >= kMostEditsWaiting) {
         throw files::InputError(fmt::format("{} edits wait for their steps already", askers_.size()));
     }
+    // Whoever asks must not be kept waiting for somebody to clear the disk, nor find it done long after.
+    if (!mayTakeSteps(edit)) {
+        throw files::InputError(
+            "the sand stands still: no room for the journal on the disk; nothing was done, ask again when there is");
+    }
     if (paused_ && client) {
         control_->answer(*client, line({{"ok", true}, {"waits_for", "resume"}}));
         client.reset();
     }
     sequencer_.request(edit);
     askers_.push_back({std::move(edit), client, material});
+}
+
+void Session::tellWhoWaitsForRoom() {
+    for (Asker& asker : askers_) {
+        if (asker.client) {
+            control_->answer(*asker.client, line({{"ok", true}, {"waits_for", "room"}}));
+            asker.client.reset();
+        }
+    }
 }
 
 void Session::askMaterial(const sand::Material& material, std::optional<Client> client) {

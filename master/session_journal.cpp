@@ -11,6 +11,8 @@ namespace {
 
 constexpr std::int64_t kFrameBytes = 1 << 16;  // more than the steps of a frame, but for sand that is loaded
 
+std::int64_t sandBytes(const sand::Edit& edit) { return edit.sand ? static_cast<std::int64_t>(edit.sand->size()) : 0; }
+
 }  // namespace
 
 void Session::beginJournal(const sand::Scene& scene) {
@@ -34,12 +36,15 @@ void Session::tellRecovery() {
                          options_.out);
 }
 
-bool Session::mayTakeSteps() {
-    std::int64_t bytes = kFrameBytes;
+bool Session::mayTakeSteps(const sand::Edit& more) {
+    std::int64_t bytes = kFrameBytes + sandBytes(more);
     for (const Asker& asker : askers_) {
-        bytes += asker.edit.sand ? static_cast<std::int64_t>(asker.edit.sand->size()) : 0;
+        bytes += sandBytes(asker.edit);
     }
     standing_ = journal_ && !journal_->mayTake(bytes, {terrain_.stepNumber(), hash_});
+    if (standing_) {
+        tellWhoWaitsForRoom();
+    }
     return !standing_;
 }
 

@@ -40,9 +40,9 @@ ordered_json hapticPart(const Summary& summary) {
     ordered_json part = ordered_json::object();
     part["reconnects"] = summary.link.reconnects;
     part["hand_overs"] = {{"by_steps", summary.link.catchUps}, {"by_state", summary.link.snapshots}};
-    part["refused_by_server"] = summary.link.refusedHere;
     for (std::size_t i = 0; i < haptic_bridge::kRefusalNames.size(); ++i) {
         const std::string kind(haptic_bridge::kRefusalNames[i]);
+        part["refused_by_server"][kind] = summary.link.refusedHere[i];
         part["refused"]["servers"][kind] = summary.link.refused[i];
         part["refused"]["guests"][kind] = summary.haptic ? summary.haptic->refused[i] : 0;
     }
@@ -162,6 +162,40 @@ ordered_json jsonOf(const Summary& summary) {
     return json;
 }
 
+/// "5 times (secret)" or "5 times (secret 4, busy 1)"; empty for none.
+std::string timesOf(const haptic_bridge::RefusalCounts& counts) {
+    std::uint64_t all = 0;
+    for (const std::uint64_t count : counts) {
+        all += count;
+    }
+    std::string kinds;
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        if (counts[i] > 0) {
+            kinds += fmt::format("{}{}", kinds.empty() ? "" : ", ", haptic_bridge::kRefusalNames[i]);
+            kinds += counts[i] < all ? fmt::format(" {}", counts[i]) : "";
+        }
+    }
+    return all == 0 ? "" : fmt::format("{} {} ({})", all, all == 1 ? "time" : "times", kinds);
+}
+
+/// Empty where nobody was refused.
+std::string describeRefusals(const Summary& summary) {
+    std::string text;
+    const auto add = [&text](const char* what, const std::string& times) {
+        if (!times.empty()) {
+            text += fmt::format("{}{} {}", text.empty() ? "" : "; ", what, times);
+        }
+    };
+    add("refused", timesOf(summary.link.refusedHere));
+    add("refused the server", timesOf(summary.link.refused));
+    add("the server refused guests",
+        timesOf(summary.haptic ? summary.haptic->refused : haptic_bridge::RefusalCounts{}));
+    if (text.empty()) {
+        return {};
+    }
+    return fmt::format("  haptics   {}: {}\n", summary.link.links == 0 ? "no hand all session" : "beside links", text);
+}
+
 /// Empty where no rank stands out.
 std::string describeDrag(const Summary& summary) {
     if (!summary.drag) {
@@ -222,6 +256,7 @@ std::string describe(const Summary& summary) {
             summary.haptic->hapticPeriodUsP50, summary.haptic->hapticPeriodUsP99, summary.haptic->forceUsP99,
             summary.haptic->toWall.msMean, summary.haptic->toMaster.msMean);
     }
+    text += describeRefusals(summary);
     double slowest = 0;
     std::int64_t memory = 0;
     for (const lockstep::RankReport& report : summary.ranksReports) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string>
 
+#include "files/input_error.hpp"
 #include "files/whole_file.hpp"
 #include "sand/import/importer.hpp"
 
@@ -30,6 +31,16 @@ void write(const files::Bytes& bytes, const fs::path& file) {
 bool namesGeoTiff(const fs::path& file) {
     const std::string ending = endingOf(file);
     return ending == ".tif" || ending == ".tiff";
+}
+
+void checkRasterName(const fs::path& file) {
+    const std::string ending = endingOf(file);
+    std::error_code none;
+    const bool plain = !fs::exists(file, none) || fs::is_regular_file(file, none);
+    if (plain && !namesGeoTiff(file) && ending != ".asc" && ending != ".txt" && !ending.empty()) {
+        throw files::InputError(file.string() +
+                                ": no known ending; name it .tif for a GeoTIFF, .asc for an ESRI ASCII grid");
+    }
 }
 
 EsriGrid readRaster(const fs::path& file, bool withReference) {

@@ -10,6 +10,10 @@ namespace sand {
 /// Whether the name asks for a GeoTIFF: .tif or .tiff.
 [[nodiscard]] bool namesGeoTiff(const std::filesystem::path& file);
 
+/// Throws files::InputError for a name whose ending promises another format: asked before long work. Names without an
+/// ending, .txt, and what is no plain file are ESRI ASCII grids, as readRaster() has them.
+void checkRasterName(const std::filesystem::path& file);
+
 /// Reads .asc, .txt, names without an ending and what is no plain file as an ESRI ASCII grid, without GDAL, unless its
 /// reference system is wanted, which stands in a .prj file beside it; all else as Importer::readDem() does. Throws
 /// files::InputError.

@@ -12,6 +12,7 @@
 #include "master/journal.hpp"
 #include "tests/cluster/session_fixture.hpp"
 #include "tests/support/run_program.hpp"
+#include "tests/support/small_disk.hpp"
 
 namespace {
 
@@ -214,6 +215,37 @@ TEST_F(Operator, WithBestEffortAFolderThatFillsUpEndsTheJournalAndNotTheSession)
     EXPECT_EQ(summary()["divergences"], 0);
     const support::Ran replayed = support::runProgram("sandwall-replay", out() + "/session.journal");
     EXPECT_EQ(replayed.status, 0) << "what is there is whole";
+}
+
+// Less than the journal reserves at a time, so that the sand stands with the next frame.
+TEST_F(Operator, IsToldAtOnceThatTheSandStandsForWantOfRoomAndNothingIsDoneLater) {
+    std::filesystem::create_directory(out());
+    const int status = support::onSmallDisk(out(), "size=700k", [this] {
+        begin("none", "no hand");
+        ASSERT_FALSE(HasFatalFailure());
+        ask("settle");
+        ask("save level");
+        support::fill(out() + "/filler");
+        const auto journalIs = [](const char* state) {
+            return [state](const nlohmann::json& now) { return now.value("journal_state", "") == state; };
+        };
+        awaitStatus(journalIs("no room"));
+        for (const char* edit : {"settle", "material talus 20", "load level"}) {
+            expectRefusal(edit, "the sand stands still: no room for the journal on the disk; nothing was done");
+        }
+        EXPECT_NE(ask("status")["material"]["talus"], 20);
+        std::filesystem::remove(out() + "/filler");
+        const nlohmann::json then = awaitStatus(journalIs("written"));
+        EXPECT_EQ(then["edits_waiting"], 0);
+        const auto goesOn = [&](const nlohmann::json& now) { return now.value("step", 0) > then.value("step", 0) + 5; };
+        EXPECT_EQ(awaitStatus(goesOn)["edits"], 1) << "what was refused is not done";
+        EXPECT_GT(ask("settle")["step"], 0);
+        endAndReplay(2);
+    });
+    if (status == 77) {
+        GTEST_SKIP() << "this machine lets nobody mount a small disk";
+    }
+    EXPECT_EQ(status, 0);
 }
 
 // The hand is waited for, not thrown away: the server is the same, and its sand the wall's.

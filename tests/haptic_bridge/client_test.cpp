@@ -162,6 +162,21 @@ TEST(Client, StopsWhileAServerStaysSilentBeforeTls) {
     EXPECT_EQ(client.link().link, Link::stopped);
 }
 
+TEST(Client, CountsByKindHowOftenItWasRefused) {
+    FakeServer server([](FakeServer::Guest& guest) {
+        guest.await<Hello>();
+        guest.send(Refusal{RefusalCode::busy, "another wall is linked"});
+        guest.await<Bye>();
+    });
+    const Client client(server.address(), kOffer);
+    ASSERT_TRUE(reaches(client, Link::refused)) << client.link().message;
+    RefusalCounts once{};
+    once[static_cast<std::size_t>(RefusalCode::busy) - 1] = 1;
+    EXPECT_EQ(client.counters().refusedHere, once);
+    EXPECT_EQ(client.counters().refused, RefusalCounts{});
+    EXPECT_EQ(client.counters().links, 0U);
+}
+
 TEST(Client, RefusesAServerOfAnotherVersionOrScene) {
     for (int which = 0; which < 3; ++which) {
         Identity other = kIdentity;
@@ -204,6 +219,7 @@ TEST(Client, TakesPositionsFromAServerWithoutSand) {
     Client client(server.address(), kOffer);
     ASSERT_TRUE(reaches(client, Link::streaming)) << client.link().message;
     EXPECT_NE(client.link().message.find("'glove' streams positions"), std::string::npos) << client.link().message;
+    EXPECT_EQ(client.counters().links, 1U);
     std::vector<TimedPosition> got;
     ASSERT_TRUE(eventually([&] {
         for (const TimedPosition& position : client.drainPositions()) {

@@ -74,7 +74,7 @@ TEST_F(Hostile, AMasterTakesNothingFromAServerThatIsNone) {
     hostile::FalseServer server(seed_, identity_, 1'000'000'000);
     Client client({"127.0.0.1", server.port()}, offerOf(scene_));
     std::size_t most = 0;
-    const auto refused = [&] { return total(client.counters().refused) + client.counters().refusedHere; };
+    const auto refused = [&] { return total(client.counters().refused) + total(client.counters().refusedHere); };
     EXPECT_TRUE(eventually(
         [&] {
             most = std::max(most, client.drainPositions().size());

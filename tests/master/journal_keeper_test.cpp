@@ -3,8 +3,6 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sched.h>
-#include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -20,6 +18,7 @@
 #include "master/checkpoint.hpp"
 #include "master/journal.hpp"
 #include "tests/support/sand_samples.hpp"
+#include "tests/support/small_disk.hpp"
 
 namespace {
 
@@ -269,44 +268,12 @@ TEST_F(Keeper, APartThatWasOnlyMadeIsNoHarm) {
     expectWhole(steps + 1);
 }
 
-/// Runs in a child that has a mount namespace with a file system of so many bytes at `folder`; its status, or 77 where
-/// this machine lets nobody have one.
-template <class Work>
-int onSmallDisk(const std::filesystem::path& folder, const char* size, const Work& work, unsigned long flags = 0) {
-    const pid_t child = fork();
-    if (child == 0) {
-        const uid_t user = getuid();
-        if (unshare(user == 0 ? CLONE_NEWNS : CLONE_NEWNS | CLONE_NEWUSER) != 0 ||
-            mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
-            mount("none", folder.c_str(), "tmpfs", flags, size) != 0) {
-            _exit(77);
-        }
-        try {
-            work();
-        } catch (const std::exception& error) {
-            ADD_FAILURE() << error.what();
-        }
-        _exit(testing::Test::HasFailure() ? 1 : 0);
-    }
-    int status = 0;
-    waitpid(child, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-void fill(const std::filesystem::path& file) {
-    const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT, 0644);
-    const std::string zeros(4096, '\0');
-    while (write(descriptor, zeros.data(), zeros.size()) > 0) {
-    }
-    close(descriptor);
-}
-
 TEST_F(Keeper, AFullDiskStopsTheSandUntilThereIsRoom) {
-    const int status = onSmallDisk(folder_, "size=4m", [this] {
+    const int status = support::onSmallDisk(folder_, "size=4m", [this] {
         begin({.checkpointSeconds = 0});
         ASSERT_TRUE(showFrame());
         // What is reserved is used up first; nothing that was taken is refused.
-        fill(folder_ / "filler");
+        support::fill(folder_ / "filler");
         const sand::Edit large = sand::Edit::loaded(files::Bytes(60'000, 7));  // which is no sand and changes none
         int frames = 1;
         while (showFrame(large)) {
@@ -334,7 +301,7 @@ TEST_F(Keeper, AFullDiskStopsTheSandUntilThereIsRoom) {
 }
 
 TEST_F(Keeper, AReadOnlyFolderIsNamed) {
-    const int status = onSmallDisk(
+    const int status = support::onSmallDisk(
         folder_, "size=4m",
         [this] {
             try {

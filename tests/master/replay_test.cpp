@@ -160,6 +160,88 @@ TEST_F(Replay, RecoversWhatStandsBeforeTheDamage) {
     EXPECT_NE(again.output.find("is there already"), std::string::npos) << again.output;
 }
 
+TEST_F(Replay, SaysWhatItReplayedWhereNothingElseIsAskedFor) {
+    sand::Terrain terrain = record();
+    EXPECT_EQ(support::runProgram("sandwall-replay", journal()).output,
+              fmt::format("{}: 40 steps replayed, state hash {:016x}; no hash differs from the session's\n", journal(),
+                          terrain.stateHash()));
+    record(1);
+    const support::Ran differs = support::runProgram("sandwall-replay", journal() + " --until 39");
+    EXPECT_EQ(differs.status, 1);
+    EXPECT_NE(differs.output.find(": 39 steps replayed, state hash "), std::string::npos) << differs.output;
+    EXPECT_NE(differs.output.find("; hashes differ\n"), std::string::npos) << differs.output;
+}
+
+TEST_F(Replay, SaysThatItsAnswerCouldNotBeWritten) {
+    record();
+    for (const char* question : {"", "--hash", "--verify", "--volumes"}) {
+        const support::Ran ran = support::runCommand("{ " SANDWALL_BIN_DIR "/sandwall-replay " + journal() + " " +
+                                                     question + " >/dev/full; }");
+        EXPECT_EQ(ran.status, 2) << question;
+        EXPECT_EQ(ran.output, "standard output: cannot be written (No space left on device)\n") << question;
+    }
+}
+
+TEST_F(Replay, SaysThatTheRowsEndWithATornRecord) {
+    record();
+    const std::string rows = " --export " + (folder_ / "steps.csv").string();
+    EXPECT_EQ(support::runProgram("sandwall-replay", journal() + rows).output, "");
+    std::filesystem::resize_file(journal(), std::filesystem::file_size(journal()) - 5);
+    const support::Ran torn = support::runProgram("sandwall-replay", journal() + rows);
+    EXPECT_EQ(torn.status, 0);
+    EXPECT_EQ(torn.output,
+              support::runProgram("sandwall-replay", journal() + " --mesh " + (folder_ / "m.ply").string()).output)
+        << "as a replay says it";
+    EXPECT_NE(torn.output.find("bytes are no whole record and were left out\n"), std::string::npos) << torn.output;
+    EXPECT_NE(torn.output.find("has no orderly end"), std::string::npos) << torn.output;
+}
+
+TEST_F(Replay, SaysThatNothingCanBeRecoveredOfAHeaderThatIsCut) {
+    record();
+    const auto whole = std::filesystem::file_size(journal());
+    for (const std::uintmax_t size : {whole / 100, std::uintmax_t{20}}) {
+        std::filesystem::resize_file(journal(), size);
+        for (const std::string& question : {std::string("--hash"), "--recover " + (folder_ / "new.journal").string()}) {
+            const support::Ran ran = support::runProgram("sandwall-replay", journal() + " " + question);
+            EXPECT_EQ(ran.status, 2) << size << question;
+            EXPECT_NE(ran.output.find("its header is cut off or damaged (cut short: "), std::string::npos)
+                << ran.output;
+            EXPECT_NE(ran.output.find("; it holds the scene as the session began, without which nothing can be "
+                                      "recovered\n"),
+                      std::string::npos)
+                << ran.output;
+        }
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "new.journal"));
+}
+
+TEST_F(Replay, RefusesARasterOfAnUnknownEnding) {
+    record();
+    for (const char* option : {" --heights ", " --difference "}) {
+        const support::Ran ran =
+            support::runProgram("sandwall-replay", journal() + option + (folder_ / "x.foo").string());
+        EXPECT_EQ(ran.status, 2);
+        EXPECT_NE(ran.output.find("x.foo: no known ending; name it .tif for a GeoTIFF, .asc for an ESRI ASCII grid"),
+                  std::string::npos)
+            << ran.output;
+        EXPECT_FALSE(std::filesystem::exists(folder_ / "x.foo"));
+        EXPECT_EQ(support::runProgram("sandwall-replay", journal() + option + "/dev/null").status, 0);
+    }
+}
+
+TEST_F(Replay, RefusesStepsBelowZero) {
+    record();
+    for (const char* number : {"-1", "-99999"}) {
+        const support::Ran ran = support::runProgram("sandwall-replay", journal() + " --hash --until " + number);
+        EXPECT_EQ(ran.status, 2);
+        EXPECT_NE(ran.output.find(std::string("--until: a step's number is 0 or more, got ") + number),
+                  std::string::npos)
+            << ran.output;
+    }
+    const std::string start = fmt::format("{:016x}\n", sand::Terrain(samples::flatScene(40, 30)).stateHash());
+    EXPECT_EQ(support::runProgram("sandwall-replay", journal() + " --hash --until 0").output, start);
+}
+
 TEST_F(Replay, RefusesAStepThatIsNotThere) {
     record();
     const support::Ran ran = support::runProgram("sandwall-replay", journal() + " --until 41");

@@ -73,6 +73,34 @@ TEST(Summary, TellsBothHalfRoundTripsApart) {
     EXPECT_EQ(haptic["half_round_trip_to_master_ms"], toMaster);
 }
 
+TEST(Summary, SaysThatAHandWasRefusedAndWhy) {
+    const auto index = [](haptic_bridge::RefusalCode code) { return static_cast<std::size_t>(code) - 1; };
+    const auto saysHaptics = [](const master::Summary& summary, const std::string& line) {
+        const std::string text = master::describe(summary);
+        EXPECT_NE(text.find("\n  haptics   " + line + "\n"), std::string::npos) << text;
+    };
+    master::Summary summary = draggedWall(false);
+    EXPECT_EQ(master::describe(summary).find("haptics"), std::string::npos) << "a wall that has none";
+    summary.link.refusedHere[index(haptic_bridge::RefusalCode::secret)] = 5;
+    saysHaptics(summary, "no hand all session: refused 5 times (secret)");
+    summary.link.refused[index(haptic_bridge::RefusalCode::tls)] = 1;
+    summary.link.refused[index(haptic_bridge::RefusalCode::garbage)] = 2;
+    saysHaptics(summary,
+                "no hand all session: refused 5 times (secret); refused the server 3 times (garbage 2, tls 1)");
+    const nlohmann::json haptic = written(summary)["haptic"];
+    EXPECT_EQ(haptic["refused_by_server"]["secret"], 5);
+    EXPECT_EQ(haptic["refused_by_server"]["busy"], 0);
+    EXPECT_EQ(haptic["refused"]["servers"]["tls"], 1);
+
+    summary = draggedWall(false);
+    summary.link.links = 1;
+    summary.haptic.emplace();
+    EXPECT_EQ(master::describe(summary).find("haptics"), std::string::npos) << "nobody was refused";
+    summary.link.refusedHere[index(haptic_bridge::RefusalCode::busy)] = 1;
+    summary.haptic->refused[index(haptic_bridge::RefusalCode::secret)] = 7;
+    saysHaptics(summary, "beside links: refused 1 time (busy); the server refused guests 7 times (secret)");
+}
+
 TEST(Summary, NamesNobodyWhereNoneStandsOut) {
     const master::Summary summary = draggedWall(false);
     EXPECT_EQ(master::describe(summary).find("\n  slowest   "), std::string::npos) << master::describe(summary);

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sched.h>
+#include <sys/mount.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace support {
+
+/// In a new user namespace: who has no number there can make no file.
+inline bool mapIds(uid_t user, gid_t group) {
+    const auto say = [](const char* file, const std::string& text) {
+        return static_cast<bool>(std::ofstream(file) << text << std::flush);
+    };
+    return say("/proc/self/setgroups", "deny") &&
+           say("/proc/self/uid_map", std::to_string(user) + " " + std::to_string(user) + " 1") &&
+           say("/proc/self/gid_map", std::to_string(group) + " " + std::to_string(group) + " 1");
+}
+
+/// Runs in a child that has a mount namespace with a file system of so many bytes at `folder`; its status, or 77 where
+/// this machine lets nobody have one.
+template <class Work>
+int onSmallDisk(const std::filesystem::path& folder, const char* size, const Work& work, unsigned long flags = 0) {
+    const pid_t child = fork();
+    if (child == 0) {
+        const uid_t user = getuid();
+        const gid_t group = getgid();
+        if (unshare(user == 0 ? CLONE_NEWNS : CLONE_NEWNS | CLONE_NEWUSER) != 0 ||
+            (user != 0 && !mapIds(user, group)) || mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
+            mount("none", folder.c_str(), "tmpfs", flags, size) != 0) {
+            _exit(77);
+        }
+        try {
+            work();
+        } catch (const std::exception& error) {
+            ADD_FAILURE() << error.what();
+        }
+        _exit(testing::Test::HasFailure() ? 1 : 0);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/// Takes all the room there is.
+inline void fill(const std::filesystem::path& file) {
+    const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT, 0644);
+    const std::string zeros(4096, '\0');
+    while (write(descriptor, zeros.data(), zeros.size()) > 0) {
+    }
+    close(descriptor);
+}
+
+}  // namespace support
