@@ -21,7 +21,7 @@ constexpr std::chrono::milliseconds kConnectTimeout{3000};
 }  // namespace
 
 void Client::Session::connect() {
-    if (stopping_) {  // the retry was due already when it was cancelled: going on would take the goodbye's timer
+    if (stopping_) {  // the retry was due already when it was cancelled
         return;
     }
     // One answer of the two below wins; the other finds `done` set.

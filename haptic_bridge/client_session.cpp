@@ -64,12 +64,8 @@ void Client::Session::stop() {
         if (connection_ && handshake_) {  // not in the middle of agreeing on TLS
             connection_->send(Bye{"the master has ended"});
         }
-        watchTimer_.expires_after(connection_ && handshake_ ? kGoodbye : Milliseconds(0));
-        watchTimer_.async_wait([this](error_code error) {
-            if (!error) {
-                io_.stop();
-            }
-        });
+        goodbyeTimer_.expires_after(connection_ && handshake_ ? kGoodbye : Milliseconds(0));
+        goodbyeTimer_.async_wait([this](error_code) { io_.stop(); });
     });
     thread_.join();
     tell(Link::stopped, "haptic server " + address_.text() + ": link closed");

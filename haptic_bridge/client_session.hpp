@@ -93,6 +93,7 @@ private:
     boost::asio::io_context io_;
     boost::asio::ip::tcp::resolver resolver_{io_};
     Timer retryTimer_{io_}, pingTimer_{io_}, watchTimer_{io_}, drillTimer_{io_};
+    Timer goodbyeTimer_{io_};  // nothing else's: a handler that is due already must not put off the end
     std::shared_ptr<Connection> connection_;
     std::string peer_;
     Start granted_;

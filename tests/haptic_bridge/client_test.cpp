@@ -2,103 +2,20 @@
 // The master's end against servers that do not behave.
 #include "haptic_bridge/client.hpp"
 
-#include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <sys/socket.h>
 
 #include <atomic>
-#include <functional>
+#include <chrono>
+#include <thread>
 
 #include "files/input_error.hpp"
-#include "haptic_bridge/message_reader.hpp"
+#include "tests/haptic_bridge/fake_server.hpp"
 #include "tests/haptic_bridge/server_process.hpp"
 
 namespace {
 
 using namespace haptic_bridge;
 using namespace test;
-
-/// A listening socket whose every guest gets one conversation, on a thread of its own.
-class FakeServer {
-public:
-    struct Guest {
-        int socket;
-        MessageReader reader;
-
-        void send(std::span<const std::uint8_t> bytes) const {
-            (void)!::send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-        }
-        void send(const Message& message) const { send(encode(message)); }
-        /// The next message, or nothing when the client has gone.
-        std::optional<Message> next() {
-            while (true) {
-                if (auto message = reader.next()) {
-                    return message;
-                }
-                std::array<std::uint8_t, 4096> chunk{};
-                const ssize_t count = recv(socket, chunk.data(), chunk.size(), 0);
-                if (count <= 0) {
-                    return std::nullopt;
-                }
-                reader.feed(std::span(chunk).first(static_cast<std::size_t>(count)));
-            }
-        }
-        /// Reads until a message of this kind comes; nothing when the client has gone.
-        template <class Kind>
-        std::optional<Kind> await() {
-            while (const auto message = next()) {
-                if (const Kind* wanted = std::get_if<Kind>(&*message)) {
-                    return *wanted;
-                }
-            }
-            return std::nullopt;
-        }
-    };
-
-    explicit FakeServer(std::function<void(Guest&)> talk) : talk_(std::move(talk)) {
-        socket_ = socket(AF_INET, SOCK_STREAM, 0);
-        sockaddr_in address{};
-        address.sin_family = AF_INET;
-        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-        socklen_t size = sizeof address;
-        EXPECT_EQ(bind(socket_, reinterpret_cast<const sockaddr*>(&address), size), 0);
-        EXPECT_EQ(listen(socket_, 8), 0);
-        EXPECT_EQ(getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size), 0);
-        port_ = ntohs(address.sin_port);
-        thread_ = std::thread([this] { serve(); });
-    }
-    ~FakeServer() {
-        shutdown(socket_, SHUT_RDWR);
-        thread_.join();
-        close(socket_);
-    }
-    FakeServer(const FakeServer&) = delete;
-    FakeServer& operator=(const FakeServer&) = delete;
-
-    [[nodiscard]] Address address() const { return {"127.0.0.1", port_}; }
-    [[nodiscard]] int guests() const { return guests_; }
-
-private:
-    void serve() {
-        while (true) {
-            Guest guest{accept(socket_, nullptr, nullptr), {}};
-            if (guest.socket < 0) {
-                return;
-            }
-            const timeval patience{.tv_sec = 5, .tv_usec = 0};
-            setsockopt(guest.socket, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-            ++guests_;
-            talk_(guest);
-            close(guest.socket);
-        }
-    }
-
-    std::function<void(Guest&)> talk_;
-    int socket_ = -1;
-    std::uint16_t port_ = 0;
-    std::atomic<int> guests_{0};
-    std::thread thread_;
-};
 
 const Offer kOffer{42, "dunes"};
 const Identity kIdentity{kProtocolVersion, sand::kAlgorithmVersion, 42, "dunes"};
@@ -127,6 +44,15 @@ bool linkUp(FakeServer::Guest& guest) {
 void grantWhenOffered(Client& client, std::uint32_t epoch, std::uint64_t number) {
     ASSERT_TRUE(reaches(client, Link::offered)) << client.link().message;
     client.grant(epoch, number, 0, {});
+}
+
+files::Bytes positions(int count) {
+    files::Bytes many;
+    for (int i = 0; i < count; ++i) {
+        const files::Bytes one = encode(Position{i, 0, 0, 0, false});
+        many.insert(many.end(), one.begin(), one.end());
+    }
+    return many;
 }
 
 TEST(Client, SaysThatNobodyAnswersAndStopsAtOnce) {
@@ -233,11 +159,7 @@ TEST(Client, TakesPositionsFromAServerWithoutSand) {
 TEST(Client, HoldsAFloodOfPositionsBack) {
     FakeServer server([](FakeServer::Guest& guest) {
         guest.send(PositionGreeting{kProtocolVersion, "hose"});
-        files::Bytes many;
-        for (int i = 0; i < 1000; ++i) {
-            const files::Bytes one = encode(Position{i, 0, 0, 0, false});
-            many.insert(many.end(), one.begin(), one.end());
-        }
+        const files::Bytes many = positions(1000);
         for (int i = 0; i < 400; ++i) {
             guest.send(std::span<const std::uint8_t>(many));
         }
@@ -253,6 +175,33 @@ TEST(Client, HoldsAFloodOfPositionsBack) {
     }));
     // What a chunk of the socket holds beyond the bound is still taken in.
     EXPECT_LE(most, Client::kMaxPositions + 64 * 1024 / 38);
+}
+
+TEST(Client, StopsThoughAnotherTimerBecomesDueMeanwhile) {
+    // The link is looked at every half second: that instant, and the stop, come while the network thread is busy with
+    // a large state, the stop first. Looking must not put off the end.
+    std::atomic<bool> needed = false, over = false;
+    FakeServer server([&](FakeServer::Guest& guest) {
+        if (!guest.await<Hello>()) {
+            return;
+        }
+        const auto welcomed = std::chrono::steady_clock::now();
+        guest.send(Welcome{kIdentity, 60});
+        guest.await<Start>();
+        std::this_thread::sleep_until(welcomed + 470ms);
+        guest.send(NeedState{});
+        needed = true;
+        eventually([&] { return over.load(); });  // reads nothing more
+    });
+    Client client(server.address(), kOffer);
+    ASSERT_TRUE(reaches(client, Link::offered)) << client.link().message;
+    client.grant(1, 10, 0, files::Bytes(std::size_t{256} << 20U), {});
+    ASSERT_TRUE(eventually([&] { return needed.load(); }));
+    std::this_thread::sleep_for(10ms);
+    const auto asked = std::chrono::steady_clock::now();
+    client.stop();
+    EXPECT_LT(std::chrono::steady_clock::now() - asked, 5s);  // half a second, but for a busy machine
+    over = true;
 }
 
 TEST(Client, RefusesPositionsOfAnotherVersionOrOutOfTurn) {
