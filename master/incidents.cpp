@@ -21,10 +21,13 @@ ordered_json jsonOf(const Incidents& incidents) {
     ordered_json json{{"divergences", incidents.divergences},
                       {"healed", incidents.healed},
                       {"server_divergences", incidents.serverDivergences},
+                      {"links", incidents.links},
                       {"reconnects", incidents.reconnects},
                       {"stands", incidents.stands}};
-    for (std::size_t i = 0; i < incidents.refused.size(); ++i) {
-        json["refused"][std::string(haptic_bridge::kRefusalNames[i])] = incidents.refused[i];
+    for (std::size_t i = 0; i < haptic_bridge::kRefusalNames.size(); ++i) {
+        const std::string kind(haptic_bridge::kRefusalNames[i]);
+        json["refused_by_server"][kind] = incidents.refusedHere[i];
+        json["refused"][kind] = incidents.refused[i];
     }
     return json;
 }
@@ -38,10 +41,13 @@ Incidents incidentsOf(const std::filesystem::path& file) {
     Incidents incidents{.divergences = json.at("divergences"),
                         .healed = json.at("healed"),
                         .serverDivergences = json.at("server_divergences"),
+                        .links = json.at("links"),
                         .reconnects = json.at("reconnects"),
                         .stands = json.at("stands")};
-    for (std::size_t i = 0; i < incidents.refused.size(); ++i) {
-        incidents.refused[i] = json.at("refused").at(std::string(haptic_bridge::kRefusalNames[i]));
+    for (std::size_t i = 0; i < haptic_bridge::kRefusalNames.size(); ++i) {
+        const std::string kind(haptic_bridge::kRefusalNames[i]);
+        incidents.refusedHere[i] = json.at("refused_by_server").at(kind);
+        incidents.refused[i] = json.at("refused").at(kind);
     }
     return incidents;
 }
@@ -50,8 +56,6 @@ Incidents incidentsOf(const std::filesystem::path& file) {
 
 IncidentFile::IncidentFile(const std::filesystem::path& folder, bool resumed) : file_(folder / "incidents.json") {
     if (!resumed) {
-        std::error_code none;
-        std::filesystem::remove(file_, none);
         return;
     }
     try {
@@ -61,16 +65,31 @@ IncidentFile::IncidentFile(const std::filesystem::path& folder, bool resumed) : 
     }
 }
 
+void IncidentFile::forget() const {
+    std::error_code none;
+    std::filesystem::remove(file_, none);
+}
+
 void IncidentFile::keep(const Incidents& sinceTheBeginning, std::int64_t nowNs) {
-    if (sinceTheBeginning == kept_ || (writtenNs_ != 0 && nowNs - writtenNs_ < kSeldomNs)) {
+    if (sinceTheBeginning == kept_ || (triedNs_ != 0 && nowNs - triedNs_ < kSeldomNs)) {
         return;
     }
-    writtenNs_ = nowNs;
-    kept_ = sinceTheBeginning;
+    triedNs_ = nowNs;
+    write(sinceTheBeginning);
+}
+
+void IncidentFile::keepLast(const Incidents& sinceTheBeginning) {
+    if (!(sinceTheBeginning == kept_)) {
+        write(sinceTheBeginning);
+    }
+}
+
+void IncidentFile::write(const Incidents& incidents) {
     try {
         files::WholeFile whole(file_);
-        whole.stream() << jsonOf(sinceTheBeginning).dump() << '\n';
+        whole.stream() << jsonOf(incidents).dump() << '\n';
         whole.keep();
+        kept_ = incidents;
     } catch (const files::InputError&) {
         // The journal's complaint about the same disk is enough.
     }

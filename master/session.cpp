@@ -117,20 +117,6 @@ Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, con
     hash_ = terrain_.stateHash();
 }
 
-Incidents Session::incidents() const {
-    Incidents all = incidentFile_.before();
-    all.divergences = summary_.divergences;
-    all.healed = summary_.healed;
-    all.serverDivergences = summary_.serverDivergences;
-    const haptic_bridge::LinkCounters link = sequencer_.counters();
-    all.reconnects += link.reconnects;
-    for (std::size_t i = 0; i < all.refused.size(); ++i) {
-        all.refused[i] += link.refused[i];
-    }
-    all.stands += journal_ ? journal_->stands() : 0;
-    return all;
-}
-
 double Session::framePeriod() const { return 1 / options_.refreshHz.value_or(wall_.refreshHz); }
 
 double Session::sessionTime() const {
@@ -347,6 +333,7 @@ void Session::finish(bool agreed) {
         fmt::print(stderr, "sandwall: {}\n", failure.what());
     }
     const Incidents all = incidents();
+    incidentFile_.keepLast(all);
     endJournal(agreed);
     summary_.frames = frame_;
     summary_.steps = terrain_.stepNumber();
@@ -359,7 +346,9 @@ void Session::finish(bool agreed) {
         summary_.tracking = views_.viewer().counters();
     }
     summary_.link = sequencer_.counters();
+    summary_.link.links = all.links;
     summary_.link.reconnects = all.reconnects;
+    summary_.link.refusedHere = all.refusedHere;
     summary_.link.refused = all.refused;
     summary_.journal.stands += incidentFile_.before().stands;
     summary_.ranksReports = lockstep::gatherReports(barrier_, {});
@@ -374,6 +363,7 @@ int Session::run() {
     forgetOldResults(options_.out, options_.resumed != nullptr);
     if (!options_.resumed) {
         forgetRecoveries(options_.out);
+        incidentFile_.forget();
     }
     bool agreed = true;
     while (agreed && !stopping_) {

@@ -28,6 +28,22 @@ std::vector<int> ranksOf(const lockstep::Divergence& divergence) {
 
 }  // namespace
 
+Incidents Session::incidents() const {
+    Incidents all = incidentFile_.before();
+    all.divergences = summary_.divergences;  // which began with those before
+    all.healed = summary_.healed;
+    all.serverDivergences = summary_.serverDivergences;
+    const haptic_bridge::LinkCounters link = sequencer_.counters();
+    all.links += link.links;
+    all.reconnects += link.reconnects;
+    for (std::size_t i = 0; i < all.refused.size(); ++i) {
+        all.refusedHere[i] += link.refusedHere[i];
+        all.refused[i] += link.refused[i];
+    }
+    all.stands += journal_ ? journal_->stands() : 0;
+    return all;
+}
+
 bool Session::reachAgreement(lockstep::Verdict verdict, lockstep::Arrival mine) {
     for (bool again = false; verdict != lockstep::Verdict::equal; again = true) {
         if (verdict == lockstep::Verdict::nonsense) {

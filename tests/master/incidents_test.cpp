@@ -21,13 +21,18 @@ protected:
     const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "sandwall_incidents_test";
 };
 
-TEST_F(IncidentFileTest, IsReadByTheTryThatGoesOnAndForgottenByASessionThatBeginsAnew) {
-    master::Incidents some{.divergences = 3, .healed = 2, .serverDivergences = 1, .reconnects = 4, .stands = 1};
+TEST_F(IncidentFileTest, IsReadByTheTryThatGoesOnAndByNoSessionThatBeginsAnew) {
+    master::Incidents some{
+        .divergences = 3, .healed = 2, .serverDivergences = 1, .links = 6, .reconnects = 4, .stands = 1};
+    some.refusedHere[1] = 8;
     some.refused[0] = 7;
     some.refused.back() = 5;
     master::IncidentFile(folder, false).keep(some, kSecond);
     EXPECT_EQ(master::IncidentFile(folder, true).before(), some);
-    EXPECT_EQ(master::IncidentFile(folder, false).before(), master::Incidents{});
+    const master::IncidentFile anew(folder, false);
+    EXPECT_EQ(anew.before(), master::Incidents{});
+    EXPECT_TRUE(written()) << "it may be a running session's, which this one is refused beside";
+    anew.forget();
     EXPECT_FALSE(written());
 }
 
@@ -41,6 +46,18 @@ TEST_F(IncidentFileTest, IsWrittenWhenSomethingWasAddedAndNotForEveryFrame) {
     EXPECT_EQ(master::IncidentFile(folder, true).before().healed, 1U) << "too soon";
     file.keep({.healed = 2}, kSecond + kSecond / 2);
     EXPECT_EQ(master::IncidentFile(folder, true).before().healed, 2U);
+}
+
+TEST_F(IncidentFileTest, IsWrittenWhenTheDiskLetsItAndAtTheEnd) {
+    master::IncidentFile file(folder, false);
+    std::filesystem::remove_all(folder);  // as good as a full disk
+    file.keep({.stands = 1}, kSecond);
+    std::filesystem::create_directories(folder);
+    file.keep({.stands = 1}, 2 * kSecond);
+    EXPECT_EQ(master::IncidentFile(folder, true).before().stands, 1U);
+    file.keep({.stands = 2}, 2 * kSecond + 1);
+    file.keepLast({.stands = 2});
+    EXPECT_EQ(master::IncidentFile(folder, true).before().stands, 2U);
 }
 
 TEST_F(IncidentFileTest, CountsFromHereOnWhenItIsDamaged) {
