@@ -78,3 +78,7 @@ def percent(share, digits=2):
 def markdown(header, rows):
     lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
     return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows])
+
+
+def seconds(value):
+    return "never" if value is None else f"{value:.2g} s" if value >= 1 else f"{value * 1e3:.3g} ms" if value >= 1e-3 else f"{float(f'{value * 1e6:.2g}'):g} µs"
