@@ -57,6 +57,14 @@ protected:
         EXPECT_EQ(ran.output.find('\n', line), ran.output.size() - 1) << ran.output;
         return nlohmann::json::parse(ran.output.substr(std::min(line, ran.output.size())), nullptr, false);
     }
+    /// Status 2, one line that holds `words`, and no file of this name.
+    void expectRefused(const std::string& arguments, const std::string& words, const std::string& out) const {
+        const support::Ran ran = run(arguments);
+        EXPECT_EQ(ran.status, 2) << arguments << '\n' << ran.output;
+        EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
+        EXPECT_NE(ran.output.find(words), std::string::npos) << "not '" << words << "' in: " << ran.output;
+        EXPECT_FALSE(std::filesystem::exists(path(out))) << arguments;
+    }
 
     std::filesystem::path folder_;
 };

@@ -40,11 +40,7 @@ protected:
         return mesh;
     }
     void expectRefused(const std::string& arguments, const std::string& words) const {
-        const support::Ran ran = run(arguments);
-        EXPECT_EQ(ran.status, 2) << arguments << '\n' << ran.output;
-        EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
-        EXPECT_NE(ran.output.find(words), std::string::npos) << "not '" << words << "' in: " << ran.output;
-        EXPECT_FALSE(std::filesystem::exists(path("out.ply"))) << arguments;
+        Relax::expectRefused(arguments, words, "out.ply");
     }
     void expectPointsRefused(const std::string& points, const std::string& words) const {
         write("bad.csv", points);
