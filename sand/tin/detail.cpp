@@ -102,6 +102,15 @@ double farthestFromPlane(const Layer& layer, Vertex vertex, const Link& link) {
     return farthest;
 }
 
+std::int64_t candidates(const Layer& layer, const DetailRules& rules) {
+    return static_cast<std::int64_t>(layer.triangles().triangleAt.size()) - rules.firstToGo;
+}
+
+/// Vertices that a step looks at, unless it removes as many as it may before.
+std::int64_t looksOfStep(const Layer& layer, const DetailRules& rules) {
+    return std::clamp<std::int64_t>(candidates(layer, rules), 0, std::int64_t{rules.removals} * kLooksPerRemoval);
+}
+
 }  // namespace
 
 int refine(Mesh& mesh, const DetailRules& rules, const Box& box, const std::function<bool(const Place&)>& wanted,
@@ -128,19 +137,6 @@ int refine(Mesh& mesh, const DetailRules& rules, const Box& box, const std::func
     mesh.insert(places);
     return static_cast<int>(places.size());
 }
-
-namespace {
-
-std::int64_t candidates(const Layer& layer, const DetailRules& rules) {
-    return static_cast<std::int64_t>(layer.triangles().triangleAt.size()) - rules.firstToGo;
-}
-
-/// Vertices that a step looks at, unless it removes as many as it may before.
-std::int64_t looksOfStep(const Layer& layer, const DetailRules& rules) {
-    return std::clamp<std::int64_t>(candidates(layer, rules), 0, std::int64_t{rules.removals} * kLooksPerRemoval);
-}
-
-}  // namespace
 
 // The triangles before and after span the same vertices, but for the one that goes: all lie within `far` of a plane,
 // and so do both surfaces, which are 2 far apart at most. The remap moves them by the mean of that at most.

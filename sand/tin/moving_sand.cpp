@@ -218,6 +218,4 @@ MovingSand::Renumbering MovingSand::keepEdges(const std::vector<std::uint8_t>& k
     return now;
 }
 
-void MovingSand::clear() { *this = MovingSand(v3_, alwaysWide_); }
-
 }  // namespace sand::tin

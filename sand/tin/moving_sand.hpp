@@ -55,7 +55,6 @@ public:
     };
     /// Keeps these edges (a byte each) and what they need, in the order in which they are.
     Renumbering keepEdges(const std::vector<std::uint8_t>& kept);
-    void clear();
 
 private:
     void notice(std::int64_t volume, std::int64_t star);
