@@ -84,8 +84,7 @@ ordered_json certificatePart(const GridSand& sand, const Relaxed& relaxed) {
         return nullptr;
     }
     const double cells = static_cast<double>(sand.field.columns()) * sand.field.rows();
-    return {{"gap", relaxed.certificate->relativeGap()},
-            {"bound", relaxed.certificate->relative()},
+    return {{"bound", relaxed.certificate->relative()},
             {"bound_rms", std::sqrt(relaxed.certificate->squaredDistance / cells) * sand.scale.unit}};
 }
 
