@@ -16,7 +16,7 @@ namespace bench {
 class Relaxation {
 public:
     virtual ~Relaxation() = default;
-    /// At most so many more sweeps; in parts or at once gives the same.
+    /// At most so many more sweeps. G begins with more inertia when they are few; else parts give the same.
     virtual void sweep(int count) = 0;
     [[nodiscard]] virtual bool atRest() const = 0;
     [[nodiscard]] virtual std::int64_t sweepsDone() const = 0;
