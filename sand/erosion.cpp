@@ -16,7 +16,12 @@ namespace {
 constexpr int kSharedPatch = 32;  // [cell], height of a patch where several threads want some
 
 /// Beyond the rim the ground goes on as it came: the slope along the rim is then that of the cell's one neighbour.
-std::int32_t extrapolate(std::int32_t edge, std::int32_t inner) { return 2 * edge - inner; }
+void extrapolate(const std::int32_t* edge, const std::int32_t* inner, std::ptrdiff_t stride, int count,
+                 std::int32_t* ghost) {
+    for (int i = 0; i < count; ++i, edge += stride, inner += stride, ghost += stride) {
+        *ghost = 2 * *edge - *inner;
+    }
+}
 
 /// The law's numbers for faces across which the cells are `ratio` times as long as along them; thresholds in [unit]
 /// from cell to cell.
@@ -293,14 +298,12 @@ void Erosion::refreshGhosts(HeightField& field, const Rect& cells) const {
     const int rows = field.rows();
     const Rect reach = cells.grownBy(1).clippedTo(field.bounds());
     const auto ghostRow = [&](int ghost, int edge, int inner) {
-        for (int x = reach.x0; x < reach.x1; ++x) {
-            field.setHeight(x, ghost, extrapolate(field.height(x, edge), field.height(x, inner)));
-        }
+        extrapolate(field.row(edge) + reach.x0, field.row(inner) + reach.x0, 1, reach.x1 - reach.x0,
+                    field.row(ghost) + reach.x0);
     };
     const auto ghostColumn = [&](int ghost, int edge, int inner) {
-        for (int y = reach.y0; y < reach.y1; ++y) {
-            field.setHeight(ghost, y, extrapolate(field.height(edge, y), field.height(inner, y)));
-        }
+        std::int32_t* const first = field.row(reach.y0);
+        extrapolate(first + edge, first + inner, field.stride(), reach.y1 - reach.y0, first + ghost);
     };
     if (cells.y0 == 0) {
         ghostRow(-1, 0, std::min(1, rows - 1));

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 namespace sand::SANDWALL_CODE_PATH {
 namespace {
@@ -83,13 +82,6 @@ struct FourNeighbours {
     }
 };
 
-void differences(const std::int32_t* __restrict a, const std::int32_t* __restrict b, int count,
-                 float* __restrict result) {
-    for (int i = 0; i < count; ++i) {
-        result[i] = static_cast<float>(a[i] - b[i]);
-    }
-}
-
 /// Differences as the slope along a face sees them: a step counts at most the sand of its upper cell, or a bare cliff
 /// beside it would turn stable sand liquid.
 void sandDifferences(const std::int32_t* __restrict a, const std::int32_t* __restrict b,
@@ -116,6 +108,28 @@ void fluxesBetween(const Law law, const std::int32_t* __restrict a, const std::i
     }
 }
 
+/// The fluxes from a row of cells to their eastern neighbours; `south` and `north` are the rows beside it.
+template <class Law>
+void eastwards(const Law law, const std::int32_t* __restrict south, const std::int32_t* __restrict row,
+               const std::int32_t* __restrict north, int count, std::int32_t* __restrict flux) {
+    for (int i = 0; i < count; ++i) {
+        const auto here = static_cast<float>(north[i] - south[i]);
+        const auto there = static_cast<float>(north[i + 1] - south[i + 1]);
+        flux[i] = law(row[i] - row[i + 1], here + there, flux[i]);
+    }
+}
+
+/// The fluxes from a row of cells to the row north of it.
+template <class Law>
+void northwards(const Law law, const std::int32_t* __restrict row, const std::int32_t* __restrict north, int count,
+                std::int32_t* __restrict flux) {
+    for (int i = 0; i < count; ++i) {
+        const auto here = static_cast<float>(row[i + 1] - row[i - 1]);
+        const auto there = static_cast<float>(north[i + 1] - north[i - 1]);
+        flux[i] = law(row[i] - north[i], here + there, flux[i]);
+    }
+}
+
 /// Lets no flux bring more than there is room for, behind it or ahead.
 void limitToRoom(const std::int32_t* __restrict behind, const std::int32_t* __restrict ahead, int count,
                  std::int32_t* __restrict flux) {
@@ -132,27 +146,22 @@ void limitToSand(const std::int32_t* __restrict behind, const std::int32_t* __re
     }
 }
 
-template <class Law, bool kHeld>
+/// `kSandAlong`: the slope along a face counts sand alone, and not the ground that it lies on.
+template <class Law, bool kSandAlong>
 class Fluxes {
 public:
     Fluxes(const FluxPatch& patch, const Law& east, const Law& north)
         : patch_(patch), eastLaw_(east), northLaw_(north), width_(patch.cells.x1 - patch.cells.x0) {}
 
     std::int64_t run() {
-        Row<float>* rise = &rises_[0];
-        Row<float>* riseAbove = &rises_[1];
         if (patch_.cells.y0 == 0) {
             rimNorth(-1);
         }
-        riseEast(patch_.cells.y0, *riseAbove);
+        if constexpr (kSandAlong) {
+            riseEast(patch_.cells.y0);
+        }
         for (int y = patch_.cells.y0; y < patch_.cells.y1; ++y) {
-            std::swap(rise, riseAbove);
-            if (y == patch_.rows - 1) {
-                rimNorth(y);
-            } else {
-                riseEast(y + 1, *riseAbove);
-                northFluxes(y, rise->data(), riseAbove->data());
-            }
+            y == patch_.rows - 1 ? rimNorth(y) : northFluxes(y);
             eastFluxes(y);
         }
         return outflow_;
@@ -170,66 +179,57 @@ private:
         return numbers + (y - patch_.cells.y0 + 1) * (width_ + 2) + 1;
     }
 
-    /// How much higher the eastern neighbour of each cell of row y is than the western one.
-    void riseEast(int y, Row<float>& rise) {
-        if constexpr (Law::kNeedsAlong && kHeld) {
-            if (patch_.sand != nullptr) {
-                const std::int32_t* sand = held(patch_.sand, y) - 1;
-                sandDifferences(heights(y), heights(y) - 1, sand + 1, sand, width_ + 1, steps_[0].data());
-                sums(steps_[0].data(), steps_[0].data() + 1, width_, rise.data());
-                return;
-            }
-        }
-        if constexpr (Law::kNeedsAlong) {
-            differences(heights(y) + 1, heights(y) - 1, width_, rise.data());
-        }
+    /// How much higher the eastern neighbour of each cell of row y is than the western one, as the sand goes.
+    void riseEast(int y) {
+        const std::int32_t* sand = held(patch_.sand, y) - 1;
+        sandDifferences(heights(y), heights(y) - 1, sand + 1, sand, width_ + 1, steps_[0].data());
+        sums(steps_[0].data(), steps_[0].data() + 1, width_, riseEast_[static_cast<unsigned>(y) % 2].data());
     }
-
     /// How much higher the northern neighbour of each cell of row y is than the southern one, one cell more than wide.
     void riseNorth(int y) {
         const int count = width_ + 1;
-        if constexpr (Law::kNeedsAlong && kHeld) {
-            if (patch_.sand != nullptr) {
-                const std::int32_t* sand = held(patch_.sand, y);
-                const int up = width_ + 2;
-                sandDifferences(heights(y), heights(y - 1), sand, sand - up, count, steps_[0].data());
-                sandDifferences(heights(y + 1), heights(y), sand + up, sand, count, steps_[1].data());
-                sums(steps_[0].data(), steps_[1].data(), count, riseNorth_.data());
-                return;
-            }
-        }
-        if constexpr (Law::kNeedsAlong) {
-            differences(heights(y + 1), heights(y - 1), count, riseNorth_.data());
-        }
+        const std::int32_t* sand = held(patch_.sand, y);
+        const int up = width_ + 2;
+        sandDifferences(heights(y), heights(y - 1), sand, sand - up, count, steps_[0].data());
+        sandDifferences(heights(y + 1), heights(y), sand + up, sand, count, steps_[1].data());
+        sums(steps_[0].data(), steps_[1].data(), count, riseNorth_.data());
     }
 
     /// Limits the fluxes from the cells of row y to those `ahead` cells further in `room` and `sand`.
-    void hold(int y, int ahead, int count, std::int32_t* flux) const {
-        if constexpr (kHeld) {
-            if (patch_.room != nullptr) {
-                limitToRoom(held(patch_.room, y), held(patch_.room, y) + ahead, count, flux);
-            }
-            if (patch_.sand != nullptr) {
-                limitToSand(held(patch_.sand, y), held(patch_.sand, y) + ahead, count, flux);
-            }
+    void hold(int y, int ahead, std::int32_t* flux) const {
+        if (patch_.room != nullptr) {
+            limitToRoom(held(patch_.room, y), held(patch_.room, y) + ahead, width_, flux);
+        }
+        if (patch_.sand != nullptr) {
+            limitToSand(held(patch_.sand, y), held(patch_.sand, y) + ahead, width_, flux);
         }
     }
 
     /// Fluxes from row y to row y + 1.
-    void northFluxes(int y, const float* rise, const float* riseAbove) {
-        fluxesBetween(northLaw_, heights(y), heights(y + 1), rise, riseAbove, width_, north(y));
-        hold(y, width_ + 2, width_, north(y));
+    void northFluxes(int y) {
+        if constexpr (kSandAlong) {
+            riseEast(y + 1);
+            fluxesBetween(northLaw_, heights(y), heights(y + 1), riseEast_[static_cast<unsigned>(y) % 2].data(),
+                          riseEast_[static_cast<unsigned>(y + 1) % 2].data(), width_, north(y));
+        } else {
+            northwards(northLaw_, heights(y), heights(y + 1), width_, north(y));
+        }
+        hold(y, width_ + 2, north(y));
     }
 
     /// Fluxes from the cells of row y to their eastern neighbours, and over the rims at the row's ends.
     void eastFluxes(int y) {
-        riseNorth(y);
         std::int32_t* flux = east(y);
-        // The face at the rim as well: a row of a multiple of eight faces has no rest, which would take longer than
-        // they.
+        // The face at the rim is computed like the others and put right below: a row of a multiple of eight faces has
+        // no rest, which would take longer than all of them.
         const std::int32_t lastAtRim = flux[width_ - 1];
-        fluxesBetween(eastLaw_, heights(y), heights(y) + 1, riseNorth_.data(), riseNorth_.data() + 1, width_, flux);
-        hold(y, 1, width_, flux);
+        if constexpr (kSandAlong) {
+            riseNorth(y);
+            fluxesBetween(eastLaw_, heights(y), heights(y) + 1, riseNorth_.data(), riseNorth_.data() + 1, width_, flux);
+        } else {
+            eastwards(eastLaw_, heights(y - 1), heights(y), heights(y + 1), width_, flux);
+        }
+        hold(y, 1, flux);
         if (patch_.openRim && patch_.cells.x0 == 0) {
             flux[-1] = -overRim(eastLaw_, y, 0, heights(y + 1)[0] - heights(y - 1)[0], -flux[-1]);
         }
@@ -256,10 +256,8 @@ private:
     /// Over an open rim sand falls to height 0 and never comes back.
     std::int32_t overRim(const Law& law, int y, int i, std::int32_t along, std::int32_t last) {
         std::int32_t flux = std::max(law(heights(y)[i], 2 * static_cast<float>(along), last), 0);
-        if constexpr (kHeld) {
-            if (patch_.sand != nullptr) {
-                flux = std::min(flux, held(patch_.sand, y)[i] / 4);
-            }
+        if (patch_.sand != nullptr) {
+            flux = std::min(flux, held(patch_.sand, y)[i] / 4);
         }
         outflow_ += flux;
         return flux;
@@ -269,15 +267,20 @@ private:
     const Law eastLaw_, northLaw_;
     const int width_;
     std::int64_t outflow_ = 0;
-    std::array<Row<float>, 2> rises_;
-    Row<float> riseNorth_;
-    std::array<Row<std::int32_t>, kHeld ? 2 : 0> steps_;
+    // Of odd and even rows; none where slopes are taken from the heights as they are.
+    std::array<Row<float>, kSandAlong ? 2 : 0> riseEast_;
+    std::array<Row<std::int32_t>, kSandAlong ? 2 : 0> steps_;
+    std::array<float, kSandAlong ? kMaxPatch + 2 * kKernelMargin : 0> riseNorth_;
 };
 
 template <class Law>
 std::int64_t run(const FluxPatch& patch, const Law& east, const Law& north) {
-    return patch.room != nullptr || patch.sand != nullptr ? Fluxes<Law, true>(patch, east, north).run()
-                                                          : Fluxes<Law, false>(patch, east, north).run();
+    if constexpr (Law::kNeedsAlong) {
+        if (patch.sand != nullptr) {
+            return Fluxes<Law, true>(patch, east, north).run();
+        }
+    }
+    return Fluxes<Law, false>(patch, east, north).run();
 }
 
 template <bool kBand>
@@ -331,17 +334,18 @@ void balance(const BalancePatch& patch) {
         const std::int32_t* south = patch.north - patch.fluxStride + patch.cells.x0;
         std::copy(south, south + width, moved.data());
     }
-    for (int y = patch.cells.y0; y < patch.cells.y1; ++y) {
-        const std::ptrdiff_t flux = y * patch.fluxStride + patch.cells.x0;
-        addUp(patch.east + flux, patch.north + flux - patch.fluxStride, patch.north + flux, width,
-              patch.heights + y * patch.heightStride + patch.cells.x0, moved.data());
-        if (patch.cells.x0 == 0) {
-            moved.data()[0] |= patch.east[flux - 1];
+    int blockRow = 0;
+    for (int y = patch.cells.y0; y < patch.cells.y1; ++blockRow) {
+        const int end = std::min(y + patch.blockSize, patch.cells.y1);
+        for (; y < end; ++y) {
+            const std::ptrdiff_t flux = y * patch.fluxStride + patch.cells.x0;
+            addUp(patch.east + flux, patch.north + flux - patch.fluxStride, patch.north + flux, width,
+                  patch.heights + y * patch.heightStride + patch.cells.x0, moved.data());
+            if (patch.cells.x0 == 0) {
+                moved.data()[0] |= patch.east[flux - 1];
+            }
         }
-        const int done = y + 1 - patch.cells.y0;
-        if (done % patch.blockSize == 0 || y + 1 == patch.cells.y1) {
-            reportMoved(patch, (done - 1) / patch.blockSize, moved);
-        }
+        reportMoved(patch, blockRow, moved);
     }
 }
 
