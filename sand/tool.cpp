@@ -14,6 +14,11 @@ Offset offsetOf(ProbePoint at, int column, int row) {
             std::int64_t{row} * kProbePerCell + kHalfCell - at.y};
 }
 
+/// Cells of a row.
+struct Stretch {
+    int row, from, to;
+};
+
 /// A cell that takes some of the sand the tool pushes away.
 struct Receiver {
     int column, row;
@@ -98,9 +103,18 @@ Tool::Displacement Tool::press(HeightField& field, Rim rim, const Ground* ground
                                const Offset& ahead) const {
     const Rect cells = this->cells(field, at);
     std::int64_t taken = 0;
+    std::vector<Stretch> cuts;  // of a tool that is dragged most rows are a short one, ahead
     for (int y = cells.y0; y < cells.y1; ++y) {
+        Stretch cut{y, cells.x1, cells.x0};
         for (int x = cells.x0; x < cells.x1; ++x) {
-            taken += std::int64_t{field.height(x, y)} - cutTo(field, ground, at, x, y);
+            const std::int64_t less = std::int64_t{field.height(x, y)} - cutTo(field, ground, at, x, y);
+            if (less > 0) {
+                taken += less;
+                cut = {y, std::min(cut.from, x), x + 1};
+            }
+        }
+        if (cut.from < cut.to) {
+            cuts.push_back(cut);
         }
     }
     if (taken == 0) {
@@ -119,9 +133,9 @@ Tool::Displacement Tool::press(HeightField& field, Rim rim, const Ground* ground
             return {};  // no room left in 32 bits: the sand stays, and the tool passes through it
         }
     }
-    for (int y = cells.y0; y < cells.y1; ++y) {
-        for (int x = cells.x0; x < cells.x1; ++x) {
-            field.setHeight(x, y, cutTo(field, ground, at, x, y));
+    for (const Stretch& cut : cuts) {
+        for (int x = cut.from; x < cut.to; ++x) {
+            field.setHeight(x, cut.row, cutTo(field, ground, at, x, cut.row));
         }
     }
     Displacement result{shape_.cellsChanged(at.x, at.y).clippedTo(field.bounds()), 0};
