@@ -45,7 +45,8 @@ TinSurface::TinSurface(const Scene& scene)
       startThreshold_(scene.rules.startThreshold),
       layer_(layerOf(*start_)),
       erosion_(layer_, threshold_, startThreshold_),
-      hash_(layer_) {
+      hash_(layer_),
+      kept_(layer_) {
     (void)layer_.takeChange();
 }
 
@@ -59,8 +60,11 @@ TinSurface::TinSurface(const TinSurface& other)
       state_(other.state_),
       erosion_(layer_, threshold_, startThreshold_),
       hash_(layer_),
-      kept_(other.kept_) {
+      kept_(layer_) {
     (void)layer_.takeChange();
+    if (other.kept_.any()) {
+        kept_.keep(other.kept_.copy());
+    }
 }
 
 void TinSurface::meshChanged() {
@@ -71,6 +75,8 @@ void TinSurface::meshChanged() {
     erosion_.changed(layer_, change);
     hash_.touch(layer_, change.vertices);
     hash_.touchTriangles(layer_, change.triangles);
+    kept_.touch(change.vertices);
+    kept_.touchTriangles(change.triangles);
     coarsening_.wake();
     if (!damage_.whole) {
         addTo(damage_.triangles, change.triangles);
@@ -96,6 +102,7 @@ void TinSurface::sandMoved(const std::vector<Vertex>& vertices) {
     }
     coarsening_.wake();
     hash_.touch(layer_, vertices);
+    kept_.touch(vertices);
     if (!damage_.whole) {
         addTo(damage_.vertices, vertices);
     }
@@ -162,7 +169,7 @@ void TinSurface::settle() {
 void TinSurface::reset() { replace(LayerCopy(layerOf(*start_), {})); }
 
 void TinSurface::keep(const SurfaceCopy& copy) {
-    kept_ = std::make_shared<const LayerCopy>(dynamic_cast<const LayerCopy&>(copy));
+    kept_.keep(std::make_shared<const LayerCopy>(dynamic_cast<const LayerCopy&>(copy)));
 }
 
 std::shared_ptr<const SurfaceCopy> TinSurface::copy() const {
@@ -183,6 +190,7 @@ void TinSurface::replace(const SurfaceCopy& copy) {
     state_ = sand.state();
     erosion_ = Erosion(layer_, threshold_, startThreshold_);
     hash_ = VertexHash(layer_);
+    kept_.replaced(layer_);
     held_.reset();
     coarsening_.wake();
     damage_ = {.whole = true, .triangles = {}, .vertices = {}};

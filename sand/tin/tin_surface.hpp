@@ -8,6 +8,7 @@
 #include "sand/surface.hpp"
 #include "sand/tin/detail.hpp"
 #include "sand/tin/erosion.hpp"
+#include "sand/tin/kept_layer.hpp"
 #include "sand/tin/layer_copy.hpp"
 #include "sand/tin/tool.hpp"
 #include "sand/tin/vertex_hash.hpp"
@@ -35,12 +36,12 @@ public:
     void settle() override;
     void reset() override;
 
-    void keep() override { kept_ = std::make_shared<const LayerCopy>(layer_, state_); }
+    void keep() override { kept_.keep(layer_, state_); }
     void keep(const SurfaceCopy& copy) override;
-    void forget() override { kept_ = nullptr; }
-    [[nodiscard]] std::shared_ptr<const SurfaceCopy> kept() const override { return kept_; }
-    [[nodiscard]] bool hasKept() const override { return kept_ != nullptr; }
-    void putBackKept() override { replace(*kept_); }
+    void forget() override { kept_.forget(); }
+    [[nodiscard]] std::shared_ptr<const SurfaceCopy> kept() const override { return kept_.copy(); }
+    [[nodiscard]] bool hasKept() const override { return kept_.any(); }
+    void putBackKept() override { replace(*kept_.copy()); }
 
     [[nodiscard]] std::shared_ptr<const SurfaceCopy> copy() const override;
     [[nodiscard]] SurfaceReader reader() const override;
@@ -79,7 +80,7 @@ private:
     Erosion erosion_;
     VertexHash hash_;
     SurfaceView view_{layer_.triangles(), layer_.heights(), detail_.spacing};
-    std::shared_ptr<const LayerCopy> kept_;
+    KeptLayer kept_;
     SurfaceDamage damage_{.whole = true, .triangles = {}, .vertices = {}};
     std::optional<Imprint::Stand> held_;        // the obstacle of the last sweeps: only to save work
     std::vector<Vertex> moved_;                 // scratch
