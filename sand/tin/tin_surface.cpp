@@ -67,6 +67,13 @@ TinSurface::TinSurface(const TinSurface& other)
     }
 }
 
+Tool& TinSurface::toolOf(const HeldTool& tool) {
+    if (!tool_ || !tool_->is(tool.shape, tool.heading)) {
+        tool_.emplace(tool.shape, tool.heading, detail_);
+    }
+    return *tool_;
+}
+
 void TinSurface::meshChanged() {
     const Mesh::Change change = layer_.takeChange();
     if (change.triangles.empty() && change.vertices.empty()) {
@@ -86,10 +93,9 @@ void TinSurface::meshChanged() {
 
 /// Sand that fills the room below a tool: that beside it leans on the tool now.
 void TinSurface::wakeFull(const Underside& under, const Box& reach) {
-    Window near;
-    near.look(layer_.triangles(), reach);
+    near_.look(layer_.triangles(), reach);
     std::vector<Vertex> full;
-    std::copy_if(near.vertices().begin(), near.vertices().end(), std::back_inserter(full), [&](Vertex vertex) {
+    std::copy_if(near_.vertices().begin(), near_.vertices().end(), std::back_inserter(full), [&](Vertex vertex) {
         const auto i = static_cast<std::size_t>(vertex);
         return layer_.heights()[i] > under(layer_.triangles().places[i]) - 1.0;
     });
@@ -116,12 +122,6 @@ void TinSurface::drag(const HeldTool& tool, std::span<const ProbePoint> path) {
     erosion_.wake(done.touched);
 }
 
-void TinSurface::release(const HeldTool& tool, const ProbePoint& at) {
-    Window under;
-    under.look(layer_.triangles(), toolOf(tool).reach(at));
-    erosion_.wake(under.vertices());
-}
-
 void TinSurface::leave(const HeldTool& tool) {
     toolOf(tool).leave(layer_, state_.imprint);
     meshChanged();
@@ -136,7 +136,7 @@ void TinSurface::sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) {
     }
     moved_.clear();
     if (tool != nullptr) {
-        const Tool here = toolOf(*tool);
+        const Tool& here = toolOf(*tool);
         const Underside under = here.underside(at);
         const Imprint::Stand stand{at, tool->shape, tool->heading};
         if (held_ != stand) {

@@ -29,7 +29,8 @@ public:
     [[nodiscard]] const Start& start() const { return *start_; }
 
     void drag(const HeldTool& tool, std::span<const ProbePoint> path) override;
-    void release(const HeldTool& tool, const ProbePoint& at) override;
+    /// Erosion itself finds the sand that a tool holds back no more.
+    void release(const HeldTool&, const ProbePoint&) override {}
     void leave(const HeldTool& tool) override;
     void sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) override;
     void changeRules(const Rules& rules) override;
@@ -64,7 +65,7 @@ public:
     [[nodiscard]] SurfaceDamage takeTinDamage() override;
 
 private:
-    [[nodiscard]] Tool toolOf(const HeldTool& tool) const { return {tool.shape, tool.heading, detail_}; }
+    [[nodiscard]] Tool& toolOf(const HeldTool& tool);
     /// Tells hash, erosion and whoever draws what the layer has become.
     void meshChanged();
     void wakeFull(const Underside& under, const Box& reach);
@@ -82,6 +83,8 @@ private:
     SurfaceView view_{layer_.triangles(), layer_.heights(), detail_.spacing};
     KeptLayer kept_;
     SurfaceDamage damage_{.whole = true, .triangles = {}, .vertices = {}};
+    std::optional<Tool> tool_;                  // of the last toolOf(): what it has found in the mesh helps it again
+    Window near_;                               // likewise
     std::optional<Imprint::Stand> held_;        // the obstacle of the last sweeps: only to save work
     std::vector<Vertex> moved_;                 // scratch
     mutable std::int32_t lastFound_ = kNobody;  // where the next question about a height is likely to be

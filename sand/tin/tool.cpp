@@ -21,6 +21,10 @@ Box boxOf(const Rect& cells) {
     return {cells.x0 * kProbePerCell, cells.y0 * kProbePerCell, cells.x1 * kProbePerCell, cells.y1 * kProbePerCell};
 }
 
+Box boxOf(const Place& a, const Place& b) {
+    return {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)};
+}
+
 bool overlaps(const Box& box, const Triangles& field) { return !box.clippedTo(field).empty(); }
 
 /// Calls visit(at, ahead) for the sub-steps from one point to the next, the first left out.
@@ -217,9 +221,13 @@ void Tool::thin(Mesh& mesh, const PlacedOutline& outline) const {
             continue;
         }
         const bool close = std::any_of(outline.edges.begin(), outline.edges.end(),
-                                       [&](const auto& e) { return isNear(place, e.first, e.second, distance); }) ||
-                           std::any_of(outline.points.begin(), outline.points.end(),
-                                       [&](const Place& p) { return isNear(place, p, p, distance); });
+                                       [&](const auto& e) {
+                                           return boxOf(e.first, e.second).grownBy(distance).holds(place) &&
+                                                  isNear(place, e.first, e.second, distance);
+                                       }) ||
+                           std::any_of(outline.points.begin(), outline.points.end(), [&](const Place& p) {
+                               return boxOf(p, p).grownBy(distance).holds(place) && isNear(place, p, p, distance);
+                           });
         if (close) {
             findLink(mesh.triangles(), vertex, link);
             if (!link.constrained && link.closed) {

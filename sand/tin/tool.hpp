@@ -22,6 +22,9 @@ class Tool {
 public:
     /// Poses beyond kMaxProbe and shapes beyond kLargestToolRadius are refused by whoever decodes steps and rules.
     Tool(const ToolShape& shape, const Heading& heading, const DetailRules& rules);
+    [[nodiscard]] bool is(const ToolShape& shape, const Heading& heading) const {
+        return shape_ == shape && heading_ == heading;
+    }
 
     /// What a drag did besides changing the mesh, which the layer itself tells.
     struct Work {

@@ -32,22 +32,28 @@ struct Box {
     friend bool operator==(const Box&, const Box&) = default;
 };
 
-/// Numbers from 0 on, as many as are put in, and not as many as there could be.
+/// Numbers from 0 on. To clear it costs nothing; it takes four bytes for every number up to the largest.
 class NumberSet {
 public:
     void clear();
     /// Whether it is new.
-    bool insert(std::int32_t number);
+    bool insert(std::int32_t number) {
+        const auto at = static_cast<std::size_t>(number);
+        if (at >= turns_.size()) {
+            turns_.resize(at + at / 2 + 1, 0);
+        }
+        const bool isNew = turns_[at] != turn_;
+        turns_[at] = turn_;
+        return isNew;
+    }
 
 private:
-    void grow();
-    bool put(std::int32_t number);
-
-    std::vector<std::int32_t> places_ = std::vector<std::int32_t>(64, kNobody);
-    std::size_t count_ = 0;
+    std::vector<std::uint32_t> turns_;  // in which it was put in last
+    std::uint32_t turn_ = 1;
 };
 
-/// What of a mesh lies around some place. Costs what lies there, and the way from where it was asked for last.
+/// What of a mesh lies around some place. Costs what lies there, and the way from where it was asked for last; the
+/// first time, the whole mesh.
 class Window {
 public:
     /// Looks again. `box` is clipped to the field; an empty one shows nothing.
