@@ -31,10 +31,11 @@ public:
     void watch(const Layer& layer, const Slopes& slopes, Weights& weights, Vertex vertex);
     /// One sweep, which then watches all that it may have set in motion; false when nothing flowed.
     bool sweep(const Layer& layer, const Slopes& slopes, Weights& weights);
-    /// Gives the layer its sand, and adds who has another volume now to `moved`.
-    void store(Layer& layer, std::vector<Vertex>& moved) const;
-    /// Whether sand has flowed in the last sweep at fewer than half of the vertices.
-    [[nodiscard]] bool mostRest();
+    /// Gives the layer its sand, and adds who has another volume now to `moved`, each once until forgetMoved().
+    void store(Layer& layer, std::vector<Vertex>& moved);
+    void forgetMoved(const std::vector<Vertex>& moved);
+    /// Whether sand has flowed in the last sweep at so few of the vertices that to forget the others pays.
+    [[nodiscard]] bool manyRest() const;
     /// Forgets edges that the last sweep cannot have set in motion. The layer must have got its sand.
     void forgetResting();
     /// The mesh is another here: forgets the edges whose flux is no more what it was. Returns their ends, some of which
@@ -64,9 +65,9 @@ private:
     std::vector<Side> sides_;                 // of a local edge; corners are counted from the smallest vertex on
     std::vector<std::int32_t> local_;         // by vertex; kNobody: none
     std::vector<std::int32_t> facet_;         // by slot; kNobody: none
-    std::vector<std::uint8_t> watchedSides_;  // by slot: a bit per corner, counted as above
+    std::vector<std::uint8_t> watchedSides_;  // by slot: a bit per corner, counted as above, and one for all three
     std::vector<Held> heldBack_;
-    std::vector<std::uint8_t> isHeldBack_;  // by vertex
+    std::vector<std::uint8_t> isHeldBack_, isMoved_;  // by vertex
     bool band_ = false;
     const Underside* held_ = nullptr;
 };

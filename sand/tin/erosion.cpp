@@ -7,7 +7,8 @@ namespace sand::tin {
 namespace {
 
 constexpr double kProbePerCell = 256;
-constexpr int kSweepsTogether = 16;  // edges that have come to rest are looked at in vain so long
+constexpr int kSweepsTogether = 8;  // edges that have come to rest are looked at in vain so long
+constexpr int kFirstSweeps = 2;     // and at first so long: of what was woken much lies still
 
 }  // namespace
 
@@ -26,7 +27,7 @@ void Erosion::changeThresholds(std::int32_t threshold, std::int32_t startThresho
 }
 
 void Erosion::changed(const Layer&, const Mesh::Change& change) {
-    weights_.forget(change.vertices);
+    weights_.forget(change);
     wake(active_.meshChanged(change));
     wake(change.vertices);
 }
@@ -48,14 +49,13 @@ int Erosion::sweep(Layer& layer, int sweeps, const Underside* held, std::vector<
     while (done < sweeps && !active_.empty()) {
         ++done;
         const bool still = !active_.sweep(layer, slopes_, weights_);
-        if (still || (done % kSweepsTogether == 0 && active_.mostRest())) {
+        if (still || ((done % kSweepsTogether == 0 || done == kFirstSweeps) && active_.manyRest())) {
             active_.store(layer, moved);
             active_.forgetResting();
         }
     }
     active_.store(layer, moved);
-    std::sort(moved.begin(), moved.end());
-    moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
+    active_.forgetMoved(moved);
     return done;
 }
 
