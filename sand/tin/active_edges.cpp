@@ -7,7 +7,9 @@
 namespace sand::tin {
 namespace {
 
-constexpr int kAllSides = 3;  // the bit, of a slot, that says that all its sides are watched
+constexpr std::size_t kSweepsToForget = 3;  // of all sand: what it costs to forget some of it
+constexpr std::size_t kOfVerticesRest = 6;  // around what flows a ring lies still: so much of a lump of 1000 vertices
+constexpr int kAllSides = 3;                // the bit, of a slot, that says that all its sides are watched
 constexpr std::int32_t kNoUnderside = std::numeric_limits<std::int32_t>::max();
 
 std::size_t index(std::int32_t number) { return static_cast<std::size_t>(number); }
@@ -46,16 +48,20 @@ double ActiveEdges::undersideAt(Vertex vertex, const Place& place) {
     return underside;
 }
 
+void ActiveEdges::makeRoom(std::size_t vertices, std::size_t slots) {
+    local_.resize(std::max(local_.size(), vertices), kNobody);
+    isHeldBack_.resize(local_.size(), 0);
+    isMoved_.resize(local_.size(), 0);
+    facet_.resize(std::max(facet_.size(), slots), kNobody);
+    watchedSides_.resize(facet_.size(), 0);
+}
+
 void ActiveEdges::begin(const Layer& layer, bool band, const Underside* held) {
     band_ = band;
     held_ = held;
-    const std::size_t count = layer.triangles().places.size();
-    local_.resize(std::max(local_.size(), count), kNobody);
-    isHeldBack_.resize(local_.size(), 0);
-    isMoved_.resize(local_.size(), 0);
-    facet_.resize(std::max(facet_.size(), layer.triangles().triangles.size()), kNobody);
-    watchedSides_.resize(facet_.size(), 0);
+    makeRoom(layer.triangles().places.size(), layer.triangles().triangles.size());
     sand_.restart();
+    inVain_ = 0;
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
         const auto vertex = index(vertices_[i]);
         sand_.place(i, layer.volumes()[vertex], layer.stars()[vertex],
@@ -124,12 +130,14 @@ void ActiveEdges::watch(const Layer& layer, const Slopes& slopes, Weights& weigh
 bool ActiveEdges::sweep(const Layer& layer, const Slopes& slopes, Weights& weights) {
     const SweepResult result = sand_.sweep(held_ != nullptr, band_);
     if (result.spread || (band_ && result.moved && result.met)) {
-        for (std::size_t i = 0, count = sand_.vertexCount(); i < count; ++i) {
-            if (sand_.flowed(i) && !sand_.isWatched(i)) {
-                watch(layer, slopes, weights, vertices_[i]);
-            }
+        met_.clear();
+        sand_.findUnwatched(met_);
+        for (const std::int32_t local : met_) {
+            watch(layer, slopes, weights, vertices_[index(local)]);
         }
     }
+    inVain_ = std::max<std::int64_t>(
+        inVain_ + result.resting - static_cast<std::int64_t>(sand_.vertexCount() / kOfVerticesRest), 0);
     return result.moved;
 }
 
@@ -147,8 +155,7 @@ void ActiveEdges::store(Layer& layer, std::vector<Vertex>& moved) {
 }
 
 bool ActiveEdges::manyRest() const {
-    // Of what is watched around a lump of 1000 vertices, 85 % have flowed.
-    return 4 * sand_.flowingCount() < 3 * sand_.vertexCount();
+    return inVain_ > static_cast<std::int64_t>(kSweepsToForget * sand_.vertexCount());
 }
 
 void ActiveEdges::keepEdges(const std::vector<std::uint8_t>& kept) {
@@ -187,6 +194,7 @@ void ActiveEdges::keepEdges(const std::vector<std::uint8_t>& kept) {
 }
 
 void ActiveEdges::forgetResting() {
+    inVain_ = 0;
     std::vector<std::uint8_t> facetFlows(sand_.facetCount()), kept(sand_.edgeCount());
     for (std::size_t i = 0; i < facetFlows.size(); ++i) {
         const auto [a, b, c] = sand_.facet(static_cast<std::int32_t>(i)).corner;

@@ -21,6 +21,7 @@ class ActiveEdges {
 public:
     using Underside = std::function<std::int32_t(Place)>;
 
+    void reserve(std::size_t vertices) { makeRoom(vertices, 2 * vertices); }
     /// Vertices where an obstacle stood and now another one does, or none: sand may flow there again. Where it is as it
     /// was, sand has come to rest under it.
     [[nodiscard]] std::vector<Vertex> takeReleased(const Underside* held);
@@ -34,7 +35,7 @@ public:
     /// Gives the layer its sand, and adds who has another volume now to `moved`, each once until forgetMoved().
     void store(Layer& layer, std::vector<Vertex>& moved);
     void forgetMoved(const std::vector<Vertex>& moved);
-    /// Whether sand has flowed in the last sweep at so few of the vertices that to forget the others pays.
+    /// Whether so much has been swept in vain since it was forgotten last that to forget it would have paid.
     [[nodiscard]] bool manyRest() const;
     /// Forgets edges that the last sweep cannot have set in motion. The layer must have got its sand.
     void forgetResting();
@@ -54,6 +55,7 @@ private:
         std::int32_t underside;
     };
 
+    void makeRoom(std::size_t vertices, std::size_t slots);
     [[nodiscard]] std::int32_t facetAt(const Layer& layer, const Slopes& slopes, std::int32_t slot);
     [[nodiscard]] std::int32_t localOf(const Layer& layer, Vertex vertex);
     [[nodiscard]] double undersideAt(Vertex vertex, const Place& place);
@@ -68,6 +70,8 @@ private:
     std::vector<std::uint8_t> watchedSides_;  // by slot: a bit per corner, counted as above, and one for all three
     std::vector<Held> heldBack_;
     std::vector<std::uint8_t> isHeldBack_, isMoved_;  // by vertex
+    std::vector<std::int32_t> met_;                   // scratch
+    std::int64_t inVain_ = 0;                         // vertices at rest, sweep by sweep, beside those that always are
     bool band_ = false;
     const Underside* held_ = nullptr;
 };

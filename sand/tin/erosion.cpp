@@ -7,8 +7,6 @@ namespace sand::tin {
 namespace {
 
 constexpr double kProbePerCell = 256;
-constexpr int kSweepsTogether = 8;  // edges that have come to rest are looked at in vain so long
-constexpr int kFirstSweeps = 2;     // and at first so long: of what was woken much lies still
 
 }  // namespace
 
@@ -18,6 +16,11 @@ Slopes slopesOf(std::int32_t threshold, std::int32_t startThreshold) {
 
 Erosion::Erosion(const Layer&, std::int32_t threshold, std::int32_t startThreshold) {
     changeThresholds(threshold, startThreshold);
+}
+
+void Erosion::reserve(std::size_t vertices) {
+    weights_.reserve(vertices);
+    active_.reserve(vertices);
 }
 
 void Erosion::changeThresholds(std::int32_t threshold, std::int32_t startThreshold) {
@@ -49,7 +52,7 @@ int Erosion::sweep(Layer& layer, int sweeps, const Underside* held, std::vector<
     while (done < sweeps && !active_.empty()) {
         ++done;
         const bool still = !active_.sweep(layer, slopes_, weights_);
-        if (still || ((done % kSweepsTogether == 0 || done == kFirstSweeps) && active_.manyRest())) {
+        if (still || active_.manyRest()) {
             active_.store(layer, moved);
             active_.forgetResting();
         }

@@ -43,6 +43,8 @@ public:
     /// `threshold` and `startThreshold` as Rules': height units per cell size, sliding and starting to. All may move.
     Erosion(const Layer& layer, std::int32_t threshold, std::int32_t startThreshold);
 
+    /// As Mesh's.
+    void reserve(std::size_t vertices);
     void changeThresholds(std::int32_t threshold, std::int32_t startThreshold);  // wakes everything
     /// The layer's mesh or sand is another there now: its weights are made anew, and it may move.
     void changed(const Layer& layer, const Mesh::Change& change);

@@ -44,6 +44,8 @@ public:
     [[nodiscard]] const std::vector<double>& heights() const { return heights_; }
     [[nodiscard]] Wide volume() const;
 
+    /// As Mesh's.
+    void reserve(std::size_t vertices);
     /// Erosion and tools move sand between vertices with this; the height follows.
     void add(Vertex vertex, std::int64_t volume);
     void setHeight(Vertex vertex, std::int32_t height /* [unit] */);  // changes the volume of the whole

@@ -115,8 +115,14 @@ void MovingSand::place(std::size_t vertex, std::int64_t volume, std::int64_t sta
     wide_[vertex] = volume;
 }
 
-std::size_t MovingSand::flowingCount() const {
-    return static_cast<std::size_t>(std::count_if(flows_.begin(), flows_.end(), [](double flow) { return flow > 0; }));
+void MovingSand::findUnwatched(std::vector<std::int32_t>& found) const {
+    const double* flows = flows_.data();
+    const std::uint64_t* unwatched = unwatched_.data();
+    for (std::size_t i = 0, count = vertexCount(); i < count; ++i) {
+        if (unwatched[i] != 0 && flows[i] > 0) {
+            found.push_back(static_cast<std::int32_t>(i));
+        }
+    }
 }
 
 SweepResult MovingSand::sweep(bool held, bool band) {
@@ -174,6 +180,7 @@ SweepResult MovingSand::moveWide() {
         result.moved = result.moved || wideInflow_[i] != 0;
         result.spread = result.spread || (wideInflow_[i] != 0 && !isWatched(i));
         result.met = result.met || (flowed(i) && !isWatched(i));
+        result.resting += flowed(i) ? 0 : 1;
         wide_[i] += wideInflow_[i];
         heights_[i] = static_cast<double>(wide_[i]) / stars_[i];
     }

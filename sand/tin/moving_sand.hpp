@@ -48,7 +48,8 @@ public:
     SweepResult sweep(bool held, bool band);
     /// Whether sand flowed at one of a vertex's edges in the last sweep.
     [[nodiscard]] bool flowed(std::size_t vertex) const { return flows_[vertex] > 0; }
-    [[nodiscard]] std::size_t flowingCount() const;
+    /// Adds the vertices whose edges are not all here though sand flowed at one.
+    void findUnwatched(std::vector<std::int32_t>& found) const;
 
     /// Where facets and vertices are after some edges went; kNobody: no edge needs it any more.
     struct Renumbering {

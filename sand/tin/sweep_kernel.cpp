@@ -78,17 +78,19 @@ SweepResult settleUp(std::size_t count, const double* __restrict sums, const dou
                      const std::uint64_t* __restrict unwatched, double* __restrict volumes, double* __restrict heights,
                      double* __restrict flows) {
     std::uint64_t moved = 0, beyond = 0, met = 0;
+    std::int64_t resting = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const double inflow = sums[2 * i], flow = sums[2 * i + 1];
         const auto bits = std::bit_cast<std::uint64_t>(inflow + 0.0);  // minus zero is none either
         moved |= bits;
         beyond |= bits & unwatched[i];
         met |= std::bit_cast<std::uint64_t>(flow) & unwatched[i];
+        resting += flow > 0 ? 0 : 1;
         flows[i] = flow;
         volumes[i] += inflow;
         heights[i] = volumes[i] / stars[i];
     }
-    return {moved != 0, beyond != 0, met != 0};
+    return {moved != 0, beyond != 0, met != 0, resting};
 }
 
 }  // namespace

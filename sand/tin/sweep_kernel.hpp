@@ -44,9 +44,10 @@ struct SweepSand {
 };
 
 struct SweepResult {
-    bool moved = false;   // some volume changed
-    bool spread = false;  // that of one that is not watched did
-    bool met = false;     // sand flowed at an edge of one that is not watched
+    bool moved = false;        // some volume changed
+    bool spread = false;       // that of one that is not watched did
+    bool met = false;          // sand flowed at an edge of one that is not watched
+    std::int64_t resting = 0;  // vertices at whose edges none flowed
 };
 
 // One source, compiled twice (sand/tin/CMakeLists.txt): the same numbers, bit for bit.

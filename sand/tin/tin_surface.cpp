@@ -13,6 +13,7 @@ namespace {
 constexpr int kRemovalsPerStep = 64;
 constexpr int kSweepsToRest = 1 << 20;  // more than any TIN that is worth waiting for
 constexpr int kSweepsAtOnce = 64;
+constexpr std::size_t kMoreVertices = 4096;  // at least, than a session starts with
 
 DetailRules detailOf(const Start& start) {
     const Settings& settings = start.settings;
@@ -48,6 +49,7 @@ TinSurface::TinSurface(const Scene& scene)
       hash_(layer_),
       kept_(layer_) {
     (void)layer_.takeChange();
+    reserve();
 }
 
 TinSurface::TinSurface(const TinSurface& other)
@@ -62,14 +64,25 @@ TinSurface::TinSurface(const TinSurface& other)
       hash_(layer_),
       kept_(layer_) {
     (void)layer_.takeChange();
+    reserve();
     if (other.kept_.any()) {
         kept_.keep(other.kept_.copy());
     }
 }
 
+void TinSurface::reserve() {
+    const std::size_t there = layer_.triangles().places.size();
+    const std::size_t most = std::max(there, static_cast<std::size_t>(detail_.maxVertices)) + kMoreVertices;
+    const std::size_t vertices = std::min(most, there + there / 4 + kMoreVertices);
+    layer_.reserve(vertices);
+    erosion_.reserve(vertices);
+    hash_.reserve(vertices);
+    near_->reserve(vertices);
+}
+
 Tool& TinSurface::toolOf(const HeldTool& tool) {
     if (!tool_ || !tool_->is(tool.shape, tool.heading)) {
-        tool_.emplace(tool.shape, tool.heading, detail_);
+        tool_.emplace(tool.shape, tool.heading, detail_, near_);
     }
     return *tool_;
 }
@@ -93,9 +106,9 @@ void TinSurface::meshChanged() {
 
 /// Sand that fills the room below a tool: that beside it leans on the tool now.
 void TinSurface::wakeFull(const Underside& under, const Box& reach) {
-    near_.look(layer_.triangles(), reach);
+    near_->look(layer_.triangles(), reach);
     std::vector<Vertex> full;
-    std::copy_if(near_.vertices().begin(), near_.vertices().end(), std::back_inserter(full), [&](Vertex vertex) {
+    std::copy_if(near_->vertices().begin(), near_->vertices().end(), std::back_inserter(full), [&](Vertex vertex) {
         const auto i = static_cast<std::size_t>(vertex);
         return layer_.heights()[i] > under(layer_.triangles().places[i]) - 1.0;
     });
@@ -191,6 +204,7 @@ void TinSurface::replace(const SurfaceCopy& copy) {
     erosion_ = Erosion(layer_, threshold_, startThreshold_);
     hash_ = VertexHash(layer_);
     kept_.replaced(layer_);
+    reserve();
     held_.reset();
     coarsening_.wake();
     damage_ = {.whole = true, .triangles = {}, .vertices = {}};

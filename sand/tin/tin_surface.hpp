@@ -68,6 +68,8 @@ private:
     [[nodiscard]] Tool& toolOf(const HeldTool& tool);
     /// Tells hash, erosion and whoever draws what the layer has become.
     void meshChanged();
+    /// So that hardly a step makes what is kept for every vertex move in memory.
+    void reserve();
     void wakeFull(const Underside& under, const Box& reach);
     void sandMoved(const std::vector<Vertex>& vertices);
 
@@ -83,8 +85,8 @@ private:
     SurfaceView view_{layer_.triangles(), layer_.heights(), detail_.spacing};
     KeptLayer kept_;
     SurfaceDamage damage_{.whole = true, .triangles = {}, .vertices = {}};
-    std::optional<Tool> tool_;                  // of the last toolOf(): what it has found in the mesh helps it again
-    Window near_;                               // likewise
+    std::optional<Tool> tool_;  // of the last toolOf()
+    std::shared_ptr<Window> near_ = std::make_shared<Window>();
     std::optional<Imprint::Stand> held_;        // the obstacle of the last sweeps: only to save work
     std::vector<Vertex> moved_;                 // scratch
     mutable std::int32_t lastFound_ = kNobody;  // where the next question about a height is likely to be

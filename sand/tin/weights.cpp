@@ -77,6 +77,11 @@ void Weights::forget(const Mesh::Change& change) {
     }
 }
 
+void Weights::reserve(std::size_t vertices) {
+    steps_.resize(std::max(steps_.size(), vertices), 0);
+    halves_.resize(std::max(halves_.size(), 2 * vertices), Halves{kUnknown, 0, 0});
+}
+
 std::int32_t Weights::weight(const Triangles& mesh, Side side) {
     const auto slot = static_cast<std::size_t>(side.triangle);
     if (slot >= halves_.size()) {
@@ -97,7 +102,7 @@ std::int32_t Weights::weight(const Triangles& mesh, Side side) {
 double Weights::step(const Triangles& mesh, std::span<const std::int64_t> stars, Vertex vertex) {
     const auto v = static_cast<std::size_t>(vertex);
     if (v >= steps_.size()) {
-        steps_.resize(mesh.places.size());
+        steps_.resize(mesh.places.size() + mesh.places.size() / 4);
     }
     if (steps_[v] == 0) {
         std::int64_t sum = 0;

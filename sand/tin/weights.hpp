@@ -66,6 +66,7 @@ struct Side {
 /// forgotten. Not thread-safe.
 class Weights {
 public:
+    void reserve(std::size_t vertices);
     /// The mesh has changed there.
     void forget(const Mesh::Change& change);
     /// The edge of a side that owns it. Costs the stars of its ends, the first time.

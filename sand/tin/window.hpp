@@ -36,6 +36,7 @@ struct Box {
 class NumberSet {
 public:
     void clear();
+    void reserve(std::size_t count) { turns_.resize(std::max(turns_.size(), count), 0); }
     /// Whether it is new.
     bool insert(std::int32_t number) {
         const auto at = static_cast<std::size_t>(number);
@@ -56,6 +57,10 @@ private:
 /// first time, the whole mesh.
 class Window {
 public:
+    void reserve(std::size_t vertices) {
+        seen_.reserve(2 * vertices);
+        seenVertices_.reserve(vertices);
+    }
     /// Looks again. `box` is clipped to the field; an empty one shows nothing.
     void look(const Triangles& mesh, const Box& box);
 
