@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "sand/tin/layer.hpp"
 #include "sand/tin/moving_sand.hpp"
 #include "sand/tin/weights.hpp"
+#include "sand/tin/window.hpp"
 
 namespace sand::tin {
 
@@ -28,6 +30,9 @@ public:
     /// Takes the layer's sand as it is now, for a run of sweeps under this obstacle, or none; nothing flows yet.
     /// `band`: sand at rest starts to slide later than sliding sand stops.
     void begin(const Layer& layer, bool band, const Underside* held);
+    /// Watches every edge over which sand may flow in the next sweep because of these vertices: those of triangles
+    /// around them that are steep enough. To be called right after begin().
+    void wake(const Layer& layer, const Slopes& slopes, Weights& weights, std::span<const Vertex> vertices);
     /// Watches every edge whose flux depends on this vertex.
     void watch(const Layer& layer, const Slopes& slopes, Weights& weights, Vertex vertex);
     /// One sweep, which then watches all that it may have set in motion; false when nothing flowed.
@@ -55,6 +60,8 @@ private:
         std::int32_t underside;
     };
 
+    [[nodiscard]] bool maySlide(const Layer& layer, const Slopes& slopes, std::int32_t slot);
+    void watchTriangle(const Layer& layer, const Slopes& slopes, Weights& weights, std::int32_t slot);
     void makeRoom(std::size_t vertices, std::size_t slots);
     [[nodiscard]] std::int32_t facetAt(const Layer& layer, const Slopes& slopes, std::int32_t slot);
     [[nodiscard]] std::int32_t localOf(const Layer& layer, Vertex vertex);
@@ -70,6 +77,9 @@ private:
     std::vector<std::uint8_t> watchedSides_;  // by slot: a bit per corner, counted as above, and one for all three
     std::vector<Held> heldBack_;
     std::vector<std::uint8_t> isHeldBack_, isMoved_;  // by vertex
+    NumberSet examined_;                              // slots, of one wake()
+    NumberSet knownUndersides_;                       // vertices, since begin()
+    std::vector<double> undersides_;                  // by vertex, of those
     std::vector<std::int32_t> met_;                   // scratch
     std::int64_t inVain_ = 0;                         // vertices at rest, sweep by sweep, beside those that always are
     bool band_ = false;

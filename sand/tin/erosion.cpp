@@ -2,6 +2,7 @@
 #include "sand/tin/erosion.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace sand::tin {
 namespace {
@@ -64,13 +65,10 @@ int Erosion::sweep(Layer& layer, int sweeps, const Underside* held, std::vector<
 
 void Erosion::watchWoken(const Layer& layer) {
     if (wakeAll_) {
-        for (Vertex vertex = 0; vertex < static_cast<Vertex>(layer.triangles().places.size()); ++vertex) {
-            active_.watch(layer, slopes_, weights_, vertex);
-        }
+        woken_.resize(layer.triangles().places.size());
+        std::iota(woken_.begin(), woken_.end(), 0);
     }
-    for (const Vertex vertex : woken_) {
-        active_.watch(layer, slopes_, weights_, vertex);
-    }
+    active_.wake(layer, slopes_, weights_, woken_);
     wakeAll_ = false;
     woken_.clear();
 }

@@ -9,13 +9,6 @@
 namespace sand::tin::SANDWALL_CODE_PATH {
 namespace {
 
-/// What a corner counts as for the slope: sand that fills the room below an obstacle leans on it, and is no slope for
-/// the sand beside it, which would flow along it for ever.
-double leaning(double height, double underside, double one, double other) {
-    const double beside = one < other ? one : other;
-    return height > underside - 1 && beside > height ? beside : height;
-}
-
 template <bool kHeld, bool kBand>
 void slide(std::size_t count, const double* __restrict heights, const double* __restrict undersides,
            const std::int32_t* __restrict first, const std::int32_t* __restrict second,

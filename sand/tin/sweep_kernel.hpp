@@ -43,6 +43,13 @@ struct SweepSand {
     double* heights;                 // by vertex [unit]
 };
 
+/// What a corner counts as for the slope: sand that fills the room below an obstacle leans on it, and is no slope for
+/// the sand beside it, which would flow along it for ever.
+inline double leaning(double height, double underside, double one, double other) {
+    const double beside = one < other ? one : other;
+    return height > underside - 1 && beside > height ? beside : height;
+}
+
 struct SweepResult {
     bool moved = false;        // some volume changed
     bool spread = false;       // that of one that is not watched did

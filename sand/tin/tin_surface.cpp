@@ -92,6 +92,7 @@ void TinSurface::meshChanged() {
     if (change.triangles.empty() && change.vertices.empty()) {
         return;
     }
+    sawAll_ = false;
     erosion_.changed(layer_, change);
     hash_.touch(layer_, change.vertices);
     hash_.touchTriangles(layer_, change.triangles);
@@ -106,11 +107,14 @@ void TinSurface::meshChanged() {
 
 /// Sand that fills the room below a tool: that beside it leans on the tool now.
 void TinSurface::wakeFull(const Underside& under, const Box& reach) {
-    near_->look(layer_.triangles(), reach);
+    if (!sawAll_ || near_->box().joinedWith(reach.clippedTo(layer_.triangles())) != near_->box()) {
+        near_->look(layer_.triangles(), reach);
+    }
     std::vector<Vertex> full;
     std::copy_if(near_->vertices().begin(), near_->vertices().end(), std::back_inserter(full), [&](Vertex vertex) {
         const auto i = static_cast<std::size_t>(vertex);
-        return layer_.heights()[i] > under(layer_.triangles().places[i]) - 1.0;
+        return reach.holds(layer_.triangles().places[i]) &&
+               layer_.heights()[i] > under(layer_.triangles().places[i]) - 1.0;
     });
     erosion_.wake(full);
 }
@@ -133,6 +137,7 @@ void TinSurface::drag(const HeldTool& tool, std::span<const ProbePoint> path) {
     meshChanged();
     sandMoved(done.touched);
     erosion_.wake(done.touched);
+    sawAll_ = state_.imprint.stand && state_.imprint.stand->at == path.back();
 }
 
 void TinSurface::leave(const HeldTool& tool) {
@@ -206,6 +211,7 @@ void TinSurface::replace(const SurfaceCopy& copy) {
     kept_.replaced(layer_);
     reserve();
     held_.reset();
+    sawAll_ = false;
     coarsening_.wake();
     damage_ = {.whole = true, .triangles = {}, .vertices = {}};
     lastFound_ = kNobody;

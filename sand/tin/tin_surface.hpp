@@ -87,6 +87,7 @@ private:
     SurfaceDamage damage_{.whole = true, .triangles = {}, .vertices = {}};
     std::optional<Tool> tool_;  // of the last toolOf()
     std::shared_ptr<Window> near_ = std::make_shared<Window>();
+    bool sawAll_ = false;                       // near_ shows the mesh as it is, around the tool
     std::optional<Imprint::Stand> held_;        // the obstacle of the last sweeps: only to save work
     std::vector<Vertex> moved_;                 // scratch
     mutable std::int32_t lastFound_ = kNobody;  // where the next question about a height is likely to be

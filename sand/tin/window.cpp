@@ -26,7 +26,7 @@ void NumberSet::clear() {
 void Window::look(const Triangles& mesh, const Box& wanted) {
     vertices_.clear();
     triangles_.clear();
-    const Box box = wanted.clippedTo(mesh);
+    const Box box = box_ = wanted.clippedTo(mesh);
     if (box.empty()) {
         return;
     }

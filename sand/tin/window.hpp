@@ -64,12 +64,14 @@ public:
     /// Looks again. `box` is clipped to the field; an empty one shows nothing.
     void look(const Triangles& mesh, const Box& box);
 
+    [[nodiscard]] const Box& box() const { return box_; }  // clipped to the field
     /// Those that lie in the box, ascending.
     [[nodiscard]] const std::vector<Vertex>& vertices() const { return vertices_; }
     /// Slots of all triangles that reach into the box, and of some that nearly do, in no order that means anything.
     [[nodiscard]] const std::vector<std::int32_t>& triangles() const { return triangles_; }
 
 private:
+    Box box_;
     std::vector<Vertex> vertices_;
     std::vector<std::int32_t> triangles_;
     std::int32_t last_ = kNobody;  // where to begin: only for speed
