@@ -7,6 +7,10 @@
 namespace sand::tin {
 namespace {
 
+constexpr double kSurelyRests = 0.999;      // of a steepness of 1: kRest is above it, and roundings are far smaller
+constexpr std::size_t kSweepsToForget = 5;  // of all sand: what it costs to forget some of it
+constexpr std::size_t kOfVerticesRest = 6;  // around what flows a ring lies still: so much of a lump of 1000 vertices
+constexpr int kAllSides = 3;                // the bit, of a slot, that says that all its sides are watched
 constexpr std::int32_t kNoUnderside = std::numeric_limits<std::int32_t>::max();
 
 std::size_t index(std::int32_t number) { return static_cast<std::size_t>(number); }
@@ -34,26 +38,39 @@ std::vector<Vertex> ActiveEdges::takeReleased(const Underside* held) {
 }
 
 double ActiveEdges::undersideAt(Vertex vertex, const Place& place) {
-    const std::int32_t underside = held_ != nullptr ? (*held_)(place) : kNoUnderside;
-    if (underside == kNoUnderside) {
+    if (held_ == nullptr) {
         return MovingSand::kFree;
     }
-    if (isHeldBack_[index(vertex)] == 0) {
-        isHeldBack_[index(vertex)] = 1;
-        heldBack_.push_back({vertex, place, underside});
+    double& known = undersides_[index(vertex)];
+    if (knownUndersides_.insert(vertex)) {
+        const std::int32_t underside = (*held_)(place);
+        known = underside == kNoUnderside ? MovingSand::kFree : underside;
+        if (underside != kNoUnderside && isHeldBack_[index(vertex)] == 0) {
+            isHeldBack_[index(vertex)] = 1;
+            heldBack_.push_back({vertex, place, underside});
+        }
     }
-    return underside;
+    return known;
+}
+
+void ActiveEdges::makeRoom(std::size_t vertices, std::size_t slots) {
+    local_.resize(std::max(local_.size(), vertices), kNobody);
+    isHeldBack_.resize(local_.size(), 0);
+    isMoved_.resize(local_.size(), 0);
+    undersides_.resize(local_.size(), 0);
+    knownUndersides_.reserve(local_.size());
+    facet_.resize(std::max(facet_.size(), slots), kNobody);
+    watchedSides_.resize(facet_.size(), 0);
+    examined_.reserve(facet_.size());
 }
 
 void ActiveEdges::begin(const Layer& layer, bool band, const Underside* held) {
     band_ = band;
     held_ = held;
-    const std::size_t count = layer.triangles().places.size();
-    local_.resize(std::max(local_.size(), count), kNobody);
-    isHeldBack_.resize(local_.size(), 0);
-    facet_.resize(std::max(facet_.size(), layer.triangles().triangles.size()), kNobody);
-    watchedSides_.resize(facet_.size(), 0);
+    makeRoom(layer.triangles().places.size(), layer.triangles().triangles.size());
+    knownUndersides_.clear();
     sand_.restart();
+    inVain_ = 0;
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
         const auto vertex = index(vertices_[i]);
         sand_.place(i, layer.volumes()[vertex], layer.stars()[vertex],
@@ -94,65 +111,116 @@ void ActiveEdges::watch(const Layer& layer, const Slopes& slopes, Weights& weigh
         return;
     }
     sand_.setWatched(index(self), true);
-    aroundVertex(mesh, vertex, [&](std::int32_t slot, int) {
-        for (int corner = 0; corner < 3; ++corner) {
-            const Side side = owner(mesh, {slot, corner});
-            const Side named = counted(mesh, side);
-            std::uint8_t& watched = watchedSides_[index(side.triangle)];
-            if ((watched >> named.corner & 1) == 0) {
-                watched = static_cast<std::uint8_t>(watched | 1 << named.corner);
-                Edge edge = weights.edge(mesh, layer.stars(), side);
-                edge.from = localOf(layer, edge.from);
-                edge.to = localOf(layer, edge.to);
-                edge.leftFacet = facetAt(layer, slopes, edge.leftFacet);
-                edge.rightFacet = facetAt(layer, slopes, edge.rightFacet);
-                sand_.addEdge(edge);
-                sides_.push_back(named);
-            }
+    aroundVertex(mesh, vertex, [&](std::int32_t slot, int) { watchTriangle(layer, slopes, weights, slot); });
+}
+
+void ActiveEdges::watchTriangle(const Layer& layer, const Slopes& slopes, Weights& weights, std::int32_t slot) {
+    const Triangles& mesh = layer.triangles();
+    if ((watchedSides_[index(slot)] >> kAllSides & 1) != 0) {
+        return;
+    }
+    watchedSides_[index(slot)] = static_cast<std::uint8_t>(watchedSides_[index(slot)] | 1 << kAllSides);
+    for (int corner = 0; corner < 3; ++corner) {
+        const Side side = owner(mesh, {slot, corner});
+        const Side named = counted(mesh, side);
+        std::uint8_t& watched = watchedSides_[index(side.triangle)];
+        if ((watched >> named.corner & 1) == 0) {
+            watched = static_cast<std::uint8_t>(watched | 1 << named.corner);
+            Edge edge = weights.edge(mesh, layer.stars(), side);
+            edge.from = localOf(layer, edge.from);
+            edge.to = localOf(layer, edge.to);
+            edge.leftFacet = facetAt(layer, slopes, edge.leftFacet);
+            edge.rightFacet = facetAt(layer, slopes, edge.rightFacet);
+            sand_.addEdge(edge);
+            sides_.push_back(named);
         }
-    });
+    }
+}
+
+// Where nothing has flowed before, a triangle slides from a slope on that is never below the one without slack, and an
+// edge of two triangles that do not slide carries nothing.
+bool ActiveEdges::maySlide(const Layer& layer, const Slopes& slopes, std::int32_t slot) {
+    const Triangles& mesh = layer.triangles();
+    std::array<Place, 3> at;
+    std::array<double, 3> was{}, under{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vertex corner = mesh.triangles[index(slot)].corner[k];
+        at[k] = mesh.places[index(corner)];
+        was[k] = layer.heights()[index(corner)];
+        under[k] = undersideAt(corner, at[k]);  // noted, though the triangle may not slide: it may without the obstacle
+    }
+    const double a = leaning(was[0], under[0], was[1], was[2]), b = leaning(was[1], under[1], was[2], was[0]);
+    const double c = leaning(was[2], under[2], was[0], was[1]);
+    const double x1 = at[1].x - at[0].x, y1 = at[1].y - at[0].y, x2 = at[2].x - at[0].x, y2 = at[2].y - at[0].y;
+    const double gx = (b - a) * y2 - (c - a) * y1, gy = (c - a) * x1 - (b - a) * x2;
+    const double steepest = (x1 * y2 - x2 * y1) * slopes.slide;
+    return !(gx * gx + gy * gy < kSurelyRests * steepest * steepest);
+}
+
+void ActiveEdges::wake(const Layer& layer, const Slopes& slopes, Weights& weights, std::span<const Vertex> vertices) {
+    examined_.clear();
+    for (const Vertex vertex : vertices) {
+        if (layer.triangles().alive(vertex)) {
+            aroundVertex(layer.triangles(), vertex, [&](std::int32_t slot, int) {
+                if (examined_.insert(slot) && maySlide(layer, slopes, slot)) {
+                    watchTriangle(layer, slopes, weights, slot);
+                }
+            });
+        }
+    }
 }
 
 // Where no volume changes no height does, and a flux is what it was; but with a band, sand that flows through moves
 // what it touches.
 bool ActiveEdges::sweep(const Layer& layer, const Slopes& slopes, Weights& weights) {
     const SweepResult result = sand_.sweep(held_ != nullptr, band_);
-    if (result.spread || (band_ && result.moved)) {
-        const std::vector<std::uint8_t> flowed = sand_.flowed();
-        for (std::size_t i = 0; i < flowed.size(); ++i) {
-            if (flowed[i] != 0 && !sand_.isWatched(i)) {
-                watch(layer, slopes, weights, vertices_[i]);
-            }
+    if (result.spread || (band_ && result.moved && result.met)) {
+        met_.clear();
+        sand_.findUnwatched(met_);
+        for (const std::int32_t local : met_) {
+            watch(layer, slopes, weights, vertices_[index(local)]);
         }
     }
+    inVain_ = std::max<std::int64_t>(
+        inVain_ + result.resting - static_cast<std::int64_t>(sand_.vertexCount() / kOfVerticesRest), 0);
     return result.moved;
 }
 
-void ActiveEdges::store(Layer& layer, std::vector<Vertex>& moved) const {
+void ActiveEdges::store(Layer& layer, std::vector<Vertex>& moved) {
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
         const Vertex vertex = vertices_[i];
         if (const std::int64_t risen = sand_.volume(i) - layer.volumes()[index(vertex)]; risen != 0) {
             layer.add(vertex, risen);
-            moved.push_back(vertex);
+            if (isMoved_[index(vertex)] == 0) {
+                isMoved_[index(vertex)] = 1;
+                moved.push_back(vertex);
+            }
         }
     }
 }
 
-bool ActiveEdges::mostRest() {
-    const auto& flowed = sand_.flowed();
-    // Of what is watched around a lump of 1000 vertices, 85 % have flowed.
-    return 2 * std::count(flowed.begin(), flowed.end(), 1) < static_cast<std::ptrdiff_t>(flowed.size());
+bool ActiveEdges::manyRest() const {
+    return inVain_ > static_cast<std::int64_t>(kSweepsToForget * sand_.vertexCount());
 }
 
 void ActiveEdges::keepEdges(const std::vector<std::uint8_t>& kept) {
+    if (std::find(kept.begin(), kept.end(), 0) == kept.end()) {
+        return;
+    }
+    const auto forget = [this](std::int32_t slot, int bit) {
+        std::uint8_t& watched = watchedSides_[index(slot)];
+        watched = static_cast<std::uint8_t>(watched & ~(1 << bit));
+    };
     std::size_t edges = 0;
     for (std::size_t i = 0; i < sides_.size(); ++i) {
         if (kept[i] != 0) {
             sides_[edges++] = sides_[i];
-        } else {
-            std::uint8_t& watched = watchedSides_[index(sides_[i].triangle)];
-            watched = static_cast<std::uint8_t>(watched & ~(1 << sides_[i].corner));
+            continue;
         }
+        const Edge edge = sand_.edge(i);
+        forget(sides_[i].triangle, sides_[i].corner);
+        forget(slots_[index(edge.leftFacet)], kAllSides);
+        forget(slots_[index(edge.rightFacet)], kAllSides);
     }
     sides_.resize(edges);
     const MovingSand::Renumbering now = sand_.keepEdges(kept);
@@ -171,19 +239,18 @@ void ActiveEdges::keepEdges(const std::vector<std::uint8_t>& kept) {
 }
 
 void ActiveEdges::forgetResting() {
-    const std::vector<std::uint8_t> flowed = sand_.flowed();
+    inVain_ = 0;
     std::vector<std::uint8_t> facetFlows(sand_.facetCount()), kept(sand_.edgeCount());
     for (std::size_t i = 0; i < facetFlows.size(); ++i) {
-        for (const Vertex corner : sand_.facet(static_cast<std::int32_t>(i)).corner) {
-            facetFlows[i] |= flowed[index(corner)];
-        }
+        const auto [a, b, c] = sand_.facet(static_cast<std::int32_t>(i)).corner;
+        facetFlows[i] = sand_.flowed(index(a)) || sand_.flowed(index(b)) || sand_.flowed(index(c)) ? 1 : 0;
     }
     for (std::size_t i = 0; i < kept.size(); ++i) {
         const Edge edge = sand_.edge(i);
         kept[i] = facetFlows[index(edge.leftFacet)] | facetFlows[index(edge.rightFacet)];
     }
-    for (std::size_t i = 0; i < flowed.size(); ++i) {
-        sand_.setWatched(i, flowed[i] != 0);
+    for (std::size_t i = 0; i < sand_.vertexCount(); ++i) {
+        sand_.setWatched(i, sand_.flowed(i));
     }
     keepEdges(kept);
 }
@@ -222,6 +289,12 @@ std::vector<Vertex> ActiveEdges::meshChanged(const Mesh::Change& change) {
     }
     keepEdges(kept);
     return ends;
+}
+
+void ActiveEdges::forgetMoved(const std::vector<Vertex>& moved) {
+    for (const Vertex vertex : moved) {
+        isMoved_[index(vertex)] = 0;
+    }
 }
 
 void ActiveEdges::clear() { keepEdges(std::vector<std::uint8_t>(sand_.edgeCount(), 0)); }

@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "sand/tin/layer.hpp"
 #include "sand/tin/moving_sand.hpp"
 #include "sand/tin/weights.hpp"
+#include "sand/tin/window.hpp"
 
 namespace sand::tin {
 
@@ -21,20 +23,25 @@ class ActiveEdges {
 public:
     using Underside = std::function<std::int32_t(Place)>;
 
+    void reserve(std::size_t vertices) { makeRoom(vertices, 2 * vertices); }
     /// Vertices where an obstacle stood and now another one does, or none: sand may flow there again. Where it is as it
     /// was, sand has come to rest under it.
     [[nodiscard]] std::vector<Vertex> takeReleased(const Underside* held);
     /// Takes the layer's sand as it is now, for a run of sweeps under this obstacle, or none; nothing flows yet.
     /// `band`: sand at rest starts to slide later than sliding sand stops.
     void begin(const Layer& layer, bool band, const Underside* held);
+    /// Watches every edge over which sand may flow in the next sweep because of these vertices: those of triangles
+    /// around them that are steep enough. To be called right after begin().
+    void wake(const Layer& layer, const Slopes& slopes, Weights& weights, std::span<const Vertex> vertices);
     /// Watches every edge whose flux depends on this vertex.
     void watch(const Layer& layer, const Slopes& slopes, Weights& weights, Vertex vertex);
     /// One sweep, which then watches all that it may have set in motion; false when nothing flowed.
     bool sweep(const Layer& layer, const Slopes& slopes, Weights& weights);
-    /// Gives the layer its sand, and adds who has another volume now to `moved`.
-    void store(Layer& layer, std::vector<Vertex>& moved) const;
-    /// Whether sand has flowed in the last sweep at fewer than half of the vertices.
-    [[nodiscard]] bool mostRest();
+    /// Gives the layer its sand, and adds who has another volume now to `moved`, each once until forgetMoved().
+    void store(Layer& layer, std::vector<Vertex>& moved);
+    void forgetMoved(const std::vector<Vertex>& moved);
+    /// Whether so much has been swept in vain since it was forgotten last that to forget it would have paid.
+    [[nodiscard]] bool manyRest() const;
     /// Forgets edges that the last sweep cannot have set in motion. The layer must have got its sand.
     void forgetResting();
     /// The mesh is another here: forgets the edges whose flux is no more what it was. Returns their ends, some of which
@@ -53,6 +60,9 @@ private:
         std::int32_t underside;
     };
 
+    [[nodiscard]] bool maySlide(const Layer& layer, const Slopes& slopes, std::int32_t slot);
+    void watchTriangle(const Layer& layer, const Slopes& slopes, Weights& weights, std::int32_t slot);
+    void makeRoom(std::size_t vertices, std::size_t slots);
     [[nodiscard]] std::int32_t facetAt(const Layer& layer, const Slopes& slopes, std::int32_t slot);
     [[nodiscard]] std::int32_t localOf(const Layer& layer, Vertex vertex);
     [[nodiscard]] double undersideAt(Vertex vertex, const Place& place);
@@ -64,9 +74,14 @@ private:
     std::vector<Side> sides_;                 // of a local edge; corners are counted from the smallest vertex on
     std::vector<std::int32_t> local_;         // by vertex; kNobody: none
     std::vector<std::int32_t> facet_;         // by slot; kNobody: none
-    std::vector<std::uint8_t> watchedSides_;  // by slot: a bit per corner, counted as above
+    std::vector<std::uint8_t> watchedSides_;  // by slot: a bit per corner, counted as above, and one for all three
     std::vector<Held> heldBack_;
-    std::vector<std::uint8_t> isHeldBack_;  // by vertex
+    std::vector<std::uint8_t> isHeldBack_, isMoved_;  // by vertex
+    NumberSet examined_;                              // slots, of one wake()
+    NumberSet knownUndersides_;                       // vertices, since begin()
+    std::vector<double> undersides_;                  // by vertex, of those
+    std::vector<std::int32_t> met_;                   // scratch
+    std::int64_t inVain_ = 0;                         // vertices at rest, sweep by sweep, beside those that always are
     bool band_ = false;
     const Underside* held_ = nullptr;
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+
 #include "sand/tin/mesh.hpp"
 
 namespace sand::tin {
@@ -19,6 +21,7 @@ public:
             keep(slot, mesh);
         }
     }
+    void reserve(std::size_t slots) { touched_.resize(std::max(touched_.size(), slots), 0); }
     /// What differs now; the next record begins here.
     [[nodiscard]] Mesh::Change takeChange(const Triangles& mesh);
     [[nodiscard]] Mesh::Difference takeDifference(const Triangles& mesh);

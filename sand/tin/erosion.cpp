@@ -2,12 +2,12 @@
 #include "sand/tin/erosion.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace sand::tin {
 namespace {
 
 constexpr double kProbePerCell = 256;
-constexpr int kSweepsTogether = 16;  // edges that have come to rest are looked at in vain so long
 
 }  // namespace
 
@@ -19,6 +19,11 @@ Erosion::Erosion(const Layer&, std::int32_t threshold, std::int32_t startThresho
     changeThresholds(threshold, startThreshold);
 }
 
+void Erosion::reserve(std::size_t vertices) {
+    weights_.reserve(vertices);
+    active_.reserve(vertices);
+}
+
 void Erosion::changeThresholds(std::int32_t threshold, std::int32_t startThreshold) {
     slopes_ = slopesOf(threshold, startThreshold);
     active_.clear();
@@ -26,7 +31,7 @@ void Erosion::changeThresholds(std::int32_t threshold, std::int32_t startThresho
 }
 
 void Erosion::changed(const Layer&, const Mesh::Change& change) {
-    weights_.forget(change.vertices);
+    weights_.forget(change);
     wake(active_.meshChanged(change));
     wake(change.vertices);
 }
@@ -48,26 +53,22 @@ int Erosion::sweep(Layer& layer, int sweeps, const Underside* held, std::vector<
     while (done < sweeps && !active_.empty()) {
         ++done;
         const bool still = !active_.sweep(layer, slopes_, weights_);
-        if (still || (done % kSweepsTogether == 0 && active_.mostRest())) {
+        if (still || active_.manyRest()) {
             active_.store(layer, moved);
             active_.forgetResting();
         }
     }
     active_.store(layer, moved);
-    std::sort(moved.begin(), moved.end());
-    moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
+    active_.forgetMoved(moved);
     return done;
 }
 
 void Erosion::watchWoken(const Layer& layer) {
     if (wakeAll_) {
-        for (Vertex vertex = 0; vertex < static_cast<Vertex>(layer.triangles().places.size()); ++vertex) {
-            active_.watch(layer, slopes_, weights_, vertex);
-        }
+        woken_.resize(layer.triangles().places.size());
+        std::iota(woken_.begin(), woken_.end(), 0);
     }
-    for (const Vertex vertex : woken_) {
-        active_.watch(layer, slopes_, weights_, vertex);
-    }
+    active_.wake(layer, slopes_, weights_, woken_);
     wakeAll_ = false;
     woken_.clear();
 }

@@ -43,6 +43,8 @@ public:
     /// `threshold` and `startThreshold` as Rules': height units per cell size, sliding and starting to. All may move.
     Erosion(const Layer& layer, std::int32_t threshold, std::int32_t startThreshold);
 
+    /// As Mesh's.
+    void reserve(std::size_t vertices);
     void changeThresholds(std::int32_t threshold, std::int32_t startThreshold);  // wakes everything
     /// The layer's mesh or sand is another there now: its weights are made anew, and it may move.
     void changed(const Layer& layer, const Mesh::Change& change);
@@ -51,9 +53,9 @@ public:
 
     /// While `held` is given no flux raises a vertex above it. Who puts it down, or moves it, wakes the vertices that
     /// are higher than a unit below it: sand beside them may lean on it now. Vertices that moved are added to `moved`,
-    /// ascending, each once. Costs what moves: next to nothing once the sand lies still. Sand under an obstacle is
-    /// looked at again by the next call for which it is another one there, so that nobody need wake it when the tool
-    /// leaves.
+    /// each once, in no order that means anything. Costs what moves: next to nothing once the sand lies still. Sand
+    /// under an obstacle is looked at again by the next call for which it is another one there, so that nobody need
+    /// wake it when the tool leaves.
     int sweep(Layer& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved);
     /// Whether nothing moves any more as things are.
     [[nodiscard]] bool settled() const;

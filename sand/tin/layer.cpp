@@ -43,6 +43,13 @@ Layer::Layer(Mesh mesh) : mesh_(std::move(mesh)) {
     }
 }
 
+void Layer::reserve(std::size_t vertices) {
+    mesh_.reserve(vertices);
+    volumes_.reserve(vertices);
+    stars_.reserve(vertices);
+    heights_.reserve(vertices);
+}
+
 Wide Layer::volume() const {
     Wide sum = 0;
     for (const std::int64_t volume : volumes_) {  // none where no vertex lives

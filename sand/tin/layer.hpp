@@ -3,12 +3,26 @@
 
 #include <cstdint>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "files/byte_stream.hpp"
 #include "sand/tin/mesh.hpp"
 
 namespace sand::tin {
+
+/// What makes a layer, whatever has become of it before.
+struct LayerParts {
+    static constexpr Place kNowhere{-1, -1};  // where no such vertex lives
+
+    std::int32_t width = 0, depth = 0;                   // of the field [probe unit]
+    std::vector<Place> places;                           // by vertex
+    std::vector<std::int64_t> volumes;                   // by vertex
+    std::vector<std::pair<Vertex, Vertex>> constraints;  // as Mesh's
+
+    /// Not compressed; equal layers give equal bytes.
+    void encode(files::ByteWriter& writer) const;
+};
 
 /// The sand of a TIN: a volume in every vertex, an exact integer, from which its height follows.
 ///
@@ -30,6 +44,8 @@ public:
     [[nodiscard]] const std::vector<double>& heights() const { return heights_; }
     [[nodiscard]] Wide volume() const;
 
+    /// As Mesh's.
+    void reserve(std::size_t vertices);
     /// Erosion and tools move sand between vertices with this; the height follows.
     void add(Vertex vertex, std::int64_t volume);
     void setHeight(Vertex vertex, std::int32_t height /* [unit] */);  // changes the volume of the whole
@@ -58,8 +74,8 @@ public:
     /// As Mesh's: for whoever erodes it. Vertices that only rose or sank by a remap are among them.
     [[nodiscard]] Mesh::Change takeChange();
 
-    /// Mesh, volumes and constraints as bytes (not compressed); equal layers give equal bytes.
-    void encode(files::ByteWriter& writer) const;
+    [[nodiscard]] LayerParts parts() const;
+    void encode(files::ByteWriter& writer) const { parts().encode(writer); }
     /// Throws files::FormatError when the bytes are no layer. Reads no further than its end.
     static Layer decode(files::ByteReader& reader);
 

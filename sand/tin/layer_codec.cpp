@@ -11,9 +11,9 @@ namespace {
 
 using files::FormatError;
 
-std::size_t livingEnd(const Triangles& mesh) {
-    std::size_t end = mesh.places.size();
-    while (end > 0 && mesh.triangleAt[end - 1] == kNobody) {
+std::size_t livingEnd(const std::vector<Place>& places) {
+    std::size_t end = places.size();
+    while (end > 0 && places[end - 1] == LayerParts::kNowhere) {
         --end;
     }
     return end;
@@ -55,23 +55,32 @@ std::vector<std::pair<Vertex, Vertex>> getConstraints(files::ByteReader& reader,
 
 }  // namespace
 
-void Layer::encode(files::ByteWriter& writer) const {
+LayerParts Layer::parts() const {
     const Triangles& mesh = triangles();
-    writer.put(mesh.width);
-    writer.put(mesh.depth);
+    LayerParts parts{mesh.width, mesh.depth, mesh.places, volumes_, mesh_.constraints()};
+    for (std::size_t i = 0; i < parts.places.size(); ++i) {
+        if (mesh.triangleAt[i] == kNobody) {
+            parts.places[i] = LayerParts::kNowhere;
+        }
+    }
+    return parts;
+}
+
+void LayerParts::encode(files::ByteWriter& writer) const {
+    writer.put(width);
+    writer.put(depth);
     // Numbers beyond the last that lives say only what once was.
-    const std::size_t count = livingEnd(mesh);
+    const std::size_t count = livingEnd(places);
     writer.putVarint(count);
     for (std::size_t i = 0; i < count; ++i) {
-        if (mesh.triangleAt[i] == kNobody) {
+        if (places[i] == kNowhere) {
             writer.putVarint(0);
             continue;
         }
-        writer.putVarint(static_cast<std::uint64_t>(mesh.places[i].x) + 1);
-        writer.putVarint(static_cast<std::uint64_t>(mesh.places[i].y));
-        writer.putSigned(volumes_[i]);
+        writer.putVarint(static_cast<std::uint64_t>(places[i].x) + 1);
+        writer.putVarint(static_cast<std::uint64_t>(places[i].y));
+        writer.putSigned(volumes[i]);
     }
-    const auto constraints = mesh_.constraints();
     writer.putVarint(constraints.size());
     for (const auto& [a, b] : constraints) {
         writer.putVarint(static_cast<std::uint64_t>(a));

@@ -30,7 +30,7 @@ LayerState LayerState::decode(files::ByteReader& reader) {
     return state;
 }
 
-LayerCopy::LayerCopy(const Layer& layer, LayerState state) : state_(std::move(state)) {
+LayerCopy::LayerCopy(const LayerParts& layer, LayerState state) : state_(std::move(state)) {
     files::ByteWriter writer;
     layer.encode(writer);
     plain_ = writer.take();

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "sand/surface.hpp"
 #include "sand/tin/layer.hpp"
@@ -24,7 +25,8 @@ struct LayerState {
 /// The sand of a TIN as bytes: what is saved, loaded and put back.
 class LayerCopy final : public SurfaceCopy {
 public:
-    LayerCopy(const Layer& layer, LayerState state);
+    LayerCopy(const LayerParts& layer, LayerState state);
+    LayerCopy(const Layer& layer, LayerState state) : LayerCopy(layer.parts(), std::move(state)) {}
     /// Throws files::FormatError for bytes that are no TIN of this size, or go on behind it.
     LayerCopy(std::span<const std::uint8_t> packed, std::int32_t width, std::int32_t depth);
 

@@ -77,6 +77,10 @@ std::vector<Vertex> Mesh::insert(std::span<const Place> places) {
     return numbers;
 }
 
+void Mesh::reserve(std::size_t vertices) {
+    triangulation_->reserve(vertices - std::min(vertices, triangles().places.size()));
+}
+
 bool Mesh::remove(Vertex vertex) {
     requireAlive(vertex);
     if (vertex < 4) {

@@ -35,6 +35,8 @@ public:
     Vertex insert(Place place);
     /// The same for many at once, faster: as if inserted one after the other (numbers are given in this order).
     std::vector<Vertex> insert(std::span<const Place> places);
+    /// Room for as many vertices in all, so that none of them makes the whole mesh move in memory.
+    void reserve(std::size_t vertices);
     /// Takes a vertex out, with the constraints that end in it. A corner stays, and a vertex on the rim joins its two
     /// rim edges again. False when it stays.
     bool remove(Vertex vertex);

@@ -12,26 +12,30 @@ constexpr double kExact = 0x1p51;
 
 std::size_t index(std::int32_t number) { return static_cast<std::size_t>(number); }
 
+/// Keeps those values of each array, whose places are given in ascending order.
 template <class... Values>
-void keepMarked(const std::vector<std::int32_t>& now, std::size_t count, std::vector<Values>&... arrays) {
+void keepMarked(const std::vector<std::int32_t>& kept, std::vector<Values>&... arrays) {
     const auto keep = [&](auto& values) {
-        for (std::size_t i = 0; i < now.size(); ++i) {
-            if (now[i] != kNobody) {
-                values[index(now[i])] = values[i];
-            }
+        for (std::size_t i = 0; i < kept.size(); ++i) {
+            values[i] = values[index(kept[i])];
         }
-        values.resize(count);
+        values.resize(kept.size());
     };
     (keep(arrays), ...);
 }
 
-/// Numbers what is marked, and returns how many that are.
-std::size_t numberMarked(std::vector<std::int32_t>& marks) {
+/// Numbers what is marked, and returns where it was.
+std::vector<std::int32_t> numberMarked(std::vector<std::int32_t>& marks) {
+    std::vector<std::int32_t> kept(marks.size());
     std::int32_t count = 0;
-    for (std::int32_t& mark : marks) {
-        mark = mark != kNobody ? count++ : kNobody;
+    for (std::size_t i = 0; i < marks.size(); ++i) {
+        const bool marked = marks[i] != kNobody;
+        kept[index(count)] = static_cast<std::int32_t>(i);
+        marks[i] = marked ? count : kNobody;
+        count += marked ? 1 : 0;
     }
-    return index(count);
+    kept.resize(index(count));
+    return kept;
 }
 
 }  // namespace
@@ -58,7 +62,7 @@ std::int32_t MovingSand::addVertex(std::int64_t volume, std::int64_t star, doubl
     stars_.push_back(static_cast<double>(star));
     heights_.push_back(static_cast<double>(volume) / static_cast<double>(star));
     undersides_.push_back(underside);
-    inflow_.push_back(0);
+    flows_.push_back(0);
     unwatched_.push_back(~std::uint64_t{0});
     return number;
 }
@@ -99,7 +103,7 @@ Edge MovingSand::edge(std::size_t number) const {
 void MovingSand::restart() {
     largestStar_ = greatestHeight_ = 0;
     isWide_ = alwaysWide_;
-    std::fill(fluxes_.begin(), fluxes_.end(), 0.0);
+    std::fill(flows_.begin(), flows_.end(), 0.0);
 }
 
 void MovingSand::place(std::size_t vertex, std::int64_t volume, std::int64_t star, double underside) {
@@ -111,29 +115,18 @@ void MovingSand::place(std::size_t vertex, std::int64_t volume, std::int64_t sta
     wide_[vertex] = volume;
 }
 
-const std::vector<std::uint8_t>& MovingSand::flowed() {
-    flowed_.assign(vertexCount(), 0);
-    for (std::size_t i = 0; i < edgeCount(); ++i) {
-        const std::uint8_t flows = fluxes_[i] != 0 ? 1 : 0;
-        flowed_[index(from_[i])] |= flows;
-        flowed_[index(to_[i])] |= flows;
-    }
-    return flowed_;
-}
-
-void MovingSand::findRests() {
-    flowed();
-    rest_.resize(facetCount());
-    for (std::size_t i = 0; i < facetCount(); ++i) {
-        const bool slides = (flowed_[index(first_[i])] | flowed_[index(second_[i])] | flowed_[index(third_[i])]) != 0;
-        rest_[i] = slides ? kRest : start_[i];
+void MovingSand::findUnwatched(std::vector<std::int32_t>& found) const {
+    const double* flows = flows_.data();
+    const std::uint64_t* unwatched = unwatched_.data();
+    for (std::size_t i = 0, count = vertexCount(); i < count; ++i) {
+        if (unwatched[i] != 0 && flows[i] > 0) {
+            found.push_back(static_cast<std::int32_t>(i));
+        }
     }
 }
 
 SweepResult MovingSand::sweep(bool held, bool band) {
-    if (band) {
-        findRests();
-    }
+    inflow_.resize(2 * vertexCount());
     const SweepFluxes sweep{.facets = facetCount(),
                             .edges = edgeCount(),
                             .heights = heights_.data(),
@@ -144,7 +137,8 @@ SweepResult MovingSand::sweep(bool held, bool band) {
                             .squared = squared_.data(),
                             .mixed = mixed_.data(),
                             .squaredAcross = squaredAcross_.data(),
-                            .rest = band ? rest_.data() : nullptr,
+                            .start = band ? start_.data() : nullptr,
+                            .flows = flows_.data(),
                             .sliding = sliding_.data(),
                             .from = from_.data(),
                             .to = to_.data(),
@@ -165,6 +159,7 @@ SweepResult MovingSand::sweep(bool held, bool band) {
                          .stars = stars_.data(),
                          .unwatched = unwatched_.data(),
                          .inflow = inflow_.data(),
+                         .flows = flows_.data(),
                          .volumes = volumes_.data(),
                          .heights = heights_.data()};
     return v3_ ? v3::moveSand(sand) : baseline::moveSand(sand);
@@ -172,15 +167,20 @@ SweepResult MovingSand::sweep(bool held, bool band) {
 
 SweepResult MovingSand::moveWide() {
     wideInflow_.assign(vertexCount(), 0);
+    std::fill(flows_.begin(), flows_.end(), 0.0);
     for (std::size_t i = 0; i < edgeCount(); ++i) {
         const auto flux = static_cast<std::int64_t>(fluxes_[i]);
         wideInflow_[index(from_[i])] -= flux;
         wideInflow_[index(to_[i])] += flux;
+        flows_[index(from_[i])] += std::abs(fluxes_[i]);
+        flows_[index(to_[i])] += std::abs(fluxes_[i]);
     }
     SweepResult result;
     for (std::size_t i = 0; i < vertexCount(); ++i) {
         result.moved = result.moved || wideInflow_[i] != 0;
         result.spread = result.spread || (wideInflow_[i] != 0 && !isWatched(i));
+        result.met = result.met || (flowed(i) && !isWatched(i));
+        result.resting += flowed(i) ? 0 : 1;
         wide_[i] += wideInflow_[i];
         heights_[i] = static_cast<double>(wide_[i]) / stars_[i];
     }
@@ -202,11 +202,12 @@ MovingSand::Renumbering MovingSand::keepEdges(const std::vector<std::uint8_t>& k
             now.vertices[index(first_[i])] = now.vertices[index(second_[i])] = now.vertices[index(third_[i])] = 0;
         }
     }
-    keepMarked(edges, numberMarked(edges), from_, to_, left_, right_, leftWeights_, rightWeights_, fluxes_);
-    keepMarked(now.facets, numberMarked(now.facets), first_, second_, third_, squared_, mixed_, squaredAcross_, start_,
-               sliding_);
-    keepMarked(now.vertices, numberMarked(now.vertices), volumes_, stars_, heights_, undersides_, inflow_, unwatched_,
-               wide_);
+    // Fluxes and slides are of the next sweep again.
+    keepMarked(numberMarked(edges), from_, to_, left_, right_, leftWeights_, rightWeights_);
+    fluxes_.resize(edgeCount());
+    keepMarked(numberMarked(now.facets), first_, second_, third_, squared_, mixed_, squaredAcross_, start_);
+    sliding_.resize(first_.size());
+    keepMarked(numberMarked(now.vertices), volumes_, stars_, heights_, undersides_, flows_, unwatched_, wide_);
     const auto renumber = [](std::vector<std::int32_t>& names, const std::vector<std::int32_t>& by) {
         std::transform(names.begin(), names.end(), names.begin(), [&by](std::int32_t name) { return by[index(name)]; });
     };

@@ -29,7 +29,7 @@ public:
     void addEdge(const Edge& edge);
 
     [[nodiscard]] std::size_t vertexCount() const { return stars_.size(); }
-    [[nodiscard]] std::size_t facetCount() const { return sliding_.size(); }
+    [[nodiscard]] std::size_t facetCount() const { return first_.size(); }
     [[nodiscard]] std::size_t edgeCount() const { return from_.size(); }
     [[nodiscard]] std::int64_t volume(std::size_t vertex) const {
         return isWide_ ? wide_[vertex] : static_cast<std::int64_t>(volumes_[vertex]);
@@ -46,8 +46,10 @@ public:
 
     /// One sweep; `held`: undersides hold; `band`: facets at rest start to slide later than sliding ones stop.
     SweepResult sweep(bool held, bool band);
-    /// By vertex: whether sand flowed at one of its edges in the last sweep. Until the next call of anything.
-    const std::vector<std::uint8_t>& flowed();
+    /// Whether sand flowed at one of a vertex's edges in the last sweep.
+    [[nodiscard]] bool flowed(std::size_t vertex) const { return flows_[vertex] > 0; }
+    /// Adds the vertices whose edges are not all here though sand flowed at one.
+    void findUnwatched(std::vector<std::int32_t>& found) const;
 
     /// Where facets and vertices are after some edges went; kNobody: no edge needs it any more.
     struct Renumbering {
@@ -60,17 +62,16 @@ private:
     void notice(std::int64_t volume, std::int64_t star);
     void widen();
     SweepResult moveWide();
-    void findRests();
 
     bool v3_, alwaysWide_;
     bool isWide_ = alwaysWide_;
     double largestStar_ = 0, greatestHeight_ = 0;
-    std::vector<double> volumes_, stars_, heights_, undersides_, inflow_;  // by vertex
+    std::vector<double> volumes_, stars_, heights_, undersides_, flows_;  // by vertex
+    std::vector<double> inflow_;                                          // two by vertex: scratch of a sweep
     std::vector<std::uint64_t> unwatched_;
     std::vector<std::int64_t> wide_, wideInflow_;
-    std::vector<std::uint8_t> flowed_;
     std::vector<std::int32_t> first_, second_, third_;  // by facet
-    std::vector<double> squared_, mixed_, squaredAcross_, start_, rest_, sliding_;
+    std::vector<double> squared_, mixed_, squaredAcross_, start_, sliding_;
     std::vector<std::int32_t> from_, to_, left_, right_;  // by edge
     std::vector<double> leftWeights_, rightWeights_, fluxes_;
 };

@@ -9,18 +9,12 @@
 namespace sand::tin::SANDWALL_CODE_PATH {
 namespace {
 
-/// What a corner counts as for the slope: sand that fills the room below an obstacle leans on it, and is no slope for
-/// the sand beside it, which would flow along it for ever.
-double leaning(double height, double underside, double one, double other) {
-    const double beside = one < other ? one : other;
-    return height > underside - 1 && beside > height ? beside : height;
-}
-
 template <bool kHeld, bool kBand>
 void slide(std::size_t count, const double* __restrict heights, const double* __restrict undersides,
            const std::int32_t* __restrict first, const std::int32_t* __restrict second,
            const std::int32_t* __restrict third, const double* __restrict squared, const double* __restrict mixed,
-           const double* __restrict squaredAcross, const double* __restrict rest, double* __restrict sliding) {
+           const double* __restrict squaredAcross, const double* __restrict start, const double* __restrict flows,
+           double* __restrict sliding) {
     for (std::size_t i = 0; i < count; ++i) {
         double a = heights[first[i]], b = heights[second[i]], c = heights[third[i]];
         if constexpr (kHeld) {
@@ -32,7 +26,11 @@ void slide(std::size_t count, const double* __restrict heights, const double* __
         const double d1 = b - a, d2 = c - a;
         const double steepness = squared[i] * d1 * d1 + (mixed[i] * d1 + squaredAcross[i] * d2) * d2;
         const double push = kPush - 2 * kPush / (steepness + 1);
-        sliding[i] = steepness > (kBand ? rest[i] : kRest) ? push : 0.0;
+        double rest = kRest;
+        if constexpr (kBand) {
+            rest = flows[first[i]] + flows[second[i]] + flows[third[i]] > 0 ? kRest : start[i];
+        }
+        sliding[i] = steepness > rest ? push : 0.0;
     }
 }
 
@@ -56,51 +54,60 @@ void flow(std::size_t count, const double* __restrict heights, const double* __r
     }
 }
 
+// Added with one instruction, as an edge's flux and its size are: to know where sand flows costs next to nothing.
+using Pair [[gnu::vector_size(2 * sizeof(double)), gnu::aligned(sizeof(double)), gnu::may_alias]] = double;
+
+void sumUp(std::size_t edges, const std::int32_t* from, const std::int32_t* to, const double* fluxes, double* sums) {
+    auto* pairs = reinterpret_cast<Pair*>(sums);
+    for (std::size_t i = 0; i < edges; ++i) {
+        const double flux = fluxes[i], size = std::abs(flux);
+        pairs[from[i]] += Pair{-flux, size};
+        pairs[to[i]] += Pair{flux, size};
+    }
+}
+
 /// A height is a quotient, rounded once.
-std::uint64_t settleUp(std::size_t count, const double* __restrict inflow, const double* __restrict stars,
-                       const std::uint64_t* __restrict unwatched, double* __restrict volumes,
-                       double* __restrict heights, std::uint64_t& spread) {
-    std::uint64_t moved = 0, beyond = 0;
+SweepResult settleUp(std::size_t count, const double* __restrict sums, const double* __restrict stars,
+                     const std::uint64_t* __restrict unwatched, double* __restrict volumes, double* __restrict heights,
+                     double* __restrict flows) {
+    std::uint64_t moved = 0, beyond = 0, met = 0;
+    std::int64_t resting = 0;
     for (std::size_t i = 0; i < count; ++i) {
-        const auto bits = std::bit_cast<std::uint64_t>(inflow[i] + 0.0);  // minus zero is none either
+        const double inflow = sums[2 * i], flow = sums[2 * i + 1];
+        const auto bits = std::bit_cast<std::uint64_t>(inflow + 0.0);  // minus zero is none either
         moved |= bits;
         beyond |= bits & unwatched[i];
-        volumes[i] += inflow[i];
+        met |= std::bit_cast<std::uint64_t>(flow) & unwatched[i];
+        resting += flow > 0 ? 0 : 1;
+        flows[i] = flow;
+        volumes[i] += inflow;
         heights[i] = volumes[i] / stars[i];
     }
-    spread = beyond;
-    return moved;
+    return {moved != 0, beyond != 0, met != 0, resting};
 }
 
 }  // namespace
 
 void sweepFluxes(const SweepFluxes& s) {
     const auto slideAs = [&s](const auto& law) {
-        law(s.facets, s.heights, s.undersides, s.first, s.second, s.third, s.squared, s.mixed, s.squaredAcross, s.rest,
-            s.sliding);
+        law(s.facets, s.heights, s.undersides, s.first, s.second, s.third, s.squared, s.mixed, s.squaredAcross, s.start,
+            s.flows, s.sliding);
     };
     if (s.undersides != nullptr) {
-        s.rest != nullptr ? slideAs(slide<true, true>) : slideAs(slide<true, false>);
+        s.start != nullptr ? slideAs(slide<true, true>) : slideAs(slide<true, false>);
         flow<true>(s.edges, s.heights, s.undersides, s.from, s.to, s.left, s.right, s.leftWeights, s.rightWeights,
                    s.sliding, s.fluxes);
     } else {
-        s.rest != nullptr ? slideAs(slide<false, true>) : slideAs(slide<false, false>);
+        s.start != nullptr ? slideAs(slide<false, true>) : slideAs(slide<false, false>);
         flow<false>(s.edges, s.heights, s.undersides, s.from, s.to, s.left, s.right, s.leftWeights, s.rightWeights,
                     s.sliding, s.fluxes);
     }
 }
 
 SweepResult moveSand(const SweepSand& sand) {
-    std::fill(sand.inflow, sand.inflow + sand.vertices, 0.0);
-    for (std::size_t i = 0; i < sand.edges; ++i) {
-        const double flux = sand.fluxes[i];
-        sand.inflow[sand.from[i]] -= flux;
-        sand.inflow[sand.to[i]] += flux;
-    }
-    std::uint64_t spread = 0;
-    const std::uint64_t moved =
-        settleUp(sand.vertices, sand.inflow, sand.stars, sand.unwatched, sand.volumes, sand.heights, spread);
-    return {moved != 0, spread != 0};
+    std::fill(sand.inflow, sand.inflow + 2 * sand.vertices, 0.0);
+    sumUp(sand.edges, sand.from, sand.to, sand.fluxes, sand.inflow);
+    return settleUp(sand.vertices, sand.inflow, sand.stars, sand.unwatched, sand.volumes, sand.heights, sand.flows);
 }
 
 }  // namespace sand::tin::SANDWALL_CODE_PATH

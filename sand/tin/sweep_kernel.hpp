@@ -22,11 +22,12 @@ struct SweepFluxes {
     const double* undersides;                       // by vertex [unit], where an obstacle holds; null without one
     const std::int32_t *first, *second, *third;     // by facet: its corners
     const double *squared, *mixed, *squaredAcross;  // by facet: Facet's first, mixed, second
-    const double* rest;                             // by facet: the steepness at which it rests; null: kRest
-    double* sliding;                                // by facet: how strongly it slides, 0 to 1; written
-    const std::int32_t *from, *to, *left, *right;   // by edge: ends and facets
-    const double *leftWeights, *rightWeights;       // by edge [probe unit²]
-    double* fluxes;                                 // by edge: volume from `from` to `to`, whole; written
+    const double* start;  // by facet: the steepness from which on it slides where nothing flows; null: kRest as ever
+    const double* flows;  // by vertex: what flowed at its edges in the sweep before, in and out
+    double* sliding;      // by facet: how strongly it slides, 0 to 1; written
+    const std::int32_t *from, *to, *left, *right;  // by edge: ends and facets
+    const double *leftWeights, *rightWeights;      // by edge [probe unit²]
+    double* fluxes;                                // by edge: volume from `from` to `to`, whole; written
 };
 
 /// What the fluxes make of the sand: volumes, whole numbers below 2^53 as all their sums are, and heights.
@@ -36,14 +37,24 @@ struct SweepSand {
     const double* fluxes;            // by edge
     const double* stars;             // by vertex [probe unit²]
     const std::uint64_t* unwatched;  // by vertex: all bits, or none
-    double* inflow;                  // by vertex; written
+    double* inflow;                  // two by vertex: what came less what went, and both together; written
+    double* flows;                   // by vertex: the second of those; written
     double* volumes;                 // by vertex
     double* heights;                 // by vertex [unit]
 };
 
+/// What a corner counts as for the slope: sand that fills the room below an obstacle leans on it, and is no slope for
+/// the sand beside it, which would flow along it for ever.
+inline double leaning(double height, double underside, double one, double other) {
+    const double beside = one < other ? one : other;
+    return height > underside - 1 && beside > height ? beside : height;
+}
+
 struct SweepResult {
-    bool moved = false;   // some volume changed
-    bool spread = false;  // that of one that is not watched did
+    bool moved = false;        // some volume changed
+    bool spread = false;       // that of one that is not watched did
+    bool met = false;          // sand flowed at an edge of one that is not watched
+    std::int64_t resting = 0;  // vertices at whose edges none flowed
 };
 
 // One source, compiled twice (sand/tin/CMakeLists.txt): the same numbers, bit for bit.

@@ -13,6 +13,7 @@ namespace {
 constexpr int kRemovalsPerStep = 64;
 constexpr int kSweepsToRest = 1 << 20;  // more than any TIN that is worth waiting for
 constexpr int kSweepsAtOnce = 64;
+constexpr std::size_t kMoreVertices = 4096;  // at least, than a session starts with
 
 DetailRules detailOf(const Start& start) {
     const Settings& settings = start.settings;
@@ -45,8 +46,10 @@ TinSurface::TinSurface(const Scene& scene)
       startThreshold_(scene.rules.startThreshold),
       layer_(layerOf(*start_)),
       erosion_(layer_, threshold_, startThreshold_),
-      hash_(layer_) {
+      hash_(layer_),
+      kept_(layer_) {
     (void)layer_.takeChange();
+    reserve();
 }
 
 TinSurface::TinSurface(const TinSurface& other)
@@ -59,8 +62,29 @@ TinSurface::TinSurface(const TinSurface& other)
       state_(other.state_),
       erosion_(layer_, threshold_, startThreshold_),
       hash_(layer_),
-      kept_(other.kept_) {
+      kept_(layer_) {
     (void)layer_.takeChange();
+    reserve();
+    if (other.kept_.any()) {
+        kept_.keep(other.kept_.copy());
+    }
+}
+
+void TinSurface::reserve() {
+    const std::size_t there = layer_.triangles().places.size();
+    const std::size_t most = std::max(there, static_cast<std::size_t>(detail_.maxVertices)) + kMoreVertices;
+    const std::size_t vertices = std::min(most, there + there / 4 + kMoreVertices);
+    layer_.reserve(vertices);
+    erosion_.reserve(vertices);
+    hash_.reserve(vertices);
+    near_->reserve(vertices);
+}
+
+Tool& TinSurface::toolOf(const HeldTool& tool) {
+    if (!tool_ || !tool_->is(tool.shape, tool.heading)) {
+        tool_.emplace(tool.shape, tool.heading, detail_, near_);
+    }
+    return *tool_;
 }
 
 void TinSurface::meshChanged() {
@@ -68,9 +92,12 @@ void TinSurface::meshChanged() {
     if (change.triangles.empty() && change.vertices.empty()) {
         return;
     }
+    sawAll_ = false;
     erosion_.changed(layer_, change);
     hash_.touch(layer_, change.vertices);
     hash_.touchTriangles(layer_, change.triangles);
+    kept_.touch(change.vertices);
+    kept_.touchTriangles(change.triangles);
     coarsening_.wake();
     if (!damage_.whole) {
         addTo(damage_.triangles, change.triangles);
@@ -80,12 +107,14 @@ void TinSurface::meshChanged() {
 
 /// Sand that fills the room below a tool: that beside it leans on the tool now.
 void TinSurface::wakeFull(const Underside& under, const Box& reach) {
-    Window near;
-    near.look(layer_.triangles(), reach);
+    if (!sawAll_ || near_->box().joinedWith(reach.clippedTo(layer_.triangles())) != near_->box()) {
+        near_->look(layer_.triangles(), reach);
+    }
     std::vector<Vertex> full;
-    std::copy_if(near.vertices().begin(), near.vertices().end(), std::back_inserter(full), [&](Vertex vertex) {
+    std::copy_if(near_->vertices().begin(), near_->vertices().end(), std::back_inserter(full), [&](Vertex vertex) {
         const auto i = static_cast<std::size_t>(vertex);
-        return layer_.heights()[i] > under(layer_.triangles().places[i]) - 1.0;
+        return reach.holds(layer_.triangles().places[i]) &&
+               layer_.heights()[i] > under(layer_.triangles().places[i]) - 1.0;
     });
     erosion_.wake(full);
 }
@@ -96,6 +125,7 @@ void TinSurface::sandMoved(const std::vector<Vertex>& vertices) {
     }
     coarsening_.wake();
     hash_.touch(layer_, vertices);
+    kept_.touch(vertices);
     if (!damage_.whole) {
         addTo(damage_.vertices, vertices);
     }
@@ -107,12 +137,7 @@ void TinSurface::drag(const HeldTool& tool, std::span<const ProbePoint> path) {
     meshChanged();
     sandMoved(done.touched);
     erosion_.wake(done.touched);
-}
-
-void TinSurface::release(const HeldTool& tool, const ProbePoint& at) {
-    Window under;
-    under.look(layer_.triangles(), toolOf(tool).reach(at));
-    erosion_.wake(under.vertices());
+    sawAll_ = state_.imprint.stand && state_.imprint.stand->at == path.back();
 }
 
 void TinSurface::leave(const HeldTool& tool) {
@@ -129,7 +154,7 @@ void TinSurface::sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) {
     }
     moved_.clear();
     if (tool != nullptr) {
-        const Tool here = toolOf(*tool);
+        const Tool& here = toolOf(*tool);
         const Underside under = here.underside(at);
         const Imprint::Stand stand{at, tool->shape, tool->heading};
         if (held_ != stand) {
@@ -162,7 +187,7 @@ void TinSurface::settle() {
 void TinSurface::reset() { replace(LayerCopy(layerOf(*start_), {})); }
 
 void TinSurface::keep(const SurfaceCopy& copy) {
-    kept_ = std::make_shared<const LayerCopy>(dynamic_cast<const LayerCopy&>(copy));
+    kept_.keep(std::make_shared<const LayerCopy>(dynamic_cast<const LayerCopy&>(copy)));
 }
 
 std::shared_ptr<const SurfaceCopy> TinSurface::copy() const {
@@ -183,7 +208,10 @@ void TinSurface::replace(const SurfaceCopy& copy) {
     state_ = sand.state();
     erosion_ = Erosion(layer_, threshold_, startThreshold_);
     hash_ = VertexHash(layer_);
+    kept_.replaced(layer_);
+    reserve();
     held_.reset();
+    sawAll_ = false;
     coarsening_.wake();
     damage_ = {.whole = true, .triangles = {}, .vertices = {}};
     lastFound_ = kNobody;

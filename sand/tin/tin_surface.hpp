@@ -8,6 +8,7 @@
 #include "sand/surface.hpp"
 #include "sand/tin/detail.hpp"
 #include "sand/tin/erosion.hpp"
+#include "sand/tin/kept_layer.hpp"
 #include "sand/tin/layer_copy.hpp"
 #include "sand/tin/tool.hpp"
 #include "sand/tin/vertex_hash.hpp"
@@ -28,19 +29,20 @@ public:
     [[nodiscard]] const Start& start() const { return *start_; }
 
     void drag(const HeldTool& tool, std::span<const ProbePoint> path) override;
-    void release(const HeldTool& tool, const ProbePoint& at) override;
+    /// Erosion itself finds the sand that a tool holds back no more.
+    void release(const HeldTool&, const ProbePoint&) override {}
     void leave(const HeldTool& tool) override;
     void sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) override;
     void changeRules(const Rules& rules) override;
     void settle() override;
     void reset() override;
 
-    void keep() override { kept_ = std::make_shared<const LayerCopy>(layer_, state_); }
+    void keep() override { kept_.keep(layer_, state_); }
     void keep(const SurfaceCopy& copy) override;
-    void forget() override { kept_ = nullptr; }
-    [[nodiscard]] std::shared_ptr<const SurfaceCopy> kept() const override { return kept_; }
-    [[nodiscard]] bool hasKept() const override { return kept_ != nullptr; }
-    void putBackKept() override { replace(*kept_); }
+    void forget() override { kept_.forget(); }
+    [[nodiscard]] std::shared_ptr<const SurfaceCopy> kept() const override { return kept_.copy(); }
+    [[nodiscard]] bool hasKept() const override { return kept_.any(); }
+    void putBackKept() override { replace(*kept_.copy()); }
 
     [[nodiscard]] std::shared_ptr<const SurfaceCopy> copy() const override;
     [[nodiscard]] SurfaceReader reader() const override;
@@ -63,9 +65,11 @@ public:
     [[nodiscard]] SurfaceDamage takeTinDamage() override;
 
 private:
-    [[nodiscard]] Tool toolOf(const HeldTool& tool) const { return {tool.shape, tool.heading, detail_}; }
+    [[nodiscard]] Tool& toolOf(const HeldTool& tool);
     /// Tells hash, erosion and whoever draws what the layer has become.
     void meshChanged();
+    /// So that hardly a step makes what is kept for every vertex move in memory.
+    void reserve();
     void wakeFull(const Underside& under, const Box& reach);
     void sandMoved(const std::vector<Vertex>& vertices);
 
@@ -79,8 +83,11 @@ private:
     Erosion erosion_;
     VertexHash hash_;
     SurfaceView view_{layer_.triangles(), layer_.heights(), detail_.spacing};
-    std::shared_ptr<const LayerCopy> kept_;
+    KeptLayer kept_;
     SurfaceDamage damage_{.whole = true, .triangles = {}, .vertices = {}};
+    std::optional<Tool> tool_;  // of the last toolOf()
+    std::shared_ptr<Window> near_ = std::make_shared<Window>();
+    bool sawAll_ = false;                       // near_ shows the mesh as it is, around the tool
     std::optional<Imprint::Stand> held_;        // the obstacle of the last sweeps: only to save work
     std::vector<Vertex> moved_;                 // scratch
     mutable std::int32_t lastFound_ = kNobody;  // where the next question about a height is likely to be

@@ -21,6 +21,10 @@ Box boxOf(const Rect& cells) {
     return {cells.x0 * kProbePerCell, cells.y0 * kProbePerCell, cells.x1 * kProbePerCell, cells.y1 * kProbePerCell};
 }
 
+Box boxOf(const Place& a, const Place& b) {
+    return {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)};
+}
+
 bool overlaps(const Box& box, const Triangles& field) { return !box.clippedTo(field).empty(); }
 
 /// Calls visit(at, ahead) for the sub-steps from one point to the next, the first left out.
@@ -42,8 +46,13 @@ void forEachSubstep(const ProbePoint& from, const ProbePoint& to, const Visit& v
 
 }  // namespace
 
-Tool::Tool(const ToolShape& shape, const Heading& heading, const DetailRules& rules)
-    : shape_(shape), heading_(heading), rules_(rules), turned_(shape, heading), outline_(Outline::of(shape, heading)) {}
+Tool::Tool(const ToolShape& shape, const Heading& heading, const DetailRules& rules, std::shared_ptr<Window> window)
+    : shape_(shape),
+      heading_(heading),
+      rules_(rules),
+      turned_(shape, heading),
+      outline_(Outline::of(shape, heading)),
+      window_(std::move(window)) {}
 
 Underside Tool::underside(const ProbePoint& at) const {
     return [shape = turned_, at](const Place& place) { return shape.underside(at.z, offsetOf(place, at)); };
@@ -102,14 +111,14 @@ void Tool::leave(Layer& layer, Imprint& imprint) {
     if (imprint.stand && !rules_.keepsConstraints) {
         const ProbePoint at = imprint.stand->at;
         const Box box = reach(at);
-        window_.look(layer.triangles(), box);
+        window_->look(layer.triangles(), box);
         changeMesh(layer, imprint, {{{at, {0, 0}}}, box, false});
     }
     imprint = {};
 }
 
 void Tool::work(Layer& layer, Imprint& imprint, Rim rim, const Chunk& chunk, Work& done) {
-    window_.look(layer.triangles(), chunk.box);
+    window_->look(layer.triangles(), chunk.box);
     const Imprint::Stand here{chunk.presses.back().at, shape_, heading_};
     const bool still = imprint.stand == here && std::all_of(chunk.presses.begin(), chunk.presses.end(),
                                                             [&](const Press& press) { return press.at == here.at; });
@@ -119,7 +128,7 @@ void Tool::work(Layer& layer, Imprint& imprint, Rim rim, const Chunk& chunk, Wor
             return;
         }
         changeMesh(layer, imprint, chunk);
-        window_.look(layer.triangles(), chunk.box);
+        window_->look(layer.triangles(), chunk.box);
     }
     for (const Press& press : chunk.presses) {
         this->press(layer, rim, press, done);
@@ -133,7 +142,7 @@ bool Tool::reachesSand(const Layer& layer, const Chunk& chunk) const {
     }
     const auto underside = static_cast<double>((lowest - shape_.radius) * (kUnitsPerCell / kProbePerCell));
     const auto isHigher = [&](Vertex vertex) { return layer.heights()[static_cast<std::size_t>(vertex)] > underside; };
-    return std::any_of(window_.triangles().begin(), window_.triangles().end(), [&](std::int32_t slot) {
+    return std::any_of(window_->triangles().begin(), window_->triangles().end(), [&](std::int32_t slot) {
         const auto& corners = layer.triangles().triangles[static_cast<std::size_t>(slot)].corner;
         return std::any_of(corners.begin(), corners.end(), isHigher);
     });
@@ -148,7 +157,7 @@ void Tool::changeMesh(Layer& layer, Imprint& imprint, const Chunk& chunk) const 
         imprint.takeOutOf(mesh);
         thin(mesh, outline);
         std::vector<Place> there = outline.points;
-        for (const Vertex vertex : window_.vertices()) {
+        for (const Vertex vertex : window_->vertices()) {
             if (mesh.triangles().alive(vertex)) {
                 there.push_back(mesh.triangles().places[static_cast<std::size_t>(vertex)]);
             }
@@ -186,7 +195,7 @@ Edges Tool::edgesThatStay(const Triangles& mesh, const Imprint& imprint) const {
     }
     std::sort(ours.begin(), ours.end());
     Edges edges;
-    for (const std::int32_t slot : window_.triangles()) {
+    for (const std::int32_t slot : window_->triangles()) {
         const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(slot)];
         for (std::size_t k = 0; k < 3; ++k) {
             const Vertex a = triangle.corner[(k + 1) % 3], b = triangle.corner[(k + 2) % 3];
@@ -211,15 +220,19 @@ void Tool::thin(Mesh& mesh, const PlacedOutline& outline) const {
     }
     around = around.grownBy(distance);
     Link link;
-    for (const Vertex vertex : window_.vertices()) {
+    for (const Vertex vertex : window_->vertices()) {
         const Place place = mesh.triangles().places[static_cast<std::size_t>(vertex)];
         if (!mesh.triangles().alive(vertex) || !around.holds(place)) {
             continue;
         }
         const bool close = std::any_of(outline.edges.begin(), outline.edges.end(),
-                                       [&](const auto& e) { return isNear(place, e.first, e.second, distance); }) ||
-                           std::any_of(outline.points.begin(), outline.points.end(),
-                                       [&](const Place& p) { return isNear(place, p, p, distance); });
+                                       [&](const auto& e) {
+                                           return boxOf(e.first, e.second).grownBy(distance).holds(place) &&
+                                                  isNear(place, e.first, e.second, distance);
+                                       }) ||
+                           std::any_of(outline.points.begin(), outline.points.end(), [&](const Place& p) {
+                               return boxOf(p, p).grownBy(distance).holds(place) && isNear(place, p, p, distance);
+                           });
         if (close) {
             findLink(mesh.triangles(), vertex, link);
             if (!link.constrained && link.closed) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -21,7 +22,12 @@ using Volume = Wide;  // [volume unit of Layer]
 class Tool {
 public:
     /// Poses beyond kMaxProbe and shapes beyond kLargestToolRadius are refused by whoever decodes steps and rules.
-    Tool(const ToolShape& shape, const Heading& heading, const DetailRules& rules);
+    /// With a window that others use too, between two calls.
+    Tool(const ToolShape& shape, const Heading& heading, const DetailRules& rules,
+         std::shared_ptr<Window> window = std::make_shared<Window>());
+    [[nodiscard]] bool is(const ToolShape& shape, const Heading& heading) const {
+        return shape_ == shape && heading_ == heading;
+    }
 
     /// What a drag did besides changing the mesh, which the layer itself tells.
     struct Work {
@@ -88,7 +94,7 @@ private:
     DetailRules rules_;
     TurnedShape turned_;
     Outline outline_;
-    Window window_;
+    std::shared_ptr<Window> window_;
     // Of one press.
     std::vector<Cut> cut_;
     Volume taken_ = 0;

@@ -26,7 +26,7 @@ bool Tool::findCut(const Layer& layer, const ProbePoint& at) {
     const Rect cells = turned_.cellsAround(at.x, at.y, 0);
     const Box box{cells.x0 * kProbePerCell, cells.y0 * kProbePerCell, cells.x1 * kProbePerCell,
                   cells.y1 * kProbePerCell};
-    for (const Vertex vertex : window_.vertices()) {
+    for (const Vertex vertex : window_->vertices()) {
         const auto index = static_cast<std::size_t>(vertex);
         const Place place = layer.triangles().places[index];
         if (!box.holds(place)) {
@@ -53,7 +53,7 @@ bool Tool::findCut(const Layer& layer, const ProbePoint& at) {
 void Tool::findReceivers(const Layer& layer, Rim rim, const Press& press) {
     const auto find = [&](bool everywhere) {
         receivers_.clear();
-        for (const Vertex vertex : window_.vertices()) {
+        for (const Vertex vertex : window_->vertices()) {
             const auto index = static_cast<std::size_t>(vertex);
             const Offset offset = offsetOf(layer.triangles().places[index], press.at);
             if (!turned_.takes(offset) || turned_.covers(offset)) {
@@ -109,7 +109,7 @@ void Tool::addNeighbours(const Layer& layer, const ProbePoint& at) {
         return turned_.covers(offsetOf(layer.triangles().places[static_cast<std::size_t>(vertex)], at));
     };
     std::vector<Vertex> beside;
-    for (const std::int32_t slot : window_.triangles()) {
+    for (const std::int32_t slot : window_->triangles()) {
         const auto& corner = layer.triangles().triangles[static_cast<std::size_t>(slot)].corner;
         if (std::any_of(corner.begin(), corner.end(), isCovered)) {
             std::copy_if(corner.begin(), corner.end(), std::back_inserter(beside), std::not_fn(isCovered));

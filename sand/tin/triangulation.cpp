@@ -53,6 +53,8 @@ void Triangulation::reserve(std::size_t vertices) {
     grow(mesh_.places, vertices);
     grow(mesh_.triangleAt, vertices);
     grow(mesh_.triangles, 2 * vertices);
+    changes.reserve(mesh_.triangles.capacity());
+    differences.reserve(mesh_.triangles.capacity());
 }
 
 void Triangulation::touch(std::int32_t slot) {

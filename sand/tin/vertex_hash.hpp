@@ -17,6 +17,10 @@ class VertexHash final : public HashTiles {
 public:
     explicit VertexHash(const Layer& layer);
 
+    void reserve(std::size_t vertices) {
+        byVertex_.reserve(vertices);
+        bySlot_.reserve(2 * vertices);
+    }
     /// These vertices may have come, gone, or changed.
     void touch(const Layer& layer, const std::vector<Vertex>& vertices);
     /// These triangles may have come, gone, or been constrained otherwise, by slot.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sand::tin {
 namespace {
@@ -43,16 +44,17 @@ Corners cornersOf(const Triangles& mesh, Side side) {
     return {corner[k], corner[(k + 1) % 3], corner[(k + 2) % 3]};
 }
 
-/// Half the cotangent of the angle opposite a side, times kOne.
-std::int64_t weight(const Triangles& mesh, Side side) {
-    const Corners c = cornersOf(mesh, side);
-    const Place& apex = placeOf(mesh, c.apex);
-    const Place& begin = placeOf(mesh, c.begin);
-    const Place& end = placeOf(mesh, c.end);
+constexpr std::int32_t kUnknown = std::numeric_limits<std::int32_t>::min();
+
+/// Half the cotangent of the angle at `apex`, times kOne.
+std::int32_t half(const Place& apex, const Place& begin, const Place& end, double doubledArea) {
     // Both are integers below 2^53, so that the quotient is rounded once.
-    const double cotangent =
-        static_cast<double>(dot(apex, begin, end)) / static_cast<double>(doubledArea(apex, begin, end));
-    return static_cast<std::int64_t>(std::clamp(0.5 * cotangent, -kMost, kMost) * kOne);
+    const double cotangent = static_cast<double>(dot(apex, begin, end)) / doubledArea;
+    return static_cast<std::int32_t>(std::clamp(0.5 * cotangent, -kMost, kMost) * kOne);
+}
+
+std::size_t leastOf(const std::array<Vertex, 3>& corner) {
+    return corner[0] < corner[1] ? (corner[0] < corner[2] ? 0 : 2) : (corner[1] < corner[2] ? 1 : 2);
 }
 
 }  // namespace
@@ -62,24 +64,51 @@ Side owner(const Triangles& mesh, Side side) {
     return c.begin < c.end || atRim(mesh, side) ? side : across(mesh, side);
 }
 
-void Weights::forget(std::span<const Vertex> vertices) {
-    for (const Vertex vertex : vertices) {
+void Weights::forget(const Mesh::Change& change) {
+    for (const std::int32_t slot : change.triangles) {
+        if (static_cast<std::size_t>(slot) < halves_.size()) {
+            halves_[static_cast<std::size_t>(slot)][0] = kUnknown;
+        }
+    }
+    for (const Vertex vertex : change.vertices) {
         if (static_cast<std::size_t>(vertex) < steps_.size()) {
             steps_[static_cast<std::size_t>(vertex)] = 0;
         }
     }
 }
 
+void Weights::reserve(std::size_t vertices) {
+    steps_.resize(std::max(steps_.size(), vertices), 0);
+    halves_.resize(std::max(halves_.size(), 2 * vertices), Halves{kUnknown, 0, 0});
+}
+
+std::int32_t Weights::weight(const Triangles& mesh, Side side) {
+    const auto slot = static_cast<std::size_t>(side.triangle);
+    if (slot >= halves_.size()) {
+        halves_.resize(mesh.triangles.size() + mesh.triangles.size() / 4, Halves{kUnknown, 0, 0});
+    }
+    const auto& corner = mesh.triangles[slot].corner;
+    const std::size_t least = leastOf(corner);  // a slot may turn its corners unnoticed
+    Halves& halves = halves_[slot];
+    if (halves[0] == kUnknown) {
+        const std::array<Place, 3> at{placeOf(mesh, corner[least]), placeOf(mesh, corner[(least + 1) % 3]),
+                                      placeOf(mesh, corner[(least + 2) % 3])};
+        const auto area = static_cast<double>(doubledArea(at[0], at[1], at[2]));
+        halves = {half(at[0], at[1], at[2], area), half(at[1], at[2], at[0], area), half(at[2], at[0], at[1], area)};
+    }
+    return halves[(static_cast<std::size_t>(side.corner) + 3 - least) % 3];
+}
+
 double Weights::step(const Triangles& mesh, std::span<const std::int64_t> stars, Vertex vertex) {
     const auto v = static_cast<std::size_t>(vertex);
     if (v >= steps_.size()) {
-        steps_.resize(mesh.places.size());
+        steps_.resize(mesh.places.size() + mesh.places.size() / 4);
     }
     if (steps_[v] == 0) {
         std::int64_t sum = 0;
         aroundVertex(mesh, vertex, [&](std::int32_t slot, int corner) {
             for (const int end : {1, 2}) {
-                sum += std::max<std::int64_t>(weight(mesh, {slot, (corner + end) % 3}), 0);
+                sum += std::max(weight(mesh, {slot, (corner + end) % 3}), 0);
             }
         });
         // Of a triangle's two angles beside this vertex one is acute; but so little that it counts as right?
@@ -114,7 +143,7 @@ double slackOf(const Place& a, const Place& b, const Place& c) {
 }
 
 std::array<Vertex, 3> smallestFirst(const std::array<Vertex, 3>& corner) {
-    const std::size_t least = corner[0] < corner[1] ? (corner[0] < corner[2] ? 0 : 2) : (corner[1] < corner[2] ? 1 : 2);
+    const std::size_t least = leastOf(corner);
     return {corner[least], corner[(least + 1) % 3], corner[(least + 2) % 3]};
 }
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "sand/tin/triangles.hpp"
+#include "sand/tin/mesh.hpp"
 
 namespace sand::tin {
 
@@ -62,19 +62,24 @@ struct Side {
 /// An edge's two parts are w · min(step_from, step_to), w being half the cotangent of the opposite angle, cut to
 /// kMost, and step_i = .9996 star_i / Σ_j w⁺_ij over the edges of vertex i, w⁺ being the sum of an edge's positive
 /// parts. What flows over an edge is hence at most k_ij per height, with Σ_j k_ij ≤ step_i Σ_j w⁺_ij = .9996 star_i at
-/// either end. The w are integers, so that their sum needs no order. Steps are kept until they are forgotten. Not
-/// thread-safe.
+/// either end. The w are integers, so that their sum needs no order. Steps and weights are kept until they are
+/// forgotten. Not thread-safe.
 class Weights {
 public:
-    /// These vertices came, went, or have another star.
-    void forget(std::span<const Vertex> vertices);
+    void reserve(std::size_t vertices);
+    /// The mesh has changed there.
+    void forget(const Mesh::Change& change);
     /// The edge of a side that owns it. Costs the stars of its ends, the first time.
     [[nodiscard]] Edge edge(const Triangles& mesh, std::span<const std::int64_t> stars, Side side);
 
 private:
+    /// Half the cotangents of a triangle's angles, times kOne, counted from its smallest vertex on.
+    using Halves = std::array<std::int32_t, 3>;
+    [[nodiscard]] std::int32_t weight(const Triangles& mesh, Side side);
     [[nodiscard]] double step(const Triangles& mesh, std::span<const std::int64_t> stars, Vertex vertex);
 
-    std::vector<double> steps_;  // by vertex [probe unit²]; 0: not known
+    std::vector<double> steps_;   // by vertex [probe unit²]; 0: not known
+    std::vector<Halves> halves_;  // by slot; the first kUnknown: not known
 };
 
 /// Calls visit(slot, corner) for every triangle around a vertex, `corner` being the vertex's own.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sand/tin/window.hpp"
 
-#include <utility>
-
 namespace sand::tin {
 namespace {
 
@@ -17,35 +15,9 @@ bool overlap(const Box& a, const Box& b) { return a.x0 <= b.x1 && b.x0 <= a.x1 &
 }  // namespace
 
 void NumberSet::clear() {
-    std::fill(places_.begin(), places_.end(), kNobody);
-    count_ = 0;
-}
-
-bool NumberSet::insert(std::int32_t number) {
-    if (2 * count_ >= places_.size()) {
-        grow();
-    }
-    const bool isNew = put(number);
-    count_ += isNew ? 1 : 0;
-    return isNew;
-}
-
-bool NumberSet::put(std::int32_t number) {
-    const std::size_t last = places_.size() - 1;  // their count is a power of two
-    std::size_t at = static_cast<std::uint32_t>(number) * 0x9e3779b1U >> 8U & last;
-    while (places_[at] != kNobody && places_[at] != number) {
-        at = (at + 1) & last;
-    }
-    return std::exchange(places_[at], number) == kNobody;
-}
-
-void NumberSet::grow() {
-    std::vector<std::int32_t> before(2 * places_.size(), kNobody);
-    before.swap(places_);
-    for (const std::int32_t number : before) {
-        if (number != kNobody) {
-            put(number);
-        }
+    if (++turn_ == 0) {
+        std::fill(turns_.begin(), turns_.end(), 0);
+        turn_ = 1;
     }
 }
 
@@ -54,7 +26,7 @@ void NumberSet::grow() {
 void Window::look(const Triangles& mesh, const Box& wanted) {
     vertices_.clear();
     triangles_.clear();
-    const Box box = wanted.clippedTo(mesh);
+    const Box box = box_ = wanted.clippedTo(mesh);
     if (box.empty()) {
         return;
     }

@@ -32,33 +32,46 @@ struct Box {
     friend bool operator==(const Box&, const Box&) = default;
 };
 
-/// Numbers from 0 on, as many as are put in, and not as many as there could be.
+/// Numbers from 0 on. To clear it costs nothing; it takes four bytes for every number up to the largest.
 class NumberSet {
 public:
     void clear();
+    void reserve(std::size_t count) { turns_.resize(std::max(turns_.size(), count), 0); }
     /// Whether it is new.
-    bool insert(std::int32_t number);
+    bool insert(std::int32_t number) {
+        const auto at = static_cast<std::size_t>(number);
+        if (at >= turns_.size()) {
+            turns_.resize(at + at / 2 + 1, 0);
+        }
+        const bool isNew = turns_[at] != turn_;
+        turns_[at] = turn_;
+        return isNew;
+    }
 
 private:
-    void grow();
-    bool put(std::int32_t number);
-
-    std::vector<std::int32_t> places_ = std::vector<std::int32_t>(64, kNobody);
-    std::size_t count_ = 0;
+    std::vector<std::uint32_t> turns_;  // in which it was put in last
+    std::uint32_t turn_ = 1;
 };
 
-/// What of a mesh lies around some place. Costs what lies there, and the way from where it was asked for last.
+/// What of a mesh lies around some place. Costs what lies there, and the way from where it was asked for last; the
+/// first time, the whole mesh.
 class Window {
 public:
+    void reserve(std::size_t vertices) {
+        seen_.reserve(2 * vertices);
+        seenVertices_.reserve(vertices);
+    }
     /// Looks again. `box` is clipped to the field; an empty one shows nothing.
     void look(const Triangles& mesh, const Box& box);
 
+    [[nodiscard]] const Box& box() const { return box_; }  // clipped to the field
     /// Those that lie in the box, ascending.
     [[nodiscard]] const std::vector<Vertex>& vertices() const { return vertices_; }
     /// Slots of all triangles that reach into the box, and of some that nearly do, in no order that means anything.
     [[nodiscard]] const std::vector<std::int32_t>& triangles() const { return triangles_; }
 
 private:
+    Box box_;
     std::vector<Vertex> vertices_;
     std::vector<std::int32_t> triangles_;
     std::int32_t last_ = kNobody;  // where to begin: only for speed
