@@ -48,7 +48,10 @@ int Erosion::sweep(Layer& layer, int sweeps, const Underside* held, std::vector<
     while (done < sweeps && !active_.empty()) {
         ++done;
         const bool still = !active_.sweep(layer, slopes_, weights_);
-        if (still || (done % kSweepsTogether == 0 && active_.mostRest())) {
+        // Counted over calls: a step of few sweeps, in which something always moves, would never look.
+        const bool look = ++sinceLook_ >= kSweepsTogether;
+        sinceLook_ = look ? 0 : sinceLook_;
+        if (still || (look && active_.mostRest())) {
             active_.store(layer, moved);
             active_.forgetResting();
         }

@@ -57,6 +57,8 @@ public:
     int sweep(Layer& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved);
     /// Whether nothing moves any more as things are.
     [[nodiscard]] bool settled() const;
+    /// How many edges the next sweep looks at, woken ones apart.
+    [[nodiscard]] std::size_t activeEdges() const { return active_.size(); }
 
 private:
     void watchWoken(const Layer& layer);
@@ -65,6 +67,7 @@ private:
     Weights weights_;
     ActiveEdges active_;
     std::vector<Vertex> woken_;
+    int sinceLook_ = 0;  // sweeps since resting edges were looked for
     bool wakeAll_ = true;
 };
 
