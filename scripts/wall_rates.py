@@ -137,7 +137,7 @@ def as_tin(file, widest):
 
 
 def digging_ms(out, scene_file, strokes, frames):
-    """Of a frame in which one step is made and drawn [ms]."""
+    """Of a frame of digging, in which up to four steps are made and drawn [ms]."""
     summary = session(out, scene_file, "--device", f"script:{strokes}", "--pace", "fast", "--frames", frames, "--warm-up", 20)
     return summary["frame_ms"]["p50"]
 
