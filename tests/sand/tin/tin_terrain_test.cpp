@@ -156,6 +156,23 @@ TEST_F(TinTerrain, WhatHasLookedInVainCoarsensAgainOnceSandHasSlid) {
     EXPECT_LT(verticesOf(terrain), rested) << "what has slid flat needs fewer";
 }
 
+TEST_F(TinTerrain, EveryStepIsAFunctionOfTheStateWhileAToolSettlesOnSlopes) {
+    const sand::Scene start = scene();
+    Terrain terrain(start), fresh(start);
+    for (std::uint64_t number = 1; number <= 160; ++number) {
+        // Held still for nine steps, in which the sand comes to rest, then put down a little elsewhere.
+        const auto place = static_cast<std::int32_t>(number / 10);
+        const Step step{.epoch = 1,
+                        .number = number,
+                        .engaged = true,
+                        .path = {{3000 + 600 * place, 8000 + 150 * (place % 3), 2500 + 40 * (place % 5)}}};
+        fresh.decodeState(terrain.encodeState());
+        fresh.apply(step);
+        terrain.apply(step);
+        ASSERT_EQ(fresh.stateHash(), terrain.stateHash()) << "step " << number;
+    }
+}
+
 TEST_F(TinTerrain, ComesToRestAndThenCostsNoChange) {
     Terrain terrain(scene());
     std::uint64_t number = 0;
