@@ -40,14 +40,16 @@ struct Tile {
     std::vector<std::unique_ptr<Eye>> eyes;
 };
 
-std::vector<std::unique_ptr<Tile>> tilesOf(const walls::Wall& wall, const sand::Scene& scene) {
+std::vector<std::unique_ptr<Tile>> tilesOf(const walls::Wall& wall, const sand::Scene& scene,
+                                           const sand::tin::SurfaceView* tin) {
     const sand::HeightField& field = scene.terrain;
-    const glm::dmat4 sceneToRoom =
-        walls::stageToRoom(wall.stage, field.columns() * field.cellSize(), field.rows() * field.cellSize(),
-                           scene.referenceHeight() * field.unit());
+    const double cell = field.cellSize();
+    const glm::dmat4 sceneToRoom = walls::stageToRoom(wall.stage, scene.rules.columns * cell, scene.rules.rows * cell,
+                                                      scene.referenceHeight() * field.unit());
     std::vector<std::unique_ptr<Tile>> tiles;
     for (const walls::Tile& tile : wall.tiles) {
-        tiles.push_back(std::make_unique<Tile>(render_node::SandView(scene, sceneToRoom)));
+        tiles.push_back(std::make_unique<Tile>(tin != nullptr ? render_node::SandView(scene, *tin, sceneToRoom)
+                                                              : render_node::SandView(scene, sceneToRoom)));
         for (const walls::Eye eye : walls::eyesOf(wall.stereo)) {
             const walls::View seen = walls::viewOf(wall, tile, eye);
             tiles.back()->eyes.push_back(std::make_unique<Tile::Eye>(
@@ -93,15 +95,34 @@ struct Measured {
     std::vector<double> viewMs;                               // a view
 };
 
+/// What changed of the sand, for every tile to take over.
+struct Damage {
+    explicit Damage(sand::Terrain& terrain) {
+        if (terrain.tinView() != nullptr) {
+            triangles = terrain.takeTinDamage();
+        } else {
+            cells = terrain.takeDamage();
+        }
+    }
+    sand::Rect cells;
+    sand::tin::SurfaceDamage triangles;
+};
+
+void takeOver(render_node::SandView& view, const sand::Terrain& terrain, const Damage& damage) {
+    if (const sand::tin::SurfaceView* tin = terrain.tinView()) {
+        view.update(*tin, damage.triangles);
+    } else {
+        view.update(terrain.field(), damage.cells);
+    }
+    view.setTool(terrain.probe(), terrain.engaged(), terrain.toolShape(), terrain.heading());
+}
+
 /// Takes over what changed and draws it, tile by tile.
 void show(const std::vector<std::unique_ptr<Tile>>& tiles, sand::Terrain& terrain, Measured& measured) {
-    const sand::Rect damage = terrain.takeDamage();
+    const Damage damage(terrain);
     double update = 0, draw = 0, busiest = 0, drawn = 0, pixels = 0, all = 0;
     for (const auto& tile : tiles) {
-        const double taken = bench::secondsOf([&] {
-            tile->view.update(terrain.field(), damage);
-            tile->view.setTool(terrain.probe(), terrain.engaged());
-        });
+        const double taken = bench::secondsOf([&] { takeOver(tile->view, terrain, damage); });
         double both = 0;
         for (const auto& eye : tile->eyes) {
             render_node::PixelRect changed;
@@ -132,8 +153,8 @@ int measure(const Options& options) {
     const walls::Wall wall = walls::loadWall(options.wall);
     const sand::Scene scene = sand::loadScene(options.scene);
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
-    const std::vector<std::unique_ptr<Tile>> tiles = tilesOf(wall, scene);
     sand::Terrain terrain(scene);
+    const std::vector<std::unique_ptr<Tile>> tiles = tilesOf(wall, scene, terrain.tinView());
     const std::int32_t level = scene.referenceHeight();
     Measured measured;
     constexpr int kWarmUp = 30;  // [frame]: shaders, buffers, the first bank

@@ -21,18 +21,19 @@ constexpr double kUnitsPerProbe = double{sand::kUnitsPerCell} / sand::kProbePerC
 // How far a place looks, and the cell beyond that its last look is between [cell].
 constexpr int kLightReach = kSkyDistances.back() + 2;
 
-/// The mean normal of the triangles around a vertex by their areas, not of length 1 [unit²].
-glm::dvec3 normalAt(const SurfaceView& tin, Vertex vertex) {
+struct Pair {
+    Vertex first, second;
+};
+
+/// The mean normal of the triangles around a vertex by their areas, not of length 1 [unit²]. `around` is scratch.
+glm::dvec3 normalAt(const SurfaceView& tin, Vertex vertex, std::vector<Pair>& around) {
     const Triangles& mesh = tin.triangles;
     const auto at = [&](Vertex corner) {
         const Place& place = mesh.places[static_cast<std::size_t>(corner)];
         return glm::dvec3(kUnitsPerProbe * place.x, kUnitsPerProbe * place.y,
                           tin.heights[static_cast<std::size_t>(corner)]);
     };
-    struct Pair {
-        Vertex first, second;
-    };
-    std::vector<Pair> around;
+    around.clear();
     visitStar(mesh, vertex, [&](const StarTriangle& one) {
         const auto& corner = mesh.triangles[static_cast<std::size_t>(one.slot)].corner;
         around.push_back({corner[(one.corner + 1) % 3], corner[(one.corner + 2) % 3]});
@@ -63,30 +64,31 @@ std::uint16_t TinSurface::mottlingOf(std::int32_t x, std::int32_t y) {
 
 /// The vertices whose light is another since these triangles are; triangles around them are damaged.
 std::vector<Vertex> TinSurface::relight(const SurfaceView& tin, const std::vector<std::int32_t>& reshaped) {
-    std::vector<Vertex> corners;
+    lit_.clear();
     for (const std::int32_t slot : reshaped) {
         if (triangle(slot).alive()) {
             addToRelief(tin, triangle(slot));
             chunks_[static_cast<std::size_t>(inChunk_[static_cast<std::size_t>(slot)].chunk)].reshaped = true;
-            corners.insert(corners.end(), triangle(slot).corner.begin(), triangle(slot).corner.end());
+            std::ranges::for_each(triangle(slot).corner, [this](Vertex corner) { lit_.add(corner); });
         }
     }
-    sortOnce(corners);
+    const std::size_t corners = lit_.all().size();
+    addVerticesAround(relief_.takeChanged());
     std::vector<Vertex> others;
-    for (const Vertex number : corners) {
-        const bool otherNormal = lightFrom(tin, number);
+    for (std::size_t i = 0; i < lit_.all().size(); ++i) {
+        const Vertex number = lit_.all()[i];
+        const bool otherNormal = i < corners && lightFrom(tin, number);
         const bool otherSky = openTo(tin, number);
         if (otherNormal || otherSky) {
             others.push_back(number);
         }
     }
-    for (const Vertex number : verticesAround(relief_.takeChanged())) {
-        if (openTo(tin, number)) {
-            others.push_back(number);
-        }
-    }
+    shaded_.clear();
     for (const Vertex number : others) {
-        visitStar(tin.triangles, number, [&](const StarTriangle& one) { damaged_.add(boxOf(triangle(one.slot))); });
+        visitStar(tin.triangles, number, [this](const StarTriangle& one) { shaded_.add(one.slot); });
+    }
+    for (const std::int32_t slot : shaded_.all()) {
+        damaged_.add(boxOf(triangle(slot)));
     }
     return others;
 }
@@ -102,7 +104,8 @@ void TinSurface::addToRelief(const SurfaceView& tin, const TinTriangle& triangle
 }
 
 bool TinSurface::lightFrom(const SurfaceView& tin, Vertex number) {
-    const glm::dvec3 normal = 32767.0 * glm::normalize(normalAt(tin, number));
+    thread_local std::vector<Pair> around;  // thousands of vertices a frame ask for one each
+    const glm::dvec3 normal = 32767.0 * glm::normalize(normalAt(tin, number, around));
     const auto east = static_cast<std::int16_t>(normal.x), north = static_cast<std::int16_t>(normal.y);
     TinVertex& drawn = vertex(number);
     const bool other = east != drawn.normalEast || north != drawn.normalNorth;
@@ -115,18 +118,17 @@ bool TinSurface::openTo(const SurfaceView& tin, Vertex number) {
     TinVertex& drawn = vertex(number);
     const auto here = static_cast<float>(tin.heights[static_cast<std::size_t>(number)]);
     float share = 0;
-    openSky({&share, 1}, static_cast<float>(sand::kUnitsPerCell), [&](std::size_t, int east, int north) {
-        return relief_.at(drawn.x + east * kCell, drawn.y + north * kCell) - here;
-    });
+    const TinRelief::Between place = TinRelief::between(drawn.x, drawn.y);
+    openSky({&share, 1}, static_cast<float>(sand::kUnitsPerCell),
+            [&](std::size_t, int east, int north) { return relief_.at(place, east, north) - here; });
     const auto open = static_cast<std::uint16_t>(share * 65535);
     const bool other = open != drawn.open;
     drawn.open = open;
     return other;
 }
 
-/// The vertices, each once, that may see these cells of the relief.
-std::vector<Vertex> TinSurface::verticesAround(const std::vector<sand::Rect>& cells) {
-    std::vector<Vertex> found;
+/// Adds the vertices that may see these cells of the relief to lit_.
+void TinSurface::addVerticesAround(const std::vector<sand::Rect>& cells) {
     for (const sand::Rect& rect : cells) {
         const sand::Rect reach = rect.grownBy(kLightReach);
         for (TinChunk& chunk : chunks_) {
@@ -141,19 +143,14 @@ std::vector<Vertex> TinSurface::verticesAround(const std::vector<sand::Rect>& ce
             for (const std::int32_t slot : chunk.slots) {
                 for (const Vertex corner : triangle(slot).corner) {
                     const TinVertex& drawn = vertex(corner);
-                    if (!seen_[static_cast<std::size_t>(corner)] && drawn.x >= reach.x0 * kCell &&
-                        drawn.x <= reach.x1 * kCell && drawn.y >= reach.y0 * kCell && drawn.y <= reach.y1 * kCell) {
-                        seen_[static_cast<std::size_t>(corner)] = true;
-                        found.push_back(corner);
+                    if (drawn.x >= reach.x0 * kCell && drawn.x <= reach.x1 * kCell && drawn.y >= reach.y0 * kCell &&
+                        drawn.y <= reach.y1 * kCell) {
+                        lit_.add(corner);
                     }
                 }
             }
         }
     }
-    for (const Vertex corner : found) {
-        seen_[static_cast<std::size_t>(corner)] = false;
-    }
-    return found;
 }
 
 }  // namespace render_node

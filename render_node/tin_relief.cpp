@@ -94,20 +94,26 @@ void TinRelief::set(int column, int row, float height) {
     changed = changed.joinedWith({column, row, column + 1, row + 1});
 }
 
-float TinRelief::at(std::int32_t x, std::int32_t y) const {
-    const auto along = [](std::int32_t place, int cells, int& low, int& high) {
+TinRelief::Between TinRelief::between(std::int32_t x, std::int32_t y) {
+    const auto along = [](std::int32_t place, int& cell) {
         const std::int64_t from = place - kCellSide / 2;
         const std::int64_t before = floorOf(from, kCellSide);
-        low = static_cast<int>(std::clamp<std::int64_t>(before, 0, cells - 1));
-        high = static_cast<int>(std::clamp<std::int64_t>(before + 1, 0, cells - 1));
+        cell = static_cast<int>(before);
         return static_cast<float>(from - before * kCellSide) / static_cast<float>(kCellSide);
     };
-    int west = 0, east = 0, south = 0, north = 0;
-    const float alongX = along(x, columns_, west, east);
-    const float alongY = along(y, rows_, south, north);
-    const float below = cell(west, south) + alongX * (cell(east, south) - cell(west, south));
-    const float above = cell(west, north) + alongX * (cell(east, north) - cell(west, north));
-    return below + alongY * (above - below);
+    Between place{};
+    place.alongX = along(x, place.column);
+    place.alongY = along(y, place.row);
+    return place;
+}
+
+float TinRelief::at(const Between& place, int east, int north) const {
+    const int column = place.column + east, row = place.row + north;
+    const int westOf = std::clamp(column, 0, columns_ - 1), eastOf = std::clamp(column + 1, 0, columns_ - 1);
+    const int southOf = std::clamp(row, 0, rows_ - 1), northOf = std::clamp(row + 1, 0, rows_ - 1);
+    const float below = cell(westOf, southOf) + place.alongX * (cell(eastOf, southOf) - cell(westOf, southOf));
+    const float above = cell(westOf, northOf) + place.alongX * (cell(eastOf, northOf) - cell(westOf, northOf));
+    return below + place.alongY * (above - below);
 }
 
 std::vector<sand::Rect> TinRelief::takeChanged() {

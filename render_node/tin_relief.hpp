@@ -27,8 +27,14 @@ public:
     /// Takes over the cells over whose middles a triangle lies, counter-clockwise from above; of two that share a
     /// middle, it is the same one's.
     void put(const std::array<ReliefCorner, 3>& corners);
-    /// The height at a place, linear between four middles [unit]; beyond them that of the last.
-    [[nodiscard]] float at(std::int32_t x, std::int32_t y) const;
+    /// A place between four middles of cells.
+    struct Between {
+        int column, row;       // of the south-western one, which may lie beyond the field
+        float alongX, alongY;  // 0 … 1
+    };
+    [[nodiscard]] static Between between(std::int32_t x, std::int32_t y);
+    /// The height so many cells away from there, linear between four middles [unit]; beyond the field that of the last.
+    [[nodiscard]] float at(const Between& place, int east, int north) const;
 
     /// Rectangles of cells that have other heights than when this was called last, each within a tile of kTile cells.
     [[nodiscard]] std::vector<sand::Rect> takeChanged();

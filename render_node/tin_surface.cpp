@@ -75,8 +75,10 @@ TinSurface::TinSurface(const SurfaceView& tin, double cellSize, double chunkSide
 
 void TinSurface::grow(const Triangles& mesh) {
     vertices_.resize(std::max(vertices_.size(), mesh.places.size()));
-    seen_.resize(vertices_.size());
+    lit_.growTo(vertices_.size());
     triangles_.resize(std::max(triangles_.size(), mesh.triangles.size()));
+    reshaped_.growTo(triangles_.size());
+    shaded_.growTo(triangles_.size());
     inChunk_.resize(triangles_.size());
 }
 
@@ -101,15 +103,15 @@ TinSurface::Change TinSurface::update(const SurfaceView& tin, const sand::tin::S
         }
     }
     std::vector<Vertex> others = moved(tin, damage.vertices);
-    std::vector<std::int32_t> reshaped = replaced;
+    reshaped_.clear();
+    std::ranges::for_each(replaced, [this](std::int32_t slot) { reshaped_.add(slot); });
     for (const Vertex number : others) {
         if (mesh.alive(number)) {
-            visitStar(mesh, number, [&](const StarTriangle& one) { reshaped.push_back(one.slot); });
+            visitStar(mesh, number, [this](const StarTriangle& one) { reshaped_.add(one.slot); });
         }
     }
-    sortOnce(reshaped);
     const auto damageAll = [&] {
-        for (const std::int32_t slot : reshaped) {
+        for (const std::int32_t slot : reshaped_.all()) {
             if (triangle(slot).alive()) {
                 damaged_.add(boxOf(triangle(slot)));
             }
@@ -121,7 +123,7 @@ TinSurface::Change TinSurface::update(const SurfaceView& tin, const sand::tin::S
         replace(slot, drawnOf(mesh.triangles[static_cast<std::size_t>(slot)]));
     }
     damageAll();
-    const std::vector<Vertex> lit = relight(tin, reshaped);
+    const std::vector<Vertex> lit = relight(tin, reshaped_.all());
     others.insert(others.end(), lit.begin(), lit.end());
     sortOnce(others);
     change.vertices = std::move(others);

@@ -11,6 +11,7 @@
 
 #include "render_node/box_bins.hpp"
 #include "render_node/frustum.hpp"
+#include "render_node/number_list.hpp"
 #include "render_node/sand_rim.hpp"
 #include "render_node/sand_surface.hpp"
 #include "render_node/tin_relief.hpp"
@@ -103,7 +104,7 @@ private:
     void addToRelief(const sand::tin::SurfaceView& tin, const TinTriangle& triangle);
     bool lightFrom(const sand::tin::SurfaceView& tin, Vertex vertex);
     bool openTo(const sand::tin::SurfaceView& tin, Vertex vertex);
-    [[nodiscard]] std::vector<Vertex> verticesAround(const std::vector<sand::Rect>& cells);
+    void addVerticesAround(const std::vector<sand::Rect>& cells);
     [[nodiscard]] std::vector<Vertex> relight(const sand::tin::SurfaceView& tin,
                                               const std::vector<std::int32_t>& reshaped);
     [[nodiscard]] TinTriangle& triangle(std::int32_t slot) { return triangles_[static_cast<std::size_t>(slot)]; }
@@ -121,7 +122,7 @@ private:
     BoxBins damaged_;
     HeightRange ever_{};
     std::array<std::map<std::int32_t, Vertex>, 4> rim_;  // south, east, north, west, by place along the side
-    std::vector<bool> seen_;                             // by vertex: scratch of verticesAround()
+    NumberList reshaped_, lit_, shaded_;                 // scratch: triangles, vertices, triangles
 };
 
 }  // namespace render_node

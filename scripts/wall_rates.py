@@ -4,8 +4,9 @@
 
 Runs sessions one after another and prints a table: a still wall, digging with the first paper's tool and with one of 12
 cells, a head that moves so that every view is drawn anew, the same on 2048 x 2048 cells, and a bare redraw beside it.
+With --tin: digging in a height field and in a TIN in turns, frame by frame as fast as the machine can.
 
-usage: scripts/wall_rates.py [--seconds 60]   (about six minutes; leave the machine alone meanwhile)
+usage: scripts/wall_rates.py [--seconds 60 | --tin]   (about six minutes; leave the machine alone meanwhile)
 """
 
 import argparse
@@ -14,6 +15,7 @@ import math
 import os
 import pathlib
 import re
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -121,6 +123,43 @@ def bare_redraw(scene_file):
     return float(bare), float(sand)
 
 
+TIN = """[tin]
+max_error = 0.0005
+widest = {widest}
+"""
+
+
+def as_tin(file, widest):
+    """The same scene with its sand as a TIN, whose points lie `widest` cells apart at the start, and one where it is dug."""
+    tin = file.with_name(f"tin_{widest}_{file.name}")
+    tin.write_text(file.read_text() + TIN.format(widest=widest * 2.0 / 512))
+    return tin
+
+
+def digging_ms(out, scene_file, strokes, frames):
+    """Of a frame of digging, in which up to four steps are made and drawn [ms]."""
+    summary = session(out, scene_file, "--device", f"script:{strokes}", "--pace", "fast", "--frames", frames, "--warm-up", 20)
+    return summary["frame_ms"]["p50"]
+
+
+def tin_rows(folder, runs, frames):
+    """What a TIN takes over what the grid takes, the same hand in both, in turns."""
+    out, strokes = folder / "out", circles(folder, 1000)
+    for radius in (2.56, 12):
+        grid = scene(folder, 512, radius)
+        files = {"grid": grid, "tin": as_tin(grid, 16), "dense": as_tin(grid, 2)}
+        times = {name: [] for name in files}
+        for _ in range(runs):
+            for name, file in files.items():
+                times[name].append(digging_ms(out, file, strokes, frames))
+        median = {name: statistics.median(values) for name, values in times.items()}
+        yield f"digging, 512², R = {radius} cells", f"{median['grid']:.1f} ms a frame", f"median of {runs} runs of {frames} frames"
+        for name, what in (("tin", "16"), ("dense", "2")):
+            spread = sorted(t / g for t, g in zip(times[name], times["grid"]))
+            yield (f"the same as a TIN of points {what} cells apart", f"{median[name]:.1f} ms a frame",
+                   f"{median[name] / median['grid']:.2f} × ({spread[0]:.2f} to {spread[-1]:.2f})")
+
+
 def measure(folder, seconds):
     cores = os.cpu_count()
     out = folder / "out"
@@ -143,13 +182,18 @@ def measure(folder, seconds):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seconds", type=float, default=60, help="of each digging session, warm-up apart (default: 60)")
+    parser.add_argument("--tin", action="store_true", help="a TIN beside a height field, and nothing else")
+    parser.add_argument("--runs", type=int, default=3, help="of each scene with --tin (default: 3)")
+    parser.add_argument("--frames", type=int, default=240, help="of each run with --tin (default: 240)")
     args = parser.parse_args()
     if not (BIN / "wall_bench").is_file():
         print(f"{BIN}/wall_bench: not there; build the release preset first", file=sys.stderr)
         return 2
     print("| 12 ranks, 24 views of 1024×768 on one machine | | |\n|---|---|---|", flush=True)
     with tempfile.TemporaryDirectory(prefix="sandwall-rates-") as folder:
-        for what, figure, beside in measure(pathlib.Path(folder), args.seconds):
+        path = pathlib.Path(folder)
+        rows = tin_rows(path, args.runs, args.frames) if args.tin else measure(path, args.seconds)
+        for what, figure, beside in rows:
             print(f"| {what} | {figure} | {beside} |", flush=True)
     return 0
 

@@ -70,7 +70,6 @@ void ActiveEdges::begin(const Layer& layer, bool band, const Underside* held) {
     makeRoom(layer.triangles().places.size(), layer.triangles().triangles.size());
     knownUndersides_.clear();
     sand_.restart();
-    inVain_ = 0;
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
         const auto vertex = index(vertices_[i]);
         sand_.place(i, layer.volumes()[vertex], layer.stars()[vertex],

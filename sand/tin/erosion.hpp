@@ -59,6 +59,8 @@ public:
     int sweep(Layer& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved);
     /// Whether nothing moves any more as things are.
     [[nodiscard]] bool settled() const;
+    /// How many edges the next sweep looks at, woken ones apart.
+    [[nodiscard]] std::size_t activeEdges() const { return active_.size(); }
 
 private:
     void watchWoken(const Layer& layer);

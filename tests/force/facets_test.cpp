@@ -104,6 +104,54 @@ TEST(Facets, AreTheTrianglesToAPartOfAHeightUnit) {
     std::printf("at most %.3f height units off, over steps of %d\n", worst * sand::kUnitsPerCell, 1 << 20);
 }
 
+/// Twice the area of a, b and a place in parts of kParts of a probe unit: exact.
+constexpr std::int64_t kParts = 256;
+std::int64_t areaWith(const Place& a, const Place& b, std::int64_t x, std::int64_t y) {
+    return (std::int64_t{b.x} - a.x) * (y - kParts * a.y) - (std::int64_t{b.y} - a.y) * (x - kParts * a.x);
+}
+
+TEST(Facets, TellTheSideOfAnEdgeExactlyOfTheRoundedPlace) {
+    constexpr std::uint32_t kSeed = 12;
+    SCOPED_TRACE(kSeed);
+    std::mt19937 random(kSeed);
+    const Layer layer = roughLayer(kSeed);
+    const Triangles& mesh = layer.triangles();
+    Facets facets;
+    ASSERT_TRUE(facets.take(viewOf(layer), {6144, 6144, 0}, 6144, kProbe));
+    int asked = 0;
+    for (const auto& triangle : mesh.triangles) {
+        if (!triangle.alive()) {
+            continue;
+        }
+        std::array<Place, 3> at{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            at[k] = mesh.places[static_cast<std::size_t>(triangle.corner[k])];
+        }
+        for (int i = 0; i < 60; ++i) {
+            const Place a = at[static_cast<std::size_t>(i % 3)], b = at[static_cast<std::size_t>((i + 1) % 3)];
+            const double along = static_cast<double>(random() % 4096) / 4096;
+            const auto x = static_cast<std::int64_t>(std::lround(kParts * (a.x + along * (b.x - a.x)))),
+                       y = static_cast<std::int64_t>(std::lround(kParts * (a.y + along * (b.y - a.y))));
+            if (areaWith(at[0], at[1], x, y) <= 0 || areaWith(at[1], at[2], x, y) <= 0 ||
+                areaWith(at[2], at[0], x, y) <= 0) {
+                continue;  // on the edge, or in the triangle beyond
+            }
+            const double ux = at[1].x - at[0].x, uy = at[1].y - at[0].y, vx = at[2].x - at[0].x, vy = at[2].y - at[0].y;
+            const auto height = [&](std::size_t k) {
+                return layer.heights()[static_cast<std::size_t>(triangle.corner[k])] / sand::kUnitsPerCell;
+            };
+            const double east = ((height(1) - height(0)) * vy - (height(2) - height(0)) * uy) / (ux * vy - uy * vx);
+            const auto within = [&] { return (static_cast<double>(random() % 800) / 1000 - 0.4) / kParts; };
+            const Dual found = facets.tangent((static_cast<double>(x) / kParts + within()) * kProbe,
+                                              (static_cast<double>(y) / kParts + within()) * kProbe);
+            ASSERT_NEAR(found.slope.x * kProbe, east, 1e-9 * (1 + std::abs(east)))
+                << x << ", " << y << " of " << kParts << " in a probe unit";
+            ++asked;
+        }
+    }
+    EXPECT_GT(asked, 10000);
+}
+
 /// The mesh in other slots, its triangles begun at other corners.
 Triangles shuffled(const Triangles& mesh, std::mt19937& random) {
     Triangles other = mesh;

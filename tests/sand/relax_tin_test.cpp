@@ -113,6 +113,15 @@ TEST_F(RelaxTin, PointsSlideToTheTalusWhereTheyLie) {
     EXPECT_NEAR(volumeOf(mesh) - 1200.0 * 80 * 80, volume, 1e-3 * volume);
 }
 
+/// The height of a grid there, linear between the middles of four cells.
+double between(const sand::EsriGrid& grid, double x, double y) {
+    const double east = std::clamp((x - grid.westEdge) / grid.cellSize - 0.5, 0.0, grid.columns - 1.001);
+    const double north = std::clamp((y - grid.southEdge) / grid.cellSize - 0.5, 0.0, grid.rows - 1.001);
+    const int column = static_cast<int>(east), row = static_cast<int>(north);
+    return std::lerp(std::lerp(grid.at(column, row), grid.at(column + 1, row), east - column),
+                     std::lerp(grid.at(column, row + 1), grid.at(column + 1, row + 1), east - column), north - row);
+}
+
 TEST_F(RelaxTin, ATinAndAGridOfTheSamePileAgree) {
     constexpr unsigned kSeed = 62;
     const auto pile = [](double x, double y) { return std::hypot(x - 20, y - 20) < 9 ? 15.0 : 0.0; };
@@ -129,12 +138,12 @@ TEST_F(RelaxTin, ATinAndAGridOfTheSamePileAgree) {
     const sand::EsriGrid grid = sand::readEsriGrid(path("out.asc"));
     double off = 0, all = 0;
     for (const auto& [x, y, z] : readObj("out.obj").vertices) {
-        const int column = std::clamp(static_cast<int>((x - kWest) / 2), 0, 39);
-        const int row = std::clamp(static_cast<int>((y - kSouth) / 2), 0, 39);
-        off += std::abs(z - grid.at(column, row));
+        off += std::abs(z - between(grid, x, y));
         all += z;
     }
-    EXPECT_LT(off / all, 0.1) << "a cell is 1.4 m high at the talus; seed " << kSeed;
+    // 1.0 % here, and 1.1 to 1.8 % with seven other seeds: as much as the cylinder's jagged edge falls otherwise on
+    // points than on cells, half a cell around 57.
+    EXPECT_LT(off / all, 0.02) << "seed " << kSeed;
 }
 
 TEST_F(RelaxTin, StablePointsComeBackToTheLastDigit) {

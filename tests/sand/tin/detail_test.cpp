@@ -92,6 +92,11 @@ TEST(TinDetail, ALevelLayerLosesAllThatNothingHolds) {
         inside += keepOut.holds(place) ? 1 : 0;
     });
     EXPECT_EQ(inside, 4 * 4);
+    for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
+        EXPECT_TRUE(layer.triangles().alive(chain[i]) && layer.triangles().alive(chain[i + 1]) &&
+                    layer.mesh().isConstrained(chain[i], chain[i + 1]))
+            << "edge " << i << " of the constraint";
+    }
     EXPECT_EQ(sand::tin::coarsen(layer, rules, next, keepOut), 0);
 }
 

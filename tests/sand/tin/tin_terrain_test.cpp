@@ -36,6 +36,11 @@ protected:
     std::filesystem::path folder_;
 };
 
+int verticesOf(const Terrain& terrain) {
+    const auto& alive = terrain.tinView()->triangles.triangleAt;
+    return static_cast<int>(std::count_if(alive.begin(), alive.end(), [](std::int32_t at) { return at >= 0; }));
+}
+
 /// Strokes here and there, with everything a hand and an operator may do.
 std::vector<Step> session(std::uint32_t seed, int steps) {
     std::mt19937 random(seed);
@@ -115,6 +120,57 @@ TEST_F(TinTerrain, ResetUndoAndLoadPutTheSandBack) {
     terrain.apply({.epoch = 1, .number = 24, .engaged = true, .path = {{8000, 8000, 2000}}});
     terrain.apply({.epoch = 1, .number = 25, .engaged = false, .path = {}, .edit = Edit::loaded(saved)});
     EXPECT_EQ(terrain.copySand()->encode(), saved);
+}
+
+TEST_F(TinTerrain, WhatHasLookedInVainCoarsensAgainOnceSandHasSlid) {
+    Terrain terrain(scene());
+    std::uint64_t number = 0;
+    terrain.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {{8000, 8000, 2300}, {8600, 8000, 2300}}});
+    for (int vertices = 0; number < 4000;) {  // until no vertex that could go is left
+        const int before = vertices;
+        for (int i = 0; i < 100; ++i) {
+            terrain.apply({.epoch = 1, .number = ++number, .engaged = false, .path = {}});
+        }
+        vertices = verticesOf(terrain);
+        if (terrain.settled() && vertices == before) {
+            break;
+        }
+    }
+    ASSERT_LT(number, 4000U);
+    const int rested = verticesOf(terrain);
+    Terrain joined(scene());  // whose coarsening has not looked yet
+    joined.decodeState(terrain.encodeState());
+    sand::Tuning softer = terrain.rules().tuning();
+    softer.threshold /= 4;
+    softer.startThreshold /= 4;
+    for (int i = 0; i < 300; ++i) {
+        const Step step{.epoch = 1,
+                        .number = ++number,
+                        .engaged = false,
+                        .path = {},
+                        .edit = i == 0 ? Edit::tuned(softer) : Edit(Edit::none)};
+        terrain.apply(step);
+        joined.apply(step);
+        ASSERT_EQ(joined.stateHash(), terrain.stateHash()) << "step " << number;
+    }
+    EXPECT_LT(verticesOf(terrain), rested) << "what has slid flat needs fewer";
+}
+
+TEST_F(TinTerrain, EveryStepIsAFunctionOfTheStateWhileAToolSettlesOnSlopes) {
+    const sand::Scene start = scene();
+    Terrain terrain(start), fresh(start);
+    for (std::uint64_t number = 1; number <= 160; ++number) {
+        // Held still for nine steps, in which the sand comes to rest, then put down a little elsewhere.
+        const auto place = static_cast<std::int32_t>(number / 10);
+        const Step step{.epoch = 1,
+                        .number = number,
+                        .engaged = true,
+                        .path = {{3000 + 600 * place, 8000 + 150 * (place % 3), 2500 + 40 * (place % 5)}}};
+        fresh.decodeState(terrain.encodeState());
+        fresh.apply(step);
+        terrain.apply(step);
+        ASSERT_EQ(fresh.stateHash(), terrain.stateHash()) << "step " << number;
+    }
 }
 
 TEST_F(TinTerrain, ComesToRestAndThenCostsNoChange) {

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// Real ground, as a TIN, through a whole session and home again.
+#include <cmath>
+
+#include "sand/import/importer.hpp"
+#include "tests/cluster/session_fixture.hpp"
+#include "tests/support/run_program.hpp"
+
+namespace {
+
+class Dem : public SessionTest {
+protected:
+    /// Hills of 24 m on cells of 10 m, somewhere in UTM zone 33.
+    [[nodiscard]] static sand::EsriGrid hills() {
+        sand::EsriGrid grid;
+        grid.columns = 96;
+        grid.rows = 64;
+        grid.cellSize = 10;
+        grid.westEdge = 500000;
+        grid.southEdge = 4649000;
+        grid.units.crs =
+            "PROJCS[\"zone 33\",GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,"
+            "298.257223563]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]],"
+            "PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"latitude_of_origin\",0],PARAMETER["
+            "\"central_meridian\",15],PARAMETER[\"scale_factor\",0.9996],PARAMETER[\"false_easting\","
+            "500000],PARAMETER[\"false_northing\",0],UNIT[\"metre\",1]]";
+        grid.units.lengthMetres = grid.units.heightMetres = 1;
+        grid.units.heightName = "m";
+        for (int i = 0; i < grid.columns * grid.rows; ++i) {
+            grid.heights.push_back(1200 +
+                                   12 * std::sin(0.2 * (i % grid.columns)) * std::cos(0.15 * (i / grid.columns)));
+        }
+        return grid;
+    }
+};
+
+TEST_F(Dem, AsATinOverFourRanksIsOneAndGoesHome) {
+    const sand::Importer& importer = sand::loadImporter("a test");
+    const std::string file = (folder_ / "hills.tif").string(), home = (folder_ / "home.tif").string();
+    const files::Bytes bytes = importer.geoTiff(hills(), file);
+    write("hills.tif", std::string(bytes.begin(), bytes.end()));
+    const std::string scene =
+        write("dem.toml",
+              "[terrain]\nkind = \"dem\"\nfile = \"hills.tif\"\ndatum = 1100\n[tin]\nmax_error = 0.5\nspacing = 10\n"
+              "[material]\n[tool]\nradius = 40\n");
+    const std::string recorded = (folder_ / "ticks.csv").string(), again = (folder_ / "again.csv").string();
+    const Ended ended = runToEnd({"--wall", wall(2, 2), "--scene", scene, "--device", "script:gis", "--pace", "fast",
+                                  "--steps", "90", "--out", out(), "--no-pictures", "--record", recorded});
+    ASSERT_EQ(ended.status, 0) << ended.output;
+    const nlohmann::json result = summary();
+    EXPECT_EQ(result["ranks"], 4);
+    EXPECT_EQ(result["steps"], 90);
+    EXPECT_EQ(result["divergences"], 0);
+    EXPECT_EQ(result["server_divergences"], 0);
+    EXPECT_EQ(result["volume_final"].get<std::int64_t>(), result["volume_initial"].get<std::int64_t>());
+
+    const support::Ran replayed = support::runProgram(
+        "sandwall-replay", out() + "/session.journal --hash --heights " + home + " --forces " + again);
+    EXPECT_EQ(replayed.status, 0);
+    EXPECT_NE(replayed.output.find(result["state_hash"].get<std::string>() + "\n"), std::string::npos)
+        << replayed.output;
+    const std::string rows = read("ticks.csv"), same = read("again.csv");
+    EXPECT_GT(std::count(same.begin(), same.end(), '\n'), 1000);
+    EXPECT_NE(same.find(",1\n"), std::string::npos) << "the hand never touched the sand";
+    EXPECT_TRUE(same == rows.substr(0, same.size())) << "forces are others when the journal is replayed";
+
+    const sand::EsriGrid before = importer.readDem(file), after = importer.readDem(home);
+    EXPECT_EQ(after.units, before.units);
+    EXPECT_EQ(after.westEdge, before.westEdge);
+    EXPECT_EQ(after.southEdge, before.southEdge);
+    EXPECT_EQ(after.cellSize, before.cellSize);
+    ASSERT_EQ(after.heights.size(), before.heights.size());
+    int moved = 0;
+    for (std::size_t i = 0; i < before.heights.size(); ++i) {
+        // A TIN that follows the hills to half a metre; where nobody was it still does.
+        moved += std::abs(after.heights[i] - before.heights[i]) > 1 ? 1 : 0;
+    }
+    EXPECT_GT(moved, 100);
+    EXPECT_LT(moved, 96 * 64 / 2);
+    EXPECT_NEAR(after.at(95, 63), before.at(95, 63), 0.51) << "a corner that the hand never came to";
+}
+
+}  // namespace
