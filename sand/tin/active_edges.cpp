@@ -86,7 +86,7 @@ std::int32_t ActiveEdges::facetAt(const Layer& layer, const Slopes& slopes, std:
 
 void ActiveEdges::watch(const Layer& layer, const Slopes& slopes, Weights& weights, Vertex vertex) {
     const Triangles& mesh = layer.triangles();
-    if (!mesh.alive(vertex)) {
+    if (!mesh.alive(vertex) || layer.stars()[index(vertex)] == 0) {
         return;
     }
     const std::int32_t self = localOf(layer, vertex);
@@ -95,6 +95,9 @@ void ActiveEdges::watch(const Layer& layer, const Slopes& slopes, Weights& weigh
     }
     sand_.setWatched(index(self), true);
     aroundVertex(mesh, vertex, [&](std::int32_t slot, int) {
+        if (mesh.triangles[index(slot)].hole) {
+            return;
+        }
         for (int corner = 0; corner < 3; ++corner) {
             const Side side = owner(mesh, {slot, corner});
             const Side named = counted(mesh, side);
