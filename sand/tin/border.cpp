@@ -33,6 +33,15 @@ public:
                 }
             }
         }
+        const auto [southWest, southEast, northEast, northWest] = corners();
+        if (cells_.first.y > 0) {
+            addSide(southWest, southEast);
+            addSide(northWest, northEast);
+        }
+        if (cells_.first.x > 0) {
+            addSide(southWest, northWest);
+            addSide(southEast, northEast);
+        }
         return std::move(border_);
     }
 
@@ -148,6 +157,25 @@ private:
             along.push_back(found->second);
         }
         return along;
+    }
+
+    /// A side of the field, from one vertex that is there to the next.
+    void addSide(const Place& from, const Place& to) {
+        std::vector<Place> there;
+        for (auto found = numbers_.lower_bound(from); found != numbers_.end() && found->first <= to; ++found) {
+            if (doubledArea(from, to, found->first) == 0) {
+                there.push_back(found->first);
+            }
+        }
+        for (std::size_t i = 1; i < there.size(); ++i) {
+            const Place& a = there[i - 1];
+            const Place& b = there[i];
+            // Between two of them all is ground, or nothing: in the middle of what may be but half a cell.
+            const Place middle{a.x + (b.x - a.x) / 2, a.y + (b.y - a.y) / 2};
+            if (!std::isnan(heightAt(middle))) {
+                add(a, b, 0);
+            }
+        }
     }
 
     std::span<const double> heights_;

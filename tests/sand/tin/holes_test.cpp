@@ -289,4 +289,25 @@ TEST(TinHoles, AStartTravelsWithItsHoles) {
     EXPECT_NE(level.digest(), start.digest());
 }
 
+// Half a cell from the outermost middles to the rim: without vertices there the ground hung on the field's corners.
+TEST(TinHoles, TheRimIsAsHighAsTheCellsAlongIt) {
+    HeightField field(40, 30, 1);
+    for (int row = 0; row < 30; ++row) {
+        for (int column = 0; column < 40; ++column) {
+            const double x = column * 0.4, y = row * 0.3;
+            field.setHeight(column, row, static_cast<int>(60000 * (std::sin(x) + std::cos(y))));
+        }
+    }
+    constexpr std::int32_t kError = 6000;
+    const Layer layer = layerAt(sand::tin::follow(field, nullptr, {.maxError = kError}));
+    for (int column = 0; column < 40; ++column) {
+        EXPECT_NEAR(heightAt(layer, {column * 256 + 128, 0}), field.height(column, 0), kError);
+        EXPECT_NEAR(heightAt(layer, {column * 256 + 128, 30 * 256}), field.height(column, 29), kError);
+    }
+    for (int row = 0; row < 30; ++row) {
+        EXPECT_NEAR(heightAt(layer, {0, row * 256 + 128}), field.height(0, row), kError);
+        EXPECT_NEAR(heightAt(layer, {40 * 256, row * 256 + 128}), field.height(39, row), kError);
+    }
+}
+
 }  // namespace
