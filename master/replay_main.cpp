@@ -154,7 +154,7 @@ void writeOutputs(const sand::Terrain& terrain, const sand::Scene& scene, const 
     if (tin == nullptr) {
         writeRasters(terrain.field(), scene, options);
     } else if (!options.heights.empty() || !options.difference.empty() || options.volumes) {
-        writeRasters(sand::sampled(terrain), sand::sampledScene(scene), options);
+        writeRasters(sand::sampled(terrain, scene.tin->holes.get()), sand::sampledScene(scene), options);
     }
 }
 

@@ -13,6 +13,7 @@ namespace {
 
 using sand::tin::Place;
 using sand::tin::SurfaceView;
+using sand::tin::Triangle;
 using sand::tin::Triangles;
 using sand::tin::Vertex;
 
@@ -34,12 +35,21 @@ glm::dvec3 normalAt(const SurfaceView& tin, Vertex vertex, std::vector<Pair>& ar
                           tin.heights[static_cast<std::size_t>(corner)]);
     };
     around.clear();
+    bool besideHole = false;
     visitStar(mesh, vertex, [&](const StarTriangle& one) {
-        const auto& corner = mesh.triangles[static_cast<std::size_t>(one.slot)].corner;
-        around.push_back({corner[(one.corner + 1) % 3], corner[(one.corner + 2) % 3]});
+        const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(one.slot)];
+        besideHole |= triangle.hole;
+        if (!triangle.hole) {
+            around.push_back({triangle.corner[(one.corner + 1) % 3], triangle.corner[(one.corner + 2) % 3]});
+        }
     });
+    if (around.empty()) {
+        return {0, 0, 1};  // in a hole, where nothing is drawn
+    }
     // A sum of floats depends on where it begins: from the smallest neighbour on, around a vertex within the field.
-    if (around.front().first == around.back().second) {
+    if (besideHole) {  // where it begins is left to chance, and it may have gaps
+        std::ranges::sort(around, {}, &Pair::first);
+    } else if (around.front().first == around.back().second) {
         std::ranges::rotate(around, std::ranges::min_element(around, {}, &Pair::first));
     }
     const glm::dvec3 here = at(vertex);

@@ -21,7 +21,7 @@ constexpr double kMostChunksAcross = 64;
 
 TinTriangle drawnOf(const sand::tin::Triangle& triangle) {
     TinTriangle drawn;
-    if (!triangle.alive()) {
+    if (!triangle.isGround()) {
         return drawn;
     }
     const auto least = std::min_element(triangle.corner.begin(), triangle.corner.end()) - triangle.corner.begin();

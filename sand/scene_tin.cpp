@@ -25,6 +25,19 @@ void requireRange(const files::TomlTable& file, double highest, int columns, int
     }
 }
 
+bool hasRock(const Ground& ground) {
+    const Grid& cells = ground.cells();
+    for (int row = 0; row < cells.rows(); ++row) {
+        const bool rock = std::any_of(cells.row(row), cells.row(row) + cells.columns(), [](std::int32_t bed) {
+            return bed != Ground::kBottomless && bed != Ground::kWall;
+        });
+        if (rock) {
+            return true;
+        }
+    }
+    return false;
+}
+
 tin::Settings readSettings(const files::TomlTable& tin, double cellSize) {
     tin::Settings settings;
     const double finest = cellSize / kProbePerCell;
@@ -101,10 +114,8 @@ void readTin(const files::TomlTable& file, Scene& scene) {
         setTin(tinModule().join(start), scene);
         return;
     }
-    if (scene.ground != nullptr) {
-        file.fail(
-            "tin",
-            "a TIN has neither rock nor cells without data; leave out [tin], 'layer' and 'bedrock', or fill the gaps");
+    if (scene.ground != nullptr && hasRock(*scene.ground)) {
+        file.fail("tin", "a TIN has no rock; leave out [tin], or 'layer' and 'bedrock'");
     }
     const HeightField& field = scene.terrain;
     std::int32_t highest = 0;
@@ -116,7 +127,15 @@ void readTin(const files::TomlTable& file, Scene& scene) {
     requireRange(file, highest, field.columns(), field.rows(), field.unit());
     const tin::Settings settings = readSettings(*tin, field.cellSize());
     tin->finish();
-    setTin(tinModule().follow(field, settings), scene);
+    tin::Start start = tinModule().follow(field, scene.ground.get(), settings);
+    const std::size_t outline = start.constraints.size() + 4;
+    if (outline > static_cast<std::size_t>(settings.mostVertices)) {
+        tin->fail("vertices", fmt::format("the outline of cells without data takes {} vertices, and {} are the most",
+                                          outline, settings.mostVertices));
+    }
+    scene.ground = nullptr;  // its walls are the TIN's own
+    scene.rules.ground = 0;
+    setTin(std::move(start), scene);
 }
 
 void startFrom(const Terrain& terrain, Scene& scene) {

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "sand/ground.hpp"
 #include "sand/height_field.hpp"
 #include "sand/surface.hpp"
 #include "sand/tin/start.hpp"
@@ -17,8 +18,10 @@ public:
     /// The sand of scene.tin, as a replica starts with it.
     [[nodiscard]] virtual std::unique_ptr<Surface> surface(const Scene& scene) const = 0;
     /// The TIN with the fewest points that greedy insertion needs to come as near to every cell's middle as
-    /// settings.maxError, or that settings.mostVertices allows.
-    [[nodiscard]] virtual tin::Start follow(const HeightField& field, const tin::Settings& settings) const = 0;
+    /// settings.maxError, or that settings.mostVertices allows, and those of the rim. Walls, which may be null, are
+    /// holes: what their outline needs is there whatever settings.mostVertices says.
+    [[nodiscard]] virtual tin::Start follow(const HeightField& field, const Ground* walls,
+                                            const tin::Settings& settings) const = 0;
     /// The TIN of given places and heights; the corners of the field are added where they are missing, as high as the
     /// nearest place. start.places need not begin with them, and constraints are by place.
     [[nodiscard]] virtual tin::Start join(const tin::Start& start) const = 0;

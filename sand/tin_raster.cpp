@@ -5,10 +5,13 @@
 
 namespace sand {
 
-HeightField sampled(const Terrain& terrain) {
+HeightField sampled(const Terrain& terrain, const tin::Holes* holes) {
     HeightField field(terrain.rules().columns, terrain.rules().rows, terrain.cellSize());
     for (int row = 0; row < field.rows(); ++row) {
         for (int column = 0; column < field.columns(); ++column) {
+            if (holes != nullptr && holes->isHole(column, row)) {
+                continue;
+            }
             const double height = terrain.surface().height((column + 0.5) * kProbePerCell, (row + 0.5) * kProbePerCell);
             field.setHeight(column, row, static_cast<std::int32_t>(std::floor(height + 0.5)));
         }
@@ -18,7 +21,17 @@ HeightField sampled(const Terrain& terrain) {
 
 Scene sampledScene(const Scene& scene) {
     Scene result = scene;
-    result.terrain = sampled(Terrain(scene));
+    const tin::Holes* holes = scene.tin->holes.get();
+    result.terrain = sampled(Terrain(scene), holes);
+    if (holes != nullptr) {
+        auto ground = std::make_shared<Ground>(scene.rules.columns, scene.rules.rows);
+        for (const tin::Holes::Run& run : holes->runs()) {
+            for (int column = run.first; column < run.end; ++column) {
+                ground->setWall(column, run.row);
+            }
+        }
+        result.ground = std::move(ground);
+    }
     return result;
 }
 
@@ -27,8 +40,14 @@ Mesh meshOf(const tin::SurfaceView& tin, const Scene& scene) {
     const double length = scene.terrain.cellSize() / kProbePerCell * reference.lengthPerUnit;
     Mesh mesh;
     std::vector<std::uint32_t> numbers(tin.triangles.places.size(), 0);
+    std::vector<bool> onGround(numbers.size(), false);
+    for (const tin::Triangle& triangle : tin.triangles.triangles) {
+        for (std::size_t corner = 0; corner < 3 && triangle.isGround(); ++corner) {
+            onGround[static_cast<std::size_t>(triangle.corner[corner])] = true;
+        }
+    }
     for (std::size_t i = 0; i < tin.triangles.places.size(); ++i) {
-        if (tin.triangles.alive(static_cast<tin::Vertex>(i))) {
+        if (onGround[i]) {
             numbers[i] = static_cast<std::uint32_t>(mesh.vertices.size());
             const tin::Place place = tin.triangles.places[i];
             mesh.vertices.push_back(
@@ -37,7 +56,7 @@ Mesh meshOf(const tin::SurfaceView& tin, const Scene& scene) {
         }
     }
     for (const tin::Triangle& triangle : tin.triangles.triangles) {
-        if (triangle.alive()) {
+        if (triangle.isGround()) {
             const auto number = [&](std::size_t corner) {
                 return numbers[static_cast<std::size_t>(triangle.corner[corner])];
             };

@@ -6,13 +6,14 @@
 
 namespace sand {
 
-/// A TIN's surface at the middles of its nominal cells, rounded to whole units.
-[[nodiscard]] HeightField sampled(const Terrain& terrain);
+/// A TIN's surface at the middles of its nominal cells, rounded to whole units; 0 in its holes, which may be null.
+[[nodiscard]] HeightField sampled(const Terrain& terrain, const tin::Holes* holes);
 
-/// The scene of a TIN with the heights it starts with as a field of nominal cells, for whoever compares rasters.
+/// The scene of a TIN with the heights it starts with as a field of nominal cells, for whoever compares rasters: holes
+/// are walls of its ground.
 [[nodiscard]] Scene sampledScene(const Scene& scene);
 
-/// A TIN's own triangles, in the units of the scene's source.
+/// A TIN's own triangles, without its holes, in the units of the scene's source.
 [[nodiscard]] Mesh meshOf(const tin::SurfaceView& tin, const Scene& scene);
 
 }  // namespace sand

@@ -93,7 +93,27 @@ bool Facets::take(const tin::SurfaceView& tin, const ProbePoint& centre, std::in
     for (const std::int32_t slot : slots_) {
         facets_.push_back(facetOf(tin, slot, middle));
     }
+    levelHoles(tin);
     return true;
+}
+
+void Facets::levelHoles(const tin::SurfaceView& tin) {
+    const auto isHole = [&](std::int32_t slot) { return tin.triangles.triangles[at(slot)].hole; };
+    if (std::ranges::none_of(slots_, isHole) || std::ranges::all_of(slots_, isHole)) {
+        return;
+    }
+    double lowest = kMaxHeight;  // [unit]
+    for (const std::int32_t slot : slots_) {
+        for (std::size_t k = 0; k < 3 && !isHole(slot); ++k) {
+            lowest = std::min(lowest, tin.heights[at(tin.triangles.triangles[at(slot)].corner[k])]);
+        }
+    }
+    for (std::size_t i = 0; i < slots_.size(); ++i) {
+        if (isHole(slots_[i])) {
+            facets_[i].height = lowest * unit_ * kProbePerCell / kUnitsPerCell;
+            facets_[i].east = facets_[i].north = 0;
+        }
+    }
 }
 
 /// The square is convex: triangles that reach into it hang together by their edges, and so does the search.

@@ -25,7 +25,8 @@ public:
     static constexpr std::size_t kMost = 4096;  // of more, a query and a copy would take too long
 
     /// All triangles that reach into the square of `reach` [probe unit] around a place; false, and none, when these are
-    /// more than kMost. `unit` [scene unit] is a probe unit's.
+    /// more than kMost. `unit` [scene unit] is a probe unit's. Holes are felt as a grid's walls are: as flats, as low
+    /// as the lowest of these triangles' corners on ground.
     bool take(const tin::SurfaceView& tin, const ProbePoint& centre, std::int32_t reach, double unit);
     void clear() { facets_.clear(); }
     [[nodiscard]] bool empty() const { return facets_.empty(); }
@@ -58,6 +59,7 @@ private:
 
     bool findSlots(const tin::Triangles& mesh, const tin::Place& middle);
     [[nodiscard]] Facet facetOf(const tin::SurfaceView& tin, std::int32_t slot, const tin::Place& middle) const;
+    void levelHoles(const tin::SurfaceView& tin);
     [[nodiscard]] const Facet& find(double x, double y) const;
 
     std::vector<Facet> facets_;

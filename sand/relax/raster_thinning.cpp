@@ -49,21 +49,36 @@ Thinned thin(const EsriGrid& raster, const tin::SimplifyGoal& goal) {
     heights.reserve(raster.heights.size());
     for (int row = 0; row < raster.rows; ++row) {
         for (int column = 0; column < raster.columns; ++column) {
-            if (raster.isNoData(column, row)) {
+            if (raster.isNoData(column, row) && raster.aspect() != 1) {
                 raster.fail(column, row,
-                            "no data inside the raster, and a TIN has no walls; fill the gap: gdal_fillnodata.py");
+                            fmt::format("no data inside a raster of cells of {} x {}; a TIN with holes takes square "
+                                        "ones: gdalwarp -tr",
+                                        raster.cellSize, *raster.cellDepth));
             }
             heights.push_back(raster.at(column, row));
         }
     }
     // From middle to middle: beyond, the ground would be a strip without any vertex but the corners, and a cliff.
     const tin::Raster samples{heights, raster.columns, raster.rows, {0, 0}, spacing};
-    const tin::Simplified chosen =
-        tin::simplify(spacing.x * (raster.columns - 1), spacing.y * (raster.rows - 1), samples, goal);
-    Thinned thinned{{}, raster.cellSize / spacing.x, chosen.maxError, chosen.rmsError};
+    const tin::Cells cells{.columns = raster.columns,
+                           .rows = raster.rows,
+                           .first = {},
+                           .spacing = spacing,
+                           .width = spacing.x * (raster.columns - 1),
+                           .depth = spacing.y * (raster.rows - 1)};
+    const auto holes = tin::holesOf(heights, cells);
+    const tin::Border border = tin::borderOf(heights, cells, holes.get(), goal.maxError);
+    if (border.places.size() + 4 > static_cast<std::size_t>(goal.maxVertices)) {
+        throw files::InputError(
+            fmt::format("{}: the outline of its cells without data takes {} vertices, and {} are the "
+                        "most; give more, or a larger --max-error",
+                        raster.file, border.places.size() + 4, goal.maxVertices));
+    }
+    const tin::Simplified chosen = tin::simplify(cells.width, cells.depth, samples, goal, border);
+    Thinned thinned{{}, raster.cellSize / spacing.x, chosen.maxError, chosen.rmsError, holes, border.edges};
     for (std::size_t i = 0; i < chosen.places.size(); ++i) {
-        const double column = chosen.places[i].x / spacing.x + 0.5;
-        const double row = chosen.places[i].y / spacing.y + 0.5;
+        const double column = static_cast<double>(chosen.places[i].x) / spacing.x + 0.5;
+        const double row = static_cast<double>(chosen.places[i].y) / spacing.y + 0.5;
         thinned.points.push_back({raster.westEdge + column * raster.cellSize,
                                   raster.southEdge + row * raster.cellDepth.value_or(raster.cellSize),
                                   chosen.heights[i]});

@@ -85,8 +85,8 @@ void relaxTin(const Options& options) {
         thinned = thin(withoutEmptyEdges(readRaster(options.in)),
                        {options.maxError.value_or(0), options.vertices.value_or(kMostVertices)});
     }
-    TinSand sand = thinned ? toTin(thinned->points, options.in, material, thinned->step)
-                           : toTin(readPoints(options.in), options.in, material);
+    TinSand sand =
+        thinned ? toTin(*thinned, options.in, material) : toTin(readPoints(options.in), options.in, material);
     { const files::WholeFile canBeWritten(options.out); }  // hours later would be too late to find out
     for (const std::string& warning : sand.warnings) {
         fmt::print(stderr, "warning: {}\n", warning);

@@ -120,14 +120,20 @@ struct Joined {
     double nearHeight = 0;  // the largest difference in height between two such
 };
 
-Joined join(const Points& points, const Lattice& lattice) {
+Joined join(const Points& points, const Lattice& lattice, const Thinned* raster) {
     std::vector<Place> places;
     places.reserve(points.size());
     for (const auto& point : points) {
         places.push_back(lattice.placeOf(point));
     }
-    Joined joined{.mesh = tin::Mesh(lattice.width, lattice.depth), .points = {}};
+    Joined joined{.mesh = tin::Mesh(lattice.width, lattice.depth, raster == nullptr ? nullptr : raster->holes),
+                  .points = {}};
     const std::vector<Vertex> vertices = joined.mesh.insert(places);
+    if (raster != nullptr) {
+        for (const auto& [a, b] : raster->outline) {
+            joined.mesh.constrain(vertices[static_cast<std::size_t>(a)], vertices[static_cast<std::size_t>(b)]);
+        }
+    }
     const std::size_t count = joined.mesh.triangles().places.size();
     joined.points.resize(count);
     std::vector<bool> known(count);
@@ -157,12 +163,8 @@ Joined join(const Points& points, const Lattice& lattice) {
     return joined;
 }
 
-}  // namespace
-
-bool namesMesh(const std::filesystem::path& file) { return endsWith(file, {".ply", ".obj"}); }
-bool holdsPoints(const std::filesystem::path& file) { return endsWith(file, {".csv", ".xyz"}); }
-
-TinSand toTin(const Points& points, const std::string& file, const Material& material, std::optional<double> step) {
+TinSand sandOf(const Points& points, const std::string& file, const Material& material, std::optional<double> step,
+               const Thinned* raster) {
     if (points.size() > static_cast<std::size_t>(kMostVertices)) {
         throw files::InputError(
             fmt::format("{}: {} points, and a TIN takes {}; thin them out", file, points.size(), kMostVertices));
@@ -170,7 +172,7 @@ TinSand toTin(const Points& points, const std::string& file, const Material& mat
     const Extent extent = extentOf(points);
     const Lattice lattice = latticeOf(extent, file, step);
     const HeightScale scale = scaleOf(extent, lattice, file);
-    Joined joined = join(points, lattice);
+    Joined joined = join(points, lattice, raster);
     TinSand sand{.layer = tin::Layer(std::move(joined.mesh)),
                  .step = lattice.step,
                  .scale = scale,
@@ -193,22 +195,37 @@ TinSand toTin(const Points& points, const std::string& file, const Material& mat
     return sand;
 }
 
-std::int64_t TinSand::volume() const {
-    const tin::Wide area = tin::Wide{6} * layer.triangles().width * layer.triangles().depth;
-    return static_cast<std::int64_t>(layer.volume() - area * lowest);
+}  // namespace
+
+bool namesMesh(const std::filesystem::path& file) { return endsWith(file, {".ply", ".obj"}); }
+bool holdsPoints(const std::filesystem::path& file) { return endsWith(file, {".csv", ".xyz"}); }
+
+TinSand toTin(const Points& points, const std::string& file, const Material& material) {
+    return sandOf(points, file, material, {}, nullptr);
 }
+
+TinSand toTin(const Thinned& thinned, const std::string& file, const Material& material) {
+    return sandOf(thinned.points, file, material, thinned.step, &thinned);
+}
+
+std::int64_t TinSand::volume() const { return static_cast<std::int64_t>(layer.volume() - layer.ground() * lowest); }
 
 Mesh TinSand::toMesh() const {
     Mesh mesh;
+    std::vector<std::uint32_t> numbers(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
+        if (layer.stars()[i] == 0) {  // of holes alone
+            continue;
+        }
+        numbers[i] = static_cast<std::uint32_t>(mesh.vertices.size());
         mesh.vertices.push_back(points[i]);
         if (layer.volumes()[i] != volumes[i]) {
-            mesh.vertices[i][2] = withFewDecimals(scale.datum + layer.heights()[i] * scale.unit, scale.unit);
+            mesh.vertices.back()[2] = withFewDecimals(scale.datum + layer.heights()[i] * scale.unit, scale.unit);
         }
     }
     for (const tin::Triangle& triangle : layer.triangles().triangles) {
-        if (triangle.alive()) {
-            const auto number = [&](std::size_t k) { return static_cast<std::uint32_t>(triangle.corner.at(k)); };
+        if (triangle.isGround()) {
+            const auto number = [&](std::size_t k) { return numbers[static_cast<std::size_t>(triangle.corner.at(k))]; };
             mesh.triangles.push_back({number(0), number(1), number(2)});
         }
     }
@@ -220,7 +237,7 @@ Steepness steepnessOf(const tin::Layer& layer, std::int32_t threshold) {
     Steepness result;
     double steep = 0;  // [doubled area]
     for (const tin::Triangle& triangle : mesh.triangles) {
-        if (!triangle.alive()) {
+        if (!triangle.isGround()) {
             continue;
         }
         const auto corner = [&](std::size_t k) { return static_cast<std::size_t>(triangle.corner.at(k)); };
@@ -234,7 +251,7 @@ Steepness steepnessOf(const tin::Layer& layer, std::int32_t threshold) {
         result.steepest = std::max(result.steepest, slope);
         steep += slope > 1.01 * threshold ? area : 0;
     }
-    result.tooSteepArea = steep / (2.0 * mesh.width * mesh.depth);
+    result.tooSteepArea = 3 * steep / static_cast<double>(layer.ground());
     return result;
 }
 

@@ -4,8 +4,10 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sand/esri_grid.hpp"
@@ -47,22 +49,24 @@ struct TinSand {
     [[nodiscard]] Mesh toMesh() const;
 };
 
+/// What greedy insertion takes of a raster, and how near that comes to all of it [raster's unit].
+struct Thinned {
+    Points points;                                             // middles of cells, those in its four corners among them
+    double step = 1;                                           // of the lattice that its cells lie on
+    double maxError = 0, rmsError = 0;                         // vertical, over all cells with data
+    std::shared_ptr<const tin::Holes> holes;                   // on that lattice; null when all have data
+    std::vector<std::pair<tin::Vertex, tin::Vertex>> outline;  // of holes, edges between points
+};
+
+/// Throws files::InputError for a single row or column, for cells more oblong than 1 : 1000 or without data where they
+/// are not square, and for fewer vertices than the outline of those without data has.
+[[nodiscard]] Thinned thin(const EsriGrid& raster, const tin::SimplifyGoal& goal);
+
 /// Throws files::InputError: more than kMostVertices, a strip too thin for the lattice, heights that do not fit, a
 /// talus of fewer than kLeastThreshold units. `file` is for messages; `step` of the lattice is 2^-19 of the longer side
 /// unless given.
-[[nodiscard]] TinSand toTin(const Points& points, const std::string& file, const Material& material,
-                            std::optional<double> step = {});
-
-/// What greedy insertion takes of a raster, and how near that comes to all of it [raster's unit].
-struct Thinned {
-    Points points;                      // middles of cells, those in its four corners among them
-    double step = 1;                    // of the lattice that its cells lie on
-    double maxError = 0, rmsError = 0;  // vertical, over all cells
-};
-
-/// Throws files::InputError for a single row or column, for cells without data, and for cells more oblong than 1 :
-/// 1000.
-[[nodiscard]] Thinned thin(const EsriGrid& raster, const tin::SimplifyGoal& goal);
+[[nodiscard]] TinSand toTin(const Points& points, const std::string& file, const Material& material);
+[[nodiscard]] TinSand toTin(const Thinned& thinned, const std::string& file, const Material& material);
 
 /// How steep the triangles of a TIN are.
 struct Steepness {

@@ -102,7 +102,7 @@ std::int32_t ActiveEdges::facetAt(const Layer& layer, const Slopes& slopes, std:
 
 void ActiveEdges::watch(const Layer& layer, const Slopes& slopes, Weights& weights, Vertex vertex) {
     const Triangles& mesh = layer.triangles();
-    if (!mesh.alive(vertex)) {
+    if (!mesh.alive(vertex) || layer.stars()[index(vertex)] == 0) {
         return;
     }
     const std::int32_t self = localOf(layer, vertex);
@@ -110,7 +110,11 @@ void ActiveEdges::watch(const Layer& layer, const Slopes& slopes, Weights& weigh
         return;
     }
     sand_.setWatched(index(self), true);
-    aroundVertex(mesh, vertex, [&](std::int32_t slot, int) { watchTriangle(layer, slopes, weights, slot); });
+    aroundVertex(mesh, vertex, [&](std::int32_t slot, int) {
+        if (!mesh.triangles[index(slot)].hole) {
+            watchTriangle(layer, slopes, weights, slot);
+        }
+    });
 }
 
 void ActiveEdges::watchTriangle(const Layer& layer, const Slopes& slopes, Weights& weights, std::int32_t slot) {
@@ -161,7 +165,8 @@ void ActiveEdges::wake(const Layer& layer, const Slopes& slopes, Weights& weight
     for (const Vertex vertex : vertices) {
         if (layer.triangles().alive(vertex)) {
             aroundVertex(layer.triangles(), vertex, [&](std::int32_t slot, int) {
-                if (examined_.insert(slot) && maySlide(layer, slopes, slot)) {
+                if (!layer.triangles().triangles[index(slot)].hole && examined_.insert(slot) &&
+                    maySlide(layer, slopes, slot)) {
                     watchTriangle(layer, slopes, weights, slot);
                 }
             });

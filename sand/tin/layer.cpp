@@ -2,6 +2,7 @@
 #include "sand/tin/layer.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -26,13 +27,16 @@ double quotient(std::int64_t volume, std::int64_t star) {
 }  // namespace
 
 Layer::Layer(Mesh mesh) : mesh_(std::move(mesh)) {
+    if (!mesh_.hasOutline()) {
+        throw std::invalid_argument("holes without their outline");
+    }
     (void)mesh_.takeDifference();
     const Triangles& triangles = mesh_.triangles();
     volumes_.resize(triangles.places.size(), 0);
     stars_.resize(triangles.places.size(), 0);
     heights_.resize(triangles.places.size(), 0);
     for (const Triangle& triangle : triangles.triangles) {
-        if (triangle.alive()) {
+        if (triangle.isGround()) {
             const auto& [a, b, c] = triangle.corner;
             const std::int64_t area =
                 doubledArea(triangles.places[at(a)], triangles.places[at(b)], triangles.places[at(c)]);
@@ -49,6 +53,7 @@ void Layer::reserve(std::size_t vertices) {
     stars_.reserve(vertices);
     heights_.reserve(vertices);
 }
+Wide Layer::ground() const { return std::accumulate(stars_.begin(), stars_.end(), Wide{0}); }
 
 Wide Layer::volume() const {
     Wide sum = 0;
@@ -60,7 +65,7 @@ Wide Layer::volume() const {
 
 void Layer::setVolume(Vertex vertex, std::int64_t volume) {
     volumes_[at(vertex)] = volume;
-    heights_[at(vertex)] = quotient(volume, stars_[at(vertex)]);
+    heights_[at(vertex)] = stars_[at(vertex)] == 0 ? 0 : quotient(volume, stars_[at(vertex)]);
 }
 
 void Layer::add(Vertex vertex, std::int64_t volume) {
@@ -113,7 +118,14 @@ void Layer::edit(const std::function<void(Mesh&)>& edits) {
 }
 
 void Layer::remap() {
-    const Mesh::Difference difference = mesh_.takeDifference();
+    Mesh::Difference difference = mesh_.takeDifference();
+    if (const Holes* holes = mesh_.holes().get(); holes != nullptr) {
+        const auto isHole = [holes](const Mesh::Piece& piece) {
+            return holes->holds(piece.place[0], piece.place[1], piece.place[2]);
+        };
+        std::erase_if(difference.went, isHole);
+        std::erase_if(difference.came, isHole);
+    }
     if (difference.came.empty()) {
         return;
     }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct LayerParts {
     std::vector<Place> places;                           // by vertex
     std::vector<std::int64_t> volumes;                   // by vertex
     std::vector<std::pair<Vertex, Vertex>> constraints;  // as Mesh's
+    std::shared_ptr<const Holes> holes = nullptr;        // of the start, and not among the bytes
 
     /// Not compressed; equal layers give equal bytes.
     void encode(files::ByteWriter& writer) const;
@@ -31,9 +33,11 @@ struct LayerParts {
 /// sixth of a squared probe unit: height = volume / star, star being the sum of the doubled areas of the vertex's
 /// triangles [probe unit²]. |volume| of one vertex stays below 2^62, which heights of 2^28 reach over a star of 2^34;
 /// the whole is summed in 128 bits. Whatever would go beyond throws std::overflow_error, and the layer is then of no
-/// use. Not thread-safe.
+/// use. Triangles in a hole (holes.hpp) are no ground: they count for no star, and a vertex that has no others has
+/// neither star nor sand, and lies at 0. Not thread-safe.
 class Layer {
 public:
+    /// Throws std::invalid_argument where a hole's outline is not there.
     explicit Layer(Mesh mesh);
 
     [[nodiscard]] const Mesh& mesh() const { return mesh_; }
@@ -43,6 +47,7 @@ public:
     /// By vertex [unit]: IEEE quotients of the two, the same on every machine, exact where they are integers.
     [[nodiscard]] const std::vector<double>& heights() const { return heights_; }
     [[nodiscard]] Wide volume() const;
+    [[nodiscard]] Wide ground() const;  // the sum of all stars: six times the area [probe unit²]
 
     /// As Mesh's.
     void reserve(std::size_t vertices);
@@ -76,8 +81,9 @@ public:
 
     [[nodiscard]] LayerParts parts() const;
     void encode(files::ByteWriter& writer) const { parts().encode(writer); }
-    /// Throws files::FormatError when the bytes are no layer. Reads no further than its end.
-    static Layer decode(files::ByteReader& reader);
+    /// Throws files::FormatError when the bytes are no layer, or none with these holes, which they do not tell. Reads
+    /// no further than its end.
+    static Layer decode(files::ByteReader& reader, const std::shared_ptr<const Holes>& holes = nullptr);
 
 private:
     void setVolume(Vertex vertex, std::int64_t volume);

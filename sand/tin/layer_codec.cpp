@@ -57,7 +57,7 @@ std::vector<std::pair<Vertex, Vertex>> getConstraints(files::ByteReader& reader,
 
 LayerParts Layer::parts() const {
     const Triangles& mesh = triangles();
-    LayerParts parts{mesh.width, mesh.depth, mesh.places, volumes_, mesh_.constraints()};
+    LayerParts parts{mesh.width, mesh.depth, mesh.places, volumes_, mesh_.constraints(), mesh_.holes()};
     for (std::size_t i = 0; i < parts.places.size(); ++i) {
         if (mesh.triangleAt[i] == kNobody) {
             parts.places[i] = LayerParts::kNowhere;
@@ -88,7 +88,7 @@ void LayerParts::encode(files::ByteWriter& writer) const {
     }
 }
 
-Layer Layer::decode(files::ByteReader& reader) {
+Layer Layer::decode(files::ByteReader& reader, const std::shared_ptr<const Holes>& holes) {
     const auto width = reader.get<std::int32_t>();
     const auto depth = reader.get<std::int32_t>();
     std::vector<std::optional<Place>> places(getCount(reader, 1));
@@ -105,7 +105,7 @@ Layer Layer::decode(files::ByteReader& reader) {
     }
     const auto constraints = getConstraints(reader, places.size());
     try {
-        Layer layer(Mesh::restore(width, depth, places, constraints));
+        Layer layer(Mesh::restore(width, depth, places, constraints, holes));
         for (std::size_t i = 0; i < volumes.size(); ++i) {
             // No height that an integer of 32 bits cannot say, or not by much.
             const Wide most = static_cast<Wide>(layer.stars_[i]) << 32U;

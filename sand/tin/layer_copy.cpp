@@ -30,13 +30,15 @@ LayerState LayerState::decode(files::ByteReader& reader) {
     return state;
 }
 
-LayerCopy::LayerCopy(const LayerParts& layer, LayerState state) : state_(std::move(state)) {
+LayerCopy::LayerCopy(const LayerParts& layer, LayerState state) : holes_(layer.holes), state_(std::move(state)) {
     files::ByteWriter writer;
     layer.encode(writer);
     plain_ = writer.take();
 }
 
-LayerCopy::LayerCopy(std::span<const std::uint8_t> packed, std::int32_t width, std::int32_t depth) {
+LayerCopy::LayerCopy(std::span<const std::uint8_t> packed, std::int32_t width, std::int32_t depth,
+                     std::shared_ptr<const Holes> holes)
+    : holes_(std::move(holes)) {
     files::ByteReader reader(packed);
     state_ = LayerState::decode(reader);
     const auto size = reader.get<std::uint64_t>();
@@ -70,7 +72,7 @@ files::Bytes LayerCopy::encode() const {
 
 Layer LayerCopy::layer() const {
     files::ByteReader reader(plain_);
-    Layer layer = Layer::decode(reader);
+    Layer layer = Layer::decode(reader, holes_);
     if (!reader.atEnd()) {
         throw files::FormatError("a TIN with more behind it");
     }

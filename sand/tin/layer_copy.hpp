@@ -27,8 +27,9 @@ class LayerCopy final : public SurfaceCopy {
 public:
     LayerCopy(const LayerParts& layer, LayerState state);
     LayerCopy(const Layer& layer, LayerState state) : LayerCopy(layer.parts(), std::move(state)) {}
-    /// Throws files::FormatError for bytes that are no TIN of this size, or go on behind it.
-    LayerCopy(std::span<const std::uint8_t> packed, std::int32_t width, std::int32_t depth);
+    /// Throws files::FormatError for bytes that are no TIN of this size with these holes, or go on behind it.
+    LayerCopy(std::span<const std::uint8_t> packed, std::int32_t width, std::int32_t depth,
+              std::shared_ptr<const Holes> holes = nullptr);
 
     [[nodiscard]] files::Bytes encode() const override;
     [[nodiscard]] Layer layer() const;
@@ -36,6 +37,7 @@ public:
 
 private:
     files::Bytes plain_;  // the layer
+    std::shared_ptr<const Holes> holes_;
     LayerState state_;
 };
 

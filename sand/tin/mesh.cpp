@@ -17,12 +17,12 @@ std::string toText(const Place& place) { return std::to_string(place.x) + ", " +
 
 }  // namespace
 
-Mesh::Mesh(std::int32_t width, std::int32_t depth) {
+Mesh::Mesh(std::int32_t width, std::int32_t depth, std::shared_ptr<const Holes> holes) {
     if (width < 1 || depth < 1 || width > kMaxSide || depth > kMaxSide) {
         throw std::invalid_argument("a mesh of " + std::to_string(width) + " by " + std::to_string(depth) +
                                     " probe units: each must be within 1 and " + std::to_string(kMaxSide));
     }
-    triangulation_ = std::make_unique<Triangulation>(width, depth);
+    triangulation_ = std::make_unique<Triangulation>(width, depth, std::move(holes));
 }
 
 Mesh::~Mesh() = default;
@@ -30,6 +30,8 @@ Mesh::Mesh(Mesh&&) noexcept = default;
 Mesh& Mesh::operator=(Mesh&&) noexcept = default;
 
 const Triangles& Mesh::triangles() const { return triangulation_->mesh(); }
+
+const std::shared_ptr<const Holes>& Mesh::holes() const { return triangulation_->holes(); }
 
 int Mesh::vertexCount() const { return triangulation_->vertexCount(); }
 
@@ -86,8 +88,43 @@ bool Mesh::remove(Vertex vertex) {
     if (vertex < 4) {
         return false;
     }
+    const std::vector<Vertex> along = triangulation_->outlineFrom(vertex);
+    if (!along.empty() && !isStraight(vertex, along)) {
+        return false;
+    }
     triangulation_->remove(vertex);
+    if (!along.empty()) {
+        triangulation_->constrain(along[0], along[1]);
+    }
     return true;
+}
+
+bool Mesh::isStraight(Vertex vertex, const std::vector<Vertex>& along) const {
+    const auto place = [this](Vertex number) { return triangles().places[static_cast<std::size_t>(number)]; };
+    return along.size() == 2 && doubledArea(place(along[0]), place(vertex), place(along[1])) == 0;
+}
+
+bool Mesh::hasOutline() const {
+    if (holes() == nullptr) {
+        return true;
+    }
+    const auto standsFrom = [this](const Holes::Part& part) {
+        const Located located = triangulation_->find(part.from);
+        const std::size_t corner = cornerAt(located);
+        if (corner == 3) {
+            return false;
+        }
+        Vertex at = triangles().triangles[static_cast<std::size_t>(located.triangle)].corner[corner];
+        while (triangles().places[static_cast<std::size_t>(at)] != part.to) {
+            at = triangulation_->nextAlong(at, part.to);
+            if (at == kNobody) {
+                return false;
+            }
+        }
+        return true;
+    };
+    const std::vector<Holes::Part>& outline = holes()->outline();
+    return std::all_of(outline.begin(), outline.end(), standsFrom);
 }
 
 std::vector<Vertex> Mesh::constrain(Vertex from, Vertex to) {
@@ -99,7 +136,10 @@ std::vector<Vertex> Mesh::constrain(Vertex from, Vertex to) {
 void Mesh::release(Vertex a, Vertex b) {
     requireAlive(a);
     requireAlive(b);
-    triangulation_->release(a, b);
+    const Side side = triangulation_->findEdge(a, b);
+    if (side.slot != kNobody && !triangulation_->isOutline(side)) {
+        triangulation_->release(a, b);
+    }
 }
 
 bool Mesh::isConstrained(Vertex a, Vertex b) const {
@@ -132,8 +172,8 @@ Mesh::Difference Mesh::takeDifference() {
 }
 
 Mesh Mesh::restore(std::int32_t width, std::int32_t depth, std::span<const std::optional<Place>> places,
-                   std::span<const std::pair<Vertex, Vertex>> constraints) {
-    Mesh mesh(width, depth);
+                   std::span<const std::pair<Vertex, Vertex>> constraints, std::shared_ptr<const Holes> holes) {
+    Mesh mesh(width, depth, std::move(holes));
     for (std::size_t i = 0; i < 4; ++i) {
         if (i >= places.size() || places[i] != mesh.triangles().places[i]) {
             throw std::invalid_argument("the first four vertices are not the corners of the field");

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "sand/tin/holes.hpp"
 #include "sand/tin/triangles.hpp"
 
 namespace sand::tin {
@@ -21,14 +22,19 @@ namespace sand::tin {
 /// and constraints alone, whatever came before. Not thread-safe.
 class Mesh {
 public:
-    /// Throws std::invalid_argument unless both sides are within [1, 2^22].
-    Mesh(std::int32_t width, std::int32_t depth);
+    /// Throws std::invalid_argument unless both sides are within [1, 2^22]. Triangles are told to be holes where
+    /// `holes`, which may be null, says so; that is of use once all of their outline is constrained, which is then
+    /// there for good: no release() nor remove() takes it out.
+    Mesh(std::int32_t width, std::int32_t depth, std::shared_ptr<const Holes> holes = nullptr);
     ~Mesh();
     Mesh(Mesh&&) noexcept;
     Mesh& operator=(Mesh&&) noexcept;
 
     [[nodiscard]] const Triangles& triangles() const;
+    [[nodiscard]] const std::shared_ptr<const Holes>& holes() const;  // null without
     [[nodiscard]] int vertexCount() const;
+    /// Whether the whole outline of the holes is there.
+    [[nodiscard]] bool hasOutline() const;
 
     /// The vertex there: a new one, or the one that was there already. Places outside the field: std::invalid_argument.
     /// A place on a constrained edge splits it; both halves are constrained.
@@ -38,14 +44,16 @@ public:
     /// Room for as many vertices in all, so that none of them makes the whole mesh move in memory.
     void reserve(std::size_t vertices);
     /// Takes a vertex out, with the constraints that end in it. A corner stays, and a vertex on the rim joins its two
-    /// rim edges again. False when it stays.
+    /// rim edges again; so does one on a straight part of a hole's outline. Where that turns or ends it stays. False
+    /// when it stays.
     bool remove(Vertex vertex);
     /// Makes every edge between these places constrained, with vertices where it crosses others: a crossing is put on
     /// the nearest lattice place before, or on an end of either within a unit of the other, and both constraints bend
     /// to it; so do others that they come to cross. Vertices on the way split it. Returns the vertices along the
     /// constraint, both ends included. Nothing when both are one.
     std::vector<Vertex> constrain(Vertex from, Vertex to);
-    /// The edge between two vertices is an ordinary one again; nothing when it is none, or lies on the rim.
+    /// The edge between two vertices is an ordinary one again; nothing when it is none, or lies on the rim or on a
+    /// hole's outline.
     void release(Vertex a, Vertex b);
     [[nodiscard]] bool isConstrained(Vertex a, Vertex b) const;
     /// All constrained edges but the rim's, smaller vertex first, in order.
@@ -76,11 +84,13 @@ public:
     /// Rebuilds a mesh from what makes it one, for replicas that start in the middle: vertices keep their numbers
     /// (`places` by vertex, nothing where no such vertex lives). Throws std::invalid_argument when it is none.
     static Mesh restore(std::int32_t width, std::int32_t depth, std::span<const std::optional<Place>> places,
-                        std::span<const std::pair<Vertex, Vertex>> constraints);
+                        std::span<const std::pair<Vertex, Vertex>> constraints,
+                        std::shared_ptr<const Holes> holes = nullptr);
 
 private:
     void requireInside(const Place& place) const;
     void requireAlive(Vertex vertex) const;
+    [[nodiscard]] bool isStraight(Vertex vertex, const std::vector<Vertex>& along) const;
 
     std::unique_ptr<class Triangulation> triangulation_;
 };

@@ -240,7 +240,8 @@ Outline Outline::of(const ToolShape& shape, const Heading& heading) {
     return outline;
 }
 
-PlacedOutline placed(const Outline& outline, std::int32_t x, std::int32_t y, const Triangles& field) {
+PlacedOutline placed(const Outline& outline, std::int32_t x, std::int32_t y, const Triangles& field,
+                     const Holes* holes) {
     PlacedOutline result;
     const auto add = [&](const Place& place) {
         if (std::find(result.points.begin(), result.points.end(), place) == result.points.end()) {
@@ -251,14 +252,19 @@ PlacedOutline placed(const Outline& outline, std::int32_t x, std::int32_t y, con
     for (const Place& offset : outline.points) {
         places.push_back({x + offset.x, y + offset.y});
         const Place& place = places.back();
-        if (place.x >= 0 && place.y >= 0 && place.x <= field.width && place.y <= field.depth) {
+        const bool inside = place.x >= 0 && place.y >= 0 && place.x <= field.width && place.y <= field.depth;
+        if (inside && (holes == nullptr || !holes->reachInto(place, place))) {
             add(place);
         }
     }
     for (const auto& [from, to] : outline.edges) {
         const auto part = clipped(places[static_cast<std::size_t>(from)], places[static_cast<std::size_t>(to)],
                                   field.width, field.depth);
-        if (part) {
+        const auto isNearHole = [&](const Place& a, const Place& b) {
+            return holes != nullptr &&
+                   holes->reachInto({std::min(a.x, b.x), std::min(a.y, b.y)}, {std::max(a.x, b.x), std::max(a.y, b.y)});
+        };
+        if (part && !isNearHole(part->first, part->second)) {
             add(part->first);
             add(part->second);
             result.edges.push_back(*part);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sand/heading.hpp"
+#include "sand/tin/holes.hpp"
 #include "sand/tin/triangles.hpp"
 #include "sand/tool_shape.hpp"
 
@@ -25,12 +26,14 @@ struct Outline {
     static Outline of(const ToolShape& shape, const Heading& heading);
 };
 
-/// An outline where it stands: what lies in the field of it. An edge across the rim ends there.
+/// An outline where it stands: what lies in the field of it. An edge across the rim ends there. Points in a hole, and
+/// edges that come near one, are left out: no constraint crosses a hole's outline.
 struct PlacedOutline {
     std::vector<Place> points;                   // in the mesh's coordinates, no two alike
     std::vector<std::pair<Place, Place>> edges;  // none along the rim
 };
 [[nodiscard]] PlacedOutline placed(const Outline& outline, std::int32_t x, std::int32_t y,
-                                   const Triangles& field /* its size is looked at, nothing else */);
+                                   const Triangles& field /* its size is looked at, nothing else */,
+                                   const Holes* holes = nullptr);
 
 }  // namespace sand::tin

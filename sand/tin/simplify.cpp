@@ -201,7 +201,8 @@ std::int64_t sampleAt(const Raster& raster, const Place& place) {
 
 }  // namespace
 
-Simplified simplify(std::int32_t width, std::int32_t depth, const Raster& raster, const SimplifyGoal& goal) {
+Simplified simplify(std::int32_t width, std::int32_t depth, const Raster& raster, const SimplifyGoal& goal,
+                    const Border& border) {
     check(width, depth, raster);
     if (goal.maxVertices < 4) {
         throw std::invalid_argument("a field has 4 corners");
@@ -218,6 +219,12 @@ Simplified simplify(std::int32_t width, std::int32_t depth, const Raster& raster
             errors.use(sample);
         }
     }
+    mesh.insert(border.places);
+    for (const auto& [a, b] : border.edges) {
+        mesh.constrain(a, b);
+    }
+    result.places.insert(result.places.end(), border.places.begin(), border.places.end());
+    result.heights.insert(result.heights.end(), border.heights.begin(), border.heights.end());
     static_cast<void>(mesh.takeChange());
     std::vector<std::int32_t> all(mesh.triangles().triangles.size());
     for (std::size_t slot = 0; slot < all.size(); ++slot) {

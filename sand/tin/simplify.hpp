@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "sand/tin/border.hpp"
 #include "sand/tin/mesh.hpp"
 
 namespace sand::tin {
@@ -32,7 +33,7 @@ struct SimplifyGoal {
 
 /// Some of a raster's samples, whose triangulation is near to all of them.
 struct Simplified {
-    std::vector<Place> places;          // the field's corners, then samples as they were chosen
+    std::vector<Place> places;          // the field's corners, the border, then samples as they were chosen
     std::vector<double> heights;        // [the raster's unit]
     double maxError = 0, rmsError = 0;  // vertical, over all samples with data [the raster's unit]
 };
@@ -44,8 +45,10 @@ struct Simplified {
 ///
 /// A function of raster and goal; IEEE sums, products and quotients only. Throws std::invalid_argument for a raster
 /// that does not lie in the field, has infinite heights or no data at all, and for fewer vertices than 4.
+///
+/// `border`: points that are put in before, and edges that are constrained; they follow the corners.
 [[nodiscard]] Simplified simplify(std::int32_t width, std::int32_t depth, const Raster& raster,
-                                  const SimplifyGoal& goal);
+                                  const SimplifyGoal& goal, const Border& border = {});
 
 /// The vertical errors of the surface through these points, for comparison: as simplify() reports its own.
 [[nodiscard]] Simplified measured(std::int32_t width, std::int32_t depth, const Raster& raster,

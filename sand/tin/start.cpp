@@ -4,6 +4,8 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 
 #include "sand/height_field.hpp"
 
@@ -28,6 +30,37 @@ std::size_t countOf(files::ByteReader& reader) {
     return count;
 }
 
+constexpr std::int32_t kKeeps = 1, kHasHoles = 2;  // bits behind the settings
+
+void encodeHoles(const Holes& holes, files::ByteWriter& writer) {
+    writer.put(static_cast<std::uint64_t>(holes.runs().size()));
+    for (const Holes::Run& run : holes.runs()) {
+        writer.put(run.row);
+        writer.put(run.first);
+        writer.put(run.end);
+    }
+}
+
+std::shared_ptr<const Holes> decodeHoles(files::ByteReader& reader, const Start& start) {
+    if (start.width % kLatticePerCell != 0 || start.depth % kLatticePerCell != 0) {
+        throw files::FormatError("a TIN with holes in cells that are not whole");
+    }
+    const Cells cells = nominalCells(start.width, start.depth);
+    std::vector<Holes::Run> runs;
+    for (std::size_t left = countOf(reader); left > 0; --left) {
+        Holes::Run run;
+        run.row = between(reader, 0, cells.rows - 1);
+        run.first = between(reader, 0, cells.columns - 1);
+        run.end = between(reader, 1, cells.columns);
+        runs.push_back(run);
+    }
+    try {
+        return std::make_shared<const Holes>(cells, std::move(runs));
+    } catch (const std::invalid_argument& wrong) {
+        throw files::FormatError(std::string("not a TIN: ") + wrong.what());
+    }
+}
+
 void requireCorners(const Start& start) {
     const std::vector<Place> corners{{0, 0}, {start.width, 0}, {start.width, start.depth}, {0, start.depth}};
     if (start.places.size() < 4 || !std::equal(corners.begin(), corners.end(), start.places.begin())) {
@@ -42,9 +75,19 @@ void requireCorners(const Start& start) {
 
 }  // namespace
 
+Cells nominalCells(std::int32_t width, std::int32_t depth) {
+    constexpr std::int32_t kMiddle = kLatticePerCell / 2;
+    return {.columns = width / kLatticePerCell,
+            .rows = depth / kLatticePerCell,
+            .first = {kMiddle, kMiddle},
+            .width = width,
+            .depth = depth};
+}
+
 void Start::encode(files::ByteWriter& writer) const {
-    for (const std::int32_t number : {width, depth, meanHeight, settings.spacing, settings.widest, settings.maxError,
-                                      settings.mostVertices, std::int32_t{settings.keepConstraints ? 1 : 0}}) {
+    for (const std::int32_t number :
+         {width, depth, meanHeight, settings.spacing, settings.widest, settings.maxError, settings.mostVertices,
+          (settings.keepConstraints ? kKeeps : 0) | (holes != nullptr ? kHasHoles : 0)}) {
         writer.put(number);
     }
     writer.put(static_cast<std::uint64_t>(places.size()));
@@ -58,6 +101,9 @@ void Start::encode(files::ByteWriter& writer) const {
         writer.put(a);
         writer.put(b);
     }
+    if (holes != nullptr) {
+        encodeHoles(*holes, writer);
+    }
 }
 
 Start Start::decode(files::ByteReader& reader) {
@@ -70,7 +116,8 @@ Start Start::decode(files::ByteReader& reader) {
     start.settings.widest = between(reader, 0, kLongest);
     start.settings.maxError = between(reader, 0, kMaxHeight);
     start.settings.mostVertices = between(reader, 4, kMostVertices);
-    start.settings.keepConstraints = between(reader, 0, 1) != 0;
+    const std::int32_t bits = between(reader, 0, kKeeps | kHasHoles);
+    start.settings.keepConstraints = (bits & kKeeps) != 0;
     for (std::size_t left = countOf(reader); left > 0; --left) {
         const std::int32_t x = between(reader, 0, start.width);
         start.places.push_back({x, between(reader, 0, start.depth)});
@@ -85,6 +132,9 @@ Start Start::decode(files::ByteReader& reader) {
             throw files::FormatError("a TIN with an edge of nobody");
         }
         start.constraints.emplace_back(a, b);
+    }
+    if ((bits & kHasHoles) != 0) {
+        start.holes = decodeHoles(reader, start);
     }
     return start;
 }

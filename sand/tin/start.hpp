@@ -2,13 +2,18 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "files/byte_stream.hpp"
+#include "sand/tin/holes.hpp"
 #include "sand/tin/triangles.hpp"
 
 namespace sand::tin {
+
+/// A field's nominal cells, with a sample in the middle of each.
+[[nodiscard]] Cells nominalCells(std::int32_t width, std::int32_t depth /* [probe unit] */);
 
 /// How finely a TIN follows its terrain and its tools; part of what a scene computes with.
 struct Settings {
@@ -29,10 +34,12 @@ struct Start {
     std::vector<std::int32_t> heights;                   // [unit], by place
     std::vector<std::pair<Vertex, Vertex>> constraints;  // each with the smaller first
     std::int32_t meanHeight = 0;                         // [unit], under the surface: where devices hover
+    std::shared_ptr<const Holes> holes;                  // nominal cells without data; null when all have some
     Settings settings;
 
     void encode(files::ByteWriter& writer) const;
-    /// Throws files::FormatError for bytes that are none: places beside the field or twice, edges of nobody.
+    /// Throws files::FormatError for bytes that are none: places beside the field or twice, edges of nobody, holes out
+    /// of order or on cells that are not whole.
     static Start decode(files::ByteReader& reader);
     /// Equal digests mean equal sand from equal steps; never 0.
     [[nodiscard]] std::uint64_t digest() const;

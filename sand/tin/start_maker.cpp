@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -18,8 +19,8 @@ std::int32_t rounded(double height) {
 }
 
 std::int32_t meanHeight(const Start& start) {
-    const double area = 6.0 * start.width * start.depth;
-    return rounded(static_cast<double>(layerOf(start).volume()) / area);
+    const Layer layer = layerOf(start);
+    return rounded(static_cast<double>(layer.volume()) / static_cast<double>(layer.ground()));
 }
 
 std::size_t nearest(const std::vector<Place>& places, const Place& to) {
@@ -44,7 +45,7 @@ void addLattice(const HeightField& field, Start& start) {
         for (int column = every / 2; column < field.columns(); column += every) {
             const Place place{column * kLatticePerCell + kLatticePerCell / 2,
                               row * kLatticePerCell + kLatticePerCell / 2};
-            if (!there.contains(place)) {
+            if (!there.contains(place) && (start.holes == nullptr || !start.holes->isHole(column, row))) {
                 start.places.push_back(place);
                 start.heights.push_back(field.height(column, row));
             }
@@ -55,10 +56,13 @@ void addLattice(const HeightField& field, Start& start) {
 }  // namespace
 
 Layer layerOf(const Start& start) {
-    Mesh mesh(start.width, start.depth);
+    Mesh mesh(start.width, start.depth, start.holes);
     mesh.insert(start.places);  // the corners are there, and are the first four
     for (const auto& [a, b] : start.constraints) {
         mesh.constrain(a, b);
+    }
+    if (!mesh.hasOutline()) {  // as somebody sent it
+        throw files::FormatError("a TIN with holes that have no outline");
     }
     Layer layer(std::move(mesh));
     for (std::size_t i = 0; i < start.heights.size(); ++i) {
@@ -67,11 +71,14 @@ Layer layerOf(const Start& start) {
     return layer;
 }
 
-Start follow(const HeightField& field, const Settings& settings) {
+Start follow(const HeightField& field, const Ground* walls, const Settings& settings) {
     std::vector<double> heights;
     heights.reserve(static_cast<std::size_t>(field.columns()) * static_cast<std::size_t>(field.rows()));
     for (int row = 0; row < field.rows(); ++row) {
-        heights.insert(heights.end(), field.row(row), field.row(row) + field.columns());
+        for (int column = 0; column < field.columns(); ++column) {
+            const bool wall = walls != nullptr && walls->isWall(column, row);
+            heights.push_back(wall ? std::numeric_limits<double>::quiet_NaN() : field.height(column, row));
+        }
     }
     Raster raster;
     raster.heights = heights;
@@ -82,8 +89,12 @@ Start follow(const HeightField& field, const Settings& settings) {
     start.width = field.columns() * kLatticePerCell;
     start.depth = field.rows() * kLatticePerCell;
     start.settings = settings;
-    const Simplified chosen =
-        simplify(start.width, start.depth, raster, {static_cast<double>(settings.maxError), settings.mostVertices});
+    const Cells cells = nominalCells(start.width, start.depth);
+    start.holes = holesOf(heights, cells);
+    const double maxError = settings.maxError;
+    const Border border = borderOf(heights, cells, start.holes.get(), maxError);
+    const Simplified chosen = simplify(start.width, start.depth, raster, {maxError, settings.mostVertices}, border);
+    start.constraints = border.edges;
     start.places = chosen.places;
     for (const double height : chosen.heights) {
         start.heights.push_back(rounded(height));
@@ -132,6 +143,7 @@ Start startOf(const Layer& layer, const Settings& settings) {
     start.width = mesh.width;
     start.depth = mesh.depth;
     start.settings = settings;
+    start.holes = layer.mesh().holes();
     std::vector<Vertex> numberOf(mesh.triangleAt.size(), kNobody);
     for (std::size_t i = 0; i < mesh.triangleAt.size(); ++i) {
         if (mesh.alive(static_cast<Vertex>(i))) {

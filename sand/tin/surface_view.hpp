@@ -7,7 +7,7 @@
 
 namespace sand::tin {
 
-/// A TIN as whoever draws or feels it sees it; nothing here needs the module that the TIN itself lives in.
+/// A TIN as whoever draws or feels it sees it, holes without ground and all; nothing here needs the module that the TIN itself lives in.
 struct SurfaceView {
     const Triangles& triangles;
     const std::vector<double>& heights;  // by vertex [unit = cell size / 2^16]; anything where no vertex lives

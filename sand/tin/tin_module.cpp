@@ -11,9 +11,9 @@ public:
     [[nodiscard]] std::unique_ptr<sand::Surface> surface(const sand::Scene& scene) const override {
         return std::make_unique<sand::tin::TinSurface>(scene);
     }
-    [[nodiscard]] sand::tin::Start follow(const sand::HeightField& field,
+    [[nodiscard]] sand::tin::Start follow(const sand::HeightField& field, const sand::Ground* walls,
                                           const sand::tin::Settings& settings) const override {
-        return sand::tin::follow(field, settings);
+        return sand::tin::follow(field, walls, settings);
     }
     [[nodiscard]] sand::tin::Start join(const sand::tin::Start& start) const override { return sand::tin::join(start); }
     [[nodiscard]] sand::tin::Start startOf(const sand::Surface& surface) const override {

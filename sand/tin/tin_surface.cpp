@@ -195,9 +195,9 @@ std::shared_ptr<const SurfaceCopy> TinSurface::copy() const {
 }
 
 SurfaceReader TinSurface::reader() const {
-    return [width = start_->width,
-            depth = start_->depth](std::span<const std::uint8_t> bytes) -> std::shared_ptr<const SurfaceCopy> {
-        return std::make_shared<const LayerCopy>(bytes, width, depth);
+    return [width = start_->width, depth = start_->depth,
+            holes = start_->holes](std::span<const std::uint8_t> bytes) -> std::shared_ptr<const SurfaceCopy> {
+        return std::make_shared<const LayerCopy>(bytes, width, depth, holes);
     };
 }
 

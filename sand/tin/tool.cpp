@@ -143,14 +143,15 @@ bool Tool::reachesSand(const Layer& layer, const Chunk& chunk) const {
     const auto underside = static_cast<double>((lowest - shape_.radius) * (kUnitsPerCell / kProbePerCell));
     const auto isHigher = [&](Vertex vertex) { return layer.heights()[static_cast<std::size_t>(vertex)] > underside; };
     return std::any_of(window_->triangles().begin(), window_->triangles().end(), [&](std::int32_t slot) {
-        const auto& corners = layer.triangles().triangles[static_cast<std::size_t>(slot)].corner;
-        return std::any_of(corners.begin(), corners.end(), isHigher);
+        const Triangle& triangle = layer.triangles().triangles[static_cast<std::size_t>(slot)];
+        return !triangle.hole && std::any_of(triangle.corner.begin(), triangle.corner.end(), isHigher);
     });
 }
 
 void Tool::changeMesh(Layer& layer, Imprint& imprint, const Chunk& chunk) const {
     const ProbePoint at = chunk.presses.back().at;
-    const PlacedOutline outline = chunk.last ? placed(outline_, at.x, at.y, layer.triangles()) : PlacedOutline{};
+    const Holes* holes = layer.mesh().holes().get();
+    const PlacedOutline outline = chunk.last ? placed(outline_, at.x, at.y, layer.triangles(), holes) : PlacedOutline{};
     Edges edges = edgesThatStay(layer.triangles(), imprint);
     edges.insert(edges.end(), outline.edges.begin(), outline.edges.end());
     layer.edit([&](Mesh& mesh) {
@@ -166,7 +167,9 @@ void Tool::changeMesh(Layer& layer, Imprint& imprint, const Chunk& chunk) const 
             imprint.stand = {at, shape_, heading_};
             imprint.putInto(mesh, outline, rules_.maxVertices);
         }
-        const auto wanted = [&](const Place& place) { return isNearTool(place, chunk.presses); };
+        const auto wanted = [&](const Place& place) {
+            return isNearTool(place, chunk.presses) && (holes == nullptr || !holes->holds(place));
+        };
         refine(mesh, rules_, chunk.box, wanted, there, edges);
     });
 }

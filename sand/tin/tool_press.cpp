@@ -60,7 +60,7 @@ void Tool::findReceivers(const Layer& layer, Rim rim, const Press& press) {
                 continue;
             }
             const std::int64_t part = everywhere ? 1 : turned_.share(offset, press.ahead);
-            if (part > 0) {
+            if (part > 0 && layer.stars()[index] > 0) {
                 receivers_.push_back({vertex, static_cast<double>(part) * static_cast<double>(layer.stars()[index])});
             }
         }
@@ -110,8 +110,9 @@ void Tool::addNeighbours(const Layer& layer, const ProbePoint& at) {
     };
     std::vector<Vertex> beside;
     for (const std::int32_t slot : window_->triangles()) {
-        const auto& corner = layer.triangles().triangles[static_cast<std::size_t>(slot)].corner;
-        if (std::any_of(corner.begin(), corner.end(), isCovered)) {
+        const Triangle& triangle = layer.triangles().triangles[static_cast<std::size_t>(slot)];
+        const auto& corner = triangle.corner;
+        if (!triangle.hole && std::any_of(corner.begin(), corner.end(), isCovered)) {
             std::copy_if(corner.begin(), corner.end(), std::back_inserter(beside), std::not_fn(isCovered));
         }
     }

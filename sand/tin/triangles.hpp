@@ -35,7 +35,9 @@ struct Triangle {
     std::array<Vertex, 3> corner{kNobody, kNobody, kNobody};
     std::array<std::int32_t, 3> neighbour{kNobody, kNobody, kNobody};  // by slot; kNobody across the field's rim
     std::array<bool, 3> constrained{};                                 // the rim's edges always are
+    bool hole = false;                                                 // no ground: cells without data (holes.hpp)
     [[nodiscard]] bool alive() const { return corner[0] != kNobody; }
+    [[nodiscard]] bool isGround() const { return alive() && !hole; }
 };
 
 /// A triangulated field as whoever draws, feels or erodes it reads it: plain arrays, some of whose slots are empty.

@@ -8,7 +8,8 @@
 
 namespace sand::tin {
 
-Triangulation::Triangulation(std::int32_t width, std::int32_t depth) {
+Triangulation::Triangulation(std::int32_t width, std::int32_t depth, std::shared_ptr<const Holes> holes)
+    : holes_(std::move(holes)) {
     mesh_.width = width;
     mesh_.depth = depth;
     mesh_.places = {{0, 0}, {width, 0}, {width, depth}, {0, depth}};
@@ -92,6 +93,7 @@ void Triangulation::put(std::int32_t slot, const std::array<Vertex, 3>& corners,
     touch(slot);
     Triangle& here = triangle(slot);
     here.corner = corners;
+    here.hole = holes_ != nullptr && holes_->holds(place(corners[0]), place(corners[1]), place(corners[2]));
     for (std::size_t i = 0; i < 3; ++i) {
         here.neighbour[i] = sides[i].neighbour;
         here.constrained[i] = sides[i].constrained;
@@ -152,6 +154,41 @@ Side Triangulation::findEdge(Vertex a, Vertex b) const {
         return found.slot != kNobody;
     });
     return found;
+}
+
+bool Triangulation::isOutline(const Side& side) const {
+    if (holes_ == nullptr || onRim(side) || !isConstrained(side)) {
+        return false;
+    }
+    const auto [a, b] = ends(side);
+    return holes_->borders(place(a), place(b));
+}
+
+std::vector<Vertex> Triangulation::outlineFrom(Vertex vertex) const {
+    std::vector<Vertex> others;
+    if (holes_ != nullptr) {
+        for (const Vertex other : link(vertex)) {
+            if (isOutline(findEdge(vertex, other))) {
+                others.push_back(other);
+            }
+        }
+    }
+    return others;
+}
+
+Vertex Triangulation::nextAlong(Vertex vertex, const Place& to) const {
+    const Place& from = place(vertex);
+    for (const Vertex other : link(vertex)) {
+        const Place& there = place(other);
+        const auto isBetween = [](std::int32_t a, std::int32_t b, std::int32_t c) {
+            return std::min(a, c) <= b && b <= std::max(a, c);
+        };
+        if (doubledArea(from, there, to) == 0 && isBetween(from.x, there.x, to.x) && isBetween(from.y, there.y, to.y) &&
+            isConstrained(findEdge(vertex, other))) {
+            return other;
+        }
+    }
+    return kNobody;
 }
 
 std::vector<std::int32_t> Triangulation::fan(Vertex centre) const {

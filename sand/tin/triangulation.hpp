@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "sand/tin/change_record.hpp"
+#include "sand/tin/holes.hpp"
 
 namespace sand::tin {
 
@@ -28,9 +30,17 @@ using VertexPair = std::pair<Vertex, Vertex>;
 /// The flips behind a Mesh. Between calls every edge that is no constraint is as mustFlip() wants it.
 class Triangulation {
 public:
-    Triangulation(std::int32_t width, std::int32_t depth);
+    Triangulation(std::int32_t width, std::int32_t depth, std::shared_ptr<const Holes> holes);
 
     [[nodiscard]] const Triangles& mesh() const { return mesh_; }
+    [[nodiscard]] const std::shared_ptr<const Holes>& holes() const { return holes_; }
+    /// Whether it is an edge of some hole's outline.
+    [[nodiscard]] bool isOutline(const Side& side) const;
+    /// The vertices next to one along the outline of holes; the rim's edges are none.
+    [[nodiscard]] std::vector<Vertex> outlineFrom(Vertex vertex) const;
+    /// The other end of the constraint that goes out from a vertex straight to a place, or to a vertex before it;
+    /// kNobody when there is none.
+    [[nodiscard]] Vertex nextAlong(Vertex vertex, const Place& to) const;
     [[nodiscard]] int vertexCount() const { return vertexCount_; }
 
     /// The smallest number that no vertex has; it is taken, until giveBack().
@@ -114,6 +124,7 @@ private:
     void reduce(Vertex vertex, std::vector<VertexPair>& made);
     void merge(Vertex vertex, std::vector<VertexPair>& made);
 
+    std::shared_ptr<const Holes> holes_;  // null without
     Triangles mesh_;
     int vertexCount_ = 4;
     std::vector<std::int32_t> freeSlots_;

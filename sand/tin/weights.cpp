@@ -29,8 +29,10 @@ Side across(const Triangles& mesh, Side side) {
     return {beyond, back[0] == side.triangle ? 0 : back[1] == side.triangle ? 1 : 2};
 }
 
+/// Of the ground: a hole is beyond it as what lies outside the field.
 bool atRim(const Triangles& mesh, Side side) {
-    return triangleOf(mesh, side.triangle).neighbour[static_cast<std::size_t>(side.corner)] == kNobody;
+    const std::int32_t beyond = triangleOf(mesh, side.triangle).neighbour[static_cast<std::size_t>(side.corner)];
+    return beyond == kNobody || triangleOf(mesh, beyond).hole;
 }
 
 /// A side's two ends, counter-clockwise, and the corner opposite.
@@ -107,6 +109,9 @@ double Weights::step(const Triangles& mesh, std::span<const std::int64_t> stars,
     if (steps_[v] == 0) {
         std::int64_t sum = 0;
         aroundVertex(mesh, vertex, [&](std::int32_t slot, int corner) {
+            if (triangleOf(mesh, slot).hole) {
+                return;
+            }
             for (const int end : {1, 2}) {
                 sum += std::max(weight(mesh, {slot, (corner + end) % 3}), 0);
             }

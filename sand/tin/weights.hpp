@@ -43,7 +43,7 @@ struct Side {
 };
 
 /// The side by which an edge is known: in its triangle it runs from the smaller vertex to the larger, or it has no
-/// other.
+/// other on ground. The side's own triangle is ground.
 [[nodiscard]] Side owner(const Triangles& mesh, Side side);
 
 /// The corners of a triangle counter-clockwise from the smallest: however a slot turns them.
@@ -69,7 +69,7 @@ public:
     void reserve(std::size_t vertices);
     /// The mesh has changed there.
     void forget(const Mesh::Change& change);
-    /// The edge of a side that owns it. Costs the stars of its ends, the first time.
+    /// The edge of a side that owns it, of ground. Costs the stars of its ends, the first time.
     [[nodiscard]] Edge edge(const Triangles& mesh, std::span<const std::int64_t> stars, Side side);
 
 private:

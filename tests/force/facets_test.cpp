@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <random>
+#include <vector>
 
+#include "sand/tin/start.hpp"
 #include "tests/sand/tin/tool_fixture.hpp"
 
 namespace {
@@ -39,6 +42,26 @@ Layer roughLayer(std::uint32_t seed) {
     for (sand::tin::Vertex vertex = 0; vertex < static_cast<sand::tin::Vertex>(places.size()); ++vertex) {
         const auto& place = places[static_cast<std::size_t>(vertex)];
         layer.setHeight(vertex, below(1 << 17) + (place.x > 5201 ? 1 << 20 : 0));
+    }
+    return layer;
+}
+
+/// A slope with a hole of 8 x 8 cells in its middle.
+Layer layerWithAHole() {
+    const sand::tin::Cells cells = sand::tin::nominalCells(24 * 256, 24 * 256);
+    std::vector<sand::tin::Holes::Run> runs;
+    for (std::int32_t row = 8; row < 16; ++row) {
+        runs.push_back({row, 8, 16});
+    }
+    sand::tin::Mesh mesh(cells.width, cells.depth, std::make_shared<const sand::tin::Holes>(cells, runs));
+    for (const auto& part : mesh.holes()->outline()) {
+        const sand::tin::Vertex from = mesh.insert(part.from);
+        mesh.constrain(from, mesh.insert(part.to));
+    }
+    Layer layer(std::move(mesh));
+    const auto places = layer.triangles().places;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        layer.setHeight(static_cast<sand::tin::Vertex>(i), 100 * places[i].x);
     }
     return layer;
 }
@@ -226,6 +249,19 @@ TEST(Facets, AreFlatBeyondTheirSquareAndRefuseToBeTooMany) {
     EXPECT_FALSE(facets.take(viewOf(dense), {8192, 8192, 0}, 8192, kProbe));
     EXPECT_TRUE(facets.empty());
     EXPECT_TRUE(facets.take(viewOf(dense), {8192, 8192, 0}, 2560, kProbe));
+}
+
+TEST(Facets, FeelAHoleAsTheLowestGroundAround) {
+    const Layer layer = layerWithAHole();
+    Facets facets;
+    ASSERT_TRUE(facets.take(viewOf(layer), {12 * 256, 12 * 256, 0}, 8 * 256, kProbe));
+    const Dual inside = facets.tangent(11, 13);
+    EXPECT_EQ(inside.value, 0) << "the west rim is the lowest";
+    EXPECT_EQ(inside.slope.x, 0);
+    EXPECT_EQ(inside.slope.y, 0);
+    const Dual beside = facets.tangent(6, 13);
+    EXPECT_NEAR(beside.value, 100 * 6 * 256 / 65536.0, 1e-9);
+    EXPECT_NEAR(beside.slope.x, 100 * 256 / 65536.0, 1e-9);
 }
 
 }  // namespace

@@ -26,8 +26,8 @@ protected:
     void TearDown() override { std::filesystem::remove_all(folder_); }
 
     /// Records 40 steps in frames of two; `hashError` spoils the hash of frame 10.
-    sand::Terrain record(std::uint64_t hashError = 0) {
-        const sand::Scene scene = samples::flatScene(40, 30);
+    sand::Terrain record(std::uint64_t hashError = 0) { return record(samples::flatScene(40, 30), hashError); }
+    sand::Terrain record(const sand::Scene& scene, std::uint64_t hashError) {
         sand::Terrain terrain(scene);
         std::mt19937 random(53);
         master::JournalWriter writer(journal(), scene, "test");
@@ -61,6 +61,36 @@ TEST_F(Replay, WritesTheHeights) {
     for (int y = 0; y < 30; ++y) {
         for (int x = 0; x < 40; ++x) {
             ASSERT_NEAR(grid.at(x, y), terrain.field().height(x, y) * terrain.field().unit(), 1e-6);
+        }
+    }
+}
+
+TEST_F(Replay, WritesNoDataWhereATinHasHoles) {
+    std::ofstream dem(folder_ / "dem.asc");
+    dem << "ncols 24\nnrows 20\nxllcorner 100\nyllcorner 200\ncellsize 2\nNODATA_value -1\n";
+    const auto isGap = [](int column, int row) {
+        return (column > 8 && column < 13 && row > 5 && row < 11) || row > 26 - column;
+    };
+    for (int row = 19; row >= 0; --row) {
+        for (int column = 0; column < 24; ++column) {
+            dem << (isGap(column, row) ? -1.0 : 3 + 0.1 * column) << ' ';
+        }
+        dem << '\n';
+    }
+    dem.close();
+    std::ofstream(folder_ / "s.toml") << "[terrain]\nkind = \"esri_ascii\"\nfile = \"dem.asc\"\n[tin]\n[material]\n"
+                                         "settling_time = 0.1\n[tool]\nradius = 4\n";
+    sand::Terrain terrain = record(sand::loadScene(folder_ / "s.toml"), 0);
+    EXPECT_EQ(support::runProgram("sandwall-replay", journal() + " --hash").output,
+              fmt::format("{:016x}\n", terrain.stateHash()));
+    for (const std::string option : {"--heights", "--difference"}) {
+        const std::string file = (folder_ / "h.asc").string();
+        ASSERT_EQ(support::runProgram("sandwall-replay", journal() + " " + option + " " + file).status, 0);
+        const sand::EsriGrid grid = sand::readEsriGrid(file);
+        for (int row = 0; row < 20; ++row) {
+            for (int column = 0; column < 24; ++column) {
+                ASSERT_EQ(grid.isNoData(column, row), isGap(column, row)) << option << ' ' << column << ", " << row;
+            }
         }
     }
 }

@@ -128,6 +128,17 @@ public:
         }
         link();
     }
+    /// Takes the ground out of every triangle whose middle `isHole(x, y)` [probe unit].
+    template <class IsHole>
+    void cut(const IsHole& isHole) {
+        for (Slot slot = 0; slot < static_cast<Slot>(mesh_.triangles.size()); ++slot) {
+            const auto [a, b, c] = triangle(slot).corner;
+            const bool hole =
+                isHole((place(a).x + place(b).x + place(c).x) / 3.0, (place(a).y + place(b).y + place(c).y) / 3.0);
+            triangle(slot).hole = hole;
+            damage_.triangles.push_back(slot);
+        }
+    }
     /// The same surface in other slots, its triangles begun at other corners.
     void shuffle(std::mt19937& random) {
         for (std::size_t last = mesh_.triangles.size() - 1; last > 0; --last) {

@@ -126,6 +126,37 @@ TEST_F(TinLook, IsFlatOrSmoothAsTheSceneSays) {
     EXPECT_GT(smooth, 10 * facets);
 }
 
+int apart(const glm::ivec3& a, const glm::ivec3& b) {
+    return std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b);
+}
+
+// A corner of the field and a place within it, each some triangles wide.
+TEST_F(TinLook, LeavesHolesOpenWhicheverSlotsTheirTrianglesHave) {
+    sand::Scene scene = sample::duneScene(32);
+    scene.look.detail = 0;
+    const auto isHole = [](double x, double y) {
+        return std::max(std::abs(x - 16 * 256), std::abs(y - 16 * 256)) < 2.5 * 256 || x + y < 6 * 256;
+    };
+    Tin tin(scene.terrain), other(scene.terrain);
+    tin.cut(isHole);
+    other.cut(isHole);
+    std::mt19937 random(5);
+    other.shuffle(random);
+    SandView whole(scene, Tin(scene.terrain).view(), glm::dmat4(1));
+    SandView view(scene, tin.view(), glm::dmat4(1)), again(scene, other.view(), glm::dmat4(1));
+    for (SandView* one : {&whole, &view, &again}) {
+        one->setLayers(layersOf({Layer::hillShade}));
+    }
+    const Pixels open = sample::draw(view, above_, target_), closed = sample::draw(whole, above_, target_);
+    const auto colour = [](const Pixels& seen, int x, int y) { return sample::pixel(seen, kPictureWidth, x, y); };
+    const glm::ivec3 wood = colour(open, 200, 150);
+    EXPECT_GT(wood.r, wood.b + 40) << "the bottom of the box is seen in the middle of the hole";
+    EXPECT_GT(apart(wood, colour(closed, 200, 150)), 100) << "where there is sand else";
+    EXPECT_EQ(colour(open, 100, 150), colour(closed, 100, 150)) << "beside it nothing is another";
+    EXPECT_EQ(sample::draw(again, above_, target_), open);
+    EXPECT_EQ(sample::draw(again, slanted_, target_), sample::draw(view, slanted_, target_));
+}
+
 TEST_F(TinLook, MarksConstraintsInTheWireframeAlone) {
     sand::Scene scene = sample::flatScene(16, 16);
     Tin tin(scene.terrain);

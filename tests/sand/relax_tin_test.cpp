@@ -249,9 +249,40 @@ TEST_F(RelaxTin, OptionsThatWouldDoNothingAreRefused) {
     expectRefused("in.csv none/out.ply --talus 30", "none/out.ply");
 }
 
-TEST_F(RelaxTin, AGapInARasterIsNamed) {
-    write("gap.asc", "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -1\n1 2 3\n4 -1 5\n6 7 8\n");
-    expectRefused("gap.asc out.ply --talus 30 --max-error 0", "gap.asc:8: column 2 of this row: no data");
+TEST_F(RelaxTin, CellsWithoutDataAreAHoleInTheMesh) {
+    std::vector<double> heights;
+    for (int i = 0; i < 12 * 9; ++i) {
+        const int column = i % 12, row = i / 12;
+        const bool gap = (column >= 3 && column < 6 && row >= 2 && row < 6) || (column < 2 && row == 0);
+        heights.push_back(gap ? std::nan("") : column == 7 && row == 4 ? 40 : 5);
+    }
+    sand::writeEsriGrid({12, 9, 2, kWest, kSouth, heights}, path("in.asc"));
+    const auto json = relax("in.asc out.obj --talus 34 --max-error 0.01");
+    EXPECT_EQ(json["volume_before"], json["volume_after"]);
+    EXPECT_TRUE(json["at_rest"]);
+    EXPECT_GT(json["sweeps"], 10);
+    const sand::Mesh mesh = readObj("out.obj");
+    double area = 0;
+    for (const auto& triangle : mesh.triangles) {
+        const auto& [a, b, c] =
+            std::array{mesh.vertices.at(triangle[0]), mesh.vertices.at(triangle[1]), mesh.vertices.at(triangle[2])};
+        area += 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+        const double x = ((a[0] + b[0] + c[0]) / 3 - kWest) / 2, y = ((a[1] + b[1] + c[1]) / 3 - kSouth) / 2;
+        EXPECT_FALSE(x > 3 && x < 6 && y > 3 && y < 7) << x << ", " << y;
+    }
+    // From middle to middle of the outermost cells; the gap in the corner is one and a half cells by a half.
+    EXPECT_NEAR(area, 4 * (11 * 8 - 3 * 4 - 1.5 * 0.5), 1e-6);
+    for (const auto& [x, y, z] : mesh.vertices) {
+        EXPECT_GE(z, 5 - 1e-6);
+        EXPECT_FALSE(x == kWest + 1 && y == kSouth + 17) << "the field's corner is in a hole";
+    }
+}
+
+TEST_F(RelaxTin, AGapThatATinCannotHaveIsNamed) {
+    write("gap.asc", "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ndx 1\ndy 2\nNODATA_value -1\n1 2 3\n4 -1 5\n6 7 8\n");
+    expectRefused("gap.asc out.ply --talus 30 --max-error 0", "column 2 of this row: no data inside a raster of cells");
+    write("few.asc", "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -1\n1 2 3\n4 -1 5\n6 7 8\n");
+    expectRefused("few.asc out.ply --talus 30 --vertices 5", "the outline of its cells without data takes");
 }
 
 TEST_F(RelaxTin, PointsTooNearToBeToldApartAreSaid) {

@@ -266,7 +266,7 @@ TEST_F(TinTerrain, RefusesWhatItCannotHoldInOneLine) {
     };
     for (const auto& [tin, more, part] :
          {std::tuple{"max_error = -1\n", "", "max_error"}, std::tuple{"vertices = 3\n", "", "vertices"},
-          std::tuple{"spacing = 0\n", "", "spacing"}, std::tuple{"", "layer = 0.1\n", "neither rock nor"},
+          std::tuple{"spacing = 0\n", "", "spacing"}, std::tuple{"", "layer = 0.1\n", "a TIN has no rock"},
           std::tuple{"colour = 1\n", "", "colour"}}) {
         const std::string said = complaint(tin, more);
         EXPECT_NE(said.find(part), std::string::npos) << said;
