@@ -59,6 +59,7 @@ void ActiveEdges::makeRoom(std::size_t vertices, std::size_t slots) {
     isMoved_.resize(local_.size(), 0);
     undersides_.resize(local_.size(), 0);
     knownUndersides_.reserve(local_.size());
+    wokenOnce_.reserve(local_.size());
     facet_.resize(std::max(facet_.size(), slots), kNobody);
     watchedSides_.resize(facet_.size(), 0);
     examined_.reserve(facet_.size());
@@ -159,8 +160,9 @@ bool ActiveEdges::maySlide(const Layer& layer, const Slopes& slopes, std::int32_
 
 void ActiveEdges::wake(const Layer& layer, const Slopes& slopes, Weights& weights, std::span<const Vertex> vertices) {
     examined_.clear();
+    wokenOnce_.clear();
     for (const Vertex vertex : vertices) {
-        if (layer.triangles().alive(vertex)) {
+        if (layer.triangles().alive(vertex) && wokenOnce_.insert(vertex)) {
             aroundVertex(layer.triangles(), vertex, [&](std::int32_t slot, int) {
                 if (examined_.insert(slot) && maySlide(layer, slopes, slot)) {
                     watchTriangle(layer, slopes, weights, slot);

@@ -78,6 +78,7 @@ private:
     std::vector<Held> heldBack_;
     std::vector<std::uint8_t> isHeldBack_, isMoved_;  // by vertex
     NumberSet examined_;                              // slots, of one wake()
+    NumberSet wokenOnce_;                             // vertices, likewise
     NumberSet knownUndersides_;                       // vertices, since begin()
     std::vector<double> undersides_;                  // by vertex, of those
     std::vector<std::int32_t> met_;                   // scratch

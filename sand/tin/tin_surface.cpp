@@ -31,11 +31,6 @@ void addTo(std::vector<std::int32_t>& all, const std::vector<std::int32_t>& more
     all.insert(all.end(), more.begin(), more.end());
 }
 
-void sortOnce(std::vector<std::int32_t>& numbers) {
-    std::sort(numbers.begin(), numbers.end());
-    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-}
-
 }  // namespace
 
 TinSurface::TinSurface(const Scene& scene)
