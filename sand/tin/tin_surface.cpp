@@ -72,6 +72,7 @@ void TinSurface::reserve() {
     layer_.reserve(vertices);
     erosion_.reserve(vertices);
     hash_.reserve(vertices);
+    kept_.reserve(vertices);
     near_->reserve(vertices);
 }
 
