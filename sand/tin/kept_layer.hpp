@@ -21,6 +21,8 @@ public:
     void replaced(const Layer& layer);
 
     void reserve(std::size_t vertices) {
+        parts_.places.reserve(vertices);
+        parts_.volumes.reserve(vertices);
         vertices_.reserve(vertices);
         slots_.reserve(2 * vertices);
     }
