@@ -56,9 +56,9 @@ double ActiveEdges::undersideAt(Vertex vertex, const Place& place) {
 void ActiveEdges::makeRoom(std::size_t vertices, std::size_t slots) {
     local_.resize(std::max(local_.size(), vertices), kNobody);
     isHeldBack_.resize(local_.size(), 0);
-    isMoved_.resize(local_.size(), 0);
     undersides_.resize(local_.size(), 0);
     knownUndersides_.reserve(local_.size());
+    wokenOnce_.reserve(local_.size());
     facet_.resize(std::max(facet_.size(), slots), kNobody);
     watchedSides_.resize(facet_.size(), 0);
     examined_.reserve(facet_.size());
@@ -162,8 +162,9 @@ bool ActiveEdges::maySlide(const Layer& layer, const Slopes& slopes, std::int32_
 
 void ActiveEdges::wake(const Layer& layer, const Slopes& slopes, Weights& weights, std::span<const Vertex> vertices) {
     examined_.clear();
+    wokenOnce_.clear();
     for (const Vertex vertex : vertices) {
-        if (layer.triangles().alive(vertex)) {
+        if (layer.triangles().alive(vertex) && wokenOnce_.insert(vertex)) {
             aroundVertex(layer.triangles(), vertex, [&](std::int32_t slot, int) {
                 if (!layer.triangles().triangles[index(slot)].hole && examined_.insert(slot) &&
                     maySlide(layer, slopes, slot)) {
@@ -190,15 +191,12 @@ bool ActiveEdges::sweep(const Layer& layer, const Slopes& slopes, Weights& weigh
     return result.moved;
 }
 
-void ActiveEdges::store(Layer& layer, std::vector<Vertex>& moved) {
+void ActiveEdges::store(Layer& layer, std::vector<Vertex>& moved) const {
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
         const Vertex vertex = vertices_[i];
         if (const std::int64_t risen = sand_.volume(i) - layer.volumes()[index(vertex)]; risen != 0) {
             layer.add(vertex, risen);
-            if (isMoved_[index(vertex)] == 0) {
-                isMoved_[index(vertex)] = 1;
-                moved.push_back(vertex);
-            }
+            moved.push_back(vertex);
         }
     }
 }
@@ -293,12 +291,6 @@ std::vector<Vertex> ActiveEdges::meshChanged(const Mesh::Change& change) {
     }
     keepEdges(kept);
     return ends;
-}
-
-void ActiveEdges::forgetMoved(const std::vector<Vertex>& moved) {
-    for (const Vertex vertex : moved) {
-        isMoved_[index(vertex)] = 0;
-    }
 }
 
 void ActiveEdges::clear() { keepEdges(std::vector<std::uint8_t>(sand_.edgeCount(), 0)); }

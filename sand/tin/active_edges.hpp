@@ -37,9 +37,8 @@ public:
     void watch(const Layer& layer, const Slopes& slopes, Weights& weights, Vertex vertex);
     /// One sweep, which then watches all that it may have set in motion; false when nothing flowed.
     bool sweep(const Layer& layer, const Slopes& slopes, Weights& weights);
-    /// Gives the layer its sand, and adds who has another volume now to `moved`, each once until forgetMoved().
-    void store(Layer& layer, std::vector<Vertex>& moved);
-    void forgetMoved(const std::vector<Vertex>& moved);
+    /// Gives the layer its sand, and adds who has another volume now to `moved`.
+    void store(Layer& layer, std::vector<Vertex>& moved) const;
     /// Whether so much has been swept in vain since it was forgotten last that to forget it would have paid.
     [[nodiscard]] bool manyRest() const;
     /// Forgets edges that the last sweep cannot have set in motion. The layer must have got its sand.
@@ -76,12 +75,13 @@ private:
     std::vector<std::int32_t> facet_;         // by slot; kNobody: none
     std::vector<std::uint8_t> watchedSides_;  // by slot: a bit per corner, counted as above, and one for all three
     std::vector<Held> heldBack_;
-    std::vector<std::uint8_t> isHeldBack_, isMoved_;  // by vertex
-    NumberSet examined_;                              // slots, of one wake()
-    NumberSet knownUndersides_;                       // vertices, since begin()
-    std::vector<double> undersides_;                  // by vertex, of those
-    std::vector<std::int32_t> met_;                   // scratch
-    std::int64_t inVain_ = 0;                         // vertices at rest, sweep by sweep, beside those that always are
+    std::vector<std::uint8_t> isHeldBack_;  // by vertex
+    NumberSet examined_;                    // slots, of one wake()
+    NumberSet wokenOnce_;                   // vertices, likewise
+    NumberSet knownUndersides_;             // vertices, since begin()
+    std::vector<double> undersides_;        // by vertex, of those
+    std::vector<std::int32_t> met_;         // scratch
+    std::int64_t inVain_ = 0;               // vertices at rest, sweep by sweep, beside those that always are
     bool band_ = false;
     const Underside* held_ = nullptr;
 };

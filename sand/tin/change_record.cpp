@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "sand/tin/window.hpp"
+
 namespace sand::tin {
 
 ChangeRecord::Slot ChangeRecord::slotNow(std::int32_t slot, const Triangles& mesh) {
@@ -81,15 +83,14 @@ Mesh::Change ChangeRecord::takeChange(const Triangles& mesh) {
     }
     std::copy_if(unused_.begin(), unused_.end(), std::back_inserter(change.triangles),
                  [&mesh](std::int32_t slot) { return alive(slot, mesh); });
-    std::sort(change.triangles.begin(), change.triangles.end());
+    sortOnce(change.triangles);
     const Mesh::Difference difference = this->difference(mesh);
     for (const auto* pieces : {&difference.went, &difference.came}) {
         for (const Mesh::Piece& piece : *pieces) {
             change.vertices.insert(change.vertices.end(), piece.corner.begin(), piece.corner.end());
         }
     }
-    std::sort(change.vertices.begin(), change.vertices.end());
-    change.vertices.erase(std::unique(change.vertices.begin(), change.vertices.end()), change.vertices.end());
+    sortOnce(change.vertices);
     clear();
     return change;
 }

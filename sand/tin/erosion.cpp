@@ -59,7 +59,7 @@ int Erosion::sweep(Layer& layer, int sweeps, const Underside* held, std::vector<
         }
     }
     active_.store(layer, moved);
-    active_.forgetMoved(moved);
+    sortOnce(moved);
     return done;
 }
 

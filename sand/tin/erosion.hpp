@@ -53,9 +53,9 @@ public:
 
     /// While `held` is given no flux raises a vertex above it. Who puts it down, or moves it, wakes the vertices that
     /// are higher than a unit below it: sand beside them may lean on it now. Vertices that moved are added to `moved`,
-    /// each once, in no order that means anything. Costs what moves: next to nothing once the sand lies still. Sand
-    /// under an obstacle is looked at again by the next call for which it is another one there, so that nobody need
-    /// wake it when the tool leaves.
+    /// ascending, each once. Costs what moves: next to nothing once the sand lies still. Sand under an obstacle is
+    /// looked at again by the next call for which it is another one there, so that nobody need wake it when the tool
+    /// leaves.
     int sweep(Layer& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved);
     /// Whether nothing moves any more as things are.
     [[nodiscard]] bool settled() const;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -20,6 +20,12 @@ public:
     /// The layer is another one now; what is kept stays. Costs the whole.
     void replaced(const Layer& layer);
 
+    void reserve(std::size_t vertices) {
+        parts_.places.reserve(vertices);
+        parts_.volumes.reserve(vertices);
+        vertices_.reserve(vertices);
+        slots_.reserve(2 * vertices);
+    }
     /// These vertices may have come, gone, or have other sand, and these slots other triangles or constraints: since
     /// it was kept or replaced last.
     void touch(const std::vector<Vertex>& vertices) { vertices_.add(vertices); }
@@ -38,6 +44,7 @@ private:
     public:
         void add(const std::vector<std::int32_t>& numbers);
         void clear();
+        void reserve(std::size_t count) { is_.resize(std::max(is_.size(), count), 0); }
         [[nodiscard]] const std::vector<std::int32_t>& all() const { return all_; }
 
     private:

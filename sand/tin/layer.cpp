@@ -7,6 +7,7 @@
 #include <string>
 
 #include "sand/tin/remap.hpp"
+#include "sand/tin/window.hpp"
 
 namespace sand::tin {
 namespace {
@@ -158,8 +159,7 @@ Layer::Remap Layer::takeLargestRemap() { return std::exchange(largest_, {}); }
 Mesh::Change Layer::takeChange() {
     Mesh::Change change = mesh_.takeChange();
     change.vertices.insert(change.vertices.end(), remapped_.begin(), remapped_.end());
-    std::sort(change.vertices.begin(), change.vertices.end());
-    change.vertices.erase(std::unique(change.vertices.begin(), change.vertices.end()), change.vertices.end());
+    sortOnce(change.vertices);
     remapped_.clear();
     return change;
 }

@@ -59,10 +59,22 @@ using Pair [[gnu::vector_size(2 * sizeof(double)), gnu::aligned(sizeof(double)),
 
 void sumUp(std::size_t edges, const std::int32_t* from, const std::int32_t* to, const double* fluxes, double* sums) {
     auto* pairs = reinterpret_cast<Pair*>(sums);
-    for (std::size_t i = 0; i < edges; ++i) {
+    const auto add = [&](std::size_t i) {
         const double flux = fluxes[i], size = std::abs(flux);
         pairs[from[i]] += Pair{-flux, size};
         pairs[to[i]] += Pair{flux, size};
+    };
+    // Edges that follow each other share a vertex, whose sum would have to be there first: four far apart do not wait.
+    // Sums of whole numbers need no order.
+    const std::size_t part = edges / 4;
+    for (std::size_t i = 0; i < part; ++i) {
+        add(i);
+        add(i + part);
+        add(i + 2 * part);
+        add(i + 3 * part);
+    }
+    for (std::size_t i = 4 * part; i < edges; ++i) {
+        add(i);
     }
 }
 

@@ -31,11 +31,6 @@ void addTo(std::vector<std::int32_t>& all, const std::vector<std::int32_t>& more
     all.insert(all.end(), more.begin(), more.end());
 }
 
-void sortOnce(std::vector<std::int32_t>& numbers) {
-    std::sort(numbers.begin(), numbers.end());
-    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-}
-
 }  // namespace
 
 TinSurface::TinSurface(const Scene& scene)
@@ -77,6 +72,7 @@ void TinSurface::reserve() {
     layer_.reserve(vertices);
     erosion_.reserve(vertices);
     hash_.reserve(vertices);
+    kept_.reserve(vertices);
     near_->reserve(vertices);
 }
 

@@ -100,8 +100,7 @@ Tool::Work Tool::drag(Layer& layer, Imprint& imprint, Rim rim, std::span<const P
     if (imprint.stand && imprint.stand->at != path.back()) {  // it has gone on out of the field
         leave(layer, imprint);
     }
-    std::sort(done.touched.begin(), done.touched.end());
-    done.touched.erase(std::unique(done.touched.begin(), done.touched.end()), done.touched.end());
+    sortOnce(done.touched);
     // A vertex that one change of the mesh has lost may have been touched before it.
     std::erase_if(done.touched, [&](Vertex vertex) { return !layer.triangles().alive(vertex); });
     return done;
@@ -152,8 +151,11 @@ void Tool::changeMesh(Layer& layer, Imprint& imprint, const Chunk& chunk) const 
     const ProbePoint at = chunk.presses.back().at;
     const Holes* holes = layer.mesh().holes().get();
     const PlacedOutline outline = chunk.last ? placed(outline_, at.x, at.y, layer.triangles(), holes) : PlacedOutline{};
-    Edges edges = edgesThatStay(layer.triangles(), imprint);
-    edges.insert(edges.end(), outline.edges.begin(), outline.edges.end());
+    Edges edges;
+    if (rules_.spacing > 0) {  // or nobody asks for them
+        edges = edgesThatStay(layer.triangles(), imprint);
+        edges.insert(edges.end(), outline.edges.begin(), outline.edges.end());
+    }
     layer.edit([&](Mesh& mesh) {
         imprint.takeOutOf(mesh);
         thin(mesh, outline);

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sand/tin/window.hpp"
 
+#include <array>
+#include <bit>
+
 namespace sand::tin {
 namespace {
 
-Box around(const Triangles& mesh, const Triangle& triangle) {
-    const auto at = [&](std::size_t k) { return mesh.places[static_cast<std::size_t>(triangle.corner[k])]; };
-    const auto [a, b, c] = std::array{at(0), at(1), at(2)};
+Box around(const std::array<Place, 3>& corners) {
+    const auto& [a, b, c] = corners;
     return {std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})};
 }
+
+constexpr std::size_t kWordsEach = 4;  // a word read costs as much as a step of a sort
 
 bool overlap(const Box& a, const Box& b) { return a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 && b.y0 <= a.y1; }
 
@@ -19,6 +23,32 @@ void NumberSet::clear() {
         std::fill(turns_.begin(), turns_.end(), 0);
         turn_ = 1;
     }
+}
+
+void sortOnce(std::vector<std::int32_t>& numbers) {
+    if (numbers.empty()) {
+        return;
+    }
+    const auto [least, most] = std::minmax_element(numbers.begin(), numbers.end());
+    const std::int32_t first = *least;
+    const std::size_t words = static_cast<std::size_t>(*most - first) / 64 + 1;
+    if (words > kWordsEach * numbers.size()) {
+        std::sort(numbers.begin(), numbers.end());
+        numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+        return;
+    }
+    std::vector<std::uint64_t> bits(words);
+    for (const std::int32_t number : numbers) {
+        const auto at = static_cast<std::size_t>(number - first);
+        bits[at / 64] |= std::uint64_t{1} << at % 64;
+    }
+    std::size_t count = 0;
+    for (std::size_t word = 0; word < words; ++word) {
+        for (std::uint64_t rest = bits[word]; rest != 0; rest &= rest - 1) {
+            numbers[count++] = first + static_cast<std::int32_t>(64 * word) + std::countr_zero(rest);
+        }
+    }
+    numbers.resize(count);
 }
 
 // A box is convex: the triangles that reach into it hang together by their edges, and so does the search, which goes on
@@ -36,25 +66,26 @@ void Window::look(const Triangles& mesh, const Box& wanted) {
     const auto slots = static_cast<std::int32_t>(mesh.triangles.size());
     const bool known = last_ >= 0 && last_ < slots && mesh.triangles[static_cast<std::size_t>(last_)].alive();
     last_ = locate(mesh, middle, known ? last_ : kNobody).triangle;
-    const auto take = [&](std::int32_t slot) {
-        if (seen_.insert(slot) && overlap(around(mesh, mesh.triangles[static_cast<std::size_t>(slot)]), box)) {
-            triangles_.push_back(slot);
+    found_.assign(1, last_);
+    seen_.insert(last_);
+    for (std::size_t next = 0; next < found_.size(); ++next) {
+        const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(found_[next])];
+        const auto at = [&](std::size_t k) { return mesh.places[static_cast<std::size_t>(triangle.corner[k])]; };
+        const std::array places{at(0), at(1), at(2)};
+        if (!overlap(around(places), box)) {
+            continue;
         }
-    };
-    take(last_);
-    for (std::size_t next = 0; next < triangles_.size(); ++next) {
-        const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(triangles_[next])];
+        triangles_.push_back(found_[next]);
         for (std::size_t k = 0; k < 3; ++k) {
-            const Vertex corner = triangle.corner[k];
-            if (box.holds(mesh.places[static_cast<std::size_t>(corner)]) && seenVertices_.insert(corner)) {
-                vertices_.push_back(corner);
+            if (box.holds(places[k]) && seenVertices_.insert(triangle.corner[k])) {
+                vertices_.push_back(triangle.corner[k]);
             }
-            if (triangle.neighbour[k] != kNobody) {
-                take(triangle.neighbour[k]);
+            if (triangle.neighbour[k] != kNobody && seen_.insert(triangle.neighbour[k])) {
+                found_.push_back(triangle.neighbour[k]);
             }
         }
     }
-    std::sort(vertices_.begin(), vertices_.end());
+    sortOnce(vertices_);
 }
 
 void findLink(const Triangles& mesh, Vertex vertex, Link& link) {

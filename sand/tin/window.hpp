@@ -53,6 +53,10 @@ private:
     std::uint32_t turn_ = 1;
 };
 
+/// Sorts numbers from 0 on, each once. Those of one place in a mesh are often near each other: a bit for each is set
+/// and read again, in a tenth of the time.
+void sortOnce(std::vector<std::int32_t>& numbers);
+
 /// What of a mesh lies around some place. Costs what lies there, and the way from where it was asked for last; the
 /// first time, the whole mesh.
 class Window {
@@ -73,7 +77,7 @@ public:
 private:
     Box box_;
     std::vector<Vertex> vertices_;
-    std::vector<std::int32_t> triangles_;
+    std::vector<std::int32_t> triangles_, found_;
     std::int32_t last_ = kNobody;  // where to begin: only for speed
     NumberSet seen_, seenVertices_;
 };

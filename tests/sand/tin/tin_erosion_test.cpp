@@ -274,7 +274,7 @@ TEST(TinErosion, AtAlmostARightAngleOnlySpikesMove) {
     constexpr std::int32_t kSteep = 37'549'361;  // tan 89.9 degrees
     Layer layer = layerOf(Kind::jittered, 16);
     incline(layer, 0.99 * kSteep, 40);
-    EXPECT_EQ(sand::tin::settle(layer, kSteep, kSteep).sweeps, 1);
+    EXPECT_EQ(sand::tin::settle(layer, kSteep, kSteep).sweeps, 0) << "no triangle is worth a sweep";
     const Vertex spike = 100;
     layer.setHeight(spike, (1 << 30) - 1);
     const sand::tin::Settled settled = sand::tin::settle(layer, kSteep, kSteep);
