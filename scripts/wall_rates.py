@@ -4,7 +4,8 @@
 
 Runs sessions one after another and prints a table: a still wall, digging with the first paper's tool and with one of 12
 cells, a head that moves so that every view is drawn anew, the same on 2048 x 2048 cells, and a bare redraw beside it.
-With --tin: digging in a height field and in a TIN in turns, frame by frame as fast as the machine can.
+With --tin: digging in a height field and in TINs in turns, once as a rank with a core of its own takes it (processor time
+of the sand and of the tile that has most to do), once as sessions of all ranks here, as fast as the machine can.
 
 usage: scripts/wall_rates.py [--seconds 60 | --tin]   (about six minutes; leave the machine alone meanwhile)
 """
@@ -142,22 +143,34 @@ def digging_ms(out, scene_file, strokes, frames):
     return summary["frame_ms"]["p50"]
 
 
+def rank_ms(scene_file):
+    """Processor time of a frame of one step: the sand's and the drawing of the tile that has most to do [ms]."""
+    environment = dict(os.environ, LP_NUM_THREADS="0")
+    said = subprocess.run([BIN / "redraw_bench", "--wall", WALL, "--scene", scene_file, "--rate", "60", "--frames", "100"],
+                          capture_output=True, text=True, check=True, env=environment).stdout
+    return sum(float(re.search(rf"^{row} \[ms/frame\] +([0-9.]+)", said, re.MULTILINE).group(1))
+               for row in ("steps of one replica", "the busiest tile, both eyes"))
+
+
 def tin_rows(folder, runs, frames):
     """What a TIN takes over what the grid takes, the same hand in both, in turns."""
     out, strokes = folder / "out", circles(folder, 1000)
-    for radius in (2.56, 12):
-        grid = scene(folder, 512, radius)
-        files = {"grid": grid, "tin": as_tin(grid, 16), "dense": as_tin(grid, 2)}
-        times = {name: [] for name in files}
-        for _ in range(runs):
-            for name, file in files.items():
-                times[name].append(digging_ms(out, file, strokes, frames))
-        median = {name: statistics.median(values) for name, values in times.items()}
-        yield f"digging, 512², R = {radius} cells", f"{median['grid']:.1f} ms a frame", f"median of {runs} runs of {frames} frames"
-        for name, what in (("tin", "16"), ("dense", "2")):
-            spread = sorted(t / g for t, g in zip(times[name], times["grid"]))
-            yield (f"the same as a TIN of points {what} cells apart", f"{median[name]:.1f} ms a frame",
-                   f"{median[name] / median['grid']:.2f} × ({spread[0]:.2f} to {spread[-1]:.2f})")
+    ways = {"one rank on a core": (rank_ms, "processor time"),
+            "all here": (lambda file: digging_ms(out, file, strokes, frames), f"sessions of {frames} frames")}
+    for way, (measured, how) in ways.items():
+        for radius in (2.56, 12):
+            grid = scene(folder, 512, radius)
+            files = {"grid": grid, "16": as_tin(grid, 16), "2": as_tin(grid, 2), "1": as_tin(grid, 1)}
+            times = {name: [] for name in files}
+            for _ in range(runs):
+                for name, file in files.items():
+                    times[name].append(measured(file))
+            median = {name: statistics.median(values) for name, values in times.items()}
+            yield f"digging, 512², R = {radius} cells; {way}", f"{median['grid']:.1f} ms a frame", f"median of {runs}, {how}"
+            for name in list(files)[1:]:
+                spread = sorted(t / g for t, g in zip(times[name], times["grid"]))
+                yield (f"… as a TIN of points {name} cells apart", f"{median[name]:.1f} ms a frame",
+                       f"{median[name] / median['grid']:.2f} × ({spread[0]:.2f} to {spread[-1]:.2f})")
 
 
 def measure(folder, seconds):
@@ -186,9 +199,10 @@ def main():
     parser.add_argument("--runs", type=int, default=3, help="of each scene with --tin (default: 3)")
     parser.add_argument("--frames", type=int, default=240, help="of each run with --tin (default: 240)")
     args = parser.parse_args()
-    if not (BIN / "wall_bench").is_file():
-        print(f"{BIN}/wall_bench: not there; build the release preset first", file=sys.stderr)
-        return 2
+    for program in ("wall_bench", "redraw_bench"):
+        if not (BIN / program).is_file():
+            print(f"{BIN}/{program}: not there; build the release preset first", file=sys.stderr)
+            return 2
     print("| 12 ranks, 24 views of 1024×768 on one machine | | |\n|---|---|---|", flush=True)
     with tempfile.TemporaryDirectory(prefix="sandwall-rates-") as folder:
         path = pathlib.Path(folder)

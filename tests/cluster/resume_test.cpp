@@ -6,6 +6,7 @@
 #include <fstream>
 #include <thread>
 
+#include "haptic_bridge/protocol.hpp"
 #include "master/checkpoint.hpp"
 #include "tests/cluster/session_fixture.hpp"
 #include "tests/support/run_program.hpp"
@@ -88,12 +89,22 @@ TEST_F(Resuming, ASessionGoesOnWhereItStopped) {
     EXPECT_EQ(before[0]["cut_bytes"], 8);
     EXPECT_GT(before[0]["checkpoint_step"], 0);
     const std::uint64_t end = before[0]["step"].get<std::uint64_t>() + 400;
+    nlohmann::json incidents{{"divergences", 3}, {"healed", 2},     {"server_divergences", 0},
+                             {"links", 5},       {"reconnects", 4}, {"stands", 1}};
+    for (const std::string_view kind : haptic_bridge::kRefusalNames) {
+        incidents["refused_by_server"][std::string(kind)] = 6;
+        incidents["refused"][std::string(kind)] = 7;
+    }
+    write("out/incidents.json", incidents.dump());
     const Ended ended = runToEnd({"--wall", wall(1, 2), "--out", out(), "--no-pictures", "--resume", "--steps",
                                   std::to_string(end), "--pace", "fast", "--restarts", "0"});
     ASSERT_EQ(ended.status, 0) << ended.output;
     const nlohmann::json told = summary();
     EXPECT_EQ(told["steps"], end);
     EXPECT_EQ(told["edits"], 2);
+    EXPECT_EQ(told["divergences"], 3) << "what the tries before had healed counts too";
+    EXPECT_EQ(told["healed"], 2);
+    EXPECT_EQ(nlohmann::json::parse(read("out/incidents.json")), incidents);
     EXPECT_EQ(told["recoveries"], recoveries());
     EXPECT_EQ(told["recoveries"].size(), 2U);
     EXPECT_EQ(told["volume_final"], told["volume_initial"]);

@@ -112,22 +112,6 @@ protected:
 
 TEST_F(TinRedraw, OfRandomEditsInPartsIsEqualToTheWhole) { play(1, sand::Rim::closed, slanted_, {}, false); }
 
-TEST_F(TinRedraw, SandThatRisesWithoutAnotherLightIsDrawnWhereItNowIs) {
-    const sand::Scene scene = sample::duneScene(kCells);
-    Tin tin(scene.terrain);
-    SandView view(scene, tin.view(), glm::dmat4(1));
-    const EyeTarget inParts(kWidth, kHeight), whole(kWidth, kHeight);
-    render_node::EyeMemory memory;
-    static_cast<void>(view.drawIfChanged(slanted_, inParts, memory));
-    for (std::size_t vertex = 0; vertex < tin.mesh().places.size(); ++vertex) {
-        const auto number = static_cast<Tin::Vertex>(vertex);
-        tin.setHeight(number, tin.height(number) + 4 * kUnit);
-    }
-    view.update(tin.view(), tin.takeDamage());
-    static_cast<void>(view.drawIfChanged(slanted_, inParts, memory));
-    EXPECT_TRUE(inParts.read() == sample::draw(view, slanted_, whole));
-}
-
 TEST_F(TinRedraw, OverAnOpenRimWithWiresIsEqualToTheWhole) {
     lockstep::Layers layers;
     layers.set(Layer::wireframe, true);
