@@ -29,7 +29,7 @@ constexpr std::int32_t kMostVertices = 1 << 19;
 /// Seconds by kind of step and part.
 using Times = std::map<std::pair<std::string, std::string>, std::vector<double>>;
 
-sand::Scene sceneOf(int side, bool refines, std::uint32_t seed) {
+sand::Scene levelScene(int side, bool refines, std::uint32_t seed) {
     sand::tin::Start start;
     start.width = start.depth = side * sand::kProbePerCell;
     start.places = {{0, 0}, {start.width, 0}, {start.width, start.depth}, {0, start.depth}};
@@ -149,8 +149,8 @@ void measureImprints(const sand::Scene& scene, const std::vector<Action>& action
         }
         sand::tin::Imprint there;
         double mesh = 0;
-        const auto put = [&](sand::tin::Mesh& edited) {
-            const auto where = placed(outline, step.path.front().x, step.path.front().y, edited.triangles());
+        const auto put = [&, at = step.path.front()](sand::tin::Mesh& edited) {
+            const auto where = placed(outline, at.x, at.y, edited.triangles());
             mesh = secondsOf([&] { there.putInto(edited, where, kMostVertices); });
         };
         const double change = secondsOf([&] { layer.edit(put); });
@@ -161,7 +161,7 @@ void measureImprints(const sand::Scene& scene, const std::vector<Action>& action
     }
 }
 
-int verticesNear(const sand::Scene& scene, const sand::ProbePoint& at) {
+int verticesBelowAndBeside(const sand::Scene& scene, const sand::ProbePoint& at) {
     const sand::TurnedShape tool(scene.rules.toolShape(), {});
     const auto& places = scene.tin->places;
     return static_cast<int>(std::count_if(places.begin(), places.end(), [&](const sand::tin::Place& place) {
@@ -188,10 +188,10 @@ void tinStep(const Settings& settings, Csv& csv) {
             for (int run = 0; run < settings.runs; ++run) {
                 progress("N = {}, run {}", side, run);
                 const std::uint32_t seed = settings.seed + static_cast<std::uint32_t>(run);
-                const sand::Scene scene = sceneOf(side, refines, seed);
+                const sand::Scene scene = levelScene(side, refines, seed);
                 const std::vector<Action> actions = actionsOf(side, seed);
                 vertices = scene.tin->places.size();
-                near = verticesNear(scene, actions.front().step.path.front());
+                near = verticesBelowAndBeside(scene, actions.front().step.path.front());
                 measureWhole(scene, actions, times);
                 measureParts(scene, actions, times);
                 measureImprints(scene, actions, times);
