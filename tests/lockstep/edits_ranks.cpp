@@ -31,7 +31,8 @@ sand::Scene smallScene() {
 
 sand::Scene smallTin() {
     sand::Scene scene = smallScene();
-    auto start = sand::tinModule().follow(scene.terrain, nullptr, {.spacing = 300, .maxError = 8000, .mostVertices = 2000});
+    auto start =
+        sand::tinModule().follow(scene.terrain, nullptr, {.spacing = 300, .maxError = 8000, .mostVertices = 2000});
     scene.rules.tin = start.digest();
     scene.tin = std::make_shared<const sand::tin::Start>(std::move(start));
     scene.terrain = sand::HeightField(1, 1, scene.terrain.cellSize());
