@@ -3,7 +3,7 @@
 # Measures the sand, draws the curves and writes docs/report: README.md, pictures, and the tables they come from.
 #
 #   scripts/report.sh           all of it: some 50 minutes on two quiet cores, and the curves of a TIN besides
-#   scripts/report.sh --quick   smaller fields and fewer runs, some five minutes
+#   scripts/report.sh --quick   smaller fields and fewer runs, less than five minutes
 #   scripts/report.sh --draw    the pictures and the text again, from the tables that are there
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -99,8 +99,8 @@ measure() {
     bench=build/release/bin/sandwall-bench
 
     curve work-precision --sizes 16,32,64,128,256,512 --runs 10 -- --sizes 16,32,64,128 --runs 3
-    curve error-at-rest --sizes 32,64,128,256,512 -- --sizes 32,64,128,256
-    curve sweeps --sizes 32,64,128,256,512 -- --sizes 32,64,128,256
+    curve error-at-rest --sizes 32,64,128,256,512 -- --sizes 32,64,128
+    curve sweeps --sizes 32,64,128,256,512 -- --sizes 32,64,128
     curve anisotropy --sizes 64,256 -- --sizes 64,128
     curve decay --sizes 128 -- --sizes 64
     curve height-bits --sizes 32,64,128 -- --sizes 32,64
