@@ -33,6 +33,7 @@ Cluster::Cluster(int* argc, char*** argv) {
     for (MPI_Comm* communicator : {&frames_, &arrivals_, &pictures_}) {
         MPI_Comm_dup(MPI_COMM_WORLD, communicator);
     }
+    bells_ = std::make_unique<HostBells>();
     files::ByteWriter here;
     here.putText(hostName());
     here.put(freeMemory());
@@ -46,6 +47,7 @@ Cluster::Cluster(int* argc, char*** argv) {
 
 Cluster::~Cluster() {
     startUpIsOver();
+    bells_.reset();
     for (MPI_Comm* communicator : {&frames_, &arrivals_, &pictures_}) {
         MPI_Comm_free(communicator);
     }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "files/byte_stream.hpp"
+#include "lockstep/doorbell.hpp"
 #include "lockstep/host_memory.hpp"
 #include "lockstep/watchdog.hpp"
 
@@ -42,6 +43,9 @@ public:
     [[nodiscard]] MPI_Comm arrivals() const { return arrivals_; }  // who has come to the barrier
     [[nodiscard]] MPI_Comm pictures() const { return pictures_; }  // screenshots
 
+    /// To be rung behind every message that a rank of this host may wait for.
+    [[nodiscard]] const HostBells& bells() const { return *bells_; }
+
     /// Gives everyone the master's bytes; collective.
     [[nodiscard]] files::Bytes broadcast(const files::Bytes& fromMaster) const;
     /// Collects everyone's bytes at the master, by rank; others get nothing. Collective.
@@ -61,6 +65,7 @@ private:
     int size_ = 1;
     std::unique_ptr<Watchdog> startUp_;
     std::vector<RankHost> hosts_;
+    std::unique_ptr<HostBells> bells_;
     MPI_Comm frames_ = MPI_COMM_NULL;
     MPI_Comm arrivals_ = MPI_COMM_NULL;
     MPI_Comm pictures_ = MPI_COMM_NULL;

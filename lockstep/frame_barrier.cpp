@@ -12,8 +12,6 @@
 #include <thread>
 #include <utility>
 
-#include "lockstep/patience.hpp"
-
 namespace lockstep {
 namespace {
 
@@ -81,8 +79,25 @@ std::string FrameBarrier::describeWait() const {
     return fmt::format("frame {} waits for {}", frame_.load(), who.empty() ? busyWith_.load() : who);
 }
 
-/// Until all requests are done. At the master `ranks` are those at their other ends; `lengths` are what was received.
-void FrameBarrier::await(std::span<MPI_Request> requests, std::span<const int> ranks, std::vector<int>* lengths) {
+/// For messages from these ranks, which ring if they can.
+Patience FrameBarrier::patienceFor(std::span<const int> ranks) const {
+    const HostBells& bells = cluster_.bells();
+    const bool allRing = std::all_of(ranks.begin(), ranks.end(), [&](int rank) { return bells.of(rank).has_value(); });
+    return Patience(allRing ? bells.of(cluster_.rank()) : std::nullopt);
+}
+
+/// Behind messages to these ranks.
+void FrameBarrier::ring(std::span<const int> ranks) const {
+    for (const int rank : ranks) {
+        if (const auto bell = cluster_.bells().of(rank)) {
+            bell->ring();
+        }
+    }
+}
+
+/// Until all requests are done. `ranks` are those at their other ends; `lengths` are what was received.
+void FrameBarrier::await(std::span<MPI_Request> requests, std::span<const int> ranks, Patience patience,
+                         std::vector<int>* lengths) {
     const auto miss = [&](std::size_t which, bool missing) {
         if (cluster_.isMaster()) {
             missing_[static_cast<std::size_t>(ranks[which])] = missing;
@@ -91,8 +106,8 @@ void FrameBarrier::await(std::span<MPI_Request> requests, std::span<const int> r
     for (std::size_t i = 0; i < requests.size(); ++i) {
         miss(i, true);
     }
-    Patience patience;
     for (std::size_t done = 0; done < requests.size();) {
+        patience.look();
         int which = MPI_UNDEFINED;
         int found = 0;
         MPI_Status status;
@@ -103,6 +118,7 @@ void FrameBarrier::await(std::span<MPI_Request> requests, std::span<const int> r
         }
         const auto index = static_cast<std::size_t>(which);
         miss(index, false);
+        patience.found();
         ++done;
         if (lengths != nullptr) {
             int& length = (*lengths)[index] = kCutShort;
@@ -118,13 +134,14 @@ void FrameBarrier::sendToAll(const void* data, std::size_t bytes, int tag) {
     for (std::size_t i = 0; i < ranks_.size(); ++i) {
         MPI_Isend(data, static_cast<int>(bytes), MPI_BYTE, ranks_[i], tag, cluster_.frames(), &requests[i]);
     }
-    await(requests, ranks_);
+    ring(ranks_);
+    await(requests, ranks_, Patience());
 }
 
 void FrameBarrier::receiveFromMaster(void* data, std::size_t bytes, int tag) {
     MPI_Request request = MPI_REQUEST_NULL;
     MPI_Irecv(data, static_cast<int>(bytes), MPI_BYTE, kMaster, tag, cluster_.frames(), &request);
-    await({&request, 1}, {});
+    await({&request, 1}, {&kMaster, 1}, patienceFor({&kMaster, 1}));
 }
 
 FrameMessage FrameBarrier::begin(const FrameMessage& fromMaster, std::size_t& bytes) {
@@ -168,7 +185,7 @@ void FrameBarrier::receiveArrivals(std::uint64_t frame) {
         MPI_Irecv(letters[i].data(), static_cast<int>(sizeof(Letter)), MPI_BYTE, ranks_[i], kArrivalTag,
                   cluster_.arrivals(), &requests[i]);
     }
-    await(requests, ranks_, &lengths);
+    await(requests, ranks_, patienceFor(ranks_), &lengths);
     nonsense_.clear();
     for (std::size_t i = 0; i < ranks_.size(); ++i) {
         Arrival& arrival = arrivals_[i + 1];
@@ -189,6 +206,7 @@ void FrameBarrier::receiveArrivals(std::uint64_t frame) {
 void FrameBarrier::sendArrival(const Arrival& mine) {
     if (!std::exchange(garbles_, false)) {
         MPI_Send(&mine, kArrivalBytes, MPI_BYTE, kMaster, kArrivalTag, cluster_.arrivals());
+        ring({&kMaster, 1});
         return;
     }
     constexpr std::array<std::size_t, 3> kLengths{sizeof(Arrival), 200, 4000};
@@ -196,6 +214,7 @@ void FrameBarrier::sendArrival(const Arrival& mine) {
     files::Bytes bytes(kLengths.at(mine.frame % kLengths.size()));
     std::generate(bytes.begin(), bytes.end(), [&] { return static_cast<std::uint8_t>(noise() >> 8); });
     MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, kMaster, kArrivalTag, cluster_.arrivals());
+    ring({&kMaster, 1});
 }
 
 Verdict FrameBarrier::meet(const Arrival& mine, std::int64_t nextFrame) {

@@ -11,6 +11,7 @@
 
 #include "lockstep/cluster.hpp"
 #include "lockstep/frame_message.hpp"
+#include "lockstep/patience.hpp"
 #include "lockstep/watchdog.hpp"
 
 namespace lockstep {
@@ -93,7 +94,10 @@ public:
 private:
     void sendToAll(const void* data, std::size_t bytes, int tag);
     void receiveFromMaster(void* data, std::size_t bytes, int tag);
-    void await(std::span<MPI_Request> requests, std::span<const int> ranks, std::vector<int>* lengths = nullptr);
+    void await(std::span<MPI_Request> requests, std::span<const int> ranks, Patience patience,
+               std::vector<int>* lengths = nullptr);
+    [[nodiscard]] Patience patienceFor(std::span<const int> ranks) const;
+    void ring(std::span<const int> ranks) const;
     void receiveArrivals(std::uint64_t frame);
     void sendArrival(const Arrival& mine);
     [[nodiscard]] std::string describeWait() const;

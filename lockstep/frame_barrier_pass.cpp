@@ -30,7 +30,10 @@ files::Bytes FrameBarrier::pass(int from, const std::vector<int>& to, const file
                 MPI_Irecv(data, length, MPI_BYTE, peers[i], tag, cluster_.frames(), &requests[i]);
             }
         }
-        await(requests, peers);
+        if (sends) {
+            ring(peers);
+        }
+        await(requests, peers, sends ? Patience() : patienceFor(peers));
     };
     std::uint64_t length = bytes.size();
     move(reinterpret_cast<std::uint8_t*>(&length), sizeof length, kLengthTag);

@@ -16,9 +16,10 @@
 namespace lockstep {
 namespace {
 
-constexpr std::int64_t kYielding = 50'000;  // [ns]: shorter than a sleep and the waking from it
-constexpr std::int64_t kLongest = 125'000;  // [ns]
-constexpr std::int64_t kShare = 8;          // of a wait, the sleep that may follow: one eighth
+constexpr std::int64_t kYielding = 50'000;   // [ns]: shorter than a sleep and the waking from it
+constexpr std::int64_t kLongest = 125'000;   // [ns]
+constexpr std::int64_t kShare = 8;           // of a wait, the sleep that may follow: one eighth
+constexpr std::int64_t kOnBell = 5'000'000;  // [ns], for the case that somebody sends and does not ring
 
 /// sched_attr of the kernel, which the C library of Debian 12 does not have.
 struct SliceOfTime {
@@ -37,10 +38,24 @@ std::int64_t Patience::sleepAfter(std::int64_t waited) {
     return waited < kYielding ? 0 : std::min(waited / kShare, kLongest);
 }
 
+Patience::Patience(const std::optional<Doorbell>& bell) : bell_(bell), heard_(bell ? bell->rings() : 0) {}
+
+void Patience::look() {
+    if (bell_) {
+        const std::uint32_t rings = bell_->rings();
+        rang_ = rang_ || rings != heard_;
+        heard_ = rings;
+    }
+}
+
+void Patience::found() { rang_ = false; }
+
 void Patience::rest() {
     const std::int64_t now = nowNs();
     since_ = since_ == 0 ? now : since_;
-    if (const std::int64_t pause = sleepAfter(now - since_); pause > 0) {
+    if (bell_ && !rang_ && now - since_ >= kYielding) {
+        rang_ = bell_->sleep(heard_, kOnBell);
+    } else if (const std::int64_t pause = sleepAfter(now - since_); pause > 0) {
         std::this_thread::sleep_for(std::chrono::nanoseconds(pause));
     } else {
         sched_yield();  // whoever draws on this core goes first

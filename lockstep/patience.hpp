@@ -2,6 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+
+#include "lockstep/doorbell.hpp"
 
 namespace lockstep {
 
@@ -10,17 +13,26 @@ namespace lockstep {
 ///
 /// At first it yields, so that a short wait ends as soon as it can; then it sleeps, always the same share of what the
 /// wait has taken so far, so that no wait is made longer by more than that share, nor by more than an eighth of a
-/// millisecond: swaps lie no further apart for it. One wait per object; any thread.
+/// millisecond: swaps lie no further apart for it. Where a bell rings behind all that is waited for, it sleeps until
+/// then instead; what has rung and is not yet there is asked for as without a bell. One wait per object; any thread.
 class Patience {
 public:
-    /// Between two looks.
+    explicit Patience(const std::optional<Doorbell>& bell = std::nullopt);
+    /// Before each look.
+    void look();
+    /// The look found something, and there is more to come.
+    void found();
+    /// The look found nothing.
     void rest();
 
     /// How long to sleep after having waited so long; 0: only yield. [ns]
     [[nodiscard]] static std::int64_t sleepAfter(std::int64_t waited);
 
 private:
-    std::int64_t since_ = 0;  // [ns], of the first rest
+    std::optional<Doorbell> bell_;
+    std::uint32_t heard_ = 0;  // of the bell, before the last look
+    bool rang_ = false;        // since something was found
+    std::int64_t since_ = 0;   // [ns], of the first rest
 };
 
 /// Has this thread wake when its sleep ends: Linux adds 50 µs to each sleep otherwise, and newer ones let whoever
