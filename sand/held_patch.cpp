@@ -30,6 +30,15 @@ void copyRow(const std::int32_t* __restrict field, const std::int32_t* __restric
     }
 }
 
+/// Four faces may each bring a quarter of what fits under the tool; beside it as much as may be. As above.
+void keepRowBelow(const std::int32_t* __restrict undersides, const std::int32_t* __restrict heights, int count,
+                  std::int32_t* __restrict room) {
+    for (int i = 0; i < count; ++i) {
+        const std::int32_t fits = std::max(std::min(undersides[i], kMaxHeight) - heights[i], 0) / 4;
+        room[i] = std::min(room[i], undersides[i] == Obstacle::kFree ? Obstacle::kFree : fits);
+    }
+}
+
 }  // namespace
 
 HeldPatch::HeldPatch(const HeightField& field, const Rect& cells, const Ground* ground, const Obstacle* obstacle)
@@ -80,15 +89,9 @@ void HeldPatch::extendBeyondRim(const HeightField& field, const Ground& ground) 
 
 void HeldPatch::keepBelow(const HeightField& field, const Obstacle& obstacle) {
     const Rect shared = obstacle.cells.clippedTo(grown_);
-    for (int y = shared.y0; y < shared.y1; ++y) {
-        for (int x = shared.x0; x < shared.x1; ++x) {
-            const std::int32_t underside = obstacle.at(x, y);
-            if (underside != Obstacle::kFree) {
-                // Four faces may each bring a quarter of what fits under the tool.
-                std::int32_t& most = room[index(x, y)];
-                most = std::min(most, std::max(underside - field.height(x, y), 0) / 4);
-            }
-        }
+    for (int y = shared.y0; y < shared.y1 && shared.x0 < shared.x1; ++y) {
+        keepRowBelow(obstacle.row(y) + (shared.x0 - obstacle.cells.x0), field.row(y) + shared.x0, shared.x1 - shared.x0,
+                     &room[index(shared.x0, y)]);
     }
 }
 

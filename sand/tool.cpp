@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "sand/tool_kernel.hpp"
+
 namespace sand {
 namespace {
 
@@ -13,11 +15,6 @@ Offset offsetOf(ProbePoint at, int column, int row) {
     return {std::int64_t{column} * kProbePerCell + kHalfCell - at.x,
             std::int64_t{row} * kProbePerCell + kHalfCell - at.y};
 }
-
-/// Cells of a row.
-struct Stretch {
-    int row, from, to;
-};
 
 /// A cell that takes some of the sand the tool pushes away.
 struct Receiver {
@@ -46,6 +43,9 @@ std::vector<Receiver> receivers(const Rect& bounds, Rim rim, const Ground* groun
                 x += static_cast<int>(-2 * offset.x / kProbePerCell);
                 continue;
             }
+            if (!shape.hasHeading() && !everywhere && shape.share(offset, ahead) <= 0) {
+                continue;  // half of them are behind, and of what is round that is soonest seen
+            }
             const bool outside = x < bounds.x0 || x >= bounds.x1 || y < bounds.y0 || y >= bounds.y1;
             if ((outside && rim == Rim::closed) || shape.covers(offset) || !shape.takes(offset) ||
                 (!outside && ground != nullptr && ground->isWall(x, y))) {
@@ -60,6 +60,16 @@ std::vector<Receiver> receivers(const Rect& bounds, Rim rim, const Ground* groun
     return ring;
 }
 
+/// amount · weight / total, cut to an integer; all positive, an amount below 2^56 and a weight below 2^36.
+std::int64_t scaled(std::int64_t amount, std::int64_t weight, std::int64_t total) {
+    std::int64_t product = 0;
+    if (!__builtin_mul_overflow(amount, weight, &product)) {
+        return product / total;  // nearly always, and several times as fast
+    }
+    __extension__ using Wide = __int128;
+    return static_cast<std::int64_t>(static_cast<Wide>(amount) * weight / total);
+}
+
 /// Gives `amount` to the receivers by weight. The remainder of the division, fewer units than there are receivers, goes
 /// one unit each to the first of them: by rows, or in the order of a tool that has a heading, which turns with it.
 void shareOut(std::vector<Receiver>& ring, std::int64_t amount, ProbePoint at, const TurnedShape& shape) {
@@ -69,9 +79,7 @@ void shareOut(std::vector<Receiver>& ring, std::int64_t amount, ProbePoint at, c
     }
     std::int64_t rest = amount;
     for (Receiver& receiver : ring) {
-        // 128 bits: an amount below 2^56 times a weight below 2^36.
-        __extension__ using Wide = __int128;
-        receiver.share = static_cast<std::int64_t>(static_cast<Wide>(amount) * receiver.weight / total);
+        receiver.share = scaled(amount, receiver.weight, total);
         rest -= receiver.share;
     }
     if (shape.hasHeading()) {
@@ -90,31 +98,26 @@ Rect Tool::cells(const HeightField& field, ProbePoint at) const {
     return shape_.cellsAround(at.x, at.y, 0).clippedTo(field.bounds());
 }
 
-std::int32_t Tool::cutTo(const HeightField& field, const Ground* ground, ProbePoint at, int column, int row) const {
-    const std::int32_t height = field.height(column, row);
-    const std::int32_t underside = shape_.underside(at.z, offsetOf(at, column, row));
-    if (ground == nullptr) {
-        return std::min(height, underside);
+void Tool::findLowest(const Ground* ground, ProbePoint at, int column, int row, std::span<std::int32_t> lowest) const {
+    shape_.undersides(at.z, offsetOf(at, column, row), lowest);
+    for (std::size_t i = 0; ground != nullptr && i < lowest.size(); ++i) {
+        const int x = column + static_cast<int>(i);
+        lowest[i] = ground->isWall(x, row) ? TurnedShape::kFree : std::max(lowest[i], ground->bedrock(x, row));
     }
-    return ground->isWall(column, row) ? height : std::min(height, std::max(underside, ground->bedrock(column, row)));
 }
 
 Tool::Displacement Tool::press(HeightField& field, Rim rim, const Ground* ground, ProbePoint at,
                                const Offset& ahead) const {
     const Rect cells = this->cells(field, at);
+    std::vector<std::int32_t> lowest(static_cast<std::size_t>(std::max(cells.x1 - cells.x0, 0)));  // of a row
     std::int64_t taken = 0;
-    std::vector<Stretch> cuts;  // of a tool that is dragged most rows are a short one, ahead
+    std::vector<int> cuts;  // rows: a tool that is dragged cuts few
     for (int y = cells.y0; y < cells.y1; ++y) {
-        Stretch cut{y, cells.x1, cells.x0};
-        for (int x = cells.x0; x < cells.x1; ++x) {
-            const std::int64_t less = std::int64_t{field.height(x, y)} - cutTo(field, ground, at, x, y);
-            if (less > 0) {
-                taken += less;
-                cut = {y, std::min(cut.from, x), x + 1};
-            }
-        }
-        if (cut.from < cut.to) {
-            cuts.push_back(cut);
+        findLowest(ground, at, cells.x0, y, lowest);
+        const auto above = v3_ ? v3::sandAbove : baseline::sandAbove;
+        if (const std::int64_t more = above(lowest.data(), field.row(y) + cells.x0, cells.x1 - cells.x0); more > 0) {
+            taken += more;
+            cuts.push_back(y);
         }
     }
     if (taken == 0) {
@@ -133,10 +136,11 @@ Tool::Displacement Tool::press(HeightField& field, Rim rim, const Ground* ground
             return {};  // no room left in 32 bits: the sand stays, and the tool passes through it
         }
     }
-    for (const Stretch& cut : cuts) {
-        for (int x = cut.from; x < cut.to; ++x) {
-            field.setHeight(x, cut.row, cutTo(field, ground, at, x, cut.row));
-        }
+    for (const int y : cuts) {
+        findLowest(ground, at, cells.x0, y, lowest);
+        std::int32_t* const row = field.row(y) + cells.x0;
+        std::transform(lowest.begin(), lowest.end(), row, row,
+                       [](std::int32_t least, std::int32_t height) { return std::min(height, least); });
     }
     Displacement result{shape_.cellsChanged(at.x, at.y).clippedTo(field.bounds()), 0};
     for (const Receiver& receiver : ring) {
@@ -179,10 +183,11 @@ Tool::Displacement Tool::drag(HeightField& field, Rim rim, const Ground* ground,
 Obstacle Tool::obstacle(const HeightField& field, ProbePoint at) const {
     Obstacle result;
     result.cells = cells(field, at);
+    const auto across = static_cast<std::size_t>(std::max(result.cells.x1 - result.cells.x0, 0));
+    result.underside.resize(across * static_cast<std::size_t>(std::max(result.cells.y1 - result.cells.y0, 0)));
     for (int y = result.cells.y0; y < result.cells.y1; ++y) {
-        for (int x = result.cells.x0; x < result.cells.x1; ++x) {
-            result.underside.push_back(shape_.underside(at.z, offsetOf(at, x, y)));
-        }
+        const std::size_t first = static_cast<std::size_t>(y - result.cells.y0) * across;
+        shape_.undersides(at.z, offsetOf(at, result.cells.x0, y), std::span(result.underside).subspan(first, across));
     }
     return result;
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "sand/height_field.hpp"
@@ -17,15 +19,17 @@ struct Obstacle {
     std::vector<std::int32_t> underside;  // [unit], row by row over `cells`; kFree beside the tool
     static constexpr std::int32_t kFree = TurnedShape::kFree;
 
-    [[nodiscard]] std::int32_t at(int column, int row) const {
-        return underside[static_cast<std::size_t>((row - cells.y0) * (cells.x1 - cells.x0) + column - cells.x0)];
+    [[nodiscard]] const std::int32_t* row(int row) const {  // from cells.x0 on
+        return underside.data() + std::ptrdiff_t{row - cells.y0} * (cells.x1 - cells.x0);
     }
 };
 
 /// A tool in the sand: it takes out what lies above its underside and puts it down ahead (first paper, section 3).
 class Tool {
 public:
-    explicit Tool(const ToolShape& shape, const Heading& heading = {}) : shape_(shape, heading) {}
+    /// `v3`: with instructions of x86-64-v3, for the same results.
+    explicit Tool(const ToolShape& shape, const Heading& heading = {}, bool v3 = machineHasV3())
+        : shape_(shape, heading, v3), v3_(v3) {}
 
     /// What one drag did to the sand.
     struct Displacement {
@@ -44,11 +48,11 @@ public:
 
 private:
     Displacement press(HeightField& field, Rim rim, const Ground* ground, ProbePoint at, const Offset& ahead) const;
-    /// The height to which the tool takes a cell down: its underside, or the rock beneath.
-    [[nodiscard]] std::int32_t cutTo(const HeightField& field, const Ground* ground, ProbePoint at, int column,
-                                     int row) const;
+    /// How low the tool takes the cells of a row, whatever lies there: its underside, or the rock beneath.
+    void findLowest(const Ground* ground, ProbePoint at, int column, int row, std::span<std::int32_t> lowest) const;
 
     TurnedShape shape_;
+    bool v3_;
 };
 
 }  // namespace sand

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdlib>
 
+#include "sand/tool_kernel.hpp"
+
 namespace sand {
 namespace {
 
@@ -36,9 +38,10 @@ std::optional<ToolKind> toolNamed(std::string_view name) {
 
 std::span<const SolePiece> solePieces() { return kSole; }
 
-TurnedShape::TurnedShape(const ToolShape& shape, const Heading& heading)
+TurnedShape::TurnedShape(const ToolShape& shape, const Heading& heading, bool v3)
     : shape_(shape),
       heading_(heading),
+      v3_(v3),
       length_(shape.radius),
       width_(shape.halfWidth),
       ring_(kRing + (shape.kind == ToolKind::sphere ? 0 : (isRound(shape.kind) ? shape.radius : shape.halfWidth) / 4)),
@@ -60,6 +63,22 @@ TurnedShape::TurnedShape(const ToolShape& shape, const Heading& heading)
 
 std::span<const SolePiece> TurnedShape::pieces() const {
     return shape_.kind == ToolKind::footprint ? std::span<const SolePiece>(kSole) : kPlate;
+}
+
+void TurnedShape::undersides(std::int32_t z, const Offset& first, std::span<std::int32_t> row) const {
+    if (shape_.kind == ToolKind::sphere) {
+        const SphereRow cells{.square = std::int64_t{shape_.radius} * shape_.radius - first.y * first.y,
+                              .first = first.x,
+                              .centre = std::int64_t{z} * kUnitsPerProbe,
+                              .count = static_cast<int>(row.size())};
+        v3_ ? v3::undersidesOfSphere(cells, row.data()) : baseline::undersidesOfSphere(cells, row.data());
+        return;
+    }
+    Offset offset = first;
+    for (std::int32_t& underside : row) {
+        underside = this->underside(z, offset);
+        offset.x += kProbePerCell;
+    }
 }
 
 double TurnedShape::levelOf(const SolePiece& piece, const Place& place, double grown) const {

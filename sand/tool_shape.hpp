@@ -9,6 +9,7 @@
 #include <span>
 #include <string_view>
 
+#include "sand/code_path.hpp"
 #include "sand/heading.hpp"
 #include "sand/height_field.hpp"
 
@@ -68,7 +69,8 @@ class TurnedShape {
 public:
     static constexpr std::int32_t kFree = std::numeric_limits<std::int32_t>::max();
 
-    explicit TurnedShape(const ToolShape& shape, const Heading& heading = {});
+    /// `v3`: with instructions of x86-64-v3, for the same results.
+    explicit TurnedShape(const ToolShape& shape, const Heading& heading = {}, bool v3 = machineHasV3());
 
     /// Height of the underside over a place while the centre is at height `z` [probe unit]: [unit], or kFree beside the
     /// tool.
@@ -86,6 +88,8 @@ public:
         // IEEE square root of an exact integer: one right answer everywhere.
         return lowered(z, std::sqrt(static_cast<double>(height)));
     }
+    /// The same of cells side by side, a cell apart from `first` on, as many as there is room for.
+    void undersides(std::int32_t z, const Offset& first, std::span<std::int32_t> row) const;
     /// Whether a place is below the tool.
     [[nodiscard]] bool covers(const Offset& offset) const {
         return isRound(shape_.kind) ? offset.squared() < std::int64_t{shape_.radius} * shape_.radius
@@ -151,6 +155,7 @@ private:
 
     ToolShape shape_;
     Heading heading_;
+    bool v3_;
     double length_, width_;      // half of them [probe unit]
     std::int64_t ring_;          // how far from the outline it lays sand down [probe unit]
     double scale_;               // one over the length of the heading

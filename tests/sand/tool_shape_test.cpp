@@ -11,6 +11,7 @@
 
 #include "sand/dunes.hpp"
 #include "sand/tool.hpp"
+#include "sand/tuning.hpp"
 #include "tests/support/relaxing.hpp"
 #include "tests/support/sand_samples.hpp"
 
@@ -311,7 +312,8 @@ TEST(ToolShape, TurnedOnTheSpotItMakesRoomAndHeldStillItComesToRest) {
             Tool(terrain.toolShape(), terrain.heading()).obstacle(terrain.field(), terrain.probe());
         for (int row = under.cells.y0; row < under.cells.y1; ++row) {
             for (int column = under.cells.x0; column < under.cells.x1; ++column) {
-                ASSERT_LE(terrain.field().height(column, row), under.at(column, row)) << sand::toolName(kind);
+                ASSERT_LE(terrain.field().height(column, row), under.row(row)[column - under.cells.x0])
+                    << sand::toolName(kind);
             }
         }
         for (int i = 0; i < 3000 && !terrain.settled(); ++i) {
@@ -335,6 +337,31 @@ TEST(ToolShape, AnOperatorWhoChangesTheToolAloneLeavesAHandsHeading) {
     tuning.toolHeading = heading(70);
     terrain.apply({1, 3, false, {}, sand::Edit::tuned(tuning)});
     EXPECT_EQ(terrain.heading(), heading(70)) << "the operator turned it";
+}
+
+// With whichever instructions: cell by cell it is one root at a time.
+TEST(ToolShape, ARowOfUndersidesIsEachOfThem) {
+    std::mt19937 random(7);
+    const auto anyOf = [&random](std::int64_t least, std::int64_t most) {
+        return std::uniform_int_distribution<std::int64_t>(least, most)(random);
+    };
+    for (int i = 0; i < 3000; ++i) {
+        const auto radius =
+            static_cast<std::int32_t>(anyOf(1, i % 2 == 0 ? 20 * kProbePerCell : sand::kLargestToolRadius));
+        const ToolKind kind = kEvery[static_cast<std::size_t>(i) % kEvery.size()];
+        const ToolShape shape{kind, radius, sand::isRound(kind) ? 0 : radius / 2};
+        const auto z = static_cast<std::int32_t>(anyOf(-sand::kMaxProbe, sand::kMaxProbe) >> (i % 3 * 6));
+        const sand::Offset first{anyOf(-radius, radius), anyOf(-radius, radius)};
+        std::array<std::int32_t, 37> row{};
+        for (const bool v3 : {false, sand::machineHasV3()}) {
+            const sand::TurnedShape tool(shape, {}, v3);
+            tool.undersides(z, first, row);
+            for (std::int64_t x = 0; x < std::ssize(row); ++x) {
+                ASSERT_EQ(row[static_cast<std::size_t>(x)], tool.underside(z, {first.x + x * kProbePerCell, first.y}))
+                    << sand::toolName(kind) << " of radius " << radius << ", cell " << x;
+            }
+        }
+    }
 }
 
 }  // namespace
