@@ -14,6 +14,7 @@
 #include "sand/scene_raster.hpp"
 #include "sand/terrain.hpp"
 #include "sand/tin_raster.hpp"
+#include "tests/support/folder_test.hpp"
 
 namespace {
 
@@ -28,15 +29,8 @@ bool isGap(int column, int row) {
            column + row < 9;
 }
 
-class TinHoleScene : public testing::Test {
+class TinHoleScene : public test::FolderTest {
 protected:
-    void SetUp() override {
-        std::string name = (std::filesystem::temp_directory_path() / "sandwall-tin-XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder_ = name;
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
     /// Ground that rises to the north-east with a steep heap on it.
     [[nodiscard]] sand::Scene scene(const std::string& more, double heap = 12) const {
         std::ofstream grid(folder_ / "dem.asc");
@@ -55,8 +49,6 @@ protected:
                             << more << "[material]\ntalus_deg = 34\nsettling_time = 0.1\n[tool]\nradius = 2\n";
         return sand::loadScene(file);
     }
-
-    std::filesystem::path folder_;
 };
 
 std::vector<Step> strokes(std::uint32_t seed, int steps) {

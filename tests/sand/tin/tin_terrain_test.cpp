@@ -7,6 +7,7 @@
 
 #include "files/input_error.hpp"
 #include "sand/terrain.hpp"
+#include "tests/support/folder_test.hpp"
 
 namespace {
 
@@ -15,15 +16,8 @@ using sand::Step;
 using sand::Terrain;
 
 /// A scene file as a person writes it: dunes of 64 x 64 nominal cells, as a TIN.
-class TinTerrain : public testing::Test {
+class TinTerrain : public test::FolderTest {
 protected:
-    void SetUp() override {
-        std::string name = (std::filesystem::temp_directory_path() / "sandwall-tin-XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder_ = name;
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
     [[nodiscard]] sand::Scene scene(const std::string& tin = "max_error = 0.01\n", const std::string& more = "") const {
         const std::filesystem::path file = folder_ / "scene.toml";
         std::ofstream(file) << "[field]\ncolumns = 64\nwidth = 2.0\n[terrain]\nkind = \"dunes\"\nheight = 0.3\n"
@@ -32,8 +26,6 @@ protected:
                             << tin << "[material]\ntalus_deg = 34\nsettling_time = 0.1\n[tool]\nradius = 0.1\n";
         return sand::loadScene(file);
     }
-
-    std::filesystem::path folder_;
 };
 
 int verticesOf(const Terrain& terrain) {
