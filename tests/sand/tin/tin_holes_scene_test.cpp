@@ -14,6 +14,7 @@
 #include "sand/scene_raster.hpp"
 #include "sand/terrain.hpp"
 #include "sand/tin_raster.hpp"
+#include "tests/sand/tin/same_session.hpp"
 #include "tests/support/folder_test.hpp"
 
 namespace {
@@ -73,23 +74,7 @@ TEST_F(TinHoleScene, ASessionIsTheSameTwiceFromItsMiddleAndAfterItsSceneTravelle
     ASSERT_NE(start.tin->holes, nullptr);
     const sand::Scene travelled = sand::Scene::decode(start.encode());
     EXPECT_EQ(travelled.rules, start.rules);
-    Terrain whole(start), again(travelled), joined(start);
-    const std::int64_t volume = whole.volume();
-    for (const Step& step : strokes(5, 160)) {
-        whole.apply(step);
-        again.apply(step);
-        ASSERT_EQ(whole.stateHash(), again.stateHash()) << "step " << step.number;
-        ASSERT_EQ(whole.volume() + whole.outflow(), volume) << "step " << step.number;
-        if (step.number % 53 == 0) {
-            joined.decodeState(whole.encodeState());
-        } else if (step.number > 53) {
-            joined.apply(step);
-        }
-        if (step.number >= 53) {
-            ASSERT_EQ(joined.stateHash(), whole.stateHash()) << "step " << step.number;
-        }
-    }
-    EXPECT_EQ(joined.encodeState(), whole.encodeState());
+    tin_samples::expectSameSession(start, travelled, strokes(5, 160), 53);
 }
 
 TEST_F(TinHoleScene, HolesComeBackWithoutData) {

@@ -7,6 +7,7 @@
 
 #include "files/input_error.hpp"
 #include "sand/terrain.hpp"
+#include "tests/sand/tin/same_session.hpp"
 #include "tests/support/folder_test.hpp"
 
 namespace {
@@ -60,24 +61,7 @@ TEST_F(TinTerrain, ASessionIsTheSameTwiceAndFromItsMiddle) {
     const sand::Scene start = scene();
     ASSERT_NE(start.tin, nullptr);
     ASSERT_LT(start.tin->places.size(), 64U * 64U / 2);
-    Terrain whole(start), again(start), joined(start);
-    const std::vector<Step> steps = session(7, 120);
-    for (const Step& step : steps) {
-        whole.apply(step);
-        again.apply(step);
-        ASSERT_EQ(whole.stateHash(), again.stateHash()) << "step " << step.number;
-        ASSERT_EQ(whole.volume() + whole.outflow(), Terrain(start).volume()) << "step " << step.number;
-        if (step.number % 37 == 0) {
-            joined.decodeState(whole.encodeState());
-        } else if (step.number > 37) {
-            joined.apply(step);
-        }
-        if (step.number >= 37) {
-            ASSERT_EQ(joined.stateHash(), whole.stateHash()) << "step " << step.number;
-            ASSERT_EQ(joined.canUndo(), whole.canUndo());
-        }
-    }
-    EXPECT_EQ(joined.encodeState(), whole.encodeState());
+    tin_samples::expectSameSession(start, start, session(7, 120), 37);
 }
 
 TEST_F(TinTerrain, TravelsWholeWithItsScene) {
