@@ -101,7 +101,8 @@ TEST_F(TinHoleScene, HolesComeBackWithoutData) {
     }
 }
 
-// The heap comes down on both as far as the block of cells without data, and round it.
+// The heap comes down on both as far as the block of cells without data, and round it. Measured: 0.363 cells at most,
+// 0.027 RMS; a tenth more is let through.
 TEST_F(TinHoleScene, TheSamePileOnGridAndTinAgrees) {
     const sand::Scene asGrid = scene("settle = true\n"), asTin = scene("settle = true\n[tin]\nmax_error = 0\n");
     const Terrain tin(asTin);
@@ -120,8 +121,8 @@ TEST_F(TinHoleScene, TheSamePileOnGridAndTinAgrees) {
         }
     }
     fmt::print("grid and TIN: {:.3f} cells at most, {:.3f} RMS\n", worst, std::sqrt(sum / count));
-    EXPECT_LT(worst, 0.7);
-    EXPECT_LT(std::sqrt(sum / count), 0.12);
+    EXPECT_LT(worst, 0.4);
+    EXPECT_LT(std::sqrt(sum / count), 0.03);
 }
 
 TEST_F(TinHoleScene, AnOutlineOfMoreVerticesThanMayBeIsRefusedInOneLine) {
