@@ -149,6 +149,41 @@ TEST_F(TinTerrain, EveryStepIsAFunctionOfTheStateWhileAToolSettlesOnSlopes) {
     }
 }
 
+// A flat tool comes down as deep as one vertex of a slope at rest lies, and takes nothing. That vertex holds sand up
+// now and counts as high as the sand beside it: where that lies beyond an obtuse angle, it makes the slope steeper.
+TEST_F(TinTerrain, SandSlidesThatLeansOnAToolWhichHasMovedNone) {
+    constexpr int kPoints = 60, kRise = 9;  // in 16: slopes of 0.56 under a talus of 0.67
+    std::mt19937 random(3);
+    std::ofstream survey(folder_ / "survey.csv");
+    survey << "0 0 0\n16 0 9\n0 16 0\n16 16 9\n";
+    std::vector<sand::ProbePoint> places;
+    for (int i = 0; i < kPoints; ++i) {
+        const auto x = static_cast<int>(random() % 224 + 16), y = static_cast<int>(random() % 224 + 16);
+        survey << x / 16.0 << ' ' << y / 16.0 << ' ' << x * kRise / 256.0 << '\n';
+        places.push_back({16 * x, 16 * y, kRise * x});
+    }
+    survey.close();
+    std::ofstream(folder_ / "slope.toml") << "[terrain]\nkind = \"points\"\nfile = \"survey.csv\"\n[tin]\ncell = 1\n"
+                                             "max_error = 0\nvertices = "
+                                          << kPoints + 4  // and none for the tool's outline
+                                          << "\n[material]\ntalus_deg = 34\n[tool]\nshape = \"circle\"\nradius = 0.5\n";
+    const sand::Scene scene = sand::loadScene(folder_ / "slope.toml");
+    int slid = 0;
+    for (sand::ProbePoint at : places) {
+        at.z += scene.rules.toolRadius;
+        Terrain terrain(scene), fresh(scene);
+        terrain.apply({.epoch = 1, .number = 1, .engaged = false, .path = {}});
+        ASSERT_TRUE(terrain.settled());
+        fresh.decodeState(terrain.encodeState());
+        for (Terrain* one : {&terrain, &fresh}) {
+            one->apply({.epoch = 1, .number = 2, .engaged = true, .path = {at}});
+        }
+        ASSERT_EQ(fresh.stateHash(), terrain.stateHash()) << at.x << ", " << at.y;
+        slid += terrain.settled() ? 0 : 1;
+    }
+    EXPECT_GT(slid, 0) << "no angle was obtuse enough";
+}
+
 TEST_F(TinTerrain, ComesToRestAndThenCostsNoChange) {
     Terrain terrain(scene());
     std::uint64_t number = 0;
