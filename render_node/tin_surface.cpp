@@ -75,10 +75,7 @@ TinSurface::TinSurface(const SurfaceView& tin, double cellSize, double chunkSide
 
 void TinSurface::grow(const Triangles& mesh) {
     vertices_.resize(std::max(vertices_.size(), mesh.places.size()));
-    lit_.growTo(vertices_.size());
     triangles_.resize(std::max(triangles_.size(), mesh.triangles.size()));
-    reshaped_.growTo(triangles_.size());
-    shaded_.growTo(triangles_.size());
     inChunk_.resize(triangles_.size());
 }
 
@@ -104,7 +101,7 @@ TinSurface::Change TinSurface::update(const SurfaceView& tin, const sand::tin::S
     }
     std::vector<Vertex> others = moved(tin, damage.vertices);
     reshaped_.clear();
-    std::ranges::for_each(replaced, [this](std::int32_t slot) { reshaped_.add(slot); });
+    reshaped_.add(replaced);
     for (const Vertex number : others) {
         if (mesh.alive(number)) {
             visitStar(mesh, number, [this](const StarTriangle& one) { reshaped_.add(one.slot); });

@@ -11,10 +11,10 @@
 
 #include "render_node/box_bins.hpp"
 #include "render_node/frustum.hpp"
-#include "render_node/number_list.hpp"
 #include "render_node/sand_rim.hpp"
 #include "render_node/sand_surface.hpp"
 #include "render_node/tin_relief.hpp"
+#include "sand/tin/numbers.hpp"
 #include "sand/tin/surface_view.hpp"
 
 namespace render_node {
@@ -122,7 +122,7 @@ private:
     BoxBins damaged_;
     HeightRange ever_{};
     std::array<std::map<std::int32_t, Vertex>, 4> rim_;  // south, east, north, west, by place along the side
-    NumberList reshaped_, lit_, shaded_;                 // scratch: triangles, vertices, triangles
+    sand::tin::NumberList reshaped_, lit_, shaded_;      // scratch: triangles, vertices, triangles
 };
 
 }  // namespace render_node

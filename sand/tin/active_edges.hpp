@@ -8,8 +8,8 @@
 
 #include "sand/tin/layer.hpp"
 #include "sand/tin/moving_sand.hpp"
+#include "sand/tin/numbers.hpp"
 #include "sand/tin/weights.hpp"
-#include "sand/tin/window.hpp"
 
 namespace sand::tin {
 

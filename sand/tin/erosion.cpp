@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "sand/tin/window.hpp"
+
 namespace sand::tin {
 namespace {
 

@@ -6,26 +6,6 @@
 
 namespace sand::tin {
 
-void KeptLayer::Touched::add(const std::vector<std::int32_t>& numbers) {
-    for (const std::int32_t number : numbers) {
-        const auto at = static_cast<std::size_t>(number);
-        if (at >= is_.size()) {
-            is_.resize(at + at / 2 + 1, 0);
-        }
-        if (is_[at] == 0) {
-            is_[at] = 1;
-            all_.push_back(number);
-        }
-    }
-}
-
-void KeptLayer::Touched::clear() {
-    for (const std::int32_t number : all_) {
-        is_[static_cast<std::size_t>(number)] = 0;
-    }
-    all_.clear();
-}
-
 void KeptLayer::replaced(const Layer& layer) {
     copy_ = copy();
     parts_ = layer.parts();

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <vector>
 
 #include "sand/tin/layer_copy.hpp"
+#include "sand/tin/numbers.hpp"
 
 namespace sand::tin {
 
@@ -39,26 +39,13 @@ public:
     [[nodiscard]] std::shared_ptr<const LayerCopy> copy() const;
 
 private:
-    /// Numbers, each once.
-    class Touched {
-    public:
-        void add(const std::vector<std::int32_t>& numbers);
-        void clear();
-        void reserve(std::size_t count) { is_.resize(std::max(is_.size(), count), 0); }
-        [[nodiscard]] const std::vector<std::int32_t>& all() const { return all_; }
-
-    private:
-        std::vector<std::uint8_t> is_;   // by number
-        std::vector<std::int32_t> all_;  // in no order that means anything
-    };
-
     void followVertex(const Layer& layer, Vertex vertex);
     void followTriangle(const Layer& layer, std::int32_t slot);
 
     LayerParts parts_;  // but for the constraints
     std::map<std::int32_t, std::vector<std::pair<Vertex, Vertex>>>
-        constraints_;  // by the slot that owns them; few have any
-    Touched vertices_, slots_;
+        constraints_;              // by the slot that owns them; few have any
+    NumberList vertices_, slots_;  // touched
     LayerState state_;
     bool any_ = false;
     mutable std::shared_ptr<const LayerCopy> copy_;  // once somebody has asked, or what was given

@@ -18,13 +18,6 @@ bool overlap(const Box& a, const Box& b) { return a.x0 <= b.x1 && b.x0 <= a.x1 &
 
 }  // namespace
 
-void NumberSet::clear() {
-    if (++turn_ == 0) {
-        std::fill(turns_.begin(), turns_.end(), 0);
-        turn_ = 1;
-    }
-}
-
 void sortOnce(std::vector<std::int32_t>& numbers) {
     if (numbers.empty()) {
         return;

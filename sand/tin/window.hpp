@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sand/tin/numbers.hpp"
 #include "sand/tin/triangles.hpp"
 
 namespace sand::tin {
@@ -30,27 +31,6 @@ struct Box {
         return {x0 - margin, y0 - margin, x1 + margin, y1 + margin};
     }
     friend bool operator==(const Box&, const Box&) = default;
-};
-
-/// Numbers from 0 on. To clear it costs nothing; it takes four bytes for every number up to the largest.
-class NumberSet {
-public:
-    void clear();
-    void reserve(std::size_t count) { turns_.resize(std::max(turns_.size(), count), 0); }
-    /// Whether it is new.
-    bool insert(std::int32_t number) {
-        const auto at = static_cast<std::size_t>(number);
-        if (at >= turns_.size()) {
-            turns_.resize(at + at / 2 + 1, 0);
-        }
-        const bool isNew = turns_[at] != turn_;
-        turns_[at] = turn_;
-        return isNew;
-    }
-
-private:
-    std::vector<std::uint32_t> turns_;  // in which it was put in last
-    std::uint32_t turn_ = 1;
 };
 
 /// Sorts numbers from 0 on, each once. Those of one place in a mesh are often near each other: a bit for each is set

@@ -15,13 +15,8 @@ namespace {
 class Displays : public SessionTest {
 protected:
     void SetUp() override {
-        SessionTest::SetUp();
         server_ = std::make_unique<support::XServer>(folder_, std::vector<std::string>{"640x480x24"});
         environment_ = {"DISPLAY=" + server_->display()};
-    }
-    void TearDown() override {
-        server_.reset();
-        SessionTest::TearDown();
     }
     /// Two mono tiles side by side on the screen, each in its window.
     std::string placedWall() {

@@ -11,7 +11,6 @@ namespace {
 class Hosts : public SessionTest {
 protected:
     void SetUp() override {
-        SessionTest::SetUp();
         // Two hosts that are one machine need a place each for what Open MPI shares within a machine: its daemons make
         // the same folders and map the same files otherwise, and now and then one of them fails over that.
         const std::string agent = write("agent",
@@ -23,10 +22,7 @@ protected:
         std::filesystem::permissions(agent, std::filesystem::perms::owner_all);
         setenv("OMPI_MCA_plm_rsh_agent", agent.c_str(), 1);
     }
-    void TearDown() override {
-        unsetenv("OMPI_MCA_plm_rsh_agent");
-        SessionTest::TearDown();
-    }
+    void TearDown() override { unsetenv("OMPI_MCA_plm_rsh_agent"); }
 
     /// A session of 40 steps; the rest of the arguments says where.
     nlohmann::json show(std::vector<std::string> where) {

@@ -38,13 +38,8 @@ double statusOf(pid_t process, const std::string& key) {
 class Memory : public SessionTest, public testing::WithParamInterface<std::string> {
 protected:
     void SetUp() override {
-        SessionTest::SetUp();
         server_ = std::make_unique<support::XServer>(folder_, std::vector<std::string>{"2048x1536x24"});
         environment_ = {"DISPLAY=" + server_->display(), "MESA_SHADER_CACHE_DISABLE=true"};
-    }
-    void TearDown() override {
-        server_.reset();
-        SessionTest::TearDown();
     }
     /// A tile as large as one of the papers' wall, dug in until it is told to stop.
     std::unique_ptr<support::ChildProcess> dig(const std::string& stereo) {

@@ -104,6 +104,9 @@ TEST_F(Resuming, ASessionGoesOnWhereItStopped) {
     EXPECT_EQ(told["edits"], 2);
     EXPECT_EQ(told["divergences"], 3) << "what the tries before had healed counts too";
     EXPECT_EQ(told["healed"], 2);
+    EXPECT_EQ(told["haptic"]["reconnects"], 4);
+    EXPECT_EQ(told["haptic"]["refused"]["servers"]["secret"], 7);
+    EXPECT_EQ(told["journal"]["full_disk"]["times"], 1);
     EXPECT_EQ(nlohmann::json::parse(read("out/incidents.json")), incidents);
     EXPECT_EQ(told["recoveries"], recoveries());
     EXPECT_EQ(told["recoveries"].size(), 2U);

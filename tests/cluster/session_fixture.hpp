@@ -15,27 +15,15 @@
 #include <vector>
 
 #include "tests/support/child_process.hpp"
+#include "tests/support/folder_test.hpp"
 
 inline constexpr double kLong = 120;      // [s], for what takes a few on an idle machine
 inline constexpr int kLevels = 8;         // of a channel, within which pictures are alike
 inline constexpr double kMostBad = 0.01;  // share of the pixels beyond that
 
 /// Whole sessions through scripts/sandwall, at sizes that two cores draw in moments.
-class SessionTest : public testing::Test {
+class SessionTest : public test::FolderTest {
 protected:
-    void SetUp() override {
-        std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
-        std::replace(test.begin(), test.end(), '/', '-');
-        std::string name = (std::filesystem::temp_directory_path() / ("sandwall-" + test + "-XXXXXX")).string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr) << name;
-        folder_ = name;
-    }
-    void TearDown() override {
-        if (!HasFailure()) {
-            std::filesystem::remove_all(folder_);
-        }
-    }
-
     std::string write(const std::string& name, const std::string& text) {
         std::ofstream(folder_ / name) << text;
         return (folder_ / name).string();
@@ -100,6 +88,5 @@ protected:
     [[nodiscard]] std::string out() const { return (folder_ / "out").string(); }
     [[nodiscard]] nlohmann::json summary() const { return nlohmann::json::parse(read("out/summary.json")); }
 
-    std::filesystem::path folder_;
     std::vector<std::string> environment_;  // NAME=value, for the sessions
 };

@@ -6,7 +6,6 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <array>
 #include <atomic>
 #include <functional>
 #include <optional>
@@ -17,6 +16,7 @@
 
 #include "haptic_bridge/client.hpp"
 #include "haptic_bridge/message_reader.hpp"
+#include "tests/haptic_bridge/socket_messages.hpp"
 
 namespace test {
 
@@ -33,19 +33,7 @@ public:
         }
         void send(const haptic_bridge::Message& message) const { send(haptic_bridge::encode(message)); }
         /// The next message, or nothing when the client has gone.
-        std::optional<haptic_bridge::Message> next() {
-            while (true) {
-                if (auto message = reader.next()) {
-                    return message;
-                }
-                std::array<std::uint8_t, 4096> chunk{};
-                const ssize_t count = recv(socket, chunk.data(), chunk.size(), 0);
-                if (count <= 0) {
-                    return std::nullopt;
-                }
-                reader.feed(std::span(chunk).first(static_cast<std::size_t>(count)));
-            }
-        }
+        std::optional<haptic_bridge::Message> next() { return nextMessage(socket, reader); }
         /// Reads until a message of this kind comes; nothing when the client has gone.
         template <class Kind>
         std::optional<Kind> await() {

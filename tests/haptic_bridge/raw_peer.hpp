@@ -6,13 +6,13 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <array>
 #include <optional>
 #include <span>
 #include <string>
 
 #include "haptic_bridge/message_reader.hpp"
 #include "haptic_bridge/protocol.hpp"
+#include "tests/haptic_bridge/socket_messages.hpp"
 
 namespace test {
 
@@ -37,19 +37,7 @@ public:
     }
     void send(const haptic_bridge::Message& message) const { send(haptic_bridge::encode(message)); }
     /// The next message, or nothing when the server has closed.
-    std::optional<haptic_bridge::Message> receive() {
-        while (true) {
-            if (auto message = reader_.next()) {
-                return message;
-            }
-            std::array<std::uint8_t, 4096> chunk{};
-            const ssize_t count = recv(socket_, chunk.data(), chunk.size(), 0);
-            if (count <= 0) {
-                return std::nullopt;
-            }
-            reader_.feed(std::span(chunk).first(static_cast<std::size_t>(count)));
-        }
-    }
+    std::optional<haptic_bridge::Message> receive() { return nextMessage(socket_, reader_); }
     std::string refusal() {
         const auto message = receive();
         const auto* refusal = message ? std::get_if<haptic_bridge::Refusal>(&*message) : nullptr;

@@ -15,6 +15,7 @@
 
 #include "haptic_bridge/client.hpp"
 #include "sand/terrain.hpp"
+#include "tests/support/folder_test.hpp"
 
 namespace test {
 
@@ -36,10 +37,7 @@ bool eventually(const Done& done, std::chrono::milliseconds most = 20000ms) {
 /// A folder of its own that goes with the test.
 class Folder {
 public:
-    Folder() {
-        std::string name = (std::filesystem::temp_directory_path() / "sandwall-haptic-XXXXXX").string();
-        path_ = mkdtemp(name.data());
-    }
+    Folder() = default;
     ~Folder() {
         std::error_code ignored;
         std::filesystem::remove_all(path_, ignored);
@@ -58,7 +56,7 @@ public:
     }
 
 private:
-    std::filesystem::path path_;
+    std::filesystem::path path_ = newFolder();
 };
 
 inline constexpr const char* kSmallScene = R"(

@@ -17,6 +17,7 @@
 #include "files/input_error.hpp"
 #include "master/control_socket.hpp"
 #include "master/operator_command.hpp"
+#include "tests/support/folder_test.hpp"
 
 namespace {
 
@@ -92,15 +93,8 @@ TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
 }
 
 /// A session's folder, and what a client of its socket does.
-class Control : public testing::Test {
+class Control : public test::FolderTest {
 protected:
-    void SetUp() override {
-        std::string name = (std::filesystem::temp_directory_path() / "sandwall-control-XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder_ = name;
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
     [[nodiscard]] static int connectTo(const std::filesystem::path& path) {
         sockaddr_un address{};
         address.sun_family = AF_UNIX;
@@ -141,8 +135,6 @@ protected:
         control.answer(asked.client, answer);
         return hear(peer);
     }
-
-    std::filesystem::path folder_;
 };
 
 TEST_F(Control, HandsALineOverAndItsAnswerBack) {

@@ -7,27 +7,20 @@
 #include <nlohmann/json.hpp>
 
 #include "master/failure_report.hpp"
+#include "tests/support/folder_test.hpp"
 
 namespace {
 
 using lockstep::Fault;
 using master::Drill;
 
-class Drills : public testing::Test {
+class Drills : public test::FolderTest {
 protected:
-    void SetUp() override {
-        std::string name = (std::filesystem::temp_directory_path() / "sandwall-drills-XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder_ = name;
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
     [[nodiscard]] std::string read(const std::string& name) const {
         std::ifstream stream(folder_ / name);
         return {std::istreambuf_iterator<char>(stream), {}};
     }
 
-    std::filesystem::path folder_;
     const std::vector<Drill> drills_{{"die", {.kind = Fault::Kind::die, .rank = 2, .frame = 5}},
                                      {"slow", {.kind = Fault::Kind::slow, .rank = 1, .frame = 5}},
                                      {"garbage", {.kind = Fault::Kind::garbage, .frame = 7}}};

@@ -8,17 +8,15 @@
 #include <iterator>
 #include <string>
 
+#include "tests/support/folder_test.hpp"
+
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-class IncidentFileTest : public testing::Test {
+class IncidentFileTest : public test::FolderTest {
 protected:
-    void SetUp() override { std::filesystem::create_directories(folder); }
-    void TearDown() override { std::filesystem::remove_all(folder); }
-    [[nodiscard]] bool written() const { return std::filesystem::exists(folder / "incidents.json"); }
-
-    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "sandwall_incidents_test";
+    [[nodiscard]] bool written() const { return std::filesystem::exists(folder_ / "incidents.json"); }
 };
 
 TEST_F(IncidentFileTest, IsReadByTheTryThatGoesOnAndByNoSessionThatBeginsAnew) {
@@ -27,9 +25,9 @@ TEST_F(IncidentFileTest, IsReadByTheTryThatGoesOnAndByNoSessionThatBeginsAnew) {
     some.refusedHere[1] = 8;
     some.refused[0] = 7;
     some.refused.back() = 5;
-    master::IncidentFile(folder, false).keep(some, kSecond);
-    EXPECT_EQ(master::IncidentFile(folder, true).before(), some);
-    const master::IncidentFile anew(folder, false);
+    master::IncidentFile(folder_, false).keep(some, kSecond);
+    EXPECT_EQ(master::IncidentFile(folder_, true).before(), some);
+    const master::IncidentFile anew(folder_, false);
     EXPECT_EQ(anew.before(), master::Incidents{});
     EXPECT_TRUE(written()) << "it may be a running session's, which this one is refused beside";
     anew.forget();
@@ -37,34 +35,34 @@ TEST_F(IncidentFileTest, IsReadByTheTryThatGoesOnAndByNoSessionThatBeginsAnew) {
 }
 
 TEST_F(IncidentFileTest, IsWrittenWhenSomethingWasAddedAndNotForEveryFrame) {
-    master::IncidentFile file(folder, false);
+    master::IncidentFile file(folder_, false);
     file.keep({}, kSecond);
     EXPECT_FALSE(written()) << "nothing has happened";
     file.keep({.healed = 1}, kSecond);
     EXPECT_TRUE(written());
     file.keep({.healed = 2}, kSecond + kSecond / 8);
-    EXPECT_EQ(master::IncidentFile(folder, true).before().healed, 1U) << "too soon";
+    EXPECT_EQ(master::IncidentFile(folder_, true).before().healed, 1U) << "too soon";
     file.keep({.healed = 2}, kSecond + kSecond / 2);
-    EXPECT_EQ(master::IncidentFile(folder, true).before().healed, 2U);
+    EXPECT_EQ(master::IncidentFile(folder_, true).before().healed, 2U);
 }
 
 TEST_F(IncidentFileTest, IsWrittenWhenTheDiskLetsItAndAtTheEnd) {
-    master::IncidentFile file(folder, false);
-    std::filesystem::remove_all(folder);  // as good as a full disk
+    master::IncidentFile file(folder_, false);
+    std::filesystem::remove_all(folder_);  // as good as a full disk
     file.keep({.stands = 1}, kSecond);
-    std::filesystem::create_directories(folder);
+    std::filesystem::create_directories(folder_);
     file.keep({.stands = 1}, 2 * kSecond);
-    EXPECT_EQ(master::IncidentFile(folder, true).before().stands, 1U);
+    EXPECT_EQ(master::IncidentFile(folder_, true).before().stands, 1U);
     file.keep({.stands = 2}, 2 * kSecond + 1);
     file.keepLast({.stands = 2});
-    EXPECT_EQ(master::IncidentFile(folder, true).before().stands, 2U);
+    EXPECT_EQ(master::IncidentFile(folder_, true).before().stands, 2U);
 }
 
 TEST_F(IncidentFileTest, CountsFromHereOnWhenItIsDamaged) {
     for (const char* text : {"", "{\"healed\":", "{\"healed\":1}", "[]", "{\"divergences\":-\"x\"}"}) {
-        std::ofstream(folder / "incidents.json") << text;
+        std::ofstream(folder_ / "incidents.json") << text;
         testing::internal::CaptureStderr();
-        const master::IncidentFile file(folder, true);
+        const master::IncidentFile file(folder_, true);
         EXPECT_NE(testing::internal::GetCapturedStderr().find("incidents.json: "), std::string::npos) << text;
         EXPECT_EQ(file.before(), master::Incidents{}) << text;
     }

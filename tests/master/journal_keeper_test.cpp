@@ -17,22 +17,15 @@
 #include "files/input_error.hpp"
 #include "master/checkpoint.hpp"
 #include "master/journal.hpp"
+#include "tests/support/folder_test.hpp"
 #include "tests/support/sand_samples.hpp"
 #include "tests/support/small_disk.hpp"
 
 namespace {
 
 /// A session of one process, without a wall.
-class Keeper : public testing::Test {
+class Keeper : public test::FolderTest {
 protected:
-    void SetUp() override {
-        folder_ = std::filesystem::temp_directory_path() /
-                  ("sandwall_keeper_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-        std::filesystem::remove_all(folder_);
-        std::filesystem::create_directories(folder_);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
     void begin(const master::JournalOptions& options, const master::ResumedSession* resumed = nullptr) {
         keeper_.emplace(folder_, options, scene_, resumed, "a test", "test");
     }
@@ -57,7 +50,6 @@ protected:
         EXPECT_EQ(journal.tornBytes, 0);
     }
 
-    std::filesystem::path folder_;
     sand::Scene scene_ = samples::flatScene(40, 30);
     sand::Terrain terrain_{scene_};
     std::mt19937 random_{61};

@@ -14,19 +14,13 @@
 #include <random>
 
 #include "files/input_error.hpp"
+#include "tests/support/folder_test.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
 
-class JournalFile : public testing::Test {
+class JournalFile : public test::FolderTest {
 protected:
-    void SetUp() override {
-        file_ = std::filesystem::temp_directory_path() /
-                (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + ".journal");
-        std::filesystem::remove(file_);
-    }
-    void TearDown() override { std::filesystem::remove(file_); }
-
     /// Ten frames of a random hand, three steps each.
     std::vector<master::JournalFrame> writeSession(bool finished) {
         const sand::Scene scene = samples::flatScene(20, 10);
@@ -56,7 +50,7 @@ protected:
             EXPECT_EQ(got[i].steps, expected[i].steps);
         }
     }
-    std::filesystem::path file_;
+    const std::filesystem::path file_ = folder_ / "session.journal";
 };
 
 TEST_F(JournalFile, GivesBackWhatWasWritten) {

@@ -11,20 +11,14 @@
 #include "master/journal.hpp"
 #include "sand/esri_grid.hpp"
 #include "sand/terrain.hpp"
+#include "tests/support/folder_test.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
 
-class Replay : public testing::Test {
+class Replay : public test::FolderTest {
 protected:
-    void SetUp() override {
-        folder_ = std::filesystem::temp_directory_path() /
-                  ("sandwall_replay_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-        std::filesystem::create_directories(folder_);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
     /// Records 40 steps in frames of two; `hashError` spoils the hash of frame 10.
     sand::Terrain record(std::uint64_t hashError = 0) { return record(samples::flatScene(40, 30), hashError); }
     sand::Terrain record(const sand::Scene& scene, std::uint64_t hashError) {
@@ -43,7 +37,6 @@ protected:
         return terrain;
     }
     [[nodiscard]] std::string journal() const { return (folder_ / "s.journal").string(); }
-    std::filesystem::path folder_;
 };
 
 TEST_F(Replay, EndsInTheSessionsHash) {

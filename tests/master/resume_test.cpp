@@ -11,24 +11,20 @@
 #include "files/input_error.hpp"
 #include "master/checkpoint.hpp"
 #include "master/journal.hpp"
+#include "tests/support/folder_test.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
 
 /// A session of 40 steps, two a frame, with checkpoints after every tenth.
-class Resume : public testing::Test {
+class Resume : public test::FolderTest {
 protected:
     void SetUp() override {
-        folder_ = std::filesystem::temp_directory_path() /
-                  ("sandwall_resume_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-        std::filesystem::remove_all(folder_);
-        std::filesystem::create_directories(folder_);
         scene_.material.humidity = 0.25;
         master::JournalWriter writer(journal(), scene_, "test");
         record(writer, 20);
         hashes_.push_back(terrain_.stateHash());
     }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
 
     void record(master::JournalWriter& writer, int frames, std::uint32_t epoch = 1) {
         for (int i = 0; i < frames; ++i) {
@@ -75,7 +71,6 @@ protected:
         return "not refused";
     }
 
-    std::filesystem::path folder_;
     sand::Scene scene_ = samples::flatScene(40, 30);
     sand::Terrain terrain_{scene_};
     std::mt19937 random_{59};

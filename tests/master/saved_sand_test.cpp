@@ -2,13 +2,13 @@
 #include "master/saved_sand.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 
 #include "files/input_error.hpp"
 #include "sand/terrain.hpp"
+#include "tests/support/folder_test.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -16,16 +16,8 @@ namespace {
 using master::SandPlace;
 using master::SavedSand;
 
-class SavedSandFile : public testing::Test {
+class SavedSandFile : public test::FolderTest {
 protected:
-    void SetUp() override {
-        std::string name = (std::filesystem::temp_directory_path() / "sandwall-saves-XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder_ = name;
-        file_ = master::saveFile(folder_, "dug");
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
     [[nodiscard]] SavedSand sand() const {
         sand::Terrain terrain(scene_);
         terrain.apply({1, 1, true, {{8000, 8000, 0}}, sand::Edit::none});
@@ -46,7 +38,7 @@ protected:
         EXPECT_EQ(said.find(file_.string()), 0U) << said;
     }
     sand::Scene scene_ = samples::flatScene(64, 48);
-    std::filesystem::path folder_, file_;
+    const std::filesystem::path file_ = master::saveFile(folder_, "dug");
 };
 
 TEST_F(SavedSandFile, GivesBackWhatWasSavedAndLeavesNothingBeside) {

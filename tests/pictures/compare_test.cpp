@@ -10,6 +10,7 @@
 
 #include "files/input_error.hpp"
 #include "pictures/png_file.hpp"
+#include "tests/support/folder_test.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace pictures {
@@ -116,16 +117,10 @@ TEST(Silhouettes, ExcuseAWobblingEdgeButNoSpotInTheOpen) {
     EXPECT_EQ(countOutside(compare(reference, other, 8).bad, edges), 1);
 }
 
-class CompareProgram : public ::testing::Test {
+class CompareProgram : public test::FolderTest {
 protected:
-    void SetUp() override { std::filesystem::create_directories(folder); }
-    void TearDown() override { std::filesystem::remove_all(folder); }
-    [[nodiscard]] std::string path(const std::string& name) const { return (folder / name).string(); }
+    [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
     support::Ran run(const std::string& arguments) { return support::runProgram("sandwall-compare", arguments); }
-
-    const std::filesystem::path folder =
-        std::filesystem::path(testing::TempDir()) /
-        (std::string("sandwall_compare_") + testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 TEST_F(CompareProgram, ExitsWithZeroForAlikeAndOneForDifferent) {
@@ -151,7 +146,7 @@ TEST_F(CompareProgram, ExitsWithTwoAndOneLineForWhatItCannotUse) {
          {path("a.png") + " " + path("none.png"), path("a.png") + " " + path("small.png"), path("a.png"),
           std::string("--what"), path("a.png") + " " + path("a.png") + " --max-bad-share 2",
           path("a.png") + " " + path("a.png") + " --diff " + path("no/such/folder.png"),
-          path("a.png") + " " + folder.string()}) {
+          path("a.png") + " " + folder_.string()}) {
         const support::Ran ran = run(arguments);
         EXPECT_EQ(ran.status, 2) << arguments;
         EXPECT_EQ(ran.output.find("largest") == std::string::npos

@@ -12,30 +12,29 @@
 #include <string>
 
 #include "files/input_error.hpp"
+#include "tests/support/folder_test.hpp"
 
 namespace pictures {
 namespace {
 
 namespace fs = std::filesystem;
 
-class PngFile : public ::testing::Test {
+class PngFile : public test::FolderTest {
 protected:
-    void SetUp() override { fs::create_directories(folder); }
-    void TearDown() override { fs::remove_all(folder); }
     void store(const std::vector<char>& bytes) const {
-        std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+        std::ofstream(file_, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     }
     [[nodiscard]] std::vector<char> bytes() const {
-        std::ifstream stream(file, std::ios::binary);
+        std::ifstream stream(file_, std::ios::binary);
         return {std::istreambuf_iterator<char>(stream), {}};
     }
-    /// The complaint about `file`, which must name it and be one line.
+    /// The complaint about the file, which must name it and be one line.
     [[nodiscard]] std::string complaint() const {
         try {
-            (void)readPng(file);
+            (void)readPng(file_);
         } catch (const files::InputError& error) {
             const std::string line = error.what();
-            EXPECT_EQ(line.rfind(file.string() + ":", 0), 0U) << line;
+            EXPECT_EQ(line.rfind(file_.string() + ":", 0), 0U) << line;
             EXPECT_EQ(line.find('\n'), std::string::npos) << line;
             return line;
         }
@@ -43,10 +42,7 @@ protected:
         return {};
     }
 
-    const fs::path folder =
-        fs::path(testing::TempDir()) /
-        (std::string("sandwall_png_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-    const fs::path file = folder / "picture.png";
+    const fs::path file_ = folder_ / "picture.png";
 };
 
 Image noise(int width, int height, unsigned seed) {
@@ -81,8 +77,8 @@ TEST_F(PngFile, GivesBackEveryPixelItWasGiven) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     for (const auto& [width, height] : {std::pair{1, 1}, {1, 37}, {53, 1}, {64, 48}}) {
         const Image image = noise(width, height, seed);
-        writePng(file, image);
-        EXPECT_EQ(readPng(file), image) << width << "x" << height;
+        writePng(file_, image);
+        EXPECT_EQ(readPng(file_), image) << width << "x" << height;
     }
 }
 
@@ -93,8 +89,8 @@ TEST_F(PngFile, LaysTransparencyOverBlack) {
     png.height = 1;
     png.format = PNG_FORMAT_RGBA;
     const std::array<std::uint8_t, 8> pixels{200, 100, 50, 255, 200, 100, 50, 0};
-    ASSERT_NE(png_image_write_to_file(&png, file.c_str(), 0, pixels.data(), 0, nullptr), 0);
-    EXPECT_EQ(readPng(file).rgb, (std::vector<std::uint8_t>{200, 100, 50, 0, 0, 0}));
+    ASSERT_NE(png_image_write_to_file(&png, file_.c_str(), 0, pixels.data(), 0, nullptr), 0);
+    EXPECT_EQ(readPng(file_).rgb, (std::vector<std::uint8_t>{200, 100, 50, 0, 0, 0}));
 }
 
 TEST_F(PngFile, RefusesWhatIsNoPng) {
@@ -103,13 +99,13 @@ TEST_F(PngFile, RefusesWhatIsNoPng) {
     (void)complaint();
     store({'P', '6', ' ', '1', ' ', '1'});
     (void)complaint();
-    fs::remove(file);
-    fs::create_directory(file);
+    fs::remove(file_);
+    fs::create_directory(file_);
     EXPECT_NE(complaint().find("check the path"), std::string::npos);
 }
 
 TEST_F(PngFile, RefusesAPictureCutShortAnywhere) {
-    writePng(file, noise(20, 20, 1));
+    writePng(file_, noise(20, 20, 1));
     const std::vector<char> whole = bytes();
     // The last chunk holds no pixel; libpng does without it.
     for (std::size_t size = 0; size < whole.size() - 16; size += 13) {
@@ -119,7 +115,7 @@ TEST_F(PngFile, RefusesAPictureCutShortAnywhere) {
 }
 
 TEST_F(PngFile, RefusesSizesItsBytesCannotHold) {
-    writePng(file, noise(4, 4, 1));
+    writePng(file_, noise(4, 4, 1));
     std::vector<char> bomb = bytes();
     claimSize(bomb, 16000, 16000);
     store(bomb);
@@ -129,28 +125,28 @@ TEST_F(PngFile, RefusesSizesItsBytesCannotHold) {
     EXPECT_NE(complaint().find("900000x900000"), std::string::npos);
     claimSize(bomb, 4, 4);
     store(bomb);
-    EXPECT_EQ(readPng(file), noise(4, 4, 1)) << "the patched header itself must be sound";
+    EXPECT_EQ(readPng(file_), noise(4, 4, 1)) << "the patched header itself must be sound";
 }
 
 TEST_F(PngFile, SurvivesDamagedBytes) {
     const unsigned seed = std::random_device{}();
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
-    writePng(file, noise(16, 16, 1));
+    writePng(file_, noise(16, 16, 1));
     const std::vector<char> whole = bytes();
     for (int round = 0; round < 300; ++round) {
         std::vector<char> damaged = whole;
         damaged[random() % damaged.size()] ^= static_cast<char>(1 << random() % 8);
         store(damaged);
         try {
-            EXPECT_LE(readPng(file).pixels(), static_cast<std::size_t>(kMaxPixels));
+            EXPECT_LE(readPng(file_).pixels(), static_cast<std::size_t>(kMaxPixels));
         } catch (const files::InputError&) {
         }
     }
 }
 
 TEST_F(PngFile, NamesThePictureItCannotWrite) {
-    const fs::path nowhere = folder / "no" / "such.png";
+    const fs::path nowhere = folder_ / "no" / "such.png";
     try {
         writePng(nowhere, Image(2, 2));
         FAIL() << "was written";

@@ -121,6 +121,32 @@ TEST_F(TinRedraw, OverAnOpenRimWithWiresIsEqualToTheWhole) {
 
 TEST_F(TinRedraw, InFacetsIsEqualToTheWhole) { play(3, sand::Rim::closed, above_, {}, true); }
 
+// An island so far from other ground that nobody sees it rise: no normal and no light is another, and what is drawn
+// anew has still to be where the sand stands now.
+TEST_F(TinRedraw, OfAnIslandThatRisesAsAWholeIsEqualToTheWhole) {
+    const auto fromMiddle = [](double x, double y) {
+        return std::max(std::abs(x / 256 - kCells / 2), std::abs(y / 256 - kCells / 2));  // [cell]
+    };
+    const sand::Scene scene = sample::flatScene(kCells, kCells);
+    Tin tin(scene.terrain);
+    tin.cut([&](double x, double y) { return fromMiddle(x, y) > 6 && fromMiddle(x, y) < 24; });
+    (void)tin.takeDamage();
+    SandView view(scene, tin.view(), glm::dmat4(1));
+    const EyeTarget inParts(kWidth, kHeight), whole(kWidth, kHeight);
+    render_node::EyeMemory memory;
+    view.drawIfChanged(slanted_, inParts, memory);
+    for (std::size_t i = 0; i < tin.mesh().places.size(); ++i) {
+        const auto& place = tin.mesh().places[i];
+        if (fromMiddle(place.x, place.y) < 8) {
+            tin.setHeight(static_cast<Tin::Vertex>(i), 8 * kUnit);
+        }
+    }
+    view.update(tin.view(), tin.takeDamage());
+    const PixelRect drawn = view.drawIfChanged(slanted_, inParts, memory);
+    EXPECT_LT(drawn.area(), kWidth * kHeight / 2);
+    EXPECT_TRUE(inParts.read() == sample::draw(view, slanted_, whole));
+}
+
 /// Bytes that GL was sent, while it lives.
 class SentBytes {
 public:

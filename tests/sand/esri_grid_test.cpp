@@ -2,7 +2,6 @@
 #include "sand/esri_grid.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <iterator>
@@ -10,24 +9,14 @@
 
 #include "files/input_error.hpp"
 #include "files/whole_file.hpp"
+#include "tests/support/folder_test.hpp"
 
 namespace {
 
 using sand::EsriGrid;
 
-class EsriFile : public testing::Test {
+class EsriFile : public test::FolderTest {
 protected:
-    EsriFile()
-        : folder_(std::filesystem::temp_directory_path() /
-                  ("sandwall_esri_" + std::to_string(::getpid()) + "_" +
-                   testing::UnitTest::GetInstance()->current_test_info()->name())) {
-        std::filesystem::create_directories(folder_);
-    }
-    ~EsriFile() override {
-        std::error_code none;
-        std::filesystem::remove_all(folder_, none);
-    }
-
     [[nodiscard]] std::filesystem::path file() const { return folder_ / "t.asc"; }
     [[nodiscard]] EsriGrid read(const std::string& text) const {
         std::ofstream(file()) << text;
@@ -46,8 +35,6 @@ protected:
         std::ifstream stream(file());
         return {std::istreambuf_iterator<char>(stream), {}};
     }
-
-    std::filesystem::path folder_;
 };
 
 TEST_F(EsriFile, ComesBackCharacterForCharacter) {

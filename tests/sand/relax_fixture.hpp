@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -14,22 +12,12 @@
 #include <vector>
 
 #include "sand/esri_grid.hpp"
+#include "tests/support/folder_test.hpp"
 #include "tests/support/run_program.hpp"
 
 /// Runs sandwall-relax on files of its own folder.
-class Relax : public testing::Test {
+class Relax : public test::FolderTest {
 protected:
-    Relax()
-        : folder_(std::filesystem::temp_directory_path() /
-                  fmt::format("sandwall_relax_{}_{}", ::getpid(),
-                              testing::UnitTest::GetInstance()->current_test_info()->name())) {
-        std::filesystem::create_directories(folder_);
-    }
-    ~Relax() override {
-        std::error_code none;
-        std::filesystem::remove_all(folder_, none);
-    }
-
     [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
     void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
     [[nodiscard]] std::string read(const std::string& name) const {
@@ -65,6 +53,4 @@ protected:
         EXPECT_NE(ran.output.find(words), std::string::npos) << "not '" << words << "' in: " << ran.output;
         EXPECT_FALSE(std::filesystem::exists(path(out))) << arguments;
     }
-
-    std::filesystem::path folder_;
 };

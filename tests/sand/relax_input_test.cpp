@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include "sand/relax/height_scale.hpp"
 #include "tests/sand/relax_fixture.hpp"
 

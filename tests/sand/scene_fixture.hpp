@@ -9,17 +9,11 @@
 
 #include "files/input_error.hpp"
 #include "sand/scene.hpp"
+#include "tests/support/folder_test.hpp"
 
 /// Writes scene files into a folder of its own and tells what the loader says of them.
-class SceneFile : public testing::Test {
+class SceneFile : public test::FolderTest {
 protected:
-    void SetUp() override {
-        folder_ = std::filesystem::temp_directory_path() /
-                  ("sandwall_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-        std::filesystem::create_directories(folder_);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
     std::filesystem::path write(const std::string& name, const std::string& text) {
         std::ofstream(folder_ / name) << text;
         return folder_ / name;
@@ -34,7 +28,6 @@ protected:
         }
         return "accepted";
     }
-    std::filesystem::path folder_;
 };
 
 inline const std::string kFlat = "[field]\n[terrain]\n[material]\n";

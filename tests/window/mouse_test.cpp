@@ -9,6 +9,7 @@
 
 #include "haptic_bridge/devices/device_module.hpp"
 #include "pictures/png_file.hpp"
+#include "tests/support/folder_test.hpp"
 #include "tests/support/sand_samples.hpp"
 #include "tests/support/x_screen.hpp"
 #include "tests/support/x_server.hpp"
@@ -50,12 +51,9 @@ Picture painted(const sand::Terrain& terrain, const SketchedHand& hand) {
     return picture;
 }
 
-class Mouse : public testing::Test {
+class Mouse : public test::FolderTest {
 protected:
     void SetUp() override {
-        std::string name = (std::filesystem::temp_directory_path() / "sandwall-mouse-XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr) << name;
-        folder_ = name;
         server_ = std::make_unique<support::XServer>(folder_, std::vector<std::string>{"640x480x24"});
         setenv("DISPLAY", server_->display().c_str(), 1);
         mouse_ = std::make_unique<MouseDevice>([] { return openPictureWindow("sand", kSide, kSide); });
@@ -69,7 +67,6 @@ protected:
         mouse_.reset();
         server_.reset();
         unsetenv("DISPLAY");
-        std::filesystem::remove_all(folder_);
     }
     template <class Done>
     static bool eventually(const Done& done) {
@@ -85,7 +82,6 @@ protected:
 
     const sand::Scene scene_ = samples::flatScene(96, 96);
     const sand::Terrain terrain_ = furrowed(scene_);
-    std::filesystem::path folder_;
     std::unique_ptr<support::XServer> server_;
     std::unique_ptr<MouseDevice> mouse_;
     std::unique_ptr<support::XScreen> screen_;

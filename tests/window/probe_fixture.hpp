@@ -13,23 +13,12 @@
 
 #include "pictures/png_file.hpp"
 #include "tests/support/child_process.hpp"
+#include "tests/support/folder_test.hpp"
 
 /// window_probe in processes of its own, each with a folder for its pictures. Times are bounds, never measurements.
-class ProbeTest : public testing::Test {
+class ProbeTest : public test::FolderTest {
 protected:
     static constexpr double kLong = 120;  // [s], for what takes one or two on an idle machine
-
-    void SetUp() override {
-        std::string name = (std::filesystem::temp_directory_path() / "sandwall-window-XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr) << name;
-        folder_ = name;
-    }
-    void TearDown() override {
-        probe_.reset();
-        if (!HasFailure()) {
-            std::filesystem::remove_all(folder_);
-        }
-    }
 
     /// Starts it; `environment` holds words of env(1): NAME=value, or -u NAME.
     void start(const std::vector<std::string>& arguments, const std::vector<std::string>& environment = {}) {
@@ -82,6 +71,5 @@ protected:
         return found;
     }
 
-    std::filesystem::path folder_;
     std::unique_ptr<support::ChildProcess> probe_;
 };

@@ -17,14 +17,12 @@ constexpr int kDown = 600;
 class Window : public ProbeTest {
 protected:
     void SetUp() override {
-        ProbeTest::SetUp();
         server_ = std::make_unique<support::XServer>(
             folder_,
             std::vector<std::string>{std::to_string(kAcross) + "x" + std::to_string(kDown) + "x24", "640x480x24"});
     }
     void TearDown() override {
-        ProbeTest::TearDown();
-        server_.reset();
+        probe_.reset();  // before the server of its screens
     }
     /// Windows of 320 x 240 pixels at these places.
     std::string show(const std::vector<std::string>& places, const std::vector<std::string>& more = {}) {

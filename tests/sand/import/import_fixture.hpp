@@ -5,7 +5,6 @@
 #include <cpl_error.h>
 #include <gdal.h>
 #include <ogr_srs_api.h>
-#include <unistd.h>
 
 #include <array>
 #include <optional>
@@ -34,13 +33,7 @@ struct Raster {
 /// Writes rasters through GDAL, and scenes and programs that read them.
 class Import : public SceneFile {
 protected:
-    void SetUp() override {
-        folder_ =
-            std::filesystem::temp_directory_path() / ("sandwall_import_" + std::to_string(::getpid()) + "_" +
-                                                      testing::UnitTest::GetInstance()->current_test_info()->name());
-        std::filesystem::create_directories(folder_);
-        GDALAllRegister();
-    }
+    void SetUp() override { GDALAllRegister(); }
 
     [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
 

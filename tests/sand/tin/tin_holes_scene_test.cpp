@@ -14,6 +14,8 @@
 #include "sand/scene_raster.hpp"
 #include "sand/terrain.hpp"
 #include "sand/tin_raster.hpp"
+#include "tests/sand/tin/same_session.hpp"
+#include "tests/support/folder_test.hpp"
 
 namespace {
 
@@ -28,15 +30,8 @@ bool isGap(int column, int row) {
            column + row < 9;
 }
 
-class TinHoleScene : public testing::Test {
+class TinHoleScene : public test::FolderTest {
 protected:
-    void SetUp() override {
-        std::string name = (std::filesystem::temp_directory_path() / "sandwall-tin-XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder_ = name;
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
     /// Ground that rises to the north-east with a steep heap on it.
     [[nodiscard]] sand::Scene scene(const std::string& more, double heap = 12) const {
         std::ofstream grid(folder_ / "dem.asc");
@@ -55,8 +50,6 @@ protected:
                             << more << "[material]\ntalus_deg = 34\nsettling_time = 0.1\n[tool]\nradius = 2\n";
         return sand::loadScene(file);
     }
-
-    std::filesystem::path folder_;
 };
 
 std::vector<Step> strokes(std::uint32_t seed, int steps) {
@@ -81,23 +74,7 @@ TEST_F(TinHoleScene, ASessionIsTheSameTwiceFromItsMiddleAndAfterItsSceneTravelle
     ASSERT_NE(start.tin->holes, nullptr);
     const sand::Scene travelled = sand::Scene::decode(start.encode());
     EXPECT_EQ(travelled.rules, start.rules);
-    Terrain whole(start), again(travelled), joined(start);
-    const std::int64_t volume = whole.volume();
-    for (const Step& step : strokes(5, 160)) {
-        whole.apply(step);
-        again.apply(step);
-        ASSERT_EQ(whole.stateHash(), again.stateHash()) << "step " << step.number;
-        ASSERT_EQ(whole.volume() + whole.outflow(), volume) << "step " << step.number;
-        if (step.number % 53 == 0) {
-            joined.decodeState(whole.encodeState());
-        } else if (step.number > 53) {
-            joined.apply(step);
-        }
-        if (step.number >= 53) {
-            ASSERT_EQ(joined.stateHash(), whole.stateHash()) << "step " << step.number;
-        }
-    }
-    EXPECT_EQ(joined.encodeState(), whole.encodeState());
+    tin_samples::expectSameSession(start, travelled, strokes(5, 160), 53);
 }
 
 TEST_F(TinHoleScene, HolesComeBackWithoutData) {
@@ -124,7 +101,8 @@ TEST_F(TinHoleScene, HolesComeBackWithoutData) {
     }
 }
 
-// The heap comes down on both as far as the block of cells without data, and round it.
+// The heap comes down on both as far as the block of cells without data, and round it. Measured: 0.363 cells at most,
+// 0.027 RMS; a tenth more is let through.
 TEST_F(TinHoleScene, TheSamePileOnGridAndTinAgrees) {
     const sand::Scene asGrid = scene("settle = true\n"), asTin = scene("settle = true\n[tin]\nmax_error = 0\n");
     const Terrain tin(asTin);
@@ -143,8 +121,8 @@ TEST_F(TinHoleScene, TheSamePileOnGridAndTinAgrees) {
         }
     }
     fmt::print("grid and TIN: {:.3f} cells at most, {:.3f} RMS\n", worst, std::sqrt(sum / count));
-    EXPECT_LT(worst, 0.7);
-    EXPECT_LT(std::sqrt(sum / count), 0.12);
+    EXPECT_LT(worst, 0.4);
+    EXPECT_LT(std::sqrt(sum / count), 0.03);
 }
 
 TEST_F(TinHoleScene, AnOutlineOfMoreVerticesThanMayBeIsRefusedInOneLine) {
