@@ -51,6 +51,22 @@ void sortOnce(std::vector<std::int32_t>& numbers) {
     numbers.resize(count);
 }
 
+// Where a tool comes down nothing is in any cache, and each triangle tells where the next are.
+void Window::fetchAhead(const Triangles& mesh, std::size_t next) const {
+    constexpr std::size_t kFar = 16, kNear = 8;  // triangles, until they are looked at
+    if (next + kFar < found_.size()) {
+        __builtin_prefetch(&mesh.triangles[static_cast<std::size_t>(found_[next + kFar])]);
+    }
+    if (next + kNear < found_.size()) {
+        const Triangle& soon = mesh.triangles[static_cast<std::size_t>(found_[next + kNear])];
+        for (std::size_t k = 0; k < 3; ++k) {
+            __builtin_prefetch(&mesh.places[static_cast<std::size_t>(soon.corner[k])]);
+            seen_.fetch(soon.neighbour[k]);
+            __builtin_prefetch(&mesh.triangleAt[static_cast<std::size_t>(soon.corner[k])]);
+        }
+    }
+}
+
 // A box is convex: the triangles that reach into it hang together by their edges, and so does the search, which goes on
 // through every triangle whose own box overlaps it.
 void Window::look(const Triangles& mesh, const Box& wanted) {
@@ -61,7 +77,6 @@ void Window::look(const Triangles& mesh, const Box& wanted) {
         return;
     }
     seen_.clear();
-    seenVertices_.clear();
     const Place middle{box.x0 + (box.x1 - box.x0) / 2, box.y0 + (box.y1 - box.y0) / 2};
     const auto slots = static_cast<std::int32_t>(mesh.triangles.size());
     const bool known = last_ >= 0 && last_ < slots && mesh.triangles[static_cast<std::size_t>(last_)].alive();
@@ -69,6 +84,7 @@ void Window::look(const Triangles& mesh, const Box& wanted) {
     found_.assign(1, last_);
     seen_.insert(last_);
     for (std::size_t next = 0; next < found_.size(); ++next) {
+        fetchAhead(mesh, next);
         const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(found_[next])];
         const auto at = [&](std::size_t k) { return mesh.places[static_cast<std::size_t>(triangle.corner[k])]; };
         const std::array places{at(0), at(1), at(2)};
@@ -77,7 +93,8 @@ void Window::look(const Triangles& mesh, const Box& wanted) {
         }
         triangles_.push_back(found_[next]);
         for (std::size_t k = 0; k < 3; ++k) {
-            if (box.holds(places[k]) && seenVertices_.insert(triangle.corner[k])) {
+            // One of its triangles is the vertex' own, and is found: it reaches into the box, as the vertex does.
+            if (box.holds(places[k]) && mesh.triangleAt[static_cast<std::size_t>(triangle.corner[k])] == found_[next]) {
                 vertices_.push_back(triangle.corner[k]);
             }
             if (triangle.neighbour[k] != kNobody && seen_.insert(triangle.neighbour[k])) {

@@ -47,6 +47,12 @@ public:
         turns_[at] = turn_;
         return isNew;
     }
+    /// Somebody will ask for it soon; any number will do.
+    void fetch(std::int32_t number) const {
+        if (const auto at = static_cast<std::size_t>(number); at < turns_.size()) {
+            __builtin_prefetch(&turns_[at]);
+        }
+    }
 
 private:
     std::vector<std::uint32_t> turns_;  // in which it was put in last
@@ -61,10 +67,7 @@ void sortOnce(std::vector<std::int32_t>& numbers);
 /// first time, the whole mesh.
 class Window {
 public:
-    void reserve(std::size_t vertices) {
-        seen_.reserve(2 * vertices);
-        seenVertices_.reserve(vertices);
-    }
+    void reserve(std::size_t vertices) { seen_.reserve(2 * vertices); }
     /// Looks again. `box` is clipped to the field; an empty one shows nothing.
     void look(const Triangles& mesh, const Box& box);
 
@@ -75,11 +78,13 @@ public:
     [[nodiscard]] const std::vector<std::int32_t>& triangles() const { return triangles_; }
 
 private:
+    void fetchAhead(const Triangles& mesh, std::size_t next) const;
+
     Box box_;
     std::vector<Vertex> vertices_;
     std::vector<std::int32_t> triangles_, found_;
     std::int32_t last_ = kNobody;  // where to begin: only for speed
-    NumberSet seen_, seenVertices_;
+    NumberSet seen_;               // slots
 };
 
 /// The vertices around one that lies inside the field, counter-clockwise from the smallest number, and whether any of
