@@ -98,15 +98,39 @@ void MovingSand::addEdge(const Edge& edge) {
 }
 
 void MovingSand::findHeld() {
-    heldFacets_.clear();
-    for (std::size_t i = 0; i < facetCount(); ++i) {
-        note(heldFacets_, i, isHeld(first_[i]) || isHeld(second_[i]) || isHeld(third_[i]));
-    }
-    heldEdges_.clear();
-    for (std::size_t i = 0; i < edgeCount(); ++i) {
-        note(heldEdges_, i, isHeld(from_[i]) || isHeld(to_[i]));
-    }
+    std::vector<std::uint8_t> held(vertexCount());
+    std::transform(undersides_.begin(), undersides_.end(), held.begin(),
+                   [](double underside) { return underside < kFree ? 1 : 0; });
+    const auto find = [](std::vector<std::uint8_t>& together, std::size_t count, const auto& isHeld) {
+        together.assign(count / SweepFluxes::kTogether + 1, 0);
+        for (std::size_t i = 0; i < count; ++i) {
+            together[i / SweepFluxes::kTogether] |= isHeld(i);
+        }
+    };
+    find(heldFacets_, facetCount(), [&](std::size_t i) -> std::uint8_t {
+        return held[index(first_[i])] | held[index(second_[i])] | held[index(third_[i])];
+    });
+    find(heldEdges_, edgeCount(),
+         [&](std::size_t i) -> std::uint8_t { return held[index(from_[i])] | held[index(to_[i])]; });
     heldKnown_ = true;
+}
+
+std::int64_t MovingSand::restingCount() const {
+    return std::count_if(levels_.begin(), levels_.end(), [](const Level& level) { return !(level.flow > 0); });
+}
+
+std::vector<std::uint8_t> MovingSand::edgesThatMayFlow() const {
+    std::vector<std::uint8_t> flows(vertexCount()), besides(facetCount()), edges(edgeCount());
+    for (std::size_t i = 0; i < flows.size(); ++i) {
+        flows[i] = flowed(i) ? 1 : 0;
+    }
+    for (std::size_t i = 0; i < besides.size(); ++i) {
+        besides[i] = flows[index(first_[i])] | flows[index(second_[i])] | flows[index(third_[i])];
+    }
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        edges[i] = besides[index(left_[i])] | besides[index(right_[i])];
+    }
+    return edges;
 }
 
 Facet MovingSand::facet(std::int32_t number) const {
@@ -135,10 +159,19 @@ void MovingSand::place(std::size_t vertex, std::int64_t volume, std::int64_t sta
 }
 
 void MovingSand::findUnwatched(std::vector<std::int32_t>& found) const {
-    const std::uint64_t* unwatched = unwatched_.data();
-    for (std::size_t i = 0, count = vertexCount(); i < count; ++i) {
-        if (unwatched[i] != 0 && flowed(i)) {
-            found.push_back(static_cast<std::int32_t>(i));
+    // Most often it is one or two of a thousand.
+    constexpr std::size_t kAtOnce = 8;
+    const auto isFound = [this](std::size_t i) { return static_cast<std::uint64_t>(flowed(i)) & unwatched_[i]; };
+    for (std::size_t first = 0, count = vertexCount(); first < count; first += kAtOnce) {
+        const std::size_t end = std::min(first + kAtOnce, count);
+        std::uint64_t any = 0;
+        for (std::size_t i = first; i < end; ++i) {
+            any |= isFound(i);
+        }
+        for (std::size_t i = first; any != 0 && i < end; ++i) {
+            if (isFound(i) != 0) {
+                found.push_back(static_cast<std::int32_t>(i));
+            }
         }
     }
 }

@@ -48,6 +48,9 @@ public:
     SweepResult sweep(bool held, bool band);
     /// Whether sand flowed at one of a vertex's edges in the last sweep.
     [[nodiscard]] bool flowed(std::size_t vertex) const { return levels_[vertex].flow > 0; }
+    [[nodiscard]] std::int64_t restingCount() const;
+    /// A byte for each edge: whether sand flowed beside one of its facets, so that it may flow there in the next sweep.
+    [[nodiscard]] std::vector<std::uint8_t> edgesThatMayFlow() const;
     /// Adds the vertices whose edges are not all here though sand flowed at one.
     void findUnwatched(std::vector<std::int32_t>& found) const;
 
