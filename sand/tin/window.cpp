@@ -3,6 +3,7 @@
 
 #include <array>
 #include <bit>
+#include <iterator>
 
 namespace sand::tin {
 namespace {
@@ -103,6 +104,18 @@ void Window::look(const Triangles& mesh, const Box& wanted) {
         }
     }
     sortOnce(vertices_);
+}
+
+void Window::follow(const Triangles& mesh, const std::vector<Vertex>& changed) {
+    triangles_.clear();
+    stay_.clear();
+    std::set_difference(vertices_.begin(), vertices_.end(), changed.begin(), changed.end(), std::back_inserter(stay_));
+    come_.clear();
+    std::copy_if(changed.begin(), changed.end(), std::back_inserter(come_), [&](Vertex vertex) {
+        return mesh.alive(vertex) && box_.holds(mesh.places[static_cast<std::size_t>(vertex)]);
+    });
+    vertices_.clear();
+    std::merge(stay_.begin(), stay_.end(), come_.begin(), come_.end(), std::back_inserter(vertices_));
 }
 
 void findLink(const Triangles& mesh, Vertex vertex, Link& link) {
