@@ -197,10 +197,23 @@ void ActiveEdges::wake(const Layer& layer, const Slopes& slopes, Weights& weight
             }
             examined = turn_;
             if (maySlide(layer, slopes, slot)) {
-                watchTriangle(layer, slopes, weights, slot);
+                (isHeld(mesh.triangles[index(slot)]) ? steepHeld_ : steep_).push_back(slot);
             }
         });
     }
+    // Side by side, so that few of the others are swept as if they were held.
+    for (auto* slots : {&steepHeld_, &steep_}) {
+        for (const std::int32_t slot : *slots) {
+            watchTriangle(layer, slopes, weights, slot);
+        }
+        slots->clear();
+    }
+}
+
+bool ActiveEdges::isHeld(const Triangle& triangle) {
+    return held_ != nullptr && std::any_of(triangle.corner.begin(), triangle.corner.end(), [this](Vertex corner) {
+               return noteOf(corner).underside < MovingSand::kFree;
+           });
 }
 
 // Where no volume changes no height does, and a flux is what it was; but with a band, sand that flows through moves

@@ -60,6 +60,7 @@ private:
     };
 
     void fetch(const Triangles& mesh, const Weights& weights, Vertex vertex) const;
+    [[nodiscard]] bool isHeld(const Triangle& triangle);  // its corners' undersides are known
     [[nodiscard]] bool maySlide(const Layer& layer, const Slopes& slopes, std::int32_t slot);
     void watchTriangle(const Layer& layer, const Slopes& slopes, Weights& weights, std::int32_t slot);
     void makeRoom(std::size_t vertices, std::size_t slots);
@@ -95,10 +96,10 @@ private:
     std::vector<VertexNote> ofVertices_;
     std::vector<SlotNote> ofSlots_;
     std::vector<Held> heldBack_;
-    std::vector<std::int32_t> met_;  // scratch
-    std::uint32_t turn_ = 0;         // of begin() and of wake()
-    std::int64_t inVain_ = 0;        // vertices at rest, sweep by sweep, beside those that always are
-    std::int64_t restAround_ = 0;    // of those: how many were left when edges were forgotten, since begin()
+    std::vector<std::int32_t> met_, steepHeld_, steep_;  // scratch
+    std::uint32_t turn_ = 0;                             // of begin() and of wake()
+    std::int64_t inVain_ = 0;      // vertices at rest, sweep by sweep, beside those that always are
+    std::int64_t restAround_ = 0;  // of those: how many were left when edges were forgotten, since begin()
     bool band_ = false;
     const Underside* held_ = nullptr;
 };
