@@ -9,17 +9,17 @@ namespace {
 
 constexpr double kSurelyRests = 0.999;      // of a steepness of 1: kRest is above it, and roundings are far smaller
 constexpr std::size_t kSweepsToForget = 5;  // of all sand: what it costs to forget some of it
-constexpr std::size_t kOfVerticesRest = 6;  // around what flows a ring lies still: so much of a lump of 1000 vertices
-constexpr int kAllSides = 3;                // the bit, of a slot, that says that all its sides are watched
+constexpr std::size_t kOfVerticesRest = 6;  // around what flows a ring lies still: at least so much of a lump
+constexpr std::uint8_t kAllSides = 7;       // the bits of all
+constexpr std::size_t kAhead = 8;           // vertices, from what is fetched to what is woken
 constexpr std::int32_t kNoUnderside = std::numeric_limits<std::int32_t>::max();
 
 std::size_t index(std::int32_t number) { return static_cast<std::size_t>(number); }
 
-/// The side with its corner counted from the triangle's smallest vertex on: a slot may turn its corners unnoticed.
-Side counted(const Triangles& mesh, Side side) {
-    const auto& [a, b, c] = mesh.triangles[index(side.triangle)].corner;
-    const int least = a < b ? (a < c ? 0 : 2) : (b < c ? 1 : 2);
-    return {side.triangle, (side.corner - least + 3) % 3};
+/// A bit for a side, its corner counted from the triangle's smallest vertex on: a slot may turn its corners unnoticed.
+std::uint8_t bitOf(const Triangles& mesh, Side side) {
+    const int least = leastOf(mesh.triangles[index(side.triangle)].corner);
+    return static_cast<std::uint8_t>(1 << (side.corner - least + 3) % 3);
 }
 
 }  // namespace
@@ -31,7 +31,7 @@ std::vector<Vertex> ActiveEdges::takeReleased(const Underside* held) {
             return false;
         }
         released.push_back(one.vertex);
-        isHeldBack_[index(one.vertex)] = 0;
+        noteOf(one.vertex).isHeldBack = false;
         return true;
     });
     return released;
@@ -41,34 +41,38 @@ double ActiveEdges::undersideAt(Vertex vertex, const Place& place) {
     if (held_ == nullptr) {
         return MovingSand::kFree;
     }
-    double& known = undersides_[index(vertex)];
-    if (knownUndersides_.insert(vertex)) {
+    VertexNote& note = noteOf(vertex);
+    if (note.undersideKnown != turn_) {
+        note.undersideKnown = turn_;
         const std::int32_t underside = (*held_)(place);
-        known = underside == kNoUnderside ? MovingSand::kFree : underside;
-        if (underside != kNoUnderside && isHeldBack_[index(vertex)] == 0) {
-            isHeldBack_[index(vertex)] = 1;
+        note.underside = underside == kNoUnderside ? MovingSand::kFree : underside;
+        if (underside != kNoUnderside && !note.isHeldBack) {
+            note.isHeldBack = true;
             heldBack_.push_back({vertex, place, underside});
         }
     }
-    return known;
+    return note.underside;
 }
 
 void ActiveEdges::makeRoom(std::size_t vertices, std::size_t slots) {
-    local_.resize(std::max(local_.size(), vertices), kNobody);
-    isHeldBack_.resize(local_.size(), 0);
-    undersides_.resize(local_.size(), 0);
-    knownUndersides_.reserve(local_.size());
-    wokenOnce_.reserve(local_.size());
-    facet_.resize(std::max(facet_.size(), slots), kNobody);
-    watchedSides_.resize(facet_.size(), 0);
-    examined_.reserve(facet_.size());
+    ofVertices_.resize(std::max(ofVertices_.size(), vertices));
+    ofSlots_.resize(std::max(ofSlots_.size(), slots));
 }
 
 void ActiveEdges::begin(const Layer& layer, bool band, const Underside* held) {
     band_ = band;
     held_ = held;
+    restAround_ = 0;
     makeRoom(layer.triangles().places.size(), layer.triangles().triangles.size());
-    knownUndersides_.clear();
+    if (++turn_ == 0) {  // after 2^32 of them
+        for (VertexNote& note : ofVertices_) {
+            note.woken = note.undersideKnown = 0;
+        }
+        for (SlotNote& note : ofSlots_) {
+            note.examined = 0;
+        }
+        turn_ = 1;
+    }
     sand_.restart();
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
         const auto vertex = index(vertices_[i]);
@@ -78,17 +82,18 @@ void ActiveEdges::begin(const Layer& layer, bool band, const Underside* held) {
 }
 
 std::int32_t ActiveEdges::localOf(const Layer& layer, Vertex vertex) {
-    const auto at = index(vertex);
-    if (local_[at] == kNobody) {
-        local_[at] =
+    std::int32_t& local = noteOf(vertex).local;
+    if (local == kNobody) {
+        const auto at = index(vertex);
+        local =
             sand_.addVertex(layer.volumes()[at], layer.stars()[at], undersideAt(vertex, layer.triangles().places[at]));
         vertices_.push_back(vertex);
     }
-    return local_[at];
+    return local;
 }
 
 std::int32_t ActiveEdges::facetAt(const Layer& layer, const Slopes& slopes, std::int32_t slot) {
-    std::int32_t& number = facet_[index(slot)];
+    std::int32_t& number = noteOfSlot(slot).facet;
     if (number == kNobody) {
         Facet facet = facetOf(layer.triangles(), slot, slopes);
         for (Vertex& corner : facet.corner) {
@@ -119,24 +124,27 @@ void ActiveEdges::watch(const Layer& layer, const Slopes& slopes, Weights& weigh
 
 void ActiveEdges::watchTriangle(const Layer& layer, const Slopes& slopes, Weights& weights, std::int32_t slot) {
     const Triangles& mesh = layer.triangles();
-    if ((watchedSides_[index(slot)] >> kAllSides & 1) != 0) {
-        return;
-    }
-    watchedSides_[index(slot)] = static_cast<std::uint8_t>(watchedSides_[index(slot)] | 1 << kAllSides);
-    for (int corner = 0; corner < 3; ++corner) {
-        const Side side = owner(mesh, {slot, corner});
-        const Side named = counted(mesh, side);
-        std::uint8_t& watched = watchedSides_[index(side.triangle)];
-        if ((watched >> named.corner & 1) == 0) {
-            watched = static_cast<std::uint8_t>(watched | 1 << named.corner);
-            Edge edge = weights.edge(mesh, layer.stars(), side);
-            edge.from = localOf(layer, edge.from);
-            edge.to = localOf(layer, edge.to);
-            edge.leftFacet = facetAt(layer, slopes, edge.leftFacet);
-            edge.rightFacet = facetAt(layer, slopes, edge.rightFacet);
-            sand_.addEdge(edge);
-            sides_.push_back(named);
+    std::uint8_t& watched = noteOfSlot(slot).watched;
+    for (int corner = 0; corner < 3 && watched != kAllSides; ++corner) {
+        const Side side{slot, corner};
+        const std::uint8_t bit = bitOf(mesh, side);
+        if ((watched & bit) != 0) {
+            continue;
         }
+        const Side other = across(mesh, side);
+        watched = static_cast<std::uint8_t>(watched | bit);
+        bits_.push_back({bit, bit});
+        if (other.triangle != kNobody) {
+            bits_.back().right = bitOf(mesh, other);
+            std::uint8_t& beyond = noteOfSlot(other.triangle).watched;
+            beyond = static_cast<std::uint8_t>(beyond | bits_.back().right);
+        }
+        Edge edge = weights.edge(mesh, layer.stars(), side, other);
+        edge.from = localOf(layer, edge.from);
+        edge.to = localOf(layer, edge.to);
+        edge.leftFacet = facetAt(layer, slopes, edge.leftFacet);
+        edge.rightFacet = facetAt(layer, slopes, edge.rightFacet);
+        sand_.addEdge(edge);
     }
 }
 
@@ -160,19 +168,52 @@ bool ActiveEdges::maySlide(const Layer& layer, const Slopes& slopes, std::int32_
     return !(gx * gx + gy * gy < kSurelyRests * steepest * steepest);
 }
 
-void ActiveEdges::wake(const Layer& layer, const Slopes& slopes, Weights& weights, std::span<const Vertex> vertices) {
-    examined_.clear();
-    wokenOnce_.clear();
-    for (const Vertex vertex : vertices) {
-        if (layer.triangles().alive(vertex) && wokenOnce_.insert(vertex)) {
-            aroundVertex(layer.triangles(), vertex, [&](std::int32_t slot, int) {
-                if (!layer.triangles().triangles[index(slot)].hole && examined_.insert(slot) &&
-                    maySlide(layer, slopes, slot)) {
-                    watchTriangle(layer, slopes, weights, slot);
-                }
-            });
-        }
+/// Both of a vertex' triangles, nearly: there are two for each, and their numbers are often near each other.
+void ActiveEdges::fetch(const Triangles& mesh, const Weights& weights, Vertex vertex) const {
+    __builtin_prefetch(&ofVertices_[index(vertex)]);
+    if (mesh.alive(vertex)) {
+        const std::int32_t slot = mesh.triangleAt[index(vertex)];
+        __builtin_prefetch(&ofSlots_[index(slot)]);
+        __builtin_prefetch(&mesh.triangles[index(slot)]);
+        weights.fetch(vertex, slot);
     }
+}
+
+void ActiveEdges::wake(const Layer& layer, const Slopes& slopes, Weights& weights, std::span<const Vertex> vertices) {
+    const Triangles& mesh = layer.triangles();
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const Vertex vertex = vertices[i];
+        if (i + kAhead < vertices.size()) {
+            fetch(mesh, weights, vertices[i + kAhead]);
+        }
+        if (!mesh.alive(vertex) || noteOf(vertex).woken == turn_) {
+            continue;
+        }
+        noteOf(vertex).woken = turn_;
+        aroundVertex(mesh, vertex, [&](std::int32_t slot, int) {
+            std::uint32_t& examined = noteOfSlot(slot).examined;
+            if (examined == turn_ || mesh.triangles[index(slot)].hole) {
+                return;
+            }
+            examined = turn_;
+            if (maySlide(layer, slopes, slot)) {
+                (isHeld(mesh.triangles[index(slot)]) ? steepHeld_ : steep_).push_back(slot);
+            }
+        });
+    }
+    // Side by side, so that few of the others are swept as if they were held.
+    for (auto* slots : {&steepHeld_, &steep_}) {
+        for (const std::int32_t slot : *slots) {
+            watchTriangle(layer, slopes, weights, slot);
+        }
+        slots->clear();
+    }
+}
+
+bool ActiveEdges::isHeld(const Triangle& triangle) {
+    return held_ != nullptr && std::any_of(triangle.corner.begin(), triangle.corner.end(), [this](Vertex corner) {
+               return noteOf(corner).underside < MovingSand::kFree;
+           });
 }
 
 // Where no volume changes no height does, and a flux is what it was; but with a band, sand that flows through moves
@@ -182,12 +223,15 @@ bool ActiveEdges::sweep(const Layer& layer, const Slopes& slopes, Weights& weigh
     if (result.spread || (band_ && result.moved && result.met)) {
         met_.clear();
         sand_.findUnwatched(met_);
-        for (const std::int32_t local : met_) {
-            watch(layer, slopes, weights, vertices_[index(local)]);
+        for (std::size_t i = 0; i < met_.size(); ++i) {
+            if (i + kAhead < met_.size()) {
+                fetch(layer.triangles(), weights, vertices_[index(met_[i + kAhead])]);
+            }
+            watch(layer, slopes, weights, vertices_[index(met_[i])]);
         }
     }
-    inVain_ = std::max<std::int64_t>(
-        inVain_ + result.resting - static_cast<std::int64_t>(sand_.vertexCount() / kOfVerticesRest), 0);
+    const std::int64_t around = std::max(restAround_, static_cast<std::int64_t>(sand_.vertexCount() / kOfVerticesRest));
+    inVain_ = std::max<std::int64_t>(inVain_ + result.resting - around, 0);
     return result.moved;
 }
 
@@ -209,69 +253,62 @@ void ActiveEdges::keepEdges(const std::vector<std::uint8_t>& kept) {
     if (std::find(kept.begin(), kept.end(), 0) == kept.end()) {
         return;
     }
-    const auto forget = [this](std::int32_t slot, int bit) {
-        std::uint8_t& watched = watchedSides_[index(slot)];
-        watched = static_cast<std::uint8_t>(watched & ~(1 << bit));
+    const auto forget = [this](std::int32_t facet, std::uint8_t bit) {
+        std::uint8_t& watched = noteOfSlot(slots_[index(facet)]).watched;
+        watched = static_cast<std::uint8_t>(watched & ~bit);
     };
     std::size_t edges = 0;
-    for (std::size_t i = 0; i < sides_.size(); ++i) {
+    for (std::size_t i = 0; i < bits_.size(); ++i) {
         if (kept[i] != 0) {
-            sides_[edges++] = sides_[i];
+            bits_[edges++] = bits_[i];
             continue;
         }
         const Edge edge = sand_.edge(i);
-        forget(sides_[i].triangle, sides_[i].corner);
-        forget(slots_[index(edge.leftFacet)], kAllSides);
-        forget(slots_[index(edge.rightFacet)], kAllSides);
+        forget(edge.leftFacet, bits_[i].left);
+        forget(edge.rightFacet, bits_[i].right);
     }
-    sides_.resize(edges);
+    bits_.resize(edges);
     const MovingSand::Renumbering now = sand_.keepEdges(kept);
-    const auto renumber = [](std::vector<std::int32_t>& names, const std::vector<std::int32_t>& by,
-                             std::vector<std::int32_t>& local, std::size_t count) {
+    const auto renumber = [](std::vector<std::int32_t>& names, const std::vector<std::int32_t>& by, const auto& local,
+                             std::size_t count) {
         for (std::size_t i = 0; i < names.size(); ++i) {
-            local[index(names[i])] = by[i];
+            local(names[i]) = by[i];
             if (by[i] != kNobody) {
                 names[index(by[i])] = names[i];
             }
         }
         names.resize(count);
     };
-    renumber(vertices_, now.vertices, local_, sand_.vertexCount());
-    renumber(slots_, now.facets, facet_, sand_.facetCount());
+    const auto localOf = [this](Vertex vertex) -> std::int32_t& { return noteOf(vertex).local; };
+    const auto facetOf = [this](std::int32_t slot) -> std::int32_t& { return noteOfSlot(slot).facet; };
+    renumber(vertices_, now.vertices, localOf, sand_.vertexCount());
+    renumber(slots_, now.facets, facetOf, sand_.facetCount());
 }
 
 void ActiveEdges::forgetResting() {
     inVain_ = 0;
-    std::vector<std::uint8_t> facetFlows(sand_.facetCount()), kept(sand_.edgeCount());
-    for (std::size_t i = 0; i < facetFlows.size(); ++i) {
-        const auto [a, b, c] = sand_.facet(static_cast<std::int32_t>(i)).corner;
-        facetFlows[i] = sand_.flowed(index(a)) || sand_.flowed(index(b)) || sand_.flowed(index(c)) ? 1 : 0;
-    }
-    for (std::size_t i = 0; i < kept.size(); ++i) {
-        const Edge edge = sand_.edge(i);
-        kept[i] = facetFlows[index(edge.leftFacet)] | facetFlows[index(edge.rightFacet)];
-    }
     for (std::size_t i = 0; i < sand_.vertexCount(); ++i) {
         sand_.setWatched(i, sand_.flowed(i));
     }
-    keepEdges(kept);
+    keepEdges(sand_.edgesThatMayFlow());
+    restAround_ = sand_.restingCount();
 }
 
 std::vector<Vertex> ActiveEdges::meshChanged(const Mesh::Change& change) {
     std::erase_if(heldBack_, [&](const Held& one) {
         const bool gone = std::binary_search(change.vertices.begin(), change.vertices.end(), one.vertex);
-        isHeldBack_[index(one.vertex)] = gone ? 0 : 1;
+        noteOf(one.vertex).isHeldBack = !gone;
         return gone;
     });
     std::vector<std::uint8_t> staleVertices(sand_.vertexCount()), staleFacets(sand_.facetCount());
     for (const Vertex vertex : change.vertices) {
-        if (index(vertex) < local_.size() && local_[index(vertex)] != kNobody) {
-            staleVertices[index(local_[index(vertex)])] = 1;
+        if (index(vertex) < ofVertices_.size() && noteOf(vertex).local != kNobody) {
+            staleVertices[index(noteOf(vertex).local)] = 1;
         }
     }
     for (const std::int32_t slot : change.triangles) {
-        if (index(slot) < facet_.size() && facet_[index(slot)] != kNobody) {
-            staleFacets[index(facet_[index(slot)])] = 1;
+        if (index(slot) < ofSlots_.size() && noteOfSlot(slot).facet != kNobody) {
+            staleFacets[index(noteOfSlot(slot).facet)] = 1;
         }
     }
     std::vector<Vertex> ends;

@@ -59,6 +59,8 @@ private:
         std::int32_t underside;
     };
 
+    void fetch(const Triangles& mesh, const Weights& weights, Vertex vertex) const;
+    [[nodiscard]] bool isHeld(const Triangle& triangle);  // its corners' undersides are known
     [[nodiscard]] bool maySlide(const Layer& layer, const Slopes& slopes, std::int32_t slot);
     void watchTriangle(const Layer& layer, const Slopes& slopes, Weights& weights, std::int32_t slot);
     void makeRoom(std::size_t vertices, std::size_t slots);
@@ -67,21 +69,37 @@ private:
     [[nodiscard]] double undersideAt(Vertex vertex, const Place& place);
     void keepEdges(const std::vector<std::uint8_t>& kept);
 
-    MovingSand sand_;                         // by local numbers
-    std::vector<Vertex> vertices_;            // of a local vertex
-    std::vector<std::int32_t> slots_;         // of a local facet
-    std::vector<Side> sides_;                 // of a local edge; corners are counted from the smallest vertex on
-    std::vector<std::int32_t> local_;         // by vertex; kNobody: none
-    std::vector<std::int32_t> facet_;         // by slot; kNobody: none
-    std::vector<std::uint8_t> watchedSides_;  // by slot: a bit per corner, counted as above, and one for all three
+    /// Of a vertex, and of a slot: all that is asked for at once, for where sand begins to move it is in no cache.
+    struct VertexNote {
+        std::int32_t local = kNobody;
+        std::uint32_t woken = 0;           // the turn in which wake() saw it last
+        std::uint32_t undersideKnown = 0;  // the turn of begin()
+        bool isHeldBack = false;
+        double underside = 0;  // then
+    };
+    struct SlotNote {
+        std::int32_t facet = kNobody;
+        std::uint32_t examined = 0;  // the turn in which wake() saw it last
+        std::uint8_t watched = 0;    // a bit per side whose edge is watched
+    };
+    /// Of an edge, among `watched` of its two slots.
+    struct Bits {
+        std::uint8_t left, right;
+    };
+    [[nodiscard]] VertexNote& noteOf(Vertex vertex) { return ofVertices_[static_cast<std::size_t>(vertex)]; }
+    [[nodiscard]] SlotNote& noteOfSlot(std::int32_t slot) { return ofSlots_[static_cast<std::size_t>(slot)]; }
+
+    MovingSand sand_;                  // by local numbers
+    std::vector<Vertex> vertices_;     // of a local vertex
+    std::vector<std::int32_t> slots_;  // of a local facet
+    std::vector<Bits> bits_;           // of a local edge
+    std::vector<VertexNote> ofVertices_;
+    std::vector<SlotNote> ofSlots_;
     std::vector<Held> heldBack_;
-    std::vector<std::uint8_t> isHeldBack_;  // by vertex
-    NumberSet examined_;                    // slots, of one wake()
-    NumberSet wokenOnce_;                   // vertices, likewise
-    NumberSet knownUndersides_;             // vertices, since begin()
-    std::vector<double> undersides_;        // by vertex, of those
-    std::vector<std::int32_t> met_;         // scratch
-    std::int64_t inVain_ = 0;               // vertices at rest, sweep by sweep, beside those that always are
+    std::vector<std::int32_t> met_, steepHeld_, steep_;  // scratch
+    std::uint32_t turn_ = 0;                             // of begin() and of wake()
+    std::int64_t inVain_ = 0;      // vertices at rest, sweep by sweep, beside those that always are
+    std::int64_t restAround_ = 0;  // of those: how many were left when edges were forgotten, since begin()
     bool band_ = false;
     const Underside* held_ = nullptr;
 };

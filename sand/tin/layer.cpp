@@ -108,7 +108,8 @@ void Layer::release(Vertex a, Vertex b) {
     remap();
 }
 
-void Layer::edit(const std::function<void(Mesh&)>& edits) {
+std::vector<Vertex> Layer::edit(const std::function<void(Mesh&)>& edits) {
+    const auto before = static_cast<std::ptrdiff_t>(remapped_.size());
     try {
         edits(mesh_);
     } catch (...) {
@@ -116,6 +117,9 @@ void Layer::edit(const std::function<void(Mesh&)>& edits) {
         throw;
     }
     remap();
+    std::vector<Vertex> changed(remapped_.begin() + before, remapped_.end());
+    sortOnce(changed);
+    return changed;
 }
 
 void Layer::remap() {

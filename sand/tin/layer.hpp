@@ -65,8 +65,9 @@ public:
     std::vector<Vertex> constrain(Vertex from, Vertex to);
     void release(Vertex a, Vertex b);
     /// Several of these as one change: one remap over all that they touch when `edits` returns or throws. They leave
-    /// takeChange() and takeDifference() alone.
-    void edit(const std::function<void(Mesh&)>& edits);
+    /// takeChange() and takeDifference() alone. Returns the vertices on ground that came, went, or have another star,
+    /// ascending.
+    std::vector<Vertex> edit(const std::function<void(Mesh&)>& edits);
 
     /// The most that a vertex was moved by a remap since this was called last, a new one from where the surface was,
     /// and the bound stated for it [unit]: three times the area of the piece that changed, over the sum of its

@@ -24,6 +24,11 @@ void keepMarked(const std::vector<std::int32_t>& kept, std::vector<Values>&... a
     (keep(arrays), ...);
 }
 
+void note(std::vector<std::uint8_t>& together, std::size_t number, bool held) {
+    together.resize(number / SweepFluxes::kTogether + 1, 0);
+    together.back() = together.back() != 0 || held ? 1 : 0;
+}
+
 /// Numbers what is marked, and returns where it was.
 std::vector<std::int32_t> numberMarked(std::vector<std::int32_t>& marks) {
     std::vector<std::int32_t> kept(marks.size());
@@ -60,9 +65,8 @@ std::int32_t MovingSand::addVertex(std::int64_t volume, std::int64_t star, doubl
     volumes_.push_back(static_cast<double>(volume));
     wide_.push_back(volume);
     stars_.push_back(static_cast<double>(star));
-    heights_.push_back(static_cast<double>(volume) / static_cast<double>(star));
+    levels_.push_back({static_cast<double>(volume) / static_cast<double>(star), 0});
     undersides_.push_back(underside);
-    flows_.push_back(0);
     unwatched_.push_back(~std::uint64_t{0});
     return number;
 }
@@ -77,6 +81,8 @@ std::int32_t MovingSand::addFacet(const Facet& facet) {
     squaredAcross_.push_back(facet.second);
     start_.push_back(facet.start);
     sliding_.push_back(0);
+    note(heldFacets_, index(number),
+         std::any_of(facet.corner.begin(), facet.corner.end(), [this](std::int32_t corner) { return isHeld(corner); }));
     return number;
 }
 
@@ -88,6 +94,43 @@ void MovingSand::addEdge(const Edge& edge) {
     leftWeights_.push_back(edge.left);
     rightWeights_.push_back(edge.right);
     fluxes_.push_back(0);
+    note(heldEdges_, edgeCount() - 1, isHeld(edge.from) || isHeld(edge.to));
+}
+
+void MovingSand::findHeld() {
+    std::vector<std::uint8_t> held(vertexCount());
+    std::transform(undersides_.begin(), undersides_.end(), held.begin(),
+                   [](double underside) { return underside < kFree ? 1 : 0; });
+    const auto find = [](std::vector<std::uint8_t>& together, std::size_t count, const auto& isHeld) {
+        together.assign(count / SweepFluxes::kTogether + 1, 0);
+        for (std::size_t i = 0; i < count; ++i) {
+            together[i / SweepFluxes::kTogether] |= isHeld(i);
+        }
+    };
+    find(heldFacets_, facetCount(), [&](std::size_t i) -> std::uint8_t {
+        return held[index(first_[i])] | held[index(second_[i])] | held[index(third_[i])];
+    });
+    find(heldEdges_, edgeCount(),
+         [&](std::size_t i) -> std::uint8_t { return held[index(from_[i])] | held[index(to_[i])]; });
+    heldKnown_ = true;
+}
+
+std::int64_t MovingSand::restingCount() const {
+    return std::count_if(levels_.begin(), levels_.end(), [](const Level& level) { return !(level.flow > 0); });
+}
+
+std::vector<std::uint8_t> MovingSand::edgesThatMayFlow() const {
+    std::vector<std::uint8_t> flows(vertexCount()), besides(facetCount()), edges(edgeCount());
+    for (std::size_t i = 0; i < flows.size(); ++i) {
+        flows[i] = flowed(i) ? 1 : 0;
+    }
+    for (std::size_t i = 0; i < besides.size(); ++i) {
+        besides[i] = flows[index(first_[i])] | flows[index(second_[i])] | flows[index(third_[i])];
+    }
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        edges[i] = besides[index(left_[i])] | besides[index(right_[i])];
+    }
+    return edges;
 }
 
 Facet MovingSand::facet(std::int32_t number) const {
@@ -103,34 +146,47 @@ Edge MovingSand::edge(std::size_t number) const {
 void MovingSand::restart() {
     largestStar_ = greatestHeight_ = 0;
     isWide_ = alwaysWide_;
-    std::fill(flows_.begin(), flows_.end(), 0.0);
+    heldKnown_ = false;
 }
 
 void MovingSand::place(std::size_t vertex, std::int64_t volume, std::int64_t star, double underside) {
     volumes_[vertex] = static_cast<double>(volume);
     stars_[vertex] = static_cast<double>(star);
-    heights_[vertex] = volumes_[vertex] / stars_[vertex];
+    levels_[vertex] = {volumes_[vertex] / stars_[vertex], 0};
     undersides_[vertex] = underside;
     notice(volume, star);
     wide_[vertex] = volume;
 }
 
 void MovingSand::findUnwatched(std::vector<std::int32_t>& found) const {
-    const double* flows = flows_.data();
-    const std::uint64_t* unwatched = unwatched_.data();
-    for (std::size_t i = 0, count = vertexCount(); i < count; ++i) {
-        if (unwatched[i] != 0 && flows[i] > 0) {
-            found.push_back(static_cast<std::int32_t>(i));
+    // Most often it is one or two of a thousand.
+    constexpr std::size_t kAtOnce = 8;
+    const auto isFound = [this](std::size_t i) { return static_cast<std::uint64_t>(flowed(i)) & unwatched_[i]; };
+    for (std::size_t first = 0, count = vertexCount(); first < count; first += kAtOnce) {
+        const std::size_t end = std::min(first + kAtOnce, count);
+        std::uint64_t any = 0;
+        for (std::size_t i = first; i < end; ++i) {
+            any |= isFound(i);
+        }
+        for (std::size_t i = first; any != 0 && i < end; ++i) {
+            if (isFound(i) != 0) {
+                found.push_back(static_cast<std::int32_t>(i));
+            }
         }
     }
 }
 
 SweepResult MovingSand::sweep(bool held, bool band) {
     inflow_.resize(2 * vertexCount());
+    if (held && !heldKnown_) {
+        findHeld();
+    }
     const SweepFluxes sweep{.facets = facetCount(),
                             .edges = edgeCount(),
-                            .heights = heights_.data(),
-                            .undersides = held ? undersides_.data() : nullptr,
+                            .levels = levels_.data(),
+                            .undersides = undersides_.data(),
+                            .heldFacets = held ? heldFacets_.data() : nullptr,
+                            .heldEdges = held ? heldEdges_.data() : nullptr,
                             .first = first_.data(),
                             .second = second_.data(),
                             .third = third_.data(),
@@ -138,7 +194,6 @@ SweepResult MovingSand::sweep(bool held, bool band) {
                             .mixed = mixed_.data(),
                             .squaredAcross = squaredAcross_.data(),
                             .start = band ? start_.data() : nullptr,
-                            .flows = flows_.data(),
                             .sliding = sliding_.data(),
                             .from = from_.data(),
                             .to = to_.data(),
@@ -159,21 +214,22 @@ SweepResult MovingSand::sweep(bool held, bool band) {
                          .stars = stars_.data(),
                          .unwatched = unwatched_.data(),
                          .inflow = inflow_.data(),
-                         .flows = flows_.data(),
                          .volumes = volumes_.data(),
-                         .heights = heights_.data()};
+                         .levels = levels_.data()};
     return v3_ ? v3::moveSand(sand) : baseline::moveSand(sand);
 }
 
 SweepResult MovingSand::moveWide() {
     wideInflow_.assign(vertexCount(), 0);
-    std::fill(flows_.begin(), flows_.end(), 0.0);
+    for (Level& level : levels_) {
+        level.flow = 0;
+    }
     for (std::size_t i = 0; i < edgeCount(); ++i) {
         const auto flux = static_cast<std::int64_t>(fluxes_[i]);
         wideInflow_[index(from_[i])] -= flux;
         wideInflow_[index(to_[i])] += flux;
-        flows_[index(from_[i])] += std::abs(fluxes_[i]);
-        flows_[index(to_[i])] += std::abs(fluxes_[i]);
+        levels_[index(from_[i])].flow += std::abs(fluxes_[i]);
+        levels_[index(to_[i])].flow += std::abs(fluxes_[i]);
     }
     SweepResult result;
     for (std::size_t i = 0; i < vertexCount(); ++i) {
@@ -182,7 +238,7 @@ SweepResult MovingSand::moveWide() {
         result.met = result.met || (flowed(i) && !isWatched(i));
         result.resting += flowed(i) ? 0 : 1;
         wide_[i] += wideInflow_[i];
-        heights_[i] = static_cast<double>(wide_[i]) / stars_[i];
+        levels_[i].height = static_cast<double>(wide_[i]) / stars_[i];
     }
     return result;
 }
@@ -207,7 +263,7 @@ MovingSand::Renumbering MovingSand::keepEdges(const std::vector<std::uint8_t>& k
     fluxes_.resize(edgeCount());
     keepMarked(numberMarked(now.facets), first_, second_, third_, squared_, mixed_, squaredAcross_, start_);
     sliding_.resize(first_.size());
-    keepMarked(numberMarked(now.vertices), volumes_, stars_, heights_, undersides_, flows_, unwatched_, wide_);
+    keepMarked(numberMarked(now.vertices), volumes_, stars_, levels_, undersides_, unwatched_, wide_);
     const auto renumber = [](std::vector<std::int32_t>& names, const std::vector<std::int32_t>& by) {
         std::transform(names.begin(), names.end(), names.begin(), [&by](std::int32_t name) { return by[index(name)]; });
     };
@@ -216,6 +272,7 @@ MovingSand::Renumbering MovingSand::keepEdges(const std::vector<std::uint8_t>& k
     }
     renumber(left_, now.facets);
     renumber(right_, now.facets);
+    heldKnown_ = false;
     return now;
 }
 

@@ -47,7 +47,10 @@ public:
     /// One sweep; `held`: undersides hold; `band`: facets at rest start to slide later than sliding ones stop.
     SweepResult sweep(bool held, bool band);
     /// Whether sand flowed at one of a vertex's edges in the last sweep.
-    [[nodiscard]] bool flowed(std::size_t vertex) const { return flows_[vertex] > 0; }
+    [[nodiscard]] bool flowed(std::size_t vertex) const { return levels_[vertex].flow > 0; }
+    [[nodiscard]] std::int64_t restingCount() const;
+    /// A byte for each edge: whether sand flowed beside one of its facets, so that it may flow there in the next sweep.
+    [[nodiscard]] std::vector<std::uint8_t> edgesThatMayFlow() const;
     /// Adds the vertices whose edges are not all here though sand flowed at one.
     void findUnwatched(std::vector<std::int32_t>& found) const;
 
@@ -61,19 +64,26 @@ public:
 private:
     void notice(std::int64_t volume, std::int64_t star);
     void widen();
+    [[nodiscard]] bool isHeld(std::int32_t vertex) const {
+        return undersides_[static_cast<std::size_t>(vertex)] < kFree;
+    }
+    void findHeld();
     SweepResult moveWide();
 
     bool v3_, alwaysWide_;
     bool isWide_ = alwaysWide_;
     double largestStar_ = 0, greatestHeight_ = 0;
-    std::vector<double> volumes_, stars_, heights_, undersides_, flows_;  // by vertex
-    std::vector<double> inflow_;                                          // two by vertex: scratch of a sweep
+    std::vector<double> volumes_, stars_, undersides_;  // by vertex
+    std::vector<Level> levels_;                         // by vertex
+    std::vector<double> inflow_;                        // two by vertex: scratch of a sweep
     std::vector<std::uint64_t> unwatched_;
     std::vector<std::int64_t> wide_, wideInflow_;
     std::vector<std::int32_t> first_, second_, third_;  // by facet
     std::vector<double> squared_, mixed_, squaredAcross_, start_, sliding_;
     std::vector<std::int32_t> from_, to_, left_, right_;  // by edge
     std::vector<double> leftWeights_, rightWeights_, fluxes_;
+    std::vector<std::uint8_t> heldFacets_, heldEdges_;  // SweepFluxes'
+    bool heldKnown_ = true;                             // those are up to date
 };
 
 }  // namespace sand::tin

@@ -28,6 +28,12 @@ public:
         turns_[at] = turn_;
         return isNew;
     }
+    /// Somebody will ask for it soon; any number will do.
+    void fetch(std::int32_t number) const {
+        if (const auto at = static_cast<std::size_t>(number); at < turns_.size()) {
+            __builtin_prefetch(&turns_[at]);
+        }
+    }
 
 private:
     std::vector<std::uint32_t> turns_;  // in which it was put in last

@@ -5,43 +5,103 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
 namespace sand::tin::SANDWALL_CODE_PATH {
 namespace {
 
+using Four [[gnu::vector_size(4 * sizeof(double))]] = double;
+using Two [[gnu::vector_size(2 * sizeof(double)), gnu::aligned(sizeof(double)), gnu::may_alias]] = double;
+
+/// What four facets, or one, have at one of their corners: read in pairs, which compilers do not find.
+template <class Number>
+struct Corner {
+    Number height, flow;
+};
+template <class Number>
+Corner<Number> cornerOf(const Level* levels, const std::int32_t* corner);
+template <>
+Corner<double> cornerOf<double>(const Level* levels, const std::int32_t* corner) {
+    return {levels[*corner].height, levels[*corner].flow};
+}
+template <>
+Corner<Four> cornerOf<Four>(const Level* levels, const std::int32_t* corner) {
+    const auto* pairs = reinterpret_cast<const Two*>(levels);
+    const Four even = __builtin_shufflevector(pairs[corner[0]], pairs[corner[2]], 0, 1, 2, 3);
+    const Four odd = __builtin_shufflevector(pairs[corner[1]], pairs[corner[3]], 0, 1, 2, 3);
+    return {__builtin_shufflevector(even, odd, 0, 4, 2, 6), __builtin_shufflevector(even, odd, 1, 5, 3, 7)};
+}
+
+template <class Number>
+Number valuesAt(const double* values, const std::int32_t* index);
+template <>
+double valuesAt<double>(const double* values, const std::int32_t* index) {
+    return values[*index];
+}
+template <>
+Four valuesAt<Four>(const double* values, const std::int32_t* index) {
+    return Four{values[index[0]], values[index[1]], values[index[2]], values[index[3]]};
+}
+
+template <class Number>
+Number valuesFrom(const double* values) {
+    Number result;
+    std::memcpy(&result, values, sizeof(Number));
+    return result;
+}
+
+template <class Number>
+Number leaningOn(Number height, Number underside, Number one, Number other) {
+    const Number beside = one < other ? one : other;
+    const Number leans = beside > height ? beside : height;
+    return height > underside - 1 ? leans : height;
+}
+
+/// Facets from i on: as many as Number has.
+template <bool kHeld, bool kBand, class Number>
+[[gnu::always_inline]] inline void slide(const SweepFluxes& s, std::size_t i) {
+    const auto [a, aFlow] = cornerOf<Number>(s.levels, s.first + i);
+    const auto [b, bFlow] = cornerOf<Number>(s.levels, s.second + i);
+    const auto [c, cFlow] = cornerOf<Number>(s.levels, s.third + i);
+    Number atA = a, atB = b, atC = c;
+    if constexpr (kHeld) {
+        atA = leaningOn(a, valuesAt<Number>(s.undersides, s.first + i), b, c);
+        atB = leaningOn(b, valuesAt<Number>(s.undersides, s.second + i), c, a);
+        atC = leaningOn(c, valuesAt<Number>(s.undersides, s.third + i), a, b);
+    }
+    const Number d1 = atB - atA, d2 = atC - atA;
+    const Number squared = valuesFrom<Number>(s.squared + i), mixed = valuesFrom<Number>(s.mixed + i);
+    const Number steepness = squared * d1 * d1 + (mixed * d1 + valuesFrom<Number>(s.squaredAcross + i) * d2) * d2;
+    const Number push = kPush - 2 * kPush / (steepness + 1);
+    const Number none{};
+    Number rest = none + kRest;
+    if constexpr (kBand) {
+        rest = aFlow + bFlow + cFlow > none ? rest : valuesFrom<Number>(s.start + i);
+    }
+    const Number sliding = steepness > rest ? push : none;
+    std::memcpy(s.sliding + i, &sliding, sizeof(Number));
+}
+
 template <bool kHeld, bool kBand>
-void slide(std::size_t count, const double* __restrict heights, const double* __restrict undersides,
-           const std::int32_t* __restrict first, const std::int32_t* __restrict second,
-           const std::int32_t* __restrict third, const double* __restrict squared, const double* __restrict mixed,
-           const double* __restrict squaredAcross, const double* __restrict start, const double* __restrict flows,
-           double* __restrict sliding) {
-    for (std::size_t i = 0; i < count; ++i) {
-        double a = heights[first[i]], b = heights[second[i]], c = heights[third[i]];
-        if constexpr (kHeld) {
-            const double wasA = a, wasB = b, wasC = c;
-            a = leaning(wasA, undersides[first[i]], wasB, wasC);
-            b = leaning(wasB, undersides[second[i]], wasC, wasA);
-            c = leaning(wasC, undersides[third[i]], wasA, wasB);
-        }
-        const double d1 = b - a, d2 = c - a;
-        const double steepness = squared[i] * d1 * d1 + (mixed[i] * d1 + squaredAcross[i] * d2) * d2;
-        const double push = kPush - 2 * kPush / (steepness + 1);
-        double rest = kRest;
-        if constexpr (kBand) {
-            rest = flows[first[i]] + flows[second[i]] + flows[third[i]] > 0 ? kRest : start[i];
-        }
-        sliding[i] = steepness > rest ? push : 0.0;
+void slideAll(const SweepFluxes& sweep, std::size_t begin, std::size_t end) {
+    const SweepFluxes s = sweep;  // a copy that nobody else can write to stays in registers
+    std::size_t i = begin;
+    for (; i + 4 <= end; i += 4) {
+        slide<kHeld, kBand, Four>(s, i);
+    }
+    for (; i < end; ++i) {
+        slide<kHeld, kBand, double>(s, i);
     }
 }
 
 template <bool kHeld>
-void flow(std::size_t count, const double* __restrict heights, const double* __restrict undersides,
+void flow(std::size_t count, const Level* __restrict levels, const double* __restrict undersides,
           const std::int32_t* __restrict from, const std::int32_t* __restrict to, const std::int32_t* __restrict left,
           const std::int32_t* __restrict right, const double* __restrict leftWeights,
           const double* __restrict rightWeights, const double* __restrict sliding, double* __restrict fluxes) {
     for (std::size_t i = 0; i < count; ++i) {
         const double share = leftWeights[i] * sliding[left[i]] + rightWeights[i] * sliding[right[i]];
-        const double one = heights[from[i]], other = heights[to[i]];
+        const double one = levels[from[i]].height, other = levels[to[i]].height;
         double flux = std::trunc((share > 0 ? share : 0.0) * (one - other));
         if constexpr (kHeld) {
             const double most = std::max(leftWeights[i], 0.0) + std::max(rightWeights[i], 0.0);
@@ -54,15 +114,35 @@ void flow(std::size_t count, const double* __restrict heights, const double* __r
     }
 }
 
-// Added with one instruction, as an edge's flux and its size are: to know where sand flows costs next to nothing.
-using Pair [[gnu::vector_size(2 * sizeof(double)), gnu::aligned(sizeof(double)), gnu::may_alias]] = double;
+template <bool kHeld>
+void flowAll(const SweepFluxes& s, std::size_t begin, std::size_t end) {
+    flow<kHeld>(end - begin, s.levels, s.undersides, s.from + begin, s.to + begin, s.left + begin, s.right + begin,
+                s.leftWeights + begin, s.rightWeights + begin, s.sliding, s.fluxes + begin);
+}
 
+/// Calls work(held, begin, end) for what lies below an obstacle and for what does not, each in as few parts as may be.
+template <class Work>
+void inParts(std::size_t count, const std::uint8_t* held, const Work& work) {
+    constexpr std::size_t kTogether = SweepFluxes::kTogether;
+    for (std::size_t begin = 0; begin < count;) {
+        const bool isHeld = held != nullptr && held[begin / kTogether] != 0;
+        std::size_t end = begin + kTogether;
+        while (end < count && isHeld == (held != nullptr && held[end / kTogether] != 0)) {
+            end += kTogether;
+        }
+        end = std::min(end, count);
+        work(isHeld, begin, end);
+        begin = end;
+    }
+}
+
+// Added with one instruction, as an edge's flux and its size are: to know where sand flows costs next to nothing.
 void sumUp(std::size_t edges, const std::int32_t* from, const std::int32_t* to, const double* fluxes, double* sums) {
-    auto* pairs = reinterpret_cast<Pair*>(sums);
+    auto* pairs = reinterpret_cast<Two*>(sums);
     const auto add = [&](std::size_t i) {
         const double flux = fluxes[i], size = std::abs(flux);
-        pairs[from[i]] += Pair{-flux, size};
-        pairs[to[i]] += Pair{flux, size};
+        pairs[from[i]] += Two{-flux, size};
+        pairs[to[i]] += Two{flux, size};
     };
     // Edges that follow each other share a vertex, whose sum would have to be there first: four far apart do not wait.
     // Sums of whole numbers need no order.
@@ -80,8 +160,7 @@ void sumUp(std::size_t edges, const std::int32_t* from, const std::int32_t* to, 
 
 /// A height is a quotient, rounded once.
 SweepResult settleUp(std::size_t count, const double* __restrict sums, const double* __restrict stars,
-                     const std::uint64_t* __restrict unwatched, double* __restrict volumes, double* __restrict heights,
-                     double* __restrict flows) {
+                     const std::uint64_t* __restrict unwatched, double* __restrict volumes, Level* __restrict levels) {
     std::uint64_t moved = 0, beyond = 0, met = 0;
     std::int64_t resting = 0;
     for (std::size_t i = 0; i < count; ++i) {
@@ -91,9 +170,8 @@ SweepResult settleUp(std::size_t count, const double* __restrict sums, const dou
         beyond |= bits & unwatched[i];
         met |= std::bit_cast<std::uint64_t>(flow) & unwatched[i];
         resting += flow > 0 ? 0 : 1;
-        flows[i] = flow;
         volumes[i] += inflow;
-        heights[i] = volumes[i] / stars[i];
+        levels[i] = {volumes[i] / stars[i], flow};
     }
     return {moved != 0, beyond != 0, met != 0, resting};
 }
@@ -101,25 +179,23 @@ SweepResult settleUp(std::size_t count, const double* __restrict sums, const dou
 }  // namespace
 
 void sweepFluxes(const SweepFluxes& s) {
-    const auto slideAs = [&s](const auto& law) {
-        law(s.facets, s.heights, s.undersides, s.first, s.second, s.third, s.squared, s.mixed, s.squaredAcross, s.start,
-            s.flows, s.sliding);
-    };
-    if (s.undersides != nullptr) {
-        s.start != nullptr ? slideAs(slide<true, true>) : slideAs(slide<true, false>);
-        flow<true>(s.edges, s.heights, s.undersides, s.from, s.to, s.left, s.right, s.leftWeights, s.rightWeights,
-                   s.sliding, s.fluxes);
-    } else {
-        s.start != nullptr ? slideAs(slide<false, true>) : slideAs(slide<false, false>);
-        flow<false>(s.edges, s.heights, s.undersides, s.from, s.to, s.left, s.right, s.leftWeights, s.rightWeights,
-                    s.sliding, s.fluxes);
-    }
+    const bool band = s.start != nullptr;
+    inParts(s.facets, s.heldFacets, [&](bool held, std::size_t begin, std::size_t end) {
+        if (held) {
+            band ? slideAll<true, true>(s, begin, end) : slideAll<true, false>(s, begin, end);
+        } else {
+            band ? slideAll<false, true>(s, begin, end) : slideAll<false, false>(s, begin, end);
+        }
+    });
+    inParts(s.edges, s.heldEdges, [&](bool held, std::size_t begin, std::size_t end) {
+        held ? flowAll<true>(s, begin, end) : flowAll<false>(s, begin, end);
+    });
 }
 
 SweepResult moveSand(const SweepSand& sand) {
     std::fill(sand.inflow, sand.inflow + 2 * sand.vertices, 0.0);
     sumUp(sand.edges, sand.from, sand.to, sand.fluxes, sand.inflow);
-    return settleUp(sand.vertices, sand.inflow, sand.stars, sand.unwatched, sand.volumes, sand.heights, sand.flows);
+    return settleUp(sand.vertices, sand.inflow, sand.stars, sand.unwatched, sand.volumes, sand.levels);
 }
 
 }  // namespace sand::tin::SANDWALL_CODE_PATH

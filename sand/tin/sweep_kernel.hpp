@@ -14,20 +14,28 @@ inline constexpr double kPush = 0.8;
 // sweeps, at heights that nobody tells apart. A grid's rest slopes are off by three times as much.
 inline constexpr double kRest = 1 + 1.0 / 1024;
 
+/// What a sweep asks of a vertex for each facet at it: side by side, for one load.
+struct Level {
+    double height = 0;  // [unit]
+    double flow = 0;    // what flowed at its edges in the sweep before, in and out
+};
+
 /// One sweep over facets and edges (weights.hpp), each kind of number in an array of its own; corners, ends and facets
 /// by their place in these arrays. Nothing overlaps.
 struct SweepFluxes {
     std::size_t facets, edges;
-    const double* heights;                          // by vertex [unit]
-    const double* undersides;                       // by vertex [unit], where an obstacle holds; null without one
+    const Level* levels;                            // by vertex
+    const double* undersides;                       // by vertex [unit]
+    const std::uint8_t *heldFacets, *heldEdges;     // by kTogether of them: an obstacle is over some; null without one
     const std::int32_t *first, *second, *third;     // by facet: its corners
     const double *squared, *mixed, *squaredAcross;  // by facet: Facet's first, mixed, second
     const double* start;  // by facet: the steepness from which on it slides where nothing flows; null: kRest as ever
-    const double* flows;  // by vertex: what flowed at its edges in the sweep before, in and out
     double* sliding;      // by facet: how strongly it slides, 0 to 1; written
     const std::int32_t *from, *to, *left, *right;  // by edge: ends and facets
     const double *leftWeights, *rightWeights;      // by edge [probe unit²]
     double* fluxes;                                // by edge: volume from `from` to `to`, whole; written
+
+    static constexpr std::size_t kTogether = 16;
 };
 
 /// What the fluxes make of the sand: volumes, whole numbers below 2^53 as all their sums are, and heights.
@@ -38,9 +46,8 @@ struct SweepSand {
     const double* stars;             // by vertex [probe unit²]
     const std::uint64_t* unwatched;  // by vertex: all bits, or none
     double* inflow;                  // two by vertex: what came less what went, and both together; written
-    double* flows;                   // by vertex: the second of those; written
     double* volumes;                 // by vertex
-    double* heights;                 // by vertex [unit]
+    Level* levels;                   // by vertex
 };
 
 /// What a corner counts as for the slope: sand that fills the room below an obstacle leans on it, and is no slope for

@@ -126,8 +126,7 @@ void Tool::work(Layer& layer, Imprint& imprint, Rim rim, const Chunk& chunk, Wor
             leave(layer, imprint);
             return;
         }
-        changeMesh(layer, imprint, chunk);
-        window_->look(layer.triangles(), chunk.box);
+        window_->follow(layer.triangles(), changeMesh(layer, imprint, chunk));
     }
     for (const Press& press : chunk.presses) {
         this->press(layer, rim, press, done);
@@ -147,7 +146,7 @@ bool Tool::reachesSand(const Layer& layer, const Chunk& chunk) const {
     });
 }
 
-void Tool::changeMesh(Layer& layer, Imprint& imprint, const Chunk& chunk) const {
+std::vector<Vertex> Tool::changeMesh(Layer& layer, Imprint& imprint, const Chunk& chunk) const {
     const ProbePoint at = chunk.presses.back().at;
     const Holes* holes = layer.mesh().holes().get();
     const PlacedOutline outline = chunk.last ? placed(outline_, at.x, at.y, layer.triangles(), holes) : PlacedOutline{};
@@ -156,7 +155,7 @@ void Tool::changeMesh(Layer& layer, Imprint& imprint, const Chunk& chunk) const 
         edges = edgesThatStay(layer.triangles(), imprint);
         edges.insert(edges.end(), outline.edges.begin(), outline.edges.end());
     }
-    layer.edit([&](Mesh& mesh) {
+    return layer.edit([&](Mesh& mesh) {
         imprint.takeOutOf(mesh);
         thin(mesh, outline);
         std::vector<Place> there = outline.points;

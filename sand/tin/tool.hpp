@@ -76,7 +76,8 @@ private:
 
     void work(Layer& layer, Imprint& imprint, Rim rim, const Chunk& chunk, Work& work);
     [[nodiscard]] bool reachesSand(const Layer& layer, const Chunk& chunk) const;
-    void changeMesh(Layer& layer, Imprint& imprint, const Chunk& chunk) const;
+    /// Returns what Layer::edit() does.
+    std::vector<Vertex> changeMesh(Layer& layer, Imprint& imprint, const Chunk& chunk) const;
     void thin(Mesh& mesh, const PlacedOutline& outline) const;
     [[nodiscard]] Edges edgesThatStay(const Triangles& mesh, const Imprint& imprint) const;
     [[nodiscard]] bool isNearTool(const Place& place, const std::vector<Press>& presses) const;

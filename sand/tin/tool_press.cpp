@@ -108,6 +108,7 @@ void Tool::addNeighbours(const Layer& layer, const ProbePoint& at) {
     const auto isCovered = [&](Vertex vertex) {
         return turned_.covers(offsetOf(layer.triangles().places[static_cast<std::size_t>(vertex)], at));
     };
+    window_->look(layer.triangles(), window_->box());  // it may have followed a change
     std::vector<Vertex> beside;
     for (const std::int32_t slot : window_->triangles()) {
         const Triangle& triangle = layer.triangles().triangles[static_cast<std::size_t>(slot)];

@@ -22,19 +22,6 @@ std::int64_t dot(const Place& origin, const Place& a, const Place& b) {
     return std::int64_t{a.x - origin.x} * (b.x - origin.x) + std::int64_t{a.y - origin.y} * (b.y - origin.y);
 }
 
-/// Where in the neighbour beyond this side the way back is; only where there is one.
-Side across(const Triangles& mesh, Side side) {
-    const std::int32_t beyond = triangleOf(mesh, side.triangle).neighbour[static_cast<std::size_t>(side.corner)];
-    const auto& back = triangleOf(mesh, beyond).neighbour;
-    return {beyond, back[0] == side.triangle ? 0 : back[1] == side.triangle ? 1 : 2};
-}
-
-/// Of the ground: a hole is beyond it as what lies outside the field.
-bool atRim(const Triangles& mesh, Side side) {
-    const std::int32_t beyond = triangleOf(mesh, side.triangle).neighbour[static_cast<std::size_t>(side.corner)];
-    return beyond == kNobody || triangleOf(mesh, beyond).hole;
-}
-
 /// A side's two ends, counter-clockwise, and the corner opposite.
 struct Corners {
     Vertex apex, begin, end;
@@ -46,8 +33,6 @@ Corners cornersOf(const Triangles& mesh, Side side) {
     return {corner[k], corner[(k + 1) % 3], corner[(k + 2) % 3]};
 }
 
-constexpr std::int32_t kUnknown = std::numeric_limits<std::int32_t>::min();
-
 /// Half the cotangent of the angle at `apex`, times kOne.
 std::int32_t half(const Place& apex, const Place& begin, const Place& end, double doubledArea) {
     // Both are integers below 2^53, so that the quotient is rounded once.
@@ -55,21 +40,21 @@ std::int32_t half(const Place& apex, const Place& begin, const Place& end, doubl
     return static_cast<std::int32_t>(std::clamp(0.5 * cotangent, -kMost, kMost) * kOne);
 }
 
-std::size_t leastOf(const std::array<Vertex, 3>& corner) {
-    return corner[0] < corner[1] ? (corner[0] < corner[2] ? 0 : 2) : (corner[1] < corner[2] ? 1 : 2);
-}
-
 }  // namespace
 
-Side owner(const Triangles& mesh, Side side) {
-    const Corners c = cornersOf(mesh, side);
-    return c.begin < c.end || atRim(mesh, side) ? side : across(mesh, side);
+Side across(const Triangles& mesh, Side side) {
+    const std::int32_t beyond = triangleOf(mesh, side.triangle).neighbour[static_cast<std::size_t>(side.corner)];
+    if (beyond == kNobody || triangleOf(mesh, beyond).hole) {
+        return {};
+    }
+    const auto& back = triangleOf(mesh, beyond).neighbour;
+    return {beyond, back[0] == side.triangle ? 0 : back[1] == side.triangle ? 1 : 2};
 }
 
 void Weights::forget(const Mesh::Change& change) {
     for (const std::int32_t slot : change.triangles) {
         if (static_cast<std::size_t>(slot) < halves_.size()) {
-            halves_[static_cast<std::size_t>(slot)][0] = kUnknown;
+            halves_[static_cast<std::size_t>(slot)].first = kNobody;
         }
     }
     for (const Vertex vertex : change.vertices) {
@@ -81,24 +66,21 @@ void Weights::forget(const Mesh::Change& change) {
 
 void Weights::reserve(std::size_t vertices) {
     steps_.resize(std::max(steps_.size(), vertices), 0);
-    halves_.resize(std::max(halves_.size(), 2 * vertices), Halves{kUnknown, 0, 0});
+    halves_.resize(std::max(halves_.size(), 2 * vertices));
 }
 
-std::int32_t Weights::weight(const Triangles& mesh, Side side) {
-    const auto slot = static_cast<std::size_t>(side.triangle);
-    if (slot >= halves_.size()) {
-        halves_.resize(mesh.triangles.size() + mesh.triangles.size() / 4, Halves{kUnknown, 0, 0});
+const std::array<std::int32_t, 3>& Weights::halvesOf(const Triangles& mesh, std::int32_t slot) {
+    if (static_cast<std::size_t>(slot) >= halves_.size()) {
+        halves_.resize(mesh.triangles.size() + mesh.triangles.size() / 4);
     }
-    const auto& corner = mesh.triangles[slot].corner;
-    const std::size_t least = leastOf(corner);  // a slot may turn its corners unnoticed
-    Halves& halves = halves_[slot];
-    if (halves[0] == kUnknown) {
-        const std::array<Place, 3> at{placeOf(mesh, corner[least]), placeOf(mesh, corner[(least + 1) % 3]),
-                                      placeOf(mesh, corner[(least + 2) % 3])};
-        const auto area = static_cast<double>(doubledArea(at[0], at[1], at[2]));
-        halves = {half(at[0], at[1], at[2], area), half(at[1], at[2], at[0], area), half(at[2], at[0], at[1], area)};
+    const auto& corner = triangleOf(mesh, slot).corner;
+    Halves& halves = halves_[static_cast<std::size_t>(slot)];
+    if (halves.first != corner[0]) {
+        const Place &a = placeOf(mesh, corner[0]), &b = placeOf(mesh, corner[1]), &c = placeOf(mesh, corner[2]);
+        const auto area = static_cast<double>(doubledArea(a, b, c));
+        halves = {corner[0], {half(a, b, c, area), half(b, c, a, area), half(c, a, b, area)}};
     }
-    return halves[(static_cast<std::size_t>(side.corner) + 3 - least) % 3];
+    return halves.of;
 }
 
 double Weights::step(const Triangles& mesh, std::span<const std::int64_t> stars, Vertex vertex) {
@@ -112,8 +94,9 @@ double Weights::step(const Triangles& mesh, std::span<const std::int64_t> stars,
             if (triangleOf(mesh, slot).hole) {
                 return;
             }
+            const auto& halves = halvesOf(mesh, slot);
             for (const int end : {1, 2}) {
-                sum += std::max(weight(mesh, {slot, (corner + end) % 3}), 0);
+                sum += std::max(halves[static_cast<std::size_t>((corner + end) % 3)], 0);
             }
         });
         // Of a triangle's two angles beside this vertex one is acute; but so little that it counts as right?
@@ -123,18 +106,20 @@ double Weights::step(const Triangles& mesh, std::span<const std::int64_t> stars,
     return steps_[v];
 }
 
-Edge Weights::edge(const Triangles& mesh, std::span<const std::int64_t> stars, Side side) {
+Edge Weights::edge(const Triangles& mesh, std::span<const std::int64_t> stars, Side side, Side across) {
     const Corners c = cornersOf(mesh, side);
     Edge edge{.from = std::min(c.begin, c.end),
               .to = std::max(c.begin, c.end),
               .leftFacet = side.triangle,
               .rightFacet = side.triangle};
     const double step = std::min(this->step(mesh, stars, edge.from), this->step(mesh, stars, edge.to));
-    edge.left = static_cast<double>(weight(mesh, side)) * step;
-    if (!atRim(mesh, side)) {
-        const Side other = across(mesh, side);
-        edge.rightFacet = other.triangle;
-        edge.right = static_cast<double>(weight(mesh, other)) * step;
+    const auto weight = [&](Side one) {
+        return static_cast<double>(halvesOf(mesh, one.triangle)[static_cast<std::size_t>(one.corner)]) * step;
+    };
+    edge.left = weight(side);
+    if (across.triangle != kNobody) {
+        edge.rightFacet = across.triangle;
+        edge.right = weight(across);
     }
     return edge;
 }
@@ -148,7 +133,7 @@ double slackOf(const Place& a, const Place& b, const Place& c) {
 }
 
 std::array<Vertex, 3> smallestFirst(const std::array<Vertex, 3>& corner) {
-    const std::size_t least = leastOf(corner);
+    const auto least = static_cast<std::size_t>(leastOf(corner));
     return {corner[least], corner[(least + 1) % 3], corner[(least + 2) % 3]};
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -42,9 +43,15 @@ struct Side {
     int corner = 0;
 };
 
-/// The side by which an edge is known: in its triangle it runs from the smaller vertex to the larger, or it has no
-/// other on ground. The side's own triangle is ground.
-[[nodiscard]] Side owner(const Triangles& mesh, Side side);
+/// The same edge as a side of the triangle beyond; nobody's at the rim, and where a hole is beyond.
+[[nodiscard]] Side across(const Triangles& mesh, Side side);
+
+/// Where a triangle's smallest corner is.
+[[nodiscard]] inline int leastOf(const std::array<Vertex, 3>& corner) {
+    // Without a branch: which it is nobody can foretell.
+    const int least = corner[1] < corner[0] ? 1 : 0;
+    return corner[2] < std::min(corner[0], corner[1]) ? 2 : least;
+}
 
 /// The corners of a triangle counter-clockwise from the smallest: however a slot turns them.
 [[nodiscard]] std::array<Vertex, 3> smallestFirst(const std::array<Vertex, 3>& corner);
@@ -69,17 +76,29 @@ public:
     void reserve(std::size_t vertices);
     /// The mesh has changed there.
     void forget(const Mesh::Change& change);
-    /// The edge of a side that owns it, of ground. Costs the stars of its ends, the first time.
-    [[nodiscard]] Edge edge(const Triangles& mesh, std::span<const std::int64_t> stars, Side side);
+    /// The edge of a side on ground and the one across. Costs the stars of its ends, the first time.
+    [[nodiscard]] Edge edge(const Triangles& mesh, std::span<const std::int64_t> stars, Side side, Side across);
+
+    /// Somebody will ask for them soon.
+    void fetch(Vertex vertex, std::int32_t slot) const {
+        if (static_cast<std::size_t>(vertex) < steps_.size() && static_cast<std::size_t>(slot) < halves_.size()) {
+            __builtin_prefetch(&steps_[static_cast<std::size_t>(vertex)]);
+            __builtin_prefetch(&halves_[static_cast<std::size_t>(slot)]);
+        }
+    }
 
 private:
-    /// Half the cotangents of a triangle's angles, times kOne, counted from its smallest vertex on.
-    using Halves = std::array<std::int32_t, 3>;
-    [[nodiscard]] std::int32_t weight(const Triangles& mesh, Side side);
+    /// Half the cotangents of a triangle's angles, times kOne, by its corners as they were when this was the first: a
+    /// slot may turn them unnoticed.
+    struct Halves {
+        Vertex first = kNobody;  // nothing is known
+        std::array<std::int32_t, 3> of{};
+    };
+    [[nodiscard]] const std::array<std::int32_t, 3>& halvesOf(const Triangles& mesh, std::int32_t slot);
     [[nodiscard]] double step(const Triangles& mesh, std::span<const std::int64_t> stars, Vertex vertex);
 
     std::vector<double> steps_;   // by vertex [probe unit²]; 0: not known
-    std::vector<Halves> halves_;  // by slot; the first kUnknown: not known
+    std::vector<Halves> halves_;  // by slot
 };
 
 /// Calls visit(slot, corner) for every triangle around a vertex, `corner` being the vertex's own.

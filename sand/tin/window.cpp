@@ -3,6 +3,7 @@
 
 #include <array>
 #include <bit>
+#include <iterator>
 
 namespace sand::tin {
 namespace {
@@ -44,6 +45,22 @@ void sortOnce(std::vector<std::int32_t>& numbers) {
     numbers.resize(count);
 }
 
+// Where a tool comes down nothing is in any cache, and each triangle tells where the next are.
+void Window::fetchAhead(const Triangles& mesh, std::size_t next) const {
+    constexpr std::size_t kFar = 16, kNear = 8;  // triangles, until they are looked at
+    if (next + kFar < found_.size()) {
+        __builtin_prefetch(&mesh.triangles[static_cast<std::size_t>(found_[next + kFar])]);
+    }
+    if (next + kNear < found_.size()) {
+        const Triangle& soon = mesh.triangles[static_cast<std::size_t>(found_[next + kNear])];
+        for (std::size_t k = 0; k < 3; ++k) {
+            __builtin_prefetch(&mesh.places[static_cast<std::size_t>(soon.corner[k])]);
+            seen_.fetch(soon.neighbour[k]);
+            __builtin_prefetch(&mesh.triangleAt[static_cast<std::size_t>(soon.corner[k])]);
+        }
+    }
+}
+
 // A box is convex: the triangles that reach into it hang together by their edges, and so does the search, which goes on
 // through every triangle whose own box overlaps it.
 void Window::look(const Triangles& mesh, const Box& wanted) {
@@ -54,7 +71,6 @@ void Window::look(const Triangles& mesh, const Box& wanted) {
         return;
     }
     seen_.clear();
-    seenVertices_.clear();
     const Place middle{box.x0 + (box.x1 - box.x0) / 2, box.y0 + (box.y1 - box.y0) / 2};
     const auto slots = static_cast<std::int32_t>(mesh.triangles.size());
     const bool known = last_ >= 0 && last_ < slots && mesh.triangles[static_cast<std::size_t>(last_)].alive();
@@ -62,6 +78,7 @@ void Window::look(const Triangles& mesh, const Box& wanted) {
     found_.assign(1, last_);
     seen_.insert(last_);
     for (std::size_t next = 0; next < found_.size(); ++next) {
+        fetchAhead(mesh, next);
         const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(found_[next])];
         const auto at = [&](std::size_t k) { return mesh.places[static_cast<std::size_t>(triangle.corner[k])]; };
         const std::array places{at(0), at(1), at(2)};
@@ -70,7 +87,8 @@ void Window::look(const Triangles& mesh, const Box& wanted) {
         }
         triangles_.push_back(found_[next]);
         for (std::size_t k = 0; k < 3; ++k) {
-            if (box.holds(places[k]) && seenVertices_.insert(triangle.corner[k])) {
+            // One of its triangles is the vertex' own, and is found: it reaches into the box, as the vertex does.
+            if (box.holds(places[k]) && mesh.triangleAt[static_cast<std::size_t>(triangle.corner[k])] == found_[next]) {
                 vertices_.push_back(triangle.corner[k]);
             }
             if (triangle.neighbour[k] != kNobody && seen_.insert(triangle.neighbour[k])) {
@@ -79,6 +97,18 @@ void Window::look(const Triangles& mesh, const Box& wanted) {
         }
     }
     sortOnce(vertices_);
+}
+
+void Window::follow(const Triangles& mesh, const std::vector<Vertex>& changed) {
+    triangles_.clear();
+    stay_.clear();
+    std::set_difference(vertices_.begin(), vertices_.end(), changed.begin(), changed.end(), std::back_inserter(stay_));
+    come_.clear();
+    std::copy_if(changed.begin(), changed.end(), std::back_inserter(come_), [&](Vertex vertex) {
+        return mesh.alive(vertex) && box_.holds(mesh.places[static_cast<std::size_t>(vertex)]);
+    });
+    vertices_.clear();
+    std::merge(stay_.begin(), stay_.end(), come_.begin(), come_.end(), std::back_inserter(vertices_));
 }
 
 void findLink(const Triangles& mesh, Vertex vertex, Link& link) {

@@ -41,12 +41,12 @@ void sortOnce(std::vector<std::int32_t>& numbers);
 /// first time, the whole mesh.
 class Window {
 public:
-    void reserve(std::size_t vertices) {
-        seen_.reserve(2 * vertices);
-        seenVertices_.reserve(vertices);
-    }
+    void reserve(std::size_t vertices) { seen_.reserve(2 * vertices); }
     /// Looks again. `box` is clipped to the field; an empty one shows nothing.
     void look(const Triangles& mesh, const Box& box);
+    /// The mesh has changed around these vertices, ascending, and nowhere else: vertices() are those of now, at a
+    /// fraction of what it costs to look again. triangles() are none from now on.
+    void follow(const Triangles& mesh, const std::vector<Vertex>& changed);
 
     [[nodiscard]] const Box& box() const { return box_; }  // clipped to the field
     /// Those that lie in the box, ascending.
@@ -55,11 +55,13 @@ public:
     [[nodiscard]] const std::vector<std::int32_t>& triangles() const { return triangles_; }
 
 private:
+    void fetchAhead(const Triangles& mesh, std::size_t next) const;
+
     Box box_;
-    std::vector<Vertex> vertices_;
+    std::vector<Vertex> vertices_, stay_, come_;
     std::vector<std::int32_t> triangles_, found_;
     std::int32_t last_ = kNobody;  // where to begin: only for speed
-    NumberSet seen_, seenVertices_;
+    NumberSet seen_;               // slots
 };
 
 /// The vertices around one that lies inside the field, counter-clockwise from the smallest number, and whether any of
