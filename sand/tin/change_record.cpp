@@ -69,7 +69,7 @@ Mesh::Difference ChangeRecord::takeDifference(const Triangles& mesh) {
     return taken;
 }
 
-Mesh::Change ChangeRecord::takeChange(const Triangles& mesh) {
+Mesh::Change ChangeRecord::takeChange(const Triangles& mesh, bool vertices) {
     Mesh::Change change;
     for (const Slot& old : before_) {
         if (!alive(old.slot, mesh)) {
@@ -84,7 +84,7 @@ Mesh::Change ChangeRecord::takeChange(const Triangles& mesh) {
     std::copy_if(unused_.begin(), unused_.end(), std::back_inserter(change.triangles),
                  [&mesh](std::int32_t slot) { return alive(slot, mesh); });
     sortOnce(change.triangles);
-    const Mesh::Difference difference = this->difference(mesh);
+    const Mesh::Difference difference = vertices ? this->difference(mesh) : Mesh::Difference();
     for (const auto* pieces : {&difference.went, &difference.came}) {
         for (const Mesh::Piece& piece : *pieces) {
             change.vertices.insert(change.vertices.end(), piece.corner.begin(), piece.corner.end());

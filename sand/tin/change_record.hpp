@@ -13,7 +13,7 @@ public:
     /// To be called before a slot's corners or constraints change, or the place of a corner.
     void touch(std::int32_t slot, const Triangles& mesh) {
         const auto at = static_cast<std::size_t>(slot);
-        if (at >= touched_.size()) {
+        if (at >= touched_.size()) [[unlikely]] {
             touched_.resize(mesh.triangles.size() + mesh.triangles.size() / 2 + 1, 0);
         }
         if (touched_[at] != turn_) {
@@ -23,7 +23,8 @@ public:
     }
     void reserve(std::size_t slots) { touched_.resize(std::max(touched_.size(), slots), 0); }
     /// What differs now; the next record begins here.
-    [[nodiscard]] Mesh::Change takeChange(const Triangles& mesh);
+    /// `vertices`: whether anybody asks for those too.
+    [[nodiscard]] Mesh::Change takeChange(const Triangles& mesh, bool vertices);
     [[nodiscard]] Mesh::Difference takeDifference(const Triangles& mesh);
 
 private:

@@ -161,7 +161,10 @@ void Layer::remap() {
 Layer::Remap Layer::takeLargestRemap() { return std::exchange(largest_, {}); }
 
 Mesh::Change Layer::takeChange() {
-    Mesh::Change change = mesh_.takeChange();
+    // What changes since the first call is remapped, but in holes.
+    const bool knows = knowsChange_ && mesh_.holes() == nullptr;
+    knowsChange_ = true;
+    Mesh::Change change = knows ? mesh_.takeChangeOfTriangles() : mesh_.takeChange();
     change.vertices.insert(change.vertices.end(), remapped_.begin(), remapped_.end());
     sortOnce(change.vertices);
     remapped_.clear();

@@ -95,6 +95,7 @@ private:
     std::vector<double> heights_;
     Remap largest_;
     std::vector<Vertex> remapped_;  // since takeChange() was called last
+    bool knowsChange_ = false;      // takeChange() was called
 };
 
 }  // namespace sand::tin

@@ -164,7 +164,9 @@ std::vector<std::pair<Vertex, Vertex>> Mesh::constraints() const {
     return constraints;
 }
 
-Mesh::Change Mesh::takeChange() { return triangulation_->changes.takeChange(triangles()); }
+Mesh::Change Mesh::takeChange() { return triangulation_->changes.takeChange(triangles(), true); }
+
+Mesh::Change Mesh::takeChangeOfTriangles() { return triangulation_->changes.takeChange(triangles(), false); }
 
 Mesh::Difference Mesh::takeDifference() {
     triangulation_->noteDifferences = true;

@@ -66,6 +66,8 @@ public:
         std::vector<Vertex> vertices;
     };
     [[nodiscard]] Change takeChange();
+    /// The same for who knows of the vertices; there are none in it.
+    [[nodiscard]] Change takeChangeOfTriangles();
 
     /// A triangle with the places its corners had: counter-clockwise from the smallest vertex.
     struct Piece {

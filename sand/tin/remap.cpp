@@ -2,10 +2,12 @@
 #include "sand/tin/remap.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <compare>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 namespace sand::tin {
@@ -25,6 +27,30 @@ struct Key {
     Vertex vertex = kNobody;
     Place place;
     friend auto operator<=>(const Key&, const Key&) = default;
+};
+
+/// Numbers keys as they come, each once: a vertex is a corner of six triangles before and of six now.
+class Nodes {
+public:
+    explicit Nodes(std::size_t most) : numbers_(std::bit_ceil(2 * most + 1), kNone) {}
+    /// `found`: by number; a new one is added.
+    std::uint32_t numberOf(const Key& key, std::vector<Key>& found) {
+        const std::size_t mask = numbers_.size() - 1;
+        std::size_t at = (static_cast<std::uint32_t>(key.vertex) * std::size_t{0x9e3779b1}) & mask;
+        while (numbers_[at] != kNone && found[numbers_[at]] != key) {
+            at = (at + 1) & mask;
+        }
+        if (numbers_[at] == kNone) {
+            numbers_[at] = static_cast<std::uint32_t>(found.size());
+            found.push_back(key);
+        }
+        return numbers_[at];
+    }
+
+private:
+    static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+    std::vector<std::uint32_t> numbers_;
 };
 
 struct Node {
@@ -120,33 +146,33 @@ private:
     using Corners = std::array<std::uint32_t, 3>;  // nodes of a triangle
 
     void gatherNodes() {
-        std::vector<Key> keys;
-        keys.reserve(3 * (difference_.went.size() + difference_.came.size()));
-        for (const auto* pieces : {&difference_.went, &difference_.came}) {
-            for (const Mesh::Piece& piece : *pieces) {
-                for (std::size_t i = 0; i < 3; ++i) {
-                    keys.push_back({piece.corner[i], piece.place[i]});
-                }
-            }
-        }
-        std::sort(keys.begin(), keys.end());
-        keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-        nodes_.resize(keys.size());
-        for (std::size_t i = 0; i < keys.size(); ++i) {
-            nodes_[i].vertex = keys[i].vertex;
-            nodes_[i].place = keys[i].place;
-            nodes_[i].part = static_cast<std::uint32_t>(i);
-        }
-        const auto cornersOf = [&keys](const Mesh::Piece& piece) {
+        std::vector<Key> found;
+        Nodes nodes(3 * (difference_.went.size() + difference_.came.size()));
+        const auto cornersOf = [&](const Mesh::Piece& piece) {
             Corners corners{};
             for (std::size_t i = 0; i < 3; ++i) {
-                const Key key{piece.corner[i], piece.place[i]};
-                corners[i] = static_cast<std::uint32_t>(std::lower_bound(keys.begin(), keys.end(), key) - keys.begin());
+                corners[i] = nodes.numberOf({piece.corner[i], piece.place[i]}, found);
             }
             return corners;
         };
         std::transform(difference_.went.begin(), difference_.went.end(), std::back_inserter(went_), cornersOf);
         std::transform(difference_.came.begin(), difference_.came.end(), std::back_inserter(came_), cornersOf);
+        std::vector<std::uint32_t> order(found.size()), rank(found.size());
+        std::iota(order.begin(), order.end(), 0U);
+        std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return found[a] < found[b]; });
+        nodes_.resize(found.size());
+        for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+            rank[order[i]] = i;
+            nodes_[i].vertex = found[order[i]].vertex;
+            nodes_[i].place = found[order[i]].place;
+            nodes_[i].part = i;
+        }
+        for (auto* triangles : {&went_, &came_}) {
+            for (Corners& corners : *triangles) {
+                std::transform(corners.begin(), corners.end(), corners.begin(),
+                               [&rank](std::uint32_t number) { return rank[number]; });
+            }
+        }
     }
 
     void gatherStars() {
