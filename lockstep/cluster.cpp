@@ -47,7 +47,6 @@ Cluster::Cluster(int* argc, char*** argv) {
 
 Cluster::~Cluster() {
     startUpIsOver();
-    bells_.reset();
     for (MPI_Comm* communicator : {&frames_, &arrivals_, &pictures_}) {
         MPI_Comm_free(communicator);
     }

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lockstep/doorbell.hpp"
 
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <linux/futex.h>
+#include <sys/mman.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <climits>
 #include <ctime>
 #include <new>
-#include <numeric>
+#include <random>
+#include <string>
 
 namespace lockstep {
 namespace {
@@ -16,9 +21,33 @@ namespace {
 using Rings = std::atomic<std::uint32_t>;
 static_assert(Rings::is_always_lock_free && sizeof(Rings) == sizeof(std::uint32_t), "a futex is such a number");
 
-constexpr MPI_Aint kApart = 64;  // [byte]: no two bells in one line of a cache
+/// A name that nobody can guess, the same on all ranks.
+std::string agreeOnName() {
+    std::random_device random;
+    std::uint64_t number = std::uint64_t{random()} << 32 | random();
+    MPI_Bcast(&number, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD);
+    return fmt::format("/sandwall-{:016x}", number);
+}
+
+/// Memory of this name, all zero where nobody has opened it before; null where there is no room.
+void* openMemory(const std::string& name, std::size_t bytes) {
+    const int file = shm_open(name.c_str(), O_CREAT | O_RDWR, S_IRUSR | S_IWUSR);
+    if (file < 0) {
+        return nullptr;
+    }
+    // Room is taken here: memory that is there by name alone ends who writes to it when all of it is used.
+    const bool hasRoom = posix_fallocate(file, 0, static_cast<off_t>(bytes)) == 0;
+    void* const memory = hasRoom ? mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0) : MAP_FAILED;
+    close(file);
+    return memory == MAP_FAILED ? nullptr : memory;
+}
 
 }  // namespace
+
+/// No two in one line of a cache.
+struct alignas(64) HostBells::Slot {
+    Rings rings, here;  // here: 1 as soon as its rank has opened this memory
+};
 
 // Not the private kind, which std::atomic's wait() is: that wakes nobody in another process.
 void Doorbell::ring() const {
@@ -34,49 +63,40 @@ bool Doorbell::sleep(std::uint32_t heard, std::int64_t limit) const {
 }
 
 HostBells::HostBells() {
-    int ranks = 0, neighbours = 0, here = 0;
+    int ranks = 0, self = 0;
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    MPI_Comm_rank(MPI_COMM_WORLD, &self);
     bells_.resize(static_cast<std::size_t>(ranks));
-    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &host_);
-    MPI_Comm_size(host_, &neighbours);
-    MPI_Comm_rank(host_, &here);
-    if (neighbours == 1) {
+    const std::string name = agreeOnName();
+    slots_ = static_cast<Slot*>(openMemory(name, bells_.size() * sizeof(Slot)));
+    if (slots_ != nullptr) {
+        new (slots_ + self) Slot{0, 1};  // zeros are a slot whose rank is not here
+    }
+    MPI_Barrier(MPI_COMM_WORLD);
+    shm_unlink(name.c_str());  // by now all have it who can; it goes with the last of them
+    if (slots_ == nullptr) {
         return;
     }
-    // A host without room for shared memory is no reason to end: its ranks ask, as those of several hosts do.
-    MPI_Comm_set_errhandler(host_, MPI_ERRORS_RETURN);
-    void* mine = nullptr;
-    int gotNone =
-        MPI_Win_allocate_shared(kApart, 1, MPI_INFO_NULL, host_, static_cast<void*>(&mine), &memory_) != MPI_SUCCESS;
-    MPI_Allreduce(MPI_IN_PLACE, &gotNone, 1, MPI_INT, MPI_MAX, host_);
-    if (gotNone != 0) {
-        return;
+    for (std::size_t rank = 0; rank < bells_.size(); ++rank) {
+        if (slots_[rank].here.load() != 0) {
+            bells_[rank].emplace(slots_[rank].rings);
+        }
     }
-    new (mine) Rings(0);
-    MPI_Barrier(host_);
-    MPI_Group everyone = MPI_GROUP_NULL, onHost = MPI_GROUP_NULL;
-    MPI_Comm_group(MPI_COMM_WORLD, &everyone);
-    MPI_Comm_group(host_, &onHost);
-    std::vector<int> numbers(static_cast<std::size_t>(neighbours)), names(numbers.size());
-    std::iota(numbers.begin(), numbers.end(), 0);
-    MPI_Group_translate_ranks(onHost, neighbours, numbers.data(), everyone, names.data());
-    for (const int number : numbers) {
-        MPI_Aint size = 0;
-        int unit = 0;
-        void* theirs = nullptr;
-        MPI_Win_shared_query(memory_, number, &size, &unit, static_cast<void*>(&theirs));
-        const auto name = static_cast<std::size_t>(names[static_cast<std::size_t>(number)]);
-        bells_.at(name).emplace(*std::launder(static_cast<Rings*>(theirs)));
+    if (std::count_if(bells_.begin(), bells_.end(), [](const auto& bell) { return bell.has_value(); }) == 1) {
+        release();
     }
-    MPI_Group_free(&everyone);
-    MPI_Group_free(&onHost);
+}
+
+void HostBells::release() {
+    std::fill(bells_.begin(), bells_.end(), std::nullopt);
+    munmap(slots_, bells_.size() * sizeof(Slot));
+    slots_ = nullptr;
 }
 
 HostBells::~HostBells() {
-    if (memory_ != MPI_WIN_NULL) {
-        MPI_Win_free(&memory_);
+    if (slots_ != nullptr) {
+        release();
     }
-    MPI_Comm_free(&host_);
 }
 
 }  // namespace lockstep

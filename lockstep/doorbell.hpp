@@ -32,10 +32,12 @@ private:
 ///
 /// MPI can only be asked whether a message is there, and a dozen ranks that ask on two cores take a fifth of both.
 /// Between ranks of one host whoever sends rings behind its message, and whoever waits sleeps until then. Ranks of
-/// other hosts have no bell here, nor has a rank that is alone on its host, nor any where MPI gives no common memory.
+/// other hosts have no bell here, nor has a rank that is alone on its host, nor any where there is no room in memory.
+///
+/// The memory is the system's and not an MPI window: Open MPI 4.1 dies of one where the ranks of a host talk over TCP.
 class HostBells {
 public:
-    /// Collective, as its end is, which must come before MPI's.
+    /// Collective.
     HostBells();
     ~HostBells();
     HostBells(const HostBells&) = delete;
@@ -45,9 +47,11 @@ public:
     [[nodiscard]] std::optional<Doorbell> of(int rank) const { return bells_.at(static_cast<std::size_t>(rank)); }
 
 private:
+    struct Slot;
+    void release();
+
     std::vector<std::optional<Doorbell>> bells_;  // by rank
-    MPI_Comm host_ = MPI_COMM_NULL;
-    MPI_Win memory_ = MPI_WIN_NULL;
+    Slot* slots_ = nullptr;                       // by rank, of this host
 };
 
 }  // namespace lockstep
