@@ -80,7 +80,8 @@ class PrintedCommands(LauncherTest):
     def test_ranks_that_share_a_host_share_its_cores(self):
         cores = len(os.sched_getaffinity(0))
         self.assertIn(f"LP_NUM_THREADS={cores} ", self.printed(["node1", "node2"]))
-        self.assertIn(f"LP_NUM_THREADS={cores // 2} ", self.printed(["node1", "node2", "node1"]))
+        self.assertIn(f"LP_NUM_THREADS={max(cores // 2, min(cores, 2))} ", self.printed(["node1", "node2", "node1"]))
+        self.assertIn(f"LP_NUM_THREADS={min(cores, 2)} ", self.printed(["node1"] * (2 * cores)))
         self.assertIn("LP_NUM_THREADS=3 ", self.printed(["node1", "node2", "node1"], "--gl-threads", "3"))
 
     def test_variables_are_for_every_rank(self):
