@@ -105,7 +105,7 @@ std::int32_t ActiveEdges::facetAt(const Layer& layer, const Slopes& slopes, std:
     return number;
 }
 
-void ActiveEdges::watch(const Layer& layer, const Slopes& slopes, Weights& weights, Vertex vertex) {
+void ActiveEdges::watch(const Layer& layer, const Slopes& slopes, Vertex vertex) {
     const Triangles& mesh = layer.triangles();
     if (!mesh.alive(vertex) || layer.stars()[index(vertex)] == 0) {
         return;
@@ -117,12 +117,12 @@ void ActiveEdges::watch(const Layer& layer, const Slopes& slopes, Weights& weigh
     sand_.setWatched(index(self), true);
     aroundVertex(mesh, vertex, [&](std::int32_t slot, int) {
         if (!mesh.triangles[index(slot)].hole) {
-            watchTriangle(layer, slopes, weights, slot);
+            static_cast<void>(facetAt(layer, slopes, slot));
         }
     });
 }
 
-void ActiveEdges::watchTriangle(const Layer& layer, const Slopes& slopes, Weights& weights, std::int32_t slot) {
+void ActiveEdges::watchEdges(const Layer& layer, const Slopes& slopes, Weights& weights, std::int32_t slot) {
     const Triangles& mesh = layer.triangles();
     std::uint8_t& watched = noteOfSlot(slot).watched;
     for (int corner = 0; corner < 3 && watched != kAllSides; ++corner) {
@@ -148,8 +148,7 @@ void ActiveEdges::watchTriangle(const Layer& layer, const Slopes& slopes, Weight
     }
 }
 
-// Where nothing has flowed before, a triangle slides from a slope on that is never below the one without slack, and an
-// edge of two triangles that do not slide carries nothing.
+// Where nothing has flowed before, a triangle slides from a slope on that is never below the one without slack.
 bool ActiveEdges::maySlide(const Layer& layer, const Slopes& slopes, std::int32_t slot) {
     const Triangles& mesh = layer.triangles();
     std::array<Place, 3> at;
@@ -169,22 +168,21 @@ bool ActiveEdges::maySlide(const Layer& layer, const Slopes& slopes, std::int32_
 }
 
 /// Both of a vertex' triangles, nearly: there are two for each, and their numbers are often near each other.
-void ActiveEdges::fetch(const Triangles& mesh, const Weights& weights, Vertex vertex) const {
+void ActiveEdges::fetch(const Triangles& mesh, Vertex vertex) const {
     __builtin_prefetch(&ofVertices_[index(vertex)]);
     if (mesh.alive(vertex)) {
         const std::int32_t slot = mesh.triangleAt[index(vertex)];
         __builtin_prefetch(&ofSlots_[index(slot)]);
         __builtin_prefetch(&mesh.triangles[index(slot)]);
-        weights.fetch(vertex, slot);
     }
 }
 
-void ActiveEdges::wake(const Layer& layer, const Slopes& slopes, Weights& weights, std::span<const Vertex> vertices) {
+void ActiveEdges::wake(const Layer& layer, const Slopes& slopes, std::span<const Vertex> vertices) {
     const Triangles& mesh = layer.triangles();
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         const Vertex vertex = vertices[i];
         if (i + kAhead < vertices.size()) {
-            fetch(mesh, weights, vertices[i + kAhead]);
+            fetch(mesh, vertices[i + kAhead]);
         }
         if (!mesh.alive(vertex) || noteOf(vertex).woken == turn_) {
             continue;
@@ -204,7 +202,7 @@ void ActiveEdges::wake(const Layer& layer, const Slopes& slopes, Weights& weight
     // Side by side, so that few of the others are swept as if they were held.
     for (auto* slots : {&steepHeld_, &steep_}) {
         for (const std::int32_t slot : *slots) {
-            watchTriangle(layer, slopes, weights, slot);
+            static_cast<void>(facetAt(layer, slopes, slot));
         }
         slots->clear();
     }
@@ -219,15 +217,19 @@ bool ActiveEdges::isHeld(const Triangle& triangle) {
 // Where no volume changes no height does, and a flux is what it was; but with a band, sand that flows through moves
 // what it touches.
 bool ActiveEdges::sweep(const Layer& layer, const Slopes& slopes, Weights& weights) {
-    const SweepResult result = sand_.sweep(held_ != nullptr, band_);
+    for (const std::int32_t facet : sand_.slide(held_ != nullptr, band_)) {
+        watchEdges(layer, slopes, weights, slots_[index(facet)]);
+        sand_.setBare(index(facet), false);
+    }
+    const SweepResult result = sand_.move(held_ != nullptr);
     if (result.spread || (band_ && result.moved && result.met)) {
         met_.clear();
         sand_.findUnwatched(met_);
         for (std::size_t i = 0; i < met_.size(); ++i) {
             if (i + kAhead < met_.size()) {
-                fetch(layer.triangles(), weights, vertices_[index(met_[i + kAhead])]);
+                fetch(layer.triangles(), vertices_[index(met_[i + kAhead])]);
             }
-            watch(layer, slopes, weights, vertices_[index(met_[i])]);
+            watch(layer, slopes, vertices_[index(met_[i])]);
         }
     }
     const std::int64_t around = std::max(restAround_, static_cast<std::int64_t>(sand_.vertexCount() / kOfVerticesRest));
@@ -249,8 +251,11 @@ bool ActiveEdges::manyRest() const {
     return inVain_ > static_cast<std::int64_t>(kSweepsToForget * sand_.vertexCount());
 }
 
-void ActiveEdges::keepEdges(const std::vector<std::uint8_t>& kept) {
-    if (std::find(kept.begin(), kept.end(), 0) == kept.end()) {
+void ActiveEdges::keep(const MovingSand::Marks& kept) {
+    const auto areAll = [](const std::vector<std::uint8_t>& marks) {
+        return std::find(marks.begin(), marks.end(), 0) == marks.end();
+    };
+    if (areAll(kept.facets) && areAll(kept.edges)) {
         return;
     }
     const auto forget = [this](std::int32_t facet, std::uint8_t bit) {
@@ -259,7 +264,7 @@ void ActiveEdges::keepEdges(const std::vector<std::uint8_t>& kept) {
     };
     std::size_t edges = 0;
     for (std::size_t i = 0; i < bits_.size(); ++i) {
-        if (kept[i] != 0) {
+        if (kept.edges[i] != 0) {
             bits_[edges++] = bits_[i];
             continue;
         }
@@ -268,7 +273,7 @@ void ActiveEdges::keepEdges(const std::vector<std::uint8_t>& kept) {
         forget(edge.rightFacet, bits_[i].right);
     }
     bits_.resize(edges);
-    const MovingSand::Renumbering now = sand_.keepEdges(kept);
+    const MovingSand::Renumbering now = sand_.keep(kept);
     const auto renumber = [](std::vector<std::int32_t>& names, const std::vector<std::int32_t>& by, const auto& local,
                              std::size_t count) {
         for (std::size_t i = 0; i < names.size(); ++i) {
@@ -290,7 +295,7 @@ void ActiveEdges::forgetResting() {
     for (std::size_t i = 0; i < sand_.vertexCount(); ++i) {
         sand_.setWatched(i, sand_.flowed(i));
     }
-    keepEdges(sand_.edgesThatMayFlow());
+    keep(sand_.whatMayFlow());
     restAround_ = sand_.restingCount();
 }
 
@@ -300,36 +305,35 @@ std::vector<Vertex> ActiveEdges::meshChanged(const Mesh::Change& change) {
         noteOf(one.vertex).isHeldBack = !gone;
         return gone;
     });
-    std::vector<std::uint8_t> staleVertices(sand_.vertexCount()), staleFacets(sand_.facetCount());
+    MovingSand::Marks kept{std::vector<std::uint8_t>(sand_.facetCount(), 1),
+                           std::vector<std::uint8_t>(sand_.edgeCount())};
+    std::vector<std::uint8_t> staleVertices(sand_.vertexCount());
     for (const Vertex vertex : change.vertices) {
         if (index(vertex) < ofVertices_.size() && noteOf(vertex).local != kNobody) {
             staleVertices[index(noteOf(vertex).local)] = 1;
         }
     }
+    std::vector<Vertex> corners;
     for (const std::int32_t slot : change.triangles) {
         if (index(slot) < ofSlots_.size() && noteOfSlot(slot).facet != kNobody) {
-            staleFacets[index(noteOfSlot(slot).facet)] = 1;
-        }
-    }
-    std::vector<Vertex> ends;
-    std::vector<std::uint8_t> kept(sand_.edgeCount());
-    for (std::size_t i = 0; i < kept.size(); ++i) {
-        const Edge edge = sand_.edge(i);
-        kept[i] = (staleVertices[index(edge.from)] | staleVertices[index(edge.to)] |
-                   staleFacets[index(edge.leftFacet)] | staleFacets[index(edge.rightFacet)]) == 0;
-        if (kept[i] == 0) {
-            ends.insert(ends.end(), {vertices_[index(edge.from)], vertices_[index(edge.to)]});
-            for (const std::int32_t facet : {edge.leftFacet, edge.rightFacet}) {
-                for (const std::int32_t corner : sand_.facet(facet).corner) {
-                    sand_.setWatched(index(corner), false);
-                }
+            kept.facets[index(noteOfSlot(slot).facet)] = 0;
+            for (const std::int32_t corner : sand_.facet(noteOfSlot(slot).facet).corner) {
+                corners.push_back(vertices_[index(corner)]);
+                sand_.setWatched(index(corner), false);
             }
         }
     }
-    keepEdges(kept);
-    return ends;
+    for (std::size_t i = 0; i < kept.edges.size(); ++i) {
+        const Edge edge = sand_.edge(i);
+        const bool stale = (staleVertices[index(edge.from)] | staleVertices[index(edge.to)]) != 0;
+        kept.edges[i] = stale ? 0 : kept.facets[index(edge.leftFacet)] & kept.facets[index(edge.rightFacet)];
+    }
+    keep(kept);
+    return corners;
 }
 
-void ActiveEdges::clear() { keepEdges(std::vector<std::uint8_t>(sand_.edgeCount(), 0)); }
+void ActiveEdges::clear() {
+    keep({std::vector<std::uint8_t>(sand_.facetCount()), std::vector<std::uint8_t>(sand_.edgeCount())});
+}
 
 }  // namespace sand::tin

@@ -15,10 +15,10 @@ namespace sand::tin {
 
 /// The edges over which sand may flow.
 ///
-/// An edge's flux is a function of the heights of four vertices: its ends and the apices of its two triangles. Whoever
-/// watches the edges around every vertex that flowed in the last sweep has all that can flow in the next; edges watched
-/// beside these find nothing to do. Hence it does not matter which they are, and they are forgotten only now and then.
-/// Not thread-safe.
+/// A triangle slides as the heights of its corners have it, and sand flows over the edges of those that slide. Whoever
+/// watches the triangles around every vertex that flowed in the last sweep has all that can slide in the next; only
+/// when one does are its edges needed. Triangles and edges watched beside these find nothing to do. Hence it does not
+/// matter which they are, and they are forgotten only now and then. Not thread-safe.
 class ActiveEdges {
 public:
     using Underside = std::function<std::int32_t(Place)>;
@@ -30,25 +30,23 @@ public:
     /// Takes the layer's sand as it is now, for a run of sweeps under this obstacle, or none; nothing flows yet.
     /// `band`: sand at rest starts to slide later than sliding sand stops.
     void begin(const Layer& layer, bool band, const Underside* held);
-    /// Watches every edge over which sand may flow in the next sweep because of these vertices: those of triangles
-    /// around them that are steep enough. To be called right after begin().
-    void wake(const Layer& layer, const Slopes& slopes, Weights& weights, std::span<const Vertex> vertices);
-    /// Watches every edge whose flux depends on this vertex.
-    void watch(const Layer& layer, const Slopes& slopes, Weights& weights, Vertex vertex);
+    /// Watches every triangle that may slide in the next sweep because of these vertices: those around them that are
+    /// steep enough. To be called right after begin().
+    void wake(const Layer& layer, const Slopes& slopes, std::span<const Vertex> vertices);
     /// One sweep, which then watches all that it may have set in motion; false when nothing flowed.
     bool sweep(const Layer& layer, const Slopes& slopes, Weights& weights);
     /// Gives the layer its sand, and adds who has another volume now to `moved`.
     void store(Layer& layer, std::vector<Vertex>& moved) const;
     /// Whether so much has been swept in vain since it was forgotten last that to forget it would have paid.
     [[nodiscard]] bool manyRest() const;
-    /// Forgets edges that the last sweep cannot have set in motion. The layer must have got its sand.
+    /// Forgets what the last sweep cannot have set in motion. The layer must have got its sand.
     void forgetResting();
-    /// The mesh is another here: forgets the edges whose flux is no more what it was. Returns their ends, some of which
-    /// may be gone.
+    /// The mesh is another here: forgets what is no more what it was. Returns the corners of triangles that went, some
+    /// of which may be gone.
     [[nodiscard]] std::vector<Vertex> meshChanged(const Mesh::Change& change);
     void clear();
 
-    [[nodiscard]] bool empty() const { return sand_.edgeCount() == 0; }
+    [[nodiscard]] bool empty() const { return sand_.facetCount() == 0; }
     [[nodiscard]] std::size_t size() const { return sand_.edgeCount(); }
 
 private:
@@ -59,15 +57,17 @@ private:
         std::int32_t underside;
     };
 
-    void fetch(const Triangles& mesh, const Weights& weights, Vertex vertex) const;
+    void fetch(const Triangles& mesh, Vertex vertex) const;
     [[nodiscard]] bool isHeld(const Triangle& triangle);  // its corners' undersides are known
     [[nodiscard]] bool maySlide(const Layer& layer, const Slopes& slopes, std::int32_t slot);
-    void watchTriangle(const Layer& layer, const Slopes& slopes, Weights& weights, std::int32_t slot);
+    /// All triangles around a vertex.
+    void watch(const Layer& layer, const Slopes& slopes, Vertex vertex);
+    void watchEdges(const Layer& layer, const Slopes& slopes, Weights& weights, std::int32_t slot);
     void makeRoom(std::size_t vertices, std::size_t slots);
     [[nodiscard]] std::int32_t facetAt(const Layer& layer, const Slopes& slopes, std::int32_t slot);
     [[nodiscard]] std::int32_t localOf(const Layer& layer, Vertex vertex);
     [[nodiscard]] double undersideAt(Vertex vertex, const Place& place);
-    void keepEdges(const std::vector<std::uint8_t>& kept);
+    void keep(const MovingSand::Marks& kept);
 
     /// Of a vertex, and of a slot: all that is asked for at once, for where sand begins to move it is in no cache.
     struct VertexNote {

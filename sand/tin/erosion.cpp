@@ -70,7 +70,7 @@ void Erosion::watchWoken(const Layer& layer) {
         woken_.resize(layer.triangles().places.size());
         std::iota(woken_.begin(), woken_.end(), 0);
     }
-    active_.wake(layer, slopes_, weights_, woken_);
+    active_.wake(layer, slopes_, woken_);
     wakeAll_ = false;
     woken_.clear();
 }

@@ -25,7 +25,7 @@ void keepMarked(const std::vector<std::int32_t>& kept, std::vector<Values>&... a
 }
 
 void note(std::vector<std::uint8_t>& together, std::size_t number, bool held) {
-    together.resize(number / SweepFluxes::kTogether + 1, 0);
+    together.resize(number / kHeldTogether + 1, 0);
     together.back() = together.back() != 0 || held ? 1 : 0;
 }
 
@@ -81,6 +81,7 @@ std::int32_t MovingSand::addFacet(const Facet& facet) {
     squaredAcross_.push_back(facet.second);
     start_.push_back(facet.start);
     sliding_.push_back(0);
+    bare_.push_back(~std::uint64_t{0});
     note(heldFacets_, index(number),
          std::any_of(facet.corner.begin(), facet.corner.end(), [this](std::int32_t corner) { return isHeld(corner); }));
     return number;
@@ -102,9 +103,9 @@ void MovingSand::findHeld() {
     std::transform(undersides_.begin(), undersides_.end(), held.begin(),
                    [](double underside) { return underside < kFree ? 1 : 0; });
     const auto find = [](std::vector<std::uint8_t>& together, std::size_t count, const auto& isHeld) {
-        together.assign(count / SweepFluxes::kTogether + 1, 0);
+        together.assign(count / kHeldTogether + 1, 0);
         for (std::size_t i = 0; i < count; ++i) {
-            together[i / SweepFluxes::kTogether] |= isHeld(i);
+            together[i / kHeldTogether] |= isHeld(i);
         }
     };
     find(heldFacets_, facetCount(), [&](std::size_t i) -> std::uint8_t {
@@ -119,18 +120,20 @@ std::int64_t MovingSand::restingCount() const {
     return std::count_if(levels_.begin(), levels_.end(), [](const Level& level) { return !(level.flow > 0); });
 }
 
-std::vector<std::uint8_t> MovingSand::edgesThatMayFlow() const {
-    std::vector<std::uint8_t> flows(vertexCount()), besides(facetCount()), edges(edgeCount());
+MovingSand::Marks MovingSand::whatMayFlow() const {
+    std::vector<std::uint8_t> flows(vertexCount()), slides(facetCount());
+    Marks marks{std::vector<std::uint8_t>(facetCount()), std::vector<std::uint8_t>(edgeCount())};
     for (std::size_t i = 0; i < flows.size(); ++i) {
         flows[i] = flowed(i) ? 1 : 0;
     }
-    for (std::size_t i = 0; i < besides.size(); ++i) {
-        besides[i] = flows[index(first_[i])] | flows[index(second_[i])] | flows[index(third_[i])];
+    for (std::size_t i = 0; i < slides.size(); ++i) {
+        marks.facets[i] = flows[index(first_[i])] | flows[index(second_[i])] | flows[index(third_[i])];
+        slides[i] = sliding_[i] > 0 ? marks.facets[i] : 0;
     }
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-        edges[i] = besides[index(left_[i])] | besides[index(right_[i])];
+    for (std::size_t i = 0; i < marks.edges.size(); ++i) {
+        marks.edges[i] = slides[index(left_[i])] | slides[index(right_[i])];
     }
-    return edges;
+    return marks;
 }
 
 Facet MovingSand::facet(std::int32_t number) const {
@@ -176,17 +179,15 @@ void MovingSand::findUnwatched(std::vector<std::int32_t>& found) const {
     }
 }
 
-SweepResult MovingSand::sweep(bool held, bool band) {
-    inflow_.resize(2 * vertexCount());
+std::span<const std::int32_t> MovingSand::slide(bool held, bool band) {
     if (held && !heldKnown_) {
         findHeld();
     }
-    const SweepFluxes sweep{.facets = facetCount(),
-                            .edges = edgeCount(),
+    slidBare_.resize(facetCount());
+    const SweepFacets sweep{.facets = facetCount(),
                             .levels = levels_.data(),
                             .undersides = undersides_.data(),
-                            .heldFacets = held ? heldFacets_.data() : nullptr,
-                            .heldEdges = held ? heldEdges_.data() : nullptr,
+                            .held = held ? heldFacets_.data() : nullptr,
                             .first = first_.data(),
                             .second = second_.data(),
                             .third = third_.data(),
@@ -194,15 +195,27 @@ SweepResult MovingSand::sweep(bool held, bool band) {
                             .mixed = mixed_.data(),
                             .squaredAcross = squaredAcross_.data(),
                             .start = band ? start_.data() : nullptr,
+                            .bare = bare_.data(),
                             .sliding = sliding_.data(),
-                            .from = from_.data(),
-                            .to = to_.data(),
-                            .left = left_.data(),
-                            .right = right_.data(),
-                            .leftWeights = leftWeights_.data(),
-                            .rightWeights = rightWeights_.data(),
-                            .fluxes = fluxes_.data()};
-    v3_ ? v3::sweepFluxes(sweep) : baseline::sweepFluxes(sweep);
+                            .slidBare = slidBare_.data()};
+    return {slidBare_.data(), v3_ ? v3::slideFacets(sweep) : baseline::slideFacets(sweep)};
+}
+
+SweepResult MovingSand::move(bool held) {
+    inflow_.resize(2 * vertexCount());
+    const SweepEdges sweep{.edges = edgeCount(),
+                           .levels = levels_.data(),
+                           .undersides = undersides_.data(),
+                           .held = held ? heldEdges_.data() : nullptr,
+                           .sliding = sliding_.data(),
+                           .from = from_.data(),
+                           .to = to_.data(),
+                           .left = left_.data(),
+                           .right = right_.data(),
+                           .leftWeights = leftWeights_.data(),
+                           .rightWeights = rightWeights_.data(),
+                           .fluxes = fluxes_.data()};
+    v3_ ? v3::flowOverEdges(sweep) : baseline::flowOverEdges(sweep);
     if (isWide_) {
         return moveWide();
     }
@@ -243,14 +256,20 @@ SweepResult MovingSand::moveWide() {
     return result;
 }
 
-MovingSand::Renumbering MovingSand::keepEdges(const std::vector<std::uint8_t>& kept) {
+MovingSand::Renumbering MovingSand::keep(const Marks& kept) {
     Renumbering now{std::vector<std::int32_t>(vertexCount(), kNobody),
                     std::vector<std::int32_t>(facetCount(), kNobody)};
     std::vector<std::int32_t> edges(edgeCount(), kNobody);
+    for (std::size_t i = 0; i < facetCount(); ++i) {
+        now.facets[i] = kept.facets[i] != 0 ? 0 : kNobody;
+    }
     for (std::size_t i = 0; i < edgeCount(); ++i) {
-        if (kept[i] != 0) {
+        if (kept.edges[i] != 0) {
             edges[i] = 0;
             now.facets[index(left_[i])] = now.facets[index(right_[i])] = 0;
+        } else {
+            setBare(index(left_[i]), true);
+            setBare(index(right_[i]), true);
         }
     }
     for (std::size_t i = 0; i < facetCount(); ++i) {
@@ -261,7 +280,7 @@ MovingSand::Renumbering MovingSand::keepEdges(const std::vector<std::uint8_t>& k
     // Fluxes and slides are of the next sweep again.
     keepMarked(numberMarked(edges), from_, to_, left_, right_, leftWeights_, rightWeights_);
     fluxes_.resize(edgeCount());
-    keepMarked(numberMarked(now.facets), first_, second_, third_, squared_, mixed_, squaredAcross_, start_);
+    keepMarked(numberMarked(now.facets), first_, second_, third_, squared_, mixed_, squaredAcross_, start_, bare_);
     sliding_.resize(first_.size());
     keepMarked(numberMarked(now.vertices), volumes_, stars_, levels_, undersides_, unwatched_, wide_);
     const auto renumber = [](std::vector<std::int32_t>& names, const std::vector<std::int32_t>& by) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "sand/code_path.hpp"
@@ -44,22 +45,33 @@ public:
     void setWatched(std::size_t vertex, bool watched) { unwatched_[vertex] = watched ? 0 : ~std::uint64_t{0}; }
     [[nodiscard]] bool isWatched(std::size_t vertex) const { return unwatched_[vertex] == 0; }
 
-    /// One sweep; `held`: undersides hold; `band`: facets at rest start to slide later than sliding ones stop.
-    SweepResult sweep(bool held, bool band);
+    /// Told of a facet whose edges are all here, and of one that misses some (as all do at first).
+    void setBare(std::size_t facet, bool bare) { bare_[facet] = bare ? ~std::uint64_t{0} : 0; }
+
+    /// The first half of a sweep: how strongly facets slide. `held`: undersides hold; `band`: facets at rest start to
+    /// slide later than sliding ones stop. Those that slide though they miss edges, over which sand may flow in move();
+    /// until the next half.
+    [[nodiscard]] std::span<const std::int32_t> slide(bool held, bool band);
+    /// The second half: what flows over the edges.
+    SweepResult move(bool held);
     /// Whether sand flowed at one of a vertex's edges in the last sweep.
     [[nodiscard]] bool flowed(std::size_t vertex) const { return levels_[vertex].flow > 0; }
     [[nodiscard]] std::int64_t restingCount() const;
-    /// A byte for each edge: whether sand flowed beside one of its facets, so that it may flow there in the next sweep.
-    [[nodiscard]] std::vector<std::uint8_t> edgesThatMayFlow() const;
+    /// A byte for each.
+    struct Marks {
+        std::vector<std::uint8_t> facets, edges;
+    };
+    /// Facets at which sand flowed, so that they may slide in the next sweep, and the edges of those that slid.
+    [[nodiscard]] Marks whatMayFlow() const;
     /// Adds the vertices whose edges are not all here though sand flowed at one.
     void findUnwatched(std::vector<std::int32_t>& found) const;
 
-    /// Where facets and vertices are after some edges went; kNobody: no edge needs it any more.
+    /// Where facets and vertices are after some went; kNobody: nobody needs it any more.
     struct Renumbering {
         std::vector<std::int32_t> vertices, facets;
     };
-    /// Keeps these edges (a byte each) and what they need, in the order in which they are.
-    Renumbering keepEdges(const std::vector<std::uint8_t>& kept);
+    /// Keeps these facets and edges and what they need, in the order in which they are.
+    Renumbering keep(const Marks& kept);
 
 private:
     void notice(std::int64_t volume, std::int64_t star);
@@ -80,9 +92,11 @@ private:
     std::vector<std::int64_t> wide_, wideInflow_;
     std::vector<std::int32_t> first_, second_, third_;  // by facet
     std::vector<double> squared_, mixed_, squaredAcross_, start_, sliding_;
+    std::vector<std::uint64_t> bare_;
+    std::vector<std::int32_t> slidBare_;                  // of the last slide()
     std::vector<std::int32_t> from_, to_, left_, right_;  // by edge
     std::vector<double> leftWeights_, rightWeights_, fluxes_;
-    std::vector<std::uint8_t> heldFacets_, heldEdges_;  // SweepFluxes'
+    std::vector<std::uint8_t> heldFacets_, heldEdges_;  // by kHeldTogether of them
     bool heldKnown_ = true;                             // those are up to date
 };
 

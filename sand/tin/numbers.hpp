@@ -24,16 +24,17 @@ public:
         if (at >= turns_.size()) {
             turns_.resize(at + at / 2 + 1, 0);
         }
+        return insertReserved(number);
+    }
+    /// The same for a number below what was reserved.
+    bool insertReserved(std::int32_t number) {
+        const auto at = static_cast<std::size_t>(number);
         const bool isNew = turns_[at] != turn_;
         turns_[at] = turn_;
         return isNew;
     }
-    /// Somebody will ask for it soon; any number will do.
-    void fetch(std::int32_t number) const {
-        if (const auto at = static_cast<std::size_t>(number); at < turns_.size()) {
-            __builtin_prefetch(&turns_[at]);
-        }
-    }
+    /// Somebody will ask for it soon.
+    void fetchReserved(std::int32_t number) const { __builtin_prefetch(turns_.data() + number); }
 
 private:
     std::vector<std::uint32_t> turns_;  // in which it was put in last

@@ -57,9 +57,17 @@ Number leaningOn(Number height, Number underside, Number one, Number other) {
     return height > underside - 1 ? leans : height;
 }
 
-/// Facets from i on: as many as Number has.
-template <bool kHeld, bool kBand, class Number>
-[[gnu::always_inline]] inline void slide(const SweepFluxes& s, std::size_t i) {
+using Bits [[gnu::vector_size(4 * sizeof(std::int64_t))]] = std::int64_t;  // as many as Four
+
+bool isAny(std::int64_t bits) { return bits != 0; }
+bool isAny(const Bits& bits) {
+    const auto two = __builtin_shufflevector(bits, bits, 0, 1) | __builtin_shufflevector(bits, bits, 2, 3);
+    return (two[0] | two[1]) != 0;
+}
+
+/// Facets from i on: as many as Number has. Returns whether one slides that is bare.
+template <bool kHeld, bool kBand, class Number, class Mask>
+[[gnu::always_inline]] inline bool slide(const SweepFacets& s, std::size_t i) {
     const auto [a, aFlow] = cornerOf<Number>(s.levels, s.first + i);
     const auto [b, bFlow] = cornerOf<Number>(s.levels, s.second + i);
     const auto [c, cFlow] = cornerOf<Number>(s.levels, s.third + i);
@@ -80,18 +88,30 @@ template <bool kHeld, bool kBand, class Number>
     }
     const Number sliding = steepness > rest ? push : none;
     std::memcpy(s.sliding + i, &sliding, sizeof(Number));
+    Mask bare;
+    std::memcpy(&bare, s.bare + i, sizeof(Mask));
+    return isAny(steepness > rest ? bare : Mask{});
 }
 
+/// Returns the end of what it found.
 template <bool kHeld, bool kBand>
-void slideAll(const SweepFluxes& sweep, std::size_t begin, std::size_t end) {
-    const SweepFluxes s = sweep;  // a copy that nobody else can write to stays in registers
+std::int32_t* slideAll(const SweepFacets& sweep, std::size_t begin, std::size_t end, std::int32_t* found) {
+    const SweepFacets s = sweep;  // a copy that nobody else can write to stays in registers
     std::size_t i = begin;
     for (; i + 4 <= end; i += 4) {
-        slide<kHeld, kBand, Four>(s, i);
+        if (slide<kHeld, kBand, Four, Bits>(s, i)) [[unlikely]] {
+            for (std::size_t k = i; k < i + 4; ++k) {
+                *found = static_cast<std::int32_t>(k);
+                found += s.bare[k] != 0 && s.sliding[k] > 0 ? 1 : 0;
+            }
+        }
     }
     for (; i < end; ++i) {
-        slide<kHeld, kBand, double>(s, i);
+        if (slide<kHeld, kBand, double, std::int64_t>(s, i)) {
+            *found++ = static_cast<std::int32_t>(i);
+        }
     }
+    return found;
 }
 
 template <bool kHeld>
@@ -115,7 +135,7 @@ void flow(std::size_t count, const Level* __restrict levels, const double* __res
 }
 
 template <bool kHeld>
-void flowAll(const SweepFluxes& s, std::size_t begin, std::size_t end) {
+void flowAll(const SweepEdges& s, std::size_t begin, std::size_t end) {
     flow<kHeld>(end - begin, s.levels, s.undersides, s.from + begin, s.to + begin, s.left + begin, s.right + begin,
                 s.leftWeights + begin, s.rightWeights + begin, s.sliding, s.fluxes + begin);
 }
@@ -123,12 +143,11 @@ void flowAll(const SweepFluxes& s, std::size_t begin, std::size_t end) {
 /// Calls work(held, begin, end) for what lies below an obstacle and for what does not, each in as few parts as may be.
 template <class Work>
 void inParts(std::size_t count, const std::uint8_t* held, const Work& work) {
-    constexpr std::size_t kTogether = SweepFluxes::kTogether;
     for (std::size_t begin = 0; begin < count;) {
-        const bool isHeld = held != nullptr && held[begin / kTogether] != 0;
-        std::size_t end = begin + kTogether;
-        while (end < count && isHeld == (held != nullptr && held[end / kTogether] != 0)) {
-            end += kTogether;
+        const bool isHeld = held != nullptr && held[begin / kHeldTogether] != 0;
+        std::size_t end = begin + kHeldTogether;
+        while (end < count && isHeld == (held != nullptr && held[end / kHeldTogether] != 0)) {
+            end += kHeldTogether;
         }
         end = std::min(end, count);
         work(isHeld, begin, end);
@@ -178,16 +197,21 @@ SweepResult settleUp(std::size_t count, const double* __restrict sums, const dou
 
 }  // namespace
 
-void sweepFluxes(const SweepFluxes& s) {
+std::size_t slideFacets(const SweepFacets& s) {
     const bool band = s.start != nullptr;
-    inParts(s.facets, s.heldFacets, [&](bool held, std::size_t begin, std::size_t end) {
+    std::int32_t* found = s.slidBare;
+    inParts(s.facets, s.held, [&](bool held, std::size_t begin, std::size_t end) {
         if (held) {
-            band ? slideAll<true, true>(s, begin, end) : slideAll<true, false>(s, begin, end);
+            found = band ? slideAll<true, true>(s, begin, end, found) : slideAll<true, false>(s, begin, end, found);
         } else {
-            band ? slideAll<false, true>(s, begin, end) : slideAll<false, false>(s, begin, end);
+            found = band ? slideAll<false, true>(s, begin, end, found) : slideAll<false, false>(s, begin, end, found);
         }
     });
-    inParts(s.edges, s.heldEdges, [&](bool held, std::size_t begin, std::size_t end) {
+    return static_cast<std::size_t>(found - s.slidBare);
+}
+
+void flowOverEdges(const SweepEdges& s) {
+    inParts(s.edges, s.held, [&](bool held, std::size_t begin, std::size_t end) {
         held ? flowAll<true>(s, begin, end) : flowAll<false>(s, begin, end);
     });
 }

@@ -20,22 +20,34 @@ struct Level {
     double flow = 0;    // what flowed at its edges in the sweep before, in and out
 };
 
-/// One sweep over facets and edges (weights.hpp), each kind of number in an array of its own; corners, ends and facets
-/// by their place in these arrays. Nothing overlaps.
-struct SweepFluxes {
-    std::size_t facets, edges;
+// Facets, or edges, of which is known together whether an obstacle is over one.
+inline constexpr std::size_t kHeldTogether = 16;
+
+/// How strongly facets slide (weights.hpp), each kind of number in an array of its own; corners by their place in the
+/// arrays of vertices. Nothing overlaps.
+struct SweepFacets {
+    std::size_t facets;
     const Level* levels;                            // by vertex
     const double* undersides;                       // by vertex [unit]
-    const std::uint8_t *heldFacets, *heldEdges;     // by kTogether of them: an obstacle is over some; null without one
+    const std::uint8_t* held;                       // by kHeldTogether: an obstacle is over some; null without one
     const std::int32_t *first, *second, *third;     // by facet: its corners
     const double *squared, *mixed, *squaredAcross;  // by facet: Facet's first, mixed, second
     const double* start;  // by facet: the steepness from which on it slides where nothing flows; null: kRest as ever
-    double* sliding;      // by facet: how strongly it slides, 0 to 1; written
+    const std::uint64_t* bare;  // by facet: all bits, or none
+    double* sliding;            // by facet: how strongly it slides, 0 to 1; written
+    std::int32_t* slidBare;     // those that slide and are bare, in order; written
+};
+
+/// What flows over edges: ends and facets by their place in those arrays.
+struct SweepEdges {
+    std::size_t edges;
+    const Level* levels;                           // by vertex
+    const double* undersides;                      // by vertex [unit]
+    const std::uint8_t* held;                      // by kHeldTogether: an obstacle is over some; null without one
+    const double* sliding;                         // by facet
     const std::int32_t *from, *to, *left, *right;  // by edge: ends and facets
     const double *leftWeights, *rightWeights;      // by edge [probe unit²]
     double* fluxes;                                // by edge: volume from `from` to `to`, whole; written
-
-    static constexpr std::size_t kTogether = 16;
 };
 
 /// What the fluxes make of the sand: volumes, whole numbers below 2^53 as all their sums are, and heights.
@@ -66,11 +78,13 @@ struct SweepResult {
 
 // One source, compiled twice (sand/tin/CMakeLists.txt): the same numbers, bit for bit.
 namespace baseline {
-void sweepFluxes(const SweepFluxes& sweep);
+std::size_t slideFacets(const SweepFacets& sweep);  // returns how many slidBare are
+void flowOverEdges(const SweepEdges& sweep);
 SweepResult moveSand(const SweepSand& sand);
 }  // namespace baseline
 namespace v3 {
-void sweepFluxes(const SweepFluxes& sweep);
+std::size_t slideFacets(const SweepFacets& sweep);
+void flowOverEdges(const SweepEdges& sweep);
 SweepResult moveSand(const SweepSand& sand);
 }  // namespace v3
 

@@ -105,8 +105,10 @@ private:
 template <class Visit>
 void aroundVertex(const Triangles& mesh, Vertex vertex, const Visit& visit) {
     const auto cornerOf = [vertex](const Triangle& triangle) {
-        return triangle.corner[0] == vertex ? 0 : triangle.corner[1] == vertex ? 1 : 2;
+        // Without a branch: which it is nobody can foretell.
+        return static_cast<int>(triangle.corner[1] == vertex) + 2 * static_cast<int>(triangle.corner[2] == vertex);
     };
+    constexpr std::array<std::uint8_t, 5> kTurned{0, 1, 2, 0, 1};
     const std::int32_t first = mesh.triangleAt[static_cast<std::size_t>(vertex)];
     for (const int turn : {1, 2}) {  // counter-clockwise until it closes or meets the rim, then the other way
         std::int32_t slot = first;
@@ -116,7 +118,7 @@ void aroundVertex(const Triangles& mesh, Vertex vertex, const Visit& visit) {
             if (turn == 1 || slot != first) {
                 visit(slot, corner);
             }
-            slot = triangle.neighbour[static_cast<std::size_t>((corner + turn) % 3)];
+            slot = triangle.neighbour[kTurned[static_cast<std::size_t>(corner + turn)]];
         } while (slot != kNobody && slot != first);
         if (slot == first) {
             return;

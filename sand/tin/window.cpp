@@ -13,6 +13,7 @@ Box around(const std::array<Place, 3>& corners) {
     return {std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})};
 }
 
+constexpr std::size_t kRoom = 1024;    // slots, to begin with
 constexpr std::size_t kWordsEach = 4;  // a word read costs as much as a step of a sort
 
 bool overlap(const Box& a, const Box& b) { return a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 && b.y0 <= a.y1; }
@@ -46,16 +47,16 @@ void sortOnce(std::vector<std::int32_t>& numbers) {
 }
 
 // Where a tool comes down nothing is in any cache, and each triangle tells where the next are.
-void Window::fetchAhead(const Triangles& mesh, std::size_t next) const {
+void Window::fetchAhead(const Triangles& mesh, std::size_t next, std::size_t end) const {
     constexpr std::size_t kFar = 16, kNear = 8;  // triangles, until they are looked at
-    if (next + kFar < found_.size()) {
+    if (next + kFar < end) {
         __builtin_prefetch(&mesh.triangles[static_cast<std::size_t>(found_[next + kFar])]);
     }
-    if (next + kNear < found_.size()) {
+    if (next + kNear < end) {
         const Triangle& soon = mesh.triangles[static_cast<std::size_t>(found_[next + kNear])];
         for (std::size_t k = 0; k < 3; ++k) {
             __builtin_prefetch(&mesh.places[static_cast<std::size_t>(soon.corner[k])]);
-            seen_.fetch(soon.neighbour[k]);
+            seen_.fetchReserved(soon.neighbour[k]);
             __builtin_prefetch(&mesh.triangleAt[static_cast<std::size_t>(soon.corner[k])]);
         }
     }
@@ -75,27 +76,41 @@ void Window::look(const Triangles& mesh, const Box& wanted) {
     const auto slots = static_cast<std::int32_t>(mesh.triangles.size());
     const bool known = last_ >= 0 && last_ < slots && mesh.triangles[static_cast<std::size_t>(last_)].alive();
     last_ = locate(mesh, middle, known ? last_ : kNobody).triangle;
-    found_.assign(1, last_);
+    seen_.reserve(mesh.triangles.size());
     seen_.insert(last_);
-    for (std::size_t next = 0; next < found_.size(); ++next) {
-        fetchAhead(mesh, next);
-        const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(found_[next])];
+    // What is new is written without asking, and counted: which of a triangle's it is nobody can foretell.
+    std::size_t end = 0, count = 0;
+    const auto makeRoom = [](std::vector<std::int32_t>& all, std::size_t used) {
+        if (all.size() < used + 3) {
+            all.resize(2 * used + kRoom);
+        }
+    };
+    makeRoom(found_, end);
+    found_[end++] = last_;
+    for (std::size_t next = 0; next < end; ++next) {
+        fetchAhead(mesh, next, end);
+        const std::int32_t slot = found_[next];
+        const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(slot)];
         const auto at = [&](std::size_t k) { return mesh.places[static_cast<std::size_t>(triangle.corner[k])]; };
         const std::array places{at(0), at(1), at(2)};
         if (!overlap(around(places), box)) {
             continue;
         }
-        triangles_.push_back(found_[next]);
+        triangles_.push_back(slot);
+        makeRoom(found_, end);
+        makeRoom(vertices_, count);
         for (std::size_t k = 0; k < 3; ++k) {
             // One of its triangles is the vertex' own, and is found: it reaches into the box, as the vertex does.
-            if (box.holds(places[k]) && mesh.triangleAt[static_cast<std::size_t>(triangle.corner[k])] == found_[next]) {
-                vertices_.push_back(triangle.corner[k]);
-            }
-            if (triangle.neighbour[k] != kNobody && seen_.insert(triangle.neighbour[k])) {
-                found_.push_back(triangle.neighbour[k]);
+            const bool own = mesh.triangleAt[static_cast<std::size_t>(triangle.corner[k])] == slot;
+            vertices_[count] = triangle.corner[k];
+            count += static_cast<std::size_t>(own) & static_cast<std::size_t>(box.holds(places[k]));
+            if (triangle.neighbour[k] != kNobody) {
+                found_[end] = triangle.neighbour[k];
+                end += static_cast<std::size_t>(seen_.insertReserved(triangle.neighbour[k]));
             }
         }
     }
+    vertices_.resize(count);
     sortOnce(vertices_);
 }
 

@@ -55,13 +55,13 @@ public:
     [[nodiscard]] const std::vector<std::int32_t>& triangles() const { return triangles_; }
 
 private:
-    void fetchAhead(const Triangles& mesh, std::size_t next) const;
+    void fetchAhead(const Triangles& mesh, std::size_t next, std::size_t end) const;
 
     Box box_;
     std::vector<Vertex> vertices_, stay_, come_;
-    std::vector<std::int32_t> triangles_, found_;
-    std::int32_t last_ = kNobody;  // where to begin: only for speed
-    NumberSet seen_;               // slots
+    std::vector<std::int32_t> triangles_, found_;  // found_: as many as room is for
+    std::int32_t last_ = kNobody;                  // where to begin: only for speed
+    NumberSet seen_;                               // slots
 };
 
 /// The vertices around one that lies inside the field, counter-clockwise from the smallest number, and whether any of
