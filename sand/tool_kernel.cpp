@@ -14,10 +14,11 @@ void undersidesOfSphere(const SphereRow& row, std::int32_t* __restrict underside
     const auto most = static_cast<double>(row.square), centre = static_cast<double>(row.centre);
     const auto first = static_cast<double>(row.first);
     constexpr double kHighest = kMaxHeight;
+    constexpr std::int32_t kUnitsPerProbe = kUnitsPerCell / kProbePerCell;
     for (int i = 0; i < row.count; ++i) {
         const double x = first + kProbePerCell * static_cast<double>(i);
         const double square = most - x * x;
-        const double below = std::sqrt(std::max(square, 0.0)) * (kUnitsPerCell / kProbePerCell);
+        const double below = std::sqrt(std::max(square, 0.0)) * kUnitsPerProbe;
         const double under = centre - static_cast<double>(static_cast<std::int32_t>(below));
         const auto underside = static_cast<std::int32_t>(std::min(std::max(under, -kHighest), kHighest));
         undersides[i] = square > 0 ? underside : TurnedShape::kFree;

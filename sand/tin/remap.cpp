@@ -26,6 +26,7 @@ std::int64_t areaOf(const Mesh::Piece& piece) { return doubledArea(piece.place[0
 struct Key {
     Vertex vertex = kNobody;
     Place place;
+    // clang-tidy 14 complains of the 0 it finds in here itself. NOLINTNEXTLINE(modernize-use-nullptr)
     friend auto operator<=>(const Key&, const Key&) = default;
 };
 
