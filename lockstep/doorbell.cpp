@@ -18,8 +18,8 @@
 namespace lockstep {
 namespace {
 
-using Rings = std::atomic<std::uint32_t>;
-static_assert(Rings::is_always_lock_free && sizeof(Rings) == sizeof(std::uint32_t), "a futex is such a number");
+using Number = std::atomic<std::uint32_t>;
+static_assert(Number::is_always_lock_free && sizeof(Number) == sizeof(std::uint32_t), "a futex is such a number");
 
 /// A name that nobody can guess, the same on all ranks.
 std::string agreeOnName() {
@@ -46,7 +46,7 @@ void* openMemory(const std::string& name, std::size_t bytes) {
 
 /// No two in one line of a cache.
 struct alignas(64) HostBells::Slot {
-    Rings rings, here;  // here: 1 as soon as its rank has opened this memory
+    Number rings, here;  // here: 1 as soon as its rank has opened this memory
 };
 
 // Not the private kind, which std::atomic's wait() is: that wakes nobody in another process.

@@ -110,11 +110,11 @@ Tool::Displacement Tool::press(HeightField& field, Rim rim, const Ground* ground
                                const Offset& ahead) const {
     const Rect cells = this->cells(field, at);
     std::vector<std::int32_t> lowest(static_cast<std::size_t>(std::max(cells.x1 - cells.x0, 0)));  // of a row
+    const auto above = v3_ ? v3::sandAbove : baseline::sandAbove;
     std::int64_t taken = 0;
     std::vector<int> cuts;  // rows: a tool that is dragged cuts few
     for (int y = cells.y0; y < cells.y1; ++y) {
         findLowest(ground, at, cells.x0, y, lowest);
-        const auto above = v3_ ? v3::sandAbove : baseline::sandAbove;
         if (const std::int64_t more = above(lowest.data(), field.row(y) + cells.x0, cells.x1 - cells.x0); more > 0) {
             taken += more;
             cuts.push_back(y);

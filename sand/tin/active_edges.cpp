@@ -8,13 +8,10 @@ namespace sand::tin {
 namespace {
 
 constexpr double kSurelyRests = 0.999;      // of a steepness of 1: kRest is above it, and roundings are far smaller
-constexpr std::size_t kSweepsToForget = 5;  // of all sand: what it costs to forget some of it
 constexpr std::size_t kOfVerticesRest = 6;  // around what flows a ring lies still: at least so much of a lump
 constexpr std::uint8_t kAllSides = 7;       // the bits of all
 constexpr std::size_t kAhead = 8;           // vertices, from what is fetched to what is woken
 constexpr std::int32_t kNoUnderside = std::numeric_limits<std::int32_t>::max();
-
-std::size_t index(std::int32_t number) { return static_cast<std::size_t>(number); }
 
 /// A bit for a side, its corner counted from the triangle's smallest vertex on: a slot may turn its corners unnoticed.
 std::uint8_t bitOf(const Triangles& mesh, Side side) {
@@ -167,7 +164,7 @@ bool ActiveEdges::maySlide(const Layer& layer, const Slopes& slopes, std::int32_
     return !(gx * gx + gy * gy < kSurelyRests * steepest * steepest);
 }
 
-/// Both of a vertex' triangles, nearly: there are two for each, and their numbers are often near each other.
+/// What is asked for first where a vertex is woken or watched, of itself and of a triangle beside it.
 void ActiveEdges::fetch(const Triangles& mesh, Vertex vertex) const {
     __builtin_prefetch(&ofVertices_[index(vertex)]);
     if (mesh.alive(vertex)) {
@@ -245,95 +242,6 @@ void ActiveEdges::store(Layer& layer, std::vector<Vertex>& moved) const {
             moved.push_back(vertex);
         }
     }
-}
-
-bool ActiveEdges::manyRest() const {
-    return inVain_ > static_cast<std::int64_t>(kSweepsToForget * sand_.vertexCount());
-}
-
-void ActiveEdges::keep(const MovingSand::Marks& kept) {
-    const auto areAll = [](const std::vector<std::uint8_t>& marks) {
-        return std::find(marks.begin(), marks.end(), 0) == marks.end();
-    };
-    if (areAll(kept.facets) && areAll(kept.edges)) {
-        return;
-    }
-    const auto forget = [this](std::int32_t facet, std::uint8_t bit) {
-        std::uint8_t& watched = noteOfSlot(slots_[index(facet)]).watched;
-        watched = static_cast<std::uint8_t>(watched & ~bit);
-    };
-    std::size_t edges = 0;
-    for (std::size_t i = 0; i < bits_.size(); ++i) {
-        if (kept.edges[i] != 0) {
-            bits_[edges++] = bits_[i];
-            continue;
-        }
-        const Edge edge = sand_.edge(i);
-        forget(edge.leftFacet, bits_[i].left);
-        forget(edge.rightFacet, bits_[i].right);
-    }
-    bits_.resize(edges);
-    const MovingSand::Renumbering now = sand_.keep(kept);
-    const auto renumber = [](std::vector<std::int32_t>& names, const std::vector<std::int32_t>& by, const auto& local,
-                             std::size_t count) {
-        for (std::size_t i = 0; i < names.size(); ++i) {
-            local(names[i]) = by[i];
-            if (by[i] != kNobody) {
-                names[index(by[i])] = names[i];
-            }
-        }
-        names.resize(count);
-    };
-    const auto localOf = [this](Vertex vertex) -> std::int32_t& { return noteOf(vertex).local; };
-    const auto facetOf = [this](std::int32_t slot) -> std::int32_t& { return noteOfSlot(slot).facet; };
-    renumber(vertices_, now.vertices, localOf, sand_.vertexCount());
-    renumber(slots_, now.facets, facetOf, sand_.facetCount());
-}
-
-void ActiveEdges::forgetResting() {
-    inVain_ = 0;
-    for (std::size_t i = 0; i < sand_.vertexCount(); ++i) {
-        sand_.setWatched(i, sand_.flowed(i));
-    }
-    keep(sand_.whatMayFlow());
-    restAround_ = sand_.restingCount();
-}
-
-std::vector<Vertex> ActiveEdges::meshChanged(const Mesh::Change& change) {
-    std::erase_if(heldBack_, [&](const Held& one) {
-        const bool gone = std::binary_search(change.vertices.begin(), change.vertices.end(), one.vertex);
-        noteOf(one.vertex).isHeldBack = !gone;
-        return gone;
-    });
-    MovingSand::Marks kept{std::vector<std::uint8_t>(sand_.facetCount(), 1),
-                           std::vector<std::uint8_t>(sand_.edgeCount())};
-    std::vector<std::uint8_t> staleVertices(sand_.vertexCount());
-    for (const Vertex vertex : change.vertices) {
-        if (index(vertex) < ofVertices_.size() && noteOf(vertex).local != kNobody) {
-            staleVertices[index(noteOf(vertex).local)] = 1;
-        }
-    }
-    std::vector<Vertex> corners;
-    for (const std::int32_t slot : change.triangles) {
-        if (index(slot) < ofSlots_.size() && noteOfSlot(slot).facet != kNobody) {
-            kept.facets[index(noteOfSlot(slot).facet)] = 0;
-            for (const std::int32_t corner : sand_.facet(noteOfSlot(slot).facet).corner) {
-                corners.push_back(vertices_[index(corner)]);
-                sand_.setWatched(index(corner), false);
-            }
-        }
-    }
-    for (std::size_t i = 0; i < kept.edges.size(); ++i) {
-        const Edge edge = sand_.edge(i);
-        const bool stale = (staleVertices[index(edge.from)] | staleVertices[index(edge.to)]) != 0;
-        kept.edges[i] = stale ? 0 : kept.facets[index(edge.leftFacet)] & kept.facets[index(edge.rightFacet)];
-    }
-    keep(kept);
-    return corners;
-}
-
-void ActiveEdges::clear() {
-    keep({std::vector<std::uint8_t>(sand_.facetCount()), std::vector<std::uint8_t>(sand_.edgeCount())});
 }
 
 }  // namespace sand::tin

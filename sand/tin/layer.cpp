@@ -161,7 +161,7 @@ void Layer::remap() {
 Layer::Remap Layer::takeLargestRemap() { return std::exchange(largest_, {}); }
 
 Mesh::Change Layer::takeChange() {
-    // What changes since the first call is remapped, but in holes.
+    // Whoever changed since the last call was remapped, and is noted; not what lies in holes, nor a mesh just made.
     const bool knows = knowsChange_ && mesh_.holes() == nullptr;
     knowsChange_ = true;
     Mesh::Change change = knows ? mesh_.takeChangeOfTriangles() : mesh_.takeChange();

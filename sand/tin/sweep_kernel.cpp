@@ -50,6 +50,7 @@ Number valuesFrom(const double* values) {
     return result;
 }
 
+/// leaning(), of vectors too. Not shared: of a function that both compilations have, a linker keeps either's.
 template <class Number>
 Number leaningOn(Number height, Number underside, Number one, Number other) {
     const Number beside = one < other ? one : other;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -29,6 +30,9 @@ struct Place {
 /// By number. A number stays a vertex's own while it lives, and is given again, the smallest free one first.
 using Vertex = std::int32_t;
 inline constexpr std::int32_t kNobody = -1;
+
+/// The place in an array of what has such a number.
+[[nodiscard]] constexpr std::size_t index(std::int32_t number) { return static_cast<std::size_t>(number); }
 
 /// Corners counter-clockwise; neighbour[k] and constrained[k] are of the edge opposite corner[k].
 struct Triangle {

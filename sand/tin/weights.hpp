@@ -79,14 +79,6 @@ public:
     /// The edge of a side on ground and the one across. Costs the stars of its ends, the first time.
     [[nodiscard]] Edge edge(const Triangles& mesh, std::span<const std::int64_t> stars, Side side, Side across);
 
-    /// Somebody will ask for them soon.
-    void fetch(Vertex vertex, std::int32_t slot) const {
-        if (static_cast<std::size_t>(vertex) < steps_.size() && static_cast<std::size_t>(slot) < halves_.size()) {
-            __builtin_prefetch(&steps_[static_cast<std::size_t>(vertex)]);
-            __builtin_prefetch(&halves_[static_cast<std::size_t>(slot)]);
-        }
-    }
-
 private:
     /// Half the cotangents of a triangle's angles, times kOne, by its corners as they were when this was the first: a
     /// slot may turn them unnoticed.

@@ -4,7 +4,7 @@
 #include <initializer_list>
 #include <string>
 
-#include "tests/support/run_program.hpp"
+#include "tests/support/run_ranks.hpp"
 
 namespace {
 
@@ -14,19 +14,15 @@ const std::string kOfSpheres = "104713705b65770e", kOfEveryTool = "07877fabb68c6
 /// golden hashes.
 void expectHash(std::initializer_list<int> numbersOfRanks, const std::string& arguments, const std::string& hash) {
     for (const int ranks : numbersOfRanks) {
-        const support::Ran ran = support::runCommand(
-            "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_mpi_yield_when_idle=1 "
-            "HWLOC_COMPONENTS=-gl timeout 600 mpirun -q --oversubscribe --bind-to none --mca btl self,vader --mca "
-            "oob_tcp_if_include lo -n " +
-            std::to_string(ranks) + " " SANDWALL_BIN_DIR "/edits_ranks" + arguments);
+        const support::Ran ran = support::runRanks(ranks, "edits_ranks", arguments);
         EXPECT_EQ(ran.status, 0) << ran.output;
         EXPECT_EQ(ran.output, hash + "\n") << ranks << " ranks";
     }
 }
 
 TEST(Edits, TenThousandHashAlikeOnOneToFourRanks) { expectHash({1, 2, 3, 4}, "", kOfSpheres); }
-TEST(Edits, WithEveryToolHashAlikeOnOneAndFourRanks) { expectHash({1, 4}, " tools", kOfEveryTool); }
-TEST(Edits, OfATinHashAlikeOnOneFourAndTwelveRanks) { expectHash({1, 4, 12}, " tin", kOfTin); }
+TEST(Edits, WithEveryToolHashAlikeOnOneAndFourRanks) { expectHash({1, 4}, "tools", kOfEveryTool); }
+TEST(Edits, OfATinHashAlikeOnOneFourAndTwelveRanks) { expectHash({1, 4, 12}, "tin", kOfTin); }
 TEST(Edits, TenThousandHashAlikeOnFiveToEightRanks) { expectHash({5, 6, 7, 8}, "", kOfSpheres); }
 TEST(Edits, TenThousandHashAlikeOnNineToTwelveRanks) { expectHash({9, 10, 11, 12}, "", kOfSpheres); }
 
