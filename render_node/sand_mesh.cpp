@@ -8,19 +8,21 @@
 namespace render_node {
 namespace {
 
-constexpr int kChunk = 32;  // [quad], the shortest side but for small fields
-
+constexpr int kChunk = 16;                      // [quad], the shortest side but for small fields
 constexpr int kGroup = 8;                       // [chunk], the side of a group
 constexpr int kMostChanges = 36;                // of one update
+constexpr int kSmallestPart = 32;               // [cell], the side of one
 constexpr std::size_t kManyBytes = 16UL << 20;  // of vertices: then those not drawn lately are dropped
 constexpr std::uint64_t kLately = 120;          // [draw]: a second or two
 
-// Levels need sides that their strides divide; a field without any gets chunks of one size.
+// Levels need sides that twice their strides divide; a field without any gets chunks of one size.
+int shortestSide(int coarsest) { return std::max(kChunk, 2 << coarsest); }
 int chunksFor(int quads, int coarsest) {
-    return coarsest > 0 ? (quads + kChunk - 1) / kChunk : std::max(1, quads / kChunk);
+    const int side = shortestSide(coarsest);
+    return coarsest > 0 ? (quads + side - 1) / side : std::max(1, quads / side);
 }
 int sideFor(int quads, int coarsest) {
-    return coarsest > 0 ? kChunk : (quads + chunksFor(quads, 0) - 1) / chunksFor(quads, 0);
+    return coarsest > 0 ? shortestSide(coarsest) : (quads + chunksFor(quads, 0) - 1) / chunksFor(quads, 0);
 }
 
 }  // namespace
@@ -79,7 +81,7 @@ sand::Rect SandMesh::verticesOver(const sand::Rect& cells) const {
 
 std::vector<SandMesh::Change> SandMesh::changesOf(const sand::HeightField& field, const sand::Rect& cells) const {
     // Small parts follow the sand closely, few parts are soon looked through.
-    int side = kChunk;
+    int side = kSmallestPart;
     while ((cells.x1 - cells.x0 + side - 1) / side * ((cells.y1 - cells.y0 + side - 1) / side) > kMostChanges) {
         side *= 2;
     }

@@ -28,7 +28,7 @@ struct ChangedVertices {
     }
 };
 
-/// The triangles of a height field, in chunks of about 32 × 32 quads.
+/// The triangles of a height field, in chunks of about 16 × 16 quads, or 32 × 32 where a large field has five levels.
 ///
 /// A software renderer is bound by vertices: only chunks that a camera sees are drawn, each at the coarsest level that
 /// the camera's rule allows, and only those are ever computed and sent to GL; a chunk is computed again when sand in

@@ -114,11 +114,11 @@ void SandView::prepareTool(const GlProgram& program) const {
     if (!tool_ || !(toolRadius_ > 0)) {
         program.set("uTool", kNoTool);
     } else if (isBall(*tool_)) {
-        program.set("uTool", glm::vec4(tool_->centre, toolRadius_));
+        program.set("uTool", glm::vec4(tool_->centre, 1 / toolRadius_));
     } else {
         const ToolLight light = lightOf(*tool_);
         const glm::dvec3 sun = light.toBall * glm::dvec3(glm::normalize(toVector(look_.sunDirection)));
-        program.set("uTool", glm::vec4(glm::vec3(light.centre), static_cast<float>(light.radius)));
+        program.set("uTool", glm::vec4(glm::vec3(light.centre), 1));
         program.set("uToolSpace", glm::mat3(light.toBall));
         program.set("uToolSun", glm::vec3(glm::normalize(sun)));
         program.set("uToolStep", static_cast<float>(1 / (glm::length(sun) * light.radius)));
@@ -267,16 +267,16 @@ ToolReach SandView::reachOf(const EyeMemory::Tool& tool) const {
     return {light.centre, light.radius, glm::normalize(toVector(look_.sunDirection))};
 }
 
-/// What a tool changes, as convex hulls: itself with the sand that it dims, and its shadow.
+/// What a tool changes, as convex hulls: the sand that it dims, its shadow, and itself.
 std::vector<std::vector<glm::dvec3>> SandView::hullsOf(const EyeMemory::Tool& tool) const {
     const ToolReach reach = reachOf(tool);
     const HeightRange sand = surface().heightsEver();
     const double highest = std::max(double{sand.highest}, box_.highest());
     // Down to the lowest sand there has been, unless it comes out again beyond the rim: nothing stops it in the
     // shaders.
-    std::vector<Box> shadow = reach.shadowDownTo(std::min(double{sand.lowest}, box_.lowest()));
+    std::vector<Box> shadow = reach.shadowBetween(std::min(double{sand.lowest}, box_.lowest()), highest);
     if (box_.insideRim(shadow.back())) {
-        shadow = reach.shadowDownTo(double{sand.lowest});
+        shadow = reach.shadowBetween(double{sand.lowest}, highest);
     }
     std::vector<std::vector<glm::dvec3>> hulls(2);
     const auto add = [this](std::vector<glm::dvec3>& hull, const Box& box) {
@@ -286,10 +286,8 @@ std::vector<std::vector<glm::dvec3>> SandView::hullsOf(const EyeMemory::Tool& to
     };
     add(hulls[0], reach.closeBy(double{sand.lowest}, highest));
     std::ranges::for_each(shadow, [&](const Box& box) { add(hulls[1], box); });
-    if (!isBall(tool)) {  // its handle and corners reach farther than its light
-        const auto corners = cornersOf(bodyOf(tool));
-        hulls.emplace_back(corners.begin(), corners.end());
-    }
+    const auto body = cornersOf(bodyOf(tool));
+    hulls.emplace_back(body.begin(), body.end());
     return hulls;
 }
 

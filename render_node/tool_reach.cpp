@@ -7,11 +7,13 @@
 namespace render_node {
 namespace {
 
-// As in shaders/light.glsl, ball.glsl and stamp.glsl, in radii; a hundredth more, for what GL's floats may round.
-constexpr double kSkyReach = 2.5 * 1.01;
+// As in shaders/light.glsl, in radii; a hundredth more, for what GL's floats may round.
+constexpr double kSkyReach = 1.8 * 1.01;
 constexpr double kShadowLength = 20.0 * 1.01;
 constexpr double kPenumbra = 0.08 + 0.01, kPenumbraGrowth = 0.07;
-constexpr int kPieces = 6;  // of the shadow, to bound it more closely than by its widest end
+constexpr double kBegins = 1.2;   // above the centre there is none
+constexpr double kLowSun = 0.25;  // of its height: then the shadow is too long to be bounded at two heights
+constexpr int kPieces = 6;        // of the shadow, to bound it more closely than by its widest end
 
 bool overlap(const Box& a, const Box& b) {
     return glm::all(glm::lessThanEqual(a.low, b.high)) && glm::all(glm::lessThanEqual(b.low, a.high));
@@ -43,19 +45,30 @@ Box ToolReach::closeBy(double lowest, double highest) const {
     const double reach = kSkyReach * radius_;
     // High above everything, its ball of dimmed places meets little of it, or nothing.
     const double above = std::max(0.0, centre_.z - highest);
-    const double wide = std::max(1.01 * radius_, std::sqrt(std::max(0.0, reach * reach - above * above)));
-    Box box{centre_ - glm::dvec3(wide, wide, reach), centre_ + glm::dvec3(wide, wide, reach)};
-    box.low.z = std::min(centre_.z - 1.01 * radius_, std::max(box.low.z, lowest));
-    box.high.z = std::max(centre_.z + 1.01 * radius_, std::min(box.high.z, highest));
-    return box;
+    const double wide = std::sqrt(std::max(0.0, reach * reach - above * above));
+    return {{centre_.x - wide, centre_.y - wide, std::max(centre_.z - reach, lowest)},
+            {centre_.x + wide, centre_.y + wide, std::min(centre_.z + reach, highest)}};
 }
 
-std::vector<Box> ToolReach::shadowDownTo(double lowest) const {
-    // Until its upper edge is as low: z of the middle and half of its width both change evenly.
-    const double drop = std::max(0.0, centre_.z + halfWidth(0) - lowest);
-    const double falling = sun_.z - kPenumbraGrowth;
+// Where the cone of the shadow is at a height it is an ellipse, drawn out away from the sun. Of lines through such a
+// cone each goes through its ellipses at both ends.
+Box ToolReach::shadowAtHeight(double height) const {
+    const double slant = std::hypot(sun_.x, sun_.y) / sun_.z;
+    const double along = (centre_.z - height) / sun_.z;
+    const double half = std::max(halfWidth(0), halfWidth(along) / (1 - kPenumbraGrowth * slant));
+    const glm::dvec3 middle = centre_ - along * sun_;
+    const glm::dvec3 wide(half * std::hypot(1.0, sun_.x / sun_.z), half * std::hypot(1.0, sun_.y / sun_.z), 0);
+    return {middle - wide, middle + wide};
+}
+
+std::vector<Box> ToolReach::shadowBetween(double lowest, double highest) const {
     const double longest = kShadowLength * radius_;
-    return {shadowAt(0), shadowAt(falling > 0 ? std::min(longest, drop / falling) : longest)};
+    if (sun_.z < kLowSun) {
+        return {shadowAt(0), shadowAt(longest)};
+    }
+    const double top = std::min(highest, centre_.z + kBegins * radius_);
+    const double end = centre_.z - longest * sun_.z - halfWidth(longest);
+    return {shadowAtHeight(top), shadowAtHeight(std::min(top, std::max(lowest, end)))};
 }
 
 }  // namespace render_node

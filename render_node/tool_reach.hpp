@@ -18,15 +18,16 @@ public:
 
     /// Whether it may change the look of anything within a box.
     [[nodiscard]] bool meets(const Box& box) const;
-    /// The tool and what it dims, where nothing dimmed lies outside these heights.
+    /// What it takes skylight from, where nothing lies outside these heights.
     [[nodiscard]] Box closeBy(double lowest, double highest) const;
-    /// The shadow from the tool down to a height, within the convex hull of the corners of two boxes.
-    [[nodiscard]] std::vector<Box> shadowDownTo(double lowest) const;
+    /// Its shadow between two heights: within the convex hull of the corners of two boxes, the last the lower one.
+    [[nodiscard]] std::vector<Box> shadowBetween(double lowest, double highest) const;
 
 private:
     // Half of its width so far behind the tool [scene unit].
     [[nodiscard]] double halfWidth(double along) const;
     [[nodiscard]] Box shadowAt(double along) const;
+    [[nodiscard]] Box shadowAtHeight(double height) const;  // around its ellipse there
 
     glm::dvec3 centre_;
     double radius_;

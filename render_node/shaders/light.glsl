@@ -2,7 +2,7 @@
 // Put before every shader. All positions and directions are the scene's; all colours are linear light.
 uniform vec3 uSun;         // towards it
 uniform vec3 uEye;
-uniform vec4 uTool;        // centre and radius; far away where there is none
+uniform vec4 uTool;        // centre, and one over its radius; far away where there is none
 uniform vec3 uSand;        // its albedo
 uniform sampler2D uGrain;  // see grain_texture.hpp
 uniform float uGrainScale; // periods of the grain per scene unit
@@ -11,14 +11,31 @@ const vec3 kSunlight = vec3(1.02, 0.92, 0.76);
 const vec3 kSkylight = vec3(0.205, 0.235, 0.28);
 
 // In radii of the tool; render_node/tool_reach.cpp has the same numbers.
-const float kToolReach = 2.5;
+const float kToolReach = 1.8;
 const float kShadowLength = 20.0;
 const vec2 kPenumbra = vec2(0.08, 0.07);
 
-// How near a place is to the tool, by the square of its distance [radius]: 1 in touch, exactly 0 from kToolReach on.
-float toolNearness(float square) {
+// The tool's share of the sun and of the light from all around, at a place: exactly 0 beyond their reach (ToolReach), so
+// that what is drawn without asking equals what is drawn with it. ball.glsl and stamp.glsl call these two. Every pixel
+// near the tool takes this several times over by a software renderer: few divisions and roots.
+
+// How much of the sun the tool takes: all close behind it; its shadow widens and fades with the distance, and ends.
+// `square`: of the distance from its centre, `along`: behind it towards the sun [radius]; `far`: `along` in the scene
+// [longest half axis].
+float shadowOf(float square, float along, float far) {
+    float miss = sqrt(max(square - along * along, 0.0));
+    float blur = kPenumbra.x + kPenumbra.y * max(far, 0.0);
+    float behind = smoothstep(-0.2, 0.2, along) * (1.0 - smoothstep(2.0, kShadowLength, far));
+    return (1.0 - smoothstep(1.0 - blur, 1.0 + blur, miss)) * behind;
+}
+
+// How much of the light from all around the tool takes: the share of the sky that a ball hides (its solid angle by the
+// cosine), no less than a part of it beside the ball, for sand that lies up against it; 0 from kToolReach on.
+// `nearer`: one over the distance from its centre, at most 1 [1/radius].
+float occlusionOf(float nearer, float cosine) {
     const float kAtReach = 1.0 / (kToolReach * kToolReach);
-    return max(1.0 / square - kAtReach, 0.0) / (1.0 - kAtReach);
+    float near = max(nearer * nearer - kAtReach, 0.0) * (1.0 / (1.0 - kAtReach));
+    return clamp(0.4 + 0.6 * cosine, 0.0, 1.0) * near * (0.75 + 0.25 * near);
 }
 
 // A rough surface under a share of the sun, and the sky; where little sky is seen, its own kind throws light back.

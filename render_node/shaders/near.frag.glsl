@@ -8,8 +8,8 @@ in vec3 vNormal;
 out vec4 oColour;
 
 void main() {
-    float shadow = toolShadow(vScene);
-    vec4 colour = vColour - shadow * vec4(vColour.rgb - vInShadow, 0.7 * vColour.a);
-    colour.rgb *= 1.0 - 0.62 * toolOcclusion(vScene, normalize(vNormal));
+    vec2 taken = toolTakes(vScene, vNormal);
+    vec4 colour = vColour - taken.x * vec4(vColour.rgb - vInShadow, 0.7 * vColour.a);
+    colour.rgb *= 1.0 - 0.62 * taken.y;
     oColour = vec4(grained(colour, vGrainAt), 1.0);
 }

@@ -11,6 +11,7 @@ void main() {
     float ring = texture(uGrain, vec2(at.x * 0.05, at.y * 0.7)).b;
     vec3 albedo = mix(vec3(0.17, 0.085, 0.04), vec3(0.34, 0.19, 0.095), 0.25 * fibre + 0.75 * ring);
     vec3 normal = normalize(vNormal);
-    vec3 colour = encode(lit(albedo, normal, 1.0, 1.0 - toolShadow(vScene)));
-    oColour = vec4(colour * (1.0 - 0.62 * toolOcclusion(vScene, normal)), 1.0);
+    vec2 taken = toolTakes(vScene, normal);
+    vec3 colour = encode(lit(albedo, normal, 1.0, 1.0 - taken.x));
+    oColour = vec4(colour * (1.0 - 0.62 * taken.y), 1.0);
 }

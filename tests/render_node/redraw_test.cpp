@@ -270,20 +270,26 @@ TEST_F(Redraw, ReachesAsFarAsAPostHidesTheSkyAndNotMuchFurther) {
     EXPECT_LE(least, 2);
 }
 
+// Under the usual sun, one in the zenith, one that draws shadows out and one that stands too low for them to be bounded
+// closely.
 TEST_F(Redraw, FollowsAToolHighAboveTheSandAndItsShadow) {
-    const sand::Scene scene = sample::flatScene(128, 128, 0.05);
-    SandView view(scene, glm::dmat4(1));
-    const render_node::Camera above = sample::camera({1, 1, 2.2}, {1, 1, 0});
-    const EyeTarget inParts(200, 150), whole(200, 150);
-    render_node::EyeMemory memory;
-    view.drawIfChanged(above, inParts, memory);
-    for (int i = 0; i < 40; ++i) {
-        view.setTool(sample::probeAt(scene, {0.3 + 0.035 * i, 0.4 + 0.03 * i, 0.02 + 0.02 * i}), i % 2 == 0);
-        const PixelRect drawn = view.drawIfChanged(above, inParts, memory);
-        EXPECT_LT(drawn.area(), 200 * 150);
-        ASSERT_TRUE(inParts.read() == sample::draw(view, above, whole)) << "place " << i;
+    for (const std::vector<double>& sun :
+         std::vector<std::vector<double>>{sand::Look{}.sunDirection, {0, 0, 1}, {-0.6, 0.7, 0.3}, {0.9, -0.4, 0.1}}) {
+        sand::Scene scene = sample::flatScene(128, 128, 0.05);
+        scene.look.sunDirection = sun;
+        SandView view(scene, glm::dmat4(1));
+        const render_node::Camera above = sample::camera({1, 1, 2.2}, {1, 1, 0});
+        const EyeTarget inParts(200, 150), whole(200, 150);
+        render_node::EyeMemory memory;
+        view.drawIfChanged(above, inParts, memory);
+        for (int i = 0; i < 40; ++i) {
+            view.setTool(sample::probeAt(scene, {0.3 + 0.035 * i, 0.4 + 0.03 * i, 0.02 + 0.02 * i}), i % 2 == 0);
+            const PixelRect drawn = view.drawIfChanged(above, inParts, memory);
+            EXPECT_LT(drawn.area(), 200 * 150);
+            ASSERT_TRUE(inParts.read() == sample::draw(view, above, whole)) << "sun " << sun[2] << ", place " << i;
+        }
+        EXPECT_TRUE(view.drawIfChanged(above, inParts, memory).empty());
     }
-    EXPECT_TRUE(view.drawIfChanged(above, inParts, memory).empty());
 }
 
 TEST_F(Redraw, FollowsAToolThatChangesItsSizeWhereItIs) {
