@@ -274,7 +274,7 @@ std::vector<std::vector<glm::dvec3>> SandView::hullsOf(const EyeMemory::Tool& to
     const double highest = std::max(double{sand.highest}, box_.highest());
     // Down to the lowest sand there has been, unless it comes out again beyond the rim: nothing stops it in the
     // shaders.
-    std::vector<Box> shadow = reach.shadowBetween(std::min(double{sand.lowest}, box_.lowest()), highest);
+    std::array<Box, 2> shadow = reach.shadowBetween(std::min(double{sand.lowest}, box_.lowest()), highest);
     if (box_.insideRim(shadow.back())) {
         shadow = reach.shadowBetween(double{sand.lowest}, highest);
     }

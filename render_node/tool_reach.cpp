@@ -13,7 +13,6 @@ constexpr double kShadowLength = 20.0 * 1.01;
 constexpr double kPenumbra = 0.08 + 0.01, kPenumbraGrowth = 0.07;
 constexpr double kBegins = 1.2;   // above the centre there is none
 constexpr double kLowSun = 0.25;  // of its height: then the shadow is too long to be bounded at two heights
-constexpr int kPieces = 6;        // of the shadow, to bound it more closely than by its widest end
 
 bool overlap(const Box& a, const Box& b) {
     return glm::all(glm::lessThanEqual(a.low, b.high)) && glm::all(glm::lessThanEqual(b.low, a.high));
@@ -29,16 +28,13 @@ Box ToolReach::shadowAt(double along) const {
 }
 
 bool ToolReach::meets(const Box& box) const {
-    if (overlap(box, {centre_ - kSkyReach * radius_, centre_ + kSkyReach * radius_})) {
+    const glm::dvec3 apart = centre_ - glm::clamp(centre_, box.low, box.high);
+    const double reach = kSkyReach * radius_;
+    if (glm::dot(apart, apart) <= reach * reach) {
         return true;
     }
-    const double piece = kShadowLength * radius_ / kPieces;
-    for (int i = 0; i < kPieces; ++i) {
-        if (overlap(box, around(shadowAt(i * piece), shadowAt((i + 1) * piece)))) {
-            return true;
-        }
-    }
-    return false;
+    const std::array<Box, 2> shadow = shadowBetween(box.low.z, box.high.z);
+    return overlap(box, around(shadow.front(), shadow.back()));
 }
 
 Box ToolReach::closeBy(double lowest, double highest) const {
@@ -61,7 +57,7 @@ Box ToolReach::shadowAtHeight(double height) const {
     return {middle - wide, middle + wide};
 }
 
-std::vector<Box> ToolReach::shadowBetween(double lowest, double highest) const {
+std::array<Box, 2> ToolReach::shadowBetween(double lowest, double highest) const {
     const double longest = kShadowLength * radius_;
     if (sun_.z < kLowSun) {
         return {shadowAt(0), shadowAt(longest)};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <glm/glm.hpp>
-#include <vector>
 
 #include "render_node/frustum.hpp"
 
@@ -21,7 +21,7 @@ public:
     /// What it takes skylight from, where nothing lies outside these heights.
     [[nodiscard]] Box closeBy(double lowest, double highest) const;
     /// Its shadow between two heights: within the convex hull of the corners of two boxes, the last the lower one.
-    [[nodiscard]] std::vector<Box> shadowBetween(double lowest, double highest) const;
+    [[nodiscard]] std::array<Box, 2> shadowBetween(double lowest, double highest) const;
 
 private:
     // Half of its width so far behind the tool [scene unit].

@@ -23,7 +23,7 @@ bool isInShadow(const glm::dvec3& place, const glm::dvec3& sun) {
 }
 
 /// Two boxes' convex hull at a height, if both are flat; around both else. Beyond the flat ones: empty.
-Box hullAt(const std::vector<Box>& boxes, double height) {
+Box hullAt(const std::array<Box, 2>& boxes, double height) {
     const Box &top = boxes.front(), &bottom = boxes.back();
     if (top.low.z != top.high.z || top.low.z == bottom.low.z) {
         return around(top, bottom);
@@ -50,7 +50,7 @@ protected:
 TEST_P(ToolReach, BoundsTheShadowAndNotMuchMore) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> wide(-1, 1), height(kLowestSand, kHighestSand);
-    const std::vector<Box> boxes = reach_.shadowBetween(kLowestSand, kHighestSand);
+    const std::array<Box, 2> boxes = reach_.shadowBetween(kLowestSand, kHighestSand);
     int inShadow = 0, inHull = 0;
     for (int i = 0; i < 400'000; ++i) {
         const double z = height(random);
@@ -63,6 +63,7 @@ TEST_P(ToolReach, BoundsTheShadowAndNotMuchMore) {
         if (isInShadow(place, sun_)) {
             ++inShadow;
             ASSERT_TRUE(within) << place.x << " " << place.y << " " << place.z;
+            ASSERT_TRUE(reach_.meets({place - 0.01, place + 0.01}));
         }
     }
     ASSERT_GT(inShadow, 500);
