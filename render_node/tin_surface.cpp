@@ -17,7 +17,7 @@ using sand::tin::Triangles;
 using sand::tin::Vertex;
 
 constexpr double kTrianglesPerChunk = 512;
-constexpr double kMostChunksAcross = 64;
+constexpr double kFewestChunksAcross = 32, kMostChunksAcross = 64;  // where sand is dug, coarse TINs get fine
 
 TinTriangle drawnOf(const sand::tin::Triangle& triangle) {
     TinTriangle drawn;
@@ -37,7 +37,7 @@ TinTriangle drawnOf(const sand::tin::Triangle& triangle) {
 
 double TinSurface::chunkSideFor(const Triangles& mesh) {
     const double wanted = std::ceil(std::sqrt(static_cast<double>(mesh.triangles.size()) / kTrianglesPerChunk));
-    return std::max(mesh.width, mesh.depth) / std::clamp(wanted, 1.0, kMostChunksAcross);
+    return std::max(mesh.width, mesh.depth) / std::clamp(wanted, kFewestChunksAcross, kMostChunksAcross);
 }
 
 TinSurface::TinSurface(const SurfaceView& tin, double cellSize, double chunkSide)
