@@ -108,9 +108,14 @@ struct Damage {
     sand::tin::SurfaceDamage triangles;
 };
 
-void takeOver(render_node::SandView& view, const sand::Terrain& terrain, const Damage& damage) {
+void takeOver(Tile& tile, const sand::Terrain& terrain, const Damage& damage) {
+    render_node::SandView& view = tile.view;
     if (const sand::tin::SurfaceView* tin = terrain.tinView()) {
-        view.update(*tin, damage.triangles);
+        std::vector<render_node::Camera> cameras;
+        for (const auto& eye : tile.eyes) {
+            cameras.push_back(eye->camera);
+        }
+        view.update(*tin, damage.triangles, cameras);
     } else {
         view.update(terrain.field(), damage.cells);
     }
@@ -122,7 +127,7 @@ void show(const std::vector<std::unique_ptr<Tile>>& tiles, sand::Terrain& terrai
     const Damage damage(terrain);
     double update = 0, draw = 0, busiest = 0, drawn = 0, pixels = 0, all = 0;
     for (const auto& tile : tiles) {
-        const double taken = bench::secondsOf([&] { takeOver(tile->view, terrain, damage); });
+        const double taken = bench::secondsOf([&] { takeOver(*tile, terrain, damage); });
         double both = 0;
         for (const auto& eye : tile->eyes) {
             render_node::PixelRect changed;

@@ -62,8 +62,14 @@ void SandView::update(const sand::HeightField& field, sand::Rect damage) {
     }
 }
 
-void SandView::update(const sand::tin::SurfaceView& tin, const sand::tin::SurfaceDamage& damage) {
-    if (tin_->update(tin, damage)) {
+void SandView::update(const sand::tin::SurfaceView& tin, const sand::tin::SurfaceDamage& damage,
+                      std::span<const Camera> cameras) {
+    const auto sees = [&](const Box& box) {
+        return cameras.empty() || std::any_of(cameras.begin(), cameras.end(), [&](const Camera& camera) {
+                   return inFrustum(box, camera.roomToClip * sceneToRoom_);
+               });
+    };
+    if (tin_->update(tin, damage, sees)) {
         box_.update(tin_->rim());
     }
 }

@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -101,8 +102,10 @@ public:
     /// Takes over the heights of `damage`, which may be empty or reach beyond the field. `field` must have the size
     /// of the scene's; it is copied, not kept.
     void update(const sand::HeightField& field, sand::Rect damage);
-    /// The same of a TIN.
-    void update(const sand::tin::SurfaceView& tin, const sand::tin::SurfaceDamage& damage);
+    /// The same of a TIN. With cameras, the only ones that will draw before the next update: what none of them can see
+    /// is put off until one can.
+    void update(const sand::tin::SurfaceView& tin, const sand::tin::SurfaceDamage& damage,
+                std::span<const Camera> cameras = {});
     /// Where the tool's centre is. No tool is drawn before the first call.
     void setTool(sand::ProbePoint centre, bool engaged);
     /// The same for another tool than the scene's or that of before, or one that was turned.

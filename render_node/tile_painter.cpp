@@ -63,8 +63,9 @@ void TilePainter::paint(sand::Terrain& terrain, const lockstep::ViewState& view,
                         const TileFigures& figures) {
     sand_.setLayers(view.layers);
     sand_.setSceneToRoom(glm::make_mat4(view.sceneToRoom.data()));
+    const std::vector<Camera> cameras = camerasOf(view);
     if (const sand::tin::SurfaceView* tin = terrain.tinView()) {
-        sand_.update(*tin, terrain.takeTinDamage());
+        sand_.update(*tin, terrain.takeTinDamage(), cameras);
     } else {
         sand_.update(terrain.field(), terrain.takeDamage());
     }
@@ -90,7 +91,7 @@ void TilePainter::paint(sand::Terrain& terrain, const lockstep::ViewState& view,
         overlay_->add(figures, frame);
     }
     const PixelRect changed =
-        pattern == lockstep::Pattern::none ? paintSand(view, range) : paintPattern(pattern, frame, range);
+        pattern == lockstep::Pattern::none ? paintSand(cameras, range) : paintPattern(pattern, frame, range);
     std::fill(shown_.begin() + static_cast<std::ptrdiff_t>(range.from),
               shown_.begin() + static_cast<std::ptrdiff_t>(range.end), pattern);
     composer_.compose(targets_, changed);
@@ -115,13 +116,21 @@ void TilePainter::paintOverlay(EyeRange range) {
     composer_.compose(targets_, overlay_->pixels());
 }
 
-PixelRect TilePainter::paintSand(const lockstep::ViewState& view, EyeRange range) {
+std::vector<Camera> TilePainter::camerasOf(const lockstep::ViewState& view) const {
     const walls::Viewer viewer = viewerOf(view);
+    std::vector<Camera> cameras;
+    for (const walls::Eye eye : walls::eyesOf(wall_->stereo)) {
+        const glm::dvec3 position = walls::eyePosition(viewer, eye);
+        const walls::View seen = walls::viewOf(tile_->screen, position, wall_->clip.near, wall_->clip.far);
+        cameras.push_back({seen.viewProjection, position});
+    }
+    return cameras;
+}
+
+PixelRect TilePainter::paintSand(std::span<const Camera> cameras, EyeRange range) {
     PixelRect changed;
     for (std::size_t i = range.from; i < range.end; ++i) {
-        const glm::dvec3 position = walls::eyePosition(viewer, walls::eyesOf(wall_->stereo)[i]);
-        const walls::View seen = walls::viewOf(tile_->screen, position, wall_->clip.near, wall_->clip.far);
-        const PixelRect drawn = sand_.drawIfChanged({seen.viewProjection, position}, targets_[i], memories_[i]);
+        const PixelRect drawn = sand_.drawIfChanged(cameras[i], targets_[i], memories_[i]);
         counts_.add(drawn, targets_[i]);
         changed = around(changed, drawn);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The light on a TIN: normals, mottling, and how much sky its vertices see.
 #include <algorithm>
+#include <limits>
 
 #include "render_node/grain_texture.hpp"
 #include "render_node/open_sky.hpp"
@@ -25,6 +26,10 @@ constexpr int kLightReach = kSkyDistances.back() + 2;
 struct Pair {
     Vertex first, second;
 };
+
+bool overlapOnGround(const Box& a, const Box& b) {
+    return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y;
+}
 
 /// The mean normal of the triangles around a vertex by their areas, not of length 1 [unit²]. `around` is scratch.
 glm::dvec3 normalAt(const SurfaceView& tin, Vertex vertex, std::vector<Pair>& around) {
@@ -113,6 +118,54 @@ void TinSurface::addToRelief(const SurfaceView& tin, const TinTriangle& triangle
     }
 }
 
+std::optional<Box> TinSurface::reachOf(const SurfaceView& tin, const sand::tin::SurfaceDamage& damage) {
+    const Triangles& mesh = tin.triangles;
+    reshaped_.clear();
+    reshaped_.add(damage.triangles);
+    lit_.clear();
+    lit_.add(damage.vertices);
+    for (const Vertex number : damage.vertices) {
+        if (mesh.alive(number)) {
+            visitStar(mesh, number, [this](const StarTriangle& one) { reshaped_.add(one.slot); });
+        }
+    }
+    for (const std::int32_t slot : reshaped_.all()) {
+        const TinTriangle now = drawnOf(mesh.triangles[static_cast<std::size_t>(slot)]);
+        const bool known = static_cast<std::size_t>(slot) < triangles_.size();
+        for (const TinTriangle& one : {now, known ? triangle(slot) : TinTriangle{}}) {
+            if (one.alive()) {
+                std::ranges::for_each(one.corner, [this](Vertex corner) { lit_.add(corner); });
+            }
+        }
+    }
+    constexpr double kFar = std::numeric_limits<double>::infinity();
+    Box reach{glm::dvec3(kFar), glm::dvec3(-kFar)};
+    bool atRim = false;
+    for (const Vertex number : lit_.all()) {
+        const bool known = static_cast<std::size_t>(number) < vertices_.size();
+        for (const TinVertex& one : {placed(tin, number), known ? vertex(number) : TinVertex{}}) {
+            if (one.x >= 0) {
+                const glm::dvec3 place(one.x * probe_, one.y * probe_, one.height);
+                reach = around(reach, {place, place});
+                atRim |= one.x == 0 || one.y == 0 || one.x == width_ || one.y == depth_;
+            }
+        }
+    }
+    if (atRim) {
+        return std::nullopt;
+    }
+    // Whoever looks that far sees other sky, and the triangles around him are shaded anew.
+    const double margin = kLightReach * cellSize_;
+    const Box lit{reach.low - margin, reach.high + margin};
+    reach = lit;
+    for (TinChunk& chunk : chunks_) {
+        if (!chunk.slots.empty() && overlapOnGround(boxOf(chunk), lit)) {
+            reach = around(reach, boxOf(chunk));
+        }
+    }
+    return reach;
+}
+
 bool TinSurface::lightFrom(const SurfaceView& tin, Vertex number) {
     thread_local std::vector<Pair> around;  // thousands of vertices a frame ask for one each
     const glm::dvec3 normal = 32767.0 * glm::normalize(normalAt(tin, number, around));
@@ -146,8 +199,9 @@ void TinSurface::addVerticesAround(const std::vector<sand::Rect>& cells) {
                 continue;
             }
             const Box& box = boxOf(chunk);
-            if (box.low.x > reach.x1 * cellSize_ || box.high.x < reach.x0 * cellSize_ ||
-                box.low.y > reach.y1 * cellSize_ || box.high.y < reach.y0 * cellSize_) {
+            const Box seen{{reach.x0 * cellSize_, reach.y0 * cellSize_, 0},
+                           {reach.x1 * cellSize_, reach.y1 * cellSize_, 0}};
+            if (!overlapOnGround(box, seen)) {
                 continue;
             }
             for (const std::int32_t slot : chunk.slots) {

@@ -64,7 +64,21 @@ TinMesh::TinMesh(const SurfaceView& tin, double cellSize)
     sendAllVertices();
 }
 
-bool TinMesh::update(const SurfaceView& tin, const SurfaceDamage& damage) {
+bool TinMesh::update(const SurfaceView& tin, const SurfaceDamage& damage, const std::function<bool(const Box&)>& sees) {
+    if (damage.whole) {
+        backlog_.clear();
+        return takeOver(tin, damage);
+    }
+    const bool any = !damage.triangles.empty() || !damage.vertices.empty();
+    const std::optional<Box> reach = any ? surface_.reachOf(tin, damage) : std::nullopt;
+    if (any) {
+        backlog_.add(damage, reach.value_or(Box{}));
+    }
+    const bool now = (any && !reach) || backlog_.isSeen(sees);
+    return now && takeOver(tin, backlog_.take());
+}
+
+bool TinMesh::takeOver(const SurfaceView& tin, const SurfaceDamage& damage) {
     const TinSurface::Change change = surface_.update(tin, damage);
     if (change.boxes.empty() && change.vertices.empty()) {
         return false;

@@ -6,6 +6,7 @@
 #include "render_node/damage_history.hpp"
 #include "render_node/drawn_surface.hpp"
 #include "render_node/gl/gl_handle.hpp"
+#include "render_node/tin_backlog.hpp"
 #include "render_node/tin_surface.hpp"
 #include "render_node/triangle_pace.hpp"
 
@@ -19,8 +20,10 @@ class TinMesh final : public DrawnSurface {
 public:
     TinMesh(const sand::tin::SurfaceView& tin, double cellSize /* [scene unit] */);
 
-    /// Takes over what is damaged; says whether the rim is another.
-    [[nodiscard]] bool update(const sand::tin::SurfaceView& tin, const sand::tin::SurfaceDamage& damage);
+    /// Takes over what is damaged; says whether the rim is another. What lies in no box that `sees` accepts is put off
+    /// until it does.
+    [[nodiscard]] bool update(const sand::tin::SurfaceView& tin, const sand::tin::SurfaceDamage& damage,
+                              const std::function<bool(const Box&)>& sees);
 
     void prepare(const GlProgram& program) const override;
     Drawn draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
@@ -46,12 +49,14 @@ private:
     };
     template <class Visit>  // void(std::size_t chunk)
     void visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit& visit);
+    [[nodiscard]] bool takeOver(const sand::tin::SurfaceView& tin, const sand::tin::SurfaceDamage& damage);
     void sendAllVertices();
     void sendVertices(std::span<const sand::tin::Vertex> changed);
     void sendTriangles(std::size_t chunk);
     void sendMarks(std::size_t chunk);
 
     TinSurface surface_;
+    TinBacklog backlog_;
     float probe_;      // [scene unit]
     glm::vec2 field_;  // [probe unit]
     GlVertexArray array_;

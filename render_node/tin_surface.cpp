@@ -19,7 +19,9 @@ using sand::tin::Vertex;
 constexpr double kTrianglesPerChunk = 512;
 constexpr double kFewestChunksAcross = 32, kMostChunksAcross = 64;  // where sand is dug, coarse TINs get fine
 
-TinTriangle drawnOf(const sand::tin::Triangle& triangle) {
+}  // namespace
+
+TinTriangle TinSurface::drawnOf(const sand::tin::Triangle& triangle) {
     TinTriangle drawn;
     if (!triangle.isGround()) {
         return drawn;
@@ -32,8 +34,6 @@ TinTriangle drawnOf(const sand::tin::Triangle& triangle) {
     }
     return drawn;
 }
-
-}  // namespace
 
 double TinSurface::chunkSideFor(const Triangles& mesh) {
     const double wanted = std::ceil(std::sqrt(static_cast<double>(mesh.triangles.size()) / kTrianglesPerChunk));
@@ -129,7 +129,8 @@ TinSurface::Change TinSurface::update(const SurfaceView& tin, const sand::tin::S
 }
 
 TinVertex TinSurface::placed(const SurfaceView& tin, Vertex number) const {
-    TinVertex now = vertices_[static_cast<std::size_t>(number)];
+    const bool known = static_cast<std::size_t>(number) < vertices_.size();
+    TinVertex now = known ? vertices_[static_cast<std::size_t>(number)] : TinVertex{};
     if (!tin.triangles.alive(number)) {
         now.x = now.y = -1;
         return now;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -69,6 +70,9 @@ public:
         std::vector<Box> boxes;                   // around what looks different, before and after
     };
     [[nodiscard]] Change update(const sand::tin::SurfaceView& tin, const sand::tin::SurfaceDamage& damage);
+    /// Bounds all that an update with this damage may change, before and after, from what this surface is now and what
+    /// the TIN is; nothing where it may be the rim.
+    [[nodiscard]] std::optional<Box> reachOf(const sand::tin::SurfaceView& tin, const sand::tin::SurfaceDamage& damage);
 
     [[nodiscard]] const std::vector<TinVertex>& vertices() const { return vertices_; }
     [[nodiscard]] const std::vector<TinTriangle>& triangles() const { return triangles_; }  // by slot
@@ -90,6 +94,7 @@ private:
     };
     TinSurface(const sand::tin::SurfaceView& tin, double cellSize, double chunkSide);
     [[nodiscard]] static double chunkSideFor(const sand::tin::Triangles& mesh);
+    [[nodiscard]] static TinTriangle drawnOf(const sand::tin::Triangle& triangle);
     void grow(const sand::tin::Triangles& mesh);
     [[nodiscard]] TinVertex placed(const sand::tin::SurfaceView& tin, Vertex vertex) const;
     [[nodiscard]] std::vector<Vertex> moved(const sand::tin::SurfaceView& tin, std::span<const Vertex> asked) const;

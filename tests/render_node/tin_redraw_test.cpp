@@ -177,6 +177,33 @@ private:
     static inline PFNGLBUFFERSUBDATAPROC part_;
 };
 
+// A camera that sees a part of the field, now here and now there: what was put off is there when it comes into sight.
+TEST_F(TinRedraw, WithWhatIsUnseenPutOffIsEqualToTheWhole) {
+    for (const unsigned seed : {5U, 6U, 7U}) {
+        std::mt19937 random(seed);
+        const sand::Scene scene = sample::duneScene(kCells);
+        Tin tin(scene.terrain);
+        SandView prompt(scene, tin.view(), glm::dmat4(1)), late(scene, tin.view(), glm::dmat4(1));
+        const EyeTarget promptly(kWidth, kHeight), lately(kWidth, kHeight);
+        render_node::EyeMemory ofPrompt, ofLate;
+        std::vector<Tin::Vertex> added;
+        for (int i = 0; i < 150; ++i) {
+            for (auto edits = random() % 3; edits > 0; --edits) {
+                edit(tin, random, added);
+            }
+            const int stay = i / 15;
+            const glm::dvec3 place(0.2 + 0.16 * (stay * 3 % 10), 0.2 + 0.16 * (stay * 7 % 10), 0);
+            const render_node::Camera near = sample::camera(place + glm::dvec3(0, -0.1, 0.35), place);
+            const sand::tin::SurfaceDamage damage = tin.takeDamage();
+            prompt.update(tin.view(), damage);
+            late.update(tin.view(), damage, {&near, 1});
+            prompt.drawIfChanged(near, promptly, ofPrompt);
+            late.drawIfChanged(near, lately, ofLate);
+            ASSERT_TRUE(lately.read() == promptly.read()) << "seed " << seed << ", step " << i;
+        }
+    }
+}
+
 TEST_F(TinRedraw, SendsWhatChangedAndNothingElse) {
     sand::Scene scene = sample::flatScene(kCells, kCells);
     Tin tin(scene.terrain);
@@ -202,6 +229,12 @@ TEST_F(TinRedraw, SendsWhatChangedAndNothingElse) {
     EXPECT_GT(pixels, 0);
     tin.setHeight(vertex, kUnit);
     EXPECT_EQ(draw(), std::pair(std::int64_t{0}, std::int64_t{0})) << "it is there already";
+
+    const render_node::Camera elsewhere = sample::camera({1.8, 1.7, 0.3}, {1.8, 1.8, 0});
+    tin.setHeight(vertex, 2 * kUnit);
+    view.update(tin.view(), tin.takeDamage(), {&elsewhere, 1});
+    EXPECT_EQ(SentBytes::take(), 0) << "nobody sees it";
+    EXPECT_GT(draw().first, 0) << "somebody does";
 
     tin.setHeight(vertex, 0);
     (void)draw();

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "render_node/frustum.hpp"
+#include "sand/tin/numbers.hpp"
+#include "sand/tin/surface_view.hpp"
+
+namespace render_node {
+
+/// Damage of a TIN that no camera has seen yet: most tiles of a wall never look where sand is dug, and to light a TIN
+/// anew takes as long as to draw it. Not thread-safe.
+class TinBacklog {
+public:
+    /// All of it lies within the box.
+    void add(const sand::tin::SurfaceDamage& damage, const Box& box);
+    [[nodiscard]] bool isSeen(const std::function<bool(const Box&)>& sees) const;
+    /// Everything that was added since this was called last; holds until then what has long been put right again, too.
+    [[nodiscard]] sand::tin::SurfaceDamage take();
+    void clear();
+
+private:
+    static constexpr std::size_t kMostBoxes = 32;
+
+    sand::tin::NumberList triangles_, vertices_;
+    std::vector<Box> boxes_;
+};
+
+}  // namespace render_node
