@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace sand::tin {
 namespace {
@@ -214,10 +215,15 @@ bool ActiveEdges::isHeld(const Triangle& triangle) {
 // Where no volume changes no height does, and a flux is what it was; but with a band, sand that flows through moves
 // what it touches.
 bool ActiveEdges::sweep(const Layer& layer, const Slopes& slopes, Weights& weights) {
-    for (const std::int32_t facet : sand_.slide(held_ != nullptr, band_)) {
-        watchEdges(layer, slopes, weights, slots_[index(facet)]);
-        sand_.setBare(index(facet), false);
-    }
+    std::size_t known = 0;
+    do {
+        const std::size_t first = std::exchange(known, sand_.facetCount());
+        for (const std::int32_t facet : sand_.slide(held_ != nullptr, band_, first)) {
+            watchEdges(layer, slopes, weights, slots_[index(facet)]);
+            sand_.setBare(index(facet), false);
+        }
+        // One that came with an edge may slide too: nothing flowed around it, for an obstacle held it.
+    } while (known < sand_.facetCount());
     const SweepResult result = sand_.move(held_ != nullptr);
     if (result.spread || (band_ && result.moved && result.met)) {
         met_.clear();

@@ -131,26 +131,31 @@ void MovingSand::findUnwatched(std::vector<std::int32_t>& found) const {
     }
 }
 
-std::span<const std::int32_t> MovingSand::slide(bool held, bool band) {
+std::span<const std::int32_t> MovingSand::slide(bool held, bool band, std::size_t first) {
     if (held && !heldKnown_) {
         findHeld();
     }
+    first -= first % kHeldTogether;
     slidBare_.resize(facetCount());
-    const SweepFacets sweep{.facets = facetCount(),
+    const SweepFacets sweep{.facets = facetCount() - first,
                             .levels = levels_.data(),
                             .undersides = undersides_.data(),
-                            .held = held ? heldFacets_.data() : nullptr,
-                            .first = first_.data(),
-                            .second = second_.data(),
-                            .third = third_.data(),
-                            .squared = squared_.data(),
-                            .mixed = mixed_.data(),
-                            .squaredAcross = squaredAcross_.data(),
-                            .start = band ? start_.data() : nullptr,
-                            .bare = bare_.data(),
-                            .sliding = sliding_.data(),
+                            .held = held ? heldFacets_.data() + first / kHeldTogether : nullptr,
+                            .first = first_.data() + first,
+                            .second = second_.data() + first,
+                            .third = third_.data() + first,
+                            .squared = squared_.data() + first,
+                            .mixed = mixed_.data() + first,
+                            .squaredAcross = squaredAcross_.data() + first,
+                            .start = band ? start_.data() + first : nullptr,
+                            .bare = bare_.data() + first,
+                            .sliding = sliding_.data() + first,
                             .slidBare = slidBare_.data()};
-    return {slidBare_.data(), v3_ ? v3::slideFacets(sweep) : baseline::slideFacets(sweep)};
+    const std::size_t count = v3_ ? v3::slideFacets(sweep) : baseline::slideFacets(sweep);
+    for (std::size_t i = 0; i < count; ++i) {
+        slidBare_[i] += static_cast<std::int32_t>(first);
+    }
+    return {slidBare_.data(), count};
 }
 
 SweepResult MovingSand::move(bool held) {

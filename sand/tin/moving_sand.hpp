@@ -48,10 +48,10 @@ public:
     /// Told of a facet whose edges are all here, and of one that misses some (as all do at first).
     void setBare(std::size_t facet, bool bare) { bare_[facet] = bare ? ~std::uint64_t{0} : 0; }
 
-    /// The first half of a sweep: how strongly facets slide. `held`: undersides hold; `band`: facets at rest start to
-    /// slide later than sliding ones stop. Those that slide though they miss edges, over which sand may flow in move();
-    /// until the next half.
-    [[nodiscard]] std::span<const std::int32_t> slide(bool held, bool band);
+    /// The first half of a sweep: how strongly facets slide, from `first` on (those before it are known then). `held`:
+    /// undersides hold; `band`: facets at rest start to slide later than sliding ones stop. Those that slide though
+    /// they miss edges, over which sand may flow in move(); until the next call.
+    [[nodiscard]] std::span<const std::int32_t> slide(bool held, bool band, std::size_t first = 0);
     /// The second half: what flows over the edges.
     SweepResult move(bool held);
     /// Whether sand flowed at one of a vertex's edges in the last sweep.

@@ -11,6 +11,7 @@
 #include "sand/terrain.hpp"
 #include "tests/sand/tin/same_session.hpp"
 #include "tests/support/folder_test.hpp"
+#include "tests/support/tin_piles.hpp"
 
 namespace {
 
@@ -64,6 +65,54 @@ TEST_F(TinTerrain, ASessionIsTheSameTwiceAndFromItsMiddle) {
     ASSERT_NE(start.tin, nullptr);
     ASSERT_LT(start.tin->places.size(), 64U * 64U / 2);
     tin_samples::expectSameSession(start, start, session(7, 120), 37);
+}
+
+/// Level sand, points at random all over it, and a tool as wide as a quarter of it that is put here and there.
+sand::Scene levelSand(int side, std::uint32_t seed) {
+    sand::tin::Start start;
+    start.width = start.depth = side * sand::kProbePerCell;
+    start.places = {{0, 0}, {start.width, 0}, {start.width, start.depth}, {0, start.depth}};
+    const auto more = tin_piles::placesOf(tin_piles::Kind::jittered, side, 0, seed);
+    start.places.insert(start.places.end(), more.begin(), more.end());
+    start.heights.assign(start.places.size(), 0);
+    start.settings.spacing = start.settings.maxError = 0;
+    start.settings.mostVertices = 1 << 19;
+    sand::Scene scene;
+    scene.rules.columns = scene.rules.rows = side;
+    scene.rules.threshold = 65536;
+    scene.rules.startThreshold = 65536 + 65536 / 1000;
+    scene.rules.sweepsPerStep = 64;
+    scene.rules.toolKind = sand::ToolKind::circle;
+    scene.rules.toolRadius = 13 * sand::kProbePerCell;
+    scene.tin = std::make_shared<const sand::tin::Start>(std::move(start));
+    return scene;
+}
+
+// Triangles that slide, but whose sand the tool holds, are forgotten and come back beside others that begin to slide:
+// a replica that has just joined never forgot them.
+TEST(TinTerrainUnderATool, WhatWasForgottenSlidesAsSoonAsItIsAskedFor) {
+    constexpr std::uint32_t kSeed = 1;
+    const sand::Scene scene = levelSand(100, kSeed);
+    Terrain terrain(scene), joined(scene);
+    std::mt19937 random(kSeed);
+    const auto somewhere = [&random] {
+        return static_cast<std::int32_t>(std::floor((26 + tin_piles::chance(random) * 48) * sand::kProbePerCell));
+    };
+    std::uint64_t number = 0;
+    terrain.apply({.epoch = 1, .number = ++number, .engaged = false, .path = {}});
+    for (int imprint = 0; imprint < 6; ++imprint) {
+        const std::int32_t x = somewhere();
+        joined.decodeState(terrain.encodeState());
+        for (int i = 0; i < 6; ++i) {
+            Step step{.epoch = 1, .number = ++number, .engaged = i == 0, .path = {}};
+            if (i == 0) {
+                step.path = {{x, somewhere(), 11 * sand::kProbePerCell}};
+            }
+            terrain.apply(step);
+            joined.apply(step);
+            ASSERT_EQ(joined.stateHash(), terrain.stateHash()) << "seed " << kSeed << ", step " << number;
+        }
+    }
 }
 
 // docs/terrain.md has these figures. The sand's own volume is exact: what is not are samples of a surface that bends
