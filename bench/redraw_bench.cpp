@@ -92,7 +92,7 @@ void dig(sand::Terrain& terrain, std::int32_t level, int steps) {
 struct Measured {
     std::vector<double> stepMs, updateMs, drawMs, busiestMs;  // a frame
     std::vector<double> views, shares;                        // a frame
-    std::vector<double> viewMs;                               // a view
+    std::vector<double> viewMs, viewTriangles, viewChunks;    // a view
 };
 
 /// What changed of the sand, for every tile to take over.
@@ -141,6 +141,8 @@ void show(const std::vector<std::unique_ptr<Tile>>& tiles, sand::Terrain& terrai
                 pixels += static_cast<double>(changed.area());
                 ++drawn;
                 measured.viewMs.push_back(1e3 * spent);
+                measured.viewTriangles.push_back(tile->view.counts().triangles);
+                measured.viewChunks.push_back(tile->view.counts().chunks);
             }
         }
         update += taken;
@@ -182,6 +184,8 @@ int measure(const Options& options) {
     row("drawing, all tiles [ms/frame]", measured.drawMs);
     row("the busiest tile, both eyes [ms/frame]", measured.busiestMs);
     row("a view that is drawn [ms]", measured.viewMs);
+    row("its triangles of sand", measured.viewTriangles);
+    row("its chunks", measured.viewChunks);
     row("views drawn [1/frame]", measured.views);
     row("pixels drawn [% of the wall]", measured.shares);
     return 0;

@@ -30,12 +30,7 @@ constexpr std::int32_t kMostVertices = 1 << 19;
 using Times = std::map<std::pair<std::string, std::string>, std::vector<double>>;
 
 sand::Scene levelScene(int side, bool refines, std::uint32_t seed) {
-    sand::tin::Start start;
-    start.width = start.depth = side * sand::kProbePerCell;
-    start.places = {{0, 0}, {start.width, 0}, {start.width, start.depth}, {0, start.depth}};
-    const auto more = tin_piles::placesOf(tin_piles::Kind::jittered, side, 0, seed);
-    start.places.insert(start.places.end(), more.begin(), more.end());
-    start.heights.assign(start.places.size(), 0);
+    sand::tin::Start start = tin_piles::levelStart(side, seed);
     start.settings.spacing = refines ? sand::kProbePerCell : 0;
     start.settings.maxError = refines ? kMaxError : 0;
     start.settings.mostVertices = kMostVertices;

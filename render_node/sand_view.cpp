@@ -10,8 +10,6 @@
 namespace render_node {
 namespace {
 
-constexpr double kMostOfAll = 0.8;  // of a picture: a rectangle larger than that costs as much as the whole
-
 const glm::vec4 kNoTool(0, 0, 1e9, 1);  // too far away to take any light
 
 glm::vec3 toVector(const std::vector<double>& numbers) { return glm::dvec3(numbers[0], numbers[1], numbers[2]); }
@@ -36,6 +34,7 @@ SandView::SandView(const sand::Scene& scene, const glm::dmat4& sceneToRoom, std:
                    std::unique_ptr<TinMesh> tin)
     : sceneToRoom_(sceneToRoom),
       look_(scene.look),
+      sun_(glm::normalize(toVector(scene.look.sunDirection))),
       cellSize_(static_cast<float>(scene.terrain.cellSize())),
       probeUnit_(scene.terrain.cellSize() / sand::kProbePerCell),
       toolRadius_(static_cast<float>(scene.toolRadius())),
@@ -46,7 +45,7 @@ SandView::SandView(const sand::Scene& scene, const glm::dmat4& sceneToRoom, std:
       sunlit_(shaders(), "sunlit.glsl", "ball.glsl"),
       woodProgram_("solid.vert.glsl", "wood.frag.glsl"),
       toolProgram_("solid.vert.glsl", "tool.frag.glsl"),
-      grain_(glm::vec2(glm::normalize(toVector(look_.sunDirection)))),
+      grain_(glm::vec2(sun_)),
       box_(surface().rim(), surface().heightsEver().lowest, double{cellSize_}, scene.rules.rim) {
     counts_.chunksOfField = surface().chunks();
 }
@@ -107,7 +106,7 @@ void SandView::prepare(const GlProgram& program, const Camera& camera) const {
     program.set("uSceneToRoom", glm::mat4(sceneToRoom_));
     program.set("uRoomToClip", glm::mat4(camera.roomToClip));
     program.set("uEye", glm::vec3(glm::inverse(sceneToRoom_) * glm::dvec4(camera.eye, 1)));
-    program.set("uSun", glm::normalize(toVector(look_.sunDirection)));
+    program.set("uSun", sun_);
     program.set("uSand", toVector(look_.sandColour));
     prepareTool(program);
     program.set("uGrain", 0);
@@ -123,7 +122,7 @@ void SandView::prepareTool(const GlProgram& program) const {
         program.set("uTool", glm::vec4(tool_->centre, 1 / toolRadius_));
     } else {
         const ToolLight light = lightOf(*tool_);
-        const glm::dvec3 sun = light.toBall * glm::dvec3(glm::normalize(toVector(look_.sunDirection)));
+        const glm::dvec3 sun = light.toBall * glm::dvec3(sun_);
         program.set("uTool", glm::vec4(glm::vec3(light.centre), 1));
         program.set("uToolSpace", glm::mat3(light.toBall));
         program.set("uToolSun", glm::vec3(glm::normalize(sun)));
@@ -268,91 +267,9 @@ void SandView::drawWires(const Camera& camera, const glm::dmat4& sceneToPart, co
     glDepthFunc(GL_LESS);
 }
 
-ToolReach SandView::reachOf(const EyeMemory::Tool& tool) const {
-    const ToolLight light = lightOf(tool);
-    return {light.centre, light.radius, glm::normalize(toVector(look_.sunDirection))};
-}
-
-/// What a tool changes, as convex hulls: the sand that it dims, its shadow, and itself.
-std::vector<std::vector<glm::dvec3>> SandView::hullsOf(const EyeMemory::Tool& tool) const {
-    const ToolReach reach = reachOf(tool);
-    const HeightRange sand = surface().heightsEver();
-    const double highest = std::max(double{sand.highest}, box_.highest());
-    // Down to the lowest sand there has been, unless it comes out again beyond the rim: nothing stops it in the
-    // shaders.
-    std::array<Box, 2> shadow = reach.shadowBetween(std::min(double{sand.lowest}, box_.lowest()), highest);
-    if (box_.insideRim(shadow.back())) {
-        shadow = reach.shadowBetween(double{sand.lowest}, highest);
-    }
-    std::vector<std::vector<glm::dvec3>> hulls(2);
-    const auto add = [this](std::vector<glm::dvec3>& hull, const Box& box) {
-        for (const glm::dvec3& corner : cornersOf(box_.withSides(box))) {
-            hull.push_back(corner);
-        }
-    };
-    add(hulls[0], reach.closeBy(double{sand.lowest}, highest));
-    std::ranges::for_each(shadow, [&](const Box& box) { add(hulls[1], box); });
-    const auto body = cornersOf(bodyOf(tool));
-    hulls.emplace_back(body.begin(), body.end());
-    return hulls;
-}
-
 LevelRule SandView::ruleFor(const Camera& camera, glm::ivec2 size) const {
     // A facet shows how fine the mesh is.
     return {camera.roomToClip * sceneToRoom_, size, look_.flatShading ? 0 : look_.detail};
-}
-
-PixelRect SandView::changedPixels(const Camera& camera, glm::ivec2 size, EyeMemory& memory) {
-    const PixelRect whole{0, 0, size.x, size.y};
-    const glm::dmat4 sceneToClip = camera.roomToClip * sceneToRoom_;
-    const LevelRule rule = ruleFor(camera, size);
-    const bool toolMoved = memory.tool != tool_;
-    if (!memory.drawn || memory.roomToClip != camera.roomToClip || memory.eye != camera.eye ||
-        memory.sceneToRoom != sceneToRoom_ || memory.layers != layers_) {
-        memory.levels = surface().levelsWithin(sceneToClip, rule);
-        return whole;
-    }
-    PixelRect changed = memory.covered;
-    const auto add = [&](std::span<const glm::dvec3> hull) {
-        changed = around(changed, pixelsOf(hull, sceneToClip, size));
-    };
-    if (toolMoved && toolRadius_ > 0) {
-        for (const std::optional<EyeMemory::Tool>& tool : {memory.tool, tool_}) {
-            if (tool) {
-                std::ranges::for_each(hullsOf(*tool), add);
-            }
-        }
-    }
-    if (memory.force != force_) {
-        if (memory.force && memory.tool) {
-            add(cornersOf(boxOf(*memory.force, memory.tool->radius)));
-        }
-        if (force_) {
-            add(cornersOf(boxOf(*force_, toolRadius_)));
-        }
-    }
-    for (const Box& box : surface().changesSince(memory.sand, memory.levels, rule)) {
-        add(cornersOf(box_.withSides(box)));
-    }
-    return static_cast<double>(changed.area()) > kMostOfAll * static_cast<double>(whole.area()) ? whole : changed;
-}
-
-PixelRect SandView::drawIfChanged(const Camera& camera, const EyeTarget& target, EyeMemory& memory) {
-    const PixelRect changed = changedPixels(camera, {target.width(), target.height()}, memory);
-    if (!changed.empty()) {
-        drawWithin(changed, camera, target);
-    }
-    memory = {true,
-              camera.roomToClip,
-              sceneToRoom_,
-              camera.eye,
-              surface().revision(),
-              std::move(memory.levels),
-              tool_,
-              force_,
-              layers_,
-              {}};
-    return changed;
 }
 
 }  // namespace render_node

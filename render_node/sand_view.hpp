@@ -158,6 +158,7 @@ private:
 
     glm::dmat4 sceneToRoom_;
     sand::Look look_;
+    glm::vec3 sun_;     // towards it, of length 1
     float cellSize_;    // [scene unit]
     double probeUnit_;  // [scene unit]
     float toolRadius_;  // [scene unit], of the tool now

@@ -69,13 +69,13 @@ bool TinMesh::update(const SurfaceView& tin, const SurfaceDamage& damage, const 
         backlog_.clear();
         return takeOver(tin, damage);
     }
-    const bool any = !damage.triangles.empty() || !damage.vertices.empty();
-    const std::optional<Box> reach = any ? surface_.reachOf(tin, damage) : std::nullopt;
-    if (any) {
+    bool rimToo = false;  // which is drawn with what stands around the sand, seen from everywhere
+    if (!damage.triangles.empty() || !damage.vertices.empty()) {
+        const std::optional<Box> reach = surface_.reachOf(tin, damage);
+        rimToo = !reach;
         backlog_.add(damage, reach.value_or(Box{}));
     }
-    const bool now = (any && !reach) || backlog_.isSeen(sees);
-    return now && takeOver(tin, backlog_.take());
+    return (rimToo || backlog_.isSeen(sees)) && takeOver(tin, backlog_.take());
 }
 
 bool TinMesh::takeOver(const SurfaceView& tin, const SurfaceDamage& damage) {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <mpi.h>
 
-#include <algorithm>
+#include <cstdint>
 
 #include "lockstep/doorbell.hpp"
 

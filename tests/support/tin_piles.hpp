@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sand/tin/layer.hpp"
+#include "sand/tin/start.hpp"
 
 /// Meshes of every kind, piles on them, and how far sand lies from where it should. Lengths in cells of 256 probe
 /// units.
@@ -65,6 +66,17 @@ inline std::vector<Place> placesOf(Kind kind, int n, double degrees, std::uint32
         }
     }
     return places;
+}
+
+/// Level sand with jittered places.
+inline sand::tin::Start levelStart(int side /* [cell] */, std::uint32_t seed) {
+    sand::tin::Start start;
+    start.width = start.depth = side * kCell;
+    start.places = {{0, 0}, {start.width, 0}, {start.width, start.depth}, {0, start.depth}};
+    const auto more = placesOf(Kind::jittered, side, 0, seed);
+    start.places.insert(start.places.end(), more.begin(), more.end());
+    start.heights.assign(start.places.size(), 0);
+    return start;
 }
 
 inline Layer layerOf(Kind kind, int n, double degrees = 0, std::uint32_t seed = 1) {

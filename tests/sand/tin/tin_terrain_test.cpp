@@ -69,12 +69,7 @@ TEST_F(TinTerrain, ASessionIsTheSameTwiceAndFromItsMiddle) {
 
 /// Level sand, points at random all over it, and a tool as wide as a quarter of it that is put here and there.
 sand::Scene levelSand(int side, std::uint32_t seed) {
-    sand::tin::Start start;
-    start.width = start.depth = side * sand::kProbePerCell;
-    start.places = {{0, 0}, {start.width, 0}, {start.width, start.depth}, {0, start.depth}};
-    const auto more = tin_piles::placesOf(tin_piles::Kind::jittered, side, 0, seed);
-    start.places.insert(start.places.end(), more.begin(), more.end());
-    start.heights.assign(start.places.size(), 0);
+    sand::tin::Start start = tin_piles::levelStart(side, seed);
     start.settings.spacing = start.settings.maxError = 0;
     start.settings.mostVertices = 1 << 19;
     sand::Scene scene;
