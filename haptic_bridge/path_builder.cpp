@@ -39,12 +39,33 @@ void PathBuilder::thinWaiting() {
     waiting_ = std::move(kept);
 }
 
+void PathBuilder::letGoIfFarAhead() {
+    if (waitingNs() <= kFarthestAhead) {
+        return;
+    }
+    const std::size_t all = waiting_.size();
+    while (waitingNs() >= mostNs_) {
+        waiting_.pop_front();
+    }
+    dropped_ += all - waiting_.size();
+    const HandSample now = waiting_.front();
+    if (engaged_ && now.engaged) {  // no furrow from where the sand is to there
+        waiting_.push_front({now.timeNs, now.at, false});
+    }
+}
+
 std::int64_t PathBuilder::take(sand::Step& step) {
+    step.engaged = engaged_;
+    if (waiting_.empty()) {
+        return 0;
+    }
+    letGoIfFarAhead();
     std::vector<sand::ProbePoint> path;
     std::int64_t readNs = 0;
-    const bool changed = !waiting_.empty() && waiting_.front().engaged != engaged_;
-    engaged_ = waiting_.empty() ? engaged_ : waiting_.front().engaged;
-    while (!waiting_.empty() && waiting_.front().engaged == engaged_) {
+    const std::int64_t until = waiting_.front().timeNs + mostNs_;
+    const bool changed = waiting_.front().engaged != engaged_;
+    engaged_ = waiting_.front().engaged;
+    while (!waiting_.empty() && waiting_.front().engaged == engaged_ && waiting_.front().timeNs < until) {
         const HandSample sample = waiting_.front();
         waiting_.pop_front();
         readNs = sample.timeNs;

@@ -25,6 +25,7 @@ Sequencer::Sequencer(const sand::Scene& scene, Pace pace, Hand& hand, HandChanne
       channel_(channel),
       output_(std::move(output)),
       terrain_(scene, sweeps),
+      path_(scene.rules.stepsPerSecond),
       clock_(scene.rules.stepsPerSecond),
       watcher_(watcher) {
     showSand();

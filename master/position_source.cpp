@@ -8,7 +8,7 @@ namespace master {
 using haptic_bridge::Trouble;
 
 PositionSource::PositionSource(const sand::Scene& scene)
-    : mapping_(scene, haptic_bridge::HandSettings::Datum::surface) {}
+    : mapping_(scene, haptic_bridge::HandSettings::Datum::surface), path_(scene.rules.stepsPerSecond) {}
 
 void PositionSource::begin(const sand::Terrain& terrain) {
     streaming_ = true;

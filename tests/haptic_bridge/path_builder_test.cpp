@@ -14,6 +14,8 @@ namespace {
 using haptic_bridge::HandSample;
 using haptic_bridge::PathBuilder;
 
+constexpr int kStepsPerSecond = 60;
+
 HandSample at(std::int32_t x, bool engaged = true) { return {x + 1, {x, 0, 0}, engaged}; }
 
 sand::Step take(PathBuilder& builder) {
@@ -23,7 +25,7 @@ sand::Step take(PathBuilder& builder) {
 }
 
 TEST(PathBuilder, GivesEverySampleInOrder) {
-    PathBuilder builder;
+    PathBuilder builder(kStepsPerSecond);
     for (int x = 1; x <= 17; ++x) {
         builder.add(at(x));
     }
@@ -36,7 +38,7 @@ TEST(PathBuilder, GivesEverySampleInOrder) {
 }
 
 TEST(PathBuilder, EndsAStepWhereTheHandLifts) {
-    PathBuilder builder;
+    PathBuilder builder(kStepsPerSecond);
     for (int x = 1; x <= 9; ++x) {
         builder.add(at(x, x <= 3 || x >= 7));
     }
@@ -50,7 +52,7 @@ TEST(PathBuilder, EndsAStepWhereTheHandLifts) {
 }
 
 TEST(PathBuilder, LeavesOutWhereTheHandRestsButNotWherePressed) {
-    PathBuilder builder;
+    PathBuilder builder(kStepsPerSecond);
     builder.restart({5, 0, 0}, false);
     builder.add(at(5, false));
     EXPECT_TRUE(take(builder).path.empty());
@@ -65,7 +67,7 @@ TEST(PathBuilder, LeavesOutWhereTheHandRestsButNotWherePressed) {
 }
 
 TEST(PathBuilder, GivesTheLastHeadingOfItsSamples) {
-    PathBuilder builder;
+    PathBuilder builder(kStepsPerSecond);
     const auto east = sand::headingOf(0), north = sand::headingOf(90);
     builder.add({1, {1, 0, 0}, true, east});
     builder.add({2, {2, 0, 0}, true, north});
@@ -81,7 +83,7 @@ TEST(PathBuilder, GivesTheLastHeadingOfItsSamples) {
 }
 
 TEST(PathBuilder, ThinsALongPathEvenly) {
-    PathBuilder builder;
+    PathBuilder builder(kStepsPerSecond);
     for (int x = 1; x <= 1000; ++x) {
         builder.add(at(x));
     }
@@ -95,8 +97,47 @@ TEST(PathBuilder, ThinsALongPathEvenly) {
     EXPECT_EQ(builder.dropped(), 1000 - sand::kMaxPathPoints);
 }
 
+/// A hand that goes a probe unit each millisecond, in the sand.
+void digFor(PathBuilder& builder, int milliseconds) {
+    for (int x = 1; x <= milliseconds; ++x) {
+        builder.add({x * 1'000'000LL, {x, 0, 0}, true});
+    }
+}
+
+TEST(PathBuilder, CatchesUpByStepsOfFourPeriods) {
+    PathBuilder builder(kStepsPerSecond);
+    digFor(builder, 1000);
+    std::int32_t last = 0;
+    int steps = 0;
+    for (sand::Step step = take(builder); !step.path.empty(); step = take(builder)) {
+        EXPECT_TRUE(step.engaged);
+        EXPECT_EQ(step.path.front().x, last + 1) << "nothing of the hand is lost";
+        EXPECT_LE(step.path.back().x - last, 67) << "[ms]";
+        last = step.path.back().x;
+        ++steps;
+    }
+    EXPECT_EQ(last, 1000);
+    EXPECT_EQ(steps, 15);
+}
+
+TEST(PathBuilder, LetsGoOfAHandThatIsFarAhead) {
+    PathBuilder builder(kStepsPerSecond);
+    digFor(builder, 10);
+    EXPECT_TRUE(take(builder).engaged);
+    digFor(builder, 1500);
+    const sand::Step lifted = take(builder), down = take(builder);
+    EXPECT_FALSE(lifted.engaged);
+    ASSERT_EQ(lifted.path.size(), 1U);
+    EXPECT_TRUE(down.engaged);
+    EXPECT_EQ(down.path.front(), lifted.path.front()) << "pressed where it was put";
+    EXPECT_GT(down.path.front().x, 1500 - 67);
+    EXPECT_EQ(down.path.back().x, 1500);
+    EXPECT_GE(builder.dropped(), 1400U);
+    EXPECT_TRUE(take(builder).path.empty());
+}
+
 TEST(PathBuilder, StaysBoundedWhileNobodyTakes) {
-    PathBuilder builder;
+    PathBuilder builder(kStepsPerSecond);
     for (int x = 1; x <= 100'000; ++x) {
         builder.add(at(x));
     }

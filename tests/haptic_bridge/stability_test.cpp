@@ -158,7 +158,10 @@ TEST(GuardedLoop, FallsSilentWithItsSandAndWithItsDevice) {
 /// Steps of the sand as the sequencer makes them, 60 a second, between the ticks of a hand.
 class MovingSand {
 public:
-    MovingSand(const sand::Scene& scene, ArmSession& hand) : scene_(scene), terrain_(scene), hand_(hand) { publish(); }
+    MovingSand(const sand::Scene& scene, ArmSession& hand)
+        : scene_(scene), terrain_(scene), hand_(hand), path_(kStepsPerSecond) {
+        publish();
+    }
 
     /// Whether this tick was the first on a new surface.
     bool tick() {
@@ -168,7 +171,7 @@ public:
         (void)hand_.tick(since + kTick);
         path_.add(hand_.sample());
         ++ticks_;
-        if (ticks_ * 60 / 1000 != (ticks_ - 1) * 60 / 1000) {
+        if (ticks_ * kStepsPerSecond / 1000 != (ticks_ - 1) * kStepsPerSecond / 1000) {
             sand::Step step{1, terrain_.stepNumber() + 1, false, {}};
             (void)path_.take(step);
             terrain_.apply(step);
@@ -178,6 +181,8 @@ public:
     }
 
 private:
+    static constexpr int kStepsPerSecond = 60;
+
     void publish() {
         hand_.surface().patch = {terrain_.field(), terrain_.probe(), scene_.toolRadius()};
         hand_.surface().step = terrain_.stepNumber();

@@ -34,7 +34,7 @@ protected:
     void sit(int steps) {
         hand_->restart();
         recorder_->begin();
-        PathBuilder path;
+        PathBuilder path(scene_.rules.stepsPerSecond);
         path.restart(terrain_.probe(), false);
         for (int i = 0; i < steps; ++i) {
             takeSurface(terrain_, surface_);
