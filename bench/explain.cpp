@@ -77,7 +77,8 @@ void explainMemory(const sand::Scene& scene, Explanation& rows) {
                 static_cast<std::size_t>(scene.terrain.stride()) * static_cast<std::size_t>(scene.rules.rows + 2) *
                     sizeof(std::int32_t),
                 fmt::format("{} x {} cells of 4 bytes and their rim", scene.rules.columns, scene.rules.rows));
-    rows.memory("fluxes and blocks", erosion.bytes(), "a flux per face; flags per block of 16 x 16 cells");
+    rows.memory("fluxes and blocks", erosion.bytes(),
+                fmt::format("a flux per face; flags per block of {0} x {0} cells", sand::Erosion::kDefaultBlock));
     rows.memory("hash tiles", static_cast<std::size_t>(hash.tileCount()) * (sizeof(std::uint64_t) + 1),
                 "a hash and a flag per tile of 32 x 32 cells");
     rows.memory("bedrock and walls", scene.ground ? scene.ground->cells().bytes() : 0,

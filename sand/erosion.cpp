@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
 #include "sand/code_path.hpp"
@@ -12,8 +11,6 @@
 
 namespace sand {
 namespace {
-
-constexpr int kSharedPatch = 32;  // [cell], height of a patch where several threads want some
 
 /// Beyond the rim the ground goes on as it came: the slope along the rim is then that of the cell's one neighbour.
 void extrapolate(const std::int32_t* edge, const std::int32_t* inner, std::ptrdiff_t stride, int count,
@@ -57,76 +54,24 @@ Erosion::Erosion(const HeightField& field, const Rules& rules, const Options& op
       down_((field.rows() + blockSize_ - 1) / blockSize_),
       v3_(options.path == CodePath::automatic && machineHasV3()),
       east_(field.columns(), field.rows()),
-      north_(field.columns(), field.rows()) {
+      north_(field.columns(), field.rows()),
+      marked_(across_, down_),
+      moved_(across_, down_) {
     const auto blocks = static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_);
-    marked_.assign(blocks, 0);
     waiting_.assign(blocks, 0);
     movedNow_.assign(blocks, 0);
-    moved_.assign(blocks, 0);
-    markedFrom_ = down_;
     wakeAll();
 }
 
 const char* Erosion::codePath() const { return v3_ ? "x86-64-v3" : "baseline"; }
 
-void Erosion::wakeAll() {
-    active_.resize(marked_.size());
-    std::iota(active_.begin(), active_.end(), 0);
-}
-
 std::size_t Erosion::bytes() const {
-    return east_.bytes() + north_.bytes() + marked_.size() * 4 + active_.capacity() * sizeof active_[0];
-}
-
-Rect Erosion::cellsOf(const Rect& blocks) const {
-    return Rect{blocks.x0 * blockSize_, blocks.y0 * blockSize_, blocks.x1 * blockSize_, blocks.y1 * blockSize_}
-        .clippedTo(east_.bounds());
-}
-
-Rect Erosion::blocksAround(const Rect& cells) const {
-    return Rect{cells.x0 / blockSize_ - 1, cells.y0 / blockSize_ - 1, (cells.x1 - 1) / blockSize_ + 2,
-                (cells.y1 - 1) / blockSize_ + 2}
-        .clippedTo({0, 0, across_, down_});
-}
-
-void Erosion::mark(const Rect& blocks) {
-    markedFrom_ = std::min(markedFrom_, blocks.y0);
-    markedTo_ = std::max(markedTo_, blocks.y1);
-    for (int y = blocks.y0; y < blocks.y1; ++y) {
-        for (int x = blocks.x0; x < blocks.x1; ++x) {
-            marked_[static_cast<std::size_t>(y * across_ + x)] = 1;
-        }
-    }
-}
-
-void Erosion::collectMarked() {
-    active_.clear();
-    for (int block = markedFrom_ * across_; block < markedTo_ * across_; ++block) {
-        std::uint8_t& marked = marked_[static_cast<std::size_t>(block)];
-        if (marked != 0) {
-            active_.push_back(block);
-            marked = 0;
-        }
-    }
-    markedFrom_ = down_;
-    markedTo_ = 0;
-}
-
-void Erosion::touch(const Rect& cells) {
-    if (cells.empty()) {
-        return;
-    }
-    for (const int block : active_) {
-        const int x = block % across_;
-        const int y = block / across_;
-        mark({x, y, x + 1, y + 1});
-    }
-    mark(blocksAround(cells));
-    collectMarked();
-    undisturbed_ = 0;
+    return east_.bytes() + north_.bytes() + marked_.bytes() + moved_.bytes() + waiting_.size() + movedNow_.size() +
+           active_.capacity() * sizeof active_[0];
 }
 
 std::int64_t Erosion::sweep(HeightField& field, int sweeps, const Obstacle* obstacle) {
+    wakeTouched();
     std::int64_t outflow = 0;
     for (int n = 0; n < sweeps && !settled(); ++n) {
         collectPatches(field);
@@ -144,7 +89,7 @@ std::int64_t Erosion::sweep(HeightField& field, int sweeps, const Obstacle* obst
             markAroundMoved(patches_[i]);
         }
         ++sweepsDone_;
-        const bool still = markedFrom_ >= markedTo_;
+        const bool still = marked_.empty();
         if (!still) {  // a replica that joins settled sand visits it once, and must not be the older for it
             undisturbed_ = std::min(undisturbed_ + 1, Inertia::kMostCounted);
         }
@@ -165,50 +110,6 @@ void Erosion::forEachPatch(const std::function<void(int)>& task) const {
     for (int i = 0; i < count; ++i) {
         task(i);
     }
-}
-
-void Erosion::collectPatches(HeightField& field) {
-    for (const int block : active_) {
-        waiting_[static_cast<std::size_t>(block)] = 1;
-    }
-    patches_.clear();
-    for (const int block : active_) {
-        if (waiting_[static_cast<std::size_t>(block)] != 0) {
-            patches_.push_back(takePatch(block));
-            refreshGhosts(field, cellsOf(patches_.back()));
-        }
-    }
-    outflows_.assign(patches_.size(), 0);
-}
-
-Rect Erosion::takePatch(int block) {
-    const int x0 = block % across_;
-    const int y0 = block / across_;
-    const auto waiting = [this](int x, int y) {
-        return x >= 0 && x < across_ && waiting_[static_cast<std::size_t>(y * across_ + x)] != 0;
-    };
-    Rect blocks{x0, y0, x0 + 1, y0};
-    const int longest = x0 + kMaxPatch / blockSize_;
-    // A column of patches as high as 2048 cells runs through the whole field once for each: a third slower.
-    const int high = options_.executor != nullptr ? kSharedPatch : kMaxBlock;
-    const int highest = std::min(y0 + std::max(high / blockSize_, 1), down_);
-    while (blocks.x1 < longest && waiting(blocks.x1, y0)) {
-        ++blocks.x1;
-    }
-    const auto sameRun = [&](int y) {
-        int x = x0;
-        while (x < blocks.x1 && waiting(x, y)) {
-            ++x;
-        }
-        return x == blocks.x1 && !waiting(x0 - 1, y) && (x == longest || !waiting(x, y));
-    };
-    do {
-        for (int x = x0; x < blocks.x1; ++x) {
-            waiting_[static_cast<std::size_t>(blocks.y1 * across_ + x)] = 0;
-        }
-        ++blocks.y1;
-    } while (blocks.y1 < highest && sameRun(blocks.y1));
-    return blocks;
 }
 
 std::int64_t Erosion::sweepFluxes(const HeightField& field, const Rect& blocks, float momentum,
@@ -278,21 +179,6 @@ void Erosion::addFluxes(NetFlux& sum) const {
     });
 }
 
-void Erosion::markAroundMoved(const Rect& blocks) {
-    for (int y = blocks.y0; y < blocks.y1; ++y) {
-        for (int x = blocks.x0; x < blocks.x1; ++x) {
-            const auto block = static_cast<std::size_t>(y * across_ + x);
-            if (movedNow_[block] != 0) {
-                // What it gives changes the blocks behind its eastern and northern faces too.
-                moved_[block] = 1;
-                moved_[static_cast<std::size_t>(y * across_ + std::min(x + 1, across_ - 1))] = 1;
-                moved_[static_cast<std::size_t>(std::min(y + 1, down_ - 1) * across_ + x)] = 1;
-                mark(Rect{x - 1, y - 1, x + 2, y + 2}.clippedTo({0, 0, across_, down_}));
-            }
-        }
-    }
-}
-
 void Erosion::refreshGhosts(HeightField& field, const Rect& cells) const {
     const int columns = field.columns();
     const int rows = field.rows();
@@ -360,19 +246,6 @@ bool Erosion::amiss(const Rect& cells) const {
         }
     }
     return false;
-}
-
-std::vector<Rect> Erosion::takeMoved() {
-    std::vector<Rect> result;
-    for (std::size_t block = 0; block < moved_.size(); ++block) {
-        if (moved_[block] != 0) {
-            const int x = static_cast<int>(block) % across_;
-            const int y = static_cast<int>(block) / across_;
-            result.push_back(cellsOf({x, y, x + 1, y + 1}));
-            moved_[block] = 0;
-        }
-    }
-    return result;
 }
 
 }  // namespace sand

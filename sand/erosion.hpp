@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sand/block_marks.hpp"
 #include "sand/executor.hpp"
 #include "sand/ground.hpp"
 #include "sand/height_field.hpp"
@@ -35,7 +36,7 @@ enum class CodePath : std::uint8_t { automatic, baseline };
 /// result is that of full sweeps bit for bit. Not thread-safe; an executor may be handed in and never changes a result.
 class Erosion {
 public:
-    static constexpr int kDefaultBlock = 16;  // [cell]
+    static constexpr int kDefaultBlock = 8;  // [cell], a vector of AVX2: larger ones visit more sand at rest
 
     struct Options {
         int blockSize = kDefaultBlock;  // [cell], in [2, kMaxBlock]
@@ -60,7 +61,7 @@ public:
     void addFluxes(NetFlux& sum) const;
 
     /// Whether the next sweep would visit no block at all.
-    [[nodiscard]] bool settled() const { return active_.empty(); }
+    [[nodiscard]] bool settled() const { return active_.empty() && marked_.empty(); }
     /// Sweeps that moved sand since touch(), as far as they matter: the age of the inertia.
     [[nodiscard]] int undisturbed() const { return undisturbed_; }
     /// What the next sweeps depend on beside the heights.
@@ -76,7 +77,7 @@ public:
     [[nodiscard]] bool amiss(const Rect& cells) const;
     /// Everything may move again: the tool has left, or the rules have changed.
     void wakeAll();
-    /// The blocks in which sweep() changed a cell since this was called last.
+    /// Blocks in which sweep() changed a cell since this was called last, side by side ones as one.
     [[nodiscard]] std::vector<Rect> takeMoved();
 
     /// "x86-64-v3" or "baseline".
@@ -96,9 +97,9 @@ private:
                                            const Obstacle* obstacle);
     void balance(HeightField& field, const Rect& blocks);
     void forEachPatch(const std::function<void(int)>& task) const;
-    void mark(const Rect& blocks);
     void markAroundMoved(const Rect& blocks);
     void collectMarked();
+    void wakeTouched();
 
     Rules rules_;
     Options options_;
@@ -113,14 +114,11 @@ private:
     std::vector<int> active_;             // ascending
     std::vector<Rect> patches_;           // of this sweep [block]
     std::vector<std::int64_t> outflows_;  // of each patch
+    BlockMarks marked_;                   // belong to the next active set
+    BlockMarks moved_;                    // changed since takeMoved()
     // One number per block:
-    std::vector<std::uint8_t> marked_;    // belongs to the next active set
     std::vector<std::uint8_t> waiting_;   // is active and not yet in a patch of this sweep
     std::vector<std::uint8_t> movedNow_;  // sand flowed in the sweep that visited it last
-    std::vector<std::uint8_t> moved_;     // changed since takeMoved()
-    // Rows of blocks [from, to) that hold a mark: on a large field most hold none.
-    int markedFrom_ = 0;
-    int markedTo_ = 0;
 };
 
 }  // namespace sand

@@ -4,23 +4,15 @@
 #include <charconv>
 #include <cmath>
 
+#include "files/trimmed.hpp"
+
 namespace tracking {
-namespace {
-
-std::string_view trimmed(std::string_view word) {
-    constexpr std::string_view kBlanks = " \t\r";
-    const auto begin = word.find_first_not_of(kBlanks);
-    return begin == std::string_view::npos ? std::string_view{}
-                                           : word.substr(begin, word.find_last_not_of(kBlanks) - begin + 1);
-}
-
-}  // namespace
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
     std::vector<std::string_view> parts;
     while (true) {
         const auto end = text.find(separator);
-        parts.push_back(trimmed(text.substr(0, end)));
+        parts.push_back(files::trimmed(text.substr(0, end)));
         if (end == std::string_view::npos) {
             return parts;
         }

@@ -15,6 +15,7 @@
 
 #include "files/byte_stream.hpp"
 #include "files/input_error.hpp"
+#include "files/trimmed.hpp"
 #include "sand/height_field.hpp"
 
 namespace sand {
@@ -27,17 +28,6 @@ struct Entry {
     std::string value;
     long line = 0;
 };
-
-std::string_view trimmed(std::string_view text) {
-    const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-    while (!text.empty() && blank(text.front())) {
-        text.remove_prefix(1);
-    }
-    while (!text.empty() && blank(text.back())) {
-        text.remove_suffix(1);
-    }
-    return text;
-}
 
 /// The text header of a file.
 class Header {
@@ -96,7 +86,8 @@ private:
         if (equals == std::string_view::npos) {
             throw files::InputError(file_, line, fmt::format("'Name = value' is wanted, got '{}'", text));
         }
-        entries_[std::string(trimmed(text.substr(0, equals)))] = {std::string(trimmed(text.substr(equals + 1))), line};
+        entries_[std::string(files::trimmed(text.substr(0, equals)))] = {
+            std::string(files::trimmed(text.substr(equals + 1))), line};
     }
     [[nodiscard]] const Entry* find(const std::string& name) const {
         const auto found = entries_.find(name);

@@ -15,22 +15,12 @@
 #include <utility>
 
 #include "files/input_error.hpp"
+#include "files/trimmed.hpp"
 
 namespace sand {
 namespace {
 
 constexpr double kFlat = 1e-9;  // width over length of a cloud that has no area: doubles tell little less
-
-std::string_view trimmed(std::string_view text) {
-    const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-    while (!text.empty() && blank(text.front())) {
-        text.remove_prefix(1);
-    }
-    while (!text.empty() && blank(text.back())) {
-        text.remove_suffix(1);
-    }
-    return text;
-}
 
 std::vector<std::string_view> fieldsOf(std::string_view text) {
     const bool semicolons = text.find(';') != std::string_view::npos;
@@ -39,13 +29,13 @@ std::vector<std::string_view> fieldsOf(std::string_view text) {
     std::vector<std::string_view> fields;
     for (;;) {
         const std::size_t end = text.find_first_of(separator);
-        fields.push_back(trimmed(text.substr(0, end)));
+        fields.push_back(files::trimmed(text.substr(0, end)));
         if (end == std::string_view::npos) {
             return fields;
         }
         text.remove_prefix(end + 1);
         // Blanks in a row are one separator; commas are not.
-        text = semicolons || commas ? text : trimmed(text);
+        text = semicolons || commas ? text : files::trimmed(text);
     }
 }
 
@@ -71,7 +61,7 @@ public:
         bool first = true;
         std::string text;
         for (long line = 1; std::getline(stream, text); ++line) {
-            const std::string_view content = trimmed(std::string_view(text).substr(0, text.find('#')));
+            const std::string_view content = files::trimmed(std::string_view(text).substr(0, text.find('#')));
             if (!content.empty()) {
                 add(fieldsOf(content), line, std::exchange(first, false));
             }
