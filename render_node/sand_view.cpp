@@ -106,6 +106,8 @@ void SandView::prepare(const GlProgram& program, const Camera& camera) const {
     program.set("uSceneToRoom", glm::mat4(sceneToRoom_));
     program.set("uRoomToClip", glm::mat4(camera.roomToClip));
     program.set("uEye", glm::vec3(glm::inverse(sceneToRoom_) * glm::dvec4(camera.eye, 1)));
+    program.set("uSceneToClip", glm::mat4(camera.roomToClip * sceneToRoom_));
+    program.set("uHalfPicture", halfPicture_);
     program.set("uSun", sun_);
     program.set("uSand", toVector(look_.sandColour));
     prepareTool(program);
@@ -153,6 +155,7 @@ void SandView::drawWithin(const PixelRect& pixels, const Camera& camera, const E
     const glm::ivec2 size(target.width(), target.height());
     const glm::dmat4 sceneToClip = camera.roomToClip * sceneToRoom_;
     const glm::dmat4 sceneToPart = clipOf(pixels, size) * sceneToClip;
+    halfPicture_ = glm::vec2(size) / 2.0F;
     target.bind();
     // The viewport stays the whole picture's: with another one, edges would fall on other pixels.
     if (pixels.area() < std::int64_t{size.x} * size.y) {

@@ -158,10 +158,11 @@ private:
 
     glm::dmat4 sceneToRoom_;
     sand::Look look_;
-    glm::vec3 sun_;     // towards it, of length 1
-    float cellSize_;    // [scene unit]
-    double probeUnit_;  // [scene unit]
-    float toolRadius_;  // [scene unit], of the tool now
+    glm::vec2 halfPicture_{};  // [pixel], of what is drawn now
+    glm::vec3 sun_;            // towards it, of length 1
+    float cellSize_;           // [scene unit]
+    double probeUnit_;         // [scene unit]
+    float toolRadius_;         // [scene unit], of the tool now
     sand::ToolShape toolShape_;
     sand::Heading toolHeading_;
     std::optional<EyeMemory::Tool> tool_;

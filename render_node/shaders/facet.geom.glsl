@@ -7,6 +7,7 @@ in vec3 vCorner[];
 in vec2 vShade[];
 out vec4 vColour;
 out vec2 vGrainAt;
+flat out float vGrainLevel;
 out vec3 vInShadow;
 out vec3 vScene;
 out vec3 vNormal;
@@ -19,6 +20,7 @@ void main() {
         vColour = shade.colour;
         vInShadow = shade.inShadow;
         vGrainAt = grainAt(vCorner[i]);
+        vGrainLevel = grainLevel(vCorner[i], normal);
         vScene = vCorner[i];
         vNormal = normal;
         gl_Position = gl_in[i].gl_Position;

@@ -16,4 +16,4 @@ Shade shadeOf(vec3 normal, float open, float mottling) {
     return Shade(vec4(colour, 0.0), 0.72 * colour);
 }
 
-vec3 grained(vec4 colour, vec2 at) { return colour.rgb; }
+vec3 grained(vec4 colour, vec4 grain) { return colour.rgb; }

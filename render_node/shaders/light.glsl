@@ -2,6 +2,8 @@
 // Put before every shader. All positions and directions are the scene's; all colours are linear light.
 uniform vec3 uSun;         // towards it
 uniform vec3 uEye;
+uniform mat4 uSceneToClip;
+uniform vec2 uHalfPicture; // [pixel]
 uniform vec4 uTool;        // centre, and one over its radius; far away where there is none
 uniform vec3 uSand;        // its albedo
 uniform sampler2D uGrain;  // see grain_texture.hpp
@@ -58,3 +60,23 @@ vec3 encode(vec3 linear) {
 // Where the grain texture lies on the sand: as seen from above, shifted a little by the height, or a bank that stands
 // upright for a moment would show stripes. More of it would draw out the grain of slopes.
 vec2 grainAt(vec3 place) { return (place.xy + place.z * vec2(0.20, 0.15)) * uGrainScale; }
+
+// At which of its levels the grain is drawn: by how many texels a pixel spans where it spans most, half a level less, so
+// that grains stay across it, and up to half a level more or less by chance, so that nobody sees where a level ends.
+// Asked for at vertices: what a pixel computes from those beside it is rounded otherwise in the next tile.
+float grainLevel(vec3 place, vec3 normal) {
+    vec2 slope = normal.xy / max(normal.z, 0.2);
+    vec4 at = uSceneToClip * vec4(place, 1.0);
+    vec4 east = uSceneToClip * vec4(1.0, 0.0, -slope.x, 0.0);
+    vec4 north = uSceneToClip * vec4(0.0, 1.0, -slope.y, 0.0);
+    float far = max(abs(at.w), 1e-6);
+    // Pixels by scene units along the ground, and turned round.
+    vec2 x = (east.xy - at.xy * (east.w / far)) * (uHalfPicture / far);
+    vec2 y = (north.xy - at.xy * (north.w / far)) * (uHalfPicture / far);
+    float longest = sqrt(max(x.x * x.x + y.x * y.x, x.y * x.y + y.y * y.y));
+    float units = longest / max(abs(x.x * y.y - x.y * y.x), 1e-6);
+    float texels = units * uGrainScale * float(textureSize(uGrain, 0).x);
+    uint hash = (floatBitsToUint(place.x) * 0x9e3779b1u + floatBitsToUint(place.y)) * 0x85ebca6bu;
+    hash = (hash ^ (hash >> 15)) * 0xc2b2ae35u;
+    return log2(max(texels, 1e-3)) - 1.0 + float(hash >> 8) / 16777216.0;
+}

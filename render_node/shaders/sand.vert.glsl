@@ -17,6 +17,7 @@ uniform float uFirst;  // of aGrid, where the field begins: vertices before it s
 invariant gl_Position;
 out vec4 vColour;
 out vec2 vGrainAt;
+flat out float vGrainLevel;
 out vec3 vInShadow;
 out vec3 vScene;
 out vec3 vNormal;
@@ -29,6 +30,7 @@ void main() {
     vColour = shade.colour;
     vInShadow = shade.inShadow;
     vGrainAt = grainAt(vScene);
+    vGrainLevel = grainLevel(vScene, vNormal);
     vec4 room = uSceneToRoom * vec4(vScene, 1.0);
     gl_Position = uRoomToClip * room;
 }

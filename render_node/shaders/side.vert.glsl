@@ -8,6 +8,7 @@ uniform mat4 uRoomToClip;
 
 out vec4 vColour;
 out vec2 vGrainAt;
+flat out float vGrainLevel;
 out vec3 vInShadow;
 out vec3 vScene;
 out vec3 vNormal;
@@ -18,6 +19,7 @@ void main() {
     Shade shade = shadeOf(aNormal, 0.9, 0.5);
     vColour = shade.colour;
     vInShadow = shade.inShadow;
+    vGrainLevel = grainLevel(aPosition, vec3(0.0, 0.0, 1.0));
     vGrainAt = (aPosition.xy + aPosition.z * vec2(0.71, 0.53)) * uGrainScale;  // upright: see grainAt()
     vec4 room = uSceneToRoom * vec4(aPosition, 1.0);
     gl_Position = uRoomToClip * room;

@@ -18,7 +18,6 @@ Shade shadeOf(vec3 normal, float open, float mottling) {
 }
 
 // Grains are fixed to the scene, so that they do not swim with the head.
-vec3 grained(vec4 colour, vec2 at) {
-    vec4 grain = texture(uGrain, at);
+vec3 grained(vec4 colour, vec4 grain) {
     return colour.rgb * (0.5 + grain.r + (grain.g - 0.5) * colour.a);
 }

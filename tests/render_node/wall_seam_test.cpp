@@ -20,6 +20,8 @@ using walls::Screen;
 constexpr int kSeamLevels = 8;
 constexpr double kSeamMostBad = 0.01;
 constexpr double kBend = 0.001;  // of the distance, from pixel to pixel: more is a silhouette
+// Of a part: pixels that a rounding gives to the next triangle, where that has another level of the grain.
+constexpr int kSeamRoundings = 3;
 constexpr int kSeamMostPixels = 700000;
 
 /// A screen that one camera sees as a whole, and the parts of it that are drawn on their own.
@@ -146,7 +148,7 @@ protected:
             const Image expected = partOfImage(left);
             const pictures::Comparison same = pictures::compare(expected, got, kSeamLevels);
             EXPECT_LE(same.badShare, kSeamMostBad) << "part at " << rect.x << ", " << rect.y;
-            EXPECT_EQ(pictures::countOutside(same.bad, cropOf(edges, whole.pixels.x, rect)), 0)
+            EXPECT_LE(pictures::countOutside(same.bad, cropOf(edges, whole.pixels.x, rect)), kSeamRoundings)
                 << "part at " << rect.x << ", " << rect.y;
             const auto bad = [&](const Image& a, const Image& b) {
                 return static_cast<double>(pictures::compare(a, b, kSeamLevels).badPixels);
