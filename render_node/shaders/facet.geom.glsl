@@ -7,7 +7,7 @@ in vec3 vCorner[];
 in vec2 vShade[];
 out vec4 vColour;
 out vec2 vGrainAt;
-flat out float vGrainLevel;
+out float vGrainLevel;
 out vec3 vInShadow;
 out vec3 vScene;
 out vec3 vNormal;

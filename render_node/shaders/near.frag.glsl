@@ -2,7 +2,7 @@
 // Sand near the tool, whose shadow is finer than the mesh. Equal to sand.frag.glsl where the tool takes no light.
 in vec4 vColour;
 in vec2 vGrainAt;
-flat in float vGrainLevel;
+in float vGrainLevel;
 in vec3 vInShadow;
 in vec3 vScene;
 in vec3 vNormal;

@@ -2,7 +2,7 @@
 // Sand that the tool does not reach.
 in vec4 vColour;
 in vec2 vGrainAt;
-flat in float vGrainLevel;
+in float vGrainLevel;
 out vec4 oColour;
 
 void main() { oColour = vec4(grained(vColour, textureLod(uGrain, vGrainAt, vGrainLevel)), 1.0); }

@@ -17,7 +17,7 @@ uniform float uFirst;  // of aGrid, where the field begins: vertices before it s
 invariant gl_Position;
 out vec4 vColour;
 out vec2 vGrainAt;
-flat out float vGrainLevel;
+out float vGrainLevel;
 out vec3 vInShadow;
 out vec3 vScene;
 out vec3 vNormal;

@@ -8,7 +8,7 @@ uniform mat4 uRoomToClip;
 
 out vec4 vColour;
 out vec2 vGrainAt;
-flat out float vGrainLevel;
+out float vGrainLevel;
 out vec3 vInShadow;
 out vec3 vScene;
 out vec3 vNormal;

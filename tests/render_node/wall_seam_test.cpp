@@ -20,7 +20,7 @@ using walls::Screen;
 constexpr int kSeamLevels = 8;
 constexpr double kSeamMostBad = 0.01;
 constexpr double kBend = 0.001;  // of the distance, from pixel to pixel: more is a silhouette
-// Of a part: pixels that a rounding gives to the next triangle, where that has another level of the grain.
+// Of a part: pixels where a rounding chooses the other of two levels of the grain.
 constexpr int kSeamRoundings = 3;
 constexpr int kSeamMostPixels = 700000;
 
