@@ -56,13 +56,28 @@ HeightRange SandSurface::heights(const sand::Rect& vertices) const {
     const int east = std::clamp(vertices.x1 - 2, 0, columns_ - 1);
     const int south = std::clamp(vertices.y0 - 1, 0, rows_ - 1);
     const int north = std::clamp(vertices.y1 - 2, 0, rows_ - 1);
-    HeightRange range{height(west, south), height(west, south)};
+    // By lanes, which become vectors: every change asks for the heights around it.
+    constexpr int kLanes = 8;
+    std::array<float, kLanes> lowest{}, highest{};
+    lowest.fill(height(west, south));
+    highest = lowest;
+    const auto add = [&](std::size_t lane, float height) {
+        lowest[lane] = height < lowest[lane] ? height : lowest[lane];
+        highest[lane] = height > highest[lane] ? height : highest[lane];
+    };
     for (int row = south; row <= north; ++row) {
         const float* heights = heights_.data() + static_cast<std::ptrdiff_t>(row) * columns_;
-        const auto [lowest, highest] = std::minmax_element(heights + west, heights + east + 1);
-        range = {std::min(range.lowest, *lowest), std::max(range.highest, *highest)};
+        int column = west;
+        for (; column + kLanes <= east + 1; column += kLanes) {
+            for (std::size_t lane = 0; lane < kLanes; ++lane) {
+                add(lane, heights[static_cast<std::size_t>(column) + lane]);
+            }
+        }
+        for (; column <= east; ++column) {
+            add(0, heights[column]);
+        }
     }
-    return range;
+    return {*std::ranges::min_element(lowest), *std::ranges::max_element(highest)};
 }
 
 float SandSurface::height(int column, int row) const {
