@@ -17,8 +17,8 @@ const float kToolReach = 1.8;
 const float kShadowLength = 20.0;
 const vec2 kPenumbra = vec2(0.08, 0.07);
 
-// The tool's share of the sun and of the light from all around, at a place: exactly 0 beyond their reach (ToolReach), so
-// that what is drawn without asking equals what is drawn with it. ball.glsl and stamp.glsl call these two. Every pixel
+// The tool's share of the sun and of the light from all around, at a place: exactly 0 beyond their reach (ToolReach),
+// so that what is drawn without asking equals what is drawn with it. ball.glsl and stamp.glsl call these two. Every pixel
 // near the tool takes this several times over by a software renderer: few divisions and roots.
 
 // How much of the sun the tool takes: all close behind it; its shadow widens and fades with the distance, and ends.
@@ -61,8 +61,8 @@ vec3 encode(vec3 linear) {
 // upright for a moment would show stripes. More of it would draw out the grain of slopes.
 vec2 grainAt(vec3 place) { return (place.xy + place.z * vec2(0.20, 0.15)) * uGrainScale; }
 
-// At which of its levels the grain is drawn: by how many texels a pixel spans where it spans most, half a level less, so
-// that grains stay across it, and up to half a level more or less by chance, so that nobody sees where a level ends.
+// At which of its levels the grain is drawn: by how many texels a pixel spans where it spans most, half a level less,
+// so that grains stay across it, and up to half a level more or less by chance, so that nobody sees where a level ends.
 // Asked for at vertices: what a pixel computes from those beside it is rounded otherwise in the next tile.
 float grainLevel(vec3 place, vec3 normal) {
     vec2 slope = normal.xy / max(normal.z, 0.2);
