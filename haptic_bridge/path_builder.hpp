@@ -44,7 +44,8 @@ public:
     /// Forgets what waits, and where the hand was.
     void restart(sand::ProbePoint at, bool engaged);
     void dropWaiting();
-    [[nodiscard]] std::uint64_t dropped() const { return dropped_; }  // samples thinned out, or dropped while waiting
+    /// Samples that were thinned out, let go, or dropped while they waited.
+    [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
 
 private:
     void thinWaiting();

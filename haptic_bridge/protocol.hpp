@@ -184,7 +184,7 @@ struct Report {
     double stepBytesMean = 0;                     // step messages, length prefix included
     std::uint64_t steps = 0;                      // sent
     std::uint64_t stepsWithheld = 0;              // due, but the wall was a whole window behind
-    std::uint64_t samplesDropped = 0;             // hand samples that no step holds: thinned out, or the queue was full
+    std::uint64_t samplesDropped = 0;             // hand samples that no step holds: thinned out, let go, or no room
     std::uint64_t ticks = 0;                      // of the force loop; 0 under --pace fast
     std::uint64_t ticksMissed = 0;                // deadlines, each a tick
     std::array<std::uint64_t, kGuards> guards{};  // ticks in which each guard acted, as kGuardNames

@@ -45,9 +45,9 @@ struct HandChannel {
 
 /// The sand thread: owns the server's replica, and numbers the steps while a master is linked.
 ///
-/// In real time a step is due by the StepClock and takes what the force thread has queued. Under the fast pace there
-/// is no clock: step n takes exactly the samples at the virtual milliseconds in ((n−1)/rate, n/rate], counted from
-/// the first start, as quickly as the wall's window allows.
+/// In real time a step is due by the StepClock and takes what the force thread has queued, of a hand that is ahead of
+/// its wall a part (PathBuilder). Under the fast pace there is no clock: step n takes exactly the samples at the
+/// virtual milliseconds in ((n−1)/rate, n/rate], counted from the first start, as quickly as the wall's window allows.
 class Sequencer {
 public:
     // What a wall that cannot keep up has queued is how late it shows the hand: 32 steps made a second of it.
