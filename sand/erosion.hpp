@@ -32,8 +32,9 @@ enum class CodePath : std::uint8_t { automatic, baseline };
 /// plain G would, and the pile is G's to the third digit, in a tenth of the sweeps. M = n / (n + 25), at most 0.9, in
 /// the n-th sweep since touch(): a pile so small that it rests early meets little inertia, and does not overshoot.
 ///
-/// Only blocks in which sand flows, and their eight neighbours, are swept again: settled sand costs nothing, and the
-/// result is that of full sweeps bit for bit. Not thread-safe; an executor may be handed in and never changes a result.
+/// Only blocks in which sand flows, and of their neighbours those beside whose border it does, are swept again: settled
+/// sand costs nothing, and the result is that of full sweeps bit for bit. Not thread-safe; an executor may be handed in
+/// and never changes a result.
 class Erosion {
 public:
     static constexpr int kDefaultBlock = 8;  // [cell], a vector of AVX2: larger ones visit more sand at rest
@@ -118,7 +119,7 @@ private:
     BlockMarks moved_;                    // changed since takeMoved()
     // One number per block:
     std::vector<std::uint8_t> waiting_;   // is active and not yet in a patch of this sweep
-    std::vector<std::uint8_t> movedNow_;  // sand flowed in the sweep that visited it last
+    std::vector<std::uint8_t> movedNow_;  // where sand flowed in the sweep that visited it last, as bits of `flow`
 };
 
 }  // namespace sand

@@ -103,14 +103,16 @@ void Erosion::markAroundMoved(const Rect& blocks) {
         const std::uint8_t* const flowed = movedNow_.data() + y * across_;
         for (int x = blocks.x0; x < blocks.x1; ++x) {
             const int first = x;
-            while (x < blocks.x1 && flowed[x] != 0) {
-                ++x;
+            for (; x < blocks.x1 && flowed[x] != 0; ++x) {
+                const auto beyond = [&](int side) { return (flowed[x] & side) != 0 ? 1 : 0; };
+                marked_.add(Rect{x - beyond(flow::kWest), y - beyond(flow::kSouth), x + 1 + beyond(flow::kEast),
+                                 y + 1 + beyond(flow::kNorth)}
+                                .clippedTo(all));
             }
             if (x > first) {
                 // What they give changes the blocks behind their eastern and northern faces too.
                 moved_.add(Rect{first, y, x + 1, y + 1}.clippedTo(all));
                 moved_.add(Rect{first, y, x, y + 2}.clippedTo(all));
-                marked_.add(Rect{first - 1, y - 1, x + 1, y + 2}.clippedTo(all));
             }
         }
     }

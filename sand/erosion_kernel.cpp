@@ -289,23 +289,36 @@ std::int64_t runInertial(const FluxPatch& patch) {
     return run(patch, Law(patch.eastLaw, patch.momentum), Law(patch.northLaw, patch.momentum));
 }
 
-/// `moved` collects the bits of all fluxes in each column, so that blocks are looked at once and not in every row.
+/// `moved` collects in each column what is true of the rows in which sand flows, so that blocks are looked at once and
+/// not in every row.
 void addUp(const std::int32_t* __restrict east, const std::int32_t* __restrict south,
-           const std::int32_t* __restrict north, int count, std::int32_t* __restrict heights,
+           const std::int32_t* __restrict north, int count, std::int32_t ofRow, std::int32_t* __restrict heights,
            std::int32_t* __restrict moved) {
     for (int i = 0; i < count; ++i) {
         heights[i] += east[i - 1] - east[i] + south[i] - north[i];
-        moved[i] |= east[i] | north[i];
+        moved[i] |= (east[i] | north[i]) != 0 ? ofRow : 0;
     }
 }
 
-/// Tells in which blocks of a row of blocks sand flows, and begins the next.
+/// What is true of a row of a block, of rows [first, end), in which sand flows.
+std::int32_t flowIn(int row, int first, int end) {
+    return flow::kSomewhere | (row == first ? flow::kSouth : 0) | (row >= end - 2 ? flow::kNorth : 0);
+}
+
+/// Tells where in the blocks of a row of blocks sand flows, and begins the next.
 void reportMoved(const BalancePatch& patch, int blockRow, Row<std::int32_t>& moved) {
     const int width = patch.cells.x1 - patch.cells.x0;
-    std::uint8_t* flag = patch.moved + blockRow * patch.blocksAcross;
+    std::uint8_t* flags = patch.moved + blockRow * patch.blocksAcross;
     for (int x = 0; x < width; x += patch.blockSize) {
-        const auto end = moved.data() + std::min(x + patch.blockSize, width);
-        *flag++ = std::any_of(moved.data() + x, end, [](std::int32_t bits) { return bits != 0; }) ? 1 : 0;
+        const std::int32_t* const column = moved.data() + x;
+        const int count = std::min(patch.blockSize, width - x);
+        std::int32_t bits = 0;
+        for (int i = 0; i < count; ++i) {
+            bits |= column[i];
+        }
+        bits |= column[0] != 0 ? flow::kWest : 0;
+        bits |= (column[count - 1] | column[std::max(count - 2, 0)]) != 0 ? flow::kEast : 0;
+        *flags++ = static_cast<std::uint8_t>(bits);
     }
     std::fill_n(moved.data(), width, 0);
 }
@@ -332,17 +345,18 @@ void balance(const BalancePatch& patch) {
     std::fill_n(moved.data(), width, 0);
     if (patch.cells.y0 == 0) {  // the faces at the southern rim are no cell's northern ones
         const std::int32_t* south = patch.north - patch.fluxStride + patch.cells.x0;
-        std::copy(south, south + width, moved.data());
+        std::transform(south, south + width, moved.data(), [](int flux) { return flux != 0 ? flow::kSomewhere : 0; });
     }
     int blockRow = 0;
     for (int y = patch.cells.y0; y < patch.cells.y1; ++blockRow) {
-        const int end = std::min(y + patch.blockSize, patch.cells.y1);
+        const int first = y, end = std::min(y + patch.blockSize, patch.cells.y1);
         for (; y < end; ++y) {
+            const std::int32_t ofRow = flowIn(y, first, end);
             const std::ptrdiff_t flux = y * patch.fluxStride + patch.cells.x0;
-            addUp(patch.east + flux, patch.north + flux - patch.fluxStride, patch.north + flux, width,
+            addUp(patch.east + flux, patch.north + flux - patch.fluxStride, patch.north + flux, width, ofRow,
                   patch.heights + y * patch.heightStride + patch.cells.x0, moved.data());
             if (patch.cells.x0 == 0) {
-                moved.data()[0] |= patch.east[flux - 1];
+                moved.data()[0] |= patch.east[flux - 1] != 0 ? ofRow : 0;
             }
         }
         reportMoved(patch, blockRow, moved);

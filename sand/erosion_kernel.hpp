@@ -42,6 +42,15 @@ struct FluxPatch {
     const std::int32_t* sand;  // what lies in each cell [unit]: a face gives at most a quarter
 };
 
+/// Where in a block sand flows, over faces that it owns: the eastern and northern ones of its cells. A face changes two
+/// heights, and the fluxes of a block come from its heights and those a cell around it: whoever's faces do not flow
+/// near a side leaves the block there as it is.
+namespace flow {
+inline constexpr int kSomewhere = 1;
+inline constexpr int kWest = 2, kSouth = 4;   // in its first column or row
+inline constexpr int kEast = 8, kNorth = 16;  // in its last two
+}  // namespace flow
+
 /// The same patch's heights after these fluxes.
 struct BalancePatch {
     std::int32_t* heights;  // at cell (0,0) of the field
@@ -51,7 +60,7 @@ struct BalancePatch {
     std::ptrdiff_t fluxStride;
     Rect cells;
     int blockSize;        // [cell]
-    std::uint8_t* moved;  // of the patch's first block: whether sand flows through a face that it owns
+    std::uint8_t* moved;  // of the patch's first block: where in it sand flows, as bits of `flow`; written
     int blocksAcross;     // from a block's `moved` to that of the block north of it
 };
 
