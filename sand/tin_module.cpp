@@ -26,12 +26,12 @@ const TinModule& load() {
             const char* reason = dlerror();
             throw files::InputError(std::string("a scene with a [tin]: ") +
                                     (reason == nullptr ? file.string() + " is none of ours" : reason) +
-                                    "; install Debian's libgmp10 and libmpfr6, and one build of Sandwall");
+                                    "; install it and the programs from one build of Sandwall");
         }
         return *reinterpret_cast<GetTinModule*>(found)();
     }
     throw files::InputError("a scene with a [tin]: there is no sandwall-tin.so in " + bin.string() +
-                            "; build Sandwall with Debian's libcgal-dev");
+                            "; copy it there from the build that the programs are of");
 }
 
 }  // namespace
