@@ -109,15 +109,18 @@ void Tool::findLowest(const Ground* ground, ProbePoint at, int column, int row, 
 Tool::Displacement Tool::press(HeightField& field, Rim rim, const Ground* ground, ProbePoint at,
                                const Offset& ahead) const {
     const Rect cells = this->cells(field, at);
-    std::vector<std::int32_t> lowest(static_cast<std::size_t>(std::max(cells.x1 - cells.x0, 0)));  // of a row
+    const auto across = static_cast<std::size_t>(std::max(cells.x1 - cells.x0, 0));
     const auto above = v3_ ? v3::sandAbove : baseline::sandAbove;
     std::int64_t taken = 0;
-    std::vector<int> cuts;  // rows: a tool that is dragged cuts few
+    std::vector<int> cuts;                     // rows: a tool that is dragged cuts few
+    std::vector<std::int32_t> lowest(across);  // of those, side by side, and of one more
     for (int y = cells.y0; y < cells.y1; ++y) {
-        findLowest(ground, at, cells.x0, y, lowest);
-        if (const std::int64_t more = above(lowest.data(), field.row(y) + cells.x0, cells.x1 - cells.x0); more > 0) {
+        const std::span<std::int32_t> ofRow = std::span(lowest).last(across);
+        findLowest(ground, at, cells.x0, y, ofRow);
+        if (const std::int64_t more = above(ofRow.data(), field.row(y) + cells.x0, cells.x1 - cells.x0); more > 0) {
             taken += more;
             cuts.push_back(y);
+            lowest.resize(lowest.size() + across);
         }
     }
     if (taken == 0) {
@@ -136,10 +139,10 @@ Tool::Displacement Tool::press(HeightField& field, Rim rim, const Ground* ground
             return {};  // no room left in 32 bits: the sand stays, and the tool passes through it
         }
     }
-    for (const int y : cuts) {
-        findLowest(ground, at, cells.x0, y, lowest);
-        std::int32_t* const row = field.row(y) + cells.x0;
-        std::transform(lowest.begin(), lowest.end(), row, row,
+    for (std::size_t i = 0; i < cuts.size(); ++i) {
+        const std::span<const std::int32_t> ofRow = std::span(lowest).subspan(i * across, across);
+        std::int32_t* const row = field.row(cuts[i]) + cells.x0;
+        std::transform(ofRow.begin(), ofRow.end(), row, row,
                        [](std::int32_t least, std::int32_t height) { return std::min(height, least); });
     }
     Displacement result{shape_.cellsChanged(at.x, at.y).clippedTo(field.bounds()), 0};
