@@ -14,7 +14,7 @@ packages=(
     libxxhash-dev libzstd-dev libpng-dev nlohmann-json3-dev # hashes, states, pictures, summaries
     libgdal-dev libmuparser-dev                             # terrain from rasters, pictures and formulas
     libssl-dev                                              # who may come in over a network
-    libgtest-dev libbenchmark-dev xvfb iproute2             # tests and benchmarks; an emulated cluster
+    libgtest-dev libbenchmark-dev libcgal-dev xvfb iproute2 # tests and benchmarks; an emulated cluster
 )
 # The tests also build with clang, for the proof that the state hash does not depend on the compiler.
 # The report draws its curves with matplotlib.
