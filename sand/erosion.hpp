@@ -99,6 +99,8 @@ private:
     void balance(HeightField& field, const Rect& blocks);
     void forEachPatch(const std::function<void(int)>& task) const;
     void markAroundMoved(const Rect& blocks);
+    /// Marks, in a row of blocks, those that lie beside flow at this side of a block; `flowed` by column.
+    void markBeside(const std::uint8_t* flowed, int side, const Rect& row);
     void collectMarked();
     void wakeTouched();
 

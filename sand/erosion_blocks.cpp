@@ -103,11 +103,8 @@ void Erosion::markAroundMoved(const Rect& blocks) {
         const std::uint8_t* const flowed = movedNow_.data() + y * across_;
         for (int x = blocks.x0; x < blocks.x1; ++x) {
             const int first = x;
-            for (; x < blocks.x1 && flowed[x] != 0; ++x) {
-                const auto beyond = [&](int side) { return (flowed[x] & side) != 0 ? 1 : 0; };
-                marked_.add(Rect{x - beyond(flow::kWest), y - beyond(flow::kSouth), x + 1 + beyond(flow::kEast),
-                                 y + 1 + beyond(flow::kNorth)}
-                                .clippedTo(all));
+            while (x < blocks.x1 && flowed[x] != 0) {
+                ++x;
             }
             if (x > first) {
                 // What they give changes the blocks behind their eastern and northern faces too.
@@ -115,7 +112,28 @@ void Erosion::markAroundMoved(const Rect& blocks) {
                 moved_.add(Rect{first, y, x, y + 2}.clippedTo(all));
             }
         }
+        markBeside(flowed, flow::kSouth, {blocks.x0, y - 1, blocks.x1, y});
+        markBeside(flowed, flow::kSomewhere, {blocks.x0, y, blocks.x1, y + 1});
+        markBeside(flowed, flow::kNorth, {blocks.x0, y + 1, blocks.x1, y + 2});
     }
+}
+
+void Erosion::markBeside(const std::uint8_t* flowed, int side, const Rect& row) {
+    const Rect all{0, 0, across_, down_};
+    Rect run;  // side by side, as one
+    for (int x = row.x0; x < row.x1; ++x) {
+        if ((flowed[x] & side) == 0) {
+            continue;
+        }
+        const int first = x - ((flowed[x] & flow::kWest) != 0 ? 1 : 0);
+        const int end = x + 1 + ((flowed[x] & flow::kEast) != 0 ? 1 : 0);
+        if (run.empty() || first > run.x1) {
+            marked_.add(run.clippedTo(all));
+            run = {first, row.y0, end, row.y1};
+        }
+        run.x1 = end;
+    }
+    marked_.add(run.clippedTo(all));
 }
 
 std::vector<Rect> Erosion::takeMoved() {
