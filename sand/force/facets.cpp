@@ -3,16 +3,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace sand::force {
 namespace {
 
-constexpr double kParts = 256;  // of a probe unit, to which a place is rounded
+constexpr std::int64_t kParts = 256;  // of a probe unit, to which a place is rounded
 
 std::size_t at(std::int32_t number) { return static_cast<std::size_t>(number); }
 
+/// The whole number nearest to it, halves up: what floor() would say, which asks a library.
+std::int64_t nearest(double value) {
+    const auto cut = static_cast<std::int64_t>(value + 0.5);
+    return cut - (static_cast<double>(cut) > value + 0.5 ? 1 : 0);
+}
+
 /// Whether a triangle owns the places on its edge from a to b; the one beyond runs the other way round, and does not.
-bool owns(double acrossX, double acrossY) { return acrossY < 0 || (acrossY == 0 && acrossX > 0); }
+bool owns(std::int64_t acrossX, std::int64_t acrossY) { return acrossY < 0 || (acrossY == 0 && acrossX > 0); }
 
 /// Whether a triangle and a square have a place in common: exactly, for a walk could end in one that only nearly does.
 bool overlap(const std::array<tin::Place, 3>& corner, const std::array<std::int32_t, 4>& square) {
@@ -36,6 +43,15 @@ bool overlap(const std::array<tin::Place, 3>& corner, const std::array<std::int3
 }
 
 }  // namespace
+
+/// Without a branch: on which side a place is nobody can foretell.
+std::array<std::int64_t, 3> Facets::Facet::within(const Spot& spot) const {
+    std::array<std::int64_t, 3> result{};
+    for (std::size_t side = 0; side < 3; ++side) {
+        result[side] = towardsX[side] * spot.x + towardsY[side] * spot.y + atMiddle[side];
+    }
+    return result;
+}
 
 void Facets::Index::clear() {
     std::fill(places_.begin(), places_.end(), std::pair{-1, -1});
@@ -77,24 +93,55 @@ bool Facets::take(const tin::SurfaceView& tin, const ProbePoint& centre, std::in
     const tin::Place middle{std::clamp(centre.x, 0, mesh.width), std::clamp(centre.y, 0, mesh.depth)};
     square_ = {std::max(middle.x - reach, 0), std::max(middle.y - reach, 0), std::min(middle.x + reach, mesh.width),
                std::min(middle.y + reach, mesh.depth)};
-    facets_.clear();
-    last_ = 0;
+    clear();
     if (!findSlots(mesh, middle)) {
         return false;
     }
     unit_ = unit;
-    middleX_ = middle.x;
-    middleY_ = middle.y;
+    partsPerUnit_ = kParts / unit;
+    middleX_ = static_cast<double>(kParts * middle.x);
+    middleY_ = static_cast<double>(kParts * middle.y);
     // On the rim itself the triangle that owns a place could be one beyond it.
-    west_ = std::max<double>(square_[0], 1 / kParts) - middle.x;
-    south_ = std::max<double>(square_[1], 1 / kParts) - middle.y;
-    east_ = std::min<double>(square_[2], mesh.width - 1 / kParts) - middle.x;
-    north_ = std::min<double>(square_[3], mesh.depth - 1 / kParts) - middle.y;
+    const auto within = [](std::int32_t side, std::int32_t end, std::int32_t from) {
+        return static_cast<double>(std::clamp<std::int64_t>(kParts * side, 1, kParts * end - 1) - kParts * from);
+    };
+    west_ = within(square_[0], mesh.width, middle.x);
+    south_ = within(square_[1], mesh.depth, middle.y);
+    east_ = within(square_[2], mesh.width, middle.x);
+    north_ = within(square_[3], mesh.depth, middle.y);
     for (const std::int32_t slot : slots_) {
-        facets_.push_back(facetOf(tin, slot, middle));
+        add(tin, slot, middle);
     }
     levelHoles(tin);
+    findStarts();
     return true;
+}
+
+/// The facet in the middle of each part, to and fro over the square: from one to the next is a short walk. With half as
+/// many parts as facets; with four times as many a query takes a tenth less, and a copy a fifth more.
+void Facets::findStarts() {
+    const double side = std::ceil(std::sqrt(static_cast<double>(facets_.size()) / 2));
+    startsPerSide_ = std::min<std::size_t>(static_cast<std::size_t>(side), kMostStarts);
+    const auto parts = static_cast<double>(startsPerSide_);
+    columnsPer_ = parts / (east_ - west_);
+    rowsPer_ = parts / (north_ - south_);
+    std::int32_t last = 0;
+    for (std::size_t row = 0; row < startsPerSide_; ++row) {
+        for (std::size_t i = 0; i < startsPerSide_; ++i) {
+            const std::size_t column = row % 2 == 0 ? i : startsPerSide_ - 1 - i;
+            const double x = west_ + (static_cast<double>(column) + 0.5) / columnsPer_;
+            const double y = south_ + (static_cast<double>(row) + 0.5) / rowsPer_;
+            last = find({nearest(x), nearest(y)}, last);
+            starts_[row * startsPerSide_ + column] = static_cast<std::int16_t>(last);
+        }
+    }
+}
+
+std::size_t Facets::startOf(double x, double y) const {
+    const auto part = [this](double from) {
+        return std::min(static_cast<std::size_t>(static_cast<std::int64_t>(from)), startsPerSide_ - 1);
+    };
+    return part((y - south_) * rowsPer_) * startsPerSide_ + part((x - west_) * columnsPer_);
 }
 
 void Facets::levelHoles(const tin::SurfaceView& tin) {
@@ -110,8 +157,7 @@ void Facets::levelHoles(const tin::SurfaceView& tin) {
     }
     for (std::size_t i = 0; i < slots_.size(); ++i) {
         if (isHole(slots_[i])) {
-            facets_[i].height = lowest * unit_ * kProbePerCell / kUnitsPerCell;
-            facets_[i].east = facets_[i].north = 0;
+            planes_[i] = {lowest * unit_ * kProbePerCell / kUnitsPerCell, 0, 0};
         }
     }
 }
@@ -141,68 +187,71 @@ bool Facets::findSlots(const tin::Triangles& mesh, const tin::Place& middle) {
     return slots_.size() <= kMost;
 }
 
-Facets::Facet Facets::facetOf(const tin::SurfaceView& tin, std::int32_t slot, const tin::Place& middle) const {
+void Facets::add(const tin::SurfaceView& tin, std::int32_t slot, const tin::Place& middle) {
     const tin::Triangle& triangle = tin.triangles.triangles[at(slot)];
-    Facet facet{};
-    std::array<double, 3> height{};
-    const double unit = unit_ * kProbePerCell / kUnitsPerCell;  // [scene unit], of a height
     // From the smallest vertex on, for where a mesh begins its corners is no matter, and must not show in a rounding.
     const auto first = static_cast<std::size_t>(std::ranges::min_element(triangle.corner) - triangle.corner.begin());
+    std::array<std::int64_t, 3> x{}, y{};  // [part] from the middle
+    std::array<double, 3> height{};
+    Facet facet{};
     for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t from = (first + k) % 3;
         const tin::Place place = tin.triangles.places[at(triangle.corner[from])];
-        facet.x[k] = static_cast<float>(place.x - middle.x);
-        facet.y[k] = static_cast<float>(place.y - middle.y);
-        facet.beyond[k] = triangle.neighbour[from] == tin::kNobody ? -1 : index_.find(triangle.neighbour[from]);
-        height[k] = tin.heights[at(triangle.corner[from])] * unit;
+        x[k] = kParts * (place.x - middle.x);
+        y[k] = kParts * (place.y - middle.y);
+        height[k] = tin.heights[at(triangle.corner[from])] * unit_ * kProbePerCell / kUnitsPerCell;
+        const std::int32_t beyond =
+            triangle.neighbour[from] == tin::kNobody ? -1 : index_.find(triangle.neighbour[from]);
+        facet.beyond[k] = static_cast<std::int16_t>(beyond);
     }
-    const double bx = facet.x[1] - facet.x[0], by = facet.y[1] - facet.y[0];
-    const double cx = facet.x[2] - facet.x[0], cy = facet.y[2] - facet.y[0];
+    for (std::size_t side = 0; side < 3; ++side) {
+        const std::size_t a = (side + 1) % 3, b = (side + 2) % 3;
+        const std::int64_t dx = (x[b] - x[a]) / kParts, dy = (y[b] - y[a]) / kParts;
+        facet.towardsX[side] = static_cast<std::int32_t>(-dy);
+        facet.towardsY[side] = static_cast<std::int32_t>(dx);
+        facet.atMiddle[side] = dy * x[a] - dx * y[a] - (owns(dx, dy) ? 0 : 1);
+    }
+    facets_.push_back(facet);
+    const auto bx = static_cast<double>(x[1] - x[0]), by = static_cast<double>(y[1] - y[0]);
+    const auto cx = static_cast<double>(x[2] - x[0]), cy = static_cast<double>(y[2] - y[0]);
     const double doubledArea = bx * cy - by * cx;
-    facet.height = height[0];
-    facet.east = ((height[1] - height[0]) * cy - (height[2] - height[0]) * by) / doubledArea;
-    facet.north = ((height[2] - height[0]) * bx - (height[1] - height[0]) * cx) / doubledArea;
-    return facet;
+    const double east = ((height[1] - height[0]) * cy - (height[2] - height[0]) * by) / doubledArea;
+    const double north = ((height[2] - height[0]) * bx - (height[1] - height[0]) * cx) / doubledArea;
+    planes_.push_back({height[0] - east * static_cast<double>(x[0]) - north * static_cast<double>(y[0]), east, north});
 }
 
-/// From the facet found last, always beyond some edge that the place lies beyond. Which one is left to chance, for
+/// From a facet nearby, always beyond some edge that the place lies beyond. Which one is left to chance, for
 /// walks of one rule can go round constraints for ever; where they end does not depend on it. An edge of the walk that
 /// leads out of the square has another beside it that does not.
-const Facets::Facet& Facets::find(double x, double y) const {
+std::int32_t Facets::find(const Spot& spot, std::int32_t start) const {
     std::uint32_t chance = 1;
-    std::int32_t slot = last_, before = -1;
+    std::int32_t number = start, before = -1;
     for (std::size_t steps = 4 * facets_.size();; --steps) {
-        const Facet& facet = facets_[at(slot)];
+        const Facet& facet = facets_[at(number)];
+        const auto within = facet.within(spot);
+        if ((within[0] | within[1] | within[2]) >= 0 || steps == 0) {
+            return number;
+        }
         chance = chance * 1664525U + 1013904223U;
         std::size_t side = (chance >> 16U) % 3;
         std::int32_t next = -1;
         for (int tried = 0; tried < 3 && next < 0; ++tried, side = side == 2 ? 0 : side + 1) {
-            if (facet.beyond[side] < 0 || facet.beyond[side] == before) {
-                continue;  // nobody is there, or the walk came from there
-            }
-            const std::size_t a = side == 2 ? 0 : side + 1, b = a == 2 ? 0 : a + 1;
-            const double dx = double{facet.x[b]} - facet.x[a], dy = double{facet.y[b]} - facet.y[a];
-            const double inside = dx * (y - facet.y[a]) - dy * (x - facet.x[a]);
-            if (inside < 0 || (inside == 0 && !owns(dx, dy))) {
-                next = facet.beyond[side];
-            }
+            next = within[side] < 0 && facet.beyond[side] != before ? facet.beyond[side] : -1;
         }
-        if (next < 0 || steps == 0) {
-            last_ = slot;
-            return facet;
+        if (next < 0) {
+            return number;
         }
-        before = slot;
-        slot = next;
+        before = std::exchange(number, next);
     }
 }
 
 Dual Facets::tangent(double x, double y) const {
-    const double freeX = x / unit_ - middleX_, freeY = y / unit_ - middleY_;
+    const double freeX = x * partsPerUnit_ - middleX_, freeY = y * partsPerUnit_ - middleY_;
     const double fromX = std::clamp(freeX, west_, east_), fromY = std::clamp(freeY, south_, north_);
-    const double roundX = std::floor(fromX * kParts + 0.5) / kParts, roundY = std::floor(fromY * kParts + 0.5) / kParts;
-    const Facet& facet = find(roundX, roundY);
-    return {facet.height + facet.east * (roundX - facet.x[0]) + facet.north * (roundY - facet.y[0]),
-            {fromX == freeX ? facet.east / unit_ : 0, fromY == freeY ? facet.north / unit_ : 0, 0}};
+    const Spot spot{nearest(fromX), nearest(fromY)};
+    const Plane& plane = planes_[at(find(spot, starts_[startOf(fromX, fromY)]))];
+    return {plane.height + plane.east * static_cast<double>(spot.x) + plane.north * static_cast<double>(spot.y),
+            {fromX == freeX ? plane.east * partsPerUnit_ : 0, fromY == freeY ? plane.north * partsPerUnit_ : 0, 0}};
 }
 
 }  // namespace sand::force

@@ -17,7 +17,7 @@ namespace sand::force {
 /// It reaches four tool radii and at least eight cells from its centre, so that the hand may go on for a step; a
 /// large tool's patch takes every second or third cell. Of a TIN it takes the triangles (Facets), or, where these are
 /// more than Facets::kMost, its height at the nominal cells' middles. Heights are [scene unit], positions [scene unit]
-/// from the field's south-west corner. One thread at a time, reading too.
+/// from the field's south-west corner. Many threads may read.
 class SurfacePatch {
 public:
     static constexpr int kMaxSideNodes = 96;
