@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sand/tin/detail.hpp"
 
-#include <cmath>
-#include <cstdlib>
+#include <algorithm>
 
 #include "sand/height_field.hpp"
 
 namespace sand::tin {
 namespace {
-
-constexpr int kLooksPerRemoval = 16;
-constexpr std::size_t kMostAround = 64;  // a vertex with more is looked at too dearly
 
 std::int64_t square(std::int32_t coordinate, std::int32_t spacing) { return coordinate / spacing; }
 
@@ -66,51 +62,6 @@ private:
     std::vector<bool> taken_;
 };
 
-/// How far a vertex or one around it lies from the plane that fits them best [unit]. Its own place is the origin: sums
-/// of products of small numbers.
-double farthestFromPlane(const Layer& layer, Vertex vertex, const Link& link) {
-    const auto& places = layer.triangles().places;
-    const Place origin = places[static_cast<std::size_t>(vertex)];
-    const double base = layer.heights()[static_cast<std::size_t>(vertex)];
-    struct Point {
-        double x, y, z;
-    };
-    std::vector<Point> points{{0, 0, 0}};
-    Point sum{};
-    for (const Vertex other : link.vertices) {
-        const Place place = places[static_cast<std::size_t>(other)];
-        points.push_back({static_cast<double>(place.x - origin.x), static_cast<double>(place.y - origin.y),
-                          layer.heights()[static_cast<std::size_t>(other)] - base});
-        sum = {sum.x + points.back().x, sum.y + points.back().y, sum.z + points.back().z};
-    }
-    const auto count = static_cast<double>(points.size());
-    double xx = 0, xy = 0, yy = 0, xz = 0, yz = 0;
-    for (Point& point : points) {
-        point = {point.x - sum.x / count, point.y - sum.y / count, point.z - sum.z / count};
-        xx += point.x * point.x;
-        xy += point.x * point.y;
-        yy += point.y * point.y;
-        xz += point.x * point.z;
-        yz += point.y * point.z;
-    }
-    const double determinant = xx * yy - xy * xy;  // positive: they do not all lie on a line
-    const double a = (xz * yy - yz * xy) / determinant, b = (yz * xx - xz * xy) / determinant;
-    double farthest = 0;
-    for (const Point& point : points) {
-        farthest = std::max(farthest, std::abs(point.z - a * point.x - b * point.y));
-    }
-    return farthest;
-}
-
-std::int64_t candidates(const Layer& layer, const DetailRules& rules) {
-    return static_cast<std::int64_t>(layer.triangles().triangleAt.size()) - rules.firstToGo;
-}
-
-/// Vertices that a step looks at, unless it removes as many as it may before.
-std::int64_t looksOfStep(const Layer& layer, const DetailRules& rules) {
-    return std::clamp<std::int64_t>(candidates(layer, rules), 0, std::int64_t{rules.removals} * kLooksPerRemoval);
-}
-
 }  // namespace
 
 int refine(Mesh& mesh, const DetailRules& rules, const Box& box, const std::function<bool(const Place&)>& wanted,
@@ -136,51 +87,6 @@ int refine(Mesh& mesh, const DetailRules& rules, const Box& box, const std::func
     });
     mesh.insert(places);
     return static_cast<int>(places.size());
-}
-
-// The triangles before and after span the same vertices, but for the one that goes: all lie within `far` of a plane,
-// and so do both surfaces, which are 2 far apart at most. The remap moves them by the mean of that at most.
-int coarsen(Layer& layer, const DetailRules& rules, Vertex& next, const Box& keepOut) {
-    if (rules.maxError <= 0) {
-        return 0;
-    }
-    const auto count = static_cast<Vertex>(layer.triangles().triangleAt.size());
-    const std::int64_t looks = looksOfStep(layer, rules);
-    Link link;
-    int removed = 0;
-    for (std::int64_t look = 0; look < looks && removed < rules.removals; ++look, ++next) {
-        next = next >= count || next < rules.firstToGo ? rules.firstToGo : next;
-        const Triangles& mesh = layer.triangles();
-        if (!mesh.alive(next) || keepOut.holds(mesh.places[static_cast<std::size_t>(next)])) {
-            continue;
-        }
-        findLink(mesh, next, link);
-        if (link.constrained || !link.closed || link.vertices.size() > kMostAround) {
-            continue;
-        }
-        if (4 * farthestFromPlane(layer, next, link) <= rules.maxError && layer.remove(next)) {
-            ++removed;
-        }
-    }
-    return removed;
-}
-
-int Coarsening::step(Layer& layer, const DetailRules& rules, Vertex& next, const Box& keepOut) {
-    inVain_ = keepOut == keepOut_ ? inVain_ : 0;
-    keepOut_ = keepOut;
-    const std::int64_t looks = rules.maxError > 0 ? looksOfStep(layer, rules) : 0;
-    if (inVain_ < candidates(layer, rules)) {
-        const int removed = coarsen(layer, rules, next, keepOut);
-        inVain_ = removed > 0 ? 0 : inVain_ + looks;
-        return removed;
-    }
-    if (looks > 0) {  // where coarsen() would stop
-        const std::int64_t end = candidates(layer, rules) + rules.firstToGo;
-        const std::int64_t first = next >= end || next < rules.firstToGo ? 0 : next - rules.firstToGo;
-        const std::int64_t last = (first + looks - 1) % candidates(layer, rules);
-        next = static_cast<Vertex>(rules.firstToGo + last + 1);
-    }
-    return 0;
 }
 
 void DetailRules::encode(files::ByteWriter& writer) const {

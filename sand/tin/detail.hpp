@@ -38,24 +38,4 @@ using Edges = std::vector<std::pair<Place, Place>>;
 int refine(Mesh& mesh, const DetailRules& rules, const Box& box, const std::function<bool(const Place&)>& wanted,
            std::span<const Place> there, const Edges& edges);
 
-/// Takes out vertices where the surface is flat again: those with no constraint and not on the rim, in order of number
-/// from `next` on, which goes round; at most rules.removals, of sixteen times as many that are looked at.
-///
-/// One goes when all around it and itself lie so near to one plane that neither the other triangles nor the remap
-/// moves the surface anywhere by more than maxError. The sand stays, to the last unit; errors of removals one after
-/// the other add up. `keepOut`: where the tool works. Returns how many went.
-int coarsen(Layer& layer, const DetailRules& rules, Vertex& next, const Box& keepOut);
-
-/// The same, step by step, for nothing once all were looked at in vain and nothing has changed since. What it knows is
-/// no state: without it a step does and leaves the same.
-class Coarsening {
-public:
-    void wake() { inVain_ = 0; }  // mesh or sand are others now
-    int step(Layer& layer, const DetailRules& rules, Vertex& next, const Box& keepOut);
-
-private:
-    std::int64_t inVain_ = 0;  // vertices looked at one after the other of which none could go
-    Box keepOut_;
-};
-
 }  // namespace sand::tin

@@ -74,6 +74,7 @@ void TinSurface::reserve() {
     hash_.reserve(vertices);
     kept_.reserve(vertices);
     near_->reserve(vertices);
+    coarsening_.reserve(vertices);
 }
 
 Tool& TinSurface::toolOf(const HeldTool& tool) {
@@ -94,7 +95,7 @@ void TinSurface::meshChanged() {
     hash_.touchTriangles(layer_, change.triangles);
     kept_.touch(change.vertices);
     kept_.touchTriangles(change.triangles);
-    coarsening_.wake();
+    coarsening_.touch(layer_.triangles(), change);
     if (!damage_.whole) {
         addTo(damage_.triangles, change.triangles);
         addTo(damage_.vertices, change.vertices);
@@ -119,7 +120,7 @@ void TinSurface::sandMoved(const std::vector<Vertex>& vertices) {
     if (vertices.empty()) {
         return;
     }
-    coarsening_.wake();
+    coarsening_.touch(layer_.triangles(), vertices);
     hash_.touch(layer_, vertices);
     kept_.touch(vertices);
     if (!damage_.whole) {
@@ -208,7 +209,7 @@ void TinSurface::replace(const SurfaceCopy& copy) {
     reserve();
     held_.reset();
     sawAll_ = false;
-    coarsening_.wake();
+    coarsening_.forget();
     damage_ = {.whole = true, .triangles = {}, .vertices = {}};
     lastFound_ = kNobody;
 }

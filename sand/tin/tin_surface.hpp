@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sand/surface.hpp"
-#include "sand/tin/detail.hpp"
+#include "sand/tin/coarsening.hpp"
 #include "sand/tin/erosion.hpp"
 #include "sand/tin/kept_layer.hpp"
 #include "sand/tin/layer_copy.hpp"
