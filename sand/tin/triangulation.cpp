@@ -191,7 +191,7 @@ Vertex Triangulation::nextAlong(Vertex vertex, const Place& to) const {
     return kNobody;
 }
 
-std::vector<std::int32_t> Triangulation::fan(Vertex centre) const {
+void Triangulation::findStar(Vertex centre, Star& star) const {
     // Back to the rim, if there is one, then round.
     const std::int32_t start = mesh_.triangleAt[static_cast<std::size_t>(centre)];
     std::int32_t first = start;
@@ -202,27 +202,27 @@ std::vector<std::int32_t> Triangulation::fan(Vertex centre) const {
             break;
         }
     }
-    std::vector<std::int32_t> fan;
+    star.slots.clear();
+    star.others.clear();
+    Vertex last = kNobody;
     std::int32_t slot = first;
     do {
-        fan.push_back(slot);
-        slot = triangle(slot).neighbour[next(cornerOf(triangle(slot), centre))];
+        const Triangle& here = triangle(slot);
+        const std::size_t corner = cornerOf(here, centre);
+        star.slots.push_back(slot);
+        star.others.push_back(here.corner[next(corner)]);
+        last = here.corner[previous(corner)];
+        slot = here.neighbour[next(corner)];
     } while (slot != kNobody && slot != first);
-    return fan;
+    if (slot == kNobody) {
+        star.others.push_back(last);
+    }
 }
 
 std::vector<Vertex> Triangulation::link(Vertex centre) const {
-    const std::vector<std::int32_t> slots = fan(centre);
-    std::vector<Vertex> link;
-    for (const std::int32_t slot : slots) {
-        link.push_back(triangle(slot).corner[next(cornerOf(triangle(slot), centre))]);
-    }
-    const Triangle& last = triangle(slots.back());
-    const std::size_t corner = cornerOf(last, centre);
-    if (last.neighbour[next(corner)] == kNobody) {
-        link.push_back(last.corner[previous(corner)]);
-    }
-    return link;
+    Star star;
+    findStar(centre, star);
+    return star.others;
 }
 
 void Triangulation::flip(const Side& side) {

@@ -95,10 +95,15 @@ private:
     /// until it returns true. On the rim too, in no certain order.
     template <class Visit>
     void around(Vertex centre, const Visit& visit) const;
-    /// Neighbours of a vertex, counter-clockwise; on the rim from rim to rim.
+    /// The triangles around a vertex, counter-clockwise, and its neighbours, the first being the first slot's; on the
+    /// rim from rim to rim, with one neighbour more.
+    struct Star {
+        std::vector<std::int32_t> slots;
+        std::vector<Vertex> others;
+        [[nodiscard]] bool atRim() const { return slots.size() < others.size(); }
+    };
+    void findStar(Vertex centre, Star& star) const;
     [[nodiscard]] std::vector<Vertex> link(Vertex centre) const;
-    /// Slots around a vertex in the same order: one less than neighbours on the rim.
-    [[nodiscard]] std::vector<std::int32_t> fan(Vertex centre) const;
     [[nodiscard]] std::pair<Vertex, Vertex> ends(const Side& side) const;
     [[nodiscard]] Side beyond(const Side& side) const;
     [[nodiscard]] bool isWrong(const Side& side) const;
@@ -121,16 +126,21 @@ private:
     void improveAround(Vertex vertex);
     void improve(std::vector<VertexPair>& suspects);
     [[nodiscard]] bool isConvex(const Side& side) const;
-    void reduce(Vertex vertex, std::vector<VertexPair>& made);
-    void merge(Vertex vertex, std::vector<VertexPair>& made);
+    void releaseAll(Vertex vertex);
+    void reduce(Vertex vertex);
+    void merge(Vertex vertex);
 
     std::shared_ptr<const Holes> holes_;  // null without
     Triangles mesh_;
     int vertexCount_ = 4;
     std::vector<std::int32_t> freeSlots_;
     std::vector<Vertex> freeNumbers_;  // a heap, the smallest on top
-    std::vector<std::int32_t> stack_;  // kept for its memory
-    std::int32_t last_ = 0;            // slot near which something happened last
+    // Kept for their memory; the last three are removal's.
+    std::vector<std::int32_t> stack_;
+    Star star_;
+    std::vector<Vertex> held_;
+    std::vector<VertexPair> made_;  // edges that may be wrong
+    std::int32_t last_ = 0;         // slot near which something happened last
 };
 
 template <class Visit>
