@@ -27,6 +27,22 @@ struct Pair {
     Vertex first, second;
 };
 
+/// Bounds of places [probe unit] and heights [scene unit].
+struct Reach {
+    std::int32_t west = std::numeric_limits<std::int32_t>::max(), south = west;
+    std::int32_t east = std::numeric_limits<std::int32_t>::min(), north = east;
+    double lowest = std::numeric_limits<double>::max(), highest = std::numeric_limits<double>::lowest();
+
+    void add(std::int32_t x, std::int32_t y, double height) {
+        west = std::min(west, x);
+        east = std::max(east, x);
+        south = std::min(south, y);
+        north = std::max(north, y);
+        lowest = std::min(lowest, height);
+        highest = std::max(highest, height);
+    }
+};
+
 bool overlapOnGround(const Box& a, const Box& b) {
     return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y;
 }
@@ -100,7 +116,7 @@ std::vector<Vertex> TinSurface::relight(const SurfaceView& tin, const std::vecto
     }
     shaded_.clear();
     for (const Vertex number : others) {
-        visitStar(tin.triangles, number, [this](const StarTriangle& one) { shaded_.add(one.slot); });
+        aroundVertex(tin.triangles, number, [this](std::int32_t slot, int) { shaded_.add(slot); });
     }
     for (const std::int32_t slot : shaded_.all()) {
         damaged_.add(boxOf(triangle(slot)));
@@ -120,40 +136,39 @@ void TinSurface::addToRelief(const SurfaceView& tin, const TinTriangle& triangle
 
 std::optional<Box> TinSurface::reachOf(const SurfaceView& tin, const sand::tin::SurfaceDamage& damage) {
     const Triangles& mesh = tin.triangles;
-    reshaped_.clear();
-    reshaped_.add(damage.triangles);
-    lit_.clear();
-    lit_.add(damage.vertices);
-    for (const Vertex number : damage.vertices) {
-        if (mesh.alive(number)) {
-            visitStar(mesh, number, [this](const StarTriangle& one) { reshaped_.add(one.slot); });
-        }
-    }
-    for (const std::int32_t slot : reshaped_.all()) {
-        const TinTriangle now = drawnOf(mesh.triangles[static_cast<std::size_t>(slot)]);
-        const bool known = static_cast<std::size_t>(slot) < triangles_.size();
-        for (const TinTriangle& one : {now, known ? triangle(slot) : TinTriangle{}}) {
-            if (one.alive()) {
-                std::ranges::for_each(one.corner, [this](Vertex corner) { lit_.add(corner); });
+    Reach changed;
+    const auto addNow = [&](const Triangle& triangle) {
+        if (triangle.isGround()) {
+            for (const Vertex corner : triangle.corner) {
+                const auto number = static_cast<std::size_t>(corner);
+                changed.add(mesh.places[number].x, mesh.places[number].y, tin.heights[number] * unit_);
             }
         }
-    }
-    constexpr double kFar = std::numeric_limits<double>::infinity();
-    Box reach{glm::dvec3(kFar), glm::dvec3(-kFar)};
-    bool atRim = false;
-    for (const Vertex number : lit_.all()) {
+    };
+    const auto addDrawn = [&](Vertex number) {
         const bool known = static_cast<std::size_t>(number) < vertices_.size();
-        for (const TinVertex& one : {placed(tin, number), known ? vertex(number) : TinVertex{}}) {
-            if (one.x >= 0) {
-                const glm::dvec3 place(one.x * probe_, one.y * probe_, one.height);
-                reach = around(reach, {place, place});
-                atRim |= one.x == 0 || one.y == 0 || one.x == width_ || one.y == depth_;
-            }
+        if (known && vertex(number).x >= 0) {
+            changed.add(vertex(number).x, vertex(number).y, vertex(number).height);
+        }
+    };
+    for (const std::int32_t slot : damage.triangles) {
+        addNow(mesh.triangles[static_cast<std::size_t>(slot)]);
+        if (static_cast<std::size_t>(slot) < triangles_.size() && triangle(slot).alive()) {
+            std::ranges::for_each(triangle(slot).corner, addDrawn);
         }
     }
-    if (atRim) {
+    for (const Vertex number : damage.vertices) {
+        addDrawn(number);
+        if (mesh.alive(number)) {
+            aroundVertex(mesh, number,
+                         [&](std::int32_t slot, int) { addNow(mesh.triangles[static_cast<std::size_t>(slot)]); });
+        }
+    }
+    if (changed.west <= 0 || changed.south <= 0 || changed.east >= width_ || changed.north >= depth_) {
         return std::nullopt;
     }
+    Box reach{{changed.west * probe_, changed.south * probe_, changed.lowest},
+              {changed.east * probe_, changed.north * probe_, changed.highest}};
     // Whoever looks that far sees other sky, and the triangles around him are shaded anew.
     const double margin = kLightReach * cellSize_;
     const Box lit{reach.low - margin, reach.high + margin};

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render_node/tin_star.hpp"
 #include "sand/height_field.hpp"
 
 namespace render_node {
@@ -104,7 +103,7 @@ TinSurface::Change TinSurface::update(const SurfaceView& tin, const sand::tin::S
     reshaped_.add(replaced);
     for (const Vertex number : others) {
         if (mesh.alive(number)) {
-            visitStar(mesh, number, [this](const StarTriangle& one) { reshaped_.add(one.slot); });
+            aroundVertex(mesh, number, [this](std::int32_t slot, int) { reshaped_.add(slot); });
         }
     }
     const auto damageAll = [&] {

@@ -5,8 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "sand/tin/weights.hpp"
-
 namespace sand::tin {
 namespace {
 

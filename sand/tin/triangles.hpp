@@ -70,4 +70,29 @@ struct Located {
 /// whose corners are smallest in order. Costs as many triangles as lie between: start from the last one found.
 [[nodiscard]] Located locate(const Triangles& mesh, Place place, std::int32_t from);
 
+/// Calls visit(slot, corner) for every triangle around a vertex, `corner` being the vertex's own.
+template <class Visit>
+void aroundVertex(const Triangles& mesh, Vertex vertex, const Visit& visit) {
+    const auto cornerOf = [vertex](const Triangle& triangle) {
+        // Without a branch: which it is nobody can foretell.
+        return static_cast<int>(triangle.corner[1] == vertex) + 2 * static_cast<int>(triangle.corner[2] == vertex);
+    };
+    constexpr std::array<std::uint8_t, 5> kTurned{0, 1, 2, 0, 1};
+    const std::int32_t first = mesh.triangleAt[static_cast<std::size_t>(vertex)];
+    for (const int turn : {1, 2}) {  // counter-clockwise until it closes or meets the rim, then the other way
+        std::int32_t slot = first;
+        do {
+            const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(slot)];
+            const int corner = cornerOf(triangle);
+            if (turn == 1 || slot != first) {
+                visit(slot, corner);
+            }
+            slot = triangle.neighbour[kTurned[static_cast<std::size_t>(corner + turn)]];
+        } while (slot != kNobody && slot != first);
+        if (slot == first) {
+            return;
+        }
+    }
+}
+
 }  // namespace sand::tin
