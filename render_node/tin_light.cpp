@@ -157,9 +157,12 @@ std::optional<Box> TinSurface::reachOf(const SurfaceView& tin, const sand::tin::
             std::ranges::for_each(triangle(slot).corner, addDrawn);
         }
     }
+    // What is drawn in a star's slots now either is that star or was another's damage before, and in its box.
     for (const Vertex number : damage.vertices) {
         addDrawn(number);
         if (mesh.alive(number)) {
+            const Place& place = mesh.places[static_cast<std::size_t>(number)];
+            changed.add(place.x, place.y, tin.heights[static_cast<std::size_t>(number)] * unit_);
             aroundVertex(mesh, number,
                          [&](std::int32_t slot, int) { addNow(mesh.triangles[static_cast<std::size_t>(slot)]); });
         }

@@ -70,8 +70,8 @@ public:
         std::vector<Box> boxes;                   // around what looks different, before and after
     };
     [[nodiscard]] Change update(const sand::tin::SurfaceView& tin, const sand::tin::SurfaceDamage& damage);
-    /// Bounds all that an update with this damage may change, before and after, from what this surface is now and what
-    /// the TIN is; nothing where it may be the rim.
+    /// The boxes of all damages since the last update together bound what an update with all of them may change, before
+    /// and after; nothing where it may be the rim. From what this surface is now and what the TIN is.
     [[nodiscard]] std::optional<Box> reachOf(const sand::tin::SurfaceView& tin, const sand::tin::SurfaceDamage& damage);
 
     [[nodiscard]] const std::vector<TinVertex>& vertices() const { return vertices_; }

@@ -98,17 +98,17 @@ bool Facets::take(const tin::SurfaceView& tin, const ProbePoint& centre, std::in
         return false;
     }
     unit_ = unit;
-    partsPerUnit_ = kParts / unit;
+    partsPerSceneUnit_ = kParts / unit;
     middleX_ = static_cast<double>(kParts * middle.x);
     middleY_ = static_cast<double>(kParts * middle.y);
     // On the rim itself the triangle that owns a place could be one beyond it.
-    const auto within = [](std::int32_t side, std::int32_t end, std::int32_t from) {
+    const auto inField = [](std::int32_t side, std::int32_t end, std::int32_t from) {
         return static_cast<double>(std::clamp<std::int64_t>(kParts * side, 1, kParts * end - 1) - kParts * from);
     };
-    west_ = within(square_[0], mesh.width, middle.x);
-    south_ = within(square_[1], mesh.depth, middle.y);
-    east_ = within(square_[2], mesh.width, middle.x);
-    north_ = within(square_[3], mesh.depth, middle.y);
+    west_ = inField(square_[0], mesh.width, middle.x);
+    south_ = inField(square_[1], mesh.depth, middle.y);
+    east_ = inField(square_[2], mesh.width, middle.x);
+    north_ = inField(square_[3], mesh.depth, middle.y);
     for (const std::int32_t slot : slots_) {
         add(tin, slot, middle);
     }
@@ -117,14 +117,13 @@ bool Facets::take(const tin::SurfaceView& tin, const ProbePoint& centre, std::in
     return true;
 }
 
-/// The facet in the middle of each part, to and fro over the square: from one to the next is a short walk. With half as
-/// many parts as facets; with four times as many a query takes a tenth less, and a copy a fifth more.
+/// To and fro over the square: from one field's middle to the next is a short walk. With half as many fields as facets;
+/// with four times as many a query takes a tenth less, and a copy a fifth more.
 void Facets::findStarts() {
     const double side = std::ceil(std::sqrt(static_cast<double>(facets_.size()) / 2));
     startsPerSide_ = std::min<std::size_t>(static_cast<std::size_t>(side), kMostStarts);
-    const auto parts = static_cast<double>(startsPerSide_);
-    columnsPer_ = parts / (east_ - west_);
-    rowsPer_ = parts / (north_ - south_);
+    columnsPer_ = static_cast<double>(startsPerSide_) / (east_ - west_);
+    rowsPer_ = static_cast<double>(startsPerSide_) / (north_ - south_);
     std::int32_t last = 0;
     for (std::size_t row = 0; row < startsPerSide_; ++row) {
         for (std::size_t i = 0; i < startsPerSide_; ++i) {
@@ -138,10 +137,10 @@ void Facets::findStarts() {
 }
 
 std::size_t Facets::startOf(double x, double y) const {
-    const auto part = [this](double from) {
+    const auto field = [this](double from) {
         return std::min(static_cast<std::size_t>(static_cast<std::int64_t>(from)), startsPerSide_ - 1);
     };
-    return part((y - south_) * rowsPer_) * startsPerSide_ + part((x - west_) * columnsPer_);
+    return field((y - south_) * rowsPer_) * startsPerSide_ + field((x - west_) * columnsPer_);
 }
 
 void Facets::levelHoles(const tin::SurfaceView& tin) {
@@ -246,12 +245,13 @@ std::int32_t Facets::find(const Spot& spot, std::int32_t start) const {
 }
 
 Dual Facets::tangent(double x, double y) const {
-    const double freeX = x * partsPerUnit_ - middleX_, freeY = y * partsPerUnit_ - middleY_;
+    const double freeX = x * partsPerSceneUnit_ - middleX_, freeY = y * partsPerSceneUnit_ - middleY_;
     const double fromX = std::clamp(freeX, west_, east_), fromY = std::clamp(freeY, south_, north_);
     const Spot spot{nearest(fromX), nearest(fromY)};
     const Plane& plane = planes_[at(find(spot, starts_[startOf(fromX, fromY)]))];
     return {plane.height + plane.east * static_cast<double>(spot.x) + plane.north * static_cast<double>(spot.y),
-            {fromX == freeX ? plane.east * partsPerUnit_ : 0, fromY == freeY ? plane.north * partsPerUnit_ : 0, 0}};
+            {fromX == freeX ? plane.east * partsPerSceneUnit_ : 0,
+             fromY == freeY ? plane.north * partsPerSceneUnit_ : 0, 0}};
 }
 
 }  // namespace sand::force

@@ -23,10 +23,11 @@ namespace sand::force {
 class Facets {
 public:
     static constexpr std::size_t kMost = 4096;  // of more, a query and a copy would take too long
+    static_assert(kMost < 32768);               // 16 bits tell one
 
-    /// All triangles that reach into the square of `reach` [probe unit] around a place; false, and none, when these are
-    /// more than kMost. `unit` [scene unit] is a probe unit's. Holes are felt as a grid's walls are: as flats, as low
-    /// as the lowest of these triangles' corners on ground.
+    /// All triangles that reach into the square of `reach` > 0 [probe unit] around a place; false, and none, when these
+    /// are more than kMost. `unit` [scene unit] is a probe unit's. Holes are felt as a grid's walls are: as flats, as
+    /// low as the lowest of these triangles' corners on ground.
     bool take(const tin::SurfaceView& tin, const ProbePoint& centre, std::int32_t reach, double unit);
     void clear() {
         facets_.clear();
@@ -86,13 +87,13 @@ private:
     double middleX_ = 0, middleY_ = 0;                    // [part]
     double west_ = 0, south_ = 0, east_ = 0, north_ = 0;  // [part] of the square, from the middle
     double unit_ = 1;                                     // [scene unit], of a probe unit
-    double partsPerUnit_ = 1;                             // of a scene unit
-    // Where walks begin, by parts of the square. From the facet found last, the 144 places that a force asks for took
-    // two to three steps each, one after the other; from these it is hardly one, side by side.
+    double partsPerSceneUnit_ = 1;                        // of a scene unit
+    // Where walks begin: the facet in the middle of each field of a lattice over the square. From there a place is
+    // hardly a step away, and walks to many places do not wait for one another.
     static constexpr std::size_t kMostStarts = 46;  // on a side: half of kMost in all
     std::array<std::int16_t, kMostStarts * kMostStarts> starts_{};
     std::size_t startsPerSide_ = 0;
-    double columnsPer_ = 0, rowsPer_ = 0;  // of those, per part of a probe unit
+    double columnsPer_ = 0, rowsPer_ = 0;  // of the lattice, per part
 };
 
 }  // namespace sand::force

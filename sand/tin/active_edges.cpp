@@ -15,7 +15,7 @@ constexpr std::size_t kAhead = 8;           // vertices, from what is fetched to
 constexpr std::int32_t kNoUnderside = std::numeric_limits<std::int32_t>::max();
 
 /// A bit for a side, its corner counted from the triangle's smallest vertex on: a slot may turn its corners unnoticed.
-std::uint8_t bitOf(const Triangles& mesh, Side side) {
+std::uint8_t bitOf(const Triangles& mesh, TriangleSide side) {
     const int least = leastOf(mesh.triangles[index(side.triangle)].corner);
     return static_cast<std::uint8_t>(1 << (side.corner - least + 3) % 3);
 }
@@ -124,12 +124,12 @@ void ActiveEdges::watchEdges(const Layer& layer, const Slopes& slopes, Weights& 
     const Triangles& mesh = layer.triangles();
     std::uint8_t& watched = noteOfSlot(slot).watched;
     for (int corner = 0; corner < 3 && watched != kAllSides; ++corner) {
-        const Side side{slot, corner};
+        const TriangleSide side{slot, corner};
         const std::uint8_t bit = bitOf(mesh, side);
         if ((watched & bit) != 0) {
             continue;
         }
-        const Side other = across(mesh, side);
+        const TriangleSide other = across(mesh, side);
         watched = static_cast<std::uint8_t>(watched | bit);
         bits_.push_back({bit, bit});
         if (other.triangle != kNobody) {
@@ -197,7 +197,7 @@ void ActiveEdges::wake(const Layer& layer, const Slopes& slopes, std::span<const
             }
         });
     }
-    // Side by side, so that few of the others are swept as if they were held.
+    // TriangleSide by side, so that few of the others are swept as if they were held.
     for (auto* slots : {&steepHeld_, &steep_}) {
         for (const std::int32_t slot : *slots) {
             static_cast<void>(facetAt(layer, slopes, slot));

@@ -99,17 +99,17 @@ int Coarsening::step(Layer& layer, const DetailRules& rules, Vertex& next, const
         }
         known_[index(vertex)] = kInVain;
         for (const Vertex other : around) {
-            known_[index(other)] &= kInVain;
+            known_[index(other)] &= static_cast<std::uint8_t>(~kNoneInVain);
         }
     };
     return coarsenBut(
         layer, rules, next, keepOut, [this](Vertex vertex) { return (known_[index(vertex)] & kInVain) != 0; }, looked);
 }
 
-void Coarsening::forget(const Triangle& triangle) {
+void Coarsening::lookAgain(const Triangle& triangle) {
     for (const Vertex corner : triangle.corner) {
         if (index(corner) < known_.size()) {
-            known_[index(corner)] &= kTold;
+            known_[index(corner)] &= static_cast<std::uint8_t>(~kInVain);
         }
     }
 }
@@ -118,9 +118,9 @@ void Coarsening::touch(const Triangles& mesh, std::span<const Vertex> vertices) 
     known_.resize(std::max(known_.size(), mesh.triangleAt.size()), 0);
     for (const Vertex vertex : vertices) {
         // One that is gone has triangles of its own again when it comes back.
-        if ((known_[index(vertex)] & kTold) == 0 && mesh.alive(vertex)) {
-            aroundVertex(mesh, vertex, [&](std::int32_t slot, int) { forget(mesh.triangles[index(slot)]); });
-            known_[index(vertex)] |= kTold;
+        if ((known_[index(vertex)] & kNoneInVain) == 0 && mesh.alive(vertex)) {
+            aroundVertex(mesh, vertex, [&](std::int32_t slot, int) { lookAgain(mesh.triangles[index(slot)]); });
+            known_[index(vertex)] |= kNoneInVain;
         }
     }
 }
@@ -129,7 +129,7 @@ void Coarsening::touch(const Triangles& mesh, const Mesh::Change& change) {
     touch(mesh, change.vertices);
     for (const std::int32_t slot : change.triangles) {
         if (mesh.triangles[index(slot)].alive()) {
-            forget(mesh.triangles[index(slot)]);
+            lookAgain(mesh.triangles[index(slot)]);
         }
     }
 }

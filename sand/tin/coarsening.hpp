@@ -20,7 +20,8 @@ namespace sand::tin {
 int coarsen(Layer& layer, const DetailRules& rules, Vertex& next, const Box& keepOut);
 
 /// The same, step by step, and nobody is looked at again around whom nothing has changed since it was in vain: most of
-/// what has been dug is too rough for good. What it knows is no state: without it a step does and leaves the same. Not
+/// what has been dug is too rough for good. What it knows is no state: without it a step does and leaves the same, as
+/// long as it is told of all that changes and, until it forgets, asked with one layer and one maxError. Not
 /// thread-safe.
 class Coarsening {
 public:
@@ -34,11 +35,13 @@ public:
     int step(Layer& layer, const DetailRules& rules, Vertex& next, const Box& keepOut);
 
 private:
-    void forget(const Triangle& triangle);
+    void lookAgain(const Triangle& triangle);
 
-    // By vertex, some of these; a vertex beyond its end has none.
+    // Bits by vertex; a vertex beyond its end has none. Where a vertex within the field has kNoneInVain, neither it nor
+    // any around it has kInVain. On the rim, where nobody can go, that may not hold; and it outlasts a vertex, for one
+    // that comes back has triangles that are all new.
     static constexpr std::uint8_t kInVain = 1;  // it could not go, and nothing around has changed since
-    static constexpr std::uint8_t kTold = 2;    // none around has become kInVain since it was touched last
+    static constexpr std::uint8_t kNoneInVain = 2;
     std::vector<std::uint8_t> known_;
 };
 

@@ -62,7 +62,7 @@ void Triangulation::merge(Vertex vertex) {
     std::array<Outer, 4> outside{};
     outside.fill({kNobody, true});
     for (std::size_t i = 0; i < slots.size(); ++i) {
-        outside[i] = outer({slots[i], cornerOf(triangle(slots[i]), vertex)});
+        outside.at(i) = outer({slots[i], cornerOf(triangle(slots[i]), vertex)});
     }
     if (o.size() == 3) {
         put(slots[0], {o[0], o[1], o[2]}, {{outside[1], outside[2], outside[0]}});

@@ -95,7 +95,9 @@ void TinSurface::meshChanged() {
     hash_.touchTriangles(layer_, change.triangles);
     kept_.touch(change.vertices);
     kept_.touchTriangles(change.triangles);
-    coarsening_.touch(layer_.triangles(), change);
+    if (detail_.removals > 0) {
+        coarsening_.touch(layer_.triangles(), change);
+    }
     if (!damage_.whole) {
         addTo(damage_.triangles, change.triangles);
         addTo(damage_.vertices, change.vertices);
@@ -120,7 +122,9 @@ void TinSurface::sandMoved(const std::vector<Vertex>& vertices) {
     if (vertices.empty()) {
         return;
     }
-    coarsening_.touch(layer_.triangles(), vertices);
+    if (detail_.removals > 0) {
+        coarsening_.touch(layer_.triangles(), vertices);
+    }
     hash_.touch(layer_, vertices);
     kept_.touch(vertices);
     if (!damage_.whole) {

@@ -70,7 +70,8 @@ struct Located {
 /// whose corners are smallest in order. Costs as many triangles as lie between: start from the last one found.
 [[nodiscard]] Located locate(const Triangles& mesh, Place place, std::int32_t from);
 
-/// Calls visit(slot, corner) for every triangle around a vertex, `corner` being the vertex's own.
+/// Calls visit(slot, corner) for every triangle around a vertex that lives, `corner` being the vertex's own: around one
+/// on the rim in no certain order, around another counter-clockwise from any on.
 template <class Visit>
 void aroundVertex(const Triangles& mesh, Vertex vertex, const Visit& visit) {
     const auto cornerOf = [vertex](const Triangle& triangle) {

@@ -135,11 +135,11 @@ private:
     int vertexCount_ = 4;
     std::vector<std::int32_t> freeSlots_;
     std::vector<Vertex> freeNumbers_;  // a heap, the smallest on top
-    // Kept for their memory; the last three are removal's.
+    // Kept for their memory.
     std::vector<std::int32_t> stack_;
-    Star star_;
-    std::vector<Vertex> held_;
-    std::vector<VertexPair> made_;  // edges that may be wrong
+    std::vector<VertexPair> made_;  // of remove() and release(): edges that may be wrong
+    Star star_;                     // of remove(); after reduce() only its `others` are right
+    std::vector<Vertex> held_;      // of releaseAll()
     std::int32_t last_ = 0;         // slot near which something happened last
 };
 

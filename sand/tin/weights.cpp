@@ -27,7 +27,7 @@ struct Corners {
     Vertex apex, begin, end;
 };
 
-Corners cornersOf(const Triangles& mesh, Side side) {
+Corners cornersOf(const Triangles& mesh, TriangleSide side) {
     const auto& corner = triangleOf(mesh, side.triangle).corner;
     const auto k = static_cast<std::size_t>(side.corner);
     return {corner[k], corner[(k + 1) % 3], corner[(k + 2) % 3]};
@@ -42,7 +42,7 @@ std::int32_t half(const Place& apex, const Place& begin, const Place& end, doubl
 
 }  // namespace
 
-Side across(const Triangles& mesh, Side side) {
+TriangleSide across(const Triangles& mesh, TriangleSide side) {
     const std::int32_t beyond = triangleOf(mesh, side.triangle).neighbour[static_cast<std::size_t>(side.corner)];
     if (beyond == kNobody || triangleOf(mesh, beyond).hole) {
         return {};
@@ -106,14 +106,14 @@ double Weights::step(const Triangles& mesh, std::span<const std::int64_t> stars,
     return steps_[v];
 }
 
-Edge Weights::edge(const Triangles& mesh, std::span<const std::int64_t> stars, Side side, Side across) {
+Edge Weights::edge(const Triangles& mesh, std::span<const std::int64_t> stars, TriangleSide side, TriangleSide across) {
     const Corners c = cornersOf(mesh, side);
     Edge edge{.from = std::min(c.begin, c.end),
               .to = std::max(c.begin, c.end),
               .leftFacet = side.triangle,
               .rightFacet = side.triangle};
     const double step = std::min(this->step(mesh, stars, edge.from), this->step(mesh, stars, edge.to));
-    const auto weight = [&](Side one) {
+    const auto weight = [&](TriangleSide one) {
         return static_cast<double>(halvesOf(mesh, one.triangle)[static_cast<std::size_t>(one.corner)]) * step;
     };
     edge.left = weight(side);

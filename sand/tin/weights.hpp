@@ -38,13 +38,13 @@ struct Slopes {
 };
 
 /// One side of a triangle: the edge opposite its corner.
-struct Side {
+struct TriangleSide {
     std::int32_t triangle = kNobody;  // slot
     int corner = 0;
 };
 
 /// The same edge as a side of the triangle beyond; nobody's at the rim, and where a hole is beyond.
-[[nodiscard]] Side across(const Triangles& mesh, Side side);
+[[nodiscard]] TriangleSide across(const Triangles& mesh, TriangleSide side);
 
 /// Where a triangle's smallest corner is.
 [[nodiscard]] inline int leastOf(const std::array<Vertex, 3>& corner) {
@@ -77,7 +77,8 @@ public:
     /// The mesh has changed there.
     void forget(const Mesh::Change& change);
     /// The edge of a side on ground and the one across. Costs the stars of its ends, the first time.
-    [[nodiscard]] Edge edge(const Triangles& mesh, std::span<const std::int64_t> stars, Side side, Side across);
+    [[nodiscard]] Edge edge(const Triangles& mesh, std::span<const std::int64_t> stars, TriangleSide side,
+                            TriangleSide across);
 
 private:
     /// Half the cotangents of a triangle's angles, times kOne, by its corners as they were when this was the first: a

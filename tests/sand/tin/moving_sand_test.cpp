@@ -29,7 +29,7 @@ MovingSand everythingOf(const Layer& layer, bool obstacle, MovingSand sand) {
     }
     for (std::int32_t slot = 0; slot < slots; ++slot) {
         for (int corner = 0; corner < 3; ++corner) {
-            const sand::tin::Side side{slot, corner}, other = across(mesh, side);
+            const sand::tin::TriangleSide side{slot, corner}, other = across(mesh, side);
             if (other.triangle < slot) {  // nobody's too
                 sand.addEdge(weights.edge(mesh, layer.stars(), side, other));
             }
