@@ -31,7 +31,7 @@ void measurePile(Kind kind, int side, double degrees, const Shape& shape, const 
     std::vector<sand::tin::Vertex> moved;
     constexpr int kMost = 100'000;
     int sweeps = 0;
-    const double seconds = secondsOf([&] { sweeps = erosion.sweep(layer, kMost, nullptr, moved); });
+    const double seconds = secondsOf([&] { sweeps = erosion.settle(layer, kMost, moved); });
     const double error = tin_piles::misplaced(
         layer, oracles::around(side / 2.0, side / 2.0, [&](double r) { return cylinder.rest(r); }));
     csv.row(nameOf(kind), shape.name, side, degrees, layer.mesh().vertexCount(), error, sweeps,
@@ -94,7 +94,7 @@ void tinActive(const Settings& settings, Csv& csv) {
             for (const sand::tin::Vertex v : moved) {
                 layer.setHeight(v, 0);
             }
-            erosion.sweep(layer, 1'000'000, nullptr, moved);
+            erosion.settle(layer, 1'000'000, moved);
         }
     }
 }

@@ -37,7 +37,7 @@ Slid slide(TinSand& sand, const Options& options) {
         tin::Erosion erosion(sand.layer, sand.threshold, sand.startThreshold);
         std::vector<tin::Vertex> moved;
         const std::int64_t most = options.most.value_or(std::numeric_limits<int>::max());
-        slid.sweeps = erosion.sweep(sand.layer, static_cast<int>(most), nullptr, moved);
+        slid.sweeps = erosion.settle(sand.layer, static_cast<int>(most), moved);
         slid.atRest = erosion.settled();
     }
     slid.seconds = secondsSince(start);

@@ -214,7 +214,7 @@ bool ActiveEdges::isHeld(const Triangle& triangle) {
 
 // Where no volume changes no height does, and a flux is what it was; but with a band, sand that flows through moves
 // what it touches.
-bool ActiveEdges::sweep(const Layer& layer, const Slopes& slopes, Weights& weights) {
+bool ActiveEdges::sweep(const Layer& layer, const Slopes& slopes, Weights& weights, double momentum) {
     std::size_t known = 0;
     do {
         const std::size_t first = std::exchange(known, sand_.facetCount());
@@ -224,7 +224,7 @@ bool ActiveEdges::sweep(const Layer& layer, const Slopes& slopes, Weights& weigh
         }
         // One that came with an edge may slide too: nothing flowed around it, for an obstacle held it.
     } while (known < sand_.facetCount());
-    const SweepResult result = sand_.move(held_ != nullptr);
+    const SweepResult result = sand_.move(held_ != nullptr, momentum);
     if (result.spread || (band_ && result.moved && result.met)) {
         met_.clear();
         sand_.findUnwatched(met_);

@@ -34,7 +34,7 @@ public:
     /// steep enough. To be called right after begin().
     void wake(const Layer& layer, const Slopes& slopes, std::span<const Vertex> vertices);
     /// One sweep, which then watches all that it may have set in motion; false when nothing flowed.
-    bool sweep(const Layer& layer, const Slopes& slopes, Weights& weights);
+    bool sweep(const Layer& layer, const Slopes& slopes, Weights& weights, double momentum);
     /// Gives the layer its sand, and adds who has another volume now to `moved`.
     void store(Layer& layer, std::vector<Vertex>& moved) const;
     /// Whether so much has been swept in vain since it was forgotten last that to forget it would have paid.

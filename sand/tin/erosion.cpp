@@ -11,6 +11,14 @@ namespace {
 
 constexpr double kProbePerCell = 256;
 
+// As a grid's (sand/erosion.cpp), but that every call begins without: what flowed before is no state.
+constexpr int kDamping = 25;  // [sweep]
+constexpr double kMostMomentum = 0.9;
+
+double momentumAfter(int n, int sweeps) {
+    return std::min(static_cast<double>(n) / (n + std::clamp(sweeps / 3, 3, kDamping)), kMostMomentum);
+}
+
 }  // namespace
 
 Slopes slopesOf(std::int32_t threshold, std::int32_t startThreshold) {
@@ -45,6 +53,14 @@ void Erosion::wake(const std::vector<Vertex>& vertices) {
 bool Erosion::settled() const { return active_.empty() && woken_.empty() && !wakeAll_; }
 
 int Erosion::sweep(Layer& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved) {
+    return run(layer, sweeps, held, moved, true);
+}
+
+int Erosion::settle(Layer& layer, int most, std::vector<Vertex>& moved) {
+    return run(layer, most, nullptr, moved, false);
+}
+
+int Erosion::run(Layer& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved, bool momentum) {
     if (sweeps <= 0) {
         return 0;
     }
@@ -53,8 +69,8 @@ int Erosion::sweep(Layer& layer, int sweeps, const Underside* held, std::vector<
     watchWoken(layer);
     int done = 0;
     while (done < sweeps && !active_.empty()) {
+        const bool still = !active_.sweep(layer, slopes_, weights_, momentum ? momentumAfter(done, sweeps) : 0);
         ++done;
-        const bool still = !active_.sweep(layer, slopes_, weights_);
         if (still || active_.manyRest()) {
             active_.store(layer, moved);
             active_.forgetResting();

@@ -35,6 +35,9 @@ using Underside = ActiveEdges::Underside;
 ///   and (Σ Q)² ≤ Σ k_e Σ Q²/k_e ≤ .9996 star_i Σ Q²/k_e, which over both ends of an edge is less than 2 Q (u_i − u_j).
 ///   With Σ c k_e bounded instead of Σ k_e, or one step for all, two vertices can swap for ever, or wait as long.
 ///
+/// In sweep() a part of the last sweep's flux goes on, cut to less than k_e (u_i − u_j), which is all that the proofs
+/// ask of Q, and each call begins without. Triangles that do not slide brake it.
+///
 /// Sand at rest begins to slide beyond the start threshold; in the same call of sweep() it then slides, with all that
 /// it touches, until the threshold. The result of sweep() is a function of layer, rules and the number of sweeps: not
 /// of slots, active sets or threads, nor of what came before. Not thread-safe.
@@ -57,12 +60,16 @@ public:
     /// looked at again by the next call for which it is another one there, so that nobody need wake it when the tool
     /// leaves.
     int sweep(Layer& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved);
+    /// The same without momentum nor obstacle, until nothing moves or there were so many: it takes longer to come to
+    /// rest than many calls of sweep() do, and the pile is righter.
+    int settle(Layer& layer, int most, std::vector<Vertex>& moved);
     /// Whether nothing moves any more as things are.
     [[nodiscard]] bool settled() const;
     /// How many edges the next sweep looks at, woken ones apart.
     [[nodiscard]] std::size_t activeEdges() const { return active_.size(); }
 
 private:
+    [[nodiscard]] int run(Layer& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved, bool momentum);
     void watchWoken(const Layer& layer);
 
     Slopes slopes_;

@@ -102,6 +102,7 @@ void MovingSand::restart() {
     largestStar_ = greatestHeight_ = 0;
     isWide_ = alwaysWide_;
     heldKnown_ = false;
+    std::fill(fluxes_.begin(), fluxes_.end(), 0.0);
 }
 
 void MovingSand::place(std::size_t vertex, std::int64_t volume, std::int64_t star, double underside) {
@@ -158,7 +159,7 @@ std::span<const std::int32_t> MovingSand::slide(bool held, bool band, std::size_
     return {slidBare_.data(), count};
 }
 
-SweepResult MovingSand::move(bool held) {
+SweepResult MovingSand::move(bool held, double momentum) {
     inflow_.resize(2 * vertexCount());
     const SweepEdges sweep{.edges = edgeCount(),
                            .levels = levels_.data(),
@@ -171,6 +172,7 @@ SweepResult MovingSand::move(bool held) {
                            .right = right_.data(),
                            .leftWeights = leftWeights_.data(),
                            .rightWeights = rightWeights_.data(),
+                           .momentum = momentum,
                            .fluxes = fluxes_.data()};
     v3_ ? v3::flowOverEdges(sweep) : baseline::flowOverEdges(sweep);
     if (isWide_) {

@@ -53,7 +53,7 @@ public:
     /// they miss edges, over which sand may flow in move(); until the next call.
     [[nodiscard]] std::span<const std::int32_t> slide(bool held, bool band, std::size_t first = 0);
     /// The second half: what flows over the edges.
-    SweepResult move(bool held);
+    SweepResult move(bool held, double momentum);
     /// Whether sand flowed at one of a vertex's edges in the last sweep.
     [[nodiscard]] bool flowed(std::size_t vertex) const { return levels_[vertex].flow > 0; }
     [[nodiscard]] std::int64_t restingCount() const;

@@ -50,7 +50,7 @@ MovingSand::Marks MovingSand::whatMayFlow() const {
         slides[i] = sliding_[i] > 0 ? marks.facets[i] : 0;
     }
     for (std::size_t i = 0; i < marks.edges.size(); ++i) {
-        marks.edges[i] = slides[index(left_[i])] | slides[index(right_[i])];
+        marks.edges[i] = fluxes_[i] != 0 || (slides[index(left_[i])] | slides[index(right_[i])]) != 0 ? 1 : 0;
     }
     return marks;
 }
@@ -77,8 +77,7 @@ MovingSand::Renumbering MovingSand::keep(const Marks& kept) {
         }
     }
     // Fluxes and slides are of the next sweep again.
-    keepMarked(numberMarked(edges), from_, to_, left_, right_, leftWeights_, rightWeights_);
-    fluxes_.resize(edgeCount());
+    keepMarked(numberMarked(edges), from_, to_, left_, right_, leftWeights_, rightWeights_, fluxes_);
     keepMarked(numberMarked(now.facets), first_, second_, third_, squared_, mixed_, squaredAcross_, start_, bare_);
     sliding_.resize(first_.size());
     keepMarked(numberMarked(now.vertices), volumes_, stars_, levels_, undersides_, unwatched_, wide_);

@@ -11,7 +11,7 @@ Settled settle(Layer& layer, std::int32_t threshold, std::int32_t startThreshold
     Erosion erosion(layer, threshold, startThreshold);
     std::vector<Vertex> moved;
     Settled result;
-    result.sweeps = erosion.sweep(layer, most, nullptr, moved);
+    result.sweeps = erosion.settle(layer, most, moved);
     result.atRest = erosion.settled();
     return result;
 }

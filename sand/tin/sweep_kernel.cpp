@@ -87,7 +87,8 @@ template <bool kHeld, bool kBand, class Number, class Mask>
     if constexpr (kBand) {
         rest = aFlow + bFlow + cFlow > none ? rest : valuesFrom<Number>(s.start + i);
     }
-    const Number sliding = steepness > rest ? push : none;
+    const Number brake = push < none ? push : none;
+    const Number sliding = steepness > rest ? push : brake;
     std::memcpy(s.sliding + i, &sliding, sizeof(Number));
     Mask bare;
     std::memcpy(&bare, s.bare + i, sizeof(Mask));
@@ -115,20 +116,49 @@ std::int32_t* slideAll(const SweepFacets& sweep, std::size_t begin, std::size_t 
     return found;
 }
 
-template <bool kHeld>
+/// An edge's triangles: weights, and how strongly they slide or brake.
+struct Beside {
+    double left, right, leftSlides, rightSlides;
+
+    /// The most that may flow per height: what the proofs need.
+    [[nodiscard]] double bound() const { return std::max(left, 0.0) + std::max(right, 0.0); }
+    [[nodiscard]] double push() const {
+        return std::max(left * std::max(leftSlides, 0.0) + right * std::max(rightSlides, 0.0), 0.0);
+    }
+    [[nodiscard]] double brake() const {
+        return std::max(left, 0.0) * std::min(leftSlides, 0.0) + std::max(right, 0.0) * std::min(rightSlides, 0.0);
+    }
+};
+
+/// Of the last sweep's flux a part goes on, which triangles that do not slide brake; it turns with the slope, and it
+/// leaves those that push alone: sand would creep along kinks for ever.
+double withMomentum(const Beside& beside, double difference, double goesOn) {
+    const double most = kMostOfBound * beside.bound() * difference;
+    const double forth = std::max(most, 0.0), back = std::min(most, 0.0);
+    const double kept = std::min(std::max(goesOn, back), forth) + beside.brake() * difference;
+    const double left = difference > 0 ? std::max(kept, 0.0) : std::min(kept, 0.0);
+    return std::min(std::max(left + beside.push() * difference, back), forth);
+}
+
+template <bool kHeld, bool kMomentum>
 void flow(std::size_t count, const Level* __restrict levels, const double* __restrict undersides,
           const std::int32_t* __restrict from, const std::int32_t* __restrict to, const std::int32_t* __restrict left,
           const std::int32_t* __restrict right, const double* __restrict leftWeights,
-          const double* __restrict rightWeights, const double* __restrict sliding, double* __restrict fluxes) {
+          const double* __restrict rightWeights, const double* __restrict sliding, double momentum,
+          double* __restrict fluxes) {
     for (std::size_t i = 0; i < count; ++i) {
-        const double share = leftWeights[i] * sliding[left[i]] + rightWeights[i] * sliding[right[i]];
+        const Beside beside{leftWeights[i], rightWeights[i], sliding[left[i]], sliding[right[i]]};
         const double one = levels[from[i]].height, other = levels[to[i]].height;
-        double flux = std::trunc((share > 0 ? share : 0.0) * (one - other));
+        double flux = 0;
+        if constexpr (kMomentum) {
+            flux = std::trunc(withMomentum(beside, one - other, momentum * fluxes[i]));
+        } else {
+            flux = std::trunc(beside.push() * (one - other));
+        }
         if constexpr (kHeld) {
-            const double most = std::max(leftWeights[i], 0.0) + std::max(rightWeights[i], 0.0);
             const double overOne = undersides[from[i]], overOther = undersides[to[i]];
             const double above = (one > other ? overOther : overOne) - (one > other ? other : one);
-            const double room = std::trunc(most * std::max(above, 0.0));
+            const double room = std::trunc(beside.bound() * std::max(above, 0.0));
             flux = std::max(std::min(flux, room), -room);
         }
         fluxes[i] = flux;
@@ -137,8 +167,9 @@ void flow(std::size_t count, const Level* __restrict levels, const double* __res
 
 template <bool kHeld>
 void flowAll(const SweepEdges& s, std::size_t begin, std::size_t end) {
-    flow<kHeld>(end - begin, s.levels, s.undersides, s.from + begin, s.to + begin, s.left + begin, s.right + begin,
-                s.leftWeights + begin, s.rightWeights + begin, s.sliding, s.fluxes + begin);
+    const auto run = s.momentum > 0 ? flow<kHeld, true> : flow<kHeld, false>;
+    run(end - begin, s.levels, s.undersides, s.from + begin, s.to + begin, s.left + begin, s.right + begin,
+        s.leftWeights + begin, s.rightWeights + begin, s.sliding, s.momentum, s.fluxes + begin);
 }
 
 /// Calls work(held, begin, end) for what lies below an obstacle and for what does not, each in as few parts as may be.

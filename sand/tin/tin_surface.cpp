@@ -180,7 +180,7 @@ void TinSurface::settle() {
     held_.reset();
     for (int sweeps = 0; sweeps < kSweepsToRest && !erosion_.settled(); sweeps += kSweepsAtOnce) {
         moved_.clear();
-        erosion_.sweep(layer_, kSweepsAtOnce, nullptr, moved_);
+        erosion_.settle(layer_, kSweepsAtOnce, moved_);
         sandMoved(moved_);
     }
 }

@@ -141,7 +141,7 @@ TEST(TinErosion, SandAtRestIsAFixedPoint) {
         const files::Bytes rest = bytesOf(layer);
         EXPECT_EQ(sand::tin::settle(layer, kTalus, kTalus).sweeps, 1);
         EXPECT_EQ(bytesOf(layer), rest);
-        // At rest no triangle is steeper than the talus by more than sweeps tell apart: a part in 2048, and roundings.
+        // At rest no triangle is steeper than the talus by more than sweeps tell apart: a part in 1024, and roundings.
         sand::tin::settle(layer, kTalus + kTalus / 1000, kTalus + kTalus / 1000);
         EXPECT_EQ(bytesOf(layer), rest);
     }

@@ -82,6 +82,17 @@ TEST(TinPile, FinerMeshesAreNearerToTheFrustum) {
     }
 }
 
+// 0.36 % and 0.13 % were asked of jittered meshes of 16,000 and 65,000 vertices; measured: 0.336 and 0.122 %. The cone
+// on a random mesh of 16,000 is the one that is not as right as was asked, 1.0 %: it misplaces 0.95 to 1.10 %.
+TEST(TinPile, FinerMeshesAreNearerToTheCone) {
+    for (const auto& [n, most] : {std::pair{128, 0.0036}, {256, 0.0013}}) {
+        if (!kSanitized) {
+            const Cylinder tall(0.15 * n, 0.45 * n);
+            EXPECT_LE(misplacedOf(settledCylinder(Kind::jittered, n, 0, tall), n, tall), most) << n;
+        }
+    }
+}
+
 // Where a slope begins or ends it is rounded: that misplaces some area of the cross-section at each of four kinks,
 // whatever the wall. Measured: 0.12 cell² on jittered meshes, 0.17 on regular and 0.42 on random ones.
 TEST(TinPile, AWallOfSandBecomesItsRampInAnyDirection) {
@@ -121,7 +132,7 @@ TEST(TinPile, PouredSandIsACone) {
             erosion.wake({top});
             erosion.sweep(layer, 64, nullptr, moved);
         }
-        erosion.sweep(layer, 1'000'000, nullptr, moved);
+        erosion.settle(layer, 1'000'000, moved);
         EXPECT_TRUE(erosion.settled());
         const oracles::PouredCone cone(volume);
         const double wrong =
