@@ -200,9 +200,17 @@ bool TinSurface::openTo(const SurfaceView& tin, Vertex number) {
     const auto here = static_cast<float>(tin.heights[static_cast<std::size_t>(number)]);
     float share = 0;
     const TinRelief::Between place = TinRelief::between(drawn.x, drawn.y);
-    openSky({&share, 1}, static_cast<float>(sand::kUnitsPerCell),
-            [&](std::size_t, int east, int north) { return relief_.at(place, east, north) - here; });
-    const auto open = static_cast<std::uint16_t>(share * 65535);
+    const auto look = [&](const auto& height) {
+        openSky({&share, 1}, static_cast<float>(sand::kUnitsPerCell),
+                [&](std::size_t, int east, int north) { return height(east, north) - here; });
+    };
+    if (relief_.isWithin(place, kSkyDistances.back())) {
+        look([&](int east, int north) { return relief_.within(place, east, north); });
+    } else {
+        look([&](int east, int north) { return relief_.at(place, east, north); });
+    }
+    // As finely as a screen shows: told apart more finely, it would be another wherever sand moves ten cells away.
+    const auto open = static_cast<std::uint16_t>(static_cast<int>(share * 255 + 0.5F) * 257);
     const bool other = open != drawn.open;
     drawn.open = open;
     return other;

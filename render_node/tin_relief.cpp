@@ -111,9 +111,7 @@ float TinRelief::at(const Between& place, int east, int north) const {
     const int column = place.column + east, row = place.row + north;
     const int westOf = std::clamp(column, 0, columns_ - 1), eastOf = std::clamp(column + 1, 0, columns_ - 1);
     const int southOf = std::clamp(row, 0, rows_ - 1), northOf = std::clamp(row + 1, 0, rows_ - 1);
-    const float below = cell(westOf, southOf) + place.alongX * (cell(eastOf, southOf) - cell(westOf, southOf));
-    const float above = cell(westOf, northOf) + place.alongX * (cell(eastOf, northOf) - cell(westOf, northOf));
-    return below + place.alongY * (above - below);
+    return linear(place, cell(westOf, southOf), cell(eastOf, southOf), cell(westOf, northOf), cell(eastOf, northOf));
 }
 
 std::vector<sand::Rect> TinRelief::takeChanged() {

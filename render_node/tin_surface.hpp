@@ -25,7 +25,7 @@ struct TinVertex {
     float height = 0;                              // [scene unit]
     std::int32_t x = -1, y = -1;                   // [probe unit]; −1 where no vertex lives
     std::int16_t normalEast = 0, normalNorth = 0;  // 1/32767, of the mean of the triangles around, by their areas
-    std::uint16_t open = 0;                        // share of the sky that the vertex sees, 1/65535
+    std::uint16_t open = 0;                        // share of the sky that the vertex sees, 257/65535
     std::uint16_t mottling = 0;                    // slow change of shade from place to place, 1/65535
 };
 static_assert(sizeof(TinVertex) == 20);
