@@ -1,10 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which triangles of a TIN lie close together.
 #include <algorithm>
+#include <compare>
+#include <utility>
 
 #include "render_node/tin_surface.hpp"
 
 namespace render_node {
+namespace {
+
+/// A triangle of a chunk, as chunks have them in order.
+struct Ordered {
+    int part = 0;
+    std::array<sand::tin::Vertex, 3> corner{};
+    std::int32_t slot = 0;
+    friend auto operator<=>(const Ordered&, const Ordered&) = default;
+};
+
+}  // namespace
 
 void TinSurface::replace(std::int32_t slot, const TinTriangle& now) {
     if (triangle(slot).alive()) {
@@ -14,17 +27,23 @@ void TinSurface::replace(std::int32_t slot, const TinTriangle& now) {
     if (!now.alive()) {
         return;
     }
-    double x = 0, y = 0;  // [probe unit], three times
-    for (const Vertex corner : now.corner) {
-        x += vertex(corner).x;
-        y += vertex(corner).y;
-    }
+    const PartAt part = partOf(now);
     InChunk& in = inChunk_[static_cast<std::size_t>(slot)];
-    in.chunk = static_cast<int>(y / 3 / chunkSide_) * across_ + static_cast<int>(x / 3 / chunkSide_);
+    in.chunk = part.row / kPartsAcross * across_ + part.column / kPartsAcross;
     TinChunk& chunk = chunks_[static_cast<std::size_t>(in.chunk)];
     in.at = static_cast<int>(chunk.slots.size());
     chunk.slots.push_back(slot);
-    chunk.changed = chunk.reshaped = true;
+    chunk.changed = chunk.reshaped = chunk.partsReshaped = true;
+}
+
+TinSurface::PartAt TinSurface::partOf(const TinTriangle& triangle) const {
+    double x = 0, y = 0;  // [probe unit], three times
+    for (const Vertex corner : triangle.corner) {
+        x += vertices_[static_cast<std::size_t>(corner)].x;
+        y += vertices_[static_cast<std::size_t>(corner)].y;
+    }
+    const double parts = kPartsAcross / (3 * chunkSide_);
+    return {static_cast<int>(x * parts), static_cast<int>(y * parts)};
 }
 
 void TinSurface::leaveChunk(std::int32_t slot) {
@@ -34,7 +53,7 @@ void TinSurface::leaveChunk(std::int32_t slot) {
     chunk.slots[static_cast<std::size_t>(in.at)] = last;
     inChunk_[static_cast<std::size_t>(last)].at = in.at;
     chunk.slots.pop_back();
-    chunk.changed = chunk.reshaped = true;
+    chunk.changed = chunk.reshaped = chunk.partsReshaped = true;
     in = {};
 }
 
@@ -53,12 +72,37 @@ bool TinSurface::settle(TinChunk& chunk) {
     if (!chunk.changed) {
         return false;
     }
-    std::ranges::sort(chunk.slots, {}, [this](std::int32_t slot) { return triangle(slot).corner; });
-    for (std::size_t i = 0; i < chunk.slots.size(); ++i) {
+    std::vector<Ordered> order;
+    order.reserve(chunk.slots.size());
+    for (const std::int32_t slot : chunk.slots) {
+        order.push_back({numberWithin(partOf(triangle(slot))), triangle(slot).corner, slot});
+    }
+    std::ranges::sort(order);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        chunk.slots[i] = order[i].slot;
         inChunk_[static_cast<std::size_t>(chunk.slots[i])].at = static_cast<int>(i);
     }
     chunk.changed = false;
     return true;
+}
+
+const std::vector<TinChunk::Part>& TinSurface::partsOf(TinChunk& chunk) const {
+    if (chunk.partsReshaped) {
+        chunk.parts.clear();
+        int last = -1;
+        for (std::size_t i = 0; i < chunk.slots.size(); ++i) {
+            const TinTriangle& one = triangles_[static_cast<std::size_t>(chunk.slots[i])];
+            const int number = numberWithin(partOf(one));
+            if (std::exchange(last, number) != number) {
+                chunk.parts.push_back({i, i, boxOf(one)});
+            }
+            TinChunk::Part& part = chunk.parts.back();
+            part.end = i + 1;
+            part.box = around(part.box, boxOf(one));
+        }
+        chunk.partsReshaped = false;
+    }
+    return chunk.parts;
 }
 
 const Box& TinSurface::boxOf(TinChunk& chunk) const {

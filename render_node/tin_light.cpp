@@ -99,7 +99,8 @@ std::vector<Vertex> TinSurface::relight(const SurfaceView& tin, const std::vecto
     for (const std::int32_t slot : reshaped) {
         if (triangle(slot).alive()) {
             addToRelief(tin, triangle(slot));
-            chunks_[static_cast<std::size_t>(inChunk_[static_cast<std::size_t>(slot)].chunk)].reshaped = true;
+            TinChunk& chunk = chunks_[static_cast<std::size_t>(inChunk_[static_cast<std::size_t>(slot)].chunk)];
+            chunk.reshaped = chunk.partsReshaped = true;
             std::ranges::for_each(triangle(slot).corner, [this](Vertex corner) { lit_.add(corner); });
         }
     }

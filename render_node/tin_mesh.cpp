@@ -144,11 +144,29 @@ DrawnSurface::Drawn TinMesh::draw(const glm::dmat4& sceneToClip, bool culling, c
         if (before) {
             before(surface_.boxOf(chunk));
         }
-        const auto count = static_cast<int>(chunk.slots.size());
-        glDrawElements(GL_TRIANGLES, 3 * count, GL_UNSIGNED_INT, nullptr);
         ++drawn.chunks;
-        drawn.triangles += count;
-        pace_.drawn(count);
+        const auto drawRun = [&](std::size_t first, std::size_t end) {
+            const auto count = static_cast<int>(end - first);
+            if (count == 0) {
+                return;
+            }
+            glDrawElements(GL_TRIANGLES, 3 * count, GL_UNSIGNED_INT,
+                           reinterpret_cast<const void*>(first * sizeof(Indices)));
+            drawn.triangles += count;
+            pace_.drawn(count);
+        };
+        std::size_t first = 0, end = 0;  // of what is seen and not drawn yet
+        for (const TinChunk::Part& part : surface_.partsOf(chunk)) {
+            if (culling && !inFrustum(part.box, sceneToClip)) {
+                continue;
+            }
+            if (part.first != end) {
+                drawRun(first, end);
+                first = part.first;
+            }
+            end = part.end;
+        }
+        drawRun(first, end);
     });
     return drawn;
 }

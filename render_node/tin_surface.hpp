@@ -39,12 +39,19 @@ struct TinTriangle {
     friend bool operator==(const TinTriangle&, const TinTriangle&) = default;
 };
 
-/// Triangles that lie close together, for leaving out what a camera does not see.
+/// Triangles that lie close together, for leaving out what a camera does not see: they are sent to GL together.
 struct TinChunk {
+    /// And of those closer together, for a picture that is drawn anew in a small part: a run of `slots`.
+    struct Part {
+        std::size_t first, end;
+        Box box;
+    };
     std::vector<std::int32_t> slots;  // of its triangles
     bool changed = false;             // others are in `slots`, or they are not in order: TinSurface::settle()
     bool reshaped = false;            // since the box was measured
+    bool partsReshaped = true;        // since the parts were
     Box box;
+    std::vector<Part> parts;  // once somebody asks: TinSurface::partsOf()
 };
 
 /// Puts numbers in order, each once.
@@ -77,9 +84,11 @@ public:
     [[nodiscard]] const std::vector<TinVertex>& vertices() const { return vertices_; }
     [[nodiscard]] const std::vector<TinTriangle>& triangles() const { return triangles_; }  // by slot
     [[nodiscard]] std::vector<TinChunk>& chunks() { return chunks_; }
-    /// Puts the triangles of a chunk in the order of their corners; says whether they are others than when this was
-    /// called last. Where wires cross at a ridge, the order in which they are drawn shows.
+    /// Puts the triangles of a chunk in order, by parts and by their corners; says whether they are others than when
+    /// this was called last. Where wires cross at a ridge, the order in which they are drawn shows.
     [[nodiscard]] bool settle(TinChunk& chunk);
+    /// The parts of a chunk in order that have triangles.
+    [[nodiscard]] const std::vector<TinChunk::Part>& partsOf(TinChunk& chunk) const;
     /// The box around a chunk that has triangles.
     [[nodiscard]] const Box& boxOf(TinChunk& chunk) const;
     /// The lowest and the highest that any vertex has been.
@@ -89,6 +98,7 @@ public:
 private:
     using Vertex = sand::tin::Vertex;
     static constexpr int kCell = sand::tin::kLatticePerCell;
+    static constexpr int kPartsAcross = 4;  // a chunk
     struct InChunk {
         int chunk = -1, at = 0;
     };
@@ -102,6 +112,14 @@ private:
     [[nodiscard]] bool keepRim(Vertex vertex, bool present);
     void replace(std::int32_t slot, const TinTriangle& triangle);
     void leaveChunk(std::int32_t slot);
+    /// Where a triangle's middle lies, along an axis: in units of which a part has one.
+    struct PartAt {
+        int column, row;
+    };
+    [[nodiscard]] PartAt partOf(const TinTriangle& triangle) const;
+    [[nodiscard]] static int numberWithin(const PartAt& part) {
+        return part.row % kPartsAcross * kPartsAcross + part.column % kPartsAcross;
+    }
     [[nodiscard]] glm::dvec3 at(Vertex vertex) const;
     [[nodiscard]] Box boxOf(const TinTriangle& triangle) const;
     /// That of a grid of the same cells, linear between their middles.
