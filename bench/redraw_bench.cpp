@@ -138,7 +138,7 @@ void show(const std::vector<std::unique_ptr<Tile>>& tiles, sand::Terrain& terrai
             both += spent;
             all += eye->target.width() * eye->target.height();
             if (!changed.empty()) {
-                pixels += static_cast<double>(changed.area());
+                pixels += static_cast<double>(tile->view.counts().pixels);
                 ++drawn;
                 measured.viewMs.push_back(1e3 * spent);
                 measured.viewTriangles.push_back(tile->view.counts().triangles);

@@ -45,6 +45,30 @@ PixelRect around(const PixelRect& a, const PixelRect& b) {
     return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
 }
 
+std::vector<PixelRect> fewCovering(std::vector<PixelRect> rects, std::int64_t pass) {
+    std::erase_if(rects, [](const PixelRect& rect) { return rect.empty(); });
+    while (rects.size() > 1) {
+        std::int64_t least = std::numeric_limits<std::int64_t>::max();
+        std::size_t one = 0, other = 0;
+        for (std::size_t i = 0; i < rects.size(); ++i) {
+            for (std::size_t j = 0; j < i; ++j) {
+                const std::int64_t between = around(rects[i], rects[j]).area() - rects[i].area() - rects[j].area();
+                if (between < least) {
+                    least = between;
+                    one = j;
+                    other = i;
+                }
+            }
+        }
+        if (least > pass) {
+            break;
+        }
+        rects[one] = around(rects[one], rects[other]);
+        rects.erase(rects.begin() + static_cast<std::ptrdiff_t>(other));
+    }
+    return rects;
+}
+
 PixelRect pixelsOf(std::span<const glm::dvec3> hull, const glm::dmat4& sceneToClip, glm::ivec2 size) {
     constexpr double kFar = std::numeric_limits<double>::infinity();
     glm::dvec2 low(kFar), high(-kFar);

@@ -47,6 +47,11 @@ SandView::SandView(const sand::Scene& scene, const glm::dmat4& sceneToRoom, std:
       toolProgram_("solid.vert.glsl", "tool.frag.glsl"),
       grain_(glm::vec2(sun_)),
       box_(surface().rim(), surface().heightsEver().lowest, double{cellSize_}, scene.rules.rim) {
+    startCounting();
+}
+
+void SandView::startCounting() {
+    counts_ = {};
     counts_.chunksOfField = surface().chunks();
 }
 
@@ -148,6 +153,7 @@ ToolLight SandView::lightOf(const EyeMemory::Tool& tool) {
 }
 
 void SandView::draw(const Camera& camera, const EyeTarget& target) {
+    startCounting();
     drawWithin({0, 0, target.width(), target.height()}, camera, target);
 }
 
@@ -156,6 +162,7 @@ void SandView::drawWithin(const PixelRect& pixels, const Camera& camera, const E
     const glm::dmat4 sceneToClip = camera.roomToClip * sceneToRoom_;
     const glm::dmat4 sceneToPart = clipOf(pixels, size) * sceneToClip;
     halfPicture_ = glm::vec2(size) / 2.0F;
+    counts_.pixels += pixels.area();
     target.bind();
     // The viewport stays the whole picture's: with another one, edges would fall on other pixels.
     if (pixels.area() < std::int64_t{size.x} * size.y) {
@@ -244,9 +251,9 @@ void SandView::drawSand(const Camera& camera, const glm::dmat4& sceneToPart, con
     }
     const DrawnSurface::Drawn drawn = surface().draw(sceneToPart, culling_, rule, choose);
     (near ? programs.near : programs.far).drawn();
-    counts_.chunks = drawn.chunks;
-    counts_.coarseChunks = drawn.coarseChunks;
-    counts_.triangles = drawn.triangles;
+    counts_.chunks += drawn.chunks;
+    counts_.coarseChunks += drawn.coarseChunks;
+    counts_.triangles += drawn.triangles;
 
     prepare(programs.sides, camera);
     box_.drawSides(sceneToPart, culling_);

@@ -37,10 +37,11 @@ struct Camera {
 
 /// What the last draw() did.
 struct DrawCounts {
-    int chunks = 0;         // of sand, drawn
-    int coarseChunks = 0;   // of these, above level 0
-    int chunksOfField = 0;  // that the field has
-    int triangles = 0;      // of sand, drawn
+    int chunks = 0;           // of sand, drawn
+    int coarseChunks = 0;     // of these, above level 0
+    int chunksOfField = 0;    // that the field has
+    int triangles = 0;        // of sand, drawn
+    std::int64_t pixels = 0;  // in the rectangles that were drawn
 };
 
 /// What was drawn last into one target by one view: the caller keeps one per eye.
@@ -119,11 +120,13 @@ public:
 
     /// Clears the target and draws everything into it. Does not wait: EyeTarget::finish() does.
     void draw(const Camera& camera, const EyeTarget& target);
-    /// Draws the one rectangle outside of which no pixel can differ from what `memory` says is in the target, and
-    /// returns it: empty where nothing was drawn (most tiles are far from the hand), the whole picture where the view
-    /// is another one or most of it changed. The target then holds what draw() would have left there, bit for bit.
+    /// Draws few rectangles outside of which no pixel can differ from what `memory` says is in the target, and returns
+    /// the one around them: empty where nothing was drawn (most tiles are far from the hand), the whole picture where
+    /// the view is another one or most of it changed. The target then holds what draw() would have left there, bit for
+    /// bit.
     PixelRect drawIfChanged(const Camera& camera, const EyeTarget& target, EyeMemory& memory);
 
+    /// Of what was drawn last.
     [[nodiscard]] const DrawCounts& counts() const { return counts_; }
     /// Bytes this view has asked of GL for geometry so far.
     [[nodiscard]] std::size_t geometryBytes() const { return surface().bytes(); }
@@ -145,9 +148,10 @@ private:
     void drawForce(const Camera& camera);
     void drawSand(const Camera& camera, const glm::dmat4& sceneToPart, const LevelRule& rule);
     void drawWires(const Camera& camera, const glm::dmat4& sceneToPart, const LevelRule& rule);
+    void startCounting();
     void drawWithin(const PixelRect& pixels, const Camera& camera, const EyeTarget& target);
     [[nodiscard]] LevelRule ruleFor(const Camera& camera, glm::ivec2 size) const;
-    [[nodiscard]] PixelRect changedPixels(const Camera& camera, glm::ivec2 size, EyeMemory& memory);
+    [[nodiscard]] std::vector<PixelRect> changedPixels(const Camera& camera, glm::ivec2 size, EyeMemory& memory);
     [[nodiscard]] const SandPrograms& sandPrograms();
     [[nodiscard]] const GlProgram& woodProgram();
     [[nodiscard]] static ToolLight lightOf(const EyeMemory::Tool& tool);

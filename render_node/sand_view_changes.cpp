@@ -8,7 +8,8 @@
 namespace render_node {
 namespace {
 
-constexpr double kMostOfAll = 0.8;  // of a picture: a rectangle larger than that costs as much as the whole
+constexpr double kMostOfAll = 0.8;     // of a picture: rectangles larger than that cost as much as the whole
+constexpr std::int64_t kPass = 4096;  // [pixel], what a rectangle costs beside its own: buffers, programs, chunks
 
 }  // namespace
 
@@ -41,7 +42,7 @@ std::vector<std::vector<glm::dvec3>> SandView::hullsOf(const EyeMemory::Tool& to
     return hulls;
 }
 
-PixelRect SandView::changedPixels(const Camera& camera, glm::ivec2 size, EyeMemory& memory) {
+std::vector<PixelRect> SandView::changedPixels(const Camera& camera, glm::ivec2 size, EyeMemory& memory) {
     const PixelRect whole{0, 0, size.x, size.y};
     const glm::dmat4 sceneToClip = camera.roomToClip * sceneToRoom_;
     const LevelRule rule = ruleFor(camera, size);
@@ -49,12 +50,10 @@ PixelRect SandView::changedPixels(const Camera& camera, glm::ivec2 size, EyeMemo
     if (!memory.drawn || memory.roomToClip != camera.roomToClip || memory.eye != camera.eye ||
         memory.sceneToRoom != sceneToRoom_ || memory.layers != layers_) {
         memory.levels = surface().levelsWithin(sceneToClip, rule);
-        return whole;
+        return {whole};
     }
-    PixelRect changed = memory.covered;
-    const auto add = [&](std::span<const glm::dvec3> hull) {
-        changed = around(changed, pixelsOf(hull, sceneToClip, size));
-    };
+    std::vector<PixelRect> changed{memory.covered};
+    const auto add = [&](std::span<const glm::dvec3> hull) { changed.push_back(pixelsOf(hull, sceneToClip, size)); };
     if (toolMoved && toolRadius_ > 0) {
         for (const std::optional<EyeMemory::Tool>& tool : {memory.tool, tool_}) {
             if (tool) {
@@ -73,13 +72,20 @@ PixelRect SandView::changedPixels(const Camera& camera, glm::ivec2 size, EyeMemo
     for (const Box& box : surface().changesSince(memory.sand, memory.levels, rule)) {
         add(cornersOf(box_.withSides(box)));
     }
-    return static_cast<double>(changed.area()) > kMostOfAll * static_cast<double>(whole.area()) ? whole : changed;
+    changed = fewCovering(std::move(changed), kPass);
+    std::int64_t area = 0;
+    for (const PixelRect& rect : changed) {
+        area += rect.area();
+    }
+    return static_cast<double>(area) > kMostOfAll * static_cast<double>(whole.area()) ? std::vector{whole} : changed;
 }
 
 PixelRect SandView::drawIfChanged(const Camera& camera, const EyeTarget& target, EyeMemory& memory) {
-    const PixelRect changed = changedPixels(camera, {target.width(), target.height()}, memory);
-    if (!changed.empty()) {
-        drawWithin(changed, camera, target);
+    startCounting();
+    PixelRect changed;
+    for (const PixelRect& rect : changedPixels(camera, {target.width(), target.height()}, memory)) {
+        drawWithin(rect, camera, target);
+        changed = around(changed, rect);
     }
     memory = {true,
               camera.roomToClip,

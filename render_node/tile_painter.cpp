@@ -16,10 +16,10 @@ walls::Viewer viewerOf(const lockstep::ViewState& view) {
 
 }  // namespace
 
-void ViewCounts::add(const PixelRect& drawn, const EyeTarget& target) {
+void ViewCounts::add(std::int64_t drawn, const EyeTarget& target) {
     const std::int64_t all = std::int64_t{target.width()} * target.height();
-    (drawn.empty() ? skipped : drawn.area() < all ? inPart : whole) += 1;
-    pixelsDrawn += drawn.area();
+    (drawn == 0 ? skipped : drawn < all ? inPart : whole) += 1;
+    pixelsDrawn += drawn;
     pixels += all;
 }
 
@@ -131,7 +131,7 @@ PixelRect TilePainter::paintSand(std::span<const Camera> cameras, EyeRange range
     PixelRect changed;
     for (std::size_t i = range.from; i < range.end; ++i) {
         const PixelRect drawn = sand_.drawIfChanged(cameras[i], targets_[i], memories_[i]);
-        counts_.add(drawn, targets_[i]);
+        counts_.add(sand_.counts().pixels, targets_[i]);
         changed = around(changed, drawn);
     }
     return changed;

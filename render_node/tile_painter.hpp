@@ -25,7 +25,7 @@ struct ViewCounts {
     std::int64_t skipped = 0, inPart = 0, whole = 0;
     std::int64_t pixelsDrawn = 0, pixels = 0;  // in rectangles that were drawn; of all views
 
-    void add(const PixelRect& drawn, const EyeTarget& target);
+    void add(std::int64_t drawn /* [pixel] */, const EyeTarget& target);
 };
 
 /// Draws one tile: an eye target for each eye that the wall shows, and what its outputs make of them.
