@@ -212,8 +212,8 @@ bool ActiveEdges::isHeld(const Triangle& triangle) {
            });
 }
 
-// Where no volume changes no height does, and a flux is what it was; but with a band, sand that flows through moves
-// what it touches.
+// Beside an edge that nobody watches no triangle slides, and nothing flows over it that could go on. Where no volume
+// changes no height does, and none begins to; but with a band, sand that flows through moves what it touches.
 bool ActiveEdges::sweep(const Layer& layer, const Slopes& slopes, Weights& weights, double momentum) {
     std::size_t known = 0;
     do {

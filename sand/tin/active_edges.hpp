@@ -33,7 +33,8 @@ public:
     /// Watches every triangle that may slide in the next sweep because of these vertices: those around them that are
     /// steep enough. To be called right after begin().
     void wake(const Layer& layer, const Slopes& slopes, std::span<const Vertex> vertices);
-    /// One sweep, which then watches all that it may have set in motion; false when nothing flowed.
+    /// One sweep, which then watches all that it may have set in motion; false when nothing flowed. `momentum`: what of
+    /// the last sweep's fluxes goes on, 0 to 1.
     bool sweep(const Layer& layer, const Slopes& slopes, Weights& weights, double momentum);
     /// Gives the layer its sand, and adds who has another volume now to `moved`.
     void store(Layer& layer, std::vector<Vertex>& moved) const;

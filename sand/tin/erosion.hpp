@@ -19,24 +19,23 @@ using Underside = ActiveEdges::Underside;
 /// Sand that slides where it is steeper than its talus, on a TIN.
 ///
 /// One sweep moves, over every edge at once, Q = trunc((w_l c_l + w_r c_r)₊ (u_i − u_j)) volume units. Of the edge's
-/// two triangles c = .9 (1 − g²/m²), m being the triangle's slope, where that is steeper than g, else nothing; w is
-/// half the cotangent of the angle opposite the edge, times a step of the edge's own, such that what flows is at most
-/// k_e per height and the sum of k_e over a vertex's edges at most .9996 of its star, at both ends (weights.hpp). It is
-/// the descent of a convex energy, and rests where no triangle is steeper than g; with one slope per edge, the mean of
-/// its triangles', sand crept along kinks for a million sweeps.
+/// two triangles c = .8 (m² − g²)/(m² + g²), m being the triangle's slope, where that is steeper than g, else nothing;
+/// w is half the cotangent of the angle opposite the edge, times a step of the edge's own, such that what flows is at
+/// most k_e per height and the sum of k_e over a vertex's edges at most .9996 of its star, at both ends (weights.hpp).
+/// Without momentum it is the descent of a convex energy, and it rests where no triangle is steeper than g; with one
+/// slope per edge, the mean of its triangles', sand crept along kinks for a million sweeps.
 ///
 /// - Volume is exact: Q is taken here and given there.
 /// - No new extremes: star_i u_i' = star_i u_i − Σ Q with |Q| ≤ k_e |u_i − u_j| and Σ k_e < star_i, so u_i' lies
-/// between
-///   the heights of i and its neighbours. An obstacle only makes Q smaller, to k_e (underside − u) at the most: for the
-///   same reason no vertex rises above it.
-/// - It ends: Σ V²/star falls in every sweep that moves anything. It changes by −2 Σ_e Q (u_i − u_j) + Σ_i (Σ
-/// Q)²/star_i,
-///   and (Σ Q)² ≤ Σ k_e Σ Q²/k_e ≤ .9996 star_i Σ Q²/k_e, which over both ends of an edge is less than 2 Q (u_i − u_j).
-///   With Σ c k_e bounded instead of Σ k_e, or one step for all, two vertices can swap for ever, or wait as long.
+///   between the heights of i and its neighbours. An obstacle only makes Q smaller, to k_e (underside − u) at the most:
+///   for the same reason no vertex rises above it.
+/// - It ends: Σ V²/star falls in every sweep that moves anything. It changes by
+///   −2 Σ_e Q (u_i − u_j) + Σ_i (Σ Q)²/star_i, and (Σ Q)² ≤ Σ k_e Σ Q²/k_e ≤ .9996 star_i Σ Q²/k_e, which over both
+///   ends of an edge is less than 2 Q (u_i − u_j). With Σ c k_e bounded instead of Σ k_e, or one step for all, two
+///   vertices can swap for ever, or wait as long.
 ///
-/// In sweep() a part of the last sweep's flux goes on, cut to less than k_e (u_i − u_j), which is all that the proofs
-/// ask of Q, and each call begins without. Triangles that do not slide brake it.
+/// In sweep() a part of the last sweep's flux goes on, which triangles flatter than g brake; each call begins without.
+/// It is cut to less than k_e (u_i − u_j) and never flows uphill, which is all that the proofs ask of Q.
 ///
 /// Sand at rest begins to slide beyond the start threshold; in the same call of sweep() it then slides, with all that
 /// it touches, until the threshold. The result of sweep() is a function of layer, rules and the number of sweeps: not

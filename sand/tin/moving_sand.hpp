@@ -38,7 +38,7 @@ public:
     [[nodiscard]] Facet facet(std::int32_t number) const;  // its corners
     [[nodiscard]] Edge edge(std::size_t number) const;     // its ends and facets
 
-    /// Forgets what the last sweep moved. Each vertex is to be placed before the next.
+    /// Forgets what the last sweep moved: nothing goes on. Each vertex is to be placed before the next.
     void restart();
     void place(std::size_t vertex, std::int64_t volume, std::int64_t star, double underside);
     /// Told of a vertex whose edges are all here, and of one that misses some (as all do at first).
@@ -52,7 +52,7 @@ public:
     /// undersides hold; `band`: facets at rest start to slide later than sliding ones stop. Those that slide though
     /// they miss edges, over which sand may flow in move(); until the next call.
     [[nodiscard]] std::span<const std::int32_t> slide(bool held, bool band, std::size_t first = 0);
-    /// The second half: what flows over the edges.
+    /// The second half: what flows over the edges, where `momentum` of the last sweep's fluxes goes on, 0 to 1.
     SweepResult move(bool held, double momentum);
     /// Whether sand flowed at one of a vertex's edges in the last sweep.
     [[nodiscard]] bool flowed(std::size_t vertex) const { return levels_[vertex].flow > 0; }
@@ -61,7 +61,8 @@ public:
     struct Marks {
         std::vector<std::uint8_t> facets, edges;
     };
-    /// Facets at which sand flowed, so that they may slide in the next sweep, and the edges of those that slid.
+    /// Facets at which sand flowed, so that they may slide or brake in the next sweep, and the edges of those
+    /// that slid or over which sand flowed.
     [[nodiscard]] Marks whatMayFlow() const;
     /// Adds the vertices whose edges are not all here though sand flowed at one.
     void findUnwatched(std::vector<std::int32_t>& found) const;

@@ -76,7 +76,7 @@ MovingSand::Renumbering MovingSand::keep(const Marks& kept) {
             now.vertices[index(first_[i])] = now.vertices[index(second_[i])] = now.vertices[index(third_[i])] = 0;
         }
     }
-    // Fluxes and slides are of the next sweep again.
+    // Slides are of the next sweep again; fluxes may go on in it.
     keepMarked(numberMarked(edges), from_, to_, left_, right_, leftWeights_, rightWeights_, fluxes_);
     keepMarked(numberMarked(now.facets), first_, second_, third_, squared_, mixed_, squaredAcross_, start_, bare_);
     sliding_.resize(first_.size());

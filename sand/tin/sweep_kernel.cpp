@@ -130,8 +130,8 @@ struct Beside {
     }
 };
 
-/// Of the last sweep's flux a part goes on, which triangles that do not slide brake; it turns with the slope, and it
-/// leaves those that push alone: sand would creep along kinks for ever.
+/// Of the last sweep's flux a part goes on, unless the slope has turned. Triangles flatter than the talus brake what
+/// goes on, and never the push of the triangle beside them: sand would creep along kinks for ever.
 double withMomentum(const Beside& beside, double difference, double goesOn) {
     const double most = kMostOfBound * beside.bound() * difference;
     const double forth = std::max(most, 0.0), back = std::min(most, 0.0);

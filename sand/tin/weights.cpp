@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sand/tin/sweep_kernel.hpp"
+
 namespace sand::tin {
 namespace {
 
@@ -153,7 +155,9 @@ Facet facetOf(const Triangles& mesh, std::int32_t slot, const Slopes& slopes) {
     facet.mixed = -2 * product / scale / scale;
     facet.second = firstSquared / scale / scale;
     const double start = (slopes.start + slack) / (slopes.slide + slack);
-    facet.start = start * start;
+    // Not below kRest, however narrow the band is: sand that has come to rest would start again once its flow is
+    // forgotten, and who is forgotten when must not matter.
+    facet.start = std::max(start * start, kRest);
     return facet;
 }
 
