@@ -36,6 +36,26 @@ std::vector<glm::dvec4> clippedToNear(std::span<const glm::dvec3> hull, const gl
     return all;
 }
 
+constexpr std::size_t kManyRects = 32;  // all pairs of so many are soon looked at
+
+/// One around all whose middles lie in each of 5 by 5 parts of what they cover.
+std::vector<PixelRect> binned(const std::vector<PixelRect>& rects) {
+    PixelRect all;
+    for (const PixelRect& rect : rects) {
+        all = around(all, rect);
+    }
+    constexpr int kAcross = 5;
+    std::vector<PixelRect> bins(kAcross * kAcross);
+    for (const PixelRect& rect : rects) {
+        const int column = kAcross * ((rect.x0 + rect.x1) / 2 - all.x0) / (all.x1 - all.x0);
+        const int row = kAcross * ((rect.y0 + rect.y1) / 2 - all.y0) / (all.y1 - all.y0);
+        PixelRect& bin = bins[static_cast<std::size_t>(row * kAcross + column)];
+        bin = around(bin, rect);
+    }
+    std::erase_if(bins, [](const PixelRect& rect) { return rect.empty(); });
+    return bins;
+}
+
 }  // namespace
 
 PixelRect around(const PixelRect& a, const PixelRect& b) {
@@ -45,8 +65,11 @@ PixelRect around(const PixelRect& a, const PixelRect& b) {
     return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
 }
 
-std::vector<PixelRect> fewCovering(std::vector<PixelRect> rects, std::int64_t pass) {
+std::vector<PixelRect> fewCovering(std::vector<PixelRect> rects, std::size_t most, std::int64_t pass) {
     std::erase_if(rects, [](const PixelRect& rect) { return rect.empty(); });
+    if (rects.size() > kManyRects) {
+        rects = binned(rects);
+    }
     while (rects.size() > 1) {
         std::int64_t least = std::numeric_limits<std::int64_t>::max();
         std::size_t one = 0, other = 0;
@@ -60,7 +83,7 @@ std::vector<PixelRect> fewCovering(std::vector<PixelRect> rects, std::int64_t pa
                 }
             }
         }
-        if (least > pass) {
+        if (least > pass && rects.size() <= most) {
             break;
         }
         rects[one] = around(rects[one], rects[other]);

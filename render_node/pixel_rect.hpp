@@ -19,9 +19,9 @@ struct PixelRect {
 /// The smallest rectangle around both; an empty one counts for nothing.
 [[nodiscard]] PixelRect around(const PixelRect& a, const PixelRect& b);
 
-/// Fewer rectangles that cover all that these do. Two become one unless the pixels between them are more than `pass`:
-/// what one rectangle more costs who draws them, whatever lies in it [pixel].
-[[nodiscard]] std::vector<PixelRect> fewCovering(std::vector<PixelRect> rects, std::int64_t pass);
+/// At most `most` rectangles that cover all that these do. Two become one where they are too many, or unless the pixels
+/// between them are more than `pass`: what one rectangle more costs who draws them, whatever lies in it [pixel].
+[[nodiscard]] std::vector<PixelRect> fewCovering(std::vector<PixelRect> rects, std::size_t most, std::int64_t pass);
 
 /// The pixels of a picture of `size` that something within the convex hull of these points may cover or touch: never
 /// one too few, and a pixel more on every side. Empty when the hull lies outside the picture or behind its near plane.

@@ -35,7 +35,7 @@ struct Camera {
     glm::dvec3 eye;         // [m], room
 };
 
-/// What the last draw() did.
+/// What the last draw() or drawIfChanged() did; a chunk in two rectangles counts twice.
 struct DrawCounts {
     int chunks = 0;           // of sand, drawn
     int coarseChunks = 0;     // of these, above level 0

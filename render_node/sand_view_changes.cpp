@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which part of an eye's picture is to be drawn anew.
+// Which parts of an eye's picture are to be drawn anew.
 #include <algorithm>
 
 #include "render_node/sand_view.hpp"
@@ -8,8 +8,10 @@
 namespace render_node {
 namespace {
 
-constexpr double kMostOfAll = 0.8;     // of a picture: rectangles larger than that cost as much as the whole
-constexpr std::int64_t kPass = 4096;  // [pixel], what a rectangle costs beside its own: buffers, programs, chunks
+constexpr double kMostOfAll = 0.8;  // of a picture: rectangles larger than that cost as much as the whole
+// What a rectangle costs beside its pixels: buffers, programs, chunks. Of llvmpipe, by redraw_bench [pixel].
+constexpr std::int64_t kPass = 4096;
+constexpr std::size_t kMostPasses = 4;
 
 }  // namespace
 
@@ -72,7 +74,7 @@ std::vector<PixelRect> SandView::changedPixels(const Camera& camera, glm::ivec2 
     for (const Box& box : surface().changesSince(memory.sand, memory.levels, rule)) {
         add(cornersOf(box_.withSides(box)));
     }
-    changed = fewCovering(std::move(changed), kPass);
+    changed = fewCovering(std::move(changed), kMostPasses, kPass);
     std::int64_t area = 0;
     for (const PixelRect& rect : changed) {
         area += rect.area();

@@ -63,8 +63,8 @@ private:
     struct EyeRange {
         std::size_t from, end;  // of the eyes that are painted, as indices of targets_
     };
+    [[nodiscard]] std::vector<Camera> camerasOf(const lockstep::ViewState& view) const;  // by eye
     // The pixels that have changed in some eye.
-    [[nodiscard]] [[nodiscard]] std::vector<Camera> camerasOf(const lockstep::ViewState& view) const;  // by eye
     PixelRect paintSand(std::span<const Camera> cameras, EyeRange range);
     [[nodiscard]] PixelRect paintPattern(lockstep::Pattern pattern, std::uint64_t frame, EyeRange range);
     void uncover(EyeRange range);

@@ -27,23 +27,33 @@ void TinSurface::replace(std::int32_t slot, const TinTriangle& now) {
     if (!now.alive()) {
         return;
     }
-    const PartAt part = partOf(now);
     InChunk& in = inChunk_[static_cast<std::size_t>(slot)];
-    in.chunk = part.row / kPartsAcross * across_ + part.column / kPartsAcross;
+    in = homeOf(now);
     TinChunk& chunk = chunks_[static_cast<std::size_t>(in.chunk)];
     in.at = static_cast<int>(chunk.slots.size());
     chunk.slots.push_back(slot);
     chunk.changed = chunk.reshaped = chunk.partsReshaped = true;
 }
 
-TinSurface::PartAt TinSurface::partOf(const TinTriangle& triangle) const {
+TinSurface::InChunk TinSurface::homeOf(const TinTriangle& triangle) const {
     double x = 0, y = 0;  // [probe unit], three times
     for (const Vertex corner : triangle.corner) {
         x += vertices_[static_cast<std::size_t>(corner)].x;
         y += vertices_[static_cast<std::size_t>(corner)].y;
     }
     const double parts = kPartsAcross / (3 * chunkSide_);
-    return {static_cast<int>(x * parts), static_cast<int>(y * parts)};
+    const int column = static_cast<int>(x * parts), row = static_cast<int>(y * parts);
+    return {.chunk = row / kPartsAcross * across_ + column / kPartsAcross,
+            .part = row % kPartsAcross * kPartsAcross + column % kPartsAcross};
+}
+
+/// Of a triangle with the corners it had, some of which stand elsewhere: numbers are given again.
+void TinSurface::keepHome(std::int32_t slot) {
+    const TinTriangle same = triangle(slot);
+    const InChunk &in = inChunk_[static_cast<std::size_t>(slot)], home = homeOf(same);
+    if (in.chunk != home.chunk || in.part != home.part) {
+        replace(slot, same);
+    }
 }
 
 void TinSurface::leaveChunk(std::int32_t slot) {
@@ -75,7 +85,7 @@ bool TinSurface::settle(TinChunk& chunk) {
     std::vector<Ordered> order;
     order.reserve(chunk.slots.size());
     for (const std::int32_t slot : chunk.slots) {
-        order.push_back({numberWithin(partOf(triangle(slot))), triangle(slot).corner, slot});
+        order.push_back({inChunk_[static_cast<std::size_t>(slot)].part, triangle(slot).corner, slot});
     }
     std::ranges::sort(order);
     for (std::size_t i = 0; i < order.size(); ++i) {
@@ -92,7 +102,7 @@ const std::vector<TinChunk::Part>& TinSurface::partsOf(TinChunk& chunk) const {
         int last = -1;
         for (std::size_t i = 0; i < chunk.slots.size(); ++i) {
             const TinTriangle& one = triangles_[static_cast<std::size_t>(chunk.slots[i])];
-            const int number = numberWithin(partOf(one));
+            const int number = inChunk_[static_cast<std::size_t>(chunk.slots[i])].part;
             if (std::exchange(last, number) != number) {
                 chunk.parts.push_back({i, i, boxOf(one)});
             }

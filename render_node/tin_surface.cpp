@@ -118,6 +118,11 @@ TinSurface::Change TinSurface::update(const SurfaceView& tin, const sand::tin::S
     for (const std::int32_t slot : replaced) {
         replace(slot, drawnOf(mesh.triangles[static_cast<std::size_t>(slot)]));
     }
+    for (const std::int32_t slot : reshaped_.all()) {
+        if (triangle(slot).alive()) {
+            keepHome(slot);
+        }
+    }
     damageAll();
     const std::vector<Vertex> lit = relight(tin, reshaped_.all());
     others.insert(others.end(), lit.begin(), lit.end());

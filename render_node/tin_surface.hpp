@@ -25,7 +25,7 @@ struct TinVertex {
     float height = 0;                              // [scene unit]
     std::int32_t x = -1, y = -1;                   // [probe unit]; −1 where no vertex lives
     std::int16_t normalEast = 0, normalNorth = 0;  // 1/32767, of the mean of the triangles around, by their areas
-    std::uint16_t open = 0;                        // share of the sky that the vertex sees, 257/65535
+    std::uint16_t open = 0;                        // share of the sky that the vertex sees, 1/65535, in 255 steps
     std::uint16_t mottling = 0;                    // slow change of shade from place to place, 1/65535
 };
 static_assert(sizeof(TinVertex) == 20);
@@ -100,7 +100,7 @@ private:
     static constexpr int kCell = sand::tin::kLatticePerCell;
     static constexpr int kPartsAcross = 4;  // a chunk
     struct InChunk {
-        int chunk = -1, at = 0;
+        int chunk = -1, part = 0, at = 0;
     };
     TinSurface(const sand::tin::SurfaceView& tin, double cellSize, double chunkSide);
     [[nodiscard]] static double chunkSideFor(const sand::tin::Triangles& mesh);
@@ -112,14 +112,9 @@ private:
     [[nodiscard]] bool keepRim(Vertex vertex, bool present);
     void replace(std::int32_t slot, const TinTriangle& triangle);
     void leaveChunk(std::int32_t slot);
-    /// Where a triangle's middle lies, along an axis: in units of which a part has one.
-    struct PartAt {
-        int column, row;
-    };
-    [[nodiscard]] PartAt partOf(const TinTriangle& triangle) const;
-    [[nodiscard]] static int numberWithin(const PartAt& part) {
-        return part.row % kPartsAcross * kPartsAcross + part.column % kPartsAcross;
-    }
+    /// The chunk, and the part of it, in which a triangle's middle lies.
+    [[nodiscard]] InChunk homeOf(const TinTriangle& triangle) const;
+    void keepHome(std::int32_t slot);
     [[nodiscard]] glm::dvec3 at(Vertex vertex) const;
     [[nodiscard]] Box boxOf(const TinTriangle& triangle) const;
     /// That of a grid of the same cells, linear between their middles.

@@ -76,7 +76,7 @@ protected:
         const EyeTarget inParts(kWidth, kHeight), whole(kWidth, kHeight);
         render_node::EyeMemory memory;
         std::vector<Tin::Vertex> added;
-        int parts = 0, skipped = 0;
+        int parts = 0, skipped = 0, severalParts = 0;
         for (int i = 0; i < 60; ++i) {
             for (auto edits = random() % 3; edits > 0; --edits) {
                 edit(tin, random, added);
@@ -89,6 +89,7 @@ protected:
             const PixelRect drawn = view.drawIfChanged(camera, inParts, memory);
             parts += !drawn.empty() && drawn.area() < kWidth * kHeight ? 1 : 0;
             skipped += drawn.empty() ? 1 : 0;
+            severalParts += view.counts().pixels < drawn.area() ? 1 : 0;
             ASSERT_TRUE(inParts.read() == sample::draw(view, camera, whole)) << "seed " << seed << ", step " << i;
             if (i % 20 == 19) {  // a replica that starts here, its triangles in other slots, begun at other corners
                 SandView fresh(scene, start.view(), glm::dmat4(1));
@@ -100,9 +101,11 @@ protected:
                 ASSERT_TRUE(inParts.read() == sample::draw(fresh, camera, whole)) << "seed " << seed << ", step " << i;
             }
         }
-        std::printf("seed %u: %d views drawn in part, %d skipped\n", seed, parts, skipped);
+        std::printf("seed %u: %d views drawn in part, %d of them in several, %d skipped\n", seed, parts, severalParts,
+                    skipped);
         EXPECT_GT(parts, 25);
         EXPECT_GT(skipped, 3);
+        EXPECT_GT(severalParts, 3);
     }
 
     std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
