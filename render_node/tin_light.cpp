@@ -71,7 +71,7 @@ glm::dvec3 normalAt(const SurfaceView& tin, Vertex vertex, std::vector<Pair>& ar
     if (besideHole) {  // where it begins is left to chance, and it may have gaps
         std::ranges::sort(around, {}, &Pair::first);
     } else if (around.front().first == around.back().second) {
-        std::ranges::rotate(around, std::ranges::min_element(around, {}, &Pair::first));
+        std::rotate(around.begin(), std::ranges::min_element(around, {}, &Pair::first), around.end());
     }
     const glm::dvec3 here = at(vertex);
     glm::dvec3 sum(0);
