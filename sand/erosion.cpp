@@ -8,6 +8,7 @@
 #include "sand/code_path.hpp"
 #include "sand/erosion_kernel.hpp"
 #include "sand/held_patch.hpp"
+#include "sand/momentum.hpp"
 
 namespace sand {
 namespace {
@@ -37,12 +38,6 @@ AxisLaw axisLaw(Scheme scheme, double threshold, double startThreshold, double r
 std::int32_t scaled(std::int32_t threshold, double ratio) {
     return static_cast<std::int32_t>(std::min(std::floor(threshold * ratio), 1073741824.0));
 }
-
-/// How much of the last sweep's flux goes on in sweep n of something: it begins without and grows.
-float momentumAfter(int n, int damping) { return static_cast<float>(n) / static_cast<float>(n + damping); }
-
-constexpr int kDamping = 25;  // [sweep], what overshoots no pile of 64 cells or more
-constexpr float kMostMomentum = 0.9F;
 
 }  // namespace
 
@@ -75,10 +70,8 @@ std::int64_t Erosion::sweep(HeightField& field, int sweeps, const Obstacle* obst
     std::int64_t outflow = 0;
     for (int n = 0; n < sweeps && !settled(); ++n) {
         collectPatches(field);
-        // A short call ends before anything overshoots, and may begin with inertia sooner.
-        const float momentum = std::min(
-            std::max(momentumAfter(n, std::clamp(sweeps / 3, 3, kDamping)), momentumAfter(undisturbed_, kDamping)),
-            kMostMomentum);
+        const float momentum =
+            std::max(momentumAfter<float>(n, dampingOf(sweeps)), momentumAfter<float>(undisturbed_, kMostDamping));
         forEachPatch([&](int i) {
             const auto patch = static_cast<std::size_t>(i);
             outflows_[patch] = sweepFluxes(field, patches_[patch], momentum, obstacle);

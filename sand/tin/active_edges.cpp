@@ -197,7 +197,7 @@ void ActiveEdges::wake(const Layer& layer, const Slopes& slopes, std::span<const
             }
         });
     }
-    // TriangleSide by side, so that few of the others are swept as if they were held.
+    // Side by side, so that few of the others are swept as if they were held.
     for (auto* slots : {&steepHeld_, &steep_}) {
         for (const std::int32_t slot : *slots) {
             static_cast<void>(facetAt(layer, slopes, slot));

@@ -4,20 +4,13 @@
 #include <algorithm>
 #include <numeric>
 
+#include "sand/momentum.hpp"
 #include "sand/tin/window.hpp"
 
 namespace sand::tin {
 namespace {
 
 constexpr double kProbePerCell = 256;
-
-// As a grid's (sand/erosion.cpp), but that every call begins without: what flowed before is no state.
-constexpr int kDamping = 25;  // [sweep]
-constexpr double kMostMomentum = 0.9;
-
-double momentumAfter(int n, int sweeps) {
-    return std::min(static_cast<double>(n) / (n + std::clamp(sweeps / 3, 3, kDamping)), kMostMomentum);
-}
 
 }  // namespace
 
@@ -69,7 +62,9 @@ int Erosion::run(Layer& layer, int sweeps, const Underside* held, std::vector<Ve
     watchWoken(layer);
     int done = 0;
     while (done < sweeps && !active_.empty()) {
-        const bool still = !active_.sweep(layer, slopes_, weights_, momentum ? momentumAfter(done, sweeps) : 0);
+        // Every call begins without: what flowed before is no state.
+        const double goesOn = momentum ? momentumAfter<double>(done, dampingOf(sweeps)) : 0;
+        const bool still = !active_.sweep(layer, slopes_, weights_, goesOn);
         ++done;
         if (still || active_.manyRest()) {
             active_.store(layer, moved);

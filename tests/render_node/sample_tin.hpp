@@ -76,6 +76,11 @@ public:
         link();
         return vertex;
     }
+    /// The same vertex elsewhere, within its triangles.
+    void move(Vertex vertex, const sand::tin::Place& to) {
+        mesh_.places[static_cast<std::size_t>(vertex)] = to;
+        damage_.vertices.push_back(vertex);
+    }
     /// Takes out a vertex, where it has three triangles.
     void join(Vertex vertex) {
         std::vector<Slot> around;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "sand/height_field.hpp"
 #include "sand/settle.hpp"
@@ -55,12 +56,12 @@ struct Case {
 };
 
 // Of random and jittered meshes of 4000 and 16,000 vertices 2.4 % and 1.0 %, 1.7 % and 0.36 % were asked. Measured:
-// random 1.04 and 0.45 %, the cone 2.28 %; jittered 0.47 and 0.166 %, 0.82 %; regular the same, but for the cone along
-// the lattice, 0.95 %, whose diagonals all run one way. The bounds are these and a tenth.
+// random 1.04 and 0.44 %, the cone 2.27 %; jittered 0.46 and 0.157 %, 0.80 %; regular the same, but for the cone along
+// the lattice, 0.93 %, whose diagonals all run one way. The bounds are these and a tenth.
 constexpr std::array kCases{
-    Case{Kind::regular, 0, 0.0052, 0.0019, 0.0105},   Case{Kind::regular, 22.5, 0.0052, 0.0019, 0.0093},
-    Case{Kind::regular, 45, 0.0052, 0.0019, 0.0105},  Case{Kind::jittered, 0, 0.0052, 0.0019, 0.0091},
-    Case{Kind::jittered, 30, 0.0052, 0.0019, 0.0091}, Case{Kind::random, 0, 0.0115, 0.0050, 0.0252}};
+    Case{Kind::regular, 0, 0.0050, 0.00172, 0.0102},   Case{Kind::regular, 22.5, 0.0049, 0.00172, 0.0091},
+    Case{Kind::regular, 45, 0.0052, 0.00172, 0.0102},  Case{Kind::jittered, 0, 0.0050, 0.00173, 0.0088},
+    Case{Kind::jittered, 30, 0.0050, 0.00173, 0.0088}, Case{Kind::random, 0, 0.0114, 0.0049, 0.0250}};
 
 TEST(TinPile, CylindersBecomeFrustumAndConeOnMeshesOfEveryKind) {
     for (const Case& one : kCases) {
@@ -82,14 +83,39 @@ TEST(TinPile, FinerMeshesAreNearerToTheFrustum) {
     }
 }
 
-// 0.36 % and 0.13 % were asked of jittered meshes of 16,000 and 65,000 vertices; measured: 0.336 and 0.122 %. The cone
-// on a random mesh of 16,000 is the one that is not as right as was asked, 1.0 %: it misplaces 0.95 to 1.10 %.
+// 0.36 % and 0.13 % were asked of jittered meshes of 16,000 and 65,000 vertices; measured: 0.336 and 0.122 %. Of a
+// random mesh of 16,000 1.0 % was asked, and the cone misplaces 1.05 % (sandwall-bench tin-piles).
 TEST(TinPile, FinerMeshesAreNearerToTheCone) {
+    if (kSanitized) {
+        GTEST_SKIP() << "minutes";
+    }
     for (const auto& [n, most] : {std::pair{128, 0.0036}, {256, 0.0013}}) {
-        if (!kSanitized) {
-            const Cylinder tall(0.15 * n, 0.45 * n);
-            EXPECT_LE(misplacedOf(settledCylinder(Kind::jittered, n, 0, tall), n, tall), most) << n;
+        const Cylinder tall(0.15 * n, 0.45 * n);
+        EXPECT_LE(misplacedOf(settledCylinder(Kind::jittered, n, 0, tall), n, tall), most) << n;
+    }
+}
+
+// Inertia is begun anew in every step: were it not, piles would be less right, which is why settle() has none.
+TEST(TinPile, InertiaWithinStepsLeavesPilesNearlyAsRight) {
+    const Cylinder tall(9.6, 28.8);
+    const auto atRest = [&](Kind kind, int sweepsOfAStep) {
+        Layer layer = layerOf(kind, 64);
+        fill(layer, oracles::around(32, 32, [&](double r) { return tall.start(r); }));
+        sand::tin::Erosion erosion(layer, kTalus, kTalus);
+        std::vector<sand::tin::Vertex> moved;
+        for (int done = 0; done < 1'000'000 && !erosion.settled();) {
+            done += erosion.sweep(layer, sweepsOfAStep, nullptr, moved);
         }
+        EXPECT_TRUE(erosion.settled());
+        return misplacedOf(layer, 64, tall);
+    };
+    for (const Kind kind : {Kind::jittered, Kind::random}) {
+        const double settled = misplacedOf(settledCylinder(kind, 64, 0, tall), 64, tall);
+        const double inSteps = atRest(kind, 24), atOnce = atRest(kind, 1'000'000);
+        std::printf("%s: settle %.3f %%, in steps of 24 sweeps %.3f %%, in one step %.3f %%\n", nameOf(kind),
+                    100 * settled, 100 * inSteps, 100 * atOnce);
+        EXPECT_LE(inSteps, 1.15 * settled) << nameOf(kind);
+        EXPECT_GT(atOnce, inSteps) << nameOf(kind);
     }
 }
 
