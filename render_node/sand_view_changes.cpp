@@ -11,7 +11,7 @@ namespace {
 constexpr double kMostOfAll = 0.8;  // of a picture: rectangles larger than that cost as much as the whole
 // What a rectangle costs beside its pixels: buffers, programs, chunks. Of llvmpipe, by redraw_bench [pixel].
 constexpr std::int64_t kPass = 4096;
-constexpr std::size_t kMostPasses = 4;
+constexpr std::size_t kMostPasses = 4;  // each of which asks every chunk whether it lies there
 
 }  // namespace
 

@@ -103,12 +103,13 @@ const std::vector<TinChunk::Part>& TinSurface::partsOf(TinChunk& chunk) const {
         for (std::size_t i = 0; i < chunk.slots.size(); ++i) {
             const TinTriangle& one = triangles_[static_cast<std::size_t>(chunk.slots[i])];
             const int number = inChunk_[static_cast<std::size_t>(chunk.slots[i])].part;
+            const Box box = boxOf(one);
             if (std::exchange(last, number) != number) {
-                chunk.parts.push_back({i, i, boxOf(one)});
+                chunk.parts.push_back({i, i, box});
             }
             TinChunk::Part& part = chunk.parts.back();
             part.end = i + 1;
-            part.box = around(part.box, boxOf(one));
+            part.box = around(part.box, box);
         }
         chunk.partsReshaped = false;
     }

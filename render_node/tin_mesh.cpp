@@ -29,6 +29,27 @@ void forEachRun(std::span<const std::int32_t> numbers, const Send& send) {
     }
 }
 
+/// Calls draw(first, end) for the triangles of these parts that are wanted, of neighbours at once.
+template <class Wanted, class Draw>
+void forEachRunOf(const std::vector<TinChunk::Part>& parts, const Wanted& wanted, const Draw& draw) {
+    std::size_t first = 0, end = 0;  // of what is wanted and not drawn yet
+    const auto drawSome = [&] {
+        if (first < end) {
+            draw(first, end);
+        }
+    };
+    for (const TinChunk::Part& part : parts) {
+        if (wanted(part)) {
+            if (part.first != end) {
+                drawSome();
+                first = part.first;
+            }
+            end = part.end;
+        }
+    }
+    drawSome();
+}
+
 void describeVertex() {
     const auto attribute = [](GLuint index, GLint count, GLenum type, GLboolean normalised, std::size_t offset) {
         glEnableVertexAttribArray(index);
@@ -145,28 +166,14 @@ DrawnSurface::Drawn TinMesh::draw(const glm::dmat4& sceneToClip, bool culling, c
             before(surface_.boxOf(chunk));
         }
         ++drawn.chunks;
-        const auto drawRun = [&](std::size_t first, std::size_t end) {
+        const auto seen = [&](const TinChunk::Part& part) { return !culling || inFrustum(part.box, sceneToClip); };
+        forEachRunOf(surface_.partsOf(chunk), seen, [&](std::size_t first, std::size_t end) {
             const auto count = static_cast<int>(end - first);
-            if (count == 0) {
-                return;
-            }
             glDrawElements(GL_TRIANGLES, 3 * count, GL_UNSIGNED_INT,
                            reinterpret_cast<const void*>(first * sizeof(Indices)));
             drawn.triangles += count;
             pace_.drawn(count);
-        };
-        std::size_t first = 0, end = 0;  // of what is seen and not drawn yet
-        for (const TinChunk::Part& part : surface_.partsOf(chunk)) {
-            if (culling && !inFrustum(part.box, sceneToClip)) {
-                continue;
-            }
-            if (part.first != end) {
-                drawRun(first, end);
-                first = part.first;
-            }
-            end = part.end;
-        }
-        drawRun(first, end);
+        });
     });
     return drawn;
 }
