@@ -6,13 +6,13 @@
 namespace render_node {
 
 BoxBins::BoxBins(double width, double depth)
-    : width_(width), depth_(depth), bins_(static_cast<std::size_t>(kSide) * kSide) {}
+    : acrossWidth_(kSide / width), acrossDepth_(kSide / depth), bins_(static_cast<std::size_t>(kSide) * kSide) {}
 
 void BoxBins::add(const Box& box) {
-    const auto bin = [](double middle, double length) {
-        return std::clamp(static_cast<int>(kSide * middle / length), 0, kSide - 1);
+    const auto bin = [](double low, double high, double scale) {
+        return std::clamp(static_cast<int>(0.5 * (low + high) * scale), 0, kSide - 1);
     };
-    const int at = bin(0.5 * (box.low.y + box.high.y), depth_) * kSide + bin(0.5 * (box.low.x + box.high.x), width_);
+    const int at = bin(box.low.y, box.high.y, acrossDepth_) * kSide + bin(box.low.x, box.high.x, acrossWidth_);
     std::optional<Box>& there = bins_[static_cast<std::size_t>(at)];
     if (!there) {
         used_.push_back(at);

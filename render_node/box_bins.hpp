@@ -19,7 +19,7 @@ public:
 private:
     static constexpr int kSide = 32;               // [bin]
     static constexpr std::size_t kMostBoxes = 36;  // that take() gives
-    double width_, depth_;
+    double acrossWidth_, acrossDepth_;             // bins in a scene unit
     std::vector<std::optional<Box>> bins_;
     std::vector<int> used_;
 };

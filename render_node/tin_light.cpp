@@ -5,7 +5,6 @@
 
 #include "render_node/grain_texture.hpp"
 #include "render_node/open_sky.hpp"
-#include "render_node/tin_star.hpp"
 #include "render_node/tin_surface.hpp"
 #include "sand/height_field.hpp"
 
@@ -56,23 +55,18 @@ glm::dvec3 normalAt(const SurfaceView& tin, Vertex vertex, std::vector<Pair>& ar
                           tin.heights[static_cast<std::size_t>(corner)]);
     };
     around.clear();
-    bool besideHole = false;
-    visitStar(mesh, vertex, [&](const StarTriangle& one) {
-        const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(one.slot)];
-        besideHole |= triangle.hole;
+    aroundVertex(mesh, vertex, [&](std::int32_t slot, int corner) {
+        const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(slot)];
         if (!triangle.hole) {
-            around.push_back({triangle.corner[(one.corner + 1) % 3], triangle.corner[(one.corner + 2) % 3]});
+            const auto next = static_cast<std::size_t>(corner + 1);
+            around.push_back({triangle.corner[next % 3], triangle.corner[(next + 1) % 3]});
         }
     });
     if (around.empty()) {
         return {0, 0, 1};  // in a hole, where nothing is drawn
     }
-    // A sum of floats depends on where it begins: from the smallest neighbour on, around a vertex within the field.
-    if (besideHole) {  // where it begins is left to chance, and it may have gaps
-        std::ranges::sort(around, {}, &Pair::first);
-    } else if (around.front().first == around.back().second) {
-        std::rotate(around.begin(), std::ranges::min_element(around, {}, &Pair::first), around.end());
-    }
+    // A sum of floats depends on its order, and where a star begins is left to chance.
+    std::ranges::sort(around, {}, &Pair::first);
     const glm::dvec3 here = at(vertex);
     glm::dvec3 sum(0);
     for (const Pair& pair : around) {
@@ -120,7 +114,9 @@ std::vector<Vertex> TinSurface::relight(const SurfaceView& tin, const std::vecto
         aroundVertex(tin.triangles, number, [this](std::int32_t slot, int) { shaded_.add(slot); });
     }
     for (const std::int32_t slot : shaded_.all()) {
-        damaged_.add(boxOf(triangle(slot)));
+        if (triangle(slot).alive()) {  // and no hole
+            damaged_.add(boxOf(triangle(slot)));
+        }
     }
     return others;
 }
@@ -138,13 +134,9 @@ void TinSurface::addToRelief(const SurfaceView& tin, const TinTriangle& triangle
 std::optional<Box> TinSurface::reachOf(const SurfaceView& tin, const sand::tin::SurfaceDamage& damage) {
     const Triangles& mesh = tin.triangles;
     Reach changed;
-    const auto addNow = [&](const Triangle& triangle) {
-        if (triangle.isGround()) {
-            for (const Vertex corner : triangle.corner) {
-                const auto number = static_cast<std::size_t>(corner);
-                changed.add(mesh.places[number].x, mesh.places[number].y, tin.heights[number] * unit_);
-            }
-        }
+    const auto addVertex = [&](Vertex vertex) {
+        const auto number = static_cast<std::size_t>(vertex);
+        changed.add(mesh.places[number].x, mesh.places[number].y, tin.heights[number] * unit_);
     };
     const auto addDrawn = [&](Vertex number) {
         const bool known = static_cast<std::size_t>(number) < vertices_.size();
@@ -153,7 +145,10 @@ std::optional<Box> TinSurface::reachOf(const SurfaceView& tin, const sand::tin::
         }
     };
     for (const std::int32_t slot : damage.triangles) {
-        addNow(mesh.triangles[static_cast<std::size_t>(slot)]);
+        const Triangle& now = mesh.triangles[static_cast<std::size_t>(slot)];
+        if (now.isGround()) {
+            std::ranges::for_each(now.corner, addVertex);
+        }
         if (static_cast<std::size_t>(slot) < triangles_.size() && triangle(slot).alive()) {
             std::ranges::for_each(triangle(slot).corner, addDrawn);
         }
@@ -162,10 +157,11 @@ std::optional<Box> TinSurface::reachOf(const SurfaceView& tin, const sand::tin::
     for (const Vertex number : damage.vertices) {
         addDrawn(number);
         if (mesh.alive(number)) {
-            const Place& place = mesh.places[static_cast<std::size_t>(number)];
-            changed.add(place.x, place.y, tin.heights[static_cast<std::size_t>(number)] * unit_);
-            aroundVertex(mesh, number,
-                         [&](std::int32_t slot, int) { addNow(mesh.triangles[static_cast<std::size_t>(slot)]); });
+            addVertex(number);
+            aroundVertex(mesh, number, [&](std::int32_t slot, int corner) {  // each neighbour, but for one on the rim
+                const auto next = static_cast<std::size_t>(corner + 1) % 3;
+                addVertex(mesh.triangles[static_cast<std::size_t>(slot)].corner[next]);
+            });
         }
     }
     if (changed.west <= 0 || changed.south <= 0 || changed.east >= width_ || changed.north >= depth_) {
@@ -221,26 +217,13 @@ bool TinSurface::openTo(const SurfaceView& tin, Vertex number) {
 void TinSurface::addVerticesAround(const std::vector<sand::Rect>& cells) {
     for (const sand::Rect& rect : cells) {
         const sand::Rect reach = rect.grownBy(kLightReach);
-        for (TinChunk& chunk : chunks_) {
-            if (chunk.slots.empty()) {
-                continue;
+        const Place southWest{reach.x0 * kCell, reach.y0 * kCell}, northEast{reach.x1 * kCell, reach.y1 * kCell};
+        squares_.visitNear(southWest, northEast, [&](Vertex number) {
+            const TinVertex& drawn = vertex(number);
+            if (drawn.x >= southWest.x && drawn.x <= northEast.x && drawn.y >= southWest.y && drawn.y <= northEast.y) {
+                lit_.add(number);
             }
-            const Box& box = boxOf(chunk);
-            const Box seen{{reach.x0 * cellSize_, reach.y0 * cellSize_, 0},
-                           {reach.x1 * cellSize_, reach.y1 * cellSize_, 0}};
-            if (!overlapOnGround(box, seen)) {
-                continue;
-            }
-            for (const std::int32_t slot : chunk.slots) {
-                for (const Vertex corner : triangle(slot).corner) {
-                    const TinVertex& drawn = vertex(corner);
-                    if (drawn.x >= reach.x0 * kCell && drawn.x <= reach.x1 * kCell && drawn.y >= reach.y0 * kCell &&
-                        drawn.y <= reach.y1 * kCell) {
-                        lit_.add(corner);
-                    }
-                }
-            }
-        }
+        });
     }
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sand/height_field.hpp"
 
@@ -48,6 +49,7 @@ TinSurface::TinSurface(const SurfaceView& tin, double cellSize, double chunkSide
       across_(static_cast<int>(width_ / chunkSide) + 1),
       chunkSide_(chunkSide),
       chunks_(static_cast<std::size_t>(across_) * static_cast<std::size_t>(depth_ / chunkSide + 1)),
+      squares_(width_, depth_, chunkSide),
       relief_(width_, depth_),
       damaged_(width_ * probe_, depth_ * probe_) {
     const Triangles& mesh = tin.triangles;
@@ -118,10 +120,12 @@ TinSurface::Change TinSurface::update(const SurfaceView& tin, const sand::tin::S
     for (const std::int32_t slot : replaced) {
         replace(slot, drawnOf(mesh.triangles[static_cast<std::size_t>(slot)]));
     }
-    for (const std::int32_t slot : reshaped_.all()) {
-        if (triangle(slot).alive()) {
-            keepHome(slot);
-        }
+    for (const Vertex number : elsewhere_) {
+        aroundVertex(mesh, number, [this](std::int32_t slot, int) {
+            if (triangle(slot).alive()) {
+                keepHome(slot);
+            }
+        });
     }
     damageAll();
     const std::vector<Vertex> lit = relight(tin, reshaped_.all());
@@ -168,9 +172,13 @@ bool TinSurface::move(const SurfaceView& tin, std::span<const Vertex> vertices) 
     for (const Vertex number : vertices) {
         rim |= keepRim(number, false);
     }
+    elsewhere_.clear();
     for (const Vertex number : vertices) {
         TinVertex& drawn = vertex(number);
-        drawn = placed(tin, number);
+        const TinVertex before = std::exchange(drawn, placed(tin, number));
+        if (before.x != drawn.x || before.y != drawn.y) {
+            standElsewhere(number, before);
+        }
         if (drawn.x >= 0) {
             drawn.mottling = mottlingOf(drawn.x, drawn.y);
             ever_ = around(ever_, {drawn.height, drawn.height});
@@ -178,6 +186,17 @@ bool TinSurface::move(const SurfaceView& tin, std::span<const Vertex> vertices) 
         }
     }
     return rim;
+}
+
+void TinSurface::standElsewhere(Vertex number, const TinVertex& before) {
+    const TinVertex& drawn = vertex(number);
+    if (before.x >= 0) {
+        squares_.remove(number, {before.x, before.y});
+    }
+    if (drawn.x >= 0) {
+        squares_.add(number, {drawn.x, drawn.y});
+        elsewhere_.push_back(number);
+    }
 }
 
 /// Takes a vertex in or out where the rim has it; says whether it does.

@@ -15,6 +15,7 @@
 #include "render_node/sand_rim.hpp"
 #include "render_node/sand_surface.hpp"
 #include "render_node/tin_relief.hpp"
+#include "render_node/vertex_squares.hpp"
 #include "sand/tin/numbers.hpp"
 #include "sand/tin/surface_view.hpp"
 
@@ -109,6 +110,7 @@ private:
     [[nodiscard]] TinVertex placed(const sand::tin::SurfaceView& tin, Vertex vertex) const;
     [[nodiscard]] std::vector<Vertex> moved(const sand::tin::SurfaceView& tin, std::span<const Vertex> asked) const;
     [[nodiscard]] bool move(const sand::tin::SurfaceView& tin, std::span<const Vertex> vertices);
+    void standElsewhere(Vertex vertex, const TinVertex& before);
     [[nodiscard]] bool keepRim(Vertex vertex, bool present);
     void replace(std::int32_t slot, const TinTriangle& triangle);
     void leaveChunk(std::int32_t slot);
@@ -136,10 +138,12 @@ private:
     std::vector<TinTriangle> triangles_;  // by slot
     std::vector<InChunk> inChunk_;        // by slot
     std::vector<TinChunk> chunks_;        // row by row from the south-west
+    VertexSquares squares_;
     TinRelief relief_;
     BoxBins damaged_;
     HeightRange ever_{};
     std::array<std::map<std::int32_t, Vertex>, 4> rim_;  // south, east, north, west, by place along the side
+    std::vector<Vertex> elsewhere_;                      // scratch: who stands at another place than before
     sand::tin::NumberList reshaped_, lit_, shaded_;      // scratch: triangles, vertices, triangles
 };
 

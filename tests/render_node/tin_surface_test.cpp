@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "sample_tin.hpp"
 
 namespace {
@@ -75,6 +77,27 @@ TEST(TinSurface, PartsTileAChunkAndHoldTheirTriangles) {
         most = std::max(most, surface.partsOf(chunk).size());
     }
     EXPECT_GT(most, 1);
+}
+
+TEST(TinSurface, BesideAHoleOnlyWhatIsNearIsDrawnAnew) {
+    const sand::Scene scene = sample::duneScene(64);
+    const double cell = scene.terrain.cellSize();
+    Tin tin(scene.terrain);
+    const double middle = 32 * sand::kProbePerCell, half = 2 * sand::kProbePerCell;
+    tin.cut([&](double x, double y) { return std::abs(x - middle) < half && std::abs(y - middle) < half; });
+    (void)tin.takeDamage();
+    TinSurface surface(tin.view(), cell);
+    const Tin::Vertex beside = 32 * 66 + 30;  // in rows of 66
+    const auto place = tin.mesh().places[beside];
+    tin.setHeight(beside, tin.height(beside) + 1e6);
+    const TinSurface::Change change = surface.update(tin.view(), tin.takeDamage());
+    const glm::dvec2 at = glm::dvec2(place.x, place.y) * (cell / sand::kProbePerCell);
+    const double reach = 14 * cell;  // the light's, and a triangle's side
+    EXPECT_FALSE(change.boxes.empty());
+    for (const render_node::Box& box : change.boxes) {
+        EXPECT_TRUE(glm::all(glm::greaterThan(glm::dvec2(box.low), at - reach))) << box.low.x << ", " << box.low.y;
+        EXPECT_TRUE(glm::all(glm::lessThan(glm::dvec2(box.high), at + reach))) << box.high.x << ", " << box.high.y;
+    }
 }
 
 TEST(TinRelief, TellsTheSameHeightWhereNothingIsBeyondTheField) {
