@@ -175,12 +175,25 @@ void ActiveEdges::fetch(const Triangles& mesh, Vertex vertex) const {
     }
 }
 
+/// And of those beside that triangle, once it is here.
+void ActiveEdges::fetchBeside(const Triangles& mesh, Vertex vertex) const {
+    if (mesh.alive(vertex)) {
+        for (const std::int32_t slot : mesh.triangles[index(mesh.triangleAt[index(vertex)])].neighbour) {
+            __builtin_prefetch(&mesh.triangles[index(std::max(slot, 0))]);
+            __builtin_prefetch(&ofSlots_[index(std::max(slot, 0))]);
+        }
+    }
+}
+
 void ActiveEdges::wake(const Layer& layer, const Slopes& slopes, std::span<const Vertex> vertices) {
     const Triangles& mesh = layer.triangles();
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         const Vertex vertex = vertices[i];
+        if (i + 2 * kAhead < vertices.size()) {
+            fetch(mesh, vertices[i + 2 * kAhead]);
+        }
         if (i + kAhead < vertices.size()) {
-            fetch(mesh, vertices[i + kAhead]);
+            fetchBeside(mesh, vertices[i + kAhead]);
         }
         if (!mesh.alive(vertex) || noteOf(vertex).woken == turn_) {
             continue;

@@ -59,6 +59,7 @@ private:
     };
 
     void fetch(const Triangles& mesh, Vertex vertex) const;
+    void fetchBeside(const Triangles& mesh, Vertex vertex) const;
     [[nodiscard]] bool isHeld(const Triangle& triangle);  // its corners' undersides are known
     [[nodiscard]] bool maySlide(const Layer& layer, const Slopes& slopes, std::int32_t slot);
     /// All triangles around a vertex.
