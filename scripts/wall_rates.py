@@ -4,10 +4,11 @@
 
 Runs sessions one after another and prints a table: a still wall, digging with the first paper's tool and with one of 12
 cells, a head that moves so that every view is drawn anew, the same on 2048 x 2048 cells, and a bare redraw beside it.
-With --tin: digging in a height field and in TINs in turns, once as a rank with a core of its own takes it (processor time
-of the sand and of the tile that has most to do), once as sessions of all ranks here, as fast as the machine can.
+With --tin: digging in a height field and in TINs in turns. Frames a second of sessions at a display's pace, of a wall of
+one of the tiles, whose rank has a core as on a cluster, and of all; then what a frame takes of a rank with a core of its
+own (processor time of the sand and of the tile that has most to do), and of sessions as fast as the machine can.
 
-usage: scripts/wall_rates.py [--seconds 60 | --tin]   (about six minutes; leave the machine alone meanwhile)
+usage: scripts/wall_rates.py [--seconds 60 | --tin]   (six minutes, or fifteen; leave the machine alone meanwhile)
 """
 
 import argparse
@@ -75,9 +76,21 @@ def swaying_head(folder, seconds):
     return file
 
 
-def session(out, scene_file, *more):
+def one_tile(folder):
+    """A wall file: of the tiled wall a tile in the middle, below the sand's west."""
+    text = WALL.read_text()
+    (left, bottom), (across, up) = (tuple(map(float, re.search(rf"^{name} = \[([-.0-9]+), ([-.0-9]+)", text, re.MULTILINE).groups()))
+                                    for name in ("lower_left", "tile_size"))
+    text = re.sub(r"^rows = \d+", "rows = 1", text, flags=re.MULTILINE)
+    text = re.sub(r"^columns = \d+", "columns = 1", text, flags=re.MULTILINE)
+    file = folder / "one_tile.toml"
+    file.write_text(re.sub(r"^lower_left = .*", f"lower_left = [{left + across + 0.01:.3f}, {bottom + up + 0.01:.3f}, 0.0]", text, flags=re.MULTILINE))
+    return file
+
+
+def session(out, scene_file, *more, wall=WALL):
     """A session's summary."""
-    command = [ROOT / "scripts" / "sandwall", "run", "--wall", WALL, "--scene", scene_file, "--out", out, "--no-pictures", *map(str, more)]
+    command = [ROOT / "scripts" / "sandwall", "run", "--wall", wall, "--scene", scene_file, "--out", out, "--no-pictures", *map(str, more)]
     ran = subprocess.run(command, capture_output=True, text=True)
     if ran.returncode != 0:
         sys.exit(f"{' '.join(map(str, command))}: {ran.stderr.strip() or ran.stdout.strip()}")
@@ -154,8 +167,27 @@ def rank_ms(scene_file):
                for row in ("steps of one replica", "the busiest tile, both eyes"))
 
 
+def tin_rates(folder, seconds):
+    """Frames a second with which TINs are dug in, beside the grid's, at a display's pace."""
+    strokes = circles(folder, 2 * (seconds + WARM_UP))
+    ways = ((one_tile(folder), "one tile", 2.56, 60), (one_tile(folder), "one tile", 12, 60), (WALL, "all twelve ranks here", 2.56, 60))
+    for wall, what, radius, rate in ways:
+        grid = scene(folder, 512, radius)
+        files = {"cells": grid} | {f"… as a TIN of points {widest} cells apart": as_tin(grid, widest) for widest in (16, 2, 1)}
+        for name, file in files.items():
+            summary = session(folder / "out", file, "--device", f"script:{strokes}", "--refresh", rate, "--frames",
+                              int(rate * (seconds + WARM_UP)), "--warm-up", WARM_UP * rate, wall=wall)
+            shown = 1e3 / summary["frame_ms"]["mean"]
+            if name == "cells":
+                of_grid = shown
+                yield f"digging, 512², R = {radius} cells; {what}", f"{shown:.1f} frames a second", f"wanted {rate}"
+            else:
+                yield name, f"{shown:.1f} frames a second", f"the grid's are {of_grid / shown:.2f} × as many"
+
+
 def tin_rows(folder, runs, frames):
     """What a TIN takes over what the grid takes, the same hand in both, in turns."""
+    yield from tin_rates(folder, 12)
     out, strokes = folder / "out", circles(folder, 1000)
     ways = {"one rank on a core": (rank_ms, "processor time"),
             "all here": (lambda file: digging_ms(out, file, strokes, frames), f"sessions of {frames} frames")}
