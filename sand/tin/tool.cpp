@@ -110,7 +110,9 @@ void Tool::leave(Layer& layer, Imprint& imprint) {
     if (imprint.stand && !rules_.keepsConstraints) {
         const ProbePoint at = imprint.stand->at;
         const Box box = reach(at);
-        window_->look(layer.triangles(), box);
+        if (rules_.spacing > 0) {  // or nobody asks what lies there
+            window_->look(layer.triangles(), box);
+        }
         changeMesh(layer, imprint, {{{at, {0, 0}}}, box, false});
     }
     imprint = {};
@@ -159,9 +161,10 @@ std::vector<Vertex> Tool::changeMesh(Layer& layer, Imprint& imprint, const Chunk
         imprint.takeOutOf(mesh);
         thin(mesh, outline);
         std::vector<Place> there = outline.points;
-        for (const Vertex vertex : window_->vertices()) {
+        for (std::size_t i = 0; rules_.spacing > 0 && i < window_->vertices().size(); ++i) {
+            const Vertex vertex = window_->vertices()[i];
             if (mesh.triangles().alive(vertex)) {
-                there.push_back(mesh.triangles().places[static_cast<std::size_t>(vertex)]);
+                there.push_back(mesh.triangles().places[index(vertex)]);
             }
         }
         if (chunk.last) {
