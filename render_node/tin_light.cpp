@@ -158,9 +158,11 @@ std::optional<Box> TinSurface::reachOf(const SurfaceView& tin, const sand::tin::
         addDrawn(number);
         if (mesh.alive(number)) {
             addVertex(number);
-            aroundVertex(mesh, number, [&](std::int32_t slot, int corner) {  // each neighbour, but for one on the rim
-                const auto next = static_cast<std::size_t>(corner + 1) % 3;
-                addVertex(mesh.triangles[static_cast<std::size_t>(slot)].corner[next]);
+            aroundVertex(mesh, number, [&](std::int32_t slot, int corner) {
+                const Triangle& now = mesh.triangles[static_cast<std::size_t>(slot)];
+                for (std::size_t k = 1; k < 3 && !now.hole; ++k) {
+                    addVertex(now.corner[(static_cast<std::size_t>(corner) + k) % 3]);
+                }
             });
         }
     }

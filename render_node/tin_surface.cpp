@@ -62,7 +62,7 @@ TinSurface::TinSurface(const SurfaceView& tin, double cellSize, double chunkSide
     }
     ever_.lowest = ever_.highest = static_cast<float>(tin.heights[static_cast<std::size_t>(all.front())] * unit_);
     (void)move(tin, all);
-    elsewhere_ = {};  // a number for every vertex
+    elsewhere_ = std::vector<Vertex>();  // or it keeps room for a number for every vertex
     for (std::size_t slot = 0; slot < mesh.triangles.size(); ++slot) {
         replace(static_cast<std::int32_t>(slot), drawnOf(mesh.triangles[slot]));
         addToRelief(tin, triangles_[slot]);

@@ -51,14 +51,15 @@ def scene(folder, cells, radius, kind="flat", talus=34):
     return file
 
 
-def circles(folder, seconds):
-    """Strokes that never end in `seconds`: rings of all sizes, at 2 cells of 512 a step."""
-    file = folder / "circles.strokes"
-    lines = ["speed 0.5", "depth 0.5", "stroke", "point 0.6 0"]
+def circles(folder, seconds, centre=(0, 0), largest=0.6):
+    """Strokes that never end in `seconds`: rings of all sizes, at 2 cells of 512 a step; places in half sides."""
+    file = folder / f"circles_{largest}.strokes"
+    x, y = centre
+    lines = ["speed 0.5", "depth 0.5", "stroke", f"point {x + largest} {y}"]
     lasts, ring = 0.0, 0
     while lasts < seconds:
-        radius = 0.6 - 0.04 * (ring % 13)
-        lines.append(f"arc 0 0 {radius:.2f} {radius:.2f} 0 360")
+        radius = largest * (1 - ring % 13 / 15)
+        lines.append(f"arc {x} {y} {radius:.3f} {radius:.3f} 0 360")
         lasts += 2 * math.pi * radius / 0.5  # s
         ring += 1
     file.write_text("\n".join(lines) + "\n")
@@ -77,7 +78,7 @@ def swaying_head(folder, seconds):
 
 
 def one_tile(folder):
-    """A wall file: of the tiled wall a tile in the middle, below the sand's west."""
+    """A wall file: of the tiled wall a tile in the middle, which shows the sand from -0.77 to 0 and -0.57 to 0.15 half sides."""
     text = WALL.read_text()
     (left, bottom), (across, up) = (tuple(map(float, re.search(rf"^{name} = \[([-.0-9]+), ([-.0-9]+)", text, re.MULTILINE).groups()))
                                     for name in ("lower_left", "tile_size"))
@@ -169,20 +170,22 @@ def rank_ms(scene_file):
 
 def tin_rates(folder, seconds):
     """Frames a second with which TINs are dug in, beside the grid's, at a display's pace."""
-    strokes = circles(folder, 2 * (seconds + WARM_UP))
-    ways = ((one_tile(folder), "one tile", 2.56, 60), (one_tile(folder), "one tile", 12, 60), (WALL, "all twelve ranks here", 2.56, 60))
-    for wall, what, radius, rate in ways:
+    everywhere, seen = circles(folder, 2 * (seconds + WARM_UP)), circles(folder, 2 * (seconds + WARM_UP), (-0.38, -0.2), 0.3)
+    tile = one_tile(folder)
+    ways = ((tile, seen, "one tile that sees all of it", 2.56, 60), (tile, seen, "one tile that sees all of it", 12, 60),
+            (WALL, everywhere, "all twelve ranks here", 2.56, 60))
+    for wall, strokes, what, radius, rate in ways:
         grid = scene(folder, 512, radius)
         files = {"cells": grid} | {f"… as a TIN of points {widest} cells apart": as_tin(grid, widest) for widest in (16, 2, 1)}
         for name, file in files.items():
             summary = session(folder / "out", file, "--device", f"script:{strokes}", "--refresh", rate, "--frames",
                               int(rate * (seconds + WARM_UP)), "--warm-up", WARM_UP * rate, wall=wall)
-            shown = 1e3 / summary["frame_ms"]["mean"]
+            shown, late = 1e3 / summary["frame_ms"]["mean"], 100 * summary["late_frames"] / summary["frame_ms"]["count"]
             if name == "cells":
                 of_grid = shown
-                yield f"digging, 512², R = {radius} cells; {what}", f"{shown:.1f} frames a second", f"wanted {rate}"
+                yield f"digging, 512², R = {radius} cells; {what}", f"{shown:.1f} frames a second, {late:.1f} % late", f"wanted {rate}"
             else:
-                yield name, f"{shown:.1f} frames a second", f"the grid's are {of_grid / shown:.2f} × as many"
+                yield name, f"{shown:.1f} frames a second, {late:.1f} % late", f"the grid's are {of_grid / shown:.2f} × as many"
 
 
 def tin_rows(folder, runs, frames):
