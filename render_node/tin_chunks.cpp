@@ -14,6 +14,7 @@ struct Ordered {
     int part = 0;
     std::array<sand::tin::Vertex, 3> corner{};
     std::int32_t slot = 0;
+    // clang-tidy 14 complains of the 0 it finds in here itself. NOLINTNEXTLINE(modernize-use-nullptr)
     friend auto operator<=>(const Ordered&, const Ordered&) = default;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The light on a TIN: normals, mottling, and how much sky its vertices see.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "render_node/grain_texture.hpp"
@@ -209,7 +210,7 @@ bool TinSurface::openTo(const SurfaceView& tin, Vertex number) {
         look([&](int east, int north) { return relief_.at(place, east, north); });
     }
     // As finely as a screen shows: told apart more finely, it would be another wherever sand moves ten cells away.
-    const auto open = static_cast<std::uint16_t>(static_cast<int>(share * 255 + 0.5F) * 257);
+    const auto open = static_cast<std::uint16_t>(std::lround(share * 255) * 257);
     const bool other = open != drawn.open;
     drawn.open = open;
     return other;

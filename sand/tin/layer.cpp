@@ -22,7 +22,8 @@ double quotient(std::int64_t volume, std::int64_t star) {
         return static_cast<double>(volume) / static_cast<double>(star);
     }
     // A level surface stays level, though its volumes are more than a double holds.
-    return static_cast<double>(volume / star) + static_cast<double>(volume % star) / static_cast<double>(star);
+    const std::int64_t whole = volume / star;
+    return static_cast<double>(whole) + static_cast<double>(volume % star) / static_cast<double>(star);
 }
 
 }  // namespace

@@ -259,8 +259,8 @@ private:
             node.height = oldHeight(node.place);
             const double whole = std::floor(node.height);
             const double rest = (node.height - whole) * static_cast<double>(star);
-            node.volume =
-                static_cast<Wide>(static_cast<std::int64_t>(whole)) * star + static_cast<std::int64_t>(rest + 0.5);
+            node.volume = static_cast<Wide>(static_cast<std::int64_t>(whole)) * star +
+                          static_cast<std::int64_t>(std::floor(rest + 0.5));
         }
         Part& part = parts_[node.part];
         part.missing -= node.volume;

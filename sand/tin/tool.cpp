@@ -140,7 +140,8 @@ bool Tool::reachesSand(const Layer& layer, const Chunk& chunk) const {
     for (const Press& press : chunk.presses) {
         lowest = std::min<std::int64_t>(lowest, press.at.z);
     }
-    const auto underside = static_cast<double>((lowest - shape_.radius) * (kUnitsPerCell / kProbePerCell));
+    constexpr std::int64_t kUnitsPerProbe = kUnitsPerCell / kProbePerCell;
+    const auto underside = static_cast<double>((lowest - shape_.radius) * kUnitsPerProbe);
     const auto isHigher = [&](Vertex vertex) { return layer.heights()[static_cast<std::size_t>(vertex)] > underside; };
     return std::any_of(window_->triangles().begin(), window_->triangles().end(), [&](std::int32_t slot) {
         const Triangle& triangle = layer.triangles().triangles[static_cast<std::size_t>(slot)];

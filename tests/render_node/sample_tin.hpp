@@ -93,7 +93,7 @@ public:
             return;
         }
         auto& first = triangle(around[0]).corner;
-        std::ranges::rotate(first, std::ranges::find(first, vertex));
+        std::rotate(first.begin(), std::ranges::find(first, vertex), first.end());
         for (const Vertex corner : triangle(around[1]).corner) {
             if (corner != first[1] && corner != first[2] && corner != vertex) {
                 first[0] = corner;
@@ -150,7 +150,7 @@ public:
             std::swap(mesh_.triangles[last], mesh_.triangles[random() % (last + 1)]);
         }
         for (auto& triangle : mesh_.triangles) {
-            std::ranges::rotate(triangle.corner, triangle.corner.begin() + random() % 3);
+            std::rotate(triangle.corner.begin(), triangle.corner.begin() + random() % 3, triangle.corner.end());
         }
         link();
     }

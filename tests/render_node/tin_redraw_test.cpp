@@ -128,7 +128,8 @@ TEST_F(TinRedraw, InFacetsIsEqualToTheWhole) { play(3, sand::Rim::closed, above_
 // anew has still to be where the sand stands now.
 TEST_F(TinRedraw, OfAnIslandThatRisesAsAWholeIsEqualToTheWhole) {
     const auto fromMiddle = [](double x, double y) {
-        return std::max(std::abs(x / 256 - kCells / 2), std::abs(y / 256 - kCells / 2));  // [cell]
+        constexpr int kMiddle = kCells / 2;
+        return std::max(std::abs(x / 256 - kMiddle), std::abs(y / 256 - kMiddle));  // [cell]
     };
     const sand::Scene scene = sample::flatScene(kCells, kCells);
     Tin tin(scene.terrain);
