@@ -138,10 +138,9 @@ TEST_F(Window, RefusesAMonitorOfAnotherSize) {
 }
 
 TEST_F(Window, NamesADisplayThatCannotBeOpened) {
-    const std::string display = server_->display();
-    server_->end();
-    start({"--at", "0,0", "--display", display});
-    EXPECT_TRUE(lastLine(2).starts_with("--gl glfw: cannot open X display " + display + "; is its server running"));
+    // Not that of a server that has ended: the next test's may have it by now. Numbers are given from 0 up.
+    start({"--at", "0,0", "--display", ":9876"});
+    EXPECT_TRUE(lastLine(2).starts_with("--gl glfw: cannot open X display :9876; is its server running"));
 }
 
 TEST_F(Window, SaysWhenThereIsNoDisplayAtAll) {
