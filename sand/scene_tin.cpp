@@ -79,6 +79,9 @@ HeightField layOutPoints(const files::TomlTable& file, const files::TomlTable& t
     scene.rules.rows = cellsOf(north - south);
     const HeightField one(1, 1, cell);
     const double datum = terrain.numberOr("datum", 0);
+    scene.georeference.west = west;
+    scene.georeference.south = south;
+    scene.georeference.datum = datum;
     auto start = std::make_shared<tin::Start>();
     start->width = scene.rules.columns * kProbePerCell;
     start->depth = scene.rules.rows * kProbePerCell;

@@ -8,8 +8,9 @@
 
 namespace sand {
 
-/// Puts points on the lattice of nominal cells: scene.tin holds them, until readTin() makes a TIN of them, and the
-/// rules know how many cells lie under them. Returns one cell. Throws files::InputError.
+/// Puts points on the lattice of nominal cells: scene.tin holds them, until readTin() makes a TIN of them, the
+/// rules know how many cells lie under them, and the georeference where they were. Returns one cell. Throws
+/// files::InputError.
 [[nodiscard]] HeightField layOutPoints(const files::TomlTable& file, const files::TomlTable& terrain,
                                        const Points& points, Scene& scene);
 

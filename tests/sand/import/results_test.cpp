@@ -4,6 +4,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <set>
 #include <sstream>
 
 #include "master/journal.hpp"
@@ -175,6 +176,39 @@ TEST_F(Results, OutputsThatCannotBeAreRefusedFirst) {
     EXPECT_EQ(mesh.status, 2);
     EXPECT_EQ(mesh.output, path("m.stl") + ": a mesh is written as .ply or .obj\n");
     EXPECT_EQ(replay("--heights " + path("none/h.tif")).status, 2);
+}
+
+TEST_F(Import, PointsGoBackWhereTheyWereSurveyed) {
+    write("p.csv",
+          "500000,5200000,1200.5\n500040,5200000,1201\n500000,5200030,1202\n500040,5200030,1203\n"
+          "500021.25,5200011.5,1199\n");
+    const sand::Scene scene = load("[terrain]\nkind = \"points\"\nfile = \"p.csv\"\ndatum = 1200\n[tin]\ncell = 1\n");
+    sand::Terrain terrain(scene);
+    master::JournalWriter writer(path("s.journal"), scene, "test");
+    writer.finish(terrain.stepNumber(), terrain.stateHash());
+    const support::Ran ran = support::runProgram(
+        "sandwall-replay", path("s.journal") + " --volumes --heights " + path("h.asc") + " --mesh " + path("m.obj"));
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    EXPECT_EQ(
+        ran.output,
+        "{\"units\":{\"cut\":0,\"fill\":0},\"cubic_scene_units\":{\"cut\":0.0,\"fill\":0.0},\"cubic_metres\":null}"
+        "\n");
+    const sand::EsriGrid grid = sand::readEsriGrid(path("h.asc"));
+    EXPECT_EQ(grid.westEdge, 500000);
+    EXPECT_EQ(grid.southEdge, 5200000);
+    EXPECT_EQ(grid.columns, 40);
+    EXPECT_NEAR(grid.at(21, 11), 1199, 0.1) << "the middle of the cell of the fifth point";
+    std::ifstream stream(path("m.obj"));
+    std::set<std::array<double, 3>> vertices;
+    std::string letter;
+    for (std::array<double, 3> vertex{}; stream >> letter >> vertex[0] >> vertex[1] >> vertex[2] && letter == "v";) {
+        vertices.insert(vertex);
+    }
+    EXPECT_EQ(vertices, (std::set<std::array<double, 3>>{{500000, 5200000, 1200.5},
+                                                         {500040, 5200000, 1201},
+                                                         {500000, 5200030, 1202},
+                                                         {500040, 5200030, 1203},
+                                                         {500021.25, 5200011.5, 1199}}));
 }
 
 }  // namespace
