@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "files/input_error.hpp"
+#include "files/lower_case.hpp"
 #include "files/whole_file.hpp"
 #include "sand/height_field.hpp"
 
@@ -67,13 +68,6 @@ private:
     long line_ = 1;
 };
 
-std::string lower(std::string_view word) {
-    std::string result(word);
-    std::transform(result.begin(), result.end(), result.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return result;
-}
-
 int sideOf(Words& words, const std::string& key) {
     const double side = words.number(key);
     if (side != std::floor(side) || side < 1 || side > kMaxSide) {
@@ -94,7 +88,7 @@ double sizeOf(Words& words, const std::string& key) {
 
 /// What stands for no data: any number, or the "nan" that GDAL writes.
 double noDataOf(Words& words, const std::string& key) {
-    if (lower(words.peek()) == "nan") {
+    if (files::lowerCase(words.peek()) == "nan") {
         words.next();
         return kNoData;
     }
@@ -105,10 +99,11 @@ void readHeader(Words& words, EsriGrid& grid) {
     bool centres = false;
     double square = 0;
     const auto isKey = [](std::string_view word) {
-        return !word.empty() && std::isalpha(static_cast<unsigned char>(word.front())) != 0 && lower(word) != "nan";
+        return !word.empty() && std::isalpha(static_cast<unsigned char>(word.front())) != 0 &&
+               files::lowerCase(word) != "nan";
     };
     while (isKey(words.peek())) {
-        const std::string key = lower(words.next());
+        const std::string key = files::lowerCase(words.next());
         if (key == "ncols") {
             grid.columns = sideOf(words, key);
         } else if (key == "nrows") {
@@ -146,7 +141,7 @@ void readHeader(Words& words, EsriGrid& grid) {
 
 /// The next word as a height, or as no data.
 double heightOf(Words& words, const EsriGrid& grid) {
-    if (grid.noData && std::isnan(*grid.noData) && lower(words.peek()) == "nan") {
+    if (grid.noData && std::isnan(*grid.noData) && files::lowerCase(words.peek()) == "nan") {
         words.next();
         return kNoData;
     }

@@ -10,6 +10,8 @@
 #include <string_view>
 
 #include "files/input_error.hpp"
+#include "files/lower_case.hpp"
+#include "sand/import/metric_system.hpp"
 
 namespace sand {
 namespace {
@@ -38,9 +40,7 @@ constexpr std::array kHeightUnits = {
 };
 
 double metresOf(const std::string& unit, const GdalRaster& raster) {
-    std::string lower = unit;
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    const std::string lower = files::lowerCase(unit);
     const auto* found = std::find_if(kHeightUnits.begin(), kHeightUnits.end(),
                                      [&](const HeightUnit& candidate) { return candidate.name == lower; });
     if (found == kHeightUnits.end()) {
@@ -60,12 +60,7 @@ std::string warpCommand(const GdalRaster& raster, OGRSpatialReferenceH reference
     if (GDALGetGeoTransform(raster.dataset(), place.data()) == CE_None) {
         const double longitude = (place[0] + place[1] * raster.columns() / 2) * degrees;
         const double latitude = (place[3] + place[5] * raster.rows() / 2) * degrees;
-        const double turns = std::floor((longitude + 180) / 360);
-        const int zone = std::clamp(static_cast<int>((longitude + 180 - 360 * turns) / 6) + 1, 1, 60);
-        epsg = (latitude < 0 ? 32700 : 32600) + zone;
-        if (std::abs(latitude) > 84) {
-            epsg = latitude < 0 ? 3031 : 3413;
-        }
+        epsg = metricSystemAt(longitude, latitude);
     }
     const std::string file = std::filesystem::path(raster.name()).filename().string();
     return fmt::format("gdalwarp -t_srs EPSG:{} -r bilinear {} metres.tif", epsg, file);

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace sand {
+
+/// The EPSG code of a system that has metres there: the UTM zone, or around a pole a stereographic one. 3857, which has
+/// them everywhere and badly, for what is no place.
+[[nodiscard]] inline int metricSystemAt(double longitude, double latitude /* [degree] */) {
+    if (!std::isfinite(longitude) || !std::isfinite(latitude)) {
+        return 3857;
+    }
+    if (std::abs(latitude) > 84) {
+        return latitude < 0 ? 3031 : 3413;
+    }
+    const double turned = std::fmod(longitude + 180, 360);
+    const double fromDateLine = turned < 0 ? turned + 360 : turned;
+    return (latitude < 0 ? 32700 : 32600) + std::clamp(static_cast<int>(fromDateLine / 6) + 1, 1, 60);
+}
+
+}  // namespace sand
