@@ -15,11 +15,14 @@
 #include <utility>
 
 #include "files/input_error.hpp"
+#include "files/lower_case.hpp"
 #include "files/trimmed.hpp"
+#include "sand/import/metric_system.hpp"
 
 namespace sand {
 namespace {
 
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8, as spreadsheets write it
 constexpr double kFlat = 1e-9;  // width over length of a cloud that has no area: doubles tell little less
 
 std::vector<std::string_view> fieldsOf(std::string_view text) {
@@ -49,6 +52,44 @@ std::optional<double> numberOf(std::string_view field) {
     return value;
 }
 
+bool isDigit(char c) { return c >= '0' && c <= '9'; }
+bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+std::string_view unquoted(std::string_view field) {
+    const bool quoted = field.size() > 1 && field.front() == '"' && field.back() == '"';
+    return quoted ? field.substr(1, field.size() - 2) : field;
+}
+
+/// "WGS84_Lat [deg]" holds wgs, lat and deg.
+std::vector<std::string> wordsOf(std::string_view field) {
+    std::vector<std::string> words;
+    for (auto at = field.begin(); (at = std::find_if(at, field.end(), isLetter)) != field.end();) {
+        const auto end = std::find_if_not(at, field.end(), isLetter);
+        words.push_back(files::lowerCase({at, end}));
+        at = end;
+    }
+    return words;
+}
+
+bool holds(const std::vector<std::string>& words, std::initializer_list<std::string_view> any) {
+    return std::any_of(words.begin(), words.end(),
+                       [&](const std::string& word) { return std::find(any.begin(), any.end(), word) != any.end(); });
+}
+
+/// A mistyped one too, in quotes, or one that is not finite: what somebody measured must not pass for a name.
+bool meansNumber(std::string_view field) {
+    const auto first = std::find_if(field.begin(), field.end(), [](char c) { return isDigit(c) || isLetter(c); });
+    if (first == field.end() || isDigit(*first)) {
+        return first != field.end();
+    }
+    return holds({wordsOf(field).front()}, {"nan", "inf", "infinity"});
+}
+
+bool isLatitude(std::string_view name) { return holds(wordsOf(name), {"lat", "latitude"}); }
+bool isDegrees(std::string_view name) {
+    return isLatitude(name) || holds(wordsOf(name), {"lon", "long", "lng", "longitude", "deg", "degree", "degrees"});
+}
+
 /// Points with the lines they stand in.
 class Cloud {
 public:
@@ -61,7 +102,11 @@ public:
         bool first = true;
         std::string text;
         for (long line = 1; std::getline(stream, text); ++line) {
-            const std::string_view content = files::trimmed(std::string_view(text).substr(0, text.find('#')));
+            std::string_view content = text;
+            if (line == 1 && content.starts_with(kByteOrderMark)) {
+                content.remove_prefix(kByteOrderMark.size());
+            }
+            content = files::trimmed(content.substr(0, content.find('#')));
             if (!content.empty()) {
                 add(fieldsOf(content), line, std::exchange(first, false));
             }
@@ -100,7 +145,7 @@ public:
 
 private:
     void add(const std::vector<std::string_view>& fields, long line, bool mayBeTitle) {
-        if (mayBeTitle && !numberOf(fields[0])) {
+        if (mayBeTitle && !fields[0].empty() && std::none_of(fields.begin(), fields.end(), meansNumber)) {
             checkTitle(fields, line);
             return;
         }
@@ -118,13 +163,16 @@ private:
             }
             point.at(i) = *value;
         }
+        if (degrees_) {
+            failForDegrees(point);
+        }
         points_.push_back(point);
         lines_.push_back(line);
     }
     /// A title may call the columns anything, but not x, y or z where that stands in another one.
-    void checkTitle(const std::vector<std::string_view>& fields, long line) const {
+    void checkTitle(const std::vector<std::string_view>& fields, long line) {
         for (std::size_t i = 0; i < fields.size(); ++i) {
-            const std::string_view name = fields[i];
+            const std::string_view name = unquoted(fields[i]);
             const std::size_t axis = name.size() == 1 ? std::string_view("xyzXYZ").find(name.front()) : i;
             if (axis != std::string_view::npos && axis % 3 != i) {
                 fail(line, fmt::format("the columns must be x, y, z, and '{}' is number {}", name, i + 1));
@@ -134,14 +182,35 @@ private:
             fail(line, fmt::format("three columns are wanted, x, y, z, and '{}' begins a title of {}", fields[0],
                                    fields.size()));
         }
+        for (const std::string_view name : {fields[0], fields[1]}) {
+            if (isDegrees(name) && !degrees_) {
+                degrees_ = Degrees{std::string(unquoted(name)), line, isLatitude(fields[0])};
+            }
+        }
+    }
+    /// With the command that makes metres, into the UTM zone of the first point.
+    [[noreturn]] void failForDegrees(const std::array<double, 3>& point) const {
+        const std::size_t north = degrees_->latitudeFirst ? 0 : 1;
+        fail(degrees_->line,
+             fmt::format("'{}' is in degrees, and sand wants lengths; make metres of lines of longitude, latitude and "
+                         "height: gdaltransform -s_srs EPSG:4326 -t_srs EPSG:{}",
+                         degrees_->name, metricSystemAt(point.at(1 - north), point.at(north))));
     }
     [[noreturn]] void fail(long line, const std::string& message) const {
         throw files::InputError(file_, line, message);
     }
 
+    /// What a title says of its columns.
+    struct Degrees {
+        std::string name;
+        long line = 0;
+        bool latitudeFirst = false;
+    };
+
     std::string file_;
     Points points_;
     std::vector<long> lines_;
+    std::optional<Degrees> degrees_;
 };
 
 double squaredDistance(const std::array<double, 3>& a, const std::array<double, 3>& b) {

@@ -44,6 +44,48 @@ TEST_F(PointsFile, ComplaintsNameLineAndValue) {
               "p.csv:1: three columns are wanted, x, y, z, and 'id' begins a title of 4");
 }
 
+TEST_F(PointsFile, TheFirstPointIsNoTitleHoweverItIsWritten) {
+    const std::string rest = "1,0,1\n0,1,1\n2,2,3\n";
+    EXPECT_EQ(read("\xEF\xBB\xBF"
+                   "0,0,100\n" +
+                   rest)
+                  .size(),
+              4U)
+        << "as spreadsheets write it";
+    EXPECT_EQ(refused("nan,0,100\n" + rest), "p.csv:1: x must be a finite number, got 'nan'");
+    EXPECT_EQ(refused("-inf,nan,-nan(ind)\n" + rest), "p.csv:1: x must be a finite number, got '-inf'");
+    EXPECT_EQ(refused("1e999,0,100\n" + rest), "p.csv:1: x must be a finite number, got '1e999'");
+    EXPECT_EQ(refused("1.234.5,0,100\n" + rest), "p.csv:1: x must be a finite number, got '1.234.5'");
+    EXPECT_EQ(refused("o,0,100\n" + rest), "p.csv:1: x must be a finite number, got 'o'");
+    EXPECT_EQ(refused("\"0\",\"0\",\"100\"\n" + rest), "p.csv:1: x must be a finite number, got '\"0\"'");
+    EXPECT_EQ(refused("0,5;0,5;100,2\n1;0;1\n"), "p.csv:1: x must be a finite number, got '0,5'");
+    EXPECT_EQ(refused(",,\n" + rest), "p.csv:1: x must be a finite number, got ''");
+    EXPECT_EQ(refused("\xE2\x88\x92"
+                      "5 0 1\n"),
+              "p.csv:1: x must be a finite number, got '\xE2\x88\x92"
+              "5'");
+}
+
+TEST_F(PointsFile, TitlesAreSkipped) {
+    const std::string rest = "1,0,1\n0,1,1\n2,2,3\n";
+    for (const char* title : {"x,y,z", "\xEF\xBB\xBFx,y,z", "\"x\",\"y\",\"z\"", "Easting [m],Northing [m],Height [m]",
+                              "X1,Y1,nanometres", "Rechtswert,Hochwert,H\xC3\xB6he", "\xEF\xBB\xBF# a survey\nx,y,z"}) {
+        EXPECT_EQ(read(std::string(title) + '\n' + rest).size(), 3U) << title;
+    }
+    EXPECT_EQ(refused("\"z\",\"x\",\"y\"\n" + rest), "p.csv:1: the columns must be x, y, z, and 'z' is number 1");
+}
+
+TEST_F(PointsFile, DegreesAreRefusedWithTheCommandThatMakesMetres) {
+    const std::string hint =
+        " is in degrees, and sand wants lengths; make metres of lines of longitude, latitude and height: gdaltransform "
+        "-s_srs EPSG:4326 -t_srs EPSG:";
+    EXPECT_EQ(refused("lat,lon,h\n47.1,10.2,1200\n"), "p.csv:1: 'lat'" + hint + "32632");
+    EXPECT_EQ(refused("# ours\nLon;Lat;z\n-120.2;37;3\n"), "p.csv:2: 'Lon'" + hint + "32610");
+    EXPECT_EQ(refused("\"Longitude\",\"Latitude\",h\n-43,-22.5,3\n"), "p.csv:1: 'Longitude'" + hint + "32723");
+    EXPECT_EQ(refused("x [deg],y [deg],z\n10,-88,3\n"), "p.csv:1: 'x [deg]'" + hint + "3031");
+    EXPECT_EQ(read("x,y,long term height\n1,0,1\n0,1,1\n2,2,3\n").size(), 3U);
+}
+
 TEST_F(PointsFile, CloudsWithoutAnAreaAreNoTerrain) {
     EXPECT_EQ(refused(""), "p.csv: holds 0 points at different places, and terrain takes at least 3");
     EXPECT_EQ(refused("1 1 1\n1 1 1\n2 2 2\n"),
