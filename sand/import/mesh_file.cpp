@@ -7,6 +7,7 @@
 #include <string>
 
 #include "files/byte_stream.hpp"
+#include "files/ending.hpp"
 #include "files/input_error.hpp"
 #include "files/whole_file.hpp"
 
@@ -66,8 +67,13 @@ void writeObj(const Mesh& mesh, std::ostream& stream) {
 
 }  // namespace
 
+bool namesMesh(const std::filesystem::path& file) {
+    const std::string ending = files::endingOf(file);
+    return ending == ".ply" || ending == ".obj";
+}
+
 void checkMeshName(const std::filesystem::path& file) {
-    if (file.extension() != ".ply" && file.extension() != ".obj") {
+    if (!namesMesh(file)) {
         throw files::InputError(file.string() + ": a mesh is written as .ply or .obj");
     }
 }
@@ -75,7 +81,7 @@ void checkMeshName(const std::filesystem::path& file) {
 void writeMesh(const Mesh& mesh, const std::filesystem::path& file) {
     checkMeshName(file);
     files::WholeFile whole(file);
-    if (file.extension() == ".ply") {
+    if (files::endingOf(file) == ".ply") {
         writePly(mesh, whole.stream());
     } else {
         writeObj(mesh, whole.stream());

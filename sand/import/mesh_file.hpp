@@ -19,7 +19,10 @@ struct Mesh {
 /// file that cannot be written whole.
 void writeMesh(const Mesh& mesh, const std::filesystem::path& file);
 
-/// Throws files::InputError unless the name ends in .ply or .obj: asked before long work.
+/// Whether the name asks for a mesh: .ply or .obj, in small letters or large ones.
+[[nodiscard]] bool namesMesh(const std::filesystem::path& file);
+
+/// Throws files::InputError unless it does: asked before long work.
 void checkMeshName(const std::filesystem::path& file);
 
 }  // namespace sand

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sand/import/raster_file.hpp"
 
-#include <algorithm>
 #include <string>
 
+#include "files/ending.hpp"
 #include "files/input_error.hpp"
 #include "files/whole_file.hpp"
 #include "sand/import/importer.hpp"
@@ -12,13 +12,6 @@ namespace sand {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string endingOf(const fs::path& file) {
-    std::string ending = file.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return ending;
-}
 
 void write(const files::Bytes& bytes, const fs::path& file) {
     files::WholeFile whole(file);
@@ -29,12 +22,12 @@ void write(const files::Bytes& bytes, const fs::path& file) {
 }  // namespace
 
 bool namesGeoTiff(const fs::path& file) {
-    const std::string ending = endingOf(file);
+    const std::string ending = files::endingOf(file);
     return ending == ".tif" || ending == ".tiff";
 }
 
 void checkRasterName(const fs::path& file) {
-    const std::string ending = endingOf(file);
+    const std::string ending = files::endingOf(file);
     std::error_code none;
     const bool plain = !fs::exists(file, none) || fs::is_regular_file(file, none);
     if (plain && !namesGeoTiff(file) && ending != ".asc" && ending != ".txt" && !ending.empty()) {
@@ -44,7 +37,7 @@ void checkRasterName(const fs::path& file) {
 }
 
 EsriGrid readRaster(const fs::path& file, bool withReference) {
-    const std::string ending = endingOf(file);
+    const std::string ending = files::endingOf(file);
     std::error_code none;
     const bool text = ending.empty() || ending == ".asc" || ending == ".txt" || !fs::is_regular_file(file, none);
     if (text && !(withReference && fs::exists(fs::path(file).replace_extension(".prj"), none))) {

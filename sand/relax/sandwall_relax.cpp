@@ -68,7 +68,7 @@ void checkKind(const Options& options, bool toMesh) {
 
 int run(const Options& options) {
     check(options);
-    const bool toMesh = sand::relax::namesMesh(options.out);
+    const bool toMesh = sand::namesMesh(options.out);
     checkKind(options, toMesh);
     if (toMesh) {
         relaxTin(options);

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "files/ending.hpp"
 #include "files/input_error.hpp"
 
 namespace sand::relax {
@@ -20,13 +21,6 @@ constexpr double kStepsAcross = 524288;    // of the lattice, on the longer side
 constexpr double kLeastDeep = 64;          // [lattice step]
 constexpr double kMostTinVolume = 4.6e18;  // [volume unit], of all: below 2^62
 constexpr int kStepsPerCell = tin::kLatticePerCell;
-
-bool endsWith(const std::filesystem::path& file, std::initializer_list<const char*> endings) {
-    std::string ending = file.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return std::find(endings.begin(), endings.end(), ending) != endings.end();
-}
 
 struct Extent {
     std::array<double, 3> least{}, most{};
@@ -197,8 +191,10 @@ TinSand sandOf(const Points& points, const std::string& file, const Material& ma
 
 }  // namespace
 
-bool namesMesh(const std::filesystem::path& file) { return endsWith(file, {".ply", ".obj"}); }
-bool holdsPoints(const std::filesystem::path& file) { return endsWith(file, {".csv", ".xyz"}); }
+bool holdsPoints(const std::filesystem::path& file) {
+    const std::string ending = files::endingOf(file);
+    return ending == ".csv" || ending == ".xyz";
+}
 
 TinSand toTin(const Points& points, const std::string& file, const Material& material) {
     return sandOf(points, file, material, {}, nullptr);

@@ -22,8 +22,6 @@ namespace sand::relax {
 
 inline constexpr int kMostVertices = 1 << 22;
 
-/// Whether a name asks for a mesh: .ply or .obj.
-[[nodiscard]] bool namesMesh(const std::filesystem::path& file);
 /// Whether a name is one of points: .csv or .xyz.
 [[nodiscard]] bool holdsPoints(const std::filesystem::path& file);
 

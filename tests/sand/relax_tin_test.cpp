@@ -188,6 +188,17 @@ TEST_F(RelaxTin, SettlesStopsAndWritesBothKindsOfFile) {
     EXPECT_EQ(read("again.obj"), read("out.obj"));
 }
 
+TEST_F(RelaxTin, EndingsInLargeLettersMeanTheSame) {
+    writePoints("IN.CSV", survey(8, 65, [](double x, double) { return x < 4 ? 20.0 : 0.0; }));
+    (void)relax("IN.CSV out.obj --talus 33");
+    (void)relax("IN.CSV out.ply --talus 33");
+    (void)relax("IN.CSV OUT.OBJ --talus 33");
+    (void)relax("IN.CSV OUT.Ply --talus 33");
+    EXPECT_EQ(read("OUT.OBJ"), read("out.obj"));
+    EXPECT_EQ(read("OUT.Ply"), read("out.ply"));
+    EXPECT_EQ(read("OUT.Ply").substr(0, 4), "ply\n");
+}
+
 TEST_F(RelaxTin, ARasterBecomesTheMeshThatItsErrorAllows) {
     std::vector<double> heights;
     for (int i = 0; i < 48 * 40; ++i) {
