@@ -33,6 +33,12 @@ struct EsriGrid {
         return static_cast<std::size_t>(rows - 1 - rowFromSouth) * static_cast<std::size_t>(columns) +
                static_cast<std::size_t>(column);
     }
+    /// Heights as the file has them become those that programs hold.
+    void countHeightsInLengths() {
+        for (double& height : heights) {
+            height /= units.heightsPerLength;
+        }
+    }
     /// Throws files::InputError about this cell, with file and line, or its row where there are no lines.
     [[noreturn]] void fail(int column, int rowFromSouth, const std::string& message) const;
 };

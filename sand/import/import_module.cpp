@@ -88,12 +88,11 @@ public:
         if (hasNoData != 0) {
             grid.noData = noData;
         }
-        if (grid.units.heightsPerLength != 1) {
-            for (double& height : grid.heights) {
-                height /= grid.units.heightsPerLength;
-            }
-        }
+        grid.countHeightsInLengths();
         return grid;
+    }
+    [[nodiscard]] RasterUnits readUnits(const std::filesystem::path& file) const override {
+        return unitsOf(GdalRaster(file));
     }
     [[nodiscard]] EsriGrid readImage(const std::filesystem::path& file) const override {
         const GdalRaster raster(file);
@@ -130,7 +129,7 @@ public:
 }  // namespace
 }  // namespace sand
 
-extern "C" const sand::Importer* sandwallImport1() {
+extern "C" const sand::Importer* sandwallImport2() {
     static const sand::GdalImporter kImporter;
     return &kImporter;
 }

@@ -32,6 +32,10 @@ public:
     /// degrees, turned rasters, and those beyond kMostRasterBytes, which is found out before pixels are read.
     [[nodiscard]] virtual EsriGrid readDem(const std::filesystem::path& file) const = 0;
 
+    /// What readDem()'s lengths and heights are, without reading pixels: of a text grid what stands in the .prj file
+    /// beside it. Refuses degrees.
+    [[nodiscard]] virtual RasterUnits readUnits(const std::filesystem::path& file) const = 0;
+
     /// One band of 8 or 16 bits, no place: heights are shares of the largest number, 0 to 1, and cells have side 1.
     [[nodiscard]] virtual EsriGrid readImage(const std::filesystem::path& file) const = 0;
 
@@ -50,7 +54,7 @@ inline constexpr double kRasterBytesPerPixel = 16;
 inline constexpr double kMostRasterBytes = 4294967296.0;
 
 /// What the module defines, with C linkage: the one object, never deleted.
-inline constexpr const char* kImportSymbol = "sandwallImport1";
+inline constexpr const char* kImportSymbol = "sandwallImport2";
 using GetImporter = const Importer*();
 
 /// Loads sandwall-import.so from beside this program; the same object at every call. Nothing else maps GDAL or

@@ -13,6 +13,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Whether a file that GDAL takes for its reference system lies beside it.
+bool hasPrj(const fs::path& file) {
+    std::error_code none;
+    return fs::exists(fs::path(file).replace_extension(".prj"), none) ||
+           fs::exists(fs::path(file).replace_extension(".PRJ"), none);
+}
+
 void write(const files::Bytes& bytes, const fs::path& file) {
     files::WholeFile whole(file);
     whole.stream().write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
@@ -39,11 +46,19 @@ void checkRasterName(const fs::path& file) {
 EsriGrid readRaster(const fs::path& file, bool withReference) {
     const std::string ending = files::endingOf(file);
     std::error_code none;
-    const bool text = ending.empty() || ending == ".asc" || ending == ".txt" || !fs::is_regular_file(file, none);
-    if (text && !(withReference && fs::exists(fs::path(file).replace_extension(".prj"), none))) {
+    const bool plain = fs::is_regular_file(file, none);
+    if (plain && !ending.empty() && ending != ".asc" && ending != ".txt") {
+        return loadImporter(file.string()).readDem(file);
+    }
+    if (!withReference || !plain || !hasPrj(file)) {
         return readEsriGrid(file);
     }
-    return loadImporter(file.string()).readDem(file);
+    // Only the units are GDAL's: what is wrong in the text is still told by its line.
+    const RasterUnits units = loadImporter(file.string()).readUnits(file);
+    EsriGrid grid = readEsriGrid(file);
+    grid.units = units;
+    grid.countHeightsInLengths();
+    return grid;
 }
 
 void writeRaster(const EsriGrid& grid, const fs::path& file) {

@@ -14,9 +14,9 @@ namespace sand {
 /// ending, .txt, and what is no plain file are ESRI ASCII grids, as readRaster() has them.
 void checkRasterName(const std::filesystem::path& file);
 
-/// Reads .asc, .txt, names without an ending and what is no plain file as an ESRI ASCII grid, without GDAL, unless its
-/// reference system is wanted, which stands in a .prj file beside it; all else as Importer::readDem() does. Throws
-/// files::InputError.
+/// Reads .asc, .txt, names without an ending and what is no plain file as an ESRI ASCII grid, all else as
+/// Importer::readDem() does. Text loads GDAL only where its reference system is wanted and a .prj file beside it has
+/// one: then it has units, and degrees are refused. Throws files::InputError.
 [[nodiscard]] EsriGrid readRaster(const std::filesystem::path& file, bool withReference = false);
 
 /// Writes a GeoTIFF with units and reference system, heights in its own unit; or for any other name an ESRI ASCII grid,

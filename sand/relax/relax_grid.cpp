@@ -121,7 +121,7 @@ ordered_json report(const GridSand& sand, const EsriGrid& grid, const Options& o
 }  // namespace
 
 void relaxGrid(const Options& options) {
-    const EsriGrid grid = readRaster(options.in, namesGeoTiff(options.out));
+    const EsriGrid grid = readRaster(options.in, true);
     std::optional<EsriGrid> bedrock;
     if (!options.bedrock.empty()) {
         bedrock = readRaster(options.bedrock);

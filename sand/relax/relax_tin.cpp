@@ -82,7 +82,7 @@ void relaxTin(const Options& options) {
     const Material material{options.talus, options.band};
     std::optional<Thinned> thinned;
     if (!holdsPoints(options.in)) {
-        thinned = thin(withoutEmptyEdges(readRaster(options.in)),
+        thinned = thin(withoutEmptyEdges(readRaster(options.in, true)),
                        {options.maxError.value_or(0), options.vertices.value_or(kMostVertices)});
     }
     TinSand sand =

@@ -113,15 +113,7 @@ TEST_F(Import, ScaledNumbersAreHeights) {
 
 TEST_F(Import, AnEsriGridHasTheSystemThatStandsBesideIt) {
     write("t.asc", "ncols 2\nnrows 1\nxllcorner 300\nyllcorner 400\ncellsize 2\n1.1 2\n");
-    Raster raster{.columns = 1, .rows = 1, .heights = {1}};
-    writeRaster("t.tif", raster);
-    OGRSpatialReferenceH reference = OSRNewSpatialReference(nullptr);
-    OSRImportFromEPSG(reference, 32633);
-    char* wkt = nullptr;
-    OSRExportToWkt(reference, &wkt);
-    write("t.prj", wkt);
-    CPLFree(wkt);
-    OSRDestroySpatialReference(reference);
+    writePrj("t.prj", 32633);
     const sand::Scene scene = load("[terrain]\nkind = \"dem\"\nfile = \"t.asc\"\n");
     EXPECT_EQ(scene.georeference.west, 300);
     EXPECT_NE(scene.georeference.units.crs.find("zone"), std::string::npos) << scene.georeference.units.crs;

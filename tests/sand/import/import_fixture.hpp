@@ -57,6 +57,17 @@ protected:
         GDALClose(dataset);
     }
 
+    /// A coordinate reference system as it stands beside a text grid.
+    void writePrj(const std::string& name, int epsg) {
+        OGRSpatialReferenceH reference = OSRNewSpatialReference(nullptr);
+        OSRImportFromEPSG(reference, epsg);
+        char* wkt = nullptr;
+        OSRExportToWkt(reference, &wkt);
+        write(name, wkt);
+        CPLFree(wkt);
+        OSRDestroySpatialReference(reference);
+    }
+
     /// The scene of a terrain, all else as it begins; the tool so large that nobody warns.
     [[nodiscard]] sand::Scene load(const std::string& terrain) {
         return sand::loadScene(write("s.toml", text(terrain)));

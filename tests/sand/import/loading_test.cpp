@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "sand/esri_grid.hpp"
+#include "sand/import/importer.hpp"
 #include "tests/sand/import/import_fixture.hpp"
 
 namespace {
@@ -28,7 +30,42 @@ TEST_F(Import, RelaxingTextMapsNoLibraryOfOtherFormats) {
         return ran.output.find("libgdal") != std::string::npos;
     };
     EXPECT_FALSE(relax("t.asc", "out.asc"));
+    write("square.asc", "ncols 2\nnrows 2\ncellsize 1\n1 2\n3 4\n");
+    EXPECT_FALSE(relax("square.asc", "out.ply --vertices 9"));
     EXPECT_TRUE(relax("t.tif", "out.tif")) << "so that this test can fail";
+}
+
+TEST_F(Import, TextInDegreesIsRelaxedIntoNothing) {
+    write("t.asc", "ncols 2\nnrows 2\nxllcorner 10\nyllcorner 47\ncellsize 0.1\n1 2\n3 4\n");
+    writePrj("t.prj", 4326);
+    for (const char* out : {"out.asc", "out.tif", "out.ply --max-error 0.1"}) {
+        const support::Ran ran = support::runProgram("sandwall-relax", path("t.asc") + " " + path(out) + " --talus 30");
+        EXPECT_EQ(ran.status, 2) << out;
+        EXPECT_EQ(ran.output, path("t.asc") +
+                                  ": its coordinates (WGS 84) are degrees, and sand wants lengths; make metres of "
+                                  "them: gdalwarp -t_srs EPSG:32632 -r bilinear t.asc metres.tif\n");
+    }
+}
+
+TEST_F(Import, RelaxedTextHasItsSystemBesideItAgain) {
+    const std::string text =
+        "ncols 2\nnrows 2\nxllcorner 500000\nyllcorner 5200000\ncellsize 10\n0.1 0.2\n0.30000000000000004 1e-5\n";
+    write("t.asc", text);
+    for (const std::string prj : {"t.PRJ", "t.prj"}) {
+        writePrj(prj, 32633);
+        const support::Ran ran =
+            support::runProgram("sandwall-relax", path("t.asc") + " " + path("out.asc") + " --talus 30");
+        ASSERT_EQ(ran.status, 0) << ran.output;
+        EXPECT_NE(sand::loadImporter("test").readUnits(path("out.asc")).crs.find("UTM zone 33N"), std::string::npos);
+        EXPECT_EQ(sand::readEsriGrid(path("out.asc")).heights, sand::readEsriGrid(path("t.asc")).heights);
+        std::filesystem::remove(path(prj));
+        std::filesystem::remove(path("out.prj"));
+    }
+    writePrj("t.prj", 32633);
+    write("t.asc", text + "7\n");
+    const support::Ran ran =
+        support::runProgram("sandwall-relax", path("t.asc") + " " + path("out.asc") + " --talus 30");
+    EXPECT_EQ(ran.output, path("t.asc") + ":8: more values than ncols x nrows = 4\n") << "by its line, as without";
 }
 
 TEST_F(Import, ARelaxedGeoTiffKeepsItsPlaceItsMaskAndWhatDidNotMove) {
