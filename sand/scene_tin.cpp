@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <tuple>
 
 #include "sand/tin_module.hpp"
 
@@ -59,6 +61,31 @@ void setTin(tin::Start start, Scene& scene) {
     scene.terrain = HeightField(1, 1, scene.terrain.cellSize());
 }
 
+/// Of points at one place of the lattice the first in the file is taken.
+void warnOfNearPoints(const std::string& file, const Points& points, const std::vector<tin::Place>& places, double step,
+                      Scene& scene) {
+    std::vector<std::size_t> order(points.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return std::tie(places[a], a) < std::tie(places[b], b); });
+    std::size_t near = 0;
+    double most = 0;
+    for (std::size_t i = 1, taken = 0; i < order.size(); ++i) {
+        if (places[order[i]] != places[order[taken]]) {
+            taken = i;
+            continue;
+        }
+        ++near;
+        most = std::max(most, std::abs(points[order[i]][2] - points[order[taken]][2]));
+    }
+    if (near > 0) {
+        scene.warnings.push_back(fmt::format(
+            "{}: {} points lie within {:.3g} of another, where a TIN of such cells tells none apart; the first in the "
+            "file was taken of each, others were up to {:.3g} higher or lower; set a smaller cell in [tin]",
+            file, near, step, most));
+    }
+}
+
 }  // namespace
 
 HeightField layOutPoints(const files::TomlTable& file, const files::TomlTable& terrain, const Points& points,
@@ -100,6 +127,8 @@ HeightField layOutPoints(const files::TomlTable& file, const files::TomlTable& t
                                  highest * one.unit(), kMaxHeight * one.unit()));
     }
     requireRange(file, highest, scene.rules.columns, scene.rules.rows, one.unit());
+    warnOfNearPoints((terrain.folder() / terrain.text("file")).string(), points, start->places, cell / kProbePerCell,
+                     scene);
     scene.tin = start;
     return one;
 }

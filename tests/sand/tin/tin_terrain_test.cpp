@@ -339,6 +339,24 @@ TEST_F(TinTerrain, IsMadeOfTheSurveyPointsThemselves) {
     EXPECT_DOUBLE_EQ(height(100, 205), 4) << "a corner that nobody measured is as high as the nearest point";
 }
 
+TEST_F(TinTerrain, SaysHowManySurveyPointsItDoesNotTellApart) {
+    const auto warnings = [&](const std::string& cell) {
+        std::ofstream(folder_ / "survey.csv") << "5.001 5 51\n0 0 0\n0.002 0 -3\n10 0 0\n0 10 0\n5 5 1\n5.002 5 21\n";
+        std::ofstream(folder_ / "points.toml")
+            << "[terrain]\nkind = \"points\"\nfile = \"survey.csv\"\n[tin]\ncell = " << cell
+            << "\n[material]\ntalus_deg = 34\n[tool]\nradius = 10\n";
+        const sand::Scene read = sand::loadScene(folder_ / "points.toml");
+        EXPECT_EQ(read.tin->places.size(), read.warnings.empty() ? 8U : 5U) << "and a corner";
+        return read.warnings;
+    };
+    EXPECT_EQ(warnings("5"),
+              std::vector{(folder_ / "survey.csv").string() +
+                          ": 3 points lie within 0.0195 of another, where a TIN of such cells tells none apart; the "
+                          "first in the file was taken of each, others were up to 50 higher or lower; set a smaller "
+                          "cell in [tin]"});
+    EXPECT_EQ(warnings("0.1"), std::vector<std::string>{});
+}
+
 TEST_F(TinTerrain, RefusesWhatItCannotHoldInOneLine) {
     const auto complaint = [this](const std::string& tin, const std::string& more) -> std::string {
         try {
