@@ -98,6 +98,9 @@ HeightField layOutPoints(const files::TomlTable& file, const files::TomlTable& t
         north = std::max(north, y);
     }
     const double longer = std::max(east - west, north - south);
+    if (!std::isnormal(longer * longer)) {
+        terrain.fail("file", fmt::format("the points are {} long, which is no length of terrain", longer));
+    }
     const double cell = file.requiredTable("tin").numberOr("cell", longer / kUsualSide, {longer / kMaxSide, longer});
     const auto cellsOf = [cell](double side) {
         return std::clamp(static_cast<int>(std::ceil(side / cell)), 1, kMaxSide);

@@ -213,18 +213,21 @@ private:
     std::optional<Degrees> degrees_;
 };
 
-double squaredDistance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
-    return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]);
+using Wide = long double;  // whose squares of any double neither overflow nor vanish
+
+Wide squaredDistance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+    const Wide x = Wide{a[0]} - b[0], y = Wide{a[1]} - b[1];
+    return x * x + y * y;
 }
 
 bool onOneLine(const Points& points) {
     const auto farthest = *std::max_element(points.begin(), points.end(), [&](const auto& a, const auto& b) {
         return squaredDistance(points[0], a) < squaredDistance(points[0], b);
     });
-    const double length = squaredDistance(points[0], farthest);
+    const Wide length = squaredDistance(points[0], farthest);
     return std::all_of(points.begin(), points.end(), [&](const auto& point) {
-        const double area = (farthest[0] - points[0][0]) * (point[1] - points[0][1]) -
-                            (farthest[1] - points[0][1]) * (point[0] - points[0][0]);
+        const Wide area = (Wide{farthest[0]} - points[0][0]) * (Wide{point[1]} - points[0][1]) -
+                          (Wide{farthest[1]} - points[0][1]) * (Wide{point[0]} - points[0][0]);
         return std::abs(area) <= kFlat * length;
     });
 }

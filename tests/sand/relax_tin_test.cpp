@@ -242,6 +242,8 @@ TEST_F(RelaxTin, BadPointsAreOneLine) {
     expectPointsRefused("0 0 1\n1e6 0.1 2\n1e6 0 3\n", "all points lie in a strip 1000000 long and 0.1 wide");
     expectPointsRefused("0 0 1\n1 0 2\n0 1 1e6\n", "span more than a TIN of this extent can hold");
     expectPointsRefused("0 0 1\n1 0 -1e308\n0 1 1e308\n", "span more than a TIN of this extent can hold");
+    expectPointsRefused("0 0 1\n1e160 0 2\n0 1e160 3\n", "bad.csv: it is 1e+160 long, which is no length of terrain");
+    expectPointsRefused("0 0 1\n1e-200 0 2\n0 1e-200 3\n", "bad.csv: it is 1e-200 long, which is no length of terrain");
     expectPointsRefused("0 0 1\n1e-155 0 2\n0 1e-155 3\n", "which is no length of terrain");
     expectRefused("none.csv out.ply --talus 30", "none.csv: cannot be read");
     EXPECT_THROW((void)sand::relax::toTin(sand::Points((1U << 22U) + 1), "large.csv", {30, 0}), files::InputError);

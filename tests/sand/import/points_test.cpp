@@ -98,6 +98,19 @@ TEST_F(PointsFile, CloudsWithoutAnAreaAreNoTerrain) {
     EXPECT_EQ(read(line + "0 7.001 1\n").size(), 51U);
 }
 
+TEST_F(PointsFile, HugeAndTinyCloudsHaveAnArea) {
+    for (const char* side : {"1e160", "1e308", "1e-200", "5e-324"}) {
+        const std::string points = fmt::format("0,0,0\n{0},0,0\n0,{0},0\n-{0},-{0},0\n", side);
+        EXPECT_EQ(read(points).size(), 4U) << side;
+        EXPECT_EQ(refused(fmt::format("0,0,1\n{0},{0},2\n-{0},-{0},3\n", side)),
+                  "p.csv: all 3 points lie on one line, and terrain needs an area");
+        write("p.csv", points);
+        const std::string line = refusal("[terrain]\nkind = \"points\"\nfile = \"p.csv\"\n[tin]\n");
+        EXPECT_NE(line.find("s.toml:3: the points are "), std::string::npos) << line;
+        EXPECT_NE(line.find(" long, which is no length of terrain"), std::string::npos) << line;
+    }
+}
+
 TEST_F(PointsFile, AFieldOfCellsAsksForATriangulation) {
     write("p.csv", "0 0 1\n1 0 2\n0 1 3\n");
     EXPECT_EQ(refusal("[terrain]\nkind = \"points\"\nfile = \"p.csv\"\n"),
