@@ -93,6 +93,12 @@ TerrainSource readScan(const files::TomlTable& terrain) {
     Georeference& reference = source.georeference;
     reference.lengthPerUnit = scan.cellSize * scan.columns / width;
     reference.heightPerUnit = reference.lengthPerUnit / exaggeration;
+    const auto failToScale = [&] {
+        terrain.fail("file", scan.file + " is too small or too large for heights to be scaled; its XReal is in metres");
+    };
+    if (!std::isnormal(reference.lengthPerUnit) || !std::isnormal(reference.heightPerUnit)) {
+        failToScale();  // nothing over nothing would be no data
+    }
     scan.cellSize = width / scan.columns;
     if (scan.cellDepth) {
         *scan.cellDepth /= reference.lengthPerUnit;
@@ -100,7 +106,7 @@ TerrainSource readScan(const files::TomlTable& terrain) {
     for (double& height : scan.heights) {
         height /= reference.heightPerUnit;
         if (std::isinf(height)) {
-            terrain.fail("file", scan.file + " is too small for heights to be scaled; its XReal is in metres");
+            failToScale();
         }
     }
     return source;

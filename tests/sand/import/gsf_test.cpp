@@ -66,11 +66,18 @@ TEST_F(Import, ScansThatAreNoneSayWhy) {
               "t.gsf:2: XRes must be a whole number within [1, 16384], got -4");
     EXPECT_EQ(refused(scan(kHeader + "XReal = 0\n", four)), "t.gsf:8: XReal must be positive, got 0");
     EXPECT_EQ(refused(scan(kHeader + "XReal = nan\n", four)), "t.gsf:8: XReal must be a finite number, got 'nan'");
+    EXPECT_EQ(refused(scan(kHeader + "XReal = 1e-323\nYReal = 1e-323\n", four)),
+              "s.toml:3: t.gsf is too small or too large for heights to be scaled; its XReal is in metres");
     EXPECT_EQ(refused(scan(kHeader + "ZUnits = V\n", four)),
               "t.gsf:8: ZUnits must be m, as of a scan of heights, got 'V'");
     EXPECT_EQ(refused(scan(kHeader + "what\n", four)), "t.gsf:8: 'Name = value' is wanted, got 'what'");
     EXPECT_EQ(refused(scan(kHeader, {1, 2, std::numeric_limits<float>::infinity(), 4})),
               "t.gsf: the height of pixel 1, 2 (from the north-west) is infinite; mask it in Gwyddion");
+    write("t.gsf", scan(kHeader, four));
+    EXPECT_EQ(refusal(kScan + "exaggeration = 1e302\n"),
+              "s.toml:3: t.gsf is too small or too large for heights to be scaled; its XReal is in metres");
+    EXPECT_EQ(refusal(kScan + "exaggeration = 1e-302\nwidth = 1e-20\n"),
+              "s.toml:3: t.gsf is too small or too large for heights to be scaled; its XReal is in metres");
     EXPECT_EQ(refused(scan(kHeader + "YReal = 4e-07\n", four)).rfind("s.toml:3: t.gsf has cells of 1 x 2", 0), 0U);
 }
 
