@@ -154,7 +154,8 @@ double heightOf(Words& words, const EsriGrid& grid) {
 EsriGrid readEsriGrid(const std::filesystem::path& file) {
     std::error_code ignored;
     std::ifstream stream(file, std::ios::binary);
-    if (!stream || std::filesystem::is_directory(file, ignored)) {
+    if (!stream || std::filesystem::is_directory(file, ignored) ||
+        std::filesystem::is_character_file(file, ignored)) {  // devices may never end
         throw files::InputError(fmt::format("{}: cannot be read; check the path", file.string()));
     }
     Words words({std::istreambuf_iterator<char>(stream), {}}, file.string());

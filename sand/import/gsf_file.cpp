@@ -114,7 +114,7 @@ private:
 std::string bytesOf(const std::filesystem::path& file) {
     std::error_code ignored;
     std::ifstream stream(file, std::ios::binary);
-    if (!stream || std::filesystem::is_directory(file, ignored)) {
+    if (!stream || !std::filesystem::is_regular_file(file, ignored)) {  // devices may never end
         throw files::InputError(fmt::format("{}: cannot be read; check the path", file.string()));
     }
     return {std::istreambuf_iterator<char>(stream), {}};

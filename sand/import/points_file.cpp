@@ -96,7 +96,8 @@ public:
     explicit Cloud(const std::filesystem::path& file) : file_(file.string()) {
         std::error_code ignored;
         std::ifstream stream(file, std::ios::binary);
-        if (!stream || std::filesystem::is_directory(file, ignored)) {
+        if (!stream || std::filesystem::is_directory(file, ignored) ||
+            std::filesystem::is_character_file(file, ignored)) {  // devices may never end
             throw files::InputError(file_ + ": cannot be read; check the path");
         }
         bool first = true;
@@ -110,6 +111,9 @@ public:
             if (!content.empty()) {
                 add(fieldsOf(content), line, std::exchange(first, false));
             }
+        }
+        if (stream.bad()) {
+            throw files::InputError(file_ + ": cannot be read to its end; check the disk it lies on");
         }
     }
 

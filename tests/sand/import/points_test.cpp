@@ -111,6 +111,22 @@ TEST_F(PointsFile, HugeAndTinyCloudsHaveAnArea) {
     }
 }
 
+TEST_F(Import, DevicesThatNeverEndAreNoTerrain) {
+    for (const std::string kind : {"gsf", "points", "esri_ascii", "dem"}) {
+        EXPECT_EQ(refusal("[terrain]\nkind = \"" + kind + "\"\nfile = \"/dev/zero\"\n"),
+                  "/dev/zero: cannot be read; check the path");
+    }
+}
+
+TEST_F(PointsFile, AFileThatCannotBeReadToItsEndIsNotTakenForItsBeginning) {
+    try {
+        (void)sand::readPoints("/proc/self/mem");  // opens, and nothing lies at its beginning
+        FAIL() << "accepted";
+    } catch (const files::InputError& error) {
+        EXPECT_STREQ(error.what(), "/proc/self/mem: cannot be read to its end; check the disk it lies on");
+    }
+}
+
 TEST_F(PointsFile, AFieldOfCellsAsksForATriangulation) {
     write("p.csv", "0 0 1\n1 0 2\n0 1 3\n");
     EXPECT_EQ(refusal("[terrain]\nkind = \"points\"\nfile = \"p.csv\"\n"),
