@@ -141,6 +141,9 @@ void readTin(const files::TomlTable& file, Scene& scene) {
     if (!tin) {
         return;
     }
+    if (scene.ground != nullptr && hasRock(*scene.ground)) {
+        file.fail("tin", "a TIN has no rock; leave out [tin], or 'layer' and 'bedrock'");
+    }
     if (scene.tin != nullptr) {  // points, laid out already
         tin::Start start = *scene.tin;
         (void)tin->numberOr("cell", 1);  // has been read
@@ -148,9 +151,6 @@ void readTin(const files::TomlTable& file, Scene& scene) {
         tin->finish();
         setTin(tinModule().join(start), scene);
         return;
-    }
-    if (scene.ground != nullptr && hasRock(*scene.ground)) {
-        file.fail("tin", "a TIN has no rock; leave out [tin], or 'layer' and 'bedrock'");
     }
     const HeightField& field = scene.terrain;
     std::int32_t highest = 0;

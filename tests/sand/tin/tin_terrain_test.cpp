@@ -375,6 +375,17 @@ TEST_F(TinTerrain, RefusesWhatItCannotHoldInOneLine) {
         EXPECT_NE(said.find("scene.toml:"), std::string::npos) << said;
         EXPECT_EQ(said.find('\n'), std::string::npos) << said;
     }
+    std::ofstream(folder_ / "survey.csv") << "0 0 0\n10 0 0\n0 10 0\n";
+    std::ofstream(folder_ / "points.toml")
+        << "[terrain]\nkind = \"points\"\nfile = \"survey.csv\"\nlayer = 0.1\n[tin]\n"
+           "[material]\n[tool]\nradius = 1\n";
+    try {
+        (void)sand::loadScene(folder_ / "points.toml");
+        FAIL() << "accepted";
+    } catch (const files::InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("points.toml:5: a TIN has no rock"), std::string::npos)
+            << error.what();
+    }
 }
 
 }  // namespace
