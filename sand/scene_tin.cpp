@@ -61,6 +61,21 @@ void setTin(tin::Start start, Scene& scene) {
     scene.terrain = HeightField(1, 1, scene.terrain.cellSize());
 }
 
+/// Returns the largest distance of a point from the datum [unit], which may be beyond what a height can be.
+double putOnLattice(const Points& points, const Georeference& origin, const HeightField& cell, tin::Start& start) {
+    const auto lattice = [&](double length, std::int32_t most) {
+        return std::min(static_cast<std::int32_t>(std::floor(length / cell.cellSize() * kProbePerCell + 0.5)), most);
+    };
+    double highest = 0;
+    for (const auto& [x, y, z] : points) {
+        const double units = std::floor((z - origin.datum) / cell.unit() + 0.5);
+        highest = std::max(highest, std::abs(units));
+        start.places.push_back({lattice(x - origin.west, start.width), lattice(y - origin.south, start.depth)});
+        start.heights.push_back(static_cast<std::int32_t>(std::clamp(units, double{-kMaxHeight}, double{kMaxHeight})));
+    }
+    return highest;
+}
+
 /// Of points at one place of the lattice the first in the file is taken.
 void warnOfNearPoints(const std::string& file, const Points& points, const std::vector<tin::Place>& places, double step,
                       Scene& scene) {
@@ -90,7 +105,7 @@ void warnOfNearPoints(const std::string& file, const Points& points, const std::
 
 HeightField layOutPoints(const files::TomlTable& file, const files::TomlTable& terrain, const Points& points,
                          Scene& scene) {
-    double west = points[0][0], south = points[0][1], east = west, north = south, highest = 0;
+    double west = points[0][0], south = points[0][1], east = west, north = south;
     for (const auto& [x, y, z] : points) {
         west = std::min(west, x);
         east = std::max(east, x);
@@ -108,22 +123,13 @@ HeightField layOutPoints(const files::TomlTable& file, const files::TomlTable& t
     scene.rules.columns = cellsOf(east - west);
     scene.rules.rows = cellsOf(north - south);
     const HeightField one(1, 1, cell);
-    const double datum = terrain.numberOr("datum", 0);
     scene.georeference.west = west;
     scene.georeference.south = south;
-    scene.georeference.datum = datum;
+    scene.georeference.datum = terrain.numberOr("datum", 0);
     auto start = std::make_shared<tin::Start>();
     start->width = scene.rules.columns * kProbePerCell;
     start->depth = scene.rules.rows * kProbePerCell;
-    const auto lattice = [cell](double length, std::int32_t most) {
-        return std::min(static_cast<std::int32_t>(std::floor(length / cell * kProbePerCell + 0.5)), most);
-    };
-    for (const auto& [x, y, z] : points) {
-        const double units = std::floor((z - datum) / one.unit() + 0.5);
-        highest = std::max(highest, std::abs(units));
-        start->places.push_back({lattice(x - west, start->width), lattice(y - south, start->depth)});
-        start->heights.push_back(static_cast<std::int32_t>(std::clamp(units, double{-kMaxHeight}, double{kMaxHeight})));
-    }
+    const double highest = putOnLattice(points, scene.georeference, one, *start);
     if (highest > kMaxHeight) {
         terrain.fail("file",
                      fmt::format("a height of {} from 'datum' is beyond the range of ±{} (4096 cells); set 'datum'",
