@@ -21,7 +21,7 @@
 namespace sand {
 
 /// Changes with anything that changes what a step does to the sand; replicas of different versions refuse each other.
-inline constexpr std::uint32_t kAlgorithmVersion = 5;
+inline constexpr std::uint32_t kAlgorithmVersion = 6;
 
 /// sand/erosion.hpp says what they are; plainIsotropic is called G elsewhere, n4 N4.
 enum class Scheme : std::uint8_t { isotropic, n4, plainIsotropic };

@@ -11,7 +11,7 @@ namespace sand::tin {
 namespace {
 
 constexpr double kOne = 1048576;  // of the integer weights: 2^20
-constexpr double kMost = 8;       // cotangents of slivers have no bounds: a whole star would wait for one short edge
+constexpr double kMost = 4;  // of half a cotangent: slivers' have no bounds, and a whole star would wait for one edge
 constexpr double kSafe = 0.9996;  // what of the bound is used: the rest is room for roundings
 constexpr double kGrain = 0.5;    // [unit], how exactly a height is told
 
@@ -35,11 +35,10 @@ Corners cornersOf(const Triangles& mesh, TriangleSide side) {
     return {corner[k], corner[(k + 1) % 3], corner[(k + 2) % 3]};
 }
 
-/// Half the cotangent of the angle at `apex`, times kOne.
-std::int32_t half(const Place& apex, const Place& begin, const Place& end, double doubledArea) {
+/// Half the cotangent of the angle at `apex`.
+double half(const Place& apex, const Place& begin, const Place& end, double doubledArea) {
     // Both are integers below 2^53, so that the quotient is rounded once.
-    const double cotangent = static_cast<double>(dot(apex, begin, end)) / doubledArea;
-    return static_cast<std::int32_t>(std::clamp(0.5 * cotangent, -kMost, kMost) * kOne);
+    return 0.5 * static_cast<double>(dot(apex, begin, end)) / doubledArea;
 }
 
 }  // namespace
@@ -80,7 +79,12 @@ const std::array<std::int32_t, 3>& Weights::halvesOf(const Triangles& mesh, std:
     if (halves.first != corner[0]) {
         const Place &a = placeOf(mesh, corner[0]), &b = placeOf(mesh, corner[1]), &c = placeOf(mesh, corner[2]);
         const auto area = static_cast<double>(doubledArea(a, b, c));
-        halves = {corner[0], {half(a, b, c, area), half(b, c, a, area), half(c, a, b, area)}};
+        const std::array<double, 3> of{half(a, b, c, area), half(b, c, a, area), half(c, a, b, area)};
+        // All three by one factor: each cut for itself, a sliver's sand would not run down the sliver's slope.
+        const double scale = kOne * std::min(kMost / std::max({of[0], of[1], of[2], kMost}), 1.0);
+        halves.first = corner[0];
+        std::transform(of.begin(), of.end(), halves.of.begin(),
+                       [&](double half) { return static_cast<std::int32_t>(half * scale); });
     }
     return halves.of;
 }
