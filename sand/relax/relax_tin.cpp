@@ -21,6 +21,7 @@ namespace {
 
 struct Slid {
     std::int64_t sweeps = 0;
+    int iterations = 0;
     bool atRest = false;
     double seconds = 0;
 };
@@ -31,7 +32,7 @@ Slid slide(TinSand& sand, const Options& options) {
     Slid slid;
     if (options.scheme == "settle") {
         const tin::Settled settled = tin::settle(sand.layer, sand.threshold, sand.startThreshold);
-        slid = {settled.sweeps, settled.atRest, 0};
+        slid = {settled.sweeps, settled.iterations, settled.atRest, 0};
     } else {
         // In one call: between two of them sand that has come to rest would wait for the start threshold again.
         tin::Erosion erosion(sand.layer, sand.threshold, sand.startThreshold);
@@ -65,6 +66,7 @@ nlohmann::ordered_json reportOf(const TinSand& sand, const Options& options, con
     json["volume_after"] = sand.volume();
     json["volume_above"] = sand.scale.toHeight(sand.lowest);
     json["sweeps"] = slid.sweeps;
+    json["iterations"] = slid.iterations;
     json["at_rest"] = slid.atRest;
     json["seconds"] = slid.seconds;
     // No number, and so null, for a level talus.

@@ -5,14 +5,14 @@
 #include <cmath>
 #include <utility>
 
+#include "sand/tin/settle.hpp"
 #include "sand/tin/start_maker.hpp"
 
 namespace sand::tin {
 namespace {
 
 constexpr int kRemovalsPerStep = 64;
-constexpr int kSweepsToRest = 1 << 20;  // more than any TIN that is worth waiting for
-constexpr int kSweepsAtOnce = 64;
+constexpr int kSweepsToRest = 1 << 20;       // more than any TIN that is worth waiting for
 constexpr std::size_t kMoreVertices = 4096;  // at least, than a session starts with
 
 DetailRules detailOf(const Start& start) {
@@ -178,11 +178,15 @@ void TinSurface::changeRules(const Rules& rules) {
 
 void TinSurface::settle() {
     held_.reset();
-    for (int sweeps = 0; sweeps < kSweepsToRest && !erosion_.settled(); sweeps += kSweepsAtOnce) {
-        moved_.clear();
-        erosion_.settle(layer_, kSweepsAtOnce, moved_);
-        sandMoved(moved_);
+    if (erosion_.settled()) {
+        return;
     }
+    const std::vector<Vertex> moved = tin::settle(layer_, threshold_, startThreshold_, kSweepsToRest).moved;
+    sandMoved(moved);
+    erosion_.wake(moved);
+    moved_.clear();
+    erosion_.settle(layer_, 1, moved_);  // so that it sees that all is at rest
+    sandMoved(moved_);
 }
 
 void TinSurface::reset() { replace(LayerCopy(layerOf(*start_), {})); }

@@ -101,8 +101,8 @@ TEST_F(TinHoleScene, HolesComeBackWithoutData) {
     }
 }
 
-// The heap comes down on both as far as the block of cells without data, and round it. Measured: 0.363 cells at most,
-// 0.027 RMS; a tenth more is let through.
+// The heap comes down on both as far as the block of cells without data, and round it: on the grid, which has walls
+// there, by sweeps alone. Measured: 0.467 cells at most, 0.041 RMS; a tenth more is let through.
 TEST_F(TinHoleScene, TheSamePileOnGridAndTinAgrees) {
     const sand::Scene asGrid = scene("settle = true\n"), asTin = scene("settle = true\n[tin]\nmax_error = 0\n");
     const Terrain tin(asTin);
@@ -121,8 +121,8 @@ TEST_F(TinHoleScene, TheSamePileOnGridAndTinAgrees) {
         }
     }
     fmt::print("grid and TIN: {:.3f} cells at most, {:.3f} RMS\n", worst, std::sqrt(sum / count));
-    EXPECT_LT(worst, 0.4);
-    EXPECT_LT(std::sqrt(sum / count), 0.03);
+    EXPECT_LT(worst, 0.51);
+    EXPECT_LT(std::sqrt(sum / count), 0.045);
 }
 
 TEST_F(TinHoleScene, AnOutlineOfMoreVerticesThanMayBeIsRefusedInOneLine) {

@@ -56,12 +56,12 @@ struct Case {
 };
 
 // Of random and jittered meshes of 4000 and 16,000 vertices 2.4 % and 1.0 %, 1.7 % and 0.36 % were asked. Measured:
-// random 1.04 and 0.44 %, the cone 2.27 %; jittered 0.46 and 0.157 %, 0.80 %; regular the same, but for the cone along
-// the lattice, 0.93 %, whose diagonals all run one way. The bounds are these and a tenth.
+// random 0.70 and 0.27 %, the cone 1.57 %; jittered 0.50 and 0.131 %, 0.82 %; regular 0.49 and 0.155 %, but the cone
+// along the lattice 1.16 %, whose diagonals all run one way. The bounds are these and a tenth.
 constexpr std::array kCases{
-    Case{Kind::regular, 0, 0.0050, 0.00172, 0.0102},   Case{Kind::regular, 22.5, 0.0049, 0.00172, 0.0091},
-    Case{Kind::regular, 45, 0.0052, 0.00172, 0.0102},  Case{Kind::jittered, 0, 0.0050, 0.00173, 0.0088},
-    Case{Kind::jittered, 30, 0.0050, 0.00173, 0.0088}, Case{Kind::random, 0, 0.0114, 0.0049, 0.0250}};
+    Case{Kind::regular, 0, 0.0054, 0.00171, 0.0128},   Case{Kind::regular, 22.5, 0.0052, 0.00171, 0.0105},
+    Case{Kind::regular, 45, 0.0053, 0.00171, 0.0128},  Case{Kind::jittered, 0, 0.0055, 0.00144, 0.0090},
+    Case{Kind::jittered, 30, 0.0055, 0.00144, 0.0090}, Case{Kind::random, 0, 0.0078, 0.0030, 0.0173}};
 
 TEST(TinPile, CylindersBecomeFrustumAndConeOnMeshesOfEveryKind) {
     for (const Case& one : kCases) {
@@ -74,8 +74,11 @@ TEST(TinPile, CylindersBecomeFrustumAndConeOnMeshesOfEveryKind) {
 }
 
 TEST(TinPile, FinerMeshesAreNearerToTheFrustum) {
+    if (kSanitized) {
+        GTEST_SKIP() << "minutes";
+    }
     for (const Case& one : kCases) {
-        if (one.degrees == 0 && !kSanitized) {
+        if (one.degrees == 0) {
             const Cylinder low(32, 19.2);
             EXPECT_LE(misplacedOf(settledCylinder(one.kind, 128, one.degrees, low), 128, low), one.lowFiner)
                 << nameOf(one.kind) << " turned by " << one.degrees;
@@ -83,19 +86,25 @@ TEST(TinPile, FinerMeshesAreNearerToTheFrustum) {
     }
 }
 
-// 0.36 % and 0.13 % were asked of jittered meshes of 16,000 and 65,000 vertices; measured: 0.336 and 0.122 %. Of a
-// random mesh of 16,000 1.0 % was asked, and the cone misplaces 1.05 % (sandwall-bench tin-piles).
+// 0.36 % and 0.13 % were asked of jittered meshes of 16,000 and 65,000 vertices, of random ones of 16,000 1.0 %;
+// measured: 0.299, 0.117 and 0.625 %.
 TEST(TinPile, FinerMeshesAreNearerToTheCone) {
     if (kSanitized) {
         GTEST_SKIP() << "minutes";
     }
-    for (const auto& [n, most] : {std::pair{128, 0.0036}, {256, 0.0013}}) {
+    struct Finer {
+        Kind kind;
+        int n;
+        double most;
+    };
+    for (const auto& [kind, n, most] :
+         {Finer{Kind::jittered, 128, 0.0033}, {Kind::jittered, 256, 0.0013}, {Kind::random, 128, 0.0069}}) {
         const Cylinder tall(0.15 * n, 0.45 * n);
-        EXPECT_LE(misplacedOf(settledCylinder(Kind::jittered, n, 0, tall), n, tall), most) << n;
+        EXPECT_LE(misplacedOf(settledCylinder(kind, n, 0, tall), n, tall), most) << nameOf(kind) << ", " << n;
     }
 }
 
-// Inertia is begun anew in every step: were it not, piles would be less right, which is why settle() has none.
+// Inertia is begun anew in every step: were it not, piles would be less right.
 TEST(TinPile, InertiaWithinStepsLeavesPilesNearlyAsRight) {
     const Cylinder tall(9.6, 28.8);
     const auto atRest = [&](Kind kind, int sweepsOfAStep) {
@@ -103,6 +112,9 @@ TEST(TinPile, InertiaWithinStepsLeavesPilesNearlyAsRight) {
         fill(layer, oracles::around(32, 32, [&](double r) { return tall.start(r); }));
         sand::tin::Erosion erosion(layer, kTalus, kTalus);
         std::vector<sand::tin::Vertex> moved;
+        if (sweepsOfAStep == 0) {
+            erosion.settle(layer, 1'000'000, moved);
+        }
         for (int done = 0; done < 1'000'000 && !erosion.settled();) {
             done += erosion.sweep(layer, sweepsOfAStep, nullptr, moved);
         }
@@ -110,11 +122,10 @@ TEST(TinPile, InertiaWithinStepsLeavesPilesNearlyAsRight) {
         return misplacedOf(layer, 64, tall);
     };
     for (const Kind kind : {Kind::jittered, Kind::random}) {
-        const double settled = misplacedOf(settledCylinder(kind, 64, 0, tall), 64, tall);
-        const double inSteps = atRest(kind, 24), atOnce = atRest(kind, 1'000'000);
-        std::printf("%s: settle %.3f %%, in steps of 24 sweeps %.3f %%, in one step %.3f %%\n", nameOf(kind),
-                    100 * settled, 100 * inSteps, 100 * atOnce);
-        EXPECT_LE(inSteps, 1.15 * settled) << nameOf(kind);
+        const double without = atRest(kind, 0), inSteps = atRest(kind, 24), atOnce = atRest(kind, 1'000'000);
+        std::printf("%s: without %.3f %%, in steps of 24 sweeps %.3f %%, in one step %.3f %%\n", nameOf(kind),
+                    100 * without, 100 * inSteps, 100 * atOnce);
+        EXPECT_LE(inSteps, 1.15 * without) << nameOf(kind);
         EXPECT_GT(atOnce, inSteps) << nameOf(kind);
     }
 }
