@@ -58,6 +58,8 @@ Place meetingPlace(const Place& p, const Place& q, const Place& c, const Place& 
     return isBeside(c, d, q) ? q : nearestToCrossing(p, q, c, d);
 }
 
+VertexPair ascending(Vertex a, Vertex b) { return std::minmax(a, b); }
+
 }  // namespace
 
 Triangulation::Hit Triangulation::follow(Vertex from, Vertex to) const {
@@ -125,14 +127,19 @@ void Triangulation::carve(Vertex from, const Hit& hit) {
     improve(made);
 }
 
-std::vector<Vertex> Triangulation::constrain(Vertex from, Vertex to) {
-    std::vector<Vertex> path{from, to};
+Mesh::Path Triangulation::constrain(Vertex from, Vertex to) {
+    Mesh::Path path{{from, to}, {}};
     std::vector<VertexPair> wanted{{from, to}};
     const auto bend = [&path](Vertex a, Vertex b, Vertex through) {
-        for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-            if ((path[i] == a && path[i + 1] == b) || (path[i] == b && path[i + 1] == a)) {
-                path.insert(path.begin() + static_cast<std::ptrdiff_t>(++i), through);
+        for (std::size_t i = 0; i + 1 < path.vertices.size(); ++i) {
+            if (ascending(path.vertices[i], path.vertices[i + 1]) == ascending(a, b)) {
+                path.vertices.insert(path.vertices.begin() + static_cast<std::ptrdiff_t>(++i), through);
             }
+        }
+        const auto known = std::find(path.before.begin(), path.before.end(), ascending(a, b));
+        if (known != path.before.end()) {
+            *known = ascending(a, through);
+            path.before.push_back(ascending(through, b));
         }
     };
     // What is wanted or constrained bends only within its bounding box, so that the two parts are together as long as
@@ -142,6 +149,9 @@ std::vector<Vertex> Triangulation::constrain(Vertex from, Vertex to) {
         wanted.pop_back();
         const Hit hit = follow(a, b);
         if (hit.vertex != kNobody) {
+            if (const Side side = findEdge(a, hit.vertex); side.slot != kNobody && isConstrained(side)) {
+                path.before.push_back(ascending(a, hit.vertex));
+            }
             carve(a, hit);
             if (hit.vertex != b) {
                 bend(a, b, hit.vertex);

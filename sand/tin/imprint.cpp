@@ -9,8 +9,6 @@
 namespace sand::tin {
 namespace {
 
-constexpr std::uint64_t kMostPoints = 1024;  // of an outline: more than any tool has, with all that it crosses
-
 bool lives(const Triangles& mesh, const Imprint::Point& point) {
     return mesh.alive(point.vertex) && mesh.places[static_cast<std::size_t>(point.vertex)] == point.place;
 }
@@ -21,10 +19,12 @@ void encodePoint(const ProbePoint& point, files::ByteWriter& writer) {
     writer.put(point.z);
 }
 
-std::uint64_t decodeCount(files::ByteReader& reader) {
+/// Of what takes so many bytes each.
+std::uint64_t decodeCount(files::ByteReader& reader, std::size_t bytesEach) {
     const std::uint64_t count = reader.getVarint();
-    if (count > kMostPoints) {
-        throw files::FormatError("an imprint of " + std::to_string(count) + " points");
+    if (count > reader.rest().size() / bytesEach) {
+        throw files::FormatError("an imprint of " + std::to_string(count) + " points or edges in " +
+                                 std::to_string(reader.rest().size()) + " bytes");
     }
     return count;
 }
@@ -46,6 +46,21 @@ Imprint::Stand decodeStand(files::ByteReader& reader) {
         throw files::FormatError("an imprint of a tool that no scene gives");
     }
     return stand;
+}
+
+/// The other ends of the constraints at a vertex that lie on neither rim nor among `ours`, which are sorted.
+std::vector<Vertex> othersAt(const Triangles& mesh, Vertex vertex, const std::vector<std::pair<Vertex, Vertex>>& ours) {
+    std::vector<Vertex> others;
+    aroundVertex(mesh, vertex, [&](std::int32_t slot, int corner) {
+        const Triangle& triangle = mesh.triangles[index(slot)];
+        const Vertex end = triangle.corner[static_cast<std::size_t>(corner + 1) % 3];
+        const std::size_t side = static_cast<std::size_t>(corner + 2) % 3;
+        if (triangle.constrained[side] && triangle.neighbour[side] != kNobody &&
+            !std::binary_search(ours.begin(), ours.end(), std::pair<Vertex, Vertex>(std::minmax(vertex, end)))) {
+            others.push_back(end);
+        }
+    });
+    return others;
 }
 
 }  // namespace
@@ -71,14 +86,21 @@ void Imprint::putInto(Mesh& mesh, const PlacedOutline& outline, int maxVertices)
         if (mesh.isConstrained(a, b)) {
             continue;
         }
-        const std::vector<Vertex> along = mesh.constrain(a, b);
+        const auto [along, before] = mesh.constrain(a, b);
         for (std::size_t i = 1; i < along.size(); ++i) {
-            edges.emplace_back(along[i - 1], along[i]);
+            if (const std::pair<Vertex, Vertex> edge = std::minmax(along[i - 1], along[i]);
+                std::find(before.begin(), before.end(), edge) == before.end()) {
+                edges.push_back(edge);
+            }
         }
     }
 }
 
 void Imprint::takeOutOf(Mesh& mesh) {
+    // The smaller vertex is first, but in a state from outside.
+    std::transform(edges.begin(), edges.end(), edges.begin(),
+                   [](const auto& edge) { return std::pair<Vertex, Vertex>(std::minmax(edge.first, edge.second)); });
+    std::sort(edges.begin(), edges.end());
     const auto isOurs = [&](Vertex vertex) {
         return std::any_of(points.begin(), points.end(), [&](const Point& point) { return point.vertex == vertex; });
     };
@@ -91,8 +113,11 @@ void Imprint::takeOutOf(Mesh& mesh) {
         }
     }
     for (const Point& point : points) {
-        if (lives(mesh.triangles(), point)) {
-            mesh.remove(point.vertex);
+        if (lives(there, point)) {
+            const std::vector<Vertex> others = othersAt(there, point.vertex, edges);
+            if (mesh.remove(point.vertex) && others.size() == 2) {
+                mesh.constrain(others[0], others[1]);  // an earlier outline's edge, in which the point stood
+            }
         }
     }
     *this = {};
@@ -128,14 +153,14 @@ Imprint Imprint::decode(files::ByteReader& reader) {
         return imprint;
     }
     imprint.stand = decodeStand(reader);
-    for (std::uint64_t count = decodeCount(reader); count > 0; --count) {
+    for (std::uint64_t count = decodeCount(reader, 12); count > 0; --count) {
         Point point{};
         point.vertex = reader.get<Vertex>();
         point.place.x = reader.get<std::int32_t>();
         point.place.y = reader.get<std::int32_t>();
         imprint.points.push_back(point);
     }
-    for (std::uint64_t count = decodeCount(reader); count > 0; --count) {
+    for (std::uint64_t count = decodeCount(reader, 8); count > 0; --count) {
         const auto a = reader.get<Vertex>();
         imprint.edges.emplace_back(a, reader.get<Vertex>());
     }

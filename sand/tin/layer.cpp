@@ -99,7 +99,7 @@ bool Layer::remove(Vertex vertex) {
 }
 
 std::vector<Vertex> Layer::constrain(Vertex from, Vertex to) {
-    std::vector<Vertex> path = mesh_.constrain(from, to);
+    std::vector<Vertex> path = mesh_.constrain(from, to).vertices;
     remap();
     return path;
 }

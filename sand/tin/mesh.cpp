@@ -127,10 +127,10 @@ bool Mesh::hasOutline() const {
     return std::all_of(outline.begin(), outline.end(), standsFrom);
 }
 
-std::vector<Vertex> Mesh::constrain(Vertex from, Vertex to) {
+Mesh::Path Mesh::constrain(Vertex from, Vertex to) {
     requireAlive(from);
     requireAlive(to);
-    return from == to ? std::vector<Vertex>() : triangulation_->constrain(from, to);
+    return from == to ? Path{} : triangulation_->constrain(from, to);
 }
 
 void Mesh::release(Vertex a, Vertex b) {

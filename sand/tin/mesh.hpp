@@ -47,11 +47,16 @@ public:
     /// rim edges again; so does one on a straight part of a hole's outline. Where that turns or ends it stays. False
     /// when it stays.
     bool remove(Vertex vertex);
+    /// A constraint: the vertices along it, both ends included, and which of its edges were constrained before, each
+    /// with the smaller vertex first.
+    struct Path {
+        std::vector<Vertex> vertices;
+        std::vector<std::pair<Vertex, Vertex>> before;
+    };
     /// Makes every edge between these places constrained, with vertices where it crosses others: a crossing is put on
     /// the nearest lattice place before, or on an end of either within a unit of the other, and both constraints bend
-    /// to it; so do others that they come to cross. Vertices on the way split it. Returns the vertices along the
-    /// constraint, both ends included. Nothing when both are one.
-    std::vector<Vertex> constrain(Vertex from, Vertex to);
+    /// to it; so do others that they come to cross. Vertices on the way split it. Nothing when both are one.
+    Path constrain(Vertex from, Vertex to);
     /// The edge between two vertices is an ordinary one again; nothing when it is none, or lies on the rim or on a
     /// hole's outline.
     void release(Vertex a, Vertex b);

@@ -70,7 +70,7 @@ public:
     [[nodiscard]] Hit follow(Vertex from, Vertex to) const;
     /// Makes the edge that a way with this hit needs, constrained. The hit must be a vertex.
     void carve(Vertex from, const Hit& hit);
-    std::vector<Vertex> constrain(Vertex from, Vertex to);
+    Mesh::Path constrain(Vertex from, Vertex to);
 
     /// slot == kNobody when there is no such edge.
     [[nodiscard]] Side findEdge(Vertex a, Vertex b) const;

@@ -75,7 +75,7 @@ TEST(TinDetail, ALevelLayerLosesAllThatNothingHolds) {
     Layer layer = levelLayer(20, 20, 256);
     std::vector<Vertex> chain;
     layer.edit([&](sand::tin::Mesh& mesh) {
-        chain = mesh.constrain(mesh.insert({1100, 1200}), mesh.insert({3000, 1300}));
+        chain = mesh.constrain(mesh.insert({1100, 1200}), mesh.insert({3000, 1300})).vertices;
     });
     const DetailRules rules = rulesOf(256, 1, 40);
     const Box keepOut{3000, 3000, 4000, 4000};

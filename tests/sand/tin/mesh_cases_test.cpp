@@ -46,7 +46,7 @@ TEST(MeshCases, RefusesFieldsPlacesAndVerticesThatCannotBe) {
     EXPECT_THROW(mesh.constrain(0, 7), std::invalid_argument);
     EXPECT_THROW(mesh.release(-1, 0), std::invalid_argument);
     EXPECT_FALSE(mesh.remove(3)) << "a corner";
-    EXPECT_TRUE(mesh.constrain(2, 2).empty());
+    EXPECT_TRUE(mesh.constrain(2, 2).vertices.empty());
     EXPECT_EQ(whatIsWrong(mesh), "");
 }
 
@@ -160,8 +160,12 @@ TEST(MeshCases, ConstrainsThroughVerticesOnTheWay) {
     const Vertex second = mesh.insert(Place{50, 30});
     const Vertex first = mesh.insert(Place{30, 20});
     mesh.insert(Place{50, 31});
-    EXPECT_EQ(mesh.constrain(from, to), (std::vector<Vertex>{from, first, second, to}));
-    EXPECT_EQ(mesh.constrain(to, first), (std::vector<Vertex>{to, second, first})) << "it overlaps";
+    const auto path = mesh.constrain(from, to);
+    EXPECT_EQ(path.vertices, (std::vector<Vertex>{from, first, second, to}));
+    EXPECT_TRUE(path.before.empty());
+    const auto back = mesh.constrain(to, first);
+    EXPECT_EQ(back.vertices, (std::vector<Vertex>{to, second, first})) << "it overlaps";
+    EXPECT_EQ(back.before.size(), 2U);
     EXPECT_EQ(mesh.constraints().size(), 3U);
     const Vertex middle = mesh.insert(Place{70, 40});
     EXPECT_TRUE(mesh.isConstrained(second, middle) && mesh.isConstrained(middle, to));
@@ -178,7 +182,7 @@ TEST(MeshCases, PutsCrossingsOnTheLattice) {
     const Vertex c = mesh.insert(Place{20, 60});
     const Vertex d = mesh.insert(Place{61, 7});
     mesh.constrain(c, d);
-    const std::vector<Vertex> path = mesh.constrain(a, b);
+    const std::vector<Vertex> path = mesh.constrain(a, b).vertices;
     ASSERT_EQ(path.size(), 3U);
     // 61 y = 30 x + 310 and 41 y = 3520 − 53 x: x = 45.26, y = 27.34.
     const Place& place = mesh.triangles().places[static_cast<std::size_t>(path[1])];
@@ -205,7 +209,7 @@ TEST(MeshCases, LaysARingThroughAVertexAndOverARing) {
             vertices.push_back(mesh.insert(Place{place.x + shift, place.y}));
         }
         for (std::size_t i = 0; i < vertices.size(); ++i) {
-            const auto path = mesh.constrain(vertices[i], vertices[(i + 1) % vertices.size()]);
+            const auto path = mesh.constrain(vertices[i], vertices[(i + 1) % vertices.size()]).vertices;
             ASSERT_EQ(whatIsWrong(mesh), "") << "ring " << shift << ", edge " << i;
             for (std::size_t k = 0; k + 1 < path.size(); ++k) {
                 ASSERT_TRUE(mesh.isConstrained(path[k], path[k + 1]));

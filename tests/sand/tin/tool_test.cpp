@@ -115,6 +115,39 @@ TEST(TinTool, ThreeEllipsesLeaveTheirDepthAndConstrainedOutlines) {
     }
 }
 
+/// [cell]
+double lengthOfConstraints(const Layer& layer) {
+    double length = 0;
+    for (const auto& [a, b] : layer.mesh().constraints()) {
+        const Place &from = layer.triangles().places[sand::tin::index(a)],
+                    &to = layer.triangles().places[sand::tin::index(b)];
+        length += std::hypot(to.x - from.x, to.y - from.y) / sand::kProbePerCell;
+    }
+    return length;
+}
+
+// The second stamp's points stand in the first one's edges, and its edges lie along them: what it puts in goes with it,
+// what was there does not.
+TEST(TinTool, DraggedAwayItLeavesTheEarlierOutlineItStoodOn) {
+    Layer layer = levelLayer(60, 40, 256);
+    DetailRules rules = fineRules();
+    rules.keepsConstraints = true;
+    Tool tool(shapeOf(ToolKind::rectangle, 4), {}, rules);
+    Imprint imprint;
+    press(layer, imprint, tool, probeAt(15, 20, 3.5));
+    tool.leave(layer, imprint);
+    const double once = lengthOfConstraints(layer);
+    EXPECT_EQ(layer.mesh().constraints().size(), 32U);
+    double far = 30;
+    for (const auto& [x, y] : {std::pair{4.0, 0.0}, {0.3, 0.0}, {3.7, 2.1}}) {
+        tool.drag(layer, imprint, Rim::closed, std::array{probeAt(15 + x, 20 + y, 3.5)});
+        tool.drag(layer, imprint, Rim::closed, std::array{probeAt(15 + x, 20 + y, 3.5), probeAt(far, 20, 3.5)});
+        tool.leave(layer, imprint);
+        EXPECT_NEAR(lengthOfConstraints(layer), (far / 10 - 1) * once, 0.01) << "stamped at " << x << ", " << y;
+        far += 10;
+    }
+}
+
 TEST(TinTool, LiftedItsOutlineDissolvesUnlessTheSceneKeepsIt) {
     for (int kind = 0; kind < sand::kToolKinds; ++kind) {
         Layer layer = levelLayer(40, 30, 256);
@@ -330,6 +363,11 @@ TEST(TinTool, RefusesADamagedImprint) {
         files::ByteReader reader(std::span<const std::uint8_t>(whole).first(length));
         EXPECT_THROW(Imprint::decode(reader), files::FormatError) << length;
     }
+    imprint.edges.assign(5000, {7, 9});  // of a large tool across many small ones' outlines
+    files::ByteWriter many;
+    imprint.encode(many);
+    files::ByteReader manyReader(many.bytes());
+    EXPECT_EQ(Imprint::decode(manyReader).edges.size(), 5000U);
     files::Bytes other = whole;
     other[13] = 99;  // the kind of tool
     files::ByteReader reader(other);
