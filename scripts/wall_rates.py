@@ -8,7 +8,7 @@ With --tin: digging in a height field and in TINs in turns. Frames a second of s
 one of the tiles, whose rank has a core as on a cluster, and of all; then what a frame takes of a rank with a core of its
 own (processor time of the sand and of the tile that has most to do), and of sessions as fast as the machine can.
 
-usage: scripts/wall_rates.py [--seconds 60 | --tin]   (six minutes, or fifteen; leave the machine alone meanwhile)
+usage: scripts/wall_rates.py [--tin] [--seconds S]   (six minutes, or fifteen; leave the machine alone meanwhile)
 """
 
 import argparse
@@ -188,9 +188,9 @@ def tin_rates(folder, seconds):
                 yield name, f"{shown:.1f} frames a second, {late:.1f} % late", f"the grid's are {of_grid / shown:.2f} × as many"
 
 
-def tin_rows(folder, runs, frames):
+def tin_rows(folder, seconds, runs, frames):
     """What a TIN takes over what the grid takes, the same hand in both, in turns."""
-    yield from tin_rates(folder, 12)
+    yield from tin_rates(folder, seconds)
     out, strokes = folder / "out", circles(folder, 1000)
     ways = {"one rank on a core": (rank_ms, "processor time"),
             "all here": (lambda file: digging_ms(out, file, strokes, frames), f"sessions of {frames} frames")}
@@ -234,7 +234,7 @@ def measure(folder, seconds):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seconds", type=float, default=60, help="of each digging session, warm-up apart (default: 60)")
+    parser.add_argument("--seconds", type=float, help="of each digging session, warm-up apart (default: 60; with --tin 12)")
     parser.add_argument("--tin", action="store_true", help="a TIN beside a height field, and nothing else")
     parser.add_argument("--runs", type=int, default=3, help="of each scene with --tin (default: 3)")
     parser.add_argument("--frames", type=int, default=240, help="of each run with --tin (default: 240)")
@@ -246,7 +246,8 @@ def main():
     print("| 12 ranks, 24 views of 1024×768 on one machine | | |\n|---|---|---|", flush=True)
     with tempfile.TemporaryDirectory(prefix="sandwall-rates-") as folder:
         path = pathlib.Path(folder)
-        rows = tin_rows(path, args.runs, args.frames) if args.tin else measure(path, args.seconds)
+        rows = (tin_rows(path, args.seconds or 12, args.runs, args.frames) if args.tin
+                else measure(path, args.seconds or 60))
         for what, figure, beside in rows:
             print(f"| {what} | {figure} | {beside} |", flush=True)
     return 0
