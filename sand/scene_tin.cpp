@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 #include <tuple>
 
 #include "sand/tin_module.hpp"
+#include "sand/tin_settings.hpp"
 
 namespace sand {
 namespace {
@@ -40,19 +42,44 @@ bool hasRock(const Ground& ground) {
     return false;
 }
 
-tin::Settings readSettings(const files::TomlTable& tin, double cellSize) {
-    tin::Settings settings;
-    const double finest = cellSize / kProbePerCell;
-    const double spacing = tin.numberOr("spacing", cellSize, {finest, 1e9});
-    settings.spacing = static_cast<std::int32_t>(std::min(std::floor(spacing / finest + 0.5), double{kMaxProbe}));
-    const double widest = tin.numberOr("widest", 16 * cellSize, {0, 1e9});
-    settings.widest = static_cast<std::int32_t>(std::min(std::floor(widest / finest + 0.5), double{kMaxProbe}));
-    const double error = tin.numberOr("max_error", cellSize / 16, {0, 1e9});
-    settings.maxError = static_cast<std::int32_t>(
-        std::min(std::floor(error / cellSize * kUnitsPerCell + 0.5), static_cast<double>(kMaxHeight)));
-    settings.mostVertices = tin.integerOr("vertices", settings.mostVertices, 4, 1 << 22);
-    settings.keepConstraints = tin.flagOr("keep_constraints", settings.keepConstraints);
-    return settings;
+/// Of points where they lie on the lattice, and the corners of their field, which the TIN has besides.
+std::size_t distinctPlaces(const tin::Start& start) {
+    std::vector<tin::Place> places = start.places;
+    places.insert(places.end(), {{0, 0}, {start.width, 0}, {start.width, start.depth}, {0, start.depth}});
+    std::sort(places.begin(), places.end());
+    return static_cast<std::size_t>(std::unique(places.begin(), places.end()) - places.begin());
+}
+
+/// Makes the TIN of points that are laid out already.
+tin::Start joined(const files::TomlTable& file, const files::TomlTable& tin, const Scene& scene) {
+    tin::Start start = *scene.tin;
+    const std::size_t places = distinctPlaces(start);
+    if (places > std::size_t{tin::kMostPlaces}) {
+        file.requiredTable("terrain").fail(
+            "file", fmt::format("{} vertices with the field's corners are more than a TIN can have, {} are the most; "
+                                "thin out the points",
+                                places, tin::kMostPlaces));
+    }
+    (void)tin.numberOr("cell", 1);  // has been read
+    start.settings = readTinSettings(tin, {scene.rules.columns, scene.rules.rows, scene.terrain.cellSize()}, places);
+    tin.finish();
+    start = tinModule().join(start);
+    keepUsual(tin, start);
+    return start;
+}
+
+/// Makes a TIN of the scene's height field.
+tin::Start followed(const files::TomlTable& tin, const Scene& scene) {
+    const HeightField& field = scene.terrain;
+    const tin::Settings settings = readTinSettings(tin, {field.columns(), field.rows(), field.cellSize()});
+    tin.finish();
+    try {
+        tin::Start start = tinModule().follow(field, scene.ground.get(), settings);
+        keepUsual(tin, start);
+        return start;
+    } catch (const std::length_error& error) {
+        tin.fail("vertices", error.what());
+    }
 }
 
 void setTin(tin::Start start, Scene& scene) {
@@ -150,12 +177,8 @@ void readTin(const files::TomlTable& file, Scene& scene) {
     if (scene.ground != nullptr && hasRock(*scene.ground)) {
         file.fail("tin", "a TIN has no rock; leave out [tin], or 'layer' and 'bedrock'");
     }
-    if (scene.tin != nullptr) {  // points, laid out already
-        tin::Start start = *scene.tin;
-        (void)tin->numberOr("cell", 1);  // has been read
-        start.settings = readSettings(*tin, scene.terrain.cellSize());
-        tin->finish();
-        setTin(tinModule().join(start), scene);
+    if (scene.tin != nullptr) {
+        setTin(joined(file, *tin, scene), scene);
         return;
     }
     const HeightField& field = scene.terrain;
@@ -166,14 +189,7 @@ void readTin(const files::TomlTable& file, Scene& scene) {
         }
     }
     requireRange(file, highest, field.columns(), field.rows(), field.unit());
-    const tin::Settings settings = readSettings(*tin, field.cellSize());
-    tin->finish();
-    tin::Start start = tinModule().follow(field, scene.ground.get(), settings);
-    const std::size_t outline = start.constraints.size() + 4;
-    if (outline > static_cast<std::size_t>(settings.mostVertices)) {
-        tin->fail("vertices", fmt::format("the outline of cells without data takes {} vertices, and {} are the most",
-                                          outline, settings.mostVertices));
-    }
+    tin::Start start = followed(*tin, scene);
     scene.ground = nullptr;  // its walls are the TIN's own
     scene.rules.ground = 0;
     setTin(std::move(start), scene);

@@ -17,9 +17,9 @@ public:
 
     /// The sand of scene.tin, as a replica starts with it.
     [[nodiscard]] virtual std::unique_ptr<Surface> surface(const Scene& scene) const = 0;
-    /// The TIN with the fewest points that greedy insertion needs to come as near to every cell's middle as
-    /// settings.maxError, or that settings.mostVertices allows, and those of the rim. Walls, which may be null, are
-    /// holes: what their outline needs is there whatever settings.mostVertices says.
+    /// The TIN with the fewest points that greedy insertion needs to come as near to every cell's middle, and to those
+    /// of the rim, as settings.maxError, or that settings.mostVertices allows beside those at settings.widest. Walls,
+    /// which may be null, are holes: throws std::length_error when what their outline needs is more.
     [[nodiscard]] virtual tin::Start follow(const HeightField& field, const Ground* walls,
                                             const tin::Settings& settings) const = 0;
     /// The TIN of given places and heights; the corners of the field are added where they are missing, as high as the

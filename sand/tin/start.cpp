@@ -12,8 +12,6 @@
 namespace sand::tin {
 namespace {
 
-constexpr std::uint64_t kMostVertices = 1 << 24;
-
 std::int32_t between(files::ByteReader& reader, std::int32_t lowest, std::int32_t highest) {
     const auto number = reader.get<std::int32_t>();
     if (number < lowest || number > highest) {
@@ -24,7 +22,7 @@ std::int32_t between(files::ByteReader& reader, std::int32_t lowest, std::int32_
 
 std::size_t countOf(files::ByteReader& reader) {
     const auto count = reader.get<std::uint64_t>();
-    if (count > kMostVertices) {
+    if (count > kMostPlaces) {
         throw files::FormatError("a TIN with too many vertices");
     }
     return count;
@@ -115,7 +113,7 @@ Start Start::decode(files::ByteReader& reader) {
     start.settings.spacing = between(reader, 1, kLongest);
     start.settings.widest = between(reader, 0, kLongest);
     start.settings.maxError = between(reader, 0, kMaxHeight);
-    start.settings.mostVertices = between(reader, 4, kMostVertices);
+    start.settings.mostVertices = between(reader, 4, std::int32_t{kMostPlaces});
     const std::int32_t bits = between(reader, 0, kKeeps | kHasHoles);
     start.settings.keepConstraints = (bits & kKeeps) != 0;
     for (std::size_t left = countOf(reader); left > 0; --left) {

@@ -15,12 +15,14 @@ namespace sand::tin {
 /// A field's nominal cells, with a sample in the middle of each.
 [[nodiscard]] Cells nominalCells(std::int32_t width, std::int32_t depth /* [probe unit] */);
 
+inline constexpr std::uint32_t kMostPlaces = 1 << 24;  // of a start
+
 /// How finely a TIN follows its terrain and its tools; part of what a scene computes with.
 struct Settings {
     std::int32_t spacing = kLatticePerCell;  // [probe unit], between the points a tool puts into the sand
     std::int32_t widest = 0;                 // [probe unit], between points at the start; 0: as far as they like
     std::int32_t maxError = 1 << 12;         // [unit], by which coarsening may move the surface
-    std::int32_t mostVertices = 1 << 18;     // refinement stops there
+    std::int32_t mostVertices = 1 << 18;     // the start has no more, and refinement stops there
     bool keepConstraints = false;            // of a tool that has left
     friend bool operator==(const Settings&, const Settings&) = default;
 };

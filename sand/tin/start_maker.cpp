@@ -7,11 +7,17 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <stdexcept>
+#include <string>
 
+#include "sand/tin/lattice.hpp"
 #include "sand/tin/simplify.hpp"
 
 namespace sand::tin {
 namespace {
+
+constexpr int kCorners = 4;
+constexpr double kAnyError = 4.0 * kMaxHeight;  // [unit], more than two heights can differ
 
 std::int32_t rounded(double height) {
     return static_cast<std::int32_t>(
@@ -36,8 +42,8 @@ std::size_t nearest(const std::vector<Place>& places, const Place& to) {
 /// Middles of cells at settings.widest, where no vertex is: without them level ground is two triangles, and a furrow's
 /// bank hangs on the field's far corners by slivers, which sand slides over badly and light shows as rays.
 void addLattice(const HeightField& field, Start& start) {
-    const std::int32_t every = start.settings.widest / kLatticePerCell;
-    if (every < 1) {
+    const std::int32_t every = Lattice(start.settings.widest).every;
+    if (every == 0) {
         return;
     }
     const std::set<Place> there(start.places.begin(), start.places.end());
@@ -51,6 +57,24 @@ void addLattice(const HeightField& field, Start& start) {
             }
         }
     }
+}
+
+/// As near to the ground as maxError, or as so few vertices can be.
+Border borderWithin(std::size_t most, std::span<const double> heights, const Cells& cells, const Holes* holes,
+                    double maxError) {
+    Border border = borderOf(heights, cells, holes, maxError);
+    if (border.places.size() <= most) {
+        return border;
+    }
+    if (const Border least = borderOf(heights, cells, holes, kAnyError); least.places.size() > most) {
+        throw std::length_error("the outline of cells without data takes " + std::to_string(least.places.size()) +
+                                " vertices, and there is room for " + std::to_string(most) +
+                                " beside corners and points at 'widest'; raise 'vertices'");
+    }
+    for (double error = std::max(2 * maxError, 1.0); border.places.size() > most; error *= 2) {
+        border = borderOf(heights, cells, holes, error);
+    }
+    return border;
 }
 
 }  // namespace
@@ -92,8 +116,11 @@ Start follow(const HeightField& field, const Ground* walls, const Settings& sett
     const Cells cells = nominalCells(start.width, start.depth);
     start.holes = holesOf(heights, cells);
     const double maxError = settings.maxError;
-    const Border border = borderOf(heights, cells, start.holes.get(), maxError);
-    const Simplified chosen = simplify(start.width, start.depth, raster, {maxError, settings.mostVertices}, border);
+    const auto room =
+        static_cast<int>(settings.mostVertices - Lattice(settings.widest).size(field.columns(), field.rows()));
+    const Border border = borderWithin(static_cast<std::size_t>(std::max(room - kCorners, 0)), heights, cells,
+                                       start.holes.get(), maxError);
+    const Simplified chosen = simplify(start.width, start.depth, raster, {maxError, room}, border);
     start.constraints = border.edges;
     start.places = chosen.places;
     for (const double height : chosen.heights) {

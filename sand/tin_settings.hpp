@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "files/toml_table.hpp"
+#include "sand/tin/start.hpp"
+
+namespace sand {
+
+/// The nominal cells that a TIN is made on.
+struct TinCells {
+    int columns, rows;
+    double side;  // [scene unit]
+};
+
+/// Reads [tin] of a scene whose terrain is a raster of these cells. Points that lie `widest` apart are within what
+/// `vertices` allows: of the two, one that the file does not give yields. Throws files::InputError.
+[[nodiscard]] tin::Settings readTinSettings(const files::TomlTable& tin, const TinCells& cells);
+
+/// The same where the terrain is points, of which the start takes all: they, with the field's corners, are so many
+/// `places`.
+[[nodiscard]] tin::Settings readTinSettings(const files::TomlTable& tin, const TinCells& cells, std::size_t places);
+
+/// A tool makes vertices up to the usual number of them where the file gives none, however many a start has.
+void keepUsual(const files::TomlTable& tin, tin::Start& start);
+
+}  // namespace sand

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the [tin] of a scene file may ask for.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "files/input_error.hpp"
+#include "sand/scene.hpp"
+#include "sand/tin/lattice.hpp"
+#include "tests/support/folder_test.hpp"
+
+namespace {
+
+class TinScene : public test::FolderTest {
+protected:
+    /// `tin` begins on line 7.
+    [[nodiscard]] sand::Scene scene(int columns, const std::string& kind, const std::string& tin) const {
+        return loaded(
+            fmt::format("[field]\ncolumns = {}\nwidth = 2.0\n[terrain]\nkind = \"{}\"\n[tin]\n{}"
+                        "[material]\ntalus_deg = 34\n[tool]\nradius = 0.1\n",
+                        columns, kind, tin));
+    }
+    [[nodiscard]] sand::Scene loaded(const std::string& text) const {
+        std::ofstream(folder_ / "s.toml") << text;
+        return sand::loadScene(folder_ / "s.toml");
+    }
+    /// Without the folder.
+    template <class Load>
+    [[nodiscard]] std::string refusal(const Load& load) const {
+        try {
+            (void)load();
+        } catch (const files::InputError& error) {
+            return std::string(error.what()).substr(folder_.string().size() + 1);
+        }
+        return "nothing";
+    }
+    void writeSurvey(int side) const {
+        std::ofstream survey(folder_ / "p.csv");
+        for (int i = 0; i < side * side; ++i) {
+            survey << i % side << ' ' << i / side << ' ' << (i * i) % 7 << '\n';
+        }
+    }
+    /// `tin` begins on line 5.
+    [[nodiscard]] sand::Scene survey(const std::string& tin) const {
+        return loaded(
+            fmt::format("[terrain]\nkind = \"points\"\nfile = \"p.csv\"\n[tin]\n{}"
+                        "[material]\ntalus_deg = 34\n[tool]\nradius = 1\n",
+                        tin));
+    }
+};
+
+TEST(Lattice, KnowsItsSize) {
+    for (int every = 1; every < 12; ++every) {
+        for (int cells = 1; cells < 30; ++cells) {
+            int count = 0;
+            for (int cell = every / 2; cell < cells; cell += every) {
+                ++count;
+            }
+            EXPECT_EQ(sand::tin::Lattice(every * sand::kProbePerCell).size(cells, every), count)
+                << every << ", " << cells;
+        }
+    }
+    EXPECT_EQ(sand::tin::Lattice(sand::kProbePerCell - 1).size(5, 5), 0) << "closer than cells there are no middles";
+    EXPECT_EQ(sand::tin::Lattice(sand::kProbePerCell).size(16384, 16384), std::int64_t{1} << 28);
+}
+
+TEST_F(TinScene, HasNoMoreVerticesThanTheFileAllows) {
+    EXPECT_EQ(scene(64, "dunes", "vertices = 4\n").tin->places.size(), 4U);
+    for (const int vertices : {5, 20, 100, 1000}) {
+        for (const char* widest : {"", "widest = 0\n", "widest = 2\n"}) {
+            const sand::Scene read = scene(64, "dunes", fmt::format("vertices = {}\n{}", vertices, widest));
+            EXPECT_LE(read.tin->places.size(), static_cast<std::size_t>(vertices)) << widest;
+            EXPECT_EQ(read.tin->settings.mostVertices, vertices);
+        }
+    }
+}
+
+TEST_F(TinScene, RefusesPointsThatLieNearerThanItsVerticesAllow) {
+    EXPECT_EQ(
+        refusal([&] { return scene(1024, "flat", "vertices = 100\nwidest = 0.002\n"); }),
+        "s.toml:8: points 0.002 apart on 1024 x 1024 cells are 1048580 vertices, and 100 are the most; widest must "
+        "be at least 0.2109375");
+    EXPECT_EQ(scene(1024, "flat", "vertices = 100\nwidest = 0.2109375\n").tin->places.size(), 4U + 9 * 9);
+    EXPECT_EQ(refusal([&] { return scene(64, "flat", "vertices = 4\nwidest = 1\n"); }),
+              "s.toml:8: points 1 apart on 64 x 64 cells are 8 vertices, and 4 are the most; widest must be 0 (none)");
+    EXPECT_EQ(refusal([&] { return scene(5000, "flat", "widest = 0.0004\n"); }),
+              "s.toml:7: points 0.0004 apart on 5000 x 5000 cells are 25000004 vertices, and 4194304 are the most; "
+              "widest must be at least 0.0012");
+}
+
+TEST_F(TinScene, PointsAtWidestMayBeMoreThanTheUsualVertices) {
+    const sand::Scene read = scene(512, "flat", "widest = 0.00390625\n");
+    EXPECT_EQ(read.tin->places.size(), 4U + 512 * 512);
+    EXPECT_EQ(read.tin->settings.mostVertices, 4 + 512 * 512) << "and the tool makes none";
+    EXPECT_EQ(scene(512, "flat", "").tin->settings.mostVertices, 1 << 18);
+}
+
+TEST_F(TinScene, RefusesMorePointsOfASurveyThanItsVertices) {
+    writeSurvey(20);
+    EXPECT_EQ(refusal([&] { return survey("vertices = 399\n"); }),
+              "s.toml:5: the points are 400 vertices with the field's corners, and 399 are the most; raise it, or thin "
+              "out the points");
+    EXPECT_EQ(survey("vertices = 400\n").tin->places.size(), 400U);
+}
+
+}  // namespace
