@@ -32,11 +32,11 @@ struct Worst {
 /// The errors of all samples against the surface over a mesh, kept as it changes.
 class Errors {
 public:
-    Errors(const Raster& raster, const Mesh& mesh, const std::vector<double>& heights)
+    Errors(const Raster& raster, const Mesh& mesh, const std::vector<double>& heights, bool reports = true)
         : raster_(raster),
           mesh_(mesh.triangles()),
           heights_(heights),
-          errors_(raster.heights.size()),
+          errors_(reports ? raster.heights.size() : 0),
           used_(raster.heights.size()) {}
 
     /// The sample is a vertex now: rounding may show it an error that no insertion takes away.
@@ -59,6 +59,9 @@ public:
         return heap_.empty() ? Worst{} : heap_.top();
     }
     void report(Simplified& result) const {
+        if (errors_.empty()) {
+            return;
+        }
         double largest = 0, sum = 0, count = 0;
         for (std::size_t i = 0; i < errors_.size(); ++i) {
             if (!std::isnan(raster_.heights[i]) && !used_[i]) {
@@ -142,7 +145,9 @@ private:
         for (std::int64_t sample = start; sample <= start + last - first; ++sample, w0 += d0, w1 += d1, w2 += d2) {
             const auto index = static_cast<std::size_t>(sample);
             const double error = std::abs(raster_.heights[index] - (w0 * z[0] + w1 * z[1] + w2 * z[2]) / area);
-            errors_[index] = error;
+            if (!errors_.empty()) {
+                errors_[index] = error;
+            }
             if (error > worst.error && !used_[index]) {  // never true of what has no data
                 worst.error = error;
                 worst.sample = sample;
@@ -153,7 +158,7 @@ private:
     const Raster& raster_;
     const Triangles& mesh_;
     const std::vector<double>& heights_;
-    std::vector<double> errors_;  // by sample, as its triangle changed last
+    std::vector<double> errors_;  // by sample, as its triangle changed last; none when nobody asks
     std::vector<bool> used_;
     std::vector<std::uint32_t> versions_;  // by slot
     std::priority_queue<Worst> heap_;
@@ -209,7 +214,7 @@ Simplified simplify(std::int32_t width, std::int32_t depth, const Raster& raster
     }
     Mesh mesh(width, depth);
     Simplified result;
-    Errors errors(raster, mesh, result.heights);
+    Errors errors(raster, mesh, result.heights, goal.reports);
     for (Vertex corner = 0; corner < 4; ++corner) {
         const Place place = mesh.triangles().places[static_cast<std::size_t>(corner)];
         result.places.push_back(place);

@@ -77,6 +77,48 @@ Border borderWithin(std::size_t most, std::span<const double> heights, const Cel
     return border;
 }
 
+/// A raster for greedy insertion takes twice the memory that the field does: level ground can do without.
+bool isLevel(const HeightField& field) {
+    for (int row = 0; row < field.rows(); ++row) {
+        const std::int32_t* cells = field.row(row);
+        if (std::any_of(cells, cells + field.columns(),
+                        [&](std::int32_t cell) { return cell != field.height(0, 0); })) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// What the rim, the holes and the heights of a field need.
+void addChosen(const HeightField& field, const Ground* walls, Start& start) {
+    std::vector<double> heights;
+    heights.reserve(static_cast<std::size_t>(field.columns()) * static_cast<std::size_t>(field.rows()));
+    for (int row = 0; row < field.rows(); ++row) {
+        for (int column = 0; column < field.columns(); ++column) {
+            const bool wall = walls != nullptr && walls->isWall(column, row);
+            heights.push_back(wall ? std::numeric_limits<double>::quiet_NaN() : field.height(column, row));
+        }
+    }
+    Raster raster;
+    raster.heights = heights;
+    raster.columns = field.columns();
+    raster.rows = field.rows();
+    raster.first = {kLatticePerCell / 2, kLatticePerCell / 2};  // the middles of cells
+    const Cells cells = nominalCells(start.width, start.depth);
+    start.holes = holesOf(heights, cells);
+    const double maxError = start.settings.maxError;
+    const auto room = static_cast<int>(start.settings.mostVertices -
+                                       Lattice(start.settings.widest).size(field.columns(), field.rows()));
+    const Border border = borderWithin(static_cast<std::size_t>(std::max(room - kCorners, 0)), heights, cells,
+                                       start.holes.get(), maxError);
+    const Simplified chosen = simplify(start.width, start.depth, raster, {maxError, room, false}, border);
+    start.constraints = border.edges;
+    start.places = chosen.places;
+    for (const double height : chosen.heights) {
+        start.heights.push_back(rounded(height));
+    }
+}
+
 }  // namespace
 
 Layer layerOf(const Start& start) {
@@ -96,35 +138,15 @@ Layer layerOf(const Start& start) {
 }
 
 Start follow(const HeightField& field, const Ground* walls, const Settings& settings) {
-    std::vector<double> heights;
-    heights.reserve(static_cast<std::size_t>(field.columns()) * static_cast<std::size_t>(field.rows()));
-    for (int row = 0; row < field.rows(); ++row) {
-        for (int column = 0; column < field.columns(); ++column) {
-            const bool wall = walls != nullptr && walls->isWall(column, row);
-            heights.push_back(wall ? std::numeric_limits<double>::quiet_NaN() : field.height(column, row));
-        }
-    }
-    Raster raster;
-    raster.heights = heights;
-    raster.columns = field.columns();
-    raster.rows = field.rows();
-    raster.first = {kLatticePerCell / 2, kLatticePerCell / 2};  // the middles of cells
     Start start;
     start.width = field.columns() * kLatticePerCell;
     start.depth = field.rows() * kLatticePerCell;
     start.settings = settings;
-    const Cells cells = nominalCells(start.width, start.depth);
-    start.holes = holesOf(heights, cells);
-    const double maxError = settings.maxError;
-    const auto room =
-        static_cast<int>(settings.mostVertices - Lattice(settings.widest).size(field.columns(), field.rows()));
-    const Border border = borderWithin(static_cast<std::size_t>(std::max(room - kCorners, 0)), heights, cells,
-                                       start.holes.get(), maxError);
-    const Simplified chosen = simplify(start.width, start.depth, raster, {maxError, room}, border);
-    start.constraints = border.edges;
-    start.places = chosen.places;
-    for (const double height : chosen.heights) {
-        start.heights.push_back(rounded(height));
+    if (walls == nullptr && isLevel(field)) {
+        start.places = {{0, 0}, {start.width, 0}, {start.width, start.depth}, {0, start.depth}};
+        start.heights.assign(start.places.size(), field.height(0, 0));
+    } else {
+        addChosen(field, walls, start);
     }
     addLattice(field, start);
     start.meanHeight = meanHeight(start);

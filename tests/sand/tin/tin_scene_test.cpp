@@ -104,4 +104,11 @@ TEST_F(TinScene, RefusesMorePointsOfASurveyThanItsVertices) {
     EXPECT_EQ(survey("vertices = 400\n").tin->places.size(), 400U);
 }
 
+TEST_F(TinScene, LevelGroundIsItsCornersAndThePointsAtWidest) {
+    const sand::Scene read = scene(40, "flat", "max_error = 0\nwidest = 0.4\n");  // 8 cells
+    EXPECT_EQ(read.tin->places.size(), 4U + 5 * 5);
+    EXPECT_EQ(read.tin->places[2], (sand::tin::Place{40 * 256, 40 * 256}));
+    EXPECT_EQ(read.tin->heights, std::vector<std::int32_t>(29, 0));
+}
+
 }  // namespace
