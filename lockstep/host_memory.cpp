@@ -44,27 +44,29 @@ std::int64_t freeMemory() {
     return std::min(available(), most && used ? std::max<std::int64_t>(*most - *used, 0) : kUnlimited);
 }
 
-std::optional<std::string> lackOfMemory(const std::vector<RankHost>& ranks, std::int64_t bytesPerRank) {
+std::optional<std::string> lackOfMemory(const std::vector<RankHost>& ranks, std::int64_t bytesPerRank,
+                                        std::int64_t bytesToDraw) {
     struct Host {
-        std::int64_t ranks = 0;
+        std::int64_t ranks = 0, bytes = 0;
         std::int64_t freeBytes = kUnlimited;
     };
     std::map<std::string, Host> hosts;
     for (const RankHost& rank : ranks) {
         Host& host = hosts[rank.name];
         ++host.ranks;
+        host.bytes += bytesPerRank + (&rank == &ranks.front() ? 0 : bytesToDraw);
         host.freeBytes = std::min(host.freeBytes, rank.freeBytes);
     }
-    const auto lack = [&](const Host& host) { return host.ranks * bytesPerRank - host.freeBytes; };
+    const auto lack = [&](const Host& host) { return host.bytes - host.freeBytes; };
     const auto worst = std::max_element(hosts.begin(), hosts.end(),
                                         [&](const auto& a, const auto& b) { return lack(a.second) < lack(b.second); });
     if (worst == hosts.end() || lack(worst->second) <= 0) {
         return std::nullopt;
     }
     const auto& [name, host] = *worst;
-    return fmt::format(
-        "at least {:.1f} GiB for the {} on {}, where {:.1f} GiB are free", gibibytes(host.ranks * bytesPerRank),
-        host.ranks == 1 ? "one rank" : fmt::format("{} ranks", host.ranks), name, gibibytes(host.freeBytes));
+    return fmt::format("at least {:.1f} GiB for the {} on {}, where {:.1f} GiB are free", gibibytes(host.bytes),
+                       host.ranks == 1 ? "one rank" : fmt::format("{} ranks", host.ranks), name,
+                       gibibytes(host.freeBytes));
 }
 
 }  // namespace lockstep

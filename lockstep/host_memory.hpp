@@ -17,7 +17,9 @@ struct RankHost {
 /// Memory that programs on this machine, or in this control group, may still take [byte].
 [[nodiscard]] std::int64_t freeMemory();
 
-/// Why ranks that take `bytesPerRank` each do not fit their hosts, for the host that lacks most; nothing when they do.
-[[nodiscard]] std::optional<std::string> lackOfMemory(const std::vector<RankHost>& ranks, std::int64_t bytesPerRank);
+/// Why ranks that take `bytesPerRank` each, and all but the first, the master, `bytesToDraw` more, do not fit their
+/// hosts, for the host that lacks most; nothing when they do.
+[[nodiscard]] std::optional<std::string> lackOfMemory(const std::vector<RankHost>& ranks, std::int64_t bytesPerRank,
+                                                      std::int64_t bytesToDraw = 0);
 
 }  // namespace lockstep

@@ -121,7 +121,7 @@ sand::Scene loadScene(Options& options) {
 World loadWorld(const lockstep::Cluster& cluster, Options& options) {
     cluster.mayTakeLong(true);  // until the ranks have been told of it
     World world{loadScene(options), walls::loadWallAs(options.wall, options.stereo), {}};
-    master::requireMemory(cluster, world.scene, options.scene + options.replay);
+    master::requireMemory(cluster.hosts(), world.scene, options.scene + options.replay);
     if (world.wall.ranks() != cluster.renderRanks()) {
         throw files::InputError(fmt::format(
             "{}: {} tiles need {} render ranks, but the job has {}: mpirun -n 1 "

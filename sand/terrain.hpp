@@ -86,8 +86,8 @@ public:
     /// The same of a TIN.
     [[nodiscard]] tin::SurfaceDamage takeTinDamage() { return surface_->takeTinDamage(); }
 
-    /// What a replica of a field of this size takes at the very least, with the scene it starts from [byte].
-    [[nodiscard]] static std::int64_t leastBytes(int columns, int rows);
+    /// What a replica of a scene takes at the very least, with the scene it starts from [byte].
+    [[nodiscard]] static std::int64_t leastBytes(const Scene& scene);
 
     /// The sand now, for whoever compresses it on another thread.
     [[nodiscard]] std::shared_ptr<const SurfaceCopy> copySand() const { return surface_->copy(); }

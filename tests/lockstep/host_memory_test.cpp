@@ -22,6 +22,13 @@ TEST(HostMemory, TheHostThatLacksMostIsNamed) {
     EXPECT_EQ(lack, "at least 4.0 GiB for the one rank on b, where 1.0 GiB are free");
 }
 
+TEST(HostMemory, AllRanksButTheMasterDraw) {
+    const std::vector<lockstep::RankHost> ranks{{"a", 8 * kGiB}, {"a", 8 * kGiB}, {"b", 8 * kGiB}};
+    EXPECT_FALSE(lockstep::lackOfMemory(ranks, kGiB, 6 * kGiB));
+    EXPECT_EQ(lockstep::lackOfMemory(ranks, kGiB, 8 * kGiB),
+              "at least 10.0 GiB for the 2 ranks on a, where 8.0 GiB are free");
+}
+
 TEST(HostMemory, ThisMachineHasSome) {
     EXPECT_GT(lockstep::freeMemory(), 1 << 20);
     EXPECT_LT(lockstep::freeMemory(), std::int64_t{1} << 50);
