@@ -29,6 +29,10 @@ void readMaterial(const files::TomlTable& file, Scene& scene) {
         }
     }
     scene.rules.scheme = static_cast<Scheme>(table.choiceOr("scheme", {"g", "n4", "g_plain"}, 0));
+    if (scene.tin != nullptr && scene.rules.scheme != Scheme::isotropic) {
+        table.fail("scheme", fmt::format("a TIN has no scheme \"{}\", only \"g\"; leave out 'scheme', or [tin]",
+                                         table.text("scheme")));
+    }
     if (const auto fault = faultOf(scene.material, scene.grid())) {
         table.fail(fault->key, fault->message);
     }

@@ -16,11 +16,12 @@ namespace {
 class TinScene : public test::FolderTest {
 protected:
     /// `tin` begins on line 7.
-    [[nodiscard]] sand::Scene scene(int columns, const std::string& kind, const std::string& tin) const {
+    [[nodiscard]] sand::Scene scene(int columns, const std::string& kind, const std::string& tin,
+                                    const std::string& material = "") const {
         return loaded(
             fmt::format("[field]\ncolumns = {}\nwidth = 2.0\n[terrain]\nkind = \"{}\"\n[tin]\n{}"
-                        "[material]\ntalus_deg = 34\n[tool]\nradius = 0.1\n",
-                        columns, kind, tin));
+                        "[material]\n{}[tool]\nradius = 0.1\n",
+                        columns, kind, tin, material));
     }
     [[nodiscard]] sand::Scene loaded(const std::string& text) const {
         std::ofstream(folder_ / "s.toml") << text;
@@ -103,6 +104,15 @@ TEST_F(TinScene, RefusesMorePointsOfASurveyThanItsVertices) {
               "s.toml:5: the points are 400 vertices with the field's corners, and 399 are the most; raise it, or thin "
               "out the points");
     EXPECT_EQ(survey("vertices = 400\n").tin->places.size(), 400U);
+}
+
+TEST_F(TinScene, RefusesSchemesThatATinDoesNotHave) {
+    for (const char* scheme : {"n4", "g_plain"}) {
+        EXPECT_EQ(
+            refusal([&] { return scene(64, "flat", "", fmt::format("scheme = \"{}\"\n", scheme)); }),
+            fmt::format("s.toml:8: a TIN has no scheme \"{}\", only \"g\"; leave out 'scheme', or [tin]", scheme));
+    }
+    EXPECT_NE(scene(64, "flat", "", "scheme = \"g\"\n").tin, nullptr);
 }
 
 // Of this and other scenes 329 to 401 bytes a vertex were measured.
