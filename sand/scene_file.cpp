@@ -10,6 +10,7 @@
 #include "sand/scene_terrain.hpp"
 #include "sand/scene_tin.hpp"
 #include "sand/terrain.hpp"
+#include "sand/tin_settings.hpp"
 
 namespace sand {
 namespace {
@@ -138,6 +139,7 @@ Scene loadScene(const std::filesystem::path& file) {
     readTin(toml, scene);
     readTool(toml, scene);
     readMaterial(toml, scene);
+    requireSpacing(toml, scene);
     readForce(toml, scene);
     readLook(toml, scene);
     toml.finish();

@@ -8,6 +8,7 @@
 
 #include "sand/step.hpp"
 #include "sand/tin/lattice.hpp"
+#include "sand/tool_shape.hpp"
 
 namespace sand {
 namespace {
@@ -87,6 +88,26 @@ tin::Settings readTinSettings(const files::TomlTable& tin, const TinCells& cells
 void keepUsual(const files::TomlTable& tin, tin::Start& start) {
     if (!tin.has("vertices")) {
         start.settings.mostVertices = std::max(kUsual, static_cast<std::int32_t>(start.places.size()));
+    }
+}
+
+void requireSpacing(const files::TomlTable& file, const Scene& scene) {
+    if (scene.tin == nullptr) {
+        return;
+    }
+    const tin::Settings& settings = scene.tin->settings;
+    const Rect reach = TurnedShape(scene.rules.toolShape()).cellsChanged(0, 0);  // along its length
+    const double width = std::min(reach.x1 - reach.x0, scene.rules.columns) * double{kProbePerCell};
+    const double depth = std::min(reach.x1 - reach.x0, scene.rules.rows) * double{kProbePerCell};
+    const double least = std::min(std::ceil(std::sqrt(width * depth / settings.mostVertices)), double{kProbePerCell});
+    if (settings.spacing < least) {
+        const double finest = scene.terrain.cellSize() / kProbePerCell;
+        const files::TomlTable tin = file.requiredTable("tin");
+        tin.fail("spacing",
+                 fmt::format("points {} apart would be {:.0f} where a tool of radius {} works, and {} are the "
+                             "most; spacing must be at least {:.9g}",
+                             tin.number("spacing"), width * depth / settings.spacing / settings.spacing,
+                             scene.material.toolRadius, settings.mostVertices, least * finest));
     }
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "files/toml_table.hpp"
-#include "sand/tin/start.hpp"
+#include "sand/scene.hpp"
 
 namespace sand {
 
@@ -22,5 +22,10 @@ struct TinCells {
 
 /// A tool makes vertices up to the usual number of them where the file gives none, however many a start has.
 void keepUsual(const files::TomlTable& tin, tin::Start& start);
+
+/// Throws files::InputError where a tool would be refined around by squares below a cell, of which there are more than
+/// the scene may have vertices: each costs time in every step, whether it gets a vertex or not. Tool and material have
+/// been read.
+void requireSpacing(const files::TomlTable& file, const Scene& scene);
 
 }  // namespace sand

@@ -115,6 +115,18 @@ TEST_F(TinScene, RefusesSchemesThatATinDoesNotHave) {
     EXPECT_NE(scene(64, "flat", "", "scheme = \"g\"\n").tin, nullptr);
 }
 
+TEST_F(TinScene, RefusesASpacingThatWouldPutMorePointsAroundTheToolThanItsVertices) {
+    EXPECT_EQ(refusal([&] { return scene(512, "flat", "spacing = 0.000015259\n"); }),
+              "s.toml:7: points 1.5259e-05 apart would be 220463104 where a tool of radius 0.1 works, and 262144 are "
+              "the most; spacing must be at least 0.000442504883");
+    EXPECT_EQ(refusal([&] { return scene(512, "flat", "vertices = 2000\nspacing = 0.003\n"); }),
+              "s.toml:8: points 0.003 apart would be 5681 where a tool of radius 0.1 works, and 2000 are the most; "
+              "spacing must be at least 0.00390625");
+    EXPECT_EQ(scene(512, "flat", "spacing = 0.000442504883\n").tin->settings.spacing, 29);
+    EXPECT_EQ(scene(512, "flat", "vertices = 4\nspacing = 0.00390625\n").tin->settings.spacing, 256)
+        << "a cell is never too little";
+}
+
 // Of this and other scenes 329 to 401 bytes a vertex were measured.
 TEST_F(TinScene, AReplicaTakesNoLessMemoryThanItsHostIsAskedFor) {
     const files::Bytes bytes = scene(256, "flat", "widest = 0.0078125\n").encode();
