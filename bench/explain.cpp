@@ -113,7 +113,8 @@ std::vector<double> timeSteps(sand::Terrain& terrain, const std::vector<sand::St
     return seconds;
 }
 
-/// The scene's sand under noise of the scene's own tool's height, at least a cell: next to nothing rests.
+/// The scene's sand under noise of the scene's own tool's height, at least a cell, and no more than a TIN's volumes
+/// can hold: next to nothing rests.
 sand::Scene stirred(const sand::Scene& scene, std::uint32_t seed) {
     std::mt19937 random(seed);
     sand::Scene result = scene;
@@ -121,9 +122,11 @@ sand::Scene stirred(const sand::Scene& scene, std::uint32_t seed) {
                        static_cast<std::uint32_t>(sand::kUnitsPerCell);
     if (scene.tin != nullptr) {
         auto start = *scene.tin;
+        const auto most = static_cast<std::int32_t>(
+            std::min<double>(sand::kMaxHeight, sand::tin::mostHeight(scene.rules.columns, scene.rules.rows)));
         for (std::int32_t& height : start.heights) {
-            const auto noise = static_cast<std::int32_t>(random() % range);
-            height = std::min(height, sand::kMaxHeight - noise) + noise;
+            const auto noise = static_cast<std::int32_t>(random() % std::min(range, static_cast<std::uint32_t>(most)));
+            height = std::min(height, most - noise) + noise;
         }
         result.rules.tin = start.digest();
         result.tin = std::make_shared<const sand::tin::Start>(std::move(start));

@@ -15,17 +15,15 @@
 namespace sand {
 namespace {
 
-constexpr double kMostVolume = 4.6e18;  // 2^62 volume units, all of whose sums stay within 64 bits
-
 constexpr int kUsualSide = 512;  // nominal cells, of points that nobody says more of
 
 /// Whether volumes of heights up to `highest` [unit] fit over this field.
 void requireRange(const files::TomlTable& file, double highest, int columns, int rows, double unit) {
-    const double area = 6.0 * columns * rows * kProbePerCell * kProbePerCell;
-    if (highest * area > kMostVolume) {
+    const double most = tin::mostHeight(columns, rows);
+    if (highest > most) {
         file.fail("tin", fmt::format("heights of up to {} on {} x {} cells are more than a TIN's volumes can hold, {} "
                                      "is the most; set 'datum', or fewer cells",
-                                     highest * unit, columns, rows, kMostVolume / area * unit));
+                                     highest * unit, columns, rows, most * unit));
     }
 }
 

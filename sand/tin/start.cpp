@@ -82,6 +82,11 @@ Cells nominalCells(std::int32_t width, std::int32_t depth) {
             .depth = depth};
 }
 
+double mostHeight(int columns, int rows) {
+    constexpr double kMostVolume = 4.6e18;  // 2^62 volume units, all of whose sums stay within 64 bits
+    return kMostVolume / (6.0 * columns * rows * kLatticePerCell * kLatticePerCell);
+}
+
 void Start::encode(files::ByteWriter& writer) const {
     for (const std::int32_t number :
          {width, depth, meanHeight, settings.spacing, settings.widest, settings.maxError, settings.mostVertices,

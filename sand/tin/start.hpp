@@ -15,6 +15,9 @@ namespace sand::tin {
 /// A field's nominal cells, with a sample in the middle of each.
 [[nodiscard]] Cells nominalCells(std::int32_t width, std::int32_t depth /* [probe unit] */);
 
+/// Heights up to this have volumes that fit, wherever the vertices lie on so many nominal cells [unit].
+[[nodiscard]] double mostHeight(int columns, int rows);
+
 inline constexpr std::uint32_t kMostPlaces = 1 << 24;  // of a start
 
 /// How finely a TIN follows its terrain and its tools; part of what a scene computes with.

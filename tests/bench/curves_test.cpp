@@ -95,6 +95,17 @@ INSTANTIATE_TEST_SUITE_P(Bench, Curve,
                              return name;
                          });
 
+// A tool of 307 cells stirs sand to 1229 cells, and volumes of 2048 x 2048 hold 42.
+TEST(SandwallBench, ExplainsATinWhoseVolumesHoldLessThanItsToolIsHigh) {
+    const TemporaryFile scene("tin.toml");
+    std::ofstream(scene.path()) << "steps_per_second = 1000\n[field]\ncolumns = 2048\n[terrain]\n[tin]\nwidest = 0\n"
+                                   "vertices = 100\nspacing = 0.1\n[material]\nsettling_time = 1000\n[tool]\n"
+                                   "radius = 0.3\n";
+    const support::Ran ran = runProgram("sandwall-bench", "explain " + scene.path() + " --runs 2");
+    EXPECT_EQ(ran.status, 0) << ran.output;
+    EXPECT_NE(ran.output.find("step,everything moving,yes,"), std::string::npos) << ran.output;
+}
+
 TEST(SandwallBench, RefusesInOneLineWhatItCannotDo) {
     for (const auto& [arguments, part] : std::vector<std::pair<std::string, std::string>>{
              {"", "ubcommand"},
