@@ -89,7 +89,7 @@ void KeptSand::keep(const SandCopy& copy) {
 }
 
 std::vector<Rect> KeptSand::putBackHeights(HeightField& field) {
-    const std::vector<Rect> tiles = takeTouched();
+    std::vector<Rect> tiles = takeTouched();
     for (const Rect& tile : tiles) {
         copyCells(copy_->field, tile, field);
     }

@@ -48,6 +48,7 @@ void readMaterial(const files::TomlTable& file, Scene& scene) {
 
 std::vector<std::string_view> toolNames() {
     std::vector<std::string_view> names;
+    names.reserve(kToolKinds);
     for (int kind = 0; kind < kToolKinds; ++kind) {
         names.push_back(toolName(static_cast<ToolKind>(kind)));
     }

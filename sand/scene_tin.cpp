@@ -147,7 +147,7 @@ HeightField layOutPoints(const files::TomlTable& file, const files::TomlTable& t
     };
     scene.rules.columns = cellsOf(east - west);
     scene.rules.rows = cellsOf(north - south);
-    const HeightField one(1, 1, cell);
+    HeightField one(1, 1, cell);
     scene.georeference.west = west;
     scene.georeference.south = south;
     scene.georeference.datum = terrain.numberOr("datum", 0);

@@ -108,10 +108,10 @@ std::optional<std::string> viewerFault(const Wall& wall) {
 
 std::optional<std::string> viewFault(const Wall& wall) {
     for (const Tile& tile : wall.tiles) {
-        if (const auto fault = pixelFault(wall.stereo, tile)) {
+        if (auto fault = pixelFault(wall.stereo, tile)) {
             return fault;
         }
-        if (const auto fault = eyeFault(wall, tile)) {
+        if (auto fault = eyeFault(wall, tile)) {
             return fault;
         }
     }

@@ -81,6 +81,7 @@ GlProgram::GlProgram(const ProgramFiles& files) {
     }
     shaders.push_back(compile(GL_FRAGMENT_SHADER, files.fragment));
     std::vector<GLuint> ids;
+    ids.reserve(shaders.size());
     for (const auto& shader : shaders) {
         ids.push_back(shader->id());
     }

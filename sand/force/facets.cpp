@@ -14,8 +14,9 @@ std::size_t at(std::int32_t number) { return static_cast<std::size_t>(number); }
 
 /// The whole number nearest to it, halves up: what floor() would say, which asks a library.
 std::int64_t nearest(double value) {
-    const auto cut = static_cast<std::int64_t>(value + 0.5);
-    return cut - (static_cast<double>(cut) > value + 0.5 ? 1 : 0);
+    const double raised = value + 0.5;
+    const auto cut = static_cast<std::int64_t>(raised);
+    return cut - (static_cast<double>(cut) > raised ? 1 : 0);
 }
 
 /// Whether a triangle owns the places on its edge from a to b; the one beyond runs the other way round, and does not.
