@@ -104,6 +104,7 @@ void measure(const Stroke& stroke, int runs, Csv& csv) {
     }
     std::uint64_t idleHash = 0;
     std::vector<double> idle;
+    idle.reserve(kSteps);
     sand::Terrain settled(sceneFor(stroke));
     for (int i = 0; i < kSteps; ++i) {
         idle.push_back(secondsOf([&] {

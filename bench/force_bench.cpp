@@ -33,6 +33,7 @@ sand::ProbePoint middle(int side) { return {side / 2 * sand::kProbePerCell, side
 sand::tin::Layer tinRipples(int side) {
     sand::tin::Mesh mesh(side * sand::kProbePerCell, side * sand::kProbePerCell);
     std::vector<sand::tin::Place> places;
+    places.reserve(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
     for (int cell = 0; cell < side * side; ++cell) {
         places.push_back(
             {(cell % side * 2 + 1) * sand::kProbePerCell / 2, (cell / side * 2 + 1) * sand::kProbePerCell / 2});

@@ -134,6 +134,7 @@ private:
 void measure(const char* law, const sand::ForceConstants& constants, int side, int runs, Csv& csv) {
     progress("{} on {} x {} cells, {} runs", law, side, side, runs);
     std::vector<Drag> drags;
+    drags.reserve(static_cast<std::size_t>(runs));
     for (int run = 0; run < runs; ++run) {
         drags.emplace_back(constants, side);
     }

@@ -21,6 +21,7 @@ void becomeLatency(const std::vector<std::string>& arguments) {
     const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe").parent_path();
     setenv("SANDWALL_BIN", here.c_str(), 0);
     std::vector<char*> pointers;
+    pointers.reserve(words.size() + 1);
     for (std::string& word : words) {
         pointers.push_back(word.data());
     }

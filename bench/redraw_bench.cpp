@@ -48,13 +48,13 @@ std::vector<std::unique_ptr<Tile>> tilesOf(const walls::Wall& wall, const sand::
                                                       scene.referenceHeight() * field.unit());
     std::vector<std::unique_ptr<Tile>> tiles;
     for (const walls::Tile& tile : wall.tiles) {
-        tiles.push_back(std::make_unique<Tile>(tin != nullptr ? render_node::SandView(scene, *tin, sceneToRoom)
-                                                              : render_node::SandView(scene, sceneToRoom)));
+        tiles.push_back(std::make_unique<Tile>(Tile{tin != nullptr ? render_node::SandView(scene, *tin, sceneToRoom)
+                                                                   : render_node::SandView(scene, sceneToRoom),
+                                                    {}}));
         for (const walls::Eye eye : walls::eyesOf(wall.stereo)) {
             const walls::View seen = walls::viewOf(wall, tile, eye);
             tiles.back()->eyes.push_back(std::make_unique<Tile::Eye>(
-                render_node::Camera{seen.viewProjection, seen.eye},
-                render_node::EyeTarget(tile.pixels.x, tile.pixels.y), render_node::EyeMemory{}));
+                Tile::Eye{{seen.viewProjection, seen.eye}, {tile.pixels.x, tile.pixels.y}, {}}));
         }
     }
     return tiles;

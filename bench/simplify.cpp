@@ -88,6 +88,7 @@ void measure(const Terrain& terrain, int runs, Csv& csv) {
         const int vertices = std::max(static_cast<int>(share * static_cast<double>(samples)), 8);
         progress("{} of {} x {} samples, {} vertices", terrain.name, terrain.columns, terrain.rows, vertices);
         std::vector<double> seconds;
+        seconds.reserve(static_cast<std::size_t>(runs));
         sand::tin::Simplified tin;
         for (int run = 0; run < runs; ++run) {
             seconds.push_back(secondsOf([&] {

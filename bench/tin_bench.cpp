@@ -73,6 +73,7 @@ std::vector<Vertex> imprint(Surface& surface, const Place& centre) {
          {-2276, -1703}, {-1567, -1892}, {-799, -2009}, {0, -2048},    {799, -2009},  {1567, -1892},  {2276, -1703},
          {2896, -1448},  {3406, -1138},  {3784, -784},  {4017, -399}}};
     std::vector<Vertex> ring;
+    ring.reserve(kUnit.size());
     for (const auto& [x, y] : kUnit) {
         ring.push_back(surface.insert(Place{centre.x + x, centre.y + y}));
     }

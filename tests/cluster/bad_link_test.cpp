@@ -9,7 +9,7 @@ class BadLink : public SessionTest {};
 TEST_F(BadLink, TheWallGoesOnOverDelayJitterStallsAndAReset) {
     const std::string sceneFile = scene();
     support::ChildProcess server(
-        {SANDWALL_BIN_DIR "/sandwall-haptic-server", "--scene", sceneFile, "--device", "script:gis", "--timing-tests",
+        {(SANDWALL_BIN_DIR "/sandwall-haptic-server"), "--scene", sceneFile, "--device", "script:gis", "--timing-tests",
          "20", "--listen", "127.0.0.1:0", "--port-file", (folder_ / "port").string()},
         folder_ / "server.txt");
     ASSERT_TRUE(server.waitForOutput("listening on 127.0.0.1:", 20));

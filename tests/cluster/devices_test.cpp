@@ -13,7 +13,7 @@ using Devices = SessionTest;
 
 TEST_F(Devices, ASenderOfPositionsAloneMovesTheSandOfEveryRank) {
     support::ChildProcess sender(
-        {"/usr/bin/env", "python3", SANDWALL_SOURCE_DIR "/haptic_bridge/examples/position_sender.py", "--listen",
+        {"/usr/bin/env", "python3", (SANDWALL_SOURCE_DIR "/haptic_bridge/examples/position_sender.py"), "--listen",
          "127.0.0.1:0"},
         folder_ / "sender.txt");
     ASSERT_TRUE(sender.waitForOutput("listening on 127.0.0.1:", 30)) << sender.output();

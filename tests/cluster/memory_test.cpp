@@ -48,7 +48,7 @@ protected:
                                                         "0.768]\ntile_pixels = [1024, 768]\nlower_left = [-0.512, "
                                                         "0.9, 0.0]\n[stage]\ncentre = [0.0, 1.25, -0.3]\nwidth = "
                                                         "1.0\ntilt_deg = 40\n");
-        auto session = start({"--wall", file, "--scene", SANDWALL_SOURCE_DIR "/scenes/writing.toml", "--device",
+        auto session = start({"--wall", file, "--scene", (SANDWALL_SOURCE_DIR "/scenes/writing.toml"), "--device",
                               "script:gis", "--gl", GetParam(), "--out", out()});
         EXPECT_TRUE(session->waitForOutput("hand linked", kLong)) << session->output();
         // The line comes once a second: ten frames or more have been drawn by then.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // [force] of a scene file.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "tests/sand/scene_fixture.hpp"
@@ -64,7 +65,8 @@ TEST_F(ForceTable, RefusesInOneLineWhatIsNoConstant) {
          {"depth_exponent", "friction", "friction_area", "max_force", "tolerance", "unit_length",
           "friction_coefficient", "friction_speed", "validity", "recovery_time"}) {
         for (const std::string value : {"-1", "nan", "-inf"}) {
-            EXPECT_EQ(said(key + " = " + value).find("s.toml:5: " + key + " must be"), 0U) << key << " " << value;
+            EXPECT_EQ(said(fmt::format("{} = {}", key, value)).find("s.toml:5: " + key + " must be"), 0U)
+                << key << " " << value;
         }
     }
 }

@@ -223,6 +223,7 @@ TEST(Facets, SayTheSameWhicheverWayTheyWalkThroughWhicheverSlots) {
         ASSERT_TRUE(others.take({other, layer.heights()}, {12000, 300, 0}, reach, kProbe));
         EXPECT_EQ(facets.size(), others.size());
         std::vector<std::array<double, 3>> first;
+        first.reserve(places.size());
         for (const auto& place : places) {
             first.push_back(ask(facets, place));
         }

@@ -16,7 +16,6 @@
 namespace {
 
 using sand::force::SurfacePatch;
-using sand::force::Vec3;
 
 constexpr double kNominal = 0.01;  // [scene unit]
 

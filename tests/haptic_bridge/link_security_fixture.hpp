@@ -24,7 +24,7 @@ inline const std::string kWatch = "the secret of those who watch";
 class LinkSecurityTest : public testing::Test {
 protected:
     std::string secretFile(const std::string& name, const std::string& text) {
-        const std::string file = folder_.write(name, text);
+        std::string file = folder_.write(name, text);
         chmod(file.c_str(), S_IRUSR | S_IWUSR);
         return file;
     }

@@ -239,20 +239,20 @@ TEST(Troubles, AnAbsentDeviceIsToldWhenItGoesAndWhenItIsBack) {
     TroubleCounts counts;
     TroubleTeller teller("device Touch");
     std::vector<std::string> told;
-    const auto run = [&](double from, double to, bool away) {
-        for (double time = from; time < to; time += kArmTick) {
+    const auto run = [&](int from, int to, bool away) {  // [tick]
+        for (int tick = from; tick < to; ++tick) {
             if (away) {
                 counts.count(Trouble::absent);
             }
-            for (const std::string& line : teller.lines(counts, time)) {
+            for (const std::string& line : teller.lines(counts, tick * kArmTick)) {
                 told.push_back(line);
             }
         }
     };
-    run(0, 5, false);
-    run(5, 30, true);
-    run(30, 40, false);
-    run(40, 41, true);
+    run(0, 5'000, false);
+    run(5'000, 30'000, true);
+    run(30'000, 40'000, false);
+    run(40'000, 41'000, true);
     ASSERT_EQ(told.size(), 3U);
     EXPECT_EQ(told[0], "device Touch does not answer; the hand is lifted and feels nothing until it does");
     EXPECT_EQ(told[1], "device Touch answers again");

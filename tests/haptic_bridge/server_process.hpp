@@ -80,6 +80,7 @@ public:
         pid_ = fork();
         if (pid_ == 0) {
             std::vector<char*> words;
+            words.reserve(arguments.size() + 1);
             for (std::string& argument : arguments) {
                 words.push_back(argument.data());
             }

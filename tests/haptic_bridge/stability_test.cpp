@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whole hands on level sand under a virtual clock: what the guards make of the first paper's constants on real arms.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -14,7 +15,6 @@ namespace {
 using namespace haptic_bridge;
 using sand::force::Vec3;
 using test::ArmSession;
-using test::kScale;
 using test::kTick;
 using test::Outcome;
 using test::Trial;

@@ -235,6 +235,7 @@ Done attackServer(std::uint16_t port, Frames& frames, std::uint64_t count, const
                   const LinkSecurity& security) {
     Attack attack{port, security, frames};
     std::vector<std::thread> guests;
+    guests.reserve(kGuests);
     std::atomic<std::uint64_t> left{count};
     std::atomic<bool> over{false};
     for (int i = 0; i < kGuests; ++i) {

@@ -10,7 +10,6 @@
 namespace {
 
 using haptic_bridge::Position;
-using haptic_bridge::TimedPosition;
 
 constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <cstring>
+#include <array>
+#include <bit>
 #include <map>
 #include <random>
 
@@ -18,6 +19,7 @@ using render_node::EyeTarget;
 using render_node::SandSurface;
 using render_node::SandVertex;
 using render_node::SandView;
+using VertexBits = std::array<std::uint32_t, 4>;
 
 constexpr int kSide = 32;   // [quad], of a chunk
 constexpr int kChunks = 4;  // on a side of the field
@@ -87,7 +89,7 @@ TEST(Levels, OfAnyPatchworkMeetWithoutCracks) {
                 const SandVertex& to = own.at(triangles[i % 3 == 2 ? i - 2 : i + 1]);
                 ++edges[{{from.column, from.row}, {to.column, to.row}}];
                 const SandVertex& known = vertices.try_emplace({from.column, from.row}, from).first->second;
-                ASSERT_EQ(std::memcmp(&known, &from, sizeof from), 0);
+                ASSERT_EQ(std::bit_cast<VertexBits>(known), std::bit_cast<VertexBits>(from));
             }
         }
         constexpr int kLast = kChunks * kSide;
@@ -224,7 +226,8 @@ TEST_F(LargeField, ShowsNoHoleAtAnyBound) {
             glReadPixels(0, 0, 320, 240, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
             int holes = 0;
             for (std::size_t i = 0; i < depth.size(); ++i) {
-                const double x = (double(i % 320) + 0.5) / 160 - 1, y = (double(i / 320) + 0.5) / 120 - 1;
+                const std::size_t column = i % 320, row = i / 320;
+                const double x = (double(column) + 0.5) / 160 - 1, y = (double(row) + 0.5) / 120 - 1;
                 const glm::dvec4 at = back * glm::dvec4(x, y, 2 * double{depth[i]} - 1, 1);
                 holes += at.z / at.w < -0.05 ? 1 : 0;
             }
@@ -246,6 +249,7 @@ TEST_F(LargeField, DrawnInPartsIsEqualToTheWhole) {
     SandView view(scene_, glm::dmat4(1));
     constexpr int kEyes = 2;
     std::vector<EyeTarget> targets;
+    targets.reserve(kEyes);
     std::array<render_node::EyeMemory, kEyes> memories;
     const EyeTarget whole(160, 60);
     for (int eye = 0; eye < kEyes; ++eye) {

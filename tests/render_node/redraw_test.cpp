@@ -326,8 +326,9 @@ TEST_F(Redraw, FollowsToolsOfEveryShapeAsTheyTurnAndAreSwitched) {
     for (int i = 0; i < 120; ++i) {
         sand::Step step{.epoch = 1, .number = terrain.stepNumber() + 1, .engaged = i % 20 >= 6, .path = {}};
         const double along = (i % 40) / 40.0, height = step.engaged ? 0.16 : 0.3 + 0.02 * (i % 20);
+        const int row = i / 20;
         if (i % 20 < 15) {
-            step.path = {sample::probeAt(scene, {0.3 + 1.75 * along, 0.5 + 0.1 * (i / 20), height})};
+            step.path = {sample::probeAt(scene, {0.3 + 1.75 * along, 0.5 + 0.1 * row, height})};
         }
         step.heading = sand::headingOf(7.0 * i, i % 3 == 0);
         if (i % 10 == 8) {

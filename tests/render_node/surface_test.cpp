@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 #include <random>
 
@@ -15,6 +16,7 @@ namespace {
 using render_node::kGrainSide;
 using render_node::SandSurface;
 using render_node::SandVertex;
+using VertexBits = std::array<std::uint32_t, 4>;
 
 std::vector<SandVertex> allVertices(const SandSurface& surface) {
     const sand::Rect whole{0, 0, surface.columns() + 2, surface.rows() + 2};
@@ -66,7 +68,7 @@ TEST(SandSurface, ACellChangesNoVertexBeyondItsReach) {
             const int column = static_cast<int>(i % 42) - 1;
             const int row = static_cast<int>(i / 42) - 1;
             if (std::max(std::abs(column - x), std::abs(row - y)) > SandSurface::kReach + 1) {
-                ASSERT_EQ(std::memcmp(&before[i], &after[i], sizeof after[i]), 0)
+                ASSERT_EQ(std::bit_cast<VertexBits>(before[i]), std::bit_cast<VertexBits>(after[i]))
                     << "seed 20240611, round " << round << ": cell " << x << "," << y << " changed vertex " << i;
             }
         }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sand/scene.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -78,7 +79,7 @@ TEST_F(SceneFile, ALevelOfDetailThatCannotHoldItsErrorIsRefused) {
     const sand::Scene scene = sand::loadScene(write("s.toml", kFlat + "[look]\ndetail = 2.5\n"));
     EXPECT_EQ(sand::Scene::decode(scene.encode()).look.detail, 2.5);
     for (const std::string bound : {"-1", "nan", "inf", "0.001", "1000"}) {
-        const std::string said = complaint(kFlat + "[look]\ndetail = " + bound + "\n");
+        const std::string said = complaint(fmt::format("{}[look]\ndetail = {}\n", kFlat, bound));
         EXPECT_EQ(said.rfind("s.toml:5: detail must be ", 0), 0U) << bound << ": " << said;
     }
 }

@@ -28,7 +28,7 @@ inline sand::Scene levelSand(const sand::ForceConstants& force = {}, int cells =
     scene.rules.threshold = scene.rules.startThreshold = 44204;  // 34 degrees
     scene.rules.sweepsPerStep = 16;
     scene.rules.stepsPerSecond = 60;
-    scene.rules.toolRadius = static_cast<std::int32_t>(kPapersRadius * cells / side * sand::kProbePerCell + 0.5);
+    scene.rules.toolRadius = static_cast<std::int32_t>(std::lround(kPapersRadius * cells / side * sand::kProbePerCell));
     return scene;
 }
 

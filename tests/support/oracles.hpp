@@ -132,7 +132,8 @@ template <int kSub = 8, class Profile>
 double meanOverCell(int column, int row, const Profile& profile) {
     double sum = 0;
     for (int s = 0; s < kSub * kSub; ++s) {
-        sum += profile(column + (s % kSub + 0.5) / kSub, row + (s / kSub + 0.5) / kSub);
+        const int east = s % kSub, north = s / kSub;
+        sum += profile(column + (east + 0.5) / kSub, row + (north + 0.5) / kSub);
     }
     return sum / (kSub * kSub);
 }
@@ -228,11 +229,14 @@ inline double radiusAt(const sand::HeightField& field, double x0, double y0, dou
                fy * ((1 - fx) * h(i, j + 1) + fx * h(i + 1, j + 1));
     };
     constexpr double kStep = 0.125;  // [cell]
-    for (double r = std::hypot(field.columns(), field.rows()) / 2; r > 0; r -= kStep) {
-        if (const double above = at(r - kStep); above >= z) {
+    double r = std::hypot(field.columns(), field.rows()) / 2;
+    while (r > 0) {
+        const double inward = r - kStep;
+        if (const double above = at(inward); above >= z) {
             const double below = at(r);
-            return r - kStep + kStep * (above - z) / std::max(above - below, 1e-12);
+            return inward + kStep * (above - z) / std::max(above - below, 1e-12);
         }
+        r = inward;
     }
     return 0;
 }

@@ -35,8 +35,9 @@ inline sand::HeightField cylinder(int n, double radius, double height) {
         for (int x = 0; x < n; ++x) {
             int inside = 0;
             for (int s = 0; s < kSub * kSub; ++s) {
-                const double px = x + (s % kSub + 0.5) / kSub - n / 2.0;
-                const double py = y + (s / kSub + 0.5) / kSub - n / 2.0;
+                const int east = s % kSub, north = s / kSub;
+                const double px = x + (east + 0.5) / kSub - n / 2.0;
+                const double py = y + (north + 0.5) / kSub - n / 2.0;
                 inside += px * px + py * py < radius * radius ? 1 : 0;
             }
             field.setHeight(x, y, static_cast<std::int32_t>(height * sand::kUnitsPerCell * inside / (kSub * kSub)));

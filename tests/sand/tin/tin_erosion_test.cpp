@@ -202,8 +202,9 @@ TEST(TinErosion, ARestoredReplicaGoesOnAlikeWhileTheMeshChanges) {
         erosion.changed(layer, layer.takeChange());
         fresh.changed(other, other.takeChange());
         // A tool stands there, moves on, and is away for some steps.
-        const sand::tin::Underside held = [step](Place place) {
-            const bool under = std::hypot(place.x - 1000.0 - 20 * (step / 4), place.y - 1000.0) < 600;
+        const int moves = step / 4;
+        const sand::tin::Underside held = [moves](Place place) {
+            const bool under = std::hypot(place.x - 1000.0 - 20 * moves, place.y - 1000.0) < 600;
             return under ? 1 << 15 : std::numeric_limits<std::int32_t>::max();
         };
         const sand::tin::Underside* const tool = step % 16 < 12 ? &held : nullptr;
