@@ -76,7 +76,7 @@ std::string ControlSocket::open() {
     // Before it has a name: there must be no moment in which others may open it.
     fchmod(made, S_IRUSR | S_IWUSR);
     if (made < 0 || bind(made, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
-        const std::string failure = because("cannot be made");
+        std::string failure = because("cannot be made");
         close(made);
         return failure;
     }

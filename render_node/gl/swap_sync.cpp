@@ -20,7 +20,7 @@ using MostGroups = int (*)(void* display, int screen, unsigned* groups, unsigned
 
 }  // namespace
 
-SwapGroup::SwapGroup(GlxLoader loader, std::vector<GlxDrawable> windows)
+SwapGroup::SwapGroup(GlxLoader loader, const std::vector<GlxDrawable>& windows)
     : loader_(std::move(loader)), state_(join(windows)) {}
 
 SwapGroup::~SwapGroup() { leave(); }

@@ -24,7 +24,7 @@ using GlxDrawable = unsigned long;
 /// plugged in. Leaves the group when it goes; the windows must still be there.
 class SwapGroup {
 public:
-    SwapGroup(GlxLoader loader, std::vector<GlxDrawable> windows);
+    SwapGroup(GlxLoader loader, const std::vector<GlxDrawable>& windows);
     ~SwapGroup();
     SwapGroup(const SwapGroup&) = delete;
     SwapGroup& operator=(const SwapGroup&) = delete;
