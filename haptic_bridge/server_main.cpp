@@ -21,6 +21,7 @@
 #include "haptic_bridge/monotonic.hpp"
 #include "haptic_bridge/tick_recorder.hpp"
 #include "haptic_bridge/timings.hpp"
+#include "host/event.hpp"
 #include "workers/sand_threads.hpp"
 
 namespace {
@@ -214,6 +215,7 @@ void serve(const Options& options) {
     }
     fmt::print("listening on {}\n", textOf(endpoint));
     std::fflush(stdout);
+    host::emitEvent("listening", {{"address", textOf(endpoint)}});
     while (!io.stopped()) {
         try {
             io.run();

@@ -28,7 +28,11 @@ Cluster::Cluster(int* argc, char*** argv) {
                       : rank_ == 1 ? Watchdog::Role::firstRank
                                    : Watchdog::Role::otherRank;
     startUp_ = std::make_unique<Watchdog>(
-        [this] { return fmt::format("rank {} waits for the other ranks to start up", rank_); }, 0, role);
+        [this] {
+            return Wait{
+                fmt::format("rank {} waits for the other ranks to start up", rank_), rank_, 0, {}, "the other ranks"};
+        },
+        0, role);
     startUp_->arm();
     for (MPI_Comm* communicator : {&frames_, &arrivals_, &pictures_}) {
         MPI_Comm_dup(MPI_COMM_WORLD, communicator);

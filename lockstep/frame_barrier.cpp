@@ -66,17 +66,27 @@ int FrameBarrier::firstMissing() const {
     return -1;
 }
 
-std::string FrameBarrier::describeWait() const {
+Wait FrameBarrier::describeWait() const {
+    Wait wait;
+    wait.by = cluster_.rank();
+    wait.frame = frame_;
     if (!cluster_.isMaster()) {
-        return fmt::format("rank {} waits for the master after frame {}", cluster_.rank(), frame_.load());
+        wait.ranks = {kMaster};
+        wait.names = "the master";
+        wait.text = fmt::format("rank {} waits for the master after frame {}", wait.by, wait.frame);
+        return wait;
     }
-    std::string who;
     for (std::size_t rank = 1; rank < arrivals_.size(); ++rank) {
         if (missing_[rank]) {
-            who += fmt::format("{}{}", who.empty() ? "" : ", ", names_[rank]);
+            wait.ranks.push_back(static_cast<int>(rank));
+            wait.names += fmt::format("{}{}", wait.names.empty() ? "" : ", ", names_[rank]);
         }
     }
-    return fmt::format("frame {} waits for {}", frame_.load(), who.empty() ? busyWith_.load() : who);
+    if (wait.ranks.empty()) {
+        wait.names = busyWith_.load();
+    }
+    wait.text = fmt::format("frame {} waits for {}", wait.frame, wait.names);
+    return wait;
 }
 
 /// For messages from these ranks, which ring if they can.

@@ -100,7 +100,7 @@ private:
     void ring(std::span<const int> ranks) const;
     void receiveArrivals(std::uint64_t frame);
     void sendArrival(const Arrival& mine);
-    [[nodiscard]] std::string describeWait() const;
+    [[nodiscard]] Wait describeWait() const;
     [[nodiscard]] int firstMissing() const;
 
     const Cluster& cluster_;

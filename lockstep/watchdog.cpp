@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "host/event.hpp"
 #include "lockstep/cluster.hpp"
 
 namespace lockstep {
@@ -21,9 +22,19 @@ constexpr double kLongestLook = 0.5;
 constexpr double kRankAfterMaster = 3;  // so much later a rank does what the master would have done
 constexpr double kOthersAfterRank = 1;  // [s] that ranks which say nothing leave after the one that does
 
+void emitWait(const Wait& wait, double seconds, double limit, bool endsJob) {
+    host::emitEvent("waiting", {{"by", wait.by},
+                                {"frame", wait.frame},
+                                {"ranks", host::Json{fmt::format("[{}]", fmt::join(wait.ranks, ","))}},
+                                {"names", wait.names},
+                                {"seconds", seconds},
+                                {"limit", limit},
+                                {"ends_job", endsJob}});
+}
+
 }  // namespace
 
-Watchdog::Watchdog(std::function<std::string()> describe, double limitSeconds, Role role,
+Watchdog::Watchdog(std::function<Wait()> describe, double limitSeconds, Role role,
                    std::function<void(const std::string&)> lastWords)
     : describe_(std::move(describe)),
       limit_(limitSeconds),
@@ -67,9 +78,11 @@ void Watchdog::look() {
         const double limit = patient_ ? kPatientLimit : startingUp_ ? std::max(limit_, kStartUpLimit) : limit_;
         if (seconds > limit + patience) {
             if (speaks) {
+                const Wait wait = describe_();
                 const std::string line = fmt::format("{} for {:.1f} s; the limit is {:.0f} s, ending the job",
-                                                     describe_(), seconds + later, limit);
+                                                     wait.text, seconds + later, limit);
                 fmt::print(stderr, "sandwall: {}\n", line);
+                emitWait(wait, seconds + later, limit, true);
                 std::fflush(stderr);
                 if (lastWords_) {
                     lastWords_(line);
@@ -79,7 +92,9 @@ void Watchdog::look() {
         }
         if (speaks && seconds > (startingUp_ ? kStartUpFirstWord : kFirstWord) && spokenOf != since) {
             spokenOf = since;
-            fmt::print(stderr, "sandwall: {} for {:.1f} s\n", describe_(), seconds + later);
+            const Wait wait = describe_();
+            fmt::print(stderr, "sandwall: {} for {:.1f} s\n", wait.text, seconds + later);
+            emitWait(wait, seconds + later, limit, false);
         }
     }
 }

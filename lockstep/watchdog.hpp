@@ -6,9 +6,20 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <string>
 #include <thread>
+#include <vector>
 
 namespace lockstep {
+
+/// What a process waits for: for a person, and for the event `waiting` (docs/events.md).
+struct Wait {
+    std::string text;  // "frame 30 waits for rank 2 (tile r1c2) on node02"
+    int by = 0;        // rank of the waiting process
+    std::uint64_t frame = 0;
+    std::vector<int> ranks;  // that have not arrived
+    std::string names;       // of these ranks, separated by commas; the master's own work if there are none
+};
 
 /// Makes sure that no wait is silent and none is for ever.
 ///
@@ -25,7 +36,7 @@ public:
     /// `describe` names what is waited for; it runs on the watchdog's thread and must only read atomics. Of the ranks
     /// only the first speaks. `lastWords` runs there too, with the line that was said, before the process ends: it may
     /// write to disk, and nothing that the main thread changes may be in it.
-    Watchdog(std::function<std::string()> describe, double limitSeconds, Role role,
+    Watchdog(std::function<Wait()> describe, double limitSeconds, Role role,
              std::function<void(const std::string&)> lastWords = {});
     ~Watchdog();
     Watchdog(const Watchdog&) = delete;
@@ -41,7 +52,7 @@ public:
 private:
     void look();
 
-    std::function<std::string()> describe_;
+    std::function<Wait()> describe_;
     double limit_;
     Role role_;
     std::function<void(const std::string&)> lastWords_;

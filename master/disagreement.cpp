@@ -5,6 +5,9 @@
 
 #include <cstdio>
 #include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "host/event.hpp"
 
 namespace master {
 namespace {
@@ -16,7 +19,41 @@ std::string placeOf(const lockstep::Divergence::Odd& odd) {
                              odd.cells.x0, odd.cells.x1 - 1, odd.cells.y0, odd.cells.y1 - 1, odd.cellsDiffering);
 }
 
+std::string replayProgram() {
+    return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "sandwall-replay").string();
+}
+
+std::string judgeName(lockstep::Divergence::Judge judge) {
+    using Judge = lockstep::Divergence::Judge;
+    return judge == Judge::majority ? "majority" : judge == Judge::journal ? "journal" : "master";
+}
+
 }  // namespace
+
+void emitDivergence(const DivergedFrame& diverged, int ranks, const std::filesystem::path& journal) {
+    const lockstep::Divergence& divergence = diverged.divergence;
+    nlohmann::ordered_json odd = nlohmann::ordered_json::array();
+    for (const lockstep::Divergence::Odd& one : divergence.odd) {
+        odd.push_back({{"rank", one.rank},
+                       {"state_hash", fmt::format("{:016x}", one.hash)},
+                       {"hash_tile", one.tile},
+                       {"columns", {one.cells.x0, one.cells.x1 - 1}},
+                       {"rows", {one.cells.y0, one.cells.y1 - 1}},
+                       {"cells", one.cellsDiffering}});
+    }
+    nlohmann::ordered_json reproduce = nlohmann::ordered_json::array();
+    if (!journal.empty()) {
+        reproduce = {replayProgram(), journal.string(), "--until", std::to_string(diverged.step), "--hash"};
+    }
+    host::emitEvent("divergence", {{"frame", diverged.frame},
+                                   {"step", diverged.step},
+                                   {"state_hash", fmt::format("{:016x}", divergence.rightHash)},
+                                   {"judge", judgeName(divergence.judge)},
+                                   {"agreeing", divergence.agreeing},
+                                   {"ranks", ranks},
+                                   {"odd", host::Json{odd.dump()}},
+                                   {"reproduce", host::Json{reproduce.dump()}}});
+}
 
 std::vector<std::string> describeDivergence(const DivergedFrame& diverged, const std::vector<std::string>& names,
                                             const std::filesystem::path& journal) {
@@ -44,9 +81,7 @@ std::vector<std::string> describeDivergence(const DivergedFrame& diverged, const
     if (journal.empty()) {
         return lines;
     }
-    const std::filesystem::path replay =
-        std::filesystem::read_symlink("/proc/self/exe").parent_path() / "sandwall-replay";
-    lines.push_back(fmt::format("reproduce the right hash with: '{}' '{}' --until {} --hash", replay.string(),
+    lines.push_back(fmt::format("reproduce the right hash with: '{}' '{}' --until {} --hash", replayProgram(),
                                 journal.string(), diverged.step));
     return lines;
 }

@@ -17,6 +17,9 @@ struct DivergedFrame {
     const lockstep::Divergence& divergence;
 };
 
+/// Emits the event `divergence`. `ranks` counts the master; `journal` as below.
+void emitDivergence(const DivergedFrame& diverged, int ranks, const std::filesystem::path& journal);
+
 /// Who differs and where, a line each, who says what is right where no hash has a majority, and how to compute that
 /// hash again from the journal; of that nothing where `journal` is empty. `names` are those of the ranks, the master's
 /// first.

@@ -11,6 +11,8 @@
 #include <fstream>
 #include <set>
 
+#include "host/event.hpp"
+
 namespace master {
 namespace {
 
@@ -57,6 +59,7 @@ std::vector<lockstep::Fault> beginDrills(const std::vector<Drill>& drills, std::
         }
         keep(drill.text, folder / kDone);
         fmt::print(stderr, "sandwall: drill in frame {}: {}\n", frame, drill.text);
+        host::emitEvent("drill", {{"frame", frame}, {"fault", drill.text}});
         if (drill.fault.rank == lockstep::Fault::kLink) {
             ofLink.push_back(drill.fault);
         }

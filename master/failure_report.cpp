@@ -8,6 +8,7 @@
 
 #include "files/input_error.hpp"
 #include "files/whole_file.hpp"
+#include "host/event.hpp"
 
 namespace master {
 
@@ -17,6 +18,9 @@ bool writeFailure(const FailureReport& failure, const std::filesystem::path& fol
                                       {"host", failure.host},
                                       {"tile", failure.tile},
                                       {"message", failure.message}};
+    // Also where OUT cannot be written: the launcher reads this one there.
+    host::emitEvent("failure",
+                    {{"failure", host::Json{json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)}}});
     try {
         files::WholeFile file(folder / "failure.json");
         file.stream() << json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';

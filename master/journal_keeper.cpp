@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "files/input_error.hpp"
+#include "host/event.hpp"
 #include "master/checkpoint.hpp"
 
 namespace master {
@@ -82,6 +83,7 @@ void JournalKeeper::refused(const std::string& why) {
         throw std::runtime_error(why);  // and no bad input: what the disk refuses now it may take in a moment
     }
     fmt::print(stderr, "sandwall: {}, and the session goes on without a journal\n", why);
+    host::emitEvent("journal", {{"state", "failed"}, {"error", why}});
 }
 
 void JournalKeeper::setAside(std::uint64_t step) {
@@ -116,6 +118,7 @@ bool JournalKeeper::hasRoom(std::int64_t bytes, const JournalEnd& sand) {
         fmt::print(stderr,
                    "sandwall: no room for the journal ({}); the sand stands still after step {} until there is\n", why,
                    sand.step);
+        host::emitEvent("journal", {{"state", "no_room"}, {"step", sand.step}, {"error", why}});
         standing_ = true;
         stoodSince_ = now();
         ++stands_;
@@ -135,6 +138,7 @@ bool JournalKeeper::mayTake(std::int64_t bytes, const JournalEnd& sand) {
     if (room && standing_) {
         const double seconds = now() - stoodSince_;
         fmt::print(stderr, "sandwall: there is room for the journal again; the sand goes on after {:.0f} s\n", seconds);
+        host::emitEvent("journal", {{"state", "room"}, {"seconds", seconds}});
         stoodSeconds_ += seconds;
         standing_ = false;
     }
@@ -147,6 +151,7 @@ void JournalKeeper::giveUp(const std::string& why) {
         throw DiskFailure(why);
     }
     fmt::print(stderr, "sandwall: {}, and the session goes on without\n", why);
+    host::emitEvent("journal", {{"state", "failed"}, {"error", why}});
 }
 
 void JournalKeeper::keep(const JournalFrame& frame, const std::vector<sand::Material>& materials) {

@@ -11,6 +11,7 @@
 #include "files/input_error.hpp"
 #include "files/whole_file.hpp"
 #include "haptic_bridge/link_options.hpp"
+#include "host/event.hpp"
 #include "lockstep/build_id.hpp"
 #include "lockstep/clock_sync.hpp"
 #include "lockstep/session_message.hpp"
@@ -75,6 +76,11 @@ void resume(Options& options) {
         fmt::print(stderr, "sandwall: {}: the last {} bytes are no whole record and are cut off\n", journal.string(),
                    resumed->cutBytes);
     }
+    host::emitEvent("resumed", {{"step", resumed->step},
+                                {"frame", resumed->frame},
+                                {"checkpoint_step", resumed->checkpointStep},
+                                {"replayed_steps", resumed->replayedSteps},
+                                {"cut_bytes", resumed->cutBytes}});
     fmt::print(stderr, "sandwall: {}: goes on after step {}, frame {}: {} and {} steps behind it\n", journal.string(),
                resumed->step, resumed->frame,
                resumed->checkpointStep == 0 ? std::string("the scene")

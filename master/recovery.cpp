@@ -8,6 +8,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "host/event.hpp"
+
 namespace master {
 namespace {
 
@@ -43,6 +45,8 @@ void tellRecovery(const Recovery& recovery, const std::filesystem::path& folder)
                             {"checkpoint_step", recovery.checkpointStep},
                             {"replayed_steps", recovery.replayedSteps},
                             {"cut_bytes", recovery.cutBytes}};
+    host::emitEvent("recovered",
+                    {{"recovery", host::Json{json.dump(-1, ' ', false, ordered_json::error_handler_t::replace)}}});
     const bool torn = endsInsideALine(fileIn(folder));  // by a crash
     std::ofstream stream(fileIn(folder), std::ios::app);
     stream << (torn ? "\n" : "") << json.dump(-1, ' ', false, ordered_json::error_handler_t::replace) << '\n';

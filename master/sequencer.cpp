@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "host/event.hpp"
 #include "lockstep/cluster.hpp"
 
 namespace master {
@@ -20,6 +21,29 @@ using lockstep::nowNs;
 namespace {
 
 double secondsSince(std::int64_t then) { return static_cast<double>(nowNs() - then) * 1e-9; }
+
+/// As the event `link` has it.
+const char* nameOf(Link link) {
+    switch (link) {
+        case Link::connecting:
+            return "connecting";
+        case Link::refused:
+            return "refused";
+        case Link::offered:
+            return "offered";
+        case Link::granting:
+            return "granting";
+        case Link::linked:
+            return "linked";
+        case Link::streaming:
+            return "streaming";
+        case Link::lost:
+            return "lost";
+        case Link::stopped:
+            return "stopped";
+    }
+    return "";
+}
 
 }  // namespace
 
@@ -37,16 +61,19 @@ Sequencer::Sequencer(std::optional<haptic_bridge::Address> server, const sand::S
     if (server_) {
         client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_, security_);
     } else {
-        takeOver("");
+        takeOver();
     }
 }
 
-void Sequencer::takeOver(const std::string& why) {
+void Sequencer::takeOver(const std::string& reason, const std::string& why) {
     if (!why.empty()) {
         fmt::print(stderr, "haptic link: {}; the wall goes on without a hand\n", why);
     }
     source_ = Source::own;
     ++epoch_;
+    if (!reason.empty()) {
+        host::emitEvent("without_hand", {{"reason", reason}, {"epoch", epoch_}});
+    }
     ownStepsOwed_ = 0;
     lastOwnNs_ = nowNs();
 }
@@ -61,6 +88,7 @@ void Sequencer::grant(const sand::Terrain& terrain, std::uint64_t stateHash) {
 void Sequencer::sayLink(const haptic_bridge::LinkStatus& status) {
     if (status.changes != linkChanges_) {
         linkChanges_ = status.changes;
+        host::emitEvent("link", {{"state", nameOf(status.link)}, {"epoch", epoch_}, {"server", server_->text()}});
         if (!status.message.empty()) {
             fmt::print(stderr, "haptic link: {}\n", status.message);
         }
@@ -81,7 +109,7 @@ void Sequencer::followLink(const sand::Terrain& terrain, std::uint64_t stateHash
         source_ = Source::server;
     } else if (status.link == Link::streaming) {
         if (source_ != Source::own) {
-            takeOver("");
+            takeOver();
         }
     } else if (status.link == Link::offered) {
         grant(terrain, stateHash);
@@ -89,16 +117,16 @@ void Sequencer::followLink(const sand::Terrain& terrain, std::uint64_t stateHash
         if (secondsSince(waitingSinceNs_) > kGrantWait) {
             leaveServer();  // for a while: each try stops the sand
             waitingSinceNs_ = nowNs();
-            takeOver(fmt::format("{} does not begin", server_->text()));
+            takeOver("server_does_not_begin", fmt::format("{} does not begin", server_->text()));
         }
     } else if (source_ == Source::starting) {
         if (status.link == Link::refused) {
-            takeOver("refused");
+            takeOver("refused", "refused");
         } else if (secondsSince(waitingSinceNs_) > kStartWait) {
-            takeOver(fmt::format("nobody at {} for {:.0f} s", server_->text(), kStartWait));
+            takeOver("no_server", fmt::format("nobody at {} for {:.0f} s", server_->text(), kStartWait));
         }
     } else if (source_ != Source::own) {
-        takeOver("lost");
+        takeOver("lost", "lost");
     }
 }
 
@@ -231,7 +259,7 @@ void Sequencer::distrustServer() {
     leaveServer();
     recent_ = {};  // it holds what that server has said of the sand
     client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_, security_);
-    takeOver("the server's sand differs from the wall's, it must start again from the wall's");
+    takeOver("other_sand", "the server's sand differs from the wall's, it must start again from the wall's");
 }
 
 void Sequencer::startDrills() {

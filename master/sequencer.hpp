@@ -74,7 +74,8 @@ private:
     void startDrills();
     void sayLink(const haptic_bridge::LinkStatus& status);
     void grant(const sand::Terrain& terrain, std::uint64_t stateHash);
-    void takeOver(const std::string& why);
+    /// `reason` is the word for programs, `why` the words for people; both empty where nothing was lost.
+    void takeOver(const std::string& reason = "", const std::string& why = "");
     void leaveServer();
     [[nodiscard]] std::size_t ownStepsDue();
     void followPositions(const haptic_bridge::LinkStatus& status, const sand::Terrain& terrain);

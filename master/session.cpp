@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "files/input_error.hpp"
+#include "host/event.hpp"
 #include "lockstep/build_id.hpp"
 #include "lockstep/session_message.hpp"
 #include "master/start_up.hpp"
@@ -110,6 +111,7 @@ Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, con
     if (views_.viewer().port() != 0) {
         fmt::print("head tracking listens on port {}\n", views_.viewer().port());
         std::fflush(stdout);
+        host::emitEvent("head_tracking", {{"state", "listening"}, {"port", views_.viewer().port()}});
     }
     summary_.divergences = incidentFile_.before().divergences;
     summary_.healed = incidentFile_.before().healed;
@@ -304,6 +306,14 @@ void Session::measureLatency(const std::vector<TimedStep>& steps, std::int64_t b
     }
 }
 
+const char* Session::handInWords() const {
+    return options_.recording       ? "recorded"
+           : sequencer_.linked()    ? "hand linked"
+           : sequencer_.streaming() ? "hand streams"
+           : sequencer_.starting()  ? "waiting for a hand"
+                                    : "no hand";
+}
+
 void Session::sayProgress(bool last) {
     const std::int64_t now = nowNs();
     if (!last && now - lastProgress_ < 1'000'000'000) {
@@ -314,12 +324,13 @@ void Session::sayProgress(bool last) {
                : static_cast<double>(frame_ - lastProgressFrame_) / (static_cast<double>(now - lastProgress_) * 1e-9);
     const std::string of = options_.steps == kNoLimit ? "" : fmt::format("/{}", options_.steps);
     fmt::print("frame {}  step {}{}  {:.1f} fps  skew {:.0f} us  hashes agree  {}\n", frame_, terrain_.stepNumber(), of,
-               fps_, lastSkewUs_,
-               options_.recording       ? "recorded"
-               : sequencer_.linked()    ? "hand linked"
-               : sequencer_.streaming() ? "hand streams"
-                                        : (sequencer_.starting() ? "waiting for a hand" : "no hand"));
+               fps_, lastSkewUs_, handInWords());
     std::fflush(stdout);
+    host::emitEvent("progress", {{"frame", frame_},
+                                 {"step", terrain_.stepNumber()},
+                                 {"fps", fps_},
+                                 {"skew_us", lastSkewUs_},
+                                 {"hand", handInWords()}});
     lastProgress_ = now;
     lastProgressFrame_ = frame_;
 }

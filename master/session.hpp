@@ -128,6 +128,7 @@ private:
     void measureSwaps(std::int64_t now);
     void measureLatency(const std::vector<haptic_bridge::TimedStep>& steps, std::int64_t broadcast,
                         std::int64_t swapped);
+    [[nodiscard]] const char* handInWords() const;
     void sayProgress(bool last);
     /// Until all agree; false when the session has to end, which has then been said.
     bool reachAgreement(lockstep::Verdict verdict, lockstep::Arrival mine);

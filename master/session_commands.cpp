@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "files/input_error.hpp"
+#include "host/event.hpp"
 #include "master/session.hpp"
 #include "master/wall_pictures.hpp"
 #include "walls/stereo_change.hpp"
@@ -93,6 +94,7 @@ void Session::refuse(const std::string& why, const Clients& clients) {
             control_->answer(*client, refusal(why));
         } else {
             fmt::print(stderr, "{}\n", why);
+            host::emitEvent("command_refused", {{"error", why}});
         }
     }
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "files/input_error.hpp"
+#include "host/event.hpp"
 #include "lockstep/healing.hpp"
 #include "master/disagreement.hpp"
 #include "master/resume.hpp"
@@ -70,6 +71,7 @@ bool Session::reachAgreement(lockstep::Verdict verdict, lockstep::Arrival mine) 
 bool Session::healSand(bool again) {
     lockstep::Divergence divergence = *lockstep::findDivergence(barrier_, terrain_, [this] { return sandOfJournal(); });
     const std::vector<int> odd = ranksOf(divergence);
+    emitDivergence({frame_, terrain_.stepNumber(), divergence}, static_cast<int>(names_.size()), writtenJournal());
     std::vector<std::string> lines =
         describeDivergence({frame_, terrain_.stepNumber(), divergence}, names_, writtenJournal());
     const std::optional<int> broken = again && !odd.empty() ? odd.front() : brokenAmong(odd);
@@ -83,8 +85,14 @@ bool Session::healSand(bool again) {
         summary_.healed += odd.size();
         for (const int rank : odd) {
             const auto index = static_cast<std::size_t>(rank);
+            const auto healed = rankStatistics_.ranks()[index].healed;
             lines.push_back(fmt::format("frame {}: {} takes the sand of {}; healed {} of at most {} times", frame_,
-                                        names_[index], from, rankStatistics_.ranks()[index].healed, kMostHealings));
+                                        names_[index], from, healed, kMostHealings));
+            host::emitEvent("healed", {{"frame", frame_},
+                                       {"rank", rank},
+                                       {"source", divergence.journal ? "journal" : "rank"},
+                                       {"source_rank", divergence.journal ? -1 : remedy.source},
+                                       {"times", healed}});
         }
     }
     tell(lines, options_.out / "divergence.txt");
@@ -159,6 +167,7 @@ void Session::reportOtherViews() {
         }
     }
     rankStatistics_.addOdd(odd);
+    host::emitEvent("view_divergence", {{"frame", frame_}, {"rank", odd.front()}});
     const std::vector<std::string> lines = lockstep::describeOtherViews(barrier_.arrivals(), names_);
     tell(lines, options_.out / "divergence.txt");
     (void)writeFailure(failureOf("broken", odd.front(), lines.front()), options_.out);

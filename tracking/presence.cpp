@@ -5,6 +5,8 @@
 
 #include <chrono>
 
+#include "host/event.hpp"
+
 namespace tracking {
 
 std::int64_t monotonicNs() {
@@ -16,6 +18,7 @@ void Presence::look(bool pose, std::int64_t nowNs) {
     const std::int64_t silent = looked_ ? nowNs - last_ : 0;
     if (pose) {
         if (state_ == State::lost) {
+            host::emitEvent("head_tracking", {{"state", "back"}});
             say_(fmt::format("head tracking: {} is back after {:.1f} s", what_, static_cast<double>(silent) * 1e-9));
         } else if (state_ == State::awaited) {
             say_(fmt::format("head tracking: {} is there", what_));
@@ -23,6 +26,7 @@ void Presence::look(bool pose, std::int64_t nowNs) {
         state_ = State::there;
         last_ = nowNs;
     } else if (silent > kLostAfterNs && state_ == State::there) {
+        host::emitEvent("head_tracking", {{"state", "lost"}});
         say_(fmt::format("head tracking: no pose from {} for {:.1f} s; the last one is held", what_,
                          static_cast<double>(silent) * 1e-9));
         state_ = State::lost;

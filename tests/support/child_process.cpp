@@ -16,6 +16,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "tests/support/events.hpp"
+
 namespace support {
 namespace {
 
@@ -92,6 +94,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command, std::filesys
         dup2(file, STDOUT_FILENO);
         dup2(file, STDERR_FILENO);
         setenv(name.c_str(), value.c_str(), 1);
+        setenv("SANDWALL_EVENTS", "1", 1);
         execv(words[0], words.data());
         _exit(127);
     }
@@ -131,6 +134,24 @@ bool ChildProcess::waitForOutput(const std::string& text, double seconds) {
         pause();
     }
     return true;
+}
+
+std::vector<nlohmann::json> ChildProcess::events(const std::string& name) const { return eventsIn(output(), name); }
+
+nlohmann::json ChildProcess::waitForEvent(const std::string& name, const nlohmann::json& wanted, double seconds) {
+    const auto until = deadline(seconds);
+    while (true) {
+        const bool ended = wait(0).has_value();  // before the look: what it wrote last counts
+        for (const nlohmann::json& event : events(name)) {
+            if (wanted.is_null() || holds(event, wanted)) {
+                return event;
+            }
+        }
+        if (ended || Clock::now() > until) {
+            return nullptr;
+        }
+        pause();
+    }
 }
 
 std::optional<int> ChildProcess::wait(double seconds) {

@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,12 @@ public:
     [[nodiscard]] std::string output() const;
     /// Waits until the output holds `text`; false when it does not in time or the program has ended without.
     [[nodiscard]] bool waitForOutput(const std::string& text, double seconds);
+    /// Its events of one name so far; it and its children run with SANDWALL_EVENTS=1.
+    [[nodiscard]] std::vector<nlohmann::json> events(const std::string& name) const;
+    /// Waits for an event of this name that has the fields of `wanted` (support::holds), and returns the first one;
+    /// null when there is none in time or the program has ended without.
+    [[nodiscard]] nlohmann::json waitForEvent(const std::string& name, const nlohmann::json& wanted = {},
+                                              double seconds = 120);
     /// Exit status, 128 + signal when a signal ended it; nothing when it still runs after `seconds`.
     [[nodiscard]] std::optional<int> wait(double seconds);
     void signal(int number) const;

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/event.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+namespace host {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json jsonOf(const EventValue& value) {
+    return std::visit(
+        [](const auto& held) -> ordered_json {
+            if constexpr (std::is_same_v<std::decay_t<decltype(held)>, Json>) {
+                ordered_json parsed = ordered_json::parse(held.text, nullptr, false);
+                if (parsed.is_discarded()) {
+                    throw std::invalid_argument("event value is not JSON: " + held.text);
+                }
+                return parsed;
+            } else {
+                return held;
+            }
+        },
+        value.get());
+}
+
+bool wanted() {
+    static const bool on = [] {
+        const char* const variable = std::getenv("SANDWALL_EVENTS");
+        return variable != nullptr && std::string_view(variable) == "1";
+    }();
+    return on;
+}
+
+}  // namespace
+
+std::string eventLine(std::string_view name, const EventFields& fields) {
+    ordered_json json{{"event", name}};
+    for (const auto& [key, value] : fields) {
+        json[std::string(key)] = jsonOf(value);
+    }
+    return "@sandwall " + json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+void emitEvent(std::string_view name, const EventFields& fields) {
+    if (!wanted()) {
+        return;
+    }
+    const std::string line = eventLine(name, fields) + "\n";
+    std::fflush(stderr);
+    std::size_t written = 0;
+    while (written < line.size()) {
+        const ssize_t size = write(STDERR_FILENO, line.data() + written, line.size() - written);
+        if (size > 0) {
+            written += static_cast<std::size_t>(size);
+        } else if (errno != EINTR) {
+            return;  // nobody reads it: the session continues without
+        }
+    }
+}
+
+}  // namespace host

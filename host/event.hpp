@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace host {
+
+/// A value of an event: a JSON scalar, or JSON text that is taken as it is (`Json`).
+struct Json {
+    std::string text;
+};
+class EventValue {
+public:
+    EventValue(bool value) : value_(value) {}
+    EventValue(double value) : value_(value) {}
+    template <std::integral Integer>
+    EventValue(Integer value) : value_(static_cast<std::int64_t>(value)) {}
+    EventValue(std::string value) : value_(std::move(value)) {}
+    EventValue(std::string_view value) : value_(std::string(value)) {}
+    EventValue(const char* value) : value_(std::string(value)) {}
+    EventValue(Json value) : value_(std::move(value)) {}
+
+    using Value = std::variant<bool, std::int64_t, double, std::string, Json>;
+    [[nodiscard]] const Value& get() const { return value_; }
+
+private:
+    Value value_;
+};
+using EventFields = std::vector<std::pair<std::string_view, EventValue>>;
+
+/// The line that emitEvent() writes, without its newline: `@sandwall {"event":"drill","frame":30}`.
+///
+/// Text that is not UTF-8 has its wrong bytes replaced. Throws std::invalid_argument when a Json value is not JSON.
+[[nodiscard]] std::string eventLine(std::string_view name, const EventFields& fields);
+
+/// Writes an event to standard error as one line, when the environment variable SANDWALL_EVENTS is 1.
+///
+/// Messages are for people and may change their words; events are for programs and keep their names and fields
+/// (docs/events.md). One write(2) per line, so that lines of several threads do not mix. Any thread.
+void emitEvent(std::string_view name, const EventFields& fields = {});
+
+}  // namespace host
