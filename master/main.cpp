@@ -275,6 +275,9 @@ void describeResume(CLI::App& app, Options& options) {
     app.add_option("--journal-part", options.partMegabytes, "MiB after which the journal goes on in another file")
         ->check(CLI::Range(1, 1 << 20));
     app.add_option("--failure", failure.what, "what had failed, for the record")->needs(resume);
+    app.add_option("--failed-rank", failure.rank, "rank that had failed; none if it was no rank")->needs(resume);
+    app.add_option("--failed-how", failure.how, "how it failed: a signal's name, 'status N', hung, broken or disk")
+        ->needs(resume);
 }
 
 void describeReplay(CLI::App& app, Options& options) {

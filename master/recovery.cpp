@@ -38,6 +38,8 @@ void tellRecovery(const Recovery& recovery, const std::filesystem::path& folder)
     fmt::print(stderr, "sandwall: first frame {:.2f} s after {}: step {}, frame {}\n", seconds, failure.what,
                recovery.step, recovery.frame);
     const ordered_json json{{"failure", failure.what},
+                            {"failed_rank", failure.rank ? ordered_json(*failure.rank) : ordered_json()},
+                            {"failed_how", failure.how},
                             {"seconds_to_next_frame", seconds},
                             {"step", recovery.step},
                             {"frame", recovery.frame},

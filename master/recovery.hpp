@@ -3,15 +3,18 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace master {
 
-/// What made a session stop that goes on, as its supervisor tells.
+/// Why a session stopped before it was resumed, as its supervisor reports.
 struct Failure {
-    std::string what = "the start";
-    double noticed = 0;  // Unix time [s]; 0: when this process started
+    std::string what = "the start";  // for people
+    std::optional<int> rank;         // that failed; nothing if it was no rank
+    std::string how;                 // for programs: "SIGKILL", "status 3", "hung", "broken" or "disk"
+    double noticed = 0;              // Unix time [s]; 0: when this process started
 };
 
 /// A session that has shown a frame again.

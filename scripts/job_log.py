@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a job says: kept in files, shown live as each rank wrote it, and read for who died of what."""
+"""The output of a job: kept in files, shown as it comes, and read for what failed.
+
+Our programs are read through their events (docs/events.md). mpirun has no such contract: its own lines are parsed.
+"""
 
 import collections
 import ctypes
@@ -8,6 +11,8 @@ import pathlib
 import re
 import sys
 import time
+
+import events
 
 KEPT_TRIES = 8
 LAST_LINES = 16  # of each rank, for a report
@@ -23,15 +28,6 @@ MPIRUNS_OWN = re.compile(rb"\[[\w.-]+:\d+\]|mpirun: ")
 SIGNALLED = re.compile(rb"process rank (\d+) with PID \d+ on node (\S+) exited on\s+signal (\d+)")
 EXITED = re.compile(rb"Process name: \[\[\d+,\d+\],(\d+)\]\s+Exit code:\s+(\d+)")
 BACKTRACE = re.compile(rb"\[[\w.-]+:\d+\] \[ *\d+\] ")  # of Open MPI, for a process that a signal ends
-PROGRESS = re.compile(rb"frame (\d+)  step (\d+)(?:.*  ([a-z ]+)$)?")
-# The watchdog's last words: "sandwall: frame 7 waits for rank 3 (tile c) on node03 for 4.1 s; ..., ending the job"
-ENDING = re.compile(r"(?:sandwall: )?.*waits? for (.*) for [\d.]+ s; .*ending the job")
-
-
-def waited_for(line):
-    """Whom a watchdog has waited for in vain, as its last words have it: "rank 3 (tile c) on node03"; None of other words."""
-    ending = ENDING.fullmatch(line)
-    return ending[1].split(" after frame ")[0] if ending else None
 
 
 class Stream:
@@ -117,7 +113,8 @@ class JobLog:
         self.err = Stream(f"{self.path}.err", sys.stderr)
         self.said = collections.defaultdict(lambda: collections.deque(maxlen=LAST_LINES))  # by rank; None: mpirun
         self.mpiruns = b""  # everything that mpirun itself said
-        self.ending = None  # whom a process waited for in vain that has ended the job
+        self.ending = None  # the first event `waiting` that ends the job
+        self.failure = None  # the content of the event `failure`
         self.frame = self.step = None  # shown last, as far as was said
         self.told = 0.0  # when, by the monotonic clock
         self.hand = None  # when a hand was linked last
@@ -126,22 +123,32 @@ class JobLog:
         """Shows and reads what has been said since."""
         for stream in (self.out, self.err):
             for rank, line in stream.lines(ended):
+                if event := events.parse(line):
+                    self.read_event(event)
+                    if events.wanted():
+                        stream.show(line)
+                    continue
                 self.read(rank, line, stream)
                 if not stream.hides(rank, line):
                     stream.show(line)
+
+    def read_event(self, event):
+        name = event.get("event")
+        if name == "progress":
+            self.frame, self.step = event["frame"], event["step"]
+            self.told = time.monotonic()
+            if event["hand"] in ("hand linked", "hand streams"):
+                self.hand = time.monotonic()
+        elif name == "waiting" and event["ends_job"] and self.ending is None:
+            self.ending = event
+        elif name == "failure":
+            self.failure = event["failure"]
 
     def read(self, rank, line, stream):
         if not BACKTRACE.match(line):  # a deep one would leave no room for what was said before
             self.said[rank].append(line.decode(errors="replace"))
         if stream is self.err and rank is None:
             self.mpiruns = (self.mpiruns + line + b"\n")[-LONGEST_LINE:]
-        elif stream is self.err and self.ending is None:
-            self.ending = waited_for(line.decode(errors="replace"))
-        elif stream is self.out and (progress := PROGRESS.match(line)):
-            self.frame, self.step = int(progress[1]), int(progress[2])
-            self.told = time.monotonic()
-            if progress[3] in (b"hand linked", b"hand streams"):
-                self.hand = time.monotonic()
 
     def signalled(self):
         """(rank, signal) of the process that a signal ended first, as mpirun has it."""

@@ -9,6 +9,7 @@ import sys
 import threading
 import time
 
+import events
 from job_log import LIBC
 from rank_hosts import BadInput
 
@@ -138,6 +139,7 @@ class Job:
         if stop.count > 0 and not self.asked:
             print("sandwall: stopping; journal and pictures are being finished, once more to kill",
                   file=sys.stderr, flush=True)
+            events.emit("stopping")
             self.stop()
         if self.deadline is None and self.log and self.log.ending:
             self.deadline = now + GONE_SECONDS  # mpirun waits for a host that has gone

@@ -2,9 +2,9 @@
 """The hosts of a session's ranks while it runs, and the spares that take the place of lost ones."""
 
 import collections
-import re
 import socket
 
+import events
 import rank_hosts
 from rank_hosts import BadInput
 
@@ -22,12 +22,6 @@ class SessionHosts:
         """Where a render rank runs, for a person."""
         host = self.names[rank - 1] if 1 <= rank <= len(self.names) else "a host unknown"
         return socket.gethostname() if host == rank_hosts.HERE else host
-
-    def rank_in(self, text):
-        """The first render rank that the master has waited for, or None."""
-        found = re.match(r"rank (\d+)\b", text)
-        rank = int(found[1]) if found else 0
-        return rank if 1 <= rank <= len(self.names) else None
 
     def struck(self, failure):
         """Counts a failure against the host it happened on."""
@@ -61,5 +55,6 @@ class SessionHosts:
             self.names = [spare if name == host else name for name in self.names]
             listed = ", ".join(str(rank) for rank in ranks)
             say(f"{why}; spare {spare} takes its place (rank{'s' if len(ranks) > 1 else ''} {listed})")
+            events.emit("spare", host=host, spare=spare, ranks=ranks)
             return True
         return False

@@ -12,6 +12,7 @@ import sys
 import tempfile
 import time
 
+import events
 import job_log
 from processes import HapticServer, Input, Job
 from rank_hosts import BadInput
@@ -34,9 +35,14 @@ def signal_name(number):
         return f"signal {number}"
 
 
+def ending_of(status):
+    """How a process of ours ended, for programs: SIGKILL, or "status 3"."""
+    return signal_name(-status) if status < 0 else f"status {status}"
+
+
 def how_ended(status):
-    """Of a process that we started ourselves."""
-    return f"died of {signal_name(-status)}" if status < 0 else f"ended with status {status}"
+    """The same for people."""
+    return f"died of {ending_of(status)}" if status < 0 else f"ended with {ending_of(status)}"
 
 
 @dataclasses.dataclass
@@ -45,10 +51,20 @@ class Failure:
 
     text: str  # for a person: "rank 3 on node02 died of SIGSEGV"
     rank: int = None  # None: no rank of the job
+    how: str = ""  # for programs: SIGKILL, "status 3", "hung", "broken" or "disk"
     host_is_lost: bool = False  # it must not draw any more
     when: float = dataclasses.field(default_factory=time.time)
-    shown: str = ""  # where the session was, as far as was said
+    frame: int = None  # the last one that is known to be shown
+    step: int = None
     last_lines: list = dataclasses.field(default_factory=list)
+
+    def shown(self):
+        return f"frame {self.frame}, step {self.step}" if self.frame is not None else "no frame yet"
+
+    def words(self):
+        """For the master that continues the session: its record of the failure."""
+        rank = [] if self.rank is None else ["--failed-rank", str(self.rank)]
+        return ["--failed-at", f"{self.when:.3f}", "--failure", self.text, *rank, "--failed-how", self.how]
 
 
 def taken(path):
@@ -61,12 +77,18 @@ def taken(path):
         return {}
 
 
-def shown_by(log):
-    return f"frame {log.frame}, step {log.step}" if log.frame is not None else "no frame yet"
+def told_name(told, hosts):
+    """The name of the rank that failure.json or its event is about."""
+    if told["rank"] == 0:
+        return "the master"
+    tile = f" (tile {told['tile']})" if told.get("tile") else ""
+    return f"rank {told['rank']}{tile} on {told.get('host') or hosts.host_of(told['rank'])}"
 
 
-def failure_of_job(status, log, hosts, told):
-    """Who ended a job, from what the master has told, what mpirun noticed, and what ranks have said."""
+def failure_of_job(status, log, hosts, written):
+    """What ended a job: from the master's failure.json or event, then mpirun's lines, then a rank's event."""
+    told = written or log.failure or {}
+
     def name(rank):
         return "the master" if rank == 0 else f"rank {rank} on {hosts.host_of(rank)}"
 
@@ -74,24 +96,25 @@ def failure_of_job(status, log, hosts, told):
     rank = None
     lost = False
     if told.get("what") in ("broken", "hung", "disk"):
-        rank = told.get("rank") if isinstance(told.get("rank"), int) else None
-        lost = told["what"] == "broken"
-        said = " ".join(str(told.get("message") or f"{name(rank or 0)}: {told['what']}").split())[:300]
-        hung = job_log.waited_for(said)
-        text = f"{hung} hung" if hung else said
+        how = told["what"]
+        rank = told.get("rank") if isinstance(told.get("rank"), int) and told["rank"] >= 0 else None
+        lost = how == "broken"
+        message = " ".join(str(told.get("message") or f"{name(rank or 0)}: {how}").split())[:300]
+        text = f"{told_name(told, hosts)} hung" if how == "hung" and rank is not None else message
     elif signalled:
-        rank = signalled[0]
-        text = f"{name(rank)} died of {signal_name(signalled[1])}"
+        rank, how = signalled[0], signal_name(signalled[1])
+        text = f"{name(rank)} died of {how}"
     elif log.ending:
-        text = f"{log.ending[:300]} hung"
-        rank = hosts.rank_in(text)
+        how = "hung"
+        rank = next(iter(log.ending["ranks"]), None)
+        text = f"{log.ending['names'][:300]} hung"
     elif exited:
-        rank = exited[0]
-        text = f"{name(rank)} ended with status {exited[1]}"
+        rank, how = exited[0], f"status {exited[1]}"
+        text = f"{name(rank)} ended with {how}"
     else:
+        how = ending_of(status)
         text = f"mpirun {how_ended(status)}"
-    failure = Failure(text, rank, lost)
-    failure.shown = shown_by(log)
+    failure = Failure(text, rank, how, lost, frame=log.frame, step=log.step)
     failure.last_lines = list(log.said.get(rank) or log.said.get(0) or log.said.get(None) or [])
     return failure
 
@@ -186,7 +209,7 @@ class Supervisor:
                 return FAILED
             # A journal that lay there before is of another session, and not to be gone on with.
             ours = self.resume or self.journal_identity() not in (None, before)
-            words = ["--resume", "--failed-at", f"{failure.when:.3f}", "--failure", failure.text] if ours else []
+            words = ["--resume", *failure.words()] if ours else []
             if not self.ready_again(failure):
                 return FAILED
 
@@ -221,8 +244,8 @@ class Supervisor:
                 self.server.start()
         else:
             hung = "was hung" if self.server_hung else how_ended(status)
-            failure = Failure(f"the haptic server {hung}")
-            failure.shown = shown_by(self.job.log)
+            failure = Failure(f"the haptic server {hung}", how="hung" if self.server_hung else ending_of(status))
+            failure.frame, failure.step = self.job.log.frame, self.job.log.step
             self.server_hung = False
             if self.may_go_on(failure, showed_a_frame=True):
                 self.server_due = time.monotonic() + self.allowance.wait()
@@ -243,6 +266,8 @@ class Supervisor:
         self.failures.append(failure)
         if self.allowance.take(showed_a_frame):
             say(f"{failure.text}; starting again ({len(self.allowance.times)} of {self.limits})")
+            events.emit("restart", what=failure.text, rank=failure.rank, how=failure.how,
+                        count=len(self.allowance.times), limit=self.allowance.restarts)
             return True
         self.report(f"more failures than {self.limits} allows")
         return False
@@ -272,10 +297,12 @@ class Supervisor:
         lines = [f"sandwall: the session is given up: {why}"]
         for failure in self.failures[-job_log.KEPT_TRIES:]:
             when = time.strftime("%H:%M:%S", time.localtime(failure.when))
-            lines.append(f"  {when}  {failure.text}; shown: {failure.shown}")
+            lines.append(f"  {when}  {failure.text}; shown: {failure.shown()}")
             lines += [f"            | {line}" for line in failure.last_lines]
         lines.append(f"  all that was said: {self.logs}; what was shown is in {self.out / JOURNAL}, and `run --resume` goes on")
         print("\n".join(lines), file=sys.stderr, flush=True)
+        events.emit("given_up", why=why, failures=[{"what": failure.text, "rank": failure.rank, "how": failure.how, "frame": failure.frame,
+                                                    "step": failure.step} for failure in self.failures])
         try:
             (self.logs / "report.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
         except OSError:

@@ -47,6 +47,7 @@ class LauncherTest(unittest.TestCase):
             self.script(name, SAY)
         self.agent = self.script("agent", AGENT)
         self.write("scene.toml", "")
+        os.environ.pop("SANDWALL_EVENTS", None)
         self.environment = {**os.environ, "SANDWALL_BIN": str(self.folder / "bin"),
                             "OMPI_MCA_plm_rsh_agent": self.agent,
                             "PATH": f"{self.folder / 'bin'}:{os.environ['PATH']}"}

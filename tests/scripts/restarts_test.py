@@ -9,18 +9,20 @@ import unittest
 
 from supervisor_fixture import HOST, Supervised
 
+import events
+
 
 class Restarts(Supervised):
     def test_a_rank_that_dies_is_named_and_the_session_goes_on(self):
         self.tries("progress 7 6; complain 2 'last words'; dies 2 host 11", "progress 9 8; exit 0")
         before = time.time()
         status, printed, error = self.ended(["-", "-"])
-        self.assertEqual((status, printed), (0, "frame 7  step 6  60.0 fps\nframe 9  step 8  60.0 fps\n"))
+        self.assertEqual((status, printed), (0, "a line of progress\n" * 2))
         self.assertEqual(error, f"last words\nsandwall: rank 2 on {HOST} died of SIGSEGV; "
                          "starting again (1 of --restarts 3 in --restart-window 60)\n")
         first, second = self.commands()
         self.assertNotIn("--resume", first)
-        found = re.search(rf" --resume --failed-at (\S+) --failure rank 2 on {HOST} died of SIGSEGV : -n 2 ", second)
+        found = re.search(rf" --resume --failed-at (\S+) --failure rank 2 on {HOST} died of SIGSEGV --failed-rank 2 --failed-how SIGSEGV : -n 2 ", second)
         self.assertTrue(before <= float(found[1]) <= time.time(), second)
 
     def test_the_master_is_called_so(self):
@@ -32,24 +34,35 @@ class Restarts(Supervised):
         self.assertIn(f"sandwall: rank 1 on {HOST} ended with status 3; starting again", self.ended(["-"])[2])
 
     def test_who_hung_is_told_by_the_last_words_of_the_watchdog(self):
-        words = "for 3.0 s; the limit is 3 s, ending the job"
-        self.tries(f"progress 7 6; complain 0 'sandwall: frame 8 waits for rank 2 (tile b) on x {words}'; ends 0 1",
-                   f"progress 9 8; complain 1 'sandwall: rank 1 waits for the master after frame 9 {words}'; ends 1 1", "exit 0")
+        self.tries("progress 7 6; hung 0 2 'rank 2 (tile b) on x'; ends 0 1",
+                   "progress 9 8; hung 1 0 'the master'; ends 1 1", "exit 0")
         error = self.ended(["-", "-"])[2]
         self.assertIn("sandwall: rank 2 (tile b) on x hung; starting again", error)
         self.assertIn("sandwall: the master hung; starting again", error)
 
     def test_an_mpirun_that_waits_for_a_host_that_has_gone_is_killed(self):
-        self.tries("""progress 7 6; trap '' TERM
-complain 0 'sandwall: frame 8 waits for rank 2 (tile b) on x for 3.0 s; the limit is 3 s, ending the job'; while :; do sleep 0.1; done""", "exit 0")
+        self.tries("""progress 7 6; trap '' TERM; hung 0 2 'rank 2 (tile b) on x'; while :; do sleep 0.1; done""", "exit 0")
         status, _, error = self.ended(["-", "-"])
         self.assertEqual(status, 0, error)
         self.assertIn("sandwall: rank 2 (tile b) on x hung; starting again", error)
 
     def test_what_the_master_has_written_down_goes_before_what_mpirun_noticed(self):
-        self.tries("""progress 7 6; told '{"what": "hung", "rank": 1, "message": "frame 8 waits for rank 1 (tile a) on x for 2.1 s; the limit is 2 s, ending the job"}'; ends 0 1""", "exit 0")
+        self.tries("""progress 7 6; told '{"what": "hung", "rank": 1, "host": "x", "tile": "a", "message": "in other words"}'; ends 0 1""", "exit 0")
         self.assertIn("sandwall: rank 1 (tile a) on x hung; starting again", self.ended(["-"])[2])
         self.assertFalse((self.folder / "out" / "failure.json").exists(), "it would be found again")
+
+    def test_a_failure_that_could_not_be_written_is_read_from_its_event(self):
+        failure = '{"what":"broken","rank":1,"host":"x","tile":"a","message":"rank 1 sent garbage"}'
+        self.tries(f"""progress 7 6; event 0 '{{"event":"failure","failure":{failure}}}'; ends 0 1""", "exit 0")
+        self.assertIn("sandwall: rank 1 sent garbage; starting again", self.ended(["-"])[2])
+        self.assertIn(" --failed-rank 1 --failed-how broken ", self.commands()[1])
+
+    def test_events_are_shown_to_whom_asks_for_them_alone(self):
+        self.tries("progress 7 6; dies 1 host 9", "exit 0")
+        self.environment["SANDWALL_EVENTS"] = "1"
+        found = [found for line in self.ended(["-"])[2].splitlines() if (found := events.parse(line))]
+        self.assertEqual([event["event"] for event in found], ["progress", "restart"])
+        self.assertEqual((found[1]["rank"], found[1]["how"], found[1]["count"], found[1]["limit"]), (1, "SIGKILL", 1, 3))
 
     def test_a_killed_mpirun_is_named(self):
         self.tries("progress 7 6; kill -KILL $$", "exit 0")

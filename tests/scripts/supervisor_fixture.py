@@ -14,7 +14,12 @@ n=$(($(cat "$folder/tries" 2>/dev/null || echo 0) + 1)); echo $n > "$folder/trie
 echo "$*" >> "$folder/commands"
 say() { echo "[1,$1]<stdout>:$2"; }
 complain() { echo "[1,$1]<stderr>:$2" >&2; }
-progress() { mkdir -p "$folder/out"; echo "$n" > "$folder/out/session.journal"; say 0 "frame $1  step $2  60.0 fps"; }
+event() { complain "$1" "@sandwall $2"; }
+progress() {
+    mkdir -p "$folder/out"; echo "$n" > "$folder/out/session.journal"; say 0 "a line of progress"
+    event 0 '{"event":"progress","frame":'$1',"step":'$2',"fps":60.0,"skew_us":9.0,"hand":"no hand"}'
+}
+hung() { event $1 '{"event":"waiting","by":'$1',"frame":8,"ranks":['$2'],"names":"'"$3"'","seconds":3.0,"limit":3,"ends_job":true}'; }
 line=--------------------------------------------------------------------------
 banner() { printf '%s\\n' $line "$@" $line >&2; }
 dies() { banner "Primary job  terminated normally"; banner "mpirun noticed that process rank $1 with PID 0 on node $2 exited on signal $3 (Made Up)."; exit $((128 + $3)); }
