@@ -6,6 +6,8 @@
 
 namespace tracking {
 
+// The same signature as with VRPN, where both are moved.
+// NOLINTNEXTLINE(performance-unnecessary-value-param)
 std::unique_ptr<HeadTracker> openVrpn(const Source& source, const RoomMapping&, Say, Clock) {
     throw files::InputError(fmt::format(
         "{}: this build has no VRPN; install its library and headers, and build again (docs/head_tracking.md)",

@@ -11,7 +11,7 @@ Source parseSource(const std::string& text) { return Source::parse(text, "--trac
 
 /// The complaint about a text, which must be one line, begin with the option and quote the text.
 std::string complaint(const std::string& text) {
-    const std::string line = test::refusal([&] { (void)parseSource(text); });
+    std::string line = test::refusal([&] { (void)parseSource(text); });
     EXPECT_EQ(line.find("--track: '" + text), 0U) << line;
     EXPECT_EQ(line.find('\n'), std::string::npos) << line;
     return line;
