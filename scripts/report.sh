@@ -40,7 +40,7 @@ curve() {
 
 # Hashes by every build that is there; the full report makes those that are not.
 hash_table() {
-    local presets=(release clang-sand golden-g++-O0 golden-g++-O2 golden-clang-O0)
+    local presets=(release golden-clang-O3 golden-g++-O0 golden-g++-O2 golden-clang-O0)
     rm -f "$data"/hashes-*.csv
     for preset in "${presets[@]}"; do
         if [[ $quick == no ]]; then

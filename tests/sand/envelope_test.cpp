@@ -79,7 +79,7 @@ TEST(Envelope, HoldsExactlyOnACylinder) {
 // outside on raw noise and 0.34 on averaged; with inertia, which carries a cell past its neighbours' mean, 0.81 and
 // 0.31.
 TEST(Envelope, HoldsOnRoughFieldsWithinAThreshold) {
-    for (std::uint32_t seed = 1; seed <= (samples::kSanitized ? 2U : 4U); ++seed) {
+    for (std::uint32_t seed = 1; seed <= 4U; ++seed) {
         for (const Scheme scheme : samples::kIsotropic) {
             EXPECT_LE(outsideAtRest(roughField(48, 16, 0, seed), scheme), 0) << nameOf(scheme) << ", seed " << seed;
             const double onNoise = scheme == Scheme::isotropic ? 0.9 : 0.25;

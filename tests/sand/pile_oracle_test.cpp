@@ -50,25 +50,19 @@ TEST(PileOracle, LowCylinderBecomesItsFrustum) {
     for (const Scheme scheme : samples::kIsotropic) {
         EXPECT_LE(lowPile(64, scheme).distance.misplaced, 0.003) << nameOf(scheme);
         EXPECT_LE(lowPile(128, scheme).distance.misplaced, 0.001) << nameOf(scheme);
-        if (!samples::kSanitized) {
-            EXPECT_LE(lowPile(256, scheme).distance.misplaced, 0.0004) << nameOf(scheme);
-        }
+        EXPECT_LE(lowPile(256, scheme).distance.misplaced, 0.0004) << nameOf(scheme);
     }
 }
 
 // With inertia alone: without, it takes 25,000 sweeps.
 TEST(PileOracle, LowCylinderOn512CellsIsRightWithinOneIn5000) {
-    if (!samples::kSanitized) {
-        EXPECT_LE(lowPile(512, Scheme::isotropic).distance.misplaced, 0.0002);
-    }
+    EXPECT_LE(lowPile(512, Scheme::isotropic).distance.misplaced, 0.0002);
 }
 
 // The rule everybody uses rests in the wrong pile at every resolution: a prototype found 4.2 % and 4.3 %.
 TEST(PileOracle, FourNeighboursDoNotConverge) {
     EXPECT_NEAR(lowPile(64, Scheme::n4).distance.misplaced, 0.045, 0.003);
-    if (!samples::kSanitized) {
-        EXPECT_NEAR(lowPile(128, Scheme::n4).distance.misplaced, 0.045, 0.003);
-    }
+    EXPECT_NEAR(lowPile(128, Scheme::n4).distance.misplaced, 0.045, 0.003);
 }
 
 /// Where a slope ends, the kink is rounded over a cell or two. That misplaces a cross-section of some fixed size per
@@ -95,7 +89,7 @@ TEST(PileOracle, FlatAndTallCylindersBecomeFrustumAndCone) {
         for (const Shape& shape : kShapes) {
             double coarser = 1;
             for (const int n : {64, 128, 256}) {
-                if (n > (scheme == Scheme::isotropic ? 256 : 128) / (samples::kSanitized ? 2 : 1)) {
+                if (n > (scheme == Scheme::isotropic ? 256 : 128)) {
                     continue;  // seconds without inertia
                 }
                 const Cylinder cylinder(shape.radius * n, shape.ratio * shape.radius * n);
@@ -162,12 +156,10 @@ double misplacedOnOblong(int columns, int rows, double aspect, Scheme scheme) {
 // tolerance is the measurement and that.
 TEST(PileOracle, CellsNeedNotBeSquare) {
     for (const Scheme scheme : samples::kIsotropic) {
-        if (!samples::kSanitized) {
-            EXPECT_LE(misplacedOnOblong(256, 128, 2, scheme), 0.00058) << nameOf(scheme);
-            EXPECT_LE(misplacedOnOblong(256, 64, 4, scheme), 0.0016) << nameOf(scheme);
-            EXPECT_LE(misplacedOnOblong(128, 256, 0.5, scheme), 0.00058) << nameOf(scheme);
-            EXPECT_LE(misplacedOnOblong(64, 256, 0.25, scheme), 0.0016) << nameOf(scheme);
-        }
+        EXPECT_LE(misplacedOnOblong(256, 128, 2, scheme), 0.00058) << nameOf(scheme);
+        EXPECT_LE(misplacedOnOblong(256, 64, 4, scheme), 0.0016) << nameOf(scheme);
+        EXPECT_LE(misplacedOnOblong(128, 256, 0.5, scheme), 0.00058) << nameOf(scheme);
+        EXPECT_LE(misplacedOnOblong(64, 256, 0.25, scheme), 0.0016) << nameOf(scheme);
         EXPECT_LE(misplacedOnOblong(128, 64, 2, scheme), 0.002) << nameOf(scheme) << ", half as fine";
         EXPECT_LE(misplacedOnOblong(128, 32, 4, scheme), 0.005) << nameOf(scheme) << ", half as fine";
     }

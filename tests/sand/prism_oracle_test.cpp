@@ -91,7 +91,7 @@ double allowedForRoof(const Prism& prism) {
 TEST(PrismOracle, TallWallBecomesARoofInAnyDirection) {
     for (const Scheme scheme : samples::kIsotropic) {
         for (const int n : {64, 128, 256}) {
-            if (n > (scheme == Scheme::isotropic ? 256 : 128) / (samples::kSanitized ? 2 : 1)) {
+            if (n > (scheme == Scheme::isotropic ? 256 : 128)) {
                 continue;  // seconds without inertia
             }
             const Prism prism(n / 16.0, n / 4.0);
@@ -134,7 +134,7 @@ TEST(PlaneOracle, AboveTheTalusAPlaneTurnsAboutItsCentroid) {
         const double excess = scheme == Scheme::isotropic ? 1 / 0.45 : 1 / 0.2499;  // [unit]
         for (const double slope : {1.2, 2.0, 5.0}) {
             for (const int n : {64, 128, 256}) {
-                if (n > (scheme == Scheme::isotropic ? 256 : 128) / (samples::kSanitized ? 2 : 1)) {
+                if (n > (scheme == Scheme::isotropic ? 256 : 128)) {
                     continue;  // seconds without inertia
                 }
                 const oracles::TiltedPlane plane(n, slope);

@@ -32,7 +32,8 @@ protected:
     [[nodiscard]] support::Ran run(const std::string& arguments) const {
         const std::filesystem::path before = std::filesystem::current_path();
         std::filesystem::current_path(folder_);
-        support::Ran ran = support::runProgram("sandwall-relax", arguments);
+        support::Ran ran =
+            support::runCommand((before / SANDWALL_BIN_DIR / "sandwall-relax").string() + " " + arguments);
         std::filesystem::current_path(before);
         return ran;
     }

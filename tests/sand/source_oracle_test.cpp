@@ -70,7 +70,7 @@ TEST(SourceOracle, WhatIsPouredOnASpotIsACone) {
         for (const int portions : {1, 10, 40}) {
             double coarser = 1;
             for (const int n : {32, 64, 128}) {
-                if (n > (scheme == Scheme::isotropic ? 128 : 64) / (samples::kSanitized ? 2 : 1)) {
+                if (n > (scheme == Scheme::isotropic ? 128 : 64)) {
                     continue;  // seconds without inertia
                 }
                 const Poured poured = pouredCone(n, portions, scheme);
@@ -129,7 +129,7 @@ TEST(TableOracle, AnOpenTableKeepsWhatItsRimsHold) {
     for (const Scheme scheme : samples::kIsotropic) {
         double coarser = 1;
         for (const int n : {32, 64, 128}) {
-            if (n > (scheme == Scheme::isotropic ? 128 : 64) / (samples::kSanitized ? 2 : 1)) {
+            if (n > (scheme == Scheme::isotropic ? 128 : 64)) {
                 continue;  // seconds without inertia
             }
             const double misplaced = misplacedOnTable(n, n, scheme);
@@ -138,9 +138,7 @@ TEST(TableOracle, AnOpenTableKeepsWhatItsRimsHold) {
             coarser = misplaced;
         }
         EXPECT_LE(misplacedOnTable(63, 41, scheme), allowedOnTable(63, 41)) << nameOf(scheme);
-        if (!samples::kSanitized) {
-            EXPECT_LE(misplacedOnTable(64, 128, scheme), allowedOnTable(64, 128)) << nameOf(scheme);
-        }
+        EXPECT_LE(misplacedOnTable(64, 128, scheme), allowedOnTable(64, 128)) << nameOf(scheme);
     }
 }
 

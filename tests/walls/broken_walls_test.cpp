@@ -32,6 +32,16 @@ Promise promiseOf(const std::filesystem::path& file) {
     return numbered && promise.message.size() >= 10 ? promise : Promise{};
 }
 
+/// The line that loading this wall is refused with, and the checks that follow; empty if it is accepted.
+std::string complaintAbout(const std::filesystem::path& file) {
+    try {
+        (void)loadWall(file);
+    } catch (const files::InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
 TEST(BrokenWalls, GiveOneClearLineEach) {
     int count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(configFolder() / "broken")) {
@@ -39,13 +49,19 @@ TEST(BrokenWalls, GiveOneClearLineEach) {
         ++count;
         const Promise promise = promiseOf(entry.path());
         ASSERT_FALSE(promise.line.empty()) << "the first two lines must say what is expected, and why";
-        const support::Ran ran = support::runProgram("sandwall-check", entry.path().string());
-        EXPECT_EQ(ran.status, 2);
-        EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
-        EXPECT_EQ(ran.output.rfind(fmt::format("{}:{}: ", entry.path().string(), promise.line), 0), 0U) << ran.output;
-        EXPECT_NE(ran.output.find(promise.message), std::string::npos) << ran.output;
+        const std::string line = complaintAbout(entry.path());
+        EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+        EXPECT_EQ(line.rfind(fmt::format("{}:{}: ", entry.path().string(), promise.line), 0), 0U) << line;
+        EXPECT_NE(line.find(promise.message), std::string::npos) << line;
     }
     EXPECT_GE(count, 70);
+}
+
+TEST(BrokenWalls, AreRefusedByTheProgramInTheSameLine) {
+    const std::filesystem::path file = configFolder() / "broken" / "eye_misspelt.toml";
+    const support::Ran ran = support::runProgram("sandwall-check", file.string());
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_EQ(ran.output, complaintAbout(file) + "\n");
 }
 
 TEST(BrokenWalls, BecomeWholeByOneEdit) {

@@ -13,6 +13,7 @@
 #include "tests/walls/sample_walls.hpp"
 #include "walls/wall_map.hpp"
 #include "walls/wall_measure.hpp"
+#include "walls/wall_report.hpp"
 #include "walls/wall_svg.hpp"
 
 namespace walls {
@@ -44,12 +45,15 @@ TEST(CheckProgram, ShowsAnyWallInAnyMode) {
     for (const std::string& name : configNames()) {
         for (int mode = 0; mode <= static_cast<int>(kLastStereo); ++mode) {
             const std::string stereo(stereoName(static_cast<Stereo>(mode)));
-            const support::Ran ran = support::runProgram("sandwall-check", pathOf(name) + " --stereo " + stereo);
-            EXPECT_EQ(ran.status, 0) << name << "\n" << ran.output;
-            EXPECT_NE(ran.output.find(mode == 0 ? ", mono," : fmt::format(", {} stereo,", stereo)), std::string::npos)
-                << ran.output;
+            const std::string text = describe(loadWallAs(pathOf(name), stereo));
+            EXPECT_NE(text.find(mode == 0 ? ", mono," : fmt::format(", {} stereo,", stereo)), std::string::npos)
+                << name << "\n"
+                << text;
         }
     }
+    const support::Ran ran = support::runProgram("sandwall-check", pathOf("desktop.toml") + " --stereo top_bottom");
+    EXPECT_EQ(ran.status, 0) << ran.output;
+    EXPECT_EQ(ran.output, describe(loadWallAs(pathOf("desktop.toml"), "top_bottom")));
 }
 
 TEST(CheckProgram, AsksForTheEyesThatAnotherModeDraws) {

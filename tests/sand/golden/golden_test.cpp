@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <memory>
 #include <random>
 
 #include "sand/dunes.hpp"
@@ -33,6 +35,63 @@ TEST(Golden, SessionHashesAreTheSameEverywhere) {
     EXPECT_EQ(fmt::format("{:016x}", hashOfSession(isotropic, closed)), "263bd30513582968");
     EXPECT_EQ(fmt::format("{:016x}", hashOfSession(isotropic, open)), "429d683221de6bda");
     EXPECT_EQ(fmt::format("{:016x}", hashOfSession(n4, closed)), "f8a2e7a9f3edee24");
+}
+
+struct Variant {
+    const char* name;
+    std::int32_t aspect;          // [2^-16]
+    std::int32_t startThreshold;  // [unit]
+    bool rock, walls;
+    sand::Rim rim;
+    const char* hash;
+};
+
+/// Rock that rises to the east, bare in places, and a block and a stair of walls.
+std::shared_ptr<const sand::Ground> groundOf(const Variant& variant, const sand::HeightField& field) {
+    auto ground = std::make_shared<sand::Ground>(field.columns(), field.rows());
+    for (int y = 0; y < field.rows(); ++y) {
+        for (int x = 0; x < field.columns(); ++x) {
+            if (variant.walls && ((x > 30 && x < 42 && y > 20 && y < 25) || (x == y && x > 44 && x < 56))) {
+                ground->setWall(x, y);
+            } else if (variant.rock) {
+                ground->setBedrock(x, y, std::min(field.height(x, y), (x - 20) * sand::kUnitsPerCell / 8));
+            }
+        }
+    }
+    return ground;
+}
+
+std::uint64_t hashOf(const Variant& variant) {
+    sand::Scene scene = samples::flatScene(97, 61, 2.56);
+    sand::makeDunes({.bed = 2, .height = 6, .length = 30, .seed = 5}, scene.terrain);
+    scene.rules.aspect = variant.aspect;
+    scene.rules.startThreshold = variant.startThreshold;
+    scene.rules.rim = variant.rim;
+    if (variant.rock || variant.walls) {
+        scene.ground = groundOf(variant, scene.terrain);
+        scene.rules.ground = scene.ground->digest();
+    }
+    sand::Terrain terrain(scene);
+    std::mt19937 random(43);
+    for (std::uint64_t i = 1; i <= 200; ++i) {
+        terrain.apply(samples::randomStep(i, scene.rules, random));
+    }
+    return terrain.stateHash();
+}
+
+// Each has a kernel of its own, or a term that plain sand does not have: doubles that the band, the limits of a layer
+// and the two lengths of a cell bring in. Accepted as those above.
+TEST(Golden, BandRockWallsAndLongCellsAreTheSameEverywhere) {
+    using enum sand::Rim;
+    constexpr std::int32_t kOne = sand::kUnitsPerCell;
+    for (const Variant& variant :
+         {Variant{"band", kOne, kOne + kOne / 5, false, false, closed, "7622e3831d8c3d45"},
+          {"rock", kOne, kOne, true, false, closed, "6f5f4f1be03dd670"},
+          {"walls", kOne, kOne, false, true, open, "c5e22f36ab01b902"},
+          {"cells twice as long", 2 * kOne, kOne, false, false, closed, "4f885474997461c2"},
+          {"all of it", 3 * kOne / 4, kOne + kOne / 10, true, true, open, "a74b70ca0cd3c40d"}}) {
+        EXPECT_EQ(fmt::format("{:016x}", hashOf(variant)), variant.hash) << variant.name;
+    }
 }
 
 // Tools of every shape, turned and switched at random: doubles that turn, square and divide must not be fused anywhere.

@@ -127,6 +127,7 @@ TEST_F(TinScene, RefusesASpacingThatWouldPutMorePointsAroundTheToolThanItsVertic
         << "a cell is never too little";
 }
 
+#ifndef __SANITIZE_ADDRESS__  // a sanitizer's heap does not tell
 // Of this and other scenes 329 to 401 bytes a vertex were measured.
 TEST_F(TinScene, AReplicaTakesNoLessMemoryThanItsHostIsAskedFor) {
     const files::Bytes bytes = scene(256, "flat", "widest = 0.0078125\n").encode();
@@ -139,12 +140,11 @@ TEST_F(TinScene, AReplicaTakesNoLessMemoryThanItsHostIsAskedFor) {
     sand::Terrain terrain(received);
     (void)terrain.stateHash();
     const std::size_t after = taken();
-    if (after == 0) {
-        GTEST_SKIP() << "a sanitizer's heap does not tell";
-    }
+    ASSERT_GT(after, 0U);
     EXPECT_GE(after - before, static_cast<std::size_t>(sand::Terrain::leastBytes(received)));
     EXPECT_LE(after - before, static_cast<std::size_t>(sand::Terrain::leastBytes(received)) * 3 / 2);
 }
+#endif
 
 TEST_F(TinScene, LevelGroundIsItsCornersAndThePointsAtWidest) {
     const sand::Scene read = scene(40, "flat", "max_error = 0\nwidest = 0.4\n");  // 8 cells
