@@ -5,6 +5,8 @@
 #include "bench/curves.hpp"
 #include "bench/latency.hpp"
 #include "files/command_line.hpp"
+#include "host/version.hpp"
+#include "sand/scene.hpp"
 
 namespace {
 
@@ -121,6 +123,9 @@ void addOptions(CLI::App& command, const Curve& curve, bench::Settings& settings
 }  // namespace
 
 int main(int argc, char** argv) {
+    if (host::answersVersion(argc, argv, "sandwall-bench", {{"algorithm", sand::kAlgorithmVersion}})) {
+        return 0;
+    }
     CLI::App app("Measures the sand: errors, sweeps and seconds, as CSV.", "sandwall-bench");
     app.require_subcommand(1);
     const std::vector<Curve> curves = allCurves();

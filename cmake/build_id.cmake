@@ -1,11 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
-# Writes OUTPUT: one hash over the sources in LIST_FILE and the compiler that builds them.
-file(STRINGS "${LIST_FILE}" sources)
-set(all "${COMPILER}")
-foreach(source IN LISTS sources)
-    file(SHA256 "${source}" hash)
-    string(APPEND all "${hash}")
+# Hashes what MANIFEST lists (cmake/BuildId.cmake), with paths relative to ROOT. Writes build_id.cpp and module_id.cpp
+# into the folder OUTPUT; without OUTPUT, prints the id.
+file(STRINGS "${MANIFEST}" lines)
+set(all "")
+foreach(line IN LISTS lines)
+    string(APPEND all "${line}\n")
+    if(line MATCHES "^file (.*)$")
+        file(SHA256 "${ROOT}/${CMAKE_MATCH_1}" hash)
+        string(APPEND all "${hash}\n")
+    endif()
 endforeach()
 string(SHA256 id "${all}")
 string(SUBSTRING "${id}" 0 16 id)
-file(WRITE "${OUTPUT}" "#include \"lockstep/build_id.hpp\"\nnamespace lockstep {\nconst char* buildId() { return \"${id}\"; }\n}\n")
+if(NOT DEFINED OUTPUT)
+    message("${id}")
+    return()
+endif()
+file(WRITE "${OUTPUT}/build_id.cpp"
+    "#include \"host/build_id.hpp\"\nnamespace host {\nconst char* buildId() { return \"${id}\"; }\n}  // namespace host\n")
+file(WRITE "${OUTPUT}/module_id.cpp"
+    "extern \"C\" __attribute__((visibility(\"default\"))) const char* sandwallBuildId() { return \"${id}\"; }\n")

@@ -13,6 +13,9 @@ namespace files {
 /// options and input give exit status kExitBadInput; our own failures `failed`, for programs in which 1 is an answer.
 template <class Run>
 int runMain(CLI::App& app, int argc, char** argv, Run run, int failed = 1) {
+    // For --help: host::answersVersion() has answered it already, before anything was started.
+    app.add_flag_callback(
+        "--version", [] {}, "print version and build, with --json as JSON, and end");
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

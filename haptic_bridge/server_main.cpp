@@ -14,6 +14,7 @@
 #include "files/input_error.hpp"
 #include "haptic_bridge/client.hpp"
 #include "haptic_bridge/devices/device_troubles.hpp"
+#include "haptic_bridge/devices/driver.hpp"
 #include "haptic_bridge/devices/open_device.hpp"
 #include "haptic_bridge/force_loop.hpp"
 #include "haptic_bridge/link_options.hpp"
@@ -22,6 +23,7 @@
 #include "haptic_bridge/tick_recorder.hpp"
 #include "haptic_bridge/timings.hpp"
 #include "host/event.hpp"
+#include "host/version.hpp"
 #include "workers/sand_threads.hpp"
 
 namespace {
@@ -267,6 +269,8 @@ Options parse(int count, char** words) {
     app.add_option("--timing-seed", options.tests.seed, "of those times (default: 7)");
     options.link.addTo(app, true);
     workers::addSandThreads(app, options.sandThreads);
+    app.add_flag_callback(
+        "--version", [] {}, "print version and build, with --json as JSON, and end");
     app.add_flag("--die-with-parent", options.dieWithParent, "end when the program that started this one ends");
     try {
         app.parse(count, words);
@@ -282,6 +286,12 @@ Options parse(int count, char** words) {
 }  // namespace
 
 int main(int count, char** words) {
+    if (host::answersVersion(count, words, "sandwall-haptic-server",
+                             {{"algorithm", sand::kAlgorithmVersion},
+                              {"protocol", kProtocolVersion},
+                              {"driver_interface", kDriverInterface}})) {
+        return 0;
+    }
     try {
         const Options options = parse(count, words);
         if (options.dieWithParent) {

@@ -15,6 +15,7 @@
 #include "haptic_bridge/connection.hpp"
 #include "haptic_bridge/link_options.hpp"
 #include "haptic_bridge/monotonic.hpp"
+#include "host/version.hpp"
 
 namespace {
 
@@ -165,6 +166,9 @@ int run(const std::string& address, const LinkOptions& options, std::uint64_t li
 }  // namespace
 
 int main(int argc, char** argv) {
+    if (host::answersVersion(argc, argv, "sandwall-watch", {{"protocol", haptic_bridge::kProtocolVersion}})) {
+        return 0;
+    }
     CLI::App app("Prints once a second what a haptic server's hand does; it cannot move anything.", "sandwall-watch");
     std::string address;
     LinkOptions options;

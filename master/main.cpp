@@ -11,8 +11,9 @@
 #include "files/input_error.hpp"
 #include "files/whole_file.hpp"
 #include "haptic_bridge/link_options.hpp"
+#include "host/build_id.hpp"
 #include "host/event.hpp"
-#include "lockstep/build_id.hpp"
+#include "host/version.hpp"
 #include "lockstep/clock_sync.hpp"
 #include "lockstep/session_message.hpp"
 #include "master/injection.hpp"
@@ -197,8 +198,7 @@ int runSession(const lockstep::Cluster& cluster, Options& options) {
         world.emplace(loadWorld(cluster, options));
         (void)lockstep::broadcastSession(cluster, world->message);
         sessionOpen = true;
-        const auto ranks =
-            lockstep::gatherReadiness(cluster, {lockstep::hostName(), lockstep::buildId(), "", "", {}, 0});
+        const auto ranks = lockstep::gatherReadiness(cluster, {lockstep::hostName(), host::buildId(), "", "", {}, 0});
         master::requireReady(ranks, master::namesOf(cluster, world->wall));
         for (const lockstep::Readiness& rank : ranks) {
             options.session.settlingFrames =
@@ -298,8 +298,11 @@ void describeReplay(CLI::App& app, Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc > 1 && std::string_view(argv[1]) == "--build-id") {  // what ranks compare; needs no MPI
-        fmt::print("{}\n", lockstep::buildId());
+    if (host::answersVersion(argc, argv, "sandwall-master",
+                             {{"algorithm", sand::kAlgorithmVersion},
+                              {"protocol", haptic_bridge::kProtocolVersion},
+                              {"journal", master::kJournalVersion},
+                              {"state", sand::kStateVersion}})) {
         return 0;
     }
     lockstep::dieWithParent();

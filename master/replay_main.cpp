@@ -14,6 +14,7 @@
 #include "files/input_error.hpp"
 #include "files/whole_file.hpp"
 #include "haptic_bridge/tick_replay.hpp"
+#include "host/version.hpp"
 #include "master/journal.hpp"
 #include "master/journal_tools.hpp"
 #include "sand/import/raster_file.hpp"
@@ -213,6 +214,12 @@ std::string notNegative(const std::string& text) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    if (host::answersVersion(argc, argv, "sandwall-replay",
+                             {{"algorithm", sand::kAlgorithmVersion},
+                              {"journal", master::kJournalVersion},
+                              {"state", sand::kStateVersion}})) {
+        return 0;
+    }
     CLI::App app(
         "Replays the journal of a session, bit for bit, and checks it against the session's own hashes.\n"
         "Exit status 0 alike, 1 different, 2 unusable.");

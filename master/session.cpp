@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "files/input_error.hpp"
+#include "host/build_id.hpp"
 #include "host/event.hpp"
-#include "lockstep/build_id.hpp"
 #include "lockstep/session_message.hpp"
 #include "master/start_up.hpp"
 #include "master/wall_pictures.hpp"

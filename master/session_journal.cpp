@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "files/input_error.hpp"
-#include "lockstep/build_id.hpp"
+#include "host/build_id.hpp"
 #include "master/session.hpp"
 
 namespace master {
@@ -23,7 +23,7 @@ void Session::beginJournal(const sand::Scene& scene) {
         frame_ = summary_.framesBefore = resumed->frame;
         summary_.edits = resumed->edits;
     }
-    journal_.emplace(options_.out, options_.journal, scene, resumed, options_.failure.what, lockstep::buildId());
+    journal_.emplace(options_.out, options_.journal, scene, resumed, options_.failure.what, host::buildId());
 }
 
 void Session::tellRecovery() {

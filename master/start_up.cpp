@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "files/input_error.hpp"
-#include "lockstep/build_id.hpp"
+#include "host/build_id.hpp"
 #include "sand/terrain.hpp"
 
 namespace master {
@@ -39,9 +39,9 @@ void requireMemory(const std::vector<lockstep::RankHost>& ranks, const sand::Sce
 
 void requireReady(const std::vector<lockstep::Readiness>& ranks, const std::vector<std::string>& names) {
     for (std::size_t rank = 1; rank < ranks.size(); ++rank) {
-        if (ranks[rank].buildId != lockstep::buildId()) {
+        if (ranks[rank].buildId != host::buildId()) {
             throw files::InputError(fmt::format("{}: is of build {}, the master of {}; install one build on every host",
-                                                names[rank], ranks[rank].buildId, lockstep::buildId()));
+                                                names[rank], ranks[rank].buildId, host::buildId()));
         }
         if (!ranks[rank].error.empty()) {
             throw files::InputError(fmt::format("{}: {}", names[rank], ranks[rank].error));

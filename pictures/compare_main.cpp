@@ -5,6 +5,7 @@
 #include <string>
 
 #include "files/command_line.hpp"
+#include "host/version.hpp"
 #include "pictures/compare.hpp"
 #include "pictures/png_file.hpp"
 
@@ -38,6 +39,9 @@ int comparePictures(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    if (host::answersVersion(argc, argv, "sandwall-compare")) {
+        return 0;
+    }
     CLI::App app{"Compares two pictures: exit status 0 alike, 1 different, 2 unusable.", "sandwall-compare"};
     Options options;
     app.add_option("A", options.first, "a PNG")->required();

@@ -4,17 +4,19 @@
 #include <string_view>
 
 #include "files/command_line.hpp"
-#include "lockstep/build_id.hpp"
+#include "host/version.hpp"
 #include "lockstep/cluster.hpp"
 #include "render_node/probe.hpp"
 #include "render_node/tile_session.hpp"
+#include "sand/scene.hpp"
+#include "sand/terrain.hpp"
 #include "workers/sand_threads.hpp"
 
 int main(int argc, char** argv) {
     // Questions about this host, asked before a job: they need no MPI.
     const std::string_view question = argc > 1 ? argv[1] : "";
-    if (question == "--build-id") {
-        std::puts(lockstep::buildId());
+    if (host::answersVersion(argc, argv, "sandwall-render-node",
+                             {{"algorithm", sand::kAlgorithmVersion}, {"state", sand::kStateVersion}})) {
         return 0;
     }
     if (question == "--probe") {
@@ -25,8 +27,7 @@ int main(int argc, char** argv) {
     CLI::App app(
         "A render rank of a wall: one tile. Started by mpirun beside sandwall-master, which tells it everything.",
         "sandwall-render-node");
-    app.footer(
-        "Alone: --build-id prints what ranks compare; --probe RANK < WALL tries what that rank would draw with.");
+    app.footer("Alone: --probe RANK < WALL tries what that rank would draw with.");
     std::string gl = "auto";
     app.add_option(
            "--gl", gl,

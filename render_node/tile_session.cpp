@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "lockstep/build_id.hpp"
+#include "host/build_id.hpp"
 #include "lockstep/clock_sync.hpp"
 #include "lockstep/divergence.hpp"
 #include "lockstep/frame_barrier.hpp"
@@ -207,7 +207,7 @@ int showTile(const lockstep::Cluster& cluster, Backend backend, const sand::Eros
     if (!message) {
         return 0;  // the master has said why
     }
-    lockstep::Readiness readiness{lockstep::hostName(), lockstep::buildId(), "", "", {}, 0};
+    lockstep::Readiness readiness{lockstep::hostName(), host::buildId(), "", "", {}, 0};
     std::unique_ptr<TileSession> session;
     try {
         session = std::make_unique<TileSession>(cluster, *message, backend, sweeps);

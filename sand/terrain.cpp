@@ -13,8 +13,6 @@
 namespace sand {
 namespace {
 
-constexpr std::uint32_t kStateVersion = 5;
-
 /// The finaliser of MurmurHash3: every bit of the input reaches every bit of the result.
 std::uint64_t mix(std::uint64_t value) {
     value = (value ^ (value >> 33)) * 0xff51afd7ed558ccdULL;

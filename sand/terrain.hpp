@@ -13,6 +13,9 @@
 
 namespace sand {
 
+/// Of what encodeState() writes; a replica decodes this version alone.
+inline constexpr std::uint32_t kStateVersion = 5;
+
 /// The whole state of a replica, for whoever compresses it on another thread.
 struct StateCopy {
     files::Bytes head;                                // all but the sand

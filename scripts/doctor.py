@@ -2,9 +2,9 @@
 """Looks at every machine of a wall before a show: one line per check, and what to do about the red ones."""
 
 import concurrent.futures
+import json
 import os
 import pathlib
-import re
 import shlex
 import shutil
 import socket
@@ -24,11 +24,18 @@ RANK_MEGABYTES = 256  # a rank of 512 x 512 cells and 1024 x 768 pixels holds ab
 OUT_MEGABYTES = 256
 MOST_HOSTS_AT_ONCE = 32
 # What a host says of itself, one answer a line; {node} is the program there.
-QUESTIONS = ('echo "build $({node} --build-id 2>&1 | head -n 1)"; '
+QUESTIONS = ('echo "build $({node} --version --json 2>&1 | head -n 1)"; '
              'echo "mpi $(mpirun --version 2>&1 | head -n 1)"; '
              'echo "memory $(sed -n "s/^MemAvailable: *//p" /proc/meminfo)"; '
              'echo "client $SSH_CONNECTION"')
-BUILD_ID = re.compile("[0-9a-f]{16}")
+
+
+def build_of(answer):
+    """The build id in what a program prints for --version --json, or None."""
+    try:
+        return json.loads(answer)["build"]
+    except (ValueError, KeyError, TypeError):
+        return None
 
 
 class Ask:
@@ -148,9 +155,9 @@ class Doctor:
         return {first: rest for first, _, rest in (line.partition(" ") for line in said.splitlines())}
 
     def check_programs(self, host, answers):
-        build = answers.get("build", "")
-        if not BUILD_ID.fullmatch(build):
-            host.add(False, "build", f"{self.node} does not answer ({build}); install the same build at the same path everywhere")
+        build = build_of(answers.get("build", ""))
+        if build is None:
+            host.add(False, "build", f"{self.node} does not answer ({answers.get('build', '')}); install the same build at the same path everywhere")
         elif build == self.build:
             host.add(True, "build", build)
         else:
@@ -236,9 +243,9 @@ def check_out(host, out):
 
 def check_master(host, master, build):
     """The master's program, on this machine alone."""
-    ended = subprocess.run([master, "--build-id"], stdin=subprocess.DEVNULL, capture_output=True, text=True,
+    ended = subprocess.run([master, "--version", "--json"], stdin=subprocess.DEVNULL, capture_output=True, text=True,
                            errors="replace", timeout=ANSWER_SECONDS, check=False)
-    said = ended.stdout.strip()
+    said = build_of(ended.stdout)
     host.add(said == build, "master", said if said == build else
              f"build {said or last_line(ended.stderr)}, the ranks have {build}; cmake --build build/release")
 
@@ -270,9 +277,10 @@ def report(hosts, colours):
 def examine(hosts, wall_text, node, master, out, gl):
     """Looks at the host of every rank and at this machine. `wall_text` is None where only hosts are known. Returns the
     exit status: 0 when nothing is red, else 1."""
-    build = subprocess.run([node, "--build-id"], stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                           errors="replace", timeout=ANSWER_SECONDS, check=False).stdout.strip()
+    said = subprocess.run([node, "--version", "--json"], stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                           errors="replace", timeout=ANSWER_SECONDS, check=False).stdout
     here, *others = machines(hosts, wall_text is not None)
+    build = build_of(said)
     doctor = Doctor(node, build, wall_text, gl)
     check_master(here, master, build)
     check_out(here, out)

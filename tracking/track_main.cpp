@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "files/command_line.hpp"
+#include "host/version.hpp"
 #include "tracking/head_trace.hpp"
 #include "tracking/packet_sender.hpp"
 
@@ -78,6 +79,9 @@ int listen(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    if (host::answersVersion(argc, argv, "sandwall-track")) {
+        return 0;
+    }
     CLI::App app{"Tries head tracking without a wall: sends a head's poses as a tracker would, or prints what arrives.",
                  "sandwall-track"};
     Options options;

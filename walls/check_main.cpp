@@ -6,6 +6,7 @@
 
 #include "files/command_line.hpp"
 #include "files/whole_file.hpp"
+#include "host/version.hpp"
 #include "walls/wall.hpp"
 #include "walls/wall_report.hpp"
 #include "walls/wall_svg.hpp"
@@ -35,6 +36,9 @@ int check(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    if (host::answersVersion(argc, argv, "sandwall-check")) {
+        return 0;
+    }
     CLI::App app{"Checks a wall file and prints what it describes.", "sandwall-check"};
     Options options;
     app.add_option("WALL", options.wall, "a wall file (docs/wall_files.md)")->required();

@@ -5,19 +5,23 @@
 #include <fmt/format.h>
 
 #include "files/input_error.hpp"
+#include "haptic_bridge/devices/driver.hpp"
+#include "host/module.hpp"
 
 namespace haptic_bridge {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Never closed: drivers leave threads behind that outlive any device.
-void* load(const fs::path& file, const std::string& option, const std::string& advice) {
+/// A driver of the user's: not of our build, but of our interface. Never closed, because drivers leave threads behind
+/// that outlive any device.
+void* loadDriver(const fs::path& file, const std::string& option) {
     void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (handle == nullptr) {
         const char* reason = dlerror();
-        throw files::InputError(fmt::format("{}: {}; {}", option,
-                                            reason == nullptr ? file.string() + " cannot be loaded" : reason, advice));
+        throw files::InputError(
+            fmt::format("{}: {}; give a driver's module, and its libraries where the loader finds them", option,
+                        reason == nullptr ? file.string() + " cannot be loaded" : reason));
     }
     return handle;
 }
@@ -27,11 +31,21 @@ Function* find(void* handle, const char* symbol, const fs::path& file) {
     void* address = dlsym(handle, symbol);
     if (address == nullptr) {
         throw files::InputError(
-            fmt::format("{}: defines no {}; build it against this version of Sandwall "
+            fmt::format("{}: defines no {}; build it with haptic_bridge/devices/driver.hpp of this version of Sandwall "
                         "(docs/devices.md)",
                         file.string(), symbol));
     }
     return reinterpret_cast<Function*>(address);
+}
+
+void requireInterface(void* handle, const fs::path& file) {
+    const int version = find<DriverInterface>(handle, kDriverInterfaceSymbol, file)();
+    if (version != kDriverInterface) {
+        throw files::InputError(
+            fmt::format("{}: is a driver of interface version {}, and this program takes version {}; build it with "
+                        "haptic_bridge/devices/driver.hpp of this version of Sandwall (docs/devices.md)",
+                        file.string(), version, kDriverInterface));
+    }
 }
 
 /// What a module's function makes; its exceptions become the user's.
@@ -57,25 +71,20 @@ std::unique_ptr<Arm> openArmModule(const std::string& spec) {
     // As a path: the loader looks for a bare name elsewhere, and not here.
     const fs::path file = fs::absolute(spec.substr(0, colon));
     const std::string what = colon == std::string::npos ? "" : spec.substr(colon + 1);
-    void* handle = load(file, option, "give a driver's module, and its libraries where the loader finds them");
+    void* handle = loadDriver(file, option);
+    requireInterface(handle, file);
     const auto open = find<OpenArm>(handle, kArmSymbol, file);
     return made(option, [&] { return std::unique_ptr<Arm>(open(what.c_str())); });
 }
 
 std::unique_ptr<PictureWindow> openPictureWindow(const std::string& title, int width, int height) {
-    std::error_code none;
-    const fs::path bin = fs::read_symlink("/proc/self/exe", none).parent_path();
-    for (const fs::path& folder : {bin, bin.parent_path() / "lib" / "sandwall"}) {
-        const fs::path file = folder / "sandwall-window.so";
-        if (fs::exists(file, none)) {
-            void* handle = load(file, "--device mouse", "install Debian's libglfw3");
-            const auto open = find<OpenPictureWindow>(handle, kPictureWindowSymbol, file);
-            return made("--device mouse",
-                        [&] { return std::unique_ptr<PictureWindow>(open(title.c_str(), width, height)); });
-        }
-    }
-    throw files::InputError("--device mouse: there is no sandwall-window.so in " + bin.string() +
-                            "; build Sandwall with Debian's libglfw3-dev");
+    void* const symbol = host::loadModule({.file = "sandwall-window.so",
+                                           .symbol = kPictureWindowSymbol,
+                                           .askedBy = "--device mouse",
+                                           .ifMissing = "build Sandwall with Debian's libglfw3-dev",
+                                           .ifNotLoaded = "install Debian's libglfw3"});
+    const auto open = reinterpret_cast<OpenPictureWindow*>(symbol);
+    return made("--device mouse", [&] { return std::unique_ptr<PictureWindow>(open(title.c_str(), width, height)); });
 }
 
 }  // namespace haptic_bridge

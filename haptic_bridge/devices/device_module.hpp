@@ -10,12 +10,6 @@
 
 namespace haptic_bridge {
 
-/// What a driver's module defines, with C linkage, and what is looked for in it. `what` stands behind the file's name
-/// in
-/// --device. Throws std::exception with a line for a person when the device is not there.
-inline constexpr const char* kArmSymbol = "sandwallArm1";
-using OpenArm = Arm*(const char* what);
-
 /// "FILE.so" or "FILE.so:WHAT": loads a driver and opens its arm. Throws files::InputError that begins with --device
 /// when the file is no such module or the arm cannot be opened. Modules stay loaded.
 [[nodiscard]] std::unique_ptr<Arm> openArmModule(const std::string& spec);

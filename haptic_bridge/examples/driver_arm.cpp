@@ -8,10 +8,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "haptic_bridge/devices/arm.hpp"
-#include "haptic_bridge/devices/device_module.hpp"
-#include "haptic_bridge/latest.hpp"
-#include "haptic_bridge/monotonic.hpp"
+#include "haptic_bridge/devices/driver.hpp"
 
 /// Replace these bodies by calls of your library; as they stand, they are an arm that nobody holds.
 namespace maker {
@@ -104,4 +101,4 @@ private:
 
 }  // namespace
 
-extern "C" haptic_bridge::Arm* sandwallArm1(const char* what) { return new DriverArm(what); }
+SANDWALL_DRIVER(DriverArm)

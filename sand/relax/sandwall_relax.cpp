@@ -8,6 +8,7 @@
 #include <string>
 
 #include "files/command_line.hpp"
+#include "host/version.hpp"
 #include "sand/relax/options.hpp"
 #include "sand/relax/tin_sand.hpp"
 #include "workers/worker_pool.hpp"
@@ -81,6 +82,9 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    if (host::answersVersion(argc, argv, "sandwall-relax", {{"algorithm", sand::kAlgorithmVersion}})) {
+        return 0;
+    }
     CLI::App app{"Lets the sand of a grid or a TIN slide until it lies nowhere steeper than its talus.",
                  "sandwall-relax"};
     Options options;

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "haptic_bridge/devices/device_module.hpp"
+#include "haptic_bridge/devices/driver.hpp"
 
 namespace {
 
@@ -54,4 +54,4 @@ private:
 
 }  // namespace
 
-extern "C" haptic_bridge::Arm* sandwallArm1(const char* what) { return new BadArm(what); }
+SANDWALL_DRIVER(BadArm)

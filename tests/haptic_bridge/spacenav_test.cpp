@@ -83,8 +83,21 @@ TEST(Driver, AFileThatIsNoneIsRefused) {
         return std::string();
     };
     EXPECT_TRUE(complaint("/nowhere/my.so").starts_with("--device driver:/nowhere/my.so: "));
-    EXPECT_NE(complaint(SANDWALL_BIN_DIR "/fake-spnav.so").find("fake-spnav.so: defines no sandwallArm1"),
+    EXPECT_NE(complaint(SANDWALL_BIN_DIR "/fake-spnav.so").find("fake-spnav.so: defines no sandwallDriverInterface"),
               std::string::npos);
+}
+
+TEST(Driver, OfAnotherInterfaceVersionIsRefused) {
+    const std::string file = SANDWALL_BIN_DIR "/old-driver.so";
+    try {
+        (void)haptic_bridge::openArmModule(file);
+        ADD_FAILURE() << "opened";
+    } catch (const files::InputError& error) {
+        EXPECT_EQ(std::string(error.what()),
+                  std::filesystem::absolute(file).string() +
+                      ": is a driver of interface version 0, and this program takes version 1; build it with "
+                      "haptic_bridge/devices/driver.hpp of this version of Sandwall (docs/devices.md)");
+    }
 }
 
 TEST(HeadlessServer, MapsNoWindowLibrary) {

@@ -27,7 +27,7 @@ esac
 exec sh -c "$*"
 """
 NODE = """#!/bin/sh
-[ "$1" = --build-id ] && { echo "${MADE_UP_BUILD:-0123456789abcdef}"; exit 0; }
+[ "$1" = --version ] && { echo "{\\"version\\": \\"1.2.3\\", \\"build\\": \\"${MADE_UP_BUILD:-0123456789abcdef}\\"}"; exit 0; }
 [ "$2" = 0 ] || grep -q . || { echo "no wall on standard input" >&2; exit 2; }
 [ "$MADE_UP_DISPLAY" = none ] && { echo "display :0 cannot be opened" >&2; exit 2; }
 echo "$4: made-up renderer"
@@ -132,7 +132,7 @@ class Doctor(LauncherTest):
                          "rank 3: output a: its window lies partly off the screen; docs/backends.md")
 
     def test_a_master_of_another_build_is_red(self):
-        self.script("sandwall-master", "#!/bin/sh\necho 00000000000000ff\n")
+        self.script("sandwall-master", "#!/bin/sh\necho '{\"build\": \"00000000000000ff\"}'\n")
         status, found = self.examine(["-"])
         self.assertEqual(status, 1)
         self.assertEqual(found[self.name, "master"], ("RED", "build 00000000000000ff, the ranks have 0123456789abcdef; "

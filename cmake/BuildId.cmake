@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: Apache-2.0
+# The build id: one hash over everything that a rank runs. Ranks compare it at the start, and modules carry it, so that
+# no two builds run together. It follows sources, flags and compiler, and no path and no time: clones of one commit have
+# one id.
+
+# Appends to `list` the targets of this project that `target` links, itself first.
+function(sandwall_linked_targets list target)
+    set(found ${${list}})
+    if(NOT TARGET ${target} OR target IN_LIST found)
+        return()
+    endif()
+    get_target_property(imported ${target} IMPORTED)
+    if(imported)
+        return()
+    endif()
+    list(APPEND found ${target})
+    get_target_property(type ${target} TYPE)
+    set(links "")
+    foreach(property LINK_LIBRARIES INTERFACE_LINK_LIBRARIES SOURCES)
+        get_target_property(values ${target} ${property})
+        if(values)
+            list(APPEND links ${values})
+        endif()
+    endforeach()
+    foreach(link IN LISTS links)
+        string(REGEX REPLACE "^\\$<(LINK_ONLY|TARGET_OBJECTS):(.*)>$" "\\2" link "${link}")
+        sandwall_linked_targets(found "${link}")
+    endforeach()
+    set(${list} ${found} PARENT_SCOPE)
+endfunction()
+
+# Writes what the targets are made of: a line `flags ...` of each, and a line `file PATH` for each source, and for each
+# header beside one, relative to the project. Warnings and debug information change no instruction.
+function(sandwall_write_manifest file)
+    set(targets "")
+    foreach(target IN LISTS ARGN)
+        sandwall_linked_targets(targets ${target})
+    endforeach()
+    list(REMOVE_ITEM targets build_id module_id)
+    set(files "")
+    set(flags "")
+    string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
+    foreach(target IN LISTS targets)
+        get_target_property(folder ${target} SOURCE_DIR)
+        get_target_property(sources ${target} SOURCES)
+        foreach(source IN LISTS sources)
+            cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${folder} NORMALIZE)
+            cmake_path(IS_PREFIX PROJECT_BINARY_DIR "${source}" generated)
+            if(source MATCHES "\\.(cpp|hpp)$" AND NOT generated)
+                list(APPEND files ${source})
+                cmake_path(GET source PARENT_PATH beside)
+                file(GLOB headers CONFIGURE_DEPENDS ${beside}/*.hpp)
+                list(APPEND files ${headers})
+            endif()
+        endforeach()
+        set(line "${target}")
+        foreach(property COMPILE_OPTIONS COMPILE_DEFINITIONS INTERFACE_COMPILE_OPTIONS INTERFACE_COMPILE_DEFINITIONS)
+            get_target_property(values ${target} ${property})
+            if(values)
+                list(FILTER values EXCLUDE REGEX "^-W|^-g|^-fdiagnostics")
+                list(APPEND line ${values})
+            endif()
+        endforeach()
+        list(JOIN line " " line)
+        list(APPEND flags "flags ${line}")
+    endforeach()
+    file(GLOB embedded CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/render_node/shaders/*
+        ${PROJECT_SOURCE_DIR}/haptic_bridge/devices/*.strokes)
+    list(APPEND files ${embedded})
+    set(common ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}})
+    separate_arguments(common)
+    list(FILTER common EXCLUDE REGEX "^-W|^-g|^-fdiagnostics")
+    list(JOIN common " " common)
+    list(PREPEND flags "flags all ${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION} ${build_type} C++${CMAKE_CXX_STANDARD} ${common}")
+    list(REMOVE_DUPLICATES files)
+    set(paths "")
+    foreach(path IN LISTS files)
+        cmake_path(RELATIVE_PATH path BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
+        list(APPEND paths "file ${path}")
+    endforeach()
+    list(SORT paths)
+    list(JOIN flags "\n" flags)
+    list(JOIN paths "\n" paths)
+    string(REPLACE "${PROJECT_SOURCE_DIR}/" "" flags "${flags}")
+    set(manifest "${flags}\n${paths}\n")
+    file(CONFIGURE OUTPUT ${file} CONTENT "@manifest@" @ONLY)  # written only if it changes
+    set(identified_files ${files} PARENT_SCOPE)
+endfunction()
+
+# Defines build_id, with host::buildId(), and module_id, with the same for a module (host/module.hpp), from what the
+# targets in ARGN link. After all targets.
+function(sandwall_define_build_id)
+    set(folder ${PROJECT_BINARY_DIR}/host)
+    set(present "")
+    foreach(target IN LISTS ARGN)
+        if(TARGET ${target})
+            list(APPEND present ${target})
+        endif()
+    endforeach()
+    sandwall_write_manifest(${folder}/identified.txt ${present})
+    add_custom_command(
+        OUTPUT ${folder}/build_id.cpp ${folder}/module_id.cpp
+        COMMAND ${CMAKE_COMMAND} -DMANIFEST=${folder}/identified.txt -DROOT=${PROJECT_SOURCE_DIR} -DOUTPUT=${folder}
+                -P ${PROJECT_SOURCE_DIR}/cmake/build_id.cmake
+        DEPENDS ${identified_files} ${folder}/identified.txt ${PROJECT_SOURCE_DIR}/cmake/build_id.cmake
+        COMMENT "Computing the build id"
+        VERBATIM)
+    add_library(build_id STATIC ${folder}/build_id.cpp)
+    add_library(module_id OBJECT ${folder}/module_id.cpp)
+    set_target_properties(build_id module_id PROPERTIES POSITION_INDEPENDENT_CODE ON UNITY_BUILD OFF)
+    target_include_directories(build_id PRIVATE ${PROJECT_SOURCE_DIR})
+    add_dependencies(module_id build_id)  # one command writes both sources
+endfunction()

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace host {
+
+/// Numbers of the formats and rules that a program knows, such as {"journal", 7}.
+using KnownVersions = std::vector<std::pair<std::string_view, std::uint32_t>>;
+
+/// What `--version` prints of a program: version, build id and known versions, for people or as one JSON object.
+[[nodiscard]] std::string versionText(std::string_view program, const KnownVersions& known, bool json);
+
+/// Prints versionText() if `--version` is among the arguments, as JSON if `--json` is too. Call it first in main, and
+/// end the program if it returns true: the answer needs no MPI and no other option.
+[[nodiscard]] bool answersVersion(int argc, char** argv, std::string_view program, const KnownVersions& known = {});
+
+}  // namespace host

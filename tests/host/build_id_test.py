@@ -1,0 +1,98 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""That the build id follows what ranks run, and no path.
+
+usage: build_id_test.py BUILD_FOLDER CMAKE
+"""
+
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BUILD, CMAKE = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2]
+del sys.argv[1:3]
+MANIFEST = BUILD / "host" / "identified.txt"
+
+
+def identified():
+    return [line.removeprefix("file ") for line in MANIFEST.read_text().splitlines() if line.startswith("file ")]
+
+
+def build_id(root, manifest=MANIFEST):
+    ended = subprocess.run([CMAKE, f"-DMANIFEST={manifest}", f"-DROOT={root}", "-P", ROOT / "cmake" / "build_id.cmake"],
+                           capture_output=True, text=True, check=True)
+    return ended.stderr.strip()
+
+
+class BuildId(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="sandwall-build-id-")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def copy(self, name):
+        """The identified files in another folder, as in another clone."""
+        for path in identified():
+            (self.folder / name / path).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(ROOT / path, self.folder / name / path)
+        return self.folder / name
+
+    def test_two_clones_have_the_id_of_this_build(self):
+        ours = build_id(ROOT)
+        self.assertRegex(ours, r"^[0-9a-f]{16}$")
+        self.assertEqual([build_id(self.copy("one")), build_id(self.copy("two"))], [ours, ours])
+        self.assertIn(f'"{ours}"', (BUILD / "host" / "build_id.cpp").read_text())
+        self.assertNotIn(str(ROOT), MANIFEST.read_text())
+
+    def test_a_changed_constant_in_the_erosion_of_a_tin_changes_it(self):
+        clone = self.copy("changed")
+        before = build_id(clone)
+        kernel = clone / "sand/tin/sweep_kernel.cpp"
+        kernel.write_text(kernel.read_text() + "// changed\n")
+        self.assertNotEqual(build_id(clone), before)
+
+    def test_every_source_a_header_a_shader_and_a_flag_change_it(self):
+        clone = self.copy("changed")
+        before = build_id(clone)
+        for path in ("sand/erosion.hpp", "haptic_bridge/client_session.cpp", "workers/worker_pool.cpp", "tracking/dtrack.cpp",
+                     "render_node/gl/osmesa.cpp", "render_node/shaders/sand.frag.glsl", "sand/import/gdal_raster.cpp",
+                     "haptic_bridge/security_openssl.cpp"):
+            text = (clone / path).read_text()
+            (clone / path).write_text(text + "\n")
+            self.assertNotEqual(build_id(clone), before, path)
+            (clone / path).write_text(text)
+        self.assertEqual(build_id(clone), before)
+        manifest = self.folder / "identified.txt"
+        manifest.write_text(MANIFEST.read_text().replace("-ffp-contract=off", "-ffp-contract=fast", 1))
+        self.assertNotEqual(build_id(clone, manifest), before)
+
+    def test_nothing_that_a_rank_is_compiled_from_is_left_out(self):
+        """Against what the compiler has read, as ninja has noted it."""
+        if not (BUILD / "bin" / "sandwall-master").exists() or not (BUILD / "build.ninja").exists():
+            return  # a build of the sand alone has no ranks
+        said = subprocess.run(["ninja", "-C", BUILD, "-t", "deps"], capture_output=True, text=True, check=True).stdout
+        read, of_a_rank = set(), False
+        # A block per object: its path, and below it, indented, what it was compiled from.
+        for line in said.splitlines():
+            if line and not line.startswith(" "):
+                path = line.split(":")[0]
+                of_a_rank = "CMakeFiles/" in path and not path.startswith(("tests/", "bench/"))
+                of_a_rank = of_a_rank and any(f"CMakeFiles/{target}.dir/" in path for target in self.targets())
+            elif of_a_rank and line.strip():
+                path = pathlib.Path(BUILD, line.strip()).resolve()
+                if path.is_relative_to(ROOT) and not path.is_relative_to(ROOT / "build") and not path.is_relative_to(BUILD):
+                    read.add(str(path.relative_to(ROOT)))
+        self.assertGreater(len(read), 200)
+        self.assertEqual(sorted(read - set(identified())), [])
+
+    @staticmethod
+    def targets():
+        return [line.split()[1] for line in MANIFEST.read_text().splitlines() if line.startswith("flags ")]
+
+
+if __name__ == "__main__":
+    unittest.main()
