@@ -139,10 +139,6 @@ bool ChildProcess::waitUntil(const std::function<bool()>& condition, double seco
     }
 }
 
-bool ChildProcess::waitForOutput(const std::string& text, double seconds) {
-    return waitUntil([&] { return output().find(text) != std::string::npos; }, seconds);
-}
-
 std::vector<nlohmann::json> ChildProcess::events(const std::string& name) const { return eventsIn(output(), name); }
 
 nlohmann::json ChildProcess::waitForEvent(const std::string& name, const nlohmann::json& wanted, double seconds) {

@@ -28,8 +28,6 @@ public:
     [[nodiscard]] std::string output() const;
     /// Waits until `condition` is true; false if it is not in time, or still is not when the program has ended.
     [[nodiscard]] bool waitUntil(const std::function<bool()>& condition, double seconds = kPatience);
-    /// Waits until the output holds `text`; false when it does not in time or the program has ended without.
-    [[nodiscard]] bool waitForOutput(const std::string& text, double seconds);
     /// Its events of one name so far; it and its children run with SANDWALL_EVENTS=1.
     [[nodiscard]] std::vector<nlohmann::json> events(const std::string& name) const;
     /// Waits for an event of this name that has the fields of `wanted` (support::holds), and returns the first one;
