@@ -19,12 +19,12 @@ TEST_F(Lockstep, OneFourAndTwelveRanksOfAnyThreadsHashLikeTheirJournal) {
     for (const Way& way : {Way{1, 1, "1"}, Way{2, 2, "3"}, Way{3, 4, "1"}}) {
         const Ended ended =
             runToEnd({"--wall", wall(way.rows, way.columns), "--scene", scene(), "--device", "script:gis", "--pace",
-                      "fast", "--steps", "240", "--out", out(), "--no-pictures", "--sand-threads", way.sandThreads});
+                      "fast", "--steps", "150", "--out", out(), "--no-pictures", "--sand-threads", way.sandThreads});
         ASSERT_EQ(ended.status, 0) << ended.output;
         const nlohmann::json result = summary();
         const std::string hash = result["state_hash"];
         EXPECT_EQ(hash.size(), 16U);
-        EXPECT_EQ(result["steps"], 240);
+        EXPECT_EQ(result["steps"], 150);
         EXPECT_EQ(result["ranks"], way.rows * way.columns);
         EXPECT_EQ(result["divergences"], 0);
         EXPECT_EQ(result["server_divergences"], 0);
