@@ -30,10 +30,6 @@ TEST(LatencyBench, MeasuresAWallBesideTheFloor) {
                                         "impaired --loads still --seed 5 --out " +
                                             file.string());
     ASSERT_EQ(ran.status, 0) << ran.output;
-    EXPECT_NE(ran.output.find("| portable, 1 | impaired (stands in for wireless) | still, 64 × 48 | 24.9 ± 14.8 | "),
-              std::string::npos)
-        << ran.output;
-    EXPECT_NE(ran.output.find("times of seed 5"), std::string::npos) << ran.output;
     std::ifstream stream(file);
     std::string line;
     while (std::getline(stream, line) && line.starts_with("#")) {
@@ -42,10 +38,18 @@ TEST(LatencyBench, MeasuresAWallBesideTheFloor) {
     std::getline(stream, line);
     const std::vector<std::string> cells = words(line);
     ASSERT_EQ(titles.size(), cells.size());
+    EXPECT_FALSE(std::getline(stream, line)) << "one wall, one link and one load were chosen";
     std::map<std::string, std::string> row;
     for (std::size_t i = 0; i < titles.size(); ++i) {
         row[titles[i]] = cells[i];
     }
+    EXPECT_EQ(row["wall"], "portable");
+    EXPECT_EQ(row["nodes"], "1");
+    EXPECT_EQ(row["link"], "impaired");
+    EXPECT_EQ(row["load"], "still");
+    EXPECT_EQ(row["eye_pixels"], "64x48");
+    EXPECT_EQ(row["paper_mean"], "24.9");
+    EXPECT_EQ(row["paper_stddev"], "14.8");
     EXPECT_GT(std::stoi(row["wall_count"]), 0);
     EXPECT_GE(std::stoi(row["master_count"]), std::stoi(row["wall_count"]));
     EXPECT_GE(std::stod(row["master_mean"]), 3) << "the link's own delay, there and back";
@@ -55,14 +59,13 @@ TEST(LatencyBench, MeasuresAWallBesideTheFloor) {
 }
 
 TEST(LatencyBench, RefusesInOneLineWhatItCannotDo) {
-    for (const auto& [arguments, complaint] :
-         {std::pair{"--walls cave", "--walls: 'cave' is none of portable, FLEX, tiled wall"},
-          {"--seconds 0", "--seconds 0: 1 to 3600"},
-          {"--out /nowhere/a.csv", "--out /nowhere/a.csv: there is no such folder"},
-          {"--secnods 3", "unrecognized arguments: --secnods 3"}}) {
+    for (const auto& [arguments, named] : {std::pair{"--walls cave", "--walls: 'cave'"},
+                                           {"--seconds 0", "--seconds 0"},
+                                           {"--out /nowhere/a.csv", "/nowhere/a.csv"},
+                                           {"--secnods 3", "--secnods 3"}}) {
         const support::Ran ran = runProgram("sandwall-bench", std::string("latency ") + arguments);
         EXPECT_EQ(ran.status, 2) << ran.output;
-        EXPECT_NE(ran.output.find(complaint), std::string::npos) << ran.output;
+        EXPECT_NE(ran.output.find(named), std::string::npos) << ran.output;
         EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
     }
 }

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
-
 #include "pictures/png_file.hpp"
 #include "tests/cluster/session_fixture.hpp"
 #include "tests/support/run_program.hpp"
@@ -51,31 +49,23 @@ TEST_F(HeadTracking, AHeadTurnedToItsSideSeesWithOneEyeAboveTheOther) {
     EXPECT_NE(firstTile("left"), tracked);
 }
 
-TEST_F(HeadTracking, ATrackerThatFallsSilentIsSaidOnceAndItsLastPoseHeld) {
+TEST_F(HeadTracking, ATrackerThatFallsSilentIsReportedAndItsLastPoseHeld) {
     const std::string wallFile = wall(1, 1);
     const auto session = start({"--wall", wallFile, "--scene", scene(), "--track", "opentrack:0", "--out", out()});
-    ASSERT_TRUE(session->waitForOutput("listens on port ", kLong)) << session->output();
-    const std::string said = session->output();
-    const std::string port = std::to_string(std::stoi(said.substr(said.find("listens on port ") + 16)));
-    ASSERT_TRUE(session->waitForOutput("hashes agree", kLong)) << session->output();
-    const support::Ran sent = support::runProgram("sandwall-track", "--send opentrack:" + port + " --seconds 0.5");
+    const nlohmann::json listening = session->waitForEvent("head_tracking", {{"state", "listening"}});
+    ASSERT_FALSE(listening.is_null()) << session->output();
+    expectFrames(*session);
+    const support::Ran sent = support::runProgram(
+        "sandwall-track", "--send opentrack:" + std::to_string(listening["port"].get<int>()) + " --seconds 0.5");
     EXPECT_EQ(sent.status, 0) << sent.output;
-    EXPECT_TRUE(session->waitForOutput("the last one is held", kLong)) << session->output();
+    EXPECT_FALSE(session->waitForEvent("head_tracking", {{"state", "lost"}}).is_null()) << session->output();
     session->type("stop");
     EXPECT_EQ(session->wait(kLong), 0) << session->output();
     EXPECT_GT(summary()["head_tracking"]["packets"], 0);
-    EXPECT_EQ(summary()["head_tracking"]["lost"], 1);
+    EXPECT_GE(summary()["head_tracking"]["lost"], 1);
     const std::string held = firstTile();
     show({"--track", "none"}, wallFile);
     EXPECT_NE(held, firstTile()) << "the last pose was not held";
-}
-
-TEST_F(HeadTracking, ABrokenTraceIsOneLine) {
-    const std::string trace = write("head.csv", "time,x,y,z\n0,0,1.6,3\n0.1,0,zwei,3\n");
-    const Ended ended =
-        runToEnd({"--wall", wall(1, 1), "--scene", scene(), "--track", "trace:" + trace, "--out", out()});
-    EXPECT_EQ(ended.status, 2) << ended.output;
-    EXPECT_NE(ended.output.find("head.csv:3: "), std::string::npos) << ended.output;
 }
 
 }  // namespace

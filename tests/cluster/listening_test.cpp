@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of a session on one host can be reached from others.
+// Which ports of a session on one host can be reached from other hosts.
 #include <cstdio>
 #include <regex>
 #include <set>
@@ -14,7 +14,7 @@ using Listening = SessionTest;
 TEST_F(Listening, NothingButMpirunItselfListensBeyondThisMachine) {
     const auto session = start({"--wall", wall(1, 2), "--scene", scene(), "--device", "script:gis", "--out", out(),
                                 "--no-pictures", "--steps", "100000"});
-    ASSERT_TRUE(session->waitForOutput("linked, epoch", 60)) << session->output();
+    expectHand(*session);
     const std::vector<pid_t> family = session->family();
     FILE* pipe = popen("ss -ltnpH", "r");
     ASSERT_NE(pipe, nullptr);
@@ -32,7 +32,7 @@ TEST_F(Listening, NothingButMpirunItselfListensBeyondThisMachine) {
         std::smatch found;
         if (!std::regex_search(line, found, user) ||
             std::find(family.begin(), family.end(), std::stoi(found[2])) == family.end()) {
-            continue;  // of somebody else
+            continue;  // of another process
         }
         std::istringstream columns(line);
         std::string address;
@@ -43,7 +43,7 @@ TEST_F(Listening, NothingButMpirunItselfListensBeyondThisMachine) {
     elsewhere.erase("mpirun");
     EXPECT_TRUE(elsewhere.empty()) << *elsewhere.begin() << " listens elsewhere:\n" << text;
     EXPECT_TRUE(local.contains("sandwall-haptic")) << "so that this test can fail\n" << text;
-    EXPECT_EQ(session->wait(60), 0) << session->output();
+    EXPECT_EQ(session->wait(kLong), 0) << session->output();
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 namespace {
 
-/// What the programs say of this machine without a job, and what the doctor makes of it.
+/// What the programs find out about this machine without a job, and what the doctor makes of it.
 class Probe : public SessionTest {
 protected:
     /// A mono wall of two tiles, the second with this in its [[place]].
@@ -56,37 +56,30 @@ TEST_F(Probe, WindowsThatAreNotAsWishedAreTold) {
     EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
     ran = doctor(inside);
     EXPECT_EQ(ran.status, 0) << ran.output;
-    EXPECT_NE(ran.output.find("gl      rank 1: osmesa: "), std::string::npos) << ran.output;
-    EXPECT_NE(ran.output.find("gl      rank 2: glfw: "), std::string::npos) << ran.output;
+    EXPECT_NE(ran.output.find("rank 1: osmesa: "), std::string::npos) << ran.output;
+    EXPECT_NE(ran.output.find("rank 2: glfw: "), std::string::npos) << ran.output;
 
     // 96 pixels wide at 600 of 640: 56 columns of 72 rows are nowhere.
     const std::string across = placedWall(display + "windows = [[600, 20]]");
-    EXPECT_NE(probe(across, "2").output.find("lies partly off the screen: 4032 pixels are on no monitor"),
-              std::string::npos);
+    EXPECT_NE(probe(across, "2").output.find(" 4032 "), std::string::npos);
     ran = doctor(across);
     EXPECT_EQ(ran.status, 1) << ran.output;
-    EXPECT_NE(ran.output.find("RED  screen  rank 2: output "), std::string::npos) << ran.output;
-    EXPECT_NE(ran.output.find("\n1 to put right\n"), std::string::npos) << ran.output;
+    EXPECT_NE(ran.output.find(" 4032 "), std::string::npos) << ran.output;
 
     ran = probe(placedWall(display + "monitors = [\"nowhere\"]"), "2");
-    EXPECT_EQ(ran.status, 2) << ran.output;
-    EXPECT_NE(ran.output.find("no monitor nowhere on display " + server.display()), std::string::npos) << ran.output;
+    expectOneLine({ran.status, ran.output}, "nowhere");
+    EXPECT_NE(ran.output.find(server.display()), std::string::npos) << ran.output;
 }
 
 TEST_F(Probe, WhatCannotBeTriedIsOneLine) {
     const std::string file = placedWall("windows = [[10, 20]]");
-    for (const auto& [options, line] : {std::pair{"3", "--probe: the wall on standard input has 2 ranks, not 3"},
-                                        {"2", "--gl glfw: no X display; set DISPLAY"},
-                                        {"1 --gl cray", "--gl: 'cray' is none of auto, osmesa, egl, glfw"},
-                                        {"-1", "--probe"}}) {
+    for (const auto& [options, named] :
+         {std::pair{"3", "--probe"}, {"2", "--gl glfw"}, {"1 --gl cray", "'cray'"}, {"-1", "--probe"}}) {
         const support::Ran ran = probe(file, options);
-        EXPECT_EQ(ran.status, 2) << options;
-        EXPECT_NE(ran.output.find(line), std::string::npos) << ran.output;
-        EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
+        expectOneLine({ran.status, ran.output}, named);
     }
     const support::Ran ran = probe("/dev/null", "1");
-    EXPECT_EQ(ran.status, 2);
-    EXPECT_EQ(ran.output.rfind("standard input", 0), 0U) << ran.output;
+    expectOneLine({ran.status, ran.output}, "standard input");
 }
 
 }  // namespace

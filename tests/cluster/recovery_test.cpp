@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <csignal>
 
 #include "tests/cluster/session_fixture.hpp"
@@ -6,70 +7,128 @@
 
 namespace {
 
-/// What is started again when something has died, and that the sand is the same.
+/// A process is killed and started again, and the sand is the same.
 class Recovery : public SessionTest {
 protected:
-    [[nodiscard]] std::string replayedHash() const {
-        const support::Ran replayed = support::runProgram("sandwall-replay", out() + "/session.journal --hash");
-        EXPECT_EQ(replayed.status, 0) << replayed.output;
-        return replayed.output.substr(0, replayed.output.find('\n'));
-    }
     /// Runs a script of ours to its end, as runToEnd() runs a session.
-    Ended script(const std::string& name, std::vector<std::string> arguments, double seconds) {
+    Ended script(const std::string& name, std::vector<std::string> arguments) {
         arguments.insert(arguments.begin(), {"/usr/bin/env", "-u", "DISPLAY", SANDWALL_SOURCE_DIR "/scripts/" + name});
         support::ChildProcess process(arguments, folder_ / "output.txt");
-        const std::optional<int> status = process.wait(seconds);
-        EXPECT_TRUE(status.has_value()) << "still running after " << seconds << " s:\n" << process.output();
+        const std::optional<int> status = process.wait(kLongScript);
+        EXPECT_TRUE(status.has_value()) << "still running after " << kLongScript << " s:\n" << process.output();
         return {status.value_or(-1), process.output()};
     }
+    /// Waits until the session has written `count` such events, and steps are shown after the last one.
+    static void expectSteps(support::ChildProcess& session, const std::string& event, std::size_t count) {
+        EXPECT_TRUE(session.waitUntil([&] { return session.events(event).size() >= count; })) << session.output();
+        const std::size_t before = session.events("progress").size();
+        EXPECT_TRUE(session.waitUntil([&] {
+            const std::vector<nlohmann::json> all = session.events("progress");
+            return all.size() > before && all.back()["step"] > 0;
+        })) << session.output();
+    }
+    static void strike(const support::ChildProcess& session, const std::string& program, int signal) {
+        kill(support::findProgram(session.family(), program).value(), signal);
+    }
+
+    static constexpr double kLongScript = 300;  // [s]
 };
 
-TEST_F(Recovery, FiveRandomKillsLoseNothing) {
-    // This seed: the server by ABRT, the master by ABRT, the server by TERM, a rank by KILL, and one that hangs. The
-    // script compares what was shown with what came back, and the last hash with an undisturbed replay.
-    const Ended ended = script("random_kills.py",
-                               {"--kills", "5", "--seed", "337", "--wall", wall(1, 2, "mono"), "--scene", scene(),
-                                "--out", out(), "--frame-timeout", "8"},
-                               280);
+TEST_F(Recovery, KillsOfEveryProcessLoseNothing) {
+    const auto session =
+        start({"--wall", wall(1, 2, "mono"), "--scene", scene(), "--device", "script:gis", "--out", out(),
+               "--no-pictures", "--frame-timeout", "4", "--restarts", "100000", "--restart-window", "0.001"});
+    expectSteps(*session, "link", 1);
+    // A frame may be late on a busy machine, and the job is started again then, too: there may be more recoveries.
+    int lastShown = 0;
+    for (const auto& [program, signal] : {std::pair{"sandwall-master", SIGABRT},
+                                          {"sandwall-render-node", SIGKILL},
+                                          {"sandwall-render-node", SIGSTOP}}) {
+        SCOPED_TRACE(std::string(program) + ", signal " + std::to_string(signal));
+        const std::size_t recovered = session->events("recovered").size();
+        lastShown = std::max(lastShown, session->events("progress").back()["step"].get<int>());
+        strike(*session, program, signal);
+        expectSteps(*session, "recovered", recovered + 1);
+        const nlohmann::json recovery = session->events("recovered").back()["recovery"];
+        EXPECT_GE(recovery["step"], lastShown) << "steps that were shown are lost";
+    }
+    const auto links = [&] {
+        const std::vector<nlohmann::json> all = session->events("link");
+        return static_cast<std::size_t>(std::count_if(
+            all.begin(), all.end(), [](const nlohmann::json& event) { return event["state"] == "linked"; }));
+    };
+    EXPECT_TRUE(session->waitUntil([&] { return session->events("progress").back()["hand"] == "hand linked"; }))
+        << session->output();
+    const std::size_t before = links();
+    strike(*session, "sandwall-haptic-server", SIGTERM);
+    EXPECT_TRUE(session->waitUntil([&] { return links() > before; })) << session->output();
+    session->signal(SIGINT);
+    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    EXPECT_GE(summary()["recoveries"].size(), 3U);
+    EXPECT_GE(summary()["steps"], lastShown);
+    EXPECT_EQ(summary()["divergences"], 0);
+    EXPECT_EQ(summary()["state_hash"], replayedHash());
+}
+
+// The script that operators run for an hour checks itself; its status says whether anything was lost.
+TEST_F(Recovery, ARandomKillLosesNothing) {
+    const Ended ended = script(
+        "random_kills.py", {"--kills", "1", "--victims", "rank,master", "--signals", "KILL,SEGV", "--seed", "337",
+                            "--wall", wall(1, 2, "mono"), "--scene", scene(), "--out", out(), "--frame-timeout", "30"});
     EXPECT_EQ(ended.status, 0) << ended.output << read("out/random_kills.log");
-    EXPECT_NE(ended.output.find(" on the wall and of an undisturbed replay"), std::string::npos) << ended.output;
-    EXPECT_EQ(summary()["recoveries"].size(), 3U);
+    EXPECT_GE(summary()["recoveries"].size(), 1U);
+    EXPECT_EQ(summary()["state_hash"], replayedHash());
 }
 
 TEST_F(Recovery, AMachineThatDiedGoesOnWhereItsJournalEnds) {
-    const std::vector<std::string> arguments{"--wall",   wall(1, 2, "mono"), "--scene", scene(), "--out",      out(),
-                                             "--device", "script:gis",       "--steps", "200",   "--restarts", "3"};
+    const std::vector<std::string> arguments{"--wall", wall(1, 2, "mono"), "--scene",    scene(),         "--out",
+                                             out(),    "--device",         "script:gis", "--no-pictures", "--restarts",
+                                             "3"};
     const auto session = start(arguments);
-    ASSERT_TRUE(session->waitForOutput("hand linked", 60)) << session->output();
+    const nlohmann::json shown = session->waitForEvent(
+        "progress", [](const auto& event) { return event["hand"] == "hand linked" && event["step"] > 30; });
+    ASSERT_FALSE(shown.is_null()) << session->output();
     const std::vector<pid_t> family = session->family();
     for (const pid_t process : family) {
         kill(process, SIGKILL);
     }
-    ASSERT_TRUE(support::waitUntilGone(family, 30).empty());
+    ASSERT_TRUE(support::waitUntilGone(family, kLong).empty());
     EXPECT_FALSE(std::filesystem::exists(out() + "/summary.json"));
     std::vector<std::string> again = arguments;
-    again.push_back("--resume");
+    again.insert(again.end(), {"--resume", "--pace", "fast", "--steps", "1000"});
     const Ended ended = runToEnd(again);
     EXPECT_EQ(ended.status, 0) << ended.output;
-    EXPECT_EQ(summary()["steps"], 200);
+    const std::vector<nlohmann::json> resumed = support::eventsIn(ended.output, "resumed");
+    ASSERT_EQ(resumed.size(), 1U) << ended.output;
+    EXPECT_GE(resumed[0]["step"], shown["step"]) << "what was shown was on the disk";
+    EXPECT_EQ(summary()["steps"], 1000);
     EXPECT_EQ(summary()["state_hash"], replayedHash());
 }
 
 TEST_F(Recovery, ARankThatDiesTooOftenIsNamedInTheReport) {
-    const auto session = start({"--wall", wall(1, 2, "mono"), "--scene", scene(), "--out", out(), "--restarts", "1",
+    const auto session = start({"--wall", wall(1, 1, "mono"), "--scene", scene(), "--out", out(), "--restarts", "1",
                                 "--restart-window", "600"});
-    for (const char* shown : {"hashes agree", "first frame"}) {
-        ASSERT_TRUE(session->waitForOutput(shown, 60)) << session->output();
-        kill(support::findProgram(session->family(), "sandwall-render-node").value(), SIGBUS);
+    for (const char* shown : {"progress", "recovered"}) {
+        ASSERT_FALSE(session->waitForEvent(shown).is_null()) << session->output();
+        strike(*session, "sandwall-render-node", SIGBUS);
     }
     const std::vector<pid_t> family = session->family();
-    EXPECT_EQ(session->wait(60), 1) << session->output();
-    EXPECT_TRUE(support::waitUntilGone(family, 10).empty()) << "processes left running";
-    const std::string report = read("out/log/report.txt");
-    for (const char* word :
-         {"the session is given up", " on ", "died of SIGBUS; shown: frame ", "End of error message"}) {
-        EXPECT_NE(report.find(word), std::string::npos) << word << "\n" << report;
+    EXPECT_EQ(session->wait(kLong), 1) << session->output();
+    EXPECT_TRUE(support::waitUntilGone(family, kLong).empty()) << "processes left running";
+    EXPECT_FALSE(
+        session->waitForEvent("restart", {{"rank", 1}, {"how", "SIGBUS"}, {"count", 1}, {"limit", 1}}).is_null())
+        << session->output();
+    const nlohmann::json givenUp = session->waitForEvent("given_up");
+    ASSERT_FALSE(givenUp.is_null()) << session->output();
+    ASSERT_EQ(givenUp["failures"].size(), 2U) << givenUp;
+    for (const nlohmann::json& failure : givenUp["failures"]) {
+        EXPECT_EQ(failure["rank"], 1) << failure;
+        EXPECT_GE(failure["frame"], 1) << failure;
+        EXPECT_EQ(failure["how"], "SIGBUS") << failure;
     }
+    const std::string report = read("out/log/report.txt");
+    EXPECT_NE(report.find("SIGBUS"), std::string::npos) << report;
+    EXPECT_NE(report.find(host()), std::string::npos) << report;
 }
 
 TEST_F(Recovery, ASpareTakesThePlaceOfAHostThatIsCutOff) {
@@ -82,15 +141,14 @@ TEST_F(Recovery, ASpareTakesThePlaceOfAHostThatIsCutOff) {
     }
     const Ended ended = script("emulate_cluster.sh",
                                {"--out", out(), "--wall", wall(1, 2, "mono"), "--scene", scene(), "--spares", "1",
-                                "--cut", "node02@1", "--", "--steps", "400", "--frame-timeout", "6", "--no-pictures"},
-                               200);
+                                "--cut", "node02@1", "--", "--steps", "240", "--frame-timeout", "5", "--no-pictures"});
     ASSERT_EQ(ended.status, 0) << ended.output;
-    EXPECT_NE(ended.output.find("rank 2 (tile r1c2) on node02 hung"), std::string::npos) << ended.output;
-    EXPECT_NE(ended.output.find("spare node03 takes its place (rank 2)"), std::string::npos) << ended.output;
+    EXPECT_TRUE(ended.has("restart", {{"rank", 2}, {"how", "hung"}})) << ended.output;
+    EXPECT_TRUE(ended.has("spare", {{"host", "node02"}, {"spare", "node03"}, {"ranks", {2}}})) << ended.output;
     EXPECT_EQ(summary()["per_rank"][0]["host"], "node01");
     EXPECT_EQ(summary()["per_rank"][1]["host"], "node03");
     EXPECT_EQ(summary()["divergences"], 0);
-    EXPECT_EQ(summary()["steps"], 400);
+    EXPECT_EQ(summary()["steps"], 240);
     EXPECT_EQ(summary()["state_hash"], replayedHash());
     EXPECT_EQ(support::runCommand("ip netns list | grep -c ^sandwall-emulated-").output, "0\n") << "left behind";
 }

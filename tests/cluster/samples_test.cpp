@@ -39,15 +39,14 @@ protected:
     }
 };
 
-// Every display file of the project, small: real ranks show it, every eye has its picture, and without stereo it is
-// seen from the middle.
-TEST_P(Sample, IsShownByItsRanksAndFallsBackToMono) {
+// Every display file of the project, small: real ranks show it, and every eye has its picture. That a single eye sees
+// what lies between two is tested in tests/render_node/stereo_truth_test.cpp, for all of them.
+TEST_P(Sample, IsShownByItsRanks) {
     const walls::Wall wall =
         support::reduced(walls::loadWall(fmt::format(SANDWALL_SOURCE_DIR "/walls/configs/{}.toml", GetParam())), 0.1);
     show(wall, {});
     EXPECT_EQ(summary()["ranks"], wall.ranks());
     EXPECT_EQ(summary()["divergences"], 0);
-    const std::string hash = summary()["state_hash"];
     std::vector<pictures::Image> seen;
     for (const walls::Tile& each : wall.tiles) {
         for (const walls::Eye eye : walls::eyesOf(wall.stereo)) {
@@ -59,16 +58,26 @@ TEST_P(Sample, IsShownByItsRanksAndFallsBackToMono) {
     if (seen.size() > 1) {
         EXPECT_FALSE(std::all_of(seen.begin(), seen.end(), likeTheFirst)) << "all eyes see the same";
     }
+}
 
+INSTANTIATE_TEST_SUITE_P(Walls, Sample, testing::ValuesIn(samples()), [](const auto& sample) { return sample.param; });
+
+class SampleInMono : public Sample {};
+
+// --mono shows the picture from the middle of the eyes, and the sand is the same.
+TEST_P(SampleInMono, IsSeenFromTheMiddle) {
+    const walls::Wall wall =
+        support::reduced(walls::loadWall(fmt::format(SANDWALL_SOURCE_DIR "/walls/configs/{}.toml", GetParam())), 0.1);
     show(wall, {"--mono"});
-    EXPECT_EQ(summary()["state_hash"], hash);
+    const std::string hash = summary()["state_hash"];
     const pictures::Image middle = tile(wall.tiles[0].name, walls::Eye::middle);
     walls::Wall fromTheMiddle = walls::shownIn(wall, walls::Stereo::left);
     fromTheMiddle.viewer.eyeSeparation = 1e-9;
     show(fromTheMiddle, {});
+    EXPECT_EQ(summary()["state_hash"], hash);
     EXPECT_EQ(tile(wall.tiles[0].name, walls::Eye::left).rgb, middle.rgb);
 }
 
-INSTANTIATE_TEST_SUITE_P(Walls, Sample, testing::ValuesIn(samples()), [](const auto& sample) { return sample.param; });
+INSTANTIATE_TEST_SUITE_P(Walls, SampleInMono, testing::Values("anaglyph"));
 
 }  // namespace

@@ -6,22 +6,29 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tests/support/child_process.hpp"
+#include "tests/support/control_client.hpp"
+#include "tests/support/events.hpp"
 #include "tests/support/folder_test.hpp"
+#include "tests/support/run_program.hpp"
 
 inline constexpr double kLong = 120;      // [s], for what takes a few on an idle machine
 inline constexpr int kLevels = 8;         // of a channel, within which pictures are alike
 inline constexpr double kMostBad = 0.01;  // share of the pixels beyond that
 
-/// Whole sessions through scripts/sandwall, at sizes that two cores draw in moments.
+/// Whole sessions through scripts/sandwall, at sizes that two cores draw in moments. What they check is events, files,
+/// exit statuses and values, never the words of messages (docs/events.md).
 class SessionTest : public test::FolderTest {
 protected:
     std::string write(const std::string& name, const std::string& text) {
@@ -55,7 +62,8 @@ protected:
     }
 
     std::unique_ptr<support::ChildProcess> start(const std::vector<std::string>& arguments) {
-        std::vector<std::string> command{"/usr/bin/env", "-u", "DISPLAY"};
+        // mpirun would give its ranks a second to end; in supervised sessions it does not either.
+        std::vector<std::string> command{"/usr/bin/env", "-u", "DISPLAY", "OMPI_MCA_odls_base_sigkill_timeout=0"};
         command.insert(command.end(), environment_.begin(), environment_.end());
         command.insert(command.end(), {SANDWALL_SOURCE_DIR "/scripts/sandwall", "run"});
         command.insert(command.end(), arguments.begin(), arguments.end());
@@ -71,12 +79,59 @@ protected:
     struct Ended {
         int status;
         std::string output;
+
+        /// Whether it has written such an event.
+        [[nodiscard]] bool has(const std::string& name, const nlohmann::json& wanted) const {
+            const auto all = support::eventsIn(output, name);
+            return std::any_of(all.begin(), all.end(), [&](const auto& one) { return support::holds(one, wanted); });
+        }
     };
-    Ended runToEnd(const std::vector<std::string>& arguments, double seconds = 120) {
+    Ended runToEnd(const std::vector<std::string>& arguments, double seconds = 300) {
         const auto session = start(arguments);
         const std::optional<int> status = session->wait(seconds);
         EXPECT_TRUE(status.has_value()) << "still running after " << seconds << " s:\n" << session->output();
         return {status.value_or(-1), session->output()};
+    }
+    /// Bad input: status 2 and one line, which names the file and line, option or value. On a busy machine ranks may
+    /// have reported before that they wait for the master, each time with an event.
+    static void expectOneLine(const Ended& ended, const std::string& named) {
+        const std::string message = support::messagesIn(ended.output);
+        const auto waits = static_cast<std::ptrdiff_t>(support::eventsIn(ended.output, "waiting").size());
+        EXPECT_EQ(ended.status, 2) << ended.output;
+        EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 1 + waits) << ended.output;
+        EXPECT_NE(message.find(named), std::string::npos) << ended.output;
+    }
+    /// Waits until frames are shown.
+    static void expectFrames(support::ChildProcess& session) {
+        EXPECT_FALSE(session.waitForEvent("progress").is_null()) << session.output();
+    }
+    /// Waits until a hand numbers the steps.
+    static void expectHand(support::ChildProcess& session) {
+        EXPECT_FALSE(session.waitForEvent("link", {{"state", "linked"}}).is_null()) << session.output();
+    }
+
+    /// The answer of the running session to an operator's command.
+    [[nodiscard]] nlohmann::json answer(const std::string& words) const { return support::askSession(out(), words); }
+    /// The answer to a command that must succeed.
+    nlohmann::json ask(const std::string& words) const {
+        nlohmann::json answered = answer(words);
+        EXPECT_TRUE(answered.is_object() && answered.value("ok", false)) << words << ": " << answered.dump();
+        return answered.is_object() ? answered : nlohmann::json::object();
+    }
+    /// Asks until the status is as wanted.
+    nlohmann::json awaitStatus(const std::function<bool(const nlohmann::json&)>& wanted) const {
+        const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(120);
+        while (true) {
+            nlohmann::json now = ask("status");
+            if (wanted(now) || HasFailure()) {
+                return now;
+            }
+            if (std::chrono::steady_clock::now() > until) {
+                ADD_FAILURE() << "not within two minutes: " << now.dump();
+                return now;
+            }
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
     }
 
     /// As messages name this machine.
@@ -86,7 +141,15 @@ protected:
         return name.data();
     }
     [[nodiscard]] std::string out() const { return (folder_ / "out").string(); }
-    [[nodiscard]] nlohmann::json summary() const { return nlohmann::json::parse(read("out/summary.json")); }
+    [[nodiscard]] nlohmann::json json(const std::string& file) const { return nlohmann::json::parse(read(file)); }
+    [[nodiscard]] nlohmann::json summary() const { return json("out/summary.json"); }
+    /// The state hash at the end of an undisturbed replay of the session's journal.
+    [[nodiscard]] std::string replayedHash() const {
+        const support::Ran replayed = support::runProgram("sandwall-replay", out() + "/session.journal --hash");
+        EXPECT_EQ(replayed.status, 0) << replayed.output;
+        const std::string text = replayed.output.substr(0, replayed.output.find_last_not_of('\n') + 1);
+        return text.substr(text.rfind('\n') + 1);  // warnings may stand before it
+    }
 
     std::vector<std::string> environment_;  // NAME=value, for the sessions
 };

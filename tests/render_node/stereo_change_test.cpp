@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <glm/gtc/type_ptr.hpp>
+#include <map>
 #include <memory>
+#include <string>
 
 #include "render_node/tile_painter.hpp"
 #include "sample_scene.hpp"
@@ -59,6 +61,30 @@ TEST(StereoChange, OfATileShowsWhatATileOfThatModeShows) {
         EXPECT_EQ(picturesOf(painter), picturesOf(fresh)) << walls::stereoName(stereo);
         EXPECT_EQ(painter.frameBufferBytes(), fresh.frameBufferBytes()) << walls::stereoName(stereo);
         EXPECT_EQ(painter.outputs().size(), 1U);
+    }
+}
+
+TEST(FrameBuffers, HoldTheEyesOfAModeAndWhatItComposesOfThem) {
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const sand::Scene scene = sample::duneScene(48);
+    const walls::Wall wall = smallWall();
+    constexpr int kPixels = 80 * 60, kEye = 8, kColour = 4;  // [byte]: colour and depth, or colour alone
+    const std::map<std::string, int> perPixel{{"mono", kEye},
+                                              {"left", kEye},
+                                              {"right", kEye},
+                                              {"passive", 2 * kEye},
+                                              {"active", 2 * kEye},
+                                              {"side_by_side", 2 * kEye + 2 * kColour},
+                                              {"top_bottom", 2 * kEye + 2 * kColour},
+                                              {"row_interlaced", 2 * kEye + kColour},
+                                              {"checkerboard", 2 * kEye + kColour},
+                                              {"anaglyph", 2 * kEye + kColour},
+                                              {"anaglyph_half", 2 * kEye + kColour},
+                                              {"anaglyph_dubois", 2 * kEye + kColour}};
+    for (const std::string& name : walls::stereoNames()) {
+        const walls::Wall shown = walls::shownIn(wall, walls::stereoNamed(name));
+        const render_node::TilePainter painter(shown, shown.tiles[0], scene, "host");
+        EXPECT_EQ(painter.frameBufferBytes(), perPixel.at(name) * kPixels) << name;
     }
 }
 

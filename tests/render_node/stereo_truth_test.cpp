@@ -105,6 +105,29 @@ TEST_F(StereoPicture, OfOneEyeIsTheMiddleBetweenTwo) {
     EXPECT_NE(apart[1], monoShown[0]);
 }
 
+// Whatever mode the file of a wall names, in mono it shows the picture from between the eyes.
+TEST_F(StereoPicture, OfMonoIsTheMiddleOfTheEyesOnEveryWall) {
+    const sample::DugScene dug;
+    for (const std::string& name : sample::wallNames()) {
+        SCOPED_TRACE(name);
+        walls::Wall wall = sample::smallWall(walls::loadWall(sample::wallFolder() / (name + ".toml")), 400);
+        wall.viewer.eyeSeparation = 0.065;
+        render_node::SandView view = sample::makeView(dug, wall);
+        const walls::Wall mono = walls::shownIn(wall, Stereo::mono);
+        const walls::Wall left = walls::shownIn(wall, Stereo::left);
+        walls::Wall joined = left;
+        joined.viewer.eyeSeparation = 0;
+        bool eyesDiffer = false;
+        for (std::size_t i = 0; i < wall.tiles.size(); ++i) {
+            const auto shown = sample::outputsOf(view, mono, mono.tiles[i]);
+            ASSERT_FALSE(shown.empty());
+            EXPECT_EQ(sample::outputsOf(view, joined, joined.tiles[i]), shown) << wall.tiles[i].name;
+            eyesDiffer = eyesDiffer || sample::outputsOf(view, left, left.tiles[i]) != shown;
+        }
+        EXPECT_TRUE(eyesDiffer) << "every picture is the same";
+    }
+}
+
 TEST_F(StereoPicture, OfTheLeftEyeAloneIsThatOfTheLeftOutput) {
     const sample::DugScene dug;
     const walls::Wall wall = sample::reduced(walls::loadWall(sample::wallFolder() / "tiled_3x4.toml"), 8);

@@ -125,33 +125,39 @@ std::string ChildProcess::output() const {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-bool ChildProcess::waitForOutput(const std::string& text, double seconds) {
+bool ChildProcess::waitUntil(const std::function<bool()>& condition, double seconds) {
     const auto until = deadline(seconds);
-    while (output().find(text) == std::string::npos) {
-        if (Clock::now() > until || (wait(0) && output().find(text) == std::string::npos)) {
+    while (true) {
+        const bool last = wait(0).has_value() || Clock::now() > until;  // before the look: what it wrote last counts
+        if (condition()) {
+            return true;
+        }
+        if (last) {
             return false;
         }
         pause();
     }
-    return true;
 }
 
 std::vector<nlohmann::json> ChildProcess::events(const std::string& name) const { return eventsIn(output(), name); }
 
 nlohmann::json ChildProcess::waitForEvent(const std::string& name, const nlohmann::json& wanted, double seconds) {
-    const auto until = deadline(seconds);
-    while (true) {
-        const bool ended = wait(0).has_value();  // before the look: what it wrote last counts
-        for (const nlohmann::json& event : events(name)) {
-            if (wanted.is_null() || holds(event, wanted)) {
-                return event;
-            }
-        }
-        if (ended || Clock::now() > until) {
-            return nullptr;
-        }
-        pause();
-    }
+    return waitForEvent(
+        name, [&](const nlohmann::json& event) { return wanted.is_null() || holds(event, wanted); }, seconds);
+}
+
+nlohmann::json ChildProcess::waitForEvent(const std::string& name,
+                                          const std::function<bool(const nlohmann::json&)>& wanted, double seconds) {
+    nlohmann::json found;
+    (void)waitUntil(
+        [&] {
+            const std::vector<nlohmann::json> all = events(name);
+            const auto first = std::find_if(all.begin(), all.end(), wanted);
+            found = first == all.end() ? nlohmann::json() : *first;
+            return first != all.end();
+        },
+        seconds);
+    return found;
 }
 
 std::optional<int> ChildProcess::wait(double seconds) {

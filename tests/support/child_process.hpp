@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -14,6 +15,8 @@ namespace support {
 /// A program that runs beside the test, its output in a file. Killed with all its descendants when this goes.
 class ChildProcess {
 public:
+    static constexpr double kPatience = 120;  // [s]: a bound for a very busy machine, never a measurement
+
     /// `command[0]` is a path. Throws std::runtime_error when it cannot be started.
     ChildProcess(const std::vector<std::string>& command, std::filesystem::path outputFile);
     ~ChildProcess();
@@ -23,14 +26,18 @@ public:
     [[nodiscard]] pid_t pid() const { return pid_; }
     /// Everything it and its children have printed so far, stdout and stderr together.
     [[nodiscard]] std::string output() const;
-    /// Waits until the output holds `text`; false when it does not in time or the program has ended without.
-    [[nodiscard]] bool waitForOutput(const std::string& text, double seconds);
+    /// Waits until `condition` is true; false if it is not in time, or still is not when the program has ended.
+    [[nodiscard]] bool waitUntil(const std::function<bool()>& condition, double seconds = kPatience);
     /// Its events of one name so far; it and its children run with SANDWALL_EVENTS=1.
     [[nodiscard]] std::vector<nlohmann::json> events(const std::string& name) const;
     /// Waits for an event of this name that has the fields of `wanted` (support::holds), and returns the first one;
     /// null when there is none in time or the program has ended without.
     [[nodiscard]] nlohmann::json waitForEvent(const std::string& name, const nlohmann::json& wanted = {},
-                                              double seconds = 120);
+                                              double seconds = kPatience);
+    /// The same for the first event that `wanted` accepts.
+    [[nodiscard]] nlohmann::json waitForEvent(const std::string& name,
+                                              const std::function<bool(const nlohmann::json&)>& wanted,
+                                              double seconds = kPatience);
     /// Exit status, 128 + signal when a signal ended it; nothing when it still runs after `seconds`.
     [[nodiscard]] std::optional<int> wait(double seconds);
     void signal(int number) const;

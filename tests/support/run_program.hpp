@@ -15,9 +15,9 @@ struct Ran {
     std::string output;  // stdout and stderr together
 };
 
-/// Runs words of the shell to their end.
+/// Runs words of the shell to their end, without events in the output.
 inline Ran runCommand(const std::string& command) {
-    std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+    std::FILE* pipe = popen(("unset SANDWALL_EVENTS; " + command + " 2>&1").c_str(), "r");
     if (pipe == nullptr) {
         throw std::runtime_error("cannot start " + command);
     }

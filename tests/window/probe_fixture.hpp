@@ -24,10 +24,9 @@ protected:
     void start(const std::vector<std::string>& arguments, const std::vector<std::string>& environment = {}) {
         std::vector<std::string> command{"/usr/bin/env", "-u", "DISPLAY"};
         command.insert(command.end(), environment.begin(), environment.end());
-        // The rank draws in its own thread, and compiles its shaders as on the first day.
-        command.insert(command.end(),
-                       {"LP_NUM_THREADS=0", "MESA_SHADER_CACHE_DISABLE=true",
-                        std::string(SANDWALL_BIN_DIR) + "/window_probe", "--pictures", folder_.string() + "/"});
+        // The rank draws in its own thread.
+        command.insert(command.end(), {"LP_NUM_THREADS=0", std::string(SANDWALL_BIN_DIR) + "/window_probe",
+                                       "--pictures", folder_.string() + "/"});
         command.insert(command.end(), arguments.begin(), arguments.end());
         for (const char* old : {"probe.log", "left.png", "right.png"}) {
             std::filesystem::remove(folder_ / old);
@@ -38,14 +37,18 @@ protected:
     std::string startAndShow(const std::vector<std::string>& arguments,
                              const std::vector<std::string>& environment = {}) {
         start(arguments, environment);
-        EXPECT_TRUE(probe_->waitForOutput("frame 0 shown\n", kLong)) << probe_->output();
+        EXPECT_TRUE(comesTo("frame 0 shown")) << probe_->output();
         return probe_->output();
     }
     /// Types a command and waits for its answer; everything printed so far.
     std::string ask(const std::string& command, const std::string& answer) {
         probe_->type(command);
-        EXPECT_TRUE(probe_->waitForOutput(answer + "\n", kLong)) << command << ": " << probe_->output();
+        EXPECT_TRUE(comesTo(answer)) << command << ": " << probe_->output();
         return probe_->output();
+    }
+    /// Waits for a line of window_probe.cpp's own, which stands beside this file.
+    bool comesTo(const std::string& line) {
+        return probe_->waitUntil([&] { return probe_->output().find(line + "\n") != std::string::npos; }, kLong);
     }
     /// The one line with which it ends by itself, after `from` characters of output; status as given.
     std::string lastLine(int status, std::size_t from = 0) {
