@@ -45,7 +45,7 @@ class RealSessions(SessionTest):
         self.reject_all("summary", summary)
         self.reject_all("status", status)
 
-    def test_a_session_that_recovers(self):
+    def test_a_session_that_recovers_and_its_film(self):
         session = self.start("--inject", "die:rank=2,frame=20,signal=9", "--frames", "60")
         self.assertEqual(session.wait(120), 0, self.log.read_text())
         summary = session_results.summary_of(self.out)
@@ -54,6 +54,10 @@ class RealSessions(SessionTest):
         found = self.events_by_name()
         self.assertTrue({"drill", "restart", "resumed", "recovered"} <= set(found), found)
         self.assertEqual((found["restart"][0]["rank"], found["restart"][0]["how"]), (2, "SIGKILL"))
+        film = self.folder / "film"
+        subprocess.run([ROOT / "scripts" / "sandwall", "film", self.out / "session.journal", "--wall", self.folder / "wall.toml",
+                        "--out", film], check=True, capture_output=True, timeout=200, stdin=subprocess.DEVNULL)
+        self.valid("summary", session_results.summary_of(film))
 
     def test_a_session_that_fails(self):
         session = self.start("--restarts", "0", "--frame-timeout", "5", "--inject", "hang:rank=2,frame=20")
