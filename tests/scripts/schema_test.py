@@ -112,6 +112,12 @@ class Schemas(SchemaTest):
         listed = re.findall(r"^\| `(\w+)` \|", page.partition("| event | from |")[2], re.MULTILINE)
         self.assertEqual(sorted(listed), sorted(load("event")["properties"]["event"]["enum"]))
 
+    def test_programs_emit_the_events_of_the_schema(self):
+        files = [*ROOT.glob("[a-z]*/**/*.cpp"), *(ROOT / "scripts").glob("*.py")]
+        text = "".join(file.read_text() for file in files if file.relative_to(ROOT).parts[0] not in ("build", "out", "tests"))
+        emitted = set(re.findall(r"""\b(?:emitEvent|events\.emit)\(\s*"(\w+)""", text))
+        self.assertEqual(sorted(emitted), sorted(load("event")["properties"]["event"]["enum"]))
+
     def test_an_event_that_is_not_documented_is_a_fault(self):
         self.invalid("event", {"event": "unheard_of"})
         self.invalid("event", {})
