@@ -19,6 +19,7 @@
 #include "haptic_bridge/client.hpp"
 #include "haptic_bridge/live_histogram.hpp"
 #include "haptic_bridge/monotonic.hpp"
+#include "host/event.hpp"
 #include "lockstep/patience.hpp"
 
 namespace {
@@ -49,6 +50,7 @@ int echo() {
     tcp::acceptor acceptor(io, tcp::endpoint(boost::asio::ip::address_v4::loopback(), 0));
     fmt::print("listening on 127.0.0.1:{}\n", acceptor.local_endpoint().port());
     std::fflush(stdout);
+    host::emitEvent("listening", {{"address", fmt::format("127.0.0.1:{}", acceptor.local_endpoint().port())}});
     for (;;) {
         tcp::socket guest = acceptor.accept();
         guest.set_option(tcp::no_delay(true));

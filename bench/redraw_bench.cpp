@@ -27,6 +27,7 @@ struct Options {
     std::string scene = "scenes/writing.toml";
     int frames = 120;
     int rate = 30;  // [frame/s]
+    bool json = false;
 };
 
 /// A tile as a rank has it.
@@ -177,6 +178,11 @@ int measure(const Options& options) {
         measured.stepMs.push_back(1e3 * bench::secondsOf([&] { dig(terrain, level, steps); }));
         show(tiles, terrain, measured);
     }
+    if (options.json) {
+        fmt::print("{{\"step_ms\": {}, \"busiest_tile_ms\": {}}}\n", bench::quantile(measured.stepMs, 0.5),
+                   bench::quantile(measured.busiestMs, 0.5));
+        return 0;
+    }
     const auto row = [](const char* what, const std::vector<double>& values) {
         fmt::print("{:48} {:8.2f} {:8.2f}\n", what, bench::quantile(values, 0.5), bench::quantile(values, 0.99));
     };
@@ -207,5 +213,6 @@ int main(int argc, char** argv) {
     app.add_option("--rate", options.rate, "frames a second of the wall")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
+    app.add_flag("--json", options.json, "print medians per frame as an object: step_ms, busiest_tile_ms");
     return files::runMain(app, argc, argv, [&] { return measure(options); });
 }

@@ -72,7 +72,7 @@ std::vector<render_node::Camera> camerasOf(const walls::Wall& wall) {
     return cameras;
 }
 
-int measure(const std::string& wallFile, const std::string& sceneFile, int rounds) {
+int measure(const std::string& wallFile, const std::string& sceneFile, int rounds, bool json) {
     const walls::Wall wall = walls::loadWall(wallFile);
     const sand::Scene scene = sand::loadScene(sceneFile);
     const sand::HeightField& field = scene.terrain;
@@ -105,6 +105,11 @@ int measure(const std::string& wallFile, const std::string& sceneFile, int round
             ratios.push_back(sandSeconds / bareSeconds);
         }
     }
+    if (json) {
+        fmt::print("{{\"bare_ms\": {}, \"sand_ms\": {}}}\n", bench::spreadOf(bareMs).median,
+                   bench::spreadOf(sandMs).median);
+        return 0;
+    }
     const bench::Spread ratio = bench::spreadOf(ratios);
     fmt::print("{} views of {}, {}: bare {:.0f} ms, as sand {:.0f} ms, ratio {:.2f} ({:.2f} to {:.2f})\n",
                cameras.size(), wall.name, context->renderer(), bench::spreadOf(bareMs).median,
@@ -118,9 +123,11 @@ int main(int argc, char** argv) {
     std::string wall = "walls/configs/tiled_3x4.toml";
     std::string scene = "scenes/writing.toml";
     int rounds = 5;
+    bool json = false;
     CLI::App app("A redraw of all views of a wall against a bare one of the same views, in CPU time.", "wall_bench");
     app.add_option("--wall", wall, "wall file")->capture_default_str();
     app.add_option("--scene", scene, "scene file")->capture_default_str();
     app.add_option("--rounds", rounds, "how often each is drawn")->check(CLI::Range(1, 1000))->capture_default_str();
-    return files::runMain(app, argc, argv, [&] { return measure(wall, scene, rounds); });
+    app.add_flag("--json", json, "print the medians as an object: bare_ms, sand_ms");
+    return files::runMain(app, argc, argv, [&] { return measure(wall, scene, rounds, json); });
 }

@@ -109,6 +109,7 @@ ordered_json rankPart(const Summary& summary, std::size_t index) {
 
 ordered_json jsonOf(const Summary& summary) {
     ordered_json json;
+    json["version"] = kSummaryVersion;
     json["scene"] = summary.scene;
     json["wall"] = summary.wall;
     json["frames"] = summary.frames;

@@ -16,6 +16,9 @@
 
 namespace master {
 
+/// Of the format of summary.json. Changes when a field changes its name or meaning, not when one is added.
+inline constexpr int kSummaryVersion = 1;
+
 /// The way of a step from the hand to the wall, leg by leg [ms], in the master's clock.
 struct Latency {
     lockstep::Statistics toMaster;  // read from the device -> received over TCP

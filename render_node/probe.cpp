@@ -7,6 +7,7 @@
 #include <iostream>
 #include <iterator>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "files/command_line.hpp"
@@ -17,7 +18,15 @@
 namespace render_node {
 namespace {
 
-int probe(int rank, Backend backend) {
+struct Options {
+    int rank = 0;
+    std::string gl = "auto";
+    bool json = false;
+};
+
+int probe(const Options& options) {
+    const Backend backend = backendNamed(options.gl);
+    const int rank = options.rank;
     walls::Wall wall;
     std::unique_ptr<GlContext> context;
     if (rank == 0) {
@@ -29,6 +38,12 @@ int probe(int rank, Backend backend) {
                 fmt::format("--probe: the wall on standard input has {} ranks, not {}", wall.ranks(), rank));
         }
         context = makeContext(backend, wall, wall.tiles[static_cast<std::size_t>(rank - 1)]);
+    }
+    if (options.json) {
+        const nlohmann::ordered_json found{
+            {"backend", context->name()}, {"renderer", context->renderer()}, {"shortcomings", context->shortcomings()}};
+        fmt::print("{}\n", found.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+        return 0;
     }
     fmt::print("{}: {}\n", context->name(), context->renderer());
     for (const std::string& line : context->shortcomings()) {
@@ -42,12 +57,12 @@ int probe(int rank, Backend backend) {
 int probeMain(int argc, char** argv) {
     CLI::App app("Tries what a render rank draws with on this machine; the wall file comes on standard input.",
                  "sandwall-render-node");
-    int rank = 0;
-    std::string gl = "auto";
-    app.add_option("--probe", rank, "which rank of the wall; 0: none, off screen")
+    Options options;
+    app.add_option("--probe", options.rank, "which rank of the wall; 0: none, off screen")
         ->check(CLI::Range(0, walls::kMaxTiles));
-    app.add_option("--gl", gl, "what draws: auto, osmesa, egl, glfw")->capture_default_str();
-    return files::runMain(app, argc, argv, [&] { return probe(rank, backendNamed(gl)); });
+    app.add_option("--gl", options.gl, "what draws: auto, osmesa, egl, glfw")->capture_default_str();
+    app.add_flag("--json", options.json, "print an object with backend, renderer and a list of shortcomings");
+    return files::runMain(app, argc, argv, [&] { return probe(options); });
 }
 
 }  // namespace render_node

@@ -90,7 +90,7 @@ class Ask:
 
 
 class Host:
-    """One machine, its ranks, and what was found: (good, check, words)."""
+    """One machine, its ranks, and what was found: (good, check, words, details for programs)."""
 
     def __init__(self, name):
         self.name = name
@@ -99,8 +99,8 @@ class Host:
         self.ask = Ask(name)
         self.findings = []
 
-    def add(self, good, check, words):
-        self.findings.append((good, check, words))
+    def add(self, good, check, words, **details):
+        self.findings.append((good, check, words, details))
         return good
 
     def shown_name(self):
@@ -109,6 +109,15 @@ class Host:
 
 def last_line(text):
     return (text.strip().split("\n") or [""])[-1]
+
+
+def probed(said):
+    """What a render rank's program prints for --probe --json, or None."""
+    try:
+        found = json.loads(said)
+        return {key: found[key] for key in ("backend", "renderer", "shortcomings")}
+    except (ValueError, KeyError, TypeError):
+        return None
 
 
 def spans(ranks):
@@ -213,18 +222,18 @@ class Doctor:
         """What every rank would draw with; ranks that answer alike share a line."""
         answers = {}
         for rank in host.probes:
-            status, said, complaint = host.ask.run(f"{shlex.quote(self.node)} --probe {rank} --gl {self.gl}",
+            status, said, complaint = host.ask.run(f"{shlex.quote(self.node)} --probe {rank} --gl {self.gl} --json",
                                                    self.wall_text if rank else "", PROBE_SECONDS)
             answers.setdefault((status, said, last_line(complaint)), []).append(rank)
         for (status, said, complaint), ranks in answers.items():
             who = spans(ranks) + ": " if ranks != [0] else ""
-            renderer, *shortcomings = said.splitlines() or [""]
-            if status != 0:
-                host.add(False, "gl", f"{who}{complaint or f'exit status {status}'}; docs/backends.md")
-            else:
-                host.add(True, "gl", who + renderer)
-            for line in shortcomings:
-                host.add(False, "screen", f"{who}{line}; docs/backends.md")
+            found = probed(said) if status == 0 else None
+            if found is None:
+                host.add(False, "gl", f"{who}{complaint or f'exit status {status}'}; docs/backends.md", ranks=ranks)
+                continue
+            host.add(True, "gl", f"{who}{found['backend']}: {found['renderer']}", ranks=ranks, **found)
+            for line in found["shortcomings"]:
+                host.add(False, "screen", f"{who}{line}; docs/backends.md", ranks=ranks)
 
 
 def check_out(host, out):
@@ -265,7 +274,7 @@ def report(hosts, colours):
     red = 0
     width = max(len(host.shown_name()) for host in hosts)
     for host in hosts:
-        for good, check, words in host.findings:
+        for good, check, words, _ in host.findings:
             mark = "ok " if good else "RED"
             if colours:
                 mark = f"\033[{32 if good else 31}m{mark}\033[0m"
@@ -274,7 +283,16 @@ def report(hosts, colours):
     return red
 
 
-def examine(hosts, wall_text, node, master, out, gl):
+def report_json(hosts):
+    """Prints all that was found as one JSON object and returns how many were red."""
+    findings = [{"host": host.shown_name(), "check": check, "good": bool(good), "message": words, **details}
+                for host in hosts for good, check, words, details in host.findings]
+    red = sum(not finding["good"] for finding in findings)
+    print(json.dumps({"red": red, "findings": findings}, indent=1))
+    return red
+
+
+def examine(hosts, wall_text, node, master, out, gl, as_json=False):
     """Looks at the host of every rank and at this machine. `wall_text` is None where only hosts are known. Returns the
     exit status: 0 when nothing is red, else 1."""
     said = subprocess.run([node, "--version", "--json"], stdin=subprocess.DEVNULL, capture_output=True, text=True,
@@ -287,6 +305,8 @@ def examine(hosts, wall_text, node, master, out, gl):
     doctor.examine(here)  # first: the others are compared with it
     with concurrent.futures.ThreadPoolExecutor(MOST_HOSTS_AT_ONCE) as pool:
         list(pool.map(doctor.examine, others))
+    if as_json:
+        return 1 if report_json([here, *others]) else 0
     red = report([here, *others], sys.stdout.isatty() and "NO_COLOR" not in os.environ)
     print(f"{red} to put right" if red else "nothing to put right")
     return 1 if red else 0

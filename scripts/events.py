@@ -1,9 +1,12 @@
+#!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """The events that programs of a session write for other programs (docs/events.md)."""
 
+import argparse
 import json
 import os
 import sys
+import time
 
 VARIABLE = "SANDWALL_EVENTS"
 TAG = "@sandwall "
@@ -30,3 +33,47 @@ def emit(name, **fields):
     """Writes an event to standard error, if the user asks for events."""
     if wanted():
         print(TAG + json.dumps({"event": name, **fields}), file=sys.stderr, flush=True)
+
+
+def read(path):
+    """The events in a file of output, in order; none while there is no such file."""
+    try:
+        with open(path, "rb") as stream:
+            return [event for line in stream if line.endswith(b"\n") and (event := parse(line))]
+    except FileNotFoundError:
+        return []
+
+
+def wait_for(path, name, seconds, alive=lambda: True, **fields):
+    """The first event of this name and with these fields in a growing file of output.
+
+    None when it does not come within `seconds`, or when `alive()` turns false before it comes.
+    """
+    deadline = time.monotonic() + seconds
+    while True:
+        last = not alive() or time.monotonic() > deadline
+        for event in read(path):
+            if event["event"] == name and all(event.get(key) == value for key, value in fields.items()):
+                return event
+        if last:
+            return None
+        time.sleep(0.05)
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Waits for an event in a growing file of output, and prints a field of it.")
+    parser.add_argument("file")
+    parser.add_argument("event")
+    parser.add_argument("field")
+    parser.add_argument("--seconds", type=float, default=60, help="how long to wait (default: 60)")
+    args = parser.parse_args()
+    event = wait_for(args.file, args.event, args.seconds)
+    if event is None or args.field not in event:
+        print(f"{args.file}: no event {args.event} with {args.field} within {args.seconds:g} s", file=sys.stderr)
+        return 1
+    print(event[args.field])
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -10,6 +10,9 @@ import pathlib
 import subprocess
 import sys
 
+sys.dont_write_bytecode = True
+import session_results
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BIN = ROOT / "build" / "release" / "bin"
 
@@ -59,8 +62,7 @@ def draw_rows():
     yield "drawing one eye of a tile, 1024×768", f"{view['real_time']:.1f} ms", f"llvmpipe; {view['chunks_per_tile']:.0f} of {view['chunks_of_field']:.0f} chunks"
 
 
-def session_rows(file):
-    summary = json.loads(pathlib.Path(file).read_text())
+def session_rows(summary):
     ranks = summary["per_rank"]
     memory = max(rank["memory_bytes"] for rank in ranks) / 2**20
     slowest = max(rank["draw_ms"]["p99"] for rank in ranks)
@@ -77,10 +79,11 @@ def session_rows(file):
 
 
 def main():
-    summary = sys.argv[1] if len(sys.argv) > 1 else ROOT / "out" / "demo" / "summary.json"
-    if not pathlib.Path(summary).is_file():
-        print(f"{summary}: not there; run scripts/demo.sh first", file=sys.stderr)
+    file = sys.argv[1] if len(sys.argv) > 1 else ROOT / "out" / "demo" / "summary.json"
+    if not pathlib.Path(file).is_file():
+        print(f"{file}: not there; run scripts/demo.sh first", file=sys.stderr)
         return 2
+    summary = session_results.read_summary(file)
     print(f"| {processor()} | | |\n|---|---|---|")
     for rows in (sand_rows(), force_row(), draw_rows(), session_rows(summary)):
         for what, figure, beside in rows:

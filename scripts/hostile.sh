@@ -66,9 +66,12 @@ end_session() {
     wait "$session"
     python3 - "$folder/$1/summary.json" "$1" "$before" "$after" \
         "$("$bin/sandwall-replay" "$folder/$1/session.journal" --hash)" <<'PYTHON' || failed=1
-import json, sys
+import sys
+sys.dont_write_bytecode = True
+sys.path.insert(0, "scripts")
+import session_results
 file, name, before, after, replayed = sys.argv[1:]
-told = json.load(open(file))
+told = session_results.read_summary(file)
 ms = told["frame_ms"]
 refused = told["haptic"].get("refused", {})
 count = {side: {kind: number for kind, number in kinds.items() if number} for side, kinds in refused.items()}
@@ -107,11 +110,11 @@ wait "$hostile"
 memory="the server, by quarters of that time: $memory MiB; $(<"$folder/hostile.log")"
 end_session "against-server"
 kill "$server"; wait "$server" || true; server=
-"$bin/sandwall-hostile" --scene "$scene" --frames "$([[ -n $secret ]] && echo 30 || echo "$frames")" --seed "$seed" \
-    "${link[@]}" >"$folder/false.log" &
+SANDWALL_EVENTS=1 "$bin/sandwall-hostile" --scene "$scene" --frames "$([[ -n $secret ]] && echo 30 || echo "$frames")" --seed "$seed" \
+    "${link[@]}" >"$folder/false.log" 2>"$folder/false.events" &
 false_server=$!
-while [[ ! -s $folder/false.log ]]; do sleep 0.1; done
-start_session "against-master" "$(sed -n 's/listening on //p' "$folder/false.log")"
+address=$(python3 scripts/events.py "$folder/false.events" listening address)
+start_session "against-master" "$address"
 wait "$false_server"
 end_session "against-master"
 echo

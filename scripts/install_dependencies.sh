@@ -16,11 +16,12 @@ packages=(
     libssl-dev                                              # who may come in over a network
     libgtest-dev libbenchmark-dev libcgal-dev xvfb iproute2 # tests and benchmarks; an emulated cluster
 )
-# The tests also build with clang, for the proof that the state hash does not depend on the compiler.
+# The tests also build with clang, for the proof that the state hash does not depend on the compiler, and validate what
+# sessions write against its schemas.
 # The report draws its curves with matplotlib.
 for option in "$@"; do
     case "$option" in
-        --with-tests) packages+=(clang-14) ;;
+        --with-tests) packages+=(clang-14 python3-jsonschema) ;;
         --with-report) packages+=(python3-matplotlib) ;;
         *) echo "usage: scripts/install_dependencies.sh [--with-tests] [--with-report]" >&2; exit 2 ;;
     esac

@@ -20,6 +20,10 @@ import tempfile
 import time
 from dataclasses import dataclass
 
+sys.dont_write_bytecode = True
+import events
+import session_results
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BIN = pathlib.Path(os.environ.get("SANDWALL_BIN", ROOT / "build" / "release" / "bin"))
 PROGRAMS = ("sandwall-haptic-server", "sandwall-master", "sandwall-render-node", "sandwall-check", "sandwall-impaired-link",
@@ -62,24 +66,27 @@ class Failed(Exception):
 
 
 class Helper:
-    """A program that runs beside the sessions, and says where it listens. Ended by its process id."""
+    """A program that runs beside the sessions, and emits the event `listening`. Ended by its process id."""
 
     def __init__(self, *command):
-        self.process = subprocess.Popen([str(word) for word in command], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                        stderr=subprocess.DEVNULL, text=True, start_new_session=True)
-        said = self.process.stdout.readline()
-        if not said.startswith("listening on "):
+        self.log = tempfile.NamedTemporaryFile(prefix="sandwall-latency-")
+        self.process = subprocess.Popen([str(word) for word in command], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                        stderr=self.log, env=dict(os.environ, **{events.VARIABLE: "1"}), start_new_session=True)
+        listening = events.wait_for(self.log.name, "listening", START_SECONDS, lambda: self.process.poll() is None)
+        if listening is None:
+            said = pathlib.Path(self.log.name).read_text(errors="replace").strip()[-300:]
             self.stop()
-            raise Failed(f"{command[0]}: did not start")
-        self.address = said.split()[-1]
+            raise Failed(f"{command[0]}: did not start: {said}")
+        self.address = listening["address"]
 
     def stop(self):
         self.process.terminate()
         try:
-            self.process.communicate(timeout=5)
+            self.process.wait(timeout=5)
         except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.wait()
+        self.log.close()
 
     def __enter__(self):
         return self
@@ -134,14 +141,6 @@ def smaller(folder, wall, load):
     return file, max(sizes)
 
 
-def await_text(process, log, text, seconds):
-    deadline = time.monotonic() + seconds
-    while text not in log.read_text(errors="replace"):
-        if process.poll() is not None or time.monotonic() > deadline:
-            raise Failed(f"the session did not say '{text}': {log.read_text(errors='replace').strip()[-300:]}")
-        time.sleep(0.05)
-
-
 def die_with_parent():
     """In the launcher, before it begins: it ends its ranks in order when this script dies, however that happens."""
     PR_SET_PDEATHSIG = 1
@@ -156,9 +155,10 @@ def session(folder, wall_file, load, haptic, args, scene=SCENE):
     command += [] if load.stereo else ["--mono"]
     with log.open("w") as said:
         run = subprocess.Popen([str(word) for word in command], stdin=subprocess.PIPE, stdout=said, stderr=subprocess.STDOUT, text=True,
-                               env=dict(os.environ, SANDWALL_BIN=str(BIN)), start_new_session=True, preexec_fn=die_with_parent)
+                               env=dict(os.environ, SANDWALL_BIN=str(BIN), **{events.VARIABLE: "1"}), start_new_session=True, preexec_fn=die_with_parent)
     try:
-        await_text(run, log, "linked, epoch", START_SECONDS)
+        if events.wait_for(log, "link", START_SECONDS, lambda: run.poll() is None, state="linked") is None:
+            raise Failed(f"no hand was linked: {log.read_text(errors='replace').strip()[-300:]}")
         time.sleep(args.warm_up + args.seconds)
         run.stdin.write("stop\n")
         run.stdin.flush()
@@ -173,7 +173,7 @@ def session(folder, wall_file, load, haptic, args, scene=SCENE):
                 run.wait(timeout=START_SECONDS)
             except subprocess.TimeoutExpired:
                 run.kill()
-    return json.loads((out / "summary.json").read_text())
+    return session_results.read_summary(out)
 
 
 def floor(*words):

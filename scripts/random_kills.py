@@ -20,8 +20,10 @@ import sys
 import time
 
 sys.dont_write_bytecode = True
+import events
 import processes
 import session_control
+import session_results
 from rank_hosts import BadInput
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -49,6 +51,7 @@ class Session:
 
     def start(self, *more):
         self.launcher = subprocess.Popen([*self.command, *more], stdin=subprocess.DEVNULL, stdout=self.log, stderr=self.log,
+                                         env={**os.environ, events.VARIABLE: "1"},
                                          preexec_fn=processes.die_with_parent)
 
     def status(self):
@@ -79,7 +82,7 @@ class Session:
 
     def links(self):
         """How often the master was linked to a haptic server."""
-        return sum(line.startswith(b"haptic link: ") and b": linked, " in line for line in pathlib.Path(self.log.name).open("rb"))
+        return sum(event["event"] == "link" and event["state"] == "linked" for event in events.read(self.log.name))
 
     def processes(self, which):
         """Process id by rank, of the render ranks, the master or the haptic server (0)."""
@@ -125,9 +128,9 @@ def strike(session, which, name, chance):
         resumed = recovery["checkpoint_step"] + recovery["replayed_steps"]
         if resumed < shown["step"]:
             raise Violation(f"step {shown['step']} was shown, and only {resumed} came back")
-        named = ("the master" if which == "master" else f"rank {victim} ", "hung" if name == "STOP" else f"died of SIG{name}")
-        if not (recovery["failure"].startswith(named[0]) and recovery["failure"].endswith(named[1])):
-            raise Violation(f"{who} was ended by SIG{name}, and was said to be: {recovery['failure']}")
+        named = (victim, "hung" if name == "STOP" else f"SIG{name}")  # the master is rank 0
+        if (recovery["failed_rank"], recovery["failed_how"]) != named:
+            raise Violation(f"{who} was ended by SIG{name}, and this was reported: {recovery['failure']}")
         then = (f"resumed at step {resumed} (checkpoint {recovery['checkpoint_step']}), "
                 f"{recovery['seconds_to_next_frame']:.2f} s of it after it was noticed")
     print(f"{who:8} SIG{name:4}  shown: frame {shown['frame']}, step {shown['step']}; {seconds:6.2f} s  {then}", flush=True)
@@ -138,7 +141,7 @@ def check_end(session, status):
     """The sand of the wall is that of an undisturbed replay."""
     if status != 0:
         raise Violation(f"the session ended with status {status}; {session.log.name}")
-    summary = json.loads((session.out / "summary.json").read_text())
+    summary = session_results.read_summary(session.out)
     folder = pathlib.Path(os.environ.get("SANDWALL_BIN", ROOT / "build" / "release" / "bin"))
     replayed = subprocess.run([folder / "sandwall-replay", session.out / "session.journal", "--hash"], capture_output=True, text=True)
     found = (replayed.stdout.split() or [""])[-1]

@@ -66,8 +66,11 @@ rank_table() {
             --steps 60 --out "$folder/out" >"$folder/log.txt" 2>&1 || { cat "$folder/log.txt" >&2; exit 1; }
         replay=$(build/release/bin/sandwall-replay "$folder/out/session.journal" --hash | grep -oE '[0-9a-f]{16}' | tail -1)
         /usr/bin/python3 - "$folder/out/summary.json" "$((${wall%x*} * ${wall#*x}))" "$replay" >>"$data/ranks.csv" <<'PYTHON'
-import json, sys
-summary = json.load(open(sys.argv[1]))
+import sys
+sys.dont_write_bytecode = True
+sys.path.insert(0, "scripts")
+import session_results
+summary = session_results.read_summary(sys.argv[1])
 print(sys.argv[2], summary["state_hash"], sys.argv[3], summary["divergences"], sep=",")
 PYTHON
         rm -r "$folder"

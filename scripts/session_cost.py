@@ -9,7 +9,6 @@ usage: scripts/session_cost.py BIN [BIN ...] [--scene FILE] [--steps 60] [--runs
 """
 
 import argparse
-import json
 import os
 import pathlib
 import resource
@@ -18,6 +17,9 @@ import subprocess
 import sys
 import tempfile
 import time
+
+sys.dont_write_bytecode = True
+import session_results
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PROGRAMS = {"sandwall-render-node": "rank", "sandwall-master": "master", "sandwall-haptic-server": "haptic server"}
@@ -75,7 +77,7 @@ def session(folder, programs, scene, steps):
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     result["begin to end [s]"] = time.monotonic() - begin
     result["processor [s]"] = used.ru_utime + used.ru_stime - before.ru_utime - before.ru_stime
-    summary = json.loads((folder / "out" / "summary.json").read_text())
+    summary = session_results.read_summary(folder / "out")
     result["rank, at its end [MB]"] = max(rank["memory_bytes"] for rank in summary["per_rank"]) / 2**20
     result["master, at its end [MB]"] = summary["master_memory_bytes"] / 2**20
     return result

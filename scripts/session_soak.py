@@ -8,7 +8,6 @@ change after the warm-up, memory grows, or sand or steps differ. docs/recovery.m
 """
 
 import argparse
-import json
 import os
 import pathlib
 import re
@@ -20,6 +19,7 @@ import time
 
 sys.dont_write_bytecode = True
 import processes
+import session_results
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 NAMES = ("mpirun", "sandwall-master", "sandwall-render-node", "sandwall-haptic-server")
@@ -142,7 +142,7 @@ def main():
         finally:
             launcher.send_signal(signal.SIGINT)
             status = launcher.wait(300)
-    summary = json.loads((out / "summary.json").read_text())
+    summary = session_results.read_summary(out)
     print(f"{args.minutes:g} minutes, a sample every {args.period:g} s after {warm_up:g} s of warm-up\n")
     print("Resident memory: medians of the four quarters of the time, and the most.\n")
     print("| process | 1st [MiB] | 2nd | 3rd | 4th | most | slope [MiB/h] | file descriptors | threads |")

@@ -22,6 +22,9 @@ import subprocess
 import sys
 import tempfile
 
+sys.dont_write_bytecode = True
+import session_results
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BIN = ROOT / "build" / "release" / "bin"
 WALL = ROOT / "walls" / "configs" / "tiled_3x4.toml"
@@ -95,7 +98,7 @@ def session(out, scene_file, *more, wall=WALL):
     ran = subprocess.run(command, capture_output=True, text=True)
     if ran.returncode != 0:
         sys.exit(f"{' '.join(map(str, command))}: {ran.stderr.strip() or ran.stdout.strip()}")
-    return json.loads((out / "summary.json").read_text())
+    return session_results.read_summary(out)
 
 
 def views(summary, *kinds):
@@ -134,10 +137,9 @@ def head_row(out, scene_file, head, frames, what):
 def bare_redraw(scene_file):
     """Processor time of all views drawn barely and as sand, in one process [ms]."""
     environment = dict(os.environ, LP_NUM_THREADS="0")
-    said = subprocess.run([BIN / "wall_bench", "--wall", WALL, "--scene", scene_file], capture_output=True, text=True,
-                          check=True, env=environment).stdout
-    bare, sand = re.search(r"bare (\d+) ms, as sand (\d+) ms", said).groups()
-    return float(bare), float(sand)
+    found = json.loads(subprocess.run([BIN / "wall_bench", "--wall", WALL, "--scene", scene_file, "--json"], capture_output=True,
+                                      text=True, check=True, env=environment).stdout)
+    return found["bare_ms"], found["sand_ms"]
 
 
 TIN = """[tin]
@@ -162,10 +164,9 @@ def digging_ms(out, scene_file, strokes, frames):
 def rank_ms(scene_file):
     """Processor time of a frame of one step: the sand's and the drawing of the tile that has most to do [ms]."""
     environment = dict(os.environ, LP_NUM_THREADS="0")
-    said = subprocess.run([BIN / "redraw_bench", "--wall", WALL, "--scene", scene_file, "--rate", "60", "--frames", "100"],
-                          capture_output=True, text=True, check=True, env=environment).stdout
-    return sum(float(re.search(rf"^{row} \[ms/frame\] +([0-9.]+)", said, re.MULTILINE).group(1))
-               for row in ("steps of one replica", "the busiest tile, both eyes"))
+    found = json.loads(subprocess.run([BIN / "redraw_bench", "--wall", WALL, "--scene", scene_file, "--rate", "60", "--frames", "100",
+                                       "--json"], capture_output=True, text=True, check=True, env=environment).stdout)
+    return found["step_ms"] + found["busiest_tile_ms"]
 
 
 def tin_rates(folder, seconds):

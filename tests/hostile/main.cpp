@@ -11,6 +11,7 @@
 #include "files/command_line.hpp"
 #include "haptic_bridge/client.hpp"
 #include "haptic_bridge/link_options.hpp"
+#include "host/event.hpp"
 #include "tests/hostile/attack.hpp"
 
 int main(int argc, char** argv) {
@@ -41,6 +42,7 @@ int main(int argc, char** argv) {
         hostile::FalseServer falseServer(seed, identity, frames, link.forServer());
         fmt::print("listening on 127.0.0.1:{}\n", falseServer.port());
         std::fflush(stdout);
+        host::emitEvent("listening", {{"address", fmt::format("127.0.0.1:{}", falseServer.port())}});
         while (!falseServer.done()) {
             std::this_thread::sleep_for(std::chrono::milliseconds(50));
         }

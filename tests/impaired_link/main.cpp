@@ -11,6 +11,7 @@
 
 #include "files/command_line.hpp"
 #include "haptic_bridge/client.hpp"
+#include "host/event.hpp"
 #include "tests/impaired_link/impaired_link.hpp"
 
 namespace {
@@ -53,6 +54,7 @@ int run(const Options& options) {
     }
     fmt::print("listening on 127.0.0.1:{}\n", link->port());
     std::fflush(stdout);
+    host::emitEvent("listening", {{"address", fmt::format("127.0.0.1:{}", link->port())}});
     io.run();
     fmt::print("{} connections, {} stalls, {} resets\n", link->connections(), link->stalls(), link->resets());
     return 0;

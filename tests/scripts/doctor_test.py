@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What scripts/sandwall doctor finds on made-up hosts: this one under other names, reached by a script in ssh's place."""
 
+import json
 import os
 import pty
 import re
@@ -30,8 +31,9 @@ NODE = """#!/bin/sh
 [ "$1" = --version ] && { echo "{\\"version\\": \\"1.2.3\\", \\"build\\": \\"${MADE_UP_BUILD:-0123456789abcdef}\\"}"; exit 0; }
 [ "$2" = 0 ] || grep -q . || { echo "no wall on standard input" >&2; exit 2; }
 [ "$MADE_UP_DISPLAY" = none ] && { echo "display :0 cannot be opened" >&2; exit 2; }
-echo "$4: made-up renderer"
-[ -z "$MADE_UP_DISPLAY" ] || echo "output a: its window lies partly off the screen"
+[ "$5" = --json ] || { echo "asked for no JSON: $*" >&2; exit 2; }
+[ -z "$MADE_UP_DISPLAY" ] || short='"output a: its window lies partly off the screen"'
+echo "{\\"backend\\": \\"$4\\", \\"renderer\\": \\"made-up renderer\\", \\"shortcomings\\": [$short]}"
 """
 DATE = """#!/bin/sh
 exec /bin/date -d "@$(($(/bin/date +%s) + ${MADE_UP_SHIFT:-0}))" "$@"
@@ -146,6 +148,23 @@ class Doctor(LauncherTest):
         self.assertRegex(ended.stdout, r"(?m)^sound1 +ok +memory +8192 MiB free, 2 ranks may take 512$")
         self.assertRegex(ended.stdout, r"(?m)^sound1 +ok +gl +auto: made-up renderer$")
         self.assertEqual(ended.returncode, 1)
+
+    def test_programs_get_an_object(self):
+        ended = subprocess.run(self.arguments(["-", "narrow1", "narrow1"], "--json"), env=self.environment, text=True,
+                               capture_output=True, timeout=200, stdin=subprocess.DEVNULL)
+        found = json.loads(ended.stdout)
+        self.assertEqual((ended.returncode, ended.stderr, found["red"]), (1, "", 1))
+        for finding in found["findings"]:
+            self.assertEqual(finding["good"], finding["check"] != "screen", finding)
+        gl = [finding for finding in found["findings"] if finding["check"] == "gl"]
+        self.assertEqual([(finding["host"], finding["ranks"], finding["backend"], finding["renderer"]) for finding in gl],
+                         [(self.name, [1], "auto", "made-up renderer"), ("narrow1", [2, 3], "auto", "made-up renderer")])
+        self.assertEqual(gl[1]["shortcomings"], ["output a: its window lies partly off the screen"])
+
+    def test_a_probe_that_prints_no_object_is_red(self):
+        self.script("sandwall-render-node", NODE.partition("[ \"$2\" = 0 ]")[0] + "echo made-up renderer\n")
+        status, found = self.examine(["-"])
+        self.assertEqual((status, found[self.name, "gl"][0]), (1, "RED"))
 
     def test_only_a_terminal_is_coloured(self):
         ours, theirs = pty.openpty()

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The schemas of docs/schemas, and sessions of the real programs to validate."""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import jsonschema
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCHEMAS = ROOT / "docs" / "schemas"
+sys.path.insert(0, str(ROOT / "scripts"))
+
+import events
+
+WALL = """[viewer]
+eye = [0.0, 1.6, 2.0]
+[stereo]
+mode = "mono"
+[grid]
+rows = 1
+columns = 2
+tile_size = [1.024, 0.768]
+tile_pixels = [64, 48]
+lower_left = [-1.024, 0.9, 0.0]
+[stage]
+centre = [0.0, 1.25, -0.3]
+width = 1.6
+tilt_deg = 40
+"""
+SCENE = """name = "small"
+[field]
+columns = 64
+rows = 48
+width = 2.0
+[terrain]
+kind = "flat"
+height = 0.2
+[material]
+talus_deg = 34
+[tool]
+radius = 0.1
+"""
+
+
+def load(name):
+    return json.loads((SCHEMAS / f"{name}.schema.json").read_text())
+
+
+def validator(name):
+    """Of a schema by name; its references are files beside it."""
+    schema = load(name)
+    return jsonschema.Draft7Validator(schema, resolver=jsonschema.RefResolver(f"{SCHEMAS.as_uri()}/{name}.schema.json", schema))
+
+
+class SchemaTest(unittest.TestCase):
+    def valid(self, name, value):
+        faults = [f"{'/'.join(map(str, fault.absolute_path))}: {fault.message}" for fault in validator(name).iter_errors(value)]
+        self.assertEqual(faults, [], f"{name}.schema.json does not describe {json.dumps(value)}")
+
+    def invalid(self, name, value):
+        self.assertFalse(validator(name).is_valid(value), f"{name}.schema.json accepts {json.dumps(value)}")
+
+
+class SessionTest(SchemaTest):
+    """Sessions of two render ranks on this machine."""
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory(prefix="sandwall-schema-")
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        (self.folder / "wall.toml").write_text(WALL)
+        (self.folder / "scene.toml").write_text(SCENE)
+        self.out, self.log = self.folder / "out", self.folder / "log.txt"
+
+    def start(self, *options):
+        command = [ROOT / "scripts" / "sandwall", "run", "--wall", self.folder / "wall.toml", "--scene", self.folder / "scene.toml",
+                   "--out", self.out, "--gl", "osmesa", "--no-pictures", *options]
+        with self.log.open("wb") as log:
+            process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=log, stderr=log,
+                                       env={**os.environ, events.VARIABLE: "1"})
+        self.addCleanup(self.end, process)
+        return process
+
+    @staticmethod
+    def end(process):
+        process.stdin.close()
+        if process.poll() is None:
+            process.terminate()
+            process.wait(120)
+
+    def await_event(self, process, name, **fields):
+        event = events.wait_for(self.log, name, 120, lambda: process.poll() is None, **fields)
+        self.assertIsNotNone(event, f"no event {name} {fields} in:\n{self.log.read_text(errors='replace')}")
+        return event
+
+    def events_by_name(self):
+        """All events of the session, each of which its schema describes; they may come from several processes."""
+        found = {}
+        for line in self.log.read_text().splitlines():
+            if events.TAG in line:
+                self.assertTrue(line.startswith(events.TAG), line)
+                event = events.parse(line)
+                self.assertIsNotNone(event, line)
+                self.valid("event", event)
+                found.setdefault(event["event"], []).append(event)
+        return found
