@@ -50,15 +50,28 @@ void Patience::look() {
 
 void Patience::found() { rang_ = false; }
 
+Patience::Rest Patience::nextRest(std::int64_t now) {
+    since_ = since_.value_or(now);
+    const std::int64_t waited = now - *since_;
+    if (bell_ && !rang_ && waited >= kYielding) {
+        return {Rest::Kind::sleepUntilRung, kOnBell};
+    }
+    const std::int64_t pause = sleepAfter(waited);
+    return {pause > 0 ? Rest::Kind::sleep : Rest::Kind::yield, pause};
+}
+
 void Patience::rest() {
-    const std::int64_t now = nowNs();
-    since_ = since_ == 0 ? now : since_;
-    if (bell_ && !rang_ && now - since_ >= kYielding) {
-        rang_ = bell_->sleep(heard_, kOnBell);
-    } else if (const std::int64_t pause = sleepAfter(now - since_); pause > 0) {
-        std::this_thread::sleep_for(std::chrono::nanoseconds(pause));
-    } else {
-        sched_yield();  // whoever draws on this core goes first
+    const Rest next = nextRest(nowNs());
+    switch (next.kind) {
+        case Rest::Kind::yield:
+            sched_yield();  // a process that draws on this core goes first
+            break;
+        case Rest::Kind::sleep:
+            std::this_thread::sleep_for(std::chrono::nanoseconds(next.longest));
+            break;
+        case Rest::Kind::sleepUntilRung:
+            rang_ = bell_->sleep(heard_, next.longest);
+            break;
     }
 }
 

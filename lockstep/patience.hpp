@@ -25,14 +25,24 @@ public:
     /// The look found nothing.
     void rest();
 
+    /// What rest() does at a time.
+    struct Rest {
+        enum class Kind : std::uint8_t { yield, sleep, sleepUntilRung };
+        Kind kind = Kind::yield;
+        std::int64_t longest = 0;  // [ns]
+        friend bool operator==(const Rest&, const Rest&) = default;
+    };
+    /// The next rest of this wait, at `now` [ns]. The first call begins the wait.
+    [[nodiscard]] Rest nextRest(std::int64_t now);
+
     /// How long to sleep after having waited so long; 0: only yield. [ns]
     [[nodiscard]] static std::int64_t sleepAfter(std::int64_t waited);
 
 private:
     std::optional<Doorbell> bell_;
-    std::uint32_t heard_ = 0;  // of the bell, before the last look
-    bool rang_ = false;        // since something was found
-    std::int64_t since_ = 0;   // [ns], of the first rest
+    std::uint32_t heard_ = 0;            // of the bell, before the last look
+    bool rang_ = false;                  // since something was found
+    std::optional<std::int64_t> since_;  // [ns], of the first rest
 };
 
 /// Has this thread wake when its sleep ends: Linux adds 50 µs to each sleep otherwise, and newer ones let whoever

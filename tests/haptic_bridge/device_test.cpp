@@ -10,6 +10,7 @@
 #include "haptic_bridge/devices/trace.hpp"
 #include "haptic_bridge/hand_mapping.hpp"
 #include "tests/support/jittery_trace.hpp"
+#include "tests/support/seed.hpp"
 
 namespace {
 
@@ -101,8 +102,8 @@ TEST(TraceDevice, EngagesNearTheSandOrAlways) {
 
 TEST(TraceDevice, BridgesGapsByTime) {
     // A hand at constant speed, recorded with jitter and gaps: read every millisecond, it moves evenly all the same.
-    const unsigned seed = std::random_device{}();
-    SCOPED_TRACE("seed " + std::to_string(seed));
+    const unsigned seed = test::randomSeed();
+    SCOPED_TRACE(test::again(seed));
     const std::string text = test::jitteryTrace(seed, 2.0, [](double t) {
         return std::array<double, 3>{100 * t, 0, 0};
     });

@@ -5,6 +5,7 @@
 
 #include "tests/haptic_bridge/server_process.hpp"
 #include "tests/hostile/attack.hpp"
+#include "tests/support/seed.hpp"
 
 namespace {
 
@@ -13,8 +14,8 @@ using namespace test;
 
 class Hostile : public testing::Test {
 protected:
-    std::uint32_t seed_ = std::random_device{}();
-    testing::ScopedTrace trace_{__FILE__, __LINE__, "seed " + std::to_string(seed_)};
+    std::uint32_t seed_ = test::randomSeed();
+    testing::ScopedTrace trace_{__FILE__, __LINE__, test::again(seed_)};
     Folder folder_;
     std::string sceneFile_ = folder_.write("small.toml", kSmallScene);
     sand::Scene scene_ = sand::loadScene(sceneFile_);

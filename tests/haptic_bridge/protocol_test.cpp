@@ -7,6 +7,7 @@
 #include <random>
 
 #include "haptic_bridge/message_reader.hpp"
+#include "tests/support/seed.hpp"
 
 namespace {
 
@@ -143,8 +144,8 @@ TEST(Protocol, SandToBeLoadedPassesWhereItIsExpectedAndNothingElseAsLong) {
 }
 
 TEST(Protocol, SurvivesRandomMutations) {
-    const unsigned seed = std::random_device{}();
-    SCOPED_TRACE("seed " + std::to_string(seed));
+    const unsigned seed = test::randomSeed();
+    SCOPED_TRACE(test::again(seed));
     std::mt19937 random(seed);
     const auto messages = oneOfEach();
     int refused = 0;

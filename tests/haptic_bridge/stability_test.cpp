@@ -9,6 +9,7 @@
 #include "sand/terrain.hpp"
 #include "tests/support/arm_loop.hpp"
 #include "tests/support/arm_on_sand.hpp"
+#include "tests/support/seed.hpp"
 
 namespace {
 
@@ -252,8 +253,8 @@ private:
 };
 
 TEST(GuardedForce, IsContinuousPointsOutOfTheSandAndIsNothingOverIt) {
-    const unsigned seed = std::random_device{}();
-    SCOPED_TRACE("seed " + std::to_string(seed));
+    const unsigned seed = test::randomSeed();
+    SCOPED_TRACE(test::again(seed));
     for (const std::string_view name : kArmPresets) {
         ArmSession session(papersSand(), std::make_unique<SimulatedArm>(*armPreset(name)));
         session.warmUp();

@@ -51,42 +51,46 @@ TEST(Doorbell, WakesAnotherProcess) {
     munmap(shared, 4096);
 }
 
-/// How often a wait looks, its first 10 ms apart, until somebody rings and the message is there so much later.
-int looksUntilThere(Patience& patience, const Doorbell& bell, std::chrono::milliseconds later) {
-    std::atomic<bool> there = false;
-    std::thread sender([&] {
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
-        bell.ring();
-        std::this_thread::sleep_for(later);
-        there = true;
-    });
-    int looks = 0;
-    const auto begin = std::chrono::steady_clock::now();
-    for (patience.look(); !there; patience.look()) {
-        looks += std::chrono::steady_clock::now() - begin > std::chrono::milliseconds(10) ? 1 : 0;
-        patience.rest();
-    }
-    sender.join();
-    return looks;
-}
-
-TEST(Patience, SleepsThroughAWaitThatARingEnds) {
+// By a clock of the test's own: what a wait does at each time does not depend on how busy the machine is.
+TEST(Patience, SleepsUntilTheBellRings) {
+    using Kind = Patience::Rest::Kind;
     std::atomic<std::uint32_t> rings = 0;
-    Patience asking;
-    const int asked = looksUntilThere(asking, Doorbell(rings), {});
-    Patience sleeping{Doorbell(rings)};
-    const int slept = looksUntilThere(sleeping, Doorbell(rings), {});
-    EXPECT_LT(slept, asked / 2) << asked;  // its looks are some twenty, against some hundred
-}
-
-// A long message is announced before it is there: then it asks, and does not wait for a ring that has been.
-TEST(Patience, AsksForWhatHasRungAndIsNotThere) {
-    constexpr std::chrono::milliseconds kLater{100};  // as long as it takes until the ring
-    std::atomic<std::uint32_t> rings = 0;
-    Patience asking;
-    const int asked = looksUntilThere(asking, Doorbell(rings), kLater);
     Patience patience{Doorbell(rings)};
-    EXPECT_GT(looksUntilThere(patience, Doorbell(rings), kLater), asked / 4) << "half of it, and some";
+    EXPECT_EQ(patience.nextRest(1000).kind, Kind::yield) << "a short wait";
+    const Patience::Rest later = patience.nextRest(1000 + kMoment);
+    EXPECT_EQ(later.kind, Kind::sleepUntilRung);
+    EXPECT_EQ(later.longest, 5'000'000) << "in case a message comes without a ring";
+    Patience asking;
+    (void)asking.nextRest(1000);
+    EXPECT_EQ(asking.nextRest(1000 + kMoment), (Patience::Rest{Kind::sleep, 125'000})) << "without a bell";
+}
+
+// A long message is announced before it is there: the wait asks for it, and does not sleep until a second ring.
+TEST(Patience, AsksForAMessageThatHasRungAndIsNotThere) {
+    using Kind = Patience::Rest::Kind;
+    std::atomic<std::uint32_t> rings = 0;
+    const Doorbell bell(rings);
+    Patience patience{bell};
+    (void)patience.nextRest(0);
+    bell.ring();
+    patience.look();
+    EXPECT_EQ(patience.nextRest(kMoment), (Patience::Rest{Kind::sleep, 125'000}));
+    patience.look();
+    EXPECT_EQ(patience.nextRest(2 * kMoment).kind, Kind::sleep) << "still not there";
+    patience.found();
+    EXPECT_EQ(patience.nextRest(3 * kMoment).kind, Kind::sleepUntilRung) << "and more to come";
+}
+
+// rest() itself: with a bell that has rung since the last look it must not sleep at all.
+TEST(Patience, ReturnsAtOnceWhenTheBellRangBeforeItSlept) {
+    std::atomic<std::uint32_t> rings = 0;
+    const Doorbell bell(rings);
+    Patience patience{bell};
+    patience.look();
+    bell.ring();
+    EXPECT_TRUE(bell.sleep(0, kLong)) << "the number is another than the one that was heard";
+    patience.look();
+    EXPECT_NE(patience.nextRest(kLong).kind, Patience::Rest::Kind::sleepUntilRung);
 }
 
 }  // namespace

@@ -19,6 +19,7 @@
 #include "master/journal.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/sand_samples.hpp"
+#include "tests/support/seed.hpp"
 #include "tests/support/small_disk.hpp"
 
 namespace {
@@ -315,7 +316,8 @@ TEST_F(Keeper, AReadOnlyFolderIsNamed) {
 
 // The parent kills the child wherever it is. What append() has returned for is told through a pipe, and must be there.
 TEST_F(Keeper, KilledInTheMiddleOfWritesNothingThatWasOnDiskIsLost) {
-    const auto seed = std::random_device{}();
+    const unsigned seed = test::randomSeed();
+    SCOPED_TRACE(test::again(seed));
     std::mt19937 random(seed);
     for (int kill = 0; kill < 20; ++kill) {
         int told[2];

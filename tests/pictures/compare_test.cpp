@@ -12,6 +12,7 @@
 #include "pictures/png_file.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/run_program.hpp"
+#include "tests/support/seed.hpp"
 
 namespace pictures {
 namespace {
@@ -70,8 +71,8 @@ TEST(Silhouettes, AreTheEdgeOfTheSquareTwoPixelsToEitherSide) {
 }
 
 TEST(Silhouettes, EqualTheirDefinitionOnRandomPictures) {
-    const unsigned seed = std::random_device{}();
-    SCOPED_TRACE("seed " + std::to_string(seed));
+    const unsigned seed = test::randomSeed();
+    SCOPED_TRACE(test::again(seed));
     std::mt19937 random(seed);
     const int width = 1 + static_cast<int>(random() % 12);
     const int height = 1 + static_cast<int>(random() % 12);

@@ -13,6 +13,7 @@
 
 #include "files/input_error.hpp"
 #include "tests/support/folder_test.hpp"
+#include "tests/support/seed.hpp"
 
 namespace pictures {
 namespace {
@@ -73,8 +74,8 @@ void claimSize(std::vector<char>& bytes, std::uint32_t width, std::uint32_t heig
 }
 
 TEST_F(PngFile, GivesBackEveryPixelItWasGiven) {
-    const unsigned seed = std::random_device{}();
-    SCOPED_TRACE("seed " + std::to_string(seed));
+    const unsigned seed = test::randomSeed();
+    SCOPED_TRACE(test::again(seed));
     for (const auto& [width, height] : {std::pair{1, 1}, {1, 37}, {53, 1}, {64, 48}}) {
         const Image image = noise(width, height, seed);
         writePng(file_, image);
@@ -129,8 +130,8 @@ TEST_F(PngFile, RefusesSizesItsBytesCannotHold) {
 }
 
 TEST_F(PngFile, SurvivesDamagedBytes) {
-    const unsigned seed = std::random_device{}();
-    SCOPED_TRACE("seed " + std::to_string(seed));
+    const unsigned seed = test::randomSeed();
+    SCOPED_TRACE(test::again(seed));
     std::mt19937 random(seed);
     writePng(file_, noise(16, 16, 1));
     const std::vector<char> whole = bytes();

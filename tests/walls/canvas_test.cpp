@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "tests/support/seed.hpp"
 #include "tests/walls/sample_walls.hpp"
 
 namespace walls {
@@ -65,8 +66,8 @@ TEST(WholeWall, ShowsEveryPointWhereEachOfItsTilesWould) {
     const Wall wall = config("tiled_3x4.toml");
     const Wall whole = wholeWall(wall);
     const Canvas canvas = wallCanvas(wall);
-    const unsigned seed = std::random_device{}();
-    SCOPED_TRACE("seed " + std::to_string(seed));
+    const unsigned seed = test::randomSeed();
+    SCOPED_TRACE(test::again(seed));
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> across(-3, 3), up(0, 4), deep(-5, 2);
     for (int round = 0; round < 100; ++round) {

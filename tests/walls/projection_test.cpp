@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "tests/support/seed.hpp"
 #include "tests/walls/sample_walls.hpp"
 
 namespace walls {
@@ -53,8 +54,8 @@ TEST(Projection, IsThePapersShiftedFrustum) {
 }
 
 TEST(Projection, PutsTheScreensCornersInThePicturesCorners) {
-    const unsigned seed = std::random_device{}();
-    SCOPED_TRACE("seed " + std::to_string(seed));
+    const unsigned seed = test::randomSeed();
+    SCOPED_TRACE(test::again(seed));
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> anywhere(-2, 2), ahead(0.2, 4);
     for (int round = 0; round < 200; ++round) {

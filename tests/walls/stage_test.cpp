@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "tests/support/seed.hpp"
 #include "walls/projection.hpp"
 
 namespace walls {
@@ -48,8 +49,8 @@ TEST(Stage, TurnIsCounterClockwiseSeenFromAbove) {
 }
 
 TEST(Stage, IsARigidMotionAndAScale) {
-    const unsigned seed = std::random_device{}();
-    SCOPED_TRACE("seed " + std::to_string(seed));
+    const unsigned seed = test::randomSeed();
+    SCOPED_TRACE(test::again(seed));
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> angle(-90, 90), size(0.1, 5);
     for (int round = 0; round < 100; ++round) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/seed.hpp"
 #include "tests/walls/sample_walls.hpp"
 
 namespace walls {
@@ -122,8 +123,8 @@ TEST(WallBytes, AreRefusedWhenCutShortAnywhereOrTooLong) {
 }
 
 TEST(WallBytes, DamagedGiveAWallThatCanBeLaidOutOrAreRefused) {
-    const unsigned seed = std::random_device{}();
-    SCOPED_TRACE("seed " + std::to_string(seed));
+    const unsigned seed = test::randomSeed();
+    SCOPED_TRACE(test::again(seed));
     std::mt19937 random(seed);
     const files::Bytes whole = config("tiled_3x4.toml").encode();
     int refused = 0;

@@ -7,6 +7,7 @@
 #include <random>
 #include <string>
 
+#include "tests/support/seed.hpp"
 #include "tests/walls/sample_walls.hpp"
 
 namespace walls {
@@ -27,8 +28,8 @@ TEST(Contact, OfNeighboursIsNone) {
 
 TEST(Contact, IsFoundWhicheverScreenComesFirstAndHoweverTheyAreTurned) {
     const Screen screen = plainScreen();
-    const unsigned seed = std::random_device{}();
-    SCOPED_TRACE("seed " + std::to_string(seed));
+    const unsigned seed = test::randomSeed();
+    SCOPED_TRACE(test::again(seed));
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> angle(-3, 3);
     struct Case {
