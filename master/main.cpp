@@ -91,7 +91,7 @@ void resume(Options& options) {
 }
 
 /// The scene of the file named, or of the journal that is to be replayed or gone on with.
-sand::Scene loadScene(Options& options) {
+sand::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
     options.session.journal.policy = master::parseJournalPolicy(options.journal);
     options.session.journal.partBytes = options.partMegabytes << 20;
     if (options.resume) {
@@ -105,7 +105,9 @@ sand::Scene loadScene(Options& options) {
         if (options.scene.empty()) {
             throw files::InputError("sandwall-master: name a --scene, or a journal to --replay");
         }
-        sand::Scene scene = sand::loadScene(options.scene);
+        sand::Scene scene = sand::loadScene(options.scene, [&](int columns, int rows) {
+            master::requireMemory(cluster.hosts(), columns, rows, options.scene);
+        });
         for (const std::string& warning : scene.warnings) {
             fmt::print(stderr, "{}: warning: {}\n", options.scene, warning);
         }
@@ -127,7 +129,7 @@ sand::Scene loadScene(Options& options) {
 
 World loadWorld(const lockstep::Cluster& cluster, Options& options) {
     cluster.mayTakeLong(true);  // until the ranks have been told of it
-    World world{loadScene(options), walls::loadWallAs(options.wall, options.stereo), {}};
+    World world{loadScene(cluster, options), walls::loadWallAs(options.wall, options.stereo), {}};
     master::requireMemory(cluster.hosts(), world.scene, options.scene + options.replay);
     if (world.wall.ranks() != cluster.renderRanks()) {
         throw files::InputError(fmt::format(

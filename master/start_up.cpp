@@ -18,23 +18,27 @@ std::vector<std::string> namesOf(const lockstep::Cluster& cluster, const walls::
     return names;
 }
 
+void requireMemory(const std::vector<lockstep::RankHost>& ranks, int columns, int rows, const std::string& file) {
+    if (const auto lack = lockstep::lackOfMemory(ranks, sand::Terrain::leastBytes(columns, rows), 0)) {
+        throw files::InputError(
+            fmt::format("{}: {} x {} cells need {}: fewer cells, or more hosts", file, columns, rows, *lack));
+    }
+}
+
 void requireMemory(const std::vector<lockstep::RankHost>& ranks, const sand::Scene& scene, const std::string& file) {
+    if (scene.tin == nullptr) {
+        return requireMemory(ranks, scene.rules.columns, scene.rules.rows, file);
+    }
     const int columns = scene.rules.columns;
     const int rows = scene.rules.rows;
-    const bool tin = scene.tin != nullptr;
     // How much sky a place sees is looked up in a height for each nominal cell.
-    const std::int64_t toDraw = tin ? std::int64_t{sizeof(float)} * columns * rows : 0;
+    const std::int64_t toDraw = std::int64_t{sizeof(float)} * columns * rows;
     const auto lack = lockstep::lackOfMemory(ranks, sand::Terrain::leastBytes(scene), toDraw);
-    if (!lack) {
-        return;
-    }
-    if (tin) {
+    if (lack) {
         throw files::InputError(
             fmt::format("{}: a TIN of {} vertices over {} x {} nominal cells needs {}: fewer of either, or more hosts",
                         file, scene.tin->places.size(), columns, rows, *lack));
     }
-    throw files::InputError(
-        fmt::format("{}: {} x {} cells need {}: fewer cells, or more hosts", file, columns, rows, *lack));
 }
 
 void requireReady(const std::vector<lockstep::Readiness>& ranks, const std::vector<std::string>& names) {

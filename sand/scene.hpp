@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -97,7 +98,11 @@ struct Scene {
     static Scene decode(std::span<const std::uint8_t> bytes);
 };
 
+/// Looks at the size of a height field before its heights are made, and throws if there is no room for it.
+using FieldCheck = std::function<void(int columns, int rows)>;
+
 /// Reads a scene file. Throws files::InputError with file, line and key; a DEM's errors name the DEM's line.
-[[nodiscard]] Scene loadScene(const std::filesystem::path& file);
+/// `check` is called once for a height field, and not for a TIN.
+[[nodiscard]] Scene loadScene(const std::filesystem::path& file, const FieldCheck& check = {});
 
 }  // namespace sand

@@ -126,7 +126,7 @@ void readLook(const files::TomlTable& file, Scene& scene) {
 
 }  // namespace
 
-Scene loadScene(const std::filesystem::path& file) {
+Scene loadScene(const std::filesystem::path& file, const FieldCheck& check) {
     const files::TomlTable toml = files::TomlTable::load(file);
     Scene scene;
     scene.name = toml.textOr("name", file.stem().string());
@@ -136,7 +136,7 @@ Scene loadScene(const std::filesystem::path& file) {
     }
     scene.rules.stepsPerSecond = toml.integerOr("steps_per_second", 60, 1, 1000);
     scene.rules.rim = static_cast<Rim>(toml.choiceOr("rim", {"closed", "open"}, 0));
-    const bool settle = readTerrain(toml, scene);
+    const bool settle = readTerrain(toml, scene, toml.has("tin") ? FieldCheck() : check);
     readTin(toml, scene);
     readTool(toml, scene);
     readMaterial(toml, scene);

@@ -14,12 +14,15 @@
 namespace sand {
 namespace {
 
-HeightField levelField(const files::TomlTable& file) {
+HeightField levelField(const files::TomlTable& file, const FieldCheck& check) {
     const files::TomlTable field = file.requiredTable("field");
     const int columns = field.integerOr("columns", 512, 1, kMaxSide);
     const int rows = field.integerOr("rows", columns, 1, kMaxSide);
     const double width = field.numberOr("width", 2.0, files::kPositive);  // the paper's (-1, 1)
     field.finish();
+    if (check) {
+        check(columns, rows);
+    }
     return {columns, rows, width / columns};
 }
 
@@ -56,7 +59,7 @@ void checkCells(const files::TomlTable& terrain, const EsriGrid& raster) {
 
 /// Cells without data become walls, drawn as flats at the lowest height there is.
 HeightField fromSource(const files::TomlTable& file, const files::TomlTable& terrain, int kind, Scene& scene,
-                       std::shared_ptr<Ground>& ground) {
+                       std::shared_ptr<Ground>& ground, const FieldCheck& check) {
     const TerrainSource source = readSource(file, terrain, kind);
     if (!source.points.empty()) {
         if (!file.has("tin")) {
@@ -71,6 +74,9 @@ HeightField fromSource(const files::TomlTable& file, const files::TomlTable& ter
     const EsriGrid grid = terrain.has("bedrock") ? source.raster : withoutEmptyEdges(source.raster);
     scene.georeference = source.referenceAt(grid);
     const double datum = scene.georeference.datum;
+    if (check) {
+        check(grid.columns, grid.rows);
+    }
     HeightField field(grid.columns, grid.rows, grid.cellSize);
     std::int32_t lowest = kMaxHeight;
     const auto forEachCell = [&](auto&& visit) {
@@ -97,8 +103,9 @@ HeightField fromSource(const files::TomlTable& file, const files::TomlTable& ter
     return field;
 }
 
-HeightField madeUp(const files::TomlTable& file, const files::TomlTable& terrain, bool withDunes) {
-    HeightField field = levelField(file);
+HeightField madeUp(const files::TomlTable& file, const files::TomlTable& terrain, bool withDunes,
+                   const FieldCheck& check) {
+    HeightField field = levelField(file, check);
     const double bed = terrain.numberOr("height", 0);
     const std::int32_t units = heightUnits(terrain, "height", bed, field.unit());
     for (int row = 0; row < field.rows(); ++row) {
@@ -169,13 +176,14 @@ void readBedrock(const files::TomlTable& terrain, const HeightField& field, std:
 
 }  // namespace
 
-bool readTerrain(const files::TomlTable& file, Scene& scene) {
+bool readTerrain(const files::TomlTable& file, Scene& scene, const FieldCheck& check) {
     const files::TomlTable terrain = file.requiredTable("terrain");
     std::vector<std::string_view> kinds{"flat", "dunes"};
     kinds.insert(kinds.end(), sourceKinds().begin(), sourceKinds().end());
     const int kind = terrain.choiceOr("kind", kinds, 0);
     std::shared_ptr<Ground> ground;
-    scene.terrain = kind < 2 ? madeUp(file, terrain, kind == 1) : fromSource(file, terrain, kind - 2, scene, ground);
+    scene.terrain =
+        kind < 2 ? madeUp(file, terrain, kind == 1, check) : fromSource(file, terrain, kind - 2, scene, ground, check);
     readBedrock(terrain, scene.terrain, ground);
     const bool settle = terrain.flagOr("settle", false);
     terrain.finish();

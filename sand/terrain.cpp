@@ -62,9 +62,13 @@ std::int64_t Terrain::leastBytes(const Scene& scene) {
         constexpr std::int64_t kPerVertex = 320;
         return kPerVertex * static_cast<std::int64_t>(scene.tin->places.size());
     }
+    return leastBytes(scene.rules.columns, scene.rules.rows);
+}
+
+std::int64_t Terrain::leastBytes(int columns, int rows) {
     // The scene's heights, the replica's, and a flux through two faces of every cell.
     constexpr std::int64_t kPerCell = 4 * sizeof(std::int32_t);
-    return kPerCell * scene.rules.columns * scene.rules.rows;
+    return kPerCell * columns * rows;
 }
 
 void Terrain::apply(const Step& step) {

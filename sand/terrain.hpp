@@ -91,6 +91,8 @@ public:
 
     /// What a replica of a scene takes at the very least, with the scene it starts from [byte].
     [[nodiscard]] static std::int64_t leastBytes(const Scene& scene);
+    /// The same of a height field of this size.
+    [[nodiscard]] static std::int64_t leastBytes(int columns, int rows);
 
     /// The sand now, for whoever compresses it on another thread.
     [[nodiscard]] std::shared_ptr<const SurfaceCopy> copySand() const { return surface_->copy(); }

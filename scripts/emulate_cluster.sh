@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # A cluster on one machine: every host is a network namespace with a name, an address and a link of 1 Gbit/s of its own, and
-# a session runs over TCP between them, a render rank a host. Needs root. Leaves nothing behind; docs/cluster.md.
+# a session runs over TCP between them, a render rank a host. Needs root, or a kernel that allows unprivileged user
+# namespaces. Leaves nothing behind; docs/cluster.md.
 set -euo pipefail
 
 usage() {
     cat >&2 <<'END'
 usage: scripts/emulate_cluster.sh --out DIR [--wall FILE] [--scene FILE] [--spares N] [--cut HOST@SECONDS] [-- OPTION...]
-       scripts/emulate_cluster.sh --tear-down      # what a killed run has left behind
+       scripts/emulate_cluster.sh --check          # whether this machine can: exit status 0 or 1
+       scripts/emulate_cluster.sh --tear-down      # removes what a killed run has left behind
   --wall, --scene   default: walls/configs/tiled_3x4.toml, scenes/writing.toml
   --spares N        hosts that draw only when another cannot (default: 0)
   --cut node03@10   takes that host's link down, so many seconds after the first frame; repeatable
@@ -35,6 +37,23 @@ remove() {
 
 need() { command -v "$1" >/dev/null || { echo "emulate_cluster.sh: no $1; scripts/install_dependencies.sh" >&2; exit 2; }; }
 
+# What add_host() below needs of the kernel, tried.
+can_make_hosts() {
+    local name=${prefix}probe-$$ status=0
+    ip netns add "$name" 2>/dev/null || return 1
+    { ip netns exec "$name" unshare --uts true && ip -n "$name" link add veth0 type veth peer name veth1 &&
+        ip -n "$name" link add switch0 type bridge &&
+        tc -n "$name" qdisc add dev veth0 root tbf rate 1gbit burst 256kb latency 50ms; } 2>/dev/null || status=1
+    ip netns delete "$name"
+    return $status
+}
+
+# Runs a command as root of a user namespace of its own, with a /run of its own for the names of network namespaces.
+# shellcheck disable=SC2016  # the inner shell expands it
+in_user_namespace=(unshare --user --map-root-user --net --mount
+    sh -c 'mount -t tmpfs none /run && mkdir /run/netns && exec "$@"' sh env SANDWALL_IN_USER_NAMESPACE=1)
+
+arguments=("$@")
 while [[ $# -gt 0 ]]; do
     case "$1" in
         --out) out=${2:?}; shift 2 ;;
@@ -43,6 +62,11 @@ while [[ $# -gt 0 ]]; do
         --spares) spares=${2:?}; shift 2 ;;
         --cut) [[ ${2:?} =~ ^node[0-9]+@[0-9.]+$ ]] || usage; cuts+=("$2"); shift 2 ;;
         --rate) rate=${2:?}; shift 2 ;;
+        --check)
+            need ip; need tc; need unshare
+            can_make_hosts && exit 0
+            [[ -z ${SANDWALL_IN_USER_NAMESPACE:-} ]] && "${in_user_namespace[@]}" "$0" --check 2>/dev/null && exit 0
+            exit 1 ;;
         --tear-down) need ip; remove "$prefix"; exit 0 ;;
         --) shift; more=("$@"); break ;;
         *) usage ;;
@@ -50,7 +74,13 @@ while [[ $# -gt 0 ]]; do
 done
 [[ -n $out ]] || usage
 need ip; need tc; need unshare
-[[ $EUID -eq 0 ]] || { echo "emulate_cluster.sh: only root may make network namespaces; run it with sudo" >&2; exit 2; }
+if ! can_make_hosts; then
+    if [[ -n ${SANDWALL_IN_USER_NAMESPACE:-} ]] || ! "${in_user_namespace[@]}" "$0" --check 2>/dev/null; then
+        echo "emulate_cluster.sh: this machine makes no network namespaces; run it with sudo, or allow user namespaces" >&2
+        exit 2
+    fi
+    exec "${in_user_namespace[@]}" "$0" "${arguments[@]}"
+fi
 
 ranks=$("$bin/sandwall-check" "$wall" --ranks)
 mine=$prefix$$-
@@ -65,7 +95,7 @@ trap tear_down EXIT
 trap 'exit 130' INT TERM HUP
 
 # The master's host holds the switch.
-ip netns add "${mine}head" || { echo "emulate_cluster.sh: this machine makes no network namespaces" >&2; exit 2; }
+ip netns add "${mine}head"
 ip -n "${mine}head" link set lo up
 ip -n "${mine}head" link add switch type bridge
 ip -n "${mine}head" address add "$network.1/24" dev switch

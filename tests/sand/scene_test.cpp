@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "files/input_error.hpp"
 #include "sand/esri_grid.hpp"
 #include "tests/sand/scene_fixture.hpp"
 
@@ -20,6 +22,27 @@ TEST_F(SceneFile, DefaultsAreThePapers) {
     EXPECT_EQ(scene.rules.toolRadius, 655);  // 2.56 cells
     EXPECT_EQ(scene.rules.threshold, std::lround(std::tan(34 * std::numbers::pi / 180) * 65536));
     EXPECT_EQ(scene.rules.stepsPerSecond, 60);
+}
+
+long residentKilobytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss;
+}
+
+// 16384 x 16384 heights are 1 GiB: a host that lacks it must say so at once, and not after it has made them.
+TEST_F(SceneFile, ItsSizeIsLookedAtBeforeItsHeightsAreMade) {
+    const std::string file = write("s.toml", "[field]\ncolumns = 16384\nrows = 16384\n[terrain]\n[material]\n");
+    const long before = residentKilobytes();
+    const auto tooLarge = [](int columns, int rows) {
+        throw files::InputError(fmt::format("{} x {} are too many", columns, rows));
+    };
+    EXPECT_THROW((void)sand::loadScene(file, tooLarge), files::InputError);
+    EXPECT_LT(residentKilobytes() - before, 100'000);
+    int asked = 0;
+    const auto fits = [&](int columns, int rows) { asked += columns == 512 && rows == 512 ? 1 : 100; };
+    (void)sand::loadScene(write("small.toml", kFlat), fits);
+    EXPECT_EQ(asked, 1);
 }
 
 TEST_F(SceneFile, SweepsFollowTheSquareOfTheToolsCells) {

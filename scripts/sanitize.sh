@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Runs under the sanitizers what scripts/test.sh has no time for; takes an hour on two cores. docs/testing.md
+#
+#   asan   whole sessions over real ranks: address and undefined behaviour, in every process
+#   tsan   the haptic server, the link, the trackers and the worker threads: data races
+#
+# usage: scripts/sanitize.sh [asan] [tsan]    (default: both)
+set -euo pipefail
+cd "$(dirname "$0")/.."
+jobs=$(nproc)
+
+# build PRESET TARGET...
+build() {
+    local preset=$1
+    shift
+    echo "== building $preset"
+    cmake --preset "$preset" >/dev/null
+    cmake --build "build/$preset" --parallel "$jobs" --target "$@"
+}
+
+# Open MPI leaks by itself, and Mesa's compiler keeps what it has made: leaks are looked for in asan-sand.
+sessions() {
+    build asan cluster_tests
+    echo "== sessions with the address and undefined sanitizers"
+    ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 ctest --test-dir build/asan --output-on-failure \
+        --no-tests=error -R '^(Lockstep|Recovery|Ending|Drill|Healing|Resuming|Operator|HeadTracking|BadInput|ForeignBuild)\.'
+}
+
+threads() {
+    build tsan haptic_tests link_tests tracking_tests workers_tests
+    echo "== haptic server, link, trackers and worker threads with the thread sanitizer"
+    TSAN_OPTIONS=halt_on_error=1 ctest --test-dir build/tsan/tests --output-on-failure --no-tests=error -L 'haptic|unit' \
+        -R '.' --test-dir build/tsan -E '_NOT_BUILT$' "$@"
+}
+
+scripts/install_dependencies.sh --with-tests
+for part in "${@:-asan tsan}"; do
+    for one in $part; do
+        case $one in
+            asan) sessions ;;
+            tsan) threads ;;
+            *) echo "usage: scripts/sanitize.sh [asan] [tsan]" >&2; exit 2 ;;
+        esac
+    done
+done
