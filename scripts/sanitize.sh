@@ -23,24 +23,25 @@ build() {
 sessions() {
     build asan cluster_tests
     echo "== sessions with the address and undefined sanitizers"
-    ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 ctest --test-dir build/asan --output-on-failure \
+    ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 ctest --test-dir build/asan/tests/cluster --output-on-failure \
         --no-tests=error -R '^(Lockstep|Recovery|Ending|Drill|Healing|Resuming|Operator|HeadTracking|BadInput|ForeignBuild)\.'
 }
 
 threads() {
     build tsan haptic_tests link_tests tracking_tests workers_tests
     echo "== haptic server, link, trackers and worker threads with the thread sanitizer"
-    TSAN_OPTIONS=halt_on_error=1 ctest --test-dir build/tsan/tests --output-on-failure --no-tests=error -L 'haptic|unit' \
-        -R '.' --test-dir build/tsan -E '_NOT_BUILT$' "$@"
+    local folder
+    for folder in haptic_bridge tracking workers; do
+        TSAN_OPTIONS=halt_on_error=1 ctest --test-dir "build/tsan/tests/$folder" --output-on-failure --no-tests=error
+    done
 }
 
 scripts/install_dependencies.sh --with-tests
-for part in "${@:-asan tsan}"; do
-    for one in $part; do
-        case $one in
-            asan) sessions ;;
-            tsan) threads ;;
-            *) echo "usage: scripts/sanitize.sh [asan] [tsan]" >&2; exit 2 ;;
-        esac
-    done
+[[ $# -gt 0 ]] || set -- asan tsan
+for part in "$@"; do
+    case $part in
+        asan) sessions ;;
+        tsan) threads ;;
+        *) echo "usage: scripts/sanitize.sh [asan] [tsan]" >&2; exit 2 ;;
+    esac
 done
