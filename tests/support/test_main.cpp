@@ -30,7 +30,8 @@ int exitStatus(int failed) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    testing::InitGoogleTest(&argc, argv);
+    // Before the tests are listed: some have a file of the project for a parameter.
     std::filesystem::current_path(SANDWALL_ROOT);
+    testing::InitGoogleTest(&argc, argv);
     return exitStatus(RUN_ALL_TESTS());
 }
