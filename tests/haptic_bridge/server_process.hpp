@@ -23,7 +23,7 @@ using namespace std::chrono_literals;
 
 /// Waits until `done` holds, for at most a bounded time; says whether it did.
 template <class Done>
-bool eventually(const Done& done, std::chrono::milliseconds most = 20000ms) {
+bool eventually(const Done& done, std::chrono::milliseconds most = 60000ms) {
     const auto end = std::chrono::steady_clock::now() + most;
     while (!done()) {
         if (std::chrono::steady_clock::now() > end) {
