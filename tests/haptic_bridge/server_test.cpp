@@ -120,11 +120,11 @@ TEST_F(HapticServer, GetsFewerStepsThroughASlowWallAndLosesNone) {
     Client client(server.address(), offerOf(scene_));
     Wall wall(scene_);
     ASSERT_TRUE(wall.follow(client, 5));
-    // The wall stands still until the window of 32 steps is full, and while the server withholds some more.
+    // The wall stands still until the window of 8 steps is full, and while the server withholds some more.
     const std::uint64_t before = wall.terrain.stepNumber();
-    ASSERT_TRUE(eventually([&] { return client.counters().stepsIn >= before + 32; })) << client.counters().stepsIn;
+    ASSERT_TRUE(eventually([&] { return client.counters().stepsIn >= before + 8; })) << client.counters().stepsIn;
     std::this_thread::sleep_for(1000ms);
-    EXPECT_LE(client.counters().stepsIn, before + 32);
+    EXPECT_LE(client.counters().stepsIn, before + 8);
     ASSERT_TRUE(wall.follow(client, before + 40)) << client.link().message;
     EXPECT_EQ(wall.divergences, 0);
     EXPECT_EQ(wall.outOfOrder, 0);
