@@ -10,12 +10,12 @@
 namespace sand::tin {
 namespace {
 
-constexpr double kProbePerCell = 256;
+constexpr double kCellSide = 256;  // [probe unit]
 
 }  // namespace
 
 Slopes slopesOf(std::int32_t threshold, std::int32_t startThreshold) {
-    return {threshold / kProbePerCell, std::max(threshold, startThreshold) / kProbePerCell};
+    return {threshold / kCellSide, std::max(threshold, startThreshold) / kCellSide};
 }
 
 Erosion::Erosion(const Layer&, std::int32_t threshold, std::int32_t startThreshold) {

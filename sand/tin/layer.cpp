@@ -12,7 +12,7 @@
 namespace sand::tin {
 namespace {
 
-constexpr std::int64_t kMostVolume = std::int64_t{1} << 62;
+constexpr std::int64_t kVolumeLimit = std::int64_t{1} << 62;
 
 std::size_t at(Vertex vertex) { return static_cast<std::size_t>(vertex); }
 
@@ -72,7 +72,7 @@ void Layer::setVolume(Vertex vertex, std::int64_t volume) {
 
 void Layer::add(Vertex vertex, std::int64_t volume) {
     std::int64_t sum = 0;
-    if (__builtin_add_overflow(volumes_[at(vertex)], volume, &sum) || sum >= kMostVolume || sum <= -kMostVolume) {
+    if (__builtin_add_overflow(volumes_[at(vertex)], volume, &sum) || sum >= kVolumeLimit || sum <= -kVolumeLimit) {
         throw std::overflow_error("too much sand on vertex " + std::to_string(vertex));
     }
     setVolume(vertex, sum);
@@ -80,7 +80,7 @@ void Layer::add(Vertex vertex, std::int64_t volume) {
 
 void Layer::setHeight(Vertex vertex, std::int32_t height) {
     const Wide volume = static_cast<Wide>(stars_[at(vertex)]) * height;
-    if (volume >= kMostVolume || volume <= -kMostVolume) {
+    if (volume >= kVolumeLimit || volume <= -kVolumeLimit) {
         throw std::overflow_error("too much sand on vertex " + std::to_string(vertex));
     }
     setVolume(vertex, static_cast<std::int64_t>(volume));
@@ -146,7 +146,7 @@ void Layer::remap() {
         remapped_.push_back(vertex);
     }
     for (const Remapped::Share& share : result.shares) {
-        if (share.volume >= kMostVolume || share.volume <= -kMostVolume) {
+        if (share.volume >= kVolumeLimit || share.volume <= -kVolumeLimit) {
             throw std::overflow_error("too much sand on vertex " + std::to_string(share.vertex));
         }
         stars_[at(share.vertex)] = share.star;

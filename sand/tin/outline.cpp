@@ -10,7 +10,7 @@
 namespace sand::tin {
 namespace {
 
-constexpr double kWithin = 2;         // [probe unit]: a point that is rounded stays below the tool
+constexpr double kMargin = 2;         // [probe unit]: a point that is rounded stays below the tool
 constexpr double kShortest = 18;      // [probe unit], of an edge: a fourteenth of a cell
 constexpr std::int32_t kMerging = 2;  // [probe unit], between two roundings of one crossing
 
@@ -153,8 +153,8 @@ void drawSole(Drawing& drawing, double length, double width) {
     constexpr double kSmall = 0.2;  // [half length of the tool]: toes, which 8 points draw as well as 16 draw a heel
     std::vector<Polygon> pieces;
     for (const SolePiece& piece : solePieces()) {
-        pieces.push_back(ellipse({piece.along * length, piece.across * width}, piece.halfLength * length - kWithin,
-                                 piece.halfWidth * width - kWithin, piece.halfLength < kSmall ? 8 : 16));
+        pieces.push_back(ellipse({piece.along * length, piece.across * width}, piece.halfLength * length - kMargin,
+                                 piece.halfWidth * width - kMargin, piece.halfLength < kSmall ? 8 : 16));
     }
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         drawing.ring(pieces, i);
@@ -184,8 +184,8 @@ Outline drawn(const ToolShape& shape) {
         drawSole(drawing, length, width);
         return drawing.take();
     }
-    const Polygon ring = shape.kind == ToolKind::rectangle ? rectangle(length - kWithin, width - kWithin)
-                                                           : ellipse({0, 0}, length - kWithin, width - kWithin, 32);
+    const Polygon ring = shape.kind == ToolKind::rectangle ? rectangle(length - kMargin, width - kMargin)
+                                                           : ellipse({0, 0}, length - kMargin, width - kMargin, 32);
     drawing.ring({ring}, 0);
     if ((shape.kind == ToolKind::sphere || shape.kind == ToolKind::ellipsoid) && !ring.empty()) {
         drawBowl(drawing, length, width);

@@ -13,7 +13,7 @@
 namespace sand::tin {
 namespace {
 
-std::size_t at(Vertex vertex) { return static_cast<std::size_t>(vertex); }
+std::size_t indexOf(Vertex vertex) { return static_cast<std::size_t>(vertex); }
 
 Wide dividedDown(Wide value, Wide divisor) {
     const Wide quotient = value / divisor;
@@ -180,7 +180,7 @@ private:
         for (std::size_t i = 0; i < went_.size(); ++i) {
             for (const std::uint32_t corner : went_[i]) {
                 Node& node = nodes_[corner];
-                node.star += (node.before ? 0 : stars_[at(node.vertex)]) - areaOf(difference_.went[i]);
+                node.star += (node.before ? 0 : stars_[indexOf(node.vertex)]) - areaOf(difference_.went[i]);
                 node.before = true;
             }
         }
@@ -217,8 +217,8 @@ private:
                 continue;
             }
             Part& part = parts_[nodes_[i].part];
-            const double height = heights_[at(nodes_[i].vertex)];
-            part.missing += volumes_[at(nodes_[i].vertex)];
+            const double height = heights_[indexOf(nodes_[i].vertex)];
+            part.missing += volumes_[indexOf(nodes_[i].vertex)];
             part.lowest = part.empty ? height : std::min(part.lowest, height);
             part.highest = part.empty ? height : std::max(part.highest, height);
             part.empty = false;
@@ -240,9 +240,9 @@ private:
             return weight[0] >= 0 && weight[1] >= 0 && weight[2] >= 0;
         });
         if (piece != nullptr) {
-            const double lowest = heights_[at(piece->corner[0])];
-            const double rise = static_cast<double>(weight[1]) * (heights_[at(piece->corner[1])] - lowest) +
-                                static_cast<double>(weight[2]) * (heights_[at(piece->corner[2])] - lowest);
+            const double lowest = heights_[indexOf(piece->corner[0])];
+            const double rise = static_cast<double>(weight[1]) * (heights_[indexOf(piece->corner[1])] - lowest) +
+                                static_cast<double>(weight[2]) * (heights_[indexOf(piece->corner[2])] - lowest);
             return lowest + rise / static_cast<double>(weight[0] + weight[1] + weight[2]);
         }
         return 0;  // not reached: what came covers the ground of what went
@@ -251,10 +251,10 @@ private:
     void keepHeight(Node& node) {
         const std::int64_t star = node.star;
         if (node.before) {
-            node.height = heights_[at(node.vertex)];
-            const std::int64_t old = stars_[at(node.vertex)];
-            node.volume =
-                dividedDown(static_cast<Wide>(2) * volumes_[at(node.vertex)] * star + old, static_cast<Wide>(2) * old);
+            node.height = heights_[indexOf(node.vertex)];
+            const std::int64_t old = stars_[indexOf(node.vertex)];
+            node.volume = dividedDown(static_cast<Wide>(2) * volumes_[indexOf(node.vertex)] * star + old,
+                                      static_cast<Wide>(2) * old);
         } else {
             node.height = oldHeight(node.place);
             const double whole = std::floor(node.height);

@@ -19,14 +19,14 @@ namespace {
 constexpr int kCorners = 4;
 constexpr double kAnyError = 4.0 * kMaxHeight;  // [unit], more than two heights can differ
 
-std::int32_t rounded(double height) {
+std::int32_t nearestHeight(double height) {
     return static_cast<std::int32_t>(
         std::clamp(std::floor(height + 0.5), -static_cast<double>(kMaxHeight), static_cast<double>(kMaxHeight)));
 }
 
 std::int32_t meanHeight(const Start& start) {
     const Layer layer = layerOf(start);
-    return rounded(static_cast<double>(layer.volume()) / static_cast<double>(layer.ground()));
+    return nearestHeight(static_cast<double>(layer.volume()) / static_cast<double>(layer.ground()));
 }
 
 std::size_t nearest(const std::vector<Place>& places, const Place& to) {
@@ -115,7 +115,7 @@ void addChosen(const HeightField& field, const Ground* walls, Start& start) {
     start.constraints = border.edges;
     start.places = chosen.places;
     for (const double height : chosen.heights) {
-        start.heights.push_back(rounded(height));
+        start.heights.push_back(nearestHeight(height));
     }
 }
 
@@ -198,7 +198,7 @@ Start startOf(const Layer& layer, const Settings& settings) {
         if (mesh.alive(static_cast<Vertex>(i))) {
             numberOf[i] = static_cast<Vertex>(start.places.size());
             start.places.push_back(mesh.places[i]);
-            start.heights.push_back(rounded(layer.heights()[i]));
+            start.heights.push_back(nearestHeight(layer.heights()[i]));
         }
     }
     for (const auto& [a, b] : layer.mesh().constraints()) {

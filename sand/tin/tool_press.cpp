@@ -8,10 +8,10 @@
 namespace sand::tin {
 namespace {
 
-constexpr Volume kMost = (Volume{1} << 62) - 1;  // of one vertex, either sign
+constexpr Volume kMostOfVertex = (Volume{1} << 62) - 1;  // of one vertex, either sign
 constexpr int kSquaresBeyond = 16;  // to a tool's radius: so finely the ground beyond an open rim is looked at
 
-Offset offsetOf(const Place& place, const ProbePoint& at) {
+Offset offsetFrom(const Place& place, const ProbePoint& at) {
     return {std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
 }
 
@@ -32,7 +32,7 @@ bool Tool::findCut(const Layer& layer, const ProbePoint& at) {
         if (!box.holds(place)) {
             continue;
         }
-        const std::int32_t underside = turned_.underside(at.z, offsetOf(place, at));
+        const std::int32_t underside = turned_.underside(at.z, offsetFrom(place, at));
         if (underside == TurnedShape::kFree) {
             continue;
         }
@@ -41,7 +41,7 @@ bool Tool::findCut(const Layer& layer, const ProbePoint& at) {
         if (volume <= target) {
             continue;
         }
-        if (target < -kMost) {
+        if (target < -kMostOfVertex) {
             return false;
         }
         cut_.push_back({vertex, static_cast<std::int64_t>(volume - target)});  // both below 2^62
@@ -55,7 +55,7 @@ void Tool::findReceivers(const Layer& layer, Rim rim, const Press& press) {
         receivers_.clear();
         for (const Vertex vertex : window_->vertices()) {
             const auto index = static_cast<std::size_t>(vertex);
-            const Offset offset = offsetOf(layer.triangles().places[index], press.at);
+            const Offset offset = offsetFrom(layer.triangles().places[index], press.at);
             if (!turned_.takes(offset) || turned_.covers(offset)) {
                 continue;
             }
@@ -92,7 +92,7 @@ void Tool::addBeyond(const Layer& layer, const Press& press, bool everywhere) {
     for (std::int64_t y = first(box.y0); y <= box.y1; y += step) {
         for (std::int64_t x = first(box.x0); x <= box.x1; x += step) {
             const Place place{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
-            const Offset offset = offsetOf(place, press.at);
+            const Offset offset = offsetFrom(place, press.at);
             if (field.holds(place) || !turned_.takes(offset) || turned_.covers(offset)) {
                 continue;
             }
@@ -106,7 +106,7 @@ void Tool::addBeyond(const Layer& layer, const Press& press, bool everywhere) {
 
 void Tool::addNeighbours(const Layer& layer, const ProbePoint& at) {
     const auto isCovered = [&](Vertex vertex) {
-        return turned_.covers(offsetOf(layer.triangles().places[static_cast<std::size_t>(vertex)], at));
+        return turned_.covers(offsetFrom(layer.triangles().places[static_cast<std::size_t>(vertex)], at));
     };
     window_->look(layer.triangles(), window_->box());  // it may have followed a change
     std::vector<Vertex> beside;
@@ -153,7 +153,7 @@ bool Tool::hasRoom(const Layer& layer) const {
         }
         const auto index = static_cast<std::size_t>(receiver.vertex);
         const Volume raised = layer.volumes()[index] + receiver.share;
-        return raised <= std::min(kMost, Volume{kMaxHeight} * layer.stars()[index]) && raised >= -kMost;
+        return raised <= std::min(kMostOfVertex, Volume{kMaxHeight} * layer.stars()[index]) && raised >= -kMostOfVertex;
     });
 }
 

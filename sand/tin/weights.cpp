@@ -11,7 +11,8 @@ namespace sand::tin {
 namespace {
 
 constexpr double kOne = 1048576;  // of the integer weights: 2^20
-constexpr double kMost = 4;  // of half a cotangent: slivers' have no bounds, and a whole star would wait for one edge
+constexpr double kMostWeight =
+    4;  // of half a cotangent: slivers' have no bounds, and a whole star would wait for one edge
 constexpr double kSafe = 0.9996;  // what of the bound is used: the rest is room for roundings
 constexpr double kGrain = 0.5;    // [unit], how exactly a height is told
 
@@ -81,7 +82,7 @@ const std::array<std::int32_t, 3>& Weights::halvesOf(const Triangles& mesh, std:
         const auto area = static_cast<double>(doubledArea(a, b, c));
         const std::array<double, 3> of{half(a, b, c, area), half(b, c, a, area), half(c, a, b, area)};
         // All three by one factor: each cut for itself, a sliver's sand would not run down the sliver's slope.
-        const double scale = kOne * std::min(kMost / std::max({of[0], of[1], of[2], kMost}), 1.0);
+        const double scale = kOne * std::min(kMostWeight / std::max({of[0], of[1], of[2], kMostWeight}), 1.0);
         halves.first = corner[0];
         std::transform(of.begin(), of.end(), halves.of.begin(),
                        [&](double half) { return static_cast<std::int32_t>(half * scale); });

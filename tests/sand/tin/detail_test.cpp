@@ -6,6 +6,7 @@
 #include "sand/tin/coarsening.hpp"
 #include "tests/sand/tin/tool_fixture.hpp"
 
+namespace details {
 namespace {
 
 using namespace tin_samples;
@@ -220,3 +221,4 @@ TEST(TinDetail, RulesTravelAndDamagedOnesAreRefused) {
 }
 
 }  // namespace
+}  // namespace details

@@ -18,6 +18,7 @@
 #include "sand/tin/weights.hpp"
 #include "tests/sand/tin/tool_fixture.hpp"
 
+namespace holes {
 namespace {
 
 using namespace tin_samples;
@@ -311,3 +312,4 @@ TEST(TinHoles, TheRimIsAsHighAsTheCellsAlongIt) {
 }
 
 }  // namespace
+}  // namespace holes

@@ -9,6 +9,7 @@
 #include "mesh_checks.hpp"
 #include "tests/support/relaxing.hpp"
 
+namespace layers {
 namespace {
 
 using namespace mesh_checks;
@@ -162,3 +163,4 @@ TEST(Layer, IsAFunctionOfTheEditsAndNotOfTheSlots) {
 }
 
 }  // namespace
+}  // namespace layers

@@ -8,6 +8,7 @@
 
 #include "mesh_checks.hpp"
 
+namespace meshes {
 namespace {
 
 using namespace mesh_checks;
@@ -43,3 +44,4 @@ TEST(Mesh, StaysConstrainedDelaunayInAStrip) { editAndCheck(1 << 22, 2, 2000, 60
 TEST(Mesh, StaysConstrainedDelaunayWhereConstraintsCrowd) { editAndCheck(60, 60, 2000, 150, 4); }
 
 }  // namespace
+}  // namespace meshes

@@ -8,6 +8,7 @@
 #include "sand/tin/erosion.hpp"
 #include "tests/support/tin_piles.hpp"
 
+namespace moving_sand {
 namespace {
 
 using namespace tin_piles;
@@ -125,3 +126,4 @@ TEST(MovingSand, CountsInIntegersWhatDoublesWouldRound) {
 }
 
 }  // namespace
+}  // namespace moving_sand

@@ -11,6 +11,7 @@
 #include "sand/tin/settle.hpp"
 #include "tests/support/tin_piles.hpp"
 
+namespace erosion {
 namespace {
 
 using namespace tin_piles;
@@ -341,3 +342,4 @@ TEST(TinErosion, RestingEdgesAreLeftThoughStepsAreShortAndSomethingAlwaysMoves) 
 }
 
 }  // namespace
+}  // namespace erosion

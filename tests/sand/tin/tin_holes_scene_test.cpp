@@ -22,7 +22,7 @@ namespace {
 using sand::Step;
 using sand::Terrain;
 
-constexpr int kSide = 48;
+constexpr int kRasterSide = 48;
 
 /// A block of cells, a stair that touches itself at corners, and a corner of the field.
 bool isGap(int column, int row) {
@@ -35,9 +35,10 @@ protected:
     /// Ground that rises to the north-east with a steep heap on it.
     [[nodiscard]] sand::Scene scene(const std::string& more, double heap = 12) const {
         std::ofstream grid(folder_ / "dem.asc");
-        grid << fmt::format("ncols {0}\nnrows {0}\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n", kSide);
-        for (int row = kSide - 1; row >= 0; --row) {
-            for (int column = 0; column < kSide; ++column) {
+        grid << fmt::format("ncols {0}\nnrows {0}\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n",
+                            kRasterSide);
+        for (int row = kRasterSide - 1; row >= 0; --row) {
+            for (int column = 0; column < kRasterSide; ++column) {
                 const double far = std::hypot(column - 14.0, row - 24.0);
                 grid << (isGap(column, row) ? -9999 : 0.05 * column + 0.02 * row + std::max(0.0, heap - 2 * far))
                      << ' ';
@@ -56,12 +57,12 @@ std::vector<Step> strokes(std::uint32_t seed, int steps) {
     std::mt19937 random(seed);
     const auto below = [&](std::uint32_t most) { return static_cast<std::int32_t>(random() % most); };
     std::vector<Step> all;
-    sand::ProbePoint at{kSide * 128, kSide * 128, 600};
+    sand::ProbePoint at{kRasterSide * 128, kRasterSide * 128, 600};
     for (int i = 0; i < steps; ++i) {
         Step step{.epoch = 1, .number = static_cast<std::uint64_t>(i + 1), .engaged = i % 16 < 11, .path = {}};
         for (int points = below(4); points > 0; --points) {
-            at = {std::clamp(at.x + below(801) - 400, 0, kSide * 256),
-                  std::clamp(at.y + below(801) - 400, 0, kSide * 256), 300 + below(900)};
+            at = {std::clamp(at.x + below(801) - 400, 0, kRasterSide * 256),
+                  std::clamp(at.y + below(801) - 400, 0, kRasterSide * 256), 300 + below(900)};
             step.path.push_back(at);
         }
         all.push_back(step);
@@ -86,8 +87,8 @@ TEST_F(TinHoleScene, HolesComeBackWithoutData) {
     const sand::Scene before = sand::sampledScene(start);
     const sand::HeightField after = sand::sampled(terrain, start.tin->holes.get());
     const sand::EsriGrid heights = sand::heightsOf(after, before), change = sand::differenceOf(after, before);
-    for (int row = 0; row < kSide; ++row) {
-        for (int column = 0; column < kSide; ++column) {
+    for (int row = 0; row < kRasterSide; ++row) {
+        for (int column = 0; column < kRasterSide; ++column) {
             EXPECT_EQ(heights.isNoData(column, row), isGap(column, row)) << column << ", " << row;
             EXPECT_EQ(change.isNoData(column, row), isGap(column, row)) << column << ", " << row;
         }
@@ -110,8 +111,8 @@ TEST_F(TinHoleScene, TheSamePileOnGridAndTinAgrees) {
     const sand::HeightField there = sand::sampled(tin, asTin.tin->holes.get());
     double worst = 0, sum = 0;
     int count = 0;
-    for (int row = 0; row < kSide; ++row) {
-        for (int column = 0; column < kSide; ++column) {
+    for (int row = 0; row < kRasterSide; ++row) {
+        for (int column = 0; column < kRasterSide; ++column) {
             ASSERT_EQ(asGrid.ground->isWall(column, row), isGap(column, row));
             if (!isGap(column, row)) {
                 const double off = std::abs(there.height(column, row) - asGrid.terrain.height(column, row)) / 65536.0;

@@ -13,6 +13,7 @@
 #include "tests/support/oracles.hpp"
 #include "tests/support/tin_piles.hpp"
 
+namespace piles {
 namespace {
 
 using namespace tin_piles;
@@ -218,3 +219,4 @@ TEST(TinPile, TheSamePileOnGridAndTinAgrees) {
 }
 
 }  // namespace
+}  // namespace piles

@@ -11,6 +11,7 @@
 #include "tests/support/oracles.hpp"
 #include "tests/support/tin_piles.hpp"
 
+namespace settling {
 namespace {
 
 using namespace tin_piles;
@@ -115,3 +116,4 @@ TEST(TinSettle, OnlyWhatLiesAroundMovesAndNothingElse) {
 }
 
 }  // namespace
+}  // namespace settling

@@ -9,6 +9,7 @@
 
 #include "tests/sand/tin/tool_fixture.hpp"
 
+namespace tools {
 namespace {
 
 using namespace tin_samples;
@@ -375,3 +376,4 @@ TEST(TinTool, RefusesADamagedImprint) {
 }
 
 }  // namespace
+}  // namespace tools
