@@ -69,9 +69,9 @@ struct TriangleSide {
 /// An edge's two parts are w · min(step_from, step_to), w being half the cotangent of the opposite angle, and step_i =
 /// .9996 star_i / Σ_j w⁺_ij over the edges of vertex i, w⁺ being the sum of an edge's positive parts. What flows over
 /// an edge is hence at most k_ij per height, with Σ_j k_ij ≤ step_i Σ_j w⁺_ij = .9996 star_i at either end. Of a
-/// triangle whose largest w is beyond kMostWeight all three are smaller by one factor, so that its sand still runs down its
-/// slope: with each cut for itself, slivers as steep as three taluses fed on their neighbours for 100,000 sweeps. The w
-/// are integers, so that their sum needs no order. Steps and weights are kept until they are forgotten. Not
+/// triangle whose largest w is beyond kMostWeight all three are smaller by one factor, so that its sand still runs down
+/// its slope: with each cut for itself, slivers as steep as three taluses fed on their neighbours for 100,000 sweeps.
+/// The w are integers, so that their sum needs no order. Steps and weights are kept until they are forgotten. Not
 /// thread-safe.
 class Weights {
 public:
