@@ -12,7 +12,7 @@ namespace host {
 /// Numbers of the formats and rules that a program knows, such as {"journal", 7}.
 using KnownVersions = std::vector<std::pair<std::string_view, std::uint32_t>>;
 
-/// What `--version` prints of a program: version, build id and known versions, for people or as one JSON object.
+/// Formats version, build id and known versions of a program, for people or as one JSON object.
 [[nodiscard]] std::string versionText(std::string_view program, const KnownVersions& known, bool json);
 
 /// Prints versionText() if `--version` is among the arguments, as JSON if `--json` is too. Call it first in main, and
