@@ -101,7 +101,7 @@ TEST(Driver, OfAnotherInterfaceVersionIsRefused) {
 }
 
 TEST(HeadlessServer, MapsNoWindowLibrary) {
-    const test::Folder folder;
+    const test::Folder folder{};
     const test::ServerProcess server(folder,
                                      test::ServerProcess::usual(folder.write("s.toml", test::kSmallScene), folder));
     ASSERT_NE(server.port(), 0) << server.errors();
@@ -114,7 +114,7 @@ TEST(HeadlessServer, MapsNoWindowLibrary) {
 }
 
 TEST(HeadlessServer, SaysThatAMouseNeedsADisplay) {
-    const test::Folder folder;
+    const test::Folder folder{};
     auto words = test::ServerProcess::usual(folder.write("s.toml", test::kSmallScene), folder);
     words[3] = "mouse";
     const char* display = getenv("DISPLAY");

@@ -74,7 +74,7 @@ protected:
     }
     [[nodiscard]] std::string written() const { return folder_.read("ticks.csv"); }
 
-    const test::Folder folder_;
+    const test::Folder folder_{};
     const sand::Scene scene_ = samples::flatScene(60, 60);
     test::FakeArm::State state_;
     NotedDevice* noted_ = nullptr;
