@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include "sand/import/points_file.hpp"
 #include "tests/sand/import/import_fixture.hpp"
 
