@@ -58,8 +58,8 @@ void emitEvent(std::string_view name, const EventFields& fields) {
         const ssize_t size = write(STDERR_FILENO, line.data() + written, line.size() - written);
         if (size > 0) {
             written += static_cast<std::size_t>(size);
-        } else if (errno != EINTR) {
-            return;  // nobody reads it: the session continues without
+        } else if (size == 0 || errno != EINTR) {
+            return;  // standard error is closed or full: the session continues without this event
         }
     }
 }
