@@ -16,13 +16,16 @@ launcher=()
 if command -v ccache >/dev/null; then
     export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
     export CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
-    if ccache --print-stats >/dev/null 2>&1; then
+    trial=$(mktemp -d)
+    echo 'int main() {}' >"$trial/trial.cpp"
+    if ccache c++ -c "$trial/trial.cpp" -o "$trial/trial.o" >/dev/null 2>&1; then
         # A precompiled header is another file in each clone, and all that include it would be compiled again.
         launcher=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache
             -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON)
     else
         echo "test.sh: the cache of ccache cannot be used; building without it" >&2
     fi
+    rm -r "$trial"
 fi
 
 # build PRESET [TARGET...]: everything without a target.
