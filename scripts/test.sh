@@ -10,6 +10,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 jobs=$(nproc)
+scripts/install_dependencies.sh --with-tests
 
 # With ccache a clone finds what another one has compiled, in any folder. A cache that does not work changes nothing.
 launcher=()
@@ -37,7 +38,6 @@ build() {
     cmake --build "build/$preset" --parallel "$jobs" ${1:+--target "$@"}
 }
 
-scripts/install_dependencies.sh --with-tests
 build release
 build asan-sand
 goldens=(golden-{g++,clang}-O0 golden-g++-O2 golden-clang-O3)
