@@ -4,7 +4,7 @@
 
 #include "bench/csv.hpp"
 #include "bench/timing.hpp"
-#include "files/command_line.hpp"
+#include "host/command_line.hpp"
 #include "render_node/gl/gl_context.hpp"
 #include "tests/render_node/sample_scene.hpp"
 
@@ -97,15 +97,15 @@ int main(int argc, char** argv) {
     settings.sizes = {512, 2048};
     settings.runs = 3;
     int frames = 6;
-    CLI::App app("Measures pictures at each level of detail: errors and seconds, as CSV.", "detail_bench");
-    app.add_option("--out", settings.out, "the CSV file; standard output without");
-    app.add_option("--runs", settings.runs, "drawings of every picture")->check(CLI::Range(1, 1000));
-    app.add_option("--frames", frames, "of the moving head")->check(CLI::Range(1, 1000));
-    app.add_option("--seed", settings.seed, "of the dunes");
-    app.add_option("--sizes", settings.sizes, "sides of the square fields [cell], separated by commas")
-        ->delimiter(',')
-        ->check(CLI::Range(64, 4096));
-    return files::runMain(app, argc, argv, [&] {
+    host::CommandLine line("Measures pictures at each level of detail: errors and seconds, as CSV.", "detail_bench");
+    line.option("--out", settings.out, "the CSV file; standard output without");
+    line.option("--runs", settings.runs, "drawings of every picture").range(1, 1000);
+    line.option("--frames", frames, "of the moving head").range(1, 1000);
+    line.option("--seed", settings.seed, "of the dunes");
+    line.option("--sizes", settings.sizes, "sides of the square fields [cell], separated by commas")
+        .commaSeparated()
+        .range(64, 4096);
+    return host::runMain(line, argc, argv, [&] {
         settings.commandLine = "detail_bench";
         for (int word = 1; word < argc; ++word) {
             settings.commandLine += std::string(" ") + argv[word];

@@ -4,7 +4,6 @@
 #include <mpi.h>
 #include <sys/prctl.h>
 
-#include <CLI/CLI.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/read.hpp>
@@ -15,10 +14,10 @@
 #include <random>
 #include <thread>
 
-#include "files/command_line.hpp"
 #include "haptic_bridge/client.hpp"
 #include "haptic_bridge/live_histogram.hpp"
 #include "haptic_bridge/monotonic.hpp"
+#include "host/command_line.hpp"
 #include "host/event.hpp"
 #include "lockstep/patience.hpp"
 
@@ -133,20 +132,20 @@ int frame(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app("A bare message over TCP, and a bare broadcast and barrier over MPI: mean and spread, as JSON.",
-                 "sandwall-latency-floor");
-    app.require_subcommand(1);
+    host::CommandLine line(
+        "A bare message over TCP, and a bare broadcast and barrier over MPI: mean and spread, as JSON.",
+        "sandwall-latency-floor");
     Options options;
-    auto& echoes = *app.add_subcommand("echo", "answer messages, until ended");
-    auto& messages = *app.add_subcommand("message", "half of the round trip to an echo, at random times");
-    auto& frames = *app.add_subcommand("frame", "a broadcast and a barrier; under mpirun");
-    messages.add_option("--to", options.to, "ADDRESS:PORT of the echo")->required();
-    for (CLI::App* command : {&messages, &frames}) {
-        command->add_option("--bytes", options.bytes, "of a message")->check(CLI::Range(1, 1 << 20));
-        command->add_option("--seconds", options.seconds, "to measure")->check(CLI::Range(0.1, 600.0));
-        command->add_option("--seed", options.seed, "of the random times");
+    const host::CommandLine echoes = line.command("echo", "answer messages, until ended");
+    host::CommandLine messages = line.command("message", "half of the round trip to an echo, at random times");
+    host::CommandLine frames = line.command("frame", "a broadcast and a barrier; under mpirun");
+    messages.option("--to", options.to, "ADDRESS:PORT of the echo").required();
+    for (host::CommandLine* command : {&messages, &frames}) {
+        command->option("--bytes", options.bytes, "of a message").range(1, 1 << 20);
+        command->option("--seconds", options.seconds, "to measure").range(0.1, 600.0);
+        command->option("--seed", options.seed, "of the random times");
     }
-    return files::runMain(app, argc, argv, [&] {
-        return echoes.parsed() ? echo() : messages.parsed() ? message(options) : frame(options);
+    return host::runMain(line, argc, argv, [&] {
+        return echoes.given() ? echo() : messages.given() ? message(options) : frame(options);
     });
 }

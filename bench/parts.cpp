@@ -12,8 +12,8 @@
 namespace bench {
 namespace {
 
-constexpr int kSweeps = 16;  // per step
-constexpr int kDepth = 64;   // [cell], of the bedrock below the level sand
+constexpr int kSweeps = 16;        // per step
+constexpr int kBedrockDepth = 64;  // [cell], of the bedrock below the level sand
 
 enum class Happening { settled, smallEdit, everythingMoves };
 
@@ -31,7 +31,7 @@ Cost measure(int side, bool withBedrock, Happening happening, const Settings& se
         ground.emplace(side, side);
         for (int y = 0; y < side; ++y) {
             for (int x = 0; x < side; ++x) {
-                ground->setBedrock(x, y, -kDepth * sand::kUnitsPerCell);
+                ground->setBedrock(x, y, -kBedrockDepth * sand::kUnitsPerCell);
             }
         }
     }
@@ -75,7 +75,7 @@ void parts(const Settings& settings, Csv& csv) {
     csv.note(
         fmt::format("a step of {} sweeps; bedrock {} cells below level sand; a small edit: a sphere of 3 cells "
                     "presses half of itself in; everything moving: noise of 64 cells",
-                    kSweeps, kDepth));
+                    kSweeps, kBedrockDepth));
     csv.note("CPU time of one thread; sweeps: run before nothing moved any more");
     csv.columns("ground,state,N,us_median,us_min,us_max,sweeps,bytes");
     for (const int side : settings.sizes) {

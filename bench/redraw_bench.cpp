@@ -4,7 +4,6 @@
 // for each tile as each rank has its own. CPU time; LP_NUM_THREADS=0 keeps all of it in this thread.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -12,7 +11,7 @@
 #include <vector>
 
 #include "bench/timing.hpp"
-#include "files/command_line.hpp"
+#include "host/command_line.hpp"
 #include "render_node/gl/gl_context.hpp"
 #include "render_node/sand_view.hpp"
 #include "sand/terrain.hpp"
@@ -206,13 +205,11 @@ int measure(const Options& options) {
 
 int main(int argc, char** argv) {
     Options options;
-    CLI::App app("What a wall's frames cost while somebody digs, in CPU time.", "redraw_bench");
-    app.add_option("--wall", options.wall, "wall file")->capture_default_str();
-    app.add_option("--scene", options.scene, "scene file")->capture_default_str();
-    app.add_option("--frames", options.frames, "how many")->check(CLI::Range(1, 100000))->capture_default_str();
-    app.add_option("--rate", options.rate, "frames a second of the wall")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
-    app.add_flag("--json", options.json, "print medians per frame as an object: step_ms, busiest_tile_ms");
-    return files::runMain(app, argc, argv, [&] { return measure(options); });
+    host::CommandLine line("What a wall's frames cost while somebody digs, in CPU time.", "redraw_bench");
+    line.option("--wall", options.wall, "wall file").showDefault();
+    line.option("--scene", options.scene, "scene file").showDefault();
+    line.option("--frames", options.frames, "how many").range(1, 100000).showDefault();
+    line.option("--rate", options.rate, "frames a second of the wall").range(1, 1000).showDefault();
+    line.flag("--json", options.json, "print medians per frame as an object: step_ms, busiest_tile_ms");
+    return host::runMain(line, argc, argv, [&] { return measure(options); });
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The curves of docs/report, one subcommand each: scripts/report.sh runs and draws them all.
-#include <array>
+#include <string_view>
 
 #include "bench/curves.hpp"
 #include "bench/latency.hpp"
-#include "files/command_line.hpp"
+#include "host/command_line.hpp"
 #include "host/version.hpp"
 #include "sand/scene.hpp"
 
@@ -96,28 +96,26 @@ std::vector<Curve> allCurves() {
 
 constexpr int kLargestSide = 4096;  // [cell]: beyond, a pile's sweeps to rest take hours
 
-void addOptions(CLI::App& command, const Curve& curve, bench::Settings& settings) {
+void addOptions(host::CommandLine& command, const Curve& curve, bench::Settings& settings) {
     settings.sizes = curve.sizes;
     settings.runs = curve.runs;
-    command.add_option("--out", settings.out, "the CSV file; standard output without");
-    command.add_option("--runs", settings.runs, "runs of everything that is timed")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
-    command.add_option("--seed", settings.seed, "of everything that is random")->capture_default_str();
+    command.option("--out", settings.out, "the CSV file; standard output without");
+    command.option("--runs", settings.runs, "runs of everything that is timed").range(1, 1000).showDefault();
+    command.option("--seed", settings.seed, "of everything that is random").showDefault();
     if (curve.sizes == std::vector<int>{0}) {
         return;
     }
     if (curve.sizes.empty()) {
-        command.add_option("SCENE", settings.scene, "a scene file")->required();
+        command.option("SCENE", settings.scene, "a scene file").required();
         return;
     }
     if (curve.measure == bench::simplify) {
-        command.add_option("--raster", settings.raster, "an ESRI ASCII grid, in place of dunes");
+        command.option("--raster", settings.raster, "an ESRI ASCII grid, in place of dunes");
     }
-    command.add_option("--sizes", settings.sizes, "sides of the square fields [cell], separated by commas")
-        ->delimiter(',')
-        ->check(CLI::Range(8, kLargestSide))
-        ->capture_default_str();
+    command.option("--sizes", settings.sizes, "sides of the square fields [cell], separated by commas")
+        .commaSeparated()
+        .range(8, kLargestSide)
+        .showDefault();
 }
 
 }  // namespace
@@ -126,23 +124,21 @@ int main(int argc, char** argv) {
     if (host::answersVersion(argc, argv, "sandwall-bench", {{"algorithm", sand::kAlgorithmVersion}})) {
         return 0;
     }
-    CLI::App app("Measures the sand: errors, sweeps and seconds, as CSV.", "sandwall-bench");
-    app.require_subcommand(1);
+    host::CommandLine line("Measures the sand: errors, sweeps and seconds, as CSV.", "sandwall-bench");
+    if (argc > 1 && std::string_view(argv[1]) == "latency") {  // its options are the script's
+        return host::runMain(line, 1, argv, [&]() -> int { bench::becomeLatency({argv + 2, argv + argc}); });
+    }
     const std::vector<Curve> curves = allCurves();
     std::vector<bench::Settings> settings(curves.size());
+    std::vector<host::CommandLine> commands;
     for (std::size_t i = 0; i < curves.size(); ++i) {
-        addOptions(*app.add_subcommand(curves[i].name, curves[i].what), curves[i], settings[i]);
+        commands.push_back(line.command(curves[i].name, curves[i].what));
+        addOptions(commands.back(), curves[i], settings[i]);
     }
-    CLI::App& latency =
-        *app.add_subcommand("latency", "half round trip from the hand to whole walls, beside the floor");
-    latency.prefix_command();  // its options are the script's
-    latency.set_help_flag();
-    return files::runMain(app, argc, argv, [&] {
-        if (latency.parsed()) {
-            bench::becomeLatency(latency.remaining());
-        }
+    (void)line.command("latency", "half round trip from the hand to whole walls, beside the floor");  // for --help
+    return host::runMain(line, argc, argv, [&] {
         for (std::size_t i = 0; i < curves.size(); ++i) {
-            if (app.got_subcommand(curves[i].name)) {
+            if (commands[i].given()) {
                 settings[i].commandLine = "sandwall-bench";
                 for (int word = 1; word < argc; ++word) {
                     settings[i].commandLine += std::string(" ") + argv[word];

@@ -14,11 +14,11 @@
 namespace bench {
 namespace {
 
-constexpr double kRadius = 13;      // [cell]: about 1000 vertices below the tool and in the ring beside it
-constexpr double kDepth = 2;        // [cell]
+constexpr double kToolCells = 13;   // [cell]: about 1000 vertices below the tool and in the ring beside it
+constexpr double kPressed = 2;      // [cell]
 constexpr int kSamplesOfHand = 16;  // in one step
 constexpr double kPerStep = 1.5;    // [cell]
-constexpr int kSteps = 30;          // a run, of either kind
+constexpr int kRunSteps = 30;       // a run, of either kind
 constexpr int kStepsAfter = 4;      // an imprint, in which its sand slides on
 constexpr int kSweepsPerStep = 64;
 constexpr std::int32_t kSlope = 65536;         // [unit per cell], 45 degrees
@@ -40,14 +40,14 @@ sand::Scene levelScene(int side, bool refines, std::uint32_t seed) {
     scene.rules.startThreshold = kSlope + kBand;
     scene.rules.sweepsPerStep = kSweepsPerStep;
     scene.rules.toolKind = sand::ToolKind::circle;
-    scene.rules.toolRadius = static_cast<std::int32_t>(kRadius * sand::kProbePerCell);
+    scene.rules.toolRadius = static_cast<std::int32_t>(kToolCells * sand::kProbePerCell);
     scene.tin = std::make_shared<const sand::tin::Start>(std::move(start));
     return scene;
 }
 
 sand::ProbePoint handOver(double x, double y /* [cell] */) {
     const auto probe = [](double cells) { return static_cast<std::int32_t>(std::floor(cells * sand::kProbePerCell)); };
-    return {probe(x), probe(y), probe(kRadius - kDepth)};
+    return {probe(x), probe(y), probe(kToolCells - kPressed)};
 }
 
 struct Action {
@@ -58,13 +58,13 @@ struct Action {
 /// Imprints far from one another, each lifted again, and one long drag.
 std::vector<Action> actionsOf(int side, std::uint32_t seed) {
     std::mt19937 random(seed);
-    const auto somewhere = [&] { return 2 * kRadius + tin_piles::chance(random) * (side - 4 * kRadius); };
+    const auto somewhere = [&] { return 2 * kToolCells + tin_piles::chance(random) * (side - 4 * kToolCells); };
     std::vector<Action> actions;
     const auto add = [&actions](const char* kind, bool engaged, std::vector<sand::ProbePoint> path) {
         const sand::Step step{1, actions.size() + 1, engaged, std::move(path)};
         actions.push_back({kind, step});
     };
-    for (int i = 0; i < kSteps; ++i) {
+    for (int i = 0; i < kRunSteps; ++i) {
         const double x = somewhere();
         add("imprint", true, {handOver(x, somewhere())});
         add("lift", false, {});
@@ -72,9 +72,9 @@ std::vector<Action> actionsOf(int side, std::uint32_t seed) {
             add("after", false, {});
         }
     }
-    double x = 2 * kRadius;
+    double x = 2 * kToolCells;
     add("imprint", true, {handOver(x, side / 2.0)});
-    for (int i = 0; i < kSteps; ++i, x += kPerStep) {
+    for (int i = 0; i < kRunSteps; ++i, x += kPerStep) {
         std::vector<sand::ProbePoint> path;
         for (int sample = 1; sample <= kSamplesOfHand; ++sample) {
             path.push_back(handOver(x + kPerStep * sample / kSamplesOfHand, side / 2.0));
@@ -170,7 +170,7 @@ int verticesBelowAndBeside(const sand::Scene& scene, const sand::ProbePoint& at)
 void tinStep(const Settings& settings, Csv& csv) {
     csv.note(
         fmt::format("a round tool of 32 points and radius {} cells, {} cells deep, in level sand; {} sweeps; ms of",
-                    kRadius, kDepth, kSweepsPerStep));
+                    kToolCells, kPressed, kSweepsPerStep));
     csv.note("CPU time. imprint: put somewhere new, where a stroke begins; drag: moved on by 1.5 cells; lift: taken");
     csv.note("out; after: nothing but sweeps. step: all of it with hash and damage, measured on its own. mesh, remap:");
     csv.note("within tool, tried apart and without refinement; keep: for an undo; sweeps: with coarsening");

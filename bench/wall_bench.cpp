@@ -4,12 +4,11 @@
 // ratio holds on a busy machine. CPU time; LP_NUM_THREADS=0 keeps all of it in this thread.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
 #include "bench/timing.hpp"
-#include "files/command_line.hpp"
+#include "host/command_line.hpp"
 #include "render_node/gl/gl_context.hpp"
 #include "render_node/gl/gl_program.hpp"
 #include "render_node/sand_mesh.hpp"
@@ -124,10 +123,11 @@ int main(int argc, char** argv) {
     std::string scene = "scenes/writing.toml";
     int rounds = 5;
     bool json = false;
-    CLI::App app("A redraw of all views of a wall against a bare one of the same views, in CPU time.", "wall_bench");
-    app.add_option("--wall", wall, "wall file")->capture_default_str();
-    app.add_option("--scene", scene, "scene file")->capture_default_str();
-    app.add_option("--rounds", rounds, "how often each is drawn")->check(CLI::Range(1, 1000))->capture_default_str();
-    app.add_flag("--json", json, "print the medians as an object: bare_ms, sand_ms");
-    return files::runMain(app, argc, argv, [&] { return measure(wall, scene, rounds, json); });
+    host::CommandLine line("A redraw of all views of a wall against a bare one of the same views, in CPU time.",
+                           "wall_bench");
+    line.option("--wall", wall, "wall file").showDefault();
+    line.option("--scene", scene, "scene file").showDefault();
+    line.option("--rounds", rounds, "how often each is drawn").range(1, 1000).showDefault();
+    line.flag("--json", json, "print the medians as an object: bare_ms, sand_ms");
+    return host::runMain(line, argc, argv, [&] { return measure(wall, scene, rounds, json); });
 }

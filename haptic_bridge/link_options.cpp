@@ -2,6 +2,7 @@
 #include "haptic_bridge/link_options.hpp"
 
 #include "files/input_error.hpp"
+#include "host/command_line.hpp"
 
 namespace haptic_bridge {
 namespace {
@@ -18,6 +19,15 @@ LinkSecurity withSecrets(const LinkOptions& options) {
 }
 
 }  // namespace
+
+void LinkOptions::addTo(host::CommandLine& line, bool server) {
+    line.option("--secret-file", secretFile, "lines ROLE SECRET that both sides know (docs/security.md)");
+    line.flag("--tls", tls, "TLS 1.3 on the haptic link; needs --secret-file");
+    if (server) {
+        line.option("--tls-cert", certificate, "PEM file, instead of a certificate made at the start");
+        line.option("--tls-key", key, "PEM file of its key");
+    }
+}
 
 LinkSecurity LinkOptions::forServer() const {
     LinkSecurity security = withSecrets(*this);

@@ -7,6 +7,10 @@
 #include "haptic_bridge/client.hpp"
 #include "haptic_bridge/handshake.hpp"
 
+namespace host {
+class CommandLine;
+}
+
 namespace haptic_bridge {
 
 /// What a user says about who may come in, in every program of the link.
@@ -15,17 +19,8 @@ struct LinkOptions {
     bool tls = false;
     std::string certificate, key;  // of a server; empty: made at every start
 
-    /// Options are added by whoever parses: addSecretFile and addTls take a CLI::App, which is not named here because
-    /// it takes long to compile.
-    template <class App>
-    void addTo(App& app, bool server) {
-        app.add_option("--secret-file", secretFile, "lines ROLE SECRET that both sides know (docs/security.md)");
-        app.add_flag("--tls", tls, "TLS 1.3 on the haptic link; needs --secret-file");
-        if (server) {
-            app.add_option("--tls-cert", certificate, "PEM file, instead of a certificate made at the start");
-            app.add_option("--tls-key", key, "PEM file of its key");
-        }
-    }
+    /// Adds the options of either end; a server has two more.
+    void addTo(host::CommandLine& line, bool server);
 
     /// Loads the module where it is needed. Throws files::InputError.
     [[nodiscard]] LinkSecurity forServer() const;

@@ -4,7 +4,6 @@
 #include <sys/prctl.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <cstdio>
@@ -22,6 +21,7 @@
 #include "haptic_bridge/monotonic.hpp"
 #include "haptic_bridge/tick_recorder.hpp"
 #include "haptic_bridge/timings.hpp"
+#include "host/command_line.hpp"
 #include "host/event.hpp"
 #include "host/version.hpp"
 #include "workers/sand_threads.hpp"
@@ -234,53 +234,37 @@ void serve(const Options& options) {
     }
 }
 
-/// The program's options; exits by itself after --help.
-Options parse(int count, char** words) {
-    Options options;
-    CLI::App app("Feels the sand at 1 kHz, and streams what the hand does to a wall's master.");
-    app.add_option("--scene", options.scene, "scene file, the same as the wall's")->required();
-    app.add_option("--device", options.device,
-                   "script:gis, script:FILE, trace:FILE.csv, driver:FILE.so, sim:PRESET, mouse or spacenav")
-        ->required();
-    app.add_option("--map", options.map, "KEY=VALUE, how a trace lies over the sand (docs/devices.md); repeatable")
-        ->allow_extra_args(false);
-    app.add_option("--pace", options.pace, "realtime, or fast: a virtual clock, as quick as the wall")
-        ->transform(
-            CLI::CheckedTransformer(std::map<std::string, Pace>{{"realtime", Pace::realtime}, {"fast", Pace::fast}}));
-    app.add_option("--record", options.record,
-                   "a CSV file: one row per tick, and the same ticks go into the session's journal");
-    app.add_option("--force", options.force, "on or off: whether an arm feels anything at the start")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, bool>{{"on", true}, {"off", false}}));
-    app.add_option("--force-scale", options.forceScale, "0 to 1: the share of the force that an arm feels")
-        ->check(CLI::Range(0.0, 1.0));
-    app.add_option("--guards", options.guards, "on, or literal: the law as its paper has it, for simulated arms only")
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, Guards::Mode>{{"on", Guards::Mode::on}, {"literal", Guards::Mode::literal}}));
-    app.add_option("--listen", options.listen, "ADDRESS:PORT; port 0 takes any free one");
-    app.add_option("--port-file", options.portFile, "written when the server listens: the port's number");
-    app.add_option(
-        "--timings", options.timings,
-        "CSV file, written at the end: how often each period of the force loop and each cost of a force came");
-    app.add_option("--timing-tests", options.tests.perSecond,
-                   "timing tests a second, at random times (default: 4; docs/latency.md)")
-        ->check(CLI::Range(0.1, 100.0));
-    app.add_option("--timing-after", options.tests.after, "[s] of a link before the first (default: 0)")
-        ->check(CLI::Range(0.0, 3600.0));
-    app.add_option("--timing-seed", options.tests.seed, "of those times (default: 7)");
-    options.link.addTo(app, true);
-    workers::addSandThreads(app, options.sandThreads);
-    app.add_flag_callback(
-        "--version", [] {}, "print version and build, with --json as JSON, and end");
-    app.add_flag("--die-with-parent", options.dieWithParent, "end when the program that started this one ends");
-    try {
-        app.parse(count, words);
-    } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) {
-            std::exit(app.exit(error));
-        }
-        throw files::InputError(error.what() + std::string("; see --help"));
-    }
-    return options;
+void describe(host::CommandLine& line, Options& options) {
+    line.option("--scene", options.scene, "scene file, the same as the wall's").required();
+    line.option("--device", options.device,
+                "script:gis, script:FILE, trace:FILE.csv, driver:FILE.so, sim:PRESET, mouse or spacenav")
+        .required();
+    line.option("--map", options.map, "KEY=VALUE, how a trace lies over the sand (docs/devices.md); repeatable")
+        .oneValueEach();
+    line.choice<Pace>("--pace", options.pace, {{"realtime", Pace::realtime}, {"fast", Pace::fast}},
+                      "realtime, or fast: a virtual clock, as quick as the wall");
+    line.option("--record", options.record,
+                "a CSV file: one row per tick, and the same ticks go into the session's journal");
+    line.choice<bool>("--force", options.force, {{"on", true}, {"off", false}},
+                      "on or off: whether an arm feels anything at the start");
+    line.option("--force-scale", options.forceScale, "0 to 1: the share of the force that an arm feels")
+        .range(0.0, 1.0);
+    line.choice<Guards::Mode>("--guards", options.guards,
+                              {{"on", Guards::Mode::on}, {"literal", Guards::Mode::literal}},
+                              "on, or literal: the law as its paper has it, for simulated arms only");
+    line.option("--listen", options.listen, "ADDRESS:PORT; port 0 takes any free one");
+    line.option("--port-file", options.portFile, "written when the server listens: the port's number");
+    line.option("--timings", options.timings,
+                "CSV file, written at the end: how often each period of the force loop and each cost of a force came");
+    line.option("--timing-tests", options.tests.perSecond,
+                "timing tests a second, at random times (default: 4; docs/latency.md)")
+        .range(0.1, 100.0);
+    line.option("--timing-after", options.tests.after, "[s] of a link before the first (default: 0)")
+        .range(0.0, 3600.0);
+    line.option("--timing-seed", options.tests.seed, "of those times (default: 7)");
+    options.link.addTo(line, true);
+    workers::addSandThreads(line, options.sandThreads);
+    line.flag("--die-with-parent", options.dieWithParent, "end when the program that started this one ends");
 }
 
 }  // namespace
@@ -292,8 +276,14 @@ int main(int count, char** words) {
                               {"driver_interface", kDriverInterface}})) {
         return 0;
     }
+    host::CommandLine line("Feels the sand at 1 kHz, and streams what the hand does to a wall's master.",
+                           "sandwall-haptic-server");
+    Options options;
+    describe(line, options);
+    if (const std::optional<int> status = line.parse(count, words)) {
+        return *status;
+    }
     try {
-        const Options options = parse(count, words);
         if (options.dieWithParent) {
             prctl(PR_SET_PDEATHSIG, SIGKILL);
         }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <boost/asio/connect.hpp>
 #include <boost/asio/io_context.hpp>
@@ -11,10 +10,11 @@
 #include <cstdio>
 #include <optional>
 
-#include "files/command_line.hpp"
+#include "files/input_error.hpp"
 #include "haptic_bridge/connection.hpp"
 #include "haptic_bridge/link_options.hpp"
 #include "haptic_bridge/monotonic.hpp"
+#include "host/command_line.hpp"
 #include "host/version.hpp"
 
 namespace {
@@ -169,12 +169,13 @@ int main(int argc, char** argv) {
     if (host::answersVersion(argc, argv, "sandwall-watch", {{"protocol", haptic_bridge::kProtocolVersion}})) {
         return 0;
     }
-    CLI::App app("Prints once a second what a haptic server's hand does; it cannot move anything.", "sandwall-watch");
+    host::CommandLine line("Prints once a second what a haptic server's hand does; it cannot move anything.",
+                           "sandwall-watch");
     std::string address;
     LinkOptions options;
     std::uint64_t lines = 0;
-    app.add_option("server", address, "HOST:PORT of the haptic server")->required();
-    app.add_option("--lines", lines, "end after so many; 0, the default, with the server");
-    options.addTo(app, false);
-    return files::runMain(app, argc, argv, [&] { return run(address, options, lines); });
+    line.option("server", address, "HOST:PORT of the haptic server").required();
+    line.option("--lines", lines, "end after so many; 0, the default, with the server");
+    options.addTo(line, false);
+    return host::runMain(line, argc, argv, [&] { return run(address, options, lines); });
 }

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <string_view>
 
-#include "files/command_line.hpp"
 #include "files/input_error.hpp"
 #include "files/whole_file.hpp"
 #include "haptic_bridge/link_options.hpp"
 #include "host/build_id.hpp"
+#include "host/command_line.hpp"
 #include "host/event.hpp"
 #include "host/version.hpp"
 #include "lockstep/clock_sync.hpp"
@@ -26,7 +25,7 @@
 namespace {
 
 struct Options {
-    std::string scene, replay, wall, haptic, pace = "realtime", out;
+    std::string scene, replay, wall, haptic = "none", pace = "realtime", out;
     int framesPerSecond = 30;  // of a replay
     std::string filmEye;
     std::string stereo, track;  // as the wall file says when empty
@@ -229,72 +228,69 @@ int runSession(const lockstep::Cluster& cluster, Options& options) {
     }
 }
 
-void describeOptions(CLI::App& app, Options& options) {
+void describeOptions(host::CommandLine& line, Options& options) {
     master::SessionOptions& session = options.session;
-    app.add_option("--scene", options.scene, "scene file");
-    app.add_option("--wall", options.wall, "wall file")->required();
-    app.add_option("--out", options.out, "folder for journal, pictures and summary")->required();
-    app.add_option("--haptic", options.haptic, "HOST:PORT of the haptic server, or none")->default_val("none");
-    options.link.addTo(app, false);
-    app.add_option("--pace", options.pace, "realtime: at the wall's refresh rate; fast: as fast as it goes")
-        ->check(CLI::IsMember({"realtime", "fast"}));
-    app.add_option("--refresh", session.refreshHz, "frames per second, instead of the wall file's")
-        ->check(CLI::Range(1.0, 1000.0));
-    app.add_option("--stereo", options.stereo, "how the wall shows two eyes, instead of as its file says");
-    app.add_option("--track", options.track,
-                   "where the head's pose comes from, instead of what the wall file says (docs/head_tracking.md)");
-    app.add_option("--pattern", options.pattern, "test pattern shown from the start (docs/test_patterns.md)");
-    app.add_option("--show", options.layers, "shown beside the sand from the start (docs/operator.md)");
-    app.add_option("--steps", session.steps, "end when exactly this many steps have been shown")
-        ->check(CLI::PositiveNumber);
-    app.add_option("--frames", session.frames, "end after this many frames")->check(CLI::PositiveNumber);
-    app.add_option("--warm-up", session.settlingFrames, "frames from the start whose times do not count")
-        ->check(CLI::Range(0, 1000000));
-    app.add_option("--frame-timeout", session.frameTimeout, "seconds a frame may take before the job ends")
-        ->check(CLI::Range(2.0, 3600.0));
-    workers::addSandThreads(app, options.sandThreads);
-    app.add_flag("--no-pictures", options.noPictures, "write no pictures at the end");
-    app.add_flag("--control-stdin", session.readInput,
-                 "obeys lines on standard input (docs/operator.md); its end is a stop");
-    app.add_option("--inject", options.injections, "a fault on purpose, such as slow:rank=5,ms=30 (docs/operator.md)");
-    app.add_option("--spoil-shader", options.spoiltShader, "for tests: a shader of that rank does not compile");
-    app.add_option("--skew-view", options.skew, "for tests: rank=R,frame=F shows that rank another view");
+    line.option("--scene", options.scene, "scene file");
+    line.option("--wall", options.wall, "wall file").required();
+    line.option("--out", options.out, "folder for journal, pictures and summary").required();
+    line.option("--haptic", options.haptic, "HOST:PORT of the haptic server, or none").showDefault();
+    options.link.addTo(line, false);
+    line.option("--pace", options.pace, "realtime: at the wall's refresh rate; fast: as fast as it goes")
+        .oneOf({"realtime", "fast"});
+    line.option("--refresh", session.refreshHz, "frames per second, instead of the wall file's").range(1.0, 1000.0);
+    line.option("--stereo", options.stereo, "how the wall shows two eyes, instead of as its file says");
+    line.option("--track", options.track,
+                "where the head's pose comes from, instead of what the wall file says (docs/head_tracking.md)");
+    line.option("--pattern", options.pattern, "test pattern shown from the start (docs/test_patterns.md)");
+    line.option("--show", options.layers, "shown beside the sand from the start (docs/operator.md)");
+    line.option("--steps", session.steps, "end when exactly this many steps have been shown").positive();
+    line.option("--frames", session.frames, "end after this many frames").positive();
+    line.option("--warm-up", session.settlingFrames, "frames from the start whose times do not count")
+        .range(0, 1000000);
+    line.option("--frame-timeout", session.frameTimeout, "seconds a frame may take before the job ends")
+        .range(2.0, 3600.0);
+    workers::addSandThreads(line, options.sandThreads);
+    line.flag("--no-pictures", options.noPictures, "write no pictures at the end");
+    line.flag("--control-stdin", session.readInput,
+              "obeys lines on standard input (docs/operator.md); its end is a stop");
+    line.option("--inject", options.injections, "a fault on purpose, such as slow:rank=5,ms=30 (docs/operator.md)");
+    line.option("--spoil-shader", options.spoiltShader, "for tests: a shader of that rank does not compile");
+    line.option("--skew-view", options.skew, "for tests: rank=R,frame=F shows that rank another view");
 }
 
-void describeResume(CLI::App& app, Options& options) {
-    CLI::Option* resume = app.add_flag("--resume", options.resume, "go on with the session in --out, if there is one");
-    resume->excludes(app.get_option("--replay"));
+void describeResume(host::CommandLine& line, Options& options) {
+    const host::Option resume =
+        line.flag("--resume", options.resume, "go on with the session in --out, if there is one");
+    resume.excludes(line.named("--replay"));
     master::Failure& failure = options.session.failure;
-    app.add_option("--failed-at", failure.noticed, "Unix time at which the failure was noticed that made it stop")
-        ->check(CLI::NonNegativeNumber)
-        ->needs(resume);
-    app.add_option("--journal", options.journal,
-                   "required: nothing is shown that is not on disk; best-effort: go on without; off (docs/journal.md)")
-        ->check(CLI::IsMember({"required", "best-effort", "off"}));
-    app.add_option("--checkpoint", options.session.journal.checkpointSeconds,
-                   "seconds from one checkpoint to the next, 0 for none")
-        ->check(CLI::Range(0.0, 86400.0));
-    app.add_option("--journal-part", options.partMegabytes, "MiB after which the journal goes on in another file")
-        ->check(CLI::Range(1, 1 << 20));
-    app.add_option("--failure", failure.what, "what had failed, for the record")->needs(resume);
-    app.add_option("--failed-rank", failure.rank, "rank that had failed; none if it was no rank")->needs(resume);
-    app.add_option("--failed-how", failure.how, "how it failed: a signal's name, 'status N', hung, broken or disk")
-        ->needs(resume);
+    line.option("--failed-at", failure.noticed, "Unix time at which the failure was noticed that made it stop")
+        .notNegative()
+        .needs(resume);
+    line.option("--journal", options.journal,
+                "required: nothing is shown that is not on disk; best-effort: go on without; off (docs/journal.md)")
+        .oneOf({"required", "best-effort", "off"});
+    line.option("--checkpoint", options.session.journal.checkpointSeconds,
+                "seconds from one checkpoint to the next, 0 for none")
+        .range(0.0, 86400.0);
+    line.option("--journal-part", options.partMegabytes, "MiB after which the journal goes on in another file")
+        .range(1, 1 << 20);
+    line.option("--failure", failure.what, "what had failed, for the record").needs(resume);
+    line.option("--failed-rank", failure.rank, "rank that had failed; none if it was no rank").needs(resume);
+    line.option("--failed-how", failure.how, "how it failed: a signal's name, 'status N', hung, broken or disk")
+        .needs(resume);
 }
 
-void describeReplay(CLI::App& app, Options& options) {
-    CLI::Option* replay =
-        app.add_option("--replay", options.replay, "journal of a session, shown again instead of a scene");
+void describeReplay(host::CommandLine& line, Options& options) {
+    const host::Option replay =
+        line.option("--replay", options.replay, "journal of a session, shown again instead of a scene");
     for (const char* other : {"--scene", "--haptic", "--refresh"}) {
-        replay->excludes(app.get_option(other));
+        replay.excludes(line.named(other));
     }
-    app.add_option("--fps", options.framesPerSecond, "frames per second of a replay")
-        ->check(CLI::Range(1, 240))
-        ->needs(replay);
-    CLI::Option* film =
-        app.add_flag("--film", options.session.film, "write every frame of a replay as a picture of the whole wall");
-    film->needs(replay);
-    app.add_option("--eye", options.filmEye, "what a film shows of two eyes: left, right or anaglyph")->needs(film);
+    line.option("--fps", options.framesPerSecond, "frames per second of a replay").range(1, 240).needs(replay);
+    const host::Option film =
+        line.flag("--film", options.session.film, "write every frame of a replay as a picture of the whole wall");
+    film.needs(replay);
+    line.option("--eye", options.filmEye, "what a film shows of two eyes: left, right or anaglyph").needs(film);
 }
 
 }  // namespace
@@ -310,14 +306,14 @@ int main(int argc, char** argv) {
     lockstep::dieWithParent();
     // Open MPI starts before the options are read: mpirun counts a process that ends without it as crashed.
     lockstep::Cluster cluster(&argc, &argv);
-    CLI::App app("Rank 0 of a wall: bridges the haptic server to all ranks, paces frames, keeps the journal.",
-                 "sandwall-master");
+    host::CommandLine line("Rank 0 of a wall: bridges the haptic server to all ranks, paces frames, keeps the journal.",
+                           "sandwall-master");
     Options options;
-    describeOptions(app, options);
-    describeReplay(app, options);
-    describeResume(app, options);
+    describeOptions(line, options);
+    describeReplay(line, options);
+    describeResume(line, options);
     bool parsed = false;
-    const int status = files::runMain(app, argc, argv, [&] {
+    const int status = host::runMain(line, argc, argv, [&] {
         parsed = true;
         return runSession(cluster, options);
     });

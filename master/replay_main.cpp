@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -10,10 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "files/command_line.hpp"
 #include "files/input_error.hpp"
 #include "files/whole_file.hpp"
 #include "haptic_bridge/tick_replay.hpp"
+#include "host/command_line.hpp"
 #include "host/version.hpp"
 #include "master/journal.hpp"
 #include "master/journal_tools.hpp"
@@ -206,7 +205,7 @@ void requirePrinted() {
     }
 }
 
-/// Of a number that CLI11 would wrap around.
+/// Refuses a negative number, which would otherwise be read as a huge one.
 std::string notNegative(const std::string& text) {
     return text.starts_with('-') ? "a step's number is 0 or more, got " + text : "";
 }
@@ -220,29 +219,29 @@ int main(int argc, char** argv) {
                               {"state", sand::kStateVersion}})) {
         return 0;
     }
-    CLI::App app(
+    host::CommandLine line(
         "Replays the journal of a session, bit for bit, and checks it against the session's own hashes.\n"
-        "Exit status 0 alike, 1 different, 2 unusable.");
+        "Exit status 0 alike, 1 different, 2 unusable.",
+        "sandwall-replay");
     Options options;
-    app.add_option("FILE", options.file, "session.journal of a session")->required();
-    app.add_flag("--hash", options.hash, "print the state hash after the last step");
-    app.add_option("--heights", options.heights,
-                   "write the heights then, where the terrain came from: a .tif, or an ESRI ASCII grid");
-    app.add_option("--difference", options.difference, "the same of how much higher the sand is than at the start");
-    app.add_option("--mesh", options.mesh, "write the surface as triangles: a .ply or .obj");
-    app.add_flag("--volumes", options.volumes, "print what was cut and filled since the start, as one line of JSON");
-    app.add_option(
-        "--forces", options.forces,
-        "recompute what a hand felt at every tick, from a session recorded with --record, into this CSV file");
-    app.add_option("--until", options.until, "stop after this step")->check(notNegative);
-    CLI::Option* verify = app.add_flag("--verify", options.verify, "check records, parts, hashes and checkpoints");
-    CLI::Option* steps = app.add_option("--export", options.steps, "write every step as a row of this CSV file");
-    CLI::Option* recover = app.add_option("--recover", options.recovered,
-                                          "write what is intact of a damaged journal as a journal of its own");
-    verify->excludes(steps)->excludes(recover);
-    steps->excludes(recover);
-    return files::runMain(
-        app, argc, argv,
+    line.option("FILE", options.file, "session.journal of a session").required();
+    line.flag("--hash", options.hash, "print the state hash after the last step");
+    line.option("--heights", options.heights,
+                "write the heights then, where the terrain came from: a .tif, or an ESRI ASCII grid");
+    line.option("--difference", options.difference, "the same of how much higher the sand is than at the start");
+    line.option("--mesh", options.mesh, "write the surface as triangles: a .ply or .obj");
+    line.flag("--volumes", options.volumes, "print what was cut and filled since the start, as one line of JSON");
+    line.option("--forces", options.forces,
+                "recompute what a hand felt at every tick, from a session recorded with --record, into this CSV file");
+    line.option("--until", options.until, "stop after this step").check(notNegative);
+    const host::Option verify = line.flag("--verify", options.verify, "check records, parts, hashes and checkpoints");
+    const host::Option steps = line.option("--export", options.steps, "write every step as a row of this CSV file");
+    const host::Option recover = line.option("--recover", options.recovered,
+                                             "write what is intact of a damaged journal as a journal of its own");
+    verify.excludes(steps).excludes(recover);
+    steps.excludes(recover);
+    return host::runMain(
+        line, argc, argv,
         [&] {
             const int status = run(options);
             requirePrinted();

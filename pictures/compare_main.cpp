@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <string>
 
-#include "files/command_line.hpp"
+#include "files/input_error.hpp"
+#include "host/command_line.hpp"
 #include "host/version.hpp"
 #include "pictures/compare.hpp"
 #include "pictures/png_file.hpp"
@@ -42,18 +42,18 @@ int main(int argc, char** argv) {
     if (host::answersVersion(argc, argv, "sandwall-compare")) {
         return 0;
     }
-    CLI::App app{"Compares two pictures: exit status 0 alike, 1 different, 2 unusable.", "sandwall-compare"};
+    host::CommandLine line("Compares two pictures: exit status 0 alike, 1 different, 2 unusable.", "sandwall-compare");
     Options options;
-    app.add_option("A", options.first, "a PNG")->required();
-    app.add_option("B", options.second, "a PNG of the same size")->required();
-    app.add_option("--max-channel-diff", options.maxChannelDifference,
-                   "levels by which a channel may differ before its pixel is bad")
-        ->check(CLI::Range(0, 255))
-        ->capture_default_str();
-    app.add_option("--max-bad-share", options.maxBadShare, "share of bad pixels up to which the pictures are alike")
-        ->check(CLI::Range(0.0, 1.0))
-        ->capture_default_str();
-    app.add_option("--diff", options.difference, "write a PNG of A, dimmed, with the bad pixels in red");
-    return files::runMain(
-        app, argc, argv, [&] { return comparePictures(options); }, files::kExitBadInput);
+    line.option("A", options.first, "a PNG").required();
+    line.option("B", options.second, "a PNG of the same size").required();
+    line.option("--max-channel-diff", options.maxChannelDifference,
+                "levels by which a channel may differ before its pixel is bad")
+        .range(0, 255)
+        .showDefault();
+    line.option("--max-bad-share", options.maxBadShare, "share of bad pixels up to which the pictures are alike")
+        .range(0.0, 1.0)
+        .showDefault();
+    line.option("--diff", options.difference, "write a PNG of A, dimmed, with the bad pixels in red");
+    return host::runMain(
+        line, argc, argv, [&] { return comparePictures(options); }, files::kExitBadInput);
 }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <string_view>
 
-#include "files/command_line.hpp"
+#include "host/command_line.hpp"
 #include "host/version.hpp"
 #include "lockstep/cluster.hpp"
 #include "render_node/probe.hpp"
@@ -24,20 +23,19 @@ int main(int argc, char** argv) {
     }
     lockstep::dieWithParent();
     lockstep::Cluster cluster(&argc, &argv);
-    CLI::App app(
+    host::CommandLine line(
         "A render rank of a wall: one tile. Started by mpirun beside sandwall-master, which tells it everything.",
         "sandwall-render-node");
-    app.footer("Alone: --probe RANK < WALL tries what that rank would draw with.");
+    line.footer("Alone: --probe RANK < WALL tries what that rank would draw with.");
     std::string gl = "auto";
-    app.add_option(
-           "--gl", gl,
-           "what draws: osmesa in memory, egl on a graphics card without a display, glfw in windows; auto takes "
-           "glfw where the wall file names a display, a monitor or a window's place, else osmesa")
-        ->check(CLI::IsMember({"auto", "osmesa", "egl", "glfw"}))
-        ->capture_default_str();
+    line.option("--gl", gl,
+                "what draws: osmesa in memory, egl on a graphics card without a display, glfw in windows; auto takes "
+                "glfw where the wall file names a display, a monitor or a window's place, else osmesa")
+        .oneOf({"auto", "osmesa", "egl", "glfw"})
+        .showDefault();
     int sandThreads = 1;
-    workers::addSandThreads(app, sandThreads);
-    const int status = files::runMain(app, argc, argv, [&] {
+    workers::addSandThreads(line, sandThreads);
+    const int status = host::runMain(line, argc, argv, [&] {
         const workers::WorkerPool pool(sandThreads);
         return render_node::showTile(cluster, render_node::backendNamed(gl), {.executor = pool.lend()});
     });

@@ -3,15 +3,14 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <iostream>
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "files/command_line.hpp"
 #include "files/input_error.hpp"
+#include "host/command_line.hpp"
 #include "render_node/gl/gl_context.hpp"
 #include "walls/wall.hpp"
 
@@ -55,14 +54,14 @@ int probe(const Options& options) {
 }  // namespace
 
 int probeMain(int argc, char** argv) {
-    CLI::App app("Tries what a render rank draws with on this machine; the wall file comes on standard input.",
-                 "sandwall-render-node");
+    host::CommandLine line(
+        "Tries what a render rank draws with on this machine; the wall file comes on standard input.",
+        "sandwall-render-node");
     Options options;
-    app.add_option("--probe", options.rank, "which rank of the wall; 0: none, off screen")
-        ->check(CLI::Range(0, walls::kMaxTiles));
-    app.add_option("--gl", options.gl, "what draws: auto, osmesa, egl, glfw")->capture_default_str();
-    app.add_flag("--json", options.json, "print an object with backend, renderer and a list of shortcomings");
-    return files::runMain(app, argc, argv, [&] { return probe(options); });
+    line.option("--probe", options.rank, "which rank of the wall; 0: none, off screen").range(0, walls::kMaxTiles);
+    line.option("--gl", options.gl, "what draws: auto, osmesa, egl, glfw").showDefault();
+    line.flag("--json", options.json, "print an object with backend, renderer and a list of shortcomings");
+    return host::runMain(line, argc, argv, [&] { return probe(options); });
 }
 
 }  // namespace render_node

@@ -50,7 +50,7 @@ void forEachRunOf(const std::vector<TinChunk::Part>& parts, const Wanted& wanted
     drawSome();
 }
 
-void describeVertex() {
+void describeTinVertex() {
     const auto attribute = [](GLuint index, GLint count, GLenum type, GLboolean normalised, std::size_t offset) {
         glEnableVertexAttribArray(index);
         glVertexAttribPointer(index, count, type, normalised, sizeof(TinVertex), reinterpret_cast<const void*>(offset));
@@ -81,7 +81,7 @@ TinMesh::TinMesh(const SurfaceView& tin, double cellSize)
       buffers_(surface_.chunks().size()) {
     glBindVertexArray(array_.id());
     glBindBuffer(GL_ARRAY_BUFFER, vertices_.id());
-    describeVertex();
+    describeTinVertex();
     sendAllVertices();
 }
 

@@ -66,8 +66,8 @@ std::int64_t scaled(std::int64_t amount, std::int64_t weight, std::int64_t total
     if (!__builtin_mul_overflow(amount, weight, &product)) {
         return product / total;  // nearly always, and several times as fast
     }
-    __extension__ using Wide = __int128;
-    return static_cast<std::int64_t>(static_cast<Wide>(amount) * weight / total);
+    __extension__ using Product = __int128;
+    return static_cast<std::int64_t>(static_cast<Product>(amount) * weight / total);
 }
 
 /// Gives `amount` to the receivers by weight. The remainder of the division, fewer units than there are receivers, goes

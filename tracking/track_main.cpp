@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <limits>
 #include <thread>
 
-#include "files/command_line.hpp"
+#include "files/input_error.hpp"
+#include "host/command_line.hpp"
 #include "host/version.hpp"
 #include "tracking/head_trace.hpp"
 #include "tracking/packet_sender.hpp"
@@ -82,19 +82,23 @@ int main(int argc, char** argv) {
     if (host::answersVersion(argc, argv, "sandwall-track")) {
         return 0;
     }
-    CLI::App app{"Tries head tracking without a wall: sends a head's poses as a tracker would, or prints what arrives.",
-                 "sandwall-track"};
+    host::CommandLine line(
+        "Tries head tracking without a wall: sends a head's poses as a tracker would, or prints what arrives.",
+        "sandwall-track");
     Options options;
-    auto* what = app.add_option_group("what to do");
-    what->add_option("--send", options.send, "opentrack:[HOST:]PORT or dtrack:[HOST:]PORT[:BODY] to send to");
-    what->add_option("--listen", options.listen, "a source as for sandwall run --track (docs/head_tracking.md)");
-    what->require_option(1);
-    app.add_option("--trace", options.trace, "send this head, instead of one that sways from side to side");
-    app.add_option("--rate", options.rate, "times a second to send or to look")->check(CLI::Range(1.0, 1000.0));
-    app.add_option("--seconds", options.seconds, "end after this time")->check(CLI::PositiveNumber);
-    return files::runMain(app, argc, argv, [&] {
+    const host::Option sending =
+        line.option("--send", options.send, "opentrack:[HOST:]PORT or dtrack:[HOST:]PORT[:BODY] to send to");
+    line.option("--listen", options.listen, "a source as for sandwall run --track (docs/head_tracking.md)")
+        .excludes(sending);
+    line.option("--trace", options.trace, "send this head, instead of one that sways from side to side");
+    line.option("--rate", options.rate, "times a second to send or to look").range(1.0, 1000.0);
+    line.option("--seconds", options.seconds, "end after this time").positive();
+    return host::runMain(line, argc, argv, [&] {
         if (!options.trace.empty() && options.send.empty()) {
             throw files::InputError("--trace is for --send");
+        }
+        if (options.send.empty() && options.listen.empty()) {
+            throw files::InputError("sandwall-track: give --send or --listen; try --help");
         }
         return options.send.empty() ? listen(options) : send(options);
     });

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <string>
 
-#include "files/command_line.hpp"
 #include "files/whole_file.hpp"
+#include "host/command_line.hpp"
 #include "host/version.hpp"
 #include "walls/wall.hpp"
 #include "walls/wall_report.hpp"
@@ -39,13 +38,13 @@ int main(int argc, char** argv) {
     if (host::answersVersion(argc, argv, "sandwall-check")) {
         return 0;
     }
-    CLI::App app{"Checks a wall file and prints what it describes.", "sandwall-check"};
+    host::CommandLine line("Checks a wall file and prints what it describes.", "sandwall-check");
     Options options;
-    app.add_option("WALL", options.wall, "a wall file (docs/wall_files.md)")->required();
-    CLI::Option* stereo = app.add_option("--stereo", options.stereo, "check it as shown in this mode");
-    app.add_flag("--mono", options.mono, "check it as shown without stereo")->excludes(stereo);
-    app.add_option("--svg", options.svg, "draw front view and plan into this file");
-    CLI::Option* ranks = app.add_flag("--ranks", options.ranks, "print only the number of render ranks");
-    app.add_flag("--hosts", options.hosts, "print only the host of each rank from 1, or '-'")->excludes(ranks);
-    return files::runMain(app, argc, argv, [&] { return check(options); });
+    line.option("WALL", options.wall, "a wall file (docs/wall_files.md)").required();
+    const host::Option stereo = line.option("--stereo", options.stereo, "check it as shown in this mode");
+    line.flag("--mono", options.mono, "check it as shown without stereo").excludes(stereo);
+    line.option("--svg", options.svg, "draw front view and plan into this file");
+    const host::Option ranks = line.flag("--ranks", options.ranks, "print only the number of render ranks");
+    line.flag("--hosts", options.hosts, "print only the host of each rank from 1, or '-'").excludes(ranks);
+    return host::runMain(line, argc, argv, [&] { return check(options); });
 }

@@ -17,7 +17,7 @@
 namespace haptic_bridge {
 namespace {
 
-std::ifstream open(const std::string& file) {
+std::ifstream openToRead(const std::string& file) {
     std::ifstream stream(file, std::ios::binary);
     // Opening a folder succeeds; reading it does not.
     if (!stream || (stream.peek(), stream.bad())) {
@@ -38,7 +38,7 @@ std::unique_ptr<Device> openTrace(const std::string& what, const HandSettings& s
     if (settings.engage == HandSettings::Engage::button) {
         throw files::InputError("--map engage=button: a trace records no buttons; give near or always");
     }
-    std::ifstream file = open(what);
+    std::ifstream file = openToRead(what);
     const double cell = scene.terrain.cellSize();
     return std::make_unique<TraceDevice>(Trace::parse(file, what, settings), settings, scene.rules.columns * cell,
                                          scene.rules.rows * cell, scene.toolRadius());
@@ -54,7 +54,7 @@ std::unique_ptr<Device> openDevice(const std::string& spec, const HandSettings& 
         return std::make_unique<StrokeDevice>(Strokes::parse(gisStrokes(), "gis.strokes"));
     }
     if (kind == "script" && !what.empty()) {
-        std::ifstream file = open(what);
+        std::ifstream file = openToRead(what);
         const std::string text{std::istreambuf_iterator<char>(file), {}};
         return std::make_unique<StrokeDevice>(Strokes::parse(text, what));
     }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
 
-#include "files/command_line.hpp"
+#include "files/input_error.hpp"
+#include "host/command_line.hpp"
 #include "host/version.hpp"
 #include "sand/relax/options.hpp"
 #include "sand/relax/tin_sand.hpp"
@@ -24,7 +24,7 @@ void require(bool good, const char* option, const char* range, Number got) {
     }
 }
 
-/// Not CLI11's checks, which let "nan" pass.
+/// The checks of the command line would let "nan" pass.
 void check(const Options& options) {
     require(options.talus >= 0 && options.talus < 90, "--talus", "within [0, 90) degrees", options.talus);
     require(options.band >= 0 && options.band <= 1, "--band", "within [0, 1]", options.band);
@@ -85,28 +85,28 @@ int main(int argc, char** argv) {
     if (host::answersVersion(argc, argv, "sandwall-relax", {{"algorithm", sand::kAlgorithmVersion}})) {
         return 0;
     }
-    CLI::App app{"Lets the sand of a grid or a TIN slide until it lies nowhere steeper than its talus.",
-                 "sandwall-relax"};
+    host::CommandLine line("Lets the sand of a grid or a TIN slide until it lies nowhere steeper than its talus.",
+                           "sandwall-relax");
     Options options;
-    app.add_option("IN", options.in,
-                   "an ESRI ASCII grid of heights, a GeoTIFF or another raster; for a mesh also points, .csv or .xyz")
-        ->required();
-    app.add_option("OUT", options.out,
-                   "the sand at rest: a grid, which may be IN, a GeoTIFF when it ends in .tif; or a TIN as a mesh, "
-                   ".ply or .obj")
-        ->required();
-    app.add_option("--talus", options.talus, "steepest angle at which sand rests, in degrees, from 0 to below 90")
-        ->required();
-    app.add_option("--scheme", options.scheme, "g or settle; for grids also g_plain and n4 (docs/relax.md)")
-        ->check(CLI::IsMember({"g", "g_plain", "n4", "settle"}))
-        ->capture_default_str();
-    app.add_option("--band", options.band, "resting sand starts to slide this share beyond the talus, from 0 to 1")
-        ->capture_default_str();
-    app.add_option("--sweeps", options.most, "sweeps after which to stop though sand still moves");
-    app.add_option("--bedrock", options.bedrock, "a grid of the same shape: rock that the sand lies on");
-    app.add_option("--threads", options.threads, "how many; the result never depends on it")->capture_default_str();
-    app.add_option("--max-error", options.maxError,
-                   "the TIN of a raster comes as near to all of its cells, in its unit of lengths");
-    app.add_option("--vertices", options.vertices, "the TIN of a raster has at most so many vertices");
-    return files::runMain(app, argc, argv, [&] { return run(options); });
+    line.option("IN", options.in,
+                "an ESRI ASCII grid of heights, a GeoTIFF or another raster; for a mesh also points, .csv or .xyz")
+        .required();
+    line.option("OUT", options.out,
+                "the sand at rest: a grid, which may be IN, a GeoTIFF when it ends in .tif; or a TIN as a mesh, "
+                ".ply or .obj")
+        .required();
+    line.option("--talus", options.talus, "steepest angle at which sand rests, in degrees, from 0 to below 90")
+        .required();
+    line.option("--scheme", options.scheme, "g or settle; for grids also g_plain and n4 (docs/relax.md)")
+        .oneOf({"g", "g_plain", "n4", "settle"})
+        .showDefault();
+    line.option("--band", options.band, "resting sand starts to slide this share beyond the talus, from 0 to 1")
+        .showDefault();
+    line.option("--sweeps", options.most, "sweeps after which to stop though sand still moves");
+    line.option("--bedrock", options.bedrock, "a grid of the same shape: rock that the sand lies on");
+    line.option("--threads", options.threads, "how many; the result never depends on it").showDefault();
+    line.option("--max-error", options.maxError,
+                "the TIN of a raster comes as near to all of its cells, in its unit of lengths");
+    line.option("--vertices", options.vertices, "the TIN of a raster has at most so many vertices");
+    return host::runMain(line, argc, argv, [&] { return run(options); });
 }

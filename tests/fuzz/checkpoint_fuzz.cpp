@@ -8,7 +8,7 @@
 #include "sand/terrain.hpp"
 #include "tests/support/sand_samples.hpp"
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SANDWALL_FUZZER(checkpoint) {
     if (size == 0) {
         return 0;
     }

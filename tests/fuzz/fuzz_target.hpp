@@ -14,10 +14,14 @@
 #include "files/byte_stream.hpp"
 #include "files/input_error.hpp"
 
-/// What each fuzzer is: one parser of bytes from outside, which takes or refuses them and does nothing else. Returns 0.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
-
 namespace fuzz {
+
+/// A fuzzer hands bytes to one parser, which takes or refuses them. Returns 0.
+using Target = int (*)(const std::uint8_t* data, std::size_t size);
+
+/// Makes a fuzzer known to the program that runs them all (mutate_main.cpp), before its main. Returns false if the name
+/// is taken.
+bool add(const char* name, Target target);
 
 using Input = std::span<const std::uint8_t>;
 
@@ -68,3 +72,13 @@ inline std::vector<Input> piecesOf(Input input) {
 }
 
 }  // namespace fuzz
+
+/// Begins the function of a fuzzer, with the parameters of fuzz::Target.
+#ifdef SANDWALL_LIBFUZZER
+#define SANDWALL_FUZZER(name) extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+#else
+#define SANDWALL_FUZZER(name)                                                      \
+    static int name##Fuzz(const std::uint8_t* data, std::size_t size);             \
+    [[maybe_unused]] static const bool name##Known = fuzz::add(#name, name##Fuzz); \
+    static int name##Fuzz(const std::uint8_t* data, std::size_t size)
+#endif

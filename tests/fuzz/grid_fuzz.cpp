@@ -3,7 +3,7 @@
 #include "fuzz_target.hpp"
 #include "sand/esri_grid.hpp"
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SANDWALL_FUZZER(grid) {
     const fuzz::MemoryFile file({data, size});
     fuzz::takeOrRefuse([&] { (void)sand::withoutEmptyEdges(sand::readEsriGrid(file.path())); });
     return 0;

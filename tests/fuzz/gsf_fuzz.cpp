@@ -3,7 +3,7 @@
 #include "fuzz_target.hpp"
 #include "sand/import/gsf_file.hpp"
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SANDWALL_FUZZER(gsf) {
     const fuzz::MemoryFile file({data, size});
     fuzz::takeOrRefuse([&] { (void)sand::withoutEmptyEdges(sand::readGsf(file.path())); });
     return 0;

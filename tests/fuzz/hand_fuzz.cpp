@@ -6,7 +6,7 @@
 #include "haptic_bridge/devices/strokes.hpp"
 #include "haptic_bridge/devices/trace.hpp"
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SANDWALL_FUZZER(hand) {
     const std::string text(fuzz::textOf({data, size}));
     fuzz::takeOrRefuse([&] {
         haptic_bridge::StrokeDevice device(haptic_bridge::Strokes::parse(text, "hand.strokes"));

@@ -26,7 +26,7 @@ void read(tracking::PacketReader& reader, fuzz::Input input) {
 
 }  // namespace
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SANDWALL_FUZZER(head) {
     if (size == 0) {
         return 0;
     }

@@ -35,7 +35,7 @@ files::Bytes journalOf(fuzz::Input input) {
 
 }  // namespace
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SANDWALL_FUZZER(journal) {
     if (size == 0) {
         return 0;
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a fuzzer without libFuzzer: every file of a corpus as it is, then so many changed ones, the same on every run.
-// An input that ends the program is left beside, in crash-input.
+// Runs fuzzers without libFuzzer: every file of a corpus as it is, then a number of changed ones, which are the same in
+// every run unless SANDWALL_SEED gives another seed. An input that ends the program stays in the file crash-input.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -11,7 +11,10 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "fuzz_target.hpp"
 
@@ -100,7 +103,8 @@ constexpr const char* kCrashInput = "crash-input";
 /// Keeps each input before it is tried, so that it is there when the program ends in the middle of it.
 class Runner {
 public:
-    Runner() : kept_(open(kCrashInput, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)) {}
+    explicit Runner(fuzz::Target target)
+        : target_(target), kept_(open(kCrashInput, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)) {}
     ~Runner() {
         close(kept_);
         std::filesystem::remove(kCrashInput);
@@ -113,34 +117,50 @@ public:
             ftruncate(kept_, static_cast<off_t>(input.size())) != 0) {
             throw std::runtime_error("the input cannot be kept in crash-input");
         }
-        LLVMFuzzerTestOneInput(input.data(), input.size());
+        target_(input.data(), input.size());
     }
 
 private:
+    fuzz::Target target_;
     int kept_;
 };
 
+std::map<std::string, fuzz::Target>& targets() {
+    static std::map<std::string, fuzz::Target> all;  // filled before main, in any order of the sources
+    return all;
+}
+
+constexpr std::uint64_t kSeed = 20261122;
+
 }  // namespace
 
+bool fuzz::add(const char* name, Target target) { return targets().emplace(name, target).second; }
+
 int main(int count, char** words) {
-    if (count < 3) {
-        fmt::print(stderr, "usage: {} CHANGES FOLDER...\n", words[0]);
+    const auto target = count < 2 ? targets().end() : targets().find(words[1]);
+    if (count < 4 || target == targets().end()) {
+        fmt::print(stderr, "usage: {} NAME CHANGES FOLDER...; NAME is one of", words[0]);
+        for (const auto& known : targets()) {
+            fmt::print(stderr, " {}", known.first);
+        }
+        fmt::print(stderr, "\n");
         return 2;
     }
-    const long changes = std::strtol(words[1], nullptr, 10);
-    const std::vector<Bytes> corpus = corpusOf({words + 2, words + count});
+    const long changes = std::strtol(words[2], nullptr, 10);
+    const std::vector<Bytes> corpus = corpusOf({words + 3, words + count});
     if (corpus.empty()) {
         fmt::print(stderr, "{}: the corpus is empty\n", words[0]);
         return 1;
     }
-    constexpr std::uint64_t kSeed = 20261122;
-    fmt::print("{} inputs of the corpus, {} changed ones of seed {}\n", corpus.size(), changes, kSeed);
+    const char* wanted = std::getenv("SANDWALL_SEED");
+    const std::uint64_t seed = wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : kSeed;
+    fmt::print("{} inputs of the corpus, {} changed ones; SANDWALL_SEED={}\n", corpus.size(), changes, seed);
     std::fflush(stdout);
-    const Runner runner;
+    const Runner runner(target->second);
     for (const Bytes& input : corpus) {
         runner.run(input);
     }
-    Mutator mutator(corpus, kSeed);
+    Mutator mutator(corpus, seed);
     for (long i = 0; i < changes; ++i) {
         runner.run(mutator.next());
     }

@@ -5,7 +5,7 @@
 #include "fuzz_target.hpp"
 #include "sand/import/points_file.hpp"
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SANDWALL_FUZZER(points) {
     const fuzz::MemoryFile file({data, size});
     fuzz::takeOrRefuse([&] {
         const sand::Points points = sand::readPoints(file.path());

@@ -21,7 +21,7 @@ bool mayBeLarge(std::string_view text) {
 
 }  // namespace
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SANDWALL_FUZZER(scene) {
     const fuzz::Input input(data, size);
     if (mayBeLarge(fuzz::textOf(input))) {
         return 0;

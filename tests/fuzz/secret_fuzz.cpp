@@ -4,7 +4,7 @@
 #include "fuzz_target.hpp"
 #include "haptic_bridge/secret_file.hpp"
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SANDWALL_FUZZER(secret) {
     fuzz::takeOrRefuse([&] {
         const std::string_view text(reinterpret_cast<const char*>(data), size);
         const haptic_bridge::Secrets secrets = haptic_bridge::parseSecrets(text, "secrets");

@@ -17,7 +17,7 @@ files::Bytes compressed(fuzz::Input bytes) {
 
 }  // namespace
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SANDWALL_FUZZER(state) {
     if (size == 0) {
         return 0;
     }

@@ -61,7 +61,7 @@ void takeState(fuzz::Input bytes) {
 
 }  // namespace
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SANDWALL_FUZZER(tin) {
     if (size == 0) {
         return 0;
     }

@@ -3,7 +3,7 @@
 #include "fuzz_target.hpp"
 #include "walls/wall.hpp"
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SANDWALL_FUZZER(wall) {
     const fuzz::Input input(data, size);
     fuzz::takeOrRefuse([&] { (void)walls::parseWall(fuzz::textOf(input), "wall.toml"); });
     fuzz::takeOrRefuse([&] { (void)walls::Wall::decode(input); });

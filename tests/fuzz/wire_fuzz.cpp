@@ -4,7 +4,7 @@
 #include "haptic_bridge/message_reader.hpp"
 #include "haptic_bridge/protocol.hpp"
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SANDWALL_FUZZER(wire) {
     if (size == 0) {
         return 0;
     }

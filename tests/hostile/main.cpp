@@ -3,30 +3,30 @@
 #include <fmt/format.h>
 #include <sys/prctl.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 
-#include "files/command_line.hpp"
 #include "haptic_bridge/client.hpp"
 #include "haptic_bridge/link_options.hpp"
+#include "host/command_line.hpp"
 #include "host/event.hpp"
 #include "tests/hostile/attack.hpp"
 
 int main(int argc, char** argv) {
-    CLI::App app("Sends what nobody should to a haptic server, or to the master that connects.", "sandwall-hostile");
+    host::CommandLine line("Sends what nobody should to a haptic server, or to the master that connects.",
+                           "sandwall-hostile");
     std::string scene;
     std::uint16_t server = 0;
     std::uint64_t frames = 1'000'000;
     std::uint32_t seed = 1;
     haptic_bridge::LinkOptions link;
-    app.add_option("--scene", scene, "scene file, to greet in good order")->required();
-    app.add_option("--server", server, "port of a server on this machine; without, it is a server itself");
-    app.add_option("--frames", frames, "how many");
-    app.add_option("--seed", seed, "of all of them");
-    link.addTo(app, false);
-    return files::runMain(app, argc, argv, [&] {
+    line.option("--scene", scene, "scene file, to greet in good order").required();
+    line.option("--server", server, "port of a server on this machine; without, it is a server itself");
+    line.option("--frames", frames, "how many");
+    line.option("--seed", seed, "of all of them");
+    link.addTo(line, false);
+    return host::runMain(line, argc, argv, [&] {
         prctl(PR_SET_PDEATHSIG, SIGKILL);
         const sand::Scene known = sand::loadScene(scene);
         const haptic_bridge::Identity identity{haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion,

@@ -3,14 +3,14 @@
 #include <fmt/format.h>
 #include <sys/prctl.h>
 
-#include <CLI/CLI.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <csignal>
 #include <cstdio>
 #include <optional>
 
-#include "files/command_line.hpp"
+#include "files/input_error.hpp"
 #include "haptic_bridge/client.hpp"
+#include "host/command_line.hpp"
 #include "host/event.hpp"
 #include "tests/impaired_link/impaired_link.hpp"
 
@@ -23,19 +23,19 @@ struct Options {
     impaired_link::Impairment link;
 };
 
-void addOptions(CLI::App& app, Options& options) {
+void addOptions(host::CommandLine& line, Options& options) {
     impaired_link::Impairment& link = options.link;
-    const auto milliseconds = CLI::Range(0.0, 60'000.0);
-    app.add_option("--to", options.to, "HOST:PORT that connections are handed on to")->required();
-    app.add_option("--port", options.port, "on 127.0.0.1; 0, the default, takes any free one");
-    app.add_option("--delay", link.delayMs, "[ms] that everything takes at least")->check(milliseconds);
-    app.add_option("--jitter", link.jitterMs, "[ms] that it takes longer at most, evenly spread")->check(milliseconds);
-    app.add_option("--loss", link.stallShare, "share of pieces that are lost once")->check(CLI::Range(0.0, 1.0));
-    app.add_option("--stall", link.stallMs, "[ms] until what was lost is sent again")->check(milliseconds);
-    app.add_option("--reset-after", link.resetAfter, "bytes after which a connection is reset; 0: never");
-    app.add_option("--resets", link.resets, "connections to be reset, at most")->capture_default_str();
-    app.add_option("--seed", link.seed, "of all that is random")->capture_default_str();
-    app.add_flag("--die-with-parent", options.dieWithParent, "end when the program that started this one ends");
+    constexpr double kMost = 60'000.0;
+    line.option("--to", options.to, "HOST:PORT that connections are handed on to").required();
+    line.option("--port", options.port, "on 127.0.0.1; 0, the default, takes any free one");
+    line.option("--delay", link.delayMs, "[ms] that everything takes at least").range(0.0, kMost);
+    line.option("--jitter", link.jitterMs, "[ms] that it takes longer at most, evenly spread").range(0.0, kMost);
+    line.option("--loss", link.stallShare, "share of pieces that are lost once").range(0.0, 1.0);
+    line.option("--stall", link.stallMs, "[ms] until what was lost is sent again").range(0.0, kMost);
+    line.option("--reset-after", link.resetAfter, "bytes after which a connection is reset; 0: never");
+    line.option("--resets", link.resets, "connections to be reset, at most").showDefault();
+    line.option("--seed", link.seed, "of all that is random").showDefault();
+    line.flag("--die-with-parent", options.dieWithParent, "end when the program that started this one ends");
 }
 
 int run(const Options& options) {
@@ -63,9 +63,9 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app("Hands TCP connections on with delay, jitter, stalls and resets, as a bad network would.",
-                 "sandwall-impaired-link");
+    host::CommandLine line("Hands TCP connections on with delay, jitter, stalls and resets, as a bad network would.",
+                           "sandwall-impaired-link");
     Options options;
-    addOptions(app, options);
-    return files::runMain(app, argc, argv, [&] { return run(options); });
+    addOptions(line, options);
+    return host::runMain(line, argc, argv, [&] { return run(options); });
 }

@@ -16,6 +16,7 @@ namespace {
 
 using render_node::EyeTarget;
 using render_node::SandView;
+using sample::layersOf;
 using sample::Pixels;
 
 constexpr int kLookWidth = 400, kLookHeight = 300;
@@ -55,14 +56,6 @@ sand::Scene slopeScene(double east, double north) {
         }
     }
     return scene;
-}
-
-lockstep::Layers layersOf(std::initializer_list<lockstep::Layer> shown) {
-    lockstep::Layers layers;
-    for (const lockstep::Layer layer : shown) {
-        layers.set(layer, true);
-    }
-    return layers;
 }
 
 class Look : public testing::Test {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <initializer_list>
 #include <vector>
 
 #include "render_node/sand_view.hpp"
@@ -71,6 +72,15 @@ inline render_node::Camera camera(const glm::dvec3& eye, const glm::dvec3& targe
     const glm::dvec3 up =
         std::abs(target.z - eye.z) > 10 * std::abs(target.y - eye.y) ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
     return {projection * glm::lookAt(eye, target, up), eye};
+}
+
+/// These layers are shown, no other.
+inline lockstep::Layers layersOf(std::initializer_list<lockstep::Layer> shown) {
+    lockstep::Layers layers;
+    for (const lockstep::Layer layer : shown) {
+        layers.set(layer, true);
+    }
+    return layers;
 }
 
 using Pixels = std::vector<std::uint8_t>;

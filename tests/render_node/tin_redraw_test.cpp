@@ -16,7 +16,7 @@ using render_node::PixelRect;
 using render_node::SandView;
 using sample::Tin;
 
-constexpr int kWidth = 200, kHeight = 150, kCells = 64;
+constexpr int kRedrawWidth = 200, kRedrawHeight = 150, kCells = 64;
 constexpr double kUnit = sand::kUnitsPerCell;
 
 /// What an edit does to a TIN: vertices rise and sink, come and go, edges turn, constraints are set and released.
@@ -73,7 +73,7 @@ protected:
         Tin tin(scene.terrain);
         const Tin start = tin;
         SandView view(scene, tin.view(), glm::dmat4(1));
-        const EyeTarget inParts(kWidth, kHeight), whole(kWidth, kHeight);
+        const EyeTarget inParts(kRedrawWidth, kRedrawHeight), whole(kRedrawWidth, kRedrawHeight);
         render_node::EyeMemory memory;
         std::vector<Tin::Vertex> added;
         int parts = 0, skipped = 0, severalParts = 0;
@@ -87,7 +87,7 @@ protected:
             }
             view.setLayers(i / 10 % 3 == 1 ? layers : lockstep::Layers{});
             const PixelRect drawn = view.drawIfChanged(camera, inParts, memory);
-            parts += !drawn.empty() && drawn.area() < kWidth * kHeight ? 1 : 0;
+            parts += !drawn.empty() && drawn.area() < kRedrawWidth * kRedrawHeight ? 1 : 0;
             skipped += drawn.empty() ? 1 : 0;
             severalParts += view.counts().pixels < drawn.area() ? 1 : 0;
             ASSERT_TRUE(inParts.read() == sample::draw(view, camera, whole)) << "seed " << seed << ", step " << i;
@@ -136,7 +136,7 @@ TEST_F(TinRedraw, OfAnIslandThatRisesAsAWholeIsEqualToTheWhole) {
     tin.cut([&](double x, double y) { return fromMiddle(x, y) > 6 && fromMiddle(x, y) < 24; });
     (void)tin.takeDamage();
     SandView view(scene, tin.view(), glm::dmat4(1));
-    const EyeTarget inParts(kWidth, kHeight), whole(kWidth, kHeight);
+    const EyeTarget inParts(kRedrawWidth, kRedrawHeight), whole(kRedrawWidth, kRedrawHeight);
     render_node::EyeMemory memory;
     view.drawIfChanged(slanted_, inParts, memory);
     for (std::size_t i = 0; i < tin.mesh().places.size(); ++i) {
@@ -147,7 +147,7 @@ TEST_F(TinRedraw, OfAnIslandThatRisesAsAWholeIsEqualToTheWhole) {
     }
     view.update(tin.view(), tin.takeDamage());
     const PixelRect drawn = view.drawIfChanged(slanted_, inParts, memory);
-    EXPECT_LT(drawn.area(), kWidth * kHeight / 2);
+    EXPECT_LT(drawn.area(), kRedrawWidth * kRedrawHeight / 2);
     EXPECT_TRUE(inParts.read() == sample::draw(view, slanted_, whole));
 }
 
@@ -188,7 +188,7 @@ TEST_F(TinRedraw, WithWhatIsUnseenPutOffIsEqualToTheWhole) {
         const sand::Scene scene = sample::duneScene(kCells);
         Tin tin(scene.terrain);
         SandView prompt(scene, tin.view(), glm::dmat4(1)), late(scene, tin.view(), glm::dmat4(1));
-        const EyeTarget promptly(kWidth, kHeight), lately(kWidth, kHeight);
+        const EyeTarget promptly(kRedrawWidth, kRedrawHeight), lately(kRedrawWidth, kRedrawHeight);
         render_node::EyeMemory ofPrompt, ofLate;
         std::vector<Tin::Vertex> added;
         for (int i = 0; i < 150; ++i) {
@@ -212,7 +212,7 @@ TEST_F(TinRedraw, SendsWhatChangedAndNothingElse) {
     sand::Scene scene = sample::flatScene(kCells, kCells);
     Tin tin(scene.terrain);
     SandView view(scene, tin.view(), glm::dmat4(1));
-    const EyeTarget target(kWidth, kHeight);
+    const EyeTarget target(kRedrawWidth, kRedrawHeight);
     render_node::EyeMemory memory;
     view.drawIfChanged(above_, target, memory);
     const SentBytes sent;

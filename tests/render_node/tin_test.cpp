@@ -15,18 +15,11 @@ namespace {
 using lockstep::Layer;
 using render_node::EyeTarget;
 using render_node::SandView;
+using sample::layersOf;
 using sample::Pixels;
 using sample::Tin;
 
 constexpr int kPictureWidth = 400, kPictureHeight = 300;
-
-lockstep::Layers layersOf(std::initializer_list<Layer> shown) {
-    lockstep::Layers layers;
-    for (const Layer layer : shown) {
-        layers.set(layer, true);
-    }
-    return layers;
-}
 
 /// What GL was asked to compile.
 class CompiledShaders {

@@ -14,7 +14,6 @@ namespace {
 
 using pictures::Image;
 using walls::Eye;
-using walls::PixelRect;
 using walls::Screen;
 
 constexpr int kSeamLevels = 8;
@@ -28,11 +27,11 @@ constexpr int kSeamMostPixels = 700000;
 struct Whole {
     Screen screen;
     glm::ivec2 pixels;
-    std::vector<std::pair<Screen, PixelRect>> parts;
+    std::vector<std::pair<Screen, walls::PixelRect>> parts;
 };
 
 /// The part of a screen that shows these pixels of it.
-Screen partOf(const Screen& screen, glm::ivec2 pixels, const PixelRect& rect) {
+Screen partOf(const Screen& screen, glm::ivec2 pixels, const walls::PixelRect& rect) {
     const glm::dvec3 x = (screen.lowerRight - screen.lowerLeft) / double(pixels.x);
     const glm::dvec3 y = (screen.upperLeft - screen.lowerLeft) / double(pixels.y);
     const glm::dvec3 corner = screen.lowerLeft + x * double(rect.x) + y * double(pixels.y - rect.y - rect.height);
@@ -43,10 +42,10 @@ Screen partOf(const Screen& screen, glm::ivec2 pixels, const PixelRect& rect) {
 Whole inParts(const walls::Tile& tile) {
     const int x = tile.pixels.x * 2 / 5, y = tile.pixels.y * 3 / 7;
     Whole whole{tile.screen, tile.pixels, {}};
-    for (const PixelRect& rect : {PixelRect{0, 0, x, y},
-                                  {x, 0, tile.pixels.x - x, y},
-                                  {0, y, x, tile.pixels.y - y},
-                                  {x, y, tile.pixels.x - x, tile.pixels.y - y}}) {
+    for (const walls::PixelRect& rect : {walls::PixelRect{0, 0, x, y},
+                                         {x, 0, tile.pixels.x - x, y},
+                                         {0, y, x, tile.pixels.y - y},
+                                         {x, y, tile.pixels.x - x, tile.pixels.y - y}}) {
         whole.parts.emplace_back(partOf(tile.screen, tile.pixels, rect), rect);
     }
     return whole;
@@ -143,7 +142,7 @@ void addUndecided(pictures::Mask& edges, render_node::SandView& view, const wall
     EXPECT_LE(static_cast<double>(undecided), kMostUndecided * static_cast<double>(picture.pixels()));
 }
 
-pictures::Mask cropOf(const pictures::Mask& mask, int width, const PixelRect& rect) {
+pictures::Mask cropOf(const pictures::Mask& mask, int width, const walls::PixelRect& rect) {
     pictures::Mask part;
     for (int y = rect.y; y < rect.y + rect.height; ++y) {
         const auto row = mask.begin() + static_cast<std::ptrdiff_t>(y) * width + rect.x;

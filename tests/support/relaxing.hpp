@@ -21,6 +21,13 @@ inline constexpr bool kSanitized = true;
 inline constexpr bool kSanitized = false;
 #endif
 
+/// Ten times as slow as a release build: tests then run fewer of many alike.
+#ifdef __OPTIMIZE__
+inline constexpr bool kSlowBuild = kSanitized;
+#else
+inline constexpr bool kSlowBuild = true;
+#endif
+
 /// The schemes that converge, the default first.
 inline constexpr std::array kIsotropic{sand::Scheme::isotropic, sand::Scheme::plainIsotropic};
 inline constexpr std::array kEverySlope{sand::Scheme::isotropic, sand::Scheme::plainIsotropic, sand::Scheme::n4};

@@ -3,7 +3,6 @@
 // scene for both eyes, shows frame 0, and then does what is typed: "frame N", "keys", "memory", "end".
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -12,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "files/command_line.hpp"
+#include "host/command_line.hpp"
 #include "pictures/png_file.hpp"
 #include "render_node/gl/gl_context.hpp"
 #include "tests/render_node/sample_scene.hpp"
@@ -138,16 +137,16 @@ int show(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app("Shows the sample scene with one backend.", "window_probe");
+    host::CommandLine line("Shows the sample scene with one backend.", "window_probe");
     Options options;
-    app.add_option("--gl", options.gl);
-    app.add_option("--width", options.width);
-    app.add_option("--height", options.height);
-    app.add_option("--device", options.device);
-    app.add_option("--display", options.display);
-    app.add_option("--cells", options.cells);
-    app.add_option("--pictures", options.pictures, "folder for left.png and right.png, with a slash");
-    app.add_option("--at", options.places, "a window: x,y or a monitor");
-    app.add_flag("--active", options.active);
-    return files::runMain(app, argc, argv, [&] { return show(options); });
+    line.option("--gl", options.gl);
+    line.option("--width", options.width);
+    line.option("--height", options.height);
+    line.option("--device", options.device);
+    line.option("--display", options.display);
+    line.option("--cells", options.cells);
+    line.option("--pictures", options.pictures, "folder for left.png and right.png, with a slash");
+    line.option("--at", options.places, "a window: x,y or a monitor");
+    line.flag("--active", options.active);
+    return host::runMain(line, argc, argv, [&] { return show(options); });
 }

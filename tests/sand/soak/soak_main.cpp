@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <random>
 
-#include "files/command_line.hpp"
+#include "host/command_line.hpp"
 #include "sand/dunes.hpp"
 #include "tests/support/sand_samples.hpp"
 #include "workers/worker_pool.hpp"
@@ -71,16 +70,14 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app{"Random edits with a hash at every step; prints one hash over all of them.", "sand_soak"};
+    host::CommandLine line("Random edits with a hash at every step; prints one hash over all of them.", "sand_soak");
     Options options;
-    app.add_option("--edits", options.edits, "how many")->capture_default_str();
-    app.add_option("--columns", options.columns)->check(CLI::Range(1, sand::kMaxSide))->capture_default_str();
-    app.add_option("--rows", options.rows)->check(CLI::Range(1, sand::kMaxSide))->capture_default_str();
-    app.add_option("--threads", options.threads)->check(CLI::Range(1, 256))->capture_default_str();
-    app.add_option("--block", options.block, "side of a block [cell]")
-        ->check(CLI::Range(2, 128))
-        ->capture_default_str();
-    app.add_flag("--baseline", options.baseline, "the code path of every x86-64");
-    app.add_option("--seed", options.seed)->capture_default_str();
-    return files::runMain(app, argc, argv, [&] { return run(options); });
+    line.option("--edits", options.edits, "how many").showDefault();
+    line.option("--columns", options.columns).range(1, sand::kMaxSide).showDefault();
+    line.option("--rows", options.rows).range(1, sand::kMaxSide).showDefault();
+    line.option("--threads", options.threads).range(1, 256).showDefault();
+    line.option("--block", options.block, "side of a block [cell]").range(2, 128).showDefault();
+    line.flag("--baseline", options.baseline, "the code path of every x86-64");
+    line.option("--seed", options.seed).showDefault();
+    return host::runMain(line, argc, argv, [&] { return run(options); });
 }

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+
+#include "files/input_error.hpp"
+
+namespace host {
+
+Option Option::required() const {
+    option_->required();
+    return *this;
+}
+
+Option Option::showDefault() const {
+    option_->capture_default_str();
+    return *this;
+}
+
+Option Option::range(int lowest, int highest) const {
+    option_->check(CLI::Range(lowest, highest));
+    return *this;
+}
+
+Option Option::range(double lowest, double highest) const {
+    option_->check(CLI::Range(lowest, highest));
+    return *this;
+}
+
+Option Option::positive() const {
+    option_->check(CLI::PositiveNumber);
+    return *this;
+}
+
+Option Option::notNegative() const {
+    option_->check(CLI::NonNegativeNumber);
+    return *this;
+}
+
+Option Option::oneOf(const std::vector<std::string>& allowed) const {
+    option_->check(CLI::IsMember(allowed));
+    return *this;
+}
+
+Option Option::check(std::function<std::string(const std::string&)> refusal) const {
+    option_->check(std::move(refusal));
+    return *this;
+}
+
+Option Option::oneValueEach() const {
+    option_->allow_extra_args(false);
+    return *this;
+}
+
+Option Option::commaSeparated() const {
+    option_->delimiter(',');
+    return *this;
+}
+
+Option Option::needs(const Option& other) const {
+    option_->needs(other.option_);
+    return *this;
+}
+
+Option Option::excludes(const Option& other) const {
+    option_->excludes(other.option_);
+    return *this;
+}
+
+CommandLine::CommandLine(const std::string& what, const std::string& name)
+    : owned_(std::make_unique<CLI::App>(what, name)), app_(owned_.get()) {
+    // For --help: host::answersVersion() has answered it already, before anything was started.
+    app_->add_flag_callback(
+        "--version", [] {}, "print version and build, with --json as JSON, and end");
+}
+
+CommandLine::CommandLine(CLI::App* command) : app_(command) {}
+CommandLine::~CommandLine() = default;
+CommandLine::CommandLine(CommandLine&&) noexcept = default;
+
+template <class T>
+Option CommandLine::option(const std::string& name, T& value, const std::string& help) {
+    return Option(app_->add_option(name, value, help));
+}
+
+template Option CommandLine::option(const std::string&, std::string&, const std::string&);
+template Option CommandLine::option(const std::string&, int&, const std::string&);
+template Option CommandLine::option(const std::string&, std::uint16_t&, const std::string&);
+template Option CommandLine::option(const std::string&, std::uint32_t&, const std::string&);
+template Option CommandLine::option(const std::string&, std::uint64_t&, const std::string&);
+template Option CommandLine::option(const std::string&, std::int64_t&, const std::string&);
+template Option CommandLine::option(const std::string&, double&, const std::string&);
+template Option CommandLine::option(const std::string&, std::vector<std::string>&, const std::string&);
+template Option CommandLine::option(const std::string&, std::vector<int>&, const std::string&);
+template Option CommandLine::option(const std::string&, std::optional<std::uint64_t>&, const std::string&);
+template Option CommandLine::option(const std::string&, std::optional<std::int64_t>&, const std::string&);
+template Option CommandLine::option(const std::string&, std::filesystem::path&, const std::string&);
+template Option CommandLine::option(const std::string&, std::optional<double>&, const std::string&);
+template Option CommandLine::option(const std::string&, std::optional<int>&, const std::string&);
+template Option CommandLine::option(const std::string&, std::optional<std::string>&, const std::string&);
+
+Option CommandLine::flag(const std::string& name, bool& value, const std::string& help) {
+    return Option(app_->add_flag(name, value, help));
+}
+
+Option CommandLine::chosen(const std::string& name, const std::vector<std::string>& names,
+                           std::function<void(std::size_t)> take, const std::string& help) {
+    const auto taken = [names, take = std::move(take)](const std::string& value) {
+        take(static_cast<std::size_t>(std::find(names.begin(), names.end(), value) - names.begin()));
+    };
+    return Option(app_->add_option_function<std::string>(name, taken, help)->check(CLI::IsMember(names)));
+}
+
+Option CommandLine::named(const std::string& name) const { return Option(app_->get_option(name)); }
+
+CommandLine CommandLine::command(const std::string& name, const std::string& what) {
+    app_->require_subcommand(1);
+    return CommandLine(app_->add_subcommand(name, what));
+}
+
+bool CommandLine::given() const { return app_->parsed(); }
+
+std::string CommandLine::name() const { return app_->get_name(); }
+
+void CommandLine::footer(const std::string& text) { app_->footer(text); }
+
+std::optional<int> CommandLine::parse(int argc, char** argv) {
+    try {
+        app_->parse(argc, argv);
+        return std::nullopt;
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) {
+            return app_->exit(error);  // --help
+        }
+        std::fprintf(stderr, "%s: %s; try --help\n", app_->get_name().c_str(), error.what());
+        return files::kExitBadInput;
+    }
+}
+
+int runMain(CommandLine& line, int argc, char** argv, const std::function<int()>& run, int failed) {
+    if (const std::optional<int> status = line.parse(argc, argv)) {
+        return *status;
+    }
+    try {
+        return run();
+    } catch (const files::InputError& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return files::kExitBadInput;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s: failed: %s\n", line.name().c_str(), error.what());
+        return failed;
+    }
+}
+
+}  // namespace host
