@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "base/input_error.hpp"
 #include "bench/relaxations.hpp"
-#include "files/input_error.hpp"
 
 namespace bench {
 namespace {
@@ -44,7 +44,7 @@ void Csv::Close::operator()(std::FILE* file) const {
 void Csv::open() {
     file_.reset(settings_.out.empty() ? stdout : std::fopen(settings_.out.c_str(), "w"));
     if (!file_) {
-        throw files::InputError(name() + ": cannot be written, choose another --out");
+        throw base::InputError(name() + ": cannot be written, choose another --out");
     }
     note("machine: " + machine());
     note("compiler: " SANDWALL_COMPILER);

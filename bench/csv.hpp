@@ -31,7 +31,7 @@ public:
 
     /// One more comment line: a definition that a reader of the numbers needs. The first opens the file and writes
     /// machine, compiler, flags, code path, seed, command and date before it: input that cannot be used leaves no file.
-    /// Throws files::InputError when the file cannot be opened.
+    /// Throws base::InputError when the file cannot be opened.
     void note(std::string_view line);
     void columns(std::string_view names);
 

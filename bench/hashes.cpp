@@ -4,9 +4,9 @@
 
 #include "bench/curves.hpp"
 #include "bench/relaxations.hpp"
+#include "host/worker_pool.hpp"
 #include "sand/erosion.hpp"
 #include "sand/state_hash.hpp"
-#include "workers/worker_pool.hpp"
 
 namespace bench {
 namespace {
@@ -45,8 +45,8 @@ void hashes(const Settings& settings, Csv& csv) {
         for (const auto& [scheme, name] : {std::pair{sand::Scheme::isotropic, "G"}, {sand::Scheme::n4, "N4"}}) {
             for (const auto path : {sand::CodePath::automatic, sand::CodePath::baseline}) {
                 for (const int threads : {1, 2, 3, 7}) {
-                    workers::WorkerPool pool(threads);
-                    const sand::Executor executor = pool.executor();
+                    host::WorkerPool pool(threads);
+                    const base::Executor executor = pool.executor();
                     for (const int block : {16, 32, 64}) {
                         sand::Erosion::Options options;
                         options.blockSize = block;

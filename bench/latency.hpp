@@ -7,7 +7,7 @@
 namespace bench {
 
 /// Becomes scripts/latency.py, which starts whole sessions with the programs beside this one. Returns only by throwing:
-/// files::InputError when there is no such script or Python.
+/// base::InputError when there is no such script or Python.
 [[noreturn]] void becomeLatency(const std::vector<std::string>& arguments);
 
 }  // namespace bench

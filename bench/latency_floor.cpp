@@ -16,7 +16,7 @@
 
 #include "haptic_bridge/client.hpp"
 #include "haptic_bridge/live_histogram.hpp"
-#include "haptic_bridge/monotonic.hpp"
+#include "host/clock.hpp"
 #include "host/command_line.hpp"
 #include "host/event.hpp"
 #include "lockstep/patience.hpp"
@@ -25,7 +25,7 @@ namespace {
 
 using boost::asio::ip::tcp;
 using haptic_bridge::LiveHistogram;
-using haptic_bridge::monotonicNs;
+using host::monotonicNs;
 
 constexpr std::chrono::microseconds kFrame{16'667};
 constexpr double kMeanPause = 0.005;  // [s] between echoes: both ends sleep, as they do in a session
@@ -75,13 +75,13 @@ int message(const Options& options) {
     std::exponential_distribution<double> pause(1 / kMeanPause);
     std::vector<std::uint8_t> bytes(static_cast<std::size_t>(options.bytes));
     LiveHistogram half;
-    for (const std::int64_t end = monotonicNs() + static_cast<std::int64_t>(options.seconds * 1e9);
-         monotonicNs() < end;) {
+    for (const std::int64_t end = host::monotonicNs() + static_cast<std::int64_t>(options.seconds * 1e9);
+         host::monotonicNs() < end;) {
         std::this_thread::sleep_for(std::chrono::duration<double>(pause(random)));
-        const std::int64_t sent = monotonicNs();
+        const std::int64_t sent = host::monotonicNs();
         boost::asio::write(socket, boost::asio::buffer(bytes));
         boost::asio::read(socket, boost::asio::buffer(bytes));
-        half.add((monotonicNs() - sent) / 2);
+        half.add((host::monotonicNs() - sent) / 2);
     }
     print(half);
     return 0;
@@ -109,7 +109,7 @@ int frame(const Options& options) {
         constexpr int kWarmUp = 10;  // in which connections are made
         // The others come a little sooner, as to the next frame.
         std::this_thread::sleep_for(rank == 0 ? kFrame : kFrame - std::chrono::milliseconds(1));
-        const std::int64_t began = monotonicNs();
+        const std::int64_t began = host::monotonicNs();
         end = round == kWarmUp ? began + static_cast<std::int64_t>(options.seconds * 1e9) : end;
         bytes[0] = round > kWarmUp && began > end ? 0 : 1;
         MPI_Request request = MPI_REQUEST_NULL;
@@ -119,7 +119,7 @@ int frame(const Options& options) {
         // NOLINTNEXTLINE(clang-analyzer-optin.mpi.MPI-Checker): await() waits for it
         await(request);
         if (round >= kWarmUp) {
-            whole.add(monotonicNs() - began);
+            whole.add(host::monotonicNs() - began);
         }
     }
     if (rank == 0) {

@@ -9,8 +9,8 @@
 #include "bench/curves.hpp"
 #include "bench/relaxations.hpp"
 #include "bench/timing.hpp"
+#include "host/worker_pool.hpp"
 #include "sand/erosion.hpp"
-#include "workers/worker_pool.hpp"
 
 namespace bench {
 namespace {
@@ -41,8 +41,8 @@ struct Variant {
 std::vector<double> measure(const Variant& variant, const sand::HeightField& start, int runs) {
     sand::Rules rules = rulesFor(start, 64.0 / sand::kUnitsPerCell);
     rules.scheme = variant.scheme;
-    workers::WorkerPool pool(variant.threads);
-    const sand::Executor executor = pool.executor();
+    host::WorkerPool pool(variant.threads);
+    const base::Executor executor = pool.executor();
     sand::Erosion::Options options;
     options.path = variant.path;
     options.executor = variant.threads > 1 ? &executor : nullptr;

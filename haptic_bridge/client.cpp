@@ -4,15 +4,15 @@
 #include <charconv>
 #include <utility>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "haptic_bridge/client_session.hpp"
 
 namespace haptic_bridge {
 
 Address Address::parse(std::string_view text, std::string_view option) {
     const auto fail = [&](const std::string& what) {
-        throw files::InputError(std::string(option) + ": '" + std::string(text) + "' " + what +
-                                "; write HOST:PORT, such as 127.0.0.1:" + std::to_string(kDefaultPort));
+        throw base::InputError(std::string(option) + ": '" + std::string(text) + "' " + what +
+                               "; write HOST:PORT, such as 127.0.0.1:" + std::to_string(kDefaultPort));
     };
     Address address;
     std::string_view port;
@@ -72,7 +72,7 @@ LinkStatus Client::link() const {
     return session_->shelf.status;
 }
 
-void Client::grant(std::uint32_t epoch, std::uint64_t stepNumber, std::uint64_t stateHash, files::Bytes state,
+void Client::grant(std::uint32_t epoch, std::uint64_t stepNumber, std::uint64_t stateHash, base::Bytes state,
                    StepRing recent) {
     session_->grant({epoch, stepNumber, stateHash}, std::move(state), std::move(recent));
 }
@@ -87,7 +87,7 @@ void Client::request(const sand::Edit& edit) { session_->request({edit}); }
 
 void Client::shareForce(double share) { session_->shareForce(share); }
 
-std::vector<files::Bytes> Client::drainTicks() {
+std::vector<base::Bytes> Client::drainTicks() {
     const std::lock_guard lock(session_->shelf.mutex);
     return std::exchange(session_->shelf.ticks, {});
 }

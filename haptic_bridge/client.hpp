@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 #include "haptic_bridge/handshake.hpp"
 #include "haptic_bridge/protocol.hpp"
 #include "haptic_bridge/step_ring.hpp"
@@ -22,7 +22,7 @@ namespace haptic_bridge {
 struct Address {
     std::string host;  // a name, an IPv4 address, or an IPv6 address without brackets
     std::uint16_t port = kDefaultPort;
-    /// Reads "HOST:PORT", "HOST" or "[IPV6]:PORT". Throws files::InputError that begins with `option`.
+    /// Reads "HOST:PORT", "HOST" or "[IPV6]:PORT". Throws base::InputError that begins with `option`.
     static Address parse(std::string_view text, std::string_view option);
     [[nodiscard]] std::string text() const;
 };
@@ -104,7 +104,7 @@ public:
     /// Makes the server the sequencer of `epoch` from its next step, stepNumber + 1, on. `state` is
     /// sand::Terrain::encodeState() at stepNumber, sent only when the server's replica is elsewhere, and not on the
     /// way of the steps in `recent`. Drops steps that were not drained. Without effect unless the link is offered.
-    void grant(std::uint32_t epoch, std::uint64_t stepNumber, std::uint64_t stateHash, files::Bytes state,
+    void grant(std::uint32_t epoch, std::uint64_t stepNumber, std::uint64_t stateHash, base::Bytes state,
                StepRing recent = {});
     /// At most `most` steps, in order and without gaps, of the granted epoch only. When the queue is full (kMaxQueued),
     /// the network thread stops reading, and TCP holds the server back.
@@ -117,7 +117,7 @@ public:
     /// Of its forces, the hand feels this share from now on, 0 to 1. Without effect unless the server is linked.
     void shareForce(double share);
     /// Pieces of the server's tick track, for the journal; what is left when the link has ended, too.
-    [[nodiscard]] std::vector<files::Bytes> drainTicks();
+    [[nodiscard]] std::vector<base::Bytes> drainTicks();
     /// What a streaming server has sent, in order; when kMaxPositions wait, the network thread stops reading.
     [[nodiscard]] std::vector<TimedPosition> drainPositions();
     /// How often that was so.

@@ -15,7 +15,7 @@ void Client::Session::drill(LinkDrill drill, std::chrono::milliseconds length) {
         }
         if (drill == LinkDrill::garbage) {
             std::minstd_rand noise;
-            files::Bytes bytes(4096);
+            base::Bytes bytes(4096);
             std::generate(bytes.begin(), bytes.end(), [&] { return static_cast<std::uint8_t>(noise() >> 8); });
             connection_->sendBytes(std::move(bytes));
             return;

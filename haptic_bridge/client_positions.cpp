@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "haptic_bridge/client_session.hpp"
-#include "haptic_bridge/monotonic.hpp"
+#include "host/clock.hpp"
 
 namespace haptic_bridge {
 
@@ -41,7 +41,7 @@ void Client::Session::accept(const Position& position) {
     bool full = false;
     {
         const std::lock_guard lock(shelf.mutex);
-        shelf.positions.push_back({position, monotonicNs()});
+        shelf.positions.push_back({position, host::monotonicNs()});
         full = shelf.positions.size() >= kMaxPositions && !shelf.full;
         shelf.full = shelf.full || full;
         shelf.floods += full ? 1 : 0;

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "haptic_bridge/link_options.hpp"
-#include "haptic_bridge/monotonic.hpp"
+#include "host/clock.hpp"
 
 namespace haptic_bridge {
 
@@ -130,14 +130,14 @@ void Client::Session::ping() {
         if (!error && connection_) {
             ++pings_;
             if (!silent()) {
-                connection_->send(Ping{monotonicNs()});
+                connection_->send(Ping{host::monotonicNs()});
             }
             ping();
         }
     });
 }
 
-void Client::Session::grant(Start start, files::Bytes state, StepRing recent) {
+void Client::Session::grant(Start start, base::Bytes state, StepRing recent) {
     {
         const std::lock_guard lock(shelf.mutex);
         if (shelf.status.link != Link::offered) {
@@ -206,7 +206,7 @@ void Client::Session::receive(Message&& message) {
     } else if (link() < Link::offered || link() > Link::linked) {
         connection_->close("it did not greet", RefusalCode::garbage);
     } else if (const auto* pong = std::get_if<Pong>(&message)) {
-        clock_.add(pong->masterNs, pong->serverNs, monotonicNs());
+        clock_.add(pong->masterNs, pong->serverNs, host::monotonicNs());
         const std::lock_guard lock(shelf.mutex);
         shelf.clockOffsetNs = clock_.offsetNs();
     } else if (const auto* report = std::get_if<Report>(&message)) {

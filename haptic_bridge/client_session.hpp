@@ -27,7 +27,7 @@ public:
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
-    void grant(Start start, files::Bytes state, StepRing recent);
+    void grant(Start start, base::Bytes state, StepRing recent);
     std::vector<TimedStep> drain(std::size_t most);
     void shown(const Shown& frame);
     void request(const EditRequest& request);
@@ -47,7 +47,7 @@ public:
         };
         std::deque<Test> tests;                   // that wait for a frame, as steps do
         std::vector<std::uint32_t> testsInFrame;  // to be echoed after the next swap
-        std::vector<files::Bytes> ticks;
+        std::vector<base::Bytes> ticks;
         std::vector<TimedPosition> positions;
         std::uint64_t floods = 0;
         std::optional<Report> report;
@@ -97,7 +97,7 @@ private:
     std::shared_ptr<Connection> connection_;
     std::string peer_;
     Start granted_;
-    files::Bytes state_;
+    base::Bytes state_;
     StepRing recent_;
     int handOvers_ = 0;  // answers to NeedState since the grant
     std::uint64_t lastStep_ = 0;

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "haptic_bridge/client_session.hpp"
-#include "haptic_bridge/monotonic.hpp"
+#include "host/clock.hpp"
 
 namespace haptic_bridge {
 
@@ -47,7 +47,8 @@ void Client::Session::accept(StepMessage&& message) {
         if (number == lastStep_ + 1) {
             lastStep_ = number;
             ++shelf.counters.stepsIn;
-            shelf.steps.push_back({std::move(message.step), message.serverTimeNs, message.stateHash, monotonicNs()});
+            shelf.steps.push_back(
+                {std::move(message.step), message.serverTimeNs, message.stateHash, host::monotonicNs()});
             full = shelf.full = shelf.steps.size() >= kMaxQueued;
         }
     }

@@ -45,7 +45,7 @@ Connection::Connection(Socket socket, std::unique_ptr<TlsSession> tls)
 void Connection::start(Handlers handlers) {
     handlers_ = std::move(handlers);
     if (tls_ && !handlers_.server) {
-        files::Bytes first;
+        base::Bytes first;
         tls_->begin(first);
         push(std::move(first), false);
     }
@@ -93,7 +93,7 @@ void Connection::take(std::size_t count) {
         deliver();
         return;
     }
-    files::Bytes plain, reply;
+    base::Bytes plain, reply;
     std::string trouble;
     bool first = false;
     try {
@@ -197,7 +197,7 @@ void Connection::deliver() {
                 handle(std::move(*message));
             }
         }
-    } catch (const files::FormatError& error) {
+    } catch (const base::FormatError& error) {
         const std::string why = std::string("it sent ") + error.what();
         if (!handlers_.server) {
             close(why, RefusalCode::garbage);
@@ -214,13 +214,13 @@ void Connection::resume() {
     }
 }
 
-void Connection::sendBytes(files::Bytes bytes) {
+void Connection::sendBytes(base::Bytes bytes) {
     if (!open_ || finishing_) {
         return;
     }
     const bool isLong = bytes.size() > kMaxMessage + sizeof(std::uint32_t);
     if (tls_) {
-        files::Bytes sealed;
+        base::Bytes sealed;
         try {
             tls_->seal(bytes, sealed);
         } catch (const std::runtime_error& error) {  // the other end may have begun what it does not finish
@@ -232,7 +232,7 @@ void Connection::sendBytes(files::Bytes bytes) {
     push(std::move(bytes), isLong);
 }
 
-void Connection::push(files::Bytes bytes, bool isLong) {
+void Connection::push(base::Bytes bytes, bool isLong) {
     longUnsent_ += isLong ? 1 : 0;
     unsentBytes_ += isLong ? 0 : bytes.size();
     if (unsentBytes_ > maxUnsent_ || longUnsent_ > 1) {

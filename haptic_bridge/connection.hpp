@@ -45,7 +45,7 @@ public:
     void send(const Message& message) { sendBytes(encode(message)); }
     /// Closes the connection when the other side leaves too much unread: more than setMaxUnsent() in ordinary messages,
     /// or a second long one.
-    void sendBytes(files::Bytes bytes);
+    void sendBytes(base::Bytes bytes);
     void expectState(bool expected) { reader_.expectState(expected); }
     void expectLoads(bool expected) { reader_.expectLoads(expected); }
     /// Ordinary messages may be so long from now on [byte].
@@ -73,7 +73,7 @@ public:
     [[nodiscard]] boost::asio::ip::address address() const { return address_; }
     [[nodiscard]] bool overTls() const { return tls_ != nullptr; }
     /// TlsSession::binding() as it was when `ready` was called, or nothing.
-    [[nodiscard]] const files::Bytes& binding() const { return binding_; }
+    [[nodiscard]] const base::Bytes& binding() const { return binding_; }
 
     static constexpr std::size_t kMaxUnsent = 1024 * 1024;  // [byte], of ordinary messages
     static constexpr double kMaxRate = 50'000;              // [1/s]; a device that streams positions makes 16000
@@ -81,7 +81,7 @@ public:
 
 private:
     struct Unsent {
-        files::Bytes bytes;
+        base::Bytes bytes;
         bool isLong = false;
     };
 
@@ -91,14 +91,14 @@ private:
     void refuse(RefusalCode code, const std::string& answer, const std::string& why);
     void deliver();
     [[nodiscard]] bool mayDeliver();
-    void push(files::Bytes bytes, bool isLong);
+    void push(base::Bytes bytes, bool isLong);
     void write();
     void endSending();
     void shut();
 
     Socket socket_;
     std::unique_ptr<TlsSession> tls_;
-    files::Bytes binding_;
+    base::Bytes binding_;
     bool told_ = false;  // that TLS is established
     boost::asio::steady_timer linger_, throttle_;
     Handlers handlers_;

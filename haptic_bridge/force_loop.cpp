@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "haptic_bridge/monotonic.hpp"
+#include "host/clock.hpp"
 
 namespace haptic_bridge {
 namespace {
@@ -41,13 +41,13 @@ ForceLoop::~ForceLoop() {
 void ForceLoop::run() {
     prctl(PR_SET_TIMERSLACK, 1UL);
 
-    std::int64_t due = monotonicNs(), last = due;
+    std::int64_t due = host::monotonicNs(), last = due;
     std::int64_t handTimeNs = 0;  // runs while a master is linked
     std::uint32_t sitting = 0;
     while (!stopping_) {
         due += kTickNs;
         sleepUntil(due);
-        const std::int64_t now = monotonicNs();
+        const std::int64_t now = host::monotonicNs();
         const std::int64_t elapsed = now - last;
         last = now;
         period_.add(elapsed);
@@ -72,7 +72,7 @@ void ForceLoop::run() {
         if (!channel_.samples.push(sample)) {
             channel_.overflow.fetch_add(1, std::memory_order_relaxed);
         }
-        computing_.add(monotonicNs() - now);
+        computing_.add(host::monotonicNs() - now);
     }
 }
 

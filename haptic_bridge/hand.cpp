@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "haptic_bridge/devices/arm_presets.hpp"
-#include "haptic_bridge/monotonic.hpp"
+#include "host/clock.hpp"
 
 namespace haptic_bridge {
 namespace {
@@ -74,7 +74,7 @@ HandSample Hand::tick(double deviceTime, std::int64_t nowNs, const Surface& surf
     const bool present = device_->reading().present;
     const HandSample sample{nowNs, last_, pose.engaged && probe.has_value() && present, mapping_.heading(pose)};
 
-    const std::int64_t begin = monotonicNs();
+    const std::int64_t begin = host::monotonicNs();
     fillTick(deviceTime, surface, sample);
     const double perMetre = guards_.limits().scale;
     // On the device's clock, which a recording of ticks keeps, so that a replay finds the same.
@@ -98,7 +98,7 @@ HandSample Hand::tick(double deviceTime, std::int64_t nowNs, const Surface& surf
     tick_.surfaceAge = reading.surfaceAge;
     counts_.add(forces.acted);
     if (sample.engaged) {
-        forceCost_.add(monotonicNs() - begin);
+        forceCost_.add(host::monotonicNs() - begin);
     }
     device_->sendForce(forces.sent);
     return sample;

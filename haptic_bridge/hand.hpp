@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "base/triple_buffer.hpp"
 #include "haptic_bridge/devices/device.hpp"
 #include "haptic_bridge/guards/guards.hpp"
 #include "haptic_bridge/guards/velocity_window.hpp"
 #include "haptic_bridge/hand_mapping.hpp"
-#include "haptic_bridge/latest.hpp"
 #include "haptic_bridge/live_histogram.hpp"
 #include "haptic_bridge/path_builder.hpp"
 #include "haptic_bridge/tick.hpp"

@@ -6,7 +6,7 @@
 namespace haptic_bridge {
 
 MacBytes Transcript::mac(const Security& functions, const std::string& secret, Side side) const {
-    files::ByteWriter writer;
+    base::ByteWriter writer;
     // The label tells the sides apart: what one has said is no answer of the other.
     writer.putText(side == Side::master ? "sandwall 6 master" : "sandwall 6 server");
     writer.putBytes(encode(hello));
@@ -15,8 +15,7 @@ MacBytes Transcript::mac(const Security& functions, const std::string& secret, S
     return functions.hmacSha256({reinterpret_cast<const std::uint8_t*>(secret.data()), secret.size()}, writer.bytes());
 }
 
-MasterHandshake::MasterHandshake(const LinkSecurity& security, const Identity& identity, Role role,
-                                 files::Bytes binding)
+MasterHandshake::MasterHandshake(const LinkSecurity& security, const Identity& identity, Role role, base::Bytes binding)
     : security_(security) {
     transcript_.hello = {identity, role, security.proves(), security.tls != nullptr, {}};
     transcript_.binding = std::move(binding);
@@ -99,7 +98,7 @@ std::optional<Refusal> ServerHandshake::refusalFor(const Hello& hello, bool over
     return std::nullopt;
 }
 
-std::optional<Challenge> ServerHandshake::challenge(const Hello& hello, const Identity& server, files::Bytes binding) {
+std::optional<Challenge> ServerHandshake::challenge(const Hello& hello, const Identity& server, base::Bytes binding) {
     transcript_.hello = hello;
     if (!security_.proves()) {
         return std::nullopt;

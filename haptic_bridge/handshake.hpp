@@ -23,7 +23,7 @@ struct LinkSecurity {
 struct Transcript {
     Hello hello;
     Challenge challenge;
-    files::Bytes binding;
+    base::Bytes binding;
     enum class Side : std::uint8_t { master, server };
     [[nodiscard]] MacBytes mac(const Security& functions, const std::string& secret, Side side) const;
 };
@@ -32,7 +32,7 @@ struct Transcript {
 class MasterHandshake {
 public:
     /// `security` outlives this.
-    MasterHandshake(const LinkSecurity& security, const Identity& identity, Role role, files::Bytes binding);
+    MasterHandshake(const LinkSecurity& security, const Identity& identity, Role role, base::Bytes binding);
 
     [[nodiscard]] const Hello& hello() const { return transcript_.hello; }
     /// Nothing when this challenge must not be answered: because().
@@ -60,7 +60,7 @@ public:
     /// Whether somebody with this greeting may go on; identities were compared before.
     [[nodiscard]] std::optional<Refusal> refusalFor(const Hello& hello, bool overTls) const;
     /// What the guest must answer before it is welcome; nothing when no secret is asked for.
-    [[nodiscard]] std::optional<Challenge> challenge(const Hello& hello, const Identity& server, files::Bytes binding);
+    [[nodiscard]] std::optional<Challenge> challenge(const Hello& hello, const Identity& server, base::Bytes binding);
     [[nodiscard]] bool accepts(const Proof& proof) const;
     /// For the Welcome: zeros without a secret.
     [[nodiscard]] MacBytes mac() const;

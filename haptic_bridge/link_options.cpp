@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "haptic_bridge/link_options.hpp"
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "host/command_line.hpp"
 
 namespace haptic_bridge {
@@ -13,7 +13,7 @@ LinkSecurity withSecrets(const LinkOptions& options) {
         security.secrets = readSecrets(options.secretFile);
         security.functions = &loadSecurity("--secret-file");
     } else if (options.tls) {
-        throw files::InputError("--tls: needs --secret-file, which tells the other side from somebody in between");
+        throw base::InputError("--tls: needs --secret-file, which tells the other side from somebody in between");
     }
     return security;
 }
@@ -32,12 +32,12 @@ void LinkOptions::addTo(host::CommandLine& line, bool server) {
 LinkSecurity LinkOptions::forServer() const {
     LinkSecurity security = withSecrets(*this);
     if (certificate.empty() != key.empty() || (!tls && !certificate.empty())) {
-        throw files::InputError("--tls-cert and --tls-key: give both or none, and --tls with them");
+        throw base::InputError("--tls-cert and --tls-key: give both or none, and --tls with them");
     }
     try {
         security.tls = tls ? security.functions->tlsServer(certificate, key) : nullptr;
     } catch (const std::runtime_error& error) {
-        throw files::InputError(std::string("--tls: ") + error.what());
+        throw base::InputError(std::string("--tls: ") + error.what());
     }
     return security;
 }
@@ -45,8 +45,8 @@ LinkSecurity LinkOptions::forServer() const {
 LinkSecurity LinkOptions::forClient(Role role) const {
     LinkSecurity security = withSecrets(*this);
     if (security.proves() && !security.secrets.of(role)) {
-        throw files::InputError(secretFile + ": holds no secret of role " + std::string(nameOf(role)) +
-                                ", which this program needs");
+        throw base::InputError(secretFile + ": holds no secret of role " + std::string(nameOf(role)) +
+                               ", which this program needs");
     }
     security.tls = tls ? security.functions->tlsClient() : nullptr;
     return security;
@@ -56,9 +56,9 @@ void requireSecret(const Address& address, const LinkSecurity& security, const s
     boost::system::error_code name;
     const auto literal = boost::asio::ip::make_address(address.host, name);
     if (!security.proves() && !name && !isLoopback(literal)) {
-        throw files::InputError(option + ": " + address.text() +
-                                " is another machine, and a link over a network needs --secret-file on both sides "
-                                "(docs/security.md)");
+        throw base::InputError(option + ": " + address.text() +
+                               " is another machine, and a link over a network needs --secret-file on both sides "
+                               "(docs/security.md)");
     }
 }
 

@@ -22,12 +22,12 @@ struct LinkOptions {
     /// Adds the options of either end; a server has two more.
     void addTo(host::CommandLine& line, bool server);
 
-    /// Loads the module where it is needed. Throws files::InputError.
+    /// Loads the module where it is needed. Throws base::InputError.
     [[nodiscard]] LinkSecurity forServer() const;
     [[nodiscard]] LinkSecurity forClient(Role role) const;
 };
 
-/// Throws files::InputError that begins with `option` for the address of another machine and no secret. Names are
+/// Throws base::InputError that begins with `option` for the address of another machine and no secret. Names are
 /// looked up later, by whoever connects.
 void requireSecret(const Address& address, const LinkSecurity& security, const std::string& option);
 

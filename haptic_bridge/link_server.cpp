@@ -7,7 +7,7 @@
 
 #include "haptic_bridge/link_options.hpp"
 #include "haptic_bridge/master_link.hpp"
-#include "haptic_bridge/monotonic.hpp"
+#include "host/clock.hpp"
 
 namespace haptic_bridge {
 
@@ -47,7 +47,7 @@ Sequencer::Output LinkServer::output() {
             [hand](std::uint32_t session, std::string why) {
                 hand(session, [why = std::move(why)](MasterLink& link) { link.unusable(why); });
             },
-            [hand](std::uint32_t session, files::Bytes message) {
+            [hand](std::uint32_t session, base::Bytes message) {
                 hand(session,
                      [message = std::move(message)](MasterLink& link) mutable { link.step(std::move(message)); });
             }};
@@ -87,7 +87,7 @@ void LinkServer::admit(Connection::Socket socket) {
     if (gone) {
         return;
     }
-    if (!limits_.mayCome(address, monotonicNs())) {
+    if (!limits_.mayCome(address, host::monotonicNs())) {
         refused(RefusalCode::limit, address, "comes too often, and is not answered for a while");
         return;
     }
@@ -111,7 +111,7 @@ bool LinkServer::tooManyOf(const asio::ip::address& address) const {
 }
 
 void LinkServer::refused(RefusalCode code, const asio::ip::address& address, const std::string& line) {
-    const std::int64_t now = monotonicNs();
+    const std::int64_t now = host::monotonicNs();
     if (code != RefusalCode::limit && code != RefusalCode::busy) {
         limits_.refused(address, now);
     }

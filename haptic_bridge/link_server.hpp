@@ -40,7 +40,7 @@ public:
         std::function<void(const std::string&)> log;  // one line for a person
         /// Pieces of the tick track that are there for the master's journal; with `all`, waits for the last ones. Empty
         /// where nothing is recorded.
-        std::function<std::vector<files::Bytes>(bool all)> ticks = {};
+        std::function<std::vector<base::Bytes>(bool all)> ticks = {};
         std::function<void(double share)> shareForce = {};  // an operator's wish
     };
 

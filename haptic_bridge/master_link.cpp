@@ -8,8 +8,8 @@
 #include <limits>
 #include <utility>
 
-#include "haptic_bridge/monotonic.hpp"
 #include "haptic_bridge/step_ring.hpp"
+#include "host/clock.hpp"
 
 namespace haptic_bridge {
 
@@ -53,7 +53,7 @@ MasterLink::MasterLink(LinkServer& server, Connection::Socket socket)
       random_(server.tests_.seed) {}
 
 void MasterLink::start() {
-    heardNs_ = monotonicNs();
+    heardNs_ = host::monotonicNs();
     connection_->limit(kMaxGreeting);
     connection_->setMaxIn(kMaxGuestBytes);
     if (*server_.connections_ > LinkServer::kMaxConnections / 2) {
@@ -82,7 +82,7 @@ void MasterLink::watch() {
         if (error || self->phase_ == Phase::over) {
             return;
         }
-        const std::int64_t silence = monotonicNs() - self->heardNs_;
+        const std::int64_t silence = host::monotonicNs() - self->heardNs_;
         const std::int64_t most = self->phase_ <= Phase::proving ? kGreetingNs : kSilenceNs;
         if (silence > most) {
             self->connection_->close(
@@ -98,7 +98,7 @@ void MasterLink::receive(Message&& message) {
     if (phase_ == Phase::over) {
         return;
     }
-    heardNs_ = phase_ <= Phase::proving ? heardNs_ : monotonicNs();
+    heardNs_ = phase_ <= Phase::proving ? heardNs_ : host::monotonicNs();
     if (phase_ == Phase::greeting) {
         const auto* hello = std::get_if<Hello>(&message);
         hello != nullptr ? greet(*hello) : outOfTurn();
@@ -106,7 +106,7 @@ void MasterLink::receive(Message&& message) {
         const auto* proof = std::get_if<Proof>(&message);
         proof != nullptr ? judge(*proof) : outOfTurn();
     } else if (const auto* ping = std::get_if<Ping>(&message)) {
-        connection_->send(Pong{ping->masterNs, monotonicNs()});
+        connection_->send(Pong{ping->masterNs, host::monotonicNs()});
     } else if (std::holds_alternative<Bye>(message)) {
         sayGoodbye(role_ == Role::move ? "the master has said goodbye" : "the watcher has said goodbye");
     } else if (phase_ == Phase::watching) {
@@ -134,7 +134,7 @@ void MasterLink::receiveLinked(Message&& message) {
                                RefusalCode::garbage);
             return;
         }
-        server_.sequencer_->shown(*shown, monotonicNs());
+        server_.sequencer_->shown(*shown, host::monotonicNs());
     } else if (const auto* echo = std::get_if<TimingEcho>(&message); echo != nullptr && phase_ == Phase::linked) {
         echoed(*echo);
     } else if (auto* request = std::get_if<EditRequest>(&message); request != nullptr && phase_ == Phase::linked) {
@@ -244,12 +244,12 @@ void MasterLink::sendTicks(bool all) {
     if (!server_.sources_.ticks) {
         return;
     }
-    for (files::Bytes& piece : server_.sources_.ticks(all)) {
+    for (base::Bytes& piece : server_.sources_.ticks(all)) {
         connection_->send(TickPiece{std::move(piece)});
     }
 }
 
-void MasterLink::step(files::Bytes message) {
+void MasterLink::step(base::Bytes message) {
     sendTicks(false);
     ++steps_;
     if (message.size() <= kMaxMessage) {  // not one with sand that is loaded: timing tests are as long as the last
@@ -263,9 +263,9 @@ void MasterLink::step(files::Bytes message) {
     connection_->sendBytes(std::move(message));
 }
 
-void MasterLink::watchStep(const files::Bytes& message) {
+void MasterLink::watchStep(const base::Bytes& message) {
     if (message.size() <= kMaxMessage) {  // not sand that is loaded: the master alone has asked for so much
-        connection_->sendBytes(files::Bytes(message));
+        connection_->sendBytes(base::Bytes(message));
     }
 }
 
@@ -280,7 +280,7 @@ void MasterLink::tickTimingTest(double pause) {
         TimingTest test{++self->lastTest_, 0};
         const std::size_t bare = encode(test).size();
         test.padding = static_cast<std::uint32_t>(self->lastStepBytes_ > bare ? self->lastStepBytes_ - bare : 0);
-        self->testsOut_[test.id].sentNs = monotonicNs();
+        self->testsOut_[test.id].sentNs = host::monotonicNs();
         if (self->testsOut_.size() > kMaxTestsOut) {
             self->testsOut_.erase(self->testsOut_.begin());
         }
@@ -294,7 +294,7 @@ void MasterLink::echoed(const TimingEcho& echo) {
     if (test == testsOut_.end()) {
         return;
     }
-    const std::int64_t half = (monotonicNs() - test->second.sentNs) / 2;
+    const std::int64_t half = (host::monotonicNs() - test->second.sentNs) / 2;
     if (echo.leg == Leg::shown) {
         toWall_.add(half);
         testsOut_.erase(test);

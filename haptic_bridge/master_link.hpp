@@ -17,7 +17,7 @@ public:
     void ready();
     void needState(const NeedState& need);
     void unusable(const std::string& why);
-    void step(files::Bytes message);
+    void step(base::Bytes message);
     /// Of a guest: ends at once.
     void makeRoom();
     /// Sends the last report and a goodbye, then closes.
@@ -35,7 +35,7 @@ private:
     void greet(const Hello& hello);
     void judge(const Proof& proof);
     void welcome();
-    void watchStep(const files::Bytes& message);
+    void watchStep(const base::Bytes& message);
     void echoed(const TimingEcho& echo);
     void refuse(const Refusal& refusal);
     void outOfTurn();

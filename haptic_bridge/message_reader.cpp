@@ -37,7 +37,7 @@ void MessageReader::feed(std::span<const std::uint8_t> bytes) {
         buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(begin_));
         begin_ = 0;
         if (buffer_.empty() && buffer_.capacity() > kMaxKept) {
-            buffer_ = files::Bytes();  // what a State needed once is not held for ever
+            buffer_ = base::Bytes();  // what a State needed once is not held for ever
         }
     }
     const std::size_t end = buffer_.size();
@@ -50,20 +50,20 @@ std::optional<Message> MessageReader::next() {
     if (stream.size() < kLengthBytes) {
         return std::nullopt;
     }
-    const auto length = files::ByteReader(stream).get<std::uint32_t>();
+    const auto length = base::ByteReader(stream).get<std::uint32_t>();
     const bool longMessage = length > most_;
     if (length == 0 || length > kMaxState || (longMessage && !stateExpected_ && !loadsExpected_)) {
-        throw files::FormatError(fmt::format("a message of {} bytes, {} is the most", length, most_));
+        throw base::FormatError(fmt::format("a message of {} bytes, {} is the most", length, most_));
     }
     if (longMessage && stream.size() > kLengthBytes && !mayBeLong(stream[kLengthBytes])) {
-        throw files::FormatError(fmt::format("a message of {} bytes that holds no sand", length));
+        throw base::FormatError(fmt::format("a message of {} bytes that holds no sand", length));
     }
     if (stream.size() < kLengthBytes + length) {
         return std::nullopt;
     }
     begin_ += kLengthBytes + length;
     if (stream[kLengthBytes] == typeOf<State>() && !std::exchange(stateExpected_, false)) {
-        throw files::FormatError("a state that nobody asked for");
+        throw base::FormatError("a state that nobody asked for");
     }
     return decode(stream.subspan(kLengthBytes, length));
 }

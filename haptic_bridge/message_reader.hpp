@@ -14,7 +14,7 @@ namespace haptic_bridge {
 class MessageReader {
 public:
     void feed(std::span<const std::uint8_t> bytes);
-    /// The next whole message, or nothing yet. Throws files::FormatError for a stream that is no such stream (a length
+    /// The next whole message, or nothing yet. Throws base::FormatError for a stream that is no such stream (a length
     /// beyond the bounds, garbage), after which the link must be closed.
     [[nodiscard]] std::optional<Message> next();
     /// A State may come next, up to kMaxState long.
@@ -29,7 +29,7 @@ public:
 private:
     [[nodiscard]] bool mayBeLong(std::uint8_t type) const;
 
-    files::Bytes buffer_;
+    base::Bytes buffer_;
     std::size_t begin_ = 0, most_ = kMaxMessage;
     bool stateExpected_ = false, loadsExpected_ = false;
 };

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 #include "haptic_bridge/guards/guard.hpp"
 #include "sand/scene.hpp"
 #include "sand/step.hpp"
@@ -81,7 +81,7 @@ struct Start {
     friend bool operator==(const Start&, const Start&) = default;
 };
 struct State {
-    files::Bytes bytes;
+    base::Bytes bytes;
     friend bool operator==(const State&, const State&) = default;
 };
 /// Sent after every frame of the wall.
@@ -193,7 +193,7 @@ struct Report {
 };
 /// A piece of the tick track, for the master's journal (tick_track.hpp).
 struct TickPiece {
-    files::Bytes bytes;
+    base::Bytes bytes;
     friend bool operator==(const TickPiece&, const TickPiece&) = default;
 };
 
@@ -225,9 +225,9 @@ using Message = std::variant<Hello, Welcome, Refusal, Start, Ready, NeedState, S
                              Position, Challenge, Proof, CatchUp>;
 
 /// The message as it goes over the wire: length, type, payload.
-[[nodiscard]] files::Bytes encode(const Message& message);
+[[nodiscard]] base::Bytes encode(const Message& message);
 
-/// Reads type and payload. Throws files::FormatError for anything that encode() does not write. Of a Hello or Welcome
+/// Reads type and payload. Throws base::FormatError for anything that encode() does not write. Of a Hello or Welcome
 /// of another protocol version only that version is read.
 [[nodiscard]] Message decode(std::span<const std::uint8_t> typeAndPayload);
 

@@ -11,7 +11,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
 namespace haptic_bridge {
 namespace {
@@ -31,7 +31,7 @@ struct Line {
     const std::string& file;
     long number;
 
-    [[noreturn]] void fail(const std::string& what) const { throw files::InputError(file, number, what); }
+    [[noreturn]] void fail(const std::string& what) const { throw base::InputError(file, number, what); }
 
     void readInto(Secrets& secrets) const {
         std::string_view rest = text;
@@ -71,10 +71,10 @@ Secrets parseSecrets(std::string_view text, const std::string& file) {
         Line{line, file, number}.readInto(secrets);
     }
     if (!secrets.any()) {
-        throw files::InputError(file + ": holds no secret; write a line such as: move " + "$(openssl rand -hex 32)");
+        throw base::InputError(file + ": holds no secret; write a line such as: move " + "$(openssl rand -hex 32)");
     }
     if (secrets.move == secrets.watch) {
-        throw files::InputError(file + ": has one secret for both roles: who may watch could move; make another");
+        throw base::InputError(file + ": has one secret for both roles: who may watch could move; make another");
     }
     return secrets;
 }
@@ -83,7 +83,7 @@ Secrets readSecrets(const std::string& file) {
     // Without waiting: a pipe that nobody writes to is no secret either.
     const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
     if (descriptor < 0) {
-        throw files::InputError(file + ": cannot be read (" + std::strerror(errno) + "); check --secret-file");
+        throw base::InputError(file + ": cannot be read (" + std::strerror(errno) + "); check --secret-file");
     }
     struct stat about {};
     std::array<char, kMaxSecretFile + 1> bytes{};
@@ -95,13 +95,13 @@ Secrets readSecrets(const std::string& file) {
     }
     close(descriptor);
     if (!regular) {
-        throw files::InputError(file + ": is no regular file; --secret-file takes one of lines ROLE SECRET");
+        throw base::InputError(file + ": is no regular file; --secret-file takes one of lines ROLE SECRET");
     }
     if ((about.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
-        throw files::InputError(file + ": others may read or change it; chmod 600 it, and take a new secret");
+        throw base::InputError(file + ": others may read or change it; chmod 600 it, and take a new secret");
     }
     if (count < 0 || static_cast<std::size_t>(count) > kMaxSecretFile) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("{}: is larger than {} bytes; it holds two lines at most", file, kMaxSecretFile));
     }
     return parseSecrets({bytes.data(), static_cast<std::size_t>(count)}, file);

@@ -21,11 +21,11 @@ inline constexpr std::size_t kMaxSecret = 256;       // [byte]
 inline constexpr std::size_t kMaxSecretFile = 4096;  // [byte]
 
 /// Reads lines "ROLE SECRET", ROLE move or watch, each once at most; empty lines and those that begin with # say
-/// nothing. The secret's characters, as they stand, are the key. Throws files::InputError with `file` and the line, and
+/// nothing. The secret's characters, as they stand, are the key. Throws base::InputError with `file` and the line, and
 /// never with a secret in it.
 [[nodiscard]] Secrets parseSecrets(std::string_view text, const std::string& file);
 
-/// Throws files::InputError also for what is no regular file, or may be read by anybody but its owner.
+/// Throws base::InputError also for what is no regular file, or may be read by anybody but its owner.
 [[nodiscard]] Secrets readSecrets(const std::string& file);
 
 }  // namespace haptic_bridge

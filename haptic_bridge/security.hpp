@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 
 /// What OpenSSL does for the link, as sandwall-security.so hands it out: a program that uses neither a secret nor TLS
 /// maps no OpenSSL.
@@ -28,14 +28,14 @@ public:
     /// Takes what came from the other end; appends what it says to `plain`, and what must be sent to `reply`. Throws
     /// std::runtime_error that says why this is no such connection, after which it is of no use; `reply` then holds the
     /// alert for the other end.
-    virtual void receive(ByteSpan bytes, files::Bytes& plain, files::Bytes& reply) = 0;
+    virtual void receive(ByteSpan bytes, base::Bytes& plain, base::Bytes& reply) = 0;
     /// Of a client: its first bytes.
-    virtual void begin(files::Bytes& reply) = 0;
+    virtual void begin(base::Bytes& reply) = 0;
     /// Once established: appends what carries `plain`. Throws std::runtime_error when that cannot be, as before.
-    virtual void seal(ByteSpan plain, files::Bytes& sealed) = 0;
+    virtual void seal(ByteSpan plain, base::Bytes& sealed) = 0;
     [[nodiscard]] virtual bool established() const = 0;
     /// Once established: the same 32 bytes at both ends of this connection and nowhere else (tls-exporter, RFC 9266).
-    [[nodiscard]] virtual files::Bytes binding() const = 0;
+    [[nodiscard]] virtual base::Bytes binding() const = 0;
 };
 
 /// Makes the ends of connections; TLS 1.3 and nothing older. Any thread.
@@ -71,7 +71,7 @@ public:
 inline constexpr const char* kSecuritySymbol = "sandwallSecurity1";
 using GetSecurity = const Security*();
 
-/// Loads sandwall-security.so from beside this program; the same object at every call. Throws files::InputError that
+/// Loads sandwall-security.so from beside this program; the same object at every call. Throws base::InputError that
 /// begins with `option` when it is missing.
 [[nodiscard]] const Security& loadSecurity(const std::string& option);
 

@@ -53,13 +53,13 @@ public:
         server ? SSL_set_accept_state(ssl_.get()) : SSL_set_connect_state(ssl_.get());
     }
 
-    void begin(files::Bytes& reply) override {
+    void begin(base::Bytes& reply) override {
         ERR_clear_error();
         (void)go(SSL_do_handshake(ssl_.get()), reply);
         take(reply);
     }
 
-    void receive(ByteSpan bytes, files::Bytes& plain, files::Bytes& reply) override {
+    void receive(ByteSpan bytes, base::Bytes& plain, base::Bytes& reply) override {
         ERR_clear_error();
         if ((SSL_get_shutdown(ssl_.get()) & SSL_RECEIVED_SHUTDOWN) != 0) {
             // OpenSSL reads nothing any more, and would keep all of it.
@@ -84,7 +84,7 @@ public:
         take(reply);
     }
 
-    void seal(ByteSpan plain, files::Bytes& sealed) override {
+    void seal(ByteSpan plain, base::Bytes& sealed) override {
         ERR_clear_error();
         // Piece by piece: what OpenSSL writes into never shrinks, and a state of the sand is large.
         for (; !plain.empty(); plain = plain.subspan(std::min(plain.size(), kPiece))) {
@@ -98,9 +98,9 @@ public:
 
     [[nodiscard]] bool established() const override { return SSL_is_init_finished(ssl_.get()) == 1; }
 
-    [[nodiscard]] files::Bytes binding() const override {
+    [[nodiscard]] base::Bytes binding() const override {
         static constexpr std::string_view kLabel = "EXPORTER-Channel-Binding";
-        files::Bytes bytes(kBinding);
+        base::Bytes bytes(kBinding);
         require(SSL_export_keying_material(ssl_.get(), bytes.data(), bytes.size(), kLabel.data(), kLabel.size(),
                                            nullptr, 0, 0) == 1,
                 "no keying material");
@@ -109,7 +109,7 @@ public:
 
 private:
     /// False when the other end must say more first, or has said its last.
-    bool go(int result, files::Bytes& reply) {
+    bool go(int result, base::Bytes& reply) {
         if (result == 1) {
             return true;
         }
@@ -121,7 +121,7 @@ private:
         throw std::runtime_error(complaint("the connection is broken"));
     }
 
-    void take(files::Bytes& bytes) {
+    void take(base::Bytes& bytes) {
         BIO* out = SSL_get_wbio(ssl_.get());
         const std::size_t end = bytes.size();
         const std::size_t count = BIO_ctrl_pending(out);

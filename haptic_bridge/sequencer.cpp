@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "haptic_bridge/devices/sand_watcher.hpp"
-#include "haptic_bridge/monotonic.hpp"
 #include "haptic_bridge/surface_of.hpp"
+#include "host/clock.hpp"
 
 namespace haptic_bridge {
 namespace {
@@ -75,7 +75,7 @@ bool Sequencer::waitForWork() {
         return true;
     }
     const bool running = phase_ == Phase::running;
-    const std::int64_t until = running ? clock_.due() : monotonicNs() + kIdlePoll;
+    const std::int64_t until = running ? clock_.due() : host::monotonicNs() + kIdlePoll;
     const std::chrono::steady_clock::time_point when{std::chrono::nanoseconds(until)};
     return !wake_.wait_until(lock, when, commanded) && running;
 }
@@ -98,7 +98,7 @@ void Sequencer::obey(State& command) {
     phase_ = Phase::idle;
     try {
         terrain_.decodeState(command.bytes);
-    } catch (const files::FormatError& error) {
+    } catch (const base::FormatError& error) {
         output_.unusable(session_, std::string("the state sent is none of this scene: ") + error.what());
         return;
     }
@@ -152,7 +152,7 @@ void Sequencer::begin() {
     // Whoever numbered before may have left the tool in the sand elsewhere: no furrow from there to here.
     liftFirst_ = terrain_.engaged();
     path_.restart(terrain_.probe(), false);
-    clock_.start(monotonicNs());
+    clock_.start(host::monotonicNs());
     publishSurface();
     showSand();
     ++channel_.sitting;
@@ -189,13 +189,13 @@ void Sequencer::makeStep() {
     if (blocked()) {  // in real time only: the fast pace waits instead
         ++withheld_;
         publishSurface();  // the same sand, but not a stale one: a hand goes on to feel a wall that waits
-        clock_.advance(monotonicNs());
+        clock_.advance(host::monotonicNs());
         return;
     }
     StepMessage message;
     message.step.epoch = start_.epoch;
     message.step.number = terrain_.stepNumber() + 1;
-    message.serverTimeNs = monotonicNs();
+    message.serverTimeNs = host::monotonicNs();
     if (!std::exchange(liftFirst_, false)) {
         if (pace_ == Pace::fast) {
             gatherVirtual();
@@ -215,7 +215,7 @@ void Sequencer::makeStep() {
     output_.step(session_, encode(message));
     publishSurface();
     showSand();
-    clock_.advance(monotonicNs());
+    clock_.advance(host::monotonicNs());
 }
 
 void Sequencer::publishSurface() {
@@ -225,7 +225,7 @@ void Sequencer::publishSurface() {
     }
     Surface& next = channel_.surface.next();
     takeSurface(terrain_, next);
-    next.timeNs = monotonicNs();
+    next.timeNs = host::monotonicNs();
     channel_.surface.publish();
 }
 

@@ -10,6 +10,7 @@
 #include <thread>
 #include <variant>
 
+#include "base/triple_buffer.hpp"
 #include "haptic_bridge/hand.hpp"
 #include "haptic_bridge/protocol.hpp"
 #include "haptic_bridge/step_clock.hpp"
@@ -24,7 +25,7 @@ enum class Pace : std::uint8_t { realtime, fast };
 struct HandChannel {
     boost::lockfree::spsc_queue<HandSample, boost::lockfree::capacity<8192>> samples;  // force thread to sand
     std::atomic<std::uint64_t> overflow{0};  // samples that found the queue full
-    Latest<Surface> surface;                 // sand to force thread
+    base::TripleBuffer<Surface> surface;     // sand to force thread
     std::atomic<bool> moving{false};         // the hand's recording runs; it rests while nobody is linked
     std::atomic<std::uint32_t> sitting{0};   // counts the links: the hand begins anew with each
     TickRecorder* recorder = nullptr;        // of every tick, when somebody wants them
@@ -58,7 +59,7 @@ public:
         std::function<void(std::uint32_t session)> ready;
         std::function<void(std::uint32_t session, NeedState need)> needState;
         std::function<void(std::uint32_t session, std::string why)> unusable;  // the state sent does not fit
-        std::function<void(std::uint32_t session, files::Bytes stepMessage)> step;
+        std::function<void(std::uint32_t session, base::Bytes stepMessage)> step;
     };
 
     /// Under Pace::fast `hand` is ticked by this thread, and must not be used by another.
@@ -71,7 +72,7 @@ public:
 
     // From any thread; the answer comes through Output.
     void start(std::uint32_t session, const Start& start) { post(Granted{session, start}); }
-    void state(files::Bytes bytes) { post(State{std::move(bytes)}); }
+    void state(base::Bytes bytes) { post(State{std::move(bytes)}); }
     void catchUp(CatchUp steps) { post(std::move(steps)); }
     void shown(const Shown& frame, std::int64_t nowNs) { post(Frame{frame, nowNs}); }
     void edit(EditRequest request) { post(std::move(request)); }

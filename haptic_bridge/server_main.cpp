@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "haptic_bridge/client.hpp"
 #include "haptic_bridge/devices/device_troubles.hpp"
 #include "haptic_bridge/devices/driver.hpp"
@@ -18,13 +18,13 @@
 #include "haptic_bridge/force_loop.hpp"
 #include "haptic_bridge/link_options.hpp"
 #include "haptic_bridge/link_server.hpp"
-#include "haptic_bridge/monotonic.hpp"
 #include "haptic_bridge/tick_recorder.hpp"
 #include "haptic_bridge/timings.hpp"
+#include "host/clock.hpp"
 #include "host/command_line.hpp"
 #include "host/event.hpp"
 #include "host/version.hpp"
-#include "workers/sand_threads.hpp"
+#include "host/worker_pool.hpp"
 
 namespace {
 
@@ -56,14 +56,14 @@ asio::ip::tcp::acceptor listenAt(asio::io_context& io, const std::string& text, 
     error_code error;
     const auto host = asio::ip::make_address(address.host == "localhost" ? "127.0.0.1" : address.host, error);
     if (error) {
-        throw files::InputError("--listen: '" + address.host +
-                                "' is no IP address; write one such as 127.0.0.1, or "
-                                "0.0.0.0 for every network");
+        throw base::InputError("--listen: '" + address.host +
+                               "' is no IP address; write one such as 127.0.0.1, or "
+                               "0.0.0.0 for every network");
     }
     if (!secret && !isLoopback(host)) {
-        throw files::InputError("--listen " + text +
-                                ": others can reach that address, so a --secret-file is needed (docs/security.md); "
-                                "127.0.0.1 needs none");
+        throw base::InputError("--listen " + text +
+                               ": others can reach that address, so a --secret-file is needed (docs/security.md); "
+                               "127.0.0.1 needs none");
     }
     const asio::ip::tcp::endpoint endpoint(host, address.port);
     asio::ip::tcp::acceptor acceptor(io);
@@ -74,12 +74,12 @@ asio::ip::tcp::acceptor listenAt(asio::io_context& io, const std::string& text, 
         acceptor.listen(asio::socket_base::max_listen_connections, error);
     }
     if (error == asio::error::address_in_use) {
-        throw files::InputError("--listen " + textOf(endpoint) +
-                                ": the port is in use; stop the program that has it, "
-                                "or give another port (0 takes any free one)");
+        throw base::InputError("--listen " + textOf(endpoint) +
+                               ": the port is in use; stop the program that has it, "
+                               "or give another port (0 takes any free one)");
     }
     if (error) {
-        throw files::InputError("--listen " + textOf(endpoint) + ": " + error.message());
+        throw base::InputError("--listen " + textOf(endpoint) + ": " + error.message());
     }
     return acceptor;
 }
@@ -98,7 +98,7 @@ void writePortFile(const std::string& file, std::uint16_t port) {
         std::filesystem::rename(beside, file, error);
     }
     if (!stream || error) {
-        throw files::InputError("--port-file " + file + ": cannot be written");
+        throw base::InputError("--port-file " + file + ": cannot be written");
     }
 }
 
@@ -135,7 +135,7 @@ private:
         timer_.async_wait([this](error_code error) {
             if (!error) {
                 for (const std::string& line :
-                     teller_.lines(*device_.troubles(), static_cast<double>(monotonicNs()) * 1e-9)) {
+                     teller_.lines(*device_.troubles(), static_cast<double>(host::monotonicNs()) * 1e-9)) {
                     print(line);
                 }
                 look();
@@ -148,7 +148,7 @@ private:
     const Device& device_;
 };
 
-std::function<std::vector<files::Bytes>(bool)> ticksOf(TickRecorder* recorder) {
+std::function<std::vector<base::Bytes>(bool)> ticksOf(TickRecorder* recorder) {
     if (recorder == nullptr) {
         return {};
     }
@@ -191,7 +191,7 @@ void serve(const Options& options) {
                        [&noted](double share) { noted.shareForce(share); }},
                       options.tests, security);
     // The sand and force threads end before the link they report to.
-    const workers::WorkerPool pool(options.sandThreads);
+    const host::WorkerPool pool(options.sandThreads);
     Sequencer sequencer(scene, options.pace, hand, channel, server.output(), {.executor = pool.lend()},
                         noted.watcher());
     const auto loop = options.pace == Pace::realtime ? std::make_unique<ForceLoop>(hand, channel) : nullptr;
@@ -263,7 +263,7 @@ void describe(host::CommandLine& line, Options& options) {
         .range(0.0, 3600.0);
     line.option("--timing-seed", options.tests.seed, "of those times (default: 7)");
     options.link.addTo(line, true);
-    workers::addSandThreads(line, options.sandThreads);
+    host::addSandThreads(line, options.sandThreads);
     line.flag("--die-with-parent", options.dieWithParent, "end when the program that started this one ends");
 }
 
@@ -289,9 +289,9 @@ int main(int count, char** words) {
         }
         serve(options);
         return 0;
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         print(error.what());
-        return files::kExitBadInput;
+        return base::kExitBadInput;
     } catch (const std::exception& error) {
         print(error.what());
         return 1;

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <utility>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
 namespace haptic_bridge {
 namespace {
@@ -29,8 +29,8 @@ TickRecorder::TickRecorder(Options options, const Hand& hand, const NotedDevice&
       header_(device.header(datum, hand.guards().mode() == Guards::Mode::literal)) {
     descriptor_ = open(options_.file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     if (descriptor_ < 0) {
-        throw files::InputError(fmt::format("--record {}: cannot be made ({}); give a file in a folder that is there",
-                                            options_.file, std::strerror(errno)));
+        throw base::InputError(fmt::format("--record {}: cannot be made ({}); give a file in a folder that is there",
+                                           options_.file, std::strerror(errno)));
     }
     rows_ = tickTitles();
     thread_ = std::thread([this] { run(); });
@@ -107,7 +107,7 @@ void TickRecorder::endPiece() {
     if (piece_.ticks.empty()) {
         return;
     }
-    files::Bytes bytes = encode(piece_);
+    base::Bytes bytes = encode(piece_);
     piece_.ticks.clear();
     const std::lock_guard lock(mutex_);
     if (pieces_.size() < kMostPieces) {
@@ -138,7 +138,7 @@ void TickRecorder::giveUp(int error) {
                              options_.file, std::strerror(error)));
 }
 
-std::vector<files::Bytes> TickRecorder::takePieces() {
+std::vector<base::Bytes> TickRecorder::takePieces() {
     const std::lock_guard lock(mutex_);
     return std::exchange(pieces_, {});
 }

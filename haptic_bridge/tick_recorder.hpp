@@ -26,7 +26,7 @@ public:
         bool wait = false;                            // the fast pace
         std::function<void(const std::string&)> log;  // one line for a person; on the recorder's thread
     };
-    /// Throws files::InputError when the file cannot be made. `device` is the one that `hand` reads; both outlive this.
+    /// Throws base::InputError when the file cannot be made. `device` is the one that `hand` reads; both outlive this.
     TickRecorder(Options options, const Hand& hand, const NotedDevice& device, HandSettings::Datum datum);
     ~TickRecorder();
     TickRecorder(const TickRecorder&) = delete;
@@ -40,7 +40,7 @@ public:
 
     // The streaming thread:
     /// What the master has not got yet.
-    [[nodiscard]] std::vector<files::Bytes> takePieces();
+    [[nodiscard]] std::vector<base::Bytes> takePieces();
     /// Returns when all that was added before has become pieces, or after 0.3 s.
     void flush();
 
@@ -66,7 +66,7 @@ private:
     std::atomic<bool> stopping_{false};
 
     std::mutex mutex_;
-    std::vector<files::Bytes> pieces_;
+    std::vector<base::Bytes> pieces_;
 
     // The recorder's thread.
     int descriptor_ = -1;

@@ -25,8 +25,8 @@ private:
     TickInput input_;
 };
 
-TickReplay::TickReplay(const sand::Scene& scene, const std::vector<files::Bytes>& pieces) : scene_(&scene) {
-    for (const files::Bytes& bytes : pieces) {
+TickReplay::TickReplay(const sand::Scene& scene, const std::vector<base::Bytes>& pieces) : scene_(&scene) {
+    for (const base::Bytes& bytes : pieces) {
         TrackPiece piece = decodeTrackPiece(bytes);
         sitting_ = piece.begins ? piece.sitting : sitting_;
         if (piece.sitting == sitting_ && (piece.begins || !pieces_.empty())) {  // not the tail of a link before

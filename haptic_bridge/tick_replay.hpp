@@ -16,8 +16,8 @@ namespace haptic_bridge {
 /// surfaces that a replica makes by replaying the steps.
 class TickReplay {
 public:
-    /// `scene` outlives this. Throws files::FormatError for pieces that are none.
-    TickReplay(const sand::Scene& scene, const std::vector<files::Bytes>& pieces);
+    /// `scene` outlives this. Throws base::FormatError for pieces that are none.
+    TickReplay(const sand::Scene& scene, const std::vector<base::Bytes>& pieces);
 
     [[nodiscard]] bool empty() const { return pieces_.empty(); }
     /// Ticks the hand for as long as it felt the sand as it is now. Call it at the start and after every step.

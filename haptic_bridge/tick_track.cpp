@@ -17,13 +17,13 @@ std::uint8_t flagsOf(const TickInput& tick) {
                                      (tick.reading.second ? kSecond : 0) | (tick.reading.present ? kPresent : 0));
 }
 
-void putVec(const Vec3& v, files::ByteWriter& writer) {
+void putVec(const Vec3& v, base::ByteWriter& writer) {
     writer.put(v.x);
     writer.put(v.y);
     writer.put(v.z);
 }
 
-Vec3 getVec(files::ByteReader& reader) {
+Vec3 getVec(base::ByteReader& reader) {
     const double x = reader.get<double>(), y = reader.get<double>();
     return {x, y, reader.get<double>()};
 }
@@ -37,7 +37,7 @@ void eachNumber(Physics& physics, const Visit& visit) {
     }
 }
 
-void putHeader(const TrackHeader& header, files::ByteWriter& writer) {
+void putHeader(const TrackHeader& header, base::ByteWriter& writer) {
     writer.put(static_cast<std::uint8_t>(header.body));
     writer.putText(header.physics.name);
     eachNumber(header.physics, [&](double number) { writer.put(number); });
@@ -47,7 +47,7 @@ void putHeader(const TrackHeader& header, files::ByteWriter& writer) {
     writer.put(static_cast<std::uint8_t>(header.literal));
 }
 
-TrackHeader getHeader(files::ByteReader& reader) {
+TrackHeader getHeader(base::ByteReader& reader) {
     TrackHeader header;
     header.body = reader.get<std::uint8_t>() != 0;
     header.physics.name = reader.getText();
@@ -61,8 +61,8 @@ TrackHeader getHeader(files::ByteReader& reader) {
 
 }  // namespace
 
-files::Bytes encode(const TrackPiece& piece) {
-    files::ByteWriter writer;
+base::Bytes encode(const TrackPiece& piece) {
+    base::ByteWriter writer;
     writer.put(piece.sitting);
     writer.put(static_cast<std::uint8_t>(piece.begins));
     if (piece.begins) {
@@ -85,7 +85,7 @@ files::Bytes encode(const TrackPiece& piece) {
 }
 
 TrackPiece decodeTrackPiece(std::span<const std::uint8_t> bytes) {
-    files::ByteReader reader(bytes);
+    base::ByteReader reader(bytes);
     TrackPiece piece;
     piece.sitting = reader.get<std::uint32_t>();
     piece.begins = reader.get<std::uint8_t>() != 0;
@@ -94,7 +94,7 @@ TrackPiece decodeTrackPiece(std::span<const std::uint8_t> bytes) {
     } else {
         const std::uint64_t count = reader.getVarint();
         if (count > kMostTicksInPiece) {
-            throw files::FormatError(fmt::format("{} ticks in a piece", count));
+            throw base::FormatError(fmt::format("{} ticks in a piece", count));
         }
         std::int64_t beforeNs = 0;
         for (std::uint64_t i = 0; i < count; ++i) {
@@ -113,7 +113,7 @@ TrackPiece decodeTrackPiece(std::span<const std::uint8_t> bytes) {
         }
     }
     if (!reader.atEnd()) {
-        throw files::FormatError("a piece of a tick track with bytes too many");
+        throw base::FormatError("a piece of a tick track with bytes too many");
     }
     return piece;
 }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 #include "haptic_bridge/devices/device.hpp"
 #include "haptic_bridge/devices/hand_settings.hpp"
 #include "haptic_bridge/tick.hpp"
@@ -41,8 +41,8 @@ struct TrackPiece {
     std::vector<TickInput> ticks;  // otherwise
 };
 
-[[nodiscard]] files::Bytes encode(const TrackPiece& piece);
-/// Throws files::FormatError for bytes that encode() does not write.
+[[nodiscard]] base::Bytes encode(const TrackPiece& piece);
+/// Throws base::FormatError for bytes that encode() does not write.
 [[nodiscard]] TrackPiece decodeTrackPiece(std::span<const std::uint8_t> bytes);
 
 /// The most ticks of a piece, so that it is a message of usual length.

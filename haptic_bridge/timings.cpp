@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
 namespace haptic_bridge {
 
@@ -20,7 +20,7 @@ void writeTimings(const std::string& file,
     }
     stream.flush();
     if (!stream) {
-        throw files::InputError("--timings " + file + ": cannot be written");
+        throw base::InputError("--timings " + file + ": cannot be written");
     }
 }
 

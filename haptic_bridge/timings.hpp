@@ -10,7 +10,7 @@
 namespace haptic_bridge {
 
 /// Writes named histograms as CSV: what, the shortest duration of a bucket [us], how often. Empty buckets are left out.
-/// Throws files::InputError when the file cannot be written.
+/// Throws base::InputError when the file cannot be written.
 void writeTimings(const std::string& file, const std::vector<std::pair<std::string, const LiveHistogram*>>& histograms);
 
 }  // namespace haptic_bridge

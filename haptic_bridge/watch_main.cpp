@@ -10,10 +10,10 @@
 #include <cstdio>
 #include <optional>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "haptic_bridge/connection.hpp"
 #include "haptic_bridge/link_options.hpp"
-#include "haptic_bridge/monotonic.hpp"
+#include "host/clock.hpp"
 #include "host/command_line.hpp"
 #include "host/version.hpp"
 
@@ -29,7 +29,7 @@ public:
     Watcher(asio::io_context& io, const LinkSecurity& security, std::uint64_t lines)
         : timer_(io), security_(security), linesLeft_(lines) {}
 
-    /// Throws files::InputError when nobody is there.
+    /// Throws base::InputError when nobody is there.
     void connect(asio::io_context& io, const Address& address) {
         asio::ip::tcp::socket socket(io);
         error_code error;
@@ -39,11 +39,11 @@ public:
             asio::connect(socket, found, error);
         }
         if (error) {
-            throw files::InputError(fmt::format("{}: {}", address.text(), error.message()));
+            throw base::InputError(fmt::format("{}: {}", address.text(), error.message()));
         }
         connection_ = std::make_shared<Connection>(std::move(socket), security_.tls ? security_.tls->open() : nullptr);
         if (!security_.proves() && !isLoopback(connection_->address())) {
-            throw files::InputError(address.text() + ": is another machine; --secret-file is needed");
+            throw base::InputError(address.text() + ": is another machine; --secret-file is needed");
         }
         connection_->start({[this](Message&& message) { receive(message); },
                             [this](const std::string& why, Connection::Fault) { end(why); }, false,
@@ -68,7 +68,7 @@ private:
     }
 
     void receive(const Message& message) {
-        heardNs_ = monotonicNs();
+        heardNs_ = host::monotonicNs();
         if (const auto* refusal = std::get_if<Refusal>(&message)) {
             end("refuses: " + refusal->text);
         } else if (const auto* bye = std::get_if<Bye>(&message)) {
@@ -102,12 +102,12 @@ private:
             if (error) {
                 return;
             }
-            if (monotonicNs() - heardNs_ > kSilenceNs) {
+            if (host::monotonicNs() - heardNs_ > kSilenceNs) {
                 end(fmt::format("silent for {} s", kSilenceNs / 1'000'000'000));
                 return;
             }
             if (welcomed_) {
-                connection_->send(Ping{monotonicNs()});
+                connection_->send(Ping{host::monotonicNs()});
                 constexpr double kUnits = 256;  // to a cell
                 fmt::print("step {} {:016x}, probe at {:.2f} {:.2f} {:.2f} cells{}, {} steps/s, {} bytes/s\n",
                            last_.number, hash_, probe_.x / kUnits, probe_.y / kUnits, probe_.z / kUnits,
@@ -139,7 +139,7 @@ private:
     std::uint64_t linesLeft_, steps_ = 0, bytes_ = 0, hash_ = 0;
     sand::Step last_;
     sand::ProbePoint probe_;
-    std::int64_t heardNs_ = monotonicNs();
+    std::int64_t heardNs_ = host::monotonicNs();
     bool welcomed_ = false;
     std::optional<std::string> ended_;
 };

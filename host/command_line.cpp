@@ -8,7 +8,8 @@
 #include <exception>
 #include <filesystem>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
+#include "host/worker_pool.hpp"
 
 namespace host {
 
@@ -138,8 +139,13 @@ std::optional<int> CommandLine::parse(int argc, char** argv) {
             return app_->exit(error);  // --help
         }
         std::fprintf(stderr, "%s: %s; try --help\n", app_->get_name().c_str(), error.what());
-        return files::kExitBadInput;
+        return base::kExitBadInput;
     }
+}
+
+void addSandThreads(CommandLine& line, int& threads) {
+    line.option("--sand-threads", threads, "threads that sweep the sand; the sand is the same with any number")
+        .range(1, kMostThreads);
 }
 
 int runMain(CommandLine& line, int argc, char** argv, const std::function<int()>& run, int failed) {
@@ -148,9 +154,9 @@ int runMain(CommandLine& line, int argc, char** argv, const std::function<int()>
     }
     try {
         return run();
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         std::fprintf(stderr, "%s\n", error.what());
-        return files::kExitBadInput;
+        return base::kExitBadInput;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "%s: failed: %s\n", line.name().c_str(), error.what());
         return failed;

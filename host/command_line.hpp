@@ -96,6 +96,9 @@ private:
     CLI::App* app_;
 };
 
+/// Adds --sand-threads, for programs that hold a replica of the sand.
+void addSandThreads(CommandLine& line, int& threads);
+
 /// The frame of every program's main: parses, calls `run`, and prints one line on stderr for whatever goes wrong.
 /// Returns run's value; kExitBadInput for unusable options and input; `failed` for errors of our own, which differs in
 /// programs in which 1 is an answer.

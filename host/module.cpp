@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "host/build_id.hpp"
 
 namespace host {
@@ -22,8 +22,7 @@ fs::path findModule(const Module& module, const std::vector<fs::path>& folders) 
         }
         places += (places.empty() ? "" : " and ") + folder.string();
     }
-    throw files::InputError(module.askedBy + ": there is no " + module.file + " in " + places + "; " +
-                            module.ifMissing);
+    throw base::InputError(module.askedBy + ": there is no " + module.file + " in " + places + "; " + module.ifMissing);
 }
 
 /// Refuses a module of another build: its interfaces and its numbers may differ.
@@ -31,8 +30,8 @@ void requireSameBuild(void* handle, const fs::path& file) {
     void* const found = dlsym(handle, "sandwallBuildId");
     const char* const build = found == nullptr ? "none" : reinterpret_cast<const char* (*)()>(found)();
     if (std::strcmp(build, buildId()) != 0) {
-        throw files::InputError(file.string() + ": is of build " + build + ", and this program of " + buildId() +
-                                "; install programs and modules of one build");
+        throw base::InputError(file.string() + ": is of build " + build + ", and this program of " + buildId() +
+                               "; install programs and modules of one build");
     }
 }
 
@@ -49,14 +48,14 @@ void* loadModule(const Module& module, const std::vector<fs::path>& folders) {
     void* const handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (handle == nullptr) {
         const char* const reason = dlerror();
-        throw files::InputError(module.askedBy + ": " +
-                                (reason == nullptr ? file.string() + " cannot be loaded" : reason) + "; " +
-                                module.ifNotLoaded);
+        throw base::InputError(module.askedBy + ": " +
+                               (reason == nullptr ? file.string() + " cannot be loaded" : reason) + "; " +
+                               module.ifNotLoaded);
     }
     requireSameBuild(handle, file);
     void* const symbol = dlsym(handle, module.symbol.c_str());
     if (symbol == nullptr) {
-        throw files::InputError(file.string() + ": defines no " + module.symbol + "; " + module.ifNotLoaded);
+        throw base::InputError(file.string() + ": defines no " + module.symbol + "; " + module.ifNotLoaded);
     }
     return symbol;
 }

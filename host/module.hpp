@@ -22,7 +22,7 @@ struct Module {
 /// Loads a module for good and returns the address of its symbol. Modules stay loaded, because libraries leave threads
 /// and thread-local memory behind.
 ///
-/// Throws files::InputError if the module is in none of the folders, cannot be loaded, or is of another build.
+/// Throws base::InputError if the module is in none of the folders, cannot be loaded, or is of another build.
 [[nodiscard]] void* loadModule(const Module& module,
                                const std::vector<std::filesystem::path>& folders = moduleFolders());
 

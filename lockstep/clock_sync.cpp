@@ -3,6 +3,8 @@
 
 #include <limits>
 
+#include "host/clock.hpp"
+
 namespace lockstep {
 namespace {
 
@@ -16,7 +18,7 @@ std::int64_t clockAheadOfMaster(const Cluster& cluster) {
     if (!cluster.isMaster()) {
         for (int i = 0; i < kRoundTrips; ++i) {
             MPI_Recv(nullptr, 0, MPI_BYTE, kMaster, kTag, comm, MPI_STATUS_IGNORE);
-            const std::int64_t now = nowNs();
+            const std::int64_t now = host::monotonicNs();
             MPI_Send(&now, 1, MPI_INT64_T, kMaster, kTag, comm);
         }
         std::int64_t ahead = 0;
@@ -28,10 +30,10 @@ std::int64_t clockAheadOfMaster(const Cluster& cluster) {
         std::int64_t ahead = 0;
         for (int i = 0; i < kRoundTrips; ++i) {
             std::int64_t theirs = 0;
-            const std::int64_t sent = nowNs();
+            const std::int64_t sent = host::monotonicNs();
             MPI_Send(nullptr, 0, MPI_BYTE, rank, kTag, comm);
             MPI_Recv(&theirs, 1, MPI_INT64_T, rank, kTag, comm, MPI_STATUS_IGNORE);
-            const std::int64_t roundTrip = nowNs() - sent;
+            const std::int64_t roundTrip = host::monotonicNs() - sent;
             if (roundTrip < shortest) {
                 shortest = roundTrip;
                 ahead = theirs - (sent + roundTrip / 2);

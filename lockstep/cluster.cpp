@@ -14,11 +14,6 @@
 
 namespace lockstep {
 
-std::int64_t nowNs() {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
-
 Cluster::Cluster(int* argc, char*** argv) {
     int provided = 0;
     MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
@@ -38,11 +33,11 @@ Cluster::Cluster(int* argc, char*** argv) {
         MPI_Comm_dup(MPI_COMM_WORLD, communicator);
     }
     bells_ = std::make_unique<HostBells>();
-    files::ByteWriter here;
+    base::ByteWriter here;
     here.putText(hostName());
     here.put(freeMemory());
-    for (const files::Bytes& rank : gather(here.take())) {
-        files::ByteReader reader(rank);
+    for (const base::Bytes& rank : gather(here.take())) {
+        base::ByteReader reader(rank);
         RankHost& host = hosts_.emplace_back();
         host.name = reader.getText();
         host.freeBytes = reader.get<std::int64_t>();
@@ -64,10 +59,10 @@ void Cluster::mayTakeLong(bool may) const {
 
 void Cluster::startUpIsOver() const { startUp_->disarm(); }
 
-files::Bytes Cluster::broadcast(const files::Bytes& fromMaster) const {
+base::Bytes Cluster::broadcast(const base::Bytes& fromMaster) const {
     auto size = static_cast<std::uint64_t>(fromMaster.size());
     MPI_Bcast(&size, 1, MPI_UINT64_T, kMaster, frames_);
-    files::Bytes bytes = fromMaster;
+    base::Bytes bytes = fromMaster;
     bytes.resize(size);
     constexpr std::uint64_t kPiece = 1 << 30;  // MPI counts in int
     for (std::uint64_t done = 0; done < size; done += kPiece) {
@@ -76,15 +71,15 @@ files::Bytes Cluster::broadcast(const files::Bytes& fromMaster) const {
     return bytes;
 }
 
-std::vector<files::Bytes> Cluster::gather(const files::Bytes& mine) const {
+std::vector<base::Bytes> Cluster::gather(const base::Bytes& mine) const {
     const int length = static_cast<int>(mine.size());
     std::vector<int> lengths(isMaster() ? static_cast<std::size_t>(size_) : 0);
     MPI_Gather(&length, 1, MPI_INT, lengths.data(), 1, MPI_INT, kMaster, frames_);
     std::vector<int> starts(lengths.size());
     std::exclusive_scan(lengths.begin(), lengths.end(), starts.begin(), 0);
-    files::Bytes all(static_cast<std::size_t>(std::accumulate(lengths.begin(), lengths.end(), 0)));
+    base::Bytes all(static_cast<std::size_t>(std::accumulate(lengths.begin(), lengths.end(), 0)));
     MPI_Gatherv(mine.data(), length, MPI_BYTE, all.data(), lengths.data(), starts.data(), MPI_BYTE, kMaster, frames_);
-    std::vector<files::Bytes> result;
+    std::vector<base::Bytes> result;
     for (std::size_t rank = 0; rank < lengths.size(); ++rank) {
         const auto first = all.begin() + starts[rank];
         result.emplace_back(first, first + lengths[rank]);

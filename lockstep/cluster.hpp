@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
+#include "host/clock.hpp"
 #include "lockstep/doorbell.hpp"
 #include "lockstep/host_memory.hpp"
 #include "lockstep/watchdog.hpp"
@@ -16,9 +17,6 @@
 namespace lockstep {
 
 inline constexpr int kMaster = 0;
-
-/// Nanoseconds of this machine's steady clock.
-[[nodiscard]] std::int64_t nowNs();
 
 /// The job: MPI initialised for as long as this lives, and one communicator per purpose.
 ///
@@ -47,9 +45,9 @@ public:
     [[nodiscard]] const HostBells& bells() const { return *bells_; }
 
     /// Gives everyone the master's bytes; collective.
-    [[nodiscard]] files::Bytes broadcast(const files::Bytes& fromMaster) const;
+    [[nodiscard]] base::Bytes broadcast(const base::Bytes& fromMaster) const;
     /// Collects everyone's bytes at the master, by rank; others get nothing. Collective.
-    [[nodiscard]] std::vector<files::Bytes> gather(const files::Bytes& mine) const;
+    [[nodiscard]] std::vector<base::Bytes> gather(const base::Bytes& mine) const;
 
     /// Until it is taken back, the start may take an hour: the master replays a journal, and ranks wait for it.
     void mayTakeLong(bool may) const;

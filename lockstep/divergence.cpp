@@ -15,14 +15,14 @@ Account accountOf(sand::Terrain& terrain) {
 
 std::vector<Account> collectAccounts(FrameBarrier& barrier, sand::Terrain& terrain) {
     const Account mine = accountOf(terrain);
-    files::ByteWriter writer;
+    base::ByteWriter writer;
     writer.put(mine.hash);
     for (const std::uint64_t tile : mine.tiles) {
         writer.put(tile);
     }
     std::vector<Account> accounts;
-    for (const files::Bytes& bytes : barrier.collect(writer.take())) {
-        files::ByteReader reader(bytes);
+    for (const base::Bytes& bytes : barrier.collect(writer.take())) {
+        base::ByteReader reader(bytes);
         Account& account = accounts.emplace_back();
         account.hash = reader.get<std::uint64_t>();
         while (!reader.atEnd()) {
@@ -38,13 +38,13 @@ std::vector<std::int32_t> heightsOf(const sand::Terrain& terrain, int tile) {
 
 /// The heights of one tile of every rank, by rank, at the master.
 std::vector<std::vector<std::int32_t>> collectHeights(FrameBarrier& barrier, const sand::Terrain& terrain, int tile) {
-    files::ByteWriter writer;
+    base::ByteWriter writer;
     for (const std::int32_t height : heightsOf(terrain, tile)) {
         writer.put(height);
     }
     std::vector<std::vector<std::int32_t>> all;
-    for (const files::Bytes& bytes : barrier.collect(writer.take())) {
-        files::ByteReader reader(bytes);
+    for (const base::Bytes& bytes : barrier.collect(writer.take())) {
+        base::ByteReader reader(bytes);
         std::vector<std::int32_t>& heights = all.emplace_back();
         while (!reader.atEnd()) {
             heights.push_back(reader.get<std::int32_t>());
@@ -110,10 +110,10 @@ std::optional<Divergence> findDivergence(FrameBarrier& barrier, sand::Terrain& t
         }
     }
     // The cells of the first odd rank's tile, from everyone: how much differs says bit flip or bug.
-    files::ByteWriter writer;
+    base::ByteWriter writer;
     writer.put(result.odd.empty() ? -1 : result.odd.front().tile);
-    const files::Bytes told = barrier.tellAll(writer.take());
-    const int tile = files::ByteReader(told).get<int>();
+    const base::Bytes told = barrier.tellAll(writer.take());
+    const int tile = base::ByteReader(told).get<int>();
     const auto heights = collectHeights(barrier, terrain, tile);
     if (!barrier.cluster().isMaster()) {
         return std::nullopt;

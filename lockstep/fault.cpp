@@ -9,7 +9,7 @@
 
 namespace lockstep {
 
-void Fault::encode(files::ByteWriter& writer) const {
+void Fault::encode(base::ByteWriter& writer) const {
     writer.put(static_cast<std::uint8_t>(kind));
     writer.put(rank);
     writer.put(frame);
@@ -21,7 +21,7 @@ void Fault::encode(files::ByteWriter& writer) const {
     writer.put(bit);
 }
 
-Fault Fault::decode(files::ByteReader& reader) {
+Fault Fault::decode(base::ByteReader& reader) {
     Fault fault;
     fault.kind = static_cast<Kind>(reader.get<std::uint8_t>());
     fault.rank = reader.get<int>();

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 #include "sand/terrain.hpp"
 
 namespace lockstep {
@@ -33,9 +33,9 @@ struct Fault {
     int signal = 9;                    // of `die`
     int column = 0, row = 0, bit = 0;  // of `diverge`: of the cell's height, 0 being the lowest
 
-    void encode(files::ByteWriter& writer) const;
-    /// Throws files::FormatError when cut short.
-    static Fault decode(files::ByteReader& reader);
+    void encode(base::ByteWriter& writer) const;
+    /// Throws base::FormatError when cut short.
+    static Fault decode(base::ByteReader& reader);
     friend bool operator==(const Fault&, const Fault&) = default;
 };
 

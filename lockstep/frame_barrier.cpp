@@ -12,6 +12,8 @@
 #include <thread>
 #include <utility>
 
+#include "host/clock.hpp"
+
 namespace lockstep {
 namespace {
 
@@ -159,7 +161,7 @@ FrameMessage FrameBarrier::begin(const FrameMessage& fromMaster, std::size_t& by
     const Watched watched(*watchdog_);
     std::array<std::uint8_t, kOneMessage> packet{};
     constexpr std::size_t kRoom = kOneMessage - sizeof(std::uint32_t);
-    files::Bytes message;
+    base::Bytes message;
     std::uint32_t length = 0;
     if (cluster_.isMaster()) {
         frame_ = fromMaster.frame;
@@ -222,7 +224,7 @@ void FrameBarrier::sendArrival(const Arrival& mine) {
     }
     constexpr std::array<std::size_t, 3> kLengths{sizeof(Arrival), 200, 4000};
     std::minstd_rand noise(static_cast<unsigned>(mine.frame));
-    files::Bytes bytes(kLengths.at(mine.frame % kLengths.size()));
+    base::Bytes bytes(kLengths.at(mine.frame % kLengths.size()));
     std::generate(bytes.begin(), bytes.end(), [&] { return static_cast<std::uint8_t>(noise() >> 8); });
     MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, kMaster, kArrivalTag, cluster_.arrivals());
     ring({&kMaster, 1});
@@ -243,12 +245,12 @@ Verdict FrameBarrier::meet(const Arrival& mine, std::int64_t nextFrame) {
                          : differs(&Arrival::stateHash) ? Verdict::otherSand
                          : differs(&Arrival::viewHash)  ? Verdict::otherView
                                                         : Verdict::equal;
-        ending.quiet = std::max<std::int64_t>(0, nextFrame - nowNs());
+        ending.quiet = std::max<std::int64_t>(0, nextFrame - host::monotonicNs());
         sendToAll(&ending, sizeof ending, kVerdictTag);
     } else {
         sendArrival(mine);
         receiveFromMaster(&ending, sizeof ending, kVerdictTag);
-        quietUntil_ = nowNs() + ending.quiet;
+        quietUntil_ = host::monotonicNs() + ending.quiet;
     }
     watchdog_->startUpIsOver();
     return ending.verdict;

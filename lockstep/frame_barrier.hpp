@@ -77,11 +77,11 @@ public:
 
     /// Collective among those concerned: the bytes of rank `from` to each of `to`, who get them; others get nothing
     /// and may leave it out. Whom the master waits for is named, as at the barrier.
-    [[nodiscard]] files::Bytes pass(int from, const std::vector<int>& to, const files::Bytes& bytes);
+    [[nodiscard]] base::Bytes pass(int from, const std::vector<int>& to, const base::Bytes& bytes);
     /// Collective: everyone's bytes at the master, by rank; others get nothing. Named likewise.
-    [[nodiscard]] std::vector<files::Bytes> collect(const files::Bytes& mine);
+    [[nodiscard]] std::vector<base::Bytes> collect(const base::Bytes& mine);
     /// Collective: the master's bytes to everyone. Named likewise.
-    [[nodiscard]] files::Bytes tellAll(const files::Bytes& fromMaster);
+    [[nodiscard]] base::Bytes tellAll(const base::Bytes& fromMaster);
 
     [[nodiscard]] const Cluster& cluster() const { return cluster_; }
     /// What the master is at while it waits for no rank, such as "its journal"; text that lives on.

@@ -12,9 +12,9 @@ constexpr std::uint64_t kPiece = 1 << 30;  // [byte]: MPI counts in int
 
 }  // namespace
 
-files::Bytes FrameBarrier::pass(int from, const std::vector<int>& to, const files::Bytes& bytes) {
+base::Bytes FrameBarrier::pass(int from, const std::vector<int>& to, const base::Bytes& bytes) {
     const Watched watched(*watchdog_);
-    files::Bytes got;
+    base::Bytes got;
     const bool sends = cluster_.rank() == from;
     if (!sends && std::find(to.begin(), to.end(), cluster_.rank()) == to.end()) {
         return got;
@@ -48,20 +48,20 @@ files::Bytes FrameBarrier::pass(int from, const std::vector<int>& to, const file
     return got;
 }
 
-std::vector<files::Bytes> FrameBarrier::collect(const files::Bytes& mine) {
+std::vector<base::Bytes> FrameBarrier::collect(const base::Bytes& mine) {
     if (!cluster_.isMaster()) {
         (void)pass(cluster_.rank(), {kMaster}, mine);
         return {};
     }
-    std::vector<files::Bytes> all{mine};
+    std::vector<base::Bytes> all{mine};
     for (const int rank : ranks_) {
         all.push_back(pass(rank, {kMaster}, {}));
     }
     return all;
 }
 
-files::Bytes FrameBarrier::tellAll(const files::Bytes& fromMaster) {
-    files::Bytes got = pass(kMaster, cluster_.isMaster() ? ranks_ : std::vector<int>{cluster_.rank()}, fromMaster);
+base::Bytes FrameBarrier::tellAll(const base::Bytes& fromMaster) {
+    base::Bytes got = pass(kMaster, cluster_.isMaster() ? ranks_ : std::vector<int>{cluster_.rank()}, fromMaster);
     return cluster_.isMaster() ? fromMaster : got;
 }
 

@@ -5,14 +5,14 @@ namespace lockstep {
 namespace {
 
 template <std::size_t kCount>
-void putEach(const std::array<double, kCount>& numbers, files::ByteWriter& writer) {
+void putEach(const std::array<double, kCount>& numbers, base::ByteWriter& writer) {
     for (const double number : numbers) {
         writer.put(number);
     }
 }
 
 template <std::size_t kCount>
-void getEach(files::ByteReader& reader, std::array<double, kCount>& numbers) {
+void getEach(base::ByteReader& reader, std::array<double, kCount>& numbers) {
     for (double& number : numbers) {
         number = reader.get<double>();
     }
@@ -20,7 +20,7 @@ void getEach(files::ByteReader& reader, std::array<double, kCount>& numbers) {
 
 }  // namespace
 
-void ViewState::encode(files::ByteWriter& writer) const {
+void ViewState::encode(base::ByteWriter& writer) const {
     putEach(head, writer);
     putEach(right, writer);
     writer.put(eyeSeparation);
@@ -30,7 +30,7 @@ void ViewState::encode(files::ByteWriter& writer) const {
     writer.put(stereo);
 }
 
-ViewState ViewState::decode(files::ByteReader& reader) {
+ViewState ViewState::decode(base::ByteReader& reader) {
     ViewState view;
     getEach(reader, view.head);
     getEach(reader, view.right);
@@ -42,8 +42,8 @@ ViewState ViewState::decode(files::ByteReader& reader) {
     return view;
 }
 
-files::Bytes FrameMessage::encode() const {
-    files::ByteWriter writer;
+base::Bytes FrameMessage::encode() const {
+    base::ByteWriter writer;
     writer.putVarint(frame);
     view.encode(writer);
     writer.putVarint(auditTiles);
@@ -59,7 +59,7 @@ files::Bytes FrameMessage::encode() const {
 }
 
 FrameMessage FrameMessage::decode(std::span<const std::uint8_t> bytes) {
-    files::ByteReader reader(bytes);
+    base::ByteReader reader(bytes);
     FrameMessage message;
     message.frame = reader.getVarint();
     message.view = ViewState::decode(reader);

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 #include "lockstep/layer.hpp"
 #include "lockstep/wall_figures.hpp"
 #include "sand/step.hpp"
@@ -25,9 +25,9 @@ struct ViewState {
     Layers layers{};           // shown beside the sand
     std::uint8_t stereo = 0;   // walls::Stereo, which an operator may change
 
-    void encode(files::ByteWriter& writer) const;
-    /// Throws files::FormatError when cut short.
-    static ViewState decode(files::ByteReader& reader);
+    void encode(base::ByteWriter& writer) const;
+    /// Throws base::FormatError when cut short.
+    static ViewState decode(base::ByteReader& reader);
     friend bool operator==(const ViewState&, const ViewState&) = default;
 };
 
@@ -41,8 +41,8 @@ struct FrameMessage {
     std::vector<sand::Step> steps;
     std::optional<WallFigures> figures;  // while Layer::statistics is shown; what they say need not agree
 
-    [[nodiscard]] files::Bytes encode() const;
-    /// Throws files::FormatError.
+    [[nodiscard]] base::Bytes encode() const;
+    /// Throws base::FormatError.
     static FrameMessage decode(std::span<const std::uint8_t> bytes);
     friend bool operator==(const FrameMessage&, const FrameMessage&) = default;
 };

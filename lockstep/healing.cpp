@@ -5,8 +5,8 @@
 
 namespace lockstep {
 
-files::Bytes Remedy::encode() const {
-    files::ByteWriter writer;
+base::Bytes Remedy::encode() const {
+    base::ByteWriter writer;
     writer.put(static_cast<std::uint8_t>(goOn ? 1 : 0));
     writer.put(source);
     writer.putVarint(odd.size());
@@ -17,7 +17,7 @@ files::Bytes Remedy::encode() const {
 }
 
 Remedy Remedy::decode(std::span<const std::uint8_t> bytes) {
-    files::ByteReader reader(bytes);
+    base::ByteReader reader(bytes);
     Remedy remedy;
     remedy.goOn = reader.get<std::uint8_t>() != 0;
     remedy.source = reader.get<int>();
@@ -37,8 +37,8 @@ Healing heal(FrameBarrier& barrier, sand::Terrain& terrain, const Remedy& fromMa
     const bool odd = std::find(remedy.odd.begin(), remedy.odd.end(), rank) != remedy.odd.end();
     if (!remedy.odd.empty()) {
         const bool gives = rank == remedy.source;
-        const files::Bytes state =
-            barrier.pass(remedy.source, remedy.odd, gives ? terrain.encodeState() : files::Bytes());
+        const base::Bytes state =
+            barrier.pass(remedy.source, remedy.odd, gives ? terrain.encodeState() : base::Bytes());
         if (odd) {
             terrain.decodeState(state);
         }

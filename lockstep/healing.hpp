@@ -15,8 +15,8 @@ struct Remedy {
     int source = kMaster;  // whose state is right
     std::vector<int> odd;  // who takes it
 
-    [[nodiscard]] files::Bytes encode() const;
-    /// Throws files::FormatError when cut short.
+    [[nodiscard]] base::Bytes encode() const;
+    /// Throws base::FormatError when cut short.
     static Remedy decode(std::span<const std::uint8_t> bytes);
     friend bool operator==(const Remedy&, const Remedy&) = default;
 };
@@ -30,7 +30,7 @@ enum class Healing : std::uint8_t {
 
 /// Collective, after findDivergence(): the whole state of the remedy's source goes to the odd ranks, point to point.
 /// Only the master gives a remedy. Everyone's hash is then computed afresh from memory; whether all agree is seen when
-/// they meet at the barrier of the same frame once more. Throws files::FormatError when a state is none.
+/// they meet at the barrier of the same frame once more. Throws base::FormatError when a state is none.
 [[nodiscard]] Healing heal(FrameBarrier& barrier, sand::Terrain& terrain, const Remedy& fromMaster = {});
 
 }  // namespace lockstep

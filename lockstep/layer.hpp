@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "files/names.hpp"
+#include "base/text.hpp"
 
 namespace lockstep {
 
@@ -37,9 +37,9 @@ private:
     std::uint8_t bits_ = 0;
 };
 
-/// Throws files::InputError that lists the names.
+/// Throws base::InputError that lists the names.
 [[nodiscard]] inline Layer parseLayer(std::string_view name) {
-    return static_cast<Layer>(files::indexOf(name, kLayerNames, "layer"));
+    return static_cast<Layer>(base::indexOf(name, kLayerNames, "layer"));
 }
 
 }  // namespace lockstep

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <thread>
 
+#include "host/clock.hpp"
 #include "lockstep/cluster.hpp"
 
 namespace lockstep {
@@ -61,7 +62,7 @@ Patience::Rest Patience::nextRest(std::int64_t now) {
 }
 
 void Patience::rest() {
-    const Rest next = nextRest(nowNs());
+    const Rest next = nextRest(host::monotonicNs());
     switch (next.kind) {
         case Rest::Kind::yield:
             sched_yield();  // a process that draws on this core goes first

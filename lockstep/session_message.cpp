@@ -5,8 +5,8 @@
 
 namespace lockstep {
 
-files::Bytes SessionMessage::encode() const {
-    files::ByteWriter writer;
+base::Bytes SessionMessage::encode() const {
+    base::ByteWriter writer;
     writer.putBlock(scene);
     writer.putBlock(wall);
     writer.put(frameTimeout);
@@ -25,7 +25,7 @@ files::Bytes SessionMessage::encode() const {
 }
 
 SessionMessage SessionMessage::decode(std::span<const std::uint8_t> bytes) {
-    files::ByteReader reader(bytes);
+    base::ByteReader reader(bytes);
     SessionMessage session;
     const auto scene = reader.getBlock();
     session.scene.assign(scene.begin(), scene.end());
@@ -50,7 +50,7 @@ SessionMessage SessionMessage::decode(std::span<const std::uint8_t> bytes) {
 std::optional<SessionMessage> broadcastSession(const Cluster& cluster,
                                                const std::optional<SessionMessage>& fromMaster) {
     cluster.mayTakeLong(true);
-    const files::Bytes bytes = cluster.broadcast(fromMaster ? fromMaster->encode() : files::Bytes{});
+    const base::Bytes bytes = cluster.broadcast(fromMaster ? fromMaster->encode() : base::Bytes{});
     cluster.mayTakeLong(false);
     if (bytes.empty()) {
         return std::nullopt;
@@ -59,7 +59,7 @@ std::optional<SessionMessage> broadcastSession(const Cluster& cluster,
 }
 
 std::vector<Readiness> gatherReadiness(const Cluster& cluster, const Readiness& mine) {
-    files::ByteWriter writer;
+    base::ByteWriter writer;
     for (const std::string& text : {mine.host, mine.buildId, mine.error, mine.renderer}) {
         writer.putText(text);
     }
@@ -69,8 +69,8 @@ std::vector<Readiness> gatherReadiness(const Cluster& cluster, const Readiness& 
     }
     writer.put(mine.framesToIgnore);
     std::vector<Readiness> result;
-    for (const files::Bytes& bytes : cluster.gather(writer.take())) {
-        files::ByteReader reader(bytes);
+    for (const base::Bytes& bytes : cluster.gather(writer.take())) {
+        base::ByteReader reader(bytes);
         Readiness& rank = result.emplace_back();
         for (std::string* text : {&rank.host, &rank.buildId, &rank.error, &rank.renderer}) {
             *text = reader.getText();
@@ -91,7 +91,7 @@ bool agreeToGoOn(const Cluster& cluster, bool master) {
 }
 
 std::vector<RankReport> gatherReports(FrameBarrier& barrier, const RankReport& mine) {
-    files::ByteWriter writer;
+    base::ByteWriter writer;
     writer.putText(mine.host);
     writer.putText(mine.renderer);
     writer.putText(mine.swapLock);
@@ -103,10 +103,10 @@ std::vector<RankReport> gatherReports(FrameBarrier& barrier, const RankReport& m
         writer.put(count);
     }
     writer.put(mine.pixelShare);
-    const std::vector<files::Bytes> all = barrier.collect(writer.take());
+    const std::vector<base::Bytes> all = barrier.collect(writer.take());
     std::vector<RankReport> result;
     for (std::size_t rank = 1; rank < all.size(); ++rank) {
-        files::ByteReader reader(all[rank]);
+        base::ByteReader reader(all[rank]);
         RankReport& report = result.emplace_back();
         report.host = reader.getText();
         report.renderer = reader.getText();

@@ -21,15 +21,15 @@ struct SkewedView {
 
 /// What every rank is told before the first frame. Ranks read no file: the scene and the wall come from the master.
 struct SessionMessage {
-    files::Bytes scene;       // sand::Scene::encode
-    files::Bytes wall;        // walls::Wall::encode
+    base::Bytes scene;        // sand::Scene::encode
+    base::Bytes wall;         // walls::Wall::encode
     double frameTimeout = 0;  // [s] without a sign of the master, after which a rank ends
     std::optional<SkewedView> skew;
     std::int32_t spoiltShader = 0;  // the rank that is to find one of its shaders broken, for tests; 0 for none
     std::vector<Fault> faults{};    // made on purpose
-    files::Bytes state{};           // sand::Terrain::encodeState, where a session goes on; empty: as the scene begins
+    base::Bytes state{};            // sand::Terrain::encodeState, where a session goes on; empty: as the scene begins
 
-    [[nodiscard]] files::Bytes encode() const;
+    [[nodiscard]] base::Bytes encode() const;
     static SessionMessage decode(std::span<const std::uint8_t> bytes);
 };
 

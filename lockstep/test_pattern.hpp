@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "files/names.hpp"
+#include "base/text.hpp"
 
 namespace lockstep {
 
@@ -28,9 +28,9 @@ inline constexpr std::array<std::string_view, 6> kPatternNames{"none", "grid", "
     return kPatternNames.at(static_cast<std::size_t>(pattern));
 }
 
-/// Throws files::InputError that lists the names.
+/// Throws base::InputError that lists the names.
 [[nodiscard]] inline Pattern parsePattern(std::string_view name) {
-    return static_cast<Pattern>(files::indexOf(name, kPatternNames, "test pattern"));
+    return static_cast<Pattern>(base::indexOf(name, kPatternNames, "test pattern"));
 }
 
 /// The one after it, as a key steps through them; none comes after the last.

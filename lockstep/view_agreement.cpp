@@ -9,7 +9,7 @@ namespace lockstep {
 ViewProof::ViewProof(std::span<const std::uint8_t> wall) : wall_(XXH3_64bits(wall.data(), wall.size())) {}
 
 std::uint64_t ViewProof::hash(const ViewState& view) const {
-    files::ByteWriter writer;
+    base::ByteWriter writer;
     view.encode(writer);
     return XXH3_64bits_withSeed(writer.bytes().data(), writer.bytes().size(), wall_);
 }

@@ -3,7 +3,7 @@
 
 namespace lockstep {
 
-void WallFigures::encode(files::ByteWriter& writer) const {
+void WallFigures::encode(base::ByteWriter& writer) const {
     writer.put(frameMs);
     writer.put(static_cast<std::uint8_t>(slowest ? 1 : 0));
     if (slowest) {
@@ -20,7 +20,7 @@ void WallFigures::encode(files::ByteWriter& writer) const {
     }
 }
 
-WallFigures WallFigures::decode(files::ByteReader& reader) {
+WallFigures WallFigures::decode(base::ByteReader& reader) {
     WallFigures figures;
     figures.frameMs = reader.get<double>();
     if (reader.get<std::uint8_t>() != 0) {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 
 namespace lockstep {
 
@@ -26,9 +26,9 @@ struct WallFigures {
     std::uint64_t healed = 0;          // times that a rank took the right sand from another
     std::vector<std::uint32_t> swaps;  // by rank from 1: after the first swap of a frame [us]; empty when unknown
 
-    void encode(files::ByteWriter& writer) const;
-    /// Throws files::FormatError when cut short.
-    static WallFigures decode(files::ByteReader& reader);
+    void encode(base::ByteWriter& writer) const;
+    /// Throws base::FormatError when cut short.
+    static WallFigures decode(base::ByteReader& reader);
     friend bool operator==(const WallFigures&, const WallFigures&) = default;
 };
 

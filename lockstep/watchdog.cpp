@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "host/clock.hpp"
 #include "host/event.hpp"
 #include "lockstep/cluster.hpp"
 
@@ -51,14 +52,14 @@ Watchdog::~Watchdog() {
     thread_.join();
 }
 
-void Watchdog::arm() { armedAt_ = nowNs(); }
+void Watchdog::arm() { armedAt_ = host::monotonicNs(); }
 void Watchdog::disarm() { armedAt_ = 0; }
 
 void Watchdog::look() {
     std::unique_lock lock(mutex_);
     std::int64_t spokenOf = 0;  // the wait that was already mentioned
     std::int64_t watched = 0;   // the wait that `waited` is of
-    std::int64_t lastLook = nowNs();
+    std::int64_t lastLook = host::monotonicNs();
     double waited = 0;  // [s]
     const double later = role_ == Role::master ? 0 : kRankAfterMaster;
     // Whoever speaks must come to it: the first to leave takes all the others along.
@@ -66,8 +67,8 @@ void Watchdog::look() {
     const bool speaks = role_ != Role::otherRank;
     while (!stop_.wait_for(lock, std::chrono::milliseconds(100), [this] { return stopping_; })) {
         const std::int64_t since = armedAt_;
-        const double sinceLook = static_cast<double>(nowNs() - lastLook) * 1e-9;
-        lastLook = nowNs();
+        const double sinceLook = static_cast<double>(host::monotonicNs() - lastLook) * 1e-9;
+        lastLook = host::monotonicNs();
         if (since == 0) {
             continue;
         }

@@ -11,8 +11,8 @@
 #include <functional>
 #include <optional>
 
-#include "files/input_error.hpp"
-#include "files/whole_file.hpp"
+#include "base/input_error.hpp"
+#include "host/whole_file.hpp"
 #include "sand/scene.hpp"
 
 namespace master {
@@ -38,8 +38,8 @@ std::optional<std::uint64_t> stepOf(const std::string& name) {
 
 }  // namespace
 
-files::Bytes Checkpoint::encode() const {
-    files::ByteWriter writer;
+base::Bytes Checkpoint::encode() const {
+    base::ByteWriter writer;
     writer.put(kCheckpointMagic);
     writer.put(kCheckpointVersion);
     writer.put(sand::kAlgorithmVersion);
@@ -56,14 +56,14 @@ files::Bytes Checkpoint::encode() const {
 }
 
 Checkpoint Checkpoint::decode(std::span<const std::uint8_t> bytes) {
-    files::ByteReader reader(bytes);
+    base::ByteReader reader(bytes);
     if (reader.get<std::uint32_t>() != kCheckpointMagic) {
-        throw files::FormatError("no checkpoint");
+        throw base::FormatError("no checkpoint");
     }
     const auto version = reader.get<std::uint32_t>();
     const auto algorithm = reader.get<std::uint32_t>();
     if (version != kCheckpointVersion || algorithm != sand::kAlgorithmVersion) {
-        throw files::FormatError(
+        throw base::FormatError(
             fmt::format("a checkpoint of another version of Sandwall ({}, algorithm {})", version, algorithm));
     }
     Checkpoint checkpoint;
@@ -77,7 +77,7 @@ Checkpoint Checkpoint::decode(std::span<const std::uint8_t> bytes) {
     const auto state = reader.getBlock();
     const std::size_t checked = bytes.size() - reader.rest().size();
     if (reader.get<std::uint64_t>() != checkpointSum(bytes.first(checked)) || !reader.atEnd()) {
-        throw files::FormatError("damaged: its checksum is wrong");
+        throw base::FormatError("damaged: its checksum is wrong");
     }
     checkpoint.state.assign(state.begin(), state.end());
     return checkpoint;
@@ -116,10 +116,10 @@ void writeCheckpoint(const fs::path& journal, const Checkpoint& checkpoint, std:
     std::error_code error;
     fs::create_directories(folderOf(journal), error);
     if (error) {
-        throw files::InputError(fmt::format("{}: cannot be made ({})", folderOf(journal).string(), error.message()));
+        throw base::InputError(fmt::format("{}: cannot be made ({})", folderOf(journal).string(), error.message()));
     }
-    const files::Bytes bytes = checkpoint.encode();
-    files::WholeFile file(checkpointFile(journal, checkpoint.step));
+    const base::Bytes bytes = checkpoint.encode();
+    host::WholeFile file(checkpointFile(journal, checkpoint.step));
     file.stream().write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     file.keepSynced();
     const std::vector<std::uint64_t> steps = checkpointsOf(journal);
@@ -133,9 +133,9 @@ Checkpoint readCheckpoint(const fs::path& file) {
     const std::uintmax_t size = fs::is_regular_file(file, error) ? fs::file_size(file, error) : 0;
     std::ifstream stream(file, std::ios::binary);
     if (!stream || error || size == 0) {
-        throw files::FormatError("cannot be read");
+        throw base::FormatError("cannot be read");
     }
-    files::Bytes bytes(size);
+    base::Bytes bytes(size);
     stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
     bytes.resize(static_cast<std::size_t>(stream.gcount()));
     return Checkpoint::decode(bytes);

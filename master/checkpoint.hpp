@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 
 namespace master {
 
@@ -18,10 +18,10 @@ struct Checkpoint {
     std::uint64_t step = 0, frame = 0;
     std::uint32_t epoch = 0;
     std::uint64_t stateHash = 0;
-    files::Bytes state;  // sand::Terrain::encodeState
+    base::Bytes state;  // sand::Terrain::encodeState
 
-    [[nodiscard]] files::Bytes encode() const;
-    /// Throws files::FormatError, in words that follow a file's name. The state is not looked into.
+    [[nodiscard]] base::Bytes encode() const;
+    /// Throws base::FormatError, in words that follow a file's name. The state is not looked into.
     static Checkpoint decode(std::span<const std::uint8_t> bytes);
 };
 
@@ -32,10 +32,10 @@ struct Checkpoint {
 
 /// Removes what a crash has left of checkpoints that were being written. While nobody writes one.
 void forgetHalves(const std::filesystem::path& journal);
-/// On disk when it returns, whole; then all but the newest `kept` are removed. Throws files::InputError. Any thread,
+/// On disk when it returns, whole; then all but the newest `kept` are removed. Throws base::InputError. Any thread,
 /// one at a time.
 void writeCheckpoint(const std::filesystem::path& journal, const Checkpoint& checkpoint, std::size_t kept);
-/// Throws files::FormatError for what cannot be read or is damaged.
+/// Throws base::FormatError for what cannot be read or is damaged.
 [[nodiscard]] Checkpoint readCheckpoint(const std::filesystem::path& file);
 
 }  // namespace master

@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "files/input_error.hpp"
-#include "files/whole_file.hpp"
+#include "base/input_error.hpp"
 #include "host/event.hpp"
+#include "host/whole_file.hpp"
 
 namespace master {
 
@@ -22,11 +22,11 @@ bool writeFailure(const FailureReport& failure, const std::filesystem::path& fol
     host::emitEvent("failure",
                     {{"failure", host::Json{json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)}}});
     try {
-        files::WholeFile file(folder / "failure.json");
+        host::WholeFile file(folder / "failure.json");
         file.stream() << json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
         file.keepSynced();
         return true;
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         fmt::print(stderr, "sandwall: {}\n", error.what());
         return false;
     }

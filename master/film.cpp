@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "master/wall_pictures.hpp"
 #include "pictures/png_file.hpp"
 #include "pictures/stereo_packing.hpp"
@@ -39,20 +39,20 @@ FilmEye filmEyeNamed(const std::string& name) {
             return eye;
         }
     }
-    throw files::InputError(fmt::format("--eye: '{}' is none of left, right, anaglyph", name));
+    throw base::InputError(fmt::format("--eye: '{}' is none of left, right, anaglyph", name));
 }
 
 Film::Film(const walls::Wall& wall, std::optional<FilmEye> eye, std::filesystem::path folder)
     : wall_(wall), eye_(eye), folder_(std::move(folder)) {
     if (eye && walls::eyesOf(wall.stereo).size() < 2) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("--eye: {} shown as {} draws one eye alone; choose another --stereo, such "
                         "as passive",
                         wall.name, walls::stereoName(wall.stereo)));
     }
     if (!fitsOnePicture(wall)) {
         const walls::Canvas canvas = walls::wallCanvas(wall);
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("{}: {} x {} pixels are too many for one picture of the wall; film it on a "
                         "wall file with fewer",
                         wall.name, canvas.width, canvas.height));

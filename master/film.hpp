@@ -14,7 +14,7 @@ namespace master {
 
 /// What a film shows of a wall that draws two eyes.
 enum class FilmEye : std::uint8_t { left, right, anaglyph };
-/// Throws files::InputError for any word but "left", "right" and "anaglyph".
+/// Throws base::InputError for any word but "left", "right" and "anaglyph".
 [[nodiscard]] FilmEye filmEyeNamed(const std::string& name);
 
 /// The pictures of a film of the whole wall: FOLDER/frame_000001.png and so on. One thread.
@@ -23,11 +23,11 @@ enum class FilmEye : std::uint8_t { left, right, anaglyph };
 /// wall's stereo says, as if the wall were one tile; of a wall that keeps the eyes apart the left one.
 class Film {
 public:
-    /// `eye` is shown instead. Throws files::InputError when the wall does not draw two eyes for it or has too many
+    /// `eye` is shown instead. Throws base::InputError when the wall does not draw two eyes for it or has too many
     /// pixels for one picture. The wall must outlive the film.
     Film(const walls::Wall& wall, std::optional<FilmEye> eye, std::filesystem::path folder);
 
-    /// Receives the pictures that all ranks are sending and writes one. Throws files::InputError when it cannot, after
+    /// Receives the pictures that all ranks are sending and writes one. Throws base::InputError when it cannot, after
     /// all were received.
     void take(const lockstep::Cluster& cluster, lockstep::Watchdog& watchdog);
 

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "files/input_error.hpp"
-#include "files/whole_file.hpp"
+#include "base/input_error.hpp"
+#include "host/whole_file.hpp"
 
 namespace master {
 namespace {
@@ -86,11 +86,11 @@ void IncidentFile::keepLast(const Incidents& sinceTheBeginning) {
 
 void IncidentFile::write(const Incidents& incidents) {
     try {
-        files::WholeFile whole(file_);
+        host::WholeFile whole(file_);
         whole.stream() << jsonOf(incidents).dump() << '\n';
         whole.keep();
         kept_ = incidents;
-    } catch (const files::InputError&) {
+    } catch (const base::InputError&) {
         // The journal's complaint about the same disk is enough.
     }
 }

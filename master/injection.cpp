@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
 namespace master {
 namespace {
@@ -58,12 +58,12 @@ void readNumber(std::string_view pair, std::span<Key> keys, const std::string& t
             *key.value > key.most) {
             const std::string most = key.most == kMostFrames ? fmt::format("a whole number from {}", key.least)
                                                              : fmt::format("{} to {}", key.least, key.most);
-            throw files::InputError(fmt::format("--inject {}: {} must be {}, got '{}'", text, key.name, most, digits));
+            throw base::InputError(fmt::format("--inject {}: {} must be {}, got '{}'", text, key.name, most, digits));
         }
         key.given = true;
         return;
     }
-    throw files::InputError(fmt::format("--inject {}: '{}' is not understood; write {}", text, pair, usage));
+    throw base::InputError(fmt::format("--inject {}: '{}' is not understood; write {}", text, pair, usage));
 }
 
 /// Reads KEY=NUMBER,KEY=NUMBER,… into the values of the keys.
@@ -75,7 +75,7 @@ void readNumbers(std::string_view pairs, std::span<Key> keys, const std::string&
     }
     for (const Key& key : keys) {
         if (key.needed && !key.given) {
-            throw files::InputError(fmt::format("--inject {}: {} is missing; write {}", text, key.name, usage));
+            throw base::InputError(fmt::format("--inject {}: {} is missing; write {}", text, key.name, usage));
         }
     }
 }
@@ -85,7 +85,7 @@ Kind kindOf(const std::string& text) {
     const auto* const name =
         std::find(lockstep::kFaultNames.begin(), lockstep::kFaultNames.end(), std::string_view(text).substr(0, colon));
     if (name == lockstep::kFaultNames.end() || colon == std::string::npos) {
-        throw files::InputError(fmt::format("--inject {}: no such fault; write {}", text, fmt::join(kUsage, ", or ")));
+        throw base::InputError(fmt::format("--inject {}: no such fault; write {}", text, fmt::join(kUsage, ", or ")));
     }
     return static_cast<Kind>(name - lockstep::kFaultNames.begin());
 }
@@ -133,12 +133,12 @@ lockstep::Fault parseFault(const std::string& text, const FaultTargets& targets)
                 kUsage.at(static_cast<std::size_t>(fault.kind)));
     fault.rank = keys.front().given ? static_cast<int>(rank) : lockstep::Fault::kLink;
     if (fault.rank == lockstep::Fault::kLink && !targets.link) {
-        throw files::InputError(fmt::format(
+        throw base::InputError(fmt::format(
             "--inject {}: without a rank it strikes the link to the haptic server, and there is none; name a rank",
             text));
     }
     if (std::find(kHarmless.begin(), kHarmless.end(), signal) != kHarmless.end()) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("--inject {}: signal {} ends no process; write one that does, such as 9 or 11", text, signal));
     }
     fault.milliseconds = static_cast<std::uint32_t>(milliseconds);

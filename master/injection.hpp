@@ -15,7 +15,7 @@ struct FaultTargets {
 };
 
 /// Reads a fault made on purpose: KIND:KEY=NUMBER,KEY=NUMBER,… as --inject takes it (docs/operator.md). Throws
-/// files::InputError that says what can be written.
+/// base::InputError that says what can be written.
 [[nodiscard]] lockstep::Fault parseFault(const std::string& text, const FaultTargets& targets);
 
 }  // namespace master

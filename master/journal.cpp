@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
 namespace master {
 namespace {
@@ -28,8 +28,8 @@ struct Gather {
 sand::Scene sceneOf(const JournalReader& reader) {
     try {
         return sand::Scene::decode(reader.header().scene);
-    } catch (const files::FormatError& error) {
-        throw files::InputError(fmt::format("{}: {}", reader.place().journal.string(), error.what()));
+    } catch (const base::FormatError& error) {
+        throw base::InputError(fmt::format("{}: {}", reader.place().journal.string(), error.what()));
     }
 }
 

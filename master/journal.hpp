@@ -18,16 +18,16 @@ struct Journal {
     sand::Scene scene;
     std::string buildId;
     std::vector<JournalFrame> frames;
-    std::vector<files::Bytes> ticks;  // pieces of the haptic server's tick track, when it recorded
+    std::vector<base::Bytes> ticks;  // pieces of the haptic server's tick track, when it recorded
     std::vector<JournalResumed> resumes;
     std::optional<JournalEnd> end;  // absent when the session was cut off
     std::int64_t tornBytes = 0;     // at the end of the last part, behind the last whole record; left out
 };
 
-/// Throws files::InputError for a file that is missing, no journal, of another version, or damaged before its end, and
+/// Throws base::InputError for a file that is missing, no journal, of another version, or damaged before its end, and
 /// for a journal of whose parts one is missing.
 [[nodiscard]] Journal readJournal(const std::filesystem::path& file);
-/// Of the header. Throws files::InputError.
+/// Of the header. Throws base::InputError.
 [[nodiscard]] sand::Scene sceneOf(const JournalReader& reader);
 
 }  // namespace master

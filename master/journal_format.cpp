@@ -19,19 +19,19 @@ std::uint64_t chainedSum(std::span<const std::uint8_t> bytes, std::uint64_t seed
     return XXH3_64bits_withSeed(bytes.data(), bytes.size(), seed);  // seed 0 is XXH3_64bits
 }
 
-void put(const JournalEnd& end, files::ByteWriter& writer) {
+void put(const JournalEnd& end, base::ByteWriter& writer) {
     writer.put(end.step);
     writer.put(end.hash);
 }
 
-JournalEnd getEnd(files::ByteReader& reader) {
+JournalEnd getEnd(base::ByteReader& reader) {
     JournalEnd end;
     end.step = reader.get<std::uint64_t>();
     end.hash = reader.get<std::uint64_t>();
     return end;
 }
 
-void put(const sand::Material& material, files::ByteWriter& writer) {
+void put(const sand::Material& material, base::ByteWriter& writer) {
     for (const double number : {material.dryTalus, material.humidity, material.cohesionLength, material.band,
                                 material.settlingSeconds, material.toolRadius, material.toolHeading}) {
         writer.put(number);
@@ -44,7 +44,7 @@ void put(const sand::Material& material, files::ByteWriter& writer) {
     writer.put(static_cast<std::uint8_t>(material.leftFoot ? 1 : 0));
 }
 
-sand::Material getMaterial(files::ByteReader& reader) {
+sand::Material getMaterial(base::ByteReader& reader) {
     sand::Material material;
     for (double* number : {&material.dryTalus, &material.humidity, &material.cohesionLength, &material.band,
                            &material.settlingSeconds, &material.toolRadius, &material.toolHeading}) {
@@ -57,14 +57,14 @@ sand::Material getMaterial(files::ByteReader& reader) {
     }
     const auto kind = reader.get<std::uint8_t>();
     if (kind >= sand::kToolKinds) {
-        throw files::FormatError("a material with a tool of an unknown shape");
+        throw base::FormatError("a material with a tool of an unknown shape");
     }
     material.toolKind = static_cast<sand::ToolKind>(kind);
     material.leftFoot = reader.get<std::uint8_t>() != 0;
     return material;
 }
 
-JournalFrame getFrame(files::ByteReader& reader) {
+JournalFrame getFrame(base::ByteReader& reader) {
     JournalFrame frame;
     frame.frame = reader.getVarint();
     frame.hashBefore = reader.get<std::uint64_t>();
@@ -75,7 +75,7 @@ JournalFrame getFrame(files::ByteReader& reader) {
     return frame;
 }
 
-JournalResumed getResumed(files::ByteReader& reader) {
+JournalResumed getResumed(base::ByteReader& reader) {
     JournalResumed resumed;
     resumed.frame = reader.getVarint();
     resumed.sand = getEnd(reader);
@@ -86,7 +86,7 @@ JournalResumed getResumed(files::ByteReader& reader) {
 
 /// Type and payload.
 struct Encode {
-    files::ByteWriter writer{};
+    base::ByteWriter writer{};
 
     void operator()(const JournalFrame& frame) {
         writer.put(std::uint8_t{kFrame});
@@ -150,8 +150,8 @@ bool recordAt(std::span<const std::uint8_t> rest, std::size_t at, std::uint64_t 
 
 }  // namespace
 
-files::Bytes encodeHeader(const JournalHeader& header, std::uint64_t& chain) {
-    files::ByteWriter writer;
+base::Bytes encodeHeader(const JournalHeader& header, std::uint64_t& chain) {
+    base::ByteWriter writer;
     for (const std::uint32_t number : {kJournalMagic, kJournalVersion, header.part}) {
         writer.put(number);
     }
@@ -160,7 +160,7 @@ files::Bytes encodeHeader(const JournalHeader& header, std::uint64_t& chain) {
     }
     writer.putText(header.buildId);
     writer.putBlock(header.scene);
-    files::ByteWriter material;
+    base::ByteWriter material;
     if (header.material) {
         put(*header.material, material);
     }
@@ -173,7 +173,7 @@ files::Bytes encodeHeader(const JournalHeader& header, std::uint64_t& chain) {
 namespace {
 
 /// What stands behind magic and version.
-void decodeRest(JournalHeader& header, files::ByteReader& reader, std::span<const std::uint8_t> all,
+void decodeRest(JournalHeader& header, base::ByteReader& reader, std::span<const std::uint8_t> all,
                 std::uint64_t& chain) {
     const bool chained = header.version >= kChainedSince;
     if (chained) {
@@ -188,11 +188,11 @@ void decodeRest(JournalHeader& header, files::ByteReader& reader, std::span<cons
     const std::size_t checked = all.size() - reader.rest().size();
     chain = reader.get<std::uint64_t>();
     if (chain != chainedSum(all.first(checked), header.continues)) {
-        throw files::FormatError("its checksum is wrong");
+        throw base::FormatError("its checksum is wrong");
     }
     header.scene.assign(scene.begin(), scene.end());
     if (!material.empty()) {
-        files::ByteReader numbers(material);
+        base::ByteReader numbers(material);
         header.material = getMaterial(numbers);
     }
     chain = chained ? chain : 0;
@@ -200,30 +200,30 @@ void decodeRest(JournalHeader& header, files::ByteReader& reader, std::span<cons
 
 }  // namespace
 
-JournalHeader decodeHeader(files::ByteReader& reader, std::uint64_t& chain) {
+JournalHeader decodeHeader(base::ByteReader& reader, std::uint64_t& chain) {
     const std::span<const std::uint8_t> all = reader.rest();
     JournalHeader header;
     if (reader.get<std::uint32_t>() != kJournalMagic) {
-        throw files::FormatError("no journal of Sandwall");
+        throw base::FormatError("no journal of Sandwall");
     }
     header.version = reader.get<std::uint32_t>();
     if (header.version < kOldestVersion || header.version > kJournalVersion) {
-        throw files::FormatError(fmt::format("a journal of version {}; this program reads {} to {}", header.version,
-                                             kOldestVersion, kJournalVersion));
+        throw base::FormatError(fmt::format("a journal of version {}; this program reads {} to {}", header.version,
+                                            kOldestVersion, kJournalVersion));
     }
     try {
         decodeRest(header, reader, all, chain);
-    } catch (const files::FormatError& error) {
+    } catch (const base::FormatError& error) {
         throw HeaderLost(fmt::format("its header is cut off or damaged ({})", error.what()));
     }
     return header;
 }
 
-files::Bytes encodeRecord(const JournalRecord& record, std::uint64_t& chain) {
+base::Bytes encodeRecord(const JournalRecord& record, std::uint64_t& chain) {
     Encode encode;
     std::visit(encode, record);
-    const files::Bytes& body = encode.writer.bytes();
-    files::ByteWriter writer;
+    const base::Bytes& body = encode.writer.bytes();
+    base::ByteWriter writer;
     writer.put(static_cast<std::uint32_t>(body.size() - 1));
     writer.putBytes(body);
     chain = chainedSum(body, chain);
@@ -232,7 +232,7 @@ files::Bytes encodeRecord(const JournalRecord& record, std::uint64_t& chain) {
 }
 
 JournalRecord decodeRecord(std::span<const std::uint8_t> body) {
-    files::ByteReader payload(body.subspan(1));
+    base::ByteReader payload(body.subspan(1));
     switch (body[0]) {
         case kFrame:
             return getFrame(payload);
@@ -247,7 +247,7 @@ JournalRecord decodeRecord(std::span<const std::uint8_t> body) {
         case kContinued:
             return JournalContinued{payload.get<std::uint32_t>()};
         default:
-            throw files::FormatError(fmt::format("a record of unknown type {}", body[0]));
+            throw base::FormatError(fmt::format("a record of unknown type {}", body[0]));
     }
 }
 

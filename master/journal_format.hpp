@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 #include "sand/material.hpp"
 #include "sand/scene.hpp"
 #include "sand/step.hpp"
@@ -41,7 +41,7 @@ struct JournalResumed {
 
 /// A piece of the haptic server's tick track.
 struct JournalTicks {
-    files::Bytes piece;
+    base::Bytes piece;
 };
 
 /// The rest of the session is in the next part.
@@ -60,24 +60,24 @@ struct JournalHeader {
     std::uint64_t continues = 0;  // checksum of the last record of the part before; 0 in the first
     JournalEnd sand;              // before its first step
     std::string buildId;
-    files::Bytes scene;                      // sand::Scene::encode; empty in later parts
+    base::Bytes scene;                       // sand::Scene::encode; empty in later parts
     std::optional<sand::Material> material;  // as the operator knows it; none in later parts and before version 5
 };
 
 /// Of a journal whose version is read, but no more of its header.
-class HeaderLost : public files::FormatError {
+class HeaderLost : public base::FormatError {
 public:
-    using files::FormatError::FormatError;
+    using base::FormatError::FormatError;
 };
 
 /// With its checksum, which begins the chain of the records behind it.
-[[nodiscard]] files::Bytes encodeHeader(const JournalHeader& header, std::uint64_t& chain);
-/// Throws files::FormatError, HeaderLost perhaps, in words that follow a file's name. The scene is not looked into.
-[[nodiscard]] JournalHeader decodeHeader(files::ByteReader& reader, std::uint64_t& chain);
+[[nodiscard]] base::Bytes encodeHeader(const JournalHeader& header, std::uint64_t& chain);
+/// Throws base::FormatError, HeaderLost perhaps, in words that follow a file's name. The scene is not looked into.
+[[nodiscard]] JournalHeader decodeHeader(base::ByteReader& reader, std::uint64_t& chain);
 
 /// One whole record; `chain` is the checksum of the one before, and then its own.
-[[nodiscard]] files::Bytes encodeRecord(const JournalRecord& record, std::uint64_t& chain);
-/// Of type and payload, whose checksum was right. Throws files::FormatError.
+[[nodiscard]] base::Bytes encodeRecord(const JournalRecord& record, std::uint64_t& chain);
+/// Of type and payload, whose checksum was right. Throws base::FormatError.
 [[nodiscard]] JournalRecord decodeRecord(std::span<const std::uint8_t> body);
 /// Of type and payload of a record.
 [[nodiscard]] std::uint64_t recordChecksum(std::span<const std::uint8_t> body, std::uint64_t chain);

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "host/event.hpp"
 #include "master/checkpoint.hpp"
 
@@ -31,7 +31,7 @@ JournalPolicy parseJournalPolicy(const std::string& word) {
             return static_cast<JournalPolicy>(i);
         }
     }
-    throw files::InputError(fmt::format("--journal: '{}' is not required, best-effort or off", word));
+    throw base::InputError(fmt::format("--journal: '{}' is not required, best-effort or off", word));
 }
 
 std::string_view journalPolicyName(JournalPolicy policy) { return kPolicies.at(static_cast<std::size_t>(policy)); }
@@ -163,18 +163,18 @@ void JournalKeeper::keep(const JournalFrame& frame, const std::vector<sand::Mate
             writer_->keep(material);
         }
         writer_->append(frame);
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         giveUp(fmt::format("{}; it ends before frame {}", error.what(), frame.frame));
     }
 }
 
-void JournalKeeper::keepTicks(const std::vector<files::Bytes>& pieces) {
-    for (const files::Bytes& piece : pieces) {
+void JournalKeeper::keepTicks(const std::vector<base::Bytes>& pieces) {
+    for (const base::Bytes& piece : pieces) {
         try {
             if (writer_ && !writer_->keep(JournalTicks{piece}) && !std::exchange(ticksLeftOut_, true)) {
                 fmt::print(stderr, "sandwall: no room for the tick track; ticks are left out until there is\n");
             }
-        } catch (const files::InputError& error) {
+        } catch (const base::InputError& error) {
             giveUp(error.what());
         }
     }
@@ -223,7 +223,7 @@ void JournalKeeper::finish(const JournalEnd& end) {
         if (writer_) {
             writer_->finish(end.step, end.hash);
         }
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         fmt::print(stderr, "sandwall: {}; it holds every step, and no end\n", error.what());
     }
 }

@@ -22,7 +22,7 @@ enum class JournalPolicy : std::uint8_t {
     bestEffort,  // the session goes on without a journal
     off          // there is none
 };
-/// Throws files::InputError for other words than required, best-effort and off.
+/// Throws base::InputError for other words than required, best-effort and off.
 [[nodiscard]] JournalPolicy parseJournalPolicy(const std::string& word);
 [[nodiscard]] std::string_view journalPolicyName(JournalPolicy policy);
 
@@ -42,7 +42,7 @@ public:
 /// Main thread; checkpoints are compressed and written on another.
 class JournalKeeper {
 public:
-    /// Begins OUT/session.journal, or goes on with that of `resumed`. Throws files::InputError when it cannot be made,
+    /// Begins OUT/session.journal, or goes on with that of `resumed`. Throws base::InputError when it cannot be made,
     /// std::runtime_error while another session writes it, and when it is not what was read any more.
     JournalKeeper(const std::filesystem::path& out, const JournalOptions& options, const sand::Scene& scene,
                   const ResumedSession* resumed, const std::string& failure, std::string buildId);
@@ -57,7 +57,7 @@ public:
     /// Returns when the steps are on disk. Throws DiskFailure when the disk refuses them and the policy is required.
     void keep(const JournalFrame& frame, const std::vector<sand::Material>& materials);
     /// Pieces of the tick track: on disk with later steps. Throws as keep() does.
-    void keepTicks(const std::vector<files::Bytes>& pieces);
+    void keepTicks(const std::vector<base::Bytes>& pieces);
     /// After every frame: begins a checkpoint when it is time to. All steps of the sand are in the journal.
     void shown(const sand::Terrain& terrain, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash);
     void finish(const JournalEnd& end);

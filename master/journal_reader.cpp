@@ -7,14 +7,14 @@
 #include <cstring>
 #include <utility>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
 namespace master {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::span<std::uint8_t> readInto(std::ifstream& stream, files::Bytes& bytes, std::int64_t size) {
+std::span<std::uint8_t> readInto(std::ifstream& stream, base::Bytes& bytes, std::int64_t size) {
     bytes.resize(static_cast<std::size_t>(size));
     stream.read(reinterpret_cast<char*>(bytes.data()), size);
     bytes.resize(static_cast<std::size_t>(stream.gcount()));
@@ -22,18 +22,18 @@ std::span<std::uint8_t> readInto(std::ifstream& stream, files::Bytes& bytes, std
     return bytes;
 }
 
-/// The header of a file, and how long it is. Throws files::FormatError.
+/// The header of a file, and how long it is. Throws base::FormatError.
 JournalHeader readHeader(std::ifstream& stream, std::int64_t size, std::uint64_t& chain, std::int64_t& length) {
     // A header's length is known when it has been read: nearly all of it is the scene.
     for (std::int64_t piece = 1 << 16;; piece *= 8) {
-        files::Bytes bytes;
+        base::Bytes bytes;
         stream.seekg(0);
-        files::ByteReader reader(readInto(stream, bytes, std::min(piece, size)));
+        base::ByteReader reader(readInto(stream, bytes, std::min(piece, size)));
         try {
             JournalHeader header = decodeHeader(reader, chain);
             length = static_cast<std::int64_t>(bytes.size() - reader.rest().size());
             return header;
-        } catch (const files::FormatError&) {
+        } catch (const base::FormatError&) {
             if (piece >= size) {
                 throw;
             }
@@ -54,8 +54,8 @@ JournalReader::JournalReader(fs::path journal) {
     } catch (const HeaderLost& error) {
         fail(fmt::format("{}; it holds the scene as the session began, without which nothing can be recovered",
                          error.what()));
-    } catch (const files::FormatError& error) {
-        throw files::InputError(fmt::format("{}: {}", place_.journal.string(), error.what()));
+    } catch (const base::FormatError& error) {
+        throw base::InputError(fmt::format("{}: {}", place_.journal.string(), error.what()));
     }
     if (header_.part != 1) {
         fail(fmt::format("is part {} of a session; name its first part", header_.part));
@@ -68,12 +68,12 @@ void JournalReader::open(std::uint32_t part) {
     stream_.close();
     stream_.open(file, std::ios::binary);
     if (!stream_ || fs::is_directory(file, none)) {
-        throw files::InputError(fmt::format("{}: cannot be read; check the path", file.string()));
+        throw base::InputError(fmt::format("{}: cannot be read; check the path", file.string()));
     }
     stream_.seekg(0, std::ios::end);
     size_ = stream_.tellg();
     if (size_ < 0) {
-        throw files::InputError(fmt::format("{}: cannot be read; it is no plain file", file.string()));
+        throw base::InputError(fmt::format("{}: cannot be read; it is no plain file", file.string()));
     }
     header_ = readHeader(stream_, size_, place_.chain, place_.offset);
     place_.session = header_.session;
@@ -91,19 +91,19 @@ void JournalReader::openNext(std::uint32_t part) {
     }
     try {
         open(part);
-    } catch (const files::FormatError& error) {
-        throw files::InputError(
+    } catch (const base::FormatError& error) {
+        throw base::InputError(
             fmt::format("{}: {}; what stands in the part before is whole", file.string(), error.what()));
     }
     earlierBytes_ += before.offset;
     if (header_.session != before.session || header_.part != part || header_.continues != before.chain) {
-        throw files::InputError(fmt::format("{}: does not go on where {} ends; what stands there is whole",
-                                            file.string(), partOf(before.journal, before.part).filename().string()));
+        throw base::InputError(fmt::format("{}: does not go on where {} ends; what stands there is whole",
+                                           file.string(), partOf(before.journal, before.part).filename().string()));
     }
 }
 
 void JournalReader::fail(const std::string& why) const {
-    throw files::InputError(fmt::format("{}: {}", partOf(place_.journal, place_.part).string(), why));
+    throw base::InputError(fmt::format("{}: {}", partOf(place_.journal, place_.part).string(), why));
 }
 
 bool JournalReader::goesOn() const {
@@ -121,12 +121,12 @@ bool JournalReader::goesOn() const {
         const JournalHeader header = readHeader(next, size, chain, length);
         // One that was made and not yet gone on with holds nothing.
         return header.session == header_.session && size > length;
-    } catch (const files::FormatError&) {
+    } catch (const base::FormatError&) {
         return false;
     }
 }
 
-bool JournalReader::readRecord(files::Bytes& body) {
+bool JournalReader::readRecord(base::Bytes& body) {
     std::array<char, sizeof(std::uint32_t)> four{};
     if (size_ - place_.offset < static_cast<std::int64_t>(kAroundPayload) || !stream_.read(four.data(), four.size())) {
         return false;
@@ -154,7 +154,7 @@ bool JournalReader::readRecord(files::Bytes& body) {
 void JournalReader::endHere(const std::string& why) {
     const std::int64_t left = size_ - place_.offset;
     if (left > 0) {
-        files::Bytes rest;
+        base::Bytes rest;
         stream_.clear();
         stream_.seekg(place_.offset);
         // A crash tears the last record. One that is followed by more was damaged on the disk, its length perhaps.
@@ -172,7 +172,7 @@ void JournalReader::endHere(const std::string& why) {
 }
 
 std::optional<JournalRecord> JournalReader::next() {
-    files::Bytes body;
+    base::Bytes body;
     while (!ended_) {
         if (!readRecord(body)) {
             endHere("a record that is not whole");
@@ -181,7 +181,7 @@ std::optional<JournalRecord> JournalReader::next() {
         JournalRecord record;
         try {
             record = decodeRecord(body);
-        } catch (const files::FormatError& error) {
+        } catch (const base::FormatError& error) {
             fail(fmt::format("damaged at byte {} of {}: {}; what stands before it is whole", place_.offset, size_,
                              error.what()));
         }

@@ -26,13 +26,13 @@ struct JournalPlace {
 /// Reads a session record by record, from part to part. Holds one record at a time. One thread.
 class JournalReader {
 public:
-    /// Throws files::InputError for a file that is missing, no journal, a later part, of another version or with a
+    /// Throws base::InputError for a file that is missing, no journal, a later part, of another version or with a
     /// damaged header.
     explicit JournalReader(std::filesystem::path journal);
 
     [[nodiscard]] const JournalHeader& header() const { return header_; }
     /// The next record; nothing behind the last whole one. Never JournalContinued: what follows comes from the next
-    /// part. Throws files::InputError, with the place, for a journal that is damaged before its end, and for one of
+    /// part. Throws base::InputError, with the place, for a journal that is damaged before its end, and for one of
     /// whose parts one is missing; what was given before is whole.
     [[nodiscard]] std::optional<JournalRecord> next();
 
@@ -49,7 +49,7 @@ public:
 private:
     void open(std::uint32_t part);
     void openNext(std::uint32_t part);
-    [[nodiscard]] bool readRecord(files::Bytes& body);
+    [[nodiscard]] bool readRecord(base::Bytes& body);
     [[noreturn]] void fail(const std::string& why) const;
     void endHere(const std::string& why);
     /// Whether there is a next part that holds anything.

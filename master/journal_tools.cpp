@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "files/input_error.hpp"
-#include "files/whole_file.hpp"
+#include "base/input_error.hpp"
+#include "host/whole_file.hpp"
 #include "master/journal.hpp"
 
 namespace master {
@@ -70,7 +70,7 @@ void sayWhatIsMissing(const std::filesystem::path& journal, std::int64_t tornByt
 void exportSteps(const std::filesystem::path& journal, const std::filesystem::path& file) {
     JournalReader reader(journal);
     ExportedTool tool(sceneOf(reader));
-    files::WholeFile out(file);
+    host::WholeFile out(file);
     out.stream() << "epoch,number,frame,engaged,tool,radius,heading,path,edit\n";
     bool orderlyEnd = false;
     while (const auto record = reader.next()) {
@@ -95,7 +95,7 @@ void exportSteps(const std::filesystem::path& journal, const std::filesystem::pa
 void recoverJournal(const std::filesystem::path& journal, const std::filesystem::path& file) {
     std::error_code error;
     if (std::filesystem::exists(file, error)) {
-        throw files::InputError(fmt::format("{}: is there already; choose another file", file.string()));
+        throw base::InputError(fmt::format("{}: is there already; choose another file", file.string()));
     }
     JournalReader reader(journal);
     sand::Scene scene = sceneOf(reader);
@@ -113,7 +113,7 @@ void recoverJournal(const std::filesystem::path& journal, const std::filesystem:
             step = frame != nullptr && !frame->steps.empty() ? frame->steps.back().number : step;
             writer.keep(*record);
         }
-    } catch (const files::InputError& found) {
+    } catch (const base::InputError& found) {
         damage = found.what();
     }
     writer.sync();

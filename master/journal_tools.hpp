@@ -7,7 +7,7 @@
 namespace master {
 
 /// What sandwall-replay does with a journal beside replaying it. All of it is read record by record, so that memory
-/// does not grow with the session. All throw files::InputError for a journal that cannot be used.
+/// does not grow with the session. All throw base::InputError for a journal that cannot be used.
 
 /// Checks all that a journal says of itself, and checkpoints beside it: a line on standard output for each. Returns 0
 /// when all agrees, and 1 when the sand or a checkpoint differs.

@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "master/checkpoint.hpp"
 #include "master/journal.hpp"
 #include "master/journal_tools.hpp"
@@ -43,8 +43,8 @@ public:
         }
         for (const sand::Step& step : frame.steps) {
             if (step.number != terrain_.stepNumber() + 1) {
-                throw files::InputError(fmt::format("{}: step {} follows step {}; a part of the session is missing",
-                                                    journal_.string(), step.number, terrain_.stepNumber()));
+                throw base::InputError(fmt::format("{}: step {} follows step {}; a part of the session is missing",
+                                                   journal_.string(), step.number, terrain_.stepNumber()));
             }
             lastEpoch_ = std::max(lastEpoch_, step.epoch);
             terrain_.apply(step);
@@ -85,7 +85,7 @@ private:
             sand::Terrain sand = sandOfCheckpoint(checkpointFile(journal_, found->first), reader_.header(), start_);
             found->second =
                 sand.stateHash() == terrain_.stateHash() ? "the replay's sand" : "other sand than the replay's";
-        } catch (const files::FormatError& error) {
+        } catch (const base::FormatError& error) {
             found->second = error.what();
         }
         badCheckpoints_ += found->second == "the replay's sand" ? 0 : 1;

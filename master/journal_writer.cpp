@@ -8,7 +8,7 @@
 #include <random>
 #include <utility>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
 namespace master {
 namespace {
@@ -48,9 +48,9 @@ void keepPreviousJournal(const fs::path& journal) {
         std::error_code error;
         fs::rename(partOf(journal, part), partOf(kept, part), error);
         if (error) {
-            throw files::InputError(fmt::format("{}: cannot be kept as {} ({}); choose another --out",
-                                                partOf(journal, part).string(), partOf(kept, part).filename().string(),
-                                                error.message()));
+            throw base::InputError(fmt::format("{}: cannot be kept as {} ({}); choose another --out",
+                                               partOf(journal, part).string(), partOf(kept, part).filename().string(),
+                                               error.message()));
         }
     }
 }
@@ -79,14 +79,14 @@ void JournalWriter::rotate(const JournalEnd& now) {
     writeWaiting();
     // The next part is there, with the checksum that it hangs on, before this one says that it is.
     std::uint64_t chain = chain_;
-    const files::Bytes continued = encodeRecord(JournalContinued{part_ + 1}, chain);
+    const base::Bytes continued = encodeRecord(JournalContinued{part_ + 1}, chain);
     JournalHeader header;
     header.session = session_;
     header.part = part_ + 1;
     header.continues = chain;
     header.sand = now;
     header.buildId = buildId_;
-    const files::Bytes begin = encodeHeader(header, chain);
+    const base::Bytes begin = encodeHeader(header, chain);
     PartFile next = PartFile::make(partOf(journal_, part_ + 1), begin);
     file_.write(continued);
     file_ = std::move(next);
@@ -98,7 +98,7 @@ JournalWriter::Room JournalWriter::makeRoom(std::int64_t bytes, const JournalEnd
     if (file_.size() > partBytes_) {
         try {
             rotate(now);
-        } catch (const files::InputError& error) {
+        } catch (const base::InputError& error) {
             why = error.what();
             return Room::none;
         }
@@ -112,7 +112,7 @@ JournalWriter::Room JournalWriter::makeRoom(std::int64_t bytes, const JournalEnd
 }
 
 void JournalWriter::put(const JournalRecord& record) {
-    const files::Bytes bytes = encodeRecord(record, chain_);
+    const base::Bytes bytes = encodeRecord(record, chain_);
     const std::size_t end = waiting_.size();
     waiting_.resize(end + bytes.size());
     std::memcpy(waiting_.data() + end, bytes.data(), bytes.size());

@@ -14,12 +14,12 @@ namespace master {
 inline constexpr std::int64_t kPartBytes = 256 << 20;
 
 /// What a session before has left goes out of the way: its journal becomes FILE.previous, its parts FILE.previous.2 and
-/// so on. Throws files::InputError.
+/// so on. Throws base::InputError.
 void keepPreviousJournal(const std::filesystem::path& journal);
 
 /// Writes a session to disk before the wall shows it (docs/journal.md). One thread.
 ///
-/// What throws, throws files::InputError; the file then ends with the record before, and the writer is to be left
+/// What throws, throws base::InputError; the file then ends with the record before, and the writer is to be left
 /// alone.
 class JournalWriter {
 public:
@@ -68,7 +68,7 @@ private:
     std::uint32_t part_ = 1;
     std::uint64_t chain_ = 0;
     PartFile file_;
-    files::Bytes waiting_;  // whole records that are not on disk
+    base::Bytes waiting_;  // whole records that are not on disk
 };
 
 }  // namespace master

@@ -6,13 +6,14 @@
 #include <limits>
 #include <string_view>
 
-#include "files/input_error.hpp"
-#include "files/whole_file.hpp"
+#include "base/input_error.hpp"
 #include "haptic_bridge/link_options.hpp"
 #include "host/build_id.hpp"
 #include "host/command_line.hpp"
 #include "host/event.hpp"
 #include "host/version.hpp"
+#include "host/whole_file.hpp"
+#include "host/worker_pool.hpp"
 #include "lockstep/clock_sync.hpp"
 #include "lockstep/session_message.hpp"
 #include "master/injection.hpp"
@@ -20,7 +21,6 @@
 #include "master/start_up.hpp"
 #include "sand/scene.hpp"
 #include "walls/wall.hpp"
-#include "workers/sand_threads.hpp"
 
 namespace {
 
@@ -49,7 +49,7 @@ lockstep::SkewedView parseSkew(const std::string& text) {
     int used = 0;
     if (std::sscanf(text.c_str(), "rank=%d,frame=%lu%n", &skew.rank, &skew.frame, &used) != 2 ||
         used != static_cast<int>(text.size())) {
-        throw files::InputError(fmt::format("--skew-view: '{}' is not rank=R,frame=F with whole numbers", text));
+        throw base::InputError(fmt::format("--skew-view: '{}' is not rank=R,frame=F with whole numbers", text));
     }
     return skew;
 }
@@ -65,7 +65,7 @@ struct World {
 void resume(Options& options) {
     const std::filesystem::path journal = std::filesystem::path(options.out) / "session.journal";
     if (options.session.journal.policy == master::JournalPolicy::off) {
-        throw files::InputError("--resume: without a journal there is nothing to go on with; leave --journal off out");
+        throw base::InputError("--resume: without a journal there is nothing to go on with; leave --journal off out");
     }
     std::optional<master::ResumedSession> resumed = master::readSession(journal, options.scene);
     if (!resumed) {
@@ -102,7 +102,7 @@ sand::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
     }
     if (options.replay.empty()) {
         if (options.scene.empty()) {
-            throw files::InputError("sandwall-master: name a --scene, or a journal to --replay");
+            throw base::InputError("sandwall-master: name a --scene, or a journal to --replay");
         }
         sand::Scene scene = sand::loadScene(options.scene, [&](int columns, int rows) {
             master::requireMemory(cluster.hosts(), columns, rows, options.scene);
@@ -113,7 +113,7 @@ sand::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
         return scene;
     }
     if (std::filesystem::exists(std::filesystem::path(options.out) / "session.journal")) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("{}: holds a session, whose results would be lost; choose another --out", options.out));
     }
     master::SessionOptions& session = options.session;
@@ -131,17 +131,17 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
     World world{loadScene(cluster, options), walls::loadWallAs(options.wall, options.stereo), {}};
     master::requireMemory(cluster.hosts(), world.scene, options.scene + options.replay);
     if (world.wall.ranks() != cluster.renderRanks()) {
-        throw files::InputError(fmt::format(
+        throw base::InputError(fmt::format(
             "{}: {} tiles need {} render ranks, but the job has {}: mpirun -n 1 "
             "sandwall-master ... : -n {} sandwall-render-node",
             options.wall, world.wall.ranks(), world.wall.ranks(), cluster.renderRanks(), world.wall.ranks()));
     }
     std::error_code error;
     if (std::filesystem::create_directories(options.out, error)) {
-        files::syncFolderOf(std::filesystem::absolute(options.out));  // or a loss of power takes all that is in it
+        host::syncFolderOf(std::filesystem::absolute(options.out));  // or a loss of power takes all that is in it
     }
     if (error) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("{}: cannot be made ({}); choose another --out", options.out, error.message()));
     }
     if (options.session.film) {
@@ -175,7 +175,7 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
                      std::nullopt,
                      options.spoiltShader,
                      {},
-                     options.session.resumed ? options.session.resumed->state : files::Bytes()};
+                     options.session.resumed ? options.session.resumed->state : base::Bytes()};
     const master::FaultTargets targets{world.wall.ranks(), world.scene.rules.columns, world.scene.rules.rows,
                                        options.session.server.has_value()};
     for (const std::string& text : options.injections) {
@@ -217,14 +217,14 @@ int runSession(const lockstep::Cluster& cluster, Options& options) {
     (void)lockstep::agreeToGoOn(cluster, true);
     (void)lockstep::clockAheadOfMaster(cluster);
     try {
-        const workers::WorkerPool pool(options.sandThreads);
+        const host::WorkerPool pool(options.sandThreads);
         options.session.sweeps.executor = pool.lend();
         return master::Session(cluster, world->scene, world->wall, options.session).run();
     } catch (const std::exception& error) {
         // The ranks are in the middle of a frame and cannot be asked to leave.
-        const bool input = dynamic_cast<const files::InputError*>(&error) != nullptr;
+        const bool input = dynamic_cast<const base::InputError*>(&error) != nullptr;
         fmt::print(stderr, "sandwall-master: {}\n", error.what());
-        cluster.abort(input ? files::kExitBadInput : 1);
+        cluster.abort(input ? base::kExitBadInput : 1);
     }
 }
 
@@ -249,7 +249,7 @@ void describeOptions(host::CommandLine& line, Options& options) {
         .range(0, 1000000);
     line.option("--frame-timeout", session.frameTimeout, "seconds a frame may take before the job ends")
         .range(2.0, 3600.0);
-    workers::addSandThreads(line, options.sandThreads);
+    host::addSandThreads(line, options.sandThreads);
     line.flag("--no-pictures", options.noPictures, "write no pictures at the end");
     line.flag("--control-stdin", session.readInput,
               "obeys lines on standard input (docs/operator.md); its end is a stop");

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <string>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "master/saved_sand.hpp"
 #include "walls/wall_check.hpp"
 
@@ -61,8 +61,8 @@ std::optional<double> numberIn(std::string_view text) {
 double parseSeparation(std::string_view text) {
     const std::optional<double> metres = numberIn(text);
     if (!metres || *metres < 0 || *metres > walls::kMaxEyeSeparation) {
-        throw files::InputError(fmt::format("eye-separation must be 0 to {} metres, got '{}'", walls::kMaxEyeSeparation,
-                                            text.substr(0, 80)));
+        throw base::InputError(fmt::format("eye-separation must be 0 to {} metres, got '{}'", walls::kMaxEyeSeparation,
+                                           text.substr(0, 80)));
     }
     return *metres;
 }
@@ -70,7 +70,7 @@ double parseSeparation(std::string_view text) {
 double parseNumber(std::string_view what, std::string_view text) {
     const std::optional<double> number = numberIn(text);
     if (!number) {
-        throw files::InputError(fmt::format("{} must be a number, got '{}'", what, text.substr(0, 80)));
+        throw base::InputError(fmt::format("{} must be a number, got '{}'", what, text.substr(0, 80)));
     }
     return *number;
 }
@@ -99,7 +99,7 @@ sand::ToolChange parseTool(std::string_view text) {
             for (int i = 0; i < sand::kToolKinds; ++i) {
                 shapes += fmt::format("{}, ", sand::toolName(static_cast<sand::ToolKind>(i)));
             }
-            throw files::InputError(
+            throw base::InputError(
                 fmt::format("a tool is one of {}or has radius=, width=, heading=, foot=left or right, got '{}'", shapes,
                             word.substr(0, 80)));
         }
@@ -115,7 +115,7 @@ double parseShare(std::string_view text) {
     constexpr std::string_view kScale = "scale ";
     const std::optional<double> share = text.starts_with(kScale) ? numberIn(text.substr(kScale.size())) : std::nullopt;
     if (!share || *share < 0 || *share > 1) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("force needs on, off or scale SHARE with a share of 0 to 1, got '{}'", text.substr(0, 80)));
     }
     return *share;
@@ -132,7 +132,7 @@ void parseArgument(std::string_view argument, Command& command) {
         case Verb::material: {
             const std::size_t space = argument.find(' ');
             if (space == std::string_view::npos) {
-                throw files::InputError("material needs KEY VALUE");
+                throw base::InputError("material needs KEY VALUE");
             }
             command.word = argument.substr(0, std::min<std::size_t>(space, 80));
             command.number = parseNumber(command.word, argument.substr(space + 1));
@@ -142,7 +142,7 @@ void parseArgument(std::string_view argument, Command& command) {
         case Verb::load:
             command.word = argument;
             if (!isSaveName(argument)) {
-                throw files::InputError(
+                throw base::InputError(
                     fmt::format("a name has 1 to 64 letters, digits, - and _, got '{}'", argument.substr(0, 80)));
             }
             break;
@@ -162,8 +162,8 @@ void parseArgument(std::string_view argument, Command& command) {
             }
             try {
                 command.pattern = lockstep::parsePattern(argument.substr(0, 80));
-            } catch (const files::InputError& error) {
-                throw files::InputError(fmt::format("{}, next", error.what()));
+            } catch (const base::InputError& error) {
+                throw base::InputError(fmt::format("{}, next", error.what()));
             }
             break;
         default:
@@ -182,16 +182,16 @@ Command parseCommand(std::string_view line) {
             continue;
         }
         if (verb.argument.empty() != argument.empty()) {
-            throw files::InputError(verb.argument.empty()
-                                        ? fmt::format("{} takes no argument, got '{}'", word, argument.substr(0, 80))
-                                        : fmt::format("{} needs {}", word, verb.argument));
+            throw base::InputError(verb.argument.empty()
+                                       ? fmt::format("{} takes no argument, got '{}'", word, argument.substr(0, 80))
+                                       : fmt::format("{} needs {}", word, verb.argument));
         }
         Command command;
         command.verb = verb.verb;
         parseArgument(argument, command);
         return command;
     }
-    throw files::InputError(fmt::format("'{}' is no command; these are: {}", line.substr(0, 80), knownVerbs()));
+    throw base::InputError(fmt::format("'{}' is no command; these are: {}", line.substr(0, 80), knownVerbs()));
 }
 
 }  // namespace master

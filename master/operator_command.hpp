@@ -47,7 +47,7 @@ struct Command {
     walls::Stereo stereo{};                    // of Verb::stereo
 };
 
-/// Throws files::InputError, with the verbs there are, for a line that is no command.
+/// Throws base::InputError, with the verbs there are, for a line that is no command.
 [[nodiscard]] Command parseCommand(std::string_view line);
 
 }  // namespace master

@@ -15,8 +15,8 @@
 #include <thread>
 #include <utility>
 
-#include "files/input_error.hpp"
-#include "files/whole_file.hpp"
+#include "base/input_error.hpp"
+#include "host/whole_file.hpp"
 
 namespace master {
 namespace {
@@ -60,7 +60,7 @@ PartFile PartFile::make(const std::filesystem::path& path, std::span<const std::
     const bool plain = !std::filesystem::exists(path, none) || std::filesystem::is_regular_file(path, none);
     const std::string beside = plain ? path.string() + ".part" : path.string();
     const auto refuse = [&path] {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("{}: cannot be made ({}); choose another --out", path.string(), std::strerror(errno)));
     };
     PartFile file(path, ::open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644), 0);
@@ -73,13 +73,13 @@ PartFile PartFile::make(const std::filesystem::path& path, std::span<const std::
         if (plain && rename(beside.c_str(), path.c_str()) != 0) {
             refuse();
         }
-    } catch (const files::InputError&) {
+    } catch (const base::InputError&) {
         if (plain) {
             unlink(beside.c_str());
         }
         throw;
     }
-    files::syncFolderOf(path);
+    host::syncFolderOf(path);
     return file;
 }
 
@@ -135,7 +135,7 @@ void PartFile::close() {
 }
 
 void PartFile::fail(const char* what) const {
-    throw files::InputError(fmt::format("{}: {} ({})", path_.string(), what, std::strerror(errno)));
+    throw base::InputError(fmt::format("{}: {} ({})", path_.string(), what, std::strerror(errno)));
 }
 
 void PartFile::write(std::span<const std::uint8_t> bytes) {

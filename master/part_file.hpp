@@ -7,7 +7,7 @@
 
 namespace master {
 
-/// A file that grows by whole records. What throws, throws files::InputError, and leaves the file ending with the
+/// A file that grows by whole records. What throws, throws base::InputError, and leaves the file ending with the
 /// record before. One thread.
 class PartFile {
 public:

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
 namespace master {
 namespace {
@@ -30,19 +30,19 @@ Recording::Recording(Journal journal, std::string file, int framesPerSecond)
         hashes_.emplace(steps_.size(), frame.hashBefore);
         for (sand::Step& step : frame.steps) {
             if (step.number != steps_.size() + 1) {
-                throw files::InputError(fmt::format("{}: step {} follows step {}; a part of the session is missing",
-                                                    file, step.number, steps_.size()));
+                throw base::InputError(fmt::format("{}: step {} follows step {}; a part of the session is missing",
+                                                   file, step.number, steps_.size()));
             }
             steps_.push_back(std::move(step));
         }
     }
     if (steps_.empty()) {
-        throw files::InputError(fmt::format("{}: holds no step; there is nothing to show", file));
+        throw base::InputError(fmt::format("{}: holds no step; there is nothing to show", file));
     }
     if (journal.end) {
         if (journal.end->step != lastStep()) {
-            throw files::InputError(fmt::format("{}: holds {} steps of a session that ended at step {}", file,
-                                                lastStep(), journal.end->step));
+            throw base::InputError(fmt::format("{}: holds {} steps of a session that ended at step {}", file,
+                                               lastStep(), journal.end->step));
         }
         hashes_.emplace(journal.end->step, journal.end->hash);
     }

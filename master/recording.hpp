@@ -17,7 +17,7 @@ namespace master {
 /// thread.
 class Recording {
 public:
-    /// Throws files::InputError, with `file` in it, when the journal holds no steps or one of them is missing.
+    /// Throws base::InputError, with `file` in it, when the journal holds no steps or one of them is missing.
     Recording(Journal journal, std::string file, int framesPerSecond);
 
     [[nodiscard]] const sand::Scene& scene() const { return scene_; }

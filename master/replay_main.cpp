@@ -9,11 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "files/input_error.hpp"
-#include "files/whole_file.hpp"
+#include "base/input_error.hpp"
 #include "haptic_bridge/tick_replay.hpp"
 #include "host/command_line.hpp"
 #include "host/version.hpp"
+#include "host/whole_file.hpp"
 #include "master/journal.hpp"
 #include "master/journal_tools.hpp"
 #include "sand/import/raster_file.hpp"
@@ -46,11 +46,11 @@ public:
         }
         try {
             replay_ = haptic_bridge::TickReplay(journal.scene, journal.ticks);
-        } catch (const files::FormatError& error) {
-            throw files::InputError(fmt::format("{}: its tick track cannot be read: {}", options.file, error.what()));
+        } catch (const base::FormatError& error) {
+            throw base::InputError(fmt::format("{}: its tick track cannot be read: {}", options.file, error.what()));
         }
         if (replay_.empty()) {
-            throw files::InputError(fmt::format(
+            throw base::InputError(fmt::format(
                 "{}: holds no tick track; a session keeps one whose haptic server was started with --record",
                 options.file));
         }
@@ -71,7 +71,7 @@ public:
         }
         stream_.close();
         if (!stream_) {
-            throw files::InputError(fmt::format("{}: cannot be written", options_.forces));
+            throw base::InputError(fmt::format("{}: cannot be written", options_.forces));
         }
         if (replay_.left() > 0) {
             fmt::print(stderr, "{}: the last {} ticks felt steps that the session did not show, and were left out\n",
@@ -120,7 +120,7 @@ void checkOutputs(const Options& options) {
     }
     for (const std::string& file : {options.heights, options.difference, options.mesh}) {
         if (!file.empty()) {
-            const files::WholeFile canBeWritten(file);
+            const host::WholeFile canBeWritten(file);
         }
     }
 }
@@ -178,7 +178,7 @@ int run(const Options& options) {
     int differing = replay(journal, options.until.value_or(std::numeric_limits<std::uint64_t>::max()), terrain, forces);
     forces.finish();
     if (options.until && terrain.stepNumber() < *options.until) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("{}: ends at step {}, before --until {}", options.file, terrain.stepNumber(), *options.until));
     }
     const bool whole = journal.end && journal.end->step == terrain.stepNumber();
@@ -201,7 +201,7 @@ int run(const Options& options) {
 /// What was printed to a full disk is no answer.
 void requirePrinted() {
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-        throw files::InputError(fmt::format("standard output: cannot be written ({})", std::strerror(errno)));
+        throw base::InputError(fmt::format("standard output: cannot be written ({})", std::strerror(errno)));
     }
 }
 
@@ -247,5 +247,5 @@ int main(int argc, char** argv) {
             requirePrinted();
             return status;
         },
-        files::kExitBadInput);
+        base::kExitBadInput);
 }

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "master/checkpoint.hpp"
 #include "master/journal.hpp"
 
@@ -17,9 +17,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The journal has another hash of the sand than the replay.
-class OtherSand : public files::InputError {
+class OtherSand : public base::InputError {
 public:
-    using files::InputError::InputError;
+    using base::InputError::InputError;
 };
 
 void requireHash(sand::Terrain& terrain, const JournalEnd& said, const fs::path& journal) {
@@ -43,8 +43,8 @@ std::uint64_t replayUntil(const fs::path& journal, std::uint64_t step, sand::Ter
             continue;
         }
         if (frame->steps.front().number > terrain.stepNumber() + 1) {
-            throw files::InputError(fmt::format("{}: step {} follows step {}; a part of the session is missing",
-                                                journal.string(), frame->steps.front().number, terrain.stepNumber()));
+            throw base::InputError(fmt::format("{}: step {} follows step {}; a part of the session is missing",
+                                               journal.string(), frame->steps.front().number, terrain.stepNumber()));
         }
         requireHash(terrain, {frame->steps.front().number - 1, frame->hashBefore}, journal);
         for (const sand::Step& one : frame->steps) {
@@ -57,7 +57,7 @@ std::uint64_t replayUntil(const fs::path& journal, std::uint64_t step, sand::Ter
         }
     }
     if (terrain.stepNumber() < step) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("{}: ends at step {}, before step {}", journal.string(), terrain.stepNumber(), step));
     }
     return terrain.stepNumber() - first;
@@ -74,8 +74,8 @@ struct Walk {
         session.material = std::exchange(pending, std::nullopt).value_or(session.material);
         for (const sand::Step& step : frame.steps) {
             if (step.number != session.step + 1) {
-                throw files::InputError(fmt::format("{}: step {} follows step {}; a part of the session is missing",
-                                                    journal.string(), step.number, session.step));
+                throw base::InputError(fmt::format("{}: step {} follows step {}; a part of the session is missing",
+                                                   journal.string(), step.number, session.step));
             }
             session.step = step.number;
             session.epoch = std::max(session.epoch, step.epoch);
@@ -94,7 +94,7 @@ struct Walk {
 
 void requireScene(const JournalReader& reader, const std::string& file) {
     if (!file.empty() && sand::loadScene(file).encode() != reader.header().scene) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("{}: is not the scene of the session in {}; leave --scene out to go on with "
                         "that one, or choose another --out",
                         file, reader.place().journal.string()));
@@ -106,12 +106,12 @@ void requireScene(const JournalReader& reader, const std::string& file) {
 sand::Terrain sandOfCheckpoint(const fs::path& file, const JournalHeader& header, const sand::Terrain& start) {
     const Checkpoint checkpoint = readCheckpoint(file);
     if (checkpoint.session != header.session || checkpoint.sceneDigest != start.rules().digest()) {
-        throw files::FormatError("is of another session");
+        throw base::FormatError("is of another session");
     }
     sand::Terrain terrain = start;
     terrain.decodeState(checkpoint.state);
     if (terrain.stepNumber() != checkpoint.step || terrain.stateHash() != checkpoint.stateHash) {
-        throw files::FormatError("its sand is not what it says");
+        throw base::FormatError("its sand is not what it says");
     }
     return terrain;
 }
@@ -127,7 +127,7 @@ RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const sand
                 restored.replayedSteps = replayUntil(journal, step, restored.terrain);
                 return restored;
             }
-        } catch (const files::FormatError& error) {
+        } catch (const base::FormatError& error) {
             fmt::print(stderr, "sandwall: {}: {}; it is left out\n", file.string(), error.what());
         } catch (const OtherSand& error) {
             fmt::print(stderr, "sandwall: {}: it is left out: {}\n", file.string(), error.what());
@@ -146,7 +146,7 @@ std::optional<ResumedSession> readSession(const fs::path& journal, const std::st
     }
     JournalReader reader(journal);
     if (reader.header().version < kChainedSince) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("{}: a journal of version {} can be replayed, and not gone on with; choose "
                         "another --out",
                         journal.string(), reader.header().version));
@@ -160,8 +160,8 @@ std::optional<ResumedSession> readSession(const fs::path& journal, const std::st
         while (const auto record = reader.next()) {
             std::visit(walk, *record);
         }
-    } catch (const files::InputError& error) {
-        throw files::InputError(fmt::format(
+    } catch (const base::InputError& error) {
+        throw base::InputError(fmt::format(
             "{}; sandwall-replay {} --recover NEW/session.journal keeps that, and --out NEW goes on with it",
             error.what(), journal.string()));
     }

@@ -14,7 +14,7 @@
 #include <span>
 #include <utility>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "sand/kept_sand.hpp"
 #include "sand/step.hpp"
 
@@ -29,8 +29,8 @@ std::uint64_t savedSum(std::span<const std::uint8_t> bytes) { return XXH3_64bits
 
 std::string shortName(const std::string& scene) { return scene.substr(0, kMostAround / 2); }
 
-files::Bytes encode(const SavedSand& saved) {
-    files::ByteWriter writer;
+base::Bytes encode(const SavedSand& saved) {
+    base::ByteWriter writer;
     writer.put(kSavedMagic);
     writer.put(kSavedVersion);
     writer.put(sand::kAlgorithmVersion);
@@ -48,24 +48,24 @@ files::Bytes encode(const SavedSand& saved) {
 }
 
 SavedSand decode(std::span<const std::uint8_t> bytes) {
-    files::ByteReader reader(bytes);
+    base::ByteReader reader(bytes);
     if (reader.get<std::uint32_t>() != kSavedMagic) {
-        throw files::FormatError("no saved sand");
+        throw base::FormatError("no saved sand");
     }
     const auto version = reader.get<std::uint32_t>();
     const auto algorithm = reader.get<std::uint32_t>();
     if (version != kSavedVersion || algorithm != sand::kAlgorithmVersion) {
-        throw files::FormatError(
+        throw base::FormatError(
             fmt::format("saved by another version of Sandwall ({}, algorithm {})", version, algorithm));
     }
     std::uint64_t expected = 0;
     if (bytes.size() < sizeof expected) {
-        throw files::FormatError("cut short");
+        throw base::FormatError("cut short");
     }
     const auto checked = bytes.first(bytes.size() - sizeof expected);
     std::memcpy(&expected, bytes.data() + checked.size(), sizeof expected);
     if (savedSum(checked) != expected) {
-        throw files::FormatError("damaged: its checksum is wrong");
+        throw base::FormatError("damaged: its checksum is wrong");
     }
     SavedSand saved;
     saved.place.scene = reader.getText();
@@ -83,14 +83,14 @@ SavedSand decode(std::span<const std::uint8_t> bytes) {
 
 void requireSamePlace(const SandPlace& saved, const SandPlace& here) {
     if (saved.scene != shortName(here.scene)) {
-        throw files::FormatError(fmt::format("sand of scene '{}', and this is '{}'", saved.scene, here.scene));
+        throw base::FormatError(fmt::format("sand of scene '{}', and this is '{}'", saved.scene, here.scene));
     }
     if (saved.columns != here.columns || saved.rows != here.rows) {
-        throw files::FormatError(fmt::format("sand of {} x {} cells, and the scene has {} x {}", saved.columns,
-                                             saved.rows, here.columns, here.rows));
+        throw base::FormatError(fmt::format("sand of {} x {} cells, and the scene has {} x {}", saved.columns,
+                                            saved.rows, here.columns, here.rows));
     }
     if (saved.cellSize != here.cellSize || saved.aspect != here.aspect || saved.ground != here.ground) {
-        throw files::FormatError(fmt::format("sand of '{}' with other cells or other rock", here.scene));
+        throw base::FormatError(fmt::format("sand of '{}' with other cells or other rock", here.scene));
     }
 }
 
@@ -113,7 +113,7 @@ public:
     Unnamed(const Unnamed&) = delete;
     Unnamed& operator=(const Unnamed&) = delete;
 
-    void write(const files::Bytes& bytes) {
+    void write(const base::Bytes& bytes) {
         for (std::size_t done = 0; done < bytes.size();) {
             const ssize_t count = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
             require(count >= 0 || errno == EINTR);
@@ -129,7 +129,7 @@ public:
 private:
     void require(bool good) const {
         if (!good) {
-            throw files::InputError(
+            throw base::InputError(
                 fmt::format("{}: cannot be written ({}); nothing was saved", target_.string(), std::strerror(errno)));
         }
     }
@@ -156,13 +156,13 @@ std::filesystem::path saveFile(const std::filesystem::path& session, std::string
 
 void writeSavedSand(const std::filesystem::path& file, const SavedSand& saved) {
     if (saved.sand.size() > sand::kMaxSandBytes) {
-        throw files::InputError(fmt::format("{}: {} bytes of sand could not be loaded again, {} is the most",
-                                            file.string(), saved.sand.size(), sand::kMaxSandBytes));
+        throw base::InputError(fmt::format("{}: {} bytes of sand could not be loaded again, {} is the most",
+                                           file.string(), saved.sand.size(), sand::kMaxSandBytes));
     }
     std::error_code error;
     std::filesystem::create_directories(file.parent_path(), error);
     if (error) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("{}: cannot be made ({}); nothing was saved", file.parent_path().string(), error.message()));
     }
     Unnamed unnamed(file);
@@ -175,13 +175,13 @@ SavedSand readSavedSand(const std::filesystem::path& file, const SandPlace& plac
     const std::uintmax_t size = std::filesystem::is_regular_file(file, error) ? file_size(file, error) : 0;
     std::ifstream stream(file, std::ios::binary);
     if (!stream || error || size == 0) {
-        throw files::InputError(fmt::format("{}: cannot be read; nothing was loaded", file.string()));
+        throw base::InputError(fmt::format("{}: cannot be read; nothing was loaded", file.string()));
     }
     try {
         if (size > sand::kMaxSandBytes + kMostAround) {
-            throw files::FormatError(fmt::format("{} bytes are more than sand can be", size));
+            throw base::FormatError(fmt::format("{} bytes are more than sand can be", size));
         }
-        files::Bytes bytes(size);
+        base::Bytes bytes(size);
         stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
         bytes.resize(static_cast<std::size_t>(stream.gcount()));
         SavedSand saved = decode(bytes);
@@ -189,8 +189,8 @@ SavedSand readSavedSand(const std::filesystem::path& file, const SandPlace& plac
         // Whole, before anybody is sent it: who applies a step cannot refuse it any more.
         (void)read(saved.sand);
         return saved;
-    } catch (const files::FormatError& failure) {
-        throw files::InputError(fmt::format("{}: {}; nothing was loaded", file.string(), failure.what()));
+    } catch (const base::FormatError& failure) {
+        throw base::InputError(fmt::format("{}: {}; nothing was loaded", file.string(), failure.what()));
     }
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 #include "sand/scene.hpp"
 #include "sand/surface.hpp"
 
@@ -31,13 +31,13 @@ struct SandPlace {
 struct SavedSand {
     SandPlace place;
     std::uint64_t step = 0, stateHash = 0;  // of the session when it was saved
-    files::Bytes sand;                      // sand::SurfaceCopy::encode
+    base::Bytes sand;                       // sand::SurfaceCopy::encode
 };
 
 /// On disk when it returns, or what was there before still is (docs/operator.md has the format). Makes the folder.
-/// Throws files::InputError in one line.
+/// Throws base::InputError in one line.
 void writeSavedSand(const std::filesystem::path& file, const SavedSand& saved);
-/// Only sand of that place, and whole as `read` sees it. Throws files::InputError in one line.
+/// Only sand of that place, and whole as `read` sees it. Throws base::InputError in one line.
 [[nodiscard]] SavedSand readSavedSand(const std::filesystem::path& file, const SandPlace& place,
                                       const sand::SurfaceReader& read);
 

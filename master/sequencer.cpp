@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "host/clock.hpp"
 #include "host/event.hpp"
 #include "lockstep/cluster.hpp"
 
@@ -16,11 +17,11 @@ namespace master {
 
 using haptic_bridge::Link;
 using haptic_bridge::TimedStep;
-using lockstep::nowNs;
+using host::monotonicNs;
 
 namespace {
 
-double secondsSince(std::int64_t then) { return static_cast<double>(nowNs() - then) * 1e-9; }
+double secondsSince(std::int64_t then) { return static_cast<double>(monotonicNs() - then) * 1e-9; }
 
 /// As the event `link` has it.
 const char* nameOf(Link link) {
@@ -56,7 +57,7 @@ Sequencer::Sequencer(std::optional<haptic_bridge::Address> server, const sand::S
       pace_(pace),
       source_(server_ ? Source::starting : Source::own),
       epoch_(epoch),
-      waitingSinceNs_(nowNs()),
+      waitingSinceNs_(monotonicNs()),
       positions_(scene) {
     if (server_) {
         client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_, security_);
@@ -75,14 +76,14 @@ void Sequencer::takeOver(const std::string& reason, const std::string& why) {
         host::emitEvent("without_hand", {{"reason", reason}, {"epoch", epoch_}});
     }
     ownStepsOwed_ = 0;
-    lastOwnNs_ = nowNs();
+    lastOwnNs_ = monotonicNs();
 }
 
 void Sequencer::grant(const sand::Terrain& terrain, std::uint64_t stateHash) {
     ++epoch_;
     client_->grant(epoch_, terrain.stepNumber(), stateHash, terrain.encodeState(), recent_);
     source_ = Source::granting;
-    waitingSinceNs_ = nowNs();
+    waitingSinceNs_ = monotonicNs();
 }
 
 void Sequencer::sayLink(const haptic_bridge::LinkStatus& status) {
@@ -116,7 +117,7 @@ void Sequencer::followLink(const sand::Terrain& terrain, std::uint64_t stateHash
     } else if (source_ == Source::granting && status.link == Link::granting) {
         if (secondsSince(waitingSinceNs_) > kGrantWait) {
             leaveServer();  // for a while: each try stops the sand
-            waitingSinceNs_ = nowNs();
+            waitingSinceNs_ = monotonicNs();
             takeOver("server_does_not_begin", fmt::format("{} does not begin", server_->text()));
         }
     } else if (source_ == Source::starting) {
@@ -138,8 +139,8 @@ void Sequencer::followPositions(const haptic_bridge::LinkStatus& status, const s
     if (!positions_.streaming()) {
         positions_.begin(terrain);
     }
-    positions_.add(client_->drainPositions(), nowNs());
-    for (const std::string& line : positions_.troubles(client_->floods(), nowNs())) {
+    positions_.add(client_->drainPositions(), monotonicNs());
+    for (const std::string& line : positions_.troubles(client_->floods(), monotonicNs())) {
         fmt::print(stderr, "{}\n", line);
     }
 }
@@ -148,7 +149,7 @@ std::size_t Sequencer::ownStepsDue() {
     if (pace_ == Pace::fast) {
         return 1;
     }
-    const std::int64_t now = nowNs();
+    const std::int64_t now = monotonicNs();
     ownStepsOwed_ += static_cast<double>(now - lastOwnNs_) * 1e-9 * stepsPerSecond_;
     lastOwnNs_ = now;
     const double due = std::floor(ownStepsOwed_);
@@ -235,10 +236,10 @@ void Sequencer::shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs) {
 
 void Sequencer::shareForce(double share) { share_ = share; }
 
-std::vector<files::Bytes> Sequencer::ticks() {
-    std::vector<files::Bytes> pieces = std::exchange(ticks_, {});
+std::vector<base::Bytes> Sequencer::ticks() {
+    std::vector<base::Bytes> pieces = std::exchange(ticks_, {});
     if (client_) {
-        for (files::Bytes& piece : client_->drainTicks()) {
+        for (base::Bytes& piece : client_->drainTicks()) {
             pieces.push_back(std::move(piece));
         }
     }

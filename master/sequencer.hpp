@@ -46,7 +46,7 @@ public:
     /// Of a server's forces, the hand feels this share from now on, 0 to 1; told to every server that is linked later.
     void shareForce(double share);
     /// Pieces of the server's tick track that have come since this was asked last, for the journal.
-    [[nodiscard]] std::vector<files::Bytes> ticks();
+    [[nodiscard]] std::vector<base::Bytes> ticks();
 
     /// The server's replica holds other sand than the wall: it is let go, and starts again from the wall's state.
     void distrustServer();
@@ -98,7 +98,7 @@ private:
     std::optional<haptic_bridge::Report> earlierReport_;
     std::deque<sand::Edit> edits_;  // asked for, and in no step yet
     PositionSource positions_;
-    std::vector<files::Bytes> ticks_;      // of a server that was let go
+    std::vector<base::Bytes> ticks_;       // of a server that was let go
     std::vector<lockstep::Fault> drills_;  // that wait for a link
     double share_ = 1;                     // of the force
     double toldShare_ = 1;                 // that the server knows

@@ -9,8 +9,9 @@
 #include <cstdio>
 #include <thread>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "host/build_id.hpp"
+#include "host/clock.hpp"
 #include "host/event.hpp"
 #include "lockstep/session_message.hpp"
 #include "master/start_up.hpp"
@@ -20,7 +21,7 @@ namespace master {
 namespace {
 
 using haptic_bridge::TimedStep;
-using lockstep::nowNs;
+using host::monotonicNs;
 
 constexpr std::size_t kMostStepsPerFrame = 8;  // a long catch-up is spread over frames
 constexpr std::size_t kMostStepsPerFastFrame = 4;
@@ -125,7 +126,7 @@ double Session::sessionTime() const {
     // A fast session shows every frame what a recorded head did then, however long the frame takes.
     return options_.pace == Pace::fast ? static_cast<double>(frame_) * framePeriod()
            : lastSwap_ == 0            ? 0
-                                       : static_cast<double>(nowNs() - firstSwap_) * 1e-9;
+                                       : static_cast<double>(monotonicNs() - firstSwap_) * 1e-9;
 }
 
 std::int64_t Session::nextFrame() const {
@@ -138,7 +139,7 @@ void Session::waitForFrameTime() {
         return;
     }
     // From one grid of times, not from the last frame: the wall's clock must not drift with each late frame.
-    const std::int64_t now = nowNs();
+    const std::int64_t now = monotonicNs();
     frameStart_ = std::max(nextFrame(), now - static_cast<std::int64_t>(1e9 * framePeriod()));
     if (frameStart_ > now) {
         sleepNs(frameStart_ - now);
@@ -159,10 +160,10 @@ std::vector<TimedStep> Session::awaitSteps() {
     std::size_t most = fast ? kMostStepsPerFastFrame : kMostStepsPerFrame;
     const std::uint64_t left = options_.steps - std::min(options_.steps, terrain_.stepNumber());
     most = paused_ || !mayTakeSteps() ? 0 : std::min<std::uint64_t>(most, left);
-    const std::int64_t since = nowNs();
+    const std::int64_t since = monotonicNs();
     std::vector<TimedStep> steps = sequencer_.next(terrain_, hash_, most);
     while (fast && most > 0 && steps.empty() && !operator_.stopAsked() &&
-           static_cast<double>(nowNs() - since) * 1e-9 < kFastPatience) {
+           static_cast<double>(monotonicNs() - since) * 1e-9 < kFastPatience) {
         sleepNs(500'000);
         steps = sequencer_.next(terrain_, hash_, most);
     }
@@ -182,7 +183,7 @@ lockstep::FrameMessage Session::prepare(std::vector<TimedStep>& steps) {
     const std::uint64_t shownThen = terrain_.stepNumber() + steps.size();
     message.stop = operator_.stopAsked() || strayed_ || frame_ >= options_.frames || shownThen >= options_.steps;
     message.capture = film_.has_value() || (message.stop ? options_.pictures : !captures_.empty() && !capturing());
-    const double sinceLast = lastSwap_ == 0 ? 0 : static_cast<double>(nowNs() - lastSwap_) * 1e-9;
+    const double sinceLast = lastSwap_ == 0 ? 0 : static_cast<double>(monotonicNs() - lastSwap_) * 1e-9;
     const int tiles = terrain_.hashTiles().tileCount();
     message.auditTiles = static_cast<std::uint32_t>(
         std::clamp(static_cast<int>(std::ceil(tiles * sinceLast / kAuditSeconds)), (tiles + 63) / 64, tiles));
@@ -222,7 +223,7 @@ bool Session::showFrame() {
     const lockstep::FrameMessage prepared = prepare(steps);
     startDrills();
     const lockstep::FrameMessage message = barrier_.begin(prepared, bytes);
-    const std::int64_t broadcast = nowNs();
+    const std::int64_t broadcast = monotonicNs();
     summary_.broadcastBytes.add(static_cast<double>(bytes));
     if (!message.steps.empty()) {
         // The ranks draw meanwhile; none of them swaps before the master has come to the barrier.
@@ -233,11 +234,11 @@ bool Session::showFrame() {
     terrain_.audit(static_cast<int>(message.auditTiles));
     hash_ = terrain_.stateHash();
 
-    const lockstep::Arrival mine{message.frame, nowNs(), lastSwap_, 0, hash_, viewProof_.hash(message.view)};
+    const lockstep::Arrival mine{message.frame, monotonicNs(), lastSwap_, 0, hash_, viewProof_.hash(message.view)};
     if (!reachAgreement(barrier_.meet(mine, nextFrame()), mine)) {
         return false;
     }
-    const std::int64_t swapped = nowNs();
+    const std::int64_t swapped = monotonicNs();
     tellRecovery();
     incidentFile_.keep(incidents(), swapped);
     measureSwaps(swapped);
@@ -315,7 +316,7 @@ const char* Session::handInWords() const {
 }
 
 void Session::sayProgress(bool last) {
-    const std::int64_t now = nowNs();
+    const std::int64_t now = monotonicNs();
     if (!last && now - lastProgress_ < 1'000'000'000) {
         return;
     }
@@ -392,7 +393,7 @@ int Session::run() {
     int status = agreed && !strayed_ ? 0 : 1;
     try {
         writeSummary(summary_, options_.out / "summary.json");
-    } catch (const files::InputError& error) {  // the ranks still have pictures to send
+    } catch (const base::InputError& error) {  // the ranks still have pictures to send
         fmt::print(stderr, "sandwall: {}\n", error.what());
         status = 1;
     }

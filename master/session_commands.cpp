@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "host/event.hpp"
 #include "master/session.hpp"
 #include "master/wall_pictures.hpp"
@@ -75,7 +75,7 @@ void Session::obeyOperator() {
 void Session::obey(const std::string& text, std::optional<Client> client) {
     try {
         carryOut(parseCommand(text), client);
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         refuse(error.what(), {client});
     }
 }
@@ -152,17 +152,17 @@ void Session::carryOut(const Command& command, std::optional<Client> client) {
 void Session::askEdit(sand::Edit edit, std::optional<Client> client, const std::optional<sand::Material>& material) {
     const auto loads = [](const Asker& asker) { return asker.edit.kind == sand::Edit::load; };
     if (edit.kind == sand::Edit::load && std::any_of(askers_.begin(), askers_.end(), loads)) {
-        throw files::InputError("another load waits for its step already");  // each holds the whole sand
+        throw base::InputError("another load waits for its step already");  // each holds the whole sand
     }
     if (edit.kind == sand::Edit::undo && !terrain_.canUndo()) {
-        throw files::InputError("there is no stroke to undo");
+        throw base::InputError("there is no stroke to undo");
     }
     if (askers_.size() >= kMostEditsWaiting) {
-        throw files::InputError(fmt::format("{} edits wait for their steps already", askers_.size()));
+        throw base::InputError(fmt::format("{} edits wait for their steps already", askers_.size()));
     }
     // Whoever asks must not be kept waiting for somebody to clear the disk, nor find it done long after.
     if (!mayTakeSteps(edit)) {
-        throw files::InputError(
+        throw base::InputError(
             "the sand stands still: no room for the journal on the disk; nothing was done, ask again when there is");
     }
     if (paused_ && client) {
@@ -238,7 +238,7 @@ void Session::takeCapture() {
     }
     try {
         writeWallPictures(cluster_, shown_, folder, barrier_.watchdog());
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         return refuse(error.what(), clients);
     }
     answerAll(clients, said);

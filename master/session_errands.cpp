@@ -6,7 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "master/saved_sand.hpp"
 #include "master/session.hpp"
 
@@ -21,7 +21,7 @@ constexpr std::size_t kMostErrands = 4;  // at once; each save holds a copy of t
 
 void Session::requireFewErrands() const {
     if (errands_.size() >= kMostErrands) {
-        throw files::InputError(fmt::format("{} files are being written or read already; try again", errands_.size()));
+        throw base::InputError(fmt::format("{} files are being written or read already; try again", errands_.size()));
     }
 }
 

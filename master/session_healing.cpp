@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "host/event.hpp"
 #include "lockstep/healing.hpp"
 #include "master/disagreement.hpp"

@@ -2,7 +2,7 @@
 // What a session writes to its journal, and how it goes on when the disk refuses.
 #include <fmt/format.h>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "host/build_id.hpp"
 #include "master/session.hpp"
 
@@ -70,7 +70,7 @@ void Session::keepJournal(const JournalFrame& frame) {
 }
 
 void Session::keepTicks() {
-    const std::vector<files::Bytes> pieces = sequencer_.ticks();
+    const std::vector<base::Bytes> pieces = sequencer_.ticks();
     try {
         if (journal_) {
             journal_->keepTicks(pieces);

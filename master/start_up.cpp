@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "host/build_id.hpp"
 #include "sand/terrain.hpp"
 
@@ -20,7 +20,7 @@ std::vector<std::string> namesOf(const lockstep::Cluster& cluster, const walls::
 
 void requireMemory(const std::vector<lockstep::RankHost>& ranks, int columns, int rows, const std::string& file) {
     if (const auto lack = lockstep::lackOfMemory(ranks, sand::Terrain::leastBytes(columns, rows), 0)) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("{}: {} x {} cells need {}: fewer cells, or more hosts", file, columns, rows, *lack));
     }
 }
@@ -35,7 +35,7 @@ void requireMemory(const std::vector<lockstep::RankHost>& ranks, const sand::Sce
     const std::int64_t toDraw = std::int64_t{sizeof(float)} * columns * rows;
     const auto lack = lockstep::lackOfMemory(ranks, sand::Terrain::leastBytes(scene), toDraw);
     if (lack) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("{}: a TIN of {} vertices over {} x {} nominal cells needs {}: fewer of either, or more hosts",
                         file, scene.tin->places.size(), columns, rows, *lack));
     }
@@ -44,11 +44,11 @@ void requireMemory(const std::vector<lockstep::RankHost>& ranks, const sand::Sce
 void requireReady(const std::vector<lockstep::Readiness>& ranks, const std::vector<std::string>& names) {
     for (std::size_t rank = 1; rank < ranks.size(); ++rank) {
         if (ranks[rank].buildId != host::buildId()) {
-            throw files::InputError(fmt::format("{}: is of build {}, the master of {}; install one build on every host",
-                                                names[rank], ranks[rank].buildId, host::buildId()));
+            throw base::InputError(fmt::format("{}: is of build {}, the master of {}; install one build on every host",
+                                               names[rank], ranks[rank].buildId, host::buildId()));
         }
         if (!ranks[rank].error.empty()) {
-            throw files::InputError(fmt::format("{}: {}", names[rank], ranks[rank].error));
+            throw base::InputError(fmt::format("{}: {}", names[rank], ranks[rank].error));
         }
     }
     for (std::size_t rank = 1; rank < ranks.size(); ++rank) {

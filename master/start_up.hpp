@@ -15,13 +15,13 @@ namespace master {
 /// How each rank is spoken of, by rank: "rank 5 (tile r2c1) on node3".
 [[nodiscard]] std::vector<std::string> namesOf(const lockstep::Cluster& cluster, const walls::Wall& wall);
 
-/// Throws files::InputError unless every host has memory for the replicas of its ranks, and for what those that draw a
+/// Throws base::InputError unless every host has memory for the replicas of its ranks, and for what those that draw a
 /// TIN keep of its nominal cells. `file` is the scene's.
 void requireMemory(const std::vector<lockstep::RankHost>& ranks, const sand::Scene& scene, const std::string& file);
 /// The same of a height field of this size, which need not be made for it.
 void requireMemory(const std::vector<lockstep::RankHost>& ranks, int columns, int rows, const std::string& file);
 
-/// Throws files::InputError for the first rank that cannot take part, in its own words; prints what the others cannot
+/// Throws base::InputError for the first rank that cannot take part, in its own words; prints what the others cannot
 /// do of what the wall file asks for.
 void requireReady(const std::vector<lockstep::Readiness>& ranks, const std::vector<std::string>& names);
 

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "files/whole_file.hpp"
+#include "host/whole_file.hpp"
 
 namespace master {
 namespace {
@@ -231,7 +231,7 @@ ordered_json slowestRank(const std::optional<lockstep::Drag>& drag, const std::v
 }
 
 void writeSummary(const Summary& summary, const std::filesystem::path& file) {
-    files::WholeFile whole(file);
+    host::WholeFile whole(file);
     whole.stream() << jsonOf(summary).dump(2) << '\n';
     whole.keep();
 }

@@ -71,7 +71,7 @@ struct Summary {
 [[nodiscard]] nlohmann::ordered_json slowestRank(const std::optional<lockstep::Drag>& drag,
                                                  const std::vector<std::string>& rankNames);
 
-/// Writes summary.json. Throws files::InputError when it cannot.
+/// Writes summary.json. Throws base::InputError when it cannot.
 void writeSummary(const Summary& summary, const std::filesystem::path& file);
 
 /// The same for a person, a screenful.

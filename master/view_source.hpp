@@ -16,7 +16,7 @@ namespace master {
 /// and the test pattern in its place.
 class ViewSource {
 public:
-    /// Throws files::InputError when the tracker cannot be had.
+    /// Throws base::InputError when the tracker cannot be had.
     ViewSource(const walls::Wall& wall, const sand::Scene& scene, const tracking::Source& source);
 
     /// At this time of the session [s].

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "lockstep/screenshots.hpp"
 #include "pictures/png_file.hpp"
 #include "pictures/stereo_packing.hpp"
@@ -24,7 +24,7 @@ public:
     void write(const std::string& name, const pictures::Image& image) {
         try {
             pictures::writePng(folder_ / name, image);
-        } catch (const files::InputError& error) {
+        } catch (const base::InputError& error) {
             failure_ = failure_ ? failure_ : error;
         }
     }
@@ -36,7 +36,7 @@ public:
 
 private:
     std::filesystem::path folder_;
-    std::optional<files::InputError> failure_;
+    std::optional<base::InputError> failure_;
 };
 
 /// Each eye's, and the output's where that is made of both.

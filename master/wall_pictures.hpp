@@ -26,7 +26,7 @@ namespace master {
 
 /// Receives every tile's pictures and writes them as tile_NAME_EYE.png, and the wall put together from them:
 /// wall_left.png, wall_right.png and wall_anaglyph.png, or wall.png where it is mono. Progress goes to stdout.
-/// The ranks must be sending; the watchdog limits the wait for each picture. Throws files::InputError when a file
+/// The ranks must be sending; the watchdog limits the wait for each picture. Throws base::InputError when a file
 /// cannot be written, after all were received.
 void writeWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall, const std::filesystem::path& folder,
                        lockstep::Watchdog& watchdog);
@@ -44,7 +44,7 @@ struct HeldPictures {
 [[nodiscard]] bool mayBeHeld(const walls::Wall& wall);
 [[nodiscard]] HeldPictures holdWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall,
                                             lockstep::Watchdog& watchdog);
-/// Any thread. Throws files::InputError when a file cannot be written, after all were tried.
+/// Any thread. Throws base::InputError when a file cannot be written, after all were tried.
 void writeHeldPictures(const HeldPictures& held, const std::filesystem::path& folder);
 
 }  // namespace master

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
 namespace pictures {
 namespace {
@@ -45,7 +45,7 @@ constexpr auto kSmaller = [](std::uint8_t a, std::uint8_t b) { return std::min(a
 
 Comparison compare(const Image& a, const Image& b, int limit) {
     if (a.width != b.width || a.height != b.height) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("pictures of {}x{} and {}x{} pixels cannot be compared", a.width, a.height, b.width, b.height));
     }
     Comparison result;

@@ -19,7 +19,7 @@ struct Comparison {
     Mask bad;
 };
 
-/// Throws files::InputError when the sizes differ.
+/// Throws base::InputError when the sizes differ.
 [[nodiscard]] Comparison compare(const Image& a, const Image& b, int limit /* [level] */);
 
 /// For a person: `reference` dimmed to a quarter, the bad pixels bright red.

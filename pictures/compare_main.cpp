@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "host/command_line.hpp"
 #include "host/version.hpp"
 #include "pictures/compare.hpp"
@@ -24,8 +24,8 @@ int comparePictures(const Options& options) {
     pictures::Comparison comparison;
     try {
         comparison = pictures::compare(first, second, options.maxChannelDifference);
-    } catch (const files::InputError& error) {
-        throw files::InputError(fmt::format("{}, {}: {}", options.first, options.second, error.what()));
+    } catch (const base::InputError& error) {
+        throw base::InputError(fmt::format("{}, {}: {}", options.first, options.second, error.what()));
     }
     fmt::print("largest channel difference: {}\n", comparison.largestDifference);
     fmt::print("share of pixels that differ by more than {}: {:.6f} ({} of {})\n", options.maxChannelDifference,
@@ -55,5 +55,5 @@ int main(int argc, char** argv) {
         .showDefault();
     line.option("--diff", options.difference, "write a PNG of A, dimmed, with the bad pixels in red");
     return host::runMain(
-        line, argc, argv, [&] { return comparePictures(options); }, files::kExitBadInput);
+        line, argc, argv, [&] { return comparePictures(options); }, base::kExitBadInput);
 }

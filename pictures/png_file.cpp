@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
 namespace pictures {
 namespace {
@@ -24,11 +24,11 @@ public:
 std::uintmax_t sizeOfFile(const std::filesystem::path& file) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(file, error)) {
-        throw files::InputError(fmt::format("{}: no such picture; check the path", file.string()));
+        throw base::InputError(fmt::format("{}: no such picture; check the path", file.string()));
     }
     const std::uintmax_t size = std::filesystem::file_size(file, error);
     if (error) {
-        throw files::InputError(fmt::format("{}: {}", file.string(), error.message()));
+        throw base::InputError(fmt::format("{}: {}", file.string(), error.message()));
     }
     return size;
 }
@@ -41,11 +41,11 @@ Image readPng(const std::filesystem::path& file) {
     const std::uintmax_t bytes = sizeOfFile(file);
     PngImage png;
     if (png_image_begin_read_from_file(&png.image, file.c_str()) == 0) {
-        throw files::InputError(fmt::format("{}: cannot be read as PNG: {}", file.string(), png.image.message));
+        throw base::InputError(fmt::format("{}: cannot be read as PNG: {}", file.string(), png.image.message));
     }
     const std::uintmax_t pixels = std::uintmax_t{png.image.width} * png.image.height;
     if (pixels > static_cast<std::uintmax_t>(kMaxPixels) || pixels / kMostPixelsPerByte > bytes) {
-        throw files::InputError(fmt::format(
+        throw base::InputError(fmt::format(
             "{}: claims {}x{} pixels, which is more than {}", file.string(), png.image.width, png.image.height,
             pixels > static_cast<std::uintmax_t>(kMaxPixels) ? fmt::format("the {} we read", kMaxPixels)
                                                              : fmt::format("its {} bytes can hold", bytes)));
@@ -54,7 +54,7 @@ Image readPng(const std::filesystem::path& file) {
     Image image(static_cast<int>(png.image.width), static_cast<int>(png.image.height));
     const png_color black{0, 0, 0};
     if (png_image_finish_read(&png.image, &black, image.rgb.data(), 0, nullptr) == 0) {
-        throw files::InputError(fmt::format("{}: is a damaged PNG: {}", file.string(), png.image.message));
+        throw base::InputError(fmt::format("{}: is a damaged PNG: {}", file.string(), png.image.message));
     }
     return image;
 }
@@ -65,7 +65,7 @@ void writePng(const std::filesystem::path& file, const Image& image) {
     png.image.height = static_cast<png_uint_32>(image.height);
     png.image.format = PNG_FORMAT_RGB;
     if (png_image_write_to_file(&png.image, file.c_str(), 0, image.rgb.data(), 0, nullptr) == 0) {
-        throw files::InputError(fmt::format("{}: picture cannot be written: {}", file.string(), png.image.message));
+        throw base::InputError(fmt::format("{}: picture cannot be written: {}", file.string(), png.image.message));
     }
 }
 

@@ -4,12 +4,12 @@
 
 #include "host/command_line.hpp"
 #include "host/version.hpp"
+#include "host/worker_pool.hpp"
 #include "lockstep/cluster.hpp"
 #include "render_node/probe.hpp"
 #include "render_node/tile_session.hpp"
 #include "sand/scene.hpp"
 #include "sand/terrain.hpp"
-#include "workers/sand_threads.hpp"
 
 int main(int argc, char** argv) {
     // Questions about this host, asked before a job: they need no MPI.
@@ -34,9 +34,9 @@ int main(int argc, char** argv) {
         .oneOf({"auto", "osmesa", "egl", "glfw"})
         .showDefault();
     int sandThreads = 1;
-    workers::addSandThreads(line, sandThreads);
+    host::addSandThreads(line, sandThreads);
     const int status = host::runMain(line, argc, argv, [&] {
-        const workers::WorkerPool pool(sandThreads);
+        const host::WorkerPool pool(sandThreads);
         return render_node::showTile(cluster, render_node::backendNamed(gl), {.executor = pool.lend()});
     });
     if (status != 0) {

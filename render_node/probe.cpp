@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "host/command_line.hpp"
 #include "render_node/gl/gl_context.hpp"
 #include "walls/wall.hpp"
@@ -33,7 +33,7 @@ int probe(const Options& options) {
     } else {
         wall = walls::parseWall(std::string{std::istreambuf_iterator<char>(std::cin), {}}, "standard input");
         if (rank > wall.ranks()) {
-            throw files::InputError(
+            throw base::InputError(
                 fmt::format("--probe: the wall on standard input has {} ranks, not {}", wall.ranks(), rank));
         }
         context = makeContext(backend, wall, wall.tiles[static_cast<std::size_t>(rank - 1)]);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/build_id.hpp"
+#include "host/clock.hpp"
 #include "lockstep/clock_sync.hpp"
 #include "lockstep/divergence.hpp"
 #include "lockstep/frame_barrier.hpp"
@@ -24,7 +25,7 @@
 namespace render_node {
 namespace {
 
-using lockstep::nowNs;
+using host::monotonicNs;
 
 /// One tile: its replica, its context and what it draws into.
 class TileSession {
@@ -68,15 +69,15 @@ public:
             applyFaults(frame);
             applySteps(frame);
             changeStereo(frame.view);
-            const std::int64_t start = nowNs();
+            const std::int64_t start = monotonicNs();
             figures.wall = std::move(frame.figures).value_or(lockstep::WallFigures{});
             draw(frame, figures);
             faults_.delay(frame.frame);
-            const std::int64_t drawn = nowNs();
+            const std::int64_t drawn = monotonicNs();
             figures.drawMs = static_cast<double>(drawn - start) * 1e-6;
             drawMs_.add(figures.drawMs);
             const std::uint64_t hash = terrain_->stateHash();
-            const std::int64_t arrived = nowNs();
+            const std::int64_t arrived = monotonicNs();
             if (faults_.garbles(frame.frame)) {
                 barrier.garble();
             }
@@ -88,8 +89,8 @@ public:
             }
             // Nobody comes here before all have agreed. Off screen, to swap is to let the pictures count.
             context_->swap();
-            lastSwap = nowNs() - clockAhead;
-            figures.waitMs = static_cast<double>(nowNs() - arrived) * 1e-6;
+            lastSwap = monotonicNs() - clockAhead;
+            figures.waitMs = static_cast<double>(monotonicNs() - arrived) * 1e-6;
             waitMs_.add(figures.waitMs);
             more = !frame.stop;
             if (frame.stop) {

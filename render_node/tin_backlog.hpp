@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
+#include "base/index_set.hpp"
 #include "render_node/frustum.hpp"
-#include "sand/tin/numbers.hpp"
 #include "sand/tin/surface_view.hpp"
 
 namespace render_node {
@@ -24,7 +24,7 @@ public:
 private:
     static constexpr std::size_t kMostBoxes = 32;
 
-    sand::tin::NumberList triangles_, vertices_;
+    base::IndexList triangles_, vertices_;
     std::vector<Box> boxes_;
 };
 

@@ -10,13 +10,13 @@
 #include <span>
 #include <vector>
 
+#include "base/index_set.hpp"
 #include "render_node/box_bins.hpp"
 #include "render_node/frustum.hpp"
 #include "render_node/sand_rim.hpp"
 #include "render_node/sand_surface.hpp"
 #include "render_node/tin_relief.hpp"
 #include "render_node/vertex_squares.hpp"
-#include "sand/tin/numbers.hpp"
 #include "sand/tin/surface_view.hpp"
 
 namespace render_node {
@@ -144,7 +144,7 @@ private:
     HeightRange ever_{};
     std::array<std::map<std::int32_t, Vertex>, 4> rim_;  // south, east, north, west, by place along the side
     std::vector<Vertex> elsewhere_;                      // scratch: who stands at another place than before
-    sand::tin::NumberList reshaped_, lit_, shaded_;      // scratch: triangles, vertices, triangles
+    base::IndexList reshaped_, lit_, shaded_;            // scratch: triangles, vertices, triangles
 };
 
 }  // namespace render_node

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "sand/code_path.hpp"
+#include "base/code_path.hpp"
 
 namespace sand {
 namespace {
@@ -34,7 +34,7 @@ Rect domainOf(const HeightField& field, Rim rim) {
 DualProjection::DualProjection(const HeightField& field, const Rules& rules, CodePath path)
     : field_(field),
       rules_(rules),
-      v3_(path == CodePath::automatic && machineHasV3()),
+      v3_(path == CodePath::automatic && base::machineHasV3()),
       northing_(static_cast<double>(kUnitsPerCell) / rules.aspect),
       twist_(std::max(northing_, 1.0)),
       domain_(domainOf(field, rules.rim)) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "sand/code_path.hpp"
+#include "base/code_path.hpp"
 #include "sand/erosion_kernel.hpp"
 #include "sand/held_patch.hpp"
 #include "sand/momentum.hpp"
@@ -47,7 +47,7 @@ Erosion::Erosion(const HeightField& field, const Rules& rules, const Options& op
       blockSize_(std::clamp(options.blockSize, 2, kMaxBlock)),
       across_((field.columns() + blockSize_ - 1) / blockSize_),
       down_((field.rows() + blockSize_ - 1) / blockSize_),
-      v3_(options.path == CodePath::automatic && machineHasV3()),
+      v3_(options.path == CodePath::automatic && base::machineHasV3()),
       east_(field.columns(), field.rows()),
       north_(field.columns(), field.rows()),
       marked_(across_, down_),

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/executor.hpp"
 #include "sand/block_marks.hpp"
-#include "sand/executor.hpp"
 #include "sand/ground.hpp"
 #include "sand/height_field.hpp"
 #include "sand/inertia.hpp"
@@ -42,9 +42,9 @@ public:
     struct Options {
         int blockSize = kDefaultBlock;  // [cell], in [2, kMaxBlock]
         CodePath path = CodePath::automatic;
-        const Ground* ground = nullptr;      // must outlive the erosion; null: sand without end
-        const Executor* executor = nullptr;  // must outlive the erosion; null: the caller's thread does all
-        bool skipSettled = true;             // false visits every block in every sweep: for comparison
+        const Ground* ground = nullptr;            // must outlive the erosion; null: sand without end
+        const base::Executor* executor = nullptr;  // must outlive the erosion; null: the caller's thread does all
+        bool skipSettled = true;                   // false visits every block in every sweep: for comparison
     };
 
     /// Everything may move at first.

@@ -13,9 +13,9 @@
 #include <string>
 #include <string_view>
 
-#include "files/input_error.hpp"
-#include "files/lower_case.hpp"
-#include "files/whole_file.hpp"
+#include "base/input_error.hpp"
+#include "base/text.hpp"
+#include "host/whole_file.hpp"
 #include "sand/height_field.hpp"
 
 namespace sand {
@@ -57,7 +57,7 @@ public:
         return value;
     }
     [[nodiscard]] long line() const { return line_; }
-    [[noreturn]] void fail(const std::string& message) const { throw files::InputError(file_, line_, message); }
+    [[noreturn]] void fail(const std::string& message) const { throw base::InputError(file_, line_, message); }
 
 private:
     static bool isSpace(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
@@ -88,7 +88,7 @@ double sizeOf(Words& words, const std::string& key) {
 
 /// What stands for no data: any number, or the "nan" that GDAL writes.
 double noDataOf(Words& words, const std::string& key) {
-    if (files::lowerCase(words.peek()) == "nan") {
+    if (base::lowerCase(words.peek()) == "nan") {
         words.next();
         return kNoData;
     }
@@ -100,10 +100,10 @@ void readHeader(Words& words, EsriGrid& grid) {
     double square = 0;
     const auto isKey = [](std::string_view word) {
         return !word.empty() && std::isalpha(static_cast<unsigned char>(word.front())) != 0 &&
-               files::lowerCase(word) != "nan";
+               base::lowerCase(word) != "nan";
     };
     while (isKey(words.peek())) {
-        const std::string key = files::lowerCase(words.next());
+        const std::string key = base::lowerCase(words.next());
         if (key == "ncols") {
             grid.columns = sideOf(words, key);
         } else if (key == "nrows") {
@@ -141,7 +141,7 @@ void readHeader(Words& words, EsriGrid& grid) {
 
 /// The next word as a height, or as no data.
 double heightOf(Words& words, const EsriGrid& grid) {
-    if (grid.noData && std::isnan(*grid.noData) && files::lowerCase(words.peek()) == "nan") {
+    if (grid.noData && std::isnan(*grid.noData) && base::lowerCase(words.peek()) == "nan") {
         words.next();
         return kNoData;
     }
@@ -156,7 +156,7 @@ EsriGrid readEsriGrid(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     if (!stream || std::filesystem::is_directory(file, ignored) ||
         std::filesystem::is_character_file(file, ignored)) {  // devices may never end
-        throw files::InputError(fmt::format("{}: cannot be read; check the path", file.string()));
+        throw base::InputError(fmt::format("{}: cannot be read; check the path", file.string()));
     }
     Words words({std::istreambuf_iterator<char>(stream), {}}, file.string());
     EsriGrid grid;
@@ -178,11 +178,11 @@ EsriGrid readEsriGrid(const std::filesystem::path& file) {
 
 void EsriGrid::fail(int column, int rowFromSouth, const std::string& message) const {
     if (lines.empty()) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("{}: pixel {}, {} (from the north-west): {}", file, column + 1, rows - rowFromSouth, message));
     }
     const long line = lines[static_cast<std::size_t>(rows - 1 - rowFromSouth)];
-    throw files::InputError(file, line, fmt::format("column {} of this row: {}", column + 1, message));
+    throw base::InputError(file, line, fmt::format("column {} of this row: {}", column + 1, message));
 }
 
 Rect cellsWithData(const EsriGrid& grid) {
@@ -201,7 +201,7 @@ Rect cellsWithData(const EsriGrid& grid) {
 EsriGrid withoutEmptyEdges(const EsriGrid& grid) {
     const Rect filled = cellsWithData(grid);
     if (filled.empty()) {
-        throw files::InputError(grid.file + ": every cell is a no-data cell; there is no terrain in it");
+        throw base::InputError(grid.file + ": every cell is a no-data cell; there is no terrain in it");
     }
     EsriGrid result = grid;
     result.columns = filled.x1 - filled.x0;
@@ -221,7 +221,7 @@ EsriGrid withoutEmptyEdges(const EsriGrid& grid) {
 }
 
 void writeEsriGrid(const EsriGrid& grid, const std::filesystem::path& file) {
-    files::WholeFile whole(file);
+    host::WholeFile whole(file);
     const std::string cells = grid.cellDepth ? fmt::format("dx {}\ndy {}", grid.cellSize, *grid.cellDepth)
                                              : fmt::format("cellsize {}", grid.cellSize);
     whole.stream() << fmt::format("ncols {}\nnrows {}\nxllcorner {}\nyllcorner {}\n{}\n", grid.columns, grid.rows,

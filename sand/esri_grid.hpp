@@ -39,11 +39,11 @@ struct EsriGrid {
             height /= units.heightsPerLength;
         }
     }
-    /// Throws files::InputError about this cell, with file and line, or its row where there are no lines.
+    /// Throws base::InputError about this cell, with file and line, or its row where there are no lines.
     [[noreturn]] void fail(int column, int rowFromSouth, const std::string& message) const;
 };
 
-/// Throws files::InputError with file and line: a header that is not one, values missing, too many or not finite.
+/// Throws base::InputError with file and line: a header that is not one, values missing, too many or not finite.
 /// Cells that are not square come as GDAL writes them, with dx and dy in place of cellsize.
 [[nodiscard]] EsriGrid readEsriGrid(const std::filesystem::path& file);
 
@@ -51,11 +51,11 @@ struct EsriGrid {
 [[nodiscard]] Rect cellsWithData(const EsriGrid& grid);
 
 /// Less the rows and columns at the edges that hold no data at all, which exporters leave around a rotated or resampled
-/// raster. Throws files::InputError when there is no data anywhere.
+/// raster. Throws base::InputError when there is no data anywhere.
 [[nodiscard]] EsriGrid withoutEmptyEdges(const EsriGrid& grid);
 
 /// Writes the shortest decimals that are read back as the same numbers. What stood at `file` is replaced when all is
-/// written. Throws files::InputError when the file cannot be written whole.
+/// written. Throws base::InputError when the file cannot be written whole.
 void writeEsriGrid(const EsriGrid& grid, const std::filesystem::path& file);
 
 /// A height with as few decimals as tell it from those a `unit` away: within a hundredth of a unit.

@@ -9,7 +9,7 @@ namespace {
 struct Key {
     const char* name;
     double ForceConstants::*constant;
-    files::Range range;
+    host::Range range;
 };
 
 constexpr double kTiny = 1e-9, kHuge = 1e9;
@@ -23,7 +23,7 @@ constexpr std::array kConstantKeys{
     Key{"friction_area", &ForceConstants::frictionArea, {0, 1e6}},
     Key{"max_force", &ForceConstants::maxForce, {0, 1e6}},
     Key{"tolerance", &ForceConstants::tolerance, {0, 1}},
-    Key{"unit_length", &ForceConstants::unitLength, files::kPositive},
+    Key{"unit_length", &ForceConstants::unitLength, host::kPositive},
     Key{"friction_coefficient", &ForceConstants::frictionCoefficient, {0, 1e3}},
     Key{"friction_speed", &ForceConstants::frictionSpeed, {kTiny, kHuge}},
     Key{"validity", &ForceConstants::validity, {0, 2}},
@@ -31,17 +31,17 @@ constexpr std::array kConstantKeys{
 };
 
 template <class Choice>
-Choice decodeChoice(files::ByteReader& reader, int choices) {
+Choice decodeChoice(base::ByteReader& reader, int choices) {
     const auto value = reader.get<std::uint8_t>();
     if (value >= choices) {
-        throw files::FormatError("a scene with a force law that nobody knows");
+        throw base::FormatError("a scene with a force law that nobody knows");
     }
     return static_cast<Choice>(value);
 }
 
 }  // namespace
 
-ForceConstants ForceConstants::read(const files::TomlTable& table, double side) {
+ForceConstants ForceConstants::read(const host::TomlTable& table, double side) {
     ForceConstants result;
     result.unitLength = side;
     for (const Key& key : kConstantKeys) {
@@ -60,7 +60,7 @@ ForceConstants ForceConstants::read(const files::TomlTable& table, double side) 
     return result;
 }
 
-void ForceConstants::encodeRest(files::ByteWriter& writer) const {
+void ForceConstants::encodeRest(base::ByteWriter& writer) const {
     for (std::size_t i = kOldest; i < kConstantKeys.size(); ++i) {
         writer.put(this->*kConstantKeys.at(i).constant);
     }
@@ -70,12 +70,12 @@ void ForceConstants::encodeRest(files::ByteWriter& writer) const {
     writer.put(static_cast<std::uint8_t>(literal ? 1 : 0));
 }
 
-void ForceConstants::decodeRest(files::ByteReader& reader) {
+void ForceConstants::decodeRest(base::ByteReader& reader) {
     for (std::size_t i = kOldest; i < kConstantKeys.size(); ++i) {
         const auto [lowest, highest] = kConstantKeys.at(i).range;
         const double value = this->*kConstantKeys.at(i).constant = reader.get<double>();
         if (!(value >= lowest && value <= highest)) {
-            throw files::FormatError("a scene with a force constant out of range");
+            throw base::FormatError("a scene with a force constant out of range");
         }
     }
     law = decodeChoice<ForceLaw>(reader, 2);

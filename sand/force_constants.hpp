@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "files/byte_stream.hpp"
-#include "files/toml_table.hpp"
+#include "base/byte_stream.hpp"
+#include "host/toml_table.hpp"
 
 namespace sand {
 
@@ -36,12 +36,12 @@ struct ForceConstants {
     double validity = 0.5;       // [tool reach], how far the local model is believed from where it was made
     double recoveryTime = 0.05;  // [s], time constant with which a new local model takes over
 
-    /// [force] of a scene file, whose field's longer side is `side` [scene unit]. Throws files::InputError.
-    static ForceConstants read(const files::TomlTable& table, double side);
+    /// [force] of a scene file, whose field's longer side is `side` [scene unit]. Throws base::InputError.
+    static ForceConstants read(const host::TomlTable& table, double side);
     /// What a scene's encoding ends with. The three oldest constants stand elsewhere in it.
-    void encodeRest(files::ByteWriter& writer) const;
-    /// Throws files::FormatError for numbers that no scene file gives.
-    void decodeRest(files::ByteReader& reader);
+    void encodeRest(base::ByteWriter& writer) const;
+    /// Throws base::FormatError for numbers that no scene file gives.
+    void decodeRest(base::ByteReader& reader);
     friend bool operator==(const ForceConstants&, const ForceConstants&) = default;
 };
 

@@ -8,10 +8,10 @@ namespace {
 
 constexpr std::size_t kLongestText = 1 << 16;  // [byte]: the WKT of a compound system takes a tenth of it
 
-std::string shortText(files::ByteReader& reader) {
+std::string shortText(base::ByteReader& reader) {
     std::string text = reader.getText();
     if (text.size() > kLongestText) {
-        throw files::FormatError("a georeference with a text too long");
+        throw base::FormatError("a georeference with a text too long");
     }
     return text;
 }
@@ -23,7 +23,7 @@ double Georeference::cubicMetres() const {
     return length * length * heightPerUnit * units.heightsPerLength * units.heightMetres;
 }
 
-void Georeference::encode(files::ByteWriter& writer) const {
+void Georeference::encode(base::ByteWriter& writer) const {
     writer.putText(units.crs);
     writer.putText(units.heightName);
     for (const double number : {units.lengthMetres, units.heightMetres, units.heightsPerLength, lengthPerUnit,
@@ -32,7 +32,7 @@ void Georeference::encode(files::ByteWriter& writer) const {
     }
 }
 
-Georeference Georeference::decode(files::ByteReader& reader) {
+Georeference Georeference::decode(base::ByteReader& reader) {
     Georeference result;
     RasterUnits& units = result.units;
     units.crs = shortText(reader);
@@ -41,12 +41,12 @@ Georeference Georeference::decode(files::ByteReader& reader) {
                            &result.heightPerUnit, &result.west, &result.south, &result.datum}) {
         *number = reader.get<double>();
         if (!std::isfinite(*number)) {
-            throw files::FormatError("a georeference with a number that is not finite");
+            throw base::FormatError("a georeference with a number that is not finite");
         }
     }
     if (units.lengthMetres < 0 || units.heightMetres < 0 || !(units.heightsPerLength > 0) ||
         !(result.lengthPerUnit > 0) || !(result.heightPerUnit > 0)) {
-        throw files::FormatError("a georeference with a unit that is not positive");
+        throw base::FormatError("a georeference with a unit that is not positive");
     }
     return result;
 }

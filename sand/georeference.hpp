@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 
 namespace sand {
 
@@ -29,9 +29,9 @@ struct Georeference {
     /// [m³] of a cubic scene unit; 0: nobody said how long the units are.
     [[nodiscard]] double cubicMetres() const;
 
-    void encode(files::ByteWriter& writer) const;
-    /// Throws files::FormatError for numbers that cannot be and texts that are no WKT's length.
-    static Georeference decode(files::ByteReader& reader);
+    void encode(base::ByteWriter& writer) const;
+    /// Throws base::FormatError for numbers that cannot be and texts that are no WKT's length.
+    static Georeference decode(base::ByteReader& reader);
 };
 
 }  // namespace sand

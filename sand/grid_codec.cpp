@@ -15,31 +15,31 @@ std::size_t countOf(const Rect& cells) {
 
 }  // namespace
 
-void encodeCells(const Grid& grid, const Rect& cells, files::ByteWriter& writer) {
+void encodeCells(const Grid& grid, const Rect& cells, base::ByteWriter& writer) {
     std::vector<std::int32_t> plain;
     plain.reserve(countOf(cells));
     for (int y = cells.y0; y < cells.y1; ++y) {
         plain.insert(plain.end(), grid.row(y) + cells.x0, grid.row(y) + cells.x1);
     }
     const std::size_t size = plain.size() * sizeof plain[0];
-    files::Bytes packed(ZSTD_compressBound(size));
+    base::Bytes packed(ZSTD_compressBound(size));
     const std::size_t used = ZSTD_compress(packed.data(), packed.size(), plain.data(), size, 1);
     if (ZSTD_isError(used) != 0) {
-        throw files::FormatError(std::string("zstd: ") + ZSTD_getErrorName(used));
+        throw base::FormatError(std::string("zstd: ") + ZSTD_getErrorName(used));
     }
     packed.resize(used);
     writer.putBlock(packed);
 }
 
-void decodeCells(files::ByteReader& reader, const Rect& cells, std::int32_t most, Grid& grid) {
+void decodeCells(base::ByteReader& reader, const Rect& cells, std::int32_t most, Grid& grid) {
     const auto packed = reader.getBlock();
     std::vector<std::int32_t> plain(countOf(cells));
     const std::size_t size = plain.size() * sizeof plain[0];
     if (ZSTD_decompress(plain.data(), size, packed.data(), packed.size()) != size) {
-        throw files::FormatError("cells that do not unpack to the grid's size");
+        throw base::FormatError("cells that do not unpack to the grid's size");
     }
     if (std::any_of(plain.begin(), plain.end(), [most](std::int32_t n) { return n > most || n < -most; })) {
-        throw files::FormatError("a number out of range in a grid");
+        throw base::FormatError("a number out of range in a grid");
     }
     auto next = plain.begin();
     for (int y = cells.y0; y < cells.y1; ++y) {

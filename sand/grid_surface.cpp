@@ -26,9 +26,9 @@ GridSurface::GridSurface(const Scene& scene, const Erosion::Options& options)
       erosion_(field_, rules_, withGround(options, ground_.get())),
       hash_(field_),
       damage_(field_.bounds()) {
-    files::ByteWriter writer;
+    base::ByteWriter writer;
     encodeCells(field_.cells(), field_.bounds(), writer);
-    start_ = std::make_shared<const files::Bytes>(writer.take());
+    start_ = std::make_shared<const base::Bytes>(writer.take());
 }
 
 void GridSurface::touch(const Rect& cells) {
@@ -79,7 +79,7 @@ void GridSurface::settle() {
 }
 
 void GridSurface::reset() {
-    files::ByteReader reader(*start_);
+    base::ByteReader reader(*start_);
     decodeCells(reader, field_.bounds(), kMaxHeight, field_.cells());
     erosion_.resume({});
     outflow_ = 0;

@@ -63,8 +63,8 @@ private:
     Erosion erosion_;
     StateHash hash_;
     std::int64_t outflow_ = 0;
-    std::shared_ptr<const files::Bytes> start_;  // the scene's heights, compressed; copies of a replica share them
-    KeptSand beforeStroke_;                      // the last one
+    std::shared_ptr<const base::Bytes> start_;  // the scene's heights, compressed; copies of a replica share them
+    KeptSand beforeStroke_;                     // the last one
     Rect damage_;
 };
 

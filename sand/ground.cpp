@@ -24,14 +24,14 @@ std::uint64_t Ground::digest() const {
     return std::max<std::uint64_t>(hash, 1);
 }
 
-Ground Ground::decode(files::ByteReader& reader, const HeightField& field) {
+Ground Ground::decode(base::ByteReader& reader, const HeightField& field) {
     Ground ground(field.columns(), field.rows());
     decodeCells(reader, field.bounds(), kWall, ground.bed_);
     for (int y = 0; y < field.rows(); ++y) {
         for (int x = 0; x < field.columns(); ++x) {
             const std::int32_t sand = ground.sand(x, y, field.height(x, y));
             if (sand < 0 || ground.bedrock(x, y) < kBottomless) {
-                throw files::FormatError("rock above the sand that lies on it");
+                throw base::FormatError("rock above the sand that lies on it");
             }
         }
     }

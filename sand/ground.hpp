@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 #include "sand/height_field.hpp"
 
 namespace sand {
@@ -30,8 +30,8 @@ public:
     [[nodiscard]] const Grid& cells() const { return bed_; }
     /// Equal digests mean equal rock and walls; never 0.
     [[nodiscard]] std::uint64_t digest() const;
-    /// Reads what encodeCells() wrote of cells(). Throws files::FormatError, also for rock above the sand of `field`.
-    static Ground decode(files::ByteReader& reader, const HeightField& field);
+    /// Reads what encodeCells() wrote of cells(). Throws base::FormatError, also for rock above the sand of `field`.
+    static Ground decode(base::ByteReader& reader, const HeightField& field);
 
     static constexpr std::int32_t kBottomless = -kMaxHeight;
     static constexpr std::int32_t kWall = std::numeric_limits<std::int32_t>::max();

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 
 namespace sand {
 
@@ -27,18 +27,18 @@ struct Heading {
         return std::uint64_t{static_cast<std::uint16_t>(x)} | std::uint64_t{static_cast<std::uint16_t>(y)} << 16 |
                std::uint64_t{mirrored ? 1U : 0U} << 32;
     }
-    void encode(files::ByteWriter& writer) const {
+    void encode(base::ByteWriter& writer) const {
         writer.put(x);
         writer.put(y);
     }
-    /// Without `mirrored`, for which others have a bit left. Throws files::FormatError for what is no direction.
-    static Heading decode(files::ByteReader& reader, bool mirrored) {
+    /// Without `mirrored`, for which others have a bit left. Throws base::FormatError for what is no direction.
+    static Heading decode(base::ByteReader& reader, bool mirrored) {
         Heading heading;
         heading.x = reader.get<std::int16_t>();
         heading.y = reader.get<std::int16_t>();
         heading.mirrored = mirrored;
         if (!heading.valid()) {
-            throw files::FormatError("a tool's heading that is no direction");
+            throw base::FormatError("a tool's heading that is no direction");
         }
         return heading;
     }

@@ -50,7 +50,7 @@ void Inertia::putInto(Grid& east, Grid& north) const {
     }
 }
 
-void Inertia::encode(int columns, int rows, files::ByteWriter& writer) const {
+void Inertia::encode(int columns, int rows, base::ByteWriter& writer) const {
     writer.put(static_cast<std::int32_t>(undisturbed_));
     if (undisturbed_ > 0) {
         Grid east(columns, rows);
@@ -61,10 +61,10 @@ void Inertia::encode(int columns, int rows, files::ByteWriter& writer) const {
     }
 }
 
-Inertia Inertia::decode(files::ByteReader& reader, int columns, int rows) {
+Inertia Inertia::decode(base::ByteReader& reader, int columns, int rows) {
     const auto undisturbed = reader.get<std::int32_t>();
     if (undisturbed < 0 || undisturbed > kMostCounted) {
-        throw files::FormatError("sand with an inertia of no age");
+        throw base::FormatError("sand with an inertia of no age");
     }
     Inertia inertia(undisturbed);
     if (undisturbed > 0) {

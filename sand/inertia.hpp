@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 #include "sand/grid.hpp"
 
 namespace sand {
@@ -25,9 +25,9 @@ public:
     [[nodiscard]] int undisturbed() const { return undisturbed_; }  // [sweep]
 
     /// As two whole grids of a field of this size, whatever the pieces were.
-    void encode(int columns, int rows, files::ByteWriter& writer) const;
-    /// Throws files::FormatError.
-    static Inertia decode(files::ByteReader& reader, int columns, int rows);
+    void encode(int columns, int rows, base::ByteWriter& writer) const;
+    /// Throws base::FormatError.
+    static Inertia decode(base::ByteReader& reader, int columns, int rows);
 
 private:
     struct Piece {

@@ -21,8 +21,8 @@ void copyCells(const HeightField& from, const Rect& cells, HeightField& to) {
 
 }  // namespace
 
-files::Bytes SandCopy::encode() const {
-    files::ByteWriter writer;
+base::Bytes SandCopy::encode() const {
+    base::ByteWriter writer;
     writer.put(outflow);
     encodeCells(field.cells(), field.bounds(), writer);
     inertia.encode(field.columns(), field.rows(), writer);
@@ -30,13 +30,13 @@ files::Bytes SandCopy::encode() const {
 }
 
 SandCopy SandCopy::decode(std::span<const std::uint8_t> bytes, int columns, int rows, double cellSize) {
-    files::ByteReader reader(bytes);
+    base::ByteReader reader(bytes);
     const auto outflow = reader.get<std::int64_t>();
     SandCopy copy(HeightField(columns, rows, cellSize), {}, outflow);
     decodeCells(reader, copy.field.bounds(), kMaxHeight, copy.field.cells());
     copy.inertia = Inertia::decode(reader, columns, rows);
     if (!reader.atEnd()) {
-        throw files::FormatError("sand with more behind it");
+        throw base::FormatError("sand with more behind it");
     }
     return copy;
 }

@@ -19,8 +19,8 @@ public:
     SandCopy(HeightField heights, Inertia fluxes, std::int64_t over)
         : field(std::move(heights)), inertia(std::move(fluxes)), outflow(over) {}
 
-    [[nodiscard]] files::Bytes encode() const override;
-    /// Of a field like this one. Throws files::FormatError when the bytes are none, or go on behind it.
+    [[nodiscard]] base::Bytes encode() const override;
+    /// Of a field like this one. Throws base::FormatError when the bytes are none, or go on behind it.
     static SandCopy decode(std::span<const std::uint8_t> bytes, int columns, int rows, double cellSize);
 
     HeightField field;

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "sand/scene.hpp"
 
 namespace sand {
@@ -63,7 +63,7 @@ std::optional<MaterialFault> toolFaultOf(const Material& material, const Materia
 
 Material checked(const Material& material, const MaterialGrid& grid) {
     if (const auto fault = faultOf(material, grid)) {
-        throw files::InputError(fault->message);
+        throw base::InputError(fault->message);
     }
     return material;
 }
@@ -121,25 +121,25 @@ Material withNumber(Material material, std::string_view word, double value, cons
         if (word == key.word || word == key.key) {
             // Written so that what is no number is out of range.
             if (!(value >= key.lowest && value <= key.highest) || (key.highestIsOut && value == key.highest)) {
-                throw files::InputError(fmt::format("{} must be within [{}, {}{}, got {}", key.word, key.lowest,
-                                                    key.highest, key.highestIsOut ? ')' : ']', value));
+                throw base::InputError(fmt::format("{} must be within [{}, {}{}, got {}", key.word, key.lowest,
+                                                   key.highest, key.highestIsOut ? ')' : ']', value));
             }
             key.set(material, value);
             return checked(material, grid);
         }
         known += fmt::format("{}{}", known.empty() ? "" : ", ", key.word);
     }
-    throw files::InputError(fmt::format("a material has no '{}'; there are {}", word, known));
+    throw base::InputError(fmt::format("a material has no '{}'; there are {}", word, known));
 }
 
 Material withTool(Material material, const ToolChange& change, const MaterialGrid& grid) {
     // A scene without a tool to speak of may be; a tool that vanishes under somebody's hand may not.
     const double least = grid.cellSize / kProbePerCell;
     if (change.radius && !(*change.radius >= least)) {
-        throw files::InputError(fmt::format("a tool's radius must be at least {:.3g}, got {}", least, *change.radius));
+        throw base::InputError(fmt::format("a tool's radius must be at least {:.3g}, got {}", least, *change.radius));
     }
     if (change.heading && !headingOf(*change.heading)) {
-        throw files::InputError("a tool's heading must be a number of degrees");
+        throw base::InputError("a tool's heading must be a number of degrees");
     }
     if (change.kind && *change.kind != material.toolKind) {
         material.toolKind = *change.kind;

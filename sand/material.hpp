@@ -60,7 +60,7 @@ struct MaterialFault {
 /// last digit differs from host to host.
 [[nodiscard]] Tuning tuningOf(const Material& material, const MaterialGrid& grid);
 
-/// An operator's command: the material with one number changed. Throws files::InputError with the keys there are or
+/// An operator's command: the material with one number changed. Throws base::InputError with the keys there are or
 /// the range, in one line.
 [[nodiscard]] Material withNumber(Material material, std::string_view word, double value, const MaterialGrid& grid);
 inline constexpr double kNarrowestTool = 0.05;  // width over length

@@ -12,15 +12,15 @@ constexpr unsigned kTinFlag = 0x80;  // beside the scheme: scenes of height fiel
 /// What may stand at the end of a scene, each with its length in bytes.
 enum class Part : std::uint8_t { georeference = 1 };
 
-void decodePart(files::ByteReader& reader, Scene& scene) {
+void decodePart(base::ByteReader& reader, Scene& scene) {
     const auto part = reader.get<std::uint8_t>();
-    files::ByteReader bytes(reader.getBlock());
+    base::ByteReader bytes(reader.getBlock());
     if (part != static_cast<std::uint8_t>(Part::georeference)) {
-        throw files::FormatError("a scene with a part that this version does not know");
+        throw base::FormatError("a scene with a part that this version does not know");
     }
     scene.georeference = Georeference::decode(bytes);
     if (!bytes.atEnd()) {
-        throw files::FormatError("a scene with a part that is longer than it should be");
+        throw base::FormatError("a scene with a part that is longer than it should be");
     }
 }
 
@@ -36,7 +36,7 @@ void Rules::tune(const Tuning& tuning) {
     toolHeading = tuning.toolHeading;
 }
 
-void Rules::encode(files::ByteWriter& writer) const {
+void Rules::encode(base::ByteWriter& writer) const {
     for (const std::int32_t number :
          {columns, rows, aspect, threshold, startThreshold, sweepsPerStep, stepsPerSecond}) {
         writer.put(number);
@@ -50,13 +50,13 @@ void Rules::encode(files::ByteWriter& writer) const {
     }
 }
 
-Rules Rules::decode(files::ByteReader& reader) {
+Rules Rules::decode(base::ByteReader& reader) {
     Rules rules;
     for (std::int32_t* number : {&rules.columns, &rules.rows, &rules.aspect, &rules.threshold, &rules.startThreshold,
                                  &rules.sweepsPerStep, &rules.stepsPerSecond}) {
         *number = reader.get<std::int32_t>();
         if (*number < 0) {
-            throw files::FormatError("a scene with a negative rule");
+            throw base::FormatError("a scene with a negative rule");
         }
     }
     const ToolRules tool = ToolRules::decode(reader);
@@ -69,19 +69,19 @@ Rules Rules::decode(files::ByteReader& reader) {
     const auto rim = reader.get<std::uint8_t>();
     const bool sides = rules.columns >= 1 && rules.columns <= kMaxSide && rules.rows >= 1 && rules.rows <= kMaxSide;
     if (!sides || rules.aspect < 1 || scheme > 2 || rim > 1 || rules.stepsPerSecond < 1) {
-        throw files::FormatError("a scene with rules out of range");
+        throw base::FormatError("a scene with rules out of range");
     }
     rules.scheme = static_cast<Scheme>(scheme);
     rules.rim = static_cast<Rim>(rim);
     rules.ground = reader.get<std::uint64_t>();
     if ((coded & kTinFlag) != 0 && (rules.tin = reader.get<std::uint64_t>()) == 0) {
-        throw files::FormatError("a TIN without a digest");
+        throw base::FormatError("a TIN without a digest");
     }
     return rules;
 }
 
 std::uint64_t Rules::digest() const {
-    files::ByteWriter writer;
+    base::ByteWriter writer;
     encode(writer);
     return XXH3_64bits_withSeed(writer.bytes().data(), writer.bytes().size(), kAlgorithmVersion);
 }
@@ -94,8 +94,8 @@ std::int32_t Scene::referenceHeight() const {
     return static_cast<std::int32_t>(terrain.volume() / cells);
 }
 
-files::Bytes Scene::encode() const {
-    files::ByteWriter writer;
+base::Bytes Scene::encode() const {
+    base::ByteWriter writer;
     writer.putText(name);
     rules.encode(writer);
     for (const double constant : {force.stiffness, force.depthExponent, force.friction}) {
@@ -118,7 +118,7 @@ files::Bytes Scene::encode() const {
     writer.put(look.detail);
     force.encodeRest(writer);
     if (georeference != Georeference{}) {
-        files::ByteWriter part;
+        base::ByteWriter part;
         georeference.encode(part);
         writer.put(static_cast<std::uint8_t>(Part::georeference));
         writer.putBlock(part.bytes());
@@ -127,7 +127,7 @@ files::Bytes Scene::encode() const {
 }
 
 Scene Scene::decode(std::span<const std::uint8_t> bytes) {
-    files::ByteReader reader(bytes);
+    base::ByteReader reader(bytes);
     Scene scene;
     scene.name = reader.getText();
     scene.rules = Rules::decode(reader);
@@ -141,7 +141,7 @@ Scene Scene::decode(std::span<const std::uint8_t> bytes) {
     }
     const auto cellSize = reader.get<double>();
     if (!(cellSize > 0)) {
-        throw files::FormatError("a scene without a cell size");
+        throw base::FormatError("a scene without a cell size");
     }
     const bool grid = scene.rules.tin == 0;
     scene.terrain = HeightField(grid ? scene.rules.columns : 1, grid ? scene.rules.rows : 1, cellSize);
@@ -149,13 +149,13 @@ Scene Scene::decode(std::span<const std::uint8_t> bytes) {
     if (!grid) {
         scene.tin = std::make_shared<const tin::Start>(tin::Start::decode(reader));
         if (scene.tin->digest() != scene.rules.tin || scene.rules.ground != 0) {
-            throw files::FormatError("a scene whose TIN is not that of its rules");
+            throw base::FormatError("a scene whose TIN is not that of its rules");
         }
     }
     if (scene.rules.ground != 0) {
         scene.ground = std::make_shared<const Ground>(Ground::decode(reader, scene.terrain));
         if (scene.ground->digest() != scene.rules.ground) {
-            throw files::FormatError("a scene whose ground is not that of its rules");
+            throw base::FormatError("a scene whose ground is not that of its rules");
         }
     }
     // Journals end where what came later had not been thought of: hill-shade and levels of detail, then more forces.

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 #include "sand/force_constants.hpp"
 #include "sand/georeference.hpp"
 #include "sand/ground.hpp"
@@ -51,8 +51,8 @@ struct Rules {
     }
     void tune(const Tuning& tuning);
 
-    void encode(files::ByteWriter& writer) const;
-    static Rules decode(files::ByteReader& reader);
+    void encode(base::ByteWriter& writer) const;
+    static Rules decode(base::ByteReader& reader);
     /// What server and master compare: equal digests mean equal sand from equal steps.
     [[nodiscard]] std::uint64_t digest() const;
     friend bool operator==(const Rules&, const Rules&) = default;
@@ -93,15 +93,15 @@ struct Scene {
     [[nodiscard]] std::int32_t referenceHeight() const;
 
     /// The whole scene as bytes: what the master broadcasts and the journal begins with.
-    [[nodiscard]] files::Bytes encode() const;
-    /// Throws files::FormatError.
+    [[nodiscard]] base::Bytes encode() const;
+    /// Throws base::FormatError.
     static Scene decode(std::span<const std::uint8_t> bytes);
 };
 
 /// Looks at the size of a height field before its heights are made, and throws if there is no room for it.
 using FieldCheck = std::function<void(int columns, int rows)>;
 
-/// Reads a scene file. Throws files::InputError with file, line and key; a DEM's errors name the DEM's line.
+/// Reads a scene file. Throws base::InputError with file, line and key; a DEM's errors name the DEM's line.
 /// `check` is called once for a height field, and not for a TIN.
 [[nodiscard]] Scene loadScene(const std::filesystem::path& file, const FieldCheck& check = {});
 

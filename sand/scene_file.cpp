@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "files/input_error.hpp"
-#include "files/toml_table.hpp"
+#include "base/input_error.hpp"
+#include "host/toml_table.hpp"
 #include "sand/material.hpp"
 #include "sand/scene.hpp"
 #include "sand/scene_terrain.hpp"
@@ -17,8 +17,8 @@ namespace {
 
 constexpr int kTooCoarse = 4096;  // [unit]: below, rest slopes come out more than a percent too steep
 
-void readMaterial(const files::TomlTable& file, Scene& scene) {
-    const files::TomlTable table = file.requiredTable("material");
+void readMaterial(const host::TomlTable& file, Scene& scene) {
+    const host::TomlTable table = file.requiredTable("material");
     for (const MaterialKey& key : materialKeys()) {
         const double value = table.numberOr(key.key, key.lowest, {key.lowest, key.highest});
         if (table.has(key.key)) {
@@ -55,7 +55,7 @@ std::vector<std::string_view> toolNames() {
     return names;
 }
 
-void readShape(const files::TomlTable& tool, Material& material) {
+void readShape(const host::TomlTable& tool, Material& material) {
     material.toolKind = static_cast<ToolKind>(tool.choiceOr("shape", toolNames(), 0));
     if (const double width = tool.numberOr("width", 1, {kNarrowestTool, 1}); tool.has("width")) {
         material.toolWidth = width;
@@ -64,10 +64,10 @@ void readShape(const files::TomlTable& tool, Material& material) {
     material.leftFoot = tool.choiceOr("foot", {"right", "left"}, 0) == 1;
 }
 
-void readTool(const files::TomlTable& file, Scene& scene) {
-    const std::optional<files::TomlTable> tool = file.table("tool");
+void readTool(const host::TomlTable& file, Scene& scene) {
+    const std::optional<host::TomlTable> tool = file.table("tool");
     double& radius = scene.material.toolRadius;
-    radius = tool ? tool->numberOr("radius", radius, files::kPositive) : radius;
+    radius = tool ? tool->numberOr("radius", radius, host::kPositive) : radius;
     if (tool) {
         readShape(*tool, scene.material);
     }
@@ -89,9 +89,9 @@ void readTool(const files::TomlTable& file, Scene& scene) {
     }
 }
 
-void readForce(const files::TomlTable& file, Scene& scene) {
+void readForce(const host::TomlTable& file, Scene& scene) {
     const double side = std::max(scene.rules.columns, scene.rules.rows) * scene.terrain.cellSize();
-    const std::optional<files::TomlTable> force = file.table("force");
+    const std::optional<host::TomlTable> force = file.table("force");
     if (force) {
         scene.force = ForceConstants::read(*force, side);
     } else {
@@ -102,7 +102,7 @@ void readForce(const files::TomlTable& file, Scene& scene) {
 // [pixel]: GL promises vertices no finer than a sixteenth of a pixel.
 constexpr double kLeastDetail = 1.0 / 16;
 
-void readLook(const files::TomlTable& file, Scene& scene) {
+void readLook(const host::TomlTable& file, Scene& scene) {
     if (const auto look = file.table("look")) {
         scene.look.sandColour = look->numbersOr("sand", scene.look.sandColour);
         scene.look.backgroundColour = look->numbersOr("background", scene.look.backgroundColour);
@@ -127,7 +127,7 @@ void readLook(const files::TomlTable& file, Scene& scene) {
 }  // namespace
 
 Scene loadScene(const std::filesystem::path& file, const FieldCheck& check) {
-    const files::TomlTable toml = files::TomlTable::load(file);
+    const host::TomlTable toml = host::TomlTable::load(file);
     Scene scene;
     scene.name = toml.textOr("name", file.stem().string());
     const auto control = [](char c) { return static_cast<unsigned char>(c) < ' '; };

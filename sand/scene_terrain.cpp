@@ -14,11 +14,11 @@
 namespace sand {
 namespace {
 
-HeightField levelField(const files::TomlTable& file, const FieldCheck& check) {
-    const files::TomlTable field = file.requiredTable("field");
+HeightField levelField(const host::TomlTable& file, const FieldCheck& check) {
+    const host::TomlTable field = file.requiredTable("field");
     const int columns = field.integerOr("columns", 512, 1, kMaxSide);
     const int rows = field.integerOr("rows", columns, 1, kMaxSide);
-    const double width = field.numberOr("width", 2.0, files::kPositive);  // the paper's (-1, 1)
+    const double width = field.numberOr("width", 2.0, host::kPositive);  // the paper's (-1, 1)
     field.finish();
     if (check) {
         check(columns, rows);
@@ -26,7 +26,7 @@ HeightField levelField(const files::TomlTable& file, const FieldCheck& check) {
     return {columns, rows, width / columns};
 }
 
-std::int32_t heightUnits(const files::TomlTable& terrain, const std::string& key, double height, double unit) {
+std::int32_t heightUnits(const host::TomlTable& terrain, const std::string& key, double height, double unit) {
     const double units = std::floor(height / unit + 0.5);
     if (!(std::abs(units) <= kMaxHeight)) {
         terrain.fail(key, fmt::format("a height of {} is beyond the range of ±{} (4096 cells); set 'datum'", height,
@@ -44,7 +44,7 @@ Ground& groundOf(std::shared_ptr<Ground>& ground, const HeightField& field) {
 }
 
 /// Columns and rows of the field that the raster becomes.
-void checkCells(const files::TomlTable& terrain, const EsriGrid& raster) {
+void checkCells(const host::TomlTable& terrain, const EsriGrid& raster) {
     if (raster.aspect() != 1) {
         const std::string advice =
             raster.lines.empty() ? fmt::format("; resample it: gdalwarp -tr {0} {0} -r bilinear", raster.cellSize) : "";
@@ -58,7 +58,7 @@ void checkCells(const files::TomlTable& terrain, const EsriGrid& raster) {
 }
 
 /// Cells without data become walls, drawn as flats at the lowest height there is.
-HeightField fromSource(const files::TomlTable& file, const files::TomlTable& terrain, int kind, Scene& scene,
+HeightField fromSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind, Scene& scene,
                        std::shared_ptr<Ground>& ground, const FieldCheck& check) {
     const TerrainSource source = readSource(file, terrain, kind);
     if (!source.points.empty()) {
@@ -103,7 +103,7 @@ HeightField fromSource(const files::TomlTable& file, const files::TomlTable& ter
     return field;
 }
 
-HeightField madeUp(const files::TomlTable& file, const files::TomlTable& terrain, bool withDunes,
+HeightField madeUp(const host::TomlTable& file, const host::TomlTable& terrain, bool withDunes,
                    const FieldCheck& check) {
     HeightField field = levelField(file, check);
     const double bed = terrain.numberOr("height", 0);
@@ -115,7 +115,7 @@ HeightField madeUp(const files::TomlTable& file, const files::TomlTable& terrain
         Dunes dunes;
         dunes.bed = bed;
         dunes.height = terrain.numberOr("dune_height", dunes.height, {0, 1e9});
-        dunes.length = terrain.numberOr("dune_length", dunes.length, files::kPositive);
+        dunes.length = terrain.numberOr("dune_length", dunes.length, host::kPositive);
         dunes.seed = static_cast<std::uint32_t>(terrain.integerOr("seed", 1, 0, 1 << 30));
         heightUnits(terrain, "dune_height", bed + dunes.height, field.unit());
         makeDunes(dunes, field);
@@ -125,7 +125,7 @@ HeightField madeUp(const files::TomlTable& file, const files::TomlTable& terrain
 
 /// Puts rock at `heightOf(column, row)` [unit] under every cell that is no wall.
 template <class HeightOf>
-void layRock(const files::TomlTable& terrain, const std::string& key, const HeightField& field, Ground& ground,
+void layRock(const host::TomlTable& terrain, const std::string& key, const HeightField& field, Ground& ground,
              HeightOf heightOf) {
     for (int row = 0; row < field.rows(); ++row) {
         for (int column = 0; column < field.columns(); ++column) {
@@ -144,7 +144,7 @@ void layRock(const files::TomlTable& terrain, const std::string& key, const Heig
     }
 }
 
-void readBedrock(const files::TomlTable& terrain, const HeightField& field, std::shared_ptr<Ground>& ground) {
+void readBedrock(const host::TomlTable& terrain, const HeightField& field, std::shared_ptr<Ground>& ground) {
     if (terrain.has("layer") && terrain.has("bedrock")) {
         terrain.fail("bedrock", "give 'layer' or 'bedrock', not both: either says where the rock lies");
     }
@@ -176,8 +176,8 @@ void readBedrock(const files::TomlTable& terrain, const HeightField& field, std:
 
 }  // namespace
 
-bool readTerrain(const files::TomlTable& file, Scene& scene, const FieldCheck& check) {
-    const files::TomlTable terrain = file.requiredTable("terrain");
+bool readTerrain(const host::TomlTable& file, Scene& scene, const FieldCheck& check) {
+    const host::TomlTable terrain = file.requiredTable("terrain");
     std::vector<std::string_view> kinds{"flat", "dunes"};
     kinds.insert(kinds.end(), sourceKinds().begin(), sourceKinds().end());
     const int kind = terrain.choiceOr("kind", kinds, 0);

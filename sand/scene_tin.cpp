@@ -18,7 +18,7 @@ namespace {
 constexpr int kUsualSide = 512;  // nominal cells, of points that nobody says more of
 
 /// Whether volumes of heights up to `highest` [unit] fit over this field.
-void requireRange(const files::TomlTable& file, double highest, int columns, int rows, double unit) {
+void requireRange(const host::TomlTable& file, double highest, int columns, int rows, double unit) {
     const double most = tin::mostHeight(columns, rows);
     if (highest > most) {
         file.fail("tin", fmt::format("heights of up to {} on {} x {} cells are more than a TIN's volumes can hold, {} "
@@ -49,7 +49,7 @@ std::size_t distinctPlaces(const tin::Start& start) {
 }
 
 /// Makes the TIN of points that are laid out already.
-tin::Start joined(const files::TomlTable& file, const files::TomlTable& tin, const Scene& scene) {
+tin::Start joined(const host::TomlTable& file, const host::TomlTable& tin, const Scene& scene) {
     tin::Start start = *scene.tin;
     const std::size_t places = distinctPlaces(start);
     if (places > std::size_t{tin::kMostPlaces}) {
@@ -67,7 +67,7 @@ tin::Start joined(const files::TomlTable& file, const files::TomlTable& tin, con
 }
 
 /// Makes a TIN of the scene's height field.
-tin::Start followed(const files::TomlTable& tin, const Scene& scene) {
+tin::Start followed(const host::TomlTable& tin, const Scene& scene) {
     const HeightField& field = scene.terrain;
     const tin::Settings settings = readTinSettings(tin, {field.columns(), field.rows(), field.cellSize()});
     tin.finish();
@@ -128,7 +128,7 @@ void warnOfNearPoints(const std::string& file, const Points& points, const std::
 
 }  // namespace
 
-HeightField layOutPoints(const files::TomlTable& file, const files::TomlTable& terrain, const Points& points,
+HeightField layOutPoints(const host::TomlTable& file, const host::TomlTable& terrain, const Points& points,
                          Scene& scene) {
     double west = points[0][0], south = points[0][1], east = west, north = south;
     for (const auto& [x, y, z] : points) {
@@ -167,7 +167,7 @@ HeightField layOutPoints(const files::TomlTable& file, const files::TomlTable& t
     return one;
 }
 
-void readTin(const files::TomlTable& file, Scene& scene) {
+void readTin(const host::TomlTable& file, Scene& scene) {
     const auto tin = file.table("tin");
     if (!tin) {
         return;

@@ -25,9 +25,9 @@ Edit Edit::tuned(const Tuning& tuning) {
     return edit;
 }
 
-Edit Edit::loaded(files::Bytes sand) {
+Edit Edit::loaded(base::Bytes sand) {
     Edit edit(Kind::load);
-    edit.sand = std::make_shared<const files::Bytes>(std::move(sand));
+    edit.sand = std::make_shared<const base::Bytes>(std::move(sand));
     return edit;
 }
 
@@ -36,15 +36,15 @@ bool operator==(const Edit& a, const Edit& b) {
     return a.kind == b.kind && a.tuning == b.tuning && sameSand;
 }
 
-void encodeDetails(const Edit& edit, files::ByteWriter& writer) {
+void encodeDetails(const Edit& edit, base::ByteWriter& writer) {
     if (edit.kind == Edit::tune) {
         edit.tuning.encode(writer);
     } else if (edit.kind == Edit::load) {
-        writer.putBlock(edit.sand ? *edit.sand : files::Bytes());
+        writer.putBlock(edit.sand ? *edit.sand : base::Bytes());
     }
 }
 
-Edit decodeDetails(Edit::Kind kind, files::ByteReader& reader) {
+Edit decodeDetails(Edit::Kind kind, base::ByteReader& reader) {
     if (kind == Edit::tune) {
         return Edit::tuned(Tuning::decode(reader));
     }
@@ -52,14 +52,14 @@ Edit decodeDetails(Edit::Kind kind, files::ByteReader& reader) {
         // What it holds is judged where it is put in the sand's place: that knows the field.
         const auto sand = reader.getBlock();
         if (sand.size() > kMaxSandBytes) {
-            throw files::FormatError("sand of " + std::to_string(sand.size()) + " bytes");
+            throw base::FormatError("sand of " + std::to_string(sand.size()) + " bytes");
         }
         return Edit::loaded({sand.begin(), sand.end()});
     }
     return kind;
 }
 
-void encode(const Step& step, files::ByteWriter& writer) {
+void encode(const Step& step, base::ByteWriter& writer) {
     writer.putVarint(step.epoch);
     writer.putVarint(step.number);
     writer.put(static_cast<std::uint8_t>(flagsOf(step)));
@@ -81,18 +81,18 @@ namespace {
 
 std::int32_t addChecked(std::int32_t base, std::int64_t difference) {
     if (difference < -2LL * kMaxProbe || difference > 2LL * kMaxProbe || std::llabs(base + difference) > kMaxProbe) {
-        throw files::FormatError("a step's point lies out of reach");
+        throw base::FormatError("a step's point lies out of reach");
     }
     return static_cast<std::int32_t>(base + difference);
 }
 
 }  // namespace
 
-Step decodeStep(files::ByteReader& reader) {
+Step decodeStep(base::ByteReader& reader) {
     Step step;
     const std::uint64_t epoch = reader.getVarint();
     if (epoch > UINT32_MAX) {
-        throw files::FormatError("a step's epoch is out of range");
+        throw base::FormatError("a step's epoch is out of range");
     }
     step.epoch = static_cast<std::uint32_t>(epoch);
     step.number = reader.getVarint();
@@ -101,7 +101,7 @@ Step decodeStep(files::ByteReader& reader) {
     const int edit = flags % kTurned / 2;
     const bool turned = (flags & kTurned) != 0, mirrored = (flags & kMirrored) != 0;
     if (edit >= kEdits || (mirrored && !turned) || count > kMaxPathPoints) {
-        throw files::FormatError("a step with " + std::to_string(count) + " points, flags " + std::to_string(flags));
+        throw base::FormatError("a step with " + std::to_string(count) + " points, flags " + std::to_string(flags));
     }
     step.engaged = (flags & kEngaged) != 0;
     step.path.reserve(count);

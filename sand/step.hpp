@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 #include "sand/tuning.hpp"
 
 namespace sand {
@@ -39,22 +39,22 @@ struct Edit {
     using enum Kind;
 
     Kind kind = Kind::none;
-    Tuning tuning;                             // of Kind::tune
-    std::shared_ptr<const files::Bytes> sand;  // of Kind::load, Terrain::encodeSand(); copies of a step share it
+    Tuning tuning;                            // of Kind::tune
+    std::shared_ptr<const base::Bytes> sand;  // of Kind::load, Terrain::encodeSand(); copies of a step share it
 
     Edit() = default;
     Edit(Kind what) : kind(what) {}  // not explicit: most edits are nothing but their kind
     static Edit tuned(const Tuning& tuning);
-    static Edit loaded(files::Bytes sand);
+    static Edit loaded(base::Bytes sand);
 
     [[nodiscard]] bool any() const { return kind != Kind::none; }
     friend bool operator==(const Edit& a, const Edit& b);
 };
 inline constexpr int kEdits = 6;
 
-/// What an edit takes, behind its kind. Throws files::FormatError, as decodeStep() does.
-void encodeDetails(const Edit& edit, files::ByteWriter& writer);
-[[nodiscard]] Edit decodeDetails(Edit::Kind kind, files::ByteReader& reader);
+/// What an edit takes, behind its kind. Throws base::FormatError, as decodeStep() does.
+void encodeDetails(const Edit& edit, base::ByteWriter& writer);
+[[nodiscard]] Edit decodeDetails(Edit::Kind kind, base::ByteReader& reader);
 
 /// The only thing that changes sand: where the hand has been since the step before, and what an operator asked.
 ///
@@ -72,8 +72,8 @@ struct Step {
 
 /// The one encoding of a step, on the wire, in the broadcast and in the journal: differences in short integers, about
 /// 60 bytes at 17 samples a step.
-void encode(const Step& step, files::ByteWriter& writer);
-/// Throws files::FormatError for bytes that are no step, a path too long or a point beyond kMaxProbe.
-[[nodiscard]] Step decodeStep(files::ByteReader& reader);
+void encode(const Step& step, base::ByteWriter& writer);
+/// Throws base::FormatError for bytes that are no step, a path too long or a point beyond kMaxProbe.
+[[nodiscard]] Step decodeStep(base::ByteReader& reader);
 
 }  // namespace sand

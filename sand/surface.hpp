@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 #include "sand/grid.hpp"
 #include "sand/scene.hpp"
 #include "sand/step.hpp"
@@ -48,10 +48,10 @@ public:
     SurfaceCopy& operator=(const SurfaceCopy&) = default;
     virtual ~SurfaceCopy() = default;
     /// Compressed.
-    [[nodiscard]] virtual files::Bytes encode() const = 0;
+    [[nodiscard]] virtual base::Bytes encode() const = 0;
 };
 
-/// Throws files::FormatError for bytes that are no sand of the surface it is of, or go on behind it. May be called by
+/// Throws base::FormatError for bytes that are no sand of the surface it is of, or go on behind it. May be called by
 /// any thread, as long as anybody likes.
 using SurfaceReader = std::function<std::shared_ptr<const SurfaceCopy>(std::span<const std::uint8_t>)>;
 

@@ -140,7 +140,7 @@ bool Terrain::putBack(const Edit& edit) {
     } else if (edit.kind == Edit::load && edit.sand) {
         try {
             surface_->replace(*surface_->reader()(*edit.sand));
-        } catch (const files::FormatError&) {
+        } catch (const base::FormatError&) {
             return false;  // alike in every replica; who asked for it has looked before
         }
     } else {
@@ -183,7 +183,7 @@ std::uint64_t Terrain::stateHash() {
 }
 
 StateCopy Terrain::copyState() const {
-    files::ByteWriter writer;
+    base::ByteWriter writer;
     writer.put(kStateVersion);
     writer.put(stepNumber_);
     for (const std::int32_t coordinate : {probe_.x, probe_.y, probe_.z}) {
@@ -195,25 +195,25 @@ StateCopy Terrain::copyState() const {
     return {writer.take(), surface_->kept(), copySand()};
 }
 
-files::Bytes StateCopy::encode() const {
-    files::ByteWriter writer;
+base::Bytes StateCopy::encode() const {
+    base::ByteWriter writer;
     writer.putBytes(head);
-    writer.putBlock(beforeStroke ? beforeStroke->encode() : files::Bytes());
+    writer.putBlock(beforeStroke ? beforeStroke->encode() : base::Bytes());
     writer.putBytes(sand->encode());
     return writer.take();
 }
 
 void Terrain::decodeState(std::span<const std::uint8_t> bytes) {
-    files::ByteReader reader(bytes);
+    base::ByteReader reader(bytes);
     if (const auto version = reader.get<std::uint32_t>(); version != kStateVersion) {
-        throw files::FormatError("a state of version " + std::to_string(version));
+        throw base::FormatError("a state of version " + std::to_string(version));
     }
     const auto number = reader.get<std::uint64_t>();
     ProbePoint probe;
     for (std::int32_t* coordinate : {&probe.x, &probe.y, &probe.z}) {
         *coordinate = reader.get<std::int32_t>();
         if (*coordinate > kMaxProbe || *coordinate < -kMaxProbe) {
-            throw files::FormatError("a state with its tool out of reach");
+            throw base::FormatError("a state with its tool out of reach");
         }
     }
     const auto flags = reader.get<std::int32_t>();

@@ -18,12 +18,12 @@ inline constexpr std::uint32_t kStateVersion = 5;
 
 /// The whole state of a replica, for whoever compresses it on another thread.
 struct StateCopy {
-    files::Bytes head;                                // all but the sand
+    base::Bytes head;                                 // all but the sand
     std::shared_ptr<const SurfaceCopy> beforeStroke;  // null when there is nothing to undo
     std::shared_ptr<const SurfaceCopy> sand;
 
     /// What Terrain::decodeState takes (compressed).
-    [[nodiscard]] files::Bytes encode() const;
+    [[nodiscard]] base::Bytes encode() const;
 };
 
 /// A replica: the sand, and the one function that changes it.
@@ -33,7 +33,7 @@ struct StateCopy {
 class Terrain {
 public:
     /// `options` say how the sand of a height field is swept, not what comes of it; their ground is the scene's own.
-    /// A TIN's scene loads the module that TINs live in: throws files::InputError when it is not there.
+    /// A TIN's scene loads the module that TINs live in: throws base::InputError when it is not there.
     explicit Terrain(const Scene& scene, const Erosion::Options& options = {});
     Terrain(const Terrain& other);
     Terrain& operator=(const Terrain& other);
@@ -99,8 +99,8 @@ public:
     [[nodiscard]] SurfaceReader sandReader() const { return surface_->reader(); }
     [[nodiscard]] StateCopy copyState() const;
     /// The whole state, for a replica that must start from here (compressed).
-    [[nodiscard]] files::Bytes encodeState() const { return copyState().encode(); }
-    /// Throws files::FormatError when the bytes are no state of this scene; the replica is then unchanged.
+    [[nodiscard]] base::Bytes encodeState() const { return copyState().encode(); }
+    /// Throws base::FormatError when the bytes are no state of this scene; the replica is then unchanged.
     void decodeState(std::span<const std::uint8_t> bytes);
 
     /// Flips one bit of one cell's height behind the hash's back, the lowest being 0: a fault for tests and drills of

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "sand/height_field.hpp"
 #include "sand/import/gsf_file.hpp"
 #include "sand/import/importer.hpp"
@@ -15,25 +15,25 @@
 namespace sand {
 namespace {
 
-std::filesystem::path fileOf(const files::TomlTable& terrain) { return terrain.folder() / terrain.text("file"); }
+std::filesystem::path fileOf(const host::TomlTable& terrain) { return terrain.folder() / terrain.text("file"); }
 
-const Importer& importerFor(const files::TomlTable& terrain) {
+const Importer& importerFor(const host::TomlTable& terrain) {
     try {
         return loadImporter("kind = \"" + terrain.text("kind") + "\"");
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         terrain.fail("kind", error.what());
     }
 }
 
-EsriGrid readDem(const files::TomlTable& terrain) { return importerFor(terrain).readDem(fileOf(terrain)); }
+EsriGrid readDem(const host::TomlTable& terrain) { return importerFor(terrain).readDem(fileOf(terrain)); }
 
-EsriGrid readImage(const files::TomlTable& terrain) {
+EsriGrid readImage(const host::TomlTable& terrain) {
     const double low = terrain.numberOr("low", 0);
     const double high = terrain.number("high");
     if (!(high > low)) {
         terrain.fail("high", fmt::format("high must be above low = {}, got {}", low, high));
     }
-    const double width = terrain.numberOr("width", 2.0, files::kPositive);
+    const double width = terrain.numberOr("width", 2.0, host::kPositive);
     EsriGrid image = importerFor(terrain).readImage(fileOf(terrain));
     image.cellSize = width / image.columns;
     for (double& height : image.heights) {
@@ -43,7 +43,7 @@ EsriGrid readImage(const files::TomlTable& terrain) {
 }
 
 /// A stretch [from, to] of x or y.
-std::pair<double, double> stretchOf(const files::TomlTable& terrain, const std::string& key) {
+std::pair<double, double> stretchOf(const host::TomlTable& terrain, const std::string& key) {
     const std::vector<double> ends = terrain.numbers(key, 2);
     if (!(ends[1] > ends[0]) || !std::isfinite(ends[1] - ends[0])) {
         terrain.fail(key, fmt::format("{} must go from less to more, got [{}, {}]", key, ends[0], ends[1]));
@@ -52,12 +52,12 @@ std::pair<double, double> stretchOf(const files::TomlTable& terrain, const std::
 }
 
 /// Rows follow from the columns, as cells are square; where they are given, they must fit.
-EsriGrid readFunction(const files::TomlTable& file, const files::TomlTable& terrain) {
+EsriGrid readFunction(const host::TomlTable& file, const host::TomlTable& terrain) {
     Function function;
     function.text = terrain.text("z");
     std::tie(function.west, function.east) = stretchOf(terrain, "x");
     std::tie(function.south, function.north) = stretchOf(terrain, "y");
-    const files::TomlTable field = file.requiredTable("field");
+    const host::TomlTable field = file.requiredTable("field");
     if (field.has("width")) {
         field.fail("width", "a function's width is that of its x");
     }
@@ -79,15 +79,15 @@ EsriGrid readFunction(const files::TomlTable& file, const files::TomlTable& terr
     const Importer& importer = importerFor(terrain);
     try {
         return importer.evaluate(function);
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         terrain.fail("z", error.what());
     }
 }
 
 /// A scan is nanometres high: its width becomes a few scene units, and its heights grow with it and on request more.
-TerrainSource readScan(const files::TomlTable& terrain) {
-    const double width = terrain.numberOr("width", 2.0, files::kPositive);
-    const double exaggeration = terrain.numberOr("exaggeration", 1, files::kPositive);
+TerrainSource readScan(const host::TomlTable& terrain) {
+    const double width = terrain.numberOr("width", 2.0, host::kPositive);
+    const double exaggeration = terrain.numberOr("exaggeration", 1, host::kPositive);
     TerrainSource source{.raster = readGsf(fileOf(terrain))};
     EsriGrid& scan = source.raster;
     Georeference& reference = source.georeference;
@@ -114,7 +114,7 @@ TerrainSource readScan(const files::TomlTable& terrain) {
 
 enum Kind { kEsriAscii, kDem, kImage, kFunction, kGsf, kPoints };
 
-TerrainSource readKind(const files::TomlTable& file, const files::TomlTable& terrain, int kind) {
+TerrainSource readKind(const host::TomlTable& file, const host::TomlTable& terrain, int kind) {
     switch (kind) {
         case kDem:
             return {.raster = readDem(terrain)};
@@ -145,7 +145,7 @@ const std::vector<std::string_view>& sourceKinds() {
     return kKinds;
 }
 
-TerrainSource readSource(const files::TomlTable& file, const files::TomlTable& terrain, int kind) {
+TerrainSource readSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind) {
     if (kind != kFunction && file.has("field")) {
         file.fail("field", "[field] is for flat, dunes and functions; a file brings its own columns, rows and cells");
     }

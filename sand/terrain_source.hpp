@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "files/toml_table.hpp"
+#include "host/toml_table.hpp"
 #include "sand/esri_grid.hpp"
 #include "sand/georeference.hpp"
 #include "sand/import/points_file.hpp"
@@ -25,8 +25,8 @@ struct TerrainSource {
 [[nodiscard]] const std::vector<std::string_view>& sourceKinds();
 
 /// Reads the keys of one of sourceKinds() in [terrain], and of [field] for a function, which says how many cells there
-/// are. `kind` is its index. Throws files::InputError with file, line and key; what is wrong in another file names
+/// are. `kind` is its index. Throws base::InputError with file, line and key; what is wrong in another file names
 /// that. Loads GDAL or muParser where the kind needs them.
-[[nodiscard]] TerrainSource readSource(const files::TomlTable& file, const files::TomlTable& terrain, int kind);
+[[nodiscard]] TerrainSource readSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind);
 
 }  // namespace sand

@@ -29,7 +29,7 @@ public:
     [[nodiscard]] virtual tin::Start startOf(const Surface& surface) const = 0;
 };
 
-/// Loads sandwall-tin.so from beside the program, once. Throws files::InputError when it is not there or not whole.
+/// Loads sandwall-tin.so from beside the program, once. Throws base::InputError when it is not there or not whole.
 [[nodiscard]] const TinModule& tinModule();
 
 /// The module's only symbol.

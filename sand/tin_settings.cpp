@@ -17,7 +17,7 @@ constexpr int kCorners = 4;
 constexpr int kMostToGive = 1 << 22;
 constexpr int kUsual = tin::Settings{}.mostVertices;
 
-tin::Settings readNumbers(const files::TomlTable& tin, double cellSize) {
+tin::Settings readNumbers(const host::TomlTable& tin, double cellSize) {
     tin::Settings settings;
     const double finest = cellSize / kProbePerCell;
     const double spacing = tin.numberOr("spacing", cellSize, {finest, 1e9});
@@ -50,7 +50,7 @@ std::int32_t widened(const TinCells& cells, std::int32_t widest, std::int64_t mo
 
 }  // namespace
 
-tin::Settings readTinSettings(const files::TomlTable& tin, const TinCells& cells) {
+tin::Settings readTinSettings(const host::TomlTable& tin, const TinCells& cells) {
     tin::Settings settings = readNumbers(tin, cells.side);
     if (!tin.has("widest")) {
         // Half of them, or nothing would be left to follow the terrain and the tool with.
@@ -74,7 +74,7 @@ tin::Settings readTinSettings(const files::TomlTable& tin, const TinCells& cells
     return settings;
 }
 
-tin::Settings readTinSettings(const files::TomlTable& tin, const TinCells& cells, std::size_t places) {
+tin::Settings readTinSettings(const host::TomlTable& tin, const TinCells& cells, std::size_t places) {
     tin::Settings settings = readNumbers(tin, cells.side);
     if (tin.has("vertices") && places > static_cast<std::size_t>(settings.mostVertices)) {
         tin.fail("vertices",
@@ -85,13 +85,13 @@ tin::Settings readTinSettings(const files::TomlTable& tin, const TinCells& cells
     return settings;
 }
 
-void keepUsual(const files::TomlTable& tin, tin::Start& start) {
+void keepUsual(const host::TomlTable& tin, tin::Start& start) {
     if (!tin.has("vertices")) {
         start.settings.mostVertices = std::max(kUsual, static_cast<std::int32_t>(start.places.size()));
     }
 }
 
-void requireSpacing(const files::TomlTable& file, const Scene& scene) {
+void requireSpacing(const host::TomlTable& file, const Scene& scene) {
     if (scene.tin == nullptr) {
         return;
     }
@@ -102,7 +102,7 @@ void requireSpacing(const files::TomlTable& file, const Scene& scene) {
     const double least = std::min(std::ceil(std::sqrt(width * depth / settings.mostVertices)), double{kProbePerCell});
     if (settings.spacing < least) {
         const double finest = scene.terrain.cellSize() / kProbePerCell;
-        const files::TomlTable tin = file.requiredTable("tin");
+        const host::TomlTable tin = file.requiredTable("tin");
         tin.fail("spacing",
                  fmt::format("points {} apart would be {:.0f} where a tool of radius {} works, and {} are the "
                              "most; spacing must be at least {:.9g}",

@@ -28,7 +28,7 @@ struct Obstacle {
 class Tool {
 public:
     /// `v3`: with instructions of x86-64-v3, for the same results.
-    explicit Tool(const ToolShape& shape, const Heading& heading = {}, bool v3 = machineHasV3())
+    explicit Tool(const ToolShape& shape, const Heading& heading = {}, bool v3 = base::machineHasV3())
         : shape_(shape, heading, v3), v3_(v3) {}
 
     /// What one drag did to the sand.

@@ -9,7 +9,7 @@
 #include <span>
 #include <string_view>
 
-#include "sand/code_path.hpp"
+#include "base/code_path.hpp"
 #include "sand/heading.hpp"
 #include "sand/height_field.hpp"
 
@@ -70,7 +70,7 @@ public:
     static constexpr std::int32_t kFree = std::numeric_limits<std::int32_t>::max();
 
     /// `v3`: with instructions of x86-64-v3, for the same results.
-    explicit TurnedShape(const ToolShape& shape, const Heading& heading = {}, bool v3 = machineHasV3());
+    explicit TurnedShape(const ToolShape& shape, const Heading& heading = {}, bool v3 = base::machineHasV3());
 
     /// Height of the underside over a place while the centre is at height `z` [probe unit]: [unit], or kFree beside the
     /// tool.

@@ -8,7 +8,7 @@ bool within(std::int32_t number, std::int32_t most) { return number >= 0 && numb
 
 }  // namespace
 
-void ToolRules::encode(files::ByteWriter& writer) const {
+void ToolRules::encode(base::ByteWriter& writer) const {
     writer.put(plain() ? shape.radius : -1 - shape.radius);
     if (!plain()) {
         // The kind takes three bits of its byte.
@@ -18,7 +18,7 @@ void ToolRules::encode(files::ByteWriter& writer) const {
     }
 }
 
-ToolRules ToolRules::decode(files::ByteReader& reader) {
+ToolRules ToolRules::decode(base::ByteReader& reader) {
     ToolRules tool;
     tool.shape.radius = reader.get<std::int32_t>();
     if (tool.shape.radius < 0) {
@@ -27,25 +27,25 @@ ToolRules ToolRules::decode(files::ByteReader& reader) {
         tool.shape.halfWidth = reader.get<std::int32_t>();
         tool.heading = Heading::decode(reader, (kind & 0x80) != 0);
         if ((kind & 0x7f) >= kToolKinds) {
-            throw files::FormatError("a tool of an unknown shape");
+            throw base::FormatError("a tool of an unknown shape");
         }
         tool.shape.kind = static_cast<ToolKind>(kind & 0x7f);
     }
     if (!within(tool.shape.radius, kLargestToolRadius) ||
         !within(tool.shape.halfWidth, isRound(tool.shape.kind) ? 0 : tool.shape.radius)) {
-        throw files::FormatError("a tool out of range");
+        throw base::FormatError("a tool out of range");
     }
     return tool;
 }
 
-void Tuning::encode(files::ByteWriter& writer) const {
+void Tuning::encode(base::ByteWriter& writer) const {
     writer.put(threshold);
     writer.put(startThreshold);
     writer.put(sweepsPerStep);
     tool().encode(writer);
 }
 
-Tuning Tuning::decode(files::ByteReader& reader) {
+Tuning Tuning::decode(base::ByteReader& reader) {
     Tuning tuning;
     for (std::int32_t* number : {&tuning.threshold, &tuning.startThreshold, &tuning.sweepsPerStep}) {
         *number = reader.get<std::int32_t>();
@@ -57,7 +57,7 @@ Tuning Tuning::decode(files::ByteReader& reader) {
     tuning.toolHeading = tool.heading;
     if (!within(tuning.startThreshold, kLargestThreshold) || !within(tuning.threshold, tuning.startThreshold) ||
         !within(tuning.sweepsPerStep, kMostSweeps)) {
-        throw files::FormatError("a material out of range");
+        throw base::FormatError("a material out of range");
     }
     return tuning;
 }

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 #include "sand/tool_shape.hpp"
 
 namespace sand {
@@ -18,9 +18,9 @@ struct ToolRules {
     ToolShape shape;
     Heading heading;  // until a hand turns it
 
-    void encode(files::ByteWriter& writer) const;
-    /// Throws files::FormatError for a tool that no scene file gives.
-    static ToolRules decode(files::ByteReader& reader);
+    void encode(base::ByteWriter& writer) const;
+    /// Throws base::FormatError for a tool that no scene file gives.
+    static ToolRules decode(base::ByteReader& reader);
     [[nodiscard]] bool plain() const { return shape.kind == ToolKind::sphere && heading == Heading{}; }
     friend bool operator==(const ToolRules&, const ToolRules&) = default;
 };
@@ -35,9 +35,9 @@ struct Tuning {
     Heading toolHeading{};           // until a hand turns it
 
     [[nodiscard]] ToolRules tool() const { return {{toolKind, toolRadius, toolHalfWidth}, toolHeading}; }
-    void encode(files::ByteWriter& writer) const;
-    /// Throws files::FormatError for numbers that no scene file gives.
-    static Tuning decode(files::ByteReader& reader);
+    void encode(base::ByteWriter& writer) const;
+    /// Throws base::FormatError for numbers that no scene file gives.
+    static Tuning decode(base::ByteReader& reader);
     friend bool operator==(const Tuning&, const Tuning&) = default;
 };
 

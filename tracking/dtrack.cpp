@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "tracking/words.hpp"
+#include "base/text.hpp"
 
 namespace tracking {
 namespace {
@@ -90,7 +90,7 @@ void readBodies(Cursor line, int wanted, Parsed& parsed) {
 
 Parsed parse(std::string_view text, int wanted) {
     Parsed parsed;
-    for (std::string_view line : split(text, '\n')) {
+    for (std::string_view line : base::split(text, '\n')) {
         const auto blank = line.find(' ');
         const std::string_view key = line.substr(0, blank);
         Cursor rest(blank == std::string_view::npos ? "" : line.substr(blank + 1));
@@ -137,7 +137,7 @@ Reading DtrackReader::read(std::span<const std::uint8_t> packet, bool gone) {
     return parsed.head ? Reading{Reading::Kind::pose, *parsed.head} : Reading{Reading::Kind::absent};
 }
 
-files::Bytes dtrackPacket(const Pose& pose, std::uint32_t frame, int body) {
+base::Bytes dtrackPacket(const Pose& pose, std::uint32_t frame, int body) {
     const glm::dvec3 place = pose.position / kMetresPerMillimetre;
     const double yaw = glm::degrees(std::atan2(-pose.right.z, pose.right.x));
     const double roll = glm::degrees(std::asin(std::clamp(pose.right.y, -1.0, 1.0)));

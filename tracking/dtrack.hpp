@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 #include "tracking/packet_reader.hpp"
 
 namespace tracking {
@@ -27,6 +27,6 @@ private:
 };
 
 /// The packet of a tracker whose axes are the room's, with this body alone. A pose knows no pitch.
-[[nodiscard]] files::Bytes dtrackPacket(const Pose& pose, std::uint32_t frame, int body);
+[[nodiscard]] base::Bytes dtrackPacket(const Pose& pose, std::uint32_t frame, int body);
 
 }  // namespace tracking

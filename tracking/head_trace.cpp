@@ -9,8 +9,8 @@
 #include <fstream>
 #include <glm/gtc/quaternion.hpp>
 
-#include "files/input_error.hpp"
-#include "tracking/words.hpp"
+#include "base/input_error.hpp"
+#include "base/text.hpp"
 
 namespace tracking {
 namespace {
@@ -27,7 +27,7 @@ public:
     LineReader(const std::string& name, const RoomMapping& mapping, std::string_view header)
         : name_(name), mapping_(mapping) {
         cell_.fill(kNone);
-        const auto titles = split(header, ',');
+        const auto titles = base::split(header, ',');
         for (std::size_t i = 0; i < titles.size(); ++i) {
             const auto* known = std::find(kTitles.begin(), kTitles.end(), titles[i]);
             if (known == kTitles.end()) {
@@ -50,7 +50,7 @@ public:
         Pose pose;
     };
     [[nodiscard]] Line read(std::string_view text, long number) const {
-        const auto cells = split(text, ',');
+        const auto cells = base::split(text, ',');
         if (cells.size() != columns_) {
             fail(number, fmt::format("{} values expected, got {}", columns_, cells.size()));
         }
@@ -59,7 +59,7 @@ public:
             if (cell_[i] == kNone) {
                 continue;
             }
-            const std::optional<double> read = numberOf(cells[cell_[i]]);
+            const std::optional<double> read = base::numberOf(cells[cell_[i]]);
             if (!read) {
                 fail(number, fmt::format("{} is no number: '{}'", kTitles[i], cells[cell_[i]].substr(0, 80)));
             }
@@ -72,7 +72,7 @@ private:
     static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
     [[noreturn]] void fail(long number, const std::string& message) const {
-        throw files::InputError(name_, number, message);
+        throw base::InputError(name_, number, message);
     }
 
     [[nodiscard]] bool has(std::size_t first) const { return cell_[first] != kNone; }
@@ -142,7 +142,7 @@ private:
 HeadTrace HeadTrace::load(const std::filesystem::path& file, const RoomMapping& mapping) {
     std::ifstream stream(file);
     if (!stream || std::filesystem::is_directory(file)) {
-        throw files::InputError(fmt::format("{}: the head's trace cannot be read; check the path", file.string()));
+        throw base::InputError(fmt::format("{}: the head's trace cannot be read; check the path", file.string()));
     }
     return parse(stream, file.string(), mapping);
 }
@@ -150,7 +150,7 @@ HeadTrace HeadTrace::load(const std::filesystem::path& file, const RoomMapping& 
 HeadTrace HeadTrace::parse(std::istream& text, const std::string& name, const RoomMapping& mapping) {
     std::string line;
     if (!std::getline(text, line)) {
-        throw files::InputError(name, 1, "the trace is empty; a header such as time,x,y,z comes first");
+        throw base::InputError(name, 1, "the trace is empty; a header such as time,x,y,z comes first");
     }
     const std::string header = line;
     const LineReader reader(name, mapping, header);
@@ -165,13 +165,13 @@ HeadTrace HeadTrace::parse(std::istream& text, const std::string& name, const Ro
             first = last = read.time;
         }
         if (read.time < last) {
-            throw files::InputError(name, number, fmt::format("time runs backwards: {} after {}", read.time, last));
+            throw base::InputError(name, number, fmt::format("time runs backwards: {} after {}", read.time, last));
         }
         last = read.time;
         trace.samples_.push_back({last - first, read.pose});
     }
     if (trace.samples_.empty()) {
-        throw files::InputError(name, 1, "the trace holds no sample; lines of numbers follow the header");
+        throw base::InputError(name, 1, "the trace holds no sample; lines of numbers follow the header");
     }
     return trace;
 }

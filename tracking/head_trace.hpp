@@ -16,7 +16,7 @@ namespace tracking {
 /// qx, qy, qz, qw, or right_x, right_y, right_z, which is the direction from the left eye to the right one.
 class HeadTrace {
 public:
-    /// Throw files::InputError with file, line and value. `name` stands for the file in messages.
+    /// Throw base::InputError with file, line and value. `name` stands for the file in messages.
     static HeadTrace load(const std::filesystem::path& file, const RoomMapping& mapping);
     static HeadTrace parse(std::istream& text, const std::string& name, const RoomMapping& mapping);
 

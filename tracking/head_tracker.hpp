@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "host/clock.hpp"
 #include "tracking/pose.hpp"
 #include "tracking/presence.hpp"
 #include "tracking/source.hpp"
@@ -40,8 +41,8 @@ public:
 };
 
 /// Opens what the source names; nothing for none. `restingEye` is the fixed viewer's [m].
-/// Throws files::InputError: a broken trace with file, line and value; a port that is taken; no VRPN in this build.
+/// Throws base::InputError: a broken trace with file, line and value; a port that is taken; no VRPN in this build.
 [[nodiscard]] std::unique_ptr<HeadTracker> openTracker(const Source& source, glm::dvec3 restingEye, Say say,
-                                                       Clock clock = monotonicNs);
+                                                       Clock clock = host::monotonicNs);
 
 }  // namespace tracking

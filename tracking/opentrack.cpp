@@ -18,7 +18,7 @@ Reading OpentrackReader::read(std::span<const std::uint8_t> packet, bool) {
     if (packet.size() != kPacketSize) {
         return {};
     }
-    files::ByteReader reader(packet);
+    base::ByteReader reader(packet);
     std::array<double, 6> value{};
     for (double& one : value) {
         one = reader.get<double>();
@@ -33,8 +33,8 @@ Reading OpentrackReader::read(std::span<const std::uint8_t> packet, bool) {
     return plausible(measured) ? Reading{Reading::Kind::pose, measured} : Reading{};
 }
 
-files::Bytes opentrackPacket(const Pose& pose) {
-    files::ByteWriter writer;
+base::Bytes opentrackPacket(const Pose& pose) {
+    base::ByteWriter writer;
     writer.put(-pose.position.x / kMetresPerCentimetre);
     writer.put(pose.position.y / kMetresPerCentimetre);
     writer.put(pose.position.z / kMetresPerCentimetre);

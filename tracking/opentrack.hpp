@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 #include "tracking/packet_reader.hpp"
 
 namespace tracking {
@@ -16,6 +16,6 @@ public:
 };
 
 /// The packet in which a head of this pose, in front of the camera, would be told. A pose knows no pitch.
-[[nodiscard]] files::Bytes opentrackPacket(const Pose& pose);
+[[nodiscard]] base::Bytes opentrackPacket(const Pose& pose);
 
 }  // namespace tracking

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "tracking/dtrack.hpp"
 #include "tracking/opentrack.hpp"
 
@@ -15,13 +15,13 @@ namespace {
 
 const Source& checked(const Source& to) {
     if (to.kind != Source::Kind::opentrack && to.kind != Source::Kind::dtrack) {
-        throw files::InputError(fmt::format("--send: '{}' cannot be sent; opentrack: and dtrack: can", to.text));
+        throw base::InputError(fmt::format("--send: '{}' cannot be sent; opentrack: and dtrack: can", to.text));
     }
     if (to.axes != glm::dmat3(1.0) || to.eyes != glm::dvec3(0)) {
-        throw files::InputError("--send: axes= and eyes= are for the receiver; a sender knows origin= alone");
+        throw base::InputError("--send: axes= and eyes= are for the receiver; a sender knows origin= alone");
     }
     if (to.port == 0) {
-        throw files::InputError(fmt::format("--send: '{}': there is no port 0 to send to", to.text));
+        throw base::InputError(fmt::format("--send: '{}': there is no port 0 to send to", to.text));
     }
     return to;
 }

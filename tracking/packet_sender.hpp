@@ -14,7 +14,7 @@ namespace tracking {
 /// Tells a pose in the room as a tracker would: the other end of opentrack: and dtrack: sources.
 class PacketSender {
 public:
-    /// `to` is where to send. Throws files::InputError when it is no tracker that sends, or turns axes.
+    /// `to` is where to send. Throws base::InputError when it is no tracker that sends, or turns axes.
     explicit PacketSender(const Source& to);
     void send(const Pose& pose);
     [[nodiscard]] std::uint32_t sent() const { return sent_; }

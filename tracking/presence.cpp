@@ -9,11 +9,6 @@
 
 namespace tracking {
 
-std::int64_t monotonicNs() {
-    using namespace std::chrono;
-    return duration_cast<nanoseconds>(steady_clock::now().time_since_epoch()).count();
-}
-
 void Presence::look(bool pose, std::int64_t nowNs) {
     const std::int64_t silent = looked_ ? nowNs - last_ : 0;
     if (pose) {

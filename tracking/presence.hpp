@@ -5,14 +5,14 @@
 #include <functional>
 #include <string>
 
+#include "host/clock.hpp"
+
 namespace tracking {
 
 /// Takes a line for the person who runs the wall.
 using Say = std::function<void(const std::string&)>;
 /// A monotonic clock [ns].
 using Clock = std::function<std::int64_t()>;
-
-[[nodiscard]] std::int64_t monotonicNs();
 
 /// Whether a tracker is there: says once when it is gone, and once when it is back.
 class Presence {

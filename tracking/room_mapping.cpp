@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "tracking/words.hpp"
+#include "base/text.hpp"
 
 namespace tracking {
 
@@ -14,7 +14,7 @@ Pose RoomMapping::pose(const Measured& measured) const {
 }
 
 std::optional<glm::dmat3> axesOf(std::string_view text) {
-    const auto words = split(text, ',');
+    const auto words = base::split(text, ',');
     if (words.size() != 3) {
         return std::nullopt;
     }
@@ -34,13 +34,13 @@ std::optional<glm::dmat3> axesOf(std::string_view text) {
 }
 
 std::optional<glm::dvec3> pointOf(std::string_view text) {
-    const auto words = split(text, ',');
+    const auto words = base::split(text, ',');
     glm::dvec3 point(0);
     if (words.size() != 3) {
         return std::nullopt;
     }
     for (int i = 0; i < 3; ++i) {
-        const std::optional<double> value = numberOf(words[static_cast<std::size_t>(i)]);
+        const std::optional<double> value = base::numberOf(words[static_cast<std::size_t>(i)]);
         if (!value) {
             return std::nullopt;
         }

@@ -7,8 +7,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "files/input_error.hpp"
-#include "tracking/words.hpp"
+#include "base/input_error.hpp"
+#include "base/text.hpp"
 
 namespace tracking {
 namespace {
@@ -24,7 +24,7 @@ struct Reader {
     Source source{};
 
     [[noreturn]] void fail(const std::string& what) const {
-        throw files::InputError(fmt::format("{}: '{}': {}", who, text.substr(0, 200), what));
+        throw base::InputError(fmt::format("{}: '{}': {}", who, text.substr(0, 200), what));
     }
 
     [[nodiscard]] glm::dvec3 point(std::string_view key, std::string_view value, double most) const {
@@ -109,7 +109,7 @@ struct Reader {
         if (!host.empty()) {
             readHost(host);
         }
-        const auto parts = split(rest, ':');
+        const auto parts = base::split(rest, ':');
         if (parts.size() > (source.kind == Source::Kind::dtrack ? 2U : 1U)) {
             fail(fmt::format("there is more behind the port than {}",
                              source.kind == Source::Kind::dtrack ? "a body's number" : "there should be"));
@@ -161,7 +161,7 @@ Source Source::parse(std::string_view text, const std::string& who, const std::f
     // From the end, so that a trace's name may hold blanks.
     std::string_view words = text;
     while (true) {
-        words = split(words, '\n').front();
+        words = base::split(words, '\n').front();
         const auto blank = words.find_last_of(" \t");
         if (blank == std::string_view::npos || !reader.placed(words.substr(blank + 1))) {
             break;

@@ -37,7 +37,7 @@ struct Source {
     glm::dmat3 axes{1.0};
     glm::dvec3 eyes{0};  // [m]
 
-    /// Throws files::InputError that begins with `who`, such as "--track". `folder` is where a relative trace lies.
+    /// Throws base::InputError that begins with `who`, such as "--track". `folder` is where a relative trace lies.
     static Source parse(std::string_view text, const std::string& who, const std::filesystem::path& folder = {});
     /// opentrack counts from where the head was when it was centred: from `restingEye` [m]; others from the room's 0.
     [[nodiscard]] RoomMapping mapping(glm::dvec3 restingEye) const;

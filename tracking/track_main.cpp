@@ -6,7 +6,7 @@
 #include <limits>
 #include <thread>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "host/command_line.hpp"
 #include "host/version.hpp"
 #include "tracking/head_trace.hpp"
@@ -56,7 +56,7 @@ int listen(const Options& options) {
     const auto say = [](const std::string& line) { fmt::print(stderr, "sandwall-track: {}\n", line); };
     const auto tracker = openTracker(source, glm::dvec3(0), say);
     if (!tracker) {
-        throw files::InputError("--listen: there is nothing to listen to in 'none'");
+        throw base::InputError("--listen: there is nothing to listen to in 'none'");
     }
     // What it prints is a trace.
     fmt::print("time,x,y,z,right_x,right_y,right_z\n");
@@ -95,10 +95,10 @@ int main(int argc, char** argv) {
     line.option("--seconds", options.seconds, "end after this time").positive();
     return host::runMain(line, argc, argv, [&] {
         if (!options.trace.empty() && options.send.empty()) {
-            throw files::InputError("--trace is for --send");
+            throw base::InputError("--trace is for --send");
         }
         if (options.send.empty() && options.listen.empty()) {
-            throw files::InputError("sandwall-track: give --send or --listen; try --help");
+            throw base::InputError("sandwall-track: give --send or --listen; try --help");
         }
         return options.send.empty() ? listen(options) : send(options);
     });

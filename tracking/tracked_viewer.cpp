@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "walls/projection.hpp"
 
 namespace tracking {
@@ -61,7 +61,7 @@ void TrackedViewer::separateEyes(double metres) {
     walls::Viewer wider = viewer_;
     wider.eyeSeparation = metres;
     if (const walls::Tile* tile = tileBehind(wider)) {
-        throw files::InputError(fmt::format(
+        throw base::InputError(fmt::format(
             "with eyes {} m apart, one is not in front of tile '{}'; bring them closer together", metres, tile->name));
     }
     viewer_ = wider;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "host/clock.hpp"
 #include "tracking/head_tracker.hpp"
 #include "walls/wall.hpp"
 
@@ -16,13 +17,13 @@ namespace tracking {
 /// in which an eye is not in front of every screen has no picture: the last good one is held, which is said once.
 class TrackedViewer {
 public:
-    /// Throws files::InputError when the tracker cannot be had.
-    TrackedViewer(const walls::Wall& wall, const Source& source, Say say, Clock clock = monotonicNs);
+    /// Throws base::InputError when the tracker cannot be had.
+    TrackedViewer(const walls::Wall& wall, const Source& source, Say say, Clock clock = host::monotonicNs);
 
     /// The viewer at this time of the session [s]: frame / refresh rate where every run must show the same, else the
     /// time since the first frame.
     [[nodiscard]] walls::Viewer at(double seconds);
-    /// Moves the eyes this far apart [m], from now on. Throws files::InputError when one would not be in front of every
+    /// Moves the eyes this far apart [m], from now on. Throws base::InputError when one would not be in front of every
     /// screen, and nothing has changed.
     void separateEyes(double metres);
     [[nodiscard]] Counters counters() const;

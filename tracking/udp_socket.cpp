@@ -9,8 +9,8 @@
 #include <array>
 #include <boost/asio/buffer.hpp>
 
-#include "files/byte_stream.hpp"
-#include "files/input_error.hpp"
+#include "base/byte_stream.hpp"
+#include "base/input_error.hpp"
 
 namespace tracking {
 
@@ -32,13 +32,13 @@ asio::ip::address plain(const asio::ip::address& address) {
 /// lets it through to next().
 void filter(int socket, const asio::ip::address& from) {
     // The source's address in the header, word by word; a word that differs drops the datagram.
-    const files::Bytes words = [&] {
+    const base::Bytes words = [&] {
         if (from.is_v4()) {
             const auto bytes = from.to_v4().to_bytes();
-            return files::Bytes(bytes.begin(), bytes.end());
+            return base::Bytes(bytes.begin(), bytes.end());
         }
         const auto bytes = from.to_v6().to_bytes();
-        return files::Bytes(bytes.begin(), bytes.end());
+        return base::Bytes(bytes.begin(), bytes.end());
     }();
     const auto first = static_cast<std::uint32_t>(SKF_NET_OFF) + (from.is_v4() ? 12U : 8U);
     std::vector<sock_filter> program;
@@ -64,7 +64,7 @@ UdpReceiver::UdpReceiver(const std::string& host, std::uint16_t port, const std:
     if (!from.empty()) {
         from_ = plain(asio::ip::make_address(from));
     } else if (!endpoint.address().is_loopback()) {
-        throw files::InputError(fmt::format(
+        throw base::InputError(fmt::format(
             "{}: others can reach {}; name the one tracker's address behind it, such as from=192.168.1.20", who, host));
     }
     error_code error;
@@ -80,11 +80,11 @@ UdpReceiver::UdpReceiver(const std::string& host, std::uint16_t port, const std:
         socket_.non_blocking(true, error);
     }
     if (error == asio::error::address_in_use) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("{}: port {} is in use; stop the program that has it, or take another port", who, port));
     }
     if (error) {
-        throw files::InputError(fmt::format("{}: cannot listen on {} port {}: {}", who, host, port, error.message()));
+        throw base::InputError(fmt::format("{}: cannot listen on {} port {}: {}", who, host, port, error.message()));
     }
     port_ = socket_.local_endpoint(error).port();
 }
@@ -116,7 +116,7 @@ UdpSender::UdpSender(const std::string& host, std::uint16_t port) : to_(asio::ip
     error_code error;
     socket_.open(to_.protocol(), error);
     if (error) {
-        throw files::InputError(fmt::format("cannot send to {} port {}: {}", host, port, error.message()));
+        throw base::InputError(fmt::format("cannot send to {} port {}: {}", host, port, error.message()));
     }
 }
 
@@ -124,7 +124,7 @@ void UdpSender::send(std::span<const std::uint8_t> datagram) {
     error_code error;
     socket_.send_to(asio::buffer(datagram.data(), datagram.size()), to_, 0, error);
     if (error && error != asio::error::connection_refused) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("cannot send to {} port {}: {}", to_.address().to_string(), to_.port(), error.message()));
     }
 }

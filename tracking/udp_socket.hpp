@@ -15,7 +15,7 @@ namespace tracking {
 class UdpReceiver {
 public:
     /// `host` is an IP address; datagrams are taken from the address `from` alone, which may be left empty where `host`
-    /// is loopback. Throws files::InputError that begins with `who` when it is, and when the port cannot be had.
+    /// is loopback. Throws base::InputError that begins with `who` when it is, and when the port cannot be had.
     UdpReceiver(const std::string& host, std::uint16_t port, const std::string& from, const std::string& who);
     /// The next datagram, whole, valid until the next call; nothing when none is there. A failure counts as none, and
     /// so does one from elsewhere.
@@ -34,7 +34,7 @@ private:
     int native_ = -1;  // socket_, for what only reads its counts
 };
 
-/// Sends datagrams to one address. Throws files::InputError when the address cannot be sent to.
+/// Sends datagrams to one address. Throws base::InputError when the address cannot be sent to.
 class UdpSender {
 public:
     UdpSender(const std::string& host, std::uint16_t port);

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "files/whole_file.hpp"
 #include "host/command_line.hpp"
 #include "host/version.hpp"
+#include "host/whole_file.hpp"
 #include "walls/wall.hpp"
 #include "walls/wall_report.hpp"
 #include "walls/wall_svg.hpp"
@@ -20,7 +20,7 @@ struct Options {
 int check(const Options& options) {
     const walls::Wall wall = walls::loadWallAs(options.wall, options.mono ? "mono" : options.stereo);
     if (!options.svg.empty()) {
-        files::WholeFile file(options.svg);
+        host::WholeFile file(options.svg);
         file.stream() << walls::drawingOf(wall);
         file.keep();
     }

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "walls/wall_check.hpp"
 
 namespace walls {
@@ -16,16 +16,16 @@ void requireSameOutputs(const Tile& open, Stereo was, Tile& other, Stereo wanted
         other.outputs = open.outputs;
     }
     if (other.outputs.size() != open.outputs.size()) {
-        throw files::InputError(fmt::format(
+        throw base::InputError(fmt::format(
             "{} needs {} output{} per tile, and tile '{}' has {}; {}", stereoName(wanted), other.outputs.size(),
             other.outputs.size() == 1 ? "" : "s", open.name, open.outputs.size(), kAdvice));
     }
     const glm::ivec2 there = outputPixels(was, open.pixels);
     const glm::ivec2 needed = outputPixels(wanted, other.pixels);
     if (there != needed) {
-        throw files::InputError(fmt::format("{} needs frames of {}x{} pixels, and those of tile '{}' have {}x{}; {}",
-                                            stereoName(wanted), needed.x, needed.y, open.name, there.x, there.y,
-                                            kAdvice));
+        throw base::InputError(fmt::format("{} needs frames of {}x{} pixels, and those of tile '{}' have {}x{}; {}",
+                                           stereoName(wanted), needed.x, needed.y, open.name, there.x, there.y,
+                                           kAdvice));
     }
 }
 
@@ -40,7 +40,7 @@ Wall shownOnItsOutputs(const Wall& wall, Stereo stereo) {
         requireSameOutputs(wall.tiles[i], wall.stereo, other.tiles[i], stereo);
     }
     if (const auto fault = viewFault(other)) {
-        throw files::InputError(fmt::format("shown in {}: {}", stereoName(stereo), *fault));
+        throw base::InputError(fmt::format("shown in {}: {}", stereoName(stereo), *fault));
     }
     return other;
 }

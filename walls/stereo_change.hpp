@@ -9,7 +9,7 @@ namespace walls {
 /// runs. Where a tile has an output for each eye, a mode that draws one eye shows it on both.
 ///
 /// A function of the wall as the session began and of the mode, so that every rank finds the same. Throws
-/// files::InputError in one line for a mode that these outputs cannot show.
+/// base::InputError in one line for a mode that these outputs cannot show.
 [[nodiscard]] Wall shownOnItsOutputs(const Wall& wall, Stereo stereo);
 
 }  // namespace walls

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
 namespace walls {
 std::string_view eyeName(Eye eye) {
@@ -27,7 +27,7 @@ std::string_view stereoName(Stereo stereo) { return stereoNames().at(static_cast
 Stereo stereoNamed(const std::string& name) {
     const auto found = std::find(stereoNames().begin(), stereoNames().end(), name);
     if (found == stereoNames().end()) {
-        throw files::InputError(fmt::format("no stereo mode '{}'; there are {}", name, fmt::join(stereoNames(), ", ")));
+        throw base::InputError(fmt::format("no stereo mode '{}'; there are {}", name, fmt::join(stereoNames(), ", ")));
     }
     return static_cast<Stereo>(found - stereoNames().begin());
 }

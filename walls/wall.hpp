@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 
 /// Where the display stands in the room and who looks at it, the same on every rank.
 ///
@@ -44,7 +44,7 @@ inline constexpr Stereo kLastStereo = Stereo::anaglyphDubois;
 [[nodiscard]] std::string_view stereoName(Stereo stereo);
 /// All of them, in the order of the enumeration: as wall files and options write them.
 [[nodiscard]] const std::vector<std::string>& stereoNames();
-/// Throws files::InputError that lists them, for a name that is none of them.
+/// Throws base::InputError that lists them, for a name that is none of them.
 [[nodiscard]] Stereo stereoNamed(const std::string& name);
 /// The eyes that are drawn, in the order they are drawn: the middle alone for mono, left or right alone where only one
 /// is shown, else left and right.
@@ -147,8 +147,8 @@ struct Wall {
 
     [[nodiscard]] int ranks() const { return static_cast<int>(tiles.size()); }  // render ranks, without the master
     /// The wall as bytes: what the master broadcasts, so that no rank reads a file of its own.
-    [[nodiscard]] files::Bytes encode() const;
-    /// Throws files::FormatError when the bytes are cut short, too long or hold what cannot be.
+    [[nodiscard]] base::Bytes encode() const;
+    /// Throws base::FormatError when the bytes are cut short, too long or hold what cannot be.
     static Wall decode(std::span<const std::uint8_t> bytes);
     friend bool operator==(const Wall&, const Wall&) = default;
 };
@@ -166,7 +166,7 @@ struct Wall {
 /// was half a frame stretched becomes the whole frame, so that mono fills the screen of a 3D television.
 [[nodiscard]] Wall shownIn(Wall wall, Stereo stereo);
 
-/// Reads and checks a wall file (docs/wall_files.md). Throws files::InputError with file, line and what to do.
+/// Reads and checks a wall file (docs/wall_files.md). Throws base::InputError with file, line and what to do.
 [[nodiscard]] Wall loadWall(const std::filesystem::path& file);
 /// The same wall shown in another mode, which may need an eye that the file's own did not draw; an empty name means the
 /// file's own.

@@ -14,36 +14,36 @@ namespace {
 constexpr std::uint8_t kEncoding = 2;
 
 template <glm::length_t N, class Number>
-void put(files::ByteWriter& writer, const glm::vec<N, Number>& vector) {
+void put(base::ByteWriter& writer, const glm::vec<N, Number>& vector) {
     for (glm::length_t i = 0; i < N; ++i) {
         writer.put(vector[i]);
     }
 }
 
 template <class Vector>
-Vector getVector(files::ByteReader& reader) {
+Vector getVector(base::ByteReader& reader) {
     Vector vector;
     for (glm::length_t i = 0; i < Vector::length(); ++i) {
         vector[i] = reader.get<typename Vector::value_type>();
         if (!std::isfinite(static_cast<double>(vector[i]))) {
-            throw files::FormatError("a wall with a coordinate that is not finite");
+            throw base::FormatError("a wall with a coordinate that is not finite");
         }
     }
     return vector;
 }
 
-double getLength(files::ByteReader& reader) { return getVector<glm::dvec1>(reader).x; }
+double getLength(base::ByteReader& reader) { return getVector<glm::dvec1>(reader).x; }
 
 template <class Choice>
-Choice getChoice(files::ByteReader& reader, Choice last) {
+Choice getChoice(base::ByteReader& reader, Choice last) {
     const auto value = reader.get<std::uint8_t>();
     if (value > static_cast<std::uint8_t>(last)) {
-        throw files::FormatError(fmt::format("a wall with a choice of {}", value));
+        throw base::FormatError(fmt::format("a wall with a choice of {}", value));
     }
     return static_cast<Choice>(value);
 }
 
-void put(files::ByteWriter& writer, const Grid& grid) {
+void put(base::ByteWriter& writer, const Grid& grid) {
     writer.put(grid.rows);
     writer.put(grid.columns);
     put(writer, grid.tileSize);
@@ -56,11 +56,11 @@ void put(files::ByteWriter& writer, const Grid& grid) {
 
 void checkPixels(glm::ivec2 pixels) {
     if (pixels.x < 1 || pixels.y < 1 || pixels.x > kMaxTileSide || pixels.y > kMaxTileSide) {
-        throw files::FormatError(fmt::format("a tile of {}x{} pixels", pixels.x, pixels.y));
+        throw base::FormatError(fmt::format("a tile of {}x{} pixels", pixels.x, pixels.y));
     }
 }
 
-Grid getGrid(files::ByteReader& reader) {
+Grid getGrid(base::ByteReader& reader) {
     Grid grid;
     grid.rows = reader.get<std::int32_t>();
     grid.columns = reader.get<std::int32_t>();
@@ -75,13 +75,13 @@ Grid getGrid(files::ByteReader& reader) {
     if (!sized || glm::any(glm::greaterThan(grid.bezel, grid.tileSize)) ||
         glm::any(glm::lessThanEqual(grid.tileSize + grid.bezel, glm::dvec2(0))) || grid.rows < 1 || grid.columns < 1 ||
         grid.rows > kMaxTiles || grid.columns > kMaxTiles) {
-        throw files::FormatError(
+        throw base::FormatError(
             fmt::format("a grid of {} rows and {} columns without a size", grid.rows, grid.columns));
     }
     return grid;
 }
 
-void put(files::ByteWriter& writer, const Tile& tile) {
+void put(base::ByteWriter& writer, const Tile& tile) {
     writer.put(tile.rank);
     writer.put(tile.row);
     writer.put(tile.column);
@@ -106,7 +106,7 @@ void put(files::ByteWriter& writer, const Tile& tile) {
     writer.put(tile.place.device);
 }
 
-Tile getTile(files::ByteReader& reader) {
+Tile getTile(base::ByteReader& reader) {
     Tile tile;
     tile.rank = reader.get<std::int32_t>();
     tile.row = reader.get<std::int32_t>();
@@ -137,7 +137,7 @@ Tile getTile(files::ByteReader& reader) {
 
 void require(bool holds, const Tile& tile, const char* what) {
     if (!holds) {
-        throw files::FormatError(fmt::format("a wall whose tile of rank {} {}", tile.rank, what));
+        throw base::FormatError(fmt::format("a wall whose tile of rank {} {}", tile.rank, what));
     }
 }
 
@@ -179,14 +179,14 @@ void checkFrame(const Wall& wall) {
     const bool rates = wall.refreshHz >= kMinRefresh && wall.refreshHz <= kMaxRefresh;
     const bool drawn = wall.clip.near > 0 && wall.clip.far > wall.clip.near && wall.stage.width > 0;
     if (!eyes || !rates || !drawn || !isOneLine(wall.tracking, kMaxTracking)) {
-        throw files::FormatError("a wall with eyes, rates or planes that cannot be");
+        throw base::FormatError("a wall with eyes, rates or planes that cannot be");
     }
 }
 
 }  // namespace
 
-files::Bytes Wall::encode() const {
-    files::ByteWriter writer;
+base::Bytes Wall::encode() const {
+    base::ByteWriter writer;
     writer.put(kEncoding);
     writer.putText(name);
     put(writer, viewer.eye);
@@ -213,9 +213,9 @@ files::Bytes Wall::encode() const {
 }
 
 Wall Wall::decode(std::span<const std::uint8_t> bytes) {
-    files::ByteReader reader(bytes);
+    base::ByteReader reader(bytes);
     if (const auto encoding = reader.get<std::uint8_t>(); encoding != kEncoding) {
-        throw files::FormatError(fmt::format("a wall in encoding {}, this program knows {}", encoding, kEncoding));
+        throw base::FormatError(fmt::format("a wall in encoding {}, this program knows {}", encoding, kEncoding));
     }
     Wall wall;
     wall.name = reader.getText();
@@ -239,7 +239,7 @@ Wall Wall::decode(std::span<const std::uint8_t> bytes) {
     const std::uint32_t gridTiles =
         wall.grid ? static_cast<std::uint32_t>(wall.grid->rows) * static_cast<std::uint32_t>(wall.grid->columns) : 0;
     if (count < 1 || count > kMaxTiles || count < gridTiles) {
-        throw files::FormatError(fmt::format("a wall of {} tiles", count));
+        throw base::FormatError(fmt::format("a wall of {} tiles", count));
     }
     std::set<std::string> names;
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -249,7 +249,7 @@ Wall Wall::decode(std::span<const std::uint8_t> bytes) {
         wall.tiles.push_back(tile);
     }
     if (!reader.atEnd()) {
-        throw files::FormatError(fmt::format("{} bytes after the last tile of a wall", reader.rest().size()));
+        throw base::FormatError(fmt::format("{} bytes after the last tile of a wall", reader.rest().size()));
     }
     return wall;
 }

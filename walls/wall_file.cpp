@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "walls/wall_check.hpp"
 
 namespace walls {
@@ -15,7 +15,7 @@ Viewer readViewer(const TomlTable& table) {
     table.only({"eye", "eye_separation", "right"});
     Viewer viewer;
     viewer.eye = point(table, "eye");
-    viewer.eyeSeparation = table.numberOr("eye_separation", viewer.eyeSeparation, files::kPositive);
+    viewer.eyeSeparation = table.numberOr("eye_separation", viewer.eyeSeparation, host::kPositive);
     if (viewer.eyeSeparation > kMaxEyeSeparation) {
         table.fail("eye_separation", fmt::format("eye_separation is in metres and must be at most {}, got {}",
                                                  kMaxEyeSeparation, viewer.eyeSeparation));
@@ -51,8 +51,8 @@ Clip readClip(const TomlTable& file) {
     Clip clip;
     if (const std::optional<TomlTable> table = file.table("clip")) {
         table->only({"near", "far"});
-        clip.near = table->numberOr("near", clip.near, files::kPositive);
-        clip.far = table->numberOr("far", clip.far, files::kPositive);
+        clip.near = table->numberOr("near", clip.near, host::kPositive);
+        clip.far = table->numberOr("far", clip.far, host::kPositive);
         if (!(clip.far > clip.near)) {
             table->fail(table->has("far") ? "far" : "near",
                         fmt::format("far must lie beyond near ({} m), got {}", clip.near, clip.far));
@@ -65,7 +65,7 @@ Stage readStage(const TomlTable& table) {
     table.only({"centre", "width", "tilt_deg", "turn_deg"});
     Stage stage;
     stage.centre = point(table, "centre");
-    stage.width = length(table, "width", table.number("width", files::kPositive), 1e-3);
+    stage.width = length(table, "width", table.number("width", host::kPositive), 1e-3);
     stage.tiltDegrees = table.numberOr("tilt_deg", 0, {-90, 90});
     stage.turnDegrees = table.numberOr("turn_deg", 0, {-180, 180});
     return stage;
@@ -140,7 +140,7 @@ Wall loadWallAs(const std::filesystem::path& file, const std::string& stereo) {
     }
     const Wall other = shownIn(wall, stereoNamed(stereo));
     if (const auto fault = viewFault(other)) {
-        throw files::InputError(fmt::format("{}: shown in {}: {}", file.string(), stereo, *fault));
+        throw base::InputError(fmt::format("{}: shown in {}: {}", file.string(), stereo, *fault));
     }
     return other;
 }

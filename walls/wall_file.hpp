@@ -6,13 +6,13 @@
 #include <string_view>
 #include <vector>
 
-#include "files/toml_table.hpp"
+#include "host/toml_table.hpp"
 #include "walls/wall.hpp"
 
-/// The parts of a wall file, one source file each; what others include is wall.hpp. All throw files::InputError.
+/// The parts of a wall file, one source file each; what others include is wall.hpp. All throw base::InputError.
 namespace walls::wall_file {
 
-using files::TomlTable;
+using host::TomlTable;
 
 // Units mixed up (millimetres, pixels) are the usual mistake: no display or room is larger than this.
 inline constexpr double kMaxLength = 1000;  // [m]

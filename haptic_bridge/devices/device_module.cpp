@@ -4,7 +4,7 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "haptic_bridge/devices/driver.hpp"
 #include "host/module.hpp"
 
@@ -19,7 +19,7 @@ void* loadDriver(const fs::path& file, const std::string& option) {
     void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (handle == nullptr) {
         const char* reason = dlerror();
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("{}: {}; give a driver's module, and its libraries where the loader finds them", option,
                         reason == nullptr ? file.string() + " cannot be loaded" : reason));
     }
@@ -30,7 +30,7 @@ template <class Function>
 Function* find(void* handle, const char* symbol, const fs::path& file) {
     void* address = dlsym(handle, symbol);
     if (address == nullptr) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("{}: defines no {}; build it with haptic_bridge/devices/driver.hpp of this version of Sandwall "
                         "(docs/devices.md)",
                         file.string(), symbol));
@@ -41,7 +41,7 @@ Function* find(void* handle, const char* symbol, const fs::path& file) {
 void requireInterface(void* handle, const fs::path& file) {
     const int version = find<DriverInterface>(handle, kDriverInterfaceSymbol, file)();
     if (version != kDriverInterface) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("{}: is a driver of interface version {}, and this program takes version {}; build it with "
                         "haptic_bridge/devices/driver.hpp of this version of Sandwall (docs/devices.md)",
                         file.string(), version, kDriverInterface));
@@ -54,11 +54,11 @@ auto made(const std::string& option, const Make& make) {
     try {
         auto thing = make();
         if (!thing) {
-            throw files::InputError("the driver has opened nothing");
+            throw base::InputError("the driver has opened nothing");
         }
         return thing;
     } catch (const std::exception& error) {
-        throw files::InputError(fmt::format("{}: {}", option, error.what()));
+        throw base::InputError(fmt::format("{}: {}", option, error.what()));
     }
 }
 

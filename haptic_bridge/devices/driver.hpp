@@ -6,9 +6,9 @@
 /// Name it in SANDWALL_DRIVER at the end of the source. haptic_bridge/examples/driver_arm.cpp is a whole driver.
 #pragma once
 
+#include "base/triple_buffer.hpp"
 #include "haptic_bridge/devices/arm.hpp"
-#include "haptic_bridge/latest.hpp"
-#include "haptic_bridge/monotonic.hpp"
+#include "host/clock.hpp"
 
 namespace haptic_bridge {
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
 namespace haptic_bridge {
 namespace {
@@ -19,7 +19,7 @@ struct Option {
     std::string_view key, value;
 
     [[noreturn]] void fail(const std::string& what) const {
-        throw files::InputError(fmt::format("--map {}: {}", text, what));
+        throw base::InputError(fmt::format("--map {}: {}", text, what));
     }
 
     [[nodiscard]] double number(std::string_view word) const {

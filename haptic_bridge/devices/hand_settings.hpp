@@ -34,7 +34,7 @@ struct HandSettings {
     std::optional<Engage> engage;  // nothing: near for a recording, always for an arm
     std::optional<Datum> datum;    // nothing: surface for what has no body, level for an arm
 
-    /// Reads KEY=VALUE texts. Throws files::InputError that names option, key and the keys there are.
+    /// Reads KEY=VALUE texts. Throws base::InputError that names option, key and the keys there are.
     static HandSettings parse(const std::vector<std::string>& options);
 };
 

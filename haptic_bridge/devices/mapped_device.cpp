@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
 namespace haptic_bridge {
 
@@ -32,7 +32,7 @@ MappedDevice::MappedDevice(std::unique_ptr<Arm> arm, const HandSettings& setting
       check_(kFarthestShare * arm_->physics().reach, troubles_) {
     if (settings.datum == HandSettings::Datum::surface) {
         // On a slope such a mapping bends the hand's space, and a force along it would do work on a closed path.
-        throw files::InputError(
+        throw base::InputError(
             "--map datum=surface: is for recordings; an arm feels the sand at its own height, level");
     }
 }

@@ -24,7 +24,7 @@ public:
     static constexpr double kFadeSeconds = 0.05;   // and back, when the hand is in order
     static constexpr double kFarthestShare = 0.5;  // [reach], of a movement between two readings
 
-    /// The arm over this scene. Throws files::InputError for settings that an arm cannot have.
+    /// The arm over this scene. Throws base::InputError for settings that an arm cannot have.
     MappedDevice(std::unique_ptr<Arm> arm, const HandSettings& settings, const sand::Scene& scene);
 
     /// [scene unit/m] that an arm gets over this scene.

@@ -6,7 +6,7 @@
 #include <exception>
 #include <future>
 
-#include "haptic_bridge/monotonic.hpp"
+#include "host/clock.hpp"
 
 namespace haptic_bridge {
 namespace {
@@ -46,7 +46,7 @@ MouseDevice::~MouseDevice() {
 }
 
 void MouseDevice::stepped(const sand::Terrain& terrain) {
-    const std::int64_t now = monotonicNs();
+    const std::int64_t now = host::monotonicNs();
     if (sketchedNs_ == 0 || now - sketchedNs_ >= kFrameNs) {
         sketchedNs_ = now;
         sketch_.next().take(terrain);
@@ -98,7 +98,7 @@ void MouseDevice::run(PictureWindow& window) {
         if (input.closed) {
             return;
         }
-        const std::int64_t now = monotonicNs();
+        const std::int64_t now = host::monotonicNs();
         if (now - drawn >= kFrameNs && input.width > 0 && input.height > 0) {
             drawn = now;
             picture.width = input.width;

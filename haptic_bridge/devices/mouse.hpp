@@ -6,12 +6,12 @@
 #include <memory>
 #include <thread>
 
+#include "base/triple_buffer.hpp"
 #include "haptic_bridge/devices/device.hpp"
 #include "haptic_bridge/devices/device_troubles.hpp"
 #include "haptic_bridge/devices/picture_window.hpp"
 #include "haptic_bridge/devices/sand_picture.hpp"
 #include "haptic_bridge/devices/sand_watcher.hpp"
-#include "haptic_bridge/latest.hpp"
 
 namespace haptic_bridge {
 
@@ -45,9 +45,9 @@ private:
         Pose pose;
         bool open = true;
     };
-    Latest<Hand> hand_;                // window to force loop
-    Latest<sand::force::Vec3> force_;  // force loop to window
-    Latest<SandSketch> sketch_;        // sand to window
+    base::TripleBuffer<Hand> hand_;                // window to force loop
+    base::TripleBuffer<sand::force::Vec3> force_;  // force loop to window
+    base::TripleBuffer<SandSketch> sketch_;        // sand to window
     std::atomic<double> share_{1};
     TroubleCounts troubles_;
     std::int64_t sketchedNs_ = 0;  // the sand thread's

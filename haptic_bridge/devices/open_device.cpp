@@ -5,7 +5,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "haptic_bridge/devices/device_module.hpp"
 #include "haptic_bridge/devices/mapped_device.hpp"
 #include "haptic_bridge/devices/mouse.hpp"
@@ -21,7 +21,7 @@ std::ifstream openToRead(const std::string& file) {
     std::ifstream stream(file, std::ios::binary);
     // Opening a folder succeeds; reading it does not.
     if (!stream || (stream.peek(), stream.bad())) {
-        throw files::InputError(file + ": cannot be read; give --device a file that is there");
+        throw base::InputError(file + ": cannot be read; give --device a file that is there");
     }
     return stream;
 }
@@ -36,7 +36,7 @@ std::unique_ptr<Device> openSimulated(const std::string& spec, const HandSetting
 
 std::unique_ptr<Device> openTrace(const std::string& what, const HandSettings& settings, const sand::Scene& scene) {
     if (settings.engage == HandSettings::Engage::button) {
-        throw files::InputError("--map engage=button: a trace records no buttons; give near or always");
+        throw base::InputError("--map engage=button: a trace records no buttons; give near or always");
     }
     std::ifstream file = openToRead(what);
     const double cell = scene.terrain.cellSize();
@@ -73,9 +73,9 @@ std::unique_ptr<Device> openDevice(const std::string& spec, const HandSettings& 
     if (kind == "spacenav" && (spec == kind || !what.empty())) {
         return std::make_unique<SpacenavDevice>(what.empty() ? "libspnav.so.0" : what);
     }
-    throw files::InputError("--device " + spec +
-                            ": unknown device; give script:gis, script:FILE, trace:FILE.csv, driver:FILE.so, "
-                            "sim:PRESET, mouse or spacenav");
+    throw base::InputError("--device " + spec +
+                           ": unknown device; give script:gis, script:FILE, trace:FILE.csv, driver:FILE.so, "
+                           "sim:PRESET, mouse or spacenav");
 }
 
 }  // namespace haptic_bridge

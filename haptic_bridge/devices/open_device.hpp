@@ -11,7 +11,7 @@
 namespace haptic_bridge {
 
 /// Opens what docs/devices.md lists: "script:gis", "script:FILE", "trace:FILE", "driver:FILE.so", "sim:PRESET",
-/// "mouse", "spacenav". Throws files::InputError for anything else, for files that cannot be read and devices that are
+/// "mouse", "spacenav". Throws base::InputError for anything else, for files that cannot be read and devices that are
 /// not there.
 [[nodiscard]] std::unique_ptr<Device> openDevice(const std::string& spec, const HandSettings& settings,
                                                  const sand::Scene& scene);

@@ -9,7 +9,7 @@
 #include <iterator>
 #include <string_view>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "haptic_bridge/devices/arm_presets.hpp"
 #include "haptic_bridge/devices/simulated_arm.hpp"
 #include "haptic_bridge/devices/strokes.hpp"
@@ -24,7 +24,7 @@ struct Spec {
     std::string text;
     std::size_t begin;  // of what has not been read
 
-    [[noreturn]] void fail(const std::string& what) const { throw files::InputError("--device " + text + ": " + what); }
+    [[noreturn]] void fail(const std::string& what) const { throw base::InputError("--device " + text + ": " + what); }
     [[nodiscard]] std::string_view next() {
         const std::size_t end = std::min(text.find(',', begin), text.size());
         const std::string_view word = std::string_view(text).substr(begin, end - begin);

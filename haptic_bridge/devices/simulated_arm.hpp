@@ -74,7 +74,7 @@ struct StrokeSpace {
 };
 
 /// "sim:PRESET[,KEY=VALUE]...": path=FILE.strokes or path=gis, grip=N/m, grip_damping=N·s/m, and delay (ticks),
-/// damping, mass, friction, resolution, max_force, stiffness in ArmPhysics' units. Throws files::InputError.
+/// damping, mass, friction, resolution, max_force, stiffness in ArmPhysics' units. Throws base::InputError.
 [[nodiscard]] std::unique_ptr<SimulatedArm> openSimulatedArm(const std::string& spec, const StrokeSpace& space = {});
 
 }  // namespace haptic_bridge

@@ -8,7 +8,7 @@
 #include <chrono>
 #include <map>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
 namespace haptic_bridge {
 
@@ -43,14 +43,14 @@ const SpacenavDevice::Library& SpacenavDevice::Library::load(const std::string& 
     }
     void* handle = dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (handle == nullptr) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("--device spacenav: {} cannot be loaded; install Debian's libspnav0 and spacenavd", name));
     }
     Library library;
     const auto find = [&](auto& function, const char* symbol) {
         void* address = dlsym(handle, symbol);
         if (address == nullptr) {
-            throw files::InputError(fmt::format("--device spacenav: {} has no {}", name, symbol));
+            throw base::InputError(fmt::format("--device spacenav: {} has no {}", name, symbol));
         }
         function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(address);
     };
@@ -62,7 +62,7 @@ const SpacenavDevice::Library& SpacenavDevice::Library::load(const std::string& 
 
 SpacenavDevice::SpacenavDevice(const std::string& library) : library_(&Library::load(library)) {
     if (library_->open() == -1) {
-        throw files::InputError("--device spacenav: no daemon answers; start spacenavd");
+        throw base::InputError("--device spacenav: no daemon answers; start spacenavd");
     }
     thread_ = std::thread([this] { listen(); });
 }

@@ -20,7 +20,7 @@ public:
     static constexpr double kSpeed = 1.0;           // [half side/s] at full deflection
     static constexpr double kClimb = 6.0;           // [tool radius/s]
 
-    /// Throws files::InputError when library or daemon is missing.
+    /// Throws base::InputError when library or daemon is missing.
     explicit SpacenavDevice(const std::string& library = "libspnav.so.0");
     ~SpacenavDevice() override;
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
 namespace haptic_bridge {
 namespace {
@@ -22,7 +22,7 @@ struct Line {
     long number;
     std::vector<std::string_view> words;
 
-    [[noreturn]] void fail(const std::string& message) const { throw files::InputError(name, number, message); }
+    [[noreturn]] void fail(const std::string& message) const { throw base::InputError(name, number, message); }
     void expect(std::size_t count, const char* form) const {
         if (words.size() != count + 1) {
             fail(fmt::format("'{}' takes {}, got {} values", words[0], form, words.size() - 1));

@@ -32,7 +32,7 @@ struct Strokes {
     double travel = 4;            // [half side / s] between strokes
     double lift = 2;              // [tool radius] of the underside over the surface between strokes
 
-    /// `name` stands for the file in messages. Throws files::InputError with its line.
+    /// `name` stands for the file in messages. Throws base::InputError with its line.
     static Strokes parse(std::string_view text, const std::string& name);
 };
 

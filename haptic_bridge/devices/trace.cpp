@@ -2,13 +2,13 @@
 #include "haptic_bridge/devices/trace.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <optional>
 #include <string_view>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
+#include "base/text.hpp"
 
 namespace haptic_bridge {
 namespace {
@@ -16,30 +16,9 @@ namespace {
 constexpr double kTracedShare = 0.8;  // of the field, by a trace without a scale
 constexpr double kLargest = 1e12;     // of a time or a coordinate
 
-std::vector<std::string_view> cutCells(std::string_view line) {
-    std::vector<std::string_view> cells;
-    while (true) {
-        const std::size_t comma = line.find(',');
-        std::string_view cell = line.substr(0, comma);
-        while (!cell.empty() && (cell.front() == ' ' || cell.front() == '\t')) {
-            cell.remove_prefix(1);
-        }
-        while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\t' || cell.back() == '\r')) {
-            cell.remove_suffix(1);
-        }
-        cells.push_back(cell);
-        if (comma == std::string_view::npos) {
-            return cells;
-        }
-        line.remove_prefix(comma + 1);
-    }
-}
-
-std::optional<double> numberOf(std::string_view word) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    const bool whole = error == std::errc{} && end == word.data() + word.size();
-    return whole && std::abs(value) <= kLargest ? std::optional(value) : std::nullopt;
+std::optional<double> boundedNumber(std::string_view word) {
+    const std::optional<double> value = base::numberOf(word);
+    return value && std::abs(*value) <= kLargest ? value : std::nullopt;
 }
 
 /// "2023/09/05/19:18:29.980002" as seconds since 1970.
@@ -55,12 +34,12 @@ std::optional<double> dateOf(std::string_view word) {
         }
     }
     const auto part = [&](std::size_t begin, std::size_t count) {
-        return static_cast<int>(numberOf(word.substr(begin, count)).value_or(0));
+        return static_cast<int>(boundedNumber(word.substr(begin, count)).value_or(0));
     };
     const std::chrono::year_month_day day{std::chrono::year(part(0, 4)),
                                           std::chrono::month(static_cast<unsigned>(part(5, 2))),
                                           std::chrono::day(static_cast<unsigned>(part(8, 2)))};
-    const auto seconds = numberOf(word.substr(form.size()));
+    const auto seconds = boundedNumber(word.substr(form.size()));
     if (!day.ok() || part(11, 2) > 23 || part(14, 2) > 59 || !seconds || *seconds < 0 || *seconds >= 61) {
         return std::nullopt;
     }
@@ -70,15 +49,15 @@ std::optional<double> dateOf(std::string_view word) {
 
 /// Which cells of a line hold time, x, y and z.
 std::array<std::size_t, 4> findColumns(std::string_view header, const std::string& name, const HandSettings& settings) {
-    const auto titles = cutCells(header);
+    const auto titles = base::split(header, ',');
     std::array<std::size_t, 4> found{};
     for (std::size_t i = 0; i < found.size(); ++i) {
         const auto title = std::find(titles.begin(), titles.end(), settings.columns[i]);
         if (title == titles.end()) {
-            throw files::InputError(name, 1,
-                                    "no column '" + settings.columns[i] + "' in the header '" +
-                                        std::string(header.substr(0, 80)) +
-                                        "'; name the columns with --map columns=TIME,X,Y,Z");
+            throw base::InputError(name, 1,
+                                   "no column '" + settings.columns[i] + "' in the header '" +
+                                       std::string(header.substr(0, 80)) +
+                                       "'; name the columns with --map columns=TIME,X,Y,Z");
         }
         found[i] = static_cast<std::size_t>(title - titles.begin());
     }
@@ -92,18 +71,18 @@ public:
         : name_(name), settings_(settings), columns_(columns) {}
 
     [[nodiscard]] Trace::Sample read(std::string_view line, long number) {
-        const auto cells = cutCells(line);
+        const auto cells = base::split(line, ',');
         const std::size_t needed = *std::max_element(columns_.begin(), columns_.end()) + 1;
         if (cells.size() < needed) {
-            throw files::InputError(name_, number,
-                                    std::to_string(needed) + " values expected, got " + std::to_string(cells.size()));
+            throw base::InputError(name_, number,
+                                   std::to_string(needed) + " values expected, got " + std::to_string(cells.size()));
         }
         Trace::Sample sample;
         sample.time = time(cells[columns_[0]], number);
         for (std::size_t i = 0; i < 3; ++i) {
-            const auto value = numberOf(cells[columns_[i + 1]]);
+            const auto value = boundedNumber(cells[columns_[i + 1]]);
             if (!value) {
-                throw files::InputError(
+                throw base::InputError(
                     name_, number,
                     settings_.columns[i + 1] + " is no number: '" + std::string(cells[columns_[i + 1]]) + "'");
             }
@@ -115,9 +94,9 @@ public:
 private:
     [[nodiscard]] double time(std::string_view word, long number) {
         const auto date = dateOf(word);
-        const auto ticks = date ? std::nullopt : numberOf(word);
+        const auto ticks = date ? std::nullopt : boundedNumber(word);
         if (!date && !ticks) {
-            throw files::InputError(
+            throw base::InputError(
                 name_, number, "time is neither a number nor YYYY/MM/DD/HH:MM:SS.ffffff: '" + std::string(word) + "'");
         }
         const double now = date ? *date : *ticks * settings_.secondsPerTick;
@@ -126,7 +105,7 @@ private:
         }
         const double elapsed = now - *first_;
         if (elapsed < last_) {
-            throw files::InputError(name_, number, "time runs backwards: '" + std::string(word) + "'");
+            throw base::InputError(name_, number, "time runs backwards: '" + std::string(word) + "'");
         }
         return last_ = elapsed;
     }
@@ -143,7 +122,7 @@ private:
 Trace Trace::parse(std::istream& text, const std::string& name, const HandSettings& settings) {
     std::string line;
     if (!std::getline(text, line)) {
-        throw files::InputError(name, 1, "the trace is empty; a header such as time,x,y,z comes first");
+        throw base::InputError(name, 1, "the trace is empty; a header such as time,x,y,z comes first");
     }
     SampleReader reader(name, settings, findColumns(line, name, settings));
     Trace trace;
@@ -155,8 +134,8 @@ Trace Trace::parse(std::istream& text, const std::string& name, const HandSettin
         }
     }
     if (trace.samples.size() < 2) {
-        throw files::InputError(name, number,
-                                "a trace needs at least two samples, got " + std::to_string(trace.samples.size()));
+        throw base::InputError(name, number,
+                               "a trace needs at least two samples, got " + std::to_string(trace.samples.size()));
     }
     return trace;
 }

@@ -21,7 +21,7 @@ struct Trace {
     std::vector<Sample> samples;  // at least two
 
     /// A CSV with a header line; times are numbers, or "YYYY/MM/DD/HH:MM:SS.ffffff". `name` stands for the file in
-    /// messages. Throws files::InputError with its line.
+    /// messages. Throws base::InputError with its line.
     static Trace parse(std::istream& text, const std::string& name, const HandSettings& settings);
 };
 

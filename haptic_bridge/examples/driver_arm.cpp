@@ -8,7 +8,9 @@
 #include <stdexcept>
 #include <thread>
 
+#include "base/triple_buffer.hpp"
 #include "haptic_bridge/devices/driver.hpp"
+#include "host/clock.hpp"
 
 /// Replace these bodies by calls of your library; as they stand, they are an arm that nobody holds.
 namespace maker {
@@ -60,7 +62,7 @@ public:
         const Seen& seen = seen_.latest();
         ArmReading reading = seen.reading;
         // A library that hangs must not pass for a hand that rests.
-        reading.present = reading.present && haptic_bridge::monotonicNs() - seen.timeNs < kPatienceNs;
+        reading.present = reading.present && host::monotonicNs() - seen.timeNs < kPatienceNs;
         return reading;
     }
     void push(Vec3 force) override {
@@ -72,7 +74,7 @@ private:
     static constexpr std::int64_t kPatienceNs = 50'000'000;
     struct Seen {
         ArmReading reading;
-        std::int64_t timeNs = haptic_bridge::monotonicNs();
+        std::int64_t timeNs = host::monotonicNs();
     };
 
     void talk() {
@@ -83,7 +85,7 @@ private:
             reading.present = maker::readPlace(reading.place.x, reading.place.y, reading.place.z);  // [m]
             reading.first = maker::button(0);
             reading.second = maker::button(1);
-            seen.timeNs = haptic_bridge::monotonicNs();
+            seen.timeNs = host::monotonicNs();
             seen_.publish();
             const Vec3 force = force_.latest();
             maker::setForce(force.x, force.y, force.z);  // [N]
@@ -93,8 +95,8 @@ private:
     }
 
     ArmPhysics physics_;
-    haptic_bridge::Latest<Seen> seen_;   // device to force loop
-    haptic_bridge::Latest<Vec3> force_;  // and back
+    base::TripleBuffer<Seen> seen_;   // device to force loop
+    base::TripleBuffer<Vec3> force_;  // and back
     std::atomic<bool> stopping_{false};
     std::thread thread_;
 };

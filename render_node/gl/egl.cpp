@@ -12,13 +12,13 @@
 #include <utility>
 #include <vector>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "render_node/gl/gl_platform.hpp"
 
 namespace render_node {
 namespace {
 
-using files::InputError;
+using base::InputError;
 
 /// Whether a list such as "EGL_KHR_image EGL_KHR_fence_sync" has the whole word.
 bool lists(const char* extensions, std::string_view name) {

@@ -7,7 +7,7 @@
 #include <array>
 #include <bit>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "render_node/gl/compiler_memory.hpp"
 #include "render_node/gl/gl_module.hpp"
 #include "render_node/gl/window_context.hpp"
@@ -53,7 +53,7 @@ std::string_view backendName(Backend backend) { return kNames.at(static_cast<std
 Backend backendNamed(std::string_view name) {
     const auto* const found = std::find(kNames.begin(), kNames.end(), name);
     if (found == kNames.end()) {
-        throw files::InputError("--gl: '" + std::string(name) + "' is none of auto, osmesa, egl, glfw");
+        throw base::InputError("--gl: '" + std::string(name) + "' is none of auto, osmesa, egl, glfw");
     }
     return static_cast<Backend>(found - kNames.begin());
 }
@@ -74,7 +74,7 @@ void loadFunctions(GlPlatform& platform) {
         return static_cast<GlPlatform*>(from)->functionNamed(name);
     };
     if (gladLoadGLUserPtr(load, &platform) < GLAD_MAKE_VERSION(3, 3)) {
-        throw files::InputError("the OpenGL context lacks functions of OpenGL 3.3; install or update the driver");
+        throw base::InputError("the OpenGL context lacks functions of OpenGL 3.3; install or update the driver");
     }
 }
 

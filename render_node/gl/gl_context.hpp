@@ -23,7 +23,7 @@ enum class Backend : std::uint8_t {
 };
 /// "auto", "osmesa", "egl", "glfw": as --gl takes them.
 [[nodiscard]] std::string_view backendName(Backend backend);
-/// The other way round. Throws files::InputError for any other word.
+/// The other way round. Throws base::InputError for any other word.
 [[nodiscard]] Backend backendNamed(std::string_view name);
 /// What `automatic` means for a tile; any other backend is itself.
 [[nodiscard]] Backend backendFor(Backend backend, const walls::Tile& tile);
@@ -80,7 +80,7 @@ private:
 };
 
 /// Makes a context for the outputs of a tile, current on this thread, with the GL functions loaded. Throws
-/// files::InputError in one line that says what to install or to choose instead.
+/// base::InputError in one line that says what to install or to choose instead.
 [[nodiscard]] std::unique_ptr<GlContext> makeContext(Backend backend, const walls::Wall& wall, const walls::Tile& tile);
 
 /// The same without any output: for tests and measurements.

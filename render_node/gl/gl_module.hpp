@@ -12,7 +12,7 @@
 namespace render_node {
 
 /// Loads the backend's module, and with it the libraries of that backend alone, and has it do what is asked. Throws
-/// files::InputError in one line when the module or one of its libraries is missing, or what the module throws.
+/// base::InputError in one line when the module or one of its libraries is missing, or what the module throws.
 [[nodiscard]] std::unique_ptr<GlPlatform> loadPlatform(
     Backend backend, const PlatformRequest& request,
     const std::vector<std::filesystem::path>& folders = host::moduleFolders());

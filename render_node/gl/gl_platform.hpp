@@ -38,7 +38,7 @@ public:
     virtual ~GlPlatform() = default;
 
     /// Context 0 draws the pictures and shows window 0; the others share its objects and show one window each. Throws
-    /// files::InputError when the driver refuses.
+    /// base::InputError when the driver refuses.
     virtual void makeCurrent(std::size_t context) = 0;
     [[nodiscard]] virtual GlFunction functionNamed(const char* name) = 0;
 
@@ -55,7 +55,7 @@ public:
     [[nodiscard]] virtual int framesToIgnore() const { return 0; }
 };
 
-/// The one symbol of a module, by this name; the number changes with this header. Throws files::InputError.
+/// The one symbol of a module, by this name; the number changes with this header. Throws base::InputError.
 extern "C" GlPlatform* sandwallGlPlatform1(const PlatformRequest& request);
 inline constexpr const char* kGlPlatformSymbol = "sandwallGlPlatform1";
 

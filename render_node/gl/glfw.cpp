@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "render_node/gl/gl_platform.hpp"
 #include "render_node/gl/glfw_window.hpp"
 #include "render_node/gl/swap_sync.hpp"

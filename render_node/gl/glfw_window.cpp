@@ -10,13 +10,13 @@
 #include <cmath>
 #include <span>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "render_node/gl/screen_cover.hpp"
 
 namespace render_node {
 namespace {
 
-using files::InputError;
+using base::InputError;
 
 std::string lastComplaint;  // GLFW's handler gets nothing of ours
 

@@ -12,7 +12,7 @@ struct GLFWmonitor;
 
 namespace render_node {
 
-/// GLFW for as long as this lives; one at a time. Throws files::InputError when it does not start.
+/// GLFW for as long as this lives; one at a time. Throws base::InputError when it does not start.
 class GlfwLibrary {
 public:
     GlfwLibrary();
@@ -29,7 +29,7 @@ public:
     /// Hidden: for its context alone.
     GlfwWindow(const GlfwLibrary& library, const std::string& display);
     /// Full screen on the output's monitor, else a window. The context shares its objects with that of `share`. Throws
-    /// files::InputError with the output's name: a monitor that is not there or has no such mode, no OpenGL 3.3.
+    /// base::InputError with the output's name: a monitor that is not there or has no such mode, no OpenGL 3.3.
     GlfwWindow(const GlfwLibrary& library, const std::string& display, const WindowRequest& wanted,
                const PlatformRequest& request, GLFWwindow* share);
 

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "render_node/gl/gl_platform.hpp"
 
 namespace render_node {
@@ -18,7 +18,7 @@ public:
 
     void makeCurrent(std::size_t /* context */) override {
         if (OSMesaMakeCurrent(context_, surface_.data(), GL_UNSIGNED_BYTE, kSide, kSide) != GL_TRUE) {
-            throw files::InputError("OSMesa cannot make its OpenGL context current; reinstall libosmesa6");
+            throw base::InputError("OSMesa cannot make its OpenGL context current; reinstall libosmesa6");
         }
     }
     [[nodiscard]] GlFunction functionNamed(const char* name) override { return OSMesaGetProcAddress(name); }
@@ -40,7 +40,7 @@ private:
                                               0};
         OSMesaContext context = OSMesaCreateContextAttribs(kWanted.data(), nullptr);
         if (context == nullptr) {
-            throw files::InputError("OSMesa has no OpenGL 3.3 core; install Mesa's libosmesa6 22 or later");
+            throw base::InputError("OSMesa has no OpenGL 3.3 core; install Mesa's libosmesa6 22 or later");
         }
         return context;
     }

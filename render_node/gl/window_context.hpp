@@ -25,7 +25,7 @@ struct Copy {
 /// wall and the right one in odd frames, so that all tiles show the same eye whatever each has missed.
 [[nodiscard]] std::vector<Copy> copiesOf(const OutputPicture& output, bool quadBuffers, std::uint64_t frame);
 
-/// Loads OpenGL's functions through the platform, whose context 0 must be current. Throws files::InputError.
+/// Loads OpenGL's functions through the platform, whose context 0 must be current. Throws base::InputError.
 void loadFunctions(GlPlatform& platform);
 
 /// A context that shows its pictures in the windows of the platform, one for each of `windows`.

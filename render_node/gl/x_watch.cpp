@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
 namespace render_node {
 namespace {
@@ -41,7 +41,7 @@ std::string chosenDisplay(const std::string& display) {
     }
     const char* fromEnvironment = std::getenv("DISPLAY");
     if (fromEnvironment == nullptr || *fromEnvironment == '\0') {
-        throw files::InputError(
+        throw base::InputError(
             "--gl glfw: no X display; set DISPLAY, give the tile's place in the wall file one (display = \":0\"), or "
             "draw off screen with --gl osmesa");
     }
@@ -53,8 +53,8 @@ std::string chosenDisplay(const std::string& display) {
 XWatch::XWatch(const std::string& display, const std::string& who)
     : name_(chosenDisplay(display)), display_(XOpenDisplay(name_.c_str())) {
     if (display_ == nullptr) {
-        throw files::InputError("--gl glfw: cannot open X display " + name_ +
-                                "; is its server running, and may this user use it (docs/backends.md)?");
+        throw base::InputError("--gl glfw: cannot open X display " + name_ +
+                               "; is its server running, and may this user use it (docs/backends.md)?");
     }
     std::array<char, 256> host{};
     (void)gethostname(host.data(), host.size() - 1);

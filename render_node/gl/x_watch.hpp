@@ -13,7 +13,7 @@ namespace render_node {
 /// Xlib has one error handler per process: one at a time may live. Not thread-safe.
 class XWatch {
 public:
-    /// `display` as in a wall file; empty: $DISPLAY, which is set to it otherwise. Throws files::InputError when there
+    /// `display` as in a wall file; empty: $DISPLAY, which is set to it otherwise. Throws base::InputError when there
     /// is none or it cannot be opened. From here on, a lost X server ends the process with status 1 and one line that
     /// begins with `who` and the host: Xlib cannot go on, and whoever waits for this rank must not wait.
     XWatch(const std::string& display, const std::string& who);

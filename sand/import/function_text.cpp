@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
 namespace sand {
 namespace {
 
 [[noreturn]] void fail(const std::string& text, const std::string& message) {
-    throw files::InputError(fmt::format("z = \"{}\": {}", text, message));
+    throw base::InputError(fmt::format("z = \"{}\": {}", text, message));
 }
 
 /// Characters count from 1, muParser's from 0; what it says of them itself is left out.

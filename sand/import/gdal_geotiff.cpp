@@ -6,7 +6,7 @@
 #include <array>
 #include <limits>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "sand/import/gdal_reference.hpp"
 
 namespace sand {
@@ -52,9 +52,9 @@ bool fill(GDALRasterBandH band, const EsriGrid& grid) {
 
 }  // namespace
 
-files::Bytes geoTiffOf(const EsriGrid& grid, const std::string& file) {
+base::Bytes geoTiffOf(const EsriGrid& grid, const std::string& file) {
     const GdalSession session;
-    const auto fail = [&] { throw files::InputError(file + ": cannot be written: " + session.complaint()); };
+    const auto fail = [&] { throw base::InputError(file + ": cannot be written: " + session.complaint()); };
     const std::array<const char*, 4> options = {"COMPRESS=DEFLATE", "PREDICTOR=3", "BIGTIFF=IF_SAFER", nullptr};
     const Unlink unlink;
     Dataset dataset(

@@ -6,6 +6,6 @@
 namespace sand {
 
 /// Importer::geoTiff().
-[[nodiscard]] files::Bytes geoTiffOf(const EsriGrid& grid, const std::string& file);
+[[nodiscard]] base::Bytes geoTiffOf(const EsriGrid& grid, const std::string& file);
 
 }  // namespace sand

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "sand/import/importer.hpp"
 
 namespace sand {
@@ -26,7 +26,7 @@ constexpr const char* kDrivers[] = {
 fs::path checked(const fs::path& file) {
     std::error_code none;
     if (!fs::is_regular_file(file, none)) {
-        throw files::InputError(file.string() + ": cannot be read; check the path");
+        throw base::InputError(file.string() + ": cannot be read; check the path");
     }
     // Behind a leading slash no name is taken for a driver's prefix.
     return fs::absolute(file);
@@ -52,7 +52,7 @@ GdalRaster::GdalRaster(const fs::path& file)
     }
 }
 
-void GdalRaster::fail(const std::string& message) const { throw files::InputError(name_ + ": " + message); }
+void GdalRaster::fail(const std::string& message) const { throw base::InputError(name_ + ": " + message); }
 
 void GdalRaster::failToRead() const { fail("its pixels cannot be read: " + session_.complaint()); }
 

@@ -9,7 +9,7 @@
 namespace sand {
 
 /// A local file's one band of numbers, opened and found to be neither too large nor of another kind. Every member
-/// throws files::InputError that begins with the file.
+/// throws base::InputError that begins with the file.
 class GdalRaster {
 public:
     explicit GdalRaster(const std::filesystem::path& file);

@@ -9,8 +9,8 @@
 #include <cstring>
 #include <string_view>
 
-#include "files/input_error.hpp"
-#include "files/lower_case.hpp"
+#include "base/input_error.hpp"
+#include "base/text.hpp"
 #include "sand/import/metric_system.hpp"
 
 namespace sand {
@@ -40,7 +40,7 @@ constexpr std::array kHeightUnits = {
 };
 
 double metresOf(const std::string& unit, const GdalRaster& raster) {
-    const std::string lower = files::lowerCase(unit);
+    const std::string lower = base::lowerCase(unit);
     const auto* found = std::find_if(kHeightUnits.begin(), kHeightUnits.end(),
                                      [&](const HeightUnit& candidate) { return candidate.name == lower; });
     if (found == kHeightUnits.end()) {
@@ -110,9 +110,9 @@ SpatialReference referenceOf(const std::string& crs, const std::string& file) {
     char* rest = text.data();
     // Never GDAL's "any input", which takes the addresses of servers too.
     if (OSRImportFromWkt(reference.get(), &rest) != OGRERR_NONE) {
-        throw files::InputError(file +
-                                ": the coordinate reference system that the terrain came with is none that GDAL "
-                                "knows");
+        throw base::InputError(file +
+                               ": the coordinate reference system that the terrain came with is none that GDAL "
+                               "knows");
     }
     return reference;
 }

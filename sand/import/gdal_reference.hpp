@@ -5,11 +5,11 @@
 
 namespace sand {
 
-/// What the raster's lengths and heights are. Throws files::InputError: degrees, with the command that makes metres of
+/// What the raster's lengths and heights are. Throws base::InputError: degrees, with the command that makes metres of
 /// them, and height units nobody knows.
 [[nodiscard]] RasterUnits unitsOf(const GdalRaster& raster);
 
-/// The reference system of a WKT. Throws files::InputError, which begins with `file`.
+/// The reference system of a WKT. Throws base::InputError, which begins with `file`.
 [[nodiscard]] SpatialReference referenceOf(const std::string& crs, const std::string& file);
 
 }  // namespace sand

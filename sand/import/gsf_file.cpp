@@ -13,9 +13,9 @@
 #include <string>
 #include <string_view>
 
-#include "files/byte_stream.hpp"
-#include "files/input_error.hpp"
-#include "files/trimmed.hpp"
+#include "base/byte_stream.hpp"
+#include "base/input_error.hpp"
+#include "base/text.hpp"
 #include "sand/height_field.hpp"
 
 namespace sand {
@@ -34,15 +34,15 @@ class Header {
 public:
     Header(std::string_view bytes, std::string file) : file_(std::move(file)) {
         if (bytes.substr(0, kMagic.size()) != kMagic) {
-            throw files::InputError(file_, 1, "a Gwyddion Simple Field begins with 'Gwyddion Simple Field 1.0'");
+            throw base::InputError(file_, 1, "a Gwyddion Simple Field begins with 'Gwyddion Simple Field 1.0'");
         }
         const std::size_t end = bytes.find('\0');
         if (end == std::string_view::npos) {
-            throw files::InputError(file_ + ": its header has no end: zeros must stand before the numbers");
+            throw base::InputError(file_ + ": its header has no end: zeros must stand before the numbers");
         }
         size_ = end / 4 * 4 + 4;
         if (size_ > bytes.size() || bytes.substr(end, size_ - end) != std::string(size_ - end, '\0')) {
-            throw files::InputError(file_ + ": zeros up to a multiple of four bytes must stand before the numbers");
+            throw base::InputError(file_ + ": zeros up to a multiple of four bytes must stand before the numbers");
         }
         long line = 1;
         for (std::size_t at = kMagic.size(); at < end;) {
@@ -57,7 +57,7 @@ public:
     [[nodiscard]] int side(const std::string& name) const {
         const Entry* entry = find(name);
         if (entry == nullptr) {
-            throw files::InputError(fmt::format("{}: its header says no {}", file_, name));
+            throw base::InputError(fmt::format("{}: its header says no {}", file_, name));
         }
         const double side = number(name, *entry);
         if (side != std::floor(side) || side < 1 || side > kMaxSide) {
@@ -84,10 +84,10 @@ private:
     void add(std::string_view text, long line) {
         const std::size_t equals = text.find('=');
         if (equals == std::string_view::npos) {
-            throw files::InputError(file_, line, fmt::format("'Name = value' is wanted, got '{}'", text));
+            throw base::InputError(file_, line, fmt::format("'Name = value' is wanted, got '{}'", text));
         }
-        entries_[std::string(files::trimmed(text.substr(0, equals)))] = {
-            std::string(files::trimmed(text.substr(equals + 1))), line};
+        entries_[std::string(base::trimmed(text.substr(0, equals)))] = {
+            std::string(base::trimmed(text.substr(equals + 1))), line};
     }
     [[nodiscard]] const Entry* find(const std::string& name) const {
         const auto found = entries_.find(name);
@@ -103,7 +103,7 @@ private:
         return value;
     }
     [[noreturn]] void fail(const Entry& entry, const std::string& message) const {
-        throw files::InputError(file_, entry.line, message);
+        throw base::InputError(file_, entry.line, message);
     }
 
     std::string file_;
@@ -115,7 +115,7 @@ std::string bytesOf(const std::filesystem::path& file) {
     std::error_code ignored;
     std::ifstream stream(file, std::ios::binary);
     if (!stream || !std::filesystem::is_regular_file(file, ignored)) {  // devices may never end
-        throw files::InputError(fmt::format("{}: cannot be read; check the path", file.string()));
+        throw base::InputError(fmt::format("{}: cannot be read; check the path", file.string()));
     }
     return {std::istreambuf_iterator<char>(stream), {}};
 }
@@ -140,16 +140,16 @@ EsriGrid readGsf(const std::filesystem::path& file) {
     const std::size_t cells = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
     const std::string_view numbers = std::string_view(bytes).substr(header.size());
     if (numbers.size() != cells * sizeof(float)) {
-        throw files::InputError(fmt::format("{}: {} x {} pixels are {} bytes, and behind the header stand {}",
-                                            file.string(), grid.columns, grid.rows, cells * sizeof(float),
-                                            numbers.size()));
+        throw base::InputError(fmt::format("{}: {} x {} pixels are {} bytes, and behind the header stand {}",
+                                           file.string(), grid.columns, grid.rows, cells * sizeof(float),
+                                           numbers.size()));
     }
     for (std::size_t i = 0; i < cells; ++i) {
         float height = 0;
         std::memcpy(&height, numbers.data() + i * sizeof height, sizeof height);
         if (std::isinf(height)) {
             const auto width = static_cast<std::size_t>(grid.columns);
-            throw files::InputError(
+            throw base::InputError(
                 fmt::format("{}: the height of pixel {}, {} (from the north-west) is infinite; "
                             "mask it in Gwyddion",
                             file.string(), i % width + 1, i / width + 1));

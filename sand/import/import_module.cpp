@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "sand/import/function_text.hpp"
 #include "sand/import/gdal_geotiff.hpp"
 #include "sand/import/gdal_reference.hpp"
@@ -106,7 +106,7 @@ public:
         return grid;
     }
     [[nodiscard]] EsriGrid evaluate(const Function& function) const override { return evaluateFunction(function); }
-    [[nodiscard]] files::Bytes geoTiff(const EsriGrid& grid, const std::string& file) const override {
+    [[nodiscard]] base::Bytes geoTiff(const EsriGrid& grid, const std::string& file) const override {
         return geoTiffOf(grid, file);
     }
     [[nodiscard]] std::string esriWkt(const std::string& crs, const std::string& file) const override {
@@ -117,10 +117,10 @@ public:
         const OGRErr error = OSRExportToWktEx(reference.get(), &text, options.data());
         const GdalText owner(text);
         if (error != OGRERR_NONE || text == nullptr) {
-            throw files::InputError(file +
-                                    ": its coordinate reference system cannot be said in a .prj file; write a "
-                                    ".tif: " +
-                                    session.complaint());
+            throw base::InputError(file +
+                                   ": its coordinate reference system cannot be said in a .prj file; write a "
+                                   ".tif: " +
+                                   session.complaint());
         }
         return text;
     }

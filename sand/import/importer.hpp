@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 #include "sand/esri_grid.hpp"
 
 namespace sand {
@@ -18,7 +18,7 @@ struct Function {
 
 /// The functions of the module that brings GDAL and muParser. One thread at a time.
 ///
-/// All of them throw files::InputError: one line that names the file, or the place in the function's text, the cause,
+/// All of them throw base::InputError: one line that names the file, or the place in the function's text, the cause,
 /// and where there is something to be done, what.
 class Importer {
 public:
@@ -43,7 +43,7 @@ public:
     [[nodiscard]] virtual EsriGrid evaluate(const Function& function) const = 0;
 
     /// A GeoTIFF of one band of doubles, as bytes. `file` is for messages.
-    [[nodiscard]] virtual files::Bytes geoTiff(const EsriGrid& grid, const std::string& file) const = 0;
+    [[nodiscard]] virtual base::Bytes geoTiff(const EsriGrid& grid, const std::string& file) const = 0;
 
     /// A coordinate reference system as it stands in the .prj file beside an ESRI ASCII grid.
     [[nodiscard]] virtual std::string esriWkt(const std::string& crs, const std::string& file) const = 0;
@@ -58,7 +58,7 @@ inline constexpr const char* kImportSymbol = "sandwallImport2";
 using GetImporter = const Importer*();
 
 /// Loads sandwall-import.so from beside this program; the same object at every call. Nothing else maps GDAL or
-/// muParser. Throws files::InputError that begins with `what`, for which it is needed, when it is missing.
+/// muParser. Throws base::InputError that begins with `what`, for which it is needed, when it is missing.
 [[nodiscard]] const Importer& loadImporter(const std::string& what);
 
 }  // namespace sand

@@ -6,10 +6,10 @@
 #include <iterator>
 #include <string>
 
-#include "files/byte_stream.hpp"
-#include "files/ending.hpp"
-#include "files/input_error.hpp"
-#include "files/whole_file.hpp"
+#include "base/byte_stream.hpp"
+#include "base/input_error.hpp"
+#include "base/text.hpp"
+#include "host/whole_file.hpp"
 
 namespace sand {
 namespace {
@@ -68,20 +68,20 @@ void writeObj(const Mesh& mesh, std::ostream& stream) {
 }  // namespace
 
 bool namesMesh(const std::filesystem::path& file) {
-    const std::string ending = files::endingOf(file);
+    const std::string ending = base::endingOf(file);
     return ending == ".ply" || ending == ".obj";
 }
 
 void checkMeshName(const std::filesystem::path& file) {
     if (!namesMesh(file)) {
-        throw files::InputError(file.string() + ": a mesh is written as .ply or .obj");
+        throw base::InputError(file.string() + ": a mesh is written as .ply or .obj");
     }
 }
 
 void writeMesh(const Mesh& mesh, const std::filesystem::path& file) {
     checkMeshName(file);
-    files::WholeFile whole(file);
-    if (files::endingOf(file) == ".ply") {
+    host::WholeFile whole(file);
+    if (base::endingOf(file) == ".ply") {
         writePly(mesh, whole.stream());
     } else {
         writeObj(mesh, whole.stream());

@@ -15,14 +15,14 @@ struct Mesh {
 };
 
 /// Writes a mesh as .ply (binary, little-endian, doubles) or .obj (text, the shortest decimals that are read back as
-/// the same numbers); what stood there is replaced when all is written. Throws files::InputError: another ending, a
+/// the same numbers); what stood there is replaced when all is written. Throws base::InputError: another ending, a
 /// file that cannot be written whole.
 void writeMesh(const Mesh& mesh, const std::filesystem::path& file);
 
 /// Whether the name asks for a mesh: .ply or .obj, in small letters or large ones.
 [[nodiscard]] bool namesMesh(const std::filesystem::path& file);
 
-/// Throws files::InputError unless it does: asked before long work.
+/// Throws base::InputError unless it does: asked before long work.
 void checkMeshName(const std::filesystem::path& file);
 
 }  // namespace sand

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <numeric>
@@ -14,9 +13,8 @@
 #include <tuple>
 #include <utility>
 
-#include "files/input_error.hpp"
-#include "files/lower_case.hpp"
-#include "files/trimmed.hpp"
+#include "base/input_error.hpp"
+#include "base/text.hpp"
 #include "sand/import/metric_system.hpp"
 
 namespace sand {
@@ -26,30 +24,25 @@ constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8, as spr
 constexpr double kFlat = 1e-9;  // width over length of a cloud that has no area: doubles tell little less
 
 std::vector<std::string_view> fieldsOf(std::string_view text) {
-    const bool semicolons = text.find(';') != std::string_view::npos;
-    const bool commas = text.find(',') != std::string_view::npos;
-    const std::string_view separator = semicolons ? ";" : commas ? "," : " \t";
+    for (const char separator : {';', ','}) {
+        if (text.find(separator) != std::string_view::npos) {
+            return base::split(text, separator);
+        }
+    }
     std::vector<std::string_view> fields;
-    for (;;) {
-        const std::size_t end = text.find_first_of(separator);
-        fields.push_back(files::trimmed(text.substr(0, end)));
+    for (;;) {  // blanks in a row are one separator
+        const std::size_t end = text.find_first_of(" \t");
+        fields.push_back(base::trimmed(text.substr(0, end)));
         if (end == std::string_view::npos) {
             return fields;
         }
-        text.remove_prefix(end + 1);
-        // Blanks in a row are one separator; commas are not.
-        text = semicolons || commas ? text : files::trimmed(text);
+        text = base::trimmed(text.substr(end + 1));
     }
 }
 
 std::optional<double> numberOf(std::string_view field) {
     field.remove_prefix(field.size() > 1 && field.front() == '+' ? 1 : 0);
-    double value = 0;
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (error != std::errc() || end != field.data() + field.size() || field.empty() || !std::isfinite(value)) {
-        return std::nullopt;
-    }
-    return value;
+    return base::numberOf(field);
 }
 
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
@@ -65,7 +58,7 @@ std::vector<std::string> wordsOf(std::string_view field) {
     std::vector<std::string> words;
     for (auto at = field.begin(); (at = std::find_if(at, field.end(), isLetter)) != field.end();) {
         const auto end = std::find_if_not(at, field.end(), isLetter);
-        words.push_back(files::lowerCase({at, end}));
+        words.push_back(base::lowerCase({at, end}));
         at = end;
     }
     return words;
@@ -98,7 +91,7 @@ public:
         std::ifstream stream(file, std::ios::binary);
         if (!stream || std::filesystem::is_directory(file, ignored) ||
             std::filesystem::is_character_file(file, ignored)) {  // devices may never end
-            throw files::InputError(file_ + ": cannot be read; check the path");
+            throw base::InputError(file_ + ": cannot be read; check the path");
         }
         bool first = true;
         std::string text;
@@ -107,13 +100,13 @@ public:
             if (line == 1 && content.starts_with(kByteOrderMark)) {
                 content.remove_prefix(kByteOrderMark.size());
             }
-            content = files::trimmed(content.substr(0, content.find('#')));
+            content = base::trimmed(content.substr(0, content.find('#')));
             if (!content.empty()) {
                 add(fieldsOf(content), line, std::exchange(first, false));
             }
         }
         if (stream.bad()) {
-            throw files::InputError(file_ + ": cannot be read to its end; check the disk it lies on");
+            throw base::InputError(file_ + ": cannot be read to its end; check the disk it lies on");
         }
     }
 
@@ -201,7 +194,7 @@ private:
                          degrees_->name, metricSystemAt(point.at(1 - north), point.at(north))));
     }
     [[noreturn]] void fail(long line, const std::string& message) const {
-        throw files::InputError(file_, line, message);
+        throw base::InputError(file_, line, message);
     }
 
     /// What a title says of its columns.
@@ -241,11 +234,11 @@ bool onOneLine(const Points& points) {
 Points readPoints(const std::filesystem::path& file) {
     Points points = Cloud(file).distinct();
     if (points.size() < 3) {
-        throw files::InputError(fmt::format("{}: holds {} points at different places, and terrain takes at least 3",
-                                            file.string(), points.size()));
+        throw base::InputError(fmt::format("{}: holds {} points at different places, and terrain takes at least 3",
+                                           file.string(), points.size()));
     }
     if (onOneLine(points)) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("{}: all {} points lie on one line, and terrain needs an area", file.string(), points.size()));
     }
     return points;

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "files/ending.hpp"
-#include "files/input_error.hpp"
-#include "files/whole_file.hpp"
+#include "base/input_error.hpp"
+#include "base/text.hpp"
+#include "host/whole_file.hpp"
 #include "sand/import/importer.hpp"
 
 namespace sand {
@@ -20,8 +20,8 @@ bool hasPrj(const fs::path& file) {
            fs::exists(fs::path(file).replace_extension(".PRJ"), none);
 }
 
-void write(const files::Bytes& bytes, const fs::path& file) {
-    files::WholeFile whole(file);
+void write(const base::Bytes& bytes, const fs::path& file) {
+    host::WholeFile whole(file);
     whole.stream().write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     whole.keep();
 }
@@ -29,22 +29,22 @@ void write(const files::Bytes& bytes, const fs::path& file) {
 }  // namespace
 
 bool namesGeoTiff(const fs::path& file) {
-    const std::string ending = files::endingOf(file);
+    const std::string ending = base::endingOf(file);
     return ending == ".tif" || ending == ".tiff";
 }
 
 void checkRasterName(const fs::path& file) {
-    const std::string ending = files::endingOf(file);
+    const std::string ending = base::endingOf(file);
     std::error_code none;
     const bool plain = !fs::exists(file, none) || fs::is_regular_file(file, none);
     if (plain && !namesGeoTiff(file) && ending != ".asc" && ending != ".txt" && !ending.empty()) {
-        throw files::InputError(file.string() +
-                                ": no known ending; name it .tif for a GeoTIFF, .asc for an ESRI ASCII grid");
+        throw base::InputError(file.string() +
+                               ": no known ending; name it .tif for a GeoTIFF, .asc for an ESRI ASCII grid");
     }
 }
 
 EsriGrid readRaster(const fs::path& file, bool withReference) {
-    const std::string ending = files::endingOf(file);
+    const std::string ending = base::endingOf(file);
     std::error_code none;
     const bool plain = fs::is_regular_file(file, none);
     if (plain && !ending.empty() && ending != ".asc" && ending != ".txt") {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
 namespace sand::relax {
 namespace {
@@ -107,9 +107,9 @@ void setTalus(const EsriGrid& surface, const Extremes& extremes, const Material&
                           (extremes.highest.height() - extremes.lowest.height()) / surface.cellSize);
     const bool level = material.talusDegrees == 0 && material.scheme != Scheme::n4;
     if (least < kLeastThreshold && !level) {
-        throw files::InputError(fmt::format("{}, and {} is the least{}{}", units, kLeastThreshold,
-                                            material.scheme == Scheme::n4 ? " for scheme n4" : ", but for 0 degrees",
-                                            span));
+        throw base::InputError(fmt::format("{}, and {} is the least{}{}", units, kLeastThreshold,
+                                           material.scheme == Scheme::n4 ? " for scheme n4" : ", but for 0 degrees",
+                                           span));
     }
     const double tooSteep = level ? 0 : steepening(threshold, aspect, material.scheme);
     if (tooSteep > steepening(kFineThreshold, 1, Scheme::isotropic)) {
@@ -163,16 +163,16 @@ void fill(const EsriGrid& surface, const EsriGrid* bedrock, GridSand& sand) {
 GridSand toSand(const EsriGrid& surface, const EsriGrid* bedrock, const Material& material) {
     const double aspect = surface.aspect();
     if (!(std::max(aspect, 1 / aspect) <= kMostOblong)) {
-        throw files::InputError(fmt::format("{}: cells of {} x {} are too oblong; sides must be within 1 : {}",
-                                            surface.file, surface.cellSize, *surface.cellDepth, kMostOblong));
+        throw base::InputError(fmt::format("{}: cells of {} x {} are too oblong; sides must be within 1 : {}",
+                                           surface.file, surface.cellSize, *surface.cellDepth, kMostOblong));
     }
     const Rect cells = cellsWithData(surface);
     if (cells.empty()) {
-        throw files::InputError(surface.file + ": every cell is a no-data cell; there is no sand in it");
+        throw base::InputError(surface.file + ": every cell is a no-data cell; there is no sand in it");
     }
     if (bedrock != nullptr) {
         if (!sameShape(surface, *bedrock)) {
-            throw files::InputError(
+            throw base::InputError(
                 fmt::format("{}, but {}: they must be the same", shapeOf(*bedrock), shapeOf(surface)));
         }
     }

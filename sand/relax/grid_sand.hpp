@@ -41,7 +41,7 @@ struct GridSand {
     [[nodiscard]] EsriGrid toGrid(const EsriGrid& before) const;
 };
 
-/// Throws files::InputError with file, line, value and range: no data at all, cells more oblong than 1 to 1000, heights
+/// Throws base::InputError with file, line, value and range: no data at all, cells more oblong than 1 to 1000, heights
 /// that do not fit, a talus of fewer than kLeastThreshold units, bedrock that does not match or lies above the surface.
 [[nodiscard]] GridSand toSand(const EsriGrid& surface, const EsriGrid* bedrock, const Material& material);
 

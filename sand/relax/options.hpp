@@ -18,7 +18,7 @@ struct Options {
     std::optional<int> vertices;     // likewise
 };
 
-/// Both read IN, write OUT and print the line; they throw files::InputError.
+/// Both read IN, write OUT and print the line; they throw base::InputError.
 void relaxGrid(const Options& options);
 void relaxTin(const Options& options);
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "sand/relax/tin_sand.hpp"
 
 namespace sand::relax {
@@ -19,9 +19,9 @@ constexpr std::int32_t kLeastSpacing = 4, kMostSpacing = 4096;
 tin::Place spacingOf(const EsriGrid& raster) {
     const double ratio = std::max(raster.aspect(), 1 / raster.aspect());
     if (!(ratio <= kMostOblongCell)) {
-        throw files::InputError(fmt::format("{}: cells of {} x {} are too oblong; sides must be within 1 : {}",
-                                            raster.file, raster.cellSize, raster.cellDepth.value_or(raster.cellSize),
-                                            kMostOblongCell));
+        throw base::InputError(fmt::format("{}: cells of {} x {} are too oblong; sides must be within 1 : {}",
+                                           raster.file, raster.cellSize, raster.cellDepth.value_or(raster.cellSize),
+                                           kMostOblongCell));
     }
     const bool wide = raster.aspect() < 1;
     const double longest = std::max(raster.columns * (wide ? ratio : 1.0), raster.rows * (wide ? 1.0 : ratio));
@@ -30,8 +30,8 @@ tin::Place spacingOf(const EsriGrid& raster) {
         shorter /= 2;
     }
     if (shorter * longest > kMostLatticeSide) {
-        throw files::InputError(fmt::format("{}: {} x {} cells are too many for a TIN; make them coarser: gdalwarp -tr",
-                                            raster.file, raster.columns, raster.rows));
+        throw base::InputError(fmt::format("{}: {} x {} cells are too many for a TIN; make them coarser: gdalwarp -tr",
+                                           raster.file, raster.columns, raster.rows));
     }
     const auto longer = static_cast<std::int32_t>(std::floor(shorter * ratio + 0.5));
     return wide ? tin::Place{longer, shorter} : tin::Place{shorter, longer};
@@ -41,8 +41,8 @@ tin::Place spacingOf(const EsriGrid& raster) {
 
 Thinned thin(const EsriGrid& raster, const tin::SimplifyGoal& goal) {
     if (std::min(raster.columns, raster.rows) < 2) {
-        throw files::InputError(fmt::format("{}: {} x {} cells with data have no area between their middles",
-                                            raster.file, raster.columns, raster.rows));
+        throw base::InputError(fmt::format("{}: {} x {} cells with data have no area between their middles",
+                                           raster.file, raster.columns, raster.rows));
     }
     const tin::Place spacing = spacingOf(raster);
     std::vector<double> heights;
@@ -69,7 +69,7 @@ Thinned thin(const EsriGrid& raster, const tin::SimplifyGoal& goal) {
     const auto holes = tin::holesOf(heights, cells);
     const tin::Border border = tin::borderOf(heights, cells, holes.get(), goal.maxError);
     if (border.places.size() + 4 > static_cast<std::size_t>(goal.maxVertices)) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("{}: the outline of its cells without data takes {} vertices, and {} are the "
                         "most; give more, or a larger --max-error",
                         raster.file, border.places.size() + 4, goal.maxVertices));

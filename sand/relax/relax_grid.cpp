@@ -7,14 +7,14 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "files/whole_file.hpp"
+#include "host/whole_file.hpp"
+#include "host/worker_pool.hpp"
 #include "sand/import/raster_file.hpp"
 #include "sand/relax/options.hpp"
 #include "sand/relax/relaxation.hpp"
 #include "sand/relax/steepness.hpp"
 #include "sand/relax/ticker.hpp"
 #include "sand/state_hash.hpp"
-#include "workers/worker_pool.hpp"
 
 namespace sand::relax {
 namespace {
@@ -59,8 +59,8 @@ struct Timed {
 };
 
 Timed relaxTimed(GridSand& sand, const Options& options) {
-    workers::WorkerPool pool(options.threads);
-    const Executor executor = pool.executor();
+    host::WorkerPool pool(options.threads);
+    const base::Executor executor = pool.executor();
     Progress progress(sand);
     const bool settle = options.scheme == "settle";
     const Manner manner{
@@ -128,7 +128,7 @@ void relaxGrid(const Options& options) {
     }
     GridSand sand =
         toSand(grid, bedrock ? &*bedrock : nullptr, {options.talus, options.band, schemeOf(options.scheme)});
-    { const files::WholeFile canBeWritten(options.out); }  // hours later would be too late to find out
+    { const host::WholeFile canBeWritten(options.out); }  // hours later would be too late to find out
     for (const std::string& warning : sand.warnings) {
         fmt::print(stderr, "warning: {}\n", warning);
     }

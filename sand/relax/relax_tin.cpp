@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "files/whole_file.hpp"
+#include "host/whole_file.hpp"
 #include "sand/import/raster_file.hpp"
 #include "sand/relax/options.hpp"
 #include "sand/relax/ticker.hpp"
@@ -89,7 +89,7 @@ void relaxTin(const Options& options) {
     }
     TinSand sand =
         thinned ? toTin(*thinned, options.in, material) : toTin(readPoints(options.in), options.in, material);
-    { const files::WholeFile canBeWritten(options.out); }  // hours later would be too late to find out
+    { const host::WholeFile canBeWritten(options.out); }  // hours later would be too late to find out
     for (const std::string& warning : sand.warnings) {
         fmt::print(stderr, "warning: {}\n", warning);
     }

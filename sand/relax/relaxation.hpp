@@ -15,7 +15,7 @@ namespace sand::relax {
 struct Manner {
     bool settle = false;                                                 // by sand::settle() instead of sweep by sweep
     std::int64_t mostSweeps = std::numeric_limits<std::int64_t>::max();  // not of settle()
-    const Executor* executor = nullptr;                                  // not for settle()
+    const base::Executor* executor = nullptr;                            // not for settle()
     std::function<void(Erosion&)> afterSweep{};                          // may be empty; not called by settle()
 };
 

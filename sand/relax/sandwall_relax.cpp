@@ -6,12 +6,12 @@
 #include <limits>
 #include <string>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "host/command_line.hpp"
 #include "host/version.hpp"
+#include "host/worker_pool.hpp"
 #include "sand/relax/options.hpp"
 #include "sand/relax/tin_sand.hpp"
-#include "workers/worker_pool.hpp"
 
 namespace {
 
@@ -20,7 +20,7 @@ using sand::relax::Options;
 template <class Number>
 void require(bool good, const char* option, const char* range, Number got) {
     if (!good) {
-        throw files::InputError(fmt::format("{} must be {}, got {}", option, range, got));
+        throw base::InputError(fmt::format("{} must be {}, got {}", option, range, got));
     }
 }
 
@@ -28,7 +28,7 @@ void require(bool good, const char* option, const char* range, Number got) {
 void check(const Options& options) {
     require(options.talus >= 0 && options.talus < 90, "--talus", "within [0, 90) degrees", options.talus);
     require(options.band >= 0 && options.band <= 1, "--band", "within [0, 1]", options.band);
-    require(options.threads >= 1 && options.threads <= workers::kMostThreads, "--threads", "within [1, 256]",
+    require(options.threads >= 1 && options.threads <= host::kMostThreads, "--threads", "within [1, 256]",
             options.threads);
     if (options.most) {
         require(*options.most >= 1 && *options.most <= std::numeric_limits<std::int32_t>::max(), "--sweeps",
@@ -62,7 +62,7 @@ void checkKind(const Options& options, bool toMesh) {
         require(!options.maxError && !options.vertices, "--max-error and --vertices",
                 "left out for points, all of which become vertices", options.in);
     } else if (!options.maxError && !options.vertices) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("{}: how finely should a TIN follow it? Give --max-error, --vertices or both", options.in));
     }
 }

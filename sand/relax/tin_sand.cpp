@@ -8,8 +8,8 @@
 #include <limits>
 #include <numbers>
 
-#include "files/ending.hpp"
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
+#include "base/text.hpp"
 
 namespace sand::relax {
 namespace {
@@ -58,11 +58,11 @@ Lattice latticeOf(const Extent& extent, const std::string& file, std::optional<d
     const double longer = std::max(extent.side(0), extent.side(1)), shorter = std::min(extent.side(0), extent.side(1));
     Lattice lattice{extent.least[0], extent.least[1], step.value_or(longer / kStepsAcross), 0, 0};
     if (!std::isnormal(lattice.step) || !std::isnormal(lattice.step * lattice.step)) {
-        throw files::InputError(fmt::format("{}: it is {} long, which is no length of terrain", file, longer));
+        throw base::InputError(fmt::format("{}: it is {} long, which is no length of terrain", file, longer));
     }
     if (!step && shorter < kLeastDeep * lattice.step) {
-        throw files::InputError(fmt::format("{}: all points lie in a strip {} long and {} wide; a TIN takes 1 : {}",
-                                            file, longer, shorter, kStepsAcross / kLeastDeep));
+        throw base::InputError(fmt::format("{}: all points lie in a strip {} long and {} wide; a TIN takes 1 : {}",
+                                           file, longer, shorter, kStepsAcross / kLeastDeep));
     }
     lattice.width = static_cast<std::int32_t>(std::floor(extent.side(0) / lattice.step + 0.5));
     lattice.depth = static_cast<std::int32_t>(std::floor(extent.side(1) / lattice.step + 0.5));
@@ -80,7 +80,7 @@ HeightScale scaleOf(const Extent& extent, const Lattice& lattice, const std::str
         scale.unit *= 2;
     }
     if (scale.bits < 0) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("{}: heights from {} to {} span more than a TIN of this extent can hold, "
                         "{:.3g}; are all of them heights of terrain?",
                         file, lowest, highest, most * lattice.step * kStepsPerCell));
@@ -96,7 +96,7 @@ void setThresholds(const std::string& file, const Material& material, TinSand& s
     constexpr double kLargest = 1073741824.0;  // no difference between heights is larger
     const double threshold = std::min(std::floor(exact + 0.5), kLargest);
     if (threshold < kLeastThreshold && material.talusDegrees != 0) {
-        throw files::InputError(fmt::format(
+        throw base::InputError(fmt::format(
             "{}: a talus of {} degrees is {} height units of {:.4g} on {:.4g}, and {} is the least, but for 0 degrees; "
             "heights span too much for this extent: are all of them heights of terrain?",
             file, material.talusDegrees, threshold, sand.scale.unit, sand.step * kStepsPerCell, kLeastThreshold));
@@ -160,7 +160,7 @@ Joined join(const Points& points, const Lattice& lattice, const Thinned* raster)
 TinSand sandOf(const Points& points, const std::string& file, const Material& material, std::optional<double> step,
                const Thinned* raster) {
     if (points.size() > static_cast<std::size_t>(kMostVertices)) {
-        throw files::InputError(
+        throw base::InputError(
             fmt::format("{}: {} points, and a TIN takes {}; thin them out", file, points.size(), kMostVertices));
     }
     const Extent extent = extentOf(points);
@@ -192,7 +192,7 @@ TinSand sandOf(const Points& points, const std::string& file, const Material& ma
 }  // namespace
 
 bool holdsPoints(const std::filesystem::path& file) {
-    const std::string ending = files::endingOf(file);
+    const std::string ending = base::endingOf(file);
     return ending == ".csv" || ending == ".xyz";
 }
 

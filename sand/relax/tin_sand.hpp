@@ -56,11 +56,11 @@ struct Thinned {
     std::vector<std::pair<tin::Vertex, tin::Vertex>> outline;  // of holes, edges between points
 };
 
-/// Throws files::InputError for a single row or column, for cells more oblong than 1 : 1000 or without data where they
+/// Throws base::InputError for a single row or column, for cells more oblong than 1 : 1000 or without data where they
 /// are not square, and for fewer vertices than the outline of those without data has.
 [[nodiscard]] Thinned thin(const EsriGrid& raster, const tin::SimplifyGoal& goal);
 
-/// Throws files::InputError: more than kMostVertices, a strip too thin for the lattice, heights that do not fit, a
+/// Throws base::InputError: more than kMostVertices, a strip too thin for the lattice, heights that do not fit, a
 /// talus of fewer than kLeastThreshold units. `file` is for messages; `step` of the lattice is 2^-19 of the longer side
 /// unless given.
 [[nodiscard]] TinSand toTin(const Points& points, const std::string& file, const Material& material);

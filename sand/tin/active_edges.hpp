@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "base/index_set.hpp"
 #include "sand/tin/layer.hpp"
 #include "sand/tin/moving_sand.hpp"
-#include "sand/tin/numbers.hpp"
 #include "sand/tin/weights.hpp"
 
 namespace sand::tin {

@@ -89,7 +89,7 @@ int refine(Mesh& mesh, const DetailRules& rules, const Box& box, const std::func
     return static_cast<int>(places.size());
 }
 
-void DetailRules::encode(files::ByteWriter& writer) const {
+void DetailRules::encode(base::ByteWriter& writer) const {
     writer.put(spacing);
     writer.put(maxError);
     writer.put(firstToGo);
@@ -98,7 +98,7 @@ void DetailRules::encode(files::ByteWriter& writer) const {
     writer.put(static_cast<std::uint8_t>(keepsConstraints ? 1 : 0));
 }
 
-DetailRules DetailRules::decode(files::ByteReader& reader) {
+DetailRules DetailRules::decode(base::ByteReader& reader) {
     DetailRules rules;
     rules.spacing = reader.get<std::int32_t>();
     rules.maxError = reader.get<double>();
@@ -111,7 +111,7 @@ DetailRules DetailRules::decode(files::ByteReader& reader) {
                        rules.maxError <= kMaxHeight && rules.firstToGo >= 0 && rules.removals >= 0 &&
                        rules.removals <= 65536 && rules.maxVertices >= 4 && keeps <= 1;
     if (!sound) {
-        throw files::FormatError("rules of a TIN's detail that no scene gives");
+        throw base::FormatError("rules of a TIN's detail that no scene gives");
     }
     return rules;
 }

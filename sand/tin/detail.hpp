@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 #include "sand/tin/layer.hpp"
 #include "sand/tin/window.hpp"
 
@@ -23,9 +23,9 @@ struct DetailRules {
     std::int32_t maxVertices = 1 << 22;  // refinement and outlines stop here
     bool keepsConstraints = false;       // of a tool that has left
 
-    void encode(files::ByteWriter& writer) const;
-    /// Throws files::FormatError for rules that no scene gives.
-    static DetailRules decode(files::ByteReader& reader);
+    void encode(base::ByteWriter& writer) const;
+    /// Throws base::FormatError for rules that no scene gives.
+    static DetailRules decode(base::ByteReader& reader);
     friend bool operator==(const DetailRules&, const DetailRules&) = default;
 };
 

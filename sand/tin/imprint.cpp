@@ -13,23 +13,23 @@ bool lives(const Triangles& mesh, const Imprint::Point& point) {
     return mesh.alive(point.vertex) && mesh.places[static_cast<std::size_t>(point.vertex)] == point.place;
 }
 
-void encodePoint(const ProbePoint& point, files::ByteWriter& writer) {
+void encodePoint(const ProbePoint& point, base::ByteWriter& writer) {
     writer.put(point.x);
     writer.put(point.y);
     writer.put(point.z);
 }
 
 /// Of what takes so many bytes each.
-std::uint64_t decodeCount(files::ByteReader& reader, std::size_t bytesEach) {
+std::uint64_t decodeCount(base::ByteReader& reader, std::size_t bytesEach) {
     const std::uint64_t count = reader.getVarint();
     if (count > reader.rest().size() / bytesEach) {
-        throw files::FormatError("an imprint of " + std::to_string(count) + " points or edges in " +
-                                 std::to_string(reader.rest().size()) + " bytes");
+        throw base::FormatError("an imprint of " + std::to_string(count) + " points or edges in " +
+                                std::to_string(reader.rest().size()) + " bytes");
     }
     return count;
 }
 
-Imprint::Stand decodeStand(files::ByteReader& reader) {
+Imprint::Stand decodeStand(base::ByteReader& reader) {
     Imprint::Stand stand;
     stand.at.x = reader.get<std::int32_t>();
     stand.at.y = reader.get<std::int32_t>();
@@ -43,7 +43,7 @@ Imprint::Stand decodeStand(files::ByteReader& reader) {
                       std::max({stand.at.x, stand.at.y, stand.at.z}) <= kMaxProbe;
     if (kind >= kToolKinds || !near || stand.shape.radius < 0 || stand.shape.radius > kLargestToolRadius ||
         stand.shape.halfWidth < 0 || stand.shape.halfWidth > stand.shape.radius) {
-        throw files::FormatError("an imprint of a tool that no scene gives");
+        throw base::FormatError("an imprint of a tool that no scene gives");
     }
     return stand;
 }
@@ -123,7 +123,7 @@ void Imprint::takeOutOf(Mesh& mesh) {
     *this = {};
 }
 
-void Imprint::encode(files::ByteWriter& writer) const {
+void Imprint::encode(base::ByteWriter& writer) const {
     writer.put(static_cast<std::uint8_t>(stand ? 1 : 0));
     if (!stand) {
         return;
@@ -147,7 +147,7 @@ void Imprint::encode(files::ByteWriter& writer) const {
     }
 }
 
-Imprint Imprint::decode(files::ByteReader& reader) {
+Imprint Imprint::decode(base::ByteReader& reader) {
     Imprint imprint;
     if (reader.get<std::uint8_t>() == 0) {
         return imprint;

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 #include "sand/step.hpp"
 #include "sand/tin/mesh.hpp"
 #include "sand/tin/outline.hpp"
@@ -36,9 +36,9 @@ struct Imprint {
     /// Takes out what it has put in. What another outline has bent to its edges stays.
     void takeOutOf(Mesh& mesh);
 
-    void encode(files::ByteWriter& writer) const;
-    /// Throws files::FormatError for what no tool has put into a mesh.
-    static Imprint decode(files::ByteReader& reader);
+    void encode(base::ByteWriter& writer) const;
+    /// Throws base::FormatError for what no tool has put into a mesh.
+    static Imprint decode(base::ByteReader& reader);
     friend bool operator==(const Imprint&, const Imprint&) = default;
 };
 

@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "base/index_set.hpp"
 #include "sand/tin/layer_copy.hpp"
-#include "sand/tin/numbers.hpp"
 
 namespace sand::tin {
 
@@ -44,8 +44,8 @@ private:
 
     LayerParts parts_;  // but for the constraints
     std::map<std::int32_t, std::vector<std::pair<Vertex, Vertex>>>
-        constraints_;              // by the slot that owns them; few have any
-    NumberList vertices_, slots_;  // touched
+        constraints_;                   // by the slot that owns them; few have any
+    base::IndexList vertices_, slots_;  // touched
     LayerState state_;
     bool any_ = false;
     mutable std::shared_ptr<const LayerCopy> copy_;  // once somebody has asked, or what was given

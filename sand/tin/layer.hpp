@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 #include "sand/tin/mesh.hpp"
 
 namespace sand::tin {
@@ -23,7 +23,7 @@ struct LayerParts {
     std::shared_ptr<const Holes> holes = nullptr;        // of the start, and not among the bytes
 
     /// Not compressed; equal layers give equal bytes.
-    void encode(files::ByteWriter& writer) const;
+    void encode(base::ByteWriter& writer) const;
 };
 
 /// The sand of a TIN: a volume in every vertex, an exact integer, from which its height follows.
@@ -81,10 +81,10 @@ public:
     [[nodiscard]] Mesh::Change takeChange();
 
     [[nodiscard]] LayerParts parts() const;
-    void encode(files::ByteWriter& writer) const { parts().encode(writer); }
-    /// Throws files::FormatError when the bytes are no layer, or none with these holes, which they do not tell. Reads
+    void encode(base::ByteWriter& writer) const { parts().encode(writer); }
+    /// Throws base::FormatError when the bytes are no layer, or none with these holes, which they do not tell. Reads
     /// no further than its end.
-    static Layer decode(files::ByteReader& reader, const std::shared_ptr<const Holes>& holes = nullptr);
+    static Layer decode(base::ByteReader& reader, const std::shared_ptr<const Holes>& holes = nullptr);
 
 private:
     void setVolume(Vertex vertex, std::int64_t volume);

@@ -9,7 +9,7 @@
 namespace sand::tin {
 namespace {
 
-using files::FormatError;
+using base::FormatError;
 
 std::size_t livingEnd(const std::vector<Place>& places) {
     std::size_t end = places.size();
@@ -27,7 +27,7 @@ std::int32_t getCoordinate(std::uint64_t value) {
 }
 
 /// Every one of them takes a byte at least.
-std::size_t getCount(files::ByteReader& reader, std::size_t bytesEach) {
+std::size_t getCount(base::ByteReader& reader, std::size_t bytesEach) {
     const std::uint64_t count = reader.getVarint();
     if (count > reader.rest().size() / bytesEach) {
         throw FormatError("a TIN cut short: " + std::to_string(count) + " entries in " +
@@ -36,7 +36,7 @@ std::size_t getCount(files::ByteReader& reader, std::size_t bytesEach) {
     return static_cast<std::size_t>(count);
 }
 
-std::vector<std::pair<Vertex, Vertex>> getConstraints(files::ByteReader& reader, std::size_t vertices) {
+std::vector<std::pair<Vertex, Vertex>> getConstraints(base::ByteReader& reader, std::size_t vertices) {
     std::vector<std::pair<Vertex, Vertex>> constraints;
     const std::size_t count = getCount(reader, 2);
     for (std::size_t i = 0; i < count; ++i) {
@@ -66,7 +66,7 @@ LayerParts Layer::parts() const {
     return parts;
 }
 
-void LayerParts::encode(files::ByteWriter& writer) const {
+void LayerParts::encode(base::ByteWriter& writer) const {
     writer.put(width);
     writer.put(depth);
     // Numbers beyond the last that lives say only what once was.
@@ -88,7 +88,7 @@ void LayerParts::encode(files::ByteWriter& writer) const {
     }
 }
 
-Layer Layer::decode(files::ByteReader& reader, const std::shared_ptr<const Holes>& holes) {
+Layer Layer::decode(base::ByteReader& reader, const std::shared_ptr<const Holes>& holes) {
     const auto width = reader.get<std::int32_t>();
     const auto depth = reader.get<std::int32_t>();
     std::vector<std::optional<Place>> places(getCount(reader, 1));

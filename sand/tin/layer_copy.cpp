@@ -13,25 +13,25 @@ constexpr std::uint64_t kMostPlain = std::uint64_t{1} << 30;  // [byte], of some
 
 }  // namespace
 
-void LayerState::encode(files::ByteWriter& writer) const {
+void LayerState::encode(base::ByteWriter& writer) const {
     writer.put(outflow);
     writer.put(nextToGo);
     imprint.encode(writer);
 }
 
-LayerState LayerState::decode(files::ByteReader& reader) {
+LayerState LayerState::decode(base::ByteReader& reader) {
     LayerState state;
     state.outflow = reader.get<std::int64_t>();
     state.nextToGo = reader.get<Vertex>();
     if (state.nextToGo < 0) {
-        throw files::FormatError("a TIN that was to be thinned out from nobody on");
+        throw base::FormatError("a TIN that was to be thinned out from nobody on");
     }
     state.imprint = Imprint::decode(reader);
     return state;
 }
 
 LayerCopy::LayerCopy(const LayerParts& layer, LayerState state) : holes_(layer.holes), state_(std::move(state)) {
-    files::ByteWriter writer;
+    base::ByteWriter writer;
     layer.encode(writer);
     plain_ = writer.take();
 }
@@ -39,31 +39,31 @@ LayerCopy::LayerCopy(const LayerParts& layer, LayerState state) : holes_(layer.h
 LayerCopy::LayerCopy(std::span<const std::uint8_t> packed, std::int32_t width, std::int32_t depth,
                      std::shared_ptr<const Holes> holes)
     : holes_(std::move(holes)) {
-    files::ByteReader reader(packed);
+    base::ByteReader reader(packed);
     state_ = LayerState::decode(reader);
     const auto size = reader.get<std::uint64_t>();
     if (size > kMostPlain) {
-        throw files::FormatError("a TIN of too many bytes");
+        throw base::FormatError("a TIN of too many bytes");
     }
     const auto rest = reader.rest();
     plain_.resize(size);
     if (ZSTD_decompress(plain_.data(), plain_.size(), rest.data(), rest.size()) != size) {
-        throw files::FormatError("a TIN that does not unpack to its size");
+        throw base::FormatError("a TIN that does not unpack to its size");
     }
     const Layer whole = layer();  // throws for bytes that are none
     if (whole.triangles().width != width || whole.triangles().depth != depth) {
-        throw files::FormatError("a TIN of another field");
+        throw base::FormatError("a TIN of another field");
     }
 }
 
-files::Bytes LayerCopy::encode() const {
-    files::ByteWriter writer;
+base::Bytes LayerCopy::encode() const {
+    base::ByteWriter writer;
     state_.encode(writer);
     writer.put(static_cast<std::uint64_t>(plain_.size()));
-    files::Bytes packed(ZSTD_compressBound(plain_.size()));
+    base::Bytes packed(ZSTD_compressBound(plain_.size()));
     const std::size_t used = ZSTD_compress(packed.data(), packed.size(), plain_.data(), plain_.size(), 1);
     if (ZSTD_isError(used) != 0) {
-        throw files::FormatError(std::string("zstd: ") + ZSTD_getErrorName(used));
+        throw base::FormatError(std::string("zstd: ") + ZSTD_getErrorName(used));
     }
     packed.resize(used);
     writer.putBytes(packed);
@@ -71,10 +71,10 @@ files::Bytes LayerCopy::encode() const {
 }
 
 Layer LayerCopy::layer() const {
-    files::ByteReader reader(plain_);
+    base::ByteReader reader(plain_);
     Layer layer = Layer::decode(reader, holes_);
     if (!reader.atEnd()) {
-        throw files::FormatError("a TIN with more behind it");
+        throw base::FormatError("a TIN with more behind it");
     }
     return layer;
 }

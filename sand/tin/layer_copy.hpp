@@ -17,9 +17,9 @@ struct LayerState {
     Vertex nextToGo = 0;       // where coarsening goes on
     std::int64_t outflow = 0;  // [volume unit] lost over an open rim
 
-    void encode(files::ByteWriter& writer) const;
-    /// Throws files::FormatError.
-    static LayerState decode(files::ByteReader& reader);
+    void encode(base::ByteWriter& writer) const;
+    /// Throws base::FormatError.
+    static LayerState decode(base::ByteReader& reader);
 };
 
 /// The sand of a TIN as bytes: what is saved, loaded and put back.
@@ -27,16 +27,16 @@ class LayerCopy final : public SurfaceCopy {
 public:
     LayerCopy(const LayerParts& layer, LayerState state);
     LayerCopy(const Layer& layer, LayerState state) : LayerCopy(layer.parts(), std::move(state)) {}
-    /// Throws files::FormatError for bytes that are no TIN of this size with these holes, or go on behind it.
+    /// Throws base::FormatError for bytes that are no TIN of this size with these holes, or go on behind it.
     LayerCopy(std::span<const std::uint8_t> packed, std::int32_t width, std::int32_t depth,
               std::shared_ptr<const Holes> holes = nullptr);
 
-    [[nodiscard]] files::Bytes encode() const override;
+    [[nodiscard]] base::Bytes encode() const override;
     [[nodiscard]] Layer layer() const;
     [[nodiscard]] const LayerState& state() const { return state_; }
 
 private:
-    files::Bytes plain_;  // the layer
+    base::Bytes plain_;  // the layer
     std::shared_ptr<const Holes> holes_;
     LayerState state_;
 };

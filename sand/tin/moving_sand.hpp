@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "sand/code_path.hpp"
+#include "base/code_path.hpp"
 #include "sand/tin/sweep_kernel.hpp"
 #include "sand/tin/weights.hpp"
 
@@ -22,7 +22,7 @@ public:
     static constexpr double kFree = 0x1p40;  // [unit], an underside where there is no obstacle: above all sand
 
     /// `wide` has integers from the start: for tests.
-    explicit MovingSand(bool v3 = machineHasV3(), bool wide = false) : v3_(v3), alwaysWide_(wide) {}
+    explicit MovingSand(bool v3 = base::machineHasV3(), bool wide = false) : v3_(v3), alwaysWide_(wide) {}
 
     std::int32_t addVertex(std::int64_t volume, std::int64_t star, double underside = kFree);
     /// Corners, ends and facets by their numbers here.

@@ -12,25 +12,25 @@
 namespace sand::tin {
 namespace {
 
-std::int32_t between(files::ByteReader& reader, std::int32_t lowest, std::int32_t highest) {
+std::int32_t between(base::ByteReader& reader, std::int32_t lowest, std::int32_t highest) {
     const auto number = reader.get<std::int32_t>();
     if (number < lowest || number > highest) {
-        throw files::FormatError("a TIN with a number out of range");
+        throw base::FormatError("a TIN with a number out of range");
     }
     return number;
 }
 
-std::size_t countOf(files::ByteReader& reader) {
+std::size_t countOf(base::ByteReader& reader) {
     const auto count = reader.get<std::uint64_t>();
     if (count > kMostPlaces) {
-        throw files::FormatError("a TIN with too many vertices");
+        throw base::FormatError("a TIN with too many vertices");
     }
     return count;
 }
 
 constexpr std::int32_t kKeeps = 1, kHasHoles = 2;  // bits behind the settings
 
-void encodeHoles(const Holes& holes, files::ByteWriter& writer) {
+void encodeHoles(const Holes& holes, base::ByteWriter& writer) {
     writer.put(static_cast<std::uint64_t>(holes.runs().size()));
     for (const Holes::Run& run : holes.runs()) {
         writer.put(run.row);
@@ -39,9 +39,9 @@ void encodeHoles(const Holes& holes, files::ByteWriter& writer) {
     }
 }
 
-std::shared_ptr<const Holes> decodeHoles(files::ByteReader& reader, const Start& start) {
+std::shared_ptr<const Holes> decodeHoles(base::ByteReader& reader, const Start& start) {
     if (start.width % kLatticePerCell != 0 || start.depth % kLatticePerCell != 0) {
-        throw files::FormatError("a TIN with holes in cells that are not whole");
+        throw base::FormatError("a TIN with holes in cells that are not whole");
     }
     const Cells cells = nominalCells(start.width, start.depth);
     std::vector<Holes::Run> runs;
@@ -55,19 +55,19 @@ std::shared_ptr<const Holes> decodeHoles(files::ByteReader& reader, const Start&
     try {
         return std::make_shared<const Holes>(cells, std::move(runs));
     } catch (const std::invalid_argument& wrong) {
-        throw files::FormatError(std::string("not a TIN: ") + wrong.what());
+        throw base::FormatError(std::string("not a TIN: ") + wrong.what());
     }
 }
 
 void requireCorners(const Start& start) {
     const std::vector<Place> corners{{0, 0}, {start.width, 0}, {start.width, start.depth}, {0, start.depth}};
     if (start.places.size() < 4 || !std::equal(corners.begin(), corners.end(), start.places.begin())) {
-        throw files::FormatError("a TIN without its field's corners");
+        throw base::FormatError("a TIN without its field's corners");
     }
     std::vector<Place> sorted = start.places;
     std::sort(sorted.begin(), sorted.end());
     if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
-        throw files::FormatError("a TIN with two vertices in one place");
+        throw base::FormatError("a TIN with two vertices in one place");
     }
 }
 
@@ -87,7 +87,7 @@ double mostHeight(int columns, int rows) {
     return kMostVolume / (6.0 * columns * rows * kLatticePerCell * kLatticePerCell);
 }
 
-void Start::encode(files::ByteWriter& writer) const {
+void Start::encode(base::ByteWriter& writer) const {
     for (const std::int32_t number :
          {width, depth, meanHeight, settings.spacing, settings.widest, settings.maxError, settings.mostVertices,
           (settings.keepConstraints ? kKeeps : 0) | (holes != nullptr ? kHasHoles : 0)}) {
@@ -109,7 +109,7 @@ void Start::encode(files::ByteWriter& writer) const {
     }
 }
 
-Start Start::decode(files::ByteReader& reader) {
+Start Start::decode(base::ByteReader& reader) {
     constexpr std::int32_t kLongest = kMaxSide * kLatticePerCell;
     Start start;
     start.width = between(reader, 1, kLongest);
@@ -132,7 +132,7 @@ Start Start::decode(files::ByteReader& reader) {
         const std::int32_t a = between(reader, 0, last);
         const std::int32_t b = between(reader, 0, last);
         if (a >= b) {
-            throw files::FormatError("a TIN with an edge of nobody");
+            throw base::FormatError("a TIN with an edge of nobody");
         }
         start.constraints.emplace_back(a, b);
     }
@@ -143,7 +143,7 @@ Start Start::decode(files::ByteReader& reader) {
 }
 
 std::uint64_t Start::digest() const {
-    files::ByteWriter writer;
+    base::ByteWriter writer;
     encode(writer);
     const std::uint64_t digest = XXH3_64bits(writer.bytes().data(), writer.bytes().size());
     return digest == 0 ? 1 : digest;

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 #include "sand/tin/holes.hpp"
 #include "sand/tin/triangles.hpp"
 
@@ -42,10 +42,10 @@ struct Start {
     std::shared_ptr<const Holes> holes;                  // nominal cells without data; null when all have some
     Settings settings;
 
-    void encode(files::ByteWriter& writer) const;
-    /// Throws files::FormatError for bytes that are none: places beside the field or twice, edges of nobody, holes out
+    void encode(base::ByteWriter& writer) const;
+    /// Throws base::FormatError for bytes that are none: places beside the field or twice, edges of nobody, holes out
     /// of order or on cells that are not whole.
-    static Start decode(files::ByteReader& reader);
+    static Start decode(base::ByteReader& reader);
     /// Equal digests mean equal sand from equal steps; never 0.
     [[nodiscard]] std::uint64_t digest() const;
 };

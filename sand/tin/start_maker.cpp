@@ -128,7 +128,7 @@ Layer layerOf(const Start& start) {
         mesh.constrain(a, b);
     }
     if (!mesh.hasOutline()) {  // as somebody sent it
-        throw files::FormatError("a TIN with holes that have no outline");
+        throw base::FormatError("a TIN with holes that have no outline");
     }
     Layer layer(std::move(mesh));
     for (std::size_t i = 0; i < start.heights.size(); ++i) {

@@ -83,7 +83,7 @@ void VertexHash::hashConstraints(const Layer& layer) {
 }
 
 std::uint64_t VertexHash::update(const LayerState& state) {
-    files::ByteWriter writer;
+    base::ByteWriter writer;
     state.encode(writer);
     hashes_.back() = constraints_ + XXH3_64bits(writer.bytes().data(), writer.bytes().size());
     return std::accumulate(hashes_.begin(), hashes_.end(), std::uint64_t{0});

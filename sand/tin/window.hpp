@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sand/tin/numbers.hpp"
+#include "base/index_set.hpp"
 #include "sand/tin/triangles.hpp"
 
 namespace sand::tin {
@@ -61,7 +61,7 @@ private:
     std::vector<Vertex> vertices_, stay_, come_;
     std::vector<std::int32_t> triangles_, found_;  // found_: as many as room is for
     std::int32_t last_ = kNobody;                  // where to begin: only for speed
-    NumberSet seen_;                               // slots
+    base::IndexSet seen_;                          // slots
 };
 
 /// The vertices around one that lies inside the field, counter-clockwise from the smallest number, and whether any of

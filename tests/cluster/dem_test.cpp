@@ -37,7 +37,7 @@ protected:
 TEST_F(Dem, AsATinOverOneAndFourRanksIsOneAndGoesHome) {
     const sand::Importer& importer = sand::loadImporter("a test");
     const std::string file = (folder_ / "hills.tif").string(), home = (folder_ / "home.tif").string();
-    const files::Bytes bytes = importer.geoTiff(hills(), file);
+    const base::Bytes bytes = importer.geoTiff(hills(), file);
     write("hills.tif", std::string(bytes.begin(), bytes.end()));
     const std::string scene =
         write("dem.toml",

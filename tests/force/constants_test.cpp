@@ -42,8 +42,8 @@ TEST_F(ForceTable, TravelsWithTheSceneAndIsNoPartOfItsRules) {
 
 TEST_F(ForceTable, AnOlderJournalsSceneHasTheFirstPapersLaw) {
     const sand::Scene scene = sand::loadScene(write("s.toml", kFlat + "[force]\nstiffness = 7\n"));
-    files::Bytes bytes = scene.encode();
-    files::ByteWriter rest;
+    base::Bytes bytes = scene.encode();
+    base::ByteWriter rest;
     scene.force.encodeRest(rest);
     bytes.resize(bytes.size() - rest.bytes().size());
     const sand::ForceConstants force = sand::Scene::decode(bytes).force;
@@ -73,12 +73,12 @@ TEST_F(ForceTable, RefusesInOneLineWhatIsNoConstant) {
 
 TEST_F(ForceTable, RefusesBytesThatNoSceneFileGives) {
     const sand::Scene scene = sand::loadScene(write("s.toml", kFlat));
-    files::Bytes bytes = scene.encode();
+    base::Bytes bytes = scene.encode();
     bytes[bytes.size() - 4] = 9;  // the law
-    EXPECT_THROW((void)sand::Scene::decode(bytes), files::FormatError);
+    EXPECT_THROW((void)sand::Scene::decode(bytes), base::FormatError);
     sand::Scene negative = scene;
     negative.force.maxForce = -1;
-    EXPECT_THROW((void)sand::Scene::decode(negative.encode()), files::FormatError);
+    EXPECT_THROW((void)sand::Scene::decode(negative.encode()), base::FormatError);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ SANDWALL_FUZZER(checkpoint) {
     }
     static const sand::Scene kScene = samples::flatScene(24, 16);
     const fuzz::Input input = fuzz::Input(data, size).subspan(1);
-    files::ByteWriter bytes;
+    base::ByteWriter bytes;
     bytes.putBytes(input);
     if ((data[0] & 1U) != 0) {
         bytes.put(XXH3_64bits(input.data(), input.size()));

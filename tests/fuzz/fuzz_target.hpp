@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "files/byte_stream.hpp"
-#include "files/input_error.hpp"
+#include "base/byte_stream.hpp"
+#include "base/input_error.hpp"
 
 namespace fuzz {
 
@@ -32,12 +32,12 @@ template <class Parse>
 void takeOrRefuse(const Parse& parse) {
     try {
         parse();
-    } catch (const files::InputError& refused) {
+    } catch (const base::InputError& refused) {
         // A complaint is one line, whatever the input holds.
         if (std::string_view(refused.what()).find('\n') != std::string_view::npos) {
             throw std::logic_error("a complaint of more than one line: " + std::string(refused.what()));
         }
-    } catch (const files::FormatError&) {
+    } catch (const base::FormatError&) {
     }
 }
 

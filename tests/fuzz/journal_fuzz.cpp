@@ -8,7 +8,7 @@
 namespace {
 
 /// The header of a session of 8 x 8 cells.
-files::Bytes header(std::uint64_t& chain) {
+base::Bytes header(std::uint64_t& chain) {
     master::JournalHeader header;
     header.session = 1;
     header.buildId = "build";
@@ -18,8 +18,8 @@ files::Bytes header(std::uint64_t& chain) {
 }
 
 /// Pieces of the input as records, the first byte of each its type.
-files::Bytes journalOf(fuzz::Input input) {
-    files::ByteWriter writer;
+base::Bytes journalOf(fuzz::Input input) {
+    base::ByteWriter writer;
     std::uint64_t chain = 0;
     writer.putBytes(header(chain));
     for (const fuzz::Input body : fuzz::piecesOf(input)) {
@@ -41,7 +41,7 @@ SANDWALL_FUZZER(journal) {
     }
     const fuzz::Input input = fuzz::Input(data, size).subspan(1);
     const bool whole = (data[0] & 1U) != 0;
-    const files::Bytes made = whole ? files::Bytes{} : journalOf(input);
+    const base::Bytes made = whole ? base::Bytes{} : journalOf(input);
     const fuzz::MemoryFile file(whole ? input : fuzz::Input(made));
     fuzz::takeOrRefuse([&] {
         master::Journal journal = master::readJournal(file.path());

@@ -20,7 +20,7 @@
 
 namespace {
 
-using files::Bytes;
+using base::Bytes;
 
 class Mutator {
 public:

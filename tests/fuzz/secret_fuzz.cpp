@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The file that says who may come in.
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "fuzz_target.hpp"
 #include "haptic_bridge/secret_file.hpp"
 

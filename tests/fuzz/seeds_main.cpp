@@ -21,7 +21,7 @@
 namespace {
 
 namespace fs = std::filesystem;
-using files::Bytes;
+using base::Bytes;
 
 class Folder {
 public:
@@ -103,14 +103,14 @@ void writeJournal(Folder folder, const fs::path& scratch) {
     folder.add(Bytes(std::istreambuf_iterator<char>(stream), {}), {1});
     fs::remove(scratch);
     // The same records without their checksums.
-    files::ByteWriter frame;
+    base::ByteWriter frame;
     frame.put(std::uint8_t{1});
     frame.putVarint(1);
     frame.put(std::uint64_t{17});
     frame.putVarint(2);
     sand::encode(step(1), frame);
     sand::encode(step(2), frame);
-    files::ByteWriter end;
+    base::ByteWriter end;
     end.put(std::uint8_t{2});
     end.put(std::uint64_t{2});
     end.put(std::uint64_t{19});
@@ -150,7 +150,7 @@ void writeTin(Folder folder) {
     const sand::HeldTool tool{scene.rules.toolShape(), {}};
     const auto add = [&] {
         folder.add(surface.copy()->encode(), {1});
-        files::ByteWriter plain;
+        base::ByteWriter plain;
         dynamic_cast<const sand::tin::LayerCopy&>(*surface.copy()).state().encode(plain);
         surface.layer().encode(plain);
         folder.add(plain.take(), {0});
@@ -161,7 +161,7 @@ void writeTin(Folder folder) {
     surface.leave(tool);
     surface.sweep(8, nullptr, {});
     add();
-    files::ByteWriter start;
+    base::ByteWriter start;
     scene.tin->encode(start);
     folder.add(start.take(), {2});
     sand::Ground walls(6, 6);  // two that touch at a corner

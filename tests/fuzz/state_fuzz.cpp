@@ -9,8 +9,8 @@
 
 namespace {
 
-files::Bytes compressed(fuzz::Input bytes) {
-    files::Bytes packed(ZSTD_compressBound(bytes.size()));
+base::Bytes compressed(fuzz::Input bytes) {
+    base::Bytes packed(ZSTD_compressBound(bytes.size()));
     packed.resize(ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), 1));
     return packed;
 }
@@ -23,7 +23,7 @@ SANDWALL_FUZZER(state) {
     }
     static const sand::Scene kScene = samples::flatScene(24, 16);
     const fuzz::Input raw = fuzz::Input(data, size).subspan(1);
-    const files::Bytes packed = (data[0] & 4U) != 0 ? compressed(raw) : files::Bytes(raw.begin(), raw.end());
+    const base::Bytes packed = (data[0] & 4U) != 0 ? compressed(raw) : base::Bytes(raw.begin(), raw.end());
     fuzz::takeOrRefuse([&] {
         switch (data[0] & 3U) {
             case 0: {

@@ -15,14 +15,14 @@ using sand::ProbePoint;
 using sand::tin::TinSurface;
 
 /// The bytes of a state, of which `plain` holds a LayerState and a layer one behind the other.
-files::Bytes packed(fuzz::Input plain) {
-    files::ByteReader reader(plain);
+base::Bytes packed(fuzz::Input plain) {
+    base::ByteReader reader(plain);
     const auto state = sand::tin::LayerState::decode(reader);
     const auto rest = reader.rest();
-    files::ByteWriter writer;
+    base::ByteWriter writer;
     state.encode(writer);
     writer.put(static_cast<std::uint64_t>(rest.size()));
-    files::Bytes layer(ZSTD_compressBound(rest.size()));
+    base::Bytes layer(ZSTD_compressBound(rest.size()));
     layer.resize(ZSTD_compress(layer.data(), layer.size(), rest.data(), rest.size(), 1));
     writer.putBytes(layer);
     return writer.take();
@@ -75,11 +75,11 @@ SANDWALL_FUZZER(tin) {
                 takeState(raw);
                 break;
             default: {
-                files::ByteReader reader(raw);
+                base::ByteReader reader(raw);
                 const auto start = sand::tin::Start::decode(reader);
-                files::ByteWriter writer;
+                base::ByteWriter writer;
                 start.encode(writer);
-                files::ByteReader again(writer.bytes());
+                base::ByteReader again(writer.bytes());
                 require(sand::tin::Start::decode(again).digest() == start.digest(), "a start that is another again");
                 if (start.places.size() < 1000) {
                     (void)sand::tin::layerOf(start).volume();

@@ -20,7 +20,7 @@ SANDWALL_FUZZER(wire) {
             rest = rest.subspan(count);
             while (const auto message = reader.next()) {
                 // What was understood can be said again, and is the same.
-                const files::Bytes again = haptic_bridge::encode(*message);
+                const base::Bytes again = haptic_bridge::encode(*message);
                 if (haptic_bridge::decode(fuzz::Input(again).subspan(4)) != *message) {
                     throw std::logic_error("a message that is another when it is said again");
                 }

@@ -9,7 +9,7 @@
 #include <future>
 #include <thread>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "tests/haptic_bridge/fake_server.hpp"
 #include "tests/haptic_bridge/server_process.hpp"
 
@@ -47,10 +47,10 @@ void grantWhenOffered(Client& client, std::uint32_t epoch, std::uint64_t number)
     client.grant(epoch, number, 0, {});
 }
 
-files::Bytes positions(int count) {
-    files::Bytes many;
+base::Bytes positions(int count) {
+    base::Bytes many;
     for (int i = 0; i < count; ++i) {
-        const files::Bytes one = encode(Position{i, 0, 0, 0, false});
+        const base::Bytes one = encode(Position{i, 0, 0, 0, false});
         many.insert(many.end(), one.begin(), one.end());
     }
     return many;
@@ -160,7 +160,7 @@ TEST(Client, TakesPositionsFromAServerWithoutSand) {
 TEST(Client, HoldsAFloodOfPositionsBack) {
     FakeServer server([](FakeServer::Guest& guest) {
         guest.send(PositionGreeting{kProtocolVersion, "hose"});
-        const files::Bytes many = positions(1000);
+        const base::Bytes many = positions(1000);
         for (int i = 0; i < 400; ++i) {
             guest.send(std::span<const std::uint8_t>(many));
         }
@@ -196,7 +196,7 @@ TEST(Client, StopsThoughAnotherTimerBecomesDueMeanwhile) {
     });
     Client client(server.address(), kOffer);
     ASSERT_TRUE(reaches(client, Link::offered)) << client.link().message;
-    client.grant(1, 10, 0, files::Bytes(std::size_t{256} << 20U), {});
+    client.grant(1, 10, 0, base::Bytes(std::size_t{256} << 20U), {});
     ASSERT_TRUE(eventually([&] { return needed.load(); }));
     std::this_thread::sleep_for(10ms);
     // The guest reads nothing more before this is over: a stop that waits for it would not return.
@@ -347,7 +347,7 @@ TEST(Client, ReadsAddressesAndNamesWhatIsWrong) {
     EXPECT_EQ(Address::parse("[::1]:80", "--haptic").host, "::1");
     EXPECT_EQ(Address::parse("[::1]:80", "--haptic").text(), "[::1]:80");
     for (const char* wrong : {"", ":1", "a:70000", "a:", "a:1x", "[::1"}) {
-        EXPECT_THROW((void)Address::parse(wrong, "--haptic"), files::InputError) << wrong;
+        EXPECT_THROW((void)Address::parse(wrong, "--haptic"), base::InputError) << wrong;
     }
 }
 

@@ -18,21 +18,21 @@ namespace asio = boost::asio;
 /// What a test wants TLS to be.
 struct FalseTls : TlsSession {
     bool agreed = false, broken = false, swallows = false;
-    void receive(ByteSpan bytes, files::Bytes& plain, files::Bytes&) override {
+    void receive(ByteSpan bytes, base::Bytes& plain, base::Bytes&) override {
         // 'e' ends the handshake, 'b' begins a message of it that never ends; what follows is data.
         agreed = bytes[0] == 22 || bytes[0] == 'e';
         broken = bytes[0] == 'b';
         plain.assign(bytes.begin() + 1, swallows ? bytes.begin() + 1 : bytes.end());
     }
-    void begin(files::Bytes&) override {}
-    void seal(ByteSpan plain, files::Bytes& sealed) override {
+    void begin(base::Bytes&) override {}
+    void seal(ByteSpan plain, base::Bytes& sealed) override {
         if (broken) {
             throw std::runtime_error("cannot be sealed");
         }
         sealed.assign(plain.begin(), plain.end());
     }
     [[nodiscard]] bool established() const override { return agreed; }
-    [[nodiscard]] files::Bytes binding() const override { return {1, 2, 3}; }
+    [[nodiscard]] base::Bytes binding() const override { return {1, 2, 3}; }
 };
 
 class ConnectionTest : public testing::Test {
@@ -53,7 +53,7 @@ protected:
                             },
                             true, [this] { ++ready_; }});
     }
-    void say(const files::Bytes& bytes) { asio::write(other_, asio::buffer(bytes)); }
+    void say(const base::Bytes& bytes) { asio::write(other_, asio::buffer(bytes)); }
     template <class Done>
     bool runUntil(const Done& done) {
         return eventually([&] {
@@ -77,7 +77,7 @@ TEST_F(ConnectionTest, ASealThatFailsClosesAndIsReadyOnce) {
     start([&](Message&&) { ++messages; });
     say({22});
     ASSERT_TRUE(runUntil([&] { return ready_ == 1; }));
-    EXPECT_EQ(connection_->binding(), (files::Bytes{1, 2, 3}));
+    EXPECT_EQ(connection_->binding(), (base::Bytes{1, 2, 3}));
     say({'b'});
     ASSERT_TRUE(runUntil([&] { return connection_->bytesIn() == 2; }));
     say({'e'});
@@ -112,9 +112,9 @@ TEST_F(ConnectionTest, RefusesWhoDoesNotReadOnce) {
 TEST_F(ConnectionTest, CutsOffWhoSendsMoreThanItMay) {
     serve()->setMaxIn(5000);
     start();
-    files::Bytes pings;
+    base::Bytes pings;
     for (int i = 0; i < 200; ++i) {
-        const files::Bytes ping = encode(Ping{7});
+        const base::Bytes ping = encode(Ping{7});
         pings.insert(pings.end(), ping.begin(), ping.end());
     }
     say(pings);
@@ -131,7 +131,7 @@ TEST_F(ConnectionTest, ReadsMoreSlowlyFromWhoSendsRecordsAndNoMessages) {
     tls->swallows = true;
     serve(std::move(tls))->setRate(50);
     start();
-    files::Bytes records(64 * 1024, 3);
+    base::Bytes records(64 * 1024, 3);
     records[0] = 22;
     say(records);
     EXPECT_TRUE(runUntil([&] { return connection_->throttled() > 0; }));
@@ -142,10 +142,10 @@ TEST_F(ConnectionTest, ReadsMoreSlowlyFromWhoSendsRecordsAndNoMessages) {
 class TlsEnds : public testing::Test {
 protected:
     void SetUp() override {
-        files::Bytes there, back, plain;
+        base::Bytes there, back, plain;
         guest_->begin(there);
         while (!there.empty() || !back.empty()) {
-            const files::Bytes forth = std::exchange(there, {}), answers = std::exchange(back, {});
+            const base::Bytes forth = std::exchange(there, {}), answers = std::exchange(back, {});
             host_->receive(forth, plain, back);
             guest_->receive(answers, plain, there);
         }
@@ -157,7 +157,7 @@ protected:
 };
 
 TEST_F(TlsEnds, CarryMuchInRecordsOfSixteenKibibytes) {
-    files::Bytes much(1'000'000), sealed, plain, reply;
+    base::Bytes much(1'000'000), sealed, plain, reply;
     for (std::size_t i = 0; i < much.size(); ++i) {
         much[i] = static_cast<std::uint8_t>(i * 7 + i / 1000);
     }

@@ -5,7 +5,7 @@
 #include <random>
 #include <sstream>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "haptic_bridge/devices/strokes.hpp"
 #include "haptic_bridge/devices/trace.hpp"
 #include "haptic_bridge/hand_mapping.hpp"
@@ -32,7 +32,7 @@ template <class Act>
 std::string complaint(const Act& act) {
     try {
         act();
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         return error.what();
     }
     return "(no error)";

@@ -46,7 +46,7 @@ TEST_F(Greeting, EveryByteOfWhatWasSaidIsUnderTheProof) {
         hello.master.sceneName += which == 1 ? "s" : "";
         hello.tls = which == 2;
         hello.role = which == 3 ? Role::watch : Role::move;
-        auto challenge = server.challenge(hello, identity_, which == 4 ? files::Bytes{1, 3} : files::Bytes{1, 2});
+        auto challenge = server.challenge(hello, identity_, which == 4 ? base::Bytes{1, 3} : base::Bytes{1, 2});
         challenge->nonce[0] ^= which == 5 ? 1 : 0;
         MasterHandshake answering = master;
         EXPECT_FALSE(server.accepts(*answering.answer(*challenge))) << which;
@@ -70,10 +70,10 @@ TEST_F(Greeting, AServerThatMayOnlyWatchNumbersNoSteps) {
 // Somebody in between ends TLS on both sides with a certificate of his own, and hands on what is said inside.
 TEST_F(Greeting, TlsIsBoundToTheProofSoThatNobodyStandsBetween) {
     const auto shake = [](TlsSession& guest, TlsSession& host) {
-        files::Bytes there, back, plain;
+        base::Bytes there, back, plain;
         guest.begin(there);
         while (!there.empty() || !back.empty()) {
-            const files::Bytes forth = std::exchange(there, {}), answers = std::exchange(back, {});
+            const base::Bytes forth = std::exchange(there, {}), answers = std::exchange(back, {});
             host.receive(forth, plain, back);
             guest.receive(answers, plain, there);
         }

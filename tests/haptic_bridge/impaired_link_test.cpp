@@ -7,7 +7,7 @@
 #include <boost/asio/write.hpp>
 #include <thread>
 
-#include "haptic_bridge/monotonic.hpp"
+#include "host/clock.hpp"
 #include "tests/haptic_bridge/server_process.hpp"
 
 namespace {
@@ -133,12 +133,12 @@ TEST(ImpairedLink, NothingComesBeforeItsDelay) {
     Crossing crossing({.delayMs = 30});
     std::array<std::uint8_t, 50> message{};
     for (int i = 0; i < 3; ++i) {
-        const std::int64_t sent = haptic_bridge::monotonicNs();
+        const std::int64_t sent = host::monotonicNs();
         boost::asio::write(crossing.near, boost::asio::buffer(message));
         boost::asio::read(crossing.far, boost::asio::buffer(message));
         boost::asio::write(crossing.far, boost::asio::buffer(message));
         boost::asio::read(crossing.near, boost::asio::buffer(message));
-        EXPECT_GE(haptic_bridge::monotonicNs() - sent, 60 * kMs);
+        EXPECT_GE(host::monotonicNs() - sent, 60 * kMs);
     }
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <mutex>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "tests/haptic_bridge/link_security_fixture.hpp"
 #include "tests/haptic_bridge/raw_peer.hpp"
 #include "tests/impaired_link/impaired_link.hpp"
@@ -17,17 +17,17 @@ using impaired_link::ImpairedLink;
 /// What passes between two ends.
 struct Capture {
     std::mutex mutex;
-    files::Bytes there, back;
+    base::Bytes there, back;
     ImpairedLink::Tap tap() {
         return [this](std::span<const std::uint8_t> bytes, bool fromGuest) {
             const std::lock_guard lock(mutex);
-            files::Bytes& all = fromGuest ? there : back;
+            base::Bytes& all = fromGuest ? there : back;
             all.insert(all.end(), bytes.begin(), bytes.end());
         };
     }
     bool holds(std::span<const std::uint8_t> bytes) {
         const std::lock_guard lock(mutex);
-        const auto in = [&](const files::Bytes& all) {
+        const auto in = [&](const base::Bytes& all) {
             return std::search(all.begin(), all.end(), bytes.begin(), bytes.end()) != all.end();
         };
         return in(there) || in(back);
@@ -39,14 +39,14 @@ TEST_F(LinkSecurityTest, ListensBeyondThisMachineOnlyWithASecret) {
     *(std::find(wide.begin(), wide.end(), "--listen") + 1) = "0.0.0.0:0";
     {
         ServerProcess server(folder_, wide);
-        EXPECT_EQ(server.wait(), files::kExitBadInput);
+        EXPECT_EQ(server.wait(), base::kExitBadInput);
         EXPECT_NE(server.errors().find("--secret-file"), std::string::npos) << server.errors();
     }
     wide.insert(wide.end(), {"--secret-file", both_});
     ServerProcess server(folder_, wide);
     EXPECT_TRUE(links(server.address(), client(both_)));
     const LinkSecurity none;
-    EXPECT_THROW(requireSecret({"192.0.2.1", 7750}, none, "--haptic"), files::InputError);
+    EXPECT_THROW(requireSecret({"192.0.2.1", 7750}, none, "--haptic"), base::InputError);
     EXPECT_NO_THROW(requireSecret({"127.8.0.1", 7750}, none, "--haptic"));
     EXPECT_NO_THROW(requireSecret({"192.0.2.1", 7750}, client(both_), "--haptic"));
     EXPECT_FALSE(isLoopback(boost::asio::ip::make_address("::ffff:10.0.0.1")));
@@ -89,7 +89,7 @@ TEST_F(LinkSecurityTest, ASecretOnOneSideAloneIsRefusedEitherWay) {
     ServerProcess server(folder_, arguments({}));
     EXPECT_NE(refusalOf(server.address(), client(both_)).find("has no secret to prove"), std::string::npos);
     const std::string watchers = secretFile("watchers", "watch " + quoted(kWatch) + "\n");
-    EXPECT_THROW((void)client(watchers), files::InputError) << "a master has to move";
+    EXPECT_THROW((void)client(watchers), base::InputError) << "a master has to move";
     ServerProcess watched(folder_, arguments({"--secret-file", watchers}));
     EXPECT_NE(refusalOf(watched.address(), client(both_)).find("no secret of role move"), std::string::npos);
 }
@@ -124,7 +124,7 @@ TEST_F(LinkSecurityTest, NeitherSideFallsBackFromTls) {
     EXPECT_NE(refusalOf(plain.address(), client(both_, true)).find("does not speak TLS"), std::string::npos);
     EXPECT_TRUE(eventually([&] { return plain.errors().find("it speaks TLS") != std::string::npos; }))
         << plain.errors();
-    EXPECT_THROW((void)client("", true), files::InputError) << "TLS without a secret proves nothing";
+    EXPECT_THROW((void)client("", true), base::InputError) << "TLS without a secret proves nothing";
 }
 
 TEST_F(LinkSecurityTest, UnderTlsACaptureShowsNoProbePosition) {
@@ -153,7 +153,7 @@ TEST_F(LinkSecurityTest, UnderTlsACaptureShowsNoProbePosition) {
         }
         int positions = 0, found = 0;
         for (const sand::Step& step : steps) {
-            files::ByteWriter writer;
+            base::ByteWriter writer;
             sand::encode(step, writer);
             if (!step.path.empty()) {
                 ++positions;

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "tests/haptic_bridge/fake_arm.hpp"
 #include "tests/support/sand_samples.hpp"
 
@@ -214,8 +214,8 @@ TEST_F(Mapped, ReadingsThatRunBackwardsAreLeftOut) {
 }
 
 TEST_F(Mapped, RefusesAHeightThatFollowsTheSurface) {
-    EXPECT_THROW(map({"datum=surface"}), files::InputError);
-    EXPECT_THROW(map({"drift=2"}), files::InputError);
+    EXPECT_THROW(map({"datum=surface"}), base::InputError);
+    EXPECT_THROW(map({"drift=2"}), base::InputError);
 }
 
 TEST(Troubles, AreToldOnceNotAThousandTimesASecond) {

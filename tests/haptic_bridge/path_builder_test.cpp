@@ -6,7 +6,7 @@
 #include <cmath>
 #include <thread>
 
-#include "haptic_bridge/latest.hpp"
+#include "base/triple_buffer.hpp"
 #include "haptic_bridge/live_histogram.hpp"
 
 namespace {
@@ -155,7 +155,7 @@ TEST(Latest, HandsOverWholeValuesAndTheNewest) {
     struct Pair {
         std::uint64_t a = 0, b = 0;
     };
-    haptic_bridge::Latest<Pair> latest;
+    base::TripleBuffer<Pair> latest;
     constexpr std::uint64_t kLast = 200'000;
     std::thread writer([&] {
         for (std::uint64_t i = 1; i <= kLast; ++i) {

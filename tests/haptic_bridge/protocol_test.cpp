@@ -55,7 +55,7 @@ std::vector<Message> oneOfEach() {
             CatchUp{true, {someStep(), someStep()}}};
 }
 
-std::span<const std::uint8_t> withoutLength(const files::Bytes& framed) {
+std::span<const std::uint8_t> withoutLength(const base::Bytes& framed) {
     return std::span(framed).subspan(sizeof(std::uint32_t));
 }
 
@@ -64,17 +64,16 @@ TEST(Protocol, EveryMessageComesBackAsItWent) {
     ASSERT_EQ(messages.size(), std::variant_size_v<Message>);
     for (std::size_t i = 0; i < messages.size(); ++i) {
         EXPECT_EQ(messages[i].index(), i);
-        const files::Bytes framed = encode(messages[i]);
+        const base::Bytes framed = encode(messages[i]);
         EXPECT_EQ(framed[4], i + 1) << "the type byte";
         EXPECT_EQ(decode(withoutLength(framed)), messages[i]) << "message " << i;
     }
 }
 
 TEST(Protocol, BytesOnTheWireAreThoseOfTheDocument) {
-    EXPECT_EQ(encode(Shown{0x0102, 3}),
-              (files::Bytes{17, 0, 0, 0, 10, 2, 1, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0, 0, 0, 0, 0}));
-    files::Bytes hello{60, 0, 0, 0, 1, 'S', 'W', 'H', 'B', 6, 0, 0, 0, 1,   0, 0,
-                       0,  2, 0, 0, 0, 0,   0,   0,   0,   1, 0, 0, 0, 'a', 2, 3};
+    EXPECT_EQ(encode(Shown{0x0102, 3}), (base::Bytes{17, 0, 0, 0, 10, 2, 1, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0, 0, 0, 0, 0}));
+    base::Bytes hello{60, 0, 0, 0, 1, 'S', 'W', 'H', 'B', 6, 0, 0, 0, 1,   0, 0,
+                      0,  2, 0, 0, 0, 0,   0,   0,   0,   1, 0, 0, 0, 'a', 2, 3};
     for (std::uint8_t i = 0; i < 32; ++i) {
         hello.push_back(i);
     }
@@ -85,47 +84,47 @@ TEST(Protocol, BytesOnTheWireAreThoseOfTheDocument) {
 
 TEST(Protocol, RefusesEveryTruncationAndEveryTrailingByte) {
     for (const Message& message : oneOfEach()) {
-        const files::Bytes framed = encode(message);
+        const base::Bytes framed = encode(message);
         const auto whole = withoutLength(framed);
         // Any length is right for a state or the padding of a timing test.
         const bool open = std::holds_alternative<State>(message) || std::holds_alternative<TimingTest>(message) ||
                           std::holds_alternative<TickPiece>(message);
         for (std::size_t length = 0; length < (open ? 1 : whole.size()); ++length) {
-            EXPECT_THROW((void)decode(whole.first(length)), files::FormatError) << message.index() << " at " << length;
+            EXPECT_THROW((void)decode(whole.first(length)), base::FormatError) << message.index() << " at " << length;
         }
         if (!open) {
-            files::Bytes longer(whole.begin(), whole.end());
+            base::Bytes longer(whole.begin(), whole.end());
             longer.push_back(0);
-            EXPECT_THROW((void)decode(longer), files::FormatError) << message.index();
+            EXPECT_THROW((void)decode(longer), base::FormatError) << message.index();
         }
     }
 }
 
 TEST(Protocol, RefusesAnEchoOfNoLeg) {
-    files::Bytes framed = encode(TimingEcho{7, Leg::shown});
+    base::Bytes framed = encode(TimingEcho{7, Leg::shown});
     for (const int leg : {0, 3, 255}) {
         framed.back() = static_cast<std::uint8_t>(leg);
-        EXPECT_THROW((void)decode(withoutLength(framed)), files::FormatError) << leg;
+        EXPECT_THROW((void)decode(withoutLength(framed)), base::FormatError) << leg;
     }
 }
 
 TEST(Protocol, AnEditTakesItsDetailsAlong) {
     for (const sand::Edit& edit : {sand::Edit::tuned({7, 11, 13, 17}), sand::Edit::loaded({3, 1, 4})}) {
-        const files::Bytes framed = encode(EditRequest{edit});
+        const base::Bytes framed = encode(EditRequest{edit});
         EXPECT_EQ(decode(withoutLength(framed)), Message(EditRequest{edit}));
         for (std::size_t length = 0; length < framed.size() - 4; ++length) {
-            EXPECT_THROW((void)decode(withoutLength(framed).first(length)), files::FormatError) << length;
+            EXPECT_THROW((void)decode(withoutLength(framed).first(length)), base::FormatError) << length;
         }
     }
 }
 
 // Nobody who is not linked, or was not asked, makes us hold more than an ordinary message.
 TEST(Protocol, SandToBeLoadedPassesWhereItIsExpectedAndNothingElseAsLong) {
-    const files::Bytes sand(100'000, 7);
+    const base::Bytes sand(100'000, 7);
     sand::Step step = someStep();
     step.edit = sand::Edit::loaded(sand);
     for (const Message& message : {Message(EditRequest{step.edit}), Message(StepMessage{-5, 17, step})}) {
-        const files::Bytes framed = encode(message);
+        const base::Bytes framed = encode(message);
         MessageReader expecting;
         expecting.expectLoads(true);
         expecting.feed(framed);
@@ -134,13 +133,13 @@ TEST(Protocol, SandToBeLoadedPassesWhereItIsExpectedAndNothingElseAsLong) {
             MessageReader other;
             other.expectState(state);
             other.feed(framed);
-            EXPECT_THROW((void)other.next(), files::FormatError);
+            EXPECT_THROW((void)other.next(), base::FormatError);
         }
     }
     MessageReader expecting;
     expecting.expectLoads(true);
     expecting.feed(encode(Bye{std::string(100'000, 'x')}));
-    EXPECT_THROW((void)expecting.next(), files::FormatError);
+    EXPECT_THROW((void)expecting.next(), base::FormatError);
 }
 
 TEST(Protocol, SurvivesRandomMutations) {
@@ -150,7 +149,7 @@ TEST(Protocol, SurvivesRandomMutations) {
     const auto messages = oneOfEach();
     int refused = 0;
     for (int round = 0; round < 20'000; ++round) {
-        files::Bytes framed = encode(messages[random() % messages.size()]);
+        base::Bytes framed = encode(messages[random() % messages.size()]);
         for (unsigned flips = 1 + random() % 4; flips > 0; --flips) {
             framed[random() % framed.size()] = static_cast<std::uint8_t>(random());
         }
@@ -162,7 +161,7 @@ TEST(Protocol, SurvivesRandomMutations) {
             if (const auto message = reader.next()) {
                 (void)encode(*message);
             }
-        } catch (const files::FormatError&) {
+        } catch (const base::FormatError&) {
             ++refused;
         }
     }
@@ -170,9 +169,9 @@ TEST(Protocol, SurvivesRandomMutations) {
 }
 
 TEST(Protocol, ReadsAStreamCutAnywhere) {
-    files::Bytes stream;
+    base::Bytes stream;
     for (const Message& message : oneOfEach()) {
-        const files::Bytes framed = encode(message);
+        const base::Bytes framed = encode(message);
         stream.insert(stream.end(), framed.begin(), framed.end());
     }
     for (const std::size_t piece : {1UL, 2UL, 3UL, 7UL, 64UL, stream.size()}) {
@@ -192,7 +191,7 @@ TEST(Protocol, ReadsAStreamCutAnywhere) {
 
 TEST(Protocol, BoundsTheLengthBeforeTheBytesCome) {
     const auto lengthOnly = [](std::uint32_t length, std::uint8_t type, bool stateExpected) {
-        files::ByteWriter writer;
+        base::ByteWriter writer;
         writer.put(length);
         writer.put(type);
         MessageReader reader;
@@ -201,26 +200,26 @@ TEST(Protocol, BoundsTheLengthBeforeTheBytesCome) {
         return reader.next();
     };
     constexpr std::uint8_t kStateType = 7, kByeType = 15;
-    EXPECT_THROW((void)lengthOnly(0, kByeType, false), files::FormatError);
-    EXPECT_THROW((void)lengthOnly(kMaxMessage + 1, kStateType, false), files::FormatError);
-    EXPECT_THROW((void)lengthOnly(kMaxMessage + 1, kByeType, true), files::FormatError);
-    EXPECT_THROW((void)lengthOnly(kMaxState + 1, kStateType, true), files::FormatError);
+    EXPECT_THROW((void)lengthOnly(0, kByeType, false), base::FormatError);
+    EXPECT_THROW((void)lengthOnly(kMaxMessage + 1, kStateType, false), base::FormatError);
+    EXPECT_THROW((void)lengthOnly(kMaxMessage + 1, kByeType, true), base::FormatError);
+    EXPECT_THROW((void)lengthOnly(kMaxState + 1, kStateType, true), base::FormatError);
     EXPECT_FALSE(lengthOnly(kMaxState, kStateType, true));
     EXPECT_FALSE(lengthOnly(kMaxMessage, kByeType, false));
 }
 
 TEST(Protocol, TakesAStateOnceAndOnlyWhenExpected) {
     MessageReader reader;
-    const files::Bytes large = encode(State{files::Bytes(3 * kMaxMessage, 9)});
+    const base::Bytes large = encode(State{base::Bytes(3 * kMaxMessage, 9)});
     reader.expectState(true);
     reader.feed(large);
     EXPECT_TRUE(reader.next());
     reader.feed(encode(State{{1}}));
-    EXPECT_THROW((void)reader.next(), files::FormatError);
+    EXPECT_THROW((void)reader.next(), base::FormatError);
 }
 
 TEST(Protocol, ReadsOnlyTheVersionOfAnotherProtocol) {
-    files::ByteWriter payload;
+    base::ByteWriter payload;
     payload.put(std::uint8_t{1});
     payload.put(kMagic);
     payload.put(kProtocolVersion + 1);
@@ -248,9 +247,9 @@ TEST(Protocol, RefusesWithTheReason) {
 }
 
 TEST(Protocol, PrintsNoControlCharactersOfTheOtherSide) {
-    const files::Bytes framed = encode(Bye{"bad\nline\x1b[31m"});
+    const base::Bytes framed = encode(Bye{"bad\nline\x1b[31m"});
     EXPECT_EQ(std::get<Bye>(decode(withoutLength(framed))).reason, "bad?line?[31m");
-    const files::Bytes longer =
+    const base::Bytes longer =
         encode(Bye{"\xc2\x9b"
                    "31m, caf\xc3\xa9, \xc2\xb5m\xc2"});
     EXPECT_EQ(std::get<Bye>(decode(withoutLength(longer))).reason, "??31m, caf\xc3\xa9, \xc2\xb5m\xc2");
@@ -261,9 +260,9 @@ TEST(Protocol, RefusesACatchUpOfTooManyStepsOrWithSand) {
     EXPECT_NO_THROW((void)decode(withoutLength(encode(most))));
     CatchUp more = most;
     more.steps.push_back(someStep());
-    EXPECT_THROW((void)decode(withoutLength(encode(more))), files::FormatError);
+    EXPECT_THROW((void)decode(withoutLength(encode(more))), base::FormatError);
     most.steps[3].edit = sand::Edit::loaded({1, 2, 3});
-    EXPECT_THROW((void)decode(withoutLength(encode(most))), files::FormatError);
+    EXPECT_THROW((void)decode(withoutLength(encode(most))), base::FormatError);
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 // Which files of secrets are taken, and what is said of those that are not.
 #include "haptic_bridge/secret_file.hpp"
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "tests/haptic_bridge/link_security_fixture.hpp"
 
 namespace {
@@ -13,7 +13,7 @@ using namespace test;
 std::string complaintOf(const std::string& text) {
     try {
         (void)parseSecrets(text, "secrets");
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         return error.what();
     }
     return "";
@@ -54,7 +54,7 @@ TEST_F(LinkSecurityTest, TakesASecretOnlyFromAFileOfItsOwnersAlone) {
         try {
             (void)readSecrets(file);
             ADD_FAILURE() << file;
-        } catch (const files::InputError& error) {
+        } catch (const base::InputError& error) {
             EXPECT_EQ(std::string(error.what()).find(file), 0U) << error.what();
             EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
         }

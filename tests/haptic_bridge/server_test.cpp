@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The real server program over loopback, with the real client.
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "tests/haptic_bridge/raw_peer.hpp"
 #include "tests/haptic_bridge/server_process.hpp"
 
@@ -162,7 +162,7 @@ TEST_F(HapticServer, DoesWhatAnOperatorAsksAndTakesTheWallsMaterialWhenItComesBa
     tuning.toolRadius *= 2;
     tuning.threshold /= 2;
     // The second is no sand of this field and changes nothing, but it is as long as that of a large one.
-    const std::vector<sand::Edit> asked{sand::Edit::tuned(tuning), sand::Edit::loaded(files::Bytes(300'000, 7)),
+    const std::vector<sand::Edit> asked{sand::Edit::tuned(tuning), sand::Edit::loaded(base::Bytes(300'000, 7)),
                                         sand::Edit::loaded(sand::Terrain(scene_).copySand()->encode())};
     for (const sand::Edit& edit : asked) {
         client.request(edit);
@@ -255,7 +255,7 @@ TEST_F(HapticServer, AnswersGarbageHalfMessagesAndOtherVersionsWithAReason) {
         liar.send(haptic_bridge::Start{1, 0, 12345});
         const auto answer = liar.receive();
         ASSERT_TRUE(answer && std::holds_alternative<haptic_bridge::NeedState>(*answer));
-        liar.send(haptic_bridge::State{files::Bytes(100'000, 1)});
+        liar.send(haptic_bridge::State{base::Bytes(100'000, 1)});
         EXPECT_NE(liar.refusal().find("state"), std::string::npos);
     }
     // After all that it serves as if nothing had happened.
@@ -308,7 +308,7 @@ TEST_F(HapticServer, SendsTimingTestsAsLongAsAStepAndCountsEachLegOnce) {
 /// What the server printed before it gave up, expected with exit status 2.
 std::string complaint(const Folder& folder, const std::vector<std::string>& arguments) {
     ServerProcess server(folder, arguments);
-    EXPECT_EQ(server.wait(), files::kExitBadInput) << server.errors();
+    EXPECT_EQ(server.wait(), base::kExitBadInput) << server.errors();
     const std::string errors = server.errors();
     EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
     return errors;

@@ -5,9 +5,9 @@
 
 #include <array>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "haptic_bridge/devices/arm_presets.hpp"
-#include "haptic_bridge/monotonic.hpp"
+#include "host/clock.hpp"
 #include "tests/support/arm_loop.hpp"
 
 namespace {
@@ -121,14 +121,14 @@ TEST(SimulatedArm, IsHeldByAHandThatFollowsItsPath) {
 
 TEST(SimulatedArm, RunsOnTheHostsClockAsOnAVirtualOne) {
     SimulatedArm real(textbookArm(0.5)), virtually(textbookArm(0.5));
-    const std::int64_t begin = monotonicNs();
+    const std::int64_t begin = host::monotonicNs();
     for (SimulatedArm* arm : {&real, &virtually}) {
         (void)arm->read(0);
         arm->start({}, {1, 0, 0});
     }
     double time = 0;
     for (int tick = 0; tick < 50; ++tick) {
-        time = static_cast<double>(monotonicNs() - begin) * 1e-9;
+        time = static_cast<double>(host::monotonicNs() - begin) * 1e-9;
         (void)real.read(time);
     }
     (void)virtually.read(time);
@@ -214,7 +214,7 @@ TEST(SampledLoop, InterpolationBetweenFramesBearsHalfOfWhatHoldingDoesAndALocalM
 std::string complaint(const std::string& spec) {
     try {
         (void)openSimulatedArm(spec);
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         return error.what();
     }
     return "(no error)";

@@ -4,7 +4,7 @@
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "haptic_bridge/devices/device_module.hpp"
 #include "tests/haptic_bridge/server_process.hpp"
 
@@ -55,7 +55,7 @@ TEST_F(Spacenav, SaysWhatIsMissing) {
     const auto complaint = [](const std::string& library) {
         try {
             const SpacenavDevice device(library);
-        } catch (const files::InputError& error) {
+        } catch (const base::InputError& error) {
             return std::string(error.what());
         }
         return std::string();
@@ -77,7 +77,7 @@ TEST(Driver, AFileThatIsNoneIsRefused) {
     const auto complaint = [](const std::string& spec) {
         try {
             (void)haptic_bridge::openArmModule(spec);
-        } catch (const files::InputError& error) {
+        } catch (const base::InputError& error) {
             return std::string(error.what());
         }
         return std::string();
@@ -92,7 +92,7 @@ TEST(Driver, OfAnotherInterfaceVersionIsRefused) {
     try {
         (void)haptic_bridge::openArmModule(file);
         ADD_FAILURE() << "opened";
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         EXPECT_EQ(std::string(error.what()),
                   std::filesystem::absolute(file).string() +
                       ": is a driver of interface version 0, and this program takes version 1; build it with "

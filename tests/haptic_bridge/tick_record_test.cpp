@@ -5,7 +5,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "haptic_bridge/devices/mapped_device.hpp"
 #include "haptic_bridge/surface_of.hpp"
 #include "haptic_bridge/tick_recorder.hpp"
@@ -58,7 +58,7 @@ protected:
             terrain_.apply(step);
         }
         recorder_->flush();
-        for (files::Bytes& piece : recorder_->takePieces()) {
+        for (base::Bytes& piece : recorder_->takePieces()) {
             pieces_.push_back(std::move(piece));
         }
     }
@@ -83,7 +83,7 @@ protected:
     sand::Terrain terrain_{scene_};
     Surface surface_;
     std::vector<sand::Step> steps_;
-    std::vector<files::Bytes> pieces_;
+    std::vector<base::Bytes> pieces_;
     std::vector<std::string> told_;
     std::int64_t ticks_ = 0;
     int engaged_ = 0;
@@ -140,19 +140,19 @@ TEST_F(Recorded, AFullDiskEndsTheRowsAndNotTheTrack) {
     EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 1 + 20 * 16);
 }
 
-TEST_F(Recorded, AFileThatCannotBeMadeIsNamed) { EXPECT_THROW(open("/nowhere/ticks.csv"), files::InputError); }
+TEST_F(Recorded, AFileThatCannotBeMadeIsNamed) { EXPECT_THROW(open("/nowhere/ticks.csv"), base::InputError); }
 
 TEST(TickTrack, RefusesBytesThatAreNone) {
     TrackPiece piece;
     piece.ticks.resize(3);
-    const files::Bytes whole = encode(piece);
+    const base::Bytes whole = encode(piece);
     EXPECT_EQ(decodeTrackPiece(whole).ticks.size(), 3U);
     for (std::size_t length = 0; length < whole.size(); ++length) {
-        EXPECT_THROW((void)decodeTrackPiece(std::span(whole).first(length)), files::FormatError) << length;
+        EXPECT_THROW((void)decodeTrackPiece(std::span(whole).first(length)), base::FormatError) << length;
     }
-    files::Bytes longer = whole;
+    base::Bytes longer = whole;
     longer.push_back(0);
-    EXPECT_THROW((void)decodeTrackPiece(longer), files::FormatError);
+    EXPECT_THROW((void)decodeTrackPiece(longer), base::FormatError);
 }
 
 }  // namespace

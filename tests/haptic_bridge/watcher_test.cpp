@@ -85,7 +85,7 @@ TEST_F(LinkSecurityTest, WhoWatchesAndDoesNotReadIsCutOff) {
     // Loopback takes some megabytes before the server sees that nobody reads: steps of loads that fit a message.
     const auto cutOff = [&] { return server.errors().find("does not read what is sent") != std::string::npos; };
     for (int round = 0; round < 400 && !cutOff(); ++round) {
-        master.request(sand::Edit::loaded(files::Bytes(50'000, 7)));
+        master.request(sand::Edit::loaded(base::Bytes(50'000, 7)));
         ASSERT_TRUE(wall.follow(master, wall.terrain.stepNumber() + 10)) << master.link().message;
     }
     EXPECT_TRUE(cutOff()) << server.errors();

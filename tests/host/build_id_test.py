@@ -66,7 +66,7 @@ class BuildId(unittest.TestCase):
     def test_every_source_a_header_a_shader_and_a_flag_change_it(self):
         clone = self.copy("changed")
         before = build_id(clone)
-        for path in ("sand/erosion.hpp", "haptic_bridge/client_session.cpp", "workers/worker_pool.cpp", "tracking/dtrack.cpp",
+        for path in ("sand/erosion.hpp", "haptic_bridge/client_session.cpp", "host/worker_pool.cpp", "tracking/dtrack.cpp",
                      "render_node/gl/osmesa.cpp", "render_node/shaders/sand.frag.glsl", "sand/import/gdal_raster.cpp",
                      "haptic_bridge/security_openssl.cpp", "haptic_bridge/devices/glfw_window.cpp"):
             if of_the_sand_alone() and not (clone / path).exists():

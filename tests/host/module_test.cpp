@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "host/build_id.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/run_program.hpp"
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 std::string refusal(const host::Module& module, const std::vector<fs::path>& folders) {
     try {
         (void)host::loadModule(module, folders);
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         return error.what();
     }
     return "loaded";

@@ -41,12 +41,12 @@ public:
         return ::connect(descriptor_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
     }
     /// False when the other side has gone.
-    [[nodiscard]] bool send(const files::Bytes& bytes, int flags = 0) const {
+    [[nodiscard]] bool send(const base::Bytes& bytes, int flags = 0) const {
         return ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL | flags) ==
                static_cast<ssize_t>(bytes.size());
     }
     /// What has come, or nothing when the other side has gone or stays silent.
-    [[nodiscard]] files::Bytes receive() const {
+    [[nodiscard]] base::Bytes receive() const {
         std::array<std::uint8_t, 4096> answer{};
         const ssize_t count = recv(descriptor_, answer.data(), answer.size(), 0);
         return {answer.begin(), answer.begin() + std::max<ssize_t>(count, 0)};
@@ -74,7 +74,7 @@ int newSocket() { return socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0); }
 /// A connection that sends a byte whenever it is asked, and begins anew when it has been cut off.
 class Drip {
 public:
-    Drip(std::uint16_t port, std::uint32_t from, files::Bytes bytes)
+    Drip(std::uint16_t port, std::uint32_t from, base::Bytes bytes)
         : port_(port), from_(from), bytes_(std::move(bytes)) {}
     void drip() {
         if (!socket_) {
@@ -93,7 +93,7 @@ public:
 private:
     std::uint16_t port_;
     std::uint32_t from_;
-    files::Bytes bytes_;
+    base::Bytes bytes_;
     std::size_t sent_ = 0;
     std::unique_ptr<Socket> socket_;
 };
@@ -113,7 +113,7 @@ public:
             return true;
         }
         tls_ = security_.tls->open();
-        files::Bytes first;
+        base::Bytes first;
         if (!server) {
             tls_->begin(first);
         }
@@ -125,7 +125,7 @@ public:
     }
     /// As one who may watch; whether the server has said welcome.
     [[nodiscard]] bool greet(const Identity& identity) {
-        MasterHandshake handshake(security_, identity, Role::watch, tls_ ? tls_->binding() : files::Bytes());
+        MasterHandshake handshake(security_, identity, Role::watch, tls_ ? tls_->binding() : base::Bytes());
         bool open = send(encode(handshake.hello()));
         while (open) {
             const auto message = reader_.next();
@@ -140,11 +140,11 @@ public:
         }
         return false;
     }
-    [[nodiscard]] bool send(const files::Bytes& bytes) {
+    [[nodiscard]] bool send(const base::Bytes& bytes) {
         if (!tls_) {
             return socket_.send(bytes);
         }
-        files::Bytes sealed;
+        base::Bytes sealed;
         tls_->seal(bytes, sealed);
         return socket_.send(sealed);
     }
@@ -166,12 +166,12 @@ public:
 
 private:
     bool receive() {
-        const files::Bytes bytes = socket_.receive();
+        const base::Bytes bytes = socket_.receive();
         heard_ += bytes.size();
         if (!tls_) {
             reader_.feed(bytes);
         } else if (!bytes.empty()) {
-            files::Bytes plain, reply;
+            base::Bytes plain, reply;
             tls_->receive(bytes, plain, reply);
             reader_.feed(plain);
             return reply.empty() || socket_.send(reply);
@@ -195,7 +195,7 @@ struct Attack {
     Done done{};
 
     void visit() {
-        files::Bytes frame;
+        base::Bytes frame;
         std::uint32_t greeting = 0, from = 0;
         {
             const std::lock_guard lock(mutex);
@@ -248,7 +248,7 @@ Done attackServer(std::uint16_t port, Frames& frames, std::uint64_t count, const
         });
     }
     Drip unknown(port, kLoopback + 2, encode(Hello{frames.identity()}));
-    Drip endless(port, kLoopback + 3, files::Bytes{255, 3, 0, 0});
+    Drip endless(port, kLoopback + 3, base::Bytes{255, 3, 0, 0});
     while (left > 0 && goOn()) {
         unknown.drip();
         endless.drip();
@@ -319,9 +319,9 @@ void FalseServer::talk(int guest) {
 void FalseServer::flood(const Socket& socket) {
     bool heard = socket.send(encode(PositionGreeting{kProtocolVersion, "false"}));
     for (std::uint64_t i = 0; heard && i < kPerFlood && !stopping_ && !done(); i += 100) {
-        files::Bytes many;
+        base::Bytes many;
         for (int j = 0; j < 100; ++j) {
-            const files::Bytes one = frames_.position();
+            const base::Bytes one = frames_.position();
             many.insert(many.end(), one.begin(), one.end());
         }
         heard = socket.send(many);

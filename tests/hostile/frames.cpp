@@ -10,7 +10,7 @@ using namespace haptic_bridge;
 Frames::Frames(std::uint32_t seed, Identity identity) : random_(seed), identity_(std::move(identity)) {
     sand::Step step{.epoch = 1, .number = 7, .engaged = true, .path = {{600, 700, 100}, {700, 650, 50}}};
     sand::Step loaded = step;
-    loaded.edit = sand::Edit::loaded(files::Bytes(300, 9));
+    loaded.edit = sand::Edit::loaded(base::Bytes(300, 9));
     for (const Message& message : std::vector<Message>{Hello{identity_, Role::move, true, false, {1}},
                                                        Hello{identity_, Role::watch, false, false, {}},
                                                        Challenge{identity_, {2}},
@@ -20,7 +20,7 @@ Frames::Frames(std::uint32_t seed, Identity identity) : random_(seed), identity_
                                                        Start{1, 0, 3},
                                                        Ready{},
                                                        NeedState{},
-                                                       State{files::Bytes(200, 4)},
+                                                       State{base::Bytes(200, 4)},
                                                        StepMessage{1, 2, step},
                                                        StepMessage{1, 2, loaded},
                                                        TimingTest{1, 20},
@@ -33,7 +33,7 @@ Frames::Frames(std::uint32_t seed, Identity identity) : random_(seed), identity_
                                                        EditRequest{sand::Edit::undo},
                                                        EditRequest{sand::Edit::loaded({1, 2, 3})},
                                                        ForceShare{0},
-                                                       TickPiece{files::Bytes(50, 1)},
+                                                       TickPiece{base::Bytes(50, 1)},
                                                        PositionGreeting{kProtocolVersion, "glove"},
                                                        Position{0, 0, 0, 0, true},
                                                        CatchUp{true, {step, step}}}) {
@@ -42,24 +42,24 @@ Frames::Frames(std::uint32_t seed, Identity identity) : random_(seed), identity_
     last_ = real_.front();
 }
 
-files::Bytes Frames::randomBytes() {
-    files::Bytes bytes(1 + below(300));
+base::Bytes Frames::randomBytes() {
+    base::Bytes bytes(1 + below(300));
     for (std::uint8_t& byte : bytes) {
         byte = static_cast<std::uint8_t>(below(256));
     }
     return bytes;
 }
 
-files::Bytes Frames::changed() {
-    files::Bytes bytes = real_[below(static_cast<std::uint32_t>(real_.size()))];
+base::Bytes Frames::changed() {
+    base::Bytes bytes = real_[below(static_cast<std::uint32_t>(real_.size()))];
     for (std::uint32_t flips = 1 + below(4); flips > 0; --flips) {
         bytes[below(static_cast<std::uint32_t>(bytes.size()))] = static_cast<std::uint8_t>(below(256));
     }
     return bytes;
 }
 
-files::Bytes Frames::lying() {
-    files::Bytes bytes = real_[below(static_cast<std::uint32_t>(real_.size()))];
+base::Bytes Frames::lying() {
+    base::Bytes bytes = real_[below(static_cast<std::uint32_t>(real_.size()))];
     constexpr std::array<std::uint32_t, 6> kLengths{0, 1025, 64 * 1024 + 1, 1U << 28, 1U << 31, 0xffffffff};
     const std::uint32_t length = kLengths[below(kLengths.size())];
     for (std::size_t i = 0; i < 4; ++i) {
@@ -68,7 +68,7 @@ files::Bytes Frames::lying() {
     return bytes;
 }
 
-files::Bytes Frames::next() {
+base::Bytes Frames::next() {
     switch (below(5)) {
         case 0:
             last_ = randomBytes();
@@ -87,7 +87,7 @@ files::Bytes Frames::next() {
     return last_;
 }
 
-files::Bytes Frames::position() {
+base::Bytes Frames::position() {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN(), kFar = 1e308;
     const std::array<double, 5> values{0, 0.5, kNone, kFar, -kFar};
     const auto any = [&] { return values[below(values.size())]; };

@@ -12,20 +12,13 @@
 #include <utility>
 #include <vector>
 
+#include "host/clock.hpp"
+
 namespace impaired_link {
 
 namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
-
-namespace {
-
-std::int64_t nowNs() {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
-
-}  // namespace
 
 /// One connection and the one behind it. On the link's thread alone.
 class ImpairedLink::Passage : public std::enable_shared_from_this<Passage> {
@@ -109,7 +102,7 @@ private:
         }
         const std::uint64_t stalls = way.schedule.stalls();
         const auto end = way.chunk.begin() + static_cast<std::ptrdiff_t>(count);
-        way.pieces.push_back({{way.chunk.begin(), end}, way.schedule.leaves(nowNs())});
+        way.pieces.push_back({{way.chunk.begin(), end}, way.schedule.leaves(host::monotonicNs())});
         link_.stalls_ += way.schedule.stalls() - stalls;
         way.held += count;
         link_.mostHeld_ = std::max(link_.mostHeld_.load(), way.held);

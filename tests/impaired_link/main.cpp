@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <optional>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "haptic_bridge/client.hpp"
 #include "host/command_line.hpp"
 #include "host/event.hpp"
@@ -50,7 +50,7 @@ int run(const Options& options) {
     try {
         link.emplace(options.link, to.host, to.port, options.port);
     } catch (const boost::system::system_error& error) {
-        throw files::InputError(fmt::format("--port {}: {}", options.port, error.code().message()));
+        throw base::InputError(fmt::format("--port {}: {}", options.port, error.code().message()));
     }
     fmt::print("listening on 127.0.0.1:{}\n", link->port());
     std::fflush(stdout);

@@ -10,10 +10,10 @@
 #include <string_view>
 #include <vector>
 
+#include "host/worker_pool.hpp"
 #include "sand/dunes.hpp"
 #include "sand/tin_module.hpp"
 #include "tests/support/sand_samples.hpp"
-#include "workers/worker_pool.hpp"
 
 namespace {
 
@@ -58,7 +58,7 @@ std::size_t firstDifference(const std::vector<std::uint64_t>& hashes) {
 /// The first edit after which ranks differ, or 0; `all` takes in every hash.
 std::uint64_t editAll(int rank, std::string_view kind, std::uint64_t& all) {
     const auto way = static_cast<std::size_t>(rank);
-    workers::WorkerPool team(kThreads.at(way % kThreads.size()));
+    host::WorkerPool team(kThreads.at(way % kThreads.size()));
     const sand::Scene scene = kind == "tin" ? smallTin() : smallScene();
     const bool wild = !kind.empty();
     sand::Terrain terrain(scene, {.blockSize = kBlocks.at(way % kBlocks.size()),

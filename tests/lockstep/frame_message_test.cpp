@@ -53,7 +53,7 @@ TEST(FrameMessage, TakesNoByteForFiguresThatNobodyAskedFor) {
     EXPECT_GT(message.encode().size(), unobserved);
     lockstep::FrameMessage still;
     still.frame = 1;
-    files::ByteWriter view;
+    base::ByteWriter view;
     still.view.encode(view);
     EXPECT_EQ(still.encode().size(), view.bytes().size() + 4) << "frame, hash tiles, flags, steps: a byte each";
 }
@@ -63,9 +63,9 @@ TEST(FrameMessage, EightStepsOfDiggingTravelInOneMessage) {
 }
 
 TEST(FrameMessage, RefusesEveryTruncation) {
-    const files::Bytes bytes = observed().encode();
+    const base::Bytes bytes = observed().encode();
     for (std::size_t length = 0; length < bytes.size(); ++length) {
-        EXPECT_THROW((void)lockstep::FrameMessage::decode(std::span(bytes).first(length)), files::FormatError);
+        EXPECT_THROW((void)lockstep::FrameMessage::decode(std::span(bytes).first(length)), base::FormatError);
     }
 }
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "base/input_error.hpp"
+
 namespace lockstep {
 namespace {
 
@@ -17,7 +19,7 @@ TEST(TestPattern, ListsTheNamesWhenThereIsNoSuch) {
     try {
         (void)parsePattern("gird");
         FAIL() << "it was found";
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         EXPECT_STREQ(error.what(), "no test pattern 'gird'; there are none, grid, tiles, eyes, flash, ramp");
     }
 }

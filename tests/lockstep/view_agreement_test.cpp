@@ -8,7 +8,7 @@ namespace {
 using lockstep::ViewProof;
 using lockstep::ViewState;
 
-const files::Bytes kWall{1, 2, 3};
+const base::Bytes kWall{1, 2, 3};
 
 ViewState seen() {
     return {.head = {0.1, 1.6, 2.5},
@@ -44,7 +44,7 @@ TEST(ViewAgreement, EveryPartOfAViewCounts) {
 }
 
 TEST(ViewAgreement, AnotherWallIsAnotherView) {
-    EXPECT_NE(ViewProof(kWall).hash(seen()), ViewProof(files::Bytes{1, 2, 4}).hash(seen()));
+    EXPECT_NE(ViewProof(kWall).hash(seen()), ViewProof(base::Bytes{1, 2, 4}).hash(seen()));
 }
 
 TEST(ViewAgreement, WhoDiffersIsNamed) {

@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "master/control_socket.hpp"
 #include "master/operator_command.hpp"
 #include "tests/support/folder_test.hpp"
@@ -28,7 +28,7 @@ using master::Verb;
 std::string complaint(const std::string& line) {
     try {
         (void)parseCommand(line);
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         return error.what();
     }
     return "accepted";

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "tests/support/folder_test.hpp"
 
 namespace {
@@ -19,7 +19,7 @@ protected:
             walls::shownIn(walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/anaglyph.toml"), stereo);
         try {
             const Film film(wall, eye, folder_);
-        } catch (const files::InputError& error) {
+        } catch (const base::InputError& error) {
             return error.what();
         }
         return "accepted";
@@ -40,7 +40,7 @@ TEST_F(FilmOfAWall, NamesTheEyesThereAre) {
     EXPECT_EQ(master::filmEyeNamed("left"), FilmEye::left);
     EXPECT_EQ(master::filmEyeNamed("right"), FilmEye::right);
     EXPECT_EQ(master::filmEyeNamed("anaglyph"), FilmEye::anaglyph);
-    EXPECT_THROW((void)master::filmEyeNamed("middle"), files::InputError);
+    EXPECT_THROW((void)master::filmEyeNamed("middle"), base::InputError);
 }
 
 TEST_F(FilmOfAWall, ForgetsThePicturesOfAnEarlierFilmAndNoOtherFiles) {

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
 namespace {
 
@@ -75,7 +75,7 @@ TEST(Injection, ThatCannotBeIsNamedInOneLine) {
         try {
             (void)master::parseFault(text, kWall);
             ADD_FAILURE() << text << " was taken";
-        } catch (const files::InputError& error) {
+        } catch (const base::InputError& error) {
             const std::string said = error.what();
             EXPECT_NE(said.find(part), std::string::npos) << said;
             EXPECT_EQ(said.find("--inject " + std::string(text) + ": "), 0U) << said;
@@ -91,7 +91,7 @@ TEST(Injection, OfTheLinkNeedsALink) {
         try {
             (void)master::parseFault(text, alone);
             ADD_FAILURE() << text << " was taken";
-        } catch (const files::InputError& error) {
+        } catch (const base::InputError& error) {
             EXPECT_NE(std::string(error.what()).find("name a rank"), std::string::npos) << error.what();
         }
     }

@@ -14,7 +14,7 @@
 #include <random>
 #include <thread>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "master/checkpoint.hpp"
 #include "master/journal.hpp"
 #include "tests/support/folder_test.hpp"
@@ -121,7 +121,7 @@ TEST_F(Keeper, AFolderThatCannotBeWrittenToIsNamed) {
     try {
         const master::JournalKeeper keeper(folder_ / "file", {}, scene_, nullptr, "", "test");
         ADD_FAILURE() << "not refused";
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         EXPECT_NE(std::string(error.what()).find("cannot be made (Not a directory); choose another --out"),
                   std::string::npos)
             << error.what();
@@ -201,7 +201,7 @@ TEST_F(Keeper, APartThatIsMissingOrOfAnotherSessionIsNamed) {
     const auto complaint = [this] {
         try {
             (void)master::readJournal(journal());
-        } catch (const files::InputError& error) {
+        } catch (const base::InputError& error) {
             return std::string(error.what());
         }
         return std::string("none");
@@ -222,7 +222,7 @@ TEST_F(Keeper, APartThatIsMissingOrOfAnotherSessionIsNamed) {
     try {
         (void)master::readJournal(master::partOf(journal(), 3));
         ADD_FAILURE() << "a part alone was read";
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         EXPECT_NE(std::string(error.what()).find("is part 3 of a session; name its first part"), std::string::npos);
     }
 }
@@ -242,13 +242,13 @@ TEST_F(Keeper, APartThatWasOnlyMadeIsNoHarm) {
     const auto records = master::JournalReader(journal()).header().session;
     EXPECT_NE(records, 0U);
     std::filesystem::resize_file(master::partOf(journal(), 2), size(2));
-    EXPECT_THROW((void)master::readJournal(journal()), files::InputError) << "a step stands in the second part";
+    EXPECT_THROW((void)master::readJournal(journal()), base::InputError) << "a step stands in the second part";
     // Its header alone.
     std::uint64_t chain = 0;
-    files::ByteWriter header;
+    base::ByteWriter header;
     std::ifstream stream(master::partOf(journal(), 2), std::ios::binary);
-    const files::Bytes bytes{std::istreambuf_iterator<char>(stream), {}};
-    files::ByteReader reader(bytes);
+    const base::Bytes bytes{std::istreambuf_iterator<char>(stream), {}};
+    base::ByteReader reader(bytes);
     (void)master::decodeHeader(reader, chain);
     std::filesystem::resize_file(master::partOf(journal(), 2), bytes.size() - reader.rest().size());
     EXPECT_EQ(master::readJournal(journal()).frames.size(), steps);
@@ -267,7 +267,7 @@ TEST_F(Keeper, AFullDiskStopsTheSandUntilThereIsRoom) {
         ASSERT_TRUE(showFrame());
         // What is reserved is used up first; nothing that was taken is refused.
         support::fill(folder_ / "filler");
-        const sand::Edit large = sand::Edit::loaded(files::Bytes(60'000, 7));  // which is no sand and changes none
+        const sand::Edit large = sand::Edit::loaded(base::Bytes(60'000, 7));  // which is no sand and changes none
         int frames = 1;
         while (showFrame(large)) {
             ASSERT_LT(++frames, 1000);
@@ -300,7 +300,7 @@ TEST_F(Keeper, AReadOnlyFolderIsNamed) {
             try {
                 begin({});
                 ADD_FAILURE() << "not refused";
-            } catch (const files::InputError& error) {
+            } catch (const base::InputError& error) {
                 EXPECT_NE(
                     std::string(error.what()).find("cannot be made (Read-only file system); choose another --out"),
                     std::string::npos)

@@ -13,7 +13,7 @@
 #include <iterator>
 #include <random>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/sand_samples.hpp"
 
@@ -67,7 +67,7 @@ TEST_F(JournalFile, GivesBackWhatWasWritten) {
 TEST_F(JournalFile, KeepsWhatAnOperatorAskedFor) {
     const sand::Scene scene = samples::flatScene(20, 10);
     master::JournalFrame frame{1, 5, {}};
-    for (const sand::Edit& edit : {sand::Edit::tuned({7, 11, 13, 17}), sand::Edit::loaded(files::Bytes(200'000, 9)),
+    for (const sand::Edit& edit : {sand::Edit::tuned({7, 11, 13, 17}), sand::Edit::loaded(base::Bytes(200'000, 9)),
                                    sand::Edit(sand::Edit::undo)}) {
         frame.steps.push_back({1, frame.steps.size() + 1, false, {}, edit});
     }
@@ -94,7 +94,7 @@ TEST_F(JournalFile, AFullDiskLeavesTheFramesBeforeWhole) {
     rlimit small = before;
     small.rlim_cur = std::filesystem::file_size(file_) + 9;  // room for a part of the next record
     setrlimit(RLIMIT_FSIZE, &small);
-    EXPECT_THROW(append(2), files::InputError);
+    EXPECT_THROW(append(2), base::InputError);
     setrlimit(RLIMIT_FSIZE, &before);
     std::signal(SIGXFSZ, handler);
     const master::Journal journal = master::readJournal(file_);
@@ -120,7 +120,7 @@ TEST_F(JournalFile, CutAnywhereItKeepsEveryRecordBeforeTheCut) {
     for (std::uintmax_t cut = ends.back(); cut-- > 0;) {
         std::filesystem::resize_file(file_, cut);
         if (cut < ends.front()) {
-            EXPECT_THROW((void)master::readJournal(file_), files::InputError) << cut;
+            EXPECT_THROW((void)master::readJournal(file_), base::InputError) << cut;
             continue;
         }
         const auto whole = static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), cut) - ends.begin()) - 1;
@@ -158,7 +158,7 @@ TEST_F(JournalFile, RefusesAFlippedBitOfAnyByteBeforeItsLastRecord) {
     const std::streamoff last = size - 29;  // the end: length, type, step, hash, checksum
     for (std::streamoff at = 0; at < last; ++at) {
         const Flipped flipped(file_, at, static_cast<int>(at % 8));
-        EXPECT_THROW((void)master::readJournal(file_), files::InputError) << "byte " << at << " of " << size;
+        EXPECT_THROW((void)master::readJournal(file_), base::InputError) << "byte " << at << " of " << size;
     }
     for (std::streamoff at = last; at < size; ++at) {
         const Flipped flipped(file_, at, static_cast<int>(at % 8));
@@ -185,7 +185,7 @@ TEST_F(JournalFile, RefusesARecordThatWasLeftOut) {
     std::string bytes{std::istreambuf_iterator<char>(stream), {}};
     bytes.erase(ends[0], ends[1] - ends[0]);
     std::ofstream(file_, std::ios::binary) << bytes;
-    EXPECT_THROW((void)master::readJournal(file_), files::InputError);
+    EXPECT_THROW((void)master::readJournal(file_), base::InputError);
 }
 
 TEST_F(JournalFile, KeepsTheJournalOfTheSessionBefore) {
@@ -199,22 +199,22 @@ TEST_F(JournalFile, KeepsTheJournalOfTheSessionBefore) {
 }
 
 TEST_F(JournalFile, RefusesWhatIsNoJournal) {
-    EXPECT_THROW((void)master::readJournal(file_), files::InputError);
+    EXPECT_THROW((void)master::readJournal(file_), base::InputError);
     std::ofstream(file_) << "certainly not";
-    EXPECT_THROW((void)master::readJournal(file_), files::InputError);
+    EXPECT_THROW((void)master::readJournal(file_), base::InputError);
     writeSession(true);
     std::fstream stream(file_, std::ios::in | std::ios::out | std::ios::binary);
     stream.seekp(30);  // in the header
     stream.put('\x7f');
     stream.close();
-    EXPECT_THROW((void)master::readJournal(file_), files::InputError);
+    EXPECT_THROW((void)master::readJournal(file_), base::InputError);
 }
 
 TEST_F(JournalFile, ADiskThatRefusesIsNamed) {
     if (std::filesystem::exists("/dev/full")) {
-        EXPECT_THROW(master::JournalWriter("/dev/full", samples::flatScene(8, 8), "x"), files::InputError);
+        EXPECT_THROW(master::JournalWriter("/dev/full", samples::flatScene(8, 8), "x"), base::InputError);
     }
-    EXPECT_THROW(master::JournalWriter("/nowhere/session.journal", samples::flatScene(8, 8), "x"), files::InputError);
+    EXPECT_THROW(master::JournalWriter("/nowhere/session.journal", samples::flatScene(8, 8), "x"), base::InputError);
 }
 
 // As programs of before there were parts wrote it: checksums that do not hang together, and no number of the session.
@@ -223,7 +223,7 @@ TEST_F(JournalFile, ReadsOnesFromBeforeThereWereParts) {
     const auto frames = writeSession(true);
     const sand::Scene scene = samples::flatScene(20, 10);
     for (const std::uint32_t version : {3U, 4U}) {
-        files::ByteWriter writer;
+        base::ByteWriter writer;
         writer.put(std::uint32_t{0x4c4a5753});
         writer.put(version);
         writer.putText("0123456789abcdef");
@@ -235,7 +235,7 @@ TEST_F(JournalFile, ReadsOnesFromBeforeThereWereParts) {
             std::uint64_t chain = 0;
             writer.putBytes(master::encodeRecord(record, chain));
         }
-        const files::Bytes bytes = writer.take();
+        const base::Bytes bytes = writer.take();
         std::ofstream(file_, std::ios::binary)
             .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
         const master::Journal journal = master::readJournal(file_);
@@ -258,7 +258,7 @@ TEST_F(JournalFile, TellsTheVersionsItReads) {
         try {
             (void)master::readJournal(file_);
             ADD_FAILURE() << version;
-        } catch (const files::InputError& error) {
+        } catch (const base::InputError& error) {
             EXPECT_NE(std::string(error.what()).find(complaint), std::string::npos) << error.what();
         }
     }

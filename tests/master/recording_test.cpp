@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -26,7 +26,7 @@ master::Journal sessionOf(std::uint64_t steps) {
 std::string refusal(master::Journal journal) {
     try {
         const master::Recording recording(std::move(journal), "FILE", 30);
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         return error.what();
     }
     return "taken";

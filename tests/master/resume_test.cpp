@@ -8,7 +8,7 @@
 #include <fstream>
 #include <random>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "master/checkpoint.hpp"
 #include "master/journal.hpp"
 #include "tests/support/folder_test.hpp"
@@ -65,7 +65,7 @@ protected:
     static std::string refusal(const std::filesystem::path& journal, const std::string& scene = "") {
         try {
             (void)master::readSession(journal, scene);
-        } catch (const files::InputError& error) {
+        } catch (const base::InputError& error) {
             return error.what();
         }
         return "not refused";
@@ -83,7 +83,7 @@ TEST_F(Resume, FindsTheSandAfterAnyStepFromTheNewestCheckpointBefore) {
     for (std::uint64_t step = 0; step <= 40; ++step) {
         expectSand(step, step >= 20 ? step / 10 * 10 : 0);
     }
-    EXPECT_THROW((void)master::restoreSand(journal(), 41), files::InputError);
+    EXPECT_THROW((void)master::restoreSand(journal(), 41), base::InputError);
 }
 
 TEST_F(Resume, LeavesOutACheckpointThatIsDamagedAnywhere) {
@@ -91,7 +91,7 @@ TEST_F(Resume, LeavesOutACheckpointThatIsDamagedAnywhere) {
     const auto size = static_cast<std::streamoff>(std::filesystem::file_size(newest));
     for (std::streamoff at = 0; at < size; ++at) {
         spoil(newest, at);
-        EXPECT_THROW((void)master::readCheckpoint(newest), files::FormatError) << at << " of " << size;
+        EXPECT_THROW((void)master::readCheckpoint(newest), base::FormatError) << at << " of " << size;
         if (at % 97 == 0) {
             expectSand(40, 30);
         }
@@ -100,7 +100,7 @@ TEST_F(Resume, LeavesOutACheckpointThatIsDamagedAnywhere) {
     expectSand(40, 40);
     for (std::uintmax_t cut = static_cast<std::uintmax_t>(size); cut-- > 0;) {
         std::filesystem::resize_file(newest, cut);
-        EXPECT_THROW((void)master::readCheckpoint(newest), files::FormatError) << cut;
+        EXPECT_THROW((void)master::readCheckpoint(newest), base::FormatError) << cut;
     }
     expectSand(40, 30);
 }

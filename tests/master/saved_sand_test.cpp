@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "sand/terrain.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/sand_samples.hpp"
@@ -26,7 +26,7 @@ protected:
     [[nodiscard]] std::string complaint(const sand::Scene& scene) const {
         try {
             (void)master::readSavedSand(file_, SandPlace::of(scene), sand::Terrain(scene).sandReader());
-        } catch (const files::InputError& error) {
+        } catch (const base::InputError& error) {
             return error.what();
         }
         return "nothing";
@@ -87,7 +87,7 @@ TEST_F(SavedSandFile, OfAnotherSceneIsRefusedWithWhatDiffers) {
 TEST_F(SavedSandFile, ThatIsNotThereOrCannotBeMadeIsOneLine) {
     expectComplaint(scene_, "cannot be read");
     std::ofstream(folder_ / "saves") << "no folder";
-    EXPECT_THROW(master::writeSavedSand(file_, sand()), files::InputError);
+    EXPECT_THROW(master::writeSavedSand(file_, sand()), base::InputError);
     expectComplaint(scene_, "cannot be read");
 }
 

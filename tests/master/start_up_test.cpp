@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
 namespace {
 
@@ -12,7 +12,7 @@ constexpr std::int64_t kGiB = std::int64_t{1} << 30;
 std::string refusal(const std::vector<lockstep::RankHost>& ranks, const sand::Scene& scene) {
     try {
         master::requireMemory(ranks, scene, "s.toml");
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         return error.what();
     }
     return "nothing";

@@ -8,7 +8,7 @@
 #include <random>
 #include <string>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "pictures/png_file.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/run_program.hpp"
@@ -52,7 +52,7 @@ TEST(Compare, FindsNoDifferenceBetweenAPictureAndItself) {
 }
 
 TEST(Compare, RefusesPicturesOfDifferentSizes) {
-    EXPECT_THROW((void)compare(Image(3, 4), Image(4, 3), 8), files::InputError);
+    EXPECT_THROW((void)compare(Image(3, 4), Image(4, 3), 8), base::InputError);
 }
 
 TEST(Silhouettes, AreTheEdgeOfTheSquareTwoPixelsToEitherSide) {

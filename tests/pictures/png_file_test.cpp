@@ -11,7 +11,7 @@
 #include <random>
 #include <string>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/seed.hpp"
 
@@ -33,7 +33,7 @@ protected:
     [[nodiscard]] std::string complaint() const {
         try {
             (void)readPng(file_);
-        } catch (const files::InputError& error) {
+        } catch (const base::InputError& error) {
             const std::string line = error.what();
             EXPECT_EQ(line.rfind(file_.string() + ":", 0), 0U) << line;
             EXPECT_EQ(line.find('\n'), std::string::npos) << line;
@@ -141,7 +141,7 @@ TEST_F(PngFile, SurvivesDamagedBytes) {
         store(damaged);
         try {
             EXPECT_LE(readPng(file_).pixels(), static_cast<std::size_t>(kMaxPixels));
-        } catch (const files::InputError&) {
+        } catch (const base::InputError&) {
         }
     }
 }
@@ -151,7 +151,7 @@ TEST_F(PngFile, NamesThePictureItCannotWrite) {
     try {
         writePng(nowhere, Image(2, 2));
         FAIL() << "was written";
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         EXPECT_EQ(std::string(error.what()).rfind(nowhere.string() + ":", 0), 0U) << error.what();
     }
 }

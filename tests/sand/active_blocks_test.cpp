@@ -5,9 +5,9 @@
 #include <array>
 #include <random>
 
+#include "host/worker_pool.hpp"
 #include "tests/support/relaxing.hpp"
 #include "tests/support/sand_samples.hpp"
-#include "workers/worker_pool.hpp"
 
 namespace {
 
@@ -65,8 +65,8 @@ TEST(ActiveBlocks, EqualFullSweepsOn3000NearCriticalPlanes) {
 TEST(ActiveBlocks, BlockSizeInstructionSetAndThreadsChangeNothing) {
     std::mt19937 random(13);
     const HeightField start = samples::randomField(131, 77, 1 << 20, random);
-    workers::WorkerPool team(3);
-    const sand::Executor executor = team.executor();
+    host::WorkerPool team(3);
+    const base::Executor executor = team.executor();
     for (const Scheme scheme : samples::kEverySlope) {
         sand::Rules rules = samples::rulesFor(start, scheme);
         rules.rim = sand::Rim::open;
@@ -74,7 +74,7 @@ TEST(ActiveBlocks, BlockSizeInstructionSetAndThreadsChangeNothing) {
         const std::int64_t outflow = Erosion(expected, rules, {.blockSize = 128}).sweep(expected, 100);
         for (const int block : {2, 16, 31, 32, 64}) {
             for (const auto path : {CodePath::automatic, CodePath::baseline}) {
-                for (const sand::Executor* threads : {static_cast<const sand::Executor*>(nullptr), &executor}) {
+                for (const base::Executor* threads : {static_cast<const base::Executor*>(nullptr), &executor}) {
                     HeightField field = start;
                     Erosion erosion(field, rules, {.blockSize = block, .path = path, .executor = threads});
                     EXPECT_EQ(erosion.sweep(field, 100), outflow);

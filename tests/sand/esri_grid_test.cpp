@@ -7,8 +7,8 @@
 #include <iterator>
 #include <limits>
 
-#include "files/input_error.hpp"
-#include "files/whole_file.hpp"
+#include "base/input_error.hpp"
+#include "host/whole_file.hpp"
 #include "tests/support/folder_test.hpp"
 
 namespace {
@@ -25,7 +25,7 @@ protected:
     [[nodiscard]] std::string complaint(const std::string& text) const {
         try {
             (void)sand::withoutEmptyEdges(read(text));
-        } catch (const files::InputError& error) {
+        } catch (const base::InputError& error) {
             const std::string line = error.what();
             return line.substr(line.find("t.asc"));
         }
@@ -116,19 +116,19 @@ TEST_F(EsriFile, FewDecimalsStillTellAHeightFromTheNextUnit) {
 TEST_F(EsriFile, WhatCannotBeWrittenLeavesWhatWasThere) {
     std::ofstream(file()) << "old";
     {
-        files::WholeFile whole(file());
+        host::WholeFile whole(file());
         whole.stream() << "half of the";
     }
     EXPECT_EQ(text(), "old");
-    files::WholeFile whole(file());
+    host::WholeFile whole(file());
     whole.stream() << "new";
     EXPECT_EQ(text(), "old");
     whole.keep();
     EXPECT_EQ(text(), "new");
-    EXPECT_THROW(files::WholeFile(folder_ / "nowhere" / "t.asc"), files::InputError);
-    EXPECT_THROW(files::WholeFile{folder_}, files::InputError);
+    EXPECT_THROW(host::WholeFile(folder_ / "nowhere" / "t.asc"), base::InputError);
+    EXPECT_THROW(host::WholeFile{folder_}, base::InputError);
     const EsriGrid grid = read("ncols 1\nnrows 1\ncellsize 1\n5\n");
-    EXPECT_THROW(sand::writeEsriGrid(grid, "/dev/full"), files::InputError);
+    EXPECT_THROW(sand::writeEsriGrid(grid, "/dev/full"), base::InputError);
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1) << "something was left beside it";
 }
 

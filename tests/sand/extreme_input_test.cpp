@@ -81,13 +81,13 @@ TEST_F(ExtremeInput, SidesBeyondTheLargestAreRefused) {
 TEST_F(ExtremeInput, RulesOutOfRangeAreRefusedOnTheWire) {
     sand::Rules rules = sand::loadScene(write("s.toml", kFlat)).rules;
     const auto accepted = [](const sand::Rules& sent) {
-        files::ByteWriter writer;
+        base::ByteWriter writer;
         sent.encode(writer);
-        const files::Bytes bytes = writer.take();
-        files::ByteReader reader(bytes);
+        const base::Bytes bytes = writer.take();
+        base::ByteReader reader(bytes);
         try {
             return sand::Rules::decode(reader) == sent;
-        } catch (const files::FormatError&) {
+        } catch (const base::FormatError&) {
             return false;
         }
     };

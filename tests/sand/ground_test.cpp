@@ -65,7 +65,7 @@ TEST(Ground, BlocksThreadsAndCodePathsChangeNothing) {
     };
     const std::uint64_t expected = hashWith({.skipSettled = false});
     // Last task first: whoever depends on an order shows it.
-    const sand::Executor backwards = [](int count, const std::function<void(int)>& task) {
+    const base::Executor backwards = [](int count, const std::function<void(int)>& task) {
         for (int i = count - 1; i >= 0; --i) {
             task(i);
         }

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "sand/terrain.hpp"
 #include "tests/sand/scene_fixture.hpp"
 #include "tests/support/sand_samples.hpp"
@@ -17,7 +17,7 @@ using sand::Edit;
 std::string complaintOf(const auto& act) {
     try {
         act();
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         return error.what();
     }
     return "nothing";

@@ -4,9 +4,9 @@
 #include <random>
 #include <vector>
 
+#include "host/worker_pool.hpp"
 #include "sand/terrain.hpp"
 #include "tests/support/sand_samples.hpp"
-#include "workers/worker_pool.hpp"
 
 namespace {
 
@@ -93,7 +93,7 @@ TEST(Undo, RestoresTheHashOfBeforeTheStroke) {
     hand.dig(32, 32);
     hand.lift();
     hand.hover(Edit::undo);
-    files::Bytes state = idle.encodeState();
+    base::Bytes state = idle.encodeState();
     state[4] = static_cast<std::uint8_t>(undone.stepNumber());  // eight bytes, behind the version
     Terrain expected(slidingScene());
     expected.decodeState(state);
@@ -186,11 +186,11 @@ TEST(Load, PutsBackHeightsOutflowAndInertiaAndForgetsTheStroke) {
 }
 
 TEST(Load, OfBytesThatAreNoSandOfThisFieldIsAStepLikeAnyOther) {
-    const files::Bytes whole = Terrain(slidingScene()).copySand()->encode();
-    files::Bytes longer = whole;
+    const base::Bytes whole = Terrain(slidingScene()).copySand()->encode();
+    base::Bytes longer = whole;
     longer.push_back(0);
-    const files::Bytes larger = Terrain(samples::flatScene(65, 64)).copySand()->encode();
-    for (const files::Bytes& bytes : {files::Bytes(), files::Bytes(whole.begin(), whole.end() - 1), longer, larger}) {
+    const base::Bytes larger = Terrain(samples::flatScene(65, 64)).copySand()->encode();
+    for (const base::Bytes& bytes : {base::Bytes(), base::Bytes(whole.begin(), whole.end() - 1), longer, larger}) {
         Terrain terrain(slidingScene());
         Terrain other(terrain);
         Hand(terrain).hover(Edit::loaded(bytes));
@@ -257,7 +257,7 @@ TEST(Edits, VolumeIsExactAndTheHashIsTheWholeFields) {
 
 TEST(Edits, ThreadsAndBlocksChangeNothingAndAStateTakesTheStrokeAlong) {
     const sand::Scene scene = slidingScene();
-    const workers::WorkerPool pool(3);
+    const host::WorkerPool pool(3);
     sand::Erosion::Options threaded;
     threaded.executor = pool.lend();
     threaded.blockSize = 8;
@@ -285,11 +285,11 @@ TEST(Edits, AStateWithASpoiltStrokeIsRefusedWhole) {
     const sand::Scene scene = samples::flatScene(64, 64);
     Terrain dug(scene);
     Hand(dug).stroke(32);
-    files::Bytes state = dug.encodeState();
+    base::Bytes state = dug.encodeState();
     state[4 + 8 + 12 + 4 + 16 + 4 + 8 + 4] ^= 0xff;  // the first byte that zstd wrote of the heights before the stroke
     Terrain terrain(scene);
     const std::uint64_t hash = terrain.stateHash();
-    EXPECT_THROW(terrain.decodeState(state), files::FormatError);
+    EXPECT_THROW(terrain.decodeState(state), base::FormatError);
     EXPECT_EQ(terrain.stateHash(), hash);
     EXPECT_FALSE(terrain.canUndo());
 }

@@ -6,7 +6,7 @@
 #include <set>
 #include <sstream>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "sand/import/mesh_file.hpp"
 #include "sand/relax/tin_sand.hpp"
 #include "tests/sand/relax_fixture.hpp"
@@ -246,7 +246,7 @@ TEST_F(RelaxTin, BadPointsAreOneLine) {
     expectPointsRefused("0 0 1\n1e-200 0 2\n0 1e-200 3\n", "bad.csv: it is 1e-200 long, which is no length of terrain");
     expectPointsRefused("0 0 1\n1e-155 0 2\n0 1e-155 3\n", "which is no length of terrain");
     expectRefused("none.csv out.ply --talus 30", "none.csv: cannot be read");
-    EXPECT_THROW((void)sand::relax::toTin(sand::Points((1U << 22U) + 1), "large.csv", {30, 0}), files::InputError);
+    EXPECT_THROW((void)sand::relax::toTin(sand::Points((1U << 22U) + 1), "large.csv", {30, 0}), base::InputError);
 }
 
 TEST_F(RelaxTin, OptionsThatWouldDoNothingAreRefused) {

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "sand/scene.hpp"
 #include "tests/support/folder_test.hpp"
 
@@ -22,7 +22,7 @@ protected:
     std::string complaint(const std::string& text) {
         try {
             (void)sand::loadScene(write("s.toml", text));
-        } catch (const files::InputError& error) {
+        } catch (const base::InputError& error) {
             const std::string line = error.what();
             return line.substr(line.find(folder_.string()) == 0 ? folder_.string().size() + 1 : 0);
         }

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "sand/esri_grid.hpp"
 #include "tests/sand/scene_fixture.hpp"
 
@@ -35,9 +35,9 @@ TEST_F(SceneFile, ItsSizeIsLookedAtBeforeItsHeightsAreMade) {
     const std::string file = write("s.toml", "[field]\ncolumns = 16384\nrows = 16384\n[terrain]\n[material]\n");
     const long before = residentKilobytes();
     const auto tooLarge = [](int columns, int rows) {
-        throw files::InputError(fmt::format("{} x {} are too many", columns, rows));
+        throw base::InputError(fmt::format("{} x {} are too many", columns, rows));
     };
-    EXPECT_THROW((void)sand::loadScene(file, tooLarge), files::InputError);
+    EXPECT_THROW((void)sand::loadScene(file, tooLarge), base::InputError);
     EXPECT_LT(residentKilobytes() - before, 100'000);
     int asked = 0;
     const auto fits = [&](int columns, int rows) { asked += columns == 512 && rows == 512 ? 1 : 100; };
@@ -107,9 +107,7 @@ TEST_F(SceneFile, ALevelOfDetailThatCannotHoldItsErrorIsRefused) {
     }
 }
 
-TEST_F(SceneFile, AMissingFileIsNamed) {
-    EXPECT_THROW((void)sand::loadScene(folder_ / "none.toml"), files::InputError);
-}
+TEST_F(SceneFile, AMissingFileIsNamed) { EXPECT_THROW((void)sand::loadScene(folder_ / "none.toml"), base::InputError); }
 
 TEST_F(SceneFile, AFlatTalusWarns) {
     EXPECT_EQ(sand::loadScene(write("s.toml", kFlat + "talus_deg = 3\n")).warnings.size(), 1U);
@@ -149,9 +147,9 @@ TEST_F(SceneFile, FlatShadingSurvivesItsEncodingAndIsNoHillShade) {
 TEST_F(SceneFile, ShadedLikeAMapSurvivesItsEncodingAndOlderOnesAreNot) {
     const sand::Scene scene = sand::loadScene(write("s.toml", kFlat + "[look]\nhill_shade = true\n"));
     EXPECT_FALSE(sand::Scene::decode(scene.encode()).look.flatShading);
-    files::Bytes bytes = scene.encode();
+    base::Bytes bytes = scene.encode();
     EXPECT_TRUE(sand::Scene::decode(bytes).look.hillShade);
-    files::ByteWriter later;
+    base::ByteWriter later;
     scene.force.encodeRest(later);
     // Journals from before there were hill-shade and levels of detail end here.
     bytes.resize(bytes.size() - later.bytes().size() - 1 - sizeof(double));

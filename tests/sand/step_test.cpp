@@ -10,8 +10,8 @@
 
 namespace {
 
-files::Bytes bytesOf(const sand::Step& step) {
-    files::ByteWriter writer;
+base::Bytes bytesOf(const sand::Step& step) {
+    base::ByteWriter writer;
     encode(step, writer);
     return writer.take();
 }
@@ -21,8 +21,8 @@ TEST(Step, SurvivesItsEncoding) {
     for (int i = 0; i < 1000; ++i) {
         sand::Step step = samples::randomStep(random(), samples::flatScene(900, 900).rules, random);
         step.epoch = static_cast<std::uint32_t>(random());
-        const files::Bytes bytes = bytesOf(step);
-        files::ByteReader reader(bytes);
+        const base::Bytes bytes = bytesOf(step);
+        base::ByteReader reader(bytes);
         ASSERT_EQ(sand::decodeStep(reader), step);
         ASSERT_TRUE(reader.atEnd());
     }
@@ -38,23 +38,23 @@ TEST(Step, EveryEditSurvivesAndNoOtherIsRead) {
         }
         for (const bool engaged : {false, true}) {
             const sand::Step step{1, 2, engaged, {{5, 6, 7}}, edit};
-            const files::Bytes bytes = bytesOf(step);
-            files::ByteReader reader(bytes);
+            const base::Bytes bytes = bytesOf(step);
+            base::ByteReader reader(bytes);
             EXPECT_EQ(sand::decodeStep(reader), step);
         }
     }
-    const files::Bytes bytes = bytesOf({1, 2, false, {}, static_cast<sand::Edit::Kind>(sand::kEdits)});
-    files::ByteReader reader(bytes);
-    EXPECT_THROW((void)sand::decodeStep(reader), files::FormatError);
+    const base::Bytes bytes = bytesOf({1, 2, false, {}, static_cast<sand::Edit::Kind>(sand::kEdits)});
+    base::ByteReader reader(bytes);
+    EXPECT_THROW((void)sand::decodeStep(reader), base::FormatError);
 }
 
 // What a session of spheres wrote before there were other tools, byte for byte: old journals are still read, and a
 // sphere's steps have not grown.
 TEST(Step, OfASphereIsWrittenAsItAlwaysWas) {
     sand::Step step{3, 300, true, {{5, -6, 70}}, sand::Edit::tuned({7, 11, 13, 17})};
-    const files::Bytes before{3, 0xac, 2, 9, 1, 10, 11, 0x8c, 1, 7, 0, 0, 0, 11, 0, 0, 0, 13, 0, 0, 0, 17, 0, 0, 0};
+    const base::Bytes before{3, 0xac, 2, 9, 1, 10, 11, 0x8c, 1, 7, 0, 0, 0, 11, 0, 0, 0, 13, 0, 0, 0, 17, 0, 0, 0};
     EXPECT_EQ(bytesOf(step), before);
-    files::ByteReader reader(before);
+    base::ByteReader reader(before);
     EXPECT_EQ(sand::decodeStep(reader), step);
     step.heading = *sand::headingOf(30, true);
     EXPECT_EQ(bytesOf(step).size(), before.size() + 4) << "only a step that turns the tool says how";
@@ -69,19 +69,19 @@ TEST(Step, AHeadingAndEveryToolSurviveAndWhatIsNoneIsRefused) {
             tuning.toolHeading = *sand::headingOf(77, mirrored);
             sand::Step step{1, 2, true, {{5, 6, 7}}, sand::Edit::tuned(tuning)};
             step.heading = *sand::headingOf(-123, !mirrored);
-            const files::Bytes bytes = bytesOf(step);
-            files::ByteReader reader(bytes);
+            const base::Bytes bytes = bytesOf(step);
+            base::ByteReader reader(bytes);
             EXPECT_EQ(sand::decodeStep(reader), step);
             for (std::size_t length = 0; length < bytes.size(); ++length) {
-                files::ByteReader cut{std::span(bytes).first(length)};
-                EXPECT_THROW((void)sand::decodeStep(cut), files::FormatError) << length;
+                base::ByteReader cut{std::span(bytes).first(length)};
+                EXPECT_THROW((void)sand::decodeStep(cut), base::FormatError) << length;
             }
         }
     }
     const auto refused = [](const sand::Step& step) {
-        const files::Bytes bytes = bytesOf(step);
-        files::ByteReader reader(bytes);
-        EXPECT_THROW((void)sand::decodeStep(reader), files::FormatError);
+        const base::Bytes bytes = bytesOf(step);
+        base::ByteReader reader(bytes);
+        EXPECT_THROW((void)sand::decodeStep(reader), base::FormatError);
     };
     sand::Step crooked{1, 2, true, {}};
     crooked.heading = sand::Heading{100, 100};
@@ -102,19 +102,19 @@ TEST(Step, SeventeenSamplesOfAHandFitInEightyBytes) {
 }
 
 TEST(Step, RefusesEveryTruncation) {
-    const files::Bytes bytes = bytesOf({1, 2, true, {{1000, 2000, 3000}, {-5, 7, 9}}});
+    const base::Bytes bytes = bytesOf({1, 2, true, {{1000, 2000, 3000}, {-5, 7, 9}}});
     for (std::size_t length = 0; length < bytes.size(); ++length) {
-        files::ByteReader reader{std::span(bytes).first(length)};
-        EXPECT_THROW((void)sand::decodeStep(reader), files::FormatError) << length;
+        base::ByteReader reader{std::span(bytes).first(length)};
+        EXPECT_THROW((void)sand::decodeStep(reader), base::FormatError) << length;
     }
 }
 
 TEST(Step, RefusesEveryTruncationOfAnEdit) {
     for (const sand::Edit& edit : {sand::Edit::tuned({7, 11, 13, 17}), sand::Edit::loaded({3, 1, 4, 1, 5})}) {
-        const files::Bytes bytes = bytesOf({1, 2, true, {{5, 6, 7}}, edit});
+        const base::Bytes bytes = bytesOf({1, 2, true, {{5, 6, 7}}, edit});
         for (std::size_t length = 0; length < bytes.size(); ++length) {
-            files::ByteReader reader{std::span(bytes).first(length)};
-            EXPECT_THROW((void)sand::decodeStep(reader), files::FormatError) << length;
+            base::ByteReader reader{std::span(bytes).first(length)};
+            EXPECT_THROW((void)sand::decodeStep(reader), base::FormatError) << length;
         }
     }
 }
@@ -122,9 +122,9 @@ TEST(Step, RefusesEveryTruncationOfAnEdit) {
 TEST(Step, RefusesAMaterialOrToolThatNoSceneGives) {
     const sand::Tuning good{7, 11, 13, 17};
     const auto refused = [](const sand::Tuning& tuning) {
-        const files::Bytes bytes = bytesOf({1, 2, false, {}, sand::Edit::tuned(tuning)});
-        files::ByteReader reader(bytes);
-        EXPECT_THROW((void)sand::decodeStep(reader), files::FormatError);
+        const base::Bytes bytes = bytesOf({1, 2, false, {}, sand::Edit::tuned(tuning)});
+        base::ByteReader reader(bytes);
+        EXPECT_THROW((void)sand::decodeStep(reader), base::FormatError);
     };
     for (std::int32_t sand::Tuning::*number : {&sand::Tuning::threshold, &sand::Tuning::startThreshold,
                                                &sand::Tuning::sweepsPerStep, &sand::Tuning::toolRadius}) {
@@ -138,13 +138,13 @@ TEST(Step, RefusesAMaterialOrToolThatNoSceneGives) {
 }
 
 TEST(Step, RefusesPathsTooLongAndPointsOutOfReach) {
-    files::Bytes bytes = bytesOf({1, 2, true, {}});
+    base::Bytes bytes = bytesOf({1, 2, true, {}});
     bytes.back() = sand::kMaxPathPoints + 1;
-    files::ByteReader tooLong(bytes);
-    EXPECT_THROW((void)sand::decodeStep(tooLong), files::FormatError);
-    const files::Bytes far = bytesOf({1, 2, true, {{sand::kMaxProbe + 1, 0, 0}}});
-    files::ByteReader outOfReach(far);
-    EXPECT_THROW((void)sand::decodeStep(outOfReach), files::FormatError);
+    base::ByteReader tooLong(bytes);
+    EXPECT_THROW((void)sand::decodeStep(tooLong), base::FormatError);
+    const base::Bytes far = bytesOf({1, 2, true, {{sand::kMaxProbe + 1, 0, 0}}});
+    base::ByteReader outOfReach(far);
+    EXPECT_THROW((void)sand::decodeStep(outOfReach), base::FormatError);
 }
 
 }  // namespace

@@ -155,7 +155,7 @@ TEST(Dtrack, SurvivesAnyBytes) {
     const std::string good = "fr 12\n6d 2 " + body(0, 1) + " " + body(1, 2) + "\n";
     int poses = 0;
     for (unsigned i = 0; i < 20'000; ++i) {
-        files::Bytes bytes = test::bytesOf(good);
+        base::Bytes bytes = test::bytesOf(good);
         for (unsigned change = 0; change < 1 + i % 5; ++change) {
             bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
         }
@@ -169,7 +169,7 @@ TEST(Dtrack, SurvivesAnyBytes) {
 
 TEST(Dtrack, IsSentAsItIsRead) {
     const Pose pose{{0.2, 1.65, 2.2}, glm::normalize(glm::dvec3(0.9, 0.2, -0.3))};
-    const files::Bytes packet = dtrackPacket(pose, 5, 2);
+    const base::Bytes packet = dtrackPacket(pose, 5, 2);
     const Reading reading = DtrackReader(2).read(packet, false);
     ASSERT_EQ(reading.kind, Kind::pose);
     const Pose back = RoomMapping{}.pose(reading.measured);

@@ -11,7 +11,7 @@ namespace {
 using namespace tracking;
 using test::near;
 
-Reading read(const files::Bytes& packet) { return OpentrackReader().read(packet, false); }
+Reading read(const base::Bytes& packet) { return OpentrackReader().read(packet, false); }
 
 TEST(Opentrack, TellsCentimetresAndDegrees) {
     // 30 cm to the user's left, 10 cm up, 50 cm away from the screen.
@@ -34,17 +34,17 @@ TEST(Opentrack, CountsPitchUpAndRollToTheLeft) {
 
 TEST(Opentrack, IsLittleEndian) {
     // 1.0 is 3f f0 00 00 00 00 00 00, written from its end.
-    files::Bytes packet(48, 0);
+    base::Bytes packet(48, 0);
     packet[15] = 0x3f;
     packet[14] = 0xf0;
     EXPECT_TRUE(near(read(packet).measured.position, {0, 0.01, 0}));
 }
 
 TEST(Opentrack, RefusesEveryOtherLength) {
-    const files::Bytes good = test::doubles({0, 0, 0, 0, 0, 0});
+    const base::Bytes good = test::doubles({0, 0, 0, 0, 0, 0});
     ASSERT_EQ(read(good).kind, Reading::Kind::pose);
     for (const std::size_t size : {0U, 1U, 47U, 49U, 56U, 65507U}) {
-        EXPECT_EQ(read(files::Bytes(size, 0)).kind, Reading::Kind::refused) << size;
+        EXPECT_EQ(read(base::Bytes(size, 0)).kind, Reading::Kind::refused) << size;
     }
 }
 

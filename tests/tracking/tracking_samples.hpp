@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "files/byte_stream.hpp"
-#include "files/input_error.hpp"
+#include "base/byte_stream.hpp"
+#include "base/input_error.hpp"
 #include "tracking/pose.hpp"
 
 namespace test {
@@ -23,11 +23,11 @@ inline testing::AssertionResult near(glm::dvec3 got, glm::dvec3 want, double mos
                                        << ", " << want.y << ", " << want.z << ")";
 }
 
-inline files::Bytes bytesOf(const std::string& text) { return {text.begin(), text.end()}; }
+inline base::Bytes bytesOf(const std::string& text) { return {text.begin(), text.end()}; }
 
 /// Six doubles as opentrack sends them: cm and degrees.
-inline files::Bytes doubles(const std::vector<double>& values) {
-    files::ByteWriter writer;
+inline base::Bytes doubles(const std::vector<double>& values) {
+    base::ByteWriter writer;
     for (const double value : values) {
         writer.put(value);
     }
@@ -38,7 +38,7 @@ inline files::Bytes doubles(const std::vector<double>& values) {
 inline std::string refusal(const std::function<void()>& act) {
     try {
         act();
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         return error.what();
     }
     return "";

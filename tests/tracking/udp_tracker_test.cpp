@@ -61,9 +61,9 @@ TEST_F(UdpTrackerTest, TakesTheNewestOfWhatHasArrived) {
 TEST_F(UdpTrackerTest, CountsAndIgnoresWhatIsNoPacket) {
     open("opentrack:0 origin=0,0,0");
     sender->send(test::doubles({0, 10, 0, 0, 0, 0}));
-    sender->send(files::Bytes{});
-    sender->send(files::Bytes(47, 1));
-    sender->send(files::Bytes(65507, 1));
+    sender->send(base::Bytes{});
+    sender->send(base::Bytes(47, 1));
+    sender->send(base::Bytes(65507, 1));
     sender->send(test::doubles({0, 1e9, 0, 0, 0, 0}));
     sender->send(test::doubles({0, std::nan(""), 0, 0, 0, 0}));
     const std::optional<Pose> pose = lookUntil(6);

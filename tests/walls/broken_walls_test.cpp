@@ -36,7 +36,7 @@ Promise promiseOf(const std::filesystem::path& file) {
 std::string complaintAbout(const std::filesystem::path& file) {
     try {
         (void)loadWall(file);
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         return error.what();
     }
     return "";

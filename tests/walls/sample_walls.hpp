@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "walls/canvas.hpp"
 #include "walls/projection.hpp"
 #include "walls/wall.hpp"
@@ -32,7 +32,7 @@ inline std::vector<std::string> configNames() {
 inline std::string complaint(const std::string& text) {
     try {
         (void)parseWall(text, "lab.toml");
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         return error.what();
     }
     return "no complaint";

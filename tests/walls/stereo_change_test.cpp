@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
 namespace {
 
@@ -29,7 +29,7 @@ std::set<std::string> shownBy(const walls::Wall& wall) {
                           walls::outputPixels(wall.stereo, wall.tiles[i].pixels));
             }
             names.insert(name);
-        } catch (const files::InputError& error) {
+        } catch (const base::InputError& error) {
             EXPECT_NE(std::string(error.what()).find("--stereo"), std::string::npos) << error.what();
         }
     }
@@ -53,7 +53,7 @@ TEST(StereoChange, WhatCannotBeShownIsSaidWithWhatWouldBeNeeded) {
     const auto complaint = [](const char* file, Stereo stereo) {
         try {
             (void)walls::shownOnItsOutputs(sampleWall(file), stereo);
-        } catch (const files::InputError& error) {
+        } catch (const base::InputError& error) {
             return std::string(error.what());
         }
         return std::string("nothing");

@@ -101,7 +101,7 @@ TEST(WallBytes, AreRefusedForAWallThatCannotBe) {
     for (const auto& [what, spoil] : cases) {
         Wall wall = fullWall();
         spoil(wall);
-        EXPECT_THROW((void)Wall::decode(wall.encode()), files::FormatError) << what;
+        EXPECT_THROW((void)Wall::decode(wall.encode()), base::FormatError) << what;
     }
 }
 
@@ -114,26 +114,26 @@ TEST(WallBytes, OfTheLargestGridAreTaken) {
 }
 
 TEST(WallBytes, AreRefusedWhenCutShortAnywhereOrTooLong) {
-    files::Bytes bytes = config("desktop.toml").encode();
+    base::Bytes bytes = config("desktop.toml").encode();
     for (std::size_t size = 0; size < bytes.size(); ++size) {
-        EXPECT_THROW((void)Wall::decode(std::span(bytes).first(size)), files::FormatError) << size;
+        EXPECT_THROW((void)Wall::decode(std::span(bytes).first(size)), base::FormatError) << size;
     }
     bytes.push_back(0);
-    EXPECT_THROW((void)Wall::decode(bytes), files::FormatError);
+    EXPECT_THROW((void)Wall::decode(bytes), base::FormatError);
 }
 
 TEST(WallBytes, DamagedGiveAWallThatCanBeLaidOutOrAreRefused) {
     const unsigned seed = test::randomSeed();
     SCOPED_TRACE(test::again(seed));
     std::mt19937 random(seed);
-    const files::Bytes whole = config("tiled_3x4.toml").encode();
+    const base::Bytes whole = config("tiled_3x4.toml").encode();
     int refused = 0;
     for (int round = 0; round < 3000; ++round) {
-        files::Bytes bytes = whole;
+        base::Bytes bytes = whole;
         bytes[random() % bytes.size()] ^= static_cast<std::uint8_t>(1 << random() % 8);
         try {
             EXPECT_EQ(wallCanvas(Wall::decode(bytes)).tiles.size(), 12U);
-        } catch (const files::FormatError&) {
+        } catch (const base::FormatError&) {
             ++refused;
         }
     }

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "tests/walls/sample_walls.hpp"
 
 namespace walls {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "tests/walls/sample_walls.hpp"
 
 namespace walls {

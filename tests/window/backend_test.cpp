@@ -5,7 +5,7 @@
 #include <fstream>
 #include <map>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "pictures/compare.hpp"
 #include "probe_fixture.hpp"
 #include "render_node/gl/gl_module.hpp"
@@ -90,7 +90,7 @@ TEST_F(Backends, AreNamedAsOnTheCommandLine) {
     for (const Backend backend : {Backend::automatic, Backend::osmesa, Backend::egl, Backend::glfw}) {
         EXPECT_EQ(render_node::backendNamed(render_node::backendName(backend)), backend);
     }
-    EXPECT_THROW((void)render_node::backendNamed("vulkan"), files::InputError);
+    EXPECT_THROW((void)render_node::backendNamed("vulkan"), base::InputError);
 }
 
 TEST_F(Backends, AutoOpensWindowsOnlyWhereTheWallFileNamesAPlace) {
@@ -113,7 +113,7 @@ TEST_F(Backends, NameThePackageOfAModuleThatIsNotThere) {
     try {
         (void)render_node::loadPlatform(Backend::egl, {}, {folder_});
         FAIL() << "loaded from an empty folder";
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         EXPECT_EQ(std::string(error.what()), "--gl egl: there is no sandwall-gl-egl.so in " + folder_.string() +
                                                  "; build Sandwall with Debian's libegl-dev");
     }
@@ -125,7 +125,7 @@ TEST_F(Backends, NameThePackageOfALibraryThatIsNotThere) {
     try {
         (void)render_node::loadPlatform(Backend::glfw, {}, {folder_});
         FAIL() << "loaded a text file";
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         const std::string line = error.what();
         EXPECT_TRUE(line.starts_with("--gl glfw: ")) << line;
         EXPECT_NE(line.find("install Debian's libglfw3,"), std::string::npos) << line;

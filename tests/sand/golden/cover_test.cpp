@@ -6,10 +6,10 @@
 #include <random>
 #include <vector>
 
+#include "host/worker_pool.hpp"
 #include "sand/dunes.hpp"
 #include "tests/support/relaxing.hpp"
 #include "tests/support/sand_samples.hpp"
-#include "workers/worker_pool.hpp"
 
 namespace {
 
@@ -53,8 +53,8 @@ TEST_P(Cover, TenThousandEditsHashAlike) {
     constexpr std::uint64_t kFew = 1000;  // for slow builds
     const sand::Scene scene = coveredScene();
     const Way way = wayOf(GetParam());
-    workers::WorkerPool team(way.threads);
-    const sand::Executor executor = team.executor();
+    host::WorkerPool team(way.threads);
+    const base::Executor executor = team.executor();
     sand::Terrain terrain(scene, {.blockSize = way.block, .path = way.path, .executor = &executor});
     std::mt19937 random(47);
     std::uint64_t all = 0;  // of every step's hash, so that none may differ

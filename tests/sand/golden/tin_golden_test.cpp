@@ -76,7 +76,7 @@ std::uint64_t hashOfSession(std::int32_t threshold, std::int32_t startThreshold,
             erosion = sand::tin::Erosion(layer, threshold, startThreshold);
         }
         erosion.sweep(layer, 30, stands ? &held : nullptr, moved);
-        files::ByteWriter writer;
+        base::ByteWriter writer;
         layer.encode(writer);
         for (const std::uint8_t byte : writer.bytes()) {
             hash = (hash ^ byte) * 1099511628211U;

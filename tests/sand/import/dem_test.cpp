@@ -28,20 +28,20 @@ TEST_F(Import, ADemBringsHeightsAndItsPlace) {
 TEST_F(Import, TheGeoreferenceTravelsWithTheSceneAndOlderScenesHaveNone) {
     writeRaster("t.tif", {.columns = 2, .rows = 2, .heights = {1, 2, 3, 4}});
     const sand::Scene scene = load(kDem);
-    files::Bytes bytes = scene.encode();
+    base::Bytes bytes = scene.encode();
     EXPECT_EQ(sand::Scene::decode(bytes).georeference, scene.georeference);
     sand::Scene nowhere = scene;
     nowhere.georeference = {};
-    const files::Bytes older = nowhere.encode();
+    const base::Bytes older = nowhere.encode();
     ASSERT_LT(older.size(), bytes.size());
     EXPECT_TRUE(std::equal(older.begin(), older.end(), bytes.begin())) << "what stands before it is as it was";
     EXPECT_EQ(sand::Scene::decode(older).georeference, sand::Georeference{});
     EXPECT_EQ(nowhere.rules.digest(), scene.rules.digest());
     bytes[older.size()] = 200;
-    EXPECT_THROW((void)sand::Scene::decode(bytes), files::FormatError);
+    EXPECT_THROW((void)sand::Scene::decode(bytes), base::FormatError);
     bytes[older.size()] = 1;
     bytes.pop_back();
-    EXPECT_THROW((void)sand::Scene::decode(bytes), files::FormatError);
+    EXPECT_THROW((void)sand::Scene::decode(bytes), base::FormatError);
 }
 
 TEST_F(Import, PixelsWithoutDataAreWalls) {

@@ -12,7 +12,7 @@ protected:
     [[nodiscard]] std::string refused(const std::string& text) {
         try {
             (void)read(text);
-        } catch (const files::InputError& error) {
+        } catch (const base::InputError& error) {
             return std::string(error.what()).substr(folder_.string().size() + 1);
         }
         return "accepted";
@@ -124,7 +124,7 @@ TEST_F(PointsFile, AFileThatCannotBeReadToItsEndIsNotTakenForItsBeginning) {
     try {
         (void)sand::readPoints("/proc/self/mem");  // opens, and nothing lies at its beginning
         FAIL() << "accepted";
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         EXPECT_STREQ(error.what(), "/proc/self/mem: cannot be read to its end; check the disk it lies on");
     }
 }

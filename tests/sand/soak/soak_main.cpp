@@ -8,9 +8,9 @@
 #include <random>
 
 #include "host/command_line.hpp"
+#include "host/worker_pool.hpp"
 #include "sand/dunes.hpp"
 #include "tests/support/sand_samples.hpp"
-#include "workers/worker_pool.hpp"
 
 namespace {
 
@@ -37,8 +37,8 @@ sand::Scene dunes(const Options& options) {
 }
 
 int run(const Options& options) {
-    workers::WorkerPool team(options.threads);
-    const sand::Executor executor = team.executor();
+    host::WorkerPool team(options.threads);
+    const base::Executor executor = team.executor();
     const sand::Rules rules = dunes(options).rules;
     sand::Terrain terrain(dunes(options),
                           {.blockSize = options.block,

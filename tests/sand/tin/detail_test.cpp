@@ -198,7 +198,7 @@ TEST(TinDetail, CoarseningThatRemembersLeavesWhatOneThatLooksAgainLeaves) {
 
 TEST(TinDetail, WithoutAnErrorNothingGoes) {
     Layer layer = levelLayer(10, 10, 256);
-    const files::Bytes before = bytesOf(layer);
+    const base::Bytes before = bytesOf(layer);
     Vertex next = 0;
     EXPECT_EQ(sand::tin::coarsen(layer, rulesOf(256, 0, 100), next, kNowhere), 0);
     EXPECT_EQ(sand::tin::coarsen(layer, rulesOf(256, 1, 0), next, kNowhere), 0);
@@ -209,15 +209,15 @@ TEST(TinDetail, RulesTravelAndDamagedOnesAreRefused) {
     DetailRules rules = rulesOf(128, 3.5, 16);
     rules.maxVertices = 1000;
     rules.keepsConstraints = true;
-    files::ByteWriter writer;
+    base::ByteWriter writer;
     rules.encode(writer);
-    files::ByteReader reader(writer.bytes());
+    base::ByteReader reader(writer.bytes());
     EXPECT_EQ(DetailRules::decode(reader), rules);
     rules.maxError = std::nan("");
-    files::ByteWriter damaged;
+    base::ByteWriter damaged;
     rules.encode(damaged);
-    files::ByteReader again(damaged.bytes());
-    EXPECT_THROW(DetailRules::decode(again), files::FormatError);
+    base::ByteReader again(damaged.bytes());
+    EXPECT_THROW(DetailRules::decode(again), base::FormatError);
 }
 
 }  // namespace

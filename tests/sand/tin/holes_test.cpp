@@ -125,7 +125,7 @@ TEST(TinHoles, ALevelFieldWithAHoleKeepsItsSand) {
     EXPECT_TRUE(layer.mesh().hasOutline());
     EXPECT_TRUE(layer.ground() == Wide{6} * (12 * 9 - 4 * 4) * 256 * 256);
     EXPECT_TRUE(layer.volume() == layer.ground() * 1000);
-    const files::Bytes before = bytesOf(layer);
+    const base::Bytes before = bytesOf(layer);
     EXPECT_TRUE(sand::tin::settle(layer, kTalus, kTalus).atRest);
     EXPECT_EQ(bytesOf(layer), before);
 }
@@ -255,8 +255,8 @@ TEST(TinHoles, ACopyOfAStateIsTheSameAndGoesOnAlike) {
     lump(layer, 4, 12, 50);
     lump(layer, 12, 12, 300);
     sand::tin::settle(layer, kTalus, kTalus, 10);
-    const files::Bytes bytes = bytesOf(layer);
-    files::ByteReader reader(bytes);
+    const base::Bytes bytes = bytesOf(layer);
+    base::ByteReader reader(bytes);
     Layer other = Layer::decode(reader, layer.mesh().holes());
     EXPECT_EQ(bytesOf(other), bytes);
     EXPECT_TRUE(other.ground() == layer.ground());
@@ -268,17 +268,17 @@ TEST(TinHoles, ACopyOfAStateIsTheSameAndGoesOnAlike) {
 
 TEST(TinHoles, AStateWithoutTheOutlineIsRefused) {
     const Layer whole = levelLayer(24, 24, 256);
-    const files::Bytes bytes = bytesOf(whole);
-    files::ByteReader reader(bytes);
+    const base::Bytes bytes = bytesOf(whole);
+    base::ByteReader reader(bytes);
     const auto holes = startOf(24, 24, isRing, levelAt).holes;
-    EXPECT_THROW((void)Layer::decode(reader, holes), files::FormatError);
+    EXPECT_THROW((void)Layer::decode(reader, holes), base::FormatError);
 }
 
 TEST(TinHoles, AStartTravelsWithItsHoles) {
     const Start start = startOf(24, 24, isRing, levelAt);
-    files::ByteWriter writer;
+    base::ByteWriter writer;
     start.encode(writer);
-    files::ByteReader reader(writer.bytes());
+    base::ByteReader reader(writer.bytes());
     const Start read = Start::decode(reader);
     ASSERT_NE(read.holes, nullptr);
     EXPECT_EQ(read.holes->runs(), start.holes->runs());

@@ -88,8 +88,8 @@ TEST(Layer, KeepsAnInclinedPlaneWithinRounding) {
     }
 }
 
-files::Bytes bytesOf(const Layer& layer) {
-    files::ByteWriter writer;
+base::Bytes bytesOf(const Layer& layer) {
+    base::ByteWriter writer;
     layer.encode(writer);
     return writer.take();
 }
@@ -98,9 +98,9 @@ TEST(Layer, ReadsNoFurtherThanItsEnd) {
     std::mt19937 random(6);
     Layer layer = layerOf(500, 400, 60, random);
     pile(layer, random, 1 << 20);
-    files::Bytes bytes = bytesOf(layer);
+    base::Bytes bytes = bytesOf(layer);
     bytes.push_back(42);
-    files::ByteReader reader(bytes);
+    base::ByteReader reader(bytes);
     const Layer again = Layer::decode(reader);
     ASSERT_EQ(reader.rest().size(), 1U);
     EXPECT_EQ(again.volumes(), layer.volumes());
@@ -115,23 +115,23 @@ TEST(Layer, RefusesDamagedBytesOrReadsAnotherSoundLayer) {
     std::mt19937 random(7);
     Layer layer = layerOf(60, 50, 30, random);
     pile(layer, random, 1 << 20);
-    const files::Bytes whole = bytesOf(layer);
+    const base::Bytes whole = bytesOf(layer);
     int taken = 0, refused = 0;
-    const auto tryOn = [&](const files::Bytes& bytes) {
-        files::ByteReader reader(bytes);
+    const auto tryOn = [&](const base::Bytes& bytes) {
+        base::ByteReader reader(bytes);
         try {
             ASSERT_EQ(whatIsWrong(Layer::decode(reader).mesh()), "");
             ++taken;
-        } catch (const files::FormatError&) {
+        } catch (const base::FormatError&) {
             ++refused;
         }
     };
     for (std::size_t i = 0; i < whole.size(); ++i) {
         const int before = taken;
-        tryOn(files::Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(i)));
+        tryOn(base::Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(i)));
         ASSERT_EQ(taken, before) << "cut after " << i;
         for (const int flip : {1, 2, 0x40, 0x80, 0xff}) {
-            files::Bytes damaged = whole;
+            base::Bytes damaged = whole;
             damaged[i] = static_cast<std::uint8_t>(damaged[i] ^ flip);
             tryOn(damaged);
         }
@@ -151,8 +151,8 @@ TEST(Layer, IsAFunctionOfTheEditsAndNotOfTheSlots) {
     std::mt19937 random(5);
     Layer layer = layerOf(500, 400, 60, random);
     pile(layer, random, 1 << 20);
-    const files::Bytes start = bytesOf(layer);
-    files::ByteReader reader(start);
+    const base::Bytes start = bytesOf(layer);
+    base::ByteReader reader(start);
     Layer restored = Layer::decode(reader);
     std::mt19937 same = random;
     for (int i = 0; i < 1000; ++i) {

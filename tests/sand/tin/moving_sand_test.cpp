@@ -61,7 +61,7 @@ TEST(MovingSand, DoublesAndIntegersAndEveryCodePathMoveTheSameSand) {
         for (const bool band : {false, true}) {
             MovingSand doubles = everythingOf(layer, held, MovingSand(false));
             MovingSand integers = everythingOf(layer, held, MovingSand(false, true));
-            MovingSand fast = everythingOf(layer, held, MovingSand(sand::machineHasV3()));
+            MovingSand fast = everythingOf(layer, held, MovingSand(base::machineHasV3()));
             for (int done = 0; done < 200; ++done) {
                 const double momentum = done % 40 < 20 ? 0 : 0.9;  // both while much moves
                 const bool moved = sweep(doubles, held, band, momentum);

@@ -21,15 +21,15 @@ using sand::tin::Wide;
 constexpr std::int32_t kTalus = 65536;  // [unit per cell], 45 degrees
 constexpr std::array kKinds{Kind::regular, Kind::jittered, Kind::random};
 
-files::Bytes bytesOf(const Layer& layer) {
-    files::ByteWriter writer;
+base::Bytes bytesOf(const Layer& layer) {
+    base::ByteWriter writer;
     layer.encode(writer);
     return writer.bytes();
 }
 
 Layer restored(const Layer& layer) {
-    const files::Bytes bytes = bytesOf(layer);
-    files::ByteReader reader(bytes);
+    const base::Bytes bytes = bytesOf(layer);
+    base::ByteReader reader(bytes);
     return Layer::decode(reader);
 }
 
@@ -79,7 +79,7 @@ TEST(TinErosion, ASlopeUpToTheTalusIsLeftAloneBitByBit) {
         Layer layer = layerOf(kind, 24);
         for (int degrees = 0; degrees < 360; degrees += 15) {
             incline(layer, kTalus, degrees);
-            const files::Bytes before = bytesOf(layer);
+            const base::Bytes before = bytesOf(layer);
             std::vector<Vertex> moved;
             EXPECT_EQ(Erosion(layer, kTalus, kTalus).sweep(layer, 100, nullptr, moved), 1) << degrees;
             EXPECT_TRUE(moved.empty());
@@ -139,7 +139,7 @@ TEST(TinErosion, SandAtRestIsAFixedPoint) {
             layer.setHeight(vertex, heightWithin(4 * kTalus, random));
         }
         ASSERT_TRUE(sand::tin::settle(layer, kTalus, kTalus).atRest);
-        const files::Bytes rest = bytesOf(layer);
+        const base::Bytes rest = bytesOf(layer);
         EXPECT_EQ(sand::tin::settle(layer, kTalus, kTalus).sweeps, 1);
         EXPECT_EQ(bytesOf(layer), rest);
         // At rest no triangle is steeper than the talus by more than sweeps tell apart: a part in 1024, and roundings.
@@ -251,7 +251,7 @@ TEST(TinErosion, NoSandRisesAboveAToolThatStandsInIt) {
     EXPECT_TRUE(moved.empty());
     erosion.sweep(layer, 100'000, nullptr, moved);  // nobody wakes anything
     EXPECT_GT(highestUnder(), 2 * most);
-    const files::Bytes rest = bytesOf(layer);
+    const base::Bytes rest = bytesOf(layer);
     sand::tin::settle(layer, kTalus, kTalus);
     EXPECT_EQ(bytesOf(layer), rest) << "not all that the tool had held back was looked at again";
 }
@@ -263,7 +263,7 @@ TEST(TinErosion, ABankStandsUntilTheStartThresholdAndThenSlidesUntilTheThreshold
     const auto edge = static_cast<Vertex>(mesh_checks::livingVertices(layer.mesh()).size() / 2);
     layer.add(edge, 100LL * 6 * kCell * kCell * kTalus);
     sand::tin::settle(layer, kTalus, 2 * kTalus);
-    const files::Bytes rest = bytesOf(layer);
+    const base::Bytes rest = bytesOf(layer);
     EXPECT_EQ(sand::tin::settle(layer, kTalus, kTalus).sweeps, 1) << "it stopped half way";
     EXPECT_EQ(bytesOf(layer), rest);
 }

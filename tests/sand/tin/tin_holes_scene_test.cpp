@@ -10,7 +10,7 @@
 #include <fstream>
 #include <random>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "sand/scene_raster.hpp"
 #include "sand/terrain.hpp"
 #include "sand/tin_raster.hpp"
@@ -131,7 +131,7 @@ TEST_F(TinHoleScene, AnOutlineOfMoreVerticesThanMayBeIsRefusedInOneLine) {
     try {
         (void)scene("[tin]\nvertices = 20\n");
         FAIL() << "not refused";
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         const std::string said = error.what();
         EXPECT_NE(said.find("the outline of cells without data takes"), std::string::npos) << said;
         EXPECT_EQ(said.find('\n'), std::string::npos) << said;

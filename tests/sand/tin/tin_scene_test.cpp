@@ -6,7 +6,7 @@
 
 #include <fstream>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "sand/terrain.hpp"
 #include "sand/tin/lattice.hpp"
 #include "tests/support/folder_test.hpp"
@@ -32,7 +32,7 @@ protected:
     [[nodiscard]] std::string refusal(const Load& load) const {
         try {
             (void)load();
-        } catch (const files::InputError& error) {
+        } catch (const base::InputError& error) {
             return std::string(error.what()).substr(folder_.string().size() + 1);
         }
         return "nothing";
@@ -130,7 +130,7 @@ TEST_F(TinScene, RefusesASpacingThatWouldPutMorePointsAroundTheToolThanItsVertic
 #ifndef __SANITIZE_ADDRESS__  // a sanitizer's heap does not tell
 // Of this and other scenes 329 to 401 bytes a vertex were measured.
 TEST_F(TinScene, AReplicaTakesNoLessMemoryThanItsHostIsAskedFor) {
-    const files::Bytes bytes = scene(256, "flat", "widest = 0.0078125\n").encode();
+    const base::Bytes bytes = scene(256, "flat", "widest = 0.0078125\n").encode();
     const auto taken = [] {
         const struct mallinfo2 heap = mallinfo2();
         return heap.uordblks + heap.hblkhd;

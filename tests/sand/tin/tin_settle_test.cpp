@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "files/byte_stream.hpp"
+#include "base/byte_stream.hpp"
 #include "sand/tin/dual_projection.hpp"
 #include "sand/tin/settle.hpp"
 #include "tests/support/oracles.hpp"
@@ -70,9 +70,9 @@ TEST(TinSettle, DoesNotDependOnTheSlotsOfTriangles) {
     for (Vertex vertex = 40; vertex < 400; vertex += 3) {
         (void)layer.remove(vertex);
     }
-    files::ByteWriter writer;
+    base::ByteWriter writer;
     layer.encode(writer);
-    files::ByteReader reader(writer.bytes());
+    base::ByteReader reader(writer.bytes());
     Layer again = Layer::decode(reader);
     const auto firsts = [](const Layer& one) {
         std::vector<Vertex> corners;

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <random>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 #include "sand/terrain.hpp"
 #include "tests/sand/tin/same_session.hpp"
 #include "tests/support/folder_test.hpp"
@@ -153,7 +153,7 @@ TEST_F(TinTerrain, ResetUndoAndLoadPutTheSandBack) {
     Terrain terrain(start);
     const std::int64_t volume = terrain.volume();
     const auto untouched = terrain.surface().valuesOf(0);
-    const files::Bytes saved = terrain.copySand()->encode();
+    const base::Bytes saved = terrain.copySand()->encode();
     for (const Step& step : session(3, 20)) {
         terrain.apply(step);
     }
@@ -361,7 +361,7 @@ TEST_F(TinTerrain, RefusesWhatItCannotHoldInOneLine) {
     const auto complaint = [this](const std::string& tin, const std::string& more) -> std::string {
         try {
             (void)scene(tin, more);
-        } catch (const files::InputError& error) {
+        } catch (const base::InputError& error) {
             return error.what();
         }
         return "nothing";
@@ -382,7 +382,7 @@ TEST_F(TinTerrain, RefusesWhatItCannotHoldInOneLine) {
     try {
         (void)sand::loadScene(folder_ / "points.toml");
         FAIL() << "accepted";
-    } catch (const files::InputError& error) {
+    } catch (const base::InputError& error) {
         EXPECT_NE(std::string(error.what()).find("points.toml:5: a TIN has no rock"), std::string::npos)
             << error.what();
     }

@@ -30,8 +30,8 @@ inline Layer levelLayer(int columns, int rows, std::int32_t spacing) {
     return layer;
 }
 
-inline files::Bytes bytesOf(const Layer& layer) {
-    files::ByteWriter writer;
+inline base::Bytes bytesOf(const Layer& layer) {
+    base::ByteWriter writer;
     layer.encode(writer);
     return writer.take();
 }

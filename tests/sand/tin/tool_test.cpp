@@ -176,7 +176,7 @@ TEST(TinTool, HeldStillItChangesNothing) {
         const ProbePoint from = probeAt(18, 14, 5), to = probeAt(20, 15.5, 4.5);
         tool.drag(layer, imprint, Rim::closed, std::array{from, to});
         static_cast<void>(layer.takeChange());
-        const files::Bytes before = bytesOf(layer);
+        const base::Bytes before = bytesOf(layer);
         const Imprint placed = imprint;
         for (int step = 0; step < 3; ++step) {
             const Tool::Work done = tool.drag(layer, imprint, Rim::closed, std::array{to, to});
@@ -210,7 +210,7 @@ TEST(TinTool, PushesSandAheadAndToTheSidesAndNotBehind) {
 
 TEST(TinTool, OutsideOrAboveTheSandItLeavesTheLayerAlone) {
     Layer layer = levelLayer(30, 30, 256);
-    const files::Bytes before = bytesOf(layer);
+    const base::Bytes before = bytesOf(layer);
     Imprint imprint;
     Tool tool(shapeOf(ToolKind::ellipsoid, 4), {}, fineRules());
     const std::array<ProbePoint, 4> poses{probeAt(-20, 15, 0), probeAt(60, 60, -10), probeAt(15, 15, 4.5),
@@ -297,10 +297,10 @@ TEST(TinTool, GoesOnTheSameFromARestoredLayer) {
                   std::array{probeAt(12 + step, 12, 7.5), probeAt(13 + step, 12 + step, 7.2)});
     }
     const auto restore = [&] {
-        files::ByteWriter writer;
+        base::ByteWriter writer;
         layer.encode(writer);
         imprint.encode(writer);
-        files::ByteReader reader(writer.bytes());
+        base::ByteReader reader(writer.bytes());
         Layer other = Layer::decode(reader);
         return std::pair(std::move(other), Imprint::decode(reader));
     };
@@ -357,22 +357,22 @@ TEST(TinTool, RefusesADamagedImprint) {
     Imprint imprint;
     Tool tool(shapeOf(ToolKind::sphere, 4), {}, fineRules());
     press(layer, imprint, tool, probeAt(10, 10, 3));
-    files::ByteWriter writer;
+    base::ByteWriter writer;
     imprint.encode(writer);
-    const files::Bytes whole = writer.take();
+    const base::Bytes whole = writer.take();
     for (std::size_t length = 0; length < whole.size(); ++length) {
-        files::ByteReader reader(std::span<const std::uint8_t>(whole).first(length));
-        EXPECT_THROW(Imprint::decode(reader), files::FormatError) << length;
+        base::ByteReader reader(std::span<const std::uint8_t>(whole).first(length));
+        EXPECT_THROW(Imprint::decode(reader), base::FormatError) << length;
     }
     imprint.edges.assign(5000, {7, 9});  // of a large tool across many small ones' outlines
-    files::ByteWriter many;
+    base::ByteWriter many;
     imprint.encode(many);
-    files::ByteReader manyReader(many.bytes());
+    base::ByteReader manyReader(many.bytes());
     EXPECT_EQ(Imprint::decode(manyReader).edges.size(), 5000U);
-    files::Bytes other = whole;
+    base::Bytes other = whole;
     other[13] = 99;  // the kind of tool
-    files::ByteReader reader(other);
-    EXPECT_THROW(Imprint::decode(reader), files::FormatError);
+    base::ByteReader reader(other);
+    EXPECT_THROW(Imprint::decode(reader), base::FormatError);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace files {
+namespace base {
 
 /// Exit status of every program for input it cannot use; 1 is a failure while running, 0 success.
 inline constexpr int kExitBadInput = 2;
@@ -29,4 +29,4 @@ private:
     }
 };
 
-}  // namespace files
+}  // namespace base

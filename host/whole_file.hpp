@@ -5,13 +5,13 @@
 #include <fstream>
 #include <string>
 
-namespace files {
+namespace host {
 
 /// A file that is written whole or not at all: what stood at its path is replaced by keep() and not before.
 ///
 /// The text goes into a file beside it, which is renamed at the end, and removed when keep() is not reached. A path
-/// that is no plain file, such as a pipe, is written to directly. Throws InputError in one line when the path cannot
-/// be written; making one and letting it go is a test of that which changes nothing.
+/// that is no plain file, such as a pipe, is written to directly. Throws base::InputError in one line when the path
+/// cannot be written; making one and letting it go is a test of that which changes nothing.
 class WholeFile {
 public:
     explicit WholeFile(const std::filesystem::path& path);
@@ -36,4 +36,4 @@ private:
 /// Names that were given or taken in this file's folder are on the disk when it returns, where folders can be synced.
 void syncFolderOf(const std::filesystem::path& file);
 
-}  // namespace files
+}  // namespace host

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cstdint>
 
-namespace haptic_bridge {
+namespace host {
 
 /// The host's monotonic clock [ns]: every time stamp of the link is one of these.
 [[nodiscard]] inline std::int64_t monotonicNs() {
@@ -12,4 +12,4 @@ namespace haptic_bridge {
     return duration_cast<nanoseconds>(steady_clock::now().time_since_epoch()).count();
 }
 
-}  // namespace haptic_bridge
+}  // namespace host

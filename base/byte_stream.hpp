@@ -12,7 +12,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace files {
+namespace base {
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -112,4 +112,4 @@ private:
     std::span<const std::uint8_t> rest_;
 };
 
-}  // namespace files
+}  // namespace base

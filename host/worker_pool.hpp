@@ -4,17 +4,17 @@
 #include <functional>
 #include <memory>
 
-#include "sand/executor.hpp"
+#include "base/executor.hpp"
 
 namespace boost::asio {
 class thread_pool;
 }  // namespace boost::asio
 
-namespace workers {
+namespace host {
 
 inline constexpr int kMostThreads = 256;
 
-/// Threads of a program that share out the tasks it is given: what a sand::Executor stands for.
+/// Threads of a program that share out the tasks it is given: what a base::Executor stands for.
 ///
 /// The thread that calls run() works too, so that a pool of one is no pool. Tasks are taken in turn by whoever is free.
 /// A task must not throw, and must not call run() of the same pool; run() is for one thread at a time.
@@ -30,14 +30,14 @@ public:
     /// Calls task(0) … task(count - 1) once each, and returns when all have returned.
     void run(int count, const std::function<void(int)>& task);
     /// run() of this pool, which must outlive it.
-    [[nodiscard]] sand::Executor executor();
+    [[nodiscard]] base::Executor executor();
     /// The same for sand::Erosion::Options, or null for a pool of one.
-    [[nodiscard]] const sand::Executor* lend() const { return threads_ > 1 ? &executor_ : nullptr; }
+    [[nodiscard]] const base::Executor* lend() const { return threads_ > 1 ? &executor_ : nullptr; }
 
 private:
     int threads_;
-    sand::Executor executor_;
+    base::Executor executor_;
     std::unique_ptr<boost::asio::thread_pool> helpers_;  // all but the caller; null when there are none
 };
 
-}  // namespace workers
+}  // namespace host

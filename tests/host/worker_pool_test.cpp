@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "workers/worker_pool.hpp"
+#include "host/worker_pool.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 
 namespace {
 
-using workers::WorkerPool;
+using host::WorkerPool;
 
 TEST(WorkerPool, RunsEveryTaskOnce) {
     for (const int threads : {1, 2, 3, 7}) {
@@ -39,7 +39,7 @@ TEST(WorkerPool, WorksOnAllThreadsAtOnce) {
 
 TEST(WorkerPool, RefusesToBeNobodyOrAMob) {
     EXPECT_THROW(WorkerPool(0), std::invalid_argument);
-    EXPECT_THROW(WorkerPool(workers::kMostThreads + 1), std::invalid_argument);
+    EXPECT_THROW(WorkerPool(host::kMostThreads + 1), std::invalid_argument);
 }
 
 TEST(WorkerPool, TheSandIsTheSameOnAnyNumberOfThreads) {
@@ -59,7 +59,7 @@ TEST(WorkerPool, TheSandIsTheSameOnAnyNumberOfThreads) {
         const std::int64_t outflow = sand::Erosion(expected, rules, {.ground = &ground}).sweep(expected, 40);
         for (const int threads : {1, 2, 3, 7}) {
             WorkerPool pool(threads);
-            const sand::Executor executor = pool.executor();
+            const base::Executor executor = pool.executor();
             sand::HeightField field = start;
             sand::Erosion erosion(field, rules, {.ground = &ground, .executor = &executor});
             EXPECT_EQ(erosion.sweep(field, 40), outflow);

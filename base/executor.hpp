@@ -3,10 +3,10 @@
 
 #include <functional>
 
-namespace sand {
+namespace base {
 
 /// Calls task(0) … task(count - 1) once each, in any order and on any threads, and returns when all have returned.
 /// Handed in by programs that have cores to spare; the sand is the same with any of them, or none.
 using Executor = std::function<void(int count, const std::function<void(int)>& task)>;
 
-}  // namespace sand
+}  // namespace base

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "files/whole_file.hpp"
+#include "host/whole_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
-namespace files {
+namespace host {
 
 WholeFile::WholeFile(const std::filesystem::path& path) : path_(path), target_(path) {
     std::error_code none;
@@ -82,7 +82,7 @@ void syncFolderOf(const std::filesystem::path& file) {
 }
 
 void WholeFile::fail() const {
-    throw InputError(fmt::format("{}: cannot be written; check path and free space", path_.string()));
+    throw base::InputError(fmt::format("{}: cannot be written; check path and free space", path_.string()));
 }
 
-}  // namespace files
+}  // namespace host

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-namespace sand {
+namespace base {
 
 /// Whether this machine runs what is compiled for x86-64-v3.
 inline bool machineHasV3() {
@@ -9,4 +9,4 @@ inline bool machineHasV3() {
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
 }
 
-}  // namespace sand
+}  // namespace base

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace files {
+namespace host {
 
 /// The closed range of numbers a key accepts; an error quotes it.
 struct Range {
@@ -23,7 +23,7 @@ inline constexpr Range kPositive{std::numeric_limits<double>::min(), std::numeri
 /// One table of a TOML file, read key by key, so that every complaint names file, line and key.
 ///
 /// A reader takes the keys it knows and ends with finish(), which refuses the ones nobody asked for: a typing error
-/// must not become a silent default. Every member throws InputError. Copies share the same file.
+/// must not become a silent default. Every member throws base::InputError. Copies share the same file.
 class TomlTable {
 public:
     static TomlTable load(const std::filesystem::path& file);
@@ -73,4 +73,4 @@ private:
     std::shared_ptr<Node> node_;
 };
 
-}  // namespace files
+}  // namespace host

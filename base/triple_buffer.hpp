@@ -5,11 +5,11 @@
 #include <atomic>
 #include <cstdint>
 
-namespace haptic_bridge {
+namespace base {
 
 /// Hands the latest value from one thread to one other: three buffers, so that neither ever waits.
 template <class Value>
-class Latest {
+class TripleBuffer {
 public:
     /// The writer's own buffer: fill it, then publish().
     [[nodiscard]] Value& next() { return buffers_[writing_]; }
@@ -30,4 +30,4 @@ private:
     std::atomic<std::uint32_t> middle_{2};
 };
 
-}  // namespace haptic_bridge
+}  // namespace base

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "files/toml_table.hpp"
+#include "host/toml_table.hpp"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -9,9 +9,9 @@
 #include <set>
 #include <sstream>
 
-#include "files/input_error.hpp"
+#include "base/input_error.hpp"
 
-namespace files {
+namespace host {
 
 struct TomlTable::Document {
     std::filesystem::path path;
@@ -52,7 +52,7 @@ TomlTable TomlTable::load(const std::filesystem::path& file) {
     std::error_code ignored;
     std::ifstream stream(file, std::ios::binary);
     if (!stream || std::filesystem::is_directory(file, ignored)) {
-        throw InputError(fmt::format("{}: cannot be read; check the path", file.string()));
+        throw base::InputError(fmt::format("{}: cannot be read; check the path", file.string()));
     }
     std::ostringstream text;
     text << stream.rdbuf();
@@ -65,7 +65,7 @@ TomlTable TomlTable::parse(std::string_view text, const std::string& name) {
     try {
         document->root = toml::parse(text, name);
     } catch (const toml::parse_error& error) {
-        throw InputError(name, static_cast<long>(error.source().begin.line), std::string(error.description()));
+        throw base::InputError(name, static_cast<long>(error.source().begin.line), std::string(error.description()));
     }
     auto node = std::make_shared<Node>();
     node->table = &document->root;
@@ -78,7 +78,7 @@ bool TomlTable::has(std::string_view key) const { return node_->table->contains(
 void TomlTable::fail(std::string_view key, const std::string& message) const {
     const toml::node* value = node_->table->get(key);
     const long line = value != nullptr ? lineOf(*value) : lineOf(*node_->table);
-    throw InputError(node_->document->path.string(), std::max(line, 1L), message);
+    throw base::InputError(node_->document->path.string(), std::max(line, 1L), message);
 }
 
 double TomlTable::number(std::string_view key, Range range) const {
@@ -297,4 +297,4 @@ void TomlTable::finish() const {
 
 std::filesystem::path TomlTable::folder() const { return node_->document->path.parent_path(); }
 
-}  // namespace files
+}  // namespace host

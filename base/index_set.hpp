@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <vector>
 
-namespace sand::tin {
+namespace base {
 
 /// Numbers from 0 on. To clear it costs nothing; it takes four bytes for every number up to the largest.
-class NumberSet {
+class IndexSet {
 public:
     void clear() {
         if (++turn_ == 0) {
@@ -42,7 +42,7 @@ private:
 };
 
 /// A set that can be walked through: its numbers in the order in which they came, each once.
-class NumberList {
+class IndexList {
 public:
     void clear() {
         set_.clear();
@@ -62,8 +62,8 @@ public:
     [[nodiscard]] const std::vector<std::int32_t>& all() const { return all_; }
 
 private:
-    NumberSet set_;
+    IndexSet set_;
     std::vector<std::int32_t> all_;
 };
 
-}  // namespace sand::tin
+}  // namespace base

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "workers/worker_pool.hpp"
+#include "host/worker_pool.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -8,7 +8,7 @@
 #include <latch>
 #include <stdexcept>
 
-namespace workers {
+namespace host {
 
 WorkerPool::WorkerPool(int threads) : threads_(threads), executor_(executor()) {
     if (threads < 1 || threads > kMostThreads) {
@@ -44,8 +44,8 @@ void WorkerPool::run(int count, const std::function<void(int)>& task) {
     done.wait();
 }
 
-sand::Executor WorkerPool::executor() {
+base::Executor WorkerPool::executor() {
     return [this](int count, const std::function<void(int)>& task) { run(count, task); };
 }
 
-}  // namespace workers
+}  // namespace host
