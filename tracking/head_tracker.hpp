@@ -41,7 +41,7 @@ public:
 };
 
 /// Opens what the source names; nothing for none. `restingEye` is the fixed viewer's [m].
-/// Throws base::InputError: a broken trace with file, line and value; a port that is taken; no VRPN in this build.
+/// Throws base::InputError: a broken trace with file, line and value; a port that is taken.
 [[nodiscard]] std::unique_ptr<HeadTracker> openTracker(const Source& source, glm::dvec3 restingEye, Say say,
                                                        Clock clock = host::monotonicNs);
 

@@ -4,7 +4,6 @@
 #include "tracking/head_tracker.hpp"
 #include "tracking/opentrack.hpp"
 #include "tracking/udp_tracker.hpp"
-#include "tracking/vrpn_tracker.hpp"
 
 namespace tracking {
 
@@ -21,8 +20,6 @@ std::unique_ptr<HeadTracker> openTracker(const Source& source, glm::dvec3 restin
         case Source::Kind::dtrack:
             return std::make_unique<UdpTracker>(source, mapping, std::make_unique<DtrackReader>(source.body),
                                                 std::move(say), std::move(clock));
-        case Source::Kind::vrpn:
-            return openVrpn(source, mapping, std::move(say), std::move(clock));
     }
     return nullptr;
 }

@@ -140,16 +140,8 @@ struct Reader {
         } else if (kind == "opentrack" || kind == "dtrack") {
             source.kind = kind == "dtrack" ? Source::Kind::dtrack : Source::Kind::opentrack;
             readAddress(rest);
-        } else if (kind == "vrpn") {
-            source.kind = Source::Kind::vrpn;
-            source.device = rest;
-            const auto at = rest.find('@');
-            if (at == 0 || at == std::string_view::npos || at + 1 == rest.size() ||
-                rest.find(' ') != std::string_view::npos) {
-                fail("write vrpn:NAME@HOST");
-            }
         } else {
-            fail("is none of none, trace:FILE.csv, opentrack:[HOST:]PORT, dtrack:[HOST:]PORT[:BODY], vrpn:NAME@HOST");
+            fail("is none of none, trace:FILE.csv, opentrack:[HOST:]PORT, dtrack:[HOST:]PORT[:BODY]");
         }
     }
 };

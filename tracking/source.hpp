@@ -18,12 +18,11 @@ namespace tracking {
 ///     trace:FILE.csv
 ///     opentrack:[HOST:]PORT
 ///     dtrack:[HOST:]PORT[:BODY]
-///     vrpn:NAME@HOST
 ///
 /// and behind it, after blanks, any of  origin=X,Y,Z  axes=x,-z,y  eyes=RIGHT,UP,BACK  from=ADDRESS
 /// (docs/head_tracking.md).
 struct Source {
-    enum class Kind : std::uint8_t { none, trace, opentrack, dtrack, vrpn };
+    enum class Kind : std::uint8_t { none, trace, opentrack, dtrack };
 
     Kind kind = Kind::none;
     std::string text;                  // without what stands behind it; for messages
@@ -32,7 +31,6 @@ struct Source {
     std::string from;                  // the only address that packets are taken from; empty: any, on loopback
     std::uint16_t port = 0;            // 0: any free one, for tests
     int body = 0;                      // of DTrack, counted from 0 as in its packets
-    std::string device;                // of VRPN: NAME@HOST
     std::optional<glm::dvec3> origin;  // [m]; nothing: where that kind of tracker usually has it
     glm::dmat3 axes{1.0};
     glm::dvec3 eyes{0};  // [m]

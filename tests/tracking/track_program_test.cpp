@@ -63,7 +63,7 @@ TEST(SandwallTrack, SaysInOneLineWhatItCannotDo) {
     for (const char* arguments :
          {"", "--send opentrack:1 --listen none", "--listen none", "--send none", "--send opentrack:0",
           "--listen opentrack:70000", "--send \"dtrack:1 axes=x,z,-y\"", "--listen opentrack:0 --trace x",
-          "--listen opentrack:0 --seconds 0", "--send opentrack:1 --trace /nowhere.csv", "--listen vrpn:Head"}) {
+          "--listen opentrack:0 --seconds 0", "--send opentrack:1 --trace /nowhere.csv", "--listen vrpn:Head@host"}) {
         const support::Ran ran = track(arguments);
         EXPECT_EQ(ran.status, 2) << arguments << ": " << ran.output;
         EXPECT_EQ(ran.output.find('\n'), ran.output.size() - 1) << arguments << ": " << ran.output;

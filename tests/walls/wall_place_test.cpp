@@ -91,9 +91,9 @@ TEST(WallPlace, TakesAWindowOfBothEyesForTwiceAsWide) {
 }
 
 TEST(WallFile, ReadsRefreshAndTracking) {
-    const Wall wall = parseWall(wallWith("active", "[tracking]\nsource = \"vrpn:Head@10.0.0.3\"\n"), "lab.toml");
+    const Wall wall = parseWall(wallWith("active", "[tracking]\nsource = \"opentrack:10.0.0.3:4242\"\n"), "lab.toml");
     EXPECT_EQ(wall.refreshHz, 120);
-    EXPECT_EQ(wall.tracking, "vrpn:Head@10.0.0.3");
+    EXPECT_EQ(wall.tracking, "opentrack:10.0.0.3:4242");
     const Wall plain = config("desktop.toml");
     EXPECT_EQ(plain.refreshHz, 60);
     EXPECT_EQ(plain.tracking, "");
