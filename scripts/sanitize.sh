@@ -28,12 +28,12 @@ sessions() {
 }
 
 threads() {
-    build tsan haptic_tests link_tests tracking_tests workers_tests
+    build tsan haptic_tests link_tests tracking_tests host_tests
     echo "== haptic server, link, trackers and worker threads with the thread sanitizer"
-    local folder
-    for folder in haptic_bridge tracking workers; do
-        TSAN_OPTIONS=halt_on_error=1 ctest --test-dir "build/tsan/tests/$folder" --output-on-failure --no-tests=error
-    done
+    export TSAN_OPTIONS=halt_on_error=1
+    ctest --test-dir build/tsan/tests/haptic_bridge --output-on-failure --no-tests=error
+    ctest --test-dir build/tsan/tests/tracking --output-on-failure --no-tests=error
+    ctest --test-dir build/tsan/tests/host --output-on-failure --no-tests=error -R '^WorkerPool$'
 }
 
 scripts/install_dependencies.sh --with-tests
