@@ -56,7 +56,7 @@ public:
 
     /// `name` begins with "--", or is what --help calls the argument at this place. T: std::string, a path, int,
     /// std::uint16_t, std::uint32_t, std::uint64_t, std::int64_t, double; an optional of most of these; a vector of int
-    /// or std::string. A value of no such type does not link.
+    /// or std::string. command_line.cpp lists them all.
     template <class T>
     Option option(const std::string& name, T& value, const std::string& help = "");
     Option flag(const std::string& name, bool& value, const std::string& help = "");

@@ -28,9 +28,10 @@ sessions() {
 }
 
 threads() {
-    build tsan haptic_tests link_tests tracking_tests host_tests
+    build tsan base_tests haptic_tests link_tests tracking_tests host_tests
     echo "== haptic server, link, trackers and worker threads with the thread sanitizer"
     export TSAN_OPTIONS=halt_on_error=1
+    ctest --test-dir build/tsan/tests/base --output-on-failure --no-tests=error
     ctest --test-dir build/tsan/tests/haptic_bridge --output-on-failure --no-tests=error
     ctest --test-dir build/tsan/tests/tracking --output-on-failure --no-tests=error
     ctest --test-dir build/tsan/tests/host --output-on-failure --no-tests=error -R '^WorkerPool$'

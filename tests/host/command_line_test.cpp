@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/command_line.hpp"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "base/input_error.hpp"
+
+namespace {
+
+struct Given {
+    std::optional<int> status;
+    std::string error;
+};
+
+/// Parses `words` as the arguments of a program, and keeps what it prints on stderr.
+Given parse(host::CommandLine& line, std::vector<std::string> words) {
+    words.insert(words.begin(), "program");
+    std::vector<char*> pointers;
+    for (std::string& word : words) {
+        pointers.push_back(word.data());
+    }
+    testing::internal::CaptureStderr();
+    Given given;
+    given.status = line.parse(static_cast<int>(pointers.size()), pointers.data());
+    given.error = testing::internal::GetCapturedStderr();
+    return given;
+}
+
+class CommandLineOptions : public testing::Test {
+protected:
+    CommandLineOptions() {
+        line_.option("FILE", file_, "a file").required();
+        line_.option("--rate", rate_, "a rate").range(1, 1000);
+        line_.option("--share", share_, "a share").range(0.0, 1.0);
+        line_.option("--kind", kind_, "a kind").oneOf({"grid", "tin"});
+        line_.option("--sizes", sizes_, "sizes").commaSeparated();
+        line_.choice<bool>("--force", force_, {{"on", true}, {"off", false}}, "whether there is a force");
+        const host::Option film = line_.flag("--film", film_, "a film");
+        line_.option("--eye", eye_, "its eye").needs(film);
+        line_.flag("--live", live_, "no film").excludes(film);
+        line_.option("--until", until_, "a step").check([](const std::string& text) {
+            return text == "13" ? std::string("13 brings no luck") : std::string();
+        });
+    }
+
+    void expectRefused(const std::vector<std::string>& words, const std::string& part) {
+        const Given given = parse(line_, words);
+        EXPECT_EQ(given.status, base::kExitBadInput);
+        EXPECT_NE(given.error.find(part), std::string::npos) << given.error;
+        EXPECT_EQ(given.error.find('\n'), given.error.size() - 1) << given.error;
+        EXPECT_TRUE(given.error.starts_with("tool: ") && given.error.ends_with("; try --help\n")) << given.error;
+    }
+
+    host::CommandLine line_{"Does something.", "tool"};
+    std::string file_, kind_, eye_;
+    int rate_ = 5;
+    double share_ = 0;
+    std::vector<int> sizes_;
+    bool force_ = true, film_ = false, live_ = false;
+    std::optional<std::uint64_t> until_;
+};
+
+TEST_F(CommandLineOptions, TakesValuesOfEveryKind) {
+    const Given given = parse(line_, {"a.txt", "--rate", "1000", "--share", "0.25", "--kind", "tin", "--sizes", "8,16",
+                                      "--force", "off", "--film", "--eye", "left", "--until", "12"});
+    EXPECT_EQ(given.status, std::nullopt) << given.error;
+    EXPECT_EQ(file_, "a.txt");
+    EXPECT_EQ(rate_, 1000);
+    EXPECT_EQ(share_, 0.25);
+    EXPECT_EQ(kind_, "tin");
+    EXPECT_EQ(sizes_, (std::vector{8, 16}));
+    EXPECT_FALSE(force_);
+    EXPECT_TRUE(film_);
+    EXPECT_EQ(until_, 12U);
+}
+
+TEST_F(CommandLineOptions, LeavesDefaultsAlone) {
+    EXPECT_EQ(parse(line_, {"a.txt"}).status, std::nullopt);
+    EXPECT_EQ(rate_, 5);
+    EXPECT_TRUE(force_);
+    EXPECT_EQ(until_, std::nullopt);
+}
+
+TEST_F(CommandLineOptions, RefusesWhatItCannotUseInOneLine) {
+    expectRefused({}, "FILE is required");
+    expectRefused({"a", "--rate", "0"}, "--rate");
+    expectRefused({"a", "--rate", "1001"}, "1001");
+    expectRefused({"a", "--rate", "2.5"}, "2.5");
+    expectRefused({"a", "--share", "1.01"}, "--share");
+    expectRefused({"a", "--kind", "cube"}, "cube not in {grid,tin}");
+    expectRefused({"a", "--force", "maybe"}, "maybe not in {on,off}");
+    expectRefused({"a", "--sizes", "8,x"}, "--sizes");
+    expectRefused({"a", "--eye", "left"}, "--film");
+    expectRefused({"a", "--live", "--film"}, "--film");
+    expectRefused({"a", "--until", "13"}, "13 brings no luck");
+    expectRefused({"a", "--unknown"}, "--unknown");
+}
+
+TEST(CommandLineCommands, OneOfThemMustBeGiven) {
+    int rate = 0;
+    host::CommandLine line("Does one of two things.", "tool");
+    host::CommandLine first = line.command("first", "the one");
+    const host::CommandLine second = line.command("second", "the other");
+    first.option("--rate", rate, "a rate");
+    EXPECT_EQ(parse(line, {}).status, base::kExitBadInput);
+    EXPECT_EQ(parse(line, {"first", "--rate", "3"}).status, std::nullopt);
+    EXPECT_TRUE(first.given());
+    EXPECT_FALSE(second.given());
+    EXPECT_EQ(rate, 3);
+}
+
+int exitStatus(const std::function<int()>& run) {
+    host::CommandLine line("Does something.", "tool");
+    std::string name = "program";
+    char* words[] = {name.data()};
+    return host::runMain(line, 1, words, run, 7);
+}
+
+TEST(RunMain, TellsBadInputFromFailures) {
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(exitStatus([] { return 1; }), 1);
+    EXPECT_EQ(exitStatus([]() -> int { throw base::InputError("a.txt:3: bad"); }), base::kExitBadInput);
+    EXPECT_EQ(exitStatus([]() -> int { throw std::runtime_error("no room"); }), 7);
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "a.txt:3: bad\ntool: failed: no room\n");
+}
+
+}  // namespace
