@@ -25,7 +25,6 @@ namespace {
 
 using boost::asio::ip::tcp;
 using haptic_bridge::LiveHistogram;
-using host::monotonicNs;
 
 constexpr std::chrono::microseconds kFrame{16'667};
 constexpr double kMeanPause = 0.005;  // [s] between echoes: both ends sleep, as they do in a session

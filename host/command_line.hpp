@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -64,10 +65,8 @@ public:
     template <class T>
     Option choice(const std::string& name, T& value, const std::vector<std::pair<std::string, T>>& choices,
                   const std::string& help) {
-        std::vector<std::string> names;
-        for (const auto& choice : choices) {
-            names.push_back(choice.first);
-        }
+        std::vector<std::string> names(choices.size());
+        std::transform(choices.begin(), choices.end(), names.begin(), [](const auto& choice) { return choice.first; });
         return chosen(
             name, names, [&value, choices](std::size_t index) { value = choices[index].second; }, help);
     }

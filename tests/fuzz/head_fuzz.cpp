@@ -35,7 +35,7 @@ SANDWALL_FUZZER(head) {
         tracking::OpentrackReader reader;
         read(reader, input);
     } else if (data[0] % 3 == 1) {
-        tracking::DtrackReader reader(data[0] & 1U);
+        tracking::DtrackReader reader(static_cast<int>(data[0] & 1U));
         read(reader, input);
     } else {
         fuzz::takeOrRefuse([&] {

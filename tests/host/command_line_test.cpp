@@ -18,6 +18,7 @@ struct Given {
 Given parse(host::CommandLine& line, std::vector<std::string> words) {
     words.insert(words.begin(), "program");
     std::vector<char*> pointers;
+    pointers.reserve(words.size());
     for (std::string& word : words) {
         pointers.push_back(word.data());
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/module.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -86,7 +87,8 @@ TEST_F(Modules, OfAnotherBuildAreRefusedByEveryLoader) {
                   "--device mouse --listen 127.0.0.1:0 --scene " + flat);
     for (const std::string gl : {"osmesa", "egl", "glfw"}) {
         const std::string wall = SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml";
-        expectRefused("sandwall-gl-" + gl + ".so", "sandwall-render-node", "--probe 1 --gl " + gl + " < " + wall);
+        expectRefused("sandwall-gl-" + gl + ".so", "sandwall-render-node",
+                      fmt::format("--probe 1 --gl {} < {}", gl, wall));
     }
 }
 
