@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Checks format (clang-format 14) and habits (clang-tidy 14, minutes): scripts/lint.sh, after apt install clang-format-14 clang-tidy-14.
+# Checks format (clang-format 14) and habits (clang-tidy 14, an hour on two cores): scripts/lint.sh, after apt install clang-format-14 clang-tidy-14.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/install_dependencies.sh --with-tests
@@ -11,6 +11,8 @@ git ls-files -z '*.cpp' '*.hpp' | xargs -0 clang-format-14 --dry-run -Werror
 # include generated ones.
 cmake --preset clang -B build/lint -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
 cmake --build build/lint --parallel "$(nproc)" --target glad
-# Every compiled source outside build/ (tests/scripts/lint_test.py compares them with the folders).
-run-clang-tidy-14 -quiet -j "$(nproc)" -p build/lint "^$PWD/(?!build/)"
+# Every compiled source outside build/ (tests/scripts/lint_test.py compares them with the folders). The analyser looks a
+# quarter as far into each function as it does by itself, which halves the time.
+depth=(-extra-arg=-Xclang -extra-arg=-analyzer-config -extra-arg=-Xclang -extra-arg=max-nodes=60000)
+run-clang-tidy-14 -quiet -j "$(nproc)" -p build/lint "${depth[@]}" "^$PWD/(?!build/)"
 echo "format and habits: nothing to complain about"

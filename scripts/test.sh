@@ -51,5 +51,5 @@ for folder in release asan-sand "${goldens[@]/%//tests/sand/golden}"; do
     echo "subdirs($folder)"
 done >build/CTestTestfile.cmake
 echo "== testing"
-# Three places a core: most tests take two of them, and those that mostly wait take one (tests/CMakeLists.txt).
-ctest --test-dir build --output-on-failure --no-tests=error --parallel $((3 * jobs))
+# Four places a core: most tests take two of them, and those that mostly wait take one (tests/CMakeLists.txt).
+ctest --test-dir build --output-on-failure --no-tests=error --parallel $((4 * jobs))
