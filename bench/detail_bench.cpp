@@ -6,6 +6,7 @@
 #include "bench/timing.hpp"
 #include "host/command_line.hpp"
 #include "render_node/gl/gl_context.hpp"
+#include "sand/scene.hpp"
 #include "tests/render_node/sample_scene.hpp"
 
 namespace {

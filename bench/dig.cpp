@@ -7,6 +7,7 @@
 #include "bench/piles.hpp"
 #include "bench/relaxations.hpp"
 #include "bench/timing.hpp"
+#include "sand/scene.hpp"
 #include "sand/terrain.hpp"
 
 namespace bench {

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "render_node/gl/gl_context.hpp"
+#include "sand/scene.hpp"
 #include "tests/render_node/sample_scene.hpp"
 
 namespace {

@@ -8,7 +8,9 @@
 #include "bench/curves.hpp"
 #include "bench/relaxations.hpp"
 #include "bench/timing.hpp"
+#include "sand/scene_file.hpp"
 #include "sand/terrain.hpp"
+#include "sand/tin/surface_view.hpp"
 
 namespace bench {
 namespace {

@@ -8,6 +8,7 @@
 #include "bench/timing.hpp"
 #include "sand/force/force_model.hpp"
 #include "sand/force/law.hpp"
+#include "sand/scene.hpp"
 #include "sand/terrain.hpp"
 
 namespace bench {

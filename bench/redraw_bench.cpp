@@ -14,7 +14,9 @@
 #include "host/command_line.hpp"
 #include "render_node/gl/gl_context.hpp"
 #include "render_node/sand_view.hpp"
+#include "sand/scene_file.hpp"
 #include "sand/terrain.hpp"
+#include "sand/tin/surface_view.hpp"
 #include "walls/projection.hpp"
 #include "walls/wall.hpp"
 #include "walls/wall_file.hpp"
@@ -105,7 +107,7 @@ struct Damage {
         }
     }
     sand::Rect cells;
-    sand::tin::SurfaceDamage triangles;
+    sand::TinChange triangles;
 };
 
 void takeOver(Tile& tile, const sand::Terrain& terrain, const Damage& damage) {

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "sand/dunes.hpp"
+#include "sand/scene.hpp"
 #include "sand/terrain.hpp"
 
 namespace {

@@ -5,6 +5,7 @@
 
 #include "bench/curves.hpp"
 #include "haptic_bridge/guards/guards.hpp"
+#include "sand/scene.hpp"
 #include "tests/support/arm_loop.hpp"
 #include "tests/support/arm_on_sand.hpp"
 

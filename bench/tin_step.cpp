@@ -7,6 +7,7 @@
 
 #include "bench/curves.hpp"
 #include "bench/timing.hpp"
+#include "sand/scene.hpp"
 #include "sand/terrain.hpp"
 #include "sand/tin/tin_surface.hpp"
 #include "tests/support/tin_piles.hpp"
@@ -102,7 +103,7 @@ void measureWhole(const sand::Scene& scene, const std::vector<Action>& actions, 
 
 /// The same, part by part: the surface's calls as Terrain::apply() makes them.
 void measureParts(const sand::Scene& scene, const std::vector<Action>& actions, Times& times) {
-    sand::tin::TinSurface surface(scene);
+    sand::tin::TinSurface surface(scene.rules, scene.tin);
     const sand::HeldTool tool{scene.rules.toolShape(), {}};
     sand::ProbePoint at;
     surface.sweep(kSweepsPerStep, nullptr, at);
@@ -135,7 +136,7 @@ void measureParts(const sand::Scene& scene, const std::vector<Action>& actions, 
 
 /// What of an imprint is the mesh's change, and what the remap; each is taken back again.
 void measureImprints(const sand::Scene& scene, const std::vector<Action>& actions, Times& times) {
-    sand::tin::TinSurface surface(scene);
+    sand::tin::TinSurface surface(scene.rules, scene.tin);
     sand::tin::Layer layer = sand::tin::LayerCopy(surface.layer(), {}).layer();
     const auto outline = sand::tin::Outline::of(scene.rules.toolShape(), {});
     for (const auto& [kind, step] : actions) {

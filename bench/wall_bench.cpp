@@ -13,6 +13,7 @@
 #include "render_node/gl/gl_program.hpp"
 #include "render_node/sand_mesh.hpp"
 #include "render_node/sand_view.hpp"
+#include "sand/scene_file.hpp"
 #include "walls/projection.hpp"
 #include "walls/wall.hpp"
 #include "walls/wall_file.hpp"

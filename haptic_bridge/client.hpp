@@ -7,25 +7,16 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "base/byte_stream.hpp"
+#include "haptic_bridge/address.hpp"
 #include "haptic_bridge/handshake.hpp"
 #include "haptic_bridge/protocol.hpp"
 #include "haptic_bridge/step_ring.hpp"
 #include "sand/step.hpp"
 
 namespace haptic_bridge {
-
-/// Where a haptic server listens.
-struct Address {
-    std::string host;  // a name, an IPv4 address, or an IPv6 address without brackets
-    std::uint16_t port = kDefaultPort;
-    /// Reads "HOST:PORT", "HOST" or "[IPV6]:PORT". Throws base::InputError that begins with `option`.
-    static Address parse(std::string_view text, std::string_view option);
-    [[nodiscard]] std::string text() const;
-};
 
 /// What the master compares with the server at the handshake.
 struct Offer {

@@ -5,7 +5,7 @@
 #include <string>
 #include <thread>
 
-#include "haptic_bridge/sequencer.hpp"
+#include "haptic_bridge/hand_channel.hpp"
 
 namespace haptic_bridge {
 

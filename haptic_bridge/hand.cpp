@@ -7,6 +7,7 @@
 
 #include "haptic_bridge/devices/arm_presets.hpp"
 #include "host/clock.hpp"
+#include "sand/scene.hpp"
 
 namespace haptic_bridge {
 namespace {

@@ -14,6 +14,7 @@
 #include "haptic_bridge/path_builder.hpp"
 #include "haptic_bridge/tick.hpp"
 #include "sand/force/force_model.hpp"
+#include "sand/scene.hpp"
 
 namespace haptic_bridge {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sand/tin_module.hpp"
+#include "sand/surface_factory.hpp"
 
 namespace haptic_bridge {
 
@@ -15,7 +15,7 @@ HandMapping::HandMapping(const sand::Scene& scene, HandSettings::Datum datum)
       radius_(static_cast<double>(scene.rules.toolRadius) / sand::kProbePerCell),
       reference_(static_cast<double>(scene.referenceHeight()) / sand::kUnitsPerCell) {
     if (datum_ != HandSettings::Datum::level && scene.tin != nullptr) {
-        tin_ = sand::tinModule().surface(scene);
+        tin_ = sand::makeSurface(scene);
     }
 }
 

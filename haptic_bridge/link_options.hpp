@@ -4,7 +4,7 @@
 #include <boost/asio/ip/address.hpp>
 #include <string>
 
-#include "haptic_bridge/client.hpp"
+#include "haptic_bridge/address.hpp"
 #include "haptic_bridge/handshake.hpp"
 
 namespace host {

@@ -8,6 +8,7 @@
 #include "haptic_bridge/devices/sand_watcher.hpp"
 #include "haptic_bridge/surface_of.hpp"
 #include "host/clock.hpp"
+#include "sand/scene.hpp"
 
 namespace haptic_bridge {
 namespace {

@@ -25,6 +25,7 @@
 #include "host/event.hpp"
 #include "host/version.hpp"
 #include "host/worker_pool.hpp"
+#include "sand/scene_file.hpp"
 
 namespace {
 

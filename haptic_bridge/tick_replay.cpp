@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "haptic_bridge/surface_of.hpp"
+#include "sand/scene.hpp"
 
 namespace haptic_bridge {
 

@@ -8,6 +8,7 @@
 
 #include "haptic_bridge/hand.hpp"
 #include "haptic_bridge/tick_track.hpp"
+#include "sand/scene.hpp"
 #include "sand/terrain.hpp"
 
 namespace haptic_bridge {

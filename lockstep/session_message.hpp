@@ -8,6 +8,7 @@
 
 #include "lockstep/cluster.hpp"
 #include "lockstep/fault.hpp"
+#include "sand/scene.hpp"
 
 namespace lockstep {
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/input_error.hpp"
+#include "sand/scene.hpp"
 
 namespace master {
 namespace {

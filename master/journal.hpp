@@ -10,6 +10,7 @@
 #include "master/journal_format.hpp"
 #include "master/journal_reader.hpp"
 #include "master/journal_writer.hpp"
+#include "sand/scene.hpp"
 
 namespace master {
 

@@ -13,6 +13,7 @@
 #include "base/input_error.hpp"
 #include "host/event.hpp"
 #include "master/checkpoint.hpp"
+#include "sand/scene.hpp"
 
 namespace master {
 namespace {

@@ -12,6 +12,7 @@
 
 #include "master/journal_writer.hpp"
 #include "master/resume.hpp"
+#include "sand/scene.hpp"
 #include "sand/terrain.hpp"
 
 namespace master {

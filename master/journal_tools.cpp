@@ -12,6 +12,7 @@
 #include "base/input_error.hpp"
 #include "host/whole_file.hpp"
 #include "master/journal.hpp"
+#include "sand/scene.hpp"
 
 namespace master {
 namespace {

@@ -8,6 +8,7 @@
 #include "master/journal_format.hpp"
 #include "master/journal_reader.hpp"
 #include "master/part_file.hpp"
+#include "sand/scene.hpp"
 
 namespace master {
 

@@ -19,7 +19,7 @@
 #include "master/injection.hpp"
 #include "master/session.hpp"
 #include "master/start_up.hpp"
-#include "sand/scene.hpp"
+#include "sand/scene_file.hpp"
 #include "walls/wall.hpp"
 
 namespace {

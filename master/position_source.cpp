@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "sand/scene.hpp"
+
 namespace master {
 
 using haptic_bridge::Trouble;

@@ -9,6 +9,7 @@
 #include "haptic_bridge/devices/device_troubles.hpp"
 #include "haptic_bridge/hand_mapping.hpp"
 #include "haptic_bridge/path_builder.hpp"
+#include "sand/scene.hpp"
 #include "sand/terrain.hpp"
 
 namespace master {

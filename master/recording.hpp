@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "master/journal.hpp"
+#include "sand/scene.hpp"
 
 namespace master {
 

@@ -17,8 +17,10 @@
 #include "master/journal.hpp"
 #include "master/journal_tools.hpp"
 #include "sand/import/raster_file.hpp"
+#include "sand/scene.hpp"
 #include "sand/scene_raster.hpp"
 #include "sand/terrain.hpp"
+#include "sand/tin/surface_view.hpp"
 #include "sand/tin_raster.hpp"
 
 namespace {

@@ -10,6 +10,7 @@
 #include "base/input_error.hpp"
 #include "master/checkpoint.hpp"
 #include "master/journal.hpp"
+#include "sand/scene_file.hpp"
 
 namespace master {
 namespace {

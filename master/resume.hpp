@@ -7,6 +7,7 @@
 #include <string>
 
 #include "master/journal_reader.hpp"
+#include "sand/scene.hpp"
 #include "sand/terrain.hpp"
 
 namespace master {

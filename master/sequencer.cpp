@@ -12,6 +12,7 @@
 #include "host/clock.hpp"
 #include "host/event.hpp"
 #include "lockstep/cluster.hpp"
+#include "sand/scene.hpp"
 
 namespace master {
 

@@ -11,6 +11,7 @@
 #include "haptic_bridge/client.hpp"
 #include "lockstep/fault.hpp"
 #include "master/position_source.hpp"
+#include "sand/scene.hpp"
 #include "sand/terrain.hpp"
 
 namespace master {

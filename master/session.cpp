@@ -16,6 +16,7 @@
 #include "lockstep/session_message.hpp"
 #include "master/start_up.hpp"
 #include "master/wall_pictures.hpp"
+#include "sand/scene.hpp"
 
 namespace master {
 namespace {

@@ -31,6 +31,7 @@
 #include "master/sequencer.hpp"
 #include "master/summary.hpp"
 #include "master/view_source.hpp"
+#include "sand/scene.hpp"
 #include "sand/terrain.hpp"
 #include "walls/wall.hpp"
 

@@ -9,9 +9,9 @@
 
 #include "render_node/frustum.hpp"
 #include "render_node/gl/gl_program.hpp"
-#include "render_node/sand_levels.hpp"
+#include "render_node/height_range.hpp"
+#include "render_node/level_rule.hpp"
 #include "render_node/sand_rim.hpp"
-#include "render_node/sand_surface.hpp"
 
 namespace render_node {
 

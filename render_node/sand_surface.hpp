@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
 
+#include "render_node/height_range.hpp"
 #include "render_node/open_sky.hpp"
 #include "render_node/sand_rim.hpp"
 #include "sand/height_field.hpp"
@@ -22,15 +22,6 @@ struct SandVertex {
     std::uint16_t mottling;                // slow change of shade from place to place, 1/65535
 };
 static_assert(sizeof(SandVertex) == 16);
-
-struct HeightRange {
-    float lowest, highest;  // [scene unit]
-};
-
-/// The smallest range around both.
-[[nodiscard]] inline HeightRange around(const HeightRange& a, const HeightRange& b) {
-    return {std::min(a.lowest, b.lowest), std::max(a.highest, b.highest)};
-}
 
 /// The drawn surface of a height field, on the CPU: heights, normals and how much sky each place sees.
 ///

@@ -66,7 +66,7 @@ void SandView::update(const sand::HeightField& field, sand::Rect damage) {
     }
 }
 
-void SandView::update(const sand::tin::SurfaceView& tin, const sand::tin::SurfaceDamage& damage,
+void SandView::update(const sand::tin::SurfaceView& tin, const sand::TinChange& damage,
                       std::span<const Camera> cameras) {
     const auto sees = [&](const Box& box) {
         return cameras.empty() || std::any_of(cameras.begin(), cameras.end(), [&](const Camera& camera) {

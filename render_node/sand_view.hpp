@@ -24,6 +24,7 @@
 #include "sand/scene.hpp"
 #include "sand/step.hpp"
 #include "sand/tin/surface_view.hpp"
+#include "sand/tin_change.hpp"
 
 namespace render_node {
 
@@ -105,8 +106,7 @@ public:
     void update(const sand::HeightField& field, sand::Rect damage);
     /// The same of a TIN. With cameras, the only ones that will draw before the next update: what none of them can see
     /// is put off until one can.
-    void update(const sand::tin::SurfaceView& tin, const sand::tin::SurfaceDamage& damage,
-                std::span<const Camera> cameras = {});
+    void update(const sand::tin::SurfaceView& tin, const sand::TinChange& damage, std::span<const Camera> cameras = {});
     /// Where the tool's centre is. No tool is drawn before the first call.
     void setTool(sand::ProbePoint centre, bool engaged);
     /// The same for another tool than the scene's or that of before, or one that was turned.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <glm/gtc/type_ptr.hpp>
 
+#include "sand/scene.hpp"
+#include "sand/tin/surface_view.hpp"
 #include "walls/projection.hpp"
 
 namespace render_node {

@@ -15,6 +15,7 @@
 #include "render_node/stereo_composer.hpp"
 #include "render_node/test_pattern.hpp"
 #include "render_node/tool_force.hpp"
+#include "sand/scene.hpp"
 #include "sand/terrain.hpp"
 #include "walls/wall.hpp"
 

@@ -5,7 +5,7 @@
 
 namespace render_node {
 
-void TinBacklog::add(const sand::tin::SurfaceDamage& damage, const Box& box) {
+void TinBacklog::add(const sand::TinChange& damage, const Box& box) {
     triangles_.add(damage.triangles);
     vertices_.add(damage.vertices);
     if (boxes_.size() < kMostBoxes) {
@@ -19,8 +19,8 @@ bool TinBacklog::isSeen(const std::function<bool(const Box&)>& sees) const {
     return std::any_of(boxes_.begin(), boxes_.end(), sees);
 }
 
-sand::tin::SurfaceDamage TinBacklog::take() {
-    sand::tin::SurfaceDamage all{.whole = false, .triangles = triangles_.all(), .vertices = vertices_.all()};
+sand::TinChange TinBacklog::take() {
+    sand::TinChange all{.whole = false, .triangles = triangles_.all(), .vertices = vertices_.all()};
     std::sort(all.triangles.begin(), all.triangles.end());
     std::sort(all.vertices.begin(), all.vertices.end());
     clear();

@@ -7,6 +7,7 @@
 #include "base/index_set.hpp"
 #include "render_node/frustum.hpp"
 #include "sand/tin/surface_view.hpp"
+#include "sand/tin_change.hpp"
 
 namespace render_node {
 
@@ -15,10 +16,10 @@ namespace render_node {
 class TinBacklog {
 public:
     /// All of it lies within the box.
-    void add(const sand::tin::SurfaceDamage& damage, const Box& box);
+    void add(const sand::TinChange& damage, const Box& box);
     [[nodiscard]] bool isSeen(const std::function<bool(const Box&)>& sees) const;
     /// Everything that was added since this was called last; holds until then what has long been put right again, too.
-    [[nodiscard]] sand::tin::SurfaceDamage take();
+    [[nodiscard]] sand::TinChange take();
     void clear();
 
 private:

@@ -132,7 +132,7 @@ void TinSurface::addToRelief(const SurfaceView& tin, const TinTriangle& triangle
     }
 }
 
-std::optional<Box> TinSurface::reachOf(const SurfaceView& tin, const sand::tin::SurfaceDamage& damage) {
+std::optional<Box> TinSurface::reachOf(const SurfaceView& tin, const sand::TinChange& damage) {
     const Triangles& mesh = tin.triangles;
     Reach changed;
     const auto addVertex = [&](Vertex vertex) {

@@ -8,7 +8,7 @@
 namespace render_node {
 namespace {
 
-using sand::tin::SurfaceDamage;
+using sand::TinChange;
 using sand::tin::SurfaceView;
 using sand::tin::Vertex;
 
@@ -85,7 +85,7 @@ TinMesh::TinMesh(const SurfaceView& tin, double cellSize)
     sendAllVertices();
 }
 
-bool TinMesh::update(const SurfaceView& tin, const SurfaceDamage& damage, const std::function<bool(const Box&)>& sees) {
+bool TinMesh::update(const SurfaceView& tin, const TinChange& damage, const std::function<bool(const Box&)>& sees) {
     if (damage.whole) {
         backlog_.clear();
         return takeOver(tin, damage);
@@ -99,7 +99,7 @@ bool TinMesh::update(const SurfaceView& tin, const SurfaceDamage& damage, const 
     return (rimToo || backlog_.isSeen(sees)) && takeOver(tin, backlog_.take());
 }
 
-bool TinMesh::takeOver(const SurfaceView& tin, const SurfaceDamage& damage) {
+bool TinMesh::takeOver(const SurfaceView& tin, const TinChange& damage) {
     const TinSurface::Change change = surface_.update(tin, damage);
     if (change.boxes.empty() && change.vertices.empty()) {
         return false;

@@ -9,6 +9,7 @@
 #include "render_node/tin_backlog.hpp"
 #include "render_node/tin_surface.hpp"
 #include "render_node/triangle_pace.hpp"
+#include "sand/tin_change.hpp"
 
 namespace render_node {
 
@@ -22,7 +23,7 @@ public:
 
     /// Takes over what is damaged; says whether the rim is another. What lies in no box that `sees` accepts is put off
     /// until it does.
-    [[nodiscard]] bool update(const sand::tin::SurfaceView& tin, const sand::tin::SurfaceDamage& damage,
+    [[nodiscard]] bool update(const sand::tin::SurfaceView& tin, const sand::TinChange& damage,
                               const std::function<bool(const Box&)>& sees);
 
     void prepare(const GlProgram& program) const override;
@@ -49,7 +50,7 @@ private:
     };
     template <class Visit>  // void(std::size_t chunk)
     void visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit& visit);
-    [[nodiscard]] bool takeOver(const sand::tin::SurfaceView& tin, const sand::tin::SurfaceDamage& damage);
+    [[nodiscard]] bool takeOver(const sand::tin::SurfaceView& tin, const sand::TinChange& damage);
     void sendAllVertices();
     void sendVertices(std::span<const sand::tin::Vertex> changed);
     void sendTriangles(std::size_t chunk);

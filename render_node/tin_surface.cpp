@@ -80,7 +80,7 @@ void TinSurface::grow(const Triangles& mesh) {
     inChunk_.resize(triangles_.size());
 }
 
-TinSurface::Change TinSurface::update(const SurfaceView& tin, const sand::tin::SurfaceDamage& damage) {
+TinSurface::Change TinSurface::update(const SurfaceView& tin, const sand::TinChange& damage) {
     Change change;
     if (damage.whole) {
         TinSurface anew(tin, cellSize_, chunkSide_);

@@ -18,6 +18,7 @@
 #include "render_node/tin_relief.hpp"
 #include "render_node/vertex_squares.hpp"
 #include "sand/tin/surface_view.hpp"
+#include "sand/tin_change.hpp"
 
 namespace render_node {
 
@@ -77,10 +78,10 @@ public:
         std::vector<sand::tin::Vertex> vertices;  // that are others, ascending
         std::vector<Box> boxes;                   // around what looks different, before and after
     };
-    [[nodiscard]] Change update(const sand::tin::SurfaceView& tin, const sand::tin::SurfaceDamage& damage);
+    [[nodiscard]] Change update(const sand::tin::SurfaceView& tin, const sand::TinChange& damage);
     /// The boxes of all damages since the last update together bound what an update with all of them may change, before
     /// and after; nothing where it may be the rim. From what this surface is now and what the TIN is.
-    [[nodiscard]] std::optional<Box> reachOf(const sand::tin::SurfaceView& tin, const sand::tin::SurfaceDamage& damage);
+    [[nodiscard]] std::optional<Box> reachOf(const sand::tin::SurfaceView& tin, const sand::TinChange& damage);
 
     [[nodiscard]] const std::vector<TinVertex>& vertices() const { return vertices_; }
     [[nodiscard]] const std::vector<TinTriangle>& triangles() const { return triangles_; }  // by slot

@@ -10,7 +10,7 @@
 #include "sand/height_field.hpp"
 #include "sand/inertia.hpp"
 #include "sand/net_flux.hpp"
-#include "sand/scene.hpp"
+#include "sand/rules.hpp"
 #include "sand/tool.hpp"
 
 namespace sand {

@@ -2,32 +2,28 @@
 #include "sand/force_constants.hpp"
 
 #include <array>
+#include <limits>
 
 namespace sand {
 namespace {
-
-struct Key {
-    const char* name;
-    double ForceConstants::*constant;
-    host::Range range;
-};
 
 constexpr double kTiny = 1e-9, kHuge = 1e9;
 
 // The first three are the oldest, which a scene's encoding keeps apart.
 constexpr std::size_t kOldest = 3;
 constexpr std::array kConstantKeys{
-    Key{"stiffness", &ForceConstants::stiffness, {0, kHuge}},
-    Key{"depth_exponent", &ForceConstants::depthExponent, {0, 1e6}},
-    Key{"friction", &ForceConstants::friction, {0, kHuge}},
-    Key{"friction_area", &ForceConstants::frictionArea, {0, 1e6}},
-    Key{"max_force", &ForceConstants::maxForce, {0, 1e6}},
-    Key{"tolerance", &ForceConstants::tolerance, {0, 1}},
-    Key{"unit_length", &ForceConstants::unitLength, host::kPositive},
-    Key{"friction_coefficient", &ForceConstants::frictionCoefficient, {0, 1e3}},
-    Key{"friction_speed", &ForceConstants::frictionSpeed, {kTiny, kHuge}},
-    Key{"validity", &ForceConstants::validity, {0, 2}},
-    Key{"recovery_time", &ForceConstants::recoveryTime, {0, 10}},
+    ForceKey{"stiffness", &ForceConstants::stiffness, 0, kHuge},
+    ForceKey{"depth_exponent", &ForceConstants::depthExponent, 0, 1e6},
+    ForceKey{"friction", &ForceConstants::friction, 0, kHuge},
+    ForceKey{"friction_area", &ForceConstants::frictionArea, 0, 1e6},
+    ForceKey{"max_force", &ForceConstants::maxForce, 0, 1e6},
+    ForceKey{"tolerance", &ForceConstants::tolerance, 0, 1},
+    ForceKey{"unit_length", &ForceConstants::unitLength, std::numeric_limits<double>::min(),
+             std::numeric_limits<double>::max()},
+    ForceKey{"friction_coefficient", &ForceConstants::frictionCoefficient, 0, 1e3},
+    ForceKey{"friction_speed", &ForceConstants::frictionSpeed, kTiny, kHuge},
+    ForceKey{"validity", &ForceConstants::validity, 0, 2},
+    ForceKey{"recovery_time", &ForceConstants::recoveryTime, 0, 10},
 };
 
 template <class Choice>
@@ -41,24 +37,7 @@ Choice decodeChoice(base::ByteReader& reader, int choices) {
 
 }  // namespace
 
-ForceConstants ForceConstants::read(const host::TomlTable& table, double side) {
-    ForceConstants result;
-    result.unitLength = side;
-    for (const Key& key : kConstantKeys) {
-        result.*key.constant = table.numberOr(key.name, result.*key.constant, key.range);
-    }
-    result.law = static_cast<ForceLaw>(table.choiceOr("law", {"repulse", "control_points"}, 0));
-    result.between = static_cast<Between>(table.choiceOr("between", {"local", "hold", "interpolate"}, 0));
-    result.literal = table.flagOr("literal", false);
-    result.frictionDirection =
-        static_cast<FrictionDirection>(table.choiceOr("friction_direction", {"tangential", "full", "vertical"}, 0));
-    if (!result.literal && result.frictionDirection != FrictionDirection::tangential) {
-        table.fail("friction_direction",
-                   "friction_direction other than tangential is for comparison: set literal = true beside it");
-    }
-    table.finish();
-    return result;
-}
+std::span<const ForceKey> forceKeys() { return kConstantKeys; }
 
 void ForceConstants::encodeRest(base::ByteWriter& writer) const {
     for (std::size_t i = kOldest; i < kConstantKeys.size(); ++i) {
@@ -72,9 +51,9 @@ void ForceConstants::encodeRest(base::ByteWriter& writer) const {
 
 void ForceConstants::decodeRest(base::ByteReader& reader) {
     for (std::size_t i = kOldest; i < kConstantKeys.size(); ++i) {
-        const auto [lowest, highest] = kConstantKeys.at(i).range;
-        const double value = this->*kConstantKeys.at(i).constant = reader.get<double>();
-        if (!(value >= lowest && value <= highest)) {
+        const ForceKey& key = kConstantKeys.at(i);
+        const double value = this->*key.constant = reader.get<double>();
+        if (!(value >= key.lowest && value <= key.highest)) {
             throw base::FormatError("a scene with a force constant out of range");
         }
     }

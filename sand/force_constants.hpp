@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "base/byte_stream.hpp"
-#include "host/toml_table.hpp"
 
 namespace sand {
 
@@ -36,13 +36,19 @@ struct ForceConstants {
     double validity = 0.5;       // [tool reach], how far the local model is believed from where it was made
     double recoveryTime = 0.05;  // [s], time constant with which a new local model takes over
 
-    /// [force] of a scene file, whose field's longer side is `side` [scene unit]. Throws base::InputError.
-    static ForceConstants read(const host::TomlTable& table, double side);
     /// What a scene's encoding ends with. The three oldest constants stand elsewhere in it.
     void encodeRest(base::ByteWriter& writer) const;
     /// Throws base::FormatError for numbers that no scene file gives.
     void decodeRest(base::ByteReader& reader);
     friend bool operator==(const ForceConstants&, const ForceConstants&) = default;
 };
+
+/// A number of ForceConstants that has a key in [force].
+struct ForceKey {
+    const char* name;
+    double ForceConstants::*constant;
+    double lowest, highest;
+};
+[[nodiscard]] std::span<const ForceKey> forceKeys();
 
 }  // namespace sand

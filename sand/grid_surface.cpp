@@ -19,10 +19,11 @@ Erosion::Options withGround(Erosion::Options options, const Ground* ground) {
 
 }  // namespace
 
-GridSurface::GridSurface(const Scene& scene, const Erosion::Options& options)
-    : rules_(scene.rules),
-      ground_(scene.ground),
-      field_(scene.terrain),
+GridSurface::GridSurface(const Rules& rules, const HeightField& field, std::shared_ptr<const Ground> ground,
+                         const Erosion::Options& options)
+    : rules_(rules),
+      ground_(std::move(ground)),
+      field_(field),
       erosion_(field_, rules_, withGround(options, ground_.get())),
       hash_(field_),
       damage_(field_.bounds()) {

@@ -15,7 +15,8 @@ namespace sand {
 class GridSurface final : public Surface {
 public:
     /// `options` say how the sand is swept, not what comes of it; their ground is the scene's own.
-    GridSurface(const Scene& scene, const Erosion::Options& options);
+    GridSurface(const Rules& rules, const HeightField& field, std::shared_ptr<const Ground> ground,
+                const Erosion::Options& options);
     [[nodiscard]] std::unique_ptr<Surface> clone() const override { return std::make_unique<GridSurface>(*this); }
 
     [[nodiscard]] const HeightField& field() const { return field_; }

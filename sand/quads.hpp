@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sand/height_field.hpp"
-#include "sand/scene.hpp"
+#include "sand/rules.hpp"
 
 namespace sand {
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "sand/scene_file.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,7 +8,6 @@
 #include "base/input_error.hpp"
 #include "host/toml_table.hpp"
 #include "sand/material.hpp"
-#include "sand/scene.hpp"
 #include "sand/scene_terrain.hpp"
 #include "sand/scene_tin.hpp"
 #include "sand/terrain.hpp"
@@ -90,13 +91,25 @@ void readTool(const host::TomlTable& file, Scene& scene) {
 }
 
 void readForce(const host::TomlTable& file, Scene& scene) {
-    const double side = std::max(scene.rules.columns, scene.rules.rows) * scene.terrain.cellSize();
-    const std::optional<host::TomlTable> force = file.table("force");
-    if (force) {
-        scene.force = ForceConstants::read(*force, side);
-    } else {
-        scene.force.unitLength = side;
+    ForceConstants& force = scene.force;
+    force.unitLength = std::max(scene.rules.columns, scene.rules.rows) * scene.terrain.cellSize();
+    const std::optional<host::TomlTable> table = file.table("force");
+    if (!table) {
+        return;
     }
+    for (const ForceKey& key : forceKeys()) {
+        force.*key.constant = table->numberOr(key.name, force.*key.constant, {key.lowest, key.highest});
+    }
+    force.law = static_cast<ForceLaw>(table->choiceOr("law", {"repulse", "control_points"}, 0));
+    force.between = static_cast<Between>(table->choiceOr("between", {"local", "hold", "interpolate"}, 0));
+    force.literal = table->flagOr("literal", false);
+    force.frictionDirection =
+        static_cast<FrictionDirection>(table->choiceOr("friction_direction", {"tangential", "full", "vertical"}, 0));
+    if (!force.literal && force.frictionDirection != FrictionDirection::tangential) {
+        table->fail("friction_direction",
+                    "friction_direction other than tangential is for comparison: set literal = true beside it");
+    }
+    table->finish();
 }
 
 // [pixel]: GL promises vertices no finer than a sixteenth of a pixel.

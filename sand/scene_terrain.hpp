@@ -2,7 +2,7 @@
 #pragma once
 
 #include "host/toml_table.hpp"
-#include "sand/scene.hpp"
+#include "sand/scene_file.hpp"
 
 namespace sand {
 

@@ -9,7 +9,8 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "sand/tin_module.hpp"
+#include "sand/tin/start_maker.hpp"
+#include "sand/tin/tin_surface.hpp"
 #include "sand/tin_settings.hpp"
 
 namespace sand {
@@ -61,7 +62,7 @@ tin::Start joined(const host::TomlTable& file, const host::TomlTable& tin, const
     (void)tin.numberOr("cell", 1);  // has been read
     start.settings = readTinSettings(tin, {scene.rules.columns, scene.rules.rows, scene.terrain.cellSize()}, places);
     tin.finish();
-    start = tinModule().join(start);
+    start = tin::join(start);
     keepUsual(tin, start);
     return start;
 }
@@ -72,7 +73,7 @@ tin::Start followed(const host::TomlTable& tin, const Scene& scene) {
     const tin::Settings settings = readTinSettings(tin, {field.columns(), field.rows(), field.cellSize()});
     tin.finish();
     try {
-        tin::Start start = tinModule().follow(field, scene.ground.get(), settings);
+        tin::Start start = tin::follow(field, scene.ground.get(), settings);
         keepUsual(tin, start);
         return start;
     } catch (const std::length_error& error) {
@@ -195,7 +196,8 @@ void readTin(const host::TomlTable& file, Scene& scene) {
 
 void startFrom(const Terrain& terrain, Scene& scene) {
     if (scene.tin != nullptr) {
-        setTin(tinModule().startOf(terrain.surface()), scene);
+        const auto& surface = dynamic_cast<const tin::TinSurface&>(terrain.surface());
+        setTin(tin::startOf(surface.layer(), surface.start().settings), scene);
     } else {
         scene.terrain = terrain.field();
     }

@@ -6,7 +6,7 @@
 #include "sand/erosion.hpp"
 #include "sand/height_field.hpp"
 #include "sand/net_flux.hpp"
-#include "sand/scene.hpp"
+#include "sand/rules.hpp"
 
 namespace sand {
 

@@ -9,10 +9,14 @@
 
 #include "base/byte_stream.hpp"
 #include "sand/grid.hpp"
-#include "sand/scene.hpp"
+#include "sand/rules.hpp"
 #include "sand/step.hpp"
-#include "sand/tin/surface_view.hpp"
+#include "sand/tin_change.hpp"
 #include "sand/tool_shape.hpp"
+
+namespace sand::tin {
+struct SurfaceView;
+}
 
 namespace sand {
 
@@ -106,7 +110,7 @@ public:
     [[nodiscard]] virtual Rect takeDamage() = 0;
     /// Null unless it is a TIN, and what changed of it since this was called last.
     [[nodiscard]] virtual const tin::SurfaceView* tinView() const { return nullptr; }
-    [[nodiscard]] virtual tin::SurfaceDamage takeTinDamage() { return {}; }
+    [[nodiscard]] virtual TinChange takeTinDamage() { return {}; }
 };
 
 }  // namespace sand

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "sand/tin_module.hpp"
+#include "sand/surface_factory.hpp"
 
 namespace sand {
 namespace {
@@ -20,25 +20,18 @@ std::uint64_t mix(std::uint64_t value) {
     return value ^ (value >> 33);
 }
 
-std::unique_ptr<Surface> surfaceOf(const Scene& scene, const Erosion::Options& options) {
-    if (scene.tin != nullptr) {
-        return tinModule().surface(scene);
-    }
-    return std::make_unique<GridSurface>(scene, options);
-}
-
 }  // namespace
 
-Terrain::Terrain(const Scene& scene, const Erosion::Options& options)
-    : rules_(scene.rules),
-      sceneRules_(scene.rules),
-      cellSize_(scene.terrain.cellSize()),
-      surface_(surfaceOf(scene, options)),
-      heading_(scene.rules.toolHeading) {}
+Terrain::Terrain(const Start& start, const Erosion::Options& options)
+    : rules_(start.rules),
+      startRules_(start.rules),
+      cellSize_(start.terrain.cellSize()),
+      surface_(makeSurface(start, options)),
+      heading_(start.rules.toolHeading) {}
 
 Terrain::Terrain(const Terrain& other)
     : rules_(other.rules_),
-      sceneRules_(other.sceneRules_),
+      startRules_(other.startRules_),
       cellSize_(other.cellSize_),
       surface_(other.surface_->clone()),
       stepNumber_(other.stepNumber_),
@@ -56,13 +49,13 @@ const GridSurface& Terrain::grid() const {
     return *grid;
 }
 
-std::int64_t Terrain::leastBytes(const Scene& scene) {
-    if (scene.tin != nullptr) {
+std::int64_t Terrain::leastBytes(const Start& start) {
+    if (start.tin != nullptr) {
         // Of 66 thousand to a million vertices 329 to 401 were measured, by the layout of the mesh.
         constexpr std::int64_t kPerVertex = 320;
-        return kPerVertex * static_cast<std::int64_t>(scene.tin->places.size());
+        return kPerVertex * static_cast<std::int64_t>(start.tin->places.size());
     }
-    return leastBytes(scene.rules.columns, scene.rules.rows);
+    return leastBytes(start.rules.columns, start.rules.rows);
 }
 
 std::int64_t Terrain::leastBytes(int columns, int rows) {
@@ -165,7 +158,7 @@ std::uint64_t Terrain::stateHash() {
     for (const std::int32_t coordinate : {probe_.x, probe_.y, probe_.z}) {
         fold(static_cast<std::uint32_t>(coordinate));
     }
-    if (rules_ != sceneRules_) {  // only then: sessions in which nobody tuned keep the hashes they always had
+    if (rules_ != startRules_) {  // only then: sessions in which nobody tuned keep the hashes they always had
         const Tuning now = rules_.tuning();
         for (const std::int32_t number : {now.threshold, now.startThreshold, now.sweepsPerStep, now.toolRadius}) {
             fold(static_cast<std::uint32_t>(number));
@@ -176,7 +169,7 @@ std::uint64_t Terrain::stateHash() {
             fold(now.toolHeading.bits());
         }
     }
-    if (heading_ != sceneRules_.toolHeading) {  // likewise
+    if (heading_ != startRules_.toolHeading) {  // likewise
         fold(heading_.bits());
     }
     return hash;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sand/grid_surface.hpp"
-#include "sand/scene.hpp"
+#include "sand/start.hpp"
 #include "sand/step.hpp"
 #include "sand/surface.hpp"
 
@@ -32,9 +32,8 @@ struct StateCopy {
 /// number of threads or the size of the blocks. Not thread-safe.
 class Terrain {
 public:
-    /// `options` say how the sand of a height field is swept, not what comes of it; their ground is the scene's own.
-    /// A TIN's scene loads the module that TINs live in: throws base::InputError when it is not there.
-    explicit Terrain(const Scene& scene, const Erosion::Options& options = {});
+    /// `options` say how the sand of a height field is swept, not what comes of it; their ground is that of `start`.
+    explicit Terrain(const Start& start, const Erosion::Options& options = {});
     Terrain(const Terrain& other);
     Terrain& operator=(const Terrain& other);
     Terrain(Terrain&&) noexcept = default;
@@ -87,10 +86,10 @@ public:
     /// The cells that changed since this was called last: one rectangle around them, empty when nothing did.
     [[nodiscard]] Rect takeDamage() { return surface_->takeDamage(); }
     /// The same of a TIN.
-    [[nodiscard]] tin::SurfaceDamage takeTinDamage() { return surface_->takeTinDamage(); }
+    [[nodiscard]] TinChange takeTinDamage() { return surface_->takeTinDamage(); }
 
     /// What a replica of a scene takes at the very least, with the scene it starts from [byte].
-    [[nodiscard]] static std::int64_t leastBytes(const Scene& scene);
+    [[nodiscard]] static std::int64_t leastBytes(const Start& start);
     /// The same of a height field of this size.
     [[nodiscard]] static std::int64_t leastBytes(int columns, int rows);
 
@@ -115,7 +114,7 @@ private:
     /// Does reset, undo or load; false when there was nothing to do.
     bool putBack(const Edit& edit);
 
-    Rules rules_, sceneRules_;
+    Rules rules_, startRules_;
     double cellSize_;
     std::unique_ptr<Surface> surface_;
     std::uint64_t stepNumber_ = 0;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sand/height_field.hpp"
-#include "sand/scene.hpp"
+#include "sand/rules.hpp"
 #include "sand/step.hpp"
 #include "sand/tool_shape.hpp"
 

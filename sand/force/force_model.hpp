@@ -9,7 +9,7 @@
 #include "sand/force/response.hpp"
 #include "sand/force/surface_patch.hpp"
 #include "sand/force/vec3.hpp"
-#include "sand/scene.hpp"
+#include "sand/force_constants.hpp"
 
 namespace sand::force {
 

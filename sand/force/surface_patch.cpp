@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sand/tin/surface_view.hpp"
+
 namespace sand::force {
 
 namespace {

@@ -15,11 +15,4 @@ struct SurfaceView {
     std::int32_t spacing = kLatticePerCell;  // [probe unit], between the points that a tool puts into the sand
 };
 
-/// What differs from when it was asked for last.
-struct SurfaceDamage {
-    bool whole = false;                   // everything: the lists are then empty
-    std::vector<std::int32_t> triangles;  // slots whose corners or constraints changed, or that came or went, ascending
-    std::vector<Vertex> vertices;         // that came, went, rose or sank, ascending
-};
-
 }  // namespace sand::tin

@@ -33,12 +33,12 @@ void addTo(std::vector<std::int32_t>& all, const std::vector<std::int32_t>& more
 
 }  // namespace
 
-TinSurface::TinSurface(const Scene& scene)
-    : start_(scene.tin),
+TinSurface::TinSurface(const Rules& rules, std::shared_ptr<const Start> start)
+    : start_(std::move(start)),
       detail_(detailOf(*start_)),
-      rim_(scene.rules.rim),
-      threshold_(scene.rules.threshold),
-      startThreshold_(scene.rules.startThreshold),
+      rim_(rules.rim),
+      threshold_(rules.threshold),
+      startThreshold_(rules.startThreshold),
       layer_(layerOf(*start_)),
       erosion_(layer_, threshold_, startThreshold_),
       hash_(layer_),
@@ -255,7 +255,7 @@ double TinSurface::height(double x, double y) const {
     return sum / weights;
 }
 
-SurfaceDamage TinSurface::takeTinDamage() {
+TinChange TinSurface::takeTinDamage() {
     sortOnce(damage_.triangles);
     sortOnce(damage_.vertices);
     return std::exchange(damage_, {});

@@ -10,6 +10,7 @@
 #include "sand/tin/erosion.hpp"
 #include "sand/tin/kept_layer.hpp"
 #include "sand/tin/layer_copy.hpp"
+#include "sand/tin/surface_view.hpp"
 #include "sand/tin/tool.hpp"
 #include "sand/tin/vertex_hash.hpp"
 #include "sand/tin/window.hpp"
@@ -19,8 +20,7 @@ namespace sand::tin {
 /// Sand as a TIN: a layer, a tool that stands in it, and sand that slides.
 class TinSurface final : public Surface {
 public:
-    /// The sand that scene.tin starts with.
-    explicit TinSurface(const Scene& scene);
+    TinSurface(const Rules& rules, std::shared_ptr<const Start> start);
     TinSurface(const TinSurface& other);
     TinSurface& operator=(const TinSurface&) = delete;
     [[nodiscard]] std::unique_ptr<Surface> clone() const override { return std::make_unique<TinSurface>(*this); }
@@ -62,7 +62,7 @@ public:
     [[nodiscard]] double height(double x, double y) const override;
     [[nodiscard]] Rect takeDamage() override { return {}; }
     [[nodiscard]] const SurfaceView* tinView() const override { return &view_; }
-    [[nodiscard]] SurfaceDamage takeTinDamage() override;
+    [[nodiscard]] TinChange takeTinDamage() override;
 
 private:
     [[nodiscard]] Tool& toolOf(const HeldTool& tool);
@@ -84,7 +84,7 @@ private:
     VertexHash hash_;
     SurfaceView view_{layer_.triangles(), layer_.heights(), detail_.spacing};
     KeptLayer kept_;
-    SurfaceDamage damage_{.whole = true, .triangles = {}, .vertices = {}};
+    TinChange damage_{.whole = true, .triangles = {}, .vertices = {}};
     std::optional<Tool> tool_;  // of the last toolOf()
     std::shared_ptr<Window> near_ = std::make_shared<Window>();
     bool sawAll_ = false;                       // near_ shows the mesh as it is, around the tool

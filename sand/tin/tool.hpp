@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "sand/scene.hpp"
+#include "sand/rules.hpp"
 #include "sand/step.hpp"
 #include "sand/tin/detail.hpp"
 #include "sand/tin/erosion.hpp"

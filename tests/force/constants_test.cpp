@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "sand/scene_file.hpp"
 #include "tests/sand/scene_fixture.hpp"
 
 namespace {

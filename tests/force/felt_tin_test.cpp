@@ -11,6 +11,7 @@
 #include "sand/force/force_model.hpp"
 #include "sand/force/law.hpp"
 #include "sand/force/tool_contour.hpp"
+#include "sand/scene_file.hpp"
 #include "sand/terrain.hpp"
 
 namespace {

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "sand/force/force_model.hpp"
+#include "sand/scene.hpp"
 #include "sand/terrain.hpp"
 
 /// Sand and tools for tests of the forces, at the first paper's scale: a sphere of radius 0.01.

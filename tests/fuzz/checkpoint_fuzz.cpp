@@ -5,6 +5,7 @@
 
 #include "fuzz_target.hpp"
 #include "master/checkpoint.hpp"
+#include "sand/scene.hpp"
 #include "sand/terrain.hpp"
 #include "tests/support/sand_samples.hpp"
 

@@ -3,6 +3,7 @@
 #include <cctype>
 
 #include "fuzz_target.hpp"
+#include "sand/scene_file.hpp"
 #include "sand/terrain.hpp"
 
 namespace {

@@ -10,6 +10,7 @@
 #include "haptic_bridge/protocol.hpp"
 #include "master/checkpoint.hpp"
 #include "master/journal.hpp"
+#include "sand/scene.hpp"
 #include "sand/terrain.hpp"
 #include "sand/tin/tin_surface.hpp"
 #include "tests/support/sand_samples.hpp"

@@ -4,6 +4,7 @@
 #include <zstd.h>
 
 #include "fuzz_target.hpp"
+#include "sand/scene.hpp"
 #include "sand/terrain.hpp"
 #include "tests/support/sand_samples.hpp"
 

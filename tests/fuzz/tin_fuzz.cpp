@@ -6,6 +6,7 @@
 #include <array>
 
 #include "fuzz_target.hpp"
+#include "sand/scene.hpp"
 #include "sand/tin/tin_surface.hpp"
 #include "tin_scene.hpp"
 

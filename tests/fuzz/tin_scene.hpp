@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sand/dunes.hpp"
+#include "sand/scene.hpp"
 #include "sand/tin/start_maker.hpp"
 #include "tests/support/sand_samples.hpp"
 

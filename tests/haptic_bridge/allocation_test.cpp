@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "haptic_bridge/sequencer.hpp"
+#include "sand/scene.hpp"
 #include "tests/support/arm_on_sand.hpp"
 #include "tests/support/heap_count.hpp"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Arms that do what no arm should, behind the real server: a line, and the wall goes on.
+#include "sand/scene_file.hpp"
 #include "tests/haptic_bridge/server_process.hpp"
 
 namespace {

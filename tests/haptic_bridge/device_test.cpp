@@ -9,6 +9,7 @@
 #include "haptic_bridge/devices/strokes.hpp"
 #include "haptic_bridge/devices/trace.hpp"
 #include "haptic_bridge/hand_mapping.hpp"
+#include "sand/scene.hpp"
 #include "tests/support/jittery_trace.hpp"
 #include "tests/support/seed.hpp"
 

@@ -11,6 +11,7 @@
 #include "haptic_bridge/guards/limited_law.hpp"
 #include "haptic_bridge/guards/velocity_window.hpp"
 #include "haptic_bridge/hand.hpp"
+#include "sand/scene.hpp"
 #include "tests/support/arm_loop.hpp"
 #include "tests/support/arm_on_sand.hpp"
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "sand/scene_file.hpp"
 #include "tests/haptic_bridge/server_process.hpp"
 #include "tests/hostile/attack.hpp"
 #include "tests/support/seed.hpp"

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "host/clock.hpp"
+#include "sand/scene_file.hpp"
 #include "tests/haptic_bridge/server_process.hpp"
 
 namespace {

@@ -12,7 +12,7 @@
 #include "haptic_bridge/client.hpp"
 #include "haptic_bridge/link_options.hpp"
 #include "haptic_bridge/protocol.hpp"
-#include "sand/scene.hpp"
+#include "sand/scene_file.hpp"
 #include "tests/haptic_bridge/server_process.hpp"
 
 namespace test {

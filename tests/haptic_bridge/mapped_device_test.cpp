@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/input_error.hpp"
+#include "sand/scene.hpp"
 #include "tests/haptic_bridge/fake_arm.hpp"
 #include "tests/support/sand_samples.hpp"
 

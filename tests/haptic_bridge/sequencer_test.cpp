@@ -2,6 +2,7 @@
 #include "haptic_bridge/sequencer.hpp"
 
 #include "haptic_bridge/devices/open_device.hpp"
+#include "sand/scene_file.hpp"
 #include "tests/haptic_bridge/server_process.hpp"
 
 namespace {

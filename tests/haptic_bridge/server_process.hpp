@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "haptic_bridge/client.hpp"
+#include "sand/scene.hpp"
 #include "sand/terrain.hpp"
 #include "tests/support/folder_test.hpp"
 

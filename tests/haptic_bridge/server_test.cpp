@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The real server program over loopback, with the real client.
 #include "base/input_error.hpp"
+#include "sand/scene_file.hpp"
 #include "tests/haptic_bridge/raw_peer.hpp"
 #include "tests/haptic_bridge/server_process.hpp"
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <random>
 
+#include "sand/scene.hpp"
 #include "sand/terrain.hpp"
 #include "tests/support/arm_loop.hpp"
 #include "tests/support/arm_on_sand.hpp"

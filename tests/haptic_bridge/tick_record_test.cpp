@@ -10,6 +10,7 @@
 #include "haptic_bridge/surface_of.hpp"
 #include "haptic_bridge/tick_recorder.hpp"
 #include "haptic_bridge/tick_replay.hpp"
+#include "sand/scene.hpp"
 #include "tests/haptic_bridge/fake_arm.hpp"
 #include "tests/haptic_bridge/server_process.hpp"
 #include "tests/support/sand_samples.hpp"

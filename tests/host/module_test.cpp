@@ -73,11 +73,9 @@ TEST_F(Modules, ThatAreNoLibrariesAreRefused) {
 // Every program that loads modules, beside one of another build.
 TEST_F(Modules, OfAnotherBuildAreRefusedByEveryLoader) {
     const std::string head = "[field]\ncolumns = 64\nrows = 64\n[material]\n[tool]\nradius = 0.1\n";
-    const std::string tin = write("tin.toml", "[tin]\nmax_error = 0.01\n[terrain]\nheight = 0.2\n" + head);
     const std::string formula =
         write("f.toml", "[terrain]\nkind = \"function\"\nx = [0.0, 1.0]\ny = [0.0, 1.0]\nz = \"x\"\n" + head);
     const std::string server = "--device script:gis --listen 127.0.0.1:0 --scene ";
-    expectRefused("sandwall-tin.so", "sandwall-haptic-server", server + tin);
     expectRefused("sandwall-import.so", "sandwall-haptic-server", server + formula);
     const std::string flat = write("flat.toml", "[terrain]\nheight = 0.2\n" + head);
     const std::string secret = write("secret", "move 0123456789abcdef0123456789abcdef\n");

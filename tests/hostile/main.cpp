@@ -11,6 +11,7 @@
 #include "haptic_bridge/link_options.hpp"
 #include "host/command_line.hpp"
 #include "host/event.hpp"
+#include "sand/scene_file.hpp"
 #include "tests/hostile/attack.hpp"
 
 int main(int argc, char** argv) {

@@ -12,7 +12,8 @@
 
 #include "host/worker_pool.hpp"
 #include "sand/dunes.hpp"
-#include "sand/tin_module.hpp"
+#include "sand/scene.hpp"
+#include "sand/tin/start_maker.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -31,8 +32,7 @@ sand::Scene smallScene() {
 
 sand::Scene smallTin() {
     sand::Scene scene = smallScene();
-    auto start =
-        sand::tinModule().follow(scene.terrain, nullptr, {.spacing = 300, .maxError = 8000, .mostVertices = 2000});
+    auto start = sand::tin::follow(scene.terrain, nullptr, {.spacing = 300, .maxError = 8000, .mostVertices = 2000});
     scene.rules.tin = start.digest();
     scene.tin = std::make_shared<const sand::tin::Start>(std::move(start));
     scene.terrain = sand::HeightField(1, 1, scene.terrain.cellSize());

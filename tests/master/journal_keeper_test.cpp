@@ -17,6 +17,7 @@
 #include "base/input_error.hpp"
 #include "master/checkpoint.hpp"
 #include "master/journal.hpp"
+#include "sand/scene.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/sand_samples.hpp"
 #include "tests/support/seed.hpp"

@@ -14,6 +14,7 @@
 #include <random>
 
 #include "base/input_error.hpp"
+#include "sand/scene.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/sand_samples.hpp"
 

@@ -10,6 +10,7 @@
 #include "master/checkpoint.hpp"
 #include "master/journal.hpp"
 #include "sand/esri_grid.hpp"
+#include "sand/scene_file.hpp"
 #include "sand/terrain.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/run_program.hpp"

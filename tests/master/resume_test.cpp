@@ -11,6 +11,7 @@
 #include "base/input_error.hpp"
 #include "master/checkpoint.hpp"
 #include "master/journal.hpp"
+#include "sand/scene_file.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/sand_samples.hpp"
 

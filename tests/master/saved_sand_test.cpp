@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "base/input_error.hpp"
+#include "sand/scene.hpp"
 #include "sand/terrain.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/sand_samples.hpp"

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/input_error.hpp"
+#include "sand/scene.hpp"
 
 namespace {
 

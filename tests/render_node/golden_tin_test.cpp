@@ -7,6 +7,8 @@
 #include "golden.hpp"
 #include "haptic_bridge/devices/strokes.hpp"
 #include "render_node/gl/gl_context.hpp"
+#include "sand/scene_file.hpp"
+#include "sand/tin/surface_view.hpp"
 #include "wall_painter.hpp"
 
 namespace {

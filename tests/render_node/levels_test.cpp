@@ -10,6 +10,7 @@
 #include "render_node/gl/gl_context.hpp"
 #include "render_node/gl/gl_program.hpp"
 #include "render_node/sand_levels.hpp"
+#include "sand/scene.hpp"
 #include "wall_painter.hpp"
 
 namespace {

@@ -10,6 +10,7 @@
 
 #include "render_node/gl/gl_context.hpp"
 #include "sample_scene.hpp"
+#include "sand/scene.hpp"
 #include "walls/projection.hpp"
 
 namespace {

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "render_node/tile_painter.hpp"
+#include "sand/scene.hpp"
 #include "wall_painter.hpp"
 
 namespace {

@@ -4,6 +4,7 @@
 
 #include "render_node/gl/gl_context.hpp"
 #include "sample_scene.hpp"
+#include "sand/scene.hpp"
 
 int main() try {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);

@@ -8,6 +8,7 @@
 
 #include "render_node/gl/gl_context.hpp"
 #include "sample_scene.hpp"
+#include "sand/scene.hpp"
 
 namespace {
 

@@ -7,6 +7,7 @@
 
 #include "render_node/gl/gl_context.hpp"
 #include "render_node/tool_force.hpp"
+#include "sand/scene.hpp"
 #include "wall_painter.hpp"
 
 namespace {

@@ -9,6 +9,7 @@
 
 #include "render_node/sand_view.hpp"
 #include "sand/dunes.hpp"
+#include "sand/scene.hpp"
 #include "sand/terrain.hpp"
 
 /// Scenes and cameras that tests and benchmarks of the drawing share. One scene unit is a metre in the room.

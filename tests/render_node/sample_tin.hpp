@@ -10,6 +10,7 @@
 
 #include "sample_scene.hpp"
 #include "sand/tin/surface_view.hpp"
+#include "sand/tin_change.hpp"
 
 namespace sample {
 
@@ -49,7 +50,7 @@ public:
     [[nodiscard]] sand::tin::SurfaceView view() const { return {mesh_, heights_}; }
     [[nodiscard]] const sand::tin::Triangles& mesh() const { return mesh_; }
     [[nodiscard]] double height(Vertex vertex) const { return heights_[static_cast<std::size_t>(vertex)]; }
-    sand::tin::SurfaceDamage takeDamage() {
+    sand::TinChange takeDamage() {
         for (auto* list : {&damage_.triangles, &damage_.vertices}) {
             std::sort(list->begin(), list->end());
             list->erase(std::unique(list->begin(), list->end()), list->end());
@@ -188,7 +189,7 @@ private:
     sand::tin::Triangles mesh_;
     std::vector<double> heights_;
     std::map<std::pair<Vertex, Vertex>, bool> constraints_;
-    sand::tin::SurfaceDamage damage_;
+    sand::TinChange damage_;
 };
 
 }  // namespace sample

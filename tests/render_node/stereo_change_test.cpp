@@ -10,6 +10,7 @@
 
 #include "render_node/tile_painter.hpp"
 #include "sample_scene.hpp"
+#include "sand/scene.hpp"
 
 namespace {
 

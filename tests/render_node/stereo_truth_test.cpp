@@ -9,6 +9,7 @@
 #include <string>
 
 #include "render_node/gl/gl_context.hpp"
+#include "sand/scene.hpp"
 #include "wall_painter.hpp"
 
 namespace {

@@ -7,6 +7,7 @@
 
 #include "render_node/gl/gl_context.hpp"
 #include "sample_tin.hpp"
+#include "sand/scene.hpp"
 
 namespace {
 
@@ -198,7 +199,7 @@ TEST_F(TinRedraw, WithWhatIsUnseenPutOffIsEqualToTheWhole) {
             const int stay = i / 15;
             const glm::dvec3 place(0.2 + 0.16 * (stay * 3 % 10), 0.2 + 0.16 * (stay * 7 % 10), 0);
             const render_node::Camera near = sample::camera(place + glm::dvec3(0, -0.1, 0.35), place);
-            const sand::tin::SurfaceDamage damage = tin.takeDamage();
+            const sand::TinChange damage = tin.takeDamage();
             prompt.update(tin.view(), damage);
             late.update(tin.view(), damage, {&near, 1});
             prompt.drawIfChanged(near, promptly, ofPrompt);

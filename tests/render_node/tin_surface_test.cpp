@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "sample_tin.hpp"
+#include "sand/scene.hpp"
 
 namespace {
 

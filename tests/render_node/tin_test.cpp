@@ -9,6 +9,7 @@
 
 #include "render_node/gl/gl_context.hpp"
 #include "sample_tin.hpp"
+#include "sand/scene.hpp"
 
 namespace {
 

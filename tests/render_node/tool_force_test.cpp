@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "sample_scene.hpp"
+#include "sand/scene.hpp"
 
 namespace {
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "sand/scene.hpp"
+
 namespace sample {
 namespace {
 

@@ -10,6 +10,7 @@
 #include "render_node/stereo_composer.hpp"
 #include "render_node/test_pattern.hpp"
 #include "sample_scene.hpp"
+#include "sand/scene.hpp"
 #include "walls/canvas.hpp"
 #include "walls/projection.hpp"
 

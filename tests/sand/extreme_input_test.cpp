@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "sand/scene_file.hpp"
 #include "tests/sand/scene_fixture.hpp"
 
 namespace {

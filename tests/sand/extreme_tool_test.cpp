@@ -6,6 +6,7 @@
 #include <memory>
 #include <random>
 
+#include "sand/scene.hpp"
 #include "sand/terrain.hpp"
 #include "tests/support/relaxing.hpp"
 #include "tests/support/sand_samples.hpp"

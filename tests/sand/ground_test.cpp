@@ -6,6 +6,7 @@
 #include <memory>
 #include <random>
 
+#include "sand/scene.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {

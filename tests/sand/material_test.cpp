@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/input_error.hpp"
+#include "sand/scene_file.hpp"
 #include "sand/terrain.hpp"
 #include "tests/sand/scene_fixture.hpp"
 #include "tests/support/sand_samples.hpp"

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "host/worker_pool.hpp"
+#include "sand/scene.hpp"
 #include "sand/terrain.hpp"
 #include "tests/support/sand_samples.hpp"
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "base/input_error.hpp"
-#include "sand/scene.hpp"
+#include "sand/scene_file.hpp"
 #include "tests/support/folder_test.hpp"
 
 /// Writes scene files into a folder of its own and tells what the loader says of them.

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "sand/erosion.hpp"
+#include "sand/scene_file.hpp"
 #include "tests/sand/scene_fixture.hpp"
 
 namespace {

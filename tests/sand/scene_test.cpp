@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sand/scene.hpp"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -10,6 +8,7 @@
 
 #include "base/input_error.hpp"
 #include "sand/esri_grid.hpp"
+#include "sand/scene_file.hpp"
 #include "tests/sand/scene_fixture.hpp"
 
 namespace {

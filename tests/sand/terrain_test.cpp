@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "sand/scene.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "sand/dunes.hpp"
+#include "sand/scene.hpp"
 #include "sand/tool.hpp"
 #include "sand/tuning.hpp"
 #include "tests/support/relaxing.hpp"

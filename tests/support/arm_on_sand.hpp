@@ -9,6 +9,7 @@
 #include "haptic_bridge/devices/arm_presets.hpp"
 #include "haptic_bridge/devices/simulated_arm.hpp"
 #include "haptic_bridge/hand.hpp"
+#include "sand/scene.hpp"
 
 namespace test {
 

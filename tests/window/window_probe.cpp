@@ -14,6 +14,7 @@
 #include "host/command_line.hpp"
 #include "pictures/png_file.hpp"
 #include "render_node/gl/gl_context.hpp"
+#include "sand/scene.hpp"
 #include "tests/render_node/sample_scene.hpp"
 
 namespace {

@@ -8,6 +8,7 @@
 
 #include "host/worker_pool.hpp"
 #include "sand/dunes.hpp"
+#include "sand/scene.hpp"
 #include "tests/support/relaxing.hpp"
 #include "tests/support/sand_samples.hpp"
 

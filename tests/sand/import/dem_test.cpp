@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sand/scene.hpp"
 #include "tests/sand/import/import_fixture.hpp"
 
 namespace {

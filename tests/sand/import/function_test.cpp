@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "sand/scene.hpp"
 #include "tests/sand/import/import_fixture.hpp"
 
 namespace {

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "sand/import/gsf_file.hpp"
+#include "sand/scene.hpp"
 #include "sand/scene_raster.hpp"
 #include "tests/sand/import/import_fixture.hpp"
 

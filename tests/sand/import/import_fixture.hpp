@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "sand/scene_file.hpp"
 #include "tests/sand/scene_fixture.hpp"
 #include "tests/support/run_program.hpp"
 

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <string>
 
-#include "sand/scene.hpp"
+#include "sand/scene_file.hpp"
 
 int main(int argc, char** argv) {
     if (argc != 2) {

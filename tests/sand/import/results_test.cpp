@@ -11,6 +11,7 @@
 
 #include "master/journal.hpp"
 #include "sand/import/importer.hpp"
+#include "sand/scene_file.hpp"
 #include "sand/scene_raster.hpp"
 #include "sand/terrain.hpp"
 #include "tests/sand/import/import_fixture.hpp"

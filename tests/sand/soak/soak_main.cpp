@@ -10,6 +10,7 @@
 #include "host/command_line.hpp"
 #include "host/worker_pool.hpp"
 #include "sand/dunes.hpp"
+#include "sand/scene.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sand/scene.hpp"
 #include "sand/terrain.hpp"
 
 namespace tin_samples {

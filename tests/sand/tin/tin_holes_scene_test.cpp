@@ -11,8 +11,10 @@
 #include <random>
 
 #include "base/input_error.hpp"
+#include "sand/scene_file.hpp"
 #include "sand/scene_raster.hpp"
 #include "sand/terrain.hpp"
+#include "sand/tin/surface_view.hpp"
 #include "sand/tin_raster.hpp"
 #include "tests/sand/tin/same_session.hpp"
 #include "tests/support/folder_test.hpp"

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "base/input_error.hpp"
+#include "sand/scene_file.hpp"
 #include "sand/terrain.hpp"
 #include "sand/tin/lattice.hpp"
 #include "tests/support/folder_test.hpp"

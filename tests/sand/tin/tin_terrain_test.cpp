@@ -8,7 +8,9 @@
 #include <random>
 
 #include "base/input_error.hpp"
+#include "sand/scene_file.hpp"
 #include "sand/terrain.hpp"
+#include "sand/tin/surface_view.hpp"
 #include "tests/sand/tin/same_session.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/tin_piles.hpp"
@@ -269,7 +271,7 @@ TEST_F(TinTerrain, ComesToRestAndThenCostsNoChange) {
     const auto held = terrain.copySand()->encode();
     terrain.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {}});
     EXPECT_EQ(terrain.copySand()->encode(), held);
-    const sand::tin::SurfaceDamage damage = terrain.takeTinDamage();
+    const sand::TinChange damage = terrain.takeTinDamage();
     EXPECT_TRUE(damage.triangles.empty() && damage.vertices.empty() && !damage.whole);
 }
 
@@ -294,7 +296,7 @@ TEST_F(TinTerrain, DamageNamesAllThatChanged) {
         Step next = step;
         next.number = terrain.stepNumber() + 1;
         terrain.apply(next);
-        const sand::tin::SurfaceDamage damage = terrain.takeTinDamage();
+        const sand::TinChange damage = terrain.takeTinDamage();
         ASSERT_FALSE(damage.whole);
         const sand::tin::Triangles& now = terrain.tinView()->triangles;
         for (std::size_t slot = 0; slot < now.triangles.size(); ++slot) {

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/surface_factory.hpp"
+
+#include "sand/grid_surface.hpp"
+#include "sand/tin/tin_surface.hpp"
+
+namespace sand {
+
+std::unique_ptr<Surface> makeSurface(const Start& start, const Erosion::Options& options) {
+    if (start.tin != nullptr) {
+        return std::make_unique<tin::TinSurface>(start.rules, start.tin);
+    }
+    return std::make_unique<GridSurface>(start.rules, start.terrain, start.ground, options);
+}
+
+}  // namespace sand

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "sand/erosion.hpp"
+#include "sand/start.hpp"
+#include "sand/surface.hpp"
+
+namespace sand {
+
+/// The sand that a replica starts with. `options` say how the sand of a height field is swept, not what comes of it;
+/// their ground is that of `start`.
+[[nodiscard]] std::unique_ptr<Surface> makeSurface(const Start& start, const Erosion::Options& options = {});
+
+}  // namespace sand

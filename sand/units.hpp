@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace sand {
+
+inline constexpr int kMaxSide = 16384;               // [cell]
+inline constexpr std::int32_t kMaxHeight = 1 << 28;  // [unit], of either sign
+inline constexpr int kHeightBits = 16;               // one height unit is cellSize / 2^16
+inline constexpr int kProbeBits = 8;                 // one probe unit is cellSize / 2^8
+inline constexpr std::int32_t kUnitsPerCell = 1 << kHeightBits;
+inline constexpr std::int32_t kProbePerCell = 1 << kProbeBits;
+
+}  // namespace sand
