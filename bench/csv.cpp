@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "base/input_error.hpp"
-#include "bench/relaxations.hpp"
+#include "bench/sand/relaxations.hpp"
 
 namespace bench {
 namespace {

@@ -4,10 +4,10 @@
 #include <random>
 
 #include "bench/curves.hpp"
-#include "bench/relaxations.hpp"
+#include "bench/sand/relaxations.hpp"
 #include "bench/timing.hpp"
-#include "sand/erosion.hpp"
-#include "sand/ground.hpp"
+#include "sand/grid/erosion.hpp"
+#include "sand/model/ground.hpp"
 
 namespace bench {
 namespace {

@@ -3,10 +3,10 @@
 #include <string_view>
 
 #include "bench/curves.hpp"
-#include "bench/latency.hpp"
+#include "bench/session/latency.hpp"
 #include "host/command_line.hpp"
 #include "host/version.hpp"
-#include "sand/scene.hpp"
+#include "scene/scene.hpp"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "lockstep/frame_barrier.hpp"
-#include "sand/terrain.hpp"
+#include "sand/replica.hpp"
 
 namespace lockstep {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/byte_stream.hpp"
-#include "sand/terrain.hpp"
+#include "sand/replica.hpp"
 
 namespace lockstep {
 

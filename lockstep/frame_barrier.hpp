@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "lockstep/backoff.hpp"
 #include "lockstep/cluster.hpp"
 #include "lockstep/frame_message.hpp"
-#include "lockstep/patience.hpp"
 #include "lockstep/watchdog.hpp"
 
 namespace lockstep {

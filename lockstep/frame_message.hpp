@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "base/byte_stream.hpp"
-#include "lockstep/layer.hpp"
+#include "lockstep/overlays.hpp"
 #include "lockstep/wall_figures.hpp"
-#include "sand/step.hpp"
+#include "sand/model/step.hpp"
 
 namespace lockstep {
 

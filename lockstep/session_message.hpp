@@ -8,7 +8,7 @@
 
 #include "lockstep/cluster.hpp"
 #include "lockstep/fault.hpp"
-#include "sand/scene.hpp"
+#include "scene/scene.hpp"
 
 namespace lockstep {
 

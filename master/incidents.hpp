@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "haptic_bridge/protocol.hpp"
+#include "haptic_bridge/link/protocol.hpp"
 
 namespace master {
 

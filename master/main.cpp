@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "base/input_error.hpp"
-#include "haptic_bridge/link_options.hpp"
+#include "haptic_bridge/link/link_options.hpp"
 #include "host/build_id.hpp"
 #include "host/command_line.hpp"
 #include "host/event.hpp"
@@ -19,7 +19,7 @@
 #include "master/injection.hpp"
 #include "master/session.hpp"
 #include "master/start_up.hpp"
-#include "sand/scene_file.hpp"
+#include "scene/load/scene_file.hpp"
 #include "walls/wall.hpp"
 
 namespace {

@@ -16,7 +16,7 @@
 #include "lockstep/session_message.hpp"
 #include "master/start_up.hpp"
 #include "master/wall_pictures.hpp"
-#include "sand/scene.hpp"
+#include "scene/scene.hpp"
 
 namespace master {
 namespace {

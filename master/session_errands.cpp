@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/input_error.hpp"
-#include "master/saved_sand.hpp"
+#include "master/journal/saved_sand.hpp"
 #include "master/session.hpp"
 
 namespace master {

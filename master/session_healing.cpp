@@ -10,7 +10,7 @@
 #include "host/event.hpp"
 #include "lockstep/healing.hpp"
 #include "master/disagreement.hpp"
-#include "master/resume.hpp"
+#include "master/journal/resume.hpp"
 #include "master/session.hpp"
 
 namespace master {

@@ -5,7 +5,7 @@
 #include "base/input_error.hpp"
 #include "host/build_id.hpp"
 #include "master/session.hpp"
-#include "sand/scene.hpp"
+#include "scene/scene.hpp"
 
 namespace master {
 namespace {

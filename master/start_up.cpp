@@ -5,7 +5,7 @@
 
 #include "base/input_error.hpp"
 #include "host/build_id.hpp"
-#include "sand/terrain.hpp"
+#include "sand/replica.hpp"
 
 namespace master {
 

@@ -6,7 +6,7 @@
 
 #include "lockstep/cluster.hpp"
 #include "lockstep/session_message.hpp"
-#include "sand/scene.hpp"
+#include "scene/scene.hpp"
 #include "walls/wall.hpp"
 
 /// What the master asks before the first frame: that the job can hold the sand, and that every rank can take part.

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "haptic_bridge/client.hpp"
+#include "haptic_bridge/client/client.hpp"
 #include "lockstep/rank_statistics.hpp"
 #include "lockstep/session_message.hpp"
 #include "lockstep/statistics.hpp"

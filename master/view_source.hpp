@@ -6,7 +6,7 @@
 
 #include "lockstep/frame_message.hpp"
 #include "lockstep/test_pattern.hpp"
-#include "sand/scene.hpp"
+#include "scene/scene.hpp"
 #include "tracking/tracked_viewer.hpp"
 #include "walls/wall.hpp"
 

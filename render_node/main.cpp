@@ -6,10 +6,10 @@
 #include "host/version.hpp"
 #include "host/worker_pool.hpp"
 #include "lockstep/cluster.hpp"
-#include "render_node/probe.hpp"
+#include "render_node/gl_check.hpp"
 #include "render_node/tile_session.hpp"
-#include "sand/scene.hpp"
-#include "sand/terrain.hpp"
+#include "sand/replica.hpp"
+#include "scene/scene.hpp"
 
 int main(int argc, char** argv) {
     // Questions about this host, asked before a job: they need no MPI.

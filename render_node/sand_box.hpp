@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "render_node/frustum.hpp"
-#include "render_node/sand_rim.hpp"
-#include "render_node/solid_mesh.hpp"
-#include "sand/scene.hpp"
+#include "render_node/gl/solid_mesh.hpp"
+#include "render_node/surface/frustum.hpp"
+#include "render_node/surface/sand_rim.hpp"
+#include "scene/scene.hpp"
 
 namespace render_node {
 

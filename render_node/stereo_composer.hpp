@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "render_node/eye_target.hpp"
+#include "render_node/gl/eye_target.hpp"
 #include "render_node/gl/gl_context.hpp"
 #include "render_node/gl/gl_program.hpp"
-#include "render_node/pixel_rect.hpp"
+#include "render_node/surface/pixel_rect.hpp"
 #include "walls/wall.hpp"
 
 namespace render_node {

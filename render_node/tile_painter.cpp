@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <glm/gtc/type_ptr.hpp>
 
-#include "sand/scene.hpp"
-#include "sand/tin/surface_view.hpp"
+#include "sand/tin/geometry/surface_view.hpp"
+#include "scene/scene.hpp"
 #include "walls/projection.hpp"
 
 namespace render_node {

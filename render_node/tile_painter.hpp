@@ -8,15 +8,15 @@
 #include <vector>
 
 #include "lockstep/frame_message.hpp"
-#include "render_node/eye_target.hpp"
+#include "render_node/gl/eye_target.hpp"
 #include "render_node/gl/gl_context.hpp"
-#include "render_node/overlay.hpp"
-#include "render_node/sand_view.hpp"
+#include "render_node/overlay/statistics.hpp"
+#include "render_node/overlay/test_pattern.hpp"
+#include "render_node/scene_painter.hpp"
 #include "render_node/stereo_composer.hpp"
-#include "render_node/test_pattern.hpp"
-#include "render_node/tool_force.hpp"
-#include "sand/scene.hpp"
-#include "sand/terrain.hpp"
+#include "render_node/tool/force.hpp"
+#include "sand/replica.hpp"
+#include "scene/scene.hpp"
 #include "walls/wall.hpp"
 
 namespace render_node {

@@ -20,8 +20,8 @@
 #include "lockstep/view_agreement.hpp"
 #include "render_node/gl/gl_program.hpp"
 #include "render_node/tile_painter.hpp"
-#include "sand/scene.hpp"
-#include "sand/tin/surface_view.hpp"
+#include "sand/tin/geometry/surface_view.hpp"
+#include "scene/scene.hpp"
 #include "walls/stereo_change.hpp"
 
 namespace render_node {

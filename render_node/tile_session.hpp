@@ -5,7 +5,7 @@
 
 #include "lockstep/cluster.hpp"
 #include "render_node/gl/gl_context.hpp"
-#include "sand/erosion.hpp"
+#include "sand/grid/erosion.hpp"
 
 namespace render_node {
 

@@ -3,10 +3,10 @@
 
 #include <memory>
 
-#include "sand/ground.hpp"
-#include "sand/height_field.hpp"
-#include "sand/rules.hpp"
-#include "sand/tin/start.hpp"
+#include "sand/model/ground.hpp"
+#include "sand/model/height_field.hpp"
+#include "sand/model/rules.hpp"
+#include "sand/tin/geometry/tin_start.hpp"
 
 namespace sand {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sand/surface_factory.hpp"
 
-#include "sand/grid_surface.hpp"
-#include "sand/tin/tin_surface.hpp"
+#include "sand/grid/surface.hpp"
+#include "sand/tin/surface.hpp"
 
 namespace sand {
 

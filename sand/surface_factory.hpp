@@ -3,9 +3,9 @@
 
 #include <memory>
 
-#include "sand/erosion.hpp"
+#include "sand/grid/erosion.hpp"
+#include "sand/model/surface.hpp"
 #include "sand/start.hpp"
-#include "sand/surface.hpp"
 
 namespace sand {
 

@@ -26,7 +26,7 @@ over the pile's volume.
 
 **The methods.** *G*: the default, isotropic fluxes with inertia. *G plain*: the same without inertia. *N4*: the integer
 four-neighbour preview. *settle*: the dual projection. The four *float32* ones are the explicit talus rules in common use,
-written for this comparison alone (`bench/baseline_schemes.cpp`): in place or Jacobi, four or eight neighbours, the
+written for this comparison alone (`bench/sand/baseline_schemes.cpp`): in place or Jacobi, four or eight neighbours, the
 diagonal ones with or without a √2; whole rows, vectorised, with the flags and instruction sets of our own sweeps.
 """
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "haptic_bridge/devices/arm.hpp"
 #include "haptic_bridge/devices/picture_window.hpp"
+#include "haptic_bridge/hand/arm.hpp"
 
 namespace haptic_bridge {
 

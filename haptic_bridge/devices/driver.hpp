@@ -7,7 +7,7 @@
 #pragma once
 
 #include "base/triple_buffer.hpp"
-#include "haptic_bridge/devices/arm.hpp"
+#include "haptic_bridge/hand/arm.hpp"
 #include "host/clock.hpp"
 
 namespace haptic_bridge {

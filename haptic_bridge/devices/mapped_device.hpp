@@ -4,10 +4,10 @@
 #include <atomic>
 #include <memory>
 
-#include "haptic_bridge/devices/device.hpp"
-#include "haptic_bridge/devices/device_troubles.hpp"
-#include "haptic_bridge/devices/hand_settings.hpp"
-#include "sand/scene.hpp"
+#include "haptic_bridge/hand/device.hpp"
+#include "haptic_bridge/hand/device_troubles.hpp"
+#include "haptic_bridge/hand/hand_settings.hpp"
+#include "scene/scene.hpp"
 
 namespace haptic_bridge {
 

@@ -7,11 +7,11 @@
 #include <thread>
 
 #include "base/triple_buffer.hpp"
-#include "haptic_bridge/devices/device.hpp"
-#include "haptic_bridge/devices/device_troubles.hpp"
 #include "haptic_bridge/devices/picture_window.hpp"
 #include "haptic_bridge/devices/sand_picture.hpp"
 #include "haptic_bridge/devices/sand_watcher.hpp"
+#include "haptic_bridge/hand/device.hpp"
+#include "haptic_bridge/hand/device_troubles.hpp"
 
 namespace haptic_bridge {
 

@@ -4,9 +4,9 @@
 #include <memory>
 #include <string>
 
-#include "haptic_bridge/devices/device.hpp"
-#include "haptic_bridge/devices/hand_settings.hpp"
-#include "sand/scene.hpp"
+#include "haptic_bridge/hand/device.hpp"
+#include "haptic_bridge/hand/hand_settings.hpp"
+#include "scene/scene.hpp"
 
 namespace haptic_bridge {
 

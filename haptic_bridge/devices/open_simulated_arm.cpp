@@ -10,9 +10,9 @@
 #include <string_view>
 
 #include "base/input_error.hpp"
-#include "haptic_bridge/devices/arm_presets.hpp"
 #include "haptic_bridge/devices/simulated_arm.hpp"
 #include "haptic_bridge/devices/strokes.hpp"
+#include "haptic_bridge/hand/arm_presets.hpp"
 
 namespace haptic_bridge {
 namespace {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// Private to this folder.
 #pragma once
 
 #include <vector>
 
 #include "haptic_bridge/devices/picture_window.hpp"
 #include "sand/force/vec3.hpp"
-#include "sand/terrain.hpp"
+#include "sand/replica.hpp"
 
 namespace haptic_bridge {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "sand/terrain.hpp"
+#include "sand/replica.hpp"
 
 namespace haptic_bridge {
 

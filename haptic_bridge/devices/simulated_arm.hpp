@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "haptic_bridge/devices/arm.hpp"
 #include "haptic_bridge/devices/arm_axis.hpp"
+#include "haptic_bridge/hand/arm.hpp"
 
 namespace haptic_bridge {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <thread>
 
-#include "haptic_bridge/devices/device.hpp"
+#include "haptic_bridge/hand/device.hpp"
 
 namespace haptic_bridge {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "haptic_bridge/devices/device.hpp"
-#include "haptic_bridge/devices/hand_settings.hpp"
+#include "haptic_bridge/hand/device.hpp"
+#include "haptic_bridge/hand/hand_settings.hpp"
 
 namespace haptic_bridge {
 

@@ -5,8 +5,8 @@
 
 #include <stdexcept>
 
-#include "render_node/eye_target.hpp"
 #include "render_node/gl/compiler_memory.hpp"
+#include "render_node/gl/eye_target.hpp"
 
 namespace render_node {
 namespace {

@@ -12,7 +12,7 @@ uniform float uGrainScale; // periods of the grain per scene unit
 const vec3 kSunlight = vec3(1.02, 0.92, 0.76);
 const vec3 kSkylight = vec3(0.205, 0.235, 0.28);
 
-// In radii of the tool; render_node/tool_reach.cpp has the same numbers.
+// In radii of the tool; render_node/tool/reach.cpp has the same numbers.
 const float kToolReach = 1.8;
 const float kShadowLength = 20.0;
 const vec2 kPenumbra = vec2(0.08, 0.07);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "sand/force/force_constants.hpp"
 #include "sand/force/gauges.hpp"
 #include "sand/force/response.hpp"
 #include "sand/force/surface_patch.hpp"
 #include "sand/force/vec3.hpp"
-#include "sand/force_constants.hpp"
 
 /// What the hand feels. Forces read the sand and never change it; they may use libm.
 namespace sand::force {

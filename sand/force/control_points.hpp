@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "sand/force/force_constants.hpp"
 #include "sand/force/gauges.hpp"
 #include "sand/force/response.hpp"
 #include "sand/force/surface_patch.hpp"
-#include "sand/force_constants.hpp"
 
 /// The second paper's law. Lengths are in units of ForceConstants::unitLength here, for the paper normalises them.
 ///

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "sand/force/dual.hpp"
-#include "sand/step.hpp"
-#include "sand/tin/surface_view.hpp"
+#include "sand/model/step.hpp"
+#include "sand/tin/geometry/surface_view.hpp"
 
 namespace sand::force {
 

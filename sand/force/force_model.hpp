@@ -4,12 +4,12 @@
 #include <cstdint>
 
 #include "sand/force/contour.hpp"
+#include "sand/force/force_constants.hpp"
 #include "sand/force/interpolation.hpp"
 #include "sand/force/local_model.hpp"
 #include "sand/force/response.hpp"
 #include "sand/force/surface_patch.hpp"
 #include "sand/force/vec3.hpp"
-#include "sand/force_constants.hpp"
 
 namespace sand::force {
 

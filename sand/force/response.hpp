@@ -2,8 +2,8 @@
 #pragma once
 
 #include "sand/force/dual.hpp"
+#include "sand/force/force_constants.hpp"
 #include "sand/force/vec3.hpp"
-#include "sand/force_constants.hpp"
 
 namespace sand::force {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sand/tin/surface_view.hpp"
+#include "sand/tin/geometry/surface_view.hpp"
 
 namespace sand::force {
 

@@ -6,9 +6,9 @@
 
 #include "sand/force/dual.hpp"
 #include "sand/force/facets.hpp"
-#include "sand/height_field.hpp"
-#include "sand/step.hpp"
-#include "sand/terrain.hpp"
+#include "sand/model/height_field.hpp"
+#include "sand/model/step.hpp"
+#include "sand/replica.hpp"
 
 namespace sand::force {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "sand/height_field.hpp"
+#include "sand/model/height_field.hpp"
 
 namespace sand::force {
 namespace {

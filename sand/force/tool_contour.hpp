@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sand/force/contour.hpp"
-#include "sand/tool_shape.hpp"
+#include "sand/model/tool_shape.hpp"
 
 namespace sand::force {
 

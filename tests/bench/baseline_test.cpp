@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "bench/baseline_schemes.hpp"
-#include "bench/piles.hpp"
-#include "bench/relaxations.hpp"
+#include "bench/sand/baseline_schemes.hpp"
+#include "bench/sand/piles.hpp"
+#include "bench/sand/relaxations.hpp"
 
 namespace {
 

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "master/journal.hpp"
+#include "master/journal/journal.hpp"
 #include "tests/cluster/session_fixture.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/small_disk.hpp"
@@ -28,8 +28,8 @@ protected:
             expectHand(*session_);
         }
     }
-    /// The words are in tests beside the code: tests/master/control_test.cpp, tests/sand/material_test.cpp and
-    /// tests/walls/stereo_change_test.cpp. `named` is a value.
+    /// The words are in tests beside the code: tests/master/operator/control_test.cpp, tests/scene/material_test.cpp
+    /// and tests/walls/stereo_change_test.cpp. `named` is a value.
     void expectRefusal(const std::string& words, const std::string& named = "") {
         const nlohmann::json answered = answer(words);
         ASSERT_TRUE(answered.is_object()) << words;

@@ -2,7 +2,7 @@
 // Real ground, as a TIN, through a whole session and home again.
 #include <cmath>
 
-#include "sand/import/importer.hpp"
+#include "scene/import/importer.hpp"
 #include "tests/cluster/session_fixture.hpp"
 #include "tests/support/run_program.hpp"
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <regex>
 
-#include "sand/esri_grid.hpp"
+#include "scene/import/esri_grid.hpp"
 #include "tests/cluster/session_fixture.hpp"
 #include "tests/support/run_program.hpp"
 

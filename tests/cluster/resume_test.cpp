@@ -4,8 +4,8 @@
 #include <csignal>
 #include <fstream>
 
-#include "haptic_bridge/protocol.hpp"
-#include "master/checkpoint.hpp"
+#include "haptic_bridge/link/protocol.hpp"
+#include "master/journal/checkpoint.hpp"
 #include "tests/cluster/session_fixture.hpp"
 #include "tests/support/run_program.hpp"
 

@@ -3,10 +3,10 @@
 // the state that a replica would take.
 #include <xxhash.h>
 
-#include "fuzz_target.hpp"
-#include "master/checkpoint.hpp"
-#include "sand/scene.hpp"
-#include "sand/terrain.hpp"
+#include "master/journal/checkpoint.hpp"
+#include "sand/replica.hpp"
+#include "scene/scene.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
 #include "tests/support/sand_samples.hpp"
 
 SANDWALL_FUZZER(checkpoint) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // An ESRI ASCII grid.
-#include "fuzz_target.hpp"
-#include "sand/esri_grid.hpp"
+#include "scene/import/esri_grid.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
 
 SANDWALL_FUZZER(grid) {
     const fuzz::MemoryFile file({data, size});

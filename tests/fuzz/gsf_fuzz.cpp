@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A scan as a Gwyddion Simple Field.
-#include "fuzz_target.hpp"
-#include "sand/import/gsf_file.hpp"
+#include "scene/import/gsf_file.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
 
 SANDWALL_FUZZER(gsf) {
     const fuzz::MemoryFile file({data, size});

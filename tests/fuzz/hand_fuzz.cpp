@@ -2,9 +2,9 @@
 // A recorded hand as CSV, and a list of strokes; and the hand that comes of them.
 #include <sstream>
 
-#include "fuzz_target.hpp"
 #include "haptic_bridge/devices/strokes.hpp"
 #include "haptic_bridge/devices/trace.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
 
 SANDWALL_FUZZER(hand) {
     const std::string text(fuzz::textOf({data, size}));

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "fuzz_target.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
 #include "tracking/dtrack.hpp"
 #include "tracking/head_trace.hpp"
 #include "tracking/opentrack.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A journal as somebody hands it over: as it is, or put together from records whose checksums are right, so that what
 // lies behind them is reached as well.
-#include "fuzz_target.hpp"
-#include "master/recording.hpp"
+#include "master/journal/recording.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {

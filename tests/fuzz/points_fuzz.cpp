@@ -2,8 +2,8 @@
 // Points of a survey as text.
 #include <cmath>
 
-#include "fuzz_target.hpp"
-#include "sand/import/points_file.hpp"
+#include "scene/import/points_file.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
 
 SANDWALL_FUZZER(points) {
     const fuzz::MemoryFile file({data, size});

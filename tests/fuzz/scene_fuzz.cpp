@@ -2,9 +2,9 @@
 // A scene file, with fields of at most 99 cells a side: larger ones are as right and take long.
 #include <cctype>
 
-#include "fuzz_target.hpp"
-#include "sand/scene_file.hpp"
-#include "sand/terrain.hpp"
+#include "sand/replica.hpp"
+#include "scene/load/scene_file.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
 
 namespace {
 

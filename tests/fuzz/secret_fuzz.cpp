@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The file that says who may come in.
 #include "base/input_error.hpp"
-#include "fuzz_target.hpp"
-#include "haptic_bridge/secret_file.hpp"
+#include "haptic_bridge/link/secret_file.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
 
 SANDWALL_FUZZER(secret) {
     fuzz::takeOrRefuse([&] {

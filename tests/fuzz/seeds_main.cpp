@@ -6,15 +6,15 @@
 #include <fstream>
 #include <iostream>
 
-#include "fuzz_target.hpp"
-#include "haptic_bridge/protocol.hpp"
-#include "master/checkpoint.hpp"
-#include "master/journal.hpp"
-#include "sand/scene.hpp"
-#include "sand/terrain.hpp"
-#include "sand/tin/tin_surface.hpp"
+#include "haptic_bridge/link/protocol.hpp"
+#include "master/journal/checkpoint.hpp"
+#include "master/journal/journal.hpp"
+#include "sand/replica.hpp"
+#include "sand/tin/surface.hpp"
+#include "scene/scene.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
+#include "tests/fuzz/tin_scene.hpp"
 #include "tests/support/sand_samples.hpp"
-#include "tin_scene.hpp"
 #include "tracking/dtrack.hpp"
 #include "tracking/opentrack.hpp"
 #include "walls/wall.hpp"

@@ -3,9 +3,9 @@
 // not: behind the compression lies what a flipped bit would never reach.
 #include <zstd.h>
 
-#include "fuzz_target.hpp"
-#include "sand/scene.hpp"
-#include "sand/terrain.hpp"
+#include "sand/replica.hpp"
+#include "scene/scene.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {

@@ -5,10 +5,10 @@
 
 #include <array>
 
-#include "fuzz_target.hpp"
-#include "sand/scene.hpp"
-#include "sand/tin/tin_surface.hpp"
-#include "tin_scene.hpp"
+#include "sand/tin/surface.hpp"
+#include "scene/scene.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
+#include "tests/fuzz/tin_scene.hpp"
 
 namespace {
 

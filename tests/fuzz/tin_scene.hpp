@@ -4,9 +4,9 @@
 #include <memory>
 #include <utility>
 
-#include "sand/dunes.hpp"
-#include "sand/scene.hpp"
-#include "sand/tin/start_maker.hpp"
+#include "sand/grid/dunes.hpp"
+#include "sand/tin/refine/start_maker.hpp"
+#include "scene/scene.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace fuzz {

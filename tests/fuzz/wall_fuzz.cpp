@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A wall file, and the wall that a master sends its ranks.
-#include "fuzz_target.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
 #include "walls/wall.hpp"
 
 SANDWALL_FUZZER(wall) {

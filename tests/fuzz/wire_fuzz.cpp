@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What comes over the haptic link: a stream cut anywhere, in either direction, states and loads expected or not.
-#include "fuzz_target.hpp"
-#include "haptic_bridge/message_reader.hpp"
-#include "haptic_bridge/protocol.hpp"
+#include "haptic_bridge/link/message_reader.hpp"
+#include "haptic_bridge/link/protocol.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
 
 SANDWALL_FUZZER(wire) {
     if (size == 0) {

@@ -57,7 +57,7 @@ class BuildId(unittest.TestCase):
     def test_a_changed_constant_in_the_erosion_of_a_tin_changes_it(self):
         clone = self.copy("changed")
         before = build_id(clone)
-        source = clone / "sand/tin/weights.cpp"
+        source = clone / "sand/tin/flow/weights.cpp"
         text, changes = re.subn(r"(constexpr \w+ \w+ = \d)", r"\g<1>1", source.read_text(), count=1)
         self.assertEqual(changes, 1, "no constant is left there; name another file")
         source.write_text(text)
@@ -66,9 +66,9 @@ class BuildId(unittest.TestCase):
     def test_every_source_a_header_a_shader_and_a_flag_change_it(self):
         clone = self.copy("changed")
         before = build_id(clone)
-        for path in ("sand/erosion.hpp", "haptic_bridge/client_session.cpp", "host/worker_pool.cpp", "tracking/dtrack.cpp",
-                     "render_node/gl/osmesa.cpp", "render_node/shaders/sand.frag.glsl", "sand/import/gdal_raster.cpp",
-                     "haptic_bridge/security_openssl.cpp", "haptic_bridge/devices/glfw_window.cpp"):
+        for path in ("sand/grid/erosion.hpp", "haptic_bridge/client/connection_thread.cpp", "host/worker_pool.cpp", "tracking/dtrack.cpp",
+                     "render_node/gl/osmesa.cpp", "render_node/shaders/sand.frag.glsl", "scene/import/gdal/gdal_raster.cpp",
+                     "haptic_bridge/link/security_openssl.cpp", "haptic_bridge/devices/glfw_window.cpp"):
             if of_the_sand_alone() and not (clone / path).exists():
                 continue
             text = (clone / path).read_text()

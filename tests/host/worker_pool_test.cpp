@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "sand/erosion.hpp"
+#include "sand/grid/erosion.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {

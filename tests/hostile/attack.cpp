@@ -14,7 +14,7 @@
 #include <system_error>
 #include <vector>
 
-#include "haptic_bridge/message_reader.hpp"
+#include "haptic_bridge/link/message_reader.hpp"
 
 namespace hostile {
 

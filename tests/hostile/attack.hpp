@@ -6,7 +6,7 @@
 #include <functional>
 #include <thread>
 
-#include "haptic_bridge/handshake.hpp"
+#include "haptic_bridge/link/handshake.hpp"
 #include "tests/hostile/frames.hpp"
 
 namespace hostile {

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "haptic_bridge/protocol.hpp"
+#include "haptic_bridge/link/protocol.hpp"
 
 namespace hostile {
 

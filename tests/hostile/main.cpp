@@ -7,11 +7,11 @@
 #include <csignal>
 #include <cstdio>
 
-#include "haptic_bridge/client.hpp"
-#include "haptic_bridge/link_options.hpp"
+#include "haptic_bridge/client/client.hpp"
+#include "haptic_bridge/link/link_options.hpp"
 #include "host/command_line.hpp"
 #include "host/event.hpp"
-#include "sand/scene_file.hpp"
+#include "scene/load/scene_file.hpp"
 #include "tests/hostile/attack.hpp"
 
 int main(int argc, char** argv) {

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "base/input_error.hpp"
-#include "haptic_bridge/client.hpp"
+#include "haptic_bridge/client/client.hpp"
 #include "host/command_line.hpp"
 #include "host/event.hpp"
 #include "tests/impaired_link/impaired_link.hpp"

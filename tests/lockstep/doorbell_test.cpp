@@ -10,7 +10,7 @@
 #include <new>
 #include <thread>
 
-#include "lockstep/patience.hpp"
+#include "lockstep/backoff.hpp"
 
 namespace {
 

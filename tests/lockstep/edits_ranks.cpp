@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "host/worker_pool.hpp"
-#include "sand/dunes.hpp"
-#include "sand/scene.hpp"
-#include "sand/tin/start_maker.hpp"
+#include "sand/grid/dunes.hpp"
+#include "sand/tin/refine/start_maker.hpp"
+#include "scene/scene.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {

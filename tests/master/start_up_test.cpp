@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/input_error.hpp"
-#include "sand/scene.hpp"
+#include "scene/scene.hpp"
 
 namespace {
 

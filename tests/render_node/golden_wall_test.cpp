@@ -4,9 +4,9 @@
 #include <memory>
 #include <set>
 
-#include "golden.hpp"
 #include "render_node/gl/gl_context.hpp"
-#include "wall_painter.hpp"
+#include "tests/render_node/golden.hpp"
+#include "tests/render_node/wall_painter.hpp"
 
 namespace {
 

@@ -3,8 +3,8 @@
 #include <exception>
 
 #include "render_node/gl/gl_context.hpp"
-#include "sample_scene.hpp"
-#include "sand/scene.hpp"
+#include "scene/scene.hpp"
+#include "tests/support/sample_scene.hpp"
 
 int main() try {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);

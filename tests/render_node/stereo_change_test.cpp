@@ -9,8 +9,8 @@
 #include <string>
 
 #include "render_node/tile_painter.hpp"
-#include "sample_scene.hpp"
-#include "sand/scene.hpp"
+#include "scene/scene.hpp"
+#include "tests/support/sample_scene.hpp"
 
 namespace {
 

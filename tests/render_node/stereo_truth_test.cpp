@@ -9,8 +9,8 @@
 #include <string>
 
 #include "render_node/gl/gl_context.hpp"
-#include "sand/scene.hpp"
-#include "wall_painter.hpp"
+#include "scene/scene.hpp"
+#include "tests/render_node/wall_painter.hpp"
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "render_node/gl/gl_context.hpp"
-#include "sample_scene.hpp"
-#include "sand/scene.hpp"
+#include "scene/scene.hpp"
+#include "tests/support/sample_scene.hpp"
 
 namespace {
 

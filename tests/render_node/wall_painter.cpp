@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "wall_painter.hpp"
+#include "tests/render_node/wall_painter.hpp"
 
 #include <algorithm>
 
-#include "sand/scene.hpp"
+#include "scene/scene.hpp"
 
 namespace sample {
 namespace {

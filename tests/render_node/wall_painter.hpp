@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "pictures/image.hpp"
-#include "render_node/sand_view.hpp"
+#include "render_node/overlay/test_pattern.hpp"
+#include "render_node/scene_painter.hpp"
 #include "render_node/stereo_composer.hpp"
-#include "render_node/test_pattern.hpp"
-#include "sample_scene.hpp"
-#include "sand/scene.hpp"
+#include "scene/scene.hpp"
+#include "tests/support/sample_scene.hpp"
 #include "walls/canvas.hpp"
 #include "walls/projection.hpp"
 

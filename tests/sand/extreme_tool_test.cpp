@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tools of any size, anywhere. A pose that is no number never becomes a step: the haptic side refuses it before it is
-// quantised (tests/haptic_bridge/device_test.cpp).
+// quantised (tests/haptic_bridge/devices/device_test.cpp).
 #include <gtest/gtest.h>
 
 #include <memory>
 #include <random>
 
-#include "sand/scene.hpp"
-#include "sand/terrain.hpp"
+#include "sand/replica.hpp"
+#include "scene/scene.hpp"
 #include "tests/support/relaxing.hpp"
 #include "tests/support/sand_samples.hpp"
 

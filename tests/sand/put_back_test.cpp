@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "host/worker_pool.hpp"
-#include "sand/scene.hpp"
-#include "sand/terrain.hpp"
+#include "sand/replica.hpp"
+#include "scene/scene.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {

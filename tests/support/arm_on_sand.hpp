@@ -6,10 +6,10 @@
 #include <memory>
 #include <utility>
 
-#include "haptic_bridge/devices/arm_presets.hpp"
 #include "haptic_bridge/devices/simulated_arm.hpp"
-#include "haptic_bridge/hand.hpp"
-#include "sand/scene.hpp"
+#include "haptic_bridge/hand/arm_presets.hpp"
+#include "haptic_bridge/loop/haptic_tick.hpp"
+#include "scene/scene.hpp"
 
 namespace test {
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "sand/height_field.hpp"
+#include "sand/model/height_field.hpp"
 
 /// Piles whose rest state is known in closed form, O1 to O5, and how far a field is from one.
 ///

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "sand/height_field.hpp"
-#include "sand/net_flux.hpp"
+#include "sand/grid/net_flux.hpp"
+#include "sand/model/height_field.hpp"
 
 /// Plain sweeps, cell by cell, that tell what passed every face: what fast ones are compared with.
 namespace reference {
@@ -29,7 +29,7 @@ inline double alongRow(const sand::HeightField& field, int x, int y) {
     return east - west;
 }
 
-/// The isotropic law without inertia (sand/erosion.hpp).
+/// The isotropic law without inertia (sand/grid/erosion.hpp).
 struct Isotropic {
     std::int64_t operator()(double across, double along, double threshold) const {
         const double slope = std::sqrt(across * across + along * along / 16);

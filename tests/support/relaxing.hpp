@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "sand/erosion.hpp"
+#include "sand/grid/erosion.hpp"
 
 /// Letting fields slide to rest, for tests of the solver.
 namespace samples {

@@ -7,8 +7,8 @@
 #include <random>
 #include <utility>
 
-#include "sand/scene.hpp"
-#include "sand/terrain.hpp"
+#include "sand/replica.hpp"
+#include "scene/scene.hpp"
 
 /// Small worlds that several tests share.
 namespace samples {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "sand/height_field.hpp"
+#include "sand/model/height_field.hpp"
 
 /// The projection that a certificate speaks of, solved as far as doubles go: slow, and by none of the tested code.
 namespace reference {

@@ -10,8 +10,8 @@
 #include <random>
 #include <vector>
 
-#include "sand/tin/layer.hpp"
-#include "sand/tin/start.hpp"
+#include "sand/tin/geometry/tin_start.hpp"
+#include "sand/tin/volume/vertex_sand.hpp"
 
 /// Meshes of every kind, piles on them, and how far sand lies from where it should. Lengths in cells of 256 probe
 /// units.

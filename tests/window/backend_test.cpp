@@ -7,9 +7,9 @@
 
 #include "base/input_error.hpp"
 #include "pictures/compare.hpp"
-#include "probe_fixture.hpp"
 #include "render_node/gl/gl_module.hpp"
 #include "tests/support/x_server.hpp"
+#include "tests/window/probe_fixture.hpp"
 
 namespace {
 

@@ -9,7 +9,7 @@
 
 #include "haptic_bridge/devices/device_module.hpp"
 #include "pictures/png_file.hpp"
-#include "sand/scene.hpp"
+#include "scene/scene.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/sand_samples.hpp"
 #include "tests/support/x_screen.hpp"

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <map>
 
-#include "render_node/eye_target.hpp"
+#include "render_node/gl/eye_target.hpp"
 #include "render_node/gl/screen_cover.hpp"
 #include "render_node/gl/window_context.hpp"
 

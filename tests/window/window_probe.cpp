@@ -14,8 +14,8 @@
 #include "host/command_line.hpp"
 #include "pictures/png_file.hpp"
 #include "render_node/gl/gl_context.hpp"
-#include "sand/scene.hpp"
-#include "tests/render_node/sample_scene.hpp"
+#include "scene/scene.hpp"
+#include "tests/support/sample_scene.hpp"
 
 namespace {
 

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "probe_fixture.hpp"
 #include "tests/support/x_screen.hpp"
 #include "tests/support/x_server.hpp"
+#include "tests/window/probe_fixture.hpp"
 
 namespace {
 

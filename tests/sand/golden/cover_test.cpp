@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "host/worker_pool.hpp"
-#include "sand/dunes.hpp"
-#include "sand/scene.hpp"
+#include "sand/grid/dunes.hpp"
+#include "scene/scene.hpp"
 #include "tests/support/relaxing.hpp"
 #include "tests/support/sand_samples.hpp"
 

@@ -6,9 +6,9 @@
 #include <memory>
 #include <random>
 
-#include "sand/dunes.hpp"
-#include "sand/scene.hpp"
-#include "sand/settle.hpp"
+#include "sand/grid/dunes.hpp"
+#include "sand/grid/settle.hpp"
+#include "scene/scene.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "sand/tin/erosion.hpp"
+#include "sand/tin/flow/erosion.hpp"
 #include "tests/support/relaxing.hpp"
 
 namespace {

@@ -9,8 +9,8 @@
 
 #include "host/command_line.hpp"
 #include "host/worker_pool.hpp"
-#include "sand/dunes.hpp"
-#include "sand/scene.hpp"
+#include "sand/grid/dunes.hpp"
+#include "scene/scene.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {

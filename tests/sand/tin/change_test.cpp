@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "mesh_checks.hpp"
+#include "tests/sand/tin/mesh_checks.hpp"
 
 namespace {
 

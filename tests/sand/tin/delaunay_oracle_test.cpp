@@ -10,7 +10,7 @@
 #include <map>
 #include <random>
 
-#include "mesh_checks.hpp"
+#include "tests/sand/tin/mesh_checks.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sand/tin/holes.hpp"
+#include "sand/tin/geometry/holes.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,11 +11,11 @@
 #include <random>
 #include <string>
 
-#include "mesh_checks.hpp"
-#include "sand/ground.hpp"
-#include "sand/tin/settle.hpp"
-#include "sand/tin/start_maker.hpp"
-#include "sand/tin/weights.hpp"
+#include "sand/model/ground.hpp"
+#include "sand/tin/flow/settle.hpp"
+#include "sand/tin/flow/weights.hpp"
+#include "sand/tin/refine/start_maker.hpp"
+#include "tests/sand/tin/mesh_checks.hpp"
 #include "tests/sand/tin/tool_fixture.hpp"
 
 namespace holes {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "mesh_checks.hpp"
+#include "tests/sand/tin/mesh_checks.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh_checks.hpp"
+#include "tests/sand/tin/mesh_checks.hpp"
 
 #include <fmt/format.h>
 

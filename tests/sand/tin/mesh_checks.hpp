@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "sand/tin/mesh.hpp"
+#include "sand/tin/mesh/mesh.hpp"
 
 /// What a mesh must be, told apart from how it came to be so: nothing here is shared with what is tested.
 namespace mesh_checks {

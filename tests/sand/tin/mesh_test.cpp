@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sand/tin/mesh.hpp"
+#include "sand/tin/mesh/mesh.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <stdexcept>
 
-#include "mesh_checks.hpp"
+#include "tests/sand/tin/mesh_checks.hpp"
 
 namespace meshes {
 namespace {

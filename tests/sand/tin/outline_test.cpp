@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sand/tin/outline.hpp"
+#include "sand/tin/tool/outline.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "sand/scene.hpp"
-#include "sand/terrain.hpp"
+#include "sand/replica.hpp"
+#include "scene/scene.hpp"
 
 namespace tin_samples {
 

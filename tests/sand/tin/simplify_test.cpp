@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sand/tin/simplify.hpp"
+#include "sand/tin/refine/simplify.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-#include "sand/dunes.hpp"
+#include "sand/grid/dunes.hpp"
 
 namespace {
 

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "sand/tin/layer.hpp"
-#include "sand/tin/tool.hpp"
+#include "sand/tin/tool/displacement.hpp"
+#include "sand/tin/volume/vertex_sand.hpp"
 
 namespace tin_samples {
 

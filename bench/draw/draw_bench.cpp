@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// What one eye of one tile costs: the twelve tiles of a 3 × 4 wall, 1024 × 768 pixels each, over dunes of 512 × 512 or
+// 2048 × 2048 cells. Set LP_NUM_THREADS to choose llvmpipe's threads (0: draw in the calling thread).
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "render_node/gl/gl_context.hpp"
+#include "scene/scene.hpp"
+#include "tests/support/sample_scene.hpp"
+
+namespace {
+
+constexpr int kAcross = 4;
+constexpr int kDown = 3;
+
+sample::Window windowOf(int tile) {
+    const int column = tile % kAcross;
+    const int row = tile / kAcross;
+    return {column / double{kAcross}, row / double{kDown}, (column + 1) / double{kAcross}, (row + 1) / double{kDown}};
+}
+
+/// Argument 0: whether chunks that a tile does not see are left out. Argument 1: cells on a side.
+void drawWall(benchmark::State& state) {
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const sand::Scene scene = sample::duneScene(static_cast<int>(state.range(1)));
+    const render_node::EyeTarget target(1024, 768);
+    const bool culling = state.range(0) != 0;
+    // One view per tile, as on the ranks: each holds only what its tile sees.
+    double chunks = 0;
+    double kilobytes = 0;
+    for (int tile = 0; tile < kAcross * kDown; ++tile) {
+        render_node::SandView view(scene, glm::dmat4(1));
+        view.setCulling(culling);
+        view.draw(sample::camera({1, 0.2, 0.9}, {1, 1, 0}, windowOf(tile)), target);
+        target.finish();
+        chunks += view.counts().chunks;
+        kilobytes += static_cast<double>(view.geometryBytes()) / 1024;
+        state.counters["chunks_of_field"] = view.counts().chunksOfField;
+    }
+    render_node::SandView view(scene, glm::dmat4(1));
+    view.setCulling(culling);
+    int tile = 0;
+    for (auto _ : state) {
+        view.draw(sample::camera({1, 0.2, 0.9}, {1, 1, 0}, windowOf(tile)), target);
+        target.finish();
+        tile = (tile + 1) % (kAcross * kDown);
+    }
+    state.counters["chunks_per_tile"] = chunks / (kAcross * kDown);
+    state.counters["geometry_kB_per_tile"] = kilobytes / (kAcross * kDown);
+    state.counters["triangles"] = view.counts().triangles;
+    state.SetLabel(context->renderer());
+}
+BENCHMARK(drawWall)
+    ->ArgNames({"culled", "cells"})
+    ->Args({0, 512})
+    ->Args({1, 512})
+    ->Args({1, 2048})
+    ->Iterations(4 * kAcross * kDown)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+/// The head moves, so that all of a tile is drawn in every frame, and chunks come into view. Argument: cells on a side.
+void moveHead(benchmark::State& state) {
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const sand::Scene scene = sample::duneScene(static_cast<int>(state.range(0)));
+    const render_node::EyeTarget target(1024, 768);
+    render_node::SandView view(scene, glm::dmat4(1));
+    render_node::EyeMemory memory;
+    int frame = 0;
+    for (auto _ : state) {
+        const double along = 0.3 * std::sin(0.05 * ++frame);
+        view.drawIfChanged(sample::camera({1 + along, 0.2, 0.9}, {1 + along, 1, 0}, windowOf(5)), target, memory);
+        target.finish();
+    }
+    state.counters["triangles"] = view.counts().triangles;
+    state.counters["geometry_kB"] = static_cast<double>(view.geometryBytes()) / 1024;
+}
+BENCHMARK(moveHead)
+    ->ArgName("cells")
+    ->Arg(512)
+    ->Arg(2048)
+    ->Iterations(63)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+/// A new furrow: the damaged heights to the view, and what is drawn of them.
+void updateDamage(benchmark::State& state) {
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const sand::Scene scene = sample::duneScene(512);
+    const render_node::EyeTarget target(64, 48);
+    render_node::SandView view(scene, glm::dmat4(1));
+    const int side = static_cast<int>(state.range(0));
+    for (auto _ : state) {
+        view.update(scene.terrain, {200, 200, 200 + side, 200 + side});
+        view.draw(sample::camera({1, 1, 2}, {1, 1, 0}), target);
+        target.finish();
+    }
+}
+BENCHMARK(updateDamage)->ArgName("cells")->Arg(0)->Arg(64)->Arg(312)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// The paper's tool digs under one eye of a tile that shows all of it. Argument 0: 1 draws what changed, 0 everything.
+/// Argument 1: cells on a side. The time of a step of sand is not in it.
+void dig(benchmark::State& state) {
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const int side = static_cast<int>(state.range(1));
+    sand::Scene scene = sample::flatScene(side, side, 0.01);
+    sand::makeDunes({.height = 0.02}, scene.terrain);  // at rest as they are
+    // As many as a scene file gives it.
+    const double radius = 0.01 / scene.terrain.cellSize();
+    scene.rules.sweepsPerStep = std::max(4, static_cast<int>(std::ceil(radius * radius / 6)));
+    sand::Terrain terrain(scene);
+    render_node::SandView view(scene, glm::dmat4(1));
+    const render_node::EyeTarget target(1024, 768);
+    const sample::Window window{0.25, 0.25, 0.75, 0.75};
+    const render_node::Camera camera = sample::camera({1, 0.2, 0.9}, {1, 1, 0}, window);
+    render_node::EyeMemory memory;
+    view.drawIfChanged(camera, target, memory);
+    double pixels = 0;
+    for (auto _ : state) {
+        state.PauseTiming();
+        const double at = static_cast<double>(terrain.stepNumber() % 200) / 200;
+        const double place = 0.7 + 0.6 * at;
+        terrain.apply({0, terrain.stepNumber() + 1, true, {sample::probeAt(scene, {place, place, 0.01})}});
+        state.ResumeTiming();
+        memory.drawn = state.range(0) != 0;
+        view.update(terrain.field(), terrain.takeDamage());
+        view.setTool(terrain.probe(), terrain.engaged());
+        pixels += static_cast<double>(view.drawIfChanged(camera, target, memory).area()) / (1024 * 768);
+        target.finish();
+    }
+    state.counters["share_of_pixels"] = pixels / static_cast<double>(state.iterations());
+    state.counters["chunks"] = view.counts().chunks;
+    state.counters["triangles"] = view.counts().triangles;
+}
+BENCHMARK(dig)
+    ->ArgNames({"in_part", "cells"})
+    ->ArgsProduct({{0, 1}, {512, 2048}})
+    ->Iterations(100)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+/// A tile of the wall with what is shown beside the sand. Argument 0: Layers::bits().
+void layers(benchmark::State& state) {
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const sand::Scene scene = sample::duneScene(512);
+    render_node::SandView view(scene, glm::dmat4(1));
+    view.setLayers(lockstep::Layers(static_cast<std::uint8_t>(state.range(0))));
+    const render_node::EyeTarget target(1024, 768);
+    const render_node::Camera camera = sample::camera({1, 0.2, 0.9}, {1, 1, 0}, windowOf(6));
+    view.draw(camera, target);
+    target.finish();
+    for (auto _ : state) {
+        view.draw(camera, target);
+        target.finish();
+    }
+}
+BENCHMARK(layers)->ArgName("bits")->DenseRange(0, 3)->Iterations(30)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void readBack(benchmark::State& state) {
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const render_node::EyeTarget target(1024, 768);
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(target.read());
+    }
+}
+BENCHMARK(readBack)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace
+
+BENCHMARK_MAIN();

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a wall's frames cost while somebody digs, apart by what it is spent on: the sand's steps, taking over what they
+// changed, and drawing it, for all tiles together and for the one that has most to do. One process, a view of the sand
+// for each tile as each rank has its own. CPU time; LP_NUM_THREADS=0 keeps all of it in this thread.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "bench/timing.hpp"
+#include "host/command_line.hpp"
+#include "render_node/gl/gl_context.hpp"
+#include "render_node/scene_painter.hpp"
+#include "sand/replica.hpp"
+#include "sand/tin/geometry/surface_view.hpp"
+#include "scene/load/scene_file.hpp"
+#include "walls/projection.hpp"
+#include "walls/wall.hpp"
+#include "walls/wall_file.hpp"
+
+namespace {
+
+struct Options {
+    std::string wall = "walls/configs/tiled_3x4.toml";
+    std::string scene = "scenes/writing.toml";
+    int frames = 120;
+    int rate = 30;  // [frame/s]
+    bool json = false;
+};
+
+/// A tile as a rank has it.
+struct Tile {
+    render_node::SandView view;
+    struct Eye {
+        render_node::Camera camera;
+        render_node::EyeTarget target;
+        render_node::EyeMemory memory;
+    };
+    std::vector<std::unique_ptr<Eye>> eyes;
+};
+
+std::vector<std::unique_ptr<Tile>> tilesOf(const walls::Wall& wall, const sand::Scene& scene,
+                                           const sand::tin::SurfaceView* tin) {
+    const sand::HeightField& field = scene.terrain;
+    const double cell = field.cellSize();
+    const glm::dmat4 sceneToRoom = walls::stageToRoom(wall.stage, scene.rules.columns * cell, scene.rules.rows * cell,
+                                                      scene.referenceHeight() * field.unit());
+    std::vector<std::unique_ptr<Tile>> tiles;
+    for (const walls::Tile& tile : wall.tiles) {
+        tiles.push_back(std::make_unique<Tile>(Tile{tin != nullptr ? render_node::SandView(scene, *tin, sceneToRoom)
+                                                                   : render_node::SandView(scene, sceneToRoom),
+                                                    {}}));
+        for (const walls::Eye eye : walls::eyesOf(wall.stereo)) {
+            const walls::View seen = walls::viewOf(wall, tile, eye);
+            tiles.back()->eyes.push_back(std::make_unique<Tile::Eye>(
+                Tile::Eye{{seen.viewProjection, seen.eye}, {tile.pixels.x, tile.pixels.y}, {}}));
+        }
+    }
+    return tiles;
+}
+
+/// Rings of all sizes at half a side a second, half a radius deep: as scripts/wall_rates.py has a hand dig.
+sand::ProbePoint handAt(const sand::Rules& rules, std::int32_t level, double seconds) {
+    double left = 0.5 * seconds;
+    double radius = 0.6;
+    while (left > 2 * std::numbers::pi * radius) {
+        left -= 2 * std::numbers::pi * radius;
+        radius = radius > 0.13 ? radius - 0.04 : 0.6;
+    }
+    const double half = rules.columns / 2.0 * sand::kProbePerCell;
+    constexpr std::int32_t kUnitsPerProbe = sand::kUnitsPerCell / sand::kProbePerCell;
+    return {static_cast<std::int32_t>(half * (1 + radius * std::cos(left / radius))),
+            static_cast<std::int32_t>(half * (1 + radius * std::sin(left / radius))),
+            level / kUnitsPerProbe + rules.toolRadius / 2};
+}
+
+/// The steps of one frame, at as many samples of the hand as a device gives.
+void dig(sand::Terrain& terrain, std::int32_t level, int steps) {
+    constexpr int kSamples = 17;  // in a step
+    for (int i = 0; i < steps; ++i) {
+        sand::Step step{1, terrain.stepNumber() + 1, true, {}};
+        for (int sample = 1; sample <= kSamples; ++sample) {
+            const double at = static_cast<double>(step.number) + static_cast<double>(sample) / kSamples;
+            step.path.push_back(handAt(terrain.rules(), level, at / terrain.rules().stepsPerSecond));
+        }
+        terrain.apply(step);
+    }
+    (void)terrain.stateHash();
+}
+
+struct Measured {
+    std::vector<double> stepMs, updateMs, drawMs, busiestMs, busiestUpdateMs;  // a frame
+    std::vector<double> views, shares;                                         // a frame
+    std::vector<double> viewMs, viewTriangles, viewChunks;                     // a view
+};
+
+/// What changed of the sand, for every tile to take over.
+struct Damage {
+    explicit Damage(sand::Terrain& terrain) {
+        if (terrain.tinView() != nullptr) {
+            triangles = terrain.takeTinDamage();
+        } else {
+            cells = terrain.takeDamage();
+        }
+    }
+    sand::Rect cells;
+    sand::TinChange triangles;
+};
+
+void takeOver(Tile& tile, const sand::Terrain& terrain, const Damage& damage) {
+    render_node::SandView& view = tile.view;
+    if (const sand::tin::SurfaceView* tin = terrain.tinView()) {
+        std::vector<render_node::Camera> cameras;
+        for (const auto& eye : tile.eyes) {
+            cameras.push_back(eye->camera);
+        }
+        view.update(*tin, damage.triangles, cameras);
+    } else {
+        view.update(terrain.field(), damage.cells);
+    }
+    view.setTool(terrain.probe(), terrain.engaged(), terrain.toolShape(), terrain.heading());
+}
+
+/// Takes over what changed and draws it, tile by tile.
+void show(const std::vector<std::unique_ptr<Tile>>& tiles, sand::Terrain& terrain, Measured& measured) {
+    const Damage damage(terrain);
+    double update = 0, draw = 0, busiest = 0, busiestUpdate = 0, drawn = 0, pixels = 0, all = 0;
+    for (const auto& tile : tiles) {
+        const double taken = bench::secondsOf([&] { takeOver(*tile, terrain, damage); });
+        double both = 0;
+        for (const auto& eye : tile->eyes) {
+            render_node::PixelRect changed;
+            const double spent = bench::secondsOf([&] {
+                changed = tile->view.drawIfChanged(eye->camera, eye->target, eye->memory);
+                eye->target.finish();
+            });
+            both += spent;
+            all += eye->target.width() * eye->target.height();
+            if (!changed.empty()) {
+                pixels += static_cast<double>(tile->view.counts().pixels);
+                ++drawn;
+                measured.viewMs.push_back(1e3 * spent);
+                measured.viewTriangles.push_back(tile->view.counts().triangles);
+                measured.viewChunks.push_back(tile->view.counts().chunks);
+            }
+        }
+        update += taken;
+        draw += both;
+        if (taken + both > busiest) {
+            busiest = taken + both;
+            busiestUpdate = taken;
+        }
+    }
+    measured.updateMs.push_back(1e3 * update);
+    measured.drawMs.push_back(1e3 * draw);
+    measured.busiestMs.push_back(1e3 * busiest);
+    measured.busiestUpdateMs.push_back(1e3 * busiestUpdate);
+    measured.views.push_back(drawn);
+    measured.shares.push_back(100 * pixels / all);
+}
+
+int measure(const Options& options) {
+    const walls::Wall wall = walls::loadWall(options.wall);
+    const sand::Scene scene = sand::loadScene(options.scene);
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    sand::Terrain terrain(scene);
+    const std::vector<std::unique_ptr<Tile>> tiles = tilesOf(wall, scene, terrain.tinView());
+    const std::int32_t level = scene.referenceHeight();
+    Measured measured;
+    constexpr int kWarmUp = 30;  // [frame]: shaders, buffers, the first bank
+    for (int frame = 0; frame < kWarmUp + options.frames; ++frame) {
+        if (frame == kWarmUp) {
+            measured = {};
+        }
+        const int steps = scene.rules.stepsPerSecond / options.rate;
+        measured.stepMs.push_back(1e3 * bench::secondsOf([&] { dig(terrain, level, steps); }));
+        show(tiles, terrain, measured);
+    }
+    if (options.json) {
+        fmt::print("{{\"step_ms\": {}, \"busiest_tile_ms\": {}}}\n", bench::quantile(measured.stepMs, 0.5),
+                   bench::quantile(measured.busiestMs, 0.5));
+        return 0;
+    }
+    const auto row = [](const char* what, const std::vector<double>& values) {
+        fmt::print("{:48} {:8.2f} {:8.2f}\n", what, bench::quantile(values, 0.5), bench::quantile(values, 0.99));
+    };
+    fmt::print("{} frames at {} a second of {}, {}, {}\n", options.frames, options.rate, wall.name, scene.name,
+               context->renderer());
+    fmt::print("{:48} {:>8} {:>8}\n", "", "p50", "p99");
+    row("steps of one replica [ms/frame]", measured.stepMs);
+    row("taking over what changed, all tiles [ms/frame]", measured.updateMs);
+    row("drawing, all tiles [ms/frame]", measured.drawMs);
+    row("the busiest tile, both eyes [ms/frame]", measured.busiestMs);
+    row("what of it is taking over [ms/frame]", measured.busiestUpdateMs);
+    row("a view that is drawn [ms]", measured.viewMs);
+    row("its triangles of sand", measured.viewTriangles);
+    row("its chunks", measured.viewChunks);
+    row("views drawn [1/frame]", measured.views);
+    row("pixels drawn [% of the wall]", measured.shares);
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    Options options;
+    host::CommandLine line("What a wall's frames cost while somebody digs, in CPU time.", "redraw_bench");
+    line.option("--wall", options.wall, "wall file").showDefault();
+    line.option("--scene", options.scene, "scene file").showDefault();
+    line.option("--frames", options.frames, "how many").range(1, 100000).showDefault();
+    line.option("--rate", options.rate, "frames a second of the wall").range(1, 1000).showDefault();
+    line.flag("--json", options.json, "print medians per frame as an object: step_ms, busiest_tile_ms");
+    return host::runMain(line, argc, argv, [&] { return measure(options); });
+}

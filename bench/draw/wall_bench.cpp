@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// A redraw of every view of a wall against a bare one of the same views: the same chunks of the same mesh, lit by one
+// dot product at its vertices, every cell of it, no grain, no shadow, no box, no tool. Both alternate, so that the
+// ratio holds on a busy machine. CPU time; LP_NUM_THREADS=0 keeps all of it in this thread.
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "bench/timing.hpp"
+#include "host/command_line.hpp"
+#include "render_node/gl/gl_context.hpp"
+#include "render_node/gl/gl_program.hpp"
+#include "render_node/grid/mesh.hpp"
+#include "render_node/scene_painter.hpp"
+#include "scene/load/scene_file.hpp"
+#include "walls/projection.hpp"
+#include "walls/wall.hpp"
+#include "walls/wall_file.hpp"
+
+namespace {
+
+const render_node::ShaderSource kBareVertex{"bare vertex shader", R"(
+layout(location = 0) in float aHeight;
+layout(location = 1) in vec2 aGrid;
+layout(location = 2) in vec2 aNormal;
+uniform mat4 uSceneToClip;
+uniform float uCell;
+uniform vec2 uCells;
+out vec3 vColour;
+void main() {
+    vec3 normal = vec3(aNormal, sqrt(max(1.0 - dot(aNormal, aNormal), 0.0)));
+    vColour = vec3(0.8, 0.7, 0.5) * max(dot(normal, vec3(-0.6, 0.4, 0.7)), 0.1);
+    gl_Position = uSceneToClip * vec4(clamp(aGrid - 0.5, vec2(0.0), uCells) * uCell, aHeight, 1.0);
+})"};
+const render_node::ShaderSource kBareFragment{"bare fragment shader", R"(
+in vec3 vColour;
+out vec4 oColour;
+void main() { oColour = vec4(vColour, 1.0); })"};
+
+/// Draws the sand and nothing else, as plainly as can be.
+class BareView {
+public:
+    explicit BareView(const sand::Scene& scene)
+        : mesh_(scene.terrain, {0, 0, 1}), program_(kBareVertex, {}, kBareFragment) {}
+
+    void draw(const glm::dmat4& sceneToClip, const render_node::EyeTarget& target) {
+        target.bind();
+        glEnable(GL_DEPTH_TEST);
+        glEnable(GL_CULL_FACE);
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        program_.use();
+        program_.set("uSceneToClip", glm::mat4(sceneToClip));
+        program_.set("uCell", mesh_.surface().cellSize());
+        program_.set("uCells", glm::vec2(mesh_.surface().columns(), mesh_.surface().rows()));
+        mesh_.draw(sceneToClip, true, {sceneToClip, {target.width(), target.height()}, 0}, {});
+    }
+
+private:
+    render_node::SandMesh mesh_;
+    render_node::GlProgram program_;
+};
+
+std::vector<render_node::Camera> camerasOf(const walls::Wall& wall) {
+    std::vector<render_node::Camera> cameras;
+    for (const walls::Tile& tile : wall.tiles) {
+        for (const walls::Eye eye : walls::eyesOf(wall.stereo)) {
+            const walls::View view = walls::viewOf(wall, tile, eye);
+            cameras.push_back({view.viewProjection, view.eye});
+        }
+    }
+    return cameras;
+}
+
+int measure(const std::string& wallFile, const std::string& sceneFile, int rounds, bool json) {
+    const walls::Wall wall = walls::loadWall(wallFile);
+    const sand::Scene scene = sand::loadScene(sceneFile);
+    const sand::HeightField& field = scene.terrain;
+    const glm::dmat4 sceneToRoom =
+        walls::stageToRoom(wall.stage, field.columns() * field.cellSize(), field.rows() * field.cellSize(),
+                           scene.referenceHeight() * field.unit());
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const glm::ivec2 pixels = wall.tiles.front().pixels;
+    const render_node::EyeTarget target(pixels.x, pixels.y);
+    const std::vector<render_node::Camera> cameras = camerasOf(wall);
+    render_node::SandView sand(scene, sceneToRoom);
+    BareView bare(scene);
+    std::vector<double> bareMs, sandMs, ratios;
+    for (int round = -1; round < rounds; ++round) {  // the first compiles shaders and fills buffers
+        double bareSeconds = 0;
+        double sandSeconds = 0;
+        for (const render_node::Camera& camera : cameras) {
+            bareSeconds += bench::secondsOf([&] {
+                bare.draw(camera.roomToClip * sceneToRoom, target);
+                target.finish();
+            });
+            sandSeconds += bench::secondsOf([&] {
+                sand.draw(camera, target);
+                target.finish();
+            });
+        }
+        if (round >= 0) {
+            bareMs.push_back(1e3 * bareSeconds);
+            sandMs.push_back(1e3 * sandSeconds);
+            ratios.push_back(sandSeconds / bareSeconds);
+        }
+    }
+    if (json) {
+        fmt::print("{{\"bare_ms\": {}, \"sand_ms\": {}}}\n", bench::spreadOf(bareMs).median,
+                   bench::spreadOf(sandMs).median);
+        return 0;
+    }
+    const bench::Spread ratio = bench::spreadOf(ratios);
+    fmt::print("{} views of {}, {}: bare {:.0f} ms, as sand {:.0f} ms, ratio {:.2f} ({:.2f} to {:.2f})\n",
+               cameras.size(), wall.name, context->renderer(), bench::spreadOf(bareMs).median,
+               bench::spreadOf(sandMs).median, ratio.median, ratio.lowest, ratio.highest);
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    std::string wall = "walls/configs/tiled_3x4.toml";
+    std::string scene = "scenes/writing.toml";
+    int rounds = 5;
+    bool json = false;
+    host::CommandLine line("A redraw of all views of a wall against a bare one of the same views, in CPU time.",
+                           "wall_bench");
+    line.option("--wall", wall, "wall file").showDefault();
+    line.option("--scene", scene, "scene file").showDefault();
+    line.option("--rounds", rounds, "how often each is drawn").range(1, 1000).showDefault();
+    line.flag("--json", json, "print the medians as an object: bare_ms, sand_ms");
+    return host::runMain(line, argc, argv, [&] { return measure(wall, scene, rounds, json); });
+}

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// Digging at the rate of the session: what a step costs, and how far behind the hand the sand is.
+#include <cmath>
+#include <numbers>
+
+#include "bench/curves.hpp"
+#include "bench/sand/piles.hpp"
+#include "bench/sand/relaxations.hpp"
+#include "bench/timing.hpp"
+#include "sand/replica.hpp"
+#include "scene/scene.hpp"
+
+namespace bench {
+namespace {
+
+constexpr int kSteps = 200;       // of a stroke
+constexpr int kMostAfter = 2000;  // steps that are waited for after lifting
+
+struct Stroke {
+    int side;
+    double radius, speed;  // [cell], [cell per step]
+    int sweeps;            // per step
+};
+
+sand::Scene sceneFor(const Stroke& stroke) {
+    sand::Scene scene;
+    scene.terrain = sand::HeightField(stroke.side, stroke.side, 1.0);
+    scene.rules = rulesFor(scene.terrain, kTalus, 1e-3);
+    scene.rules.sweepsPerStep = stroke.sweeps;
+    scene.rules.stepsPerSecond = 60;
+    scene.rules.toolRadius = static_cast<std::int32_t>(stroke.radius * sand::kProbePerCell);
+    return scene;
+}
+
+sand::Step stepOf(const sand::Terrain& terrain, const Stroke& stroke, int number) {
+    const auto probe = [](double cells) { return static_cast<std::int32_t>(std::lround(cells * sand::kProbePerCell)); };
+    // Along the diagonal: 480 cells and their banks fit into a field of 512.
+    const double at = stroke.side / 2.0 + stroke.speed * (number - kSteps / 2.0) / std::numbers::sqrt2;
+    return {1, terrain.stepNumber() + 1, true, {{probe(at), probe(at), 0}}};
+}
+
+/// Digs one stroke and leaves the tool in the sand; seconds of each step go to `seconds`. Returns the last hash.
+std::uint64_t digStroke(sand::Terrain& terrain, const Stroke& stroke, std::vector<double>& seconds) {
+    std::uint64_t hash = 0;
+    for (int i = 0; i <= kSteps; ++i) {
+        const sand::Step step = stepOf(terrain, stroke, i);
+        const double took = secondsOf([&] {
+            terrain.apply(step);
+            hash = terrain.stateHash();
+        });
+        if (i > 0) {  // the first presses, and touches every page for the first time
+            seconds.push_back(took);
+        }
+    }
+    return hash;
+}
+
+/// How far the sand is behind at the end of a stroke.
+struct Lag {
+    double held = 0, lifted = 0;  // share of the displaced sand that still has to move
+    double bank = 0;              // [cell]
+    double bankReach = 0;         // [cell]
+    int stepsAfter = 0;
+};
+
+/// Sum of |a - b| over that of |b|: half of each is a volume, of sand that has to move and of sand that was displaced.
+double behind(const sand::HeightField& field, const sand::HeightField& rest) { return misplaced(field, rest); }
+
+Lag lagOf(sand::Terrain& terrain, const Stroke& stroke) {
+    Lag lag;
+    const sand::HeightField end = terrain.field();
+    const sand::Obstacle tool = sand::Tool(terrain.toolShape()).obstacle(end, terrain.probe());
+    sand::HeightField held = end;
+    sand::Erosion(held, terrain.rules()).sweep(held, kMostSweeps, &tool);
+    sand::HeightField lifted = end;
+    sweepToRest(lifted, terrain.rules());
+    lag.held = behind(end, held);
+    lag.lifted = behind(end, lifted);
+    for (int y = 0; y < stroke.side; ++y) {
+        for (int x = 0; x < stroke.side; ++x) {
+            lag.bank = std::max(lag.bank, static_cast<double>(end.height(x, y)) / sand::kUnitsPerCell);
+            if (end.height(x, y) - lifted.height(x, y) > sand::kUnitsPerCell / 2) {
+                lag.bankReach = std::max(lag.bankReach, std::abs(x - y) / std::numbers::sqrt2);
+            }
+        }
+    }
+    for (; lag.stepsAfter < kMostAfter && behind(terrain.field(), lifted) > 0.01; ++lag.stepsAfter) {
+        terrain.apply({1, terrain.stepNumber() + 1, false, {}});
+    }
+    return lag;
+}
+
+void measure(const Stroke& stroke, int runs, Csv& csv) {
+    progress("N = {}, R = {}, {} cells per step, {} sweeps per step: {} strokes", stroke.side, stroke.radius,
+             stroke.speed, stroke.sweeps, runs);
+    std::vector<double> seconds;
+    std::uint64_t hash = 0;
+    Lag lag;
+    for (int run = 0; run < runs; ++run) {
+        sand::Terrain terrain(sceneFor(stroke));
+        hash = digStroke(terrain, stroke, seconds);
+        if (run == 0) {
+            lag = lagOf(terrain, stroke);
+        }
+    }
+    std::uint64_t idleHash = 0;
+    std::vector<double> idle;
+    idle.reserve(kSteps);
+    sand::Terrain settled(sceneFor(stroke));
+    for (int i = 0; i < kSteps; ++i) {
+        idle.push_back(secondsOf([&] {
+            settled.apply({1, settled.stepNumber() + 1, false, {}});
+            idleHash = settled.stateHash();
+        }));
+    }
+    csv.row(stroke.side, stroke.radius, stroke.speed, stroke.sweeps, quantile(seconds, 0.5) * 1e3,
+            quantile(seconds, 0.99) * 1e3, quantile(seconds, 1) * 1e3, quantile(idle, 0.5) * 1e6, lag.held, lag.lifted,
+            lag.bank, lag.bankReach, lag.stepsAfter, fmt::format("{:016x}", hash ^ idleHash));
+}
+
+}  // namespace
+
+void dig(const Settings& settings, Csv& csv) {
+    csv.note(
+        fmt::format("a stroke: a sphere of R cells, its centre at the level of the sand, dragged straight along the "
+                    "diagonal for {} "
+                    "steps; talus 34 degrees, band 1e-3",
+                    kSteps));
+    csv.note("ms: CPU time of one thread per step, hash included, over the steps of all strokes");
+    csv.note(
+        "misplaced_held: sum of |height - height once settled, the tool still held where it is| over the sum of "
+        "|the latter - level|: sand that has yet to move over sand displaced");
+    csv.note("misplaced_lifted: the same, settled without the tool: the hole it leaves fills too");
+    csv.note("bank: highest sand over the level at the end of the stroke [cell]");
+    csv.note("bank_reach: how far from the stroke's line sand is half a cell higher than once settled [cell]");
+    csv.note("hash: of the sand at the end of the stroke and of level sand, together");
+    csv.note("steps_after: steps after lifting until misplaced_lifted is 1 %");
+    csv.columns(
+        "N,R,cells_per_step,sweeps_per_step,ms_p50,ms_p99,ms_max,idle_us,misplaced_held,misplaced_lifted,bank,"
+        "bank_reach,steps_after,hash");
+    for (const int side : settings.sizes) {
+        for (const double radius : {12.0, 2.56}) {
+            for (const double speed : {1.5, 2.4}) {
+                for (const int count : {1, 4, 8, 16, 32, 64, 128}) {
+                    // The stroke and its banks need room along the diagonal.
+                    if (speed * kSteps / std::numbers::sqrt2 + 6 * radius < side) {
+                        measure({side, radius, speed, count}, settings.runs, csv);
+                    }
+                }
+            }
+        }
+    }
+}
+
+}  // namespace bench

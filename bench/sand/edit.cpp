@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// What one edit costs: sand at rest anywhere else should cost nothing.
+#include "bench/curves.hpp"
+#include "bench/sand/relaxations.hpp"
+#include "bench/timing.hpp"
+#include "sand/grid/erosion.hpp"
+
+namespace bench {
+namespace {
+
+constexpr int kStepSweeps = 16;  // of one step
+
+sand::ProbePoint probeAt(double x, double y, double z /* [cell] */) {
+    const auto probe = [](double cells) { return static_cast<std::int32_t>(cells * sand::kProbePerCell); };
+    return {probe(x), probe(y), probe(z)};
+}
+
+struct Costs {
+    std::vector<double> step;    // [s], the press and kStepSweeps sweeps
+    std::vector<double> toRest;  // [s], the press and all sweeps until nothing moves
+};
+
+Costs measure(int side, double radius, bool skipSettled, int runs) {
+    const sand::HeightField level(side, side, 1.0);
+    const sand::Rules rules = rulesFor(level, kTalus);
+    const sand::Tool tool({.radius = static_cast<std::int32_t>(radius * sand::kProbePerCell)});
+    const sand::ProbePoint at = probeAt(side / 2.0, side / 2.0, 0);
+    sand::Erosion::Options options;
+    options.skipSettled = skipSettled;
+    Costs costs;
+    for (int run = 0; run < runs; ++run) {
+        sand::HeightField field = level;
+        sand::Erosion erosion(field, rules, options);
+        erosion.sweep(field, 2);
+        const double before = cpuSeconds();
+        erosion.touch(tool.drag(field, rules.rim, nullptr, at, at).cells);
+        erosion.sweep(field, kStepSweeps);
+        costs.step.push_back(cpuSeconds() - before);
+        if (skipSettled) {
+            erosion.sweep(field, kMostSweeps);
+            costs.toRest.push_back(cpuSeconds() - before);
+        }
+    }
+    return costs;
+}
+
+}  // namespace
+
+void edit(const Settings& settings, Csv& csv) {
+    csv.note(fmt::format("an edit: a sphere of `radius` cells presses half of itself into level sand, then {} sweeps",
+                         kStepSweeps));
+    csv.note("full: the same with every block visited in every sweep; the sand is the same, bit for bit");
+    csv.note("CPU time of one thread");
+    csv.columns("blocks,N,radius,ms_median,ms_min,ms_max,ms_to_rest");
+    for (const int side : settings.sizes) {
+        for (const double radius : {2.56, 4.0, 8.0, 12.0, 16.0, 32.0}) {
+            if (4 * radius > side) {
+                continue;
+            }
+            for (const bool skipSettled : {true, false}) {
+                progress("N = {}, R = {}, {} blocks", side, radius, skipSettled ? "active" : "all");
+                const Costs costs = measure(side, radius, skipSettled, settings.runs);
+                const Spread step = spreadOf(costs.step);
+                csv.row(skipSettled ? "active" : "full", side, radius, step.median * 1e3, step.lowest * 1e3,
+                        step.highest * 1e3,
+                        skipSettled ? fmt::format("{:.6g}", spreadOf(costs.toRest).median * 1e3) : "");
+            }
+        }
+    }
+}
+
+}  // namespace bench

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether sand is lost: floats against integers.
+#include <cmath>
+#include <numeric>
+
+#include "bench/curves.hpp"
+#include "bench/sand/piles.hpp"
+#include "bench/sand/relaxations.hpp"
+
+namespace bench {
+namespace {
+
+/// The pile `cells` above the zero of heights, as a survey's sand is above sea level.
+sand::HeightField lifted(const sand::HeightField& field, int cells) {
+    sand::HeightField result = field;
+    for (int y = 0; y < field.rows(); ++y) {
+        for (int x = 0; x < field.columns(); ++x) {
+            result.setHeight(x, y, field.height(x, y) + cells * sand::kUnitsPerCell);
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+void massDrift(const Settings& settings, Csv& csv) {
+    csv.note("datum: height of the ground [cell]; floats have 24 bits for datum and sand together");
+    csv.note("drift: volume above the datum minus that at the start, over the latter");
+    csv.columns("pile,method,N,datum,sweeps,drift");
+    for (const int side : settings.sizes) {
+        const Pile pile = lowPile(side);
+        for (const int datum : {0, 1000}) {
+            const sand::HeightField start = lifted(pile.start, datum);
+            for (const Method& method : methods({"G", "float32 N4 in place", "float32 N4 Jacobi", "float32 N8 Jacobi",
+                                                 "float32 N8 sqrt2 Jacobi"})) {
+                progress("N = {}, datum {}, {}", side, datum, method.name);
+                auto relaxation = method.start(start, rulesFor(start));
+                const auto volume = [&] {
+                    double sum = 0;
+                    for (const double height : relaxation->heights()) {
+                        sum += height - datum;  // of differences: doubles hold them exactly
+                    }
+                    return sum;
+                };
+                const double before = volume();
+                std::int64_t done = 0;
+                for (int wanted = 1; wanted <= 1 << 14 && !relaxation->atRest(); wanted *= 2) {
+                    relaxation->sweep(wanted - static_cast<int>(done));
+                    done = wanted;
+                    csv.row(pile.name, method.name, side, datum, wanted, (volume() - before) / before);
+                }
+            }
+        }
+    }
+}
+
+}  // namespace bench

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// Seconds to rest: of one pile, and of a field in which everything moves.
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+#include "bench/curves.hpp"
+#include "bench/sand/piles.hpp"
+#include "bench/sand/relaxations.hpp"
+#include "bench/timing.hpp"
+
+namespace bench {
+namespace {
+
+struct Contender {
+    const Method* method;
+    std::vector<double> seconds;
+    std::vector<double> heights;
+    std::int64_t sweeps = 0;
+};
+
+constexpr double kRestPatience = 60;  // [s] of all runs of one method: a slower one is run fewer times
+
+/// Every method in every round, so that a neighbour's load meets all of them alike.
+std::vector<Contender> race(const std::vector<Method>& all, const sand::HeightField& start, int runs,
+                            const std::string& field) {
+    std::vector<Contender> contenders;
+    for (const Method& method : all) {
+        contenders.push_back({&method, {}, {}, 0});
+    }
+    for (int run = 0; run < runs; ++run) {
+        progress("{}, N = {}, {} of {} runs", field, start.columns(), run + 1, runs);
+        for (Contender& contender : contenders) {
+            if (std::accumulate(contender.seconds.begin(), contender.seconds.end(), 0.0) > kRestPatience) {
+                continue;
+            }
+            std::unique_ptr<Relaxation> relaxation;
+            contender.seconds.push_back(secondsOf([&] {
+                relaxation = contender.method->start(start, rulesFor(start));
+                relaxation->sweep(kMostSweeps);
+            }));
+            contender.heights = relaxation->heights();
+            contender.sweeps = relaxation->sweepsDone();
+        }
+    }
+    return contenders;
+}
+
+double distance(const std::vector<double>& a, const std::vector<double>& b) {
+    return std::transform_reduce(a.begin(), a.end(), b.begin(), 0.0, std::plus<>(),
+                                 [](double x, double y) { return std::abs(x - y); });
+}
+
+double sumOf(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+/// The rows of one race, the first contender being the reference; errors are over `whole`.
+void write(Csv& csv, const std::string& field, int side, const std::vector<Contender>& contenders,
+           const std::vector<double>& truth, double whole) {
+    const double reference = spreadOf(contenders.front().seconds).median;
+    for (const Contender& contender : contenders) {
+        const Spread seconds = spreadOf(contender.seconds);
+        csv.row(field, contender.method->name, side, contender.seconds.size(), contender.sweeps, seconds.median,
+                seconds.lowest, seconds.highest, reference / seconds.median,
+                distance(contender.heights, truth) / whole);
+    }
+}
+
+void begin(Csv& csv) {
+    csv.note(fmt::format("a method that has taken {} s in all is not run again", kRestPatience));
+    csv.note("ratio: median of `" + kToRest.front() + "` of the same field over this one's median");
+    csv.columns("field,method,N,runs,sweeps,seconds_median,seconds_min,seconds_max,ratio,error");
+}
+
+}  // namespace
+
+void rest(const Settings& settings, Csv& csv) {
+    const std::vector<Method> all = methods(kToRest);
+    csv.note(
+        "low pile: cylinder of height 0.6 R, R = 0.3 N, talus 45 degrees, band 0; error against the analytic pile");
+    begin(csv);
+    for (const int side : settings.sizes) {
+        const Pile pile = lowPile(side);
+        write(csv, "low pile", side, race(all, pile.start, settings.runs, "low pile"), pile.rest, sumOf(pile.rest));
+    }
+}
+
+void restMoving(const Settings& settings, Csv& csv) {
+    std::vector<Method> all = methods(kToRest);
+    // Where everything moves, active blocks are full sweeps.
+    std::erase_if(all, [](const Method& method) { return method.name == "G plain"; });
+    csv.note("bumpy slope: a plane three times as steep as the talus with bumps of up to half a cell in a closed box;");
+    csv.note("  error against " + kToRest.back() + ": sum of |difference| over that of |rest - start|, the sand moved");
+    begin(csv);
+    for (const int side : settings.sizes) {
+        const sand::HeightField start = bumpySlope(side, settings.seed);
+        const std::vector<Contender> slope = race(all, start, settings.runs, "bumpy slope");
+        const std::vector<double>& truth = slope.back().heights;
+        write(csv, "bumpy slope", side, slope, truth,
+              distance(all.back().start(start, rulesFor(start))->heights(), truth));
+    }
+}
+
+}  // namespace bench

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the sand costs. Sweeps are of fields in which everything moves, beside a memcpy of the same bytes in one run:
+// quote the ratio, machines differ.
+#include <benchmark/benchmark.h>
+
+#include <cstring>
+#include <random>
+
+#include "sand/grid/dunes.hpp"
+#include "sand/replica.hpp"
+#include "scene/scene.hpp"
+
+namespace {
+
+sand::HeightField roughField(int side) {
+    std::mt19937 random(61);
+    sand::HeightField field(side, side, 1.0);
+    for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+            field.setHeight(x, y, static_cast<std::int32_t>(random() % (1U << 22)));
+        }
+    }
+    return field;
+}
+
+void reportPerCell(benchmark::State& state, double cells) {
+    state.counters["ns_per_cell"] =
+        benchmark::Counter(cells * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void sweep(benchmark::State& state, sand::Scheme scheme, sand::CodePath path) {
+    const int side = static_cast<int>(state.range(0));
+    sand::HeightField field = roughField(side);
+    sand::Rules rules;
+    rules.columns = rules.rows = side;
+    rules.threshold = rules.startThreshold = 64;  // next to nothing rests
+    rules.scheme = scheme;
+    sand::Erosion erosion(field, rules, {.path = path});
+    for (auto _ : state) {
+        erosion.sweep(field, 1);
+    }
+    state.SetLabel(erosion.codePath());
+    reportPerCell(state, static_cast<double>(side) * side);
+}
+BENCHMARK_CAPTURE(sweep, G, sand::Scheme::isotropic, sand::CodePath::automatic)->Arg(512)->Arg(1024)->Arg(2048);
+BENCHMARK_CAPTURE(sweep, G_plain, sand::Scheme::plainIsotropic, sand::CodePath::automatic)->Arg(512);
+BENCHMARK_CAPTURE(sweep, N4, sand::Scheme::n4, sand::CodePath::automatic)->Arg(512);
+BENCHMARK_CAPTURE(sweep, G_baseline, sand::Scheme::isotropic, sand::CodePath::baseline)->Arg(512);
+
+void copy(benchmark::State& state) {
+    const auto cells = static_cast<std::size_t>(state.range(0) * state.range(0));
+    const std::vector<std::int32_t> from(cells, 1);
+    std::vector<std::int32_t> to(cells);
+    for (auto _ : state) {
+        std::memcpy(to.data(), from.data(), cells * sizeof from[0]);
+        benchmark::ClobberMemory();
+    }
+    reportPerCell(state, static_cast<double>(cells));
+}
+BENCHMARK(copy)->Name("memcpy")->Arg(512)->Arg(1024)->Arg(2048);
+
+sand::Scene level(double toolCells, int sweeps) {
+    sand::Scene scene;
+    scene.terrain = sand::HeightField(512, 512, 1.0);
+    scene.rules.columns = scene.rules.rows = 512;
+    scene.rules.threshold = scene.rules.startThreshold = 44204;  // 34 degrees
+    scene.rules.sweepsPerStep = sweeps;
+    scene.rules.stepsPerSecond = 60;
+    scene.rules.toolRadius = static_cast<std::int32_t>(toolCells * sand::kProbePerCell);
+    return scene;
+}
+
+/// A step of digging in circles, 1.5 cells long, hash included.
+void dig(benchmark::State& state, double toolCells, int sweeps) {
+    sand::Terrain terrain(level(toolCells, sweeps));
+    for (auto _ : state) {
+        const double angle = static_cast<double>(terrain.stepNumber()) * 1.5 / 120;
+        const auto at = [](double cell) { return static_cast<std::int32_t>(cell * sand::kProbePerCell); };
+        terrain.apply({1,
+                       terrain.stepNumber() + 1,
+                       true,
+                       {{at(256 + 120 * std::cos(angle)), at(256 + 120 * std::sin(angle)), 0}}});
+        benchmark::DoNotOptimize(terrain.stateHash());
+    }
+}
+BENCHMARK_CAPTURE(dig, paper_tool, 2.56, 4)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(dig, tool_of_12_cells, 12.0, 24)->Unit(benchmark::kMillisecond);
+
+/// A hand touches down, far from where sand still moves, and leaves again: what keeping the sand for an undo costs.
+void touchDown(benchmark::State& state) {
+    const int side = static_cast<int>(state.range(0));
+    sand::Scene scene = level(2.56, 4);
+    scene.terrain = sand::HeightField(side, side, 1.0);
+    sand::makeDunes({}, scene.terrain);
+    scene.rules.columns = scene.rules.rows = side;
+    sand::Terrain terrain(scene);
+    for (auto _ : state) {
+        for (const bool engaged : {true, false}) {
+            const auto place = static_cast<std::int32_t>(side / 2 * sand::kProbePerCell);
+            terrain.apply({1, terrain.stepNumber() + 1, engaged, {{place, place, 0}}});
+        }
+    }
+}
+BENCHMARK(touchDown)->Arg(512)->Arg(2048)->Unit(benchmark::kMillisecond);
+
+/// The same sand compressed, as it was kept before.
+void compressed(benchmark::State& state) {
+    const int side = static_cast<int>(state.range(0));
+    sand::Scene scene = level(2.56, 4);
+    scene.terrain = sand::HeightField(side, side, 1.0);
+    sand::makeDunes({}, scene.terrain);
+    scene.rules.columns = scene.rules.rows = side;
+    const sand::Terrain terrain(scene);
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(terrain.copySand()->encode());
+    }
+}
+BENCHMARK(compressed)->Arg(512)->Arg(2048)->Unit(benchmark::kMillisecond);
+
+/// Settled sand and a hovering hand.
+void idle(benchmark::State& state) {
+    sand::Terrain terrain(level(12, 24));
+    for (auto _ : state) {
+        terrain.apply({1, terrain.stepNumber() + 1, false, {}});
+        benchmark::DoNotOptimize(terrain.stateHash());
+    }
+}
+BENCHMARK(idle)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();

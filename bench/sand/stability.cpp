@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which springs an arm can be pressed against: sampled as they are, and behind the guards.
+#include <cmath>
+#include <limits>
+
+#include "bench/curves.hpp"
+#include "haptic_bridge/loop/guards/guards.hpp"
+#include "scene/scene.hpp"
+#include "tests/support/arm_loop.hpp"
+#include "tests/support/arm_on_sand.hpp"
+
+namespace bench {
+namespace {
+
+using haptic_bridge::ArmPhysics;
+using haptic_bridge::ForceLimits;
+using haptic_bridge::Guards;
+using haptic_bridge::SimulatedArm;
+
+/// A flat bottom of a stiffness, through the guards or straight: whether an arm that is pressed onto it with half of
+/// its force, and pushed at 0.1 m/s, is below 1 mm/s after 3 s; a heavy arm is given half as long again as half of its
+/// damping needs.
+bool rests(const ArmPhysics& physics, double stiffness /* [N/m] */, Guards::Mode mode) {
+    const haptic_bridge::LawAtRadius law{stiffness, 0, 0};
+    ForceLimits limits = ForceLimits::of(physics, 1, law, 0);
+    limits.fastestThing = std::numeric_limits<double>::infinity();  // it is put into the spring at once
+    const double soft = mode == Guards::Mode::on ? limits.lawStiffness : stiffness;
+    Guards guards(limits, mode);
+    SimulatedArm arm(physics);
+    const double load = physics.maxForce / 2;
+    const double seconds = std::max(3.0, 6 * physics.mass / physics.damping * std::log(1e3));
+    const long warm = 2001, ticks = warm + std::lround(seconds * 1000);
+    double fastest = 0;
+    for (long tick = 0; tick < ticks; ++tick) {
+        if (tick == warm) {
+            arm.start({0, 0, -load / soft}, {0, 0, -0.1});
+            arm.load({0, 0, -load});
+        }
+        Guards::Reading reading;
+        reading.time = static_cast<double>(tick) * 1e-3;
+        reading.place = arm.read(reading.time).place;
+        reading.engaged = tick >= warm;
+        reading.felt = {{0, 0, std::max(0.0, -stiffness * reading.place.z)}, {0, 0, 1}, 0, stiffness};
+        arm.push(guards.tick(reading).sent);
+        fastest = tick >= ticks - 100 ? std::max(fastest, std::abs(arm.velocity().z)) : fastest;
+    }
+    return fastest < 1e-3;
+}
+
+/// The stiffest that rests, by halving between `low` and `high`.
+double stiffest(const ArmPhysics& physics, Guards::Mode mode, double low, double high) {
+    if (rests(physics, high, mode)) {
+        return high;
+    }
+    for (int halving = 0; halving < 16; ++halving) {
+        const double middle = std::sqrt(low * high);
+        (rests(physics, middle, mode) ? low : high) = middle;
+    }
+    return low;
+}
+
+}  // namespace
+
+void stability(const Settings& settings, Csv& csv) {
+    csv.note(
+        "K, the stiffest spring [N/m] on which an arm comes to rest: below 1 mm/s within 3 s, or within what a heavy");
+    csv.note("arm's damping takes; pressed with half of its greatest force, pushed at 0.1 m/s. theory: b/(T/2 + t_d).");
+    csv.note(
+        "textbook: the preset's mass alone, by growth; literal: with its encoder, friction and motor; guarded: what");
+    csv.note(
+        "the guards make of any law, and bears: the stiffest law asked for with which it came to rest, up to 1e6.");
+    csv.columns("arm,delay,b,theory,textbook,literal,guarded,bears");
+    const std::vector<double> dampings =
+        settings.runs > 1 ? std::vector<double>{0.1, 0.2, 0.35, 0.5, 1, 2, 3.5, 5, 10} : std::vector<double>{0.5, 5};
+    for (const std::string_view name : haptic_bridge::kArmPresets) {
+        for (const int delay : {0, 1}) {
+            for (const double damping : dampings) {
+                progress("stability of {}, delay {}, {} N s/m", name, delay, damping);
+                ArmPhysics arm = *haptic_bridge::armPreset(name);
+                arm.damping = damping;
+                arm.delayTicks = delay;
+                const double theory = damping / (5e-4 + 1e-3 * delay);
+                double low = theory / 10, high = theory * 10;
+                for (int halving = 0; halving < 20; ++halving) {
+                    const double middle = std::sqrt(low * high);
+                    const auto spring = [middle](double x) { return -middle * x; };
+                    (test::growth(test::textbookArm(damping, delay, arm.mass), spring) < 1 ? low : high) = middle;
+                }
+                const double literal = stiffest(arm, Guards::Mode::literal, theory / 100, 1e6);
+                const ForceLimits limits = ForceLimits::of(arm, 1, {1e9, 0, 0}, 0);
+                const double bears = stiffest(arm, Guards::Mode::on, limits.stiffness / 100, 1e6);
+                csv.row(name, delay, damping, theory, low, literal, limits.stiffness, bears);
+            }
+        }
+    }
+}
+
+void guardedSweep(const Settings& settings, Csv& csv) {
+    csv.note(
+        "The first paper's constants on level sand: depth 0 to 3 radii, speed 0 to 1 m/s, pressed or held by a hand.");
+    csv.note(
+        "rest: share of the trials below 1 mm/s within 3 s, or within what a heavy arm's damping takes; force: the");
+    csv.note(
+        "greatest asked of the device [N]; deviation: of what is sent from the law with the constants said at start,");
+    csv.note("where nothing else limits it; unlimited: share of the ticks in the sand of which that holds.");
+    csv.columns("arm,delay,b,hand,trials,rest,force,max_force,deviation,unlimited,literal_rest,literal_force");
+    const sand::Scene scene = test::levelSand();
+    const bool full = settings.runs > 1;
+    const std::vector<double> dampings = full ? std::vector<double>{0.5, 1, 2, 3.5, 5} : std::vector<double>{0.5};
+    const std::vector<double> depths = full ? std::vector<double>{0, 0.5, 1, 2, 3} : std::vector<double>{1};
+    const std::vector<double> speeds = full ? std::vector<double>{0, 0.03, 0.1, 0.3, 1} : std::vector<double>{0.3};
+    for (const std::string_view name : haptic_bridge::kArmPresets) {
+        for (const int delay : {0, 1}) {
+            for (const double damping : dampings) {
+                for (const bool held : {false, true}) {
+                    progress("sweep of {}, delay {}, {} N s/m", name, delay, damping);
+                    test::Trial trial{*haptic_bridge::armPreset(name), 0, 0, held};
+                    trial.arm.damping = damping;
+                    trial.arm.delayTicks = delay;
+                    int trials = 0, rest = 0, literalRest = 0;
+                    double force = 0, literalForce = 0, deviation = 0, touching = 0, unlimited = 0;
+                    for (const double depth : depths) {
+                        for (const double speed : speeds) {
+                            trial.depth = depth;
+                            trial.speed = speed;
+                            trial.mode = Guards::Mode::on;
+                            const test::Outcome guarded = run(trial, scene);
+                            trial.mode = Guards::Mode::literal;
+                            const test::Outcome literal = run(trial, scene);
+                            ++trials;
+                            rest += guarded.settles() ? 1 : 0;
+                            literalRest += literal.settles() ? 1 : 0;
+                            force = std::max(force, guarded.mostForce);
+                            literalForce = std::max(literalForce, literal.mostForce);
+                            deviation = std::max(deviation, guarded.deviation);
+                            touching += static_cast<double>(guarded.touching);
+                            unlimited += static_cast<double>(guarded.unlimited);
+                        }
+                    }
+                    csv.row(name, delay, damping, held ? "held" : "pressed", trials, static_cast<double>(rest) / trials,
+                            force, trial.arm.maxForce, deviation, touching > 0 ? unlimited / touching : 1.0,
+                            static_cast<double>(literalRest) / trials, literalForce);
+                }
+            }
+        }
+    }
+}
+
+}  // namespace bench

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a sweep costs per cell, beside what the machine's memory allows.
+#include <algorithm>
+#include <cstring>
+#include <random>
+#include <thread>
+
+#include "bench/curves.hpp"
+#include "bench/sand/baseline_schemes.hpp"
+#include "bench/sand/relaxations.hpp"
+#include "bench/timing.hpp"
+#include "host/worker_pool.hpp"
+#include "sand/grid/erosion.hpp"
+
+namespace bench {
+namespace {
+
+/// Noise of 64 cells' height: next to nothing of it rests.
+sand::HeightField roughField(int side, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    sand::HeightField field(side, side, 1.0);
+    for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+            field.setHeight(x, y, static_cast<std::int32_t>(random() % (1U << 22)));
+        }
+    }
+    return field;
+}
+
+/// Sweeps enough for the clock's grain not to matter, and few enough for everything still to move.
+int sweepsFor(int side) { return std::clamp((1 << 24) / (side * side), 2, 64); }
+
+struct Variant {
+    std::string name;
+    sand::Scheme scheme;
+    sand::CodePath path;
+    int threads;
+};
+
+/// Seconds per sweep, a number for each run: on the wall where several threads share the work.
+std::vector<double> measure(const Variant& variant, const sand::HeightField& start, int runs) {
+    sand::Rules rules = rulesFor(start, 64.0 / sand::kUnitsPerCell);
+    rules.scheme = variant.scheme;
+    host::WorkerPool pool(variant.threads);
+    const base::Executor executor = pool.executor();
+    sand::Erosion::Options options;
+    options.path = variant.path;
+    options.executor = variant.threads > 1 ? &executor : nullptr;
+    const int count = sweepsFor(start.columns());
+    std::vector<double> seconds;
+    for (int run = 0; run < runs; ++run) {
+        sand::HeightField field = start;
+        sand::Erosion erosion(field, rules, options);
+        erosion.sweep(field, 1);  // touches every page, and wakes the threads
+        const auto clock = variant.threads > 1 ? wallSeconds : cpuSeconds;
+        const double before = clock();
+        erosion.sweep(field, count);
+        seconds.push_back((clock() - before) / count);
+    }
+    return seconds;
+}
+
+/// One number read and one written per cell. Not memcpy: on some virtual machines it copies what fits into the cache
+/// ten times slower than a loop does.
+void copyAndAdd(const std::int32_t* __restrict from, std::int32_t* __restrict to, std::size_t cells) {
+    for (std::size_t i = 0; i < cells; ++i) {
+        to[i] = from[i] + 1;
+    }
+}
+
+std::vector<double> measureCopy(int side, int runs) {
+    const auto cells = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
+    std::vector<std::int32_t> from(cells, 1);
+    std::vector<std::int32_t> to(cells);
+    const int count = 16 * sweepsFor(side);
+    std::vector<double> seconds;
+    for (int run = 0; run < runs; ++run) {
+        const double before = cpuSeconds();
+        for (int i = 0; i < count; ++i) {
+            copyAndAdd(from.data(), to.data(), cells);
+            from.swap(to);
+        }
+        seconds.push_back((cpuSeconds() - before) / count);
+    }
+    return seconds;
+}
+
+std::vector<double> measureBaseline(BaselineScheme scheme, const sand::HeightField& start, int runs) {
+    FloatField field(start.columns());
+    FloatField scratch(start.columns());
+    for (int y = 0; y < field.side; ++y) {
+        for (int x = 0; x < field.side; ++x) {
+            field.row(y)[x] = static_cast<float>(start.height(x, y)) / sand::kUnitsPerCell;
+        }
+    }
+    const bool isV3 = std::strcmp(codePath(), "baseline") != 0;
+    const int count = sweepsFor(start.columns());
+    std::vector<double> seconds;
+    for (int run = 0; run < runs; ++run) {
+        const double before = cpuSeconds();
+        for (int i = 0; i < count; ++i) {
+            isV3 ? v3::sweep(scheme, 1e-3F, field, scratch) : baseline::sweep(scheme, 1e-3F, field, scratch);
+        }
+        seconds.push_back((cpuSeconds() - before) / count);
+    }
+    return seconds;
+}
+
+}  // namespace
+
+void throughput(const Settings& settings, Csv& csv) {
+    using sand::CodePath;
+    using sand::Scheme;
+    std::vector<Variant> variants{{"G", Scheme::isotropic, CodePath::automatic, 1},
+                                  {"G plain", Scheme::plainIsotropic, CodePath::automatic, 1},
+                                  {"N4", Scheme::n4, CodePath::automatic, 1},
+                                  {"G baseline x86-64", Scheme::isotropic, CodePath::baseline, 1}};
+    for (int threads = 2; threads <= static_cast<int>(std::thread::hardware_concurrency()); threads *= 2) {
+        variants.push_back({fmt::format("G {} threads", threads), Scheme::isotropic, CodePath::automatic, threads});
+    }
+    csv.note("a field in which everything moves; CPU time of one thread, wall time of several");
+    csv.note(
+        "times_copy: over the median of reading and writing a 32-bit number per cell in the same run: the roofline");
+    csv.columns("variant,threads,N,ns_per_cell_median,ns_per_cell_min,ns_per_cell_max,times_copy");
+    for (const int side : settings.sizes) {
+        const double nanoseconds = 1e9 / (static_cast<double>(side) * side);
+        const double copy = spreadOf(measureCopy(side, settings.runs)).median;
+        const auto row = [&](const std::string& name, int threads, const std::vector<double>& seconds) {
+            progress("N = {}, {}", side, name);
+            const Spread spread = spreadOf(seconds);
+            csv.row(name, threads, side, spread.median * nanoseconds, spread.lowest * nanoseconds,
+                    spread.highest * nanoseconds, spread.median / copy);
+        };
+        row("copy", 1, measureCopy(side, settings.runs));
+        const sand::HeightField start = roughField(side, settings.seed);
+        for (const Variant& variant : variants) {
+            row(variant.name, variant.threads, measure(variant, start, settings.runs));
+        }
+        row("float32 N4 Jacobi", 1, measureBaseline(BaselineScheme::jacobiN4, start, settings.runs));
+        row("float32 N4 in place", 1, measureBaseline(BaselineScheme::inPlaceN4, start, settings.runs));
+        row("float32 N8 sqrt2 Jacobi", 1, measureBaseline(BaselineScheme::jacobiN8r2, start, settings.runs));
+    }
+}
+
+}  // namespace bench

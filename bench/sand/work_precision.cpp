@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// Error against run time: what a second buys with each method.
+#include <cmath>
+
+#include "bench/curves.hpp"
+#include "bench/sand/piles.hpp"
+#include "bench/sand/relaxations.hpp"
+#include "bench/timing.hpp"
+
+namespace bench {
+namespace {
+
+// Full sweeps cost what active ones do while the whole pile moves; `rest` compares them.
+const std::vector<std::string> kRaced{"G",
+                                      "G plain",
+                                      "N4",
+                                      "settle",
+                                      "float32 N4 in place",
+                                      "float32 N4 Jacobi",
+                                      "float32 N8 Jacobi",
+                                      "float32 N8 sqrt2 Jacobi"};
+
+/// One place on a method's curve.
+struct Sample {
+    int sweeps = 0;
+    oracles::Distance error;
+    bool atRest = false;
+    std::vector<double> seconds;  // since the start, of each run
+};
+
+/// 1, 2, 3, 4, 6, 8, 12, 16, 24 …
+int next(int sweeps) {
+    if (sweeps < 4) {
+        return sweeps + 1;
+    }
+    const bool powerOfTwo = (sweeps & (sweeps - 1)) == 0;
+    return powerOfTwo ? sweeps / 2 * 3 : sweeps / 3 * 4;
+}
+
+// G is told how many sweeps it has, as every step of a scene tells it, and begins with more inertia when they are few;
+// from so many on it makes no difference, and the rest of a run is measured in parts.
+constexpr int kAtOnce = 96;  // [sweep]
+// A clock that is read before and after takes its own time.
+constexpr double kShort = 50e-6;  // [s]
+constexpr int kRepeats = 32;      // of a run so short, between two readings
+
+constexpr double kPatience = 4;  // [s] of all runs of one method: a slower one is run fewer times
+
+/// Whether twice the sweeps have changed the error by less than a hundredth, halfway too: in floats some piles never
+/// rest, and some pass by the right one, where the error is level for a moment.
+bool onPlateau(const std::vector<Sample>& samples) {
+    const std::size_t count = samples.size();
+    if (count < 3 || samples[count - 3].sweeps < 256) {
+        return false;
+    }
+    const double last = samples[count - 1].error.misplaced;
+    const auto near = [&](const Sample& sample) { return std::abs(sample.error.misplaced - last) < 0.01 * last; };
+    return near(samples[count - 2]) && near(samples[count - 3]);
+}
+
+oracles::Distance errorOf(const Pile& pile, const Relaxation& relaxation) {
+    const std::vector<double> heights = relaxation.heights();
+    return oracles::distance(
+        pile.side(), pile.rest, [&](std::size_t i) { return heights[i]; }, [](int, int) { return true; });
+}
+
+/// Runs a method once through the samples that `samples` holds, or, the first time, as far as it goes.
+class Runner {
+public:
+    Runner(const Method& method, const Pile& pile) : method_(method), pile_(pile), rules_(rulesFor(pile.start)) {}
+
+    std::vector<Sample> first() {
+        std::vector<Sample> samples;
+        start();
+        for (int sweeps = 1; samples.empty() || !samples.back().atRest; sweeps = next(sweeps)) {
+            Sample sample;
+            sample.sweeps = sweeps;
+            sample.seconds.push_back(advanceTo(sweeps));
+            sample.error = errorOf(pile_, *relaxation_);
+            sample.atRest = relaxation_->atRest();
+            samples.push_back(sample);
+            if (sweeps >= kMostSweeps || (!method_.ours && onPlateau(samples))) {
+                break;
+            }
+        }
+        return samples;
+    }
+
+    [[nodiscard]] double total() const { return total_; }  // [s], of all runs so far
+
+    void again(std::vector<Sample>& samples) {
+        start();
+        for (Sample& sample : samples) {
+            sample.seconds.push_back(advanceTo(sample.sweeps));
+        }
+    }
+
+private:
+    void start() {
+        relaxation_ = method_.start(pile_.start, rules_);
+        done_ = 0;
+        seconds_ = 0;
+    }
+    /// Seconds from the start to `sweeps` sweeps, setting up included.
+    double advanceTo(int sweeps) {
+        if (sweeps <= kAtOnce) {
+            seconds_ = secondsAtOnce(sweeps);
+        } else {
+            const double more = secondsOf([&] { relaxation_->sweep(sweeps - done_); });
+            total_ += more;
+            seconds_ += more;
+        }
+        done_ = sweeps;
+        return seconds_;
+    }
+    double secondsAtOnce(int sweeps) {
+        const auto run = [&] {
+            relaxation_ = method_.start(pile_.start, rules_);
+            relaxation_->sweep(sweeps);
+        };
+        double seconds = secondsOf(run);
+        total_ += seconds;
+        if (seconds < kShort) {
+            const double all = secondsOf([&] {
+                for (int i = 0; i < kRepeats; ++i) {
+                    run();
+                }
+            });
+            total_ += all;
+            seconds = all / kRepeats;
+        }
+        return seconds;
+    }
+
+    const Method& method_;
+    const Pile& pile_;
+    const sand::Rules rules_;
+    std::unique_ptr<Relaxation> relaxation_;
+    int done_ = 0;
+    double seconds_ = 0;
+    double total_ = 0;
+};
+
+}  // namespace
+
+void workPrecision(const Settings& settings, Csv& csv) {
+    csv.note("misplaced: sum of |height - analytic mean over the cell| over the sum of the latter");
+    csv.note("largest, apex: L-infinity error and error of the highest point [cell of this N]");
+    csv.note("seconds: CPU time of one thread from the start field on, setting up included");
+    csv.note(
+        fmt::format("a float baseline ends when no sweep moves {} cells, or twice the sweeps change the error by < 1 %",
+                    kFloatTolerance));
+    csv.note(fmt::format("a method that has taken {} s in all is not run again; no tall pile beyond N = {}", kPatience,
+                         kLargestTall));
+    csv.columns("pile,method,ours,N,runs,sweeps,seconds_median,seconds_min,seconds_max,misplaced,largest,apex,at_rest");
+    for (const int side : settings.sizes) {
+        for (const Pile& pile : pilesOf(side)) {
+            for (const Method& method : methods(kRaced)) {
+                progress("{} pile, N = {}, {}: {} runs", pile.name, side, method.name, settings.runs);
+                Runner runner(method, pile);
+                std::vector<Sample> samples = runner.first();
+                for (int run = 1; run < settings.runs && runner.total() < kPatience; ++run) {
+                    runner.again(samples);
+                }
+                for (const Sample& sample : samples) {
+                    const Spread seconds = spreadOf(sample.seconds);
+                    csv.row(pile.name, method.name, method.ours ? 1 : 0, side, sample.seconds.size(), sample.sweeps,
+                            seconds.median, seconds.lowest, seconds.highest, sample.error.misplaced,
+                            sample.error.largest, sample.error.apex, sample.atRest ? 1 : 0);
+                }
+            }
+        }
+    }
+}
+
+}  // namespace bench

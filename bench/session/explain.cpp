@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// What one scene loads and runs, what it leaves out, and what each part costs on this machine.
+#include <fstream>
+#include <map>
+#include <random>
+#include <sstream>
+
+#include "bench/curves.hpp"
+#include "bench/sand/relaxations.hpp"
+#include "bench/timing.hpp"
+#include "sand/replica.hpp"
+#include "sand/tin/geometry/surface_view.hpp"
+#include "scene/load/scene_file.hpp"
+
+namespace bench {
+namespace {
+
+using sand::kProbePerCell;
+
+/// Size of every library this process has mapped [byte], by name.
+std::map<std::string, std::size_t> mappedLibraries() {
+    std::map<std::string, std::size_t> libraries;
+    std::ifstream maps("/proc/self/maps");
+    for (std::string line; std::getline(maps, line);) {
+        std::istringstream words(line);
+        std::string range, permissions, offset, device, inode, file;
+        words >> range >> permissions >> offset >> device >> inode >> file;
+        if (file.find(".so") == std::string::npos) {
+            continue;
+        }
+        const std::size_t dash = range.find('-');
+        libraries[std::filesystem::path(file).filename()] +=
+            std::stoull(range.substr(dash + 1), nullptr, 16) - std::stoull(range.substr(0, dash), nullptr, 16);
+    }
+    return libraries;
+}
+
+/// Rows of the explanation: what kind of part, its name, whether this scene uses it, what it costs, and why.
+class Explanation {
+public:
+    explicit Explanation(Csv& csv) : csv_(csv) { csv_.columns("kind,part,used,cost,unit,why"); }
+
+    void memory(const char* part, std::size_t bytes, const std::string& why) {
+        csv_.row("memory", part, bytes > 0 ? "yes" : "no", bytes, "byte", why);
+    }
+    void rule(const char* part, bool used, const std::string& why) {
+        csv_.row("rule", part, used ? "yes" : "no", "", "", why);
+    }
+    void step(const char* what, const std::vector<double>& seconds, const std::string& why) {
+        csv_.row("step", what, "yes", spreadOf(seconds).median * 1e6, "us", why);
+    }
+    void library(const std::string& name, std::size_t bytes) {
+        csv_.row("library", name, "yes", bytes, "byte", "mapped into this program");
+    }
+
+private:
+    Csv& csv_;
+};
+
+void explainTinMemory(const sand::Scene& scene, Explanation& rows) {
+    const sand::Terrain terrain(scene);
+    const sand::tin::Triangles& mesh = terrain.tinView()->triangles;
+    const std::size_t perVertex = sizeof(sand::tin::Place) + 2 * sizeof(std::int32_t) + 4 * sizeof(std::int64_t);
+    rows.memory("vertices", mesh.places.size() * perVertex,
+                fmt::format("{} of them: place, volume, share of the ground, height, hash", mesh.places.size()));
+    rows.memory("triangles", mesh.triangles.size() * sizeof(sand::tin::Triangle),
+                fmt::format("{} of them: corners, neighbours, constraints", mesh.triangles.size()));
+    rows.memory("bedrock and walls", 0, "a TIN has none");
+}
+
+void explainMemory(const sand::Scene& scene, Explanation& rows) {
+    if (scene.tin != nullptr) {
+        explainTinMemory(scene, rows);
+        return;
+    }
+    const sand::Erosion erosion(scene.terrain, scene.rules, sand::Erosion::Options{.ground = scene.ground.get()});
+    const sand::StateHash hash(scene.terrain);
+    rows.memory("heights",
+                static_cast<std::size_t>(scene.terrain.stride()) * static_cast<std::size_t>(scene.rules.rows + 2) *
+                    sizeof(std::int32_t),
+                fmt::format("{} x {} cells of 4 bytes and their rim", scene.rules.columns, scene.rules.rows));
+    rows.memory("fluxes and blocks", erosion.bytes(),
+                fmt::format("a flux per face; flags per block of {0} x {0} cells", sand::Erosion::kDefaultBlock));
+    rows.memory("hash tiles", static_cast<std::size_t>(hash.tileCount()) * (sizeof(std::uint64_t) + 1),
+                "a hash and a flag per tile of 32 x 32 cells");
+    rows.memory("bedrock and walls", scene.ground ? scene.ground->cells().bytes() : 0,
+                scene.ground ? "a height of rock per cell" : "the scene has none");
+}
+
+void explainRules(const sand::Scene& scene, Explanation& rows) {
+    const sand::Rules& rules = scene.rules;
+    const bool grid = scene.tin == nullptr;
+    rows.rule("flux over a TIN's edges", !grid, "only with [tin]: the scene's module is loaded");
+    rows.rule("isotropic flux with inertia", grid && rules.scheme == sand::Scheme::isotropic, "scheme = g");
+    rows.rule("four-neighbour flux", grid && rules.scheme == sand::Scheme::n4, "only with scheme = n4");
+    rows.rule("layer limiter", scene.ground != nullptr, "only with bedrock or walls");
+    rows.rule("non-square cells", rules.aspect != sand::kUnitsPerCell,
+              "a law per axis: only where a cell is not square");
+    rows.rule("outflow over the rim", rules.rim == sand::Rim::open, "only with rim = open");
+    rows.rule("hysteresis band", rules.startThreshold > rules.threshold,
+              fmt::format("{} and {} units", rules.threshold, rules.startThreshold));
+    rows.rule("tool as an obstacle", rules.toolRadius > 0, "only in patches that the engaged tool reaches");
+}
+
+std::vector<double> timeSteps(sand::Terrain& terrain, const std::vector<sand::Step>& steps, std::uint64_t& hash) {
+    std::vector<double> seconds;
+    for (sand::Step step : steps) {
+        step.epoch = 1;
+        step.number = terrain.stepNumber() + 1;
+        seconds.push_back(secondsOf([&] {
+            terrain.apply(step);
+            hash ^= terrain.stateHash();
+        }));
+    }
+    return seconds;
+}
+
+/// The scene's sand under noise of the scene's own tool's height, at least a cell, and no more than a TIN's volumes
+/// can hold: next to nothing rests.
+sand::Scene stirred(const sand::Scene& scene, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    sand::Scene result = scene;
+    const auto range = static_cast<std::uint32_t>(std::max(scene.rules.toolRadius / kProbePerCell, 1) * 4) *
+                       static_cast<std::uint32_t>(sand::kUnitsPerCell);
+    if (scene.tin != nullptr) {
+        auto start = *scene.tin;
+        const auto most = static_cast<std::int32_t>(
+            std::min<double>(sand::kMaxHeight, sand::tin::mostHeight(scene.rules.columns, scene.rules.rows)));
+        for (std::int32_t& height : start.heights) {
+            const auto noise = static_cast<std::int32_t>(random() % std::min(range, static_cast<std::uint32_t>(most)));
+            height = std::min(height, most - noise) + noise;
+        }
+        result.rules.tin = start.digest();
+        result.tin = std::make_shared<const sand::tin::Start>(std::move(start));
+        return result;
+    }
+    for (int y = 0; y < scene.rules.rows; ++y) {
+        for (int x = 0; x < scene.rules.columns; ++x) {
+            const auto noise = static_cast<std::int32_t>(random() % range);
+            result.terrain.setHeight(x, y, std::min(scene.terrain.height(x, y), sand::kMaxHeight - noise) + noise);
+        }
+    }
+    return result;
+}
+
+void explainSteps(const sand::Scene& scene, const Settings& settings, Explanation& rows) {
+    const std::string sweepsPerStep = fmt::format("{} sweeps at most", scene.rules.sweepsPerStep);
+    const auto runs = static_cast<std::size_t>(settings.runs);
+    std::uint64_t hash = 0;
+
+    progress("the scene comes to rest");
+    constexpr std::uint64_t kMostSteps = 100000;
+    sand::Terrain terrain(scene);
+    std::vector<double> toRest;
+    while (!terrain.settled() && terrain.stepNumber() < kMostSteps) {
+        toRest.push_back(timeSteps(terrain, {sand::Step{}}, hash).front());
+    }
+    rows.step("while the scene comes to rest", toRest, fmt::format("{} steps of {}", toRest.size(), sweepsPerStep));
+    rows.step("settled; hovering", timeSteps(terrain, std::vector<sand::Step>(runs), hash), "no block is visited");
+
+    progress("small edits and digging");
+    const std::int32_t z = static_cast<std::int32_t>(
+        terrain.surface().height(scene.rules.columns * 128.0, scene.rules.rows * 128.0) / 256);
+    const auto at = [&](double share) {
+        return sand::ProbePoint{static_cast<std::int32_t>(scene.rules.columns * share * kProbePerCell),
+                                scene.rules.rows * kProbePerCell / 2, z};
+    };
+    std::vector<sand::Step> stroke{{1, 0, true, {at(0.3)}}};
+    const auto press = timeSteps(terrain, stroke, hash);
+    rows.step("one small edit", press, "the tool presses half of itself in; " + sweepsPerStep);
+    stroke.clear();
+    for (std::size_t i = 0; i < runs; ++i) {
+        stroke.push_back({1, 0, true, {at(0.3 + 0.4 * static_cast<double>(i + 1) / static_cast<double>(runs))}});
+    }
+    rows.step("digging", timeSteps(terrain, stroke, hash), fmt::format("two fifths of the field in {} steps", runs));
+
+    progress("everything moving");
+    constexpr std::size_t kMoving = 10;  // before much of it rests
+    sand::Terrain moving(stirred(scene, settings.seed));
+    rows.step("everything moving", timeSteps(moving, std::vector<sand::Step>(kMoving), hash),
+              fmt::format("{} steps of {}", kMoving, sweepsPerStep));
+}
+
+}  // namespace
+
+void explain(const Settings& settings, Csv& csv) {
+    const sand::Scene scene = sand::loadScene(settings.scene);
+    for (const std::string& warning : scene.warnings) {
+        csv.note("warning: " + warning);
+    }
+    csv.note(fmt::format("scene: {}, {} sweeps per step, tool of {:.3g} cells", scene.name, scene.rules.sweepsPerStep,
+                         static_cast<double>(scene.rules.toolRadius) / kProbePerCell));
+    csv.note(fmt::format("step: median CPU time of one thread, hash included, of {} steps unless it says otherwise",
+                         settings.runs));
+    Explanation rows(csv);
+    explainMemory(scene, rows);
+    explainRules(scene, rows);
+    explainSteps(scene, settings, rows);
+    for (const auto& [name, bytes] : mappedLibraries()) {
+        rows.library(name, bytes);
+    }
+}
+
+}  // namespace bench

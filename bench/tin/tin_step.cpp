@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a whole step of a session on a TIN costs: a tool put somewhere new, dragged on, lifted, and sand that slides on.
+#include <array>
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "bench/curves.hpp"
+#include "bench/timing.hpp"
+#include "sand/replica.hpp"
+#include "sand/tin/surface.hpp"
+#include "scene/scene.hpp"
+#include "tests/support/tin_piles.hpp"
+
+namespace bench {
+namespace {
+
+constexpr double kToolCells = 13;   // [cell]: about 1000 vertices below the tool and in the ring beside it
+constexpr double kPressed = 2;      // [cell]
+constexpr int kSamplesOfHand = 16;  // in one step
+constexpr double kPerStep = 1.5;    // [cell]
+constexpr int kRunSteps = 30;       // a run, of either kind
+constexpr int kStepsAfter = 4;      // an imprint, in which its sand slides on
+constexpr int kSweepsPerStep = 64;
+constexpr std::int32_t kSlope = 65536;         // [unit per cell], 45 degrees
+constexpr std::int32_t kBand = kSlope / 1000;  // as scenes have it that say nothing else
+constexpr std::int32_t kMaxError = 65536 / 8;  // [unit]
+constexpr std::int32_t kMostVertices = 1 << 19;
+
+/// Seconds by kind of step and part.
+using Times = std::map<std::pair<std::string, std::string>, std::vector<double>>;
+
+sand::Scene levelScene(int side, bool refines, std::uint32_t seed) {
+    sand::tin::Start start = tin_piles::levelStart(side, seed);
+    start.settings.spacing = refines ? sand::kProbePerCell : 0;
+    start.settings.maxError = refines ? kMaxError : 0;
+    start.settings.mostVertices = kMostVertices;
+    sand::Scene scene;
+    scene.rules.columns = scene.rules.rows = side;
+    scene.rules.threshold = kSlope;
+    scene.rules.startThreshold = kSlope + kBand;
+    scene.rules.sweepsPerStep = kSweepsPerStep;
+    scene.rules.toolKind = sand::ToolKind::circle;
+    scene.rules.toolRadius = static_cast<std::int32_t>(kToolCells * sand::kProbePerCell);
+    scene.tin = std::make_shared<const sand::tin::Start>(std::move(start));
+    return scene;
+}
+
+sand::ProbePoint handOver(double x, double y /* [cell] */) {
+    const auto probe = [](double cells) { return static_cast<std::int32_t>(std::floor(cells * sand::kProbePerCell)); };
+    return {probe(x), probe(y), probe(kToolCells - kPressed)};
+}
+
+struct Action {
+    std::string kind;
+    sand::Step step;
+};
+
+/// Imprints far from one another, each lifted again, and one long drag.
+std::vector<Action> actionsOf(int side, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    const auto somewhere = [&] { return 2 * kToolCells + tin_piles::chance(random) * (side - 4 * kToolCells); };
+    std::vector<Action> actions;
+    const auto add = [&actions](const char* kind, bool engaged, std::vector<sand::ProbePoint> path) {
+        const sand::Step step{1, actions.size() + 1, engaged, std::move(path)};
+        actions.push_back({kind, step});
+    };
+    for (int i = 0; i < kRunSteps; ++i) {
+        const double x = somewhere();
+        add("imprint", true, {handOver(x, somewhere())});
+        add("lift", false, {});
+        for (int after = 0; after < kStepsAfter; ++after) {
+            add("after", false, {});
+        }
+    }
+    double x = 2 * kToolCells;
+    add("imprint", true, {handOver(x, side / 2.0)});
+    for (int i = 0; i < kRunSteps; ++i, x += kPerStep) {
+        std::vector<sand::ProbePoint> path;
+        for (int sample = 1; sample <= kSamplesOfHand; ++sample) {
+            path.push_back(handOver(x + kPerStep * sample / kSamplesOfHand, side / 2.0));
+        }
+        add("drag", true, std::move(path));
+    }
+    return actions;
+}
+
+/// As a rank and the master do it: the step, its hash, and what is to be drawn anew.
+void measureWhole(const sand::Scene& scene, const std::vector<Action>& actions, Times& times) {
+    sand::Terrain terrain(scene);
+    terrain.apply({1, 1, false, {}});  // everything moves at first
+    static_cast<void>(terrain.stateHash());
+    static_cast<void>(terrain.takeTinDamage());
+    for (Action action : actions) {
+        ++action.step.number;
+        times[{action.kind, "step"}].push_back(secondsOf([&] {
+            terrain.apply(action.step);
+            static_cast<void>(terrain.stateHash());
+            static_cast<void>(terrain.takeTinDamage());
+        }));
+    }
+}
+
+/// The same, part by part: the surface's calls as Terrain::apply() makes them.
+void measureParts(const sand::Scene& scene, const std::vector<Action>& actions, Times& times) {
+    sand::tin::TinSurface surface(scene.rules, scene.tin);
+    const sand::HeldTool tool{scene.rules.toolShape(), {}};
+    sand::ProbePoint at;
+    surface.sweep(kSweepsPerStep, nullptr, at);
+    bool touched = false;
+    for (const auto& [kind, step] : actions) {
+        const auto part = [&, &to = kind](const char* name, const auto& work) {
+            times[{to, name}].push_back(secondsOf(work));
+        };
+        if (step.engaged && !touched) {
+            part("keep", [&] { surface.keep(); });
+        }
+        if (step.engaged) {
+            std::vector<sand::ProbePoint> path{touched ? at : step.path.front()};
+            path.insert(path.end(), step.path.begin(), step.path.end());
+            part("tool", [&] { surface.drag(tool, path); });
+        }
+        if (touched) {
+            part("release", [&] { surface.release(tool, at); });
+        }
+        if (touched && !step.engaged) {
+            part("leave", [&] { surface.leave(tool); });
+        }
+        at = step.path.empty() ? at : step.path.back();
+        touched = step.engaged;
+        part("sweeps", [&] { surface.sweep(kSweepsPerStep, touched ? &tool : nullptr, at); });
+        part("hash", [&] { static_cast<void>(surface.hash()); });
+        part("damage", [&] { static_cast<void>(surface.takeTinDamage()); });
+    }
+}
+
+/// What of an imprint is the mesh's change, and what the remap; each is taken back again.
+void measureImprints(const sand::Scene& scene, const std::vector<Action>& actions, Times& times) {
+    sand::tin::TinSurface surface(scene.rules, scene.tin);
+    sand::tin::Layer layer = sand::tin::LayerCopy(surface.layer(), {}).layer();
+    const auto outline = sand::tin::Outline::of(scene.rules.toolShape(), {});
+    for (const auto& [kind, step] : actions) {
+        if (kind != "imprint") {
+            continue;
+        }
+        sand::tin::Imprint there;
+        double mesh = 0;
+        const auto put = [&, at = step.path.front()](sand::tin::Mesh& edited) {
+            const auto where = placed(outline, at.x, at.y, edited.triangles());
+            mesh = secondsOf([&] { there.putInto(edited, where, kMostVertices); });
+        };
+        const double change = secondsOf([&] { layer.edit(put); });
+        times[{kind, "mesh"}].push_back(mesh);
+        times[{kind, "remap"}].push_back(change - mesh);
+        layer.edit([&](sand::tin::Mesh& edited) { there.takeOutOf(edited); });
+        static_cast<void>(layer.takeChange());
+    }
+}
+
+int verticesBelowAndBeside(const sand::Scene& scene, const sand::ProbePoint& at) {
+    const sand::TurnedShape tool(scene.rules.toolShape(), {});
+    const auto& places = scene.tin->places;
+    return static_cast<int>(std::count_if(places.begin(), places.end(), [&](const sand::tin::Place& place) {
+        const sand::Offset offset{std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
+        return tool.covers(offset) || tool.takes(offset);
+    }));
+}
+
+}  // namespace
+
+void tinStep(const Settings& settings, Csv& csv) {
+    csv.note(
+        fmt::format("a round tool of 32 points and radius {} cells, {} cells deep, in level sand; {} sweeps; ms of",
+                    kToolCells, kPressed, kSweepsPerStep));
+    csv.note("CPU time. imprint: put somewhere new, where a stroke begins; drag: moved on by 1.5 cells; lift: taken");
+    csv.note("out; after: nothing but sweeps. step: all of it with hash and damage, measured on its own. mesh, remap:");
+    csv.note("within tool, tried apart and without refinement; keep: for an undo; sweeps: with coarsening");
+    csv.columns("what,refined,N,vertices,near,part,steps,ms_median,ms_p99,ms_max");
+    for (const int side : settings.sizes) {
+        for (const bool refines : {false, true}) {
+            Times times;
+            std::size_t vertices = 0;
+            int near = 0;
+            for (int run = 0; run < settings.runs; ++run) {
+                progress("N = {}, run {}", side, run);
+                const std::uint32_t seed = settings.seed + static_cast<std::uint32_t>(run);
+                const sand::Scene scene = levelScene(side, refines, seed);
+                const std::vector<Action> actions = actionsOf(side, seed);
+                vertices = scene.tin->places.size();
+                near = verticesBelowAndBeside(scene, actions.front().step.path.front());
+                measureWhole(scene, actions, times);
+                measureParts(scene, actions, times);
+                measureImprints(scene, actions, times);
+            }
+            for (const auto& [name, seconds] : times) {
+                csv.row(name.first, refines ? "yes" : "no", side, vertices, near, name.second, seconds.size(),
+                        1e3 * quantile(seconds, 0.5), 1e3 * quantile(seconds, 0.99), 1e3 * quantile(seconds, 1));
+            }
+        }
+    }
+}
+
+}  // namespace bench

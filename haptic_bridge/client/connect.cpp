@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// How the master's end of the link comes about, ends, and is tried again.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/asio/connect.hpp>
+#include <utility>
+
+#include "haptic_bridge/client/connection_thread.hpp"
+
+namespace haptic_bridge {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using boost::system::error_code;
+
+namespace {
+
+constexpr std::chrono::milliseconds kConnectTimeout{3000};
+
+}  // namespace
+
+void Client::Session::connect() {
+    if (stopping_) {  // the retry was due already when it was cancelled
+        return;
+    }
+    // One answer of the two below wins; the other finds `done` set.
+    const auto done = std::make_shared<bool>(false);
+    const auto socket = std::make_shared<tcp::socket>(io_);
+    watchTimer_.expires_after(kConnectTimeout);
+    watchTimer_.async_wait([this, done, socket](error_code error) {
+        if (!error && !std::exchange(*done, true)) {
+            error_code ignored;
+            socket->close(ignored);
+            failed("no answer");
+        }
+    });
+    const auto settle = [this, done](error_code error) {
+        if (stopping_ || std::exchange(*done, true)) {
+            return false;
+        }
+        watchTimer_.cancel();
+        if (error) {
+            failed(error.message());
+        }
+        return !error;
+    };
+    resolver_.async_resolve(address_.host, std::to_string(address_.port),
+                            [this, done, socket, settle](error_code error, const tcp::resolver::results_type& results) {
+                                if (error || *done) {
+                                    settle(error);
+                                    return;
+                                }
+                                asio::async_connect(*socket, results,
+                                                    [this, socket, settle](error_code failure, const tcp::endpoint&) {
+                                                        if (settle(failure)) {
+                                                            connected(std::move(*socket));
+                                                        }
+                                                    });
+                            });
+}
+
+void Client::Session::connected(Connection::Socket socket) {
+    connection_ = std::make_shared<Connection>(std::move(socket), security_.tls ? security_.tls->open() : nullptr);
+    peer_ = "haptic server " + address_.text();
+    handshake_.reset();
+    connection_->limit(kMaxGreeting);
+    heard_ = std::chrono::steady_clock::now();
+    silentUntil_ = {};
+    pings_ = 0;
+    {
+        const std::lock_guard lock(shelf.mutex);
+        shelf.tests.clear();
+        shelf.testsInFrame.clear();
+    }
+    watch();
+    connection_->start({[this](Message&& message) { receive(std::move(message)); },
+                        [this](const std::string& why, Connection::Fault fault) {
+                            fault ? refuse("closed, " + why, fault) : closed(why);
+                        },
+                        false, [this] { greet(); }});
+}
+
+void Client::Session::failed(const std::string& why) {
+    tell(everWelcomed_ ? Link::lost : Link::connecting,
+         fmt::format("haptic server {} does not answer ({}); trying again", address_.text(), why));
+    retry();
+}
+
+void Client::Session::closed(const std::string& why) {
+    const Link before = link();
+    const bool wasUp =
+        before == Link::offered || before == Link::granting || before == Link::linked || before == Link::streaming;
+    if (stopping_) {
+        io_.stop();
+        return;
+    }
+    if (wasUp) {
+        tell(Link::lost, fmt::format("{}: link lost, {}; trying again", peer_, why));
+    } else if (before != Link::refused) {
+        failed(why);
+        return;
+    }
+    retry();
+}
+
+void Client::Session::refuse(const std::string& why, Connection::Fault fault) {
+    if (fault) {
+        const std::lock_guard lock(shelf.mutex);
+        ++shelf.counters.refused[static_cast<std::size_t>(*fault) - 1];
+    }
+    tell(Link::refused, fmt::format("{}: {}", peer_, why));
+    backOff_ = kLastBackOff;
+    if (stopping_) {
+        io_.stop();
+        return;
+    }
+    retry();
+}
+
+void Client::Session::retry() {
+    if (connection_) {
+        const auto gone = std::exchange(connection_, nullptr);
+        gone->finish();
+    }
+    pingTimer_.cancel();
+    watchTimer_.cancel();
+    if (stopping_) {
+        return;
+    }
+    retryTimer_.expires_after(backOff_);
+    backOff_ = std::min(backOff_ * 2, kLastBackOff);
+    retryTimer_.async_wait([this](error_code error) {
+        if (!error) {
+            connect();
+        }
+    });
+}
+
+}  // namespace haptic_bridge

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/hand/device_troubles.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+namespace haptic_bridge {
+namespace {
+
+std::string lineOf(const std::string& name, Trouble trouble, std::uint64_t times) {
+    switch (trouble) {
+        case Trouble::absent:
+            return fmt::format("{} does not answer; the hand is lifted and feels nothing until it does", name);
+        case Trouble::noNumber:
+            return fmt::format("{} sends no numbers, {} times so far; the hand is lifted and feels nothing", name,
+                               times);
+        case Trouble::jump:
+            return fmt::format("{} jumps, {} times so far; the hand is lifted, and put down where it is then", name,
+                               times);
+        case Trouble::backwards:
+            return fmt::format("{} runs backwards in time, {} readings so far are left out", name, times);
+        case Trouble::flood:
+            return fmt::format("{} sends more than can be taken in, and was held back {} times so far", name, times);
+    }
+    return {};
+}
+
+}  // namespace
+
+std::vector<std::string> TroubleTeller::lines(const TroubleCounts& counts, double time) {
+    std::vector<std::string> result;
+    for (std::size_t i = 0; i < kTroubles; ++i) {
+        const auto trouble = static_cast<Trouble>(i);
+        const std::uint64_t now = counts.of(trouble);
+        Told& told = told_[i];
+        if (now == told.seen) {
+            if (trouble == Trouble::absent && away_ && time - told.grew >= kOver) {
+                away_ = false;
+                told.told = -kQuiet;
+                result.push_back(fmt::format("{} answers again", name_));
+            }
+            continue;
+        }
+        told.seen = now;
+        told.grew = time;
+        if (time - told.told >= kQuiet && !(trouble == Trouble::absent && away_)) {
+            told.told = time;
+            away_ = away_ || trouble == Trouble::absent;
+            result.push_back(lineOf(name_, trouble, now));
+        }
+    }
+    return result;
+}
+
+bool ReadingCheck::accept(double time, sand::force::Vec3 place) {
+    if (!std::isfinite(time) || !std::isfinite(place.x) || !std::isfinite(place.y) || !std::isfinite(place.z)) {
+        counts_.count(Trouble::noNumber);
+        return false;
+    }
+    if (known_ && time < time_) {
+        counts_.count(Trouble::backwards);
+        return false;
+    }
+    const bool jumped = known_ && norm(place - place_) > farthest_;
+    known_ = true;
+    time_ = time;
+    place_ = place;
+    if (jumped) {
+        counts_.count(Trouble::jump);
+    }
+    return !jumped;
+}
+
+}  // namespace haptic_bridge

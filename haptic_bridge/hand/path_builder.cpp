@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/hand/path_builder.hpp"
+
+#include <utility>
+
+namespace haptic_bridge {
+
+std::vector<sand::ProbePoint> thinned(const std::vector<sand::ProbePoint>& path, std::size_t most) {
+    if (path.size() <= most) {
+        return path;
+    }
+    std::vector<sand::ProbePoint> result;
+    for (std::size_t i = 0; i < most; ++i) {
+        result.push_back(path[i * (path.size() - 1) / (most - 1)]);
+    }
+    return result;
+}
+
+void PathBuilder::add(const HandSample& sample) {
+    waiting_.push_back(sample);
+    if (waiting_.size() > kMaxWaiting) {
+        thinWaiting();
+    }
+}
+
+void PathBuilder::thinWaiting() {
+    std::deque<HandSample> kept;
+    for (std::size_t i = 0; i < waiting_.size(); ++i) {
+        // The last sample before a change of engagement says where a stroke ends.
+        const bool ends = i + 1 == waiting_.size() || waiting_[i + 1].engaged != waiting_[i].engaged;
+        if (i % 2 == 0 || ends) {
+            kept.push_back(waiting_[i]);
+        }
+    }
+    if (kept.size() > kMaxWaiting) {  // a hand that taps at every sample cannot be thinned: the oldest go
+        kept.erase(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(kMaxWaiting / 2));
+    }
+    dropped_ += waiting_.size() - kept.size();
+    waiting_ = std::move(kept);
+}
+
+void PathBuilder::letGoIfFarAhead() {
+    if (waitingNs() <= kFarthestAhead) {
+        return;
+    }
+    const std::size_t all = waiting_.size();
+    while (waitingNs() >= mostNs_) {
+        waiting_.pop_front();
+    }
+    dropped_ += all - waiting_.size();
+    const HandSample now = waiting_.front();
+    if (engaged_ && now.engaged) {  // no furrow from where the sand is to there
+        waiting_.push_front({now.timeNs, now.at, false});
+    }
+}
+
+std::int64_t PathBuilder::take(sand::Step& step) {
+    step.engaged = engaged_;
+    if (waiting_.empty()) {
+        return 0;
+    }
+    letGoIfFarAhead();
+    std::vector<sand::ProbePoint> path;
+    std::int64_t readNs = 0;
+    const std::int64_t until = waiting_.front().timeNs + mostNs_;
+    const bool changed = waiting_.front().engaged != engaged_;
+    engaged_ = waiting_.front().engaged;
+    while (!waiting_.empty() && waiting_.front().engaged == engaged_ && waiting_.front().timeNs < until) {
+        const HandSample sample = waiting_.front();
+        waiting_.pop_front();
+        readNs = sample.timeNs;
+        step.heading = sample.heading ? sample.heading : step.heading;
+        // A hand that engages where it hovers must press there, though it has not moved.
+        if (sample.at != last_ || (changed && path.empty())) {
+            path.push_back(sample.at);
+            last_ = sample.at;
+        }
+    }
+    step.engaged = engaged_;
+    step.path = thinned(path, sand::kMaxPathPoints);
+    dropped_ += path.size() - step.path.size();
+    return readNs;
+}
+
+void PathBuilder::restart(sand::ProbePoint at, bool engaged) {
+    waiting_.clear();
+    last_ = at;
+    engaged_ = engaged;
+}
+
+void PathBuilder::dropWaiting() {
+    dropped_ += waiting_.size();
+    waiting_.clear();
+}
+
+}  // namespace haptic_bridge

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/link/link_options.hpp"
+
+#include "base/input_error.hpp"
+#include "host/command_line.hpp"
+
+namespace haptic_bridge {
+namespace {
+
+LinkSecurity withSecrets(const LinkOptions& options) {
+    LinkSecurity security;
+    if (!options.secretFile.empty()) {
+        security.secrets = readSecrets(options.secretFile);
+        security.functions = &loadSecurity("--secret-file");
+    } else if (options.tls) {
+        throw base::InputError("--tls: needs --secret-file, which tells the other side from somebody in between");
+    }
+    return security;
+}
+
+}  // namespace
+
+void LinkOptions::addTo(host::CommandLine& line, bool server) {
+    line.option("--secret-file", secretFile, "lines ROLE SECRET that both sides know (docs/security.md)");
+    line.flag("--tls", tls, "TLS 1.3 on the haptic link; needs --secret-file");
+    if (server) {
+        line.option("--tls-cert", certificate, "PEM file, instead of a certificate made at the start");
+        line.option("--tls-key", key, "PEM file of its key");
+    }
+}
+
+LinkSecurity LinkOptions::forServer() const {
+    LinkSecurity security = withSecrets(*this);
+    if (certificate.empty() != key.empty() || (!tls && !certificate.empty())) {
+        throw base::InputError("--tls-cert and --tls-key: give both or none, and --tls with them");
+    }
+    try {
+        security.tls = tls ? security.functions->tlsServer(certificate, key) : nullptr;
+    } catch (const std::runtime_error& error) {
+        throw base::InputError(std::string("--tls: ") + error.what());
+    }
+    return security;
+}
+
+LinkSecurity LinkOptions::forClient(Role role) const {
+    LinkSecurity security = withSecrets(*this);
+    if (security.proves() && !security.secrets.of(role)) {
+        throw base::InputError(secretFile + ": holds no secret of role " + std::string(nameOf(role)) +
+                               ", which this program needs");
+    }
+    security.tls = tls ? security.functions->tlsClient() : nullptr;
+    return security;
+}
+
+void requireSecret(const Address& address, const LinkSecurity& security, const std::string& option) {
+    boost::system::error_code name;
+    const auto literal = boost::asio::ip::make_address(address.host, name);
+    if (!security.proves() && !name && !isLoopback(literal)) {
+        throw base::InputError(option + ": " + address.text() +
+                               " is another machine, and a link over a network needs --secret-file on both sides "
+                               "(docs/security.md)");
+    }
+}
+
+bool isLoopback(const boost::asio::ip::address& address) {
+    if (address.is_v6() && address.to_v6().is_v4_mapped()) {
+        return boost::asio::ip::make_address_v4(boost::asio::ip::v4_mapped, address.to_v6()).is_loopback();
+    }
+    return address.is_loopback();
+}
+
+}  // namespace haptic_bridge

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/link/message_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <type_traits>
+#include <utility>
+
+namespace haptic_bridge {
+namespace {
+
+constexpr std::size_t kLengthBytes = sizeof(std::uint32_t);
+constexpr std::size_t kMaxKept = 1024 * 1024;  // [byte], of a buffer that holds nothing
+
+template <class Kind>
+constexpr std::uint8_t typeOf() {
+    return []<std::size_t... index>(std::index_sequence<index...>) {
+        std::uint8_t type = 0;
+        ((std::is_same_v<Kind, std::variant_alternative_t<index, Message>> ? type = static_cast<std::uint8_t>(index + 1)
+                                                                           : type),
+         ...);
+        return type;
+    }
+    (std::make_index_sequence<std::variant_size_v<Message>>{});
+}
+
+}  // namespace
+
+bool MessageReader::mayBeLong(std::uint8_t type) const {
+    const bool load = type == typeOf<EditRequest>() || type == typeOf<StepMessage>();
+    return type == typeOf<State>() ? stateExpected_ : load && loadsExpected_;
+}
+
+void MessageReader::feed(std::span<const std::uint8_t> bytes) {
+    if (begin_ > 0) {
+        buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(begin_));
+        begin_ = 0;
+        if (buffer_.empty() && buffer_.capacity() > kMaxKept) {
+            buffer_ = base::Bytes();  // what a State needed once is not held for ever
+        }
+    }
+    const std::size_t end = buffer_.size();
+    buffer_.resize(end + bytes.size());
+    std::copy(bytes.begin(), bytes.end(), buffer_.begin() + static_cast<std::ptrdiff_t>(end));
+}
+
+std::optional<Message> MessageReader::next() {
+    const auto stream = std::span<const std::uint8_t>(buffer_).subspan(begin_);
+    if (stream.size() < kLengthBytes) {
+        return std::nullopt;
+    }
+    const auto length = base::ByteReader(stream).get<std::uint32_t>();
+    const bool longMessage = length > most_;
+    if (length == 0 || length > kMaxState || (longMessage && !stateExpected_ && !loadsExpected_)) {
+        throw base::FormatError(fmt::format("a message of {} bytes, {} is the most", length, most_));
+    }
+    if (longMessage && stream.size() > kLengthBytes && !mayBeLong(stream[kLengthBytes])) {
+        throw base::FormatError(fmt::format("a message of {} bytes that holds no sand", length));
+    }
+    if (stream.size() < kLengthBytes + length) {
+        return std::nullopt;
+    }
+    begin_ += kLengthBytes + length;
+    if (stream[kLengthBytes] == typeOf<State>() && !std::exchange(stateExpected_, false)) {
+        throw base::FormatError("a state that nobody asked for");
+    }
+    return decode(stream.subspan(kLengthBytes, length));
+}
+
+}  // namespace haptic_bridge

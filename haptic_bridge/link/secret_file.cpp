@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/link/secret_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "base/input_error.hpp"
+
+namespace haptic_bridge {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r";
+
+/// The next word of a line, which is then shorter.
+std::string_view cutWord(std::string_view& line) {
+    line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
+    const std::string_view word = line.substr(0, line.find_first_of(kBlanks));
+    line.remove_prefix(word.size());
+    return word;
+}
+
+struct Line {
+    std::string_view text;
+    const std::string& file;
+    long number;
+
+    [[noreturn]] void fail(const std::string& what) const { throw base::InputError(file, number, what); }
+
+    void readInto(Secrets& secrets) const {
+        std::string_view rest = text;
+        const std::string_view role = cutWord(rest);
+        if (role.empty() || role.starts_with('#')) {
+            return;
+        }
+        if (role != "move" && role != "watch") {  // which may be a secret: it is not repeated
+            fail("begins with neither move nor watch; write ROLE SECRET");
+        }
+        const std::string_view secret = cutWord(rest);
+        if (!cutWord(rest).empty()) {
+            fail("holds more than ROLE SECRET; a secret has no blanks");
+        }
+        if (secret.size() < kMinSecret || secret.size() > kMaxSecret) {
+            fail(fmt::format("a secret of {} characters, {} to {} are wanted; openssl rand -hex 32 makes one",
+                             secret.size(), kMinSecret, kMaxSecret));
+        }
+        if (std::any_of(secret.begin(), secret.end(), [](char c) { return c < 0x21 || c > 0x7e; })) {
+            fail("a secret with characters that are not plain ASCII; openssl rand -hex 32 makes one");
+        }
+        std::optional<std::string>& place = role == "move" ? secrets.move : secrets.watch;
+        if (place) {
+            fail(fmt::format("a second secret of role {}; keep one", role));
+        }
+        place = secret;
+    }
+};
+
+}  // namespace
+
+Secrets parseSecrets(std::string_view text, const std::string& file) {
+    Secrets secrets;
+    for (long number = 1; !text.empty(); ++number) {
+        const std::string_view line = text.substr(0, text.find('\n'));
+        text.remove_prefix(std::min(line.size() + 1, text.size()));
+        Line{line, file, number}.readInto(secrets);
+    }
+    if (!secrets.any()) {
+        throw base::InputError(file + ": holds no secret; write a line such as: move " + "$(openssl rand -hex 32)");
+    }
+    if (secrets.move == secrets.watch) {
+        throw base::InputError(file + ": has one secret for both roles: who may watch could move; make another");
+    }
+    return secrets;
+}
+
+Secrets readSecrets(const std::string& file) {
+    // Without waiting: a pipe that nobody writes to is no secret either.
+    const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    if (descriptor < 0) {
+        throw base::InputError(file + ": cannot be read (" + std::strerror(errno) + "); check --secret-file");
+    }
+    struct stat about {};
+    std::array<char, kMaxSecretFile + 1> bytes{};
+    ssize_t count = 0;
+    const bool known = fstat(descriptor, &about) == 0;
+    const bool regular = known && S_ISREG(about.st_mode);
+    if (regular) {
+        count = read(descriptor, bytes.data(), bytes.size());
+    }
+    close(descriptor);
+    if (!regular) {
+        throw base::InputError(file + ": is no regular file; --secret-file takes one of lines ROLE SECRET");
+    }
+    if ((about.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
+        throw base::InputError(file + ": others may read or change it; chmod 600 it, and take a new secret");
+    }
+    if (count < 0 || static_cast<std::size_t>(count) > kMaxSecretFile) {
+        throw base::InputError(
+            fmt::format("{}: is larger than {} bytes; it holds two lines at most", file, kMaxSecretFile));
+    }
+    return parseSecrets({bytes.data(), static_cast<std::size_t>(count)}, file);
+}
+
+}  // namespace haptic_bridge

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/loop/guards/force_limits.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "haptic_bridge/loop/guards/velocity_window.hpp"
+#include "sand/force/force_model.hpp"
+
+namespace haptic_bridge {
+namespace {
+
+constexpr double kRest = 1e-3;  // [m/s], below which an arm rests
+constexpr double kQuiet = 0.6;  // a relay is no sine: measured chatter is up to 1.4 times as fast
+
+/// As a person writes a number: 19, 130, 0.19.
+double rounded(double number, int digits = 2) {
+    if (!(std::abs(number) > 0) || !std::isfinite(number)) {
+        return number;
+    }
+    const double unit = std::pow(10.0, std::floor(std::log10(std::abs(number))) + 1 - digits);
+    return std::round(number / unit) * unit;
+}
+
+}  // namespace
+
+LawAtRadius lawAtRadius(const sand::Scene& scene) {
+    const double radius = scene.toolRadius();
+    if (!(radius > 0)) {
+        return {};
+    }
+    constexpr int kCells = 33, kPerRadius = 4;
+    const sand::HeightField level(kCells, kCells, radius / kPerRadius);
+    constexpr int kMiddle = kCells / 2 * sand::kProbePerCell + sand::kProbePerCell / 2;
+    const sand::force::SurfacePatch patch(level, {kMiddle, kMiddle, 0}, radius);
+    const auto tool = sand::force::Contour::sphere(radius);
+    const double middle = kCells / 2.0 * radius / kPerRadius;
+    sand::force::ForceModel model(scene.force);
+    sand::force::Response response;
+    // A model that works between two surfaces may take a while to trust the first.
+    for (int tick = 0; tick < 200; ++tick) {
+        response = model.at(patch, 1, tool, {middle, middle, 0}, tick * ForceLimits::kTick);
+    }
+    return {response.stiffness, response.drag, norm(response.push)};
+}
+
+ForceLimits ForceLimits::of(const ArmPhysics& arm, double scale, const LawAtRadius& law, double internalFriction,
+                            double probeStep) {
+    ForceLimits limits;
+    limits.arm = arm;
+    limits.scale = scale;
+    limits.resolution = arm.resolution + probeStep;
+    const double delay = arm.delayTicks * kTick;
+    const double sampled = arm.damping / (kTick / 2 + delay);  // where a sampled spring diverges
+    limits.stiffness = std::min(arm.maxStiffness, sampled) / 2;
+    if (arm.friction < limits.stiffness * limits.resolution / 2) {
+        // A weight that rests between two steps of the encoder sees a relay of K times a step. It chatters at the
+        // amplitude where a relay is as stiff as the limit, 2 K step/π over that, and at the limit's frequency.
+        const double quiet = kRest * std::numbers::pi / 2 * std::sqrt(sampled * arm.mass) / limits.resolution;
+        limits.stiffness = std::min(limits.stiffness, kQuiet * quiet);
+    }
+    // A damper is stable while B < m over the age of the velocity, or somewhat more; the longest window is the oldest.
+    limits.damping = arm.mass / (kTick / 2 + delay + VelocityWindow::kLongest * kTick / 2);
+    limits.internalFriction = internalFriction;
+    limits.maxForce = arm.maxForce;
+    const double asked = law.stiffness * scale;
+    limits.gain = asked > limits.stiffness ? limits.stiffness / asked : 1;
+    limits.lawStiffness = limits.gain * asked;
+    limits.slew = limits.lawStiffness * kFastestHand * kTick;
+    return limits;
+}
+
+std::vector<std::string> ForceLimits::inWords(const std::string& name, double constant, const LawAtRadius& law) const {
+    const double asked = law.stiffness * scale;
+    const double sampled = arm.damping / (kTick / 2 + arm.delayTicks * kTick);
+    const double half = std::min(arm.maxStiffness, sampled) / 2;
+    const std::string why =
+        stiffness < half ? fmt::format("what its encoder's step of {:g} um lets rest", 1e6 * arm.resolution)
+        : arm.maxStiffness <= sampled ? std::string("half of what its maker allows")
+                                      : fmt::format("half of what {:g} N s/m of damping and {} tick{} of delay bear",
+                                                    arm.damping, arm.delayTicks, arm.delayTicks == 1 ? "" : "s");
+    const double drag = gain * law.drag * scale / 60;
+    return {
+        fmt::format("{} {:g} {}: {} at {:.3g} scene units per metre is asked for {:.4g} N/m, and bears {:.3g} N/m, {}",
+                    name, constant, gain < 1 ? fmt::format("→ {:g}", rounded(gain * constant)) : "as it is", arm.name,
+                    scale, asked, stiffness, why),
+        fmt::format("friction {:g} N s/m at one radius' depth, at most {:g} N s/m and {:g} of the push; at most "
+                    "{:g} N, growing by at most {:g} N a tick",
+                    rounded(drag), rounded(damping), rounded(internalFriction), maxForce, rounded(slew))};
+}
+
+}  // namespace haptic_bridge

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+
+#include "haptic_bridge/link/guard_counts.hpp"
+#include "sand/force/vec3.hpp"
+
+namespace haptic_bridge {
+
+/// Lets a force grow or turn by at most so much a tick, and fall at once: a hand that leaves the sand must not be held.
+class Slew {
+public:
+    explicit Slew(double most /* [N/tick] */) : most_(most) {}
+
+    [[nodiscard]] sand::force::Vec3 follow(sand::force::Vec3 wanted, std::uint32_t& acted) {
+        // What is left of the last force along its own direction may go freely; from there the step is bounded.
+        const double size = norm(last_);
+        const double along = size > 0 ? std::clamp(dot(wanted, last_) / size, 0.0, size) : 0;
+        const sand::force::Vec3 kept = size > 0 ? (along / size) * last_ : sand::force::Vec3{};
+        const sand::force::Vec3 step = wanted - kept;
+        const double length = norm(step);
+        const bool tooFar = length > most_;
+        acted |= tooFar ? bit(Guard::slew) : 0;
+        last_ = tooFar ? kept + (most_ / length) * step : wanted;
+        return last_;
+    }
+    void restart() { last_ = {}; }
+
+private:
+    double most_;
+    sand::force::Vec3 last_;
+};
+
+}  // namespace haptic_bridge

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/loop/haptic_tick.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "haptic_bridge/hand/arm_presets.hpp"
+#include "host/clock.hpp"
+#include "scene/scene.hpp"
+
+namespace haptic_bridge {
+namespace {
+
+/// [scene unit], of one step of a quantised place.
+double probeStep(const sand::Scene& scene) { return scene.terrain.cellSize() / sand::kProbePerCell; }
+
+ForceLimits limitsFor(const sand::Scene& scene, const Device& device, const LawAtRadius& law) {
+    const double friction = static_cast<double>(scene.rules.threshold) / sand::kUnitsPerCell;
+    if (const ArmPhysics* arm = device.physics()) {
+        return ForceLimits::of(*arm, device.scale(), law, friction, probeStep(scene) / device.scale());
+    }
+    const double side = std::min(scene.rules.columns, scene.rules.rows) * scene.terrain.cellSize();
+    const double scale = side / kTouchField;
+    ArmPhysics touch = touchPreset();
+    touch.name = "a recording, felt as with a Touch";
+    touch.resolution = 0;
+    ForceLimits limits = ForceLimits::of(touch, scale, law, friction, probeStep(scene) / scale);
+    limits.fastestThing = std::numeric_limits<double>::infinity();  // a list of strokes presses within a tick
+    return limits;
+}
+
+/// The constant that the gain lowers: a law is proportional to it.
+std::vector<std::string> inWords(const sand::ForceConstants& constants, const ForceLimits& limits,
+                                 const LawAtRadius& law) {
+    return constants.law == sand::ForceLaw::repulse ? limits.inWords("k_s", constants.stiffness, law)
+                                                    : limits.inWords("F_M", constants.maxForce, law);
+}
+
+}  // namespace
+
+Hand::Hand(const sand::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum, Guards::Mode mode)
+    : Hand(scene, std::move(device), datum, mode, lawAtRadius(scene)) {}
+
+Hand::Hand(const sand::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum, Guards::Mode mode,
+           const LawAtRadius& law)
+    : constants_(scene.force),
+      model_(scene.force),
+      device_(std::move(device)),
+      mapping_(scene, device_->physics() != nullptr ? HandSettings::Datum::level : datum),
+      guards_(limitsFor(scene, *device_, law), mode),
+      armVelocity_(guards_.limits().arm.resolution),
+      velocity_(guards_.limits().resolution * guards_.limits().scale),
+      words_(inWords(scene.force, guards_.limits(), law)) {
+    restart();
+}
+
+void Hand::restart() {
+    model_ = sand::force::ForceModel(constants_);
+    guards_.forget();
+    armVelocity_.restart();
+    velocity_.restart();
+    last_ = mapping_.probe(Pose{}).value_or(sand::ProbePoint{});
+}
+
+void Hand::rest(double deviceTime) {
+    (void)device_->read(deviceTime);
+    device_->sendForce({});
+}
+
+HandSample Hand::tick(double deviceTime, std::int64_t nowNs, const Surface& surface) {
+    const Pose pose = device_->read(deviceTime);
+    const auto probe = mapping_.probe(pose);
+    last_ = probe.value_or(last_);
+    const bool present = device_->reading().present;
+    const HandSample sample{nowNs, last_, pose.engaged && probe.has_value() && present, mapping_.heading(pose)};
+
+    const std::int64_t begin = host::monotonicNs();
+    fillTick(deviceTime, surface, sample);
+    const double perMetre = guards_.limits().scale;
+    // On the device's clock, which a recording of ticks keeps, so that a replay finds the same.
+    Guards::Reading reading{deviceTime,
+                            present,
+                            sample.engaged,
+                            static_cast<double>(nowNs - surface.timeNs) * 1e-9,
+                            (1 / perMetre) * tick_.place,
+                            (1 / perMetre) * tick_.velocity,
+                            {}};
+    if (!probe) {
+        reading.place.x = std::numeric_limits<double>::quiet_NaN();
+    }
+    if (sample.engaged) {
+        reading.felt = model_.at(surface.patch, surface.step, surface.tool, tick_.place, deviceTime);
+    }
+    const Guards::Forces forces = guards_.tick(reading);
+    tick_.lawful = forces.lawful;
+    tick_.sent = forces.sent;
+    tick_.guards = forces.acted;
+    tick_.surfaceAge = reading.surfaceAge;
+    counts_.add(forces.acted);
+    if (sample.engaged) {
+        forceCost_.add(host::monotonicNs() - begin);
+    }
+    device_->sendForce(forces.sent);
+    return sample;
+}
+
+void Hand::fillTick(double deviceTime, const Surface& surface, const HandSample& sample) {
+    tick_.time = deviceTime;
+    tick_.armPlace = device_->reading().place;
+    tick_.armVelocity = armVelocity_.add(deviceTime, tick_.armPlace);
+    tick_.place = mapping_.place(last_);
+    tick_.velocity = velocity_.add(deviceTime, tick_.place);
+    tick_.surfaceStep = surface.step;
+    tick_.sample = sample.at;
+    tick_.engaged = sample.engaged;
+}
+
+}  // namespace haptic_bridge

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/triple_buffer.hpp"
+#include "haptic_bridge/hand/device.hpp"
+#include "haptic_bridge/hand/hand_mapping.hpp"
+#include "haptic_bridge/hand/path_builder.hpp"
+#include "haptic_bridge/link/live_histogram.hpp"
+#include "haptic_bridge/loop/guards/guards.hpp"
+#include "haptic_bridge/loop/guards/velocity_window.hpp"
+#include "haptic_bridge/loop/tick.hpp"
+#include "sand/force/force_model.hpp"
+#include "scene/scene.hpp"
+
+namespace haptic_bridge {
+
+/// The sand around the tool after a step, for whoever computes forces.
+struct Surface {
+    sand::force::SurfacePatch patch;
+    sand::force::Contour tool;  // which an operator may change
+    std::uint64_t step = 0;     // number of the step that made it
+    std::int64_t timeNs = 0;    // monotonic, of the step
+};
+
+/// One tick of the force loop: read the device, quantise, ask the law, guard, send.
+///
+/// A body's heights are metres, so they count from a level: over a surface that goes up and down with the hand, a
+/// force would not be the one that its path works against. A recording is guarded as a Touch that reaches over the
+/// whole field would be.
+///
+/// Used by one thread: the force thread in real time, the sand's own under a virtual clock. A tick asks for no memory
+/// and waits for nobody.
+class Hand {
+public:
+    static constexpr double kTick = ForceLimits::kTick;  // [s]
+
+    Hand(const sand::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum,
+         Guards::Mode mode = Guards::Mode::on);
+
+    /// `deviceTime` [s] is what the device is read at; now and surface.timeNs are on one clock.
+    HandSample tick(double deviceTime, std::int64_t nowNs, const Surface& surface);
+    /// Nobody is linked: the device is read, so that its troubles are told, and gets no force.
+    void rest(double deviceTime);
+    /// Forgets every tick before, as if it had just been made: what follows depends on the ticks of one link alone.
+    void restart();
+
+    /// All of the tick before: for the thread that ticks.
+    [[nodiscard]] const Tick& lastTick() const { return tick_; }
+    /// What was limited, and why: lines for a person.
+    [[nodiscard]] const std::vector<std::string>& limitsInWords() const { return words_; }
+    [[nodiscard]] const Guards& guards() const { return guards_; }
+    [[nodiscard]] bool finished(double deviceTime) const { return device_->finished(deviceTime); }
+    // Any thread:
+    [[nodiscard]] const LiveHistogram& forceCost() const { return forceCost_; }  // law and guards, of engaged ticks
+    [[nodiscard]] const GuardCounts& guardCounts() const { return counts_; }     // [tick]
+
+private:
+    Hand(const sand::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum, Guards::Mode mode,
+         const LawAtRadius& law);
+    void fillTick(double deviceTime, const Surface& surface, const HandSample& sample);
+
+    const sand::ForceConstants constants_;
+    sand::force::ForceModel model_;
+    std::unique_ptr<Device> device_;
+    HandMapping mapping_;
+    Guards guards_;
+    VelocityWindow armVelocity_;  // [m/s], of the device's axes
+    VelocityWindow velocity_;     // [scene unit/s]
+    std::vector<std::string> words_;
+    sand::ProbePoint last_;
+    Tick tick_;
+    LiveHistogram forceCost_;
+    GuardCounts counts_;
+};
+
+}  // namespace haptic_bridge

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/loop/tick_replay.hpp"
+
+#include <utility>
+
+#include "haptic_bridge/loop/felt_sand.hpp"
+#include "scene/scene.hpp"
+
+namespace haptic_bridge {
+
+/// Answers what the device of the session answered.
+class TickReplay::Player : public Device {
+public:
+    explicit Player(TrackHeader header) : header_(std::move(header)) {}
+    void set(const TickInput& input) { input_ = input; }
+
+    [[nodiscard]] Pose read(double) override { return input_.pose; }
+    void sendForce(sand::force::Vec3) override {}
+    [[nodiscard]] const ArmPhysics* physics() const override { return header_.body ? &header_.physics : nullptr; }
+    [[nodiscard]] double scale() const override { return header_.scale; }
+    [[nodiscard]] ArmReading reading() const override { return input_.reading; }
+    [[nodiscard]] bool finished(double) const override { return false; }
+
+private:
+    TrackHeader header_;
+    TickInput input_;
+};
+
+TickReplay::TickReplay(const sand::Scene& scene, const std::vector<base::Bytes>& pieces) : scene_(&scene) {
+    for (const base::Bytes& bytes : pieces) {
+        TrackPiece piece = decodeTrackPiece(bytes);
+        sitting_ = piece.begins ? piece.sitting : sitting_;
+        if (piece.sitting == sitting_ && (piece.begins || !pieces_.empty())) {  // not the tail of a link before
+            pieces_.push_back(std::move(piece));
+        }
+    }
+}
+
+void TickReplay::begin(const TrackPiece& piece) {
+    auto player = std::make_unique<Player>(piece.header);
+    player_ = player.get();
+    hand_ = std::make_unique<Hand>(*scene_, std::move(player), piece.header.datum,
+                                   piece.header.literal ? Guards::Mode::literal : Guards::Mode::on);
+}
+
+void TickReplay::tick(const TickInput& input, const sand::Terrain& terrain, std::string& rows) {
+    if (surface_.patch.empty() || surface_.step != terrain.stepNumber()) {
+        takeSurface(terrain, surface_);
+    }
+    surface_.timeNs = input.nowNs - input.surfaceAgeNs;
+    player_->set(input);
+    (void)hand_->tick(input.time, input.nowNs, surface_);
+    appendRow(hand_->lastTick(), rows);
+}
+
+void TickReplay::feel(const sand::Terrain& terrain, std::string& rows) {
+    while (!pieces_.empty()) {
+        const TrackPiece& piece = pieces_.front();
+        if (piece.begins) {
+            begin(piece);
+        }
+        while (next_ < piece.ticks.size()) {
+            if (piece.ticks[next_].surfaceStep > terrain.stepNumber()) {
+                return;
+            }
+            tick(piece.ticks[next_++], terrain, rows);
+        }
+        next_ = 0;
+        pieces_.pop_front();
+    }
+}
+
+std::size_t TickReplay::left() const {
+    std::size_t count = 0;
+    for (const TrackPiece& piece : pieces_) {
+        count += piece.ticks.size();
+    }
+    return count - next_;
+}
+
+}  // namespace haptic_bridge

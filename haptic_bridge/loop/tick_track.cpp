@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/loop/tick_track.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+namespace haptic_bridge {
+namespace {
+
+using sand::force::Vec3;
+
+enum Flag : std::uint8_t { kEngaged = 1, kFirst = 2, kSecond = 4, kPresent = 8 };
+
+std::uint8_t flagsOf(const TickInput& tick) {
+    return static_cast<std::uint8_t>((tick.pose.engaged ? kEngaged : 0) | (tick.reading.first ? kFirst : 0) |
+                                     (tick.reading.second ? kSecond : 0) | (tick.reading.present ? kPresent : 0));
+}
+
+void putVec(const Vec3& v, base::ByteWriter& writer) {
+    writer.put(v.x);
+    writer.put(v.y);
+    writer.put(v.z);
+}
+
+Vec3 getVec(base::ByteReader& reader) {
+    const double x = reader.get<double>(), y = reader.get<double>();
+    return {x, y, reader.get<double>()};
+}
+
+/// The one list of an arm's numbers.
+template <class Physics, class Visit>
+void eachNumber(Physics& physics, const Visit& visit) {
+    for (auto* number : {&physics.mass, &physics.damping, &physics.friction, &physics.resolution, &physics.maxForce,
+                         &physics.reach, &physics.maxStiffness}) {
+        visit(*number);
+    }
+}
+
+void putHeader(const TrackHeader& header, base::ByteWriter& writer) {
+    writer.put(static_cast<std::uint8_t>(header.body));
+    writer.putText(header.physics.name);
+    eachNumber(header.physics, [&](double number) { writer.put(number); });
+    writer.put(static_cast<std::int32_t>(header.physics.delayTicks));
+    writer.put(header.scale);
+    writer.put(static_cast<std::uint8_t>(header.datum));
+    writer.put(static_cast<std::uint8_t>(header.literal));
+}
+
+TrackHeader getHeader(base::ByteReader& reader) {
+    TrackHeader header;
+    header.body = reader.get<std::uint8_t>() != 0;
+    header.physics.name = reader.getText();
+    eachNumber(header.physics, [&](double& number) { number = reader.get<double>(); });
+    header.physics.delayTicks = reader.get<std::int32_t>();
+    header.scale = reader.get<double>();
+    header.datum = static_cast<HandSettings::Datum>(reader.get<std::uint8_t>() & 1);
+    header.literal = reader.get<std::uint8_t>() != 0;
+    return header;
+}
+
+}  // namespace
+
+base::Bytes encode(const TrackPiece& piece) {
+    base::ByteWriter writer;
+    writer.put(piece.sitting);
+    writer.put(static_cast<std::uint8_t>(piece.begins));
+    if (piece.begins) {
+        putHeader(piece.header, writer);
+        return writer.take();
+    }
+    writer.putVarint(piece.ticks.size());
+    std::int64_t beforeNs = 0;
+    for (const TickInput& tick : piece.ticks) {
+        writer.put(tick.time);
+        putVec({tick.pose.x, tick.pose.y, tick.pose.z}, writer);
+        putVec(tick.reading.place, writer);
+        writer.put(flagsOf(tick));
+        writer.putSigned(tick.nowNs - beforeNs);
+        writer.putSigned(tick.surfaceAgeNs);
+        writer.putVarint(tick.surfaceStep);
+        beforeNs = tick.nowNs;
+    }
+    return writer.take();
+}
+
+TrackPiece decodeTrackPiece(std::span<const std::uint8_t> bytes) {
+    base::ByteReader reader(bytes);
+    TrackPiece piece;
+    piece.sitting = reader.get<std::uint32_t>();
+    piece.begins = reader.get<std::uint8_t>() != 0;
+    if (piece.begins) {
+        piece.header = getHeader(reader);
+    } else {
+        const std::uint64_t count = reader.getVarint();
+        if (count > kMostTicksInPiece) {
+            throw base::FormatError(fmt::format("{} ticks in a piece", count));
+        }
+        std::int64_t beforeNs = 0;
+        for (std::uint64_t i = 0; i < count; ++i) {
+            TickInput& tick = piece.ticks.emplace_back();
+            tick.time = reader.get<double>();
+            const Vec3 pose = getVec(reader);
+            tick.reading.place = getVec(reader);
+            const auto flags = reader.get<std::uint8_t>();
+            tick.pose = {pose.x, pose.y, pose.z, (flags & kEngaged) != 0};
+            tick.reading.first = (flags & kFirst) != 0;
+            tick.reading.second = (flags & kSecond) != 0;
+            tick.reading.present = (flags & kPresent) != 0;
+            tick.nowNs = beforeNs += reader.getSigned();
+            tick.surfaceAgeNs = reader.getSigned();
+            tick.surfaceStep = reader.getVarint();
+        }
+    }
+    if (!reader.atEnd()) {
+        throw base::FormatError("a piece of a tick track with bytes too many");
+    }
+    return piece;
+}
+
+TrackHeader NotedDevice::header(HandSettings::Datum datum, bool literal) const {
+    const ArmPhysics* physics = device_->physics();
+    return {physics != nullptr, physics != nullptr ? *physics : ArmPhysics{}, device_->scale(), datum, literal};
+}
+
+std::string tickTitles() {
+    return "time,arm_x,arm_y,arm_z,arm_vx,arm_vy,arm_vz,x,y,z,vx,vy,vz,law_x,law_y,law_z,sent_x,sent_y,sent_z,guards,"
+           "surface_age,surface_step,engaged\n";
+}
+
+void appendRow(const Tick& tick, std::string& text) {
+    auto out = std::back_inserter(text);
+    fmt::format_to(out, "{}", tick.time);
+    for (const Vec3& v : {tick.armPlace, tick.armVelocity, tick.place, tick.velocity, tick.lawful, tick.sent}) {
+        fmt::format_to(out, ",{},{},{}", v.x, v.y, v.z);
+    }
+    fmt::format_to(out, ",{},{},{},{}\n", tick.guards, tick.surfaceAge, tick.surfaceStep, tick.engaged ? 1 : 0);
+}
+
+}  // namespace haptic_bridge

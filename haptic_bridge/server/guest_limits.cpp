@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/server/guest_limits.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace haptic_bridge {
+namespace {
+
+void refill(double& allowed, std::int64_t& countedNs, std::int64_t nowNs) {
+    const double seconds = static_cast<double>(std::max<std::int64_t>(0, nowNs - countedNs)) * 1e-9;
+    allowed = std::min(GuestLimits::kBurst, allowed + seconds * GuestLimits::kPerSecond);
+    countedNs = nowNs;
+}
+
+}  // namespace
+
+boost::asio::ip::address guestOf(const boost::asio::ip::address& address) {
+    if (address.is_v4()) {
+        return address;
+    }
+    if (address.to_v6().is_v4_mapped()) {
+        return boost::asio::ip::make_address_v4(boost::asio::ip::v4_mapped, address.to_v6());
+    }
+    auto bytes = address.to_v6().to_bytes();
+    std::fill(bytes.begin() + 8, bytes.end(), std::uint8_t{0});
+    return boost::asio::ip::address_v6(bytes);
+}
+
+GuestLimits::Visits& GuestLimits::visitsOf(const boost::asio::ip::address& from, std::int64_t nowNs) {
+    const auto address = guestOf(from);
+    if (!visits_.contains(address) && visits_.size() >= kAddresses) {
+        std::erase_if(visits_, [nowNs](const auto& entry) {
+            Visits visits = entry.second;
+            refill(visits.allowed, visits.countedNs, nowNs);
+            return visits.allowed >= kBurst;  // as one who has never come
+        });
+    }
+    const bool kept = visits_.contains(address) || visits_.size() < kAddresses;
+    Visits& visits = kept ? visits_.try_emplace(address, Visits{kBurst, nowNs}).first->second : others_;
+    refill(visits.allowed, visits.countedNs, nowNs);
+    return visits;
+}
+
+bool GuestLimits::mayCome(const boost::asio::ip::address& address, std::int64_t nowNs) {
+    Visits& visits = visitsOf(address, nowNs);
+    if (visits.allowed < 1) {
+        return false;
+    }
+    visits.allowed -= 1;
+    return true;
+}
+
+void GuestLimits::refused(const boost::asio::ip::address& address, std::int64_t nowNs) {
+    Visits& visits = visitsOf(address, nowNs);
+    visits.allowed = std::max(kDeepest, visits.allowed - kPenalty);
+}
+
+std::optional<std::string> RefusalLog::add(RefusalCode code, const std::string& address, const std::string& line,
+                                           std::int64_t nowNs) {
+    count(code);
+    std::pair key{address, code};
+    if (!said_.contains(key) && said_.size() >= kRemembered) {
+        std::erase_if(said_, [nowNs](const auto& entry) { return nowNs - entry.second.ns >= kQuietNs; });
+        if (said_.size() >= kRemembered) {
+            key = {"", code};
+        }
+    }
+    const auto [said, first] = said_.try_emplace(key, Said{nowNs, 0});
+    if (!first && nowNs - said->second.ns < kQuietNs) {
+        ++said->second.more;
+        return std::nullopt;
+    }
+    const std::uint64_t more = said->second.more;
+    said->second = {nowNs, 0};
+    return more == 0 ? line : fmt::format("{} (and {} more of that kind since it was said last)", line, more);
+}
+
+}  // namespace haptic_bridge

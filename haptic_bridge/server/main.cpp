@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "base/input_error.hpp"
+#include "haptic_bridge/client/client.hpp"
+#include "haptic_bridge/devices/driver.hpp"
+#include "haptic_bridge/devices/open_device.hpp"
+#include "haptic_bridge/hand/device_troubles.hpp"
+#include "haptic_bridge/link/link_options.hpp"
+#include "haptic_bridge/loop/force_loop.hpp"
+#include "haptic_bridge/loop/tick_recorder.hpp"
+#include "haptic_bridge/server/listener.hpp"
+#include "haptic_bridge/server/timings.hpp"
+#include "host/clock.hpp"
+#include "host/command_line.hpp"
+#include "host/event.hpp"
+#include "host/version.hpp"
+#include "host/worker_pool.hpp"
+#include "scene/load/scene_file.hpp"
+
+namespace {
+
+namespace asio = boost::asio;
+using boost::system::error_code;
+using namespace haptic_bridge;
+
+struct Options {
+    std::string scene, device, listen = "127.0.0.1:7750", portFile, timings;
+    std::vector<std::string> map;
+    Pace pace = Pace::realtime;
+    Guards::Mode guards = Guards::Mode::on;
+    int sandThreads = 1;
+    TimingTests tests;
+    bool dieWithParent = false;
+    std::string record;
+    bool force = true;
+    double forceScale = 1;
+    LinkOptions link;
+};
+
+void print(const std::string& line) {
+    std::fprintf(stderr, "sandwall-haptic-server: %s\n", line.c_str());
+    std::fflush(stderr);
+}
+
+asio::ip::tcp::acceptor listenAt(asio::io_context& io, const std::string& text, bool secret) {
+    const Address address = Address::parse(text, "--listen");
+    error_code error;
+    const auto host = asio::ip::make_address(address.host == "localhost" ? "127.0.0.1" : address.host, error);
+    if (error) {
+        throw base::InputError("--listen: '" + address.host +
+                               "' is no IP address; write one such as 127.0.0.1, or "
+                               "0.0.0.0 for every network");
+    }
+    if (!secret && !isLoopback(host)) {
+        throw base::InputError("--listen " + text +
+                               ": others can reach that address, so a --secret-file is needed (docs/security.md); "
+                               "127.0.0.1 needs none");
+    }
+    const asio::ip::tcp::endpoint endpoint(host, address.port);
+    asio::ip::tcp::acceptor acceptor(io);
+    acceptor.open(endpoint.protocol());
+    acceptor.set_option(asio::socket_base::reuse_address(true));
+    acceptor.bind(endpoint, error);
+    if (!error) {
+        acceptor.listen(asio::socket_base::max_listen_connections, error);
+    }
+    if (error == asio::error::address_in_use) {
+        throw base::InputError("--listen " + textOf(endpoint) +
+                               ": the port is in use; stop the program that has it, "
+                               "or give another port (0 takes any free one)");
+    }
+    if (error) {
+        throw base::InputError("--listen " + textOf(endpoint) + ": " + error.message());
+    }
+    return acceptor;
+}
+
+/// Written beside, then renamed: a reader sees no port, or the whole of it.
+void writePortFile(const std::string& file, std::uint16_t port) {
+    if (file.empty()) {
+        return;
+    }
+    const std::string beside = file + "." + std::to_string(getpid());
+    std::ofstream stream(beside);
+    stream << port << '\n';
+    stream.close();
+    std::error_code error;
+    if (stream) {
+        std::filesystem::rename(beside, file, error);
+    }
+    if (!stream || error) {
+        throw base::InputError("--port-file " + file + ": cannot be written");
+    }
+}
+
+Report measured(const Hand& hand, const ForceLoop* loop, const Sequencer& sequencer) {
+    Report report;
+    if (loop != nullptr) {
+        report.hapticPeriodUsP50 = loop->period().percentileNs(0.50) * 1e-3;
+        report.hapticPeriodUsP99 = loop->period().percentileNs(0.99) * 1e-3;
+        report.hapticPeriodUsMax = loop->period().maxNs() * 1e-3;
+        report.ticks = loop->period().count();
+        report.ticksMissed = loop->missed();
+    }
+    report.forceUsP50 = hand.forceCost().percentileNs(0.50) * 1e-3;
+    report.forceUsP99 = hand.forceCost().percentileNs(0.99) * 1e-3;
+    report.stepsWithheld = sequencer.withheld();
+    report.samplesDropped = sequencer.dropped();
+    report.guards = hand.guardCounts().all();
+    return report;
+}
+
+/// Tells a person what the device does wrong, twice a second at most; the loop itself must not wait for a terminal.
+class DeviceWatch {
+public:
+    DeviceWatch(asio::io_context& io, const std::string& device, const Device& watched)
+        : timer_(io), teller_("device " + device), device_(watched) {
+        if (device_.troubles() != nullptr) {
+            look();
+        }
+    }
+
+private:
+    void look() {
+        timer_.expires_after(std::chrono::milliseconds(500));
+        timer_.async_wait([this](error_code error) {
+            if (!error) {
+                for (const std::string& line :
+                     teller_.lines(*device_.troubles(), static_cast<double>(host::monotonicNs()) * 1e-9)) {
+                    print(line);
+                }
+                look();
+            }
+        });
+    }
+
+    asio::steady_timer timer_;
+    TroubleTeller teller_;
+    const Device& device_;
+};
+
+std::function<std::vector<base::Bytes>(bool)> ticksOf(TickRecorder* recorder) {
+    if (recorder == nullptr) {
+        return {};
+    }
+    return [recorder](bool all) {
+        if (all) {
+            recorder->flush();
+        }
+        return recorder->takePieces();
+    };
+}
+
+void serve(const Options& options) {
+    const LinkSecurity security = options.link.forServer();
+    const sand::Scene scene = sand::loadScene(options.scene);
+    for (const std::string& warning : scene.warnings) {
+        print("warning: " + warning);
+    }
+    const HandSettings settings = HandSettings::parse(options.map);
+    auto device = std::make_unique<NotedDevice>(openDevice(options.device, settings, scene));
+    NotedDevice& noted = *device;
+    noted.shareForce(options.force ? options.forceScale : 0);
+    const auto datum =
+        settings.datum.value_or(device->physics() ? HandSettings::Datum::level : HandSettings::Datum::surface);
+    Hand hand(scene, std::move(device), datum, options.guards);
+    HandChannel channel;
+    std::unique_ptr<TickRecorder> recorder;
+    if (!options.record.empty()) {
+        recorder = std::make_unique<TickRecorder>(
+            TickRecorder::Options{options.record, options.pace == Pace::fast, print}, hand, noted, datum);
+        channel.recorder = recorder.get();
+    }
+
+    asio::io_context io;
+    asio::ip::tcp::acceptor acceptor = listenAt(io, options.listen, security.proves());
+    const auto endpoint = acceptor.local_endpoint();
+    const Identity identity{kProtocolVersion, sand::kAlgorithmVersion, scene.rules.digest(), scene.name};
+    std::function<Report()> measure;
+    LinkServer server(io, std::move(acceptor), identity, static_cast<std::uint32_t>(scene.rules.stepsPerSecond),
+                      {[&measure] { return measure(); }, print, ticksOf(recorder.get()),
+                       [&noted](double share) { noted.shareForce(share); }},
+                      options.tests, security);
+    // The sand and force threads end before the link they report to.
+    const host::WorkerPool pool(options.sandThreads);
+    Sequencer sequencer(scene, options.pace, hand, channel, server.output(), {.executor = pool.lend()},
+                        noted.watcher());
+    const auto loop = options.pace == Pace::realtime ? std::make_unique<ForceLoop>(hand, channel) : nullptr;
+    measure = [&] { return measured(hand, loop.get(), sequencer); };
+    if (loop != nullptr && !loop->priorityRefused().empty()) {
+        print("no real-time priority for the force loop: " + loop->priorityRefused());
+    }
+
+    DeviceWatch watch(io, options.device, noted);
+    asio::signal_set signals(io, SIGINT, SIGTERM);
+    signals.async_wait([&server](error_code error, int) {
+        if (!error) {
+            server.shut("the server was stopped");
+        }
+    });
+    server.serve(sequencer);
+    writePortFile(options.portFile, endpoint.port());
+    for (const std::string& line : hand.limitsInWords()) {
+        print(line);
+    }
+    if (options.guards == Guards::Mode::literal) {
+        print("warning: --guards literal sends the law without any limit; for simulated arms only");
+    }
+    fmt::print("listening on {}\n", textOf(endpoint));
+    std::fflush(stdout);
+    host::emitEvent("listening", {{"address", textOf(endpoint)}});
+    while (!io.stopped()) {
+        try {
+            io.run();
+        } catch (const std::exception& error) {  // of one link, whose silence then ends it
+            print(std::string("a link failed: ") + error.what());
+        }
+    }
+    if (loop != nullptr) {
+        print(loop->summary());
+    }
+    print(hand.guardCounts().inWords());
+    if (!options.timings.empty() && loop) {
+        writeTimings(options.timings, {{"period", &loop->period()}, {"force", &hand.forceCost()}});
+    }
+}
+
+void describe(host::CommandLine& line, Options& options) {
+    line.option("--scene", options.scene, "scene file, the same as the wall's").required();
+    line.option("--device", options.device,
+                "script:gis, script:FILE, trace:FILE.csv, driver:FILE.so, sim:PRESET, mouse or spacenav")
+        .required();
+    line.option("--map", options.map, "KEY=VALUE, how a trace lies over the sand (docs/devices.md); repeatable")
+        .oneValueEach();
+    line.choice<Pace>("--pace", options.pace, {{"realtime", Pace::realtime}, {"fast", Pace::fast}},
+                      "realtime, or fast: a virtual clock, as quick as the wall");
+    line.option("--record", options.record,
+                "a CSV file: one row per tick, and the same ticks go into the session's journal");
+    line.choice<bool>("--force", options.force, {{"on", true}, {"off", false}},
+                      "on or off: whether an arm feels anything at the start");
+    line.option("--force-scale", options.forceScale, "0 to 1: the share of the force that an arm feels")
+        .range(0.0, 1.0);
+    line.choice<Guards::Mode>("--guards", options.guards,
+                              {{"on", Guards::Mode::on}, {"literal", Guards::Mode::literal}},
+                              "on, or literal: the law as its paper has it, for simulated arms only");
+    line.option("--listen", options.listen, "ADDRESS:PORT; port 0 takes any free one");
+    line.option("--port-file", options.portFile, "written when the server listens: the port's number");
+    line.option("--timings", options.timings,
+                "CSV file, written at the end: how often each period of the force loop and each cost of a force came");
+    line.option("--timing-tests", options.tests.perSecond,
+                "timing tests a second, at random times (default: 4; docs/latency.md)")
+        .range(0.1, 100.0);
+    line.option("--timing-after", options.tests.after, "[s] of a link before the first (default: 0)")
+        .range(0.0, 3600.0);
+    line.option("--timing-seed", options.tests.seed, "of those times (default: 7)");
+    options.link.addTo(line, true);
+    host::addSandThreads(line, options.sandThreads);
+    line.flag("--die-with-parent", options.dieWithParent, "end when the program that started this one ends");
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+    if (host::answersVersion(count, words, "sandwall-haptic-server",
+                             {{"algorithm", sand::kAlgorithmVersion},
+                              {"protocol", kProtocolVersion},
+                              {"driver_interface", kDriverInterface}})) {
+        return 0;
+    }
+    host::CommandLine line("Feels the sand at 1 kHz, and streams what the hand does to a wall's master.",
+                           "sandwall-haptic-server");
+    Options options;
+    describe(line, options);
+    if (const std::optional<int> status = line.parse(count, words)) {
+        return *status;
+    }
+    try {
+        if (options.dieWithParent) {
+            prctl(PR_SET_PDEATHSIG, SIGKILL);
+        }
+        serve(options);
+        return 0;
+    } catch (const base::InputError& error) {
+        print(error.what());
+        return base::kExitBadInput;
+    } catch (const std::exception& error) {
+        print(error.what());
+        return 1;
+    }
+}

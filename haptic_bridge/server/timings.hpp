@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// Private to this folder.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "haptic_bridge/link/live_histogram.hpp"
+
+namespace haptic_bridge {
+
+/// Writes named histograms as CSV: what, the shortest duration of a bucket [us], how often. Empty buckets are left out.
+/// Throws base::InputError when the file cannot be written.
+void writeTimings(const std::string& file, const std::vector<std::pair<std::string, const LiveHistogram*>>& histograms);
+
+}  // namespace haptic_bridge

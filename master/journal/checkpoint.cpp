@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/journal/checkpoint.hpp"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <optional>
+
+#include "base/input_error.hpp"
+#include "host/whole_file.hpp"
+#include "scene/scene.hpp"
+
+namespace master {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint32_t kCheckpointMagic = 0x50435753;  // "SWCP"
+constexpr std::uint32_t kCheckpointVersion = 1;
+constexpr std::string_view kEnding = ".checkpoint";
+
+std::uint64_t checkpointSum(std::span<const std::uint8_t> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
+
+fs::path folderOf(const fs::path& journal) { return journal.parent_path() / "checkpoints"; }
+
+std::optional<std::uint64_t> stepOf(const std::string& name) {
+    std::uint64_t step = 0;
+    const char* const last = name.data() + name.size();
+    const auto [end, error] = std::from_chars(name.data(), last, step);
+    const bool named = error == std::errc() && std::string_view(end, static_cast<std::size_t>(last - end)) == kEnding;
+    return named ? std::optional(step) : std::nullopt;
+}
+
+}  // namespace
+
+base::Bytes Checkpoint::encode() const {
+    base::ByteWriter writer;
+    writer.put(kCheckpointMagic);
+    writer.put(kCheckpointVersion);
+    writer.put(sand::kAlgorithmVersion);
+    writer.put(session);
+    writer.putText(buildId);
+    for (const std::uint64_t number : {sceneDigest, step, frame}) {
+        writer.put(number);
+    }
+    writer.put(epoch);
+    writer.put(stateHash);
+    writer.putBlock(state);
+    writer.put(checkpointSum(writer.bytes()));
+    return writer.take();
+}
+
+Checkpoint Checkpoint::decode(std::span<const std::uint8_t> bytes) {
+    base::ByteReader reader(bytes);
+    if (reader.get<std::uint32_t>() != kCheckpointMagic) {
+        throw base::FormatError("no checkpoint");
+    }
+    const auto version = reader.get<std::uint32_t>();
+    const auto algorithm = reader.get<std::uint32_t>();
+    if (version != kCheckpointVersion || algorithm != sand::kAlgorithmVersion) {
+        throw base::FormatError(
+            fmt::format("a checkpoint of another version of Sandwall ({}, algorithm {})", version, algorithm));
+    }
+    Checkpoint checkpoint;
+    checkpoint.session = reader.get<std::uint64_t>();
+    checkpoint.buildId = reader.getText();
+    for (std::uint64_t* number : {&checkpoint.sceneDigest, &checkpoint.step, &checkpoint.frame}) {
+        *number = reader.get<std::uint64_t>();
+    }
+    checkpoint.epoch = reader.get<std::uint32_t>();
+    checkpoint.stateHash = reader.get<std::uint64_t>();
+    const auto state = reader.getBlock();
+    const std::size_t checked = bytes.size() - reader.rest().size();
+    if (reader.get<std::uint64_t>() != checkpointSum(bytes.first(checked)) || !reader.atEnd()) {
+        throw base::FormatError("damaged: its checksum is wrong");
+    }
+    checkpoint.state.assign(state.begin(), state.end());
+    return checkpoint;
+}
+
+fs::path checkpointFile(const fs::path& journal, std::uint64_t step) {
+    return folderOf(journal) / fmt::format("{}{}", step, kEnding);
+}
+
+std::vector<std::uint64_t> checkpointsOf(const fs::path& journal) {
+    std::vector<std::uint64_t> steps;
+    std::error_code none;  // usually there is such a folder, and it need not be
+    for (const auto& entry : fs::directory_iterator(folderOf(journal), none)) {
+        if (const auto step = stepOf(entry.path().filename().string())) {
+            steps.push_back(*step);
+        }
+    }
+    std::sort(steps.begin(), steps.end(), std::greater<>());
+    return steps;
+}
+
+void forgetHalves(const fs::path& journal) {
+    std::vector<fs::path> halves;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(folderOf(journal), none)) {
+        if (entry.path().extension() == ".part") {
+            halves.push_back(entry.path());
+        }
+    }
+    for (const fs::path& half : halves) {
+        fs::remove(half, none);
+    }
+}
+
+void writeCheckpoint(const fs::path& journal, const Checkpoint& checkpoint, std::size_t kept) {
+    std::error_code error;
+    fs::create_directories(folderOf(journal), error);
+    if (error) {
+        throw base::InputError(fmt::format("{}: cannot be made ({})", folderOf(journal).string(), error.message()));
+    }
+    const base::Bytes bytes = checkpoint.encode();
+    host::WholeFile file(checkpointFile(journal, checkpoint.step));
+    file.stream().write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    file.keepSynced();
+    const std::vector<std::uint64_t> steps = checkpointsOf(journal);
+    for (std::size_t i = kept; i < steps.size(); ++i) {
+        fs::remove(checkpointFile(journal, steps[i]), error);
+    }
+}
+
+Checkpoint readCheckpoint(const fs::path& file) {
+    std::error_code error;
+    const std::uintmax_t size = fs::is_regular_file(file, error) ? fs::file_size(file, error) : 0;
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream || error || size == 0) {
+        throw base::FormatError("cannot be read");
+    }
+    base::Bytes bytes(size);
+    stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+    bytes.resize(static_cast<std::size_t>(stream.gcount()));
+    return Checkpoint::decode(bytes);
+}
+
+}  // namespace master

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/journal/journal.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "base/input_error.hpp"
+#include "scene/scene.hpp"
+
+namespace master {
+namespace {
+
+struct Gather {
+    Journal& journal;
+    void operator()(JournalFrame& frame) const { journal.frames.push_back(std::move(frame)); }
+    void operator()(const JournalEnd& end) const { journal.end = end; }
+    void operator()(JournalTicks& ticks) const { journal.ticks.push_back(std::move(ticks.piece)); }
+    void operator()(JournalResumed& resumed) const {
+        journal.end.reset();
+        journal.resumes.push_back(std::move(resumed));
+    }
+    void operator()(const sand::Material&) const {}
+    void operator()(const JournalContinued&) const {}
+};
+
+}  // namespace
+
+sand::Scene sceneOf(const JournalReader& reader) {
+    try {
+        return sand::Scene::decode(reader.header().scene);
+    } catch (const base::FormatError& error) {
+        throw base::InputError(fmt::format("{}: {}", reader.place().journal.string(), error.what()));
+    }
+}
+
+Journal readJournal(const std::filesystem::path& file) {
+    JournalReader reader(file);
+    Journal journal;
+    journal.scene = sceneOf(reader);
+    journal.buildId = reader.header().buildId;
+    while (auto record = reader.next()) {
+        std::visit(Gather{journal}, *record);
+    }
+    journal.tornBytes = reader.tornBytes();
+    return journal;
+}
+
+}  // namespace master

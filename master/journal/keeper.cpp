@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/journal/keeper.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+#include "base/input_error.hpp"
+#include "host/event.hpp"
+#include "master/journal/checkpoint.hpp"
+#include "scene/scene.hpp"
+
+namespace master {
+namespace {
+
+constexpr std::array<std::string_view, 3> kPolicies{"required", "best-effort", "off"};
+constexpr double kRetrySeconds = 1;
+constexpr std::size_t kCheckpointsKept = 3;  // the newest may be damaged, and so may the one before
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+}  // namespace
+
+JournalPolicy parseJournalPolicy(const std::string& word) {
+    for (std::size_t i = 0; i < kPolicies.size(); ++i) {
+        if (word == kPolicies.at(i)) {
+            return static_cast<JournalPolicy>(i);
+        }
+    }
+    throw base::InputError(fmt::format("--journal: '{}' is not required, best-effort or off", word));
+}
+
+std::string_view journalPolicyName(JournalPolicy policy) { return kPolicies.at(static_cast<std::size_t>(policy)); }
+
+JournalKeeper::JournalKeeper(const std::filesystem::path& out, const JournalOptions& options, const sand::Scene& scene,
+                             const ResumedSession* resumed, const std::string& failure, std::string buildId)
+    : options_(options),
+      journal_(out / "session.journal"),
+      buildId_(std::move(buildId)),
+      sceneDigest_(scene.rules.digest()),
+      lastCheckpoint_(now()) {
+    if (options_.policy == JournalPolicy::off) {
+        requireNoWriter();
+        keepPreviousJournal(journal_);  // it would pass for this session's
+        return;
+    }
+    if (resumed == nullptr) {
+        requireNoWriter();
+        std::error_code none;  // of a session before
+        std::filesystem::remove_all(checkpointFile(journal_, 0).parent_path(), none);
+        writer_.emplace(journal_, scene, buildId_, options_.partBytes);
+        return;
+    }
+    try {
+        writer_.emplace(resumed->place, buildId_, options_.partBytes);
+        writer_->resume({resumed->frame, {resumed->step, resumed->hash}, resumed->cutBytes, failure});
+    } catch (const std::runtime_error& error) {
+        refused(error.what());
+        return;
+    }
+    setAside(resumed->step);
+    checkpointStep_ = resumed->checkpointStep;
+    lastCheckpoint_ -= options_.checkpointSeconds;  // at once: who is killed again and again must not replay ever more
+}
+
+JournalKeeper::~JournalKeeper() { endCheckpoint(true); }
+
+void JournalKeeper::requireNoWriter() const {
+    std::uint32_t last = 1;
+    for (std::error_code none; std::filesystem::exists(partOf(journal_, last + 1), none);) {
+        ++last;
+    }
+    PartFile::requireNoWriter(partOf(journal_, last));
+}
+
+void JournalKeeper::refused(const std::string& why) {
+    writer_.reset();
+    if (options_.policy == JournalPolicy::required) {
+        throw std::runtime_error(why);  // and no bad input: what the disk refuses now it may take in a moment
+    }
+    fmt::print(stderr, "sandwall: {}, and the session goes on without a journal\n", why);
+    host::emitEvent("journal", {{"state", "failed"}, {"error", why}});
+}
+
+void JournalKeeper::setAside(std::uint64_t step) {
+    for (const std::uint64_t later : checkpointsOf(journal_)) {
+        const std::filesystem::path file = checkpointFile(journal_, later);
+        const std::filesystem::path aside = file.string() + ".beyond";
+        std::error_code error;
+        if (later > step) {
+            // That step will be another one: the checkpoint would pass for it. It is sand that the journal has lost.
+            std::filesystem::rename(file, aside, error);
+            ++checkpointsBeyond_;
+            fmt::print(stderr, "sandwall: {}: kept as {}: the journal ends before it, at step {}\n", file.string(),
+                       aside.filename().string(), step);
+        }
+    }
+    forgetHalves(journal_);
+}
+
+std::string_view JournalKeeper::state() const {
+    return standing_ ? "no room" : writer_ ? "written" : options_.policy == JournalPolicy::off ? "off" : "failed";
+}
+
+bool JournalKeeper::hasRoom(std::int64_t bytes, const JournalEnd& sand) {
+    std::string why;
+    if (writer_->makeRoom(bytes, sand, why) != JournalWriter::Room::none) {
+        return true;
+    }
+    if (options_.policy != JournalPolicy::required) {
+        return true;  // what is then refused ends the journal
+    }
+    if (!standing_) {
+        fmt::print(stderr,
+                   "sandwall: no room for the journal ({}); the sand stands still after step {} until there is\n", why,
+                   sand.step);
+        host::emitEvent("journal", {{"state", "no_room"}, {"step", sand.step}, {"error", why}});
+        standing_ = true;
+        stoodSince_ = now();
+        ++stands_;
+    }
+    return false;
+}
+
+bool JournalKeeper::mayTake(std::int64_t bytes, const JournalEnd& sand) {
+    if (!writer_) {
+        return true;
+    }
+    if (standing_ && now() - lastTry_ < kRetrySeconds) {
+        return false;
+    }
+    lastTry_ = now();
+    const bool room = hasRoom(bytes, sand);
+    if (room && standing_) {
+        const double seconds = now() - stoodSince_;
+        fmt::print(stderr, "sandwall: there is room for the journal again; the sand goes on after {:.0f} s\n", seconds);
+        host::emitEvent("journal", {{"state", "room"}, {"seconds", seconds}});
+        stoodSeconds_ += seconds;
+        standing_ = false;
+    }
+    return room;
+}
+
+void JournalKeeper::giveUp(const std::string& why) {
+    writer_.reset();
+    if (options_.policy == JournalPolicy::required) {
+        throw DiskFailure(why);
+    }
+    fmt::print(stderr, "sandwall: {}, and the session goes on without\n", why);
+    host::emitEvent("journal", {{"state", "failed"}, {"error", why}});
+}
+
+void JournalKeeper::keep(const JournalFrame& frame, const std::vector<sand::Material>& materials) {
+    if (!writer_) {
+        return;
+    }
+    try {
+        for (const sand::Material& material : materials) {
+            writer_->keep(material);
+        }
+        writer_->append(frame);
+    } catch (const base::InputError& error) {
+        giveUp(fmt::format("{}; it ends before frame {}", error.what(), frame.frame));
+    }
+}
+
+void JournalKeeper::keepTicks(const std::vector<base::Bytes>& pieces) {
+    for (const base::Bytes& piece : pieces) {
+        try {
+            if (writer_ && !writer_->keep(JournalTicks{piece}) && !std::exchange(ticksLeftOut_, true)) {
+                fmt::print(stderr, "sandwall: no room for the tick track; ticks are left out until there is\n");
+            }
+        } catch (const base::InputError& error) {
+            giveUp(error.what());
+        }
+    }
+}
+
+void JournalKeeper::endCheckpoint(bool wait) {
+    if (!checkpoint_.valid() || (!wait && checkpoint_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)) {
+        return;
+    }
+    const std::string complaint = checkpoint_.get();
+    checkpointsFailed_ += complaint.empty() ? 0 : 1;
+    if (!complaint.empty() && complaint != complaint_) {  // once, however often
+        fmt::print(stderr, "sandwall: {}; there is no checkpoint, and the session goes on\n", complaint);
+    }
+    complaint_ = complaint;
+}
+
+void JournalKeeper::shown(const sand::Terrain& terrain, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash) {
+    endCheckpoint(false);
+    const bool due = options_.checkpointSeconds > 0 && now() - lastCheckpoint_ >= options_.checkpointSeconds;
+    if (!writer_ || !due || checkpoint_.valid() || terrain.stepNumber() == checkpointStep_) {
+        return;
+    }
+    lastCheckpoint_ = now();
+    checkpointStep_ = terrain.stepNumber();
+    auto copy = std::make_shared<const sand::StateCopy>(terrain.copyState());
+    copyMs_.push_back(1e3 * (now() - lastCheckpoint_));
+    Checkpoint checkpoint{writer_->session(), buildId_, sceneDigest_, checkpointStep_, frame, epoch, hash, {}};
+    checkpoint_ = std::async(std::launch::async, [copy = std::move(copy), checkpoint, journal = journal_]() mutable {
+        try {
+            checkpoint.state = copy->encode();
+            copy.reset();
+            writeCheckpoint(journal, checkpoint, kCheckpointsKept);
+            return std::string();
+        } catch (const std::exception& error) {
+            return std::string(error.what());
+        }
+    });
+}
+
+double JournalKeeper::stoodSeconds() const { return stoodSeconds_ + (standing_ ? now() - stoodSince_ : 0); }
+
+void JournalKeeper::finish(const JournalEnd& end) {
+    endCheckpoint(true);
+    try {
+        if (writer_) {
+            writer_->finish(end.step, end.hash);
+        }
+    } catch (const base::InputError& error) {
+        fmt::print(stderr, "sandwall: {}; it holds every step, and no end\n", error.what());
+    }
+}
+
+}  // namespace master

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/journal/part_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "base/input_error.hpp"
+#include "host/whole_file.hpp"
+
+namespace master {
+namespace {
+
+constexpr std::int64_t kReservedPiece = 1 << 20;  // [byte]
+constexpr int kLockTries = 50;                    // a tenth of a second each: a master that was killed is gone by then
+
+/// Whether nobody else writes the file, from now on until it is closed. File systems without locks say yes.
+bool lock(int descriptor, int tries) {
+    while (flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+        if (--tries <= 0) {
+            return false;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return true;
+}
+
+void lockOrThrow(int descriptor, const std::filesystem::path& path) {
+    if (!lock(descriptor, kLockTries)) {
+        throw std::runtime_error(fmt::format("{}: another session writes it; stop that one first", path.string()));
+    }
+}
+
+/// Whether the path still names the file that is open, and nobody has written it meanwhile.
+bool isAsSeen(int descriptor, const std::filesystem::path& path, std::int64_t seen) {
+    struct stat mine {};
+    struct stat named {};
+    return fstat(descriptor, &mine) == 0 && stat(path.c_str(), &named) == 0 && mine.st_dev == named.st_dev &&
+           mine.st_ino == named.st_ino && mine.st_size == seen;
+}
+
+}  // namespace
+
+PartFile::PartFile(std::filesystem::path path, int descriptor, std::int64_t size)
+    : path_(std::move(path)), descriptor_(descriptor), size_(size), reserved_(size) {}
+
+PartFile PartFile::make(const std::filesystem::path& path, std::span<const std::uint8_t> begin) {
+    // Under another name until its beginning is whole: a file of that name is a journal, whenever a crash comes.
+    std::error_code none;
+    const bool plain = !std::filesystem::exists(path, none) || std::filesystem::is_regular_file(path, none);
+    const std::string beside = plain ? path.string() + ".part" : path.string();
+    const auto refuse = [&path] {
+        throw base::InputError(
+            fmt::format("{}: cannot be made ({}); choose another --out", path.string(), std::strerror(errno)));
+    };
+    PartFile file(path, ::open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644), 0);
+    if (file.descriptor_ < 0) {
+        refuse();
+    }
+    (void)lock(file.descriptor_, 1);  // a new file, which nobody else can have
+    try {
+        file.write(begin);
+        if (plain && rename(beside.c_str(), path.c_str()) != 0) {
+            refuse();
+        }
+    } catch (const base::InputError&) {
+        if (plain) {
+            unlink(beside.c_str());
+        }
+        throw;
+    }
+    host::syncFolderOf(path);
+    return file;
+}
+
+PartFile PartFile::open(const std::filesystem::path& path, std::int64_t size, std::int64_t seen) {
+    PartFile file(path, ::open(path.c_str(), O_WRONLY | O_CLOEXEC), size);
+    if (file.descriptor_ >= 0) {
+        lockOrThrow(file.descriptor_, path);
+        // What another session has written since it was read would be cut off without a word.
+        if (!isAsSeen(file.descriptor_, path, seen)) {
+            throw std::runtime_error(fmt::format("{}: has been written since it was read; start again", path.string()));
+        }
+    }
+    if (file.descriptor_ < 0 || ftruncate(file.descriptor_, size) != 0 ||
+        lseek(file.descriptor_, size, SEEK_SET) != size || fdatasync(file.descriptor_) != 0) {
+        throw std::runtime_error(
+            fmt::format("{}: the journal cannot be gone on with ({})", path.string(), std::strerror(errno)));
+    }
+    return file;
+}
+
+void PartFile::requireNoWriter(const std::filesystem::path& path) {
+    const PartFile file(path, ::open(path.c_str(), O_RDONLY | O_CLOEXEC), 0);
+    if (file.descriptor_ >= 0) {
+        lockOrThrow(file.descriptor_, path);
+    }
+}
+
+PartFile::PartFile(PartFile&& other) noexcept
+    : path_(std::move(other.path_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      size_(other.size_),
+      reserved_(other.reserved_) {}
+
+PartFile& PartFile::operator=(PartFile&& other) noexcept {
+    close();
+    path_ = std::move(other.path_);
+    descriptor_ = std::exchange(other.descriptor_, -1);
+    size_ = other.size_;
+    reserved_ = other.reserved_;
+    return *this;
+}
+
+PartFile::~PartFile() { close(); }
+
+void PartFile::close() {
+    if (descriptor_ < 0) {
+        return;
+    }
+    if (reserved_ > size_) {
+        [[maybe_unused]] const int given = ftruncate(descriptor_, size_);  // gives back what was reserved
+    }
+    ::close(std::exchange(descriptor_, -1));
+}
+
+void PartFile::fail(const char* what) const {
+    throw base::InputError(fmt::format("{}: {} ({})", path_.string(), what, std::strerror(errno)));
+}
+
+void PartFile::write(std::span<const std::uint8_t> bytes) {
+    const auto failWhole = [this] {
+        const int why = errno;
+        // What did get there is no record: the file then ends with the last whole one.
+        [[maybe_unused]] const int cut = ftruncate(descriptor_, size_);
+        [[maybe_unused]] const off_t back = lseek(descriptor_, size_, SEEK_SET);
+        reserved_ = size_;
+        errno = why;
+        fail("the journal cannot be written");
+    };
+    for (std::size_t done = 0; done < bytes.size();) {
+        const ssize_t count = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
+        if (count < 0 && errno != EINTR) {
+            failWhole();
+        }
+        done += count > 0 ? static_cast<std::size_t>(count) : 0;
+    }
+    if (fdatasync(descriptor_) != 0 && errno != EINVAL) {  // pipes and the like cannot sync
+        failWhole();
+    }
+    size_ += static_cast<std::int64_t>(bytes.size());
+}
+
+int PartFile::reserve(std::int64_t bytes) {
+    if (reserved_ - size_ >= bytes) {
+        return 0;
+    }
+    // The size of the file stays what was written: a reader sees no hole. A piece at a time, for it is a system call.
+    for (const std::int64_t piece : {std::max(bytes, kReservedPiece), bytes}) {
+        if (fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, size_, piece) == 0) {
+            reserved_ = size_ + piece;
+            return 0;
+        }
+    }
+    return errno;
+}
+
+}  // namespace master

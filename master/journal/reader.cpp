@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/journal/reader.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include "base/input_error.hpp"
+
+namespace master {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::span<std::uint8_t> readInto(std::ifstream& stream, base::Bytes& bytes, std::int64_t size) {
+    bytes.resize(static_cast<std::size_t>(size));
+    stream.read(reinterpret_cast<char*>(bytes.data()), size);
+    bytes.resize(static_cast<std::size_t>(stream.gcount()));
+    stream.clear();
+    return bytes;
+}
+
+/// The header of a file, and how long it is. Throws base::FormatError.
+JournalHeader readHeader(std::ifstream& stream, std::int64_t size, std::uint64_t& chain, std::int64_t& length) {
+    // A header's length is known when it has been read: nearly all of it is the scene.
+    for (std::int64_t piece = 1 << 16;; piece *= 8) {
+        base::Bytes bytes;
+        stream.seekg(0);
+        base::ByteReader reader(readInto(stream, bytes, std::min(piece, size)));
+        try {
+            JournalHeader header = decodeHeader(reader, chain);
+            length = static_cast<std::int64_t>(bytes.size() - reader.rest().size());
+            return header;
+        } catch (const base::FormatError&) {
+            if (piece >= size) {
+                throw;
+            }
+        }
+    }
+}
+
+}  // namespace
+
+fs::path partOf(const fs::path& journal, std::uint32_t part) {
+    return part == 1 ? journal : fs::path(fmt::format("{}.{}", journal.string(), part));
+}
+
+JournalReader::JournalReader(fs::path journal) {
+    place_.journal = std::move(journal);
+    try {
+        open(1);
+    } catch (const HeaderLost& error) {
+        fail(fmt::format("{}; it holds the scene as the session began, without which nothing can be recovered",
+                         error.what()));
+    } catch (const base::FormatError& error) {
+        throw base::InputError(fmt::format("{}: {}", place_.journal.string(), error.what()));
+    }
+    if (header_.part != 1) {
+        fail(fmt::format("is part {} of a session; name its first part", header_.part));
+    }
+}
+
+void JournalReader::open(std::uint32_t part) {
+    const fs::path file = partOf(place_.journal, part);
+    std::error_code none;
+    stream_.close();
+    stream_.open(file, std::ios::binary);
+    if (!stream_ || fs::is_directory(file, none)) {
+        throw base::InputError(fmt::format("{}: cannot be read; check the path", file.string()));
+    }
+    stream_.seekg(0, std::ios::end);
+    size_ = stream_.tellg();
+    if (size_ < 0) {
+        throw base::InputError(fmt::format("{}: cannot be read; it is no plain file", file.string()));
+    }
+    header_ = readHeader(stream_, size_, place_.chain, place_.offset);
+    place_.session = header_.session;
+    place_.part = part;
+    place_.seen = size_;
+    stream_.seekg(place_.offset);
+}
+
+void JournalReader::openNext(std::uint32_t part) {
+    const JournalPlace before = place_;
+    const fs::path file = partOf(place_.journal, part);
+    std::error_code none;
+    if (part != before.part + 1 || !fs::exists(file, none)) {
+        fail(fmt::format("goes on in {}, which is missing; what stands before it is whole", file.filename().string()));
+    }
+    try {
+        open(part);
+    } catch (const base::FormatError& error) {
+        throw base::InputError(
+            fmt::format("{}: {}; what stands in the part before is whole", file.string(), error.what()));
+    }
+    earlierBytes_ += before.offset;
+    if (header_.session != before.session || header_.part != part || header_.continues != before.chain) {
+        throw base::InputError(fmt::format("{}: does not go on where {} ends; what stands there is whole",
+                                           file.string(), partOf(before.journal, before.part).filename().string()));
+    }
+}
+
+void JournalReader::fail(const std::string& why) const {
+    throw base::InputError(fmt::format("{}: {}", partOf(place_.journal, place_.part).string(), why));
+}
+
+bool JournalReader::goesOn() const {
+    if (header_.version < kChainedSince) {
+        return false;
+    }
+    std::ifstream next(partOf(place_.journal, place_.part + 1), std::ios::binary | std::ios::ate);
+    if (!next) {
+        return false;
+    }
+    try {
+        const std::int64_t size = next.tellg();
+        std::uint64_t chain = 0;
+        std::int64_t length = 0;
+        const JournalHeader header = readHeader(next, size, chain, length);
+        // One that was made and not yet gone on with holds nothing.
+        return header.session == header_.session && size > length;
+    } catch (const base::FormatError&) {
+        return false;
+    }
+}
+
+bool JournalReader::readRecord(base::Bytes& body) {
+    std::array<char, sizeof(std::uint32_t)> four{};
+    if (size_ - place_.offset < static_cast<std::int64_t>(kAroundPayload) || !stream_.read(four.data(), four.size())) {
+        return false;
+    }
+    std::uint32_t length = 0;
+    std::memcpy(&length, four.data(), sizeof length);
+    if (length > size_ - place_.offset - static_cast<std::int64_t>(kAroundPayload)) {
+        return false;
+    }
+    std::uint64_t said = 0;
+    const std::size_t wanted = std::size_t{length} + 1 + sizeof said;
+    if (readInto(stream_, body, static_cast<std::int64_t>(wanted)).size() != wanted) {
+        return false;
+    }
+    std::memcpy(&said, body.data() + body.size() - sizeof said, sizeof said);
+    body.resize(body.size() - sizeof said);
+    const bool chained = header_.version >= kChainedSince;
+    if (recordChecksum(body, chained ? place_.chain : 0) != said) {
+        return false;
+    }
+    place_.chain = chained ? said : 0;
+    return true;
+}
+
+void JournalReader::endHere(const std::string& why) {
+    const std::int64_t left = size_ - place_.offset;
+    if (left > 0) {
+        base::Bytes rest;
+        stream_.clear();
+        stream_.seekg(place_.offset);
+        // A crash tears the last record. One that is followed by more was damaged on the disk, its length perhaps.
+        if (holdsRecords(readInto(stream_, rest, left), header_.version >= kChainedSince, place_.chain)) {
+            fail(
+                fmt::format("damaged at byte {} of {}: {}; what stands before it is whole", place_.offset, size_, why));
+        }
+    }
+    if (goesOn()) {
+        fail(fmt::format("cut off at byte {}, and {} goes on behind what is missing; what stands before it is whole",
+                         place_.offset, partOf(place_.journal, place_.part + 1).filename().string()));
+    }
+    tornBytes_ = left;
+    ended_ = true;
+}
+
+std::optional<JournalRecord> JournalReader::next() {
+    base::Bytes body;
+    while (!ended_) {
+        if (!readRecord(body)) {
+            endHere("a record that is not whole");
+            break;
+        }
+        JournalRecord record;
+        try {
+            record = decodeRecord(body);
+        } catch (const base::FormatError& error) {
+            fail(fmt::format("damaged at byte {} of {}: {}; what stands before it is whole", place_.offset, size_,
+                             error.what()));
+        }
+        place_.offset += static_cast<std::int64_t>(body.size() - 1 + kAroundPayload);
+        if (const auto* continued = std::get_if<JournalContinued>(&record)) {
+            openNext(continued->part);
+            continue;
+        }
+        return record;
+    }
+    return std::nullopt;
+}
+
+std::int64_t JournalReader::allBytes() const {
+    std::int64_t sum = 0;
+    std::error_code error;
+    for (std::uint32_t part = 1;; ++part) {
+        const auto size = fs::file_size(partOf(place_.journal, part), error);
+        if (error) {
+            return sum;
+        }
+        sum += static_cast<std::int64_t>(size);
+    }
+}
+
+}  // namespace master

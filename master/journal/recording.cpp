@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/journal/recording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "base/input_error.hpp"
+
+namespace master {
+namespace {
+
+std::string shortcomingOf(const Journal& journal, const std::string& file, std::uint64_t lastStep) {
+    if (journal.tornBytes > 0) {
+        return fmt::format("{}: the last {} bytes are no whole record and were left out; it ends at step {}", file,
+                           journal.tornBytes, lastStep);
+    }
+    if (!journal.end) {
+        return fmt::format("{}: has no orderly end, the session was cut off; it ends at step {}", file, lastStep);
+    }
+    return {};
+}
+
+}  // namespace
+
+Recording::Recording(Journal journal, std::string file, int framesPerSecond)
+    : scene_(std::move(journal.scene)), framesPerSecond_(framesPerSecond) {
+    for (JournalFrame& frame : journal.frames) {
+        hashes_.emplace(steps_.size(), frame.hashBefore);
+        for (sand::Step& step : frame.steps) {
+            if (step.number != steps_.size() + 1) {
+                throw base::InputError(fmt::format("{}: step {} follows step {}; a part of the session is missing",
+                                                   file, step.number, steps_.size()));
+            }
+            steps_.push_back(std::move(step));
+        }
+    }
+    if (steps_.empty()) {
+        throw base::InputError(fmt::format("{}: holds no step; there is nothing to show", file));
+    }
+    if (journal.end) {
+        if (journal.end->step != lastStep()) {
+            throw base::InputError(fmt::format("{}: holds {} steps of a session that ended at step {}", file,
+                                               lastStep(), journal.end->step));
+        }
+        hashes_.emplace(journal.end->step, journal.end->hash);
+    }
+    shortcoming_ = shortcomingOf(journal, file, lastStep());
+    const auto perSecond = static_cast<std::uint64_t>(scene_.rules.stepsPerSecond);
+    frames_ = (lastStep() * static_cast<std::uint64_t>(framesPerSecond_) + perSecond - 1) / perSecond;
+}
+
+std::uint64_t Recording::stepsUntil(std::uint64_t frame) const {
+    // In whole numbers: a film of an hour must not lose a step to rounding.
+    return std::min(lastStep(), frame * static_cast<std::uint64_t>(scene_.rules.stepsPerSecond) /
+                                    static_cast<std::uint64_t>(framesPerSecond_));
+}
+
+std::span<const sand::Step> Recording::stepsOf(std::uint64_t frame) const {
+    const std::uint64_t from = stepsUntil(frame - 1);
+    return std::span(steps_).subspan(from, stepsUntil(frame) - from);
+}
+
+std::optional<std::uint64_t> Recording::hashAfter(std::uint64_t step) const {
+    const auto found = hashes_.find(step);
+    return found == hashes_.end() ? std::nullopt : std::optional(found->second);
+}
+
+}  // namespace master

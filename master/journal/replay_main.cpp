@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "base/input_error.hpp"
+#include "haptic_bridge/loop/tick_replay.hpp"
+#include "host/command_line.hpp"
+#include "host/version.hpp"
+#include "host/whole_file.hpp"
+#include "master/journal/journal.hpp"
+#include "master/journal/tools.hpp"
+#include "sand/replica.hpp"
+#include "sand/tin/geometry/surface_view.hpp"
+#include "scene/export/raster.hpp"
+#include "scene/export/tin_raster.hpp"
+#include "scene/import/raster_file.hpp"
+#include "scene/scene.hpp"
+
+namespace {
+
+struct Options {
+    std::string file;
+    bool hash = false;
+    bool verify = false;
+    bool volumes = false;
+    std::string heights, difference, mesh, forces, steps, recovered;
+    std::optional<std::uint64_t> until;
+
+    /// Nothing is asked for but the replay itself.
+    [[nodiscard]] bool plain() const {
+        return !hash && !volumes && heights.empty() && difference.empty() && mesh.empty() && forces.empty();
+    }
+};
+
+/// Recomputes the rows of sandwall-haptic-server --record while the steps are replayed.
+class Forces {
+public:
+    Forces(const master::Journal& journal, const Options& options) : options_(options), replay_(journal.scene, {}) {
+        if (options.forces.empty()) {
+            return;
+        }
+        try {
+            replay_ = haptic_bridge::TickReplay(journal.scene, journal.ticks);
+        } catch (const base::FormatError& error) {
+            throw base::InputError(fmt::format("{}: its tick track cannot be read: {}", options.file, error.what()));
+        }
+        if (replay_.empty()) {
+            throw base::InputError(fmt::format(
+                "{}: holds no tick track; a session keeps one whose haptic server was started with --record",
+                options.file));
+        }
+        stream_.open(options.forces, std::ios::binary);
+        rows_ = haptic_bridge::tickTitles();
+    }
+    void feel(const sand::Terrain& terrain) {
+        if (options_.forces.empty()) {
+            return;
+        }
+        replay_.feel(terrain, rows_);
+        stream_ << rows_;
+        rows_.clear();
+    }
+    void finish() {
+        if (options_.forces.empty()) {
+            return;
+        }
+        stream_.close();
+        if (!stream_) {
+            throw base::InputError(fmt::format("{}: cannot be written", options_.forces));
+        }
+        if (replay_.left() > 0) {
+            fmt::print(stderr, "{}: the last {} ticks felt steps that the session did not show, and were left out\n",
+                       options_.file, replay_.left());
+        }
+    }
+
+private:
+    const Options& options_;
+    haptic_bridge::TickReplay replay_;
+    std::ofstream stream_;
+    std::string rows_;
+};
+
+/// Applies the journal's steps and checks the session's hashes on the way. Returns how many frames differed.
+int replay(const master::Journal& journal, std::uint64_t until, sand::Terrain& terrain, Forces& forces) {
+    int differing = 0;
+    forces.feel(terrain);
+    for (const master::JournalFrame& frame : journal.frames) {
+        if (frame.steps.empty() || terrain.stepNumber() >= until) {
+            continue;
+        }
+        if (terrain.stateHash() != frame.hashBefore && differing++ == 0) {
+            fmt::print(stderr, "before frame {}, after step {}: the session had {:016x}, the replay has {:016x}\n",
+                       frame.frame, terrain.stepNumber(), frame.hashBefore, terrain.stateHash());
+        }
+        for (const sand::Step& step : frame.steps) {
+            if (step.number <= until) {
+                terrain.apply(step);
+                forces.feel(terrain);
+            }
+        }
+    }
+    return differing;
+}
+
+/// Long before there is something to be written.
+void checkOutputs(const Options& options) {
+    if (!options.mesh.empty()) {
+        sand::checkMeshName(options.mesh);
+    }
+    for (const std::string& file : {options.heights, options.difference}) {
+        if (!file.empty()) {
+            sand::checkRasterName(file);
+        }
+    }
+    for (const std::string& file : {options.heights, options.difference, options.mesh}) {
+        if (!file.empty()) {
+            const host::WholeFile canBeWritten(file);
+        }
+    }
+}
+
+void writeRasters(const sand::HeightField& field, const sand::Scene& scene, const Options& options) {
+    if (!options.heights.empty()) {
+        sand::writeRaster(sand::heightsOf(field, scene), options.heights);
+    }
+    if (!options.difference.empty()) {
+        sand::writeRaster(sand::differenceOf(field, scene), options.difference);
+    }
+    if (options.volumes) {
+        const sand::Earthwork work = sand::earthworkOf(field, scene);
+        const auto both = [&](double unit) -> nlohmann::ordered_json {
+            return {{"cut", static_cast<double>(work.cut) * unit}, {"fill", static_cast<double>(work.fill) * unit}};
+        };
+        nlohmann::ordered_json json;
+        json["units"] = {{"cut", work.cut}, {"fill", work.fill}};
+        json["cubic_scene_units"] = both(work.unit);
+        json["cubic_metres"] = work.cubicMetres > 0 ? both(work.cubicMetres) : nullptr;
+        fmt::print("{}\n", json.dump());
+    }
+}
+
+void writeOutputs(const sand::Terrain& terrain, const sand::Scene& scene, const Options& options) {
+    const sand::tin::SurfaceView* tin = terrain.tinView();
+    if (!options.mesh.empty()) {
+        sand::writeMesh(tin != nullptr ? sand::meshOf(*tin, scene) : sand::meshOf(terrain.field(), scene),
+                        options.mesh);
+    }
+    if (tin == nullptr) {
+        writeRasters(terrain.field(), scene, options);
+    } else if (!options.heights.empty() || !options.difference.empty() || options.volumes) {
+        writeRasters(sand::sampled(terrain, scene.tin->holes.get()), sand::sampledScene(scene), options);
+    }
+}
+
+int run(const Options& options) {
+    if (!options.recovered.empty()) {
+        master::recoverJournal(options.file, options.recovered);
+        return 0;
+    }
+    if (!options.steps.empty()) {
+        master::exportSteps(options.file, options.steps);
+        return 0;
+    }
+    if (options.verify) {
+        return master::verifyJournal(options.file);
+    }
+    checkOutputs(options);
+    const master::Journal journal = master::readJournal(options.file);
+    master::sayWhatIsMissing(options.file, journal.tornBytes, journal.end.has_value());
+    sand::Terrain terrain(journal.scene);
+    Forces forces(journal, options);
+    int differing = replay(journal, options.until.value_or(std::numeric_limits<std::uint64_t>::max()), terrain, forces);
+    forces.finish();
+    if (options.until && terrain.stepNumber() < *options.until) {
+        throw base::InputError(
+            fmt::format("{}: ends at step {}, before --until {}", options.file, terrain.stepNumber(), *options.until));
+    }
+    const bool whole = journal.end && journal.end->step == terrain.stepNumber();
+    if (whole && journal.end->hash != terrain.stateHash()) {
+        fmt::print(stderr, "after step {}: the session had {:016x}, the replay has {:016x}\n", terrain.stepNumber(),
+                   journal.end->hash, terrain.stateHash());
+        ++differing;
+    }
+    if (options.hash) {
+        fmt::print("{:016x}\n", terrain.stateHash());
+    }
+    if (options.plain()) {
+        fmt::print("{}: {} steps replayed, state hash {:016x}; {}\n", options.file, terrain.stepNumber(),
+                   terrain.stateHash(), differing == 0 ? "no hash differs from the session's" : "hashes differ");
+    }
+    writeOutputs(terrain, journal.scene, options);
+    return differing == 0 ? 0 : 1;
+}
+
+/// What was printed to a full disk is no answer.
+void requirePrinted() {
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+        throw base::InputError(fmt::format("standard output: cannot be written ({})", std::strerror(errno)));
+    }
+}
+
+/// Refuses a negative number, which would otherwise be read as a huge one.
+std::string notNegative(const std::string& text) {
+    return text.starts_with('-') ? "a step's number is 0 or more, got " + text : "";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (host::answersVersion(argc, argv, "sandwall-replay",
+                             {{"algorithm", sand::kAlgorithmVersion},
+                              {"journal", master::kJournalVersion},
+                              {"state", sand::kStateVersion}})) {
+        return 0;
+    }
+    host::CommandLine line(
+        "Replays the journal of a session, bit for bit, and checks it against the session's own hashes.\n"
+        "Exit status 0 alike, 1 different, 2 unusable.",
+        "sandwall-replay");
+    Options options;
+    line.option("FILE", options.file, "session.journal of a session").required();
+    line.flag("--hash", options.hash, "print the state hash after the last step");
+    line.option("--heights", options.heights,
+                "write the heights then, where the terrain came from: a .tif, or an ESRI ASCII grid");
+    line.option("--difference", options.difference, "the same of how much higher the sand is than at the start");
+    line.option("--mesh", options.mesh, "write the surface as triangles: a .ply or .obj");
+    line.flag("--volumes", options.volumes, "print what was cut and filled since the start, as one line of JSON");
+    line.option("--forces", options.forces,
+                "recompute what a hand felt at every tick, from a session recorded with --record, into this CSV file");
+    line.option("--until", options.until, "stop after this step").check(notNegative);
+    const host::Option verify = line.flag("--verify", options.verify, "check records, parts, hashes and checkpoints");
+    const host::Option steps = line.option("--export", options.steps, "write every step as a row of this CSV file");
+    const host::Option recover = line.option("--recover", options.recovered,
+                                             "write what is intact of a damaged journal as a journal of its own");
+    verify.excludes(steps).excludes(recover);
+    steps.excludes(recover);
+    return host::runMain(
+        line, argc, argv,
+        [&] {
+            const int status = run(options);
+            requirePrinted();
+            return status;
+        },
+        base::kExitBadInput);
+}

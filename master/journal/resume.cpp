@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/journal/resume.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include "base/input_error.hpp"
+#include "master/journal/checkpoint.hpp"
+#include "master/journal/journal.hpp"
+#include "scene/load/scene_file.hpp"
+
+namespace master {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The journal has another hash of the sand than the replay.
+class OtherSand : public base::InputError {
+public:
+    using base::InputError::InputError;
+};
+
+void requireHash(sand::Terrain& terrain, const JournalEnd& said, const fs::path& journal) {
+    if (terrain.stepNumber() == said.step && terrain.stateHash() != said.hash) {
+        throw OtherSand(fmt::format(
+            "{}: after step {} the session had {:016x}, the replay has {:016x}; it is of another version or damaged",
+            journal.string(), said.step, said.hash, terrain.stateHash()));
+    }
+}
+
+/// Applies the journal's steps up to `step` to sand that has some of them. Returns how many.
+std::uint64_t replayUntil(const fs::path& journal, std::uint64_t step, sand::Terrain& terrain) {
+    const std::uint64_t first = terrain.stepNumber();
+    JournalReader reader(journal);
+    while (const auto record = reader.next()) {
+        if (const auto* end = std::get_if<JournalEnd>(&*record)) {
+            requireHash(terrain, *end, journal);
+        }
+        const auto* frame = std::get_if<JournalFrame>(&*record);
+        if (frame == nullptr || frame->steps.empty() || frame->steps.back().number <= terrain.stepNumber()) {
+            continue;
+        }
+        if (frame->steps.front().number > terrain.stepNumber() + 1) {
+            throw base::InputError(fmt::format("{}: step {} follows step {}; a part of the session is missing",
+                                               journal.string(), frame->steps.front().number, terrain.stepNumber()));
+        }
+        requireHash(terrain, {frame->steps.front().number - 1, frame->hashBefore}, journal);
+        for (const sand::Step& one : frame->steps) {
+            if (one.number == terrain.stepNumber() + 1 && one.number <= step) {
+                terrain.apply(one);
+            }
+        }
+        if (terrain.stepNumber() >= step && frame->steps.back().number > step) {
+            break;
+        }
+    }
+    if (terrain.stepNumber() < step) {
+        throw base::InputError(
+            fmt::format("{}: ends at step {}, before step {}", journal.string(), terrain.stepNumber(), step));
+    }
+    return terrain.stepNumber() - first;
+}
+
+/// What a journal tells without any sand being computed.
+struct Walk {
+    ResumedSession& session;
+    const fs::path& journal;
+    std::optional<sand::Material> pending;  // of steps that follow: a crash may have torn them off
+
+    void operator()(const JournalFrame& frame) {
+        session.frame = std::max(session.frame, frame.frame);
+        session.material = std::exchange(pending, std::nullopt).value_or(session.material);
+        for (const sand::Step& step : frame.steps) {
+            if (step.number != session.step + 1) {
+                throw base::InputError(fmt::format("{}: step {} follows step {}; a part of the session is missing",
+                                                   journal.string(), step.number, session.step));
+            }
+            session.step = step.number;
+            session.epoch = std::max(session.epoch, step.epoch);
+            session.edits += step.edit.any() ? 1 : 0;
+        }
+    }
+    void operator()(const sand::Material& material) { pending = material; }
+    void operator()(const JournalResumed& resumed) {
+        session.frame = std::max(session.frame, resumed.frame);
+        pending.reset();
+    }
+    void operator()(const JournalEnd&) const {}
+    void operator()(const JournalTicks&) const {}
+    void operator()(const JournalContinued&) const {}
+};
+
+void requireScene(const JournalReader& reader, const std::string& file) {
+    if (!file.empty() && sand::loadScene(file).encode() != reader.header().scene) {
+        throw base::InputError(
+            fmt::format("{}: is not the scene of the session in {}; leave --scene out to go on with "
+                        "that one, or choose another --out",
+                        file, reader.place().journal.string()));
+    }
+}
+
+}  // namespace
+
+sand::Terrain sandOfCheckpoint(const fs::path& file, const JournalHeader& header, const sand::Terrain& start) {
+    const Checkpoint checkpoint = readCheckpoint(file);
+    if (checkpoint.session != header.session || checkpoint.sceneDigest != start.rules().digest()) {
+        throw base::FormatError("is of another session");
+    }
+    sand::Terrain terrain = start;
+    terrain.decodeState(checkpoint.state);
+    if (terrain.stepNumber() != checkpoint.step || terrain.stateHash() != checkpoint.stateHash) {
+        throw base::FormatError("its sand is not what it says");
+    }
+    return terrain;
+}
+
+RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const sand::Erosion::Options& sweeps) {
+    const JournalReader head(journal);
+    const sand::Terrain start(sceneOf(head), sweeps);
+    for (const std::uint64_t at : checkpointsOf(journal)) {
+        const fs::path file = checkpointFile(journal, at);
+        try {
+            if (at <= step) {
+                RestoredSand restored{sandOfCheckpoint(file, head.header(), start), at, 0};
+                restored.replayedSteps = replayUntil(journal, step, restored.terrain);
+                return restored;
+            }
+        } catch (const base::FormatError& error) {
+            fmt::print(stderr, "sandwall: {}: {}; it is left out\n", file.string(), error.what());
+        } catch (const OtherSand& error) {
+            fmt::print(stderr, "sandwall: {}: it is left out: {}\n", file.string(), error.what());
+        }
+    }
+    RestoredSand restored{start, 0, 0};
+    restored.replayedSteps = replayUntil(journal, step, restored.terrain);
+    return restored;
+}
+
+std::optional<ResumedSession> readSession(const fs::path& journal, const std::string& scene,
+                                          const sand::Erosion::Options& sweeps) {
+    std::error_code none;
+    if (!fs::exists(journal, none)) {
+        return std::nullopt;
+    }
+    JournalReader reader(journal);
+    if (reader.header().version < kChainedSince) {
+        throw base::InputError(
+            fmt::format("{}: a journal of version {} can be replayed, and not gone on with; choose "
+                        "another --out",
+                        journal.string(), reader.header().version));
+    }
+    requireScene(reader, scene);
+    ResumedSession session;
+    session.scene = sceneOf(reader);
+    session.scene.material = session.material = reader.header().material.value_or(sand::Material());
+    try {
+        Walk walk{session, journal, {}};
+        while (const auto record = reader.next()) {
+            std::visit(walk, *record);
+        }
+    } catch (const base::InputError& error) {
+        throw base::InputError(fmt::format(
+            "{}; sandwall-replay {} --recover NEW/session.journal keeps that, and --out NEW goes on with it",
+            error.what(), journal.string()));
+    }
+    session.place = reader.place();
+    session.cutBytes = reader.tornBytes();
+    RestoredSand restored = restoreSand(journal, session.step, sweeps);
+    session.hash = restored.terrain.stateHash();
+    session.state = restored.terrain.encodeState();
+    session.checkpointStep = restored.checkpointStep;
+    session.replayedSteps = restored.replayedSteps;
+    return session;
+}
+
+}  // namespace master

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/journal/saved_sand.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <span>
+#include <utility>
+
+#include "base/input_error.hpp"
+#include "sand/grid/snapshot.hpp"
+#include "sand/model/step.hpp"
+
+namespace master {
+namespace {
+
+constexpr std::uint32_t kSavedMagic = 0x44535753;  // "SWSD"
+constexpr std::uint32_t kSavedVersion = 1;
+constexpr std::size_t kMostAround = 4096;  // [byte] that are not sand: the scene's name is the only text
+
+std::uint64_t savedSum(std::span<const std::uint8_t> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
+
+std::string shortName(const std::string& scene) { return scene.substr(0, kMostAround / 2); }
+
+base::Bytes encode(const SavedSand& saved) {
+    base::ByteWriter writer;
+    writer.put(kSavedMagic);
+    writer.put(kSavedVersion);
+    writer.put(sand::kAlgorithmVersion);
+    writer.putText(shortName(saved.place.scene));
+    for (const std::int32_t number : {saved.place.columns, saved.place.rows, saved.place.aspect}) {
+        writer.put(number);
+    }
+    writer.put(saved.place.cellSize);
+    writer.put(saved.place.ground);
+    writer.put(saved.step);
+    writer.put(saved.stateHash);
+    writer.putBlock(saved.sand);
+    writer.put(savedSum(writer.bytes()));
+    return writer.take();
+}
+
+SavedSand decode(std::span<const std::uint8_t> bytes) {
+    base::ByteReader reader(bytes);
+    if (reader.get<std::uint32_t>() != kSavedMagic) {
+        throw base::FormatError("no saved sand");
+    }
+    const auto version = reader.get<std::uint32_t>();
+    const auto algorithm = reader.get<std::uint32_t>();
+    if (version != kSavedVersion || algorithm != sand::kAlgorithmVersion) {
+        throw base::FormatError(
+            fmt::format("saved by another version of Sandwall ({}, algorithm {})", version, algorithm));
+    }
+    std::uint64_t expected = 0;
+    if (bytes.size() < sizeof expected) {
+        throw base::FormatError("cut short");
+    }
+    const auto checked = bytes.first(bytes.size() - sizeof expected);
+    std::memcpy(&expected, bytes.data() + checked.size(), sizeof expected);
+    if (savedSum(checked) != expected) {
+        throw base::FormatError("damaged: its checksum is wrong");
+    }
+    SavedSand saved;
+    saved.place.scene = reader.getText();
+    for (std::int32_t* number : {&saved.place.columns, &saved.place.rows, &saved.place.aspect}) {
+        *number = reader.get<std::int32_t>();
+    }
+    saved.place.cellSize = reader.get<double>();
+    saved.place.ground = reader.get<std::uint64_t>();
+    saved.step = reader.get<std::uint64_t>();
+    saved.stateHash = reader.get<std::uint64_t>();
+    const auto sand = reader.getBlock();
+    saved.sand.assign(sand.begin(), sand.end());
+    return saved;
+}
+
+void requireSamePlace(const SandPlace& saved, const SandPlace& here) {
+    if (saved.scene != shortName(here.scene)) {
+        throw base::FormatError(fmt::format("sand of scene '{}', and this is '{}'", saved.scene, here.scene));
+    }
+    if (saved.columns != here.columns || saved.rows != here.rows) {
+        throw base::FormatError(fmt::format("sand of {} x {} cells, and the scene has {} x {}", saved.columns,
+                                            saved.rows, here.columns, here.rows));
+    }
+    if (saved.cellSize != here.cellSize || saved.aspect != here.aspect || saved.ground != here.ground) {
+        throw base::FormatError(fmt::format("sand of '{}' with other cells or other rock", here.scene));
+    }
+}
+
+/// A file that takes its name only when all of it is on the disk.
+class Unnamed {
+public:
+    explicit Unnamed(std::filesystem::path target) : target_(std::move(target)) {
+        // Two threads may be saving under one name: the later one stays.
+        static std::atomic<unsigned> number{0};
+        beside_ = fmt::format("{}.{}.part", target_.string(), ++number);
+        descriptor_ = open(beside_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+        require(descriptor_ >= 0);
+    }
+    ~Unnamed() {
+        if (descriptor_ >= 0) {
+            close(descriptor_);
+            unlink(beside_.c_str());
+        }
+    }
+    Unnamed(const Unnamed&) = delete;
+    Unnamed& operator=(const Unnamed&) = delete;
+
+    void write(const base::Bytes& bytes) {
+        for (std::size_t done = 0; done < bytes.size();) {
+            const ssize_t count = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
+            require(count >= 0 || errno == EINTR);
+            done += count > 0 ? static_cast<std::size_t>(count) : 0;
+        }
+        require(fsync(descriptor_) == 0);
+    }
+    void name() {
+        require(rename(beside_.c_str(), target_.c_str()) == 0);
+        close(std::exchange(descriptor_, -1));
+    }
+
+private:
+    void require(bool good) const {
+        if (!good) {
+            throw base::InputError(
+                fmt::format("{}: cannot be written ({}); nothing was saved", target_.string(), std::strerror(errno)));
+        }
+    }
+    std::filesystem::path target_, beside_;
+    int descriptor_ = -1;
+};
+
+}  // namespace
+
+SandPlace SandPlace::of(const sand::Scene& scene) {
+    return {scene.name,         scene.rules.columns,      scene.rules.rows,
+            scene.rules.aspect, scene.terrain.cellSize(), scene.rules.ground ^ scene.rules.tin};
+}
+
+bool isSaveName(std::string_view name) {
+    return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+    });
+}
+
+std::filesystem::path saveFile(const std::filesystem::path& session, std::string_view name) {
+    return session / "saves" / fmt::format("{}.sand", name);
+}
+
+void writeSavedSand(const std::filesystem::path& file, const SavedSand& saved) {
+    if (saved.sand.size() > sand::kMaxSandBytes) {
+        throw base::InputError(fmt::format("{}: {} bytes of sand could not be loaded again, {} is the most",
+                                           file.string(), saved.sand.size(), sand::kMaxSandBytes));
+    }
+    std::error_code error;
+    std::filesystem::create_directories(file.parent_path(), error);
+    if (error) {
+        throw base::InputError(
+            fmt::format("{}: cannot be made ({}); nothing was saved", file.parent_path().string(), error.message()));
+    }
+    Unnamed unnamed(file);
+    unnamed.write(encode(saved));
+    unnamed.name();
+}
+
+SavedSand readSavedSand(const std::filesystem::path& file, const SandPlace& place, const sand::SurfaceReader& read) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::is_regular_file(file, error) ? file_size(file, error) : 0;
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream || error || size == 0) {
+        throw base::InputError(fmt::format("{}: cannot be read; nothing was loaded", file.string()));
+    }
+    try {
+        if (size > sand::kMaxSandBytes + kMostAround) {
+            throw base::FormatError(fmt::format("{} bytes are more than sand can be", size));
+        }
+        base::Bytes bytes(size);
+        stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+        bytes.resize(static_cast<std::size_t>(stream.gcount()));
+        SavedSand saved = decode(bytes);
+        requireSamePlace(saved.place, place);
+        // Whole, before anybody is sent it: who applies a step cannot refuse it any more.
+        (void)read(saved.sand);
+        return saved;
+    } catch (const base::FormatError& failure) {
+        throw base::InputError(fmt::format("{}: {}; nothing was loaded", file.string(), failure.what()));
+    }
+}
+
+}  // namespace master

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/journal/tools.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "base/input_error.hpp"
+#include "host/whole_file.hpp"
+#include "master/journal/journal.hpp"
+#include "scene/scene.hpp"
+
+namespace master {
+namespace {
+
+constexpr std::array<std::string_view, sand::kEdits> kEditNames{"", "settle", "reset", "undo", "tune", "load"};
+
+/// The tool as steps have made it.
+class ExportedTool {
+public:
+    explicit ExportedTool(const sand::Scene& scene)
+        : rules_(scene.rules),
+          heading_(scene.rules.toolHeading),
+          unit_(scene.terrain.cellSize() / sand::kProbePerCell) {}
+
+    /// The tool with which the hand of this step moves.
+    void begin(const sand::Step& step) { heading_ = step.heading.value_or(heading_); }
+    /// As sand::Terrain::tune has it: for the next step.
+    void end(const sand::Step& step) {
+        if (step.edit.kind == sand::Edit::tune) {
+            heading_ = step.edit.tuning.toolHeading != rules_.toolHeading ? step.edit.tuning.toolHeading : heading_;
+            rules_.tune(step.edit.tuning);
+        }
+    }
+    [[nodiscard]] std::string text() const {
+        return fmt::format("{},{},{:.6g}", sand::toolName(rules_.toolKind), rules_.toolRadius * unit_,
+                           sand::degreesOf(heading_));
+    }
+    [[nodiscard]] double unit() const { return unit_; }
+
+private:
+    sand::Rules rules_;
+    sand::Heading heading_;
+    double unit_;  // [scene unit] of a probe coordinate
+};
+
+std::string pathText(const sand::Step& step, double unit) {
+    std::string text;
+    for (const sand::ProbePoint& point : step.path) {
+        text += fmt::format("{}{} {} {}", text.empty() ? "" : ";", point.x * unit, point.y * unit, point.z * unit);
+    }
+    return text;
+}
+
+}  // namespace
+
+void sayWhatIsMissing(const std::filesystem::path& journal, std::int64_t tornBytes, bool orderlyEnd) {
+    if (tornBytes > 0) {
+        fmt::print(stderr, "{}: the last {} bytes are no whole record and were left out\n", journal.string(),
+                   tornBytes);
+    }
+    if (!orderlyEnd) {
+        fmt::print(stderr, "{}: has no orderly end; the session was cut off\n", journal.string());
+    }
+}
+
+void exportSteps(const std::filesystem::path& journal, const std::filesystem::path& file) {
+    JournalReader reader(journal);
+    ExportedTool tool(sceneOf(reader));
+    host::WholeFile out(file);
+    out.stream() << "epoch,number,frame,engaged,tool,radius,heading,path,edit\n";
+    bool orderlyEnd = false;
+    while (const auto record = reader.next()) {
+        orderlyEnd = std::holds_alternative<JournalEnd>(*record) ||
+                     (orderlyEnd && !std::holds_alternative<JournalResumed>(*record));
+        const auto* frame = std::get_if<JournalFrame>(&*record);
+        if (frame == nullptr) {
+            continue;
+        }
+        for (const sand::Step& step : frame->steps) {
+            tool.begin(step);
+            fmt::print(out.stream(), "{},{},{},{},{},{},{}\n", step.epoch, step.number, frame->frame,
+                       step.engaged ? 1 : 0, tool.text(), pathText(step, tool.unit()),
+                       kEditNames.at(static_cast<std::size_t>(step.edit.kind)));
+            tool.end(step);
+        }
+    }
+    out.keep();
+    sayWhatIsMissing(journal, reader.tornBytes(), orderlyEnd);
+}
+
+void recoverJournal(const std::filesystem::path& journal, const std::filesystem::path& file) {
+    std::error_code error;
+    if (std::filesystem::exists(file, error)) {
+        throw base::InputError(fmt::format("{}: is there already; choose another file", file.string()));
+    }
+    JournalReader reader(journal);
+    sand::Scene scene = sceneOf(reader);
+    scene.material = reader.header().material.value_or(sand::Material());
+    if (file.has_parent_path()) {
+        std::filesystem::create_directories(file.parent_path(), error);
+    }
+    JournalWriter writer(file, scene, reader.header().buildId);
+    std::uint64_t records = 0, step = 0;
+    std::string damage;
+    try {
+        while (const auto record = reader.next()) {
+            ++records;
+            const auto* frame = std::get_if<JournalFrame>(&*record);
+            step = frame != nullptr && !frame->steps.empty() ? frame->steps.back().number : step;
+            writer.keep(*record);
+        }
+    } catch (const base::InputError& found) {
+        damage = found.what();
+    }
+    writer.sync();
+    const std::int64_t lost = reader.allBytes() - reader.wholeBytes();
+    if (!damage.empty()) {
+        fmt::print("{}\n", damage);
+    }
+    fmt::print("{}: {} records, to step {}; {} of {} bytes are lost\n", file.string(), records, step, lost,
+               reader.allBytes());
+}
+
+}  // namespace master

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <optional>
+
+#include "base/input_error.hpp"
+#include "master/journal/checkpoint.hpp"
+#include "master/journal/journal.hpp"
+#include "master/journal/resume.hpp"
+#include "master/journal/tools.hpp"
+
+namespace master {
+namespace {
+
+class Verification {
+public:
+    explicit Verification(const std::filesystem::path& journal)
+        : journal_(journal), reader_(journal), start_(sceneOf(reader_)), terrain_(start_) {
+        for (const std::uint64_t step : checkpointsOf(journal)) {
+            checkpoints_.emplace(step, std::string());
+        }
+    }
+
+    int run() {
+        compareCheckpoint();
+        while (const auto record = reader_.next()) {
+            ++records_;
+            std::visit(*this, *record);
+        }
+        say();
+        return differing_ == 0 && badCheckpoints_ == 0 ? 0 : 1;
+    }
+
+    void operator()(const JournalFrame& frame) {
+        firstFrame_ = firstFrame_ == 0 ? frame.frame : firstFrame_;
+        lastFrame_ = std::max(lastFrame_, frame.frame);
+        end_.reset();
+        if (!frame.steps.empty()) {
+            compare({frame.steps.front().number - 1, frame.hashBefore});
+        }
+        for (const sand::Step& step : frame.steps) {
+            if (step.number != terrain_.stepNumber() + 1) {
+                throw base::InputError(fmt::format("{}: step {} follows step {}; a part of the session is missing",
+                                                   journal_.string(), step.number, terrain_.stepNumber()));
+            }
+            lastEpoch_ = std::max(lastEpoch_, step.epoch);
+            terrain_.apply(step);
+            compareCheckpoint();
+        }
+    }
+    void operator()(const JournalEnd& end) {
+        end_ = end;
+        compare(end);
+    }
+    void operator()(const JournalResumed& resumed) {
+        ++resumes_;
+        cutBytes_ += resumed.cutBytes;
+        end_.reset();
+        compare(resumed.sand);
+    }
+    void operator()(const JournalTicks&) { ++ticks_; }
+    void operator()(const sand::Material&) {}
+    void operator()(const JournalContinued&) {}
+
+private:
+    void compare(const JournalEnd& said) {
+        ++hashes_;
+        if (said.step == terrain_.stepNumber() && said.hash == terrain_.stateHash()) {
+            return;
+        }
+        if (differing_++ == 0) {
+            fmt::print(stderr, "after step {}: the session had {:016x}, the replay has {:016x}\n", said.step, said.hash,
+                       terrain_.stateHash());
+        }
+    }
+    void compareCheckpoint() {
+        const auto found = checkpoints_.find(terrain_.stepNumber());
+        if (found == checkpoints_.end()) {
+            return;
+        }
+        try {
+            sand::Terrain sand = sandOfCheckpoint(checkpointFile(journal_, found->first), reader_.header(), start_);
+            found->second =
+                sand.stateHash() == terrain_.stateHash() ? "the replay's sand" : "other sand than the replay's";
+        } catch (const base::FormatError& error) {
+            found->second = error.what();
+        }
+        badCheckpoints_ += found->second == "the replay's sand" ? 0 : 1;
+    }
+    void say() {
+        const bool chained = reader_.header().version >= kChainedSince;
+        fmt::print("records      {} whole, {} bytes, in a journal of version {}\n", records_, reader_.wholeBytes(),
+                   reader_.header().version);
+        fmt::print("chain        {}\n", chained ? "whole: every checksum hangs on the one before"
+                                                : "none before version 5: every checksum is right");
+        fmt::print("parts        {}\n", reader_.parts());
+        fmt::print("tail         {}\n", reader_.tornBytes() == 0
+                                            ? std::string("whole")
+                                            : fmt::format("{} bytes are no whole record", reader_.tornBytes()));
+        fmt::print("steps        {} without a gap, in frames {} to {}, epochs to {}, {} pieces of ticks\n",
+                   terrain_.stepNumber(), firstFrame_, lastFrame_, lastEpoch_, ticks_);
+        fmt::print("hashes       {} of {} as the replay has them\n", hashes_ - differing_, hashes_);
+        for (const auto& [step, found] : checkpoints_) {
+            fmt::print("checkpoint   of step {}: {}\n", step, found.empty() ? "beyond the journal's end" : found);
+        }
+        fmt::print("resumed      {} times, {} bytes were cut off\n", resumes_, cutBytes_);
+        fmt::print("end          {}, at step {}, state hash {:016x}\n", end_ ? "in order" : "cut off",
+                   terrain_.stepNumber(), terrain_.stateHash());
+    }
+
+    std::filesystem::path journal_;
+    JournalReader reader_;
+    sand::Terrain start_, terrain_;
+    std::map<std::uint64_t, std::string> checkpoints_;  // what is found of each
+    std::uint64_t records_ = 0, ticks_ = 0, hashes_ = 0, differing_ = 0, badCheckpoints_ = 0, resumes_ = 0;
+    std::uint64_t firstFrame_ = 0, lastFrame_ = 0;
+    std::uint32_t lastEpoch_ = 0;
+    std::int64_t cutBytes_ = 0;
+    std::optional<JournalEnd> end_;
+};
+
+}  // namespace
+
+int verifyJournal(const std::filesystem::path& journal) { return Verification(journal).run(); }
+
+}  // namespace master

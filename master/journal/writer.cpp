@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/journal/writer.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <random>
+#include <utility>
+
+#include "base/input_error.hpp"
+#include "scene/scene.hpp"
+
+namespace master {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostWaiting = 1 << 20;  // [byte] of ticks, while no step is made
+constexpr std::size_t kMostHeld = 64 << 20;    // [byte] of ticks, while the disk is full: a quarter of an hour
+
+std::uint64_t newSession() {
+    std::random_device random;
+    return std::uint64_t{random()} << 32U | random();
+}
+
+PartFile makeFirst(const fs::path& file, const sand::Scene& scene, const std::string& buildId, std::uint64_t session,
+                   std::uint64_t& chain) {
+    keepPreviousJournal(file);
+    JournalHeader header;
+    header.session = session;
+    header.buildId = buildId;
+    header.scene = scene.encode();
+    header.material = scene.material;
+    return PartFile::make(file, encodeHeader(header, chain));
+}
+
+}  // namespace
+
+void keepPreviousJournal(const fs::path& journal) {
+    std::error_code none;  // usually there is no older one
+    if (!fs::is_regular_file(journal, none)) {
+        return;
+    }
+    const fs::path kept = journal.string() + ".previous";
+    for (std::uint32_t part = 2; fs::remove(partOf(kept, part), none); ++part) {
+    }
+    for (std::uint32_t part = 1; fs::is_regular_file(partOf(journal, part), none); ++part) {
+        std::error_code error;
+        fs::rename(partOf(journal, part), partOf(kept, part), error);
+        if (error) {
+            throw base::InputError(fmt::format("{}: cannot be kept as {} ({}); choose another --out",
+                                               partOf(journal, part).string(), partOf(kept, part).filename().string(),
+                                               error.message()));
+        }
+    }
+}
+
+JournalWriter::JournalWriter(const fs::path& file, const sand::Scene& scene, const std::string& buildId,
+                             std::int64_t partBytes)
+    : journal_(file),
+      buildId_(buildId),
+      partBytes_(partBytes),
+      session_(newSession()),
+      file_(makeFirst(file, scene, buildId, session_, chain_)) {}
+
+JournalWriter::JournalWriter(const JournalPlace& place, const std::string& buildId, std::int64_t partBytes)
+    : journal_(place.journal),
+      buildId_(buildId),
+      partBytes_(partBytes),
+      session_(place.session),
+      part_(place.part),
+      chain_(place.chain),
+      file_(PartFile::open(partOf(place.journal, place.part), place.offset, place.seen)) {
+    std::error_code none;  // one that was made, and not yet gone on with
+    fs::remove(partOf(journal_, part_ + 1), none);
+}
+
+void JournalWriter::rotate(const JournalEnd& now) {
+    writeWaiting();
+    // The next part is there, with the checksum that it hangs on, before this one says that it is.
+    std::uint64_t chain = chain_;
+    const base::Bytes continued = encodeRecord(JournalContinued{part_ + 1}, chain);
+    JournalHeader header;
+    header.session = session_;
+    header.part = part_ + 1;
+    header.continues = chain;
+    header.sand = now;
+    header.buildId = buildId_;
+    const base::Bytes begin = encodeHeader(header, chain);
+    PartFile next = PartFile::make(partOf(journal_, part_ + 1), begin);
+    file_.write(continued);
+    file_ = std::move(next);
+    chain_ = chain;
+    ++part_;
+}
+
+JournalWriter::Room JournalWriter::makeRoom(std::int64_t bytes, const JournalEnd& now, std::string& why) {
+    if (file_.size() > partBytes_) {
+        try {
+            rotate(now);
+        } catch (const base::InputError& error) {
+            why = error.what();
+            return Room::none;
+        }
+    }
+    const int error = file_.reserve(bytes + static_cast<std::int64_t>(waiting_.size()));
+    if (error == 0) {
+        return Room::reserved;
+    }
+    why = file_.path().string() + ": " + std::strerror(error);
+    return error == ENOSPC || error == EDQUOT ? Room::none : Room::unknown;
+}
+
+void JournalWriter::put(const JournalRecord& record) {
+    const base::Bytes bytes = encodeRecord(record, chain_);
+    const std::size_t end = waiting_.size();
+    waiting_.resize(end + bytes.size());
+    std::memcpy(waiting_.data() + end, bytes.data(), bytes.size());
+}
+
+void JournalWriter::writeWaiting() {
+    if (!waiting_.empty()) {
+        file_.write(waiting_);
+        waiting_.clear();
+    }
+}
+
+bool JournalWriter::keep(const JournalRecord& record) {
+    if (waiting_.size() > kMostHeld && std::holds_alternative<JournalTicks>(record)) {
+        return false;
+    }
+    put(record);
+    if (waiting_.size() > kMostWaiting) {
+        const int error = file_.reserve(static_cast<std::int64_t>(waiting_.size()));
+        if (error != ENOSPC && error != EDQUOT) {
+            writeWaiting();
+        }
+    }
+    return true;
+}
+
+void JournalWriter::append(const JournalFrame& frame) {
+    put(frame);
+    writeWaiting();
+}
+
+void JournalWriter::resume(const JournalResumed& resumed) {
+    put(resumed);
+    writeWaiting();
+}
+
+void JournalWriter::finish(std::uint64_t step, std::uint64_t hash) {
+    put(JournalEnd{step, hash});
+    writeWaiting();
+}
+
+}  // namespace master

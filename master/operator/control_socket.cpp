@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/operator/control_socket.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "master/operator/operator_command.hpp"
+
+namespace master {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// The socket by way of its folder's descriptor: a socket's own path holds 107 bytes, and folders may be deeper.
+sockaddr_un addressIn(int folder) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    const std::string path = fmt::format("/proc/self/fd/{}/{}", folder, ControlSocket::kName);
+    path.copy(address.sun_path, sizeof address.sun_path - 1);
+    return address;
+}
+
+bool somebodyListensAt(const sockaddr_un& address) {
+    const int probe = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    const bool reached = connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+    const bool busy = !reached && errno == EAGAIN;
+    close(probe);
+    return reached || busy;
+}
+
+const char* const kRefusal = R"({"error":"the session belongs to another user","ok":false})";
+const char* const kTooMany = R"({"error":"too many clients at once; try again","ok":false})";
+const char* const kTooLong = R"({"error":"a command of more than 1024 bytes","ok":false})";
+static_assert(kLongestCommand == 1024, "said above");
+
+}  // namespace
+
+ControlSocket::ControlSocket(const std::filesystem::path& folder) : folder_(folder) {
+    if (const std::string failure = open(); !failure.empty()) {
+        fmt::print(stderr, "sandwall: {}: {}; the session runs without sandwall ctl\n", (folder / kName).string(),
+                   failure);
+        return;
+    }
+    thread_ = std::thread([this] { serve(); });
+}
+
+std::string ControlSocket::open() {
+    const auto because = [](const char* what) { return fmt::format("{} ({})", what, std::strerror(errno)); };
+    folderDescriptor_ = ::open(folder_.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+    if (folderDescriptor_ < 0) {
+        return because("cannot be reached");
+    }
+    const sockaddr_un address = addressIn(folderDescriptor_);
+    struct stat there {};
+    if (fstatat(folderDescriptor_, kName, &there, AT_SYMLINK_NOFOLLOW) == 0) {
+        if (!S_ISSOCK(there.st_mode)) {
+            return "is there already, and no socket";
+        }
+        if (somebodyListensAt(address)) {
+            return "another session runs in this folder";
+        }
+        unlinkat(folderDescriptor_, kName, 0);
+    }
+    const int made = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    // Before it has a name: there must be no moment in which others may open it.
+    fchmod(made, S_IRUSR | S_IWUSR);
+    if (made < 0 || bind(made, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+        std::string failure = because("cannot be made");
+        close(made);
+        return failure;
+    }
+    listener_ = made;
+    if (listen(listener_, static_cast<int>(kMostClients)) != 0 || pipe2(wake_, O_CLOEXEC | O_NONBLOCK) != 0) {
+        return because("cannot be listened at");
+    }
+    return "";
+}
+
+ControlSocket::~ControlSocket() {
+    if (thread_.joinable()) {
+        {
+            const std::lock_guard lock(mutex_);
+            ending_ = true;
+        }
+        close(wake_[1]);
+        thread_.join();
+        close(wake_[0]);
+    }
+    for (const auto& [client, guest] : guests_) {
+        close(guest.descriptor);
+    }
+    if (listener_ >= 0) {
+        close(listener_);
+        unlinkat(folderDescriptor_, kName, 0);
+    }
+    if (folderDescriptor_ >= 0) {
+        close(folderDescriptor_);
+    }
+}
+
+std::vector<ControlSocket::Asked> ControlSocket::take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(asked_, {});
+}
+
+void ControlSocket::answer(Client client, std::string json) {
+    const std::lock_guard lock(mutex_);
+    answers_.push_back({client, std::move(json)});
+    const char any = 0;
+    // A full pipe wakes the thread as well.
+    [[maybe_unused]] const ssize_t written = ::write(wake_[1], &any, 1);
+}
+
+void ControlSocket::admit() {
+    const int descriptor = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+    if (descriptor < 0) {
+        return;
+    }
+    ucred peer{};
+    socklen_t size = sizeof peer;
+    const bool known = getsockopt(descriptor, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0;
+    Guest guest;
+    guest.descriptor = descriptor;
+    guest.until = Clock::now() + std::chrono::seconds(kPatience);
+    if (!known || !mayCommand(peer.uid, geteuid())) {
+        guest.out = std::string(kRefusal) + "\n";
+    } else if (guests_.size() >= kMostClients) {
+        guest.out = std::string(kTooMany) + "\n";
+    }
+    if (!guest.out.empty()) {
+        (void)write(guest);
+        close(descriptor);
+        return;
+    }
+    guests_.emplace(++lastClient_, std::move(guest));
+}
+
+void ControlSocket::read(Client client, Guest& guest) {
+    std::array<char, 512> piece{};
+    const ssize_t count = recv(guest.descriptor, piece.data(), piece.size(), 0);
+    if (count <= 0) {
+        guest.until = Clock::time_point::min();  // it ended without a line
+        return;
+    }
+    guest.in.append(piece.data(), static_cast<std::size_t>(count));
+    const std::size_t end = guest.in.find('\n');
+    if (std::min(end, guest.in.size()) > kLongestCommand) {
+        guest.out = std::string(kTooLong) + "\n";
+        guest.waiting = true;
+    } else if (end != std::string::npos) {
+        guest.waiting = true;
+        const std::lock_guard lock(mutex_);
+        asked_.push_back({client, guest.in.substr(0, end)});
+    }
+}
+
+bool ControlSocket::write(Guest& guest) {
+    const ssize_t count = send(guest.descriptor, guest.out.data(), guest.out.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (count < 0) {
+        return errno == EAGAIN || errno == EINTR;
+    }
+    guest.out.erase(0, static_cast<std::size_t>(count));
+    return !guest.out.empty();
+}
+
+void ControlSocket::collectAnswers() {
+    std::vector<Asked> answers;
+    {
+        const std::lock_guard lock(mutex_);
+        answers.swap(answers_);
+    }
+    for (Asked& answer : answers) {
+        if (const auto found = guests_.find(answer.client); found != guests_.end()) {
+            found->second.out = std::move(answer.line) + "\n";
+            found->second.until = Clock::now() + std::chrono::seconds(kPatience);
+        }
+    }
+}
+
+void ControlSocket::sendAway(const std::vector<Client>& clients) {
+    for (const Client client : clients) {
+        close(guests_.at(client).descriptor);
+        guests_.erase(client);
+    }
+}
+
+void ControlSocket::serve() {
+    constexpr int kLook = 500;  // [ms] between looks for guests whose time is over
+    while (true) {
+        std::vector<pollfd> watched{{wake_[0], POLLIN, 0}, {listener_, POLLIN, 0}};
+        std::vector<Client> clients;
+        for (const auto& [client, guest] : guests_) {
+            const int wanted = !guest.out.empty() ? POLLOUT : guest.waiting ? 0 : POLLIN;
+            watched.push_back({guest.descriptor, static_cast<short>(wanted), 0});
+            clients.push_back(client);
+        }
+        poll(watched.data(), watched.size(), guests_.empty() ? -1 : kLook);
+        std::array<char, 64> any{};
+        while (::read(wake_[0], any.data(), any.size()) > 0) {
+        }
+        bool ending = false;
+        {
+            const std::lock_guard lock(mutex_);
+            ending = ending_;
+        }
+        collectAnswers();
+        if (ending) {  // who asked for the end has been answered a moment ago
+            for (auto& [client, guest] : guests_) {
+                (void)(guest.out.empty() || write(guest));
+            }
+            return;
+        }
+        std::vector<Client> leaving;
+        for (std::size_t i = 0; i < clients.size(); ++i) {
+            Guest& guest = guests_.at(clients[i]);
+            const int seen = watched[i + 2].revents;
+            if ((seen & POLLIN) != 0) {
+                read(clients[i], guest);
+            }
+            const bool inTime = (guest.waiting && guest.out.empty()) || Clock::now() < guest.until;
+            const bool gone = (seen & (POLLHUP | POLLERR)) != 0 && (seen & POLLIN) == 0;
+            if (!inTime || gone || (!guest.out.empty() && !write(guest))) {
+                leaving.push_back(clients[i]);
+            }
+        }
+        sendAway(leaving);
+        if ((watched[1].revents & POLLIN) != 0) {
+            admit();
+        }
+    }
+}
+
+}  // namespace master

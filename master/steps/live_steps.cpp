@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/steps/live_steps.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "host/clock.hpp"
+#include "host/event.hpp"
+#include "lockstep/cluster.hpp"
+#include "scene/scene.hpp"
+
+namespace master {
+
+using haptic_bridge::Link;
+using haptic_bridge::TimedStep;
+using host::monotonicNs;
+
+namespace {
+
+double secondsSince(std::int64_t then) { return static_cast<double>(monotonicNs() - then) * 1e-9; }
+
+/// As the event `link` has it.
+const char* nameOf(Link link) {
+    switch (link) {
+        case Link::connecting:
+            return "connecting";
+        case Link::refused:
+            return "refused";
+        case Link::offered:
+            return "offered";
+        case Link::granting:
+            return "granting";
+        case Link::linked:
+            return "linked";
+        case Link::streaming:
+            return "streaming";
+        case Link::lost:
+            return "lost";
+        case Link::stopped:
+            return "stopped";
+    }
+    return "";
+}
+
+}  // namespace
+
+Sequencer::Sequencer(std::optional<haptic_bridge::Address> server, const sand::Scene& scene, Pace pace,
+                     std::uint32_t epoch, haptic_bridge::LinkSecurity security)
+    : server_(std::move(server)),
+      offer_{scene.rules.digest(), scene.name},
+      security_(std::move(security)),
+      stepsPerSecond_(scene.rules.stepsPerSecond),
+      pace_(pace),
+      source_(server_ ? Source::starting : Source::own),
+      epoch_(epoch),
+      waitingSinceNs_(monotonicNs()),
+      positions_(scene) {
+    if (server_) {
+        client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_, security_);
+    } else {
+        takeOver();
+    }
+}
+
+void Sequencer::takeOver(const std::string& reason, const std::string& why) {
+    if (!why.empty()) {
+        fmt::print(stderr, "haptic link: {}; the wall goes on without a hand\n", why);
+    }
+    source_ = Source::own;
+    ++epoch_;
+    if (!reason.empty()) {
+        host::emitEvent("without_hand", {{"reason", reason}, {"epoch", epoch_}});
+    }
+    ownStepsOwed_ = 0;
+    lastOwnNs_ = monotonicNs();
+}
+
+void Sequencer::grant(const sand::Terrain& terrain, std::uint64_t stateHash) {
+    ++epoch_;
+    client_->grant(epoch_, terrain.stepNumber(), stateHash, terrain.encodeState(), recent_);
+    source_ = Source::granting;
+    waitingSinceNs_ = monotonicNs();
+}
+
+void Sequencer::sayLink(const haptic_bridge::LinkStatus& status) {
+    if (status.changes != linkChanges_) {
+        linkChanges_ = status.changes;
+        host::emitEvent("link", {{"state", nameOf(status.link)}, {"epoch", epoch_}, {"server", server_->text()}});
+        if (!status.message.empty()) {
+            fmt::print(stderr, "haptic link: {}\n", status.message);
+        }
+    }
+}
+
+void Sequencer::followLink(const sand::Terrain& terrain, std::uint64_t stateHash) {
+    if (!client_ && server_ && secondsSince(waitingSinceNs_) > kRetryWait) {
+        client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_, security_);
+    }
+    if (!client_) {
+        return;
+    }
+    const haptic_bridge::LinkStatus status = client_->link();
+    sayLink(status);
+    followPositions(status, terrain);
+    if (status.link == Link::linked) {
+        source_ = Source::server;
+    } else if (status.link == Link::streaming) {
+        if (source_ != Source::own) {
+            takeOver();
+        }
+    } else if (status.link == Link::offered) {
+        grant(terrain, stateHash);
+    } else if (source_ == Source::granting && status.link == Link::granting) {
+        if (secondsSince(waitingSinceNs_) > kGrantWait) {
+            leaveServer();  // for a while: each try stops the sand
+            waitingSinceNs_ = monotonicNs();
+            takeOver("server_does_not_begin", fmt::format("{} does not begin", server_->text()));
+        }
+    } else if (source_ == Source::starting) {
+        if (status.link == Link::refused) {
+            takeOver("refused", "refused");
+        } else if (secondsSince(waitingSinceNs_) > kStartWait) {
+            takeOver("no_server", fmt::format("nobody at {} for {:.0f} s", server_->text(), kStartWait));
+        }
+    } else if (source_ != Source::own) {
+        takeOver("lost", "lost");
+    }
+}
+
+void Sequencer::followPositions(const haptic_bridge::LinkStatus& status, const sand::Terrain& terrain) {
+    if (status.link != Link::streaming) {
+        positions_.end();
+        return;
+    }
+    if (!positions_.streaming()) {
+        positions_.begin(terrain);
+    }
+    positions_.add(client_->drainPositions(), monotonicNs());
+    for (const std::string& line : positions_.troubles(client_->floods(), monotonicNs())) {
+        fmt::print(stderr, "{}\n", line);
+    }
+}
+
+std::size_t Sequencer::ownStepsDue() {
+    if (pace_ == Pace::fast) {
+        return 1;
+    }
+    const std::int64_t now = monotonicNs();
+    ownStepsOwed_ += static_cast<double>(now - lastOwnNs_) * 1e-9 * stepsPerSecond_;
+    lastOwnNs_ = now;
+    const double due = std::floor(ownStepsOwed_);
+    ownStepsOwed_ -= due;
+    return static_cast<std::size_t>(due);
+}
+
+void Sequencer::passEdits(const std::vector<TimedStep>& steps) {
+    for (const TimedStep& timed : steps) {
+        if (timed.step.edit.any() && !edits_.empty() && timed.step.edit == edits_.front()) {
+            edits_.pop_front();
+            toldEpoch_ = 0;
+        }
+    }
+    if (source_ != Source::server) {
+        toldShare_ = 1;  // as a server begins
+    } else if (toldShare_ != share_) {
+        client_->shareForce(share_);
+        toldShare_ = share_;
+    }
+    // One at a time: the server keeps one for its next step. A link that was lost took along what it was asked for.
+    if (source_ == Source::server && !edits_.empty() && toldEpoch_ != epoch_) {
+        client_->request(edits_.front());
+        toldEpoch_ = epoch_;
+    }
+}
+
+std::vector<TimedStep> Sequencer::next(const sand::Terrain& terrain, std::uint64_t stateHash, std::size_t most) {
+    if (server_) {
+        recent_.reached(terrain.stepNumber(), stateHash);
+    }
+    std::vector<TimedStep> steps = stepsDue(terrain, stateHash, most);
+    passEdits(steps);
+    for (const TimedStep& timed : steps) {
+        if (server_) {
+            recent_.add(timed.step);
+            if (source_ == Source::server) {
+                recent_.reached(timed.step.number, timed.serverHash);  // proved by the wall, or the server is let go
+            }
+        }
+    }
+    startDrills();
+    return steps;
+}
+
+std::vector<TimedStep> Sequencer::stepsDue(const sand::Terrain& terrain, std::uint64_t stateHash, std::size_t most) {
+    std::vector<TimedStep> steps;
+    if (client_ && source_ == Source::server) {
+        steps = client_->drain(most);
+    }
+    if (!steps.empty()) {
+        return steps;
+    }
+    const bool fromServer = source_ == Source::server;
+    followLink(terrain, stateHash);
+    if (fromServer && source_ == Source::own && client_) {
+        // What arrived between the first look and the loss counts too.
+        steps = client_->drain(most);
+        if (!steps.empty()) {
+            source_ = Source::server;
+            --epoch_;
+            return steps;
+        }
+    }
+    if (source_ == Source::own) {
+        // A wall slower than the steps does not catch up on hovering: it would only fall further behind.
+        const std::size_t due = std::min(ownStepsDue(), most);
+        for (std::size_t i = 0; i < due; ++i) {
+            TimedStep& own = steps.emplace_back();
+            own.step.epoch = epoch_;
+            own.step.number = terrain.stepNumber() + 1 + i;
+            positions_.fill(own.step);
+            own.step.edit = i < edits_.size() ? edits_[i] : sand::Edit();
+        }
+    }
+    return steps;
+}
+
+void Sequencer::shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs) {
+    if (client_) {
+        client_->shown(stepNumber, frameIntervalNs);
+    }
+}
+
+void Sequencer::shareForce(double share) { share_ = share; }
+
+std::vector<base::Bytes> Sequencer::ticks() {
+    std::vector<base::Bytes> pieces = std::exchange(ticks_, {});
+    if (client_) {
+        for (base::Bytes& piece : client_->drainTicks()) {
+            pieces.push_back(std::move(piece));
+        }
+    }
+    return pieces;
+}
+
+void Sequencer::leaveServer() {
+    ticks_ = ticks();
+    earlierReport_ = report();
+    earlierLinks_ = counters();
+    ++earlierLinks_.reconnects;
+    client_->stop();
+    client_.reset();
+    linkChanges_ = 0;
+}
+
+void Sequencer::distrustServer() {
+    leaveServer();
+    recent_ = {};  // it holds what that server has said of the sand
+    client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_, security_);
+    takeOver("other_sand", "the server's sand differs from the wall's, it must start again from the wall's");
+}
+
+void Sequencer::startDrills() {
+    if (!client_ || !(linked() || streaming())) {
+        return;
+    }
+    for (const lockstep::Fault& fault : std::exchange(drills_, {})) {
+        const bool silence = fault.kind == lockstep::Fault::Kind::partition;
+        client_->drill(silence ? haptic_bridge::LinkDrill::silence : haptic_bridge::LinkDrill::garbage,
+                       std::chrono::milliseconds(fault.milliseconds));
+    }
+}
+
+std::optional<haptic_bridge::Report> Sequencer::report() const {
+    const auto latest = client_ ? client_->report() : std::nullopt;
+    return latest ? latest : earlierReport_;
+}
+
+haptic_bridge::LinkCounters Sequencer::counters() const {
+    haptic_bridge::LinkCounters sum = earlierLinks_;
+    if (client_) {
+        sum.add(client_->counters());
+    }
+    return sum;
+}
+
+void Sequencer::stop() {
+    if (client_) {
+        client_->stop();
+    }
+}
+
+}  // namespace master

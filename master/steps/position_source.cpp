@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/steps/position_source.hpp"
+
+#include <cmath>
+
+#include "scene/scene.hpp"
+
+namespace master {
+
+using haptic_bridge::Trouble;
+
+PositionSource::PositionSource(const sand::Scene& scene)
+    : mapping_(scene, haptic_bridge::HandSettings::Datum::surface), path_(scene.rules.stepsPerSecond) {}
+
+void PositionSource::begin(const sand::Terrain& terrain) {
+    streaming_ = true;
+    // Whoever numbered before may have left the tool in the sand elsewhere: no furrow from there to here.
+    liftFirst_ = terrain.engaged();
+    last_ = terrain.probe();
+    path_.restart(last_, false);
+    check_.emplace(kFarthest, counts_);
+}
+
+void PositionSource::add(const std::vector<haptic_bridge::TimedPosition>& positions, std::int64_t nowNs) {
+    if (positions.empty()) {
+        if (static_cast<double>(nowNs - heardNs_) * 1e-9 > kPatience) {
+            path_.add({nowNs, last_, false});
+            heardNs_ = nowNs;
+        }
+        return;
+    }
+    heardNs_ = nowNs;
+    for (const haptic_bridge::TimedPosition& timed : positions) {
+        const haptic_bridge::Position& position = timed.position;
+        // Heights count in tool radii: a hand may well fall by many of them between two positions.
+        const bool good = check_->accept(static_cast<double>(position.timeNs) * 1e-9, {position.x, position.y, 0}) &&
+                          mapping_.probe({position.x, position.y, position.z}).has_value();
+        if (good) {
+            last_ = *mapping_.probe({position.x, position.y, position.z});
+        } else if (!std::isfinite(position.z)) {
+            counts_.count(Trouble::noNumber);
+        }
+        path_.add({timed.receivedNs, last_, good && position.engaged});
+    }
+}
+
+void PositionSource::fill(sand::Step& step) {
+    if (streaming_ && !liftFirst_) {
+        (void)path_.take(step);
+    }
+    liftFirst_ = false;
+}
+
+std::vector<std::string> PositionSource::troubles(std::uint64_t floods, std::int64_t nowNs) {
+    for (; floods_ < floods; ++floods_) {
+        counts_.count(Trouble::flood);
+    }
+    return teller_.lines(counts_, static_cast<double>(nowNs) * 1e-9);
+}
+
+}  // namespace master

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/gl_check.hpp"
+
+#include <fmt/format.h>
+
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "base/input_error.hpp"
+#include "host/command_line.hpp"
+#include "render_node/gl/gl_context.hpp"
+#include "walls/wall.hpp"
+
+namespace render_node {
+namespace {
+
+struct Options {
+    int rank = 0;
+    std::string gl = "auto";
+    bool json = false;
+};
+
+int probe(const Options& options) {
+    const Backend backend = backendNamed(options.gl);
+    const int rank = options.rank;
+    walls::Wall wall;
+    std::unique_ptr<GlContext> context;
+    if (rank == 0) {
+        context = makeOffscreenContext(backend);
+    } else {
+        wall = walls::parseWall(std::string{std::istreambuf_iterator<char>(std::cin), {}}, "standard input");
+        if (rank > wall.ranks()) {
+            throw base::InputError(
+                fmt::format("--probe: the wall on standard input has {} ranks, not {}", wall.ranks(), rank));
+        }
+        context = makeContext(backend, wall, wall.tiles[static_cast<std::size_t>(rank - 1)]);
+    }
+    if (options.json) {
+        const nlohmann::ordered_json found{
+            {"backend", context->name()}, {"renderer", context->renderer()}, {"shortcomings", context->shortcomings()}};
+        fmt::print("{}\n", found.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+        return 0;
+    }
+    fmt::print("{}: {}\n", context->name(), context->renderer());
+    for (const std::string& line : context->shortcomings()) {
+        fmt::print("{}\n", line);
+    }
+    return 0;
+}
+
+}  // namespace
+
+int probeMain(int argc, char** argv) {
+    host::CommandLine line(
+        "Tries what a render rank draws with on this machine; the wall file comes on standard input.",
+        "sandwall-render-node");
+    Options options;
+    line.option("--probe", options.rank, "which rank of the wall; 0: none, off screen").range(0, walls::kMaxTiles);
+    line.option("--gl", options.gl, "what draws: auto, osmesa, egl, glfw").showDefault();
+    line.flag("--json", options.json, "print an object with backend, renderer and a list of shortcomings");
+    return host::runMain(line, argc, argv, [&] { return probe(options); });
+}
+
+}  // namespace render_node

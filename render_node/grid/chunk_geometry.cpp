@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/grid/chunk_geometry.hpp"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "render_node/grid/levels.hpp"
+
+namespace render_node {
+namespace {
+
+/// Writes how the shader finds a SandVertex's parts into the bound vertex array.
+void describeVertex() {
+    const auto attribute = [](GLuint index, GLint count, GLenum type, GLboolean normalised, std::size_t offset) {
+        glEnableVertexAttribArray(index);
+        glVertexAttribPointer(index, count, type, normalised, sizeof(SandVertex),
+                              reinterpret_cast<const void*>(offset));
+    };
+    attribute(0, 1, GL_FLOAT, GL_FALSE, offsetof(SandVertex, height));
+    attribute(1, 2, GL_UNSIGNED_SHORT, GL_FALSE, offsetof(SandVertex, column));
+    attribute(2, 2, GL_SHORT, GL_TRUE, offsetof(SandVertex, normalEast));
+    attribute(3, 2, GL_UNSIGNED_SHORT, GL_TRUE, offsetof(SandVertex, open));
+}
+
+GLintptr bytesOf(std::size_t vertices) { return static_cast<GLintptr>(vertices * sizeof(SandVertex)); }
+
+}  // namespace
+
+ChunkGeometry::ChunkGeometry(const sand::Rect& vertices, int level)
+    : vertices_(vertices), stale_(vertices), level_(level) {}
+
+void ChunkGeometry::markStale(const sand::Rect& vertices) { stale_ = stale_.joinedWith(vertices.clippedTo(vertices_)); }
+
+void ChunkGeometry::refresh(const SandSurface& surface) {
+    if (stale_.empty()) {
+        return;
+    }
+    if (level_ > 0 || bytes_ == 0) {
+        sendAll(surface);
+    } else {
+        glBindBuffer(GL_ARRAY_BUFFER, buffer_.id());
+        std::vector<SandVertex> row(static_cast<std::size_t>(stale_.x1 - stale_.x0));
+        const int across = vertices_.x1 - vertices_.x0;
+        for (int y = stale_.y0; y < stale_.y1; ++y) {
+            surface.vertices(stale_.x0, y, row);
+            const int first = (y - vertices_.y0) * across + stale_.x0 - vertices_.x0;
+            glBufferSubData(GL_ARRAY_BUFFER, bytesOf(static_cast<std::size_t>(first)), bytesOf(row.size()), row.data());
+        }
+    }
+    stale_ = {};
+}
+
+void ChunkGeometry::sendAll(const SandSurface& surface) {
+    const std::vector<SandVertex> vertices = verticesOf(surface, vertices_, level_);
+    const bool first = bytes_ == 0;
+    bytes_ = vertices.size() * sizeof(SandVertex);
+    glBindVertexArray(array_.id());
+    glBindBuffer(GL_ARRAY_BUFFER, buffer_.id());
+    glBufferData(GL_ARRAY_BUFFER, bytesOf(vertices.size()), vertices.data(), GL_DYNAMIC_DRAW);
+    if (first) {
+        describeVertex();
+    }
+}
+
+}  // namespace render_node

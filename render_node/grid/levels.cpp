@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/grid/levels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace render_node {
+namespace {
+
+constexpr int kKeptCells = 128;
+
+// How far mottling changes the sand's shade, as in shaders/sunlit.glsl.
+constexpr float kDarkest = 0.86F;
+constexpr float kMottling = 0.28F;
+
+/// What interpolation over the triangles of a level is compared on.
+struct Samples {
+    std::vector<float> values;  // row by row
+    int across;
+
+    [[nodiscard]] float at(int x, int y) const {
+        return values[static_cast<std::size_t>(y) * static_cast<std::size_t>(across) + static_cast<std::size_t>(x)];
+    }
+};
+
+/// Where a vertex lies between two others, 0 … 1: the outermost ones of a field stand closer.
+std::vector<float> sharesOf(const std::vector<float>& places, int stride) {
+    std::vector<float> shares;
+    for (int i = 0; i + 1 < static_cast<int>(places.size()); ++i) {
+        const auto first = static_cast<std::size_t>(i / stride * stride);
+        const float length = places[first + static_cast<std::size_t>(stride)] - places[first];
+        shares.push_back(length > 0 ? (places[static_cast<std::size_t>(i)] - places[first]) / length : 0.0F);
+    }
+    return shares;
+}
+
+/// The largest distance of the samples of one quad of a level from its two triangles. Its north and east sides are
+/// those of other quads, or of another chunk. The stride is a constant for the compiler's sake.
+template <int kStride>
+float distanceInQuad(const Samples& samples, glm::ivec2 at, const float* shareEast, const float* shareNorth) {
+    const float southWest = samples.at(at.x, at.y);
+    const float east = samples.at(at.x + kStride, at.y) - southWest;
+    const float north = samples.at(at.x, at.y + kStride) - southWest;
+    const float twist = samples.at(at.x + kStride, at.y + kStride) - southWest - east - north;
+    const bool rising = (at.x / kStride + at.y / kStride) % 2 == 0;
+    float most = 0;
+    for (int y = 0; y < kStride; ++y) {
+        const float v = shareNorth[at.y + y];
+        const float* row = &samples.values[static_cast<std::size_t>((at.y + y) * samples.across + at.x)];
+        for (int x = 0; x < kStride; ++x) {
+            const float u = shareEast[at.x + x];
+            const float beyond = rising ? std::min(u, v) : std::max(u + v - 1, 0.0F);
+            const float between = southWest + u * east + v * north + beyond * twist;
+            most = std::max(most, std::abs(between - row[x]));
+        }
+    }
+    return most;
+}
+
+template <int kStride>
+float distance(const Samples& samples, const std::vector<float>& shareEast, const std::vector<float>& shareNorth) {
+    float most = 0;
+    for (int y = 0; y < static_cast<int>(shareNorth.size()); y += kStride) {
+        for (int x = 0; x < static_cast<int>(shareEast.size()); x += kStride) {
+            most = std::max(most, distanceInQuad<kStride>(samples, {x, y}, shareEast.data(), shareNorth.data()));
+        }
+    }
+    return most;
+}
+
+}  // namespace
+
+int coarsestLevel(int columns, int rows) {
+    int level = 0;
+    while (level + 1 < kLevels && (std::max(columns, rows) >> (level + 1)) >= kKeptCells) {
+        ++level;
+    }
+    return level;
+}
+
+LevelErrors errorsOf(const SandSurface& surface, const sand::Rect& vertices, const glm::vec3& sun, int coarsest) {
+    const int across = vertices.x1 - vertices.x0;
+    const int down = vertices.y1 - vertices.y0;
+    const std::size_t all = static_cast<std::size_t>(across) * static_cast<std::size_t>(down);
+    Samples heights{std::vector<float>(all), across};
+    Samples light{std::vector<float>(all), across};
+    std::vector<float> east, north;
+    for (int column = vertices.x0; column < vertices.x1; ++column) {
+        east.push_back(surface.east(column));
+    }
+    std::size_t next = 0;
+    for (int row = vertices.y0; row < vertices.y1; ++row) {
+        north.push_back(surface.north(row));
+        for (int column = vertices.x0; column < vertices.x1; ++column) {
+            const glm::vec2 slope = surface.slope(column, row);
+            heights.values[next] = surface.height(column - 1, row - 1);
+            const float towards = sun.z - slope.x * sun.x - slope.y * sun.y;
+            const float lit = std::max(0.0F, towards / std::sqrt(1 + slope.x * slope.x + slope.y * slope.y));
+            light.values[next++] = lit * (kDarkest + kMottling * surface.mottling(column, row));
+        }
+    }
+    LevelErrors errors;
+    constexpr std::array kDistances{distance<1>, distance<2>, distance<4>, distance<8>, distance<16>};
+    static_assert(kDistances.size() == kLevels);
+    for (std::size_t level = 1; level <= static_cast<std::size_t>(coarsest); ++level) {
+        const std::vector<float> shareEast = sharesOf(east, 1 << level);
+        const std::vector<float> shareNorth = sharesOf(north, 1 << level);
+        errors.height[level] = kDistances[level](heights, shareEast, shareNorth);
+        errors.light[level] = kDistances[level](light, shareEast, shareNorth);
+    }
+    return errors;
+}
+
+}  // namespace render_node

@@ -1,0 +1,384 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/grid/mesh.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace render_node {
+namespace {
+
+constexpr int kChunk = 16;                      // [quad], the shortest side but for small fields
+constexpr int kGroup = 8;                       // [chunk], the side of a group
+constexpr int kMostChanges = 36;                // of one update
+constexpr int kSmallestPart = 32;               // [cell], the side of one
+constexpr std::size_t kManyBytes = 16UL << 20;  // of vertices: then those not drawn lately are dropped
+constexpr std::uint64_t kLately = 120;          // [draw]: a second or two
+
+// Levels need sides that twice their strides divide; a field without any gets chunks of one size.
+int shortestSide(int coarsest) { return std::max(kChunk, 2 << coarsest); }
+int chunksFor(int quads, int coarsest) {
+    const int side = shortestSide(coarsest);
+    return coarsest > 0 ? (quads + side - 1) / side : std::max(1, quads / side);
+}
+int sideFor(int quads, int coarsest) {
+    return coarsest > 0 ? shortestSide(coarsest) : (quads + chunksFor(quads, 0) - 1) / chunksFor(quads, 0);
+}
+
+}  // namespace
+
+SandMesh::SandMesh(const sand::HeightField& field, const glm::vec3& sun)
+    : surface_(field),
+      sun_(sun),
+      coarsest_(coarsestLevel(field.columns(), field.rows())),
+      across_(chunksFor(field.columns() + 1, coarsest_)),
+      down_(chunksFor(field.rows() + 1, coarsest_)),
+      quadsAcross_(sideFor(field.columns() + 1, coarsest_)),
+      quadsDown_(sideFor(field.rows() + 1, coarsest_)) {
+    makeChunks();
+    makeGroups();
+    ever_ = groups_.front().heights;
+    for (const Group& group : groups_) {
+        ever_ = around(ever_, group.heights);
+    }
+}
+
+void SandMesh::makeChunks() {
+    chunks_.reserve(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_));
+    for (int y = 0; y < down_; ++y) {
+        for (int x = 0; x < across_; ++x) {
+            Chunk& made = chunks_.emplace_back();
+            made.vertices = {x * quadsAcross_, y * quadsDown_, (x + 1) * quadsAcross_ + 1, (y + 1) * quadsDown_ + 1};
+            made.heights = surface_.heights(made.vertices);
+        }
+    }
+}
+
+void SandMesh::makeGroups() {
+    for (int y = 0; y < down_; y += kGroup) {
+        for (int x = 0; x < across_; x += kGroup) {
+            Group group;
+            group.chunks = {x, y, std::min(x + kGroup, across_), std::min(y + kGroup, down_)};
+            group.vertices = {x * quadsAcross_, y * quadsDown_, group.chunks.x1 * quadsAcross_ + 1,
+                              group.chunks.y1 * quadsDown_ + 1};
+            group.heights = surface_.heights(group.vertices);
+            groups_.push_back(group);
+        }
+    }
+}
+
+/// The vertices that look different when these cells have changed.
+sand::Rect SandMesh::verticesOver(const sand::Rect& cells) const {
+    // Cell c lies under vertex c + 1; normals and shade of the vertices around depend on it.
+    const sand::Rect reached =
+        sand::Rect{cells.x0 + 1, cells.y0 + 1, cells.x1 + 1, cells.y1 + 1}.grownBy(SandSurface::kReach);
+    // The outermost ring repeats the next one, and what chunks have beyond the grid repeats that.
+    const auto first = [](int vertex) { return vertex <= 1 ? 0 : vertex; };
+    const auto end = [](int vertex, int count, int withBeyond) { return vertex > count ? withBeyond : vertex; };
+    return {first(reached.x0), first(reached.y0), end(reached.x1, surface_.columns(), across_ * quadsAcross_ + 1),
+            end(reached.y1, surface_.rows(), down_ * quadsDown_ + 1)};
+}
+
+std::vector<SandMesh::Change> SandMesh::changesOf(const sand::HeightField& field, const sand::Rect& cells) const {
+    // Small parts follow the sand closely, few parts are soon looked through.
+    int side = kSmallestPart;
+    while ((cells.x1 - cells.x0 + side - 1) / side * ((cells.y1 - cells.y0 + side - 1) / side) > kMostChanges) {
+        side *= 2;
+    }
+    std::vector<Change> changes;
+    for (int y = cells.y0; y < cells.y1; y += side) {
+        for (int x = cells.x0; x < cells.x1; x += side) {
+            const sand::Rect changed = surface_.differing(field, sand::Rect{x, y, x + side, y + side}.clippedTo(cells));
+            if (!changed.empty()) {
+                const sand::Rect vertices = verticesOver(changed);
+                changes.push_back({vertices, surface_.heights(vertices.grownBy(longestStride()))});
+            }
+        }
+    }
+    return changes;
+}
+
+void SandMesh::update(const sand::HeightField& field, const sand::Rect& cells) {
+    const std::vector<Change> changes = changesOf(field, cells);
+    if (changes.empty()) {
+        return;
+    }
+    surface_.update(field, cells);
+    ++revision_;
+    for (const Change& change : changes) {
+        const HeightRange heights = around(change.before, surface_.heights(change.vertices.grownBy(longestStride())));
+        damage_.add(revision_, {change.vertices, heights});
+        ever_ = around(ever_, heights);
+        markChanged(chunksAround(change.vertices), change.vertices);
+    }
+}
+
+sand::Rect SandMesh::chunksAround(const sand::Rect& vertices) const {
+    // A vertex on an edge is part of both chunks.
+    return sand::Rect{(vertices.x0 - 1) / quadsAcross_, (vertices.y0 - 1) / quadsDown_,
+                      (vertices.x1 - 1) / quadsAcross_ + 1, (vertices.y1 - 1) / quadsDown_ + 1}
+        .clippedTo({0, 0, across_, down_});
+}
+
+void SandMesh::markChanged(const sand::Rect& chunks, const sand::Rect& vertices) {
+    for (int y = chunks.y0; y < chunks.y1; ++y) {
+        for (int x = chunks.x0; x < chunks.x1; ++x) {
+            Chunk& changed = chunk(x, y);
+            changed.revision = revision_;
+            changed.measured = false;
+            changed.heights = surface_.heights(changed.vertices);
+            for (ChunkGeometry& geometry : changed.geometries) {
+                geometry.markStale(vertices);
+            }
+            Group& group =
+                groups_[static_cast<std::size_t>(y / kGroup * ((across_ + kGroup - 1) / kGroup) + x / kGroup)];
+            group.revision = revision_;
+            group.heights = around(group.heights, changed.heights);
+        }
+    }
+}
+
+Box SandMesh::boxOf(const sand::Rect& vertices, const HeightRange& heights) const {
+    // A hundredth of a cell more, for what GL's floats may round.
+    const double margin = 0.01 * double{surface_.cellSize()};
+    const glm::dvec3 low(surface_.east(vertices.x0), surface_.north(vertices.y0), heights.lowest);
+    const glm::dvec3 high(surface_.east(vertices.x1 - 1), surface_.north(vertices.y1 - 1), heights.highest);
+    return {low - margin, high + margin};
+}
+
+template <class Visit>
+void SandMesh::visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit& visit) {
+    for (const Group& group : groups_) {
+        if (culling && !inFrustum(boxOf(group.vertices, group.heights), sceneToClip)) {
+            continue;
+        }
+        for (int y = group.chunks.y0; y < group.chunks.y1; ++y) {
+            for (int x = group.chunks.x0; x < group.chunks.x1; ++x) {
+                if (!culling || inFrustum(boxOf(chunk(x, y).vertices, chunk(x, y).heights), sceneToClip)) {
+                    visit(x, y);
+                }
+            }
+        }
+    }
+}
+
+int SandMesh::levelOf(int x, int y, const LevelRule& rule) {
+    Chunk& asked = chunk(x, y);
+    if (asked.chosenFor != choice_) {
+        if (!asked.measured && !rule.wantsEveryCell()) {
+            asked.errors = errorsOf(surface_, asked.vertices, sun_, coarsest_);
+            asked.measured = true;
+        }
+        asked.level = rule.level(boxOf(asked.vertices, asked.heights), asked.errors, coarsest_);
+        asked.chosenFor = choice_;
+    }
+    return asked.level;
+}
+
+/// The finer of two chunks decides how their edge is drawn. At the rim the sand meets its cut sides, which have all of
+/// the vertices.
+ChunkLevels SandMesh::levelsOf(int x, int y, const LevelRule& rule) {
+    if (coarsest_ == 0) {
+        return {};
+    }
+    ChunkLevels levels{levelOf(x, y, rule), {}};
+    const auto edge = [&](int besideX, int besideY) {
+        const bool rim = besideX < 0 || besideY < 0 || besideX == across_ || besideY == down_;
+        return rim ? 0 : std::min(levels.level, levelOf(besideX, besideY, rule));
+    };
+    levels.edges = {edge(x, y - 1), edge(x + 1, y), edge(x, y + 1), edge(x - 1, y)};
+    return levels;
+}
+
+DrawnLevels SandMesh::levelsWithin(const glm::dmat4& sceneToClip, const LevelRule& rule) {
+    if (coarsest_ == 0) {
+        return {};
+    }
+    ++choice_;
+    DrawnLevels levels(chunks_.size(), -1);
+    visitSeen(sceneToClip, true, [&](int x, int y) {
+        const sand::Rect beside = sand::Rect{x - 1, y - 1, x + 2, y + 2}.clippedTo({0, 0, across_, down_});
+        for (int v = beside.y0; v < beside.y1; ++v) {
+            for (int u = beside.x0; u < beside.x1; ++u) {
+                levels[static_cast<std::size_t>(v * across_ + u)] = static_cast<std::int8_t>(levelOf(u, v, rule));
+            }
+        }
+    });
+    return levels;
+}
+
+/// Whether the level of a chunk may show: in it, or along the edges of those around.
+bool SandMesh::mayMatter(int x, int y, const LevelRule& rule) const {
+    const sand::Rect beside = sand::Rect{x - 1, y - 1, x + 2, y + 2}.clippedTo({0, 0, across_, down_});
+    for (int v = beside.y0; v < beside.y1; ++v) {
+        for (int u = beside.x0; u < beside.x1; ++u) {
+            const Chunk& near = chunks_[static_cast<std::size_t>(v * across_ + u)];
+            if (rule.sees(boxOf(near.vertices, near.heights))) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/// The longest side along an axis of the triangles drawn at any of these vertices [cell].
+int SandMesh::strideAround(const sand::Rect& vertices, const DrawnLevels& levels) const {
+    int level = 0;
+    const sand::Rect chunks = levels.empty() ? sand::Rect{} : chunksAround(vertices);
+    for (int y = chunks.y0; y < chunks.y1; ++y) {
+        for (int x = chunks.x0; x < chunks.x1; ++x) {
+            level = std::max(level, static_cast<int>(levels[static_cast<std::size_t>(y * across_ + x)]));
+        }
+    }
+    return 1 << level;
+}
+
+/// So many more vertices around.
+Box SandMesh::boxAround(const sand::Rect& vertices, const HeightRange& heights, int margin) const {
+    const sand::Rect grid{0, 0, surface_.columns() + 2, surface_.rows() + 2};
+    return boxOf(vertices.grownBy(margin).clippedTo(grid), heights);
+}
+
+std::vector<Box> SandMesh::changesSince(std::uint64_t revision, DrawnLevels& levels, const LevelRule& rule) {
+    std::vector<Box> changed;
+    for (const auto& [since, part] : damage_.since(revision)) {
+        changed.push_back(boxAround(part.vertices, part.heights, strideAround(part.vertices, levels)));
+    }
+    updateLevels(levels, revision, rule, changed);
+    return changed;
+}
+
+void SandMesh::updateLevels(DrawnLevels& levels, std::uint64_t revision, const LevelRule& rule,
+                            std::vector<Box>& changed) {
+    ++choice_;
+    for (const Group& group : groups_) {
+        if (levels.empty() || group.revision <= revision) {
+            continue;
+        }
+        for (int y = group.chunks.y0; y < group.chunks.y1; ++y) {
+            for (int x = group.chunks.x0; x < group.chunks.x1; ++x) {
+                std::int8_t& drawn = levels[static_cast<std::size_t>(y * across_ + x)];
+                if (chunk(x, y).revision <= revision || (drawn < 0 && !mayMatter(x, y, rule))) {
+                    continue;
+                }
+                if (drawn != levelOf(x, y, rule)) {
+                    drawn = static_cast<std::int8_t>(levelOf(x, y, rule));
+                    // The outermost triangles of its neighbours follow its edges.
+                    const sand::Rect& vertices = chunk(x, y).vertices;
+                    const HeightRange heights = surface_.heights(vertices.grownBy(longestStride()));
+                    changed.push_back(boxAround(vertices, heights, strideAround(vertices, levels)));
+                }
+            }
+        }
+    }
+}
+
+ChunkGeometry& SandMesh::geometryOf(Chunk& chunk, int level) {
+    auto found = std::ranges::find(chunk.geometries, level, &ChunkGeometry::level);
+    if (found == chunk.geometries.end()) {
+        found = chunk.geometries.emplace(found, chunk.vertices, level);
+    }
+    const std::size_t before = found->bytes();
+    found->refresh(surface_);
+    bytes_ += found->bytes() - before;
+    found->used = choice_;
+    return *found;
+}
+
+const SandMesh::Indices& SandMesh::indicesOf(const ChunkLevels& levels) {
+    const auto found = indices_.find(levels);
+    if (found != indices_.end()) {
+        return found->second;
+    }
+    const std::vector<std::uint16_t> indices = trianglesOf(quadsAcross_, quadsDown_, levels);
+    Indices& made = indices_.try_emplace(levels, Indices{{}, static_cast<int>(indices.size()), {}}).first->second;
+    if (levels.level == 0) {
+        made.blocks = blocksOf(quadsAcross_, quadsDown_);
+    }
+    // Core profiles bind no element buffer without a vertex array; which one does not matter here.
+    const GlVertexArray array;
+    glBindVertexArray(array.id());
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, made.buffer.id());
+    const std::size_t bytes = indices.size() * sizeof(indices[0]);
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(bytes), indices.data(), GL_STATIC_DRAW);
+    bytes_ += bytes;
+    return made;
+}
+
+void SandMesh::prepare(const GlProgram& program) const {
+    program.set("uCell", surface_.cellSize());
+    program.set("uCells", glm::vec2(surface_.columns(), surface_.rows()));
+    program.set("uFirst", 0.5F);
+}
+
+SandMesh::Drawn SandMesh::draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
+                               const std::function<void(const Box&)>& before) {
+    Drawn drawn;
+    ++choice_;
+    visitSeen(sceneToClip, culling, [&](int x, int y) {
+        const ChunkLevels levels = levelsOf(x, y, rule);
+        const Indices& indices = indicesOf(levels);
+        const ChunkGeometry& geometry = geometryOf(chunk(x, y), levels.level);
+        if (before) {
+            before(boxOf(chunk(x, y).vertices, chunk(x, y).heights));
+        }
+        glBindVertexArray(geometry.array());
+        glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices.buffer.id());
+        const int triangles = drawTriangles(chunk(x, y), indices, culling ? &sceneToClip : nullptr);
+        ++drawn.chunks;
+        drawn.coarseChunks += levels.level > 0 ? 1 : 0;
+        drawn.triangles += triangles;
+        pace_.drawn(triangles);
+    });
+    dropUnused();
+    return drawn;
+}
+
+/// Draws the blocks that reach into the frustum, or all where none is given; says how many triangles that were.
+int SandMesh::drawTriangles(const Chunk& chunk, const Indices& indices, const glm::dmat4* frustum) const {
+    const auto draw = [](int first, int count) {
+        glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_SHORT,
+                       reinterpret_cast<const void*>(static_cast<std::size_t>(first) * sizeof(std::uint16_t)));
+    };
+    if (frustum == nullptr || indices.blocks.empty()) {
+        draw(0, indices.count);
+        return indices.count / 3;
+    }
+    int first = 0, count = 0, triangles = 0;  // first and count: of blocks that stand together, not drawn yet
+    for (const TriangleBlock& block : indices.blocks) {
+        const sand::Rect vertices{chunk.vertices.x0 + block.quads.x0, chunk.vertices.y0 + block.quads.y0,
+                                  chunk.vertices.x0 + block.quads.x1 + 1, chunk.vertices.y0 + block.quads.y1 + 1};
+        if (!inFrustum(boxOf(vertices, chunk.heights), *frustum)) {
+            continue;
+        }
+        triangles += block.count / 3;
+        if (first + count == block.first) {
+            count += block.count;
+            continue;
+        }
+        if (count > 0) {
+            draw(first, count);
+        }
+        first = block.first;
+        count = block.count;
+    }
+    if (count > 0) {
+        draw(first, count);
+    }
+    return triangles;
+}
+
+void SandMesh::dropUnused() {
+    if (bytes_ <= kManyBytes) {
+        return;
+    }
+    for (Chunk& chunk : chunks_) {
+        std::erase_if(chunk.geometries, [this](const ChunkGeometry& geometry) {
+            const bool unused = geometry.used + kLately < choice_;
+            bytes_ -= unused ? geometry.bytes() : 0;
+            return unused;
+        });
+    }
+}
+
+}  // namespace render_node

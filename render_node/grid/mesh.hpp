@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <glm/glm.hpp>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "render_node/gl/gl_handle.hpp"
+#include "render_node/gl/triangle_pace.hpp"
+#include "render_node/grid/chunk_geometry.hpp"
+#include "render_node/grid/levels.hpp"
+#include "render_node/grid/vertices.hpp"
+#include "render_node/surface/damage_history.hpp"
+#include "render_node/surface/drawn_surface.hpp"
+#include "render_node/surface/frustum.hpp"
+
+namespace render_node {
+
+/// Vertices of the grid that may look different, and the heights before and after of all triangles that reach there, of
+/// any level.
+struct ChangedVertices {
+    sand::Rect vertices;
+    HeightRange heights;
+    friend ChangedVertices around(const ChangedVertices& a, const ChangedVertices& b) {
+        return {a.vertices.joinedWith(b.vertices), render_node::around(a.heights, b.heights)};
+    }
+};
+
+/// The triangles of a height field, in chunks of about 16 × 16 quads, or 32 × 32 where a large field has five levels.
+///
+/// A software renderer is bound by vertices: only chunks that a camera sees are drawn, each at the coarsest level that
+/// the camera's rule allows, and only those are ever computed and sent to GL; a chunk is computed again when sand in
+/// its reach has changed and somebody looks at it. What nobody has looked at lately is dropped when it gets much.
+class SandMesh final : public DrawnSurface {
+public:
+    /// `sun` points towards it and has length 1.
+    SandMesh(const sand::HeightField& field, const glm::vec3& sun);
+
+    /// Takes over the heights of these cells, which must lie within the field.
+    void update(const sand::HeightField& field, const sand::Rect& cells);
+
+    void prepare(const GlProgram& program) const override;
+    Drawn draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
+               const std::function<void(const Box&)>& before) override;
+    [[nodiscard]] DrawnLevels levelsWithin(const glm::dmat4& sceneToClip, const LevelRule& rule) override;
+    [[nodiscard]] std::vector<Box> changesSince(std::uint64_t revision, DrawnLevels& levels,
+                                                const LevelRule& rule) override;
+    [[nodiscard]] std::uint64_t revision() const override { return revision_; }
+    [[nodiscard]] HeightRange heightsEver() const override { return ever_; }
+    [[nodiscard]] SandRim rim() const override { return surface_.rim(); }
+    [[nodiscard]] int chunks() const override { return static_cast<int>(chunks_.size()); }
+    [[nodiscard]] std::size_t bytes() const override { return bytes_; }
+
+    [[nodiscard]] const SandSurface& surface() const { return surface_; }
+
+private:
+    struct Chunk {
+        sand::Rect vertices;  // of the vertex grid
+        HeightRange heights;
+        std::uint64_t revision = 0;  // that changed it last
+        bool measured = false;       // its errors are those of the surface
+        LevelErrors errors;
+        std::uint64_t chosenFor = 0;  // choice_ that `level` is of
+        int level = 0;
+        std::vector<ChunkGeometry> geometries;
+    };
+    /// Some chunks side by side, so that few are looked at one by one.
+    struct Group {
+        sand::Rect chunks;  // columns and rows of chunks
+        sand::Rect vertices;
+        HeightRange heights;
+        std::uint64_t revision = 0;
+    };
+    struct Indices {
+        GlBuffer buffer;
+        int count;
+        std::vector<TriangleBlock> blocks;  // of level 0
+    };
+    /// Part of an update.
+    struct Change {
+        sand::Rect vertices;  // that may look different
+        HeightRange before;   // of all triangles that reach there
+    };
+    void makeChunks();
+    void makeGroups();
+    [[nodiscard]] std::vector<Change> changesOf(const sand::HeightField& field, const sand::Rect& cells) const;
+    [[nodiscard]] sand::Rect verticesOver(const sand::Rect& cells) const;
+    [[nodiscard]] sand::Rect chunksAround(const sand::Rect& vertices) const;
+    void markChanged(const sand::Rect& chunks, const sand::Rect& vertices);
+    [[nodiscard]] Box boxOf(const sand::Rect& vertices, const HeightRange& heights) const;
+    [[nodiscard]] Chunk& chunk(int x, int y) { return chunks_[static_cast<std::size_t>(y * across_ + x)]; }
+    template <class Visit>  // void(int x, int y), of chunks
+    void visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit& visit);
+    [[nodiscard]] int levelOf(int x, int y, const LevelRule& rule);
+    /// The longest side of a triangle of any level along an axis [cell].
+    [[nodiscard]] int longestStride() const { return 1 << coarsest_; }
+    [[nodiscard]] int strideAround(const sand::Rect& vertices, const DrawnLevels& levels) const;
+    [[nodiscard]] Box boxAround(const sand::Rect& vertices, const HeightRange& heights, int margin) const;
+    void updateLevels(DrawnLevels& levels, std::uint64_t revision, const LevelRule& rule, std::vector<Box>& changed);
+    [[nodiscard]] bool mayMatter(int x, int y, const LevelRule& rule) const;
+    [[nodiscard]] ChunkLevels levelsOf(int x, int y, const LevelRule& rule);
+    [[nodiscard]] ChunkGeometry& geometryOf(Chunk& chunk, int level);
+    [[nodiscard]] const Indices& indicesOf(const ChunkLevels& levels);
+    int drawTriangles(const Chunk& chunk, const Indices& indices, const glm::dmat4* frustum) const;
+    void dropUnused();
+
+    SandSurface surface_;
+    glm::vec3 sun_;
+    int coarsest_;                 // level
+    int across_, down_;            // chunks
+    int quadsAcross_, quadsDown_;  // of every chunk
+    std::vector<Chunk> chunks_;    // row by row from the south-west
+    std::vector<Group> groups_;
+    std::map<ChunkLevels, Indices> indices_;  // 16 bit
+    std::size_t bytes_ = 0;
+    std::uint64_t revision_ = 0;
+    std::uint64_t choice_ = 0;  // counts what levels are chosen for
+    DamageHistory<ChangedVertices> damage_;
+    TrianglePace pace_;
+    HeightRange ever_;
+};
+
+}  // namespace render_node

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/scene_painter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "render_node/tin/mesh.hpp"
+
+namespace render_node {
+namespace {
+
+const glm::vec4 kNoTool(0, 0, 1e9, 1);  // too far away to take any light
+
+glm::vec3 toVector(const std::vector<double>& numbers) { return glm::dvec3(numbers[0], numbers[1], numbers[2]); }
+
+/// sRGB from linear light, as the shaders' encode() does it but exact. A whole level: part of a picture may be cleared
+/// by another way through the driver than all of it, and these need not round alike.
+float encoded(float linear) {
+    const float level = linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1 / 2.4F) - 0.055F;
+    return std::round(255 * level) / 255;
+}
+
+}  // namespace
+
+SandView::SandView(const sand::Scene& scene, const glm::dmat4& sceneToRoom)
+    : SandView(scene, sceneToRoom,
+               std::make_unique<SandMesh>(scene.terrain, glm::normalize(toVector(scene.look.sunDirection))), nullptr) {}
+
+SandView::SandView(const sand::Scene& scene, const sand::tin::SurfaceView& tin, const glm::dmat4& sceneToRoom)
+    : SandView(scene, sceneToRoom, nullptr, std::make_unique<TinMesh>(tin, scene.terrain.cellSize())) {}
+
+SandView::SandView(const sand::Scene& scene, const glm::dmat4& sceneToRoom, std::unique_ptr<SandMesh> grid,
+                   std::unique_ptr<TinMesh> tin)
+    : sceneToRoom_(sceneToRoom),
+      look_(scene.look),
+      sun_(glm::normalize(toVector(scene.look.sunDirection))),
+      cellSize_(static_cast<float>(scene.terrain.cellSize())),
+      probeUnit_(scene.terrain.cellSize() / sand::kProbePerCell),
+      toolRadius_(static_cast<float>(scene.toolRadius())),
+      toolShape_(scene.rules.toolShape()),
+      toolHeading_(scene.rules.toolHeading),
+      grid_(std::move(grid)),
+      tin_(std::move(tin)),
+      sunlit_(shaders(), "sunlit.glsl", "ball.glsl"),
+      woodProgram_("solid.vert.glsl", "wood.frag.glsl"),
+      toolProgram_("solid.vert.glsl", "tool.frag.glsl"),
+      grain_(glm::vec2(sun_)),
+      box_(surface().rim(), surface().heightsEver().lowest, double{cellSize_}, scene.rules.rim) {
+    startCounting();
+}
+
+void SandView::startCounting() {
+    counts_ = {};
+    counts_.chunksOfField = surface().chunks();
+}
+
+SandView::SandView(SandView&&) noexcept = default;
+SandView::~SandView() = default;
+
+void SandView::update(const sand::HeightField& field, sand::Rect damage) {
+    const sand::Rect cells = damage.clippedTo(field.bounds());
+    grid_->update(field, cells);
+    if (grid_->surface().touchesRim(cells)) {
+        box_.update(grid_->rim());
+    }
+}
+
+void SandView::update(const sand::tin::SurfaceView& tin, const sand::TinChange& damage,
+                      std::span<const Camera> cameras) {
+    const auto sees = [&](const Box& box) {
+        return cameras.empty() || std::any_of(cameras.begin(), cameras.end(), [&](const Camera& camera) {
+                   return inFrustum(box, camera.roomToClip * sceneToRoom_);
+               });
+    };
+    if (tin_->update(tin, damage, sees)) {
+        box_.update(tin_->rim());
+    }
+}
+
+DrawnSurface& SandView::surface() const {
+    return grid_ ? static_cast<DrawnSurface&>(*grid_) : static_cast<DrawnSurface&>(*tin_);
+}
+
+SurfaceShaders SandView::shaders() const {
+    return look_.flatShading ? SurfaceShaders{"facet.vert.glsl", "facet.geom.glsl"} : SurfaceShaders{"sand.vert.glsl"};
+}
+
+void SandView::setTool(sand::ProbePoint centre, bool engaged) {
+    const glm::dvec3 cells = glm::dvec3(centre.x, centre.y, centre.z) / double{sand::kProbePerCell};
+    tool_ = EyeMemory::Tool{glm::vec3(cells * double{cellSize_}), engaged, toolRadius_, toolShape_, toolHeading_};
+}
+
+void SandView::setTool(sand::ProbePoint centre, bool engaged, const sand::ToolShape& shape,
+                       const sand::Heading& heading) {
+    toolShape_ = shape;
+    toolHeading_ = heading;
+    toolRadius_ = static_cast<float>(shape.radius * probeUnit_);
+    setTool(centre, engaged);
+}
+
+void SandView::setLayers(lockstep::Layers layers) {
+    layers_ = {};
+    for (const lockstep::Layer layer : {lockstep::Layer::wireframe, lockstep::Layer::hillShade}) {
+        layers_.set(layer, layers.shows(layer));
+    }
+}
+
+void SandView::prepare(const GlProgram& program, const Camera& camera) const {
+    program.use();
+    program.set("uSceneToRoom", glm::mat4(sceneToRoom_));
+    program.set("uRoomToClip", glm::mat4(camera.roomToClip));
+    program.set("uEye", glm::vec3(glm::inverse(sceneToRoom_) * glm::dvec4(camera.eye, 1)));
+    program.set("uSceneToClip", glm::mat4(camera.roomToClip * sceneToRoom_));
+    program.set("uHalfPicture", halfPicture_);
+    program.set("uSun", sun_);
+    program.set("uSand", toVector(look_.sandColour));
+    prepareTool(program);
+    program.set("uGrain", 0);
+    const double metresPerUnit = glm::length(glm::dvec3(sceneToRoom_[0]));
+    program.set("uGrainScale", static_cast<float>(metresPerUnit / (kGrainSide * kGrainTexel)));
+    program.set("uModel", glm::vec4(0, 0, 0, 1));
+}
+
+void SandView::prepareTool(const GlProgram& program) const {
+    if (!tool_ || !(toolRadius_ > 0)) {
+        program.set("uTool", kNoTool);
+    } else if (isBall(*tool_)) {
+        program.set("uTool", glm::vec4(tool_->centre, 1 / toolRadius_));
+    } else {
+        const ToolLight light = lightOf(*tool_);
+        const glm::dvec3 sun = light.toBall * glm::dvec3(sun_);
+        program.set("uTool", glm::vec4(glm::vec3(light.centre), 1));
+        program.set("uToolSpace", glm::mat3(light.toBall));
+        program.set("uToolSun", glm::vec3(glm::normalize(sun)));
+        program.set("uToolStep", static_cast<float>(1 / (glm::length(sun) * light.radius)));
+    }
+}
+
+void SandView::prepareSurface(const GlProgram& program, const Camera& camera) const {
+    prepare(program, camera);
+    surface().prepare(program);
+}
+
+Box SandView::bodyOf(const EyeMemory::Tool& tool) {
+    const Box box = boxOfTool(tool.shape);
+    return {glm::dvec3(tool.centre) + double{tool.radius} * box.low,
+            glm::dvec3(tool.centre) + double{tool.radius} * box.high};
+}
+
+ToolLight SandView::lightOf(const EyeMemory::Tool& tool) {
+    return {tool.shape, tool.heading, glm::dvec3(tool.centre), double{tool.radius}};
+}
+
+void SandView::draw(const Camera& camera, const EyeTarget& target) {
+    startCounting();
+    drawWithin({0, 0, target.width(), target.height()}, camera, target);
+}
+
+void SandView::drawWithin(const PixelRect& pixels, const Camera& camera, const EyeTarget& target) {
+    const glm::ivec2 size(target.width(), target.height());
+    const glm::dmat4 sceneToClip = camera.roomToClip * sceneToRoom_;
+    const glm::dmat4 sceneToPart = clipOf(pixels, size) * sceneToClip;
+    halfPicture_ = glm::vec2(size) / 2.0F;
+    counts_.pixels += pixels.area();
+    target.bind();
+    // The viewport stays the whole picture's: with another one, edges would fall on other pixels.
+    if (pixels.area() < std::int64_t{size.x} * size.y) {
+        glEnable(GL_SCISSOR_TEST);
+        glScissor(pixels.x0, pixels.y0, pixels.x1 - pixels.x0, pixels.y1 - pixels.y0);
+    }
+    const glm::vec3 background = toVector(look_.backgroundColour);
+    glClearColor(encoded(background.x), encoded(background.y), encoded(background.z), 1);
+    glEnable(GL_DEPTH_TEST);
+    glEnable(GL_CULL_FACE);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    grain_.bind(0);
+
+    // Front to back as far as that is known: what is hidden is not shaded.
+    drawTool(camera, sceneToPart);
+    if (force_) {
+        drawForce(camera);
+    }
+    const LevelRule rule = ruleFor(camera, size);
+    drawSand(camera, sceneToPart, rule);
+    if (layers_.shows(lockstep::Layer::wireframe)) {
+        drawWires(camera, sceneToPart, rule);
+    }
+    const GlProgram& wood = woodProgram();
+    prepare(wood, camera);
+    box_.drawBoards();
+    wood.drawn();
+    glDisable(GL_SCISSOR_TEST);
+}
+
+void SandView::drawTool(const Camera& camera, const glm::dmat4& sceneToPart) {
+    if (tool_ && toolRadius_ > 0 && (!culling_ || inFrustum(bodyOf(*tool_), sceneToPart))) {
+        prepare(toolProgram_, camera);
+        toolProgram_.set("uModel", glm::vec4(tool_->centre, toolRadius_));
+        toolProgram_.set("uEngaged", tool_->engaged ? 1.0F : 0.0F);
+        toolMesh_.show(tool_->shape, tool_->heading);
+        toolMesh_.draw();
+        toolProgram_.drawn();
+    }
+}
+
+void SandView::drawForce(const Camera& camera) {
+    if (!forceView_) {
+        forceView_.emplace();
+    }
+    prepare(forceView_->program(), camera);
+    forceView_->draw(*force_, toolRadius_);
+}
+
+const SandPrograms& SandView::sandPrograms() {
+    const bool hillShade = layers_.shows(lockstep::Layer::hillShade);
+    const bool ball = !tool_ || isBall(*tool_);
+    if (ball && !hillShade) {
+        return sunlit_;
+    }
+    std::optional<SandPrograms>& programs = ball ? hillShaded_ : hillShade ? stampHillShaded_ : stampSunlit_;
+    if (!programs) {
+        programs.emplace(shaders(), hillShade ? "hill_shade.glsl" : "sunlit.glsl", ball ? "ball.glsl" : "stamp.glsl");
+    }
+    return *programs;
+}
+
+const GlProgram& SandView::woodProgram() {
+    if (!tool_ || isBall(*tool_)) {
+        return woodProgram_;
+    }
+    if (!stampWood_) {
+        stampWood_.emplace(ProgramFiles{"solid.vert.glsl", "wood.frag.glsl", {}, {}, "stamp.glsl"});
+    }
+    return *stampWood_;
+}
+
+void SandView::drawSand(const Camera& camera, const glm::dmat4& sceneToPart, const LevelRule& rule) {
+    const SandPrograms& programs = sandPrograms();
+    prepareSurface(programs.near, camera);
+    prepareSurface(programs.far, camera);
+    // A shadow finer than the mesh takes a software renderer time for every pixel that asks: only where there is one.
+    std::function<void(const Box&)> choose;
+    bool near = false;
+    if (tool_ && toolRadius_ > 0) {
+        choose = [&programs, &near, reach = reachOf(*tool_)](const Box& chunk) {
+            const bool within = reach.meets(chunk);
+            (within ? programs.near : programs.far).use();
+            near = near || within;
+        };
+    }
+    const DrawnSurface::Drawn drawn = surface().draw(sceneToPart, culling_, rule, choose);
+    (near ? programs.near : programs.far).drawn();
+    counts_.chunks += drawn.chunks;
+    counts_.coarseChunks += drawn.coarseChunks;
+    counts_.triangles += drawn.triangles;
+
+    prepare(programs.sides, camera);
+    box_.drawSides(sceneToPart, culling_);
+    programs.sides.drawn();
+}
+
+void SandView::drawWires(const Camera& camera, const glm::dmat4& sceneToPart, const LevelRule& rule) {
+    if (!wireProgram_) {
+        wireProgram_.emplace(ProgramFiles{"sand.vert.glsl", "wire.frag.glsl", "sunlit.glsl", "wire.geom.glsl"});
+    }
+    prepareSurface(*wireProgram_, camera);
+    glDepthFunc(GL_LEQUAL);
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(-1, -1);  // a driver may compute depths a little differently behind a geometry shader
+    glEnable(GL_BLEND);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);  // a window may show through its alpha
+    surface().draw(sceneToPart, culling_, rule, {});
+    surface().drawMarks(sceneToPart, culling_, [&](const GlProgram& program) { prepareSurface(program, camera); });
+    glDisable(GL_BLEND);
+    glDisable(GL_POLYGON_OFFSET_FILL);
+    glDepthFunc(GL_LESS);
+}
+
+LevelRule SandView::ruleFor(const Camera& camera, glm::ivec2 size) const {
+    // A facet shows how fine the mesh is.
+    return {camera.roomToClip * sceneToRoom_, size, look_.flatShading ? 0 : look_.detail};
+}
+
+}  // namespace render_node

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which parts of an eye's picture are to be drawn anew.
+#include <algorithm>
+
+#include "render_node/scene_painter.hpp"
+#include "render_node/tin/mesh.hpp"
+
+namespace render_node {
+namespace {
+
+constexpr double kMostOfAll = 0.8;  // of a picture: rectangles larger than that cost as much as the whole
+// What a rectangle costs beside its pixels: buffers, programs, chunks. Of llvmpipe, by redraw_bench [pixel].
+constexpr std::int64_t kPass = 4096;
+constexpr std::size_t kMostPasses = 4;  // each of which asks every chunk whether it lies there
+
+}  // namespace
+
+ToolReach SandView::reachOf(const EyeMemory::Tool& tool) const {
+    const ToolLight light = lightOf(tool);
+    return {light.centre, light.radius, sun_};
+}
+
+/// What a tool changes, as convex hulls: the sand that it dims, its shadow, and itself.
+std::vector<std::vector<glm::dvec3>> SandView::hullsOf(const EyeMemory::Tool& tool) const {
+    const ToolReach reach = reachOf(tool);
+    const HeightRange sand = surface().heightsEver();
+    const double highest = std::max(double{sand.highest}, box_.highest());
+    // Down to the lowest sand there has been, unless it comes out again beyond the rim: nothing stops it in the
+    // shaders.
+    std::array<Box, 2> shadow = reach.shadowBetween(std::min(double{sand.lowest}, box_.lowest()), highest);
+    if (box_.insideRim(shadow.back())) {
+        shadow = reach.shadowBetween(double{sand.lowest}, highest);
+    }
+    std::vector<std::vector<glm::dvec3>> hulls(2);
+    const auto add = [this](std::vector<glm::dvec3>& hull, const Box& box) {
+        for (const glm::dvec3& corner : cornersOf(box_.withSides(box))) {
+            hull.push_back(corner);
+        }
+    };
+    add(hulls[0], reach.closeBy(double{sand.lowest}, highest));
+    std::ranges::for_each(shadow, [&](const Box& box) { add(hulls[1], box); });
+    const auto body = cornersOf(bodyOf(tool));
+    hulls.emplace_back(body.begin(), body.end());
+    return hulls;
+}
+
+std::vector<PixelRect> SandView::changedPixels(const Camera& camera, glm::ivec2 size, EyeMemory& memory) {
+    const PixelRect whole{0, 0, size.x, size.y};
+    const glm::dmat4 sceneToClip = camera.roomToClip * sceneToRoom_;
+    const LevelRule rule = ruleFor(camera, size);
+    const bool toolMoved = memory.tool != tool_;
+    if (!memory.drawn || memory.roomToClip != camera.roomToClip || memory.eye != camera.eye ||
+        memory.sceneToRoom != sceneToRoom_ || memory.layers != layers_) {
+        memory.levels = surface().levelsWithin(sceneToClip, rule);
+        return {whole};
+    }
+    std::vector<PixelRect> changed{memory.covered};
+    const auto add = [&](std::span<const glm::dvec3> hull) { changed.push_back(pixelsOf(hull, sceneToClip, size)); };
+    if (toolMoved && toolRadius_ > 0) {
+        for (const std::optional<EyeMemory::Tool>& tool : {memory.tool, tool_}) {
+            if (tool) {
+                std::ranges::for_each(hullsOf(*tool), add);
+            }
+        }
+    }
+    if (memory.force != force_) {
+        if (memory.force && memory.tool) {
+            add(cornersOf(boxOf(*memory.force, memory.tool->radius)));
+        }
+        if (force_) {
+            add(cornersOf(boxOf(*force_, toolRadius_)));
+        }
+    }
+    for (const Box& box : surface().changesSince(memory.sand, memory.levels, rule)) {
+        add(cornersOf(box_.withSides(box)));
+    }
+    changed = fewCovering(std::move(changed), kMostPasses, kPass);
+    std::int64_t area = 0;
+    for (const PixelRect& rect : changed) {
+        area += rect.area();
+    }
+    return static_cast<double>(area) > kMostOfAll * static_cast<double>(whole.area()) ? std::vector{whole} : changed;
+}
+
+PixelRect SandView::drawIfChanged(const Camera& camera, const EyeTarget& target, EyeMemory& memory) {
+    startCounting();
+    PixelRect changed;
+    for (const PixelRect& rect : changedPixels(camera, {target.width(), target.height()}, memory)) {
+        drawWithin(rect, camera, target);
+        changed = around(changed, rect);
+    }
+    memory = {true,
+              camera.roomToClip,
+              sceneToRoom_,
+              camera.eye,
+              surface().revision(),
+              std::move(memory.levels),
+              tool_,
+              force_,
+              layers_,
+              {}};
+    return changed;
+}
+
+}  // namespace render_node

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/surface/level_rule.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace render_node {
+
+LevelRule::LevelRule(const glm::dmat4& sceneToClip, glm::ivec2 size, double bound)
+    : sceneToClip_(sceneToClip), half_(glm::dvec2(size) / 2.0), bound_(bound) {}
+
+/// How many pixels the picture of a point moves at most when the point moves up by a unit. The tiles of a plane give
+/// the same: their clip coordinates differ in scale, which the number of pixels makes up for, and in a share of w,
+/// which falls out of the difference below.
+double LevelRule::pixelsPerUnit(const Box& box) const {
+    double nearest = std::numeric_limits<double>::infinity();
+    glm::dvec2 most(0);
+    const glm::dvec4 up = sceneToClip_[2];
+    for (const glm::dvec3& corner : cornersOf(box)) {
+        const glm::dvec4 clip = sceneToClip_ * glm::dvec4(corner, 1);
+        nearest = std::min(nearest, clip.w);
+        most = glm::max(most, glm::abs(glm::dvec2(up) * clip.w - glm::dvec2(clip) * up.w));
+    }
+    return nearest <= 0 ? std::numeric_limits<double>::infinity() : glm::length(half_ * most) / (nearest * nearest);
+}
+
+int LevelRule::level(const Box& box, const LevelErrors& errors, int coarsest) const {
+    if (wantsEveryCell() || coarsest == 0) {
+        return 0;
+    }
+    const double height = bound_ / pixelsPerUnit(box);
+    const double light = bound_ * kLightPerPixel;
+    int level = coarsest;
+    while (level > 0 && (double{errors.height[static_cast<std::size_t>(level)]} > height ||
+                         double{errors.light[static_cast<std::size_t>(level)]} > light)) {
+        --level;
+    }
+    return level;
+}
+
+}  // namespace render_node

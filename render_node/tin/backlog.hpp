@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Private to this folder.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "base/index_set.hpp"
+#include "render_node/surface/frustum.hpp"
+#include "sand/model/tin_change.hpp"
+#include "sand/tin/geometry/surface_view.hpp"
+
+namespace render_node {
+
+/// Damage of a TIN that no camera has seen yet: most tiles of a wall never look where sand is dug, and to light a TIN
+/// anew takes as long as to draw it. Not thread-safe.
+class TinBacklog {
+public:
+    /// All of it lies within the box.
+    void add(const sand::TinChange& damage, const Box& box);
+    [[nodiscard]] bool isSeen(const std::function<bool(const Box&)>& sees) const;
+    /// Everything that was added since this was called last; holds until then what has long been put right again, too.
+    [[nodiscard]] sand::TinChange take();
+    void clear();
+
+private:
+    static constexpr std::size_t kMostBoxes = 32;
+
+    base::IndexList triangles_, vertices_;
+    std::vector<Box> boxes_;
+};
+
+}  // namespace render_node

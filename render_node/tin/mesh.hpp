@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "render_node/gl/gl_handle.hpp"
+#include "render_node/gl/triangle_pace.hpp"
+#include "render_node/surface/damage_history.hpp"
+#include "render_node/surface/drawn_surface.hpp"
+#include "render_node/tin/backlog.hpp"
+#include "render_node/tin/vertices.hpp"
+#include "sand/model/tin_change.hpp"
+
+namespace render_node {
+
+/// The triangles of a TIN in GL: vertices by their number, triangles by chunks.
+///
+/// Only vertices that have changed are sent, and the triangles of chunks where one has changed, when a camera sees
+/// them. Every camera gets every triangle: how fine the TIN is, is the sand's affair.
+class TinMesh final : public DrawnSurface {
+public:
+    TinMesh(const sand::tin::SurfaceView& tin, double cellSize /* [scene unit] */);
+
+    /// Takes over what is damaged; says whether the rim is another. What lies in no box that `sees` accepts is put off
+    /// until it does.
+    [[nodiscard]] bool update(const sand::tin::SurfaceView& tin, const sand::TinChange& damage,
+                              const std::function<bool(const Box&)>& sees);
+
+    void prepare(const GlProgram& program) const override;
+    Drawn draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
+               const std::function<void(const Box&)>& before) override;
+    /// The constraints.
+    void drawMarks(const glm::dmat4& sceneToClip, bool culling,
+                   const std::function<void(const GlProgram&)>& prepare) override;
+    [[nodiscard]] DrawnLevels levelsWithin(const glm::dmat4&, const LevelRule&) override { return {}; }
+    [[nodiscard]] std::vector<Box> changesSince(std::uint64_t revision, DrawnLevels&, const LevelRule&) override;
+    [[nodiscard]] std::uint64_t revision() const override { return revision_; }
+    [[nodiscard]] HeightRange heightsEver() const override { return surface_.heightsEver(); }
+    [[nodiscard]] SandRim rim() const override { return surface_.rim(); }
+    [[nodiscard]] int chunks() const override { return static_cast<int>(buffers_.size()); }
+    [[nodiscard]] std::size_t bytes() const override { return bytes_; }
+
+private:
+    /// Of a chunk, since a camera has seen it.
+    struct Buffers {
+        std::optional<GlBuffer> triangles, marks;
+        std::size_t sent = 0;    // triangles
+        std::size_t marked = 0;  // edges in `marks`
+        bool marksStale = true;
+    };
+    template <class Visit>  // void(std::size_t chunk)
+    void visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit& visit);
+    [[nodiscard]] bool takeOver(const sand::tin::SurfaceView& tin, const sand::TinChange& damage);
+    void sendAllVertices();
+    void sendVertices(std::span<const sand::tin::Vertex> changed);
+    void sendTriangles(std::size_t chunk);
+    void sendMarks(std::size_t chunk);
+
+    TinSurface surface_;
+    TinBacklog backlog_;
+    float probe_;      // [scene unit]
+    glm::vec2 field_;  // [probe unit]
+    GlVertexArray array_;
+    GlBuffer vertices_;
+    std::size_t room_ = 0;                  // in vertices_ [vertex]
+    std::vector<Buffers> buffers_;          // by chunk
+    std::optional<GlProgram> markProgram_;  // since marks were first drawn
+    std::size_t bytes_ = 0;
+    std::uint64_t revision_ = 0;
+    DamageHistory<Box> damage_;
+    TrianglePace pace_;
+};
+
+}  // namespace render_node

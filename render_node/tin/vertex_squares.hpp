@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Private to this folder.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "sand/tin/geometry/triangles.hpp"
+
+namespace render_node {
+
+/// The vertices of a TIN by the squares that they stand in, for whoever asks who is near. Not thread-safe.
+class VertexSquares {
+public:
+    using Place = sand::tin::Place;
+    using Vertex = sand::tin::Vertex;
+
+    VertexSquares(std::int32_t width, std::int32_t depth /* of the field */, double side /* [probe unit], all */)
+        : side_(side),
+          columns_(numberOf(width) + 1),
+          rows_(numberOf(depth) + 1),
+          standing_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {}
+
+    void add(Vertex vertex, const Place& place) { around(place).push_back(vertex); }
+    /// One that was added there.
+    void remove(Vertex vertex, const Place& place) {
+        std::vector<Vertex>& there = around(place);
+        *std::find(there.begin(), there.end(), vertex) = there.back();
+        there.pop_back();
+    }
+    /// Calls visit(vertex) for all in the squares that a rectangle touches: those within it, and some around.
+    template <class Visit>
+    void visitNear(const Place& southWest, const Place& northEast, const Visit& visit) const {
+        const int east = std::min(numberOf(northEast.x), columns_ - 1),
+                  north = std::min(numberOf(northEast.y), rows_ - 1);
+        for (int row = std::max(numberOf(southWest.y), 0); row <= north; ++row) {
+            for (int column = std::max(numberOf(southWest.x), 0); column <= east; ++column) {
+                std::for_each(standing_[at(column, row)].begin(), standing_[at(column, row)].end(), visit);
+            }
+        }
+    }
+
+private:
+    [[nodiscard]] int numberOf(std::int32_t along) const { return static_cast<int>(along / side_); }
+    [[nodiscard]] std::size_t at(int column, int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+    }
+    [[nodiscard]] std::vector<Vertex>& around(const Place& place) {
+        return standing_[at(numberOf(place.x), numberOf(place.y))];
+    }
+
+    double side_;
+    int columns_, rows_;
+    std::vector<std::vector<Vertex>> standing_;  // row by row from the south-west
+};
+
+}  // namespace render_node

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/tool/force.hpp"
+
+#include "sand/force/law.hpp"
+#include "sand/force/tool_contour.hpp"
+
+namespace render_node {
+
+using sand::force::Vec3;
+
+std::optional<ForceArrow> ToolForce::arrow(const sand::Terrain& terrain) {
+    const double unit = terrain.cellSize() / sand::kProbePerCell;
+    const double radius = unit * terrain.rules().toolRadius;
+    const sand::ProbePoint probe = terrain.probe();
+    const Vec3 centre{unit * probe.x, unit * probe.y, unit * probe.z};
+    if (!last_ || terrain.stepNumber() < lastStep_) {
+        velocity_ = {};
+    } else if (terrain.stepNumber() > lastStep_) {  // frames between two steps keep the velocity
+        const auto steps = static_cast<double>(terrain.stepNumber() - lastStep_);
+        velocity_ = (terrain.rules().stepsPerSecond / (60.0 * steps)) * (centre - *last_);
+    }
+    last_ = centre;
+    lastStep_ = terrain.stepNumber();
+    if (!terrain.engaged() || !(radius > 0)) {
+        return std::nullopt;
+    }
+    const sand::force::SurfacePatch patch(terrain);
+    const auto tool = sand::force::contourOf(terrain.toolShape(), terrain.heading(), terrain.cellSize());
+    const auto felt = sand::force::respond(constants_, patch, tool, centre);
+    const Vec3 whole = sand::force::lawfulForce(felt, velocity_);
+    const Vec3 force = sand::force::guarded(whole, 0, kMostNewtons);
+    const double newtons = sand::force::norm(force);
+    if (newtons < kFewestNewtons) {
+        return std::nullopt;
+    }
+    const Vec3 from = centre + (radius / newtons) * force;
+    const Vec3 to = from + (kArrowPerNewton * radius) * force;
+    const auto vector = [](Vec3 v) { return glm::vec3(glm::dvec3(v.x, v.y, v.z)); };
+    return ForceArrow{vector(from), vector(to), sand::force::norm(whole) >= kMostNewtons};
+}
+
+}  // namespace render_node

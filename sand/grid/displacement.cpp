@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/grid/displacement.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "sand/model/tool_kernel.hpp"
+
+namespace sand {
+namespace {
+
+constexpr std::int32_t kHalfCell = kProbePerCell / 2;
+
+Offset offsetOf(ProbePoint at, int column, int row) {
+    return {std::int64_t{column} * kProbePerCell + kHalfCell - at.x,
+            std::int64_t{row} * kProbePerCell + kHalfCell - at.y};
+}
+
+/// A cell that takes some of the sand the tool pushes away.
+struct Receiver {
+    int column, row;
+    std::int64_t weight;
+    bool outside;
+    std::int64_t share = 0;  // [unit]
+};
+
+/// The cells around the tool that take sand. With a drag direction, those ahead; without one, all of them
+/// alike. Walls and cells beyond a closed rim do not count; beyond an open one they swallow.
+std::vector<Receiver> receivers(const Rect& bounds, Rim rim, const Ground* ground, ProbePoint at,
+                                const TurnedShape& shape, const Offset& ahead) {
+    const bool everywhere = ahead.x == 0 && ahead.y == 0;
+    Rect around = shape.cellsThatTake(at.x, at.y);
+    if (rim == Rim::closed) {
+        around = around.clippedTo(bounds);
+    }
+    std::vector<Receiver> ring;
+    for (int y = around.y0; y < around.y1; ++y) {
+        for (int x = around.x0; x < around.x1; ++x) {
+            const Offset offset = offsetOf(at, x, y);
+            if (offset.x < 0 && !shape.hasHeading() && shape.covers(offset)) {
+                // What is round covers the row until the same distance on the other side: under a tool as large as may
+                // be lie millions of cells.
+                x += static_cast<int>(-2 * offset.x / kProbePerCell);
+                continue;
+            }
+            if (!shape.hasHeading() && !everywhere && shape.share(offset, ahead) <= 0) {
+                continue;  // half of them are behind, and of what is round that is soonest seen
+            }
+            const bool outside = x < bounds.x0 || x >= bounds.x1 || y < bounds.y0 || y >= bounds.y1;
+            if ((outside && rim == Rim::closed) || shape.covers(offset) || !shape.takes(offset) ||
+                (!outside && ground != nullptr && ground->isWall(x, y))) {
+                continue;
+            }
+            const std::int64_t weight = everywhere ? 1 : shape.share(offset, ahead);
+            if (weight > 0) {
+                ring.push_back({x, y, weight, outside});
+            }
+        }
+    }
+    return ring;
+}
+
+/// amount · weight / total, cut to an integer; all positive, an amount below 2^56 and a weight below 2^36.
+std::int64_t scaled(std::int64_t amount, std::int64_t weight, std::int64_t total) {
+    std::int64_t product = 0;
+    if (!__builtin_mul_overflow(amount, weight, &product)) {
+        return product / total;  // nearly always, and several times as fast
+    }
+    __extension__ using Product = __int128;
+    return static_cast<std::int64_t>(static_cast<Product>(amount) * weight / total);
+}
+
+/// Gives `amount` to the receivers by weight. The remainder of the division, fewer units than there are receivers, goes
+/// one unit each to the first of them: by rows, or in the order of a tool that has a heading, which turns with it.
+void shareOut(std::vector<Receiver>& ring, std::int64_t amount, ProbePoint at, const TurnedShape& shape) {
+    std::int64_t total = 0;
+    for (const Receiver& receiver : ring) {
+        total += receiver.weight;
+    }
+    std::int64_t rest = amount;
+    for (Receiver& receiver : ring) {
+        receiver.share = scaled(amount, receiver.weight, total);
+        rest -= receiver.share;
+    }
+    if (shape.hasHeading()) {
+        std::nth_element(ring.begin(), ring.begin() + rest, ring.end(), [&](const Receiver& a, const Receiver& b) {
+            return shape.before(offsetOf(at, a.column, a.row), offsetOf(at, b.column, b.row));
+        });
+    }
+    for (std::size_t i = 0; rest > 0; ++i, --rest) {
+        ++ring[i].share;
+    }
+}
+
+}  // namespace
+
+Rect Tool::cells(const HeightField& field, ProbePoint at) const {
+    return shape_.cellsAround(at.x, at.y, 0).clippedTo(field.bounds());
+}
+
+void Tool::findLowest(const Ground* ground, ProbePoint at, int column, int row, std::span<std::int32_t> lowest) const {
+    shape_.undersides(at.z, offsetOf(at, column, row), lowest);
+    for (std::size_t i = 0; ground != nullptr && i < lowest.size(); ++i) {
+        const int x = column + static_cast<int>(i);
+        lowest[i] = ground->isWall(x, row) ? TurnedShape::kFree : std::max(lowest[i], ground->bedrock(x, row));
+    }
+}
+
+Tool::Displacement Tool::press(HeightField& field, Rim rim, const Ground* ground, ProbePoint at,
+                               const Offset& ahead) const {
+    const Rect cells = this->cells(field, at);
+    const auto across = static_cast<std::size_t>(std::max(cells.x1 - cells.x0, 0));
+    const auto above = v3_ ? v3::sandAbove : baseline::sandAbove;
+    std::int64_t taken = 0;
+    std::vector<int> cuts;                     // rows: a tool that is dragged cuts few
+    std::vector<std::int32_t> lowest(across);  // of those, side by side, and of one more
+    for (int y = cells.y0; y < cells.y1; ++y) {
+        const std::span<std::int32_t> ofRow = std::span(lowest).last(across);
+        findLowest(ground, at, cells.x0, y, ofRow);
+        if (const std::int64_t more = above(ofRow.data(), field.row(y) + cells.x0, cells.x1 - cells.x0); more > 0) {
+            taken += more;
+            cuts.push_back(y);
+            lowest.resize(lowest.size() + across);
+        }
+    }
+    if (taken == 0) {
+        return {};
+    }
+    std::vector<Receiver> ring = receivers(field.bounds(), rim, ground, at, shape_, ahead);
+    if (ring.empty()) {  // dragged against a closed rim: it escapes to the sides and behind
+        ring = receivers(field.bounds(), rim, ground, at, shape_, {0, 0});
+    }
+    if (ring.empty()) {  // the tool is larger than the field: there is nowhere to put the sand
+        return {};
+    }
+    shareOut(ring, taken, at, shape_);
+    for (const Receiver& receiver : ring) {
+        if (!receiver.outside && field.height(receiver.column, receiver.row) + receiver.share > kMaxHeight) {
+            return {};  // no room left in 32 bits: the sand stays, and the tool passes through it
+        }
+    }
+    for (std::size_t i = 0; i < cuts.size(); ++i) {
+        const std::span<const std::int32_t> ofRow = std::span(lowest).subspan(i * across, across);
+        std::int32_t* const row = field.row(cuts[i]) + cells.x0;
+        std::transform(ofRow.begin(), ofRow.end(), row, row,
+                       [](std::int32_t least, std::int32_t height) { return std::min(height, least); });
+    }
+    Displacement result{shape_.cellsChanged(at.x, at.y).clippedTo(field.bounds()), 0};
+    for (const Receiver& receiver : ring) {
+        if (receiver.outside) {
+            result.outflow += receiver.share;
+        } else {
+            const std::int64_t raised = field.height(receiver.column, receiver.row) + receiver.share;
+            field.setHeight(receiver.column, receiver.row, static_cast<std::int32_t>(raised));
+        }
+    }
+    return result;
+}
+
+Tool::Displacement Tool::drag(HeightField& field, Rim rim, const Ground* ground, ProbePoint from, ProbePoint to) const {
+    const std::int64_t dx = std::int64_t{to.x} - from.x;
+    const std::int64_t dy = std::int64_t{to.y} - from.y;
+    const std::int64_t dz = std::int64_t{to.z} - from.z;
+    const std::int64_t longest = std::max({std::abs(dx), std::abs(dy), std::abs(dz)});
+    const std::int64_t steps = std::max<std::int64_t>((longest + kProbePerCell - 1) / kProbePerCell, 1);
+    Displacement all{{field.columns(), field.rows(), 0, 0}, 0};
+    for (std::int64_t i = 1; i <= steps; ++i) {
+        const ProbePoint at{static_cast<std::int32_t>(from.x + dx * i / steps),
+                            static_cast<std::int32_t>(from.y + dy * i / steps),
+                            static_cast<std::int32_t>(from.z + dz * i / steps)};
+        if (cells(field, at).empty()) {
+            continue;
+        }
+        // A direction in whole probe units of one sub-step would lose its angle when the hand is slow.
+        const std::int64_t scale = std::max<std::int64_t>(longest / kProbePerCell, 1);
+        const Displacement one = press(field, rim, ground, at, {dx / scale, dy / scale});
+        if (!one.cells.empty()) {
+            all.cells = {std::min(all.cells.x0, one.cells.x0), std::min(all.cells.y0, one.cells.y0),
+                         std::max(all.cells.x1, one.cells.x1), std::max(all.cells.y1, one.cells.y1)};
+        }
+        all.outflow += one.outflow;
+    }
+    return all;
+}
+
+Obstacle Tool::obstacle(const HeightField& field, ProbePoint at) const {
+    Obstacle result;
+    result.cells = cells(field, at);
+    const auto across = static_cast<std::size_t>(std::max(result.cells.x1 - result.cells.x0, 0));
+    result.underside.resize(across * static_cast<std::size_t>(std::max(result.cells.y1 - result.cells.y0, 0)));
+    for (int y = result.cells.y0; y < result.cells.y1; ++y) {
+        const std::size_t first = static_cast<std::size_t>(y - result.cells.y0) * across;
+        shape_.undersides(at.z, offsetOf(at, result.cells.x0, y), std::span(result.underside).subspan(first, across));
+    }
+    return result;
+}
+
+}  // namespace sand

@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiled once for every x86-64 and once for x86-64-v3, with -O3: g++ 12 does not vectorise these loops at -O2.
+#include "sand/grid/erosion_kernel.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace sand::SANDWALL_CODE_PATH {
+namespace {
+
+/// A number per cell of a row of the patch, and one before and one behind; left uninitialised, since rows are long.
+template <class Number>
+struct alignas(64) Row {
+    std::array<Number, kMaxPatch + 2 * kKernelMargin> values;
+    Number* data() { return values.data() + kKernelMargin; }
+};
+
+// Free functions on restricted pointers, and laws as copies: with members in reach g++ keeps the loops scalar.
+
+/// Scheme G with inertia: what flowed in the last sweep goes on, pushed by the excess of the slope over the threshold
+/// and braked by its lack; never uphill, and never more than the share that keeps all proofs. Squares of slopes are
+/// compared: a root would cost a quarter of the sweep. Without a band sand that is not pushed is braked anyway.
+template <bool kBand>
+struct Inertial {
+    static constexpr bool kNeedsAlong = true;
+
+    Inertial(const AxisLaw& law, float momentumNow)
+        : threshold(law.threshold * law.threshold),
+          startThreshold(law.startThreshold * law.startThreshold),
+          limit(law.limit),
+          push(law.push),
+          along(law.along),
+          momentum(momentumNow) {}
+
+    float threshold, startThreshold;  // [unit²]
+    float limit, push, along, momentum;
+
+    std::int32_t operator()(std::int32_t difference, float alongSum, std::int32_t last) const {
+        const auto across = static_cast<float>(difference);
+        const float mean = along * alongSum;
+        // At least the smallest slope there is: 0 · (threshold / 0) would be no number.
+        const float slope = std::max(across * across + mean * mean, 0.0625F);
+        float driven = push * (1.0F - threshold / slope);
+        if constexpr (kBand) {
+            // Below the start threshold nothing is pushed; what flows is braked.
+            driven = slope > startThreshold ? driven : std::min(driven, 0.0F);
+        }
+        const float most = limit * across;
+        const float forth = std::max(most, 0.0F);
+        const float back = std::min(most, 0.0F);
+        // What goes on is cut by itself first: else a flux that has just turned would rest for a sweep, and a face at
+        // which nothing flows could not be left alone.
+        const float kept = std::min(std::max(momentum * static_cast<float>(last), back), forth);
+        return static_cast<std::int32_t>(std::min(std::max(kept + driven * across, back), forth));
+    }
+};
+
+/// The law without inertia: slope across the face from its two cells, slope along it as the mean of four differences.
+struct Isotropic {
+    static constexpr bool kNeedsAlong = true;
+    AxisLaw axis;
+
+    std::int32_t operator()(std::int32_t difference, float along, std::int32_t) const {
+        const auto across = static_cast<float>(difference);
+        const float mean = axis.along * along;
+        const float slope = std::sqrt(across * across + mean * mean);
+        const float share = slope > axis.startThreshold ? axis.limit * (1.0F - axis.threshold / slope) : 0.0F;
+        return static_cast<std::int32_t>(share * across);
+    }
+};
+
+/// Scheme N4: each pair of neighbours by itself, integers only. A preview: it rests in the wrong pile.
+struct FourNeighbours {
+    static constexpr bool kNeedsAlong = false;
+    std::int32_t threshold, startThreshold;
+
+    std::int32_t operator()(std::int32_t difference, float, std::int32_t) const {
+        const std::int32_t size = difference < 0 ? -difference : difference;
+        const std::int32_t flux = size > startThreshold ? (size - threshold + 3) / 4 : 0;
+        return difference < 0 ? -flux : flux;
+    }
+};
+
+/// Differences as the slope along a face sees them: a step counts at most the sand of its upper cell, or a bare cliff
+/// beside it would turn stable sand liquid.
+void sandDifferences(const std::int32_t* __restrict a, const std::int32_t* __restrict b,
+                     const std::int32_t* __restrict sandA, const std::int32_t* __restrict sandB, int count,
+                     std::int32_t* __restrict result) {
+    for (int i = 0; i < count; ++i) {
+        result[i] = std::max(std::min(a[i] - b[i], sandA[i]), -sandB[i]);
+    }
+}
+
+void sums(const std::int32_t* __restrict a, const std::int32_t* __restrict b, int count, float* __restrict result) {
+    for (int i = 0; i < count; ++i) {
+        result[i] = static_cast<float>(a[i] + b[i]);
+    }
+}
+
+/// The fluxes between two parallel runs of cells, given the sum of the two differences along the faces of either cell.
+template <class Law>
+void fluxesBetween(const Law law, const std::int32_t* __restrict a, const std::int32_t* __restrict b,
+                   const float* __restrict alongA, const float* __restrict alongB, int count,
+                   std::int32_t* __restrict flux) {
+    for (int i = 0; i < count; ++i) {
+        flux[i] = law(a[i] - b[i], alongA[i] + alongB[i], flux[i]);
+    }
+}
+
+/// The fluxes from a row of cells to their eastern neighbours; `south` and `north` are the rows beside it.
+template <class Law>
+void eastwards(const Law law, const std::int32_t* __restrict south, const std::int32_t* __restrict row,
+               const std::int32_t* __restrict north, int count, std::int32_t* __restrict flux) {
+    for (int i = 0; i < count; ++i) {
+        const auto here = static_cast<float>(north[i] - south[i]);
+        const auto there = static_cast<float>(north[i + 1] - south[i + 1]);
+        flux[i] = law(row[i] - row[i + 1], here + there, flux[i]);
+    }
+}
+
+/// The fluxes from a row of cells to the row north of it.
+template <class Law>
+void northwards(const Law law, const std::int32_t* __restrict row, const std::int32_t* __restrict north, int count,
+                std::int32_t* __restrict flux) {
+    for (int i = 0; i < count; ++i) {
+        const auto here = static_cast<float>(row[i + 1] - row[i - 1]);
+        const auto there = static_cast<float>(north[i + 1] - north[i - 1]);
+        flux[i] = law(row[i] - north[i], here + there, flux[i]);
+    }
+}
+
+/// Lets no flux bring more than there is room for, behind it or ahead.
+void limitToRoom(const std::int32_t* __restrict behind, const std::int32_t* __restrict ahead, int count,
+                 std::int32_t* __restrict flux) {
+    for (int i = 0; i < count; ++i) {
+        flux[i] = std::max(std::min(flux[i], ahead[i]), -behind[i]);
+    }
+}
+
+/// Lets no cell give more than its sand through four faces: thickness never goes negative.
+void limitToSand(const std::int32_t* __restrict behind, const std::int32_t* __restrict ahead, int count,
+                 std::int32_t* __restrict flux) {
+    for (int i = 0; i < count; ++i) {
+        flux[i] = std::max(std::min(flux[i], behind[i] / 4), -(ahead[i] / 4));
+    }
+}
+
+/// `kSandAlong`: the slope along a face counts sand alone, and not the ground that it lies on.
+template <class Law, bool kSandAlong>
+class Fluxes {
+public:
+    Fluxes(const FluxPatch& patch, const Law& east, const Law& north)
+        : patch_(patch), eastLaw_(east), northLaw_(north), width_(patch.cells.x1 - patch.cells.x0) {}
+
+    std::int64_t run() {
+        if (patch_.cells.y0 == 0) {
+            rimNorth(-1);
+        }
+        if constexpr (kSandAlong) {
+            riseEast(patch_.cells.y0);
+        }
+        for (int y = patch_.cells.y0; y < patch_.cells.y1; ++y) {
+            y == patch_.rows - 1 ? rimNorth(y) : northFluxes(y);
+            eastFluxes(y);
+        }
+        return outflow_;
+    }
+
+private:
+    /// The patch's first cell in row y.
+    [[nodiscard]] const std::int32_t* heights(int y) const {
+        return patch_.heights + (y - patch_.cells.y0) * patch_.heightStride;
+    }
+    [[nodiscard]] std::int32_t* east(int y) const { return patch_.east + y * patch_.fluxStride + patch_.cells.x0; }
+    [[nodiscard]] std::int32_t* north(int y) const { return patch_.north + y * patch_.fluxStride + patch_.cells.x0; }
+    /// The patch's first cell in row y of `room` or `sand`.
+    [[nodiscard]] const std::int32_t* held(const std::int32_t* numbers, int y) const {
+        return numbers + (y - patch_.cells.y0 + 1) * (width_ + 2) + 1;
+    }
+
+    /// How much higher the eastern neighbour of each cell of row y is than the western one, as the sand goes.
+    void riseEast(int y) {
+        const std::int32_t* sand = held(patch_.sand, y) - 1;
+        sandDifferences(heights(y), heights(y) - 1, sand + 1, sand, width_ + 1, steps_[0].data());
+        sums(steps_[0].data(), steps_[0].data() + 1, width_, riseEast_[static_cast<unsigned>(y) % 2].data());
+    }
+    /// How much higher the northern neighbour of each cell of row y is than the southern one, one cell more than wide.
+    void riseNorth(int y) {
+        const int count = width_ + 1;
+        const std::int32_t* sand = held(patch_.sand, y);
+        const int up = width_ + 2;
+        sandDifferences(heights(y), heights(y - 1), sand, sand - up, count, steps_[0].data());
+        sandDifferences(heights(y + 1), heights(y), sand + up, sand, count, steps_[1].data());
+        sums(steps_[0].data(), steps_[1].data(), count, riseNorth_.data());
+    }
+
+    /// Limits the fluxes from the cells of row y to those `ahead` cells further in `room` and `sand`.
+    void hold(int y, int ahead, std::int32_t* flux) const {
+        if (patch_.room != nullptr) {
+            limitToRoom(held(patch_.room, y), held(patch_.room, y) + ahead, width_, flux);
+        }
+        if (patch_.sand != nullptr) {
+            limitToSand(held(patch_.sand, y), held(patch_.sand, y) + ahead, width_, flux);
+        }
+    }
+
+    /// Fluxes from row y to row y + 1.
+    void northFluxes(int y) {
+        if constexpr (kSandAlong) {
+            riseEast(y + 1);
+            fluxesBetween(northLaw_, heights(y), heights(y + 1), riseEast_[static_cast<unsigned>(y) % 2].data(),
+                          riseEast_[static_cast<unsigned>(y + 1) % 2].data(), width_, north(y));
+        } else {
+            northwards(northLaw_, heights(y), heights(y + 1), width_, north(y));
+        }
+        hold(y, width_ + 2, north(y));
+    }
+
+    /// Fluxes from the cells of row y to their eastern neighbours, and over the rims at the row's ends.
+    void eastFluxes(int y) {
+        std::int32_t* flux = east(y);
+        // The face at the rim is computed like the others and put right below: a row of a multiple of eight faces has
+        // no rest, which would take longer than all of them.
+        const std::int32_t lastAtRim = flux[width_ - 1];
+        if constexpr (kSandAlong) {
+            riseNorth(y);
+            fluxesBetween(eastLaw_, heights(y), heights(y) + 1, riseNorth_.data(), riseNorth_.data() + 1, width_, flux);
+        } else {
+            eastwards(eastLaw_, heights(y - 1), heights(y), heights(y + 1), width_, flux);
+        }
+        hold(y, 1, flux);
+        if (patch_.openRim && patch_.cells.x0 == 0) {
+            flux[-1] = -overRim(eastLaw_, y, 0, heights(y + 1)[0] - heights(y - 1)[0], -flux[-1]);
+        }
+        if (patch_.cells.x1 == patch_.columns) {
+            const int last = width_ - 1;
+            flux[last] =
+                patch_.openRim ? overRim(eastLaw_, y, last, heights(y + 1)[last] - heights(y - 1)[last], lastAtRim) : 0;
+        }
+    }
+
+    void rimNorth(int y) {
+        if (!patch_.openRim) {
+            return;
+        }
+        const int inner = std::max(y, 0);
+        std::int32_t* flux = north(y);
+        for (int i = 0; i < width_; ++i) {
+            const std::int32_t along = heights(inner)[i + 1] - heights(inner)[i - 1];
+            flux[i] =
+                y < 0 ? -overRim(northLaw_, inner, i, along, -flux[i]) : overRim(northLaw_, inner, i, along, flux[i]);
+        }
+    }
+
+    /// Over an open rim sand falls to height 0 and never comes back.
+    std::int32_t overRim(const Law& law, int y, int i, std::int32_t along, std::int32_t last) {
+        std::int32_t flux = std::max(law(heights(y)[i], 2 * static_cast<float>(along), last), 0);
+        if (patch_.sand != nullptr) {
+            flux = std::min(flux, held(patch_.sand, y)[i] / 4);
+        }
+        outflow_ += flux;
+        return flux;
+    }
+
+    const FluxPatch& patch_;
+    const Law eastLaw_, northLaw_;
+    const int width_;
+    std::int64_t outflow_ = 0;
+    // Of odd and even rows; none where slopes are taken from the heights as they are.
+    std::array<Row<float>, kSandAlong ? 2 : 0> riseEast_;
+    std::array<Row<std::int32_t>, kSandAlong ? 2 : 0> steps_;
+    std::array<float, kSandAlong ? kMaxPatch + 2 * kKernelMargin : 0> riseNorth_;
+};
+
+template <class Law>
+std::int64_t run(const FluxPatch& patch, const Law& east, const Law& north) {
+    if constexpr (Law::kNeedsAlong) {
+        if (patch.sand != nullptr) {
+            return Fluxes<Law, true>(patch, east, north).run();
+        }
+    }
+    return Fluxes<Law, false>(patch, east, north).run();
+}
+
+template <bool kBand>
+std::int64_t runInertial(const FluxPatch& patch) {
+    using Law = Inertial<kBand>;
+    return run(patch, Law(patch.eastLaw, patch.momentum), Law(patch.northLaw, patch.momentum));
+}
+
+/// `moved` collects in each column what is true of the rows in which sand flows, so that blocks are looked at once and
+/// not in every row.
+void addUp(const std::int32_t* __restrict east, const std::int32_t* __restrict south,
+           const std::int32_t* __restrict north, int count, std::int32_t ofRow, std::int32_t* __restrict heights,
+           std::int32_t* __restrict moved) {
+    for (int i = 0; i < count; ++i) {
+        heights[i] += east[i - 1] - east[i] + south[i] - north[i];
+        moved[i] |= (east[i] | north[i]) != 0 ? ofRow : 0;
+    }
+}
+
+/// What is true of a row of a block, of rows [first, end), in which sand flows.
+std::int32_t flowIn(int row, int first, int end) {
+    return flow::kSomewhere | (row == first ? flow::kSouth : 0) | (row >= end - 2 ? flow::kNorth : 0);
+}
+
+/// Tells where in the blocks of a row of blocks sand flows, and begins the next.
+void reportMoved(const BalancePatch& patch, int blockRow, Row<std::int32_t>& moved) {
+    const int width = patch.cells.x1 - patch.cells.x0;
+    std::uint8_t* flags = patch.moved + blockRow * patch.blocksAcross;
+    for (int x = 0; x < width; x += patch.blockSize) {
+        const std::int32_t* const column = moved.data() + x;
+        const int count = std::min(patch.blockSize, width - x);
+        std::int32_t bits = 0;
+        for (int i = 0; i < count; ++i) {
+            bits |= column[i];
+        }
+        bits |= column[0] != 0 ? flow::kWest : 0;
+        bits |= (column[count - 1] | column[std::max(count - 2, 0)]) != 0 ? flow::kEast : 0;
+        *flags++ = static_cast<std::uint8_t>(bits);
+    }
+    std::fill_n(moved.data(), width, 0);
+}
+
+}  // namespace
+
+std::int64_t sweepFluxes(const FluxPatch& patch) {
+    switch (patch.law) {
+        case FluxPatch::Law::inertial:
+            return patch.eastLaw.startThreshold > patch.eastLaw.threshold ? runInertial<true>(patch)
+                                                                          : runInertial<false>(patch);
+        case FluxPatch::Law::isotropic:
+            return run(patch, Isotropic{patch.eastLaw}, Isotropic{patch.northLaw});
+        case FluxPatch::Law::n4:
+            break;
+    }
+    return run(patch, FourNeighbours{patch.eastThreshold, patch.eastStartThreshold},
+               FourNeighbours{patch.northThreshold, patch.northStartThreshold});
+}
+
+void balance(const BalancePatch& patch) {
+    const int width = patch.cells.x1 - patch.cells.x0;
+    Row<std::int32_t> moved;
+    std::fill_n(moved.data(), width, 0);
+    if (patch.cells.y0 == 0) {  // the faces at the southern rim are no cell's northern ones
+        const std::int32_t* south = patch.north - patch.fluxStride + patch.cells.x0;
+        std::transform(south, south + width, moved.data(), [](int flux) { return flux != 0 ? flow::kSomewhere : 0; });
+    }
+    int blockRow = 0;
+    for (int y = patch.cells.y0; y < patch.cells.y1; ++blockRow) {
+        const int first = y, end = std::min(y + patch.blockSize, patch.cells.y1);
+        for (; y < end; ++y) {
+            const std::int32_t ofRow = flowIn(y, first, end);
+            const std::ptrdiff_t flux = y * patch.fluxStride + patch.cells.x0;
+            addUp(patch.east + flux, patch.north + flux - patch.fluxStride, patch.north + flux, width, ofRow,
+                  patch.heights + y * patch.heightStride + patch.cells.x0, moved.data());
+            if (patch.cells.x0 == 0) {
+                moved.data()[0] |= patch.east[flux - 1] != 0 ? ofRow : 0;
+            }
+        }
+        reportMoved(patch, blockRow, moved);
+    }
+}
+
+}  // namespace sand::SANDWALL_CODE_PATH

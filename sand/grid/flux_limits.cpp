@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/grid/flux_limits.hpp"
+
+#include <algorithm>
+
+namespace sand {
+namespace {
+
+/// Heights as the slope law shall see them. Beyond the rim the ground goes on as it came, unless a wall is in the way.
+std::int32_t seenHeight(const HeightField& field, const Ground& ground, int x, int y) {
+    const int edgeX = std::clamp(x, 0, field.columns() - 1);
+    const int edgeY = std::clamp(y, 0, field.rows() - 1);
+    if (ground.isWall(edgeX, edgeY)) {
+        return kMaxHeight;
+    }
+    const int innerX = std::clamp(2 * edgeX - x, 0, field.columns() - 1);
+    const int innerY = std::clamp(2 * edgeY - y, 0, field.rows() - 1);
+    const std::int32_t edge = field.height(edgeX, edgeY);
+    return ground.isWall(innerX, innerY) ? edge : 2 * edge - field.height(innerX, innerY);
+}
+
+/// The cells of a row that lie in the field, a loop without a branch: with rock, this is most of what a sweep costs.
+void copyRow(const std::int32_t* __restrict field, const std::int32_t* __restrict bed, int count,
+             std::int32_t* __restrict heights, std::int32_t* __restrict sand, std::int32_t* __restrict room) {
+    for (int i = 0; i < count; ++i) {
+        const bool wall = bed[i] == Ground::kWall;
+        heights[i] = wall ? kMaxHeight : field[i];
+        sand[i] = wall ? 0 : field[i] - bed[i];
+        room[i] = wall ? 0 : Obstacle::kFree;
+    }
+}
+
+/// Four faces may each bring a quarter of what fits under the tool; beside it as much as may be. As above.
+void keepRowBelow(const std::int32_t* __restrict undersides, const std::int32_t* __restrict heights, int count,
+                  std::int32_t* __restrict room) {
+    for (int i = 0; i < count; ++i) {
+        const std::int32_t fits = std::max(std::min(undersides[i], kMaxHeight) - heights[i], 0) / 4;
+        room[i] = std::min(room[i], undersides[i] == Obstacle::kFree ? Obstacle::kFree : fits);
+    }
+}
+
+}  // namespace
+
+HeldPatch::HeldPatch(const HeightField& field, const Rect& cells, const Ground* ground, const Obstacle* obstacle)
+    : grown_(cells.grownBy(1)) {
+    room.assign(static_cast<std::size_t>(grown_.x1 - grown_.x0) * static_cast<std::size_t>(grown_.y1 - grown_.y0),
+                Obstacle::kFree);
+    if (ground != nullptr) {
+        heights.resize(room.size());
+        sand.resize(room.size());
+        copyField(field, *ground);
+        extendBeyondRim(field, *ground);
+    }
+    if (obstacle != nullptr) {
+        keepBelow(field, *obstacle);
+    }
+}
+
+std::size_t HeldPatch::index(int column, int row) const {
+    return static_cast<std::size_t>(row - grown_.y0) * static_cast<std::size_t>(grown_.x1 - grown_.x0) +
+           static_cast<std::size_t>(column - grown_.x0);
+}
+
+void HeldPatch::copyField(const HeightField& field, const Ground& ground) {
+    const Rect inside = grown_.clippedTo(field.bounds());
+    for (int y = inside.y0; y < inside.y1; ++y) {
+        const std::size_t first = index(inside.x0, y);
+        copyRow(field.row(y) + inside.x0, ground.cells().row(y) + inside.x0, inside.x1 - inside.x0, &heights[first],
+                &sand[first], &room[first]);
+    }
+}
+
+void HeldPatch::extendBeyondRim(const HeightField& field, const Ground& ground) {
+    for (int y = grown_.y0; y < grown_.y1; ++y) {
+        const bool rowInside = y >= 0 && y < field.rows();
+        for (int x = grown_.x0; x < grown_.x1; ++x) {
+            if (rowInside && x >= 0 && x < field.columns()) {
+                x = std::min(grown_.x1, field.columns()) - 1;  // the last of those that copyField() did
+                continue;
+            }
+            const int edgeX = std::clamp(x, 0, field.columns() - 1);
+            const int edgeY = std::clamp(y, 0, field.rows() - 1);
+            heights[index(x, y)] = seenHeight(field, ground, x, y);
+            sand[index(x, y)] = ground.sand(edgeX, edgeY, field.height(edgeX, edgeY));
+            room[index(x, y)] = ground.isWall(edgeX, edgeY) ? 0 : Obstacle::kFree;
+        }
+    }
+}
+
+void HeldPatch::keepBelow(const HeightField& field, const Obstacle& obstacle) {
+    const Rect shared = obstacle.cells.clippedTo(grown_);
+    for (int y = shared.y0; y < shared.y1 && shared.x0 < shared.x1; ++y) {
+        keepRowBelow(obstacle.row(y) + (shared.x0 - obstacle.cells.x0), field.row(y) + shared.x0, shared.x1 - shared.x0,
+                     &room[index(shared.x0, y)]);
+    }
+}
+
+}  // namespace sand

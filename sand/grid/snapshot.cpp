@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/grid/snapshot.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "sand/model/grid_codec.hpp"
+
+namespace sand {
+namespace {
+
+constexpr int kTile = 64;  // [cell]
+
+int tilesIn(int cells) { return (cells + kTile - 1) / kTile; }
+
+void copyCells(const HeightField& from, const Rect& cells, HeightField& to) {
+    for (int y = cells.y0; y < cells.y1; ++y) {
+        std::copy(from.row(y) + cells.x0, from.row(y) + cells.x1, to.row(y) + cells.x0);
+    }
+}
+
+}  // namespace
+
+base::Bytes SandCopy::encode() const {
+    base::ByteWriter writer;
+    writer.put(outflow);
+    encodeCells(field.cells(), field.bounds(), writer);
+    inertia.encode(field.columns(), field.rows(), writer);
+    return writer.take();
+}
+
+SandCopy SandCopy::decode(std::span<const std::uint8_t> bytes, int columns, int rows, double cellSize) {
+    base::ByteReader reader(bytes);
+    const auto outflow = reader.get<std::int64_t>();
+    SandCopy copy(HeightField(columns, rows, cellSize), {}, outflow);
+    decodeCells(reader, copy.field.bounds(), kMaxHeight, copy.field.cells());
+    copy.inertia = Inertia::decode(reader, columns, rows);
+    if (!reader.atEnd()) {
+        throw base::FormatError("sand with more behind it");
+    }
+    return copy;
+}
+
+void KeptSand::touch(const Rect& cells) {
+    if (!copy_) {
+        return;
+    }
+    const Rect inside = cells.clippedTo(copy_->field.bounds());
+    if (inside.empty()) {
+        return;
+    }
+    for (int y = inside.y0 / kTile; y < tilesIn(inside.y1); ++y) {
+        std::fill_n(touched_.begin() + y * tilesAcross_ + inside.x0 / kTile, tilesIn(inside.x1) - inside.x0 / kTile,
+                    std::uint8_t{1});
+    }
+}
+
+std::vector<Rect> KeptSand::takeTouched() {
+    std::vector<Rect> tiles;
+    for (std::size_t i = 0; i < touched_.size(); ++i) {
+        if (std::exchange(touched_[i], std::uint8_t{0}) != 0) {
+            const int x = static_cast<int>(i) % tilesAcross_ * kTile;
+            const int y = static_cast<int>(i) / tilesAcross_ * kTile;
+            tiles.push_back(Rect{x, y, x + kTile, y + kTile}.clippedTo(copy_->field.bounds()));
+        }
+    }
+    return tiles;
+}
+
+void KeptSand::keep(const HeightField& field, Inertia inertia, std::int64_t outflow) {
+    if (!copy_) {
+        copy_.emplace(field, std::move(inertia), outflow);
+        tilesAcross_ = tilesIn(field.columns());
+        touched_.assign(static_cast<std::size_t>(tilesAcross_) * static_cast<std::size_t>(tilesIn(field.rows())), 0);
+    } else {
+        for (const Rect& tile : takeTouched()) {
+            copyCells(field, tile, copy_->field);
+        }
+        copy_->inertia = std::move(inertia);
+        copy_->outflow = outflow;
+    }
+    kept_ = true;
+}
+
+void KeptSand::keep(const SandCopy& copy) {
+    copy_.reset();
+    keep(copy.field, copy.inertia, copy.outflow);
+    touch(copy_->field.bounds());  // nobody knows how far the field has come since
+}
+
+std::vector<Rect> KeptSand::putBackHeights(HeightField& field) {
+    std::vector<Rect> tiles = takeTouched();
+    for (const Rect& tile : tiles) {
+        copyCells(copy_->field, tile, field);
+    }
+    return tiles;
+}
+
+}  // namespace sand

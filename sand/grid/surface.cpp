@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/grid/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sand/grid/settle.hpp"
+#include "sand/model/grid_codec.hpp"
+
+namespace sand {
+namespace {
+
+constexpr int kSweepsToRest = 1 << 20;  // more than any field that is worth waiting for
+
+Erosion::Options withGround(Erosion::Options options, const Ground* ground) {
+    options.ground = ground;
+    return options;
+}
+
+}  // namespace
+
+GridSurface::GridSurface(const Rules& rules, const HeightField& field, std::shared_ptr<const Ground> ground,
+                         const Erosion::Options& options)
+    : rules_(rules),
+      ground_(std::move(ground)),
+      field_(field),
+      erosion_(field_, rules_, withGround(options, ground_.get())),
+      hash_(field_),
+      damage_(field_.bounds()) {
+    base::ByteWriter writer;
+    encodeCells(field_.cells(), field_.bounds(), writer);
+    start_ = std::make_shared<const base::Bytes>(writer.take());
+}
+
+void GridSurface::touch(const Rect& cells) {
+    if (!cells.empty()) {
+        hash_.touch(cells);
+        beforeStroke_.touch(cells);
+        damage_ = damage_.joinedWith(cells);
+    }
+}
+
+void GridSurface::drag(const HeldTool& tool, std::span<const ProbePoint> path) {
+    const Tool held(tool.shape, tool.heading);
+    for (std::size_t i = 1; i < path.size(); ++i) {
+        const Tool::Displacement done = held.drag(field_, rules_.rim, ground_.get(), path[i - 1], path[i]);
+        erosion_.touch(done.cells);
+        touch(done.cells);
+        outflow_ += done.outflow;
+    }
+}
+
+void GridSurface::release(const HeldTool& tool, const ProbePoint& at) {
+    erosion_.touch(Tool(tool.shape, tool.heading).cells(field_, at));
+}
+
+void GridSurface::sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) {
+    const Obstacle here = tool == nullptr ? Obstacle{} : Tool(tool->shape, tool->heading).obstacle(field_, at);
+    outflow_ += erosion_.sweep(field_, sweeps, tool == nullptr ? nullptr : &here);
+    for (const Rect& block : erosion_.takeMoved()) {
+        touch(block);
+    }
+}
+
+void GridSurface::changeRules(const Rules& rules) {
+    rules_ = rules;
+    // Wakes everything: sand may stand too steep now, or have been held back by a larger tool.
+    erosion_.changeRules(rules_);
+}
+
+void GridSurface::settle() {
+    if (ground_ != nullptr) {
+        // The projection knows no rock and no walls; sweeps do, and take longer.
+        outflow_ += erosion_.sweep(field_, kSweepsToRest);
+        return;
+    }
+    outflow_ += sand::settle(field_, rules_).outflow;
+    erosion_.touch(field_.bounds());
+    touch(field_.bounds());
+}
+
+void GridSurface::reset() {
+    base::ByteReader reader(*start_);
+    decodeCells(reader, field_.bounds(), kMaxHeight, field_.cells());
+    erosion_.resume({});
+    outflow_ = 0;
+    touch(field_.bounds());
+}
+
+std::shared_ptr<const SurfaceCopy> GridSurface::kept() const {
+    return hasKept() ? std::make_shared<const SandCopy>(*beforeStroke_.kept()) : nullptr;
+}
+
+void GridSurface::putBackKept() {
+    for (const Rect& tile : beforeStroke_.putBackHeights(field_)) {
+        touch(tile);
+    }
+    erosion_.resume(beforeStroke_.kept()->inertia);
+    outflow_ = beforeStroke_.kept()->outflow;
+}
+
+std::shared_ptr<const SurfaceCopy> GridSurface::copy() const {
+    return std::make_shared<const SandCopy>(field_, erosion_.inertia(), outflow_);
+}
+
+SurfaceReader GridSurface::reader() const {
+    return [columns = field_.columns(), rows = field_.rows(),
+            cellSize = field_.cellSize()](std::span<const std::uint8_t> bytes) -> std::shared_ptr<const SurfaceCopy> {
+        return std::make_shared<const SandCopy>(SandCopy::decode(bytes, columns, rows, cellSize));
+    };
+}
+
+void GridSurface::replace(const SurfaceCopy& copy) {
+    const auto& sand = dynamic_cast<const SandCopy&>(copy);
+    field_ = sand.field;
+    erosion_.resume(sand.inertia);
+    outflow_ = sand.outflow;
+    touch(field_.bounds());
+}
+
+void GridSurface::audit(int tiles) {
+    for (int i = 0; i < std::min(tiles, hash_.tileCount()); ++i) {
+        const int tile = hash_.auditNext(field_);
+        // A flux that went bad where nothing flows would make sand from nothing.
+        if (erosion_.amiss(hash_.cellsOf(tile))) {
+            hash_.spoil(tile);
+        }
+    }
+}
+
+std::vector<std::int32_t> GridSurface::valuesOf(int tile) const {
+    std::vector<std::int32_t> heights;
+    const Rect cells = hash_.cellsOf(tile);
+    for (int y = cells.y0; y < cells.y1; ++y) {
+        heights.insert(heights.end(), field_.row(y) + cells.x0, field_.row(y) + cells.x1);
+    }
+    return heights;
+}
+
+void GridSurface::corrupt(int column, int row, int bit) {
+    field_.setHeight(column, row, field_.height(column, row) ^ (std::int32_t{1} << bit));
+}
+
+double GridSurface::height(double x, double y) const {
+    const auto cell = [](double place, int cells) {
+        return std::clamp(static_cast<int>(std::floor(place / kProbePerCell)), 0, cells - 1);
+    };
+    return field_.height(cell(x, field_.columns()), cell(y, field_.rows()));
+}
+
+}  // namespace sand

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/model/height_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+namespace sand {
+
+Rect Rect::clippedTo(const Rect& other) const {
+    return {std::max(x0, other.x0), std::max(y0, other.y0), std::min(x1, other.x1), std::min(y1, other.y1)};
+}
+
+Rect Rect::joinedWith(const Rect& other) const {
+    if (empty() || other.empty()) {
+        return empty() ? other : *this;
+    }
+    return {std::min(x0, other.x0), std::min(y0, other.y0), std::max(x1, other.x1), std::max(y1, other.y1)};
+}
+
+namespace {
+
+double checked(int columns, int rows, double cellSize) {
+    const bool sides = columns >= 1 && columns <= kMaxSide && rows >= 1 && rows <= kMaxSide;
+    if (!sides || !std::isfinite(cellSize) || cellSize <= 0) {
+        throw std::invalid_argument("HeightField: sides or cell size out of range");
+    }
+    return cellSize;
+}
+
+}  // namespace
+
+HeightField::HeightField(int columns, int rows, double cellSize)
+    : cellSize_(checked(columns, rows, cellSize)), cells_(columns, rows) {}
+
+std::int64_t HeightField::volume() const {
+    std::int64_t sum = 0;
+    for (int y = 0; y < rows(); ++y) {
+        sum = std::accumulate(row(y), row(y) + columns(), sum);
+    }
+    return sum;
+}
+
+bool sameHeights(const HeightField& a, const HeightField& b) {
+    if (a.columns() != b.columns() || a.rows() != b.rows()) {
+        return false;
+    }
+    for (int y = 0; y < a.rows(); ++y) {
+        if (!std::equal(a.row(y), a.row(y) + a.columns(), b.row(y))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace sand

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/model/rules.hpp"
+
+#include <xxhash.h>
+
+namespace sand {
+namespace {
+
+constexpr unsigned kTinFlag = 0x80;  // beside the scheme: the rules of height fields are the bytes they always were
+
+}  // namespace
+
+void Rules::tune(const Tuning& tuning) {
+    threshold = tuning.threshold;
+    startThreshold = tuning.startThreshold;
+    sweepsPerStep = tuning.sweepsPerStep;
+    toolRadius = tuning.toolRadius;
+    toolKind = tuning.toolKind;
+    toolHalfWidth = tuning.toolHalfWidth;
+    toolHeading = tuning.toolHeading;
+}
+
+void Rules::encode(base::ByteWriter& writer) const {
+    for (const std::int32_t number :
+         {columns, rows, aspect, threshold, startThreshold, sweepsPerStep, stepsPerSecond}) {
+        writer.put(number);
+    }
+    tuning().tool().encode(writer);
+    writer.put(static_cast<std::uint8_t>(static_cast<unsigned>(scheme) | (tin != 0 ? kTinFlag : 0U)));
+    writer.put(static_cast<std::uint8_t>(rim));
+    writer.put(ground);
+    if (tin != 0) {
+        writer.put(tin);
+    }
+}
+
+Rules Rules::decode(base::ByteReader& reader) {
+    Rules rules;
+    for (std::int32_t* number : {&rules.columns, &rules.rows, &rules.aspect, &rules.threshold, &rules.startThreshold,
+                                 &rules.sweepsPerStep, &rules.stepsPerSecond}) {
+        *number = reader.get<std::int32_t>();
+        if (*number < 0) {
+            throw base::FormatError("a scene with a negative rule");
+        }
+    }
+    const ToolRules tool = ToolRules::decode(reader);
+    rules.toolRadius = tool.shape.radius;
+    rules.toolKind = tool.shape.kind;
+    rules.toolHalfWidth = tool.shape.halfWidth;
+    rules.toolHeading = tool.heading;
+    const auto coded = reader.get<std::uint8_t>();
+    const unsigned scheme = coded & ~kTinFlag;
+    const auto rim = reader.get<std::uint8_t>();
+    const bool sides = rules.columns >= 1 && rules.columns <= kMaxSide && rules.rows >= 1 && rules.rows <= kMaxSide;
+    if (!sides || rules.aspect < 1 || scheme > 2 || rim > 1 || rules.stepsPerSecond < 1) {
+        throw base::FormatError("a scene with rules out of range");
+    }
+    rules.scheme = static_cast<Scheme>(scheme);
+    rules.rim = static_cast<Rim>(rim);
+    rules.ground = reader.get<std::uint64_t>();
+    if ((coded & kTinFlag) != 0 && (rules.tin = reader.get<std::uint64_t>()) == 0) {
+        throw base::FormatError("a TIN without a digest");
+    }
+    return rules;
+}
+
+std::uint64_t Rules::digest() const {
+    base::ByteWriter writer;
+    encode(writer);
+    return XXH3_64bits_withSeed(writer.bytes().data(), writer.bytes().size(), kAlgorithmVersion);
+}
+
+}  // namespace sand

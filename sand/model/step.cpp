@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/model/step.hpp"
+
+#include <cstdlib>
+#include <string>
+#include <utility>
+
+namespace sand {
+namespace {
+
+// Beside the edit in a step's flags.
+constexpr int kEngaged = 0x01, kTurned = 0x40, kMirrored = 0x80;
+
+int flagsOf(const Step& step) {
+    const int edit = 2 * static_cast<int>(step.edit.kind);
+    const int turned = step.heading ? kTurned + (step.heading->mirrored ? kMirrored : 0) : 0;
+    return edit + (step.engaged ? kEngaged : 0) + turned;
+}
+
+}  // namespace
+
+Edit Edit::tuned(const Tuning& tuning) {
+    Edit edit(Kind::tune);
+    edit.tuning = tuning;
+    return edit;
+}
+
+Edit Edit::loaded(base::Bytes sand) {
+    Edit edit(Kind::load);
+    edit.sand = std::make_shared<const base::Bytes>(std::move(sand));
+    return edit;
+}
+
+bool operator==(const Edit& a, const Edit& b) {
+    const bool sameSand = a.sand == b.sand || (a.sand && b.sand && *a.sand == *b.sand);
+    return a.kind == b.kind && a.tuning == b.tuning && sameSand;
+}
+
+void encodeDetails(const Edit& edit, base::ByteWriter& writer) {
+    if (edit.kind == Edit::tune) {
+        edit.tuning.encode(writer);
+    } else if (edit.kind == Edit::load) {
+        writer.putBlock(edit.sand ? *edit.sand : base::Bytes());
+    }
+}
+
+Edit decodeDetails(Edit::Kind kind, base::ByteReader& reader) {
+    if (kind == Edit::tune) {
+        return Edit::tuned(Tuning::decode(reader));
+    }
+    if (kind == Edit::load) {
+        // What it holds is judged where it is put in the sand's place: that knows the field.
+        const auto sand = reader.getBlock();
+        if (sand.size() > kMaxSandBytes) {
+            throw base::FormatError("sand of " + std::to_string(sand.size()) + " bytes");
+        }
+        return Edit::loaded({sand.begin(), sand.end()});
+    }
+    return kind;
+}
+
+void encode(const Step& step, base::ByteWriter& writer) {
+    writer.putVarint(step.epoch);
+    writer.putVarint(step.number);
+    writer.put(static_cast<std::uint8_t>(flagsOf(step)));
+    writer.put(static_cast<std::uint8_t>(step.path.size()));
+    ProbePoint last;
+    for (const ProbePoint& point : step.path) {
+        writer.putSigned(std::int64_t{point.x} - last.x);
+        writer.putSigned(std::int64_t{point.y} - last.y);
+        writer.putSigned(std::int64_t{point.z} - last.z);
+        last = point;
+    }
+    if (step.heading) {
+        step.heading->encode(writer);
+    }
+    encodeDetails(step.edit, writer);
+}
+
+namespace {
+
+std::int32_t addChecked(std::int32_t base, std::int64_t difference) {
+    if (difference < -2LL * kMaxProbe || difference > 2LL * kMaxProbe || std::llabs(base + difference) > kMaxProbe) {
+        throw base::FormatError("a step's point lies out of reach");
+    }
+    return static_cast<std::int32_t>(base + difference);
+}
+
+}  // namespace
+
+Step decodeStep(base::ByteReader& reader) {
+    Step step;
+    const std::uint64_t epoch = reader.getVarint();
+    if (epoch > UINT32_MAX) {
+        throw base::FormatError("a step's epoch is out of range");
+    }
+    step.epoch = static_cast<std::uint32_t>(epoch);
+    step.number = reader.getVarint();
+    const auto flags = reader.get<std::uint8_t>();
+    const auto count = reader.get<std::uint8_t>();
+    const int edit = flags % kTurned / 2;
+    const bool turned = (flags & kTurned) != 0, mirrored = (flags & kMirrored) != 0;
+    if (edit >= kEdits || (mirrored && !turned) || count > kMaxPathPoints) {
+        throw base::FormatError("a step with " + std::to_string(count) + " points, flags " + std::to_string(flags));
+    }
+    step.engaged = (flags & kEngaged) != 0;
+    step.path.reserve(count);
+    ProbePoint last;
+    for (int i = 0; i < count; ++i) {
+        last.x = addChecked(last.x, reader.getSigned());
+        last.y = addChecked(last.y, reader.getSigned());
+        last.z = addChecked(last.z, reader.getSigned());
+        step.path.push_back(last);
+    }
+    if (turned) {
+        step.heading = Heading::decode(reader, mirrored);
+    }
+    step.edit = decodeDetails(static_cast<Edit::Kind>(edit), reader);
+    return step;
+}
+
+}  // namespace sand

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "base/byte_stream.hpp"
+#include "sand/model/tool_shape.hpp"
+
+namespace sand {
+
+inline constexpr std::int32_t kLargestThreshold = 1 << 30;     // [unit]; differences never exceed 2^29: nothing slides
+inline constexpr std::int32_t kLargestToolRadius = 2048 << 8;  // [probe unit], 2048 cells
+inline constexpr std::int32_t kMostSweeps = 4096;              // per step
+
+/// A tool as rules name it. Encoded as its radius alone where it is a sphere that heads east, as journals of before
+/// there were other tools have it; else as −1 − radius, kind, half width and heading.
+struct ToolRules {
+    ToolShape shape;
+    Heading heading;  // until a hand turns it
+
+    void encode(base::ByteWriter& writer) const;
+    /// Throws base::FormatError for a tool that no scene file gives.
+    static ToolRules decode(base::ByteReader& reader);
+    [[nodiscard]] bool plain() const { return shape.kind == ToolKind::sphere && heading == Heading{}; }
+    friend bool operator==(const ToolRules&, const ToolRules&) = default;
+};
+
+/// The rules that an operator may change while sand lies: derived once (material.hpp), then sent as numbers.
+struct Tuning {
+    std::int32_t threshold = 0, startThreshold = 0;  // [unit]
+    std::int32_t sweepsPerStep = 0;
+    std::int32_t toolRadius = 0;  // [probe unit]
+    ToolKind toolKind = ToolKind::sphere;
+    std::int32_t toolHalfWidth = 0;  // [probe unit], as in ToolShape
+    Heading toolHeading{};           // until a hand turns it
+
+    [[nodiscard]] ToolRules tool() const { return {{toolKind, toolRadius, toolHalfWidth}, toolHeading}; }
+    void encode(base::ByteWriter& writer) const;
+    /// Throws base::FormatError for numbers that no scene file gives.
+    static Tuning decode(base::ByteReader& reader);
+    friend bool operator==(const Tuning&, const Tuning&) = default;
+};
+
+}  // namespace sand

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/flow/active_edges.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace sand::tin {
+namespace {
+
+constexpr double kSurelyRests = 0.999;      // of a steepness of 1: kRest is above it, and roundings are far smaller
+constexpr std::size_t kOfVerticesRest = 6;  // around what flows a ring lies still: at least so much of a lump
+constexpr std::uint8_t kAllSides = 7;       // the bits of all
+constexpr std::size_t kAhead = 8;           // vertices, from what is fetched to what is woken
+constexpr std::int32_t kNoUnderside = std::numeric_limits<std::int32_t>::max();
+
+/// A bit for a side, its corner counted from the triangle's smallest vertex on: a slot may turn its corners unnoticed.
+std::uint8_t bitOf(const Triangles& mesh, TriangleSide side) {
+    const int least = leastOf(mesh.triangles[index(side.triangle)].corner);
+    return static_cast<std::uint8_t>(1 << (side.corner - least + 3) % 3);
+}
+
+}  // namespace
+
+std::vector<Vertex> ActiveEdges::takeReleased(const Underside* held) {
+    std::vector<Vertex> released;
+    std::erase_if(heldBack_, [&](const Held& one) {
+        if ((held != nullptr ? (*held)(one.place) : kNoUnderside) == one.underside) {
+            return false;
+        }
+        released.push_back(one.vertex);
+        noteOf(one.vertex).isHeldBack = false;
+        return true;
+    });
+    return released;
+}
+
+double ActiveEdges::undersideAt(Vertex vertex, const Place& place) {
+    if (held_ == nullptr) {
+        return MovingSand::kFree;
+    }
+    VertexNote& note = noteOf(vertex);
+    if (note.undersideKnown != turn_) {
+        note.undersideKnown = turn_;
+        const std::int32_t underside = (*held_)(place);
+        note.underside = underside == kNoUnderside ? MovingSand::kFree : underside;
+        if (underside != kNoUnderside && !note.isHeldBack) {
+            note.isHeldBack = true;
+            heldBack_.push_back({vertex, place, underside});
+        }
+    }
+    return note.underside;
+}
+
+void ActiveEdges::makeRoom(std::size_t vertices, std::size_t slots) {
+    ofVertices_.resize(std::max(ofVertices_.size(), vertices));
+    ofSlots_.resize(std::max(ofSlots_.size(), slots));
+}
+
+void ActiveEdges::begin(const Layer& layer, bool band, const Underside* held) {
+    band_ = band;
+    held_ = held;
+    restAround_ = 0;
+    makeRoom(layer.triangles().places.size(), layer.triangles().triangles.size());
+    if (++turn_ == 0) {  // after 2^32 of them
+        for (VertexNote& note : ofVertices_) {
+            note.woken = note.undersideKnown = 0;
+        }
+        for (SlotNote& note : ofSlots_) {
+            note.examined = 0;
+        }
+        turn_ = 1;
+    }
+    sand_.restart();
+    for (std::size_t i = 0; i < vertices_.size(); ++i) {
+        const auto vertex = index(vertices_[i]);
+        sand_.place(i, layer.volumes()[vertex], layer.stars()[vertex],
+                    undersideAt(vertices_[i], layer.triangles().places[vertex]));
+    }
+}
+
+std::int32_t ActiveEdges::localOf(const Layer& layer, Vertex vertex) {
+    std::int32_t& local = noteOf(vertex).local;
+    if (local == kNobody) {
+        const auto at = index(vertex);
+        local =
+            sand_.addVertex(layer.volumes()[at], layer.stars()[at], undersideAt(vertex, layer.triangles().places[at]));
+        vertices_.push_back(vertex);
+    }
+    return local;
+}
+
+std::int32_t ActiveEdges::facetAt(const Layer& layer, const Slopes& slopes, std::int32_t slot) {
+    std::int32_t& number = noteOfSlot(slot).facet;
+    if (number == kNobody) {
+        Facet facet = facetOf(layer.triangles(), slot, slopes);
+        for (Vertex& corner : facet.corner) {
+            corner = localOf(layer, corner);
+        }
+        number = sand_.addFacet(facet);
+        slots_.push_back(slot);
+    }
+    return number;
+}
+
+void ActiveEdges::watch(const Layer& layer, const Slopes& slopes, Vertex vertex) {
+    const Triangles& mesh = layer.triangles();
+    if (!mesh.alive(vertex) || layer.stars()[index(vertex)] == 0) {
+        return;
+    }
+    const std::int32_t self = localOf(layer, vertex);
+    if (sand_.isWatched(index(self))) {
+        return;
+    }
+    sand_.setWatched(index(self), true);
+    aroundVertex(mesh, vertex, [&](std::int32_t slot, int) {
+        if (!mesh.triangles[index(slot)].hole) {
+            static_cast<void>(facetAt(layer, slopes, slot));
+        }
+    });
+}
+
+void ActiveEdges::watchEdges(const Layer& layer, const Slopes& slopes, Weights& weights, std::int32_t slot) {
+    const Triangles& mesh = layer.triangles();
+    std::uint8_t& watched = noteOfSlot(slot).watched;
+    for (int corner = 0; corner < 3 && watched != kAllSides; ++corner) {
+        const TriangleSide side{slot, corner};
+        const std::uint8_t bit = bitOf(mesh, side);
+        if ((watched & bit) != 0) {
+            continue;
+        }
+        const TriangleSide other = across(mesh, side);
+        watched = static_cast<std::uint8_t>(watched | bit);
+        bits_.push_back({bit, bit});
+        if (other.triangle != kNobody) {
+            bits_.back().right = bitOf(mesh, other);
+            std::uint8_t& beyond = noteOfSlot(other.triangle).watched;
+            beyond = static_cast<std::uint8_t>(beyond | bits_.back().right);
+        }
+        Edge edge = weights.edge(mesh, layer.stars(), side, other);
+        edge.from = localOf(layer, edge.from);
+        edge.to = localOf(layer, edge.to);
+        edge.leftFacet = facetAt(layer, slopes, edge.leftFacet);
+        edge.rightFacet = facetAt(layer, slopes, edge.rightFacet);
+        sand_.addEdge(edge);
+    }
+}
+
+// Where nothing has flowed before, a triangle slides from a slope on that is never below the one without slack.
+bool ActiveEdges::maySlide(const Layer& layer, const Slopes& slopes, std::int32_t slot) {
+    const Triangles& mesh = layer.triangles();
+    std::array<Place, 3> at;
+    std::array<double, 3> was{}, under{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vertex corner = mesh.triangles[index(slot)].corner[k];
+        at[k] = mesh.places[index(corner)];
+        was[k] = layer.heights()[index(corner)];
+        under[k] = undersideAt(corner, at[k]);  // noted, though the triangle may not slide: it may without the obstacle
+    }
+    const double a = leaning(was[0], under[0], was[1], was[2]), b = leaning(was[1], under[1], was[2], was[0]);
+    const double c = leaning(was[2], under[2], was[0], was[1]);
+    const double x1 = at[1].x - at[0].x, y1 = at[1].y - at[0].y, x2 = at[2].x - at[0].x, y2 = at[2].y - at[0].y;
+    const double gx = (b - a) * y2 - (c - a) * y1, gy = (c - a) * x1 - (b - a) * x2;
+    const double steepest = (x1 * y2 - x2 * y1) * slopes.slide;
+    return !(gx * gx + gy * gy < kSurelyRests * steepest * steepest);
+}
+
+/// What is asked for first where a vertex is woken or watched, of itself and of a triangle beside it.
+void ActiveEdges::fetch(const Triangles& mesh, Vertex vertex) const {
+    __builtin_prefetch(&ofVertices_[index(vertex)]);
+    if (mesh.alive(vertex)) {
+        const std::int32_t slot = mesh.triangleAt[index(vertex)];
+        __builtin_prefetch(&ofSlots_[index(slot)]);
+        __builtin_prefetch(&mesh.triangles[index(slot)]);
+    }
+}
+
+/// And of those beside that triangle, once it is here.
+void ActiveEdges::fetchBeside(const Triangles& mesh, Vertex vertex) const {
+    if (mesh.alive(vertex)) {
+        for (const std::int32_t slot : mesh.triangles[index(mesh.triangleAt[index(vertex)])].neighbour) {
+            __builtin_prefetch(&mesh.triangles[index(std::max(slot, 0))]);
+            __builtin_prefetch(&ofSlots_[index(std::max(slot, 0))]);
+        }
+    }
+}
+
+void ActiveEdges::wake(const Layer& layer, const Slopes& slopes, std::span<const Vertex> vertices) {
+    const Triangles& mesh = layer.triangles();
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const Vertex vertex = vertices[i];
+        if (i + 2 * kAhead < vertices.size()) {
+            fetch(mesh, vertices[i + 2 * kAhead]);
+        }
+        if (i + kAhead < vertices.size()) {
+            fetchBeside(mesh, vertices[i + kAhead]);
+        }
+        if (!mesh.alive(vertex) || noteOf(vertex).woken == turn_) {
+            continue;
+        }
+        noteOf(vertex).woken = turn_;
+        aroundVertex(mesh, vertex, [&](std::int32_t slot, int) {
+            std::uint32_t& examined = noteOfSlot(slot).examined;
+            if (examined == turn_ || mesh.triangles[index(slot)].hole) {
+                return;
+            }
+            examined = turn_;
+            if (maySlide(layer, slopes, slot)) {
+                (isHeld(mesh.triangles[index(slot)]) ? steepHeld_ : steep_).push_back(slot);
+            }
+        });
+    }
+    // Side by side, so that few of the others are swept as if they were held.
+    for (auto* slots : {&steepHeld_, &steep_}) {
+        for (const std::int32_t slot : *slots) {
+            static_cast<void>(facetAt(layer, slopes, slot));
+        }
+        slots->clear();
+    }
+}
+
+bool ActiveEdges::isHeld(const Triangle& triangle) {
+    return held_ != nullptr && std::any_of(triangle.corner.begin(), triangle.corner.end(), [this](Vertex corner) {
+               return noteOf(corner).underside < MovingSand::kFree;
+           });
+}
+
+// Beside an edge that nobody watches no triangle slides, and nothing flows over it that could go on. Where no volume
+// changes no height does, and none begins to; but with a band, sand that flows through moves what it touches.
+bool ActiveEdges::sweep(const Layer& layer, const Slopes& slopes, Weights& weights, double momentum) {
+    std::size_t known = 0;
+    do {
+        const std::size_t first = std::exchange(known, sand_.facetCount());
+        for (const std::int32_t facet : sand_.slide(held_ != nullptr, band_, first)) {
+            watchEdges(layer, slopes, weights, slots_[index(facet)]);
+            sand_.setBare(index(facet), false);
+        }
+        // One that came with an edge may slide too: nothing flowed around it, for an obstacle held it.
+    } while (known < sand_.facetCount());
+    const SweepResult result = sand_.move(held_ != nullptr, momentum);
+    if (result.spread || (band_ && result.moved && result.met)) {
+        met_.clear();
+        sand_.findUnwatched(met_);
+        for (std::size_t i = 0; i < met_.size(); ++i) {
+            if (i + kAhead < met_.size()) {
+                fetch(layer.triangles(), vertices_[index(met_[i + kAhead])]);
+            }
+            watch(layer, slopes, vertices_[index(met_[i])]);
+        }
+    }
+    const std::int64_t around = std::max(restAround_, static_cast<std::int64_t>(sand_.vertexCount() / kOfVerticesRest));
+    inVain_ = std::max<std::int64_t>(inVain_ + result.resting - around, 0);
+    return result.moved;
+}
+
+void ActiveEdges::store(Layer& layer, std::vector<Vertex>& moved) const {
+    for (std::size_t i = 0; i < vertices_.size(); ++i) {
+        const Vertex vertex = vertices_[i];
+        if (const std::int64_t risen = sand_.volume(i) - layer.volumes()[index(vertex)]; risen != 0) {
+            layer.add(vertex, risen);
+            moved.push_back(vertex);
+        }
+    }
+}
+
+}  // namespace sand::tin

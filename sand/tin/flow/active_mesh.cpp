@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/flow/active_mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sand::tin {
+namespace {
+
+// Of stars times heights. A vertex's fluxes together are at most twice that, and below 2^53 doubles count exactly.
+constexpr double kExactSum = 0x1p51;
+
+void note(std::vector<std::uint8_t>& together, std::size_t number, bool held) {
+    together.resize(number / kHeldTogether + 1, 0);
+    together.back() = together.back() != 0 || held ? 1 : 0;
+}
+
+}  // namespace
+
+void MovingSand::notice(std::int64_t volume, std::int64_t star) {
+    largestStar_ = std::max(largestStar_, static_cast<double>(star));
+    greatestHeight_ = std::max(greatestHeight_, std::abs(static_cast<double>(volume) / static_cast<double>(star)));
+    if (!isWide_ && largestStar_ * greatestHeight_ >= kExactSum) {
+        widen();
+    }
+}
+
+void MovingSand::widen() {
+    isWide_ = true;
+    std::transform(volumes_.begin(), volumes_.end(), wide_.begin(),
+                   [](double volume) { return static_cast<std::int64_t>(volume); });
+}
+
+std::int32_t MovingSand::addVertex(std::int64_t volume, std::int64_t star, double underside) {
+    const auto number = static_cast<std::int32_t>(vertexCount());
+    notice(volume, star);
+    volumes_.push_back(static_cast<double>(volume));
+    wide_.push_back(volume);
+    stars_.push_back(static_cast<double>(star));
+    levels_.push_back({static_cast<double>(volume) / static_cast<double>(star), 0});
+    undersides_.push_back(underside);
+    unwatched_.push_back(~std::uint64_t{0});
+    return number;
+}
+
+std::int32_t MovingSand::addFacet(const Facet& facet) {
+    const auto number = static_cast<std::int32_t>(facetCount());
+    first_.push_back(facet.corner[0]);
+    second_.push_back(facet.corner[1]);
+    third_.push_back(facet.corner[2]);
+    squared_.push_back(facet.first);
+    mixed_.push_back(facet.mixed);
+    squaredAcross_.push_back(facet.second);
+    start_.push_back(facet.start);
+    sliding_.push_back(0);
+    bare_.push_back(~std::uint64_t{0});
+    note(heldFacets_, index(number),
+         std::any_of(facet.corner.begin(), facet.corner.end(), [this](std::int32_t corner) { return isHeld(corner); }));
+    return number;
+}
+
+void MovingSand::addEdge(const Edge& edge) {
+    from_.push_back(edge.from);
+    to_.push_back(edge.to);
+    left_.push_back(edge.leftFacet);
+    right_.push_back(edge.rightFacet);
+    leftWeights_.push_back(edge.left);
+    rightWeights_.push_back(edge.right);
+    fluxes_.push_back(0);
+    note(heldEdges_, edgeCount() - 1, isHeld(edge.from) || isHeld(edge.to));
+}
+
+void MovingSand::findHeld() {
+    std::vector<std::uint8_t> held(vertexCount());
+    std::transform(undersides_.begin(), undersides_.end(), held.begin(),
+                   [](double underside) { return underside < kFree ? 1 : 0; });
+    const auto find = [](std::vector<std::uint8_t>& together, std::size_t count, const auto& isHeld) {
+        together.assign(count / kHeldTogether + 1, 0);
+        for (std::size_t i = 0; i < count; ++i) {
+            together[i / kHeldTogether] |= isHeld(i);
+        }
+    };
+    find(heldFacets_, facetCount(), [&](std::size_t i) -> std::uint8_t {
+        return held[index(first_[i])] | held[index(second_[i])] | held[index(third_[i])];
+    });
+    find(heldEdges_, edgeCount(),
+         [&](std::size_t i) -> std::uint8_t { return held[index(from_[i])] | held[index(to_[i])]; });
+    heldKnown_ = true;
+}
+
+Facet MovingSand::facet(std::int32_t number) const {
+    Facet facet;
+    facet.corner = {first_[index(number)], second_[index(number)], third_[index(number)]};
+    return facet;
+}
+
+Edge MovingSand::edge(std::size_t number) const {
+    return {.from = from_[number], .to = to_[number], .leftFacet = left_[number], .rightFacet = right_[number]};
+}
+
+void MovingSand::restart() {
+    largestStar_ = greatestHeight_ = 0;
+    isWide_ = alwaysWide_;
+    heldKnown_ = false;
+    std::fill(fluxes_.begin(), fluxes_.end(), 0.0);
+}
+
+void MovingSand::place(std::size_t vertex, std::int64_t volume, std::int64_t star, double underside) {
+    volumes_[vertex] = static_cast<double>(volume);
+    stars_[vertex] = static_cast<double>(star);
+    levels_[vertex] = {volumes_[vertex] / stars_[vertex], 0};
+    undersides_[vertex] = underside;
+    notice(volume, star);
+    wide_[vertex] = volume;
+}
+
+void MovingSand::findUnwatched(std::vector<std::int32_t>& found) const {
+    // Most often it is one or two of a thousand.
+    constexpr std::size_t kAtOnce = 8;
+    const auto isFound = [this](std::size_t i) { return static_cast<std::uint64_t>(flowed(i)) & unwatched_[i]; };
+    for (std::size_t first = 0, count = vertexCount(); first < count; first += kAtOnce) {
+        const std::size_t end = std::min(first + kAtOnce, count);
+        std::uint64_t any = 0;
+        for (std::size_t i = first; i < end; ++i) {
+            any |= isFound(i);
+        }
+        for (std::size_t i = first; any != 0 && i < end; ++i) {
+            if (isFound(i) != 0) {
+                found.push_back(static_cast<std::int32_t>(i));
+            }
+        }
+    }
+}
+
+std::span<const std::int32_t> MovingSand::slide(bool held, bool band, std::size_t first) {
+    if (held && !heldKnown_) {
+        findHeld();
+    }
+    first -= first % kHeldTogether;
+    slidBare_.resize(facetCount());
+    const SweepFacets sweep{.facets = facetCount() - first,
+                            .levels = levels_.data(),
+                            .undersides = undersides_.data(),
+                            .held = held ? heldFacets_.data() + first / kHeldTogether : nullptr,
+                            .first = first_.data() + first,
+                            .second = second_.data() + first,
+                            .third = third_.data() + first,
+                            .squared = squared_.data() + first,
+                            .mixed = mixed_.data() + first,
+                            .squaredAcross = squaredAcross_.data() + first,
+                            .start = band ? start_.data() + first : nullptr,
+                            .bare = bare_.data() + first,
+                            .sliding = sliding_.data() + first,
+                            .slidBare = slidBare_.data()};
+    const std::size_t count = v3_ ? v3::slideFacets(sweep) : baseline::slideFacets(sweep);
+    for (std::size_t i = 0; i < count; ++i) {
+        slidBare_[i] += static_cast<std::int32_t>(first);
+    }
+    return {slidBare_.data(), count};
+}
+
+SweepResult MovingSand::move(bool held, double momentum) {
+    inflow_.resize(2 * vertexCount());
+    const SweepEdges sweep{.edges = edgeCount(),
+                           .levels = levels_.data(),
+                           .undersides = undersides_.data(),
+                           .held = held ? heldEdges_.data() : nullptr,
+                           .sliding = sliding_.data(),
+                           .from = from_.data(),
+                           .to = to_.data(),
+                           .left = left_.data(),
+                           .right = right_.data(),
+                           .leftWeights = leftWeights_.data(),
+                           .rightWeights = rightWeights_.data(),
+                           .momentum = momentum,
+                           .fluxes = fluxes_.data()};
+    v3_ ? v3::flowOverEdges(sweep) : baseline::flowOverEdges(sweep);
+    if (isWide_) {
+        return moveWide();
+    }
+    const SweepSand sand{.vertices = vertexCount(),
+                         .edges = edgeCount(),
+                         .from = from_.data(),
+                         .to = to_.data(),
+                         .fluxes = fluxes_.data(),
+                         .stars = stars_.data(),
+                         .unwatched = unwatched_.data(),
+                         .inflow = inflow_.data(),
+                         .volumes = volumes_.data(),
+                         .levels = levels_.data()};
+    return v3_ ? v3::moveSand(sand) : baseline::moveSand(sand);
+}
+
+SweepResult MovingSand::moveWide() {
+    wideInflow_.assign(vertexCount(), 0);
+    for (Level& level : levels_) {
+        level.flow = 0;
+    }
+    for (std::size_t i = 0; i < edgeCount(); ++i) {
+        const auto flux = static_cast<std::int64_t>(fluxes_[i]);
+        wideInflow_[index(from_[i])] -= flux;
+        wideInflow_[index(to_[i])] += flux;
+        levels_[index(from_[i])].flow += std::abs(fluxes_[i]);
+        levels_[index(to_[i])].flow += std::abs(fluxes_[i]);
+    }
+    SweepResult result;
+    for (std::size_t i = 0; i < vertexCount(); ++i) {
+        result.moved = result.moved || wideInflow_[i] != 0;
+        result.spread = result.spread || (wideInflow_[i] != 0 && !isWatched(i));
+        result.met = result.met || (flowed(i) && !isWatched(i));
+        result.resting += flowed(i) ? 0 : 1;
+        wide_[i] += wideInflow_[i];
+        levels_[i].height = static_cast<double>(wide_[i]) / stars_[i];
+    }
+    return result;
+}
+
+}  // namespace sand::tin

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiled once for every x86-64 and once for x86-64-v3, with -O3, as the sweeps of a grid are.
+#include "sand/tin/flow/sweep_kernel.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+namespace sand::tin::SANDWALL_CODE_PATH {
+namespace {
+
+using Four [[gnu::vector_size(4 * sizeof(double))]] = double;
+using Two [[gnu::vector_size(2 * sizeof(double)), gnu::aligned(sizeof(double)), gnu::may_alias]] = double;
+
+/// What four facets, or one, have at one of their corners: read in pairs, which compilers do not find.
+template <class Number>
+struct Corner {
+    Number height, flow;
+};
+template <class Number>
+Corner<Number> cornerOf(const Level* levels, const std::int32_t* corner);
+template <>
+Corner<double> cornerOf<double>(const Level* levels, const std::int32_t* corner) {
+    return {levels[*corner].height, levels[*corner].flow};
+}
+template <>
+Corner<Four> cornerOf<Four>(const Level* levels, const std::int32_t* corner) {
+    const auto* pairs = reinterpret_cast<const Two*>(levels);
+    const Four even = __builtin_shufflevector(pairs[corner[0]], pairs[corner[2]], 0, 1, 2, 3);
+    const Four odd = __builtin_shufflevector(pairs[corner[1]], pairs[corner[3]], 0, 1, 2, 3);
+    return {__builtin_shufflevector(even, odd, 0, 4, 2, 6), __builtin_shufflevector(even, odd, 1, 5, 3, 7)};
+}
+
+template <class Number>
+Number valuesAt(const double* values, const std::int32_t* index);
+template <>
+double valuesAt<double>(const double* values, const std::int32_t* index) {
+    return values[*index];
+}
+template <>
+Four valuesAt<Four>(const double* values, const std::int32_t* index) {
+    return Four{values[index[0]], values[index[1]], values[index[2]], values[index[3]]};
+}
+
+template <class Number>
+Number valuesFrom(const double* values) {
+    Number result;
+    std::memcpy(&result, values, sizeof(Number));
+    return result;
+}
+
+/// leaning(), of vectors too. Not shared: of a function that both compilations have, a linker keeps either's.
+template <class Number>
+Number leaningOn(Number height, Number underside, Number one, Number other) {
+    const Number beside = one < other ? one : other;
+    const Number leans = beside > height ? beside : height;
+    return height > underside - 1 ? leans : height;
+}
+
+using Bits [[gnu::vector_size(4 * sizeof(std::int64_t))]] = std::int64_t;  // as many as Four
+
+bool isAny(std::int64_t bits) { return bits != 0; }
+bool isAny(const Bits& bits) {
+    const auto two = __builtin_shufflevector(bits, bits, 0, 1) | __builtin_shufflevector(bits, bits, 2, 3);
+    return (two[0] | two[1]) != 0;
+}
+
+/// Facets from i on: as many as Number has. Returns whether one slides that is bare.
+template <bool kHeld, bool kBand, class Number, class Mask>
+[[gnu::always_inline]] inline bool slide(const SweepFacets& s, std::size_t i) {
+    const auto [a, aFlow] = cornerOf<Number>(s.levels, s.first + i);
+    const auto [b, bFlow] = cornerOf<Number>(s.levels, s.second + i);
+    const auto [c, cFlow] = cornerOf<Number>(s.levels, s.third + i);
+    Number atA = a, atB = b, atC = c;
+    if constexpr (kHeld) {
+        atA = leaningOn(a, valuesAt<Number>(s.undersides, s.first + i), b, c);
+        atB = leaningOn(b, valuesAt<Number>(s.undersides, s.second + i), c, a);
+        atC = leaningOn(c, valuesAt<Number>(s.undersides, s.third + i), a, b);
+    }
+    const Number d1 = atB - atA, d2 = atC - atA;
+    const Number squared = valuesFrom<Number>(s.squared + i), mixed = valuesFrom<Number>(s.mixed + i);
+    const Number steepness = squared * d1 * d1 + (mixed * d1 + valuesFrom<Number>(s.squaredAcross + i) * d2) * d2;
+    const Number push = kPush - 2 * kPush / (steepness + 1);
+    const Number none{};
+    Number rest = none + kRest;
+    if constexpr (kBand) {
+        rest = aFlow + bFlow + cFlow > none ? rest : valuesFrom<Number>(s.start + i);
+    }
+    const Number brake = push < none ? push : none;
+    const Number sliding = steepness > rest ? push : brake;
+    std::memcpy(s.sliding + i, &sliding, sizeof(Number));
+    Mask bare;
+    std::memcpy(&bare, s.bare + i, sizeof(Mask));
+    return isAny(steepness > rest ? bare : Mask{});
+}
+
+/// Returns the end of what it found.
+template <bool kHeld, bool kBand>
+std::int32_t* slideAll(const SweepFacets& sweep, std::size_t begin, std::size_t end, std::int32_t* found) {
+    const SweepFacets s = sweep;  // a copy that nobody else can write to stays in registers
+    std::size_t i = begin;
+    for (; i + 4 <= end; i += 4) {
+        if (slide<kHeld, kBand, Four, Bits>(s, i)) [[unlikely]] {
+            for (std::size_t k = i; k < i + 4; ++k) {
+                *found = static_cast<std::int32_t>(k);
+                found += s.bare[k] != 0 && s.sliding[k] > 0 ? 1 : 0;
+            }
+        }
+    }
+    for (; i < end; ++i) {
+        if (slide<kHeld, kBand, double, std::int64_t>(s, i)) {
+            *found++ = static_cast<std::int32_t>(i);
+        }
+    }
+    return found;
+}
+
+/// An edge's triangles: weights, and how strongly they slide or brake.
+struct Beside {
+    double left, right, leftSlides, rightSlides;
+
+    /// The most that may flow per height: what the proofs need.
+    [[nodiscard]] double bound() const { return std::max(left, 0.0) + std::max(right, 0.0); }
+    [[nodiscard]] double push() const {
+        return std::max(left * std::max(leftSlides, 0.0) + right * std::max(rightSlides, 0.0), 0.0);
+    }
+    [[nodiscard]] double brake() const {
+        return std::max(left, 0.0) * std::min(leftSlides, 0.0) + std::max(right, 0.0) * std::min(rightSlides, 0.0);
+    }
+};
+
+/// Of the last sweep's flux a part goes on, unless the slope has turned. Triangles flatter than the talus brake what
+/// goes on, and never the push of the triangle beside them: sand would creep along kinks for ever.
+double withMomentum(const Beside& beside, double difference, double goesOn) {
+    const double most = kMostOfBound * beside.bound() * difference;
+    const double forth = std::max(most, 0.0), back = std::min(most, 0.0);
+    const double kept = std::min(std::max(goesOn, back), forth) + beside.brake() * difference;
+    const double left = difference > 0 ? std::max(kept, 0.0) : std::min(kept, 0.0);
+    return std::min(std::max(left + beside.push() * difference, back), forth);
+}
+
+template <bool kHeld, bool kMomentum>
+void flow(std::size_t count, const Level* __restrict levels, const double* __restrict undersides,
+          const std::int32_t* __restrict from, const std::int32_t* __restrict to, const std::int32_t* __restrict left,
+          const std::int32_t* __restrict right, const double* __restrict leftWeights,
+          const double* __restrict rightWeights, const double* __restrict sliding, double momentum,
+          double* __restrict fluxes) {
+    for (std::size_t i = 0; i < count; ++i) {
+        const Beside beside{leftWeights[i], rightWeights[i], sliding[left[i]], sliding[right[i]]};
+        const double one = levels[from[i]].height, other = levels[to[i]].height;
+        double flux = 0;
+        if constexpr (kMomentum) {
+            flux = std::trunc(withMomentum(beside, one - other, momentum * fluxes[i]));
+        } else {
+            flux = std::trunc(beside.push() * (one - other));
+        }
+        if constexpr (kHeld) {
+            const double overOne = undersides[from[i]], overOther = undersides[to[i]];
+            const double above = (one > other ? overOther : overOne) - (one > other ? other : one);
+            const double room = std::trunc(beside.bound() * std::max(above, 0.0));
+            flux = std::max(std::min(flux, room), -room);
+        }
+        fluxes[i] = flux;
+    }
+}
+
+template <bool kHeld>
+void flowAll(const SweepEdges& s, std::size_t begin, std::size_t end) {
+    const auto run = s.momentum > 0 ? flow<kHeld, true> : flow<kHeld, false>;
+    run(end - begin, s.levels, s.undersides, s.from + begin, s.to + begin, s.left + begin, s.right + begin,
+        s.leftWeights + begin, s.rightWeights + begin, s.sliding, s.momentum, s.fluxes + begin);
+}
+
+/// Calls work(held, begin, end) for what lies below an obstacle and for what does not, each in as few parts as may be.
+template <class Work>
+void inParts(std::size_t count, const std::uint8_t* held, const Work& work) {
+    for (std::size_t begin = 0; begin < count;) {
+        const bool isHeld = held != nullptr && held[begin / kHeldTogether] != 0;
+        std::size_t end = begin + kHeldTogether;
+        while (end < count && isHeld == (held != nullptr && held[end / kHeldTogether] != 0)) {
+            end += kHeldTogether;
+        }
+        end = std::min(end, count);
+        work(isHeld, begin, end);
+        begin = end;
+    }
+}
+
+// Added with one instruction, as an edge's flux and its size are: to know where sand flows costs next to nothing.
+void sumUp(std::size_t edges, const std::int32_t* from, const std::int32_t* to, const double* fluxes, double* sums) {
+    auto* pairs = reinterpret_cast<Two*>(sums);
+    const auto add = [&](std::size_t i) {
+        const double flux = fluxes[i], size = std::abs(flux);
+        pairs[from[i]] += Two{-flux, size};
+        pairs[to[i]] += Two{flux, size};
+    };
+    // Edges that follow each other share a vertex, whose sum would have to be there first: four far apart do not wait.
+    // Sums of whole numbers need no order.
+    const std::size_t part = edges / 4;
+    for (std::size_t i = 0; i < part; ++i) {
+        add(i);
+        add(i + part);
+        add(i + 2 * part);
+        add(i + 3 * part);
+    }
+    for (std::size_t i = 4 * part; i < edges; ++i) {
+        add(i);
+    }
+}
+
+/// A height is a quotient, rounded once.
+SweepResult settleUp(std::size_t count, const double* __restrict sums, const double* __restrict stars,
+                     const std::uint64_t* __restrict unwatched, double* __restrict volumes, Level* __restrict levels) {
+    std::uint64_t moved = 0, beyond = 0, met = 0;
+    std::int64_t resting = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double inflow = sums[2 * i], flow = sums[2 * i + 1];
+        const auto bits = std::bit_cast<std::uint64_t>(inflow + 0.0);  // minus zero is none either
+        moved |= bits;
+        beyond |= bits & unwatched[i];
+        met |= std::bit_cast<std::uint64_t>(flow) & unwatched[i];
+        resting += flow > 0 ? 0 : 1;
+        volumes[i] += inflow;
+        levels[i] = {volumes[i] / stars[i], flow};
+    }
+    return {moved != 0, beyond != 0, met != 0, resting};
+}
+
+}  // namespace
+
+std::size_t slideFacets(const SweepFacets& s) {
+    const bool band = s.start != nullptr;
+    std::int32_t* found = s.slidBare;
+    inParts(s.facets, s.held, [&](bool held, std::size_t begin, std::size_t end) {
+        if (held) {
+            found = band ? slideAll<true, true>(s, begin, end, found) : slideAll<true, false>(s, begin, end, found);
+        } else {
+            found = band ? slideAll<false, true>(s, begin, end, found) : slideAll<false, false>(s, begin, end, found);
+        }
+    });
+    return static_cast<std::size_t>(found - s.slidBare);
+}
+
+void flowOverEdges(const SweepEdges& s) {
+    inParts(s.edges, s.held, [&](bool held, std::size_t begin, std::size_t end) {
+        held ? flowAll<true>(s, begin, end) : flowAll<false>(s, begin, end);
+    });
+}
+
+SweepResult moveSand(const SweepSand& sand) {
+    std::fill(sand.inflow, sand.inflow + 2 * sand.vertices, 0.0);
+    sumUp(sand.edges, sand.from, sand.to, sand.fluxes, sand.inflow);
+    return settleUp(sand.vertices, sand.inflow, sand.stars, sand.unwatched, sand.volumes, sand.levels);
+}
+
+}  // namespace sand::tin::SANDWALL_CODE_PATH

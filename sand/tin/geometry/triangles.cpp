@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/geometry/triangles.hpp"
+
+#include <algorithm>
+
+namespace sand::tin {
+namespace {
+
+std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
+
+std::array<Vertex, 3> sortedCorners(const Triangle& triangle) {
+    std::array<Vertex, 3> corners = triangle.corner;
+    std::sort(corners.begin(), corners.end());
+    return corners;
+}
+
+Located weigh(const Triangles& mesh, std::int32_t slot, const Place& place) {
+    const Triangle& triangle = mesh.triangles[at(slot)];
+    const Place& a = mesh.places[at(triangle.corner[0])];
+    const Place& b = mesh.places[at(triangle.corner[1])];
+    const Place& c = mesh.places[at(triangle.corner[2])];
+    return {slot, {doubledArea(b, c, place), doubledArea(c, a, place), doubledArea(a, b, place)}};
+}
+
+/// The slot with the smallest corners of those that share vertex `centre`.
+std::int32_t firstAround(const Triangles& mesh, std::int32_t slot, Vertex centre) {
+    std::int32_t first = slot;
+    for (const std::size_t turn : {std::size_t{1}, std::size_t{2}}) {  // one way round, and the other from the rim
+        for (std::int32_t next = slot;;) {
+            const Triangle& triangle = mesh.triangles[at(next)];
+            const auto corner = static_cast<std::size_t>(
+                std::find(triangle.corner.begin(), triangle.corner.end(), centre) - triangle.corner.begin());
+            next = triangle.neighbour[(corner + turn) % 3];
+            if (next == slot) {
+                return first;
+            }
+            if (next == kNobody) {
+                break;
+            }
+            if (sortedCorners(mesh.triangles[at(next)]) < sortedCorners(mesh.triangles[at(first)])) {
+                first = next;
+            }
+        }
+    }
+    return first;
+}
+
+double squaredWay(const Place& a, const Place& b) {
+    const double x = a.x - b.x, y = a.y - b.y;
+    return x * x + y * y;
+}
+
+/// Where to begin: at `slot`, or at one of some vertices all over the mesh (Mücke, Saias and Zhu 1996) where it is far
+/// away. Of a walk almost every triangle is a miss of all caches; that many loads do not wait for one another.
+std::int32_t nearer(const Triangles& mesh, std::int32_t slot, const Place& place) {
+    constexpr std::size_t kTried = 256;    // vertices
+    constexpr std::size_t kTogether = 64;  // vertices for one that is tried: few are walked through as fast
+    constexpr std::size_t kLeap = 40503;   // odd, and no multiple of a row that a scene's vertices may come in
+    const std::size_t count = mesh.places.size(), tried = std::min(count / kTogether, kTried);
+    double nearest = squaredWay(mesh.places[at(mesh.triangles[at(slot)].corner[0])], place);
+    if (tried == 0 || nearest * static_cast<double>(tried) < 4 * static_cast<double>(mesh.width) * mesh.depth) {
+        return slot;
+    }
+    std::size_t found = count;
+    for (std::size_t i = 0, vertex = 0; i < tried; ++i, vertex = (vertex + kLeap) % count) {
+        if (const double way = squaredWay(mesh.places[vertex], place); way < nearest) {
+            nearest = way;
+            found = vertex;
+        }
+    }
+    return found < count && mesh.triangleAt[found] != kNobody ? mesh.triangleAt[found] : slot;
+}
+
+}  // namespace
+
+Located locate(const Triangles& mesh, Place place, std::int32_t from) {
+    place = {std::clamp(place.x, 0, mesh.width), std::clamp(place.y, 0, mesh.depth)};
+    const bool known = from >= 0 && at(from) < mesh.triangles.size() && mesh.triangles[at(from)].alive();
+    std::int32_t slot = nearer(mesh, known ? from : mesh.triangleAt[0], place);
+    // Always leaving by the first side beyond which the place lies could go round constraints for ever; chance cannot,
+    // and where the walk ends does not depend on its way.
+    std::uint32_t chance = 1;
+    Located here = weigh(mesh, slot, place);
+    for (;;) {
+        const Triangle& triangle = mesh.triangles[at(slot)];
+        chance = chance * 1664525U + 1013904223U;
+        std::size_t side = (chance >> 16U) % 3;
+        std::size_t tried = 0;
+        while (tried < 3 && here.weights[side] >= 0) {
+            side = side == 2 ? 0 : side + 1;
+            ++tried;
+        }
+        if (tried == 3) {
+            break;
+        }
+        slot = triangle.neighbour[side];
+        here = weigh(mesh, slot, place);
+    }
+    const auto zeros = std::count(here.weights.begin(), here.weights.end(), 0);
+    if (zeros == 0) {
+        return here;
+    }
+    const Triangle& triangle = mesh.triangles[at(slot)];
+    std::int32_t first = slot;
+    for (std::size_t side = 0; side < 3; ++side) {
+        const std::int32_t next = triangle.neighbour[side];
+        if (zeros == 2 && here.weights[side] > 0) {
+            first = firstAround(mesh, slot, triangle.corner[side]);
+        } else if (zeros == 1 && here.weights[side] == 0 && next != kNobody &&
+                   sortedCorners(mesh.triangles[at(next)]) < sortedCorners(triangle)) {
+            first = next;
+        }
+    }
+    return first == slot ? here : weigh(mesh, first, place);
+}
+
+}  // namespace sand::tin

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdlib>
+#include <deque>
+
+#include "sand/tin/mesh/triangulation.hpp"
+
+namespace sand::tin {
+
+namespace {
+
+/// Whether `ahead` lies on the same side of `from` as `to`, all three being on one line.
+bool isAhead(const Place& from, const Place& to, const Place& ahead) {
+    return std::int64_t{to.x - from.x} * (ahead.x - from.x) + std::int64_t{to.y - from.y} * (ahead.y - from.y) > 0;
+}
+
+/// The lattice place nearest to where p–q crosses c–d, which it does. It lies in the bounding boxes of both.
+Place nearestToCrossing(const Place& p, const Place& q, const Place& c, const Place& d) {
+    const auto cross = [](std::int64_t ax, std::int64_t ay, std::int64_t bx, std::int64_t by) {
+        return ax * by - ay * bx;
+    };
+    std::int64_t part = cross(c.x - p.x, c.y - p.y, d.x - c.x, d.y - c.y);
+    std::int64_t whole = cross(q.x - p.x, q.y - p.y, d.x - c.x, d.y - c.y);
+    if (whole < 0) {
+        part = -part;
+        whole = -whole;
+    }
+    const auto along = [&](std::int32_t from, std::int32_t to) {
+        // Halves go up, wherever the way comes from; up to 2^70.
+        const Wide twice = static_cast<Wide>(2) * (to - from) * part + whole;
+        const Wide divisor = static_cast<Wide>(2) * whole;
+        const Wide down = twice >= 0 ? twice / divisor : -((-twice + divisor - 1) / divisor);
+        return static_cast<std::int32_t>(from + down);
+    };
+    return {along(p.x, q.x), along(p.y, q.y)};
+}
+
+/// Whether a way from p to q that bends to e bends by no more than a unit, and not back along any axis.
+bool isBeside(const Place& p, const Place& q, const Place& e) {
+    const bool between = std::min(p.x, q.x) <= e.x && e.x <= std::max(p.x, q.x) && std::min(p.y, q.y) <= e.y &&
+                         e.y <= std::max(p.y, q.y);
+    return between && std::abs(doubledArea(p, q, e)) <= std::max(std::abs(q.x - p.x), std::abs(q.y - p.y));
+}
+
+/// Where two edges that cross are to meet: at an end of one that is as good as on the other, else where they cross.
+/// Without those ends, edges that run almost along each other would cross again and again, ever nearer to where they
+/// part: one crossing in two rows of the lattice became 100,000.
+Place meetingPlace(const Place& p, const Place& q, const Place& c, const Place& d) {
+    if (isBeside(p, q, c)) {
+        return c;
+    }
+    if (isBeside(p, q, d)) {
+        return d;
+    }
+    if (isBeside(c, d, p)) {
+        return p;
+    }
+    return isBeside(c, d, q) ? q : nearestToCrossing(p, q, c, d);
+}
+
+VertexPair ascending(Vertex a, Vertex b) { return std::minmax(a, b); }
+
+}  // namespace
+
+Triangulation::Hit Triangulation::follow(Vertex from, Vertex to) const {
+    const Place& start = place(from);
+    const Place& end = place(to);
+    Hit hit;
+    Side side;  // through which the way goes on
+    around(from, [&](const Side& spoke) {
+        const Vertex right = ends(spoke).second;
+        const Vertex left = triangle(spoke.slot).corner[spoke.opposite];
+        for (const Vertex other : {right, left}) {
+            if (area(from, to, other) == 0 && isAhead(start, end, place(other))) {
+                hit.vertex = other;
+                return true;
+            }
+        }
+        if (area(from, to, right) < 0 && area(from, to, left) > 0) {
+            side = {spoke.slot, next(spoke.opposite)};
+            return true;
+        }
+        return false;
+    });
+    while (hit.vertex == kNobody) {
+        hit.edge = ends(side);
+        if (isConstrained(side)) {
+            break;
+        }
+        hit.passed.push_back(hit.edge);
+        const Side there = beyond(side);
+        const Vertex apex = triangle(there.slot).corner[there.opposite];
+        const std::int64_t where = area(from, to, apex);
+        if (where == 0) {
+            hit.vertex = apex;
+        }
+        // The way came in from the right of the side to its left; it leaves by the side whose ends it separates.
+        side = {there.slot, where > 0 ? next(there.opposite) : previous(there.opposite)};
+    }
+    return hit;
+}
+
+void Triangulation::carve(Vertex from, const Hit& hit) {
+    std::deque<VertexPair> crossing(hit.passed.begin(), hit.passed.end());
+    std::vector<VertexPair> made;
+    while (!crossing.empty()) {
+        const auto [a, b] = crossing.front();
+        crossing.pop_front();
+        const Side side = findEdge(a, b);
+        if (!isConvex(side)) {
+            crossing.emplace_back(a, b);  // others give way first (Sloan 1993)
+            continue;
+        }
+        const Vertex c = triangle(side.slot).corner[side.opposite];
+        const Side there = beyond(side);
+        const Vertex d = triangle(there.slot).corner[there.opposite];
+        flip(side);
+        const bool apart = c != from && c != hit.vertex && d != from && d != hit.vertex &&
+                           (area(from, hit.vertex, c) > 0) != (area(from, hit.vertex, d) > 0);
+        if (apart) {
+            crossing.emplace_back(c, d);
+        } else {
+            made.emplace_back(c, d);
+        }
+    }
+    setConstrained(findEdge(from, hit.vertex), true);
+    improve(made);
+}
+
+Mesh::Path Triangulation::constrain(Vertex from, Vertex to) {
+    Mesh::Path path{{from, to}, {}};
+    std::vector<VertexPair> wanted{{from, to}};
+    const auto bend = [&path](Vertex a, Vertex b, Vertex through) {
+        for (std::size_t i = 0; i + 1 < path.vertices.size(); ++i) {
+            if (ascending(path.vertices[i], path.vertices[i + 1]) == ascending(a, b)) {
+                path.vertices.insert(path.vertices.begin() + static_cast<std::ptrdiff_t>(++i), through);
+            }
+        }
+        const auto known = std::find(path.before.begin(), path.before.end(), ascending(a, b));
+        if (known != path.before.end()) {
+            *known = ascending(a, through);
+            path.before.push_back(ascending(through, b));
+        }
+    };
+    // What is wanted or constrained bends only within its bounding box, so that the two parts are together as long as
+    // it was, in steps along the axes. Each turn makes one of them in two, or takes one as it is: that comes to an end.
+    while (!wanted.empty()) {
+        const auto [a, b] = wanted.back();
+        wanted.pop_back();
+        const Hit hit = follow(a, b);
+        if (hit.vertex != kNobody) {
+            if (const Side side = findEdge(a, hit.vertex); side.slot != kNobody && isConstrained(side)) {
+                path.before.push_back(ascending(a, hit.vertex));
+            }
+            carve(a, hit);
+            if (hit.vertex != b) {
+                bend(a, b, hit.vertex);
+                wanted.emplace_back(hit.vertex, b);
+            }
+            continue;
+        }
+        const auto [c, d] = hit.edge;
+        const Place crossing = meetingPlace(place(a), place(b), place(c), place(d));
+        const Located where = find(crossing);
+        const VertexPair split = edgeAt(where);  // a constraint there is made of two as well
+        const Vertex middle = insertAt(where, crossing, kNobody);
+        bend(split.first, split.second, middle);
+        wanted.emplace_back(a, b);
+        if (middle != a && middle != b) {
+            bend(a, b, middle);
+            wanted.back() = {middle, b};
+            wanted.emplace_back(a, middle);
+        }
+        // Unless it is one of those made of two.
+        if (middle != c && middle != d && findEdge(c, d).slot != kNobody && isConstrained(findEdge(c, d))) {
+            bend(c, d, middle);
+            release(c, d);
+            wanted.emplace_back(middle, d);
+            wanted.emplace_back(c, middle);
+        }
+    }
+    return path;
+}
+
+}  // namespace sand::tin

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/refine/refinement.hpp"
+
+#include <algorithm>
+
+#include "sand/model/height_field.hpp"
+
+namespace sand::tin {
+namespace {
+
+std::int64_t square(std::int32_t coordinate, std::int32_t spacing) { return coordinate / spacing; }
+
+/// The squares of a lattice that some box touches, and which of them hold something.
+class Squares {
+public:
+    Squares(const Box& box, std::int32_t spacing)
+        : spacing_(spacing),
+          x0_(square(box.x0, spacing)),
+          y0_(square(box.y0, spacing)),
+          columns_(square(box.x1, spacing) - x0_ + 1),
+          rows_(square(box.y1, spacing) - y0_ + 1),
+          taken_(static_cast<std::size_t>(columns_ * rows_)) {}
+
+    void take(const Place& place) {
+        const std::int64_t column = square(place.x, spacing_) - x0_, row = square(place.y, spacing_) - y0_;
+        if (column >= 0 && column < columns_ && row >= 0 && row < rows_) {
+            taken_[static_cast<std::size_t>(row * columns_ + column)] = true;
+        }
+    }
+    /// Takes all squares whose middle is so near to an edge.
+    void takeBeside(const Place& from, const Place& to, std::int32_t distance) {
+        const std::int32_t x0 = std::min(from.x, to.x) - distance, x1 = std::max(from.x, to.x) + distance;
+        const std::int32_t y0 = std::min(from.y, to.y) - distance, y1 = std::max(from.y, to.y) + distance;
+        for (std::int32_t y = std::max(y0, 0); y < y1 + spacing_; y += spacing_) {
+            for (std::int32_t x = std::max(x0, 0); x < x1 + spacing_; x += spacing_) {
+                if (isNear(middleOf(square(x, spacing_), square(y, spacing_)), from, to, distance)) {
+                    take({x, y});
+                }
+            }
+        }
+    }
+    /// Calls `use` with the middle of every square that nothing took.
+    template <class Use>
+    void forEachFree(const Use& use) const {
+        for (std::int64_t row = 0; row < rows_; ++row) {
+            for (std::int64_t column = 0; column < columns_; ++column) {
+                if (!taken_[static_cast<std::size_t>(row * columns_ + column)]) {
+                    use(middleOf(x0_ + column, y0_ + row));
+                }
+            }
+        }
+    }
+
+private:
+    [[nodiscard]] Place middleOf(std::int64_t column, std::int64_t row) const {
+        return {static_cast<std::int32_t>(column * spacing_ + spacing_ / 2),
+                static_cast<std::int32_t>(row * spacing_ + spacing_ / 2)};
+    }
+
+    std::int32_t spacing_;
+    std::int64_t x0_, y0_, columns_, rows_;
+    std::vector<bool> taken_;
+};
+
+}  // namespace
+
+int refine(Mesh& mesh, const DetailRules& rules, const Box& box, const std::function<bool(const Place&)>& wanted,
+           std::span<const Place> there, const Edges& edges) {
+    const Box inside = box.clippedTo(mesh.triangles());
+    if (rules.spacing <= 0 || inside.empty()) {
+        return 0;
+    }
+    Squares squares(inside, rules.spacing);
+    for (const Place& place : there) {
+        squares.take(place);
+    }
+    for (const auto& [from, to] : edges) {
+        squares.takeBeside(from, to, rules.spacing / 4);
+    }
+    std::vector<Place> places;
+    const int room = rules.maxVertices - mesh.vertexCount();
+    squares.forEachFree([&](const Place& middle) {
+        const bool within = middle.x <= mesh.triangles().width && middle.y <= mesh.triangles().depth;
+        if (static_cast<int>(places.size()) < room && within && wanted(middle)) {
+            places.push_back(middle);
+        }
+    });
+    mesh.insert(places);
+    return static_cast<int>(places.size());
+}
+
+void DetailRules::encode(base::ByteWriter& writer) const {
+    writer.put(spacing);
+    writer.put(maxError);
+    writer.put(firstToGo);
+    writer.put(removals);
+    writer.put(maxVertices);
+    writer.put(static_cast<std::uint8_t>(keepsConstraints ? 1 : 0));
+}
+
+DetailRules DetailRules::decode(base::ByteReader& reader) {
+    DetailRules rules;
+    rules.spacing = reader.get<std::int32_t>();
+    rules.maxError = reader.get<double>();
+    rules.firstToGo = reader.get<Vertex>();
+    rules.removals = reader.get<std::int32_t>();
+    rules.maxVertices = reader.get<std::int32_t>();
+    const auto keeps = reader.get<std::uint8_t>();
+    rules.keepsConstraints = keeps == 1;
+    const bool sound = rules.spacing >= 0 && rules.spacing <= (1 << 22) && rules.maxError >= 0 &&
+                       rules.maxError <= kMaxHeight && rules.firstToGo >= 0 && rules.removals >= 0 &&
+                       rules.removals <= 65536 && rules.maxVertices >= 4 && keeps <= 1;
+    if (!sound) {
+        throw base::FormatError("rules of a TIN's detail that no scene gives");
+    }
+    return rules;
+}
+
+}  // namespace sand::tin

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/refine/start_maker.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+#include "sand/tin/geometry/lattice.hpp"
+#include "sand/tin/refine/simplify.hpp"
+
+namespace sand::tin {
+namespace {
+
+constexpr int kCorners = 4;
+constexpr double kAnyError = 4.0 * kMaxHeight;  // [unit], more than two heights can differ
+
+std::int32_t nearestHeight(double height) {
+    return static_cast<std::int32_t>(
+        std::clamp(std::floor(height + 0.5), -static_cast<double>(kMaxHeight), static_cast<double>(kMaxHeight)));
+}
+
+std::int32_t meanHeight(const Start& start) {
+    const Layer layer = layerOf(start);
+    return nearestHeight(static_cast<double>(layer.volume()) / static_cast<double>(layer.ground()));
+}
+
+std::size_t nearest(const std::vector<Place>& places, const Place& to) {
+    const auto squared = [&](const Place& place) {
+        const std::int64_t x = std::int64_t{place.x} - to.x, y = std::int64_t{place.y} - to.y;
+        return x * x + y * y;
+    };
+    const auto found = std::min_element(places.begin(), places.end(),
+                                        [&](const Place& a, const Place& b) { return squared(a) < squared(b); });
+    return static_cast<std::size_t>(found - places.begin());
+}
+
+/// Middles of cells at settings.widest, where no vertex is: without them level ground is two triangles, and a furrow's
+/// bank hangs on the field's far corners by slivers, which sand slides over badly and light shows as rays.
+void addLattice(const HeightField& field, Start& start) {
+    const std::int32_t every = Lattice(start.settings.widest).every;
+    if (every == 0) {
+        return;
+    }
+    const std::set<Place> there(start.places.begin(), start.places.end());
+    for (int row = every / 2; row < field.rows(); row += every) {
+        for (int column = every / 2; column < field.columns(); column += every) {
+            const Place place{column * kLatticePerCell + kLatticePerCell / 2,
+                              row * kLatticePerCell + kLatticePerCell / 2};
+            if (!there.contains(place) && (start.holes == nullptr || !start.holes->isHole(column, row))) {
+                start.places.push_back(place);
+                start.heights.push_back(field.height(column, row));
+            }
+        }
+    }
+}
+
+/// As near to the ground as maxError, or as so few vertices can be.
+Border borderWithin(std::size_t most, std::span<const double> heights, const Cells& cells, const Holes* holes,
+                    double maxError) {
+    Border border = borderOf(heights, cells, holes, maxError);
+    if (border.places.size() <= most) {
+        return border;
+    }
+    if (const Border least = borderOf(heights, cells, holes, kAnyError); least.places.size() > most) {
+        throw std::length_error("the outline of cells without data takes " + std::to_string(least.places.size()) +
+                                " vertices, and there is room for " + std::to_string(most) +
+                                " beside corners and points at 'widest'; raise 'vertices'");
+    }
+    for (double error = std::max(2 * maxError, 1.0); border.places.size() > most; error *= 2) {
+        border = borderOf(heights, cells, holes, error);
+    }
+    return border;
+}
+
+/// A raster for greedy insertion takes twice the memory that the field does: level ground can do without.
+bool isLevel(const HeightField& field) {
+    for (int row = 0; row < field.rows(); ++row) {
+        const std::int32_t* cells = field.row(row);
+        if (std::any_of(cells, cells + field.columns(),
+                        [&](std::int32_t cell) { return cell != field.height(0, 0); })) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// What the rim, the holes and the heights of a field need.
+void addChosen(const HeightField& field, const Ground* walls, Start& start) {
+    std::vector<double> heights;
+    heights.reserve(static_cast<std::size_t>(field.columns()) * static_cast<std::size_t>(field.rows()));
+    for (int row = 0; row < field.rows(); ++row) {
+        for (int column = 0; column < field.columns(); ++column) {
+            const bool wall = walls != nullptr && walls->isWall(column, row);
+            heights.push_back(wall ? std::numeric_limits<double>::quiet_NaN() : field.height(column, row));
+        }
+    }
+    Raster raster;
+    raster.heights = heights;
+    raster.columns = field.columns();
+    raster.rows = field.rows();
+    raster.first = {kLatticePerCell / 2, kLatticePerCell / 2};  // the middles of cells
+    const Cells cells = nominalCells(start.width, start.depth);
+    start.holes = holesOf(heights, cells);
+    const double maxError = start.settings.maxError;
+    const auto room = static_cast<int>(start.settings.mostVertices -
+                                       Lattice(start.settings.widest).size(field.columns(), field.rows()));
+    const Border border = borderWithin(static_cast<std::size_t>(std::max(room - kCorners, 0)), heights, cells,
+                                       start.holes.get(), maxError);
+    const Simplified chosen = simplify(start.width, start.depth, raster, {maxError, room, false}, border);
+    start.constraints = border.edges;
+    start.places = chosen.places;
+    for (const double height : chosen.heights) {
+        start.heights.push_back(nearestHeight(height));
+    }
+}
+
+}  // namespace
+
+Layer layerOf(const Start& start) {
+    Mesh mesh(start.width, start.depth, start.holes);
+    mesh.insert(start.places);  // the corners are there, and are the first four
+    for (const auto& [a, b] : start.constraints) {
+        mesh.constrain(a, b);
+    }
+    if (!mesh.hasOutline()) {  // as somebody sent it
+        throw base::FormatError("a TIN with holes that have no outline");
+    }
+    Layer layer(std::move(mesh));
+    for (std::size_t i = 0; i < start.heights.size(); ++i) {
+        layer.setHeight(static_cast<Vertex>(i), start.heights[i]);
+    }
+    return layer;
+}
+
+Start follow(const HeightField& field, const Ground* walls, const Settings& settings) {
+    Start start;
+    start.width = field.columns() * kLatticePerCell;
+    start.depth = field.rows() * kLatticePerCell;
+    start.settings = settings;
+    if (walls == nullptr && isLevel(field)) {
+        start.places = {{0, 0}, {start.width, 0}, {start.width, start.depth}, {0, start.depth}};
+        start.heights.assign(start.places.size(), field.height(0, 0));
+    } else {
+        addChosen(field, walls, start);
+    }
+    addLattice(field, start);
+    start.meanHeight = meanHeight(start);
+    return start;
+}
+
+Start join(const Start& given) {
+    Start start;
+    start.width = given.width;
+    start.depth = given.depth;
+    start.settings = given.settings;
+    for (const Place& corner :
+         std::array{Place{0, 0}, Place{given.width, 0}, Place{given.width, given.depth}, Place{0, given.depth}}) {
+        start.places.push_back(corner);
+        start.heights.push_back(given.heights[nearest(given.places, corner)]);
+    }
+    std::map<Place, Vertex> numbers;
+    for (Vertex corner = 0; corner < 4; ++corner) {
+        numbers.emplace(start.places[static_cast<std::size_t>(corner)], corner);
+    }
+    std::vector<Vertex> numberOf;
+    for (std::size_t i = 0; i < given.places.size(); ++i) {
+        const auto [found, fresh] = numbers.emplace(given.places[i], static_cast<Vertex>(start.places.size()));
+        if (fresh) {
+            start.places.push_back(given.places[i]);
+            start.heights.push_back(given.heights[i]);
+        }
+        numberOf.push_back(found->second);
+    }
+    for (const auto& [a, b] : given.constraints) {
+        const auto ends = std::minmax(numberOf[static_cast<std::size_t>(a)], numberOf[static_cast<std::size_t>(b)]);
+        if (ends.first != ends.second) {
+            start.constraints.emplace_back(ends);
+        }
+    }
+    start.meanHeight = meanHeight(start);
+    return start;
+}
+
+Start startOf(const Layer& layer, const Settings& settings) {
+    const Triangles& mesh = layer.triangles();
+    Start start;
+    start.width = mesh.width;
+    start.depth = mesh.depth;
+    start.settings = settings;
+    start.holes = layer.mesh().holes();
+    std::vector<Vertex> numberOf(mesh.triangleAt.size(), kNobody);
+    for (std::size_t i = 0; i < mesh.triangleAt.size(); ++i) {
+        if (mesh.alive(static_cast<Vertex>(i))) {
+            numberOf[i] = static_cast<Vertex>(start.places.size());
+            start.places.push_back(mesh.places[i]);
+            start.heights.push_back(nearestHeight(layer.heights()[i]));
+        }
+    }
+    for (const auto& [a, b] : layer.mesh().constraints()) {
+        start.constraints.emplace_back(
+            std::minmax(numberOf[static_cast<std::size_t>(a)], numberOf[static_cast<std::size_t>(b)]));
+    }
+    start.meanHeight = meanHeight(start);
+    return start;
+}
+
+}  // namespace sand::tin

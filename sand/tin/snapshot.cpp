@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/snapshot.hpp"
+
+#include <zstd.h>
+
+#include <string>
+#include <utility>
+
+namespace sand::tin {
+namespace {
+
+constexpr std::uint64_t kMostPlain = std::uint64_t{1} << 30;  // [byte], of some thirty million vertices
+
+}  // namespace
+
+void LayerState::encode(base::ByteWriter& writer) const {
+    writer.put(outflow);
+    writer.put(nextToGo);
+    imprint.encode(writer);
+}
+
+LayerState LayerState::decode(base::ByteReader& reader) {
+    LayerState state;
+    state.outflow = reader.get<std::int64_t>();
+    state.nextToGo = reader.get<Vertex>();
+    if (state.nextToGo < 0) {
+        throw base::FormatError("a TIN that was to be thinned out from nobody on");
+    }
+    state.imprint = Imprint::decode(reader);
+    return state;
+}
+
+LayerCopy::LayerCopy(const LayerParts& layer, LayerState state) : holes_(layer.holes), state_(std::move(state)) {
+    base::ByteWriter writer;
+    layer.encode(writer);
+    plain_ = writer.take();
+}
+
+LayerCopy::LayerCopy(std::span<const std::uint8_t> packed, std::int32_t width, std::int32_t depth,
+                     std::shared_ptr<const Holes> holes)
+    : holes_(std::move(holes)) {
+    base::ByteReader reader(packed);
+    state_ = LayerState::decode(reader);
+    const auto size = reader.get<std::uint64_t>();
+    if (size > kMostPlain) {
+        throw base::FormatError("a TIN of too many bytes");
+    }
+    const auto rest = reader.rest();
+    plain_.resize(size);
+    if (ZSTD_decompress(plain_.data(), plain_.size(), rest.data(), rest.size()) != size) {
+        throw base::FormatError("a TIN that does not unpack to its size");
+    }
+    const Layer whole = layer();  // throws for bytes that are none
+    if (whole.triangles().width != width || whole.triangles().depth != depth) {
+        throw base::FormatError("a TIN of another field");
+    }
+}
+
+base::Bytes LayerCopy::encode() const {
+    base::ByteWriter writer;
+    state_.encode(writer);
+    writer.put(static_cast<std::uint64_t>(plain_.size()));
+    base::Bytes packed(ZSTD_compressBound(plain_.size()));
+    const std::size_t used = ZSTD_compress(packed.data(), packed.size(), plain_.data(), plain_.size(), 1);
+    if (ZSTD_isError(used) != 0) {
+        throw base::FormatError(std::string("zstd: ") + ZSTD_getErrorName(used));
+    }
+    packed.resize(used);
+    writer.putBytes(packed);
+    return writer.take();
+}
+
+Layer LayerCopy::layer() const {
+    base::ByteReader reader(plain_);
+    Layer layer = Layer::decode(reader, holes_);
+    if (!reader.atEnd()) {
+        throw base::FormatError("a TIN with more behind it");
+    }
+    return layer;
+}
+
+}  // namespace sand::tin

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sand/tin/flow/settle.hpp"
+#include "sand/tin/refine/start_maker.hpp"
+
+namespace sand::tin {
+namespace {
+
+constexpr int kRemovalsPerStep = 64;
+constexpr int kSweepsToRest = 1 << 20;       // more than any TIN that is worth waiting for
+constexpr std::size_t kMoreVertices = 4096;  // at least, than a session starts with
+
+DetailRules detailOf(const Start& start) {
+    const Settings& settings = start.settings;
+    DetailRules rules;
+    rules.firstToGo = static_cast<Vertex>(start.places.size());
+    rules.spacing = settings.spacing;
+    rules.maxError = settings.maxError;
+    rules.removals = settings.maxError > 0 ? kRemovalsPerStep : 0;
+    rules.maxVertices = settings.mostVertices;
+    rules.keepsConstraints = settings.keepConstraints;
+    return rules;
+}
+
+void addTo(std::vector<std::int32_t>& all, const std::vector<std::int32_t>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+TinSurface::TinSurface(const Rules& rules, std::shared_ptr<const Start> start)
+    : start_(std::move(start)),
+      detail_(detailOf(*start_)),
+      rim_(rules.rim),
+      threshold_(rules.threshold),
+      startThreshold_(rules.startThreshold),
+      layer_(layerOf(*start_)),
+      erosion_(layer_, threshold_, startThreshold_),
+      hash_(layer_),
+      kept_(layer_) {
+    (void)layer_.takeChange();
+    reserve();
+}
+
+TinSurface::TinSurface(const TinSurface& other)
+    : start_(other.start_),
+      detail_(other.detail_),
+      rim_(other.rim_),
+      threshold_(other.threshold_),
+      startThreshold_(other.startThreshold_),
+      layer_(LayerCopy(other.layer_, other.state_).layer()),
+      state_(other.state_),
+      erosion_(layer_, threshold_, startThreshold_),
+      hash_(layer_),
+      kept_(layer_) {
+    (void)layer_.takeChange();
+    reserve();
+    if (other.kept_.any()) {
+        kept_.keep(other.kept_.copy());
+    }
+}
+
+void TinSurface::reserve() {
+    const std::size_t there = layer_.triangles().places.size();
+    const std::size_t most = std::max(there, static_cast<std::size_t>(detail_.maxVertices)) + kMoreVertices;
+    const std::size_t vertices = std::min(most, there + there / 4 + kMoreVertices);
+    layer_.reserve(vertices);
+    erosion_.reserve(vertices);
+    hash_.reserve(vertices);
+    kept_.reserve(vertices);
+    near_->reserve(vertices);
+    coarsening_.reserve(vertices);
+}
+
+Tool& TinSurface::toolOf(const HeldTool& tool) {
+    if (!tool_ || !tool_->is(tool.shape, tool.heading)) {
+        tool_.emplace(tool.shape, tool.heading, detail_, near_);
+    }
+    return *tool_;
+}
+
+void TinSurface::meshChanged() {
+    const Mesh::Change change = layer_.takeChange();
+    if (change.triangles.empty() && change.vertices.empty()) {
+        return;
+    }
+    sawAll_ = false;
+    erosion_.changed(layer_, change);
+    hash_.touch(layer_, change.vertices);
+    hash_.touchTriangles(layer_, change.triangles);
+    kept_.touch(change.vertices);
+    kept_.touchTriangles(change.triangles);
+    if (detail_.removals > 0) {
+        coarsening_.touch(layer_.triangles(), change);
+    }
+    if (!damage_.whole) {
+        addTo(damage_.triangles, change.triangles);
+        addTo(damage_.vertices, change.vertices);
+    }
+}
+
+/// Sand that fills the room below a tool: that beside it leans on the tool now.
+void TinSurface::wakeFull(const Underside& under, const Box& reach) {
+    if (!sawAll_ || near_->box().joinedWith(reach.clippedTo(layer_.triangles())) != near_->box()) {
+        near_->look(layer_.triangles(), reach);
+    }
+    std::vector<Vertex> full;
+    std::copy_if(near_->vertices().begin(), near_->vertices().end(), std::back_inserter(full), [&](Vertex vertex) {
+        const auto i = static_cast<std::size_t>(vertex);
+        return reach.holds(layer_.triangles().places[i]) &&
+               layer_.heights()[i] > under(layer_.triangles().places[i]) - 1.0;
+    });
+    erosion_.wake(full);
+}
+
+void TinSurface::sandMoved(const std::vector<Vertex>& vertices) {
+    if (vertices.empty()) {
+        return;
+    }
+    if (detail_.removals > 0) {
+        coarsening_.touch(layer_.triangles(), vertices);
+    }
+    hash_.touch(layer_, vertices);
+    kept_.touch(vertices);
+    if (!damage_.whole) {
+        addTo(damage_.vertices, vertices);
+    }
+}
+
+void TinSurface::drag(const HeldTool& tool, std::span<const ProbePoint> path) {
+    const Tool::Work done = toolOf(tool).drag(layer_, state_.imprint, rim_, path);
+    state_.outflow += static_cast<std::int64_t>(done.outflow);
+    meshChanged();
+    sandMoved(done.touched);
+    erosion_.wake(done.touched);
+    sawAll_ = state_.imprint.stand && state_.imprint.stand->at == path.back();
+}
+
+void TinSurface::leave(const HeldTool& tool) {
+    toolOf(tool).leave(layer_, state_.imprint);
+    meshChanged();
+}
+
+void TinSurface::sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) {
+    if (detail_.removals > 0) {
+        const Box keepOut = tool == nullptr ? Box{} : toolOf(*tool).reach(at);
+        if (coarsening_.step(layer_, detail_, state_.nextToGo, keepOut) > 0) {
+            meshChanged();
+        }
+    }
+    moved_.clear();
+    if (tool != nullptr) {
+        const Tool& here = toolOf(*tool);
+        const Underside under = here.underside(at);
+        const Imprint::Stand stand{at, tool->shape, tool->heading};
+        if (held_ != stand) {
+            held_ = stand;
+            wakeFull(under, here.reach(at));
+        }
+        erosion_.sweep(layer_, sweeps, &under, moved_);
+    } else {
+        held_.reset();
+        erosion_.sweep(layer_, sweeps, nullptr, moved_);
+    }
+    sandMoved(moved_);
+}
+
+void TinSurface::changeRules(const Rules& rules) {
+    threshold_ = rules.threshold;
+    startThreshold_ = rules.startThreshold;
+    erosion_.changeThresholds(threshold_, startThreshold_);
+}
+
+void TinSurface::settle() {
+    held_.reset();
+    if (erosion_.settled()) {
+        return;
+    }
+    const std::vector<Vertex> moved = tin::settle(layer_, threshold_, startThreshold_, kSweepsToRest).moved;
+    sandMoved(moved);
+    erosion_.wake(moved);
+    moved_.clear();
+    erosion_.settle(layer_, 1, moved_);  // so that it sees that all is at rest
+    sandMoved(moved_);
+}
+
+void TinSurface::reset() { replace(LayerCopy(layerOf(*start_), {})); }
+
+void TinSurface::keep(const SurfaceCopy& copy) {
+    kept_.keep(std::make_shared<const LayerCopy>(dynamic_cast<const LayerCopy&>(copy)));
+}
+
+std::shared_ptr<const SurfaceCopy> TinSurface::copy() const {
+    return std::make_shared<const LayerCopy>(layer_, state_);
+}
+
+SurfaceReader TinSurface::reader() const {
+    return [width = start_->width, depth = start_->depth,
+            holes = start_->holes](std::span<const std::uint8_t> bytes) -> std::shared_ptr<const SurfaceCopy> {
+        return std::make_shared<const LayerCopy>(bytes, width, depth, holes);
+    };
+}
+
+void TinSurface::replace(const SurfaceCopy& copy) {
+    const auto& sand = dynamic_cast<const LayerCopy&>(copy);
+    layer_ = sand.layer();
+    (void)layer_.takeChange();
+    state_ = sand.state();
+    erosion_ = Erosion(layer_, threshold_, startThreshold_);
+    hash_ = VertexHash(layer_);
+    kept_.replaced(layer_);
+    reserve();
+    held_.reset();
+    sawAll_ = false;
+    coarsening_.forget();
+    damage_ = {.whole = true, .triangles = {}, .vertices = {}};
+    lastFound_ = kNobody;
+}
+
+void TinSurface::audit(int tiles) {
+    for (int i = 0; i < std::min(tiles, hash_.tileCount()); ++i) {
+        hash_.auditNext(layer_);
+    }
+}
+
+std::vector<std::int32_t> TinSurface::valuesOf(int tile) const { return VertexHash::valuesOf(layer_, tile); }
+
+void TinSurface::corrupt(int column, int row, int bit) {
+    const Place place{(column * 2 + 1) * kLatticePerCell / 2, (row * 2 + 1) * kLatticePerCell / 2};
+    const Located found = locate(layer_.triangles(), place, lastFound_);
+    const Vertex vertex = layer_.triangles().triangles[static_cast<std::size_t>(found.triangle)].corner[0];
+    const std::int64_t volume = layer_.volumes()[static_cast<std::size_t>(vertex)];
+    layer_.add(vertex, (volume ^ (std::int64_t{1} << bit)) - volume);
+}
+
+double TinSurface::height(double x, double y) const {
+    const auto lattice = [](double place, std::int32_t most) {
+        return static_cast<std::int32_t>(std::clamp(std::floor(place + 0.5), 0.0, static_cast<double>(most)));
+    };
+    const Triangles& mesh = layer_.triangles();
+    const Located found = locate(mesh, {lattice(x, mesh.width), lattice(y, mesh.depth)}, lastFound_);
+    lastFound_ = found.triangle;
+    const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(found.triangle)];
+    double sum = 0, weights = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto weight = static_cast<double>(found.weights[k]);
+        sum += weight * layer_.heights()[static_cast<std::size_t>(triangle.corner[k])];
+        weights += weight;
+    }
+    return sum / weights;
+}
+
+TinChange TinSurface::takeTinDamage() {
+    sortOnce(damage_.triangles);
+    sortOnce(damage_.vertices);
+    return std::exchange(damage_, {});
+}
+
+}  // namespace sand::tin

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "sand/model/surface.hpp"
+#include "sand/tin/flow/erosion.hpp"
+#include "sand/tin/geometry/surface_view.hpp"
+#include "sand/tin/geometry/tin_start.hpp"
+#include "sand/tin/mesh/neighbourhood.hpp"
+#include "sand/tin/refine/coarsening.hpp"
+#include "sand/tin/snapshot.hpp"
+#include "sand/tin/tile_hash.hpp"
+#include "sand/tin/tool/displacement.hpp"
+#include "sand/tin/undo.hpp"
+
+namespace sand::tin {
+
+/// Sand as a TIN: a layer, a tool that stands in it, and sand that slides.
+class TinSurface final : public Surface {
+public:
+    TinSurface(const Rules& rules, std::shared_ptr<const Start> start);
+    TinSurface(const TinSurface& other);
+    TinSurface& operator=(const TinSurface&) = delete;
+    [[nodiscard]] std::unique_ptr<Surface> clone() const override { return std::make_unique<TinSurface>(*this); }
+
+    [[nodiscard]] const Layer& layer() const { return layer_; }
+    [[nodiscard]] const Start& start() const { return *start_; }
+
+    void drag(const HeldTool& tool, std::span<const ProbePoint> path) override;
+    /// Erosion itself finds the sand that a tool holds back no more.
+    void release(const HeldTool&, const ProbePoint&) override {}
+    void leave(const HeldTool& tool) override;
+    void sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) override;
+    void changeRules(const Rules& rules) override;
+    void settle() override;
+    void reset() override;
+
+    void keep() override { kept_.keep(layer_, state_); }
+    void keep(const SurfaceCopy& copy) override;
+    void forget() override { kept_.forget(); }
+    [[nodiscard]] std::shared_ptr<const SurfaceCopy> kept() const override { return kept_.copy(); }
+    [[nodiscard]] bool hasKept() const override { return kept_.any(); }
+    void putBackKept() override { replace(*kept_.copy()); }
+
+    [[nodiscard]] std::shared_ptr<const SurfaceCopy> copy() const override;
+    [[nodiscard]] SurfaceReader reader() const override;
+    void replace(const SurfaceCopy& copy) override;
+
+    [[nodiscard]] std::int64_t outflow() const override { return state_.outflow; }
+    [[nodiscard]] std::int64_t volume() const override { return static_cast<std::int64_t>(layer_.volume()); }
+    [[nodiscard]] bool settled() const override { return erosion_.settled(); }
+    [[nodiscard]] int age() const override { return 0; }
+
+    [[nodiscard]] std::uint64_t hash() override { return hash_.update(state_); }
+    void audit(int tiles) override;
+    [[nodiscard]] const HashTiles& hashTiles() const override { return hash_; }
+    [[nodiscard]] std::vector<std::int32_t> valuesOf(int tile) const override;
+    void corrupt(int column, int row, int bit) override;
+
+    [[nodiscard]] double height(double x, double y) const override;
+    [[nodiscard]] Rect takeDamage() override { return {}; }
+    [[nodiscard]] const SurfaceView* tinView() const override { return &view_; }
+    [[nodiscard]] TinChange takeTinDamage() override;
+
+private:
+    [[nodiscard]] Tool& toolOf(const HeldTool& tool);
+    /// Tells hash, erosion and whoever draws what the layer has become.
+    void meshChanged();
+    /// So that hardly a step makes what is kept for every vertex move in memory.
+    void reserve();
+    void wakeFull(const Underside& under, const Box& reach);
+    void sandMoved(const std::vector<Vertex>& vertices);
+
+    std::shared_ptr<const Start> start_;
+    DetailRules detail_;
+    Rim rim_;
+    std::int32_t threshold_, startThreshold_;
+    Layer layer_;
+    LayerState state_;
+    Coarsening coarsening_;
+    Erosion erosion_;
+    VertexHash hash_;
+    SurfaceView view_{layer_.triangles(), layer_.heights(), detail_.spacing};
+    KeptLayer kept_;
+    TinChange damage_{.whole = true, .triangles = {}, .vertices = {}};
+    std::optional<Tool> tool_;  // of the last toolOf()
+    std::shared_ptr<Window> near_ = std::make_shared<Window>();
+    bool sawAll_ = false;                       // near_ shows the mesh as it is, around the tool
+    std::optional<Imprint::Stand> held_;        // the obstacle of the last sweeps: only to save work
+    std::vector<Vertex> moved_;                 // scratch
+    mutable std::int32_t lastFound_ = kNobody;  // where the next question about a height is likely to be
+};
+
+}  // namespace sand::tin

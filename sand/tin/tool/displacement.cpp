@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/tool/displacement.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace sand::tin {
+namespace {
+
+constexpr std::size_t kMostPresses = 4096;         // of a chunk
+constexpr std::int32_t kWay = 16 * kProbePerCell;  // [probe unit], of a chunk's presses from one another, at the least
+
+/// [probe unit]: a hand that is sampled often moves less, and every press costs.
+constexpr std::int32_t kNoWay = kProbePerCell / 4;
+
+Offset offsetOf(const Place& place, const ProbePoint& at) {
+    return {std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
+}
+
+Box boxOf(const Rect& cells) {
+    return {cells.x0 * kProbePerCell, cells.y0 * kProbePerCell, cells.x1 * kProbePerCell, cells.y1 * kProbePerCell};
+}
+
+Box boxOf(const Place& a, const Place& b) {
+    return {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)};
+}
+
+bool overlaps(const Box& box, const Triangles& field) { return !box.clippedTo(field).empty(); }
+
+/// Calls visit(at, ahead) for the sub-steps from one point to the next, the first left out.
+template <class Visit>
+void forEachSubstep(const ProbePoint& from, const ProbePoint& to, const Visit& visit) {
+    const std::int64_t dx = std::int64_t{to.x} - from.x, dy = std::int64_t{to.y} - from.y;
+    const std::int64_t dz = std::int64_t{to.z} - from.z;
+    const std::int64_t longest = std::max({std::abs(dx), std::abs(dy), std::abs(dz)});
+    const std::int64_t steps = std::max<std::int64_t>((longest + kProbePerCell - 1) / kProbePerCell, 1);
+    // As a grid's tool: the direction of the whole way, in at most two cells.
+    const std::int64_t scale = std::max<std::int64_t>(longest / kProbePerCell, 1);
+    for (std::int64_t i = 1; i <= steps; ++i) {
+        visit(ProbePoint{static_cast<std::int32_t>(from.x + dx * i / steps),
+                         static_cast<std::int32_t>(from.y + dy * i / steps),
+                         static_cast<std::int32_t>(from.z + dz * i / steps)},
+              Offset{dx / scale, dy / scale});
+    }
+}
+
+}  // namespace
+
+Tool::Tool(const ToolShape& shape, const Heading& heading, const DetailRules& rules, std::shared_ptr<Window> window)
+    : shape_(shape),
+      heading_(heading),
+      rules_(rules),
+      turned_(shape, heading),
+      outline_(Outline::of(shape, heading)),
+      window_(std::move(window)) {}
+
+Underside Tool::underside(const ProbePoint& at) const {
+    return [shape = turned_, at](const Place& place) { return shape.underside(at.z, offsetOf(place, at)); };
+}
+
+Box Tool::reach(const ProbePoint& at) const { return boxOf(turned_.cellsChanged(at.x, at.y)); }
+
+Tool::Work Tool::drag(Layer& layer, Imprint& imprint, Rim rim, std::span<const ProbePoint> path) {
+    Work done;
+    Chunk chunk;
+    const auto add = [&](const Press& press) {
+        const Box box = reach(press.at);
+        if (!overlaps(box, layer.triangles())) {
+            return;
+        }
+        const Box joined = chunk.box.joinedWith(box);
+        const bool far = joined.x1 - joined.x0 > 2 * (box.x1 - box.x0) + kWay ||
+                         joined.y1 - joined.y0 > 2 * (box.y1 - box.y0) + kWay;
+        if (!chunk.presses.empty() && (far || chunk.presses.size() == kMostPresses)) {
+            work(layer, imprint, rim, chunk, done);
+            chunk = {};
+        }
+        chunk.presses.push_back(press);
+        chunk.box = chunk.box.joinedWith(box);
+    };
+    Press last{path.front(), {0, 0}}, pending = last;
+    bool waits = path.size() == 1;
+    for (std::size_t i = 1; i < path.size(); ++i) {
+        forEachSubstep(path[i - 1], path[i], [&](const ProbePoint& at, const Offset& ahead) {
+            pending = {at, ahead};
+            waits = std::max({std::abs(at.x - last.at.x), std::abs(at.y - last.at.y), last.at.z - at.z}) < kNoWay;
+            if (!waits) {
+                add(pending);
+                last = pending;
+            }
+        });
+    }
+    if (waits) {  // where the path ends the tool always presses
+        add(pending);
+    }
+    if (!chunk.presses.empty()) {
+        chunk.last = chunk.presses.back().at == path.back();
+        work(layer, imprint, rim, chunk, done);
+    }
+    if (imprint.stand && imprint.stand->at != path.back()) {  // it has gone on out of the field
+        leave(layer, imprint);
+    }
+    sortOnce(done.touched);
+    // A vertex that one change of the mesh has lost may have been touched before it.
+    std::erase_if(done.touched, [&](Vertex vertex) { return !layer.triangles().alive(vertex); });
+    return done;
+}
+
+void Tool::leave(Layer& layer, Imprint& imprint) {
+    if (imprint.stand && !rules_.keepsConstraints) {
+        const ProbePoint at = imprint.stand->at;
+        const Box box = reach(at);
+        if (rules_.spacing > 0) {  // or nobody asks what lies there
+            window_->look(layer.triangles(), box);
+        }
+        changeMesh(layer, imprint, {{{at, {0, 0}}}, box, false});
+    }
+    imprint = {};
+}
+
+void Tool::work(Layer& layer, Imprint& imprint, Rim rim, const Chunk& chunk, Work& done) {
+    window_->look(layer.triangles(), chunk.box);
+    const Imprint::Stand here{chunk.presses.back().at, shape_, heading_};
+    const bool still = imprint.stand == here && std::all_of(chunk.presses.begin(), chunk.presses.end(),
+                                                            [&](const Press& press) { return press.at == here.at; });
+    if (!still) {
+        if (!reachesSand(layer, chunk)) {
+            leave(layer, imprint);
+            return;
+        }
+        window_->follow(layer.triangles(), changeMesh(layer, imprint, chunk));
+    }
+    for (const Press& press : chunk.presses) {
+        this->press(layer, rim, press, done);
+    }
+}
+
+bool Tool::reachesSand(const Layer& layer, const Chunk& chunk) const {
+    std::int64_t lowest = chunk.presses.front().at.z;
+    for (const Press& press : chunk.presses) {
+        lowest = std::min<std::int64_t>(lowest, press.at.z);
+    }
+    constexpr std::int64_t kUnitsPerProbe = kUnitsPerCell / kProbePerCell;
+    const auto underside = static_cast<double>((lowest - shape_.radius) * kUnitsPerProbe);
+    const auto isHigher = [&](Vertex vertex) { return layer.heights()[static_cast<std::size_t>(vertex)] > underside; };
+    return std::any_of(window_->triangles().begin(), window_->triangles().end(), [&](std::int32_t slot) {
+        const Triangle& triangle = layer.triangles().triangles[static_cast<std::size_t>(slot)];
+        return !triangle.hole && std::any_of(triangle.corner.begin(), triangle.corner.end(), isHigher);
+    });
+}
+
+std::vector<Vertex> Tool::changeMesh(Layer& layer, Imprint& imprint, const Chunk& chunk) const {
+    const ProbePoint at = chunk.presses.back().at;
+    const Holes* holes = layer.mesh().holes().get();
+    const PlacedOutline outline = chunk.last ? placed(outline_, at.x, at.y, layer.triangles(), holes) : PlacedOutline{};
+    Edges edges;
+    if (rules_.spacing > 0) {  // or nobody asks for them
+        edges = edgesThatStay(layer.triangles(), imprint);
+        edges.insert(edges.end(), outline.edges.begin(), outline.edges.end());
+    }
+    return layer.edit([&](Mesh& mesh) {
+        imprint.takeOutOf(mesh);
+        thin(mesh, outline);
+        std::vector<Place> there = outline.points;
+        for (std::size_t i = 0; rules_.spacing > 0 && i < window_->vertices().size(); ++i) {
+            const Vertex vertex = window_->vertices()[i];
+            if (mesh.triangles().alive(vertex)) {
+                there.push_back(mesh.triangles().places[index(vertex)]);
+            }
+        }
+        if (chunk.last) {
+            imprint.stand = {at, shape_, heading_};
+            imprint.putInto(mesh, outline, rules_.maxVertices);
+        }
+        const auto wanted = [&](const Place& place) {
+            return isNearTool(place, chunk.presses) && (holes == nullptr || !holes->holds(place));
+        };
+        refine(mesh, rules_, chunk.box, wanted, there, edges);
+    });
+}
+
+/// Whether the tool takes sand there, lays it down there, or does so a square farther: those that take sand should
+/// have small shares of the ground all alike.
+bool Tool::isNearTool(const Place& place, const std::vector<Press>& presses) const {
+    const std::int64_t step = rules_.spacing;
+    for (const Press& press : presses) {
+        const Offset offset = offsetOf(place, press.at);
+        for (const auto& [x, y] : {std::pair{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+            const Offset beside{offset.x + x * step, offset.y + y * step};
+            if (turned_.takes(beside) || turned_.covers(beside)) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/// Constraints of earlier imprints.
+Edges Tool::edgesThatStay(const Triangles& mesh, const Imprint& imprint) const {
+    std::vector<std::pair<Vertex, Vertex>> ours;
+    for (const auto& [a, b] : imprint.edges) {
+        ours.emplace_back(std::minmax(a, b));
+    }
+    std::sort(ours.begin(), ours.end());
+    Edges edges;
+    for (const std::int32_t slot : window_->triangles()) {
+        const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(slot)];
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vertex a = triangle.corner[(k + 1) % 3], b = triangle.corner[(k + 2) % 3];
+            if (a < b && triangle.constrained[k] && triangle.neighbour[k] != kNobody &&
+                !std::binary_search(ours.begin(), ours.end(), std::pair(a, b))) {
+                edges.emplace_back(mesh.places[static_cast<std::size_t>(a)], mesh.places[static_cast<std::size_t>(b)]);
+            }
+        }
+    }
+    return edges;
+}
+
+/// Takes out what would make slivers with the outline.
+void Tool::thin(Mesh& mesh, const PlacedOutline& outline) const {
+    const std::int32_t distance = rules_.spacing / 4;
+    if (outline.points.empty() || distance == 0) {
+        return;
+    }
+    Box around;
+    for (const Place& place : outline.points) {
+        around = around.joinedWith({place.x, place.y, place.x, place.y});
+    }
+    around = around.grownBy(distance);
+    Link link;
+    for (const Vertex vertex : window_->vertices()) {
+        const Place place = mesh.triangles().places[static_cast<std::size_t>(vertex)];
+        if (!mesh.triangles().alive(vertex) || !around.holds(place)) {
+            continue;
+        }
+        const bool close = std::any_of(outline.edges.begin(), outline.edges.end(),
+                                       [&](const auto& e) {
+                                           return boxOf(e.first, e.second).grownBy(distance).holds(place) &&
+                                                  isNear(place, e.first, e.second, distance);
+                                       }) ||
+                           std::any_of(outline.points.begin(), outline.points.end(), [&](const Place& p) {
+                               return boxOf(p, p).grownBy(distance).holds(place) && isNear(place, p, p, distance);
+                           });
+        if (close) {
+            findLink(mesh.triangles(), vertex, link);
+            if (!link.constrained && link.closed) {
+                mesh.remove(vertex);
+            }
+        }
+    }
+}
+
+}  // namespace sand::tin

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/tool/imprint.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "sand/model/tuning.hpp"
+
+namespace sand::tin {
+namespace {
+
+bool lives(const Triangles& mesh, const Imprint::Point& point) {
+    return mesh.alive(point.vertex) && mesh.places[static_cast<std::size_t>(point.vertex)] == point.place;
+}
+
+void encodePoint(const ProbePoint& point, base::ByteWriter& writer) {
+    writer.put(point.x);
+    writer.put(point.y);
+    writer.put(point.z);
+}
+
+/// Of what takes so many bytes each.
+std::uint64_t decodeCount(base::ByteReader& reader, std::size_t bytesEach) {
+    const std::uint64_t count = reader.getVarint();
+    if (count > reader.rest().size() / bytesEach) {
+        throw base::FormatError("an imprint of " + std::to_string(count) + " points or edges in " +
+                                std::to_string(reader.rest().size()) + " bytes");
+    }
+    return count;
+}
+
+Imprint::Stand decodeStand(base::ByteReader& reader) {
+    Imprint::Stand stand;
+    stand.at.x = reader.get<std::int32_t>();
+    stand.at.y = reader.get<std::int32_t>();
+    stand.at.z = reader.get<std::int32_t>();
+    const auto kind = reader.get<std::uint8_t>();
+    stand.shape.kind = static_cast<ToolKind>(kind);
+    stand.shape.radius = reader.get<std::int32_t>();
+    stand.shape.halfWidth = reader.get<std::int32_t>();
+    stand.heading = Heading::decode(reader, reader.get<std::uint8_t>() != 0);
+    const bool near = std::min({stand.at.x, stand.at.y, stand.at.z}) >= -kMaxProbe &&
+                      std::max({stand.at.x, stand.at.y, stand.at.z}) <= kMaxProbe;
+    if (kind >= kToolKinds || !near || stand.shape.radius < 0 || stand.shape.radius > kLargestToolRadius ||
+        stand.shape.halfWidth < 0 || stand.shape.halfWidth > stand.shape.radius) {
+        throw base::FormatError("an imprint of a tool that no scene gives");
+    }
+    return stand;
+}
+
+/// The other ends of the constraints at a vertex that lie on neither rim nor among `ours`, which are sorted.
+std::vector<Vertex> othersAt(const Triangles& mesh, Vertex vertex, const std::vector<std::pair<Vertex, Vertex>>& ours) {
+    std::vector<Vertex> others;
+    aroundVertex(mesh, vertex, [&](std::int32_t slot, int corner) {
+        const Triangle& triangle = mesh.triangles[index(slot)];
+        const Vertex end = triangle.corner[static_cast<std::size_t>(corner + 1) % 3];
+        const std::size_t side = static_cast<std::size_t>(corner + 2) % 3;
+        if (triangle.constrained[side] && triangle.neighbour[side] != kNobody &&
+            !std::binary_search(ours.begin(), ours.end(), std::pair<Vertex, Vertex>(std::minmax(vertex, end)))) {
+            others.push_back(end);
+        }
+    });
+    return others;
+}
+
+}  // namespace
+
+void Imprint::putInto(Mesh& mesh, const PlacedOutline& outline, int maxVertices) {
+    if (mesh.vertexCount() + static_cast<int>(outline.points.size()) > maxVertices) {
+        return;
+    }
+    std::vector<Vertex> vertices;
+    for (const Place& place : outline.points) {
+        const int before = mesh.vertexCount();
+        vertices.push_back(mesh.insert(place));
+        if (mesh.vertexCount() > before) {
+            points.push_back({vertices.back(), place});
+        }
+    }
+    const auto vertexAt = [&](const Place& place) {
+        return vertices[static_cast<std::size_t>(std::find(outline.points.begin(), outline.points.end(), place) -
+                                                 outline.points.begin())];
+    };
+    for (const auto& [from, to] : outline.edges) {
+        const Vertex a = vertexAt(from), b = vertexAt(to);
+        if (mesh.isConstrained(a, b)) {
+            continue;
+        }
+        const auto [along, before] = mesh.constrain(a, b);
+        for (std::size_t i = 1; i < along.size(); ++i) {
+            if (const std::pair<Vertex, Vertex> edge = std::minmax(along[i - 1], along[i]);
+                std::find(before.begin(), before.end(), edge) == before.end()) {
+                edges.push_back(edge);
+            }
+        }
+    }
+}
+
+void Imprint::takeOutOf(Mesh& mesh) {
+    // The smaller vertex is first, but in a state from outside.
+    std::transform(edges.begin(), edges.end(), edges.begin(),
+                   [](const auto& edge) { return std::pair<Vertex, Vertex>(std::minmax(edge.first, edge.second)); });
+    std::sort(edges.begin(), edges.end());
+    const auto isOurs = [&](Vertex vertex) {
+        return std::any_of(points.begin(), points.end(), [&](const Point& point) { return point.vertex == vertex; });
+    };
+    // Edges go with their ends, where those are ours; what a state from outside says of vertices that never were is
+    // nothing either.
+    const Triangles& there = mesh.triangles();
+    for (const auto& [a, b] : edges) {
+        if (!isOurs(a) && !isOurs(b) && there.alive(a) && there.alive(b)) {
+            mesh.release(a, b);
+        }
+    }
+    for (const Point& point : points) {
+        if (lives(there, point)) {
+            const std::vector<Vertex> others = othersAt(there, point.vertex, edges);
+            if (mesh.remove(point.vertex) && others.size() == 2) {
+                mesh.constrain(others[0], others[1]);  // an earlier outline's edge, in which the point stood
+            }
+        }
+    }
+    *this = {};
+}
+
+void Imprint::encode(base::ByteWriter& writer) const {
+    writer.put(static_cast<std::uint8_t>(stand ? 1 : 0));
+    if (!stand) {
+        return;
+    }
+    encodePoint(stand->at, writer);
+    writer.put(static_cast<std::uint8_t>(stand->shape.kind));
+    writer.put(stand->shape.radius);
+    writer.put(stand->shape.halfWidth);
+    writer.put(static_cast<std::uint8_t>(stand->heading.mirrored ? 1 : 0));
+    stand->heading.encode(writer);
+    writer.putVarint(points.size());
+    for (const Point& point : points) {
+        writer.put(point.vertex);
+        writer.put(point.place.x);
+        writer.put(point.place.y);
+    }
+    writer.putVarint(edges.size());
+    for (const auto& [a, b] : edges) {
+        writer.put(a);
+        writer.put(b);
+    }
+}
+
+Imprint Imprint::decode(base::ByteReader& reader) {
+    Imprint imprint;
+    if (reader.get<std::uint8_t>() == 0) {
+        return imprint;
+    }
+    imprint.stand = decodeStand(reader);
+    for (std::uint64_t count = decodeCount(reader, 12); count > 0; --count) {
+        Point point{};
+        point.vertex = reader.get<Vertex>();
+        point.place.x = reader.get<std::int32_t>();
+        point.place.y = reader.get<std::int32_t>();
+        imprint.points.push_back(point);
+    }
+    for (std::uint64_t count = decodeCount(reader, 8); count > 0; --count) {
+        const auto a = reader.get<Vertex>();
+        imprint.edges.emplace_back(a, reader.get<Vertex>());
+    }
+    return imprint;
+}
+
+}  // namespace sand::tin

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/tool/outline.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+
+namespace sand::tin {
+namespace {
+
+constexpr double kMargin = 2;         // [probe unit]: a point that is rounded stays below the tool
+constexpr double kShortest = 18;      // [probe unit], of an edge: a fourteenth of a cell
+constexpr std::int32_t kMerging = 2;  // [probe unit], between two roundings of one crossing
+
+/// In the tool's own axes: along its heading, and to its left [probe unit].
+struct Own {
+    double along, across;
+};
+using Polygon = std::vector<Own>;  // convex, counter-clockwise
+
+/// Cosines of multiples of an eleventh and a quarter degree in 2^-14, as headings have them: no machine computes one.
+constexpr int kQuarter = 8;
+constexpr std::array<int, kQuarter + 1> kCosines{16384, 16069, 15137, 13623, 11585, 9102, 6270, 3196, 0};
+
+Own unitVector(int k /* of 32 */) {
+    const auto step = static_cast<std::size_t>(k % kQuarter);
+    const double c = kCosines.at(step) / 16384.0, s = kCosines.at(kQuarter - step) / 16384.0;
+    constexpr std::array<std::array<double, 4>, 4> kTurns{{{1, 0, 0, 1}, {0, -1, 1, 0}, {-1, 0, 0, -1}, {0, 1, -1, 0}}};
+    const auto& turn = kTurns.at(static_cast<std::size_t>(k / kQuarter % 4));
+    return {turn[0] * c + turn[1] * s, turn[2] * c + turn[3] * s};
+}
+
+/// At most `most` points, a power of two from 8 to 32; none when the shortest edge would be too short even so.
+Polygon ellipse(Own middle, double halfLength, double halfWidth, int most) {
+    constexpr double kChord = 0.196;  // of 32 on a circle of radius 1, and twice that of 16, nearly
+    const double narrow = std::min(halfLength, halfWidth);
+    int count = most;
+    while (count >= 8 && narrow * kChord * 32 / count < kShortest) {
+        count /= 2;
+    }
+    Polygon points;
+    for (int k = 0; count >= 8 && k < count; ++k) {
+        const Own unit = unitVector(k * 32 / count);
+        points.push_back({middle.along + halfLength * unit.along, middle.across + halfWidth * unit.across});
+    }
+    return points;
+}
+
+Polygon rectangle(double halfLength, double halfWidth) {
+    int count = 8;
+    while (count >= 2 && 2 * std::min(halfLength, halfWidth) / count < kShortest) {
+        count /= 2;
+    }
+    if (count < 2) {
+        return {};
+    }
+    Polygon points;
+    constexpr std::array<std::array<double, 4>, 4> kSides{
+        {{-1, -1, 1, 0}, {1, -1, 0, 1}, {1, 1, -1, 0}, {-1, 1, 0, -1}}};
+    for (const auto& side : kSides) {
+        for (int k = 0; k < count; ++k) {
+            const double way = 2.0 * k / count;
+            points.push_back({halfLength * (side[0] + side[2] * way), halfWidth * (side[1] + side[3] * way)});
+        }
+    }
+    return points;
+}
+
+double cross(const Own& a, const Own& b, const Own& c) {
+    return (b.along - a.along) * (c.across - a.across) - (b.across - a.across) * (c.along - a.along);
+}
+
+/// The part of a segment that lies within a convex polygon, as shares of it.
+std::optional<std::pair<double, double>> inside(const Own& from, const Own& to, const Polygon& polygon) {
+    double enters = 0, leaves = 1;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Own &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+        const double before = cross(a, b, from), after = cross(a, b, to);
+        if (before < 0 && after < 0) {
+            return std::nullopt;
+        }
+        if (before < 0) {
+            enters = std::max(enters, before / (before - after));
+        } else if (after < 0) {
+            leaves = std::min(leaves, before / (before - after));
+        }
+    }
+    return enters < leaves ? std::optional(std::pair(enters, leaves)) : std::nullopt;
+}
+
+std::int32_t rounded(double value) { return static_cast<std::int32_t>(value < 0 ? value - 0.5 : value + 0.5); }
+
+/// Collects points and edges in the tool's own axes.
+class Drawing {
+public:
+    int point(const Own& own) {
+        const Place place{rounded(own.along), rounded(own.across)};
+        const auto same = std::find_if(outline_.points.begin(), outline_.points.end(), [&](const Place& other) {
+            return std::abs(other.x - place.x) <= kMerging && std::abs(other.y - place.y) <= kMerging;
+        });
+        if (same == outline_.points.end()) {
+            outline_.points.push_back(place);
+            return static_cast<int>(outline_.points.size()) - 1;
+        }
+        return static_cast<int>(same - outline_.points.begin());
+    }
+    void edge(const Own& from, const Own& to) {
+        const int a = point(from), b = point(to);
+        if (a != b) {
+            outline_.edges.emplace_back(a, b);
+        }
+    }
+    /// The edges of a polygon but for what lies within the others.
+    void ring(const std::vector<Polygon>& all, std::size_t which) {
+        const Polygon& ring = all[which];
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            outside(ring[i], ring[(i + 1) % ring.size()], all, which);
+        }
+    }
+    [[nodiscard]] Outline take() { return std::move(outline_); }
+
+private:
+    void outside(const Own& from, const Own& to, const std::vector<Polygon>& all, std::size_t which) {
+        std::vector<std::pair<double, double>> hidden;
+        for (std::size_t other = 0; other < all.size(); ++other) {
+            const auto part = other == which ? std::nullopt : inside(from, to, all[other]);
+            if (part) {
+                hidden.push_back(*part);
+            }
+        }
+        std::sort(hidden.begin(), hidden.end());  // equal ones are alike
+        const auto at = [&](double share) {
+            return Own{from.along + share * (to.along - from.along), from.across + share * (to.across - from.across)};
+        };
+        double seen = 0;
+        for (const auto& [enters, leaves] : hidden) {
+            if (enters > seen) {
+                edge(at(seen), at(enters));
+            }
+            seen = std::max(seen, leaves);
+        }
+        if (seen < 1) {
+            edge(at(seen), to);
+        }
+    }
+
+    Outline outline_;
+};
+
+void drawSole(Drawing& drawing, double length, double width) {
+    constexpr double kSmall = 0.2;  // [half length of the tool]: toes, which 8 points draw as well as 16 draw a heel
+    std::vector<Polygon> pieces;
+    for (const SolePiece& piece : solePieces()) {
+        pieces.push_back(ellipse({piece.along * length, piece.across * width}, piece.halfLength * length - kMargin,
+                                 piece.halfWidth * width - kMargin, piece.halfLength < kSmall ? 8 : 16));
+    }
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        drawing.ring(pieces, i);
+    }
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        if (!pieces[i].empty()) {  // the deepest place of its bowl
+            drawing.point({solePieces()[i].along * length, solePieces()[i].across * width});
+        }
+    }
+}
+
+/// Rings at such shares of the radius that a sphere's underside between them is less than a fifteenth of it above the
+/// sphere.
+void drawBowl(Drawing& drawing, double length, double width) {
+    for (const auto& [share, count] : {std::pair{0.8, 16}, std::pair{0.45, 8}}) {
+        for (const Own& own : ellipse({0, 0}, share * length, share * width, count)) {
+            drawing.point(own);
+        }
+    }
+    drawing.point({0, 0});
+}
+
+Outline drawn(const ToolShape& shape) {
+    const double length = shape.radius, width = isRound(shape.kind) ? shape.radius : shape.halfWidth;
+    Drawing drawing;
+    if (shape.kind == ToolKind::footprint) {
+        drawSole(drawing, length, width);
+        return drawing.take();
+    }
+    const Polygon ring = shape.kind == ToolKind::rectangle ? rectangle(length - kMargin, width - kMargin)
+                                                           : ellipse({0, 0}, length - kMargin, width - kMargin, 32);
+    drawing.ring({ring}, 0);
+    if ((shape.kind == ToolKind::sphere || shape.kind == ToolKind::ellipsoid) && !ring.empty()) {
+        drawBowl(drawing, length, width);
+    }
+    return drawing.take();
+}
+
+std::int32_t scaled(std::int64_t way, std::int64_t numerator, std::int64_t denominator) {
+    const std::int64_t product = 2 * way * numerator;  // below 2^46
+    const std::int64_t half = (product < 0) == (denominator < 0) ? denominator : -denominator;
+    return static_cast<std::int32_t>((product + half) / (2 * denominator));
+}
+
+/// The part of an edge that lies in the rectangle, with ends rounded to the lattice; nothing when there is none.
+std::optional<std::pair<Place, Place>> clipped(Place a, Place b, std::int32_t width, std::int32_t depth) {
+    for (int side = 0; side < 4; ++side) {
+        const bool alongX = side < 2;
+        const std::int32_t limit = side % 2 == 0 ? 0 : (alongX ? width : depth);
+        const auto beyond = [&](const Place& p) {
+            const std::int32_t value = alongX ? p.x : p.y;
+            return side % 2 == 0 ? value < limit : value > limit;
+        };
+        if (beyond(a) && beyond(b)) {
+            return std::nullopt;
+        }
+        const auto cut = [&](const Place& out, const Place& in) {
+            return alongX ? Place{limit, out.y + scaled(in.y - out.y, limit - out.x, in.x - out.x)}
+                          : Place{out.x + scaled(in.x - out.x, limit - out.y, in.y - out.y), limit};
+        };
+        if (beyond(a)) {
+            a = cut(a, b);
+        } else if (beyond(b)) {
+            b = cut(b, a);
+        }
+    }
+    const bool alongRim = (a.x == b.x && (a.x == 0 || a.x == width)) || (a.y == b.y && (a.y == 0 || a.y == depth));
+    return alongRim || a == b ? std::nullopt : std::optional(std::pair(a, b));
+}
+
+}  // namespace
+
+Outline Outline::of(const ToolShape& shape, const Heading& heading) {
+    Outline outline = drawn(shape);
+    if (isRound(shape.kind)) {
+        return outline;
+    }
+    const double x = heading.x, y = heading.y, scale = 1 / std::sqrt(x * x + y * y);
+    for (Place& point : outline.points) {
+        const double along = point.x, across = heading.mirrored ? -point.y : point.y;
+        point = {rounded((along * x - across * y) * scale), rounded((along * y + across * x) * scale)};
+    }
+    return outline;
+}
+
+PlacedOutline placed(const Outline& outline, std::int32_t x, std::int32_t y, const Triangles& field,
+                     const Holes* holes) {
+    PlacedOutline result;
+    const auto add = [&](const Place& place) {
+        if (std::find(result.points.begin(), result.points.end(), place) == result.points.end()) {
+            result.points.push_back(place);
+        }
+    };
+    std::vector<Place> places;
+    for (const Place& offset : outline.points) {
+        places.push_back({x + offset.x, y + offset.y});
+        const Place& place = places.back();
+        const bool inside = place.x >= 0 && place.y >= 0 && place.x <= field.width && place.y <= field.depth;
+        if (inside && (holes == nullptr || !holes->reachInto(place, place))) {
+            add(place);
+        }
+    }
+    for (const auto& [from, to] : outline.edges) {
+        const auto part = clipped(places[static_cast<std::size_t>(from)], places[static_cast<std::size_t>(to)],
+                                  field.width, field.depth);
+        const auto isNearHole = [&](const Place& a, const Place& b) {
+            return holes != nullptr &&
+                   holes->reachInto({std::min(a.x, b.x), std::min(a.y, b.y)}, {std::max(a.x, b.x), std::max(a.y, b.y)});
+        };
+        if (part && !isNearHole(part->first, part->second)) {
+            add(part->first);
+            add(part->second);
+            result.edges.push_back(*part);
+        }
+    }
+    return result;
+}
+
+}  // namespace sand::tin

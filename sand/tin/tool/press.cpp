@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// One sub-step of a tool: what lies above its underside goes to those beside it.
+#include <algorithm>
+#include <cstdlib>
+
+#include "sand/tin/tool/displacement.hpp"
+
+namespace sand::tin {
+namespace {
+
+constexpr Volume kMostOfVertex = (Volume{1} << 62) - 1;  // of one vertex, either sign
+constexpr int kSquaresBeyond = 16;  // to a tool's radius: so finely the ground beyond an open rim is looked at
+
+Offset offsetFrom(const Place& place, const ProbePoint& at) {
+    return {std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
+}
+
+Volume floorDivided(Volume value, Volume by) { return value / by - (value % by < 0 ? 1 : 0); }
+
+}  // namespace
+
+/// What the tool takes out; false when that is nothing, or would leave the range of numbers.
+bool Tool::findCut(const Layer& layer, const ProbePoint& at) {
+    cut_.clear();
+    taken_ = 0;
+    const Rect cells = turned_.cellsAround(at.x, at.y, 0);
+    const Box box{cells.x0 * kProbePerCell, cells.y0 * kProbePerCell, cells.x1 * kProbePerCell,
+                  cells.y1 * kProbePerCell};
+    for (const Vertex vertex : window_->vertices()) {
+        const auto index = static_cast<std::size_t>(vertex);
+        const Place place = layer.triangles().places[index];
+        if (!box.holds(place)) {
+            continue;
+        }
+        const std::int32_t underside = turned_.underside(at.z, offsetFrom(place, at));
+        if (underside == TurnedShape::kFree) {
+            continue;
+        }
+        const Volume target = Volume{underside} * layer.stars()[index];
+        const std::int64_t volume = layer.volumes()[index];
+        if (volume <= target) {
+            continue;
+        }
+        if (target < -kMostOfVertex) {
+            return false;
+        }
+        cut_.push_back({vertex, static_cast<std::int64_t>(volume - target)});  // both below 2^62
+        taken_ += cut_.back().taken;
+    }
+    return !cut_.empty();
+}
+
+void Tool::findReceivers(const Layer& layer, Rim rim, const Press& press) {
+    const auto find = [&](bool everywhere) {
+        receivers_.clear();
+        for (const Vertex vertex : window_->vertices()) {
+            const auto index = static_cast<std::size_t>(vertex);
+            const Offset offset = offsetFrom(layer.triangles().places[index], press.at);
+            if (!turned_.takes(offset) || turned_.covers(offset)) {
+                continue;
+            }
+            const std::int64_t part = everywhere ? 1 : turned_.share(offset, press.ahead);
+            if (part > 0 && layer.stars()[index] > 0) {
+                receivers_.push_back({vertex, static_cast<double>(part) * static_cast<double>(layer.stars()[index])});
+            }
+        }
+        if (rim == Rim::open) {
+            addBeyond(layer, press, everywhere);
+        }
+    };
+    find(press.ahead.x == 0 && press.ahead.y == 0);
+    if (receivers_.empty()) {  // dragged against a closed rim: it escapes to the sides and behind
+        find(true);
+    }
+    if (receivers_.empty()) {  // nobody near enough: the mesh is coarse
+        addNeighbours(layer, press.at);
+    }
+}
+
+/// The ground beyond the rim takes sand as if the field went on there, on a lattice.
+void Tool::addBeyond(const Layer& layer, const Press& press, bool everywhere) {
+    const Box box = reach(press.at);
+    if (box.clippedTo(layer.triangles()) == box) {
+        return;
+    }
+    const Box field{0, 0, layer.triangles().width, layer.triangles().depth};
+    const std::int64_t step = std::max({rules_.spacing, shape_.radius / kSquaresBeyond, 1});
+    const double share = 6 * static_cast<double>(step * step);  // the star of a lattice's vertex
+    const auto first = [&](std::int32_t least) {                // the middles of squares, as refinement has them
+        return static_cast<std::int64_t>(floorDivided(least, step)) * step + step / 2;
+    };
+    for (std::int64_t y = first(box.y0); y <= box.y1; y += step) {
+        for (std::int64_t x = first(box.x0); x <= box.x1; x += step) {
+            const Place place{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
+            const Offset offset = offsetFrom(place, press.at);
+            if (field.holds(place) || !turned_.takes(offset) || turned_.covers(offset)) {
+                continue;
+            }
+            const std::int64_t part = everywhere ? 1 : turned_.share(offset, press.ahead);
+            if (part > 0) {
+                receivers_.push_back({kNobody, static_cast<double>(part) * share});
+            }
+        }
+    }
+}
+
+void Tool::addNeighbours(const Layer& layer, const ProbePoint& at) {
+    const auto isCovered = [&](Vertex vertex) {
+        return turned_.covers(offsetFrom(layer.triangles().places[static_cast<std::size_t>(vertex)], at));
+    };
+    window_->look(layer.triangles(), window_->box());  // it may have followed a change
+    std::vector<Vertex> beside;
+    for (const std::int32_t slot : window_->triangles()) {
+        const Triangle& triangle = layer.triangles().triangles[static_cast<std::size_t>(slot)];
+        const auto& corner = triangle.corner;
+        if (!triangle.hole && std::any_of(corner.begin(), corner.end(), isCovered)) {
+            std::copy_if(corner.begin(), corner.end(), std::back_inserter(beside), std::not_fn(isCovered));
+        }
+    }
+    std::sort(beside.begin(), beside.end());
+    beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
+    for (const Vertex vertex : beside) {
+        receivers_.push_back({vertex, static_cast<double>(layer.stars()[static_cast<std::size_t>(vertex)])});
+    }
+}
+
+/// What the weights' rounding and that of whole units leave over, of either sign, is dealt out alike, and the last
+/// units to those of the smallest numbers.
+void Tool::shareOut() {
+    double total = 0;
+    for (const Receiver& receiver : receivers_) {
+        total += receiver.weight;
+    }
+    const double perWeight = static_cast<double>(taken_) / total;
+    Volume rest = taken_;
+    for (Receiver& receiver : receivers_) {
+        receiver.share = static_cast<Volume>(perWeight * receiver.weight);
+        rest -= receiver.share;
+    }
+    const auto count = static_cast<Volume>(receivers_.size());
+    const Volume each = floorDivided(rest, count);
+    rest -= each * count;
+    for (Receiver& receiver : receivers_) {
+        receiver.share += each + (rest > 0 ? 1 : 0);
+        rest -= rest > 0 ? 1 : 0;
+    }
+}
+
+bool Tool::hasRoom(const Layer& layer) const {
+    return std::all_of(receivers_.begin(), receivers_.end(), [&](const Receiver& receiver) {
+        if (receiver.vertex == kNobody) {
+            return true;
+        }
+        const auto index = static_cast<std::size_t>(receiver.vertex);
+        const Volume raised = layer.volumes()[index] + receiver.share;
+        return raised <= std::min(kMostOfVertex, Volume{kMaxHeight} * layer.stars()[index]) && raised >= -kMostOfVertex;
+    });
+}
+
+void Tool::press(Layer& layer, Rim rim, const Press& press, Work& done) {
+    if (!findCut(layer, press.at)) {
+        return;
+    }
+    findReceivers(layer, rim, press);
+    if (receivers_.empty()) {  // the tool is larger than the field: there is nowhere to put the sand
+        return;
+    }
+    shareOut();
+    if (!hasRoom(layer)) {
+        return;  // the sand stays, and the tool passes through it
+    }
+    for (const Cut& cut : cut_) {
+        layer.add(cut.vertex, -cut.taken);
+        done.touched.push_back(cut.vertex);
+    }
+    for (const Receiver& receiver : receivers_) {
+        if (receiver.vertex == kNobody) {
+            done.outflow += receiver.share;
+        } else {
+            layer.add(receiver.vertex, static_cast<std::int64_t>(receiver.share));
+            done.touched.push_back(receiver.vertex);
+        }
+    }
+}
+
+}  // namespace sand::tin

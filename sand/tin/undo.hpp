@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Private to this folder.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "base/index_set.hpp"
+#include "sand/tin/snapshot.hpp"
+
+namespace sand::tin {
+
+/// A layer as it was when it was kept, for an undo: keeping it again costs what has changed since, and not the whole
+/// mesh, for every stroke of a hand begins with it. Bytes are made when somebody asks for them. Not thread-safe.
+class KeptLayer {
+public:
+    /// Nothing is kept yet.
+    explicit KeptLayer(const Layer& layer) { replaced(layer); }
+    /// The layer is another one now; what is kept stays. Costs the whole.
+    void replaced(const Layer& layer);
+
+    void reserve(std::size_t vertices) {
+        parts_.places.reserve(vertices);
+        parts_.volumes.reserve(vertices);
+        vertices_.reserve(vertices);
+        slots_.reserve(2 * vertices);
+    }
+    /// These vertices may have come, gone, or have other sand, and these slots other triangles or constraints: since
+    /// it was kept or replaced last.
+    void touch(const std::vector<Vertex>& vertices) { vertices_.add(vertices); }
+    void touchTriangles(const std::vector<std::int32_t>& slots) { slots_.add(slots); }
+
+    void keep(const Layer& layer, const LayerState& state);
+    void keep(std::shared_ptr<const LayerCopy> copy);
+    void forget();
+    [[nodiscard]] bool any() const { return any_; }
+    /// Null when nothing is kept. Costs the whole the first time.
+    [[nodiscard]] std::shared_ptr<const LayerCopy> copy() const;
+
+private:
+    void followVertex(const Layer& layer, Vertex vertex);
+    void followTriangle(const Layer& layer, std::int32_t slot);
+
+    LayerParts parts_;  // but for the constraints
+    std::map<std::int32_t, std::vector<std::pair<Vertex, Vertex>>>
+        constraints_;                   // by the slot that owns them; few have any
+    base::IndexList vertices_, slots_;  // touched
+    LayerState state_;
+    bool any_ = false;
+    mutable std::shared_ptr<const LayerCopy> copy_;  // once somebody has asked, or what was given
+};
+
+}  // namespace sand::tin

@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/volume/remap.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <compare>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+namespace sand::tin {
+namespace {
+
+std::size_t indexOf(Vertex vertex) { return static_cast<std::size_t>(vertex); }
+
+Wide dividedDown(Wide value, Wide divisor) {
+    const Wide quotient = value / divisor;
+    return quotient * divisor > value ? quotient - 1 : quotient;
+}
+
+std::int64_t areaOf(const Mesh::Piece& piece) { return doubledArea(piece.place[0], piece.place[1], piece.place[2]); }
+
+/// A vertex by number and place: a number may have been given to another within one change.
+struct Key {
+    Vertex vertex = kNobody;
+    Place place;
+    // clang-tidy 14 complains of the 0 it finds in here itself. NOLINTNEXTLINE(modernize-use-nullptr)
+    friend auto operator<=>(const Key&, const Key&) = default;
+};
+
+/// Numbers keys as they come, each once: a vertex is a corner of six triangles before and of six now.
+class Nodes {
+public:
+    explicit Nodes(std::size_t most) : numbers_(std::bit_ceil(2 * most + 1), kNone) {}
+    /// `found`: by number; a new one is added.
+    std::uint32_t numberOf(const Key& key, std::vector<Key>& found) {
+        const std::size_t mask = numbers_.size() - 1;
+        std::size_t at = (static_cast<std::uint32_t>(key.vertex) * std::size_t{0x9e3779b1}) & mask;
+        while (numbers_[at] != kNone && found[numbers_[at]] != key) {
+            at = (at + 1) & mask;
+        }
+        if (numbers_[at] == kNone) {
+            numbers_[at] = static_cast<std::uint32_t>(found.size());
+            found.push_back(key);
+        }
+        return numbers_[at];
+    }
+
+private:
+    static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+    std::vector<std::uint32_t> numbers_;
+};
+
+struct Node {
+    Vertex vertex = kNobody;
+    Place place;
+    std::uint32_t part = 0;  // the first node of what it hangs together with
+    bool before = false, now = false;
+    std::int64_t star = 0;  // of what is there now [probe unit²]
+    Wide volume = 0;
+    double height = 0;  // of the old surface
+};
+
+/// What hangs together by vertices.
+struct Part {
+    Wide missing = 0;       // volume that its vertices do not hold yet
+    std::int64_t area = 0;  // doubled [probe unit²]
+    Wide stars = 0;
+    std::int64_t smallestStar = 0;
+    double lowest = 0, highest = 0;
+    bool empty = true;
+};
+
+/// Which of some triangles hold a place. Strips of the field from west to east, each with the triangles that reach into
+/// it: where a tool works thousands are looked through for hundreds of places.
+class Strips {
+public:
+    explicit Strips(const std::vector<Mesh::Piece>& pieces) : pieces_(pieces) {
+        west_ = std::numeric_limits<std::int32_t>::max();
+        std::int32_t east = std::numeric_limits<std::int32_t>::min();
+        for (const Mesh::Piece& piece : pieces_) {
+            west_ = std::min(west_, westOf(piece));
+            east = std::max(east, eastOf(piece));
+        }
+        const std::size_t count = std::clamp<std::size_t>(pieces_.size() / kTogether, 1, kMost);
+        width_ = pieces_.empty() ? 1 : (east - west_) / static_cast<std::int32_t>(count) + 1;
+        strips_.resize(count);
+        for (std::uint32_t i = 0; i < pieces_.size(); ++i) {
+            for (std::size_t at = strip(westOf(pieces_[i])); at <= strip(eastOf(pieces_[i])); ++at) {
+                strips_[at].push_back(i);
+            }
+        }
+    }
+
+    /// The first triangle in order that visit(piece) is true for, or null; only such are asked as may hold the place.
+    template <class Visit>
+    [[nodiscard]] const Mesh::Piece* first(const Place& place, const Visit& visit) const {
+        const std::size_t at = strip(place.x);
+        if (place.x < west_ || at >= strips_.size()) {
+            return nullptr;
+        }
+        const auto found = std::find_if(strips_[at].begin(), strips_[at].end(), [&](std::uint32_t i) {
+            const auto& [a, b, c] = pieces_[i].place;
+            return std::min({a.y, b.y, c.y}) <= place.y && std::max({a.y, b.y, c.y}) >= place.y && visit(pieces_[i]);
+        });
+        return found == strips_[at].end() ? nullptr : &pieces_[*found];
+    }
+
+private:
+    static constexpr std::size_t kTogether = 8, kMost = 256;
+
+    static std::int32_t westOf(const Mesh::Piece& piece) {
+        return std::min({piece.place[0].x, piece.place[1].x, piece.place[2].x});
+    }
+    static std::int32_t eastOf(const Mesh::Piece& piece) {
+        return std::max({piece.place[0].x, piece.place[1].x, piece.place[2].x});
+    }
+    [[nodiscard]] std::size_t strip(std::int32_t x) const { return static_cast<std::size_t>((x - west_) / width_); }
+
+    const std::vector<Mesh::Piece>& pieces_;
+    std::int32_t west_, width_;
+    std::vector<std::vector<std::uint32_t>> strips_;  // of each, in order
+};
+
+class Remapping {
+public:
+    Remapping(const Mesh::Difference& difference, const std::vector<std::int64_t>& volumes,
+              const std::vector<std::int64_t>& stars, const std::vector<double>& heights)
+        : difference_(difference), volumes_(volumes), stars_(stars), heights_(heights) {}
+
+    Remapped run() {
+        gatherNodes();
+        gatherStars();
+        gatherParts();
+        for (Node& node : nodes_) {
+            if (node.now) {
+                keepHeight(node);
+            }
+        }
+        return share();
+    }
+
+private:
+    using Corners = std::array<std::uint32_t, 3>;  // nodes of a triangle
+
+    void gatherNodes() {
+        std::vector<Key> found;
+        Nodes nodes(3 * (difference_.went.size() + difference_.came.size()));
+        const auto cornersOf = [&](const Mesh::Piece& piece) {
+            Corners corners{};
+            for (std::size_t i = 0; i < 3; ++i) {
+                corners[i] = nodes.numberOf({piece.corner[i], piece.place[i]}, found);
+            }
+            return corners;
+        };
+        std::transform(difference_.went.begin(), difference_.went.end(), std::back_inserter(went_), cornersOf);
+        std::transform(difference_.came.begin(), difference_.came.end(), std::back_inserter(came_), cornersOf);
+        std::vector<std::uint32_t> order(found.size()), rank(found.size());
+        std::iota(order.begin(), order.end(), 0U);
+        std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return found[a] < found[b]; });
+        nodes_.resize(found.size());
+        for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+            rank[order[i]] = i;
+            nodes_[i].vertex = found[order[i]].vertex;
+            nodes_[i].place = found[order[i]].place;
+            nodes_[i].part = i;
+        }
+        for (auto* triangles : {&went_, &came_}) {
+            for (Corners& corners : *triangles) {
+                std::transform(corners.begin(), corners.end(), corners.begin(),
+                               [&rank](std::uint32_t number) { return rank[number]; });
+            }
+        }
+    }
+
+    void gatherStars() {
+        for (std::size_t i = 0; i < went_.size(); ++i) {
+            for (const std::uint32_t corner : went_[i]) {
+                Node& node = nodes_[corner];
+                node.star += (node.before ? 0 : stars_[indexOf(node.vertex)]) - areaOf(difference_.went[i]);
+                node.before = true;
+            }
+        }
+        for (std::size_t i = 0; i < came_.size(); ++i) {
+            for (const std::uint32_t corner : came_[i]) {
+                nodes_[corner].star += areaOf(difference_.came[i]);
+                nodes_[corner].now = true;
+            }
+        }
+    }
+
+    std::uint32_t first(std::uint32_t node) {
+        while (nodes_[node].part != node) {
+            nodes_[node].part = nodes_[nodes_[node].part].part;  // long ways are shorter the next time
+            node = nodes_[node].part;
+        }
+        return node;
+    }
+
+    void gatherParts() {
+        for (const auto* triangles : {&went_, &came_}) {
+            for (const Corners& corners : *triangles) {
+                for (const std::uint32_t corner : {corners[1], corners[2]}) {
+                    const std::uint32_t a = first(corners[0]);
+                    const std::uint32_t b = first(corner);
+                    nodes_[std::max(a, b)].part = std::min(a, b);
+                }
+            }
+        }
+        parts_.resize(nodes_.size());
+        for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+            nodes_[i].part = nodes_[nodes_[i].part].part;  // the first of those before it is known
+            if (!nodes_[i].before) {
+                continue;
+            }
+            Part& part = parts_[nodes_[i].part];
+            const double height = heights_[indexOf(nodes_[i].vertex)];
+            part.missing += volumes_[indexOf(nodes_[i].vertex)];
+            part.lowest = part.empty ? height : std::min(part.lowest, height);
+            part.highest = part.empty ? height : std::max(part.highest, height);
+            part.empty = false;
+        }
+        for (std::size_t i = 0; i < came_.size(); ++i) {
+            parts_[nodes_[came_[i][0]].part].area += areaOf(difference_.came[i]);
+        }
+    }
+
+    /// The old surface there; of several triangles that share the place, in the first.
+    [[nodiscard]] double oldHeight(const Place& place) {
+        if (!strips_) {
+            strips_.emplace(difference_.went);
+        }
+        std::array<std::int64_t, 3> weight{};
+        const Mesh::Piece* piece = strips_->first(place, [&](const Mesh::Piece& one) {
+            const auto& [a, b, c] = one.place;
+            weight = {doubledArea(b, c, place), doubledArea(c, a, place), doubledArea(a, b, place)};
+            return weight[0] >= 0 && weight[1] >= 0 && weight[2] >= 0;
+        });
+        if (piece != nullptr) {
+            const double lowest = heights_[indexOf(piece->corner[0])];
+            const double rise = static_cast<double>(weight[1]) * (heights_[indexOf(piece->corner[1])] - lowest) +
+                                static_cast<double>(weight[2]) * (heights_[indexOf(piece->corner[2])] - lowest);
+            return lowest + rise / static_cast<double>(weight[0] + weight[1] + weight[2]);
+        }
+        return 0;  // not reached: what came covers the ground of what went
+    }
+
+    void keepHeight(Node& node) {
+        const std::int64_t star = node.star;
+        if (node.before) {
+            node.height = heights_[indexOf(node.vertex)];
+            const std::int64_t old = stars_[indexOf(node.vertex)];
+            node.volume = dividedDown(static_cast<Wide>(2) * volumes_[indexOf(node.vertex)] * star + old,
+                                      static_cast<Wide>(2) * old);
+        } else {
+            node.height = oldHeight(node.place);
+            const double whole = std::floor(node.height);
+            const double rest = (node.height - whole) * static_cast<double>(star);
+            node.volume = static_cast<Wide>(static_cast<std::int64_t>(whole)) * star +
+                          static_cast<std::int64_t>(std::floor(rest + 0.5));
+        }
+        Part& part = parts_[node.part];
+        part.missing -= node.volume;
+        part.stars += star;
+        part.smallestStar = part.smallestStar == 0 ? star : std::min(part.smallestStar, star);
+    }
+
+    Remapped share() {
+        std::vector<Wide> left(parts_.size());
+        for (std::size_t i = 0; i < parts_.size(); ++i) {
+            left[i] = parts_[i].missing;
+        }
+        for (Node& node : nodes_) {
+            if (node.now) {
+                const Part& part = parts_[node.part];
+                const Wide dealt = dividedDown(part.missing * node.star, part.stars);
+                node.volume += dealt;
+                left[node.part] -= dealt;
+            }
+        }
+        Remapped result;
+        for (const Node& node : nodes_) {
+            if (!node.now) {
+                result.died.push_back(node.vertex);
+                continue;
+            }
+            const Wide unit = left[node.part] > 0 ? 1 : 0;
+            left[node.part] -= unit;
+            const Part& part = parts_[node.part];
+            const double reach = 3 * static_cast<double>(part.area) / static_cast<double>(part.stars);
+            const double bound =
+                (part.highest - part.lowest) * reach + 2 / static_cast<double>(part.smallestStar) + 0x1p-20;
+            result.shares.push_back({node.vertex, node.star, node.volume + unit, node.height, bound});
+        }
+        return result;
+    }
+
+    const Mesh::Difference& difference_;
+    const std::vector<std::int64_t>& volumes_;
+    const std::vector<std::int64_t>& stars_;
+    const std::vector<double>& heights_;
+    std::optional<Strips> strips_;  // of what went, once somebody asks
+    std::vector<Node> nodes_;       // in order of Key
+    std::vector<Corners> went_, came_;
+    std::vector<Part> parts_;  // by their first node
+};
+
+}  // namespace
+
+Remapped remapVolumes(const Mesh::Difference& difference, const std::vector<std::int64_t>& volumes,
+                      const std::vector<std::int64_t>& stars, const std::vector<double>& heights) {
+    return Remapping(difference, volumes, stars, heights).run();
+}
+
+}  // namespace sand::tin

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/tin/volume/vertex_sand.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+#include "sand/tin/mesh/neighbourhood.hpp"
+#include "sand/tin/volume/remap.hpp"
+
+namespace sand::tin {
+namespace {
+
+constexpr std::int64_t kVolumeLimit = std::int64_t{1} << 62;
+
+std::size_t at(Vertex vertex) { return static_cast<std::size_t>(vertex); }
+
+double quotient(std::int64_t volume, std::int64_t star) {
+    constexpr std::int64_t kExact = std::int64_t{1} << 53;
+    if (volume > -kExact && volume < kExact) {
+        return static_cast<double>(volume) / static_cast<double>(star);
+    }
+    // A level surface stays level, though its volumes are more than a double holds.
+    const std::int64_t whole = volume / star;
+    return static_cast<double>(whole) + static_cast<double>(volume % star) / static_cast<double>(star);
+}
+
+}  // namespace
+
+Layer::Layer(Mesh mesh) : mesh_(std::move(mesh)) {
+    if (!mesh_.hasOutline()) {
+        throw std::invalid_argument("holes without their outline");
+    }
+    (void)mesh_.takeDifference();
+    const Triangles& triangles = mesh_.triangles();
+    volumes_.resize(triangles.places.size(), 0);
+    stars_.resize(triangles.places.size(), 0);
+    heights_.resize(triangles.places.size(), 0);
+    for (const Triangle& triangle : triangles.triangles) {
+        if (triangle.isGround()) {
+            const auto& [a, b, c] = triangle.corner;
+            const std::int64_t area =
+                doubledArea(triangles.places[at(a)], triangles.places[at(b)], triangles.places[at(c)]);
+            for (const Vertex corner : triangle.corner) {
+                stars_[at(corner)] += area;
+            }
+        }
+    }
+}
+
+void Layer::reserve(std::size_t vertices) {
+    mesh_.reserve(vertices);
+    volumes_.reserve(vertices);
+    stars_.reserve(vertices);
+    heights_.reserve(vertices);
+}
+Wide Layer::ground() const { return std::accumulate(stars_.begin(), stars_.end(), Wide{0}); }
+
+Wide Layer::volume() const {
+    Wide sum = 0;
+    for (const std::int64_t volume : volumes_) {  // none where no vertex lives
+        sum += volume;
+    }
+    return sum;
+}
+
+void Layer::setVolume(Vertex vertex, std::int64_t volume) {
+    volumes_[at(vertex)] = volume;
+    heights_[at(vertex)] = stars_[at(vertex)] == 0 ? 0 : quotient(volume, stars_[at(vertex)]);
+}
+
+void Layer::add(Vertex vertex, std::int64_t volume) {
+    std::int64_t sum = 0;
+    if (__builtin_add_overflow(volumes_[at(vertex)], volume, &sum) || sum >= kVolumeLimit || sum <= -kVolumeLimit) {
+        throw std::overflow_error("too much sand on vertex " + std::to_string(vertex));
+    }
+    setVolume(vertex, sum);
+}
+
+void Layer::setHeight(Vertex vertex, std::int32_t height) {
+    const Wide volume = static_cast<Wide>(stars_[at(vertex)]) * height;
+    if (volume >= kVolumeLimit || volume <= -kVolumeLimit) {
+        throw std::overflow_error("too much sand on vertex " + std::to_string(vertex));
+    }
+    setVolume(vertex, static_cast<std::int64_t>(volume));
+}
+
+Vertex Layer::insert(Place place) {
+    const Vertex vertex = mesh_.insert(place);
+    remap();
+    return vertex;
+}
+
+bool Layer::remove(Vertex vertex) {
+    const bool removed = mesh_.remove(vertex);
+    remap();
+    return removed;
+}
+
+std::vector<Vertex> Layer::constrain(Vertex from, Vertex to) {
+    std::vector<Vertex> path = mesh_.constrain(from, to).vertices;
+    remap();
+    return path;
+}
+
+void Layer::release(Vertex a, Vertex b) {
+    mesh_.release(a, b);
+    remap();
+}
+
+std::vector<Vertex> Layer::edit(const std::function<void(Mesh&)>& edits) {
+    const auto before = static_cast<std::ptrdiff_t>(remapped_.size());
+    try {
+        edits(mesh_);
+    } catch (...) {
+        remap();
+        throw;
+    }
+    remap();
+    std::vector<Vertex> changed(remapped_.begin() + before, remapped_.end());
+    sortOnce(changed);
+    return changed;
+}
+
+void Layer::remap() {
+    Mesh::Difference difference = mesh_.takeDifference();
+    if (const Holes* holes = mesh_.holes().get(); holes != nullptr) {
+        const auto isHole = [holes](const Mesh::Piece& piece) {
+            return holes->holds(piece.place[0], piece.place[1], piece.place[2]);
+        };
+        std::erase_if(difference.went, isHole);
+        std::erase_if(difference.came, isHole);
+    }
+    if (difference.came.empty()) {
+        return;
+    }
+    const Remapped result = remapVolumes(difference, volumes_, stars_, heights_);
+    const std::size_t count = mesh_.triangles().places.size();
+    volumes_.resize(count, 0);
+    stars_.resize(count, 0);
+    heights_.resize(count, 0);
+    for (const Vertex vertex : result.died) {
+        volumes_[at(vertex)] = stars_[at(vertex)] = 0;
+        heights_[at(vertex)] = 0;
+        remapped_.push_back(vertex);
+    }
+    for (const Remapped::Share& share : result.shares) {
+        if (share.volume >= kVolumeLimit || share.volume <= -kVolumeLimit) {
+            throw std::overflow_error("too much sand on vertex " + std::to_string(share.vertex));
+        }
+        stars_[at(share.vertex)] = share.star;
+        setVolume(share.vertex, static_cast<std::int64_t>(share.volume));
+        remapped_.push_back(share.vertex);
+        const double moved = std::abs(heights_[at(share.vertex)] - share.before);
+        if (moved >= largest_.moved) {
+            largest_ = {moved, share.bound};
+        }
+    }
+}
+
+Layer::Remap Layer::takeLargestRemap() { return std::exchange(largest_, {}); }
+
+Mesh::Change Layer::takeChange() {
+    // Whoever changed since the last call was remapped, and is noted; not what lies in holes, nor a mesh just made.
+    const bool knows = knowsChange_ && mesh_.holes() == nullptr;
+    knowsChange_ = true;
+    Mesh::Change change = knows ? mesh_.takeChangeOfTriangles() : mesh_.takeChange();
+    change.vertices.insert(change.vertices.end(), remapped_.begin(), remapped_.end());
+    sortOnce(change.vertices);
+    remapped_.clear();
+    return change;
+}
+
+}  // namespace sand::tin

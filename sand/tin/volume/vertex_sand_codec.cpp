@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "sand/tin/volume/vertex_sand.hpp"
+
+namespace sand::tin {
+namespace {
+
+using base::FormatError;
+
+std::size_t livingEnd(const std::vector<Place>& places) {
+    std::size_t end = places.size();
+    while (end > 0 && places[end - 1] == LayerParts::kNowhere) {
+        --end;
+    }
+    return end;
+}
+
+std::int32_t getCoordinate(std::uint64_t value) {
+    if (value > static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max())) {
+        throw FormatError("a vertex outside every field");
+    }
+    return static_cast<std::int32_t>(value);
+}
+
+/// Every one of them takes a byte at least.
+std::size_t getCount(base::ByteReader& reader, std::size_t bytesEach) {
+    const std::uint64_t count = reader.getVarint();
+    if (count > reader.rest().size() / bytesEach) {
+        throw FormatError("a TIN cut short: " + std::to_string(count) + " entries in " +
+                          std::to_string(reader.rest().size()) + " bytes");
+    }
+    return static_cast<std::size_t>(count);
+}
+
+std::vector<std::pair<Vertex, Vertex>> getConstraints(base::ByteReader& reader, std::size_t vertices) {
+    std::vector<std::pair<Vertex, Vertex>> constraints;
+    const std::size_t count = getCount(reader, 2);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint64_t a = reader.getVarint();
+        const std::uint64_t b = reader.getVarint();
+        if (a >= b || b >= vertices) {
+            throw FormatError("a constraint between vertices that cannot be");
+        }
+        constraints.emplace_back(static_cast<Vertex>(a), static_cast<Vertex>(b));
+        if (i > 0 && constraints[i] <= constraints[i - 1]) {
+            throw FormatError("constraints out of order");
+        }
+    }
+    return constraints;
+}
+
+}  // namespace
+
+LayerParts Layer::parts() const {
+    const Triangles& mesh = triangles();
+    LayerParts parts{mesh.width, mesh.depth, mesh.places, volumes_, mesh_.constraints(), mesh_.holes()};
+    for (std::size_t i = 0; i < parts.places.size(); ++i) {
+        if (mesh.triangleAt[i] == kNobody) {
+            parts.places[i] = LayerParts::kNowhere;
+        }
+    }
+    return parts;
+}
+
+void LayerParts::encode(base::ByteWriter& writer) const {
+    writer.put(width);
+    writer.put(depth);
+    // Numbers beyond the last that lives say only what once was.
+    const std::size_t count = livingEnd(places);
+    writer.putVarint(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (places[i] == kNowhere) {
+            writer.putVarint(0);
+            continue;
+        }
+        writer.putVarint(static_cast<std::uint64_t>(places[i].x) + 1);
+        writer.putVarint(static_cast<std::uint64_t>(places[i].y));
+        writer.putSigned(volumes[i]);
+    }
+    writer.putVarint(constraints.size());
+    for (const auto& [a, b] : constraints) {
+        writer.putVarint(static_cast<std::uint64_t>(a));
+        writer.putVarint(static_cast<std::uint64_t>(b));
+    }
+}
+
+Layer Layer::decode(base::ByteReader& reader, const std::shared_ptr<const Holes>& holes) {
+    const auto width = reader.get<std::int32_t>();
+    const auto depth = reader.get<std::int32_t>();
+    std::vector<std::optional<Place>> places(getCount(reader, 1));
+    std::vector<std::int64_t> volumes(places.size(), 0);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const std::uint64_t x = reader.getVarint();
+        if (x > 0) {
+            places[i] = Place{getCoordinate(x - 1), getCoordinate(reader.getVarint())};
+            volumes[i] = reader.getSigned();
+        }
+    }
+    if (places.empty() || !places.back()) {
+        throw FormatError("a TIN that does not end with a vertex");
+    }
+    const auto constraints = getConstraints(reader, places.size());
+    try {
+        Layer layer(Mesh::restore(width, depth, places, constraints, holes));
+        for (std::size_t i = 0; i < volumes.size(); ++i) {
+            // No height that an integer of 32 bits cannot say, or not by much.
+            const Wide most = static_cast<Wide>(layer.stars_[i]) << 32U;
+            if (volumes[i] > most || volumes[i] < -most) {
+                throw FormatError("a vertex with more sand than can be");
+            }
+            if (places[i]) {
+                layer.add(static_cast<Vertex>(i), volumes[i]);
+            }
+        }
+        if (layer.mesh_.constraints() != constraints) {
+            throw FormatError("constraints that are not those of the mesh");
+        }
+        return layer;
+    } catch (const std::invalid_argument& wrong) {
+        throw FormatError(std::string("not a TIN: ") + wrong.what());
+    } catch (const std::overflow_error& wrong) {
+        throw FormatError(std::string("not a TIN: ") + wrong.what());
+    }
+}
+
+}  // namespace sand::tin

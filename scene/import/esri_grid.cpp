@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/import/esri_grid.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <string_view>
+
+#include "base/input_error.hpp"
+#include "base/text.hpp"
+#include "host/whole_file.hpp"
+#include "sand/model/height_field.hpp"
+
+namespace sand {
+namespace {
+
+/// The words of a text, each with its line.
+class Words {
+public:
+    Words(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {}
+
+    /// Empty at the end of the text.
+    std::string_view next() {
+        for (; at_ < text_.size() && isSpace(text_[at_]); ++at_) {
+            line_ += text_[at_] == '\n' ? 1 : 0;
+        }
+        const std::size_t start = at_;
+        for (; at_ < text_.size() && !isSpace(text_[at_]); ++at_) {
+        }
+        return std::string_view(text_).substr(start, at_ - start);
+    }
+    std::string_view peek() {
+        const auto [at, line] = std::pair(at_, line_);
+        const std::string_view word = next();
+        at_ = at;
+        line_ = line;
+        return word;
+    }
+    /// The next word as a finite number, whatever the locale.
+    double number(std::string_view what) {
+        const std::string_view word = next();
+        double value = 0;
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+        if (word.empty()) {
+            fail(fmt::format("the file ends where {} should be", what));
+        }
+        if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) {
+            fail(fmt::format("{} must be a finite number, got '{}'", what, word));
+        }
+        return value;
+    }
+    [[nodiscard]] long line() const { return line_; }
+    [[noreturn]] void fail(const std::string& message) const { throw base::InputError(file_, line_, message); }
+
+private:
+    static bool isSpace(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+    std::string text_;
+    std::string file_;
+    std::size_t at_ = 0;
+    long line_ = 1;
+};
+
+int sideOf(Words& words, const std::string& key) {
+    const double side = words.number(key);
+    if (side != std::floor(side) || side < 1 || side > kMaxSide) {
+        words.fail(fmt::format("{} must be a whole number within [1, {}], got {}", key, kMaxSide, side));
+    }
+    return static_cast<int>(side);
+}
+
+constexpr double kNoData = std::numeric_limits<double>::quiet_NaN();
+
+double sizeOf(Words& words, const std::string& key) {
+    const double size = words.number(key);
+    if (!(size > 0)) {
+        words.fail(fmt::format("{} must be positive, got {}", key, size));
+    }
+    return size;
+}
+
+/// What stands for no data: any number, or the "nan" that GDAL writes.
+double noDataOf(Words& words, const std::string& key) {
+    if (base::lowerCase(words.peek()) == "nan") {
+        words.next();
+        return kNoData;
+    }
+    return words.number(key);
+}
+
+void readHeader(Words& words, EsriGrid& grid) {
+    bool centres = false;
+    double square = 0;
+    const auto isKey = [](std::string_view word) {
+        return !word.empty() && std::isalpha(static_cast<unsigned char>(word.front())) != 0 &&
+               base::lowerCase(word) != "nan";
+    };
+    while (isKey(words.peek())) {
+        const std::string key = base::lowerCase(words.next());
+        if (key == "ncols") {
+            grid.columns = sideOf(words, key);
+        } else if (key == "nrows") {
+            grid.rows = sideOf(words, key);
+        } else if (key == "cellsize") {
+            square = sizeOf(words, key);
+        } else if (key == "dx") {
+            grid.cellSize = sizeOf(words, key);
+        } else if (key == "dy") {
+            grid.cellDepth = sizeOf(words, key);
+        } else if (key == "xllcorner" || key == "xllcenter") {
+            grid.westEdge = words.number(key);
+            centres = key == "xllcenter";
+        } else if (key == "yllcorner" || key == "yllcenter") {
+            grid.southEdge = words.number(key);
+        } else if (key == "nodata_value") {
+            grid.noData = noDataOf(words, key);
+        } else {
+            words.fail(fmt::format("'{}' is no key of an ESRI ASCII grid", key));
+        }
+    }
+    const bool dx = grid.cellSize > 0;
+    const bool dy = grid.cellDepth.has_value();
+    if (grid.columns == 0 || grid.rows == 0 || dx != dy || dx == (square > 0)) {
+        words.fail("an ESRI ASCII grid begins with ncols, nrows, and either cellsize or dx and dy");
+    }
+    if (square > 0) {
+        grid.cellSize = square;
+    }
+    if (centres) {
+        grid.westEdge -= grid.cellSize / 2;
+        grid.southEdge -= grid.cellDepth.value_or(grid.cellSize) / 2;
+    }
+}
+
+/// The next word as a height, or as no data.
+double heightOf(Words& words, const EsriGrid& grid) {
+    if (grid.noData && std::isnan(*grid.noData) && base::lowerCase(words.peek()) == "nan") {
+        words.next();
+        return kNoData;
+    }
+    const double height = words.number("a height");
+    return grid.noData && height == *grid.noData ? kNoData : height;
+}
+
+}  // namespace
+
+EsriGrid readEsriGrid(const std::filesystem::path& file) {
+    std::error_code ignored;
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream || std::filesystem::is_directory(file, ignored) ||
+        std::filesystem::is_character_file(file, ignored)) {  // devices may never end
+        throw base::InputError(fmt::format("{}: cannot be read; check the path", file.string()));
+    }
+    Words words({std::istreambuf_iterator<char>(stream), {}}, file.string());
+    EsriGrid grid;
+    grid.file = file.string();
+    readHeader(words, grid);
+    const std::size_t cells = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
+    grid.heights.reserve(std::min<std::size_t>(cells, 1 << 20));  // a lying header must not allocate gigabytes
+    for (std::size_t i = 0; i < cells; ++i) {
+        grid.heights.push_back(heightOf(words, grid));
+        if (i % static_cast<std::size_t>(grid.columns) == 0) {
+            grid.lines.push_back(words.line());
+        }
+    }
+    if (!words.next().empty()) {
+        words.fail(fmt::format("more values than ncols x nrows = {}", cells));
+    }
+    return grid;
+}
+
+void EsriGrid::fail(int column, int rowFromSouth, const std::string& message) const {
+    if (lines.empty()) {
+        throw base::InputError(
+            fmt::format("{}: pixel {}, {} (from the north-west): {}", file, column + 1, rows - rowFromSouth, message));
+    }
+    const long line = lines[static_cast<std::size_t>(rows - 1 - rowFromSouth)];
+    throw base::InputError(file, line, fmt::format("column {} of this row: {}", column + 1, message));
+}
+
+Rect cellsWithData(const EsriGrid& grid) {
+    Rect filled{grid.columns, grid.rows, 0, 0};
+    for (int row = 0; row < grid.rows; ++row) {
+        for (int column = 0; column < grid.columns; ++column) {
+            if (!grid.isNoData(column, row)) {
+                filled = {std::min(filled.x0, column), std::min(filled.y0, row), std::max(filled.x1, column + 1),
+                          row + 1};
+            }
+        }
+    }
+    return filled.empty() ? Rect{} : filled;
+}
+
+EsriGrid withoutEmptyEdges(const EsriGrid& grid) {
+    const Rect filled = cellsWithData(grid);
+    if (filled.empty()) {
+        throw base::InputError(grid.file + ": every cell is a no-data cell; there is no terrain in it");
+    }
+    EsriGrid result = grid;
+    result.columns = filled.x1 - filled.x0;
+    result.rows = filled.y1 - filled.y0;
+    result.westEdge += filled.x0 * grid.cellSize;
+    result.southEdge += filled.y0 * grid.cellDepth.value_or(grid.cellSize);
+    result.heights.clear();
+    for (int row = filled.y1 - 1; row >= filled.y0; --row) {
+        const double* cells = grid.heights.data() + grid.index(0, row);
+        result.heights.insert(result.heights.end(), cells + filled.x0, cells + filled.x1);
+    }
+    if (!grid.lines.empty()) {
+        const auto first = grid.lines.begin() + (grid.rows - filled.y1);
+        result.lines.assign(first, first + result.rows);
+    }
+    return result;
+}
+
+void writeEsriGrid(const EsriGrid& grid, const std::filesystem::path& file) {
+    host::WholeFile whole(file);
+    const std::string cells = grid.cellDepth ? fmt::format("dx {}\ndy {}", grid.cellSize, *grid.cellDepth)
+                                             : fmt::format("cellsize {}", grid.cellSize);
+    whole.stream() << fmt::format("ncols {}\nnrows {}\nxllcorner {}\nyllcorner {}\n{}\n", grid.columns, grid.rows,
+                                  grid.westEdge, grid.southEdge, cells);
+    const auto& heights = grid.heights;
+    const double noData = grid.noData.value_or(-9999);
+    if (grid.noData || std::any_of(heights.begin(), heights.end(), [](double height) { return std::isnan(height); })) {
+        whole.stream() << fmt::format("NODATA_value {}\n", noData);
+    }
+    std::string line;
+    for (int row = grid.rows - 1; row >= 0; --row) {
+        line.clear();
+        for (int column = 0; column < grid.columns; ++column) {
+            fmt::format_to(std::back_inserter(line), "{} ", grid.isNoData(column, row) ? noData : grid.at(column, row));
+        }
+        line.back() = '\n';
+        whole.stream() << line;
+    }
+    whole.keep();
+}
+
+double withFewDecimals(double height, double unit) {
+    const double power = std::pow(10, std::max(std::ceil(-std::log10(unit)) + 2, 0.0));
+    const double shifted = std::round(height * power);
+    return std::isfinite(shifted) ? shifted / power : height;
+}
+
+}  // namespace sand

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// What sandwall-import.so exports.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+
+#include "base/input_error.hpp"
+#include "scene/import/gdal/function_text.hpp"
+#include "scene/import/gdal/gdal_geotiff.hpp"
+#include "scene/import/gdal/gdal_reference.hpp"
+#include "scene/import/importer.hpp"
+
+namespace sand {
+namespace {
+
+constexpr double kSquare = 1e-6;  // by which share the sides of a cell may differ: other programs print fewer digits
+
+/// Where the raster lies, from GDAL's (west, width, turn, north, turn, depth).
+void setPlace(const GdalRaster& raster, EsriGrid& grid) {
+    std::array<double, 6> place{};
+    if (GDALGetGeoTransform(raster.dataset(), place.data()) != CE_None) {
+        raster.fail("says not where it lies nor how large its pixels are; kind = \"image\" takes pictures");
+    }
+    for (const double number : place) {
+        if (!std::isfinite(number)) {
+            raster.fail("its place is not finite");
+        }
+    }
+    const auto [west, width, turn, north, otherTurn, depth] = place;
+    if (turn != 0 || otherTurn != 0 || !(width > 0) || depth == 0) {
+        raster.fail(fmt::format("is turned or mirrored; straighten it: gdalwarp -r bilinear {} straight.tif",
+                                std::filesystem::path(raster.name()).filename().string()));
+    }
+    grid.cellSize = width;
+    grid.westEdge = west;
+    grid.southEdge = depth < 0 ? north + depth * grid.rows : north;
+    if (std::abs(std::abs(depth) - width) > kSquare * width) {
+        grid.cellDepth = std::abs(depth);
+    }
+    if (depth > 0) {  // the first row is the southernmost
+        for (int row = 0; row < grid.rows / 2; ++row) {
+            const auto columns = static_cast<std::ptrdiff_t>(grid.columns);
+            const auto upper = grid.heights.begin() + row * columns;
+            std::swap_ranges(upper, upper + columns, grid.heights.end() - (row + 1) * columns);
+        }
+    }
+}
+
+EsriGrid gridOf(const GdalRaster& raster) {
+    EsriGrid grid;
+    grid.file = raster.name();
+    grid.columns = raster.columns();
+    grid.rows = raster.rows();
+    return grid;
+}
+
+/// The largest number that a picture's pixels can be.
+double whiteOf(const GdalRaster& raster) {
+    const char* bits = GDALGetMetadataItem(raster.band(), "NBITS", "IMAGE_STRUCTURE");
+    switch (GDALGetRasterDataType(raster.band())) {
+        case GDT_Byte:
+        case GDT_UInt16:
+            if (bits != nullptr) {
+                return std::exp2(std::clamp(std::atoi(bits), 1, 16)) - 1;
+            }
+            return GDALGetRasterDataType(raster.band()) == GDT_Byte ? 255 : 65535;
+        default:
+            raster.fail(
+                fmt::format("holds {} numbers; an image's are of 8 or 16 bits without sign, and kind = \"dem\" "
+                            "takes others",
+                            GDALGetDataTypeName(GDALGetRasterDataType(raster.band()))));
+    }
+}
+
+class GdalImporter final : public Importer {
+public:
+    [[nodiscard]] EsriGrid readDem(const std::filesystem::path& file) const override {
+        const GdalRaster raster(file);
+        EsriGrid grid = gridOf(raster);
+        grid.units = unitsOf(raster);  // a raster in degrees is refused before it is read
+        grid.heights = raster.pixels();
+        setPlace(raster, grid);
+        int hasNoData = 0;
+        const double noData = GDALGetRasterNoDataValue(raster.band(), &hasNoData);
+        if (hasNoData != 0) {
+            grid.noData = noData;
+        }
+        grid.countHeightsInLengths();
+        return grid;
+    }
+    [[nodiscard]] RasterUnits readUnits(const std::filesystem::path& file) const override {
+        return unitsOf(GdalRaster(file));
+    }
+    [[nodiscard]] EsriGrid readImage(const std::filesystem::path& file) const override {
+        const GdalRaster raster(file);
+        const double white = whiteOf(raster);
+        EsriGrid grid = gridOf(raster);
+        grid.cellSize = 1;
+        grid.heights = raster.pixels();
+        for (double& height : grid.heights) {
+            height /= white;
+        }
+        return grid;
+    }
+    [[nodiscard]] EsriGrid evaluate(const Function& function) const override { return evaluateFunction(function); }
+    [[nodiscard]] base::Bytes geoTiff(const EsriGrid& grid, const std::string& file) const override {
+        return geoTiffOf(grid, file);
+    }
+    [[nodiscard]] std::string esriWkt(const std::string& crs, const std::string& file) const override {
+        const GdalSession session;
+        const SpatialReference reference = referenceOf(crs, file);
+        char* text = nullptr;
+        const std::array<const char*, 2> options = {"FORMAT=WKT1_ESRI", nullptr};
+        const OGRErr error = OSRExportToWktEx(reference.get(), &text, options.data());
+        const GdalText owner(text);
+        if (error != OGRERR_NONE || text == nullptr) {
+            throw base::InputError(file +
+                                   ": its coordinate reference system cannot be said in a .prj file; write a "
+                                   ".tif: " +
+                                   session.complaint());
+        }
+        return text;
+    }
+};
+
+}  // namespace
+}  // namespace sand
+
+extern "C" const sand::Importer* sandwallImport2() {
+    static const sand::GdalImporter kImporter;
+    return &kImporter;
+}

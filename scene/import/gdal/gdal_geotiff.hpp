@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// Private to this folder.
+#pragma once
+
+#include "scene/import/importer.hpp"
+
+namespace sand {
+
+/// Importer::geoTiff().
+[[nodiscard]] base::Bytes geoTiffOf(const EsriGrid& grid, const std::string& file);
+
+}  // namespace sand

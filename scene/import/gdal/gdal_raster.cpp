@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/import/gdal/gdal_raster.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "base/input_error.hpp"
+#include "scene/import/importer.hpp"
+
+namespace sand {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Formats that hold their numbers themselves. Left out is what fetches from a network, refers to other files (VRT and
+// its like can name servers, and programs in Python), or needs a database.
+constexpr const char* kDrivers[] = {
+    "GTiff",  "AAIGrid",  "GRASSASCIIGrid", "SRTMHGT",  "PNG",  "JPEG", "JP2OpenJPEG", "BMP",   "HFA",      "EHdr",
+    "ENVI",   "DTED",     "USGSDEM",        "SDTS",     "GSAG", "GSBG", "GS7BG",       "ERS",   "RST",      "SAGA",
+    "ZMap",   "PCRaster", "Terragen",       "Leveller", "BT",   "GXF",  "SIGDEM",      "RMF",   "NGSGEOID", "KRO",
+    "netCDF", "NITF",     "ROI_PAC",        "ILWIS",    "FIT",  "HF2",  "XYZ",         nullptr,
+};
+
+fs::path checked(const fs::path& file) {
+    std::error_code none;
+    if (!fs::is_regular_file(file, none)) {
+        throw base::InputError(file.string() + ": cannot be read; check the path");
+    }
+    // Behind a leading slash no name is taken for a driver's prefix.
+    return fs::absolute(file);
+}
+
+}  // namespace
+
+GdalRaster::GdalRaster(const fs::path& file)
+    : name_(file.string()),
+      dataset_(GDALOpenEx(checked(file).c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
+                          static_cast<const char* const*>(kDrivers), nullptr, nullptr)) {
+    if (!dataset_) {
+        fail("cannot be read as a raster: " + session_.complaint());
+    }
+    chooseBand();
+    const double bytes = kRasterBytesPerPixel * columns() * rows();
+    if (bytes > kMostRasterBytes) {
+        fail(
+            fmt::format("{} x {} pixels would take {:.1f} GB, and {:.1f} GB is the most; coarsen it: gdal_translate "
+                        "-r average -outsize {:.0f}% 0 {} coarser.tif",
+                        columns(), rows(), bytes / 1e9, kMostRasterBytes / 1e9,
+                        std::floor(100 * std::sqrt(kMostRasterBytes / bytes)), file.filename().string()));
+    }
+}
+
+void GdalRaster::fail(const std::string& message) const { throw base::InputError(name_ + ": " + message); }
+
+void GdalRaster::failToRead() const { fail("its pixels cannot be read: " + session_.complaint()); }
+
+void GdalRaster::chooseBand() {
+    int values = 0;
+    for (int number = GDALGetRasterCount(dataset_.get()); number >= 1; --number) {
+        GDALRasterBandH band = GDALGetRasterBand(dataset_.get(), number);
+        if (GDALGetRasterColorInterpretation(band) != GCI_AlphaBand) {
+            band_ = band;
+            ++values;
+        }
+    }
+    if (values != 1) {
+        fail(fmt::format("has {} bands, and heights are one; {}", values,
+                         values == 0 ? "list them with gdalinfo" : "choose it: gdal_translate -b NUMBER"));
+    }
+    if (GDALGetRasterColorTable(band_) != nullptr) {
+        fail("holds colours from a palette, and no heights");
+    }
+    if (GDALDataTypeIsComplex(GDALGetRasterDataType(band_)) != 0) {
+        fail("holds complex numbers, and no heights");
+    }
+}
+
+std::vector<double> GdalRaster::pixels() const {
+    std::vector<double> pixels(static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()));
+    if (GDALRasterIO(band_, GF_Read, 0, 0, columns(), rows(), pixels.data(), columns(), rows(), GDT_Float64, 0, 0) !=
+        CE_None) {
+        failToRead();
+    }
+    mask(pixels);
+    const double scale = GDALGetRasterScale(band_, nullptr);
+    const double offset = GDALGetRasterOffset(band_, nullptr);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        pixels[i] = scale == 1 && offset == 0 ? pixels[i] : pixels[i] * scale + offset;
+        if (std::isinf(pixels[i])) {
+            const auto width = static_cast<std::size_t>(columns());
+            fail(
+                fmt::format("the height of pixel {}, {} (from the north-west) is infinite; mask it: gdal_translate "
+                            "-a_nodata {}",
+                            i % width + 1, i / width + 1, pixels[i]));
+        }
+    }
+    return pixels;
+}
+
+void GdalRaster::mask(std::vector<double>& pixels) const {
+    if ((GDALGetMaskFlags(band_) & GMF_ALL_VALID) != 0) {
+        return;
+    }
+    GDALRasterBandH mask = GDALGetMaskBand(band_);
+    std::vector<unsigned char> known(static_cast<std::size_t>(columns()));
+    for (int row = 0; row < rows(); ++row) {
+        if (GDALRasterIO(mask, GF_Read, 0, row, columns(), 1, known.data(), columns(), 1, GDT_Byte, 0, 0) != CE_None) {
+            failToRead();
+        }
+        for (std::size_t column = 0; column < known.size(); ++column) {
+            if (known[column] == 0) {
+                pixels[static_cast<std::size_t>(row) * known.size() + column] =
+                    std::numeric_limits<double>::quiet_NaN();
+            }
+        }
+    }
+}
+
+}  // namespace sand

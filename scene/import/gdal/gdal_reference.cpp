@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/import/gdal/gdal_reference.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <string_view>
+
+#include "base/input_error.hpp"
+#include "base/text.hpp"
+#include "scene/import/metric_system.hpp"
+
+namespace sand {
+namespace {
+
+struct HeightUnit {
+    std::string_view name;
+    double metres;
+};
+// The names that GDAL's drivers, EPSG and people give them.
+constexpr std::array kHeightUnits = {
+    HeightUnit{"m", 1},
+    HeightUnit{"metre", 1},
+    HeightUnit{"meter", 1},
+    HeightUnit{"metres", 1},
+    HeightUnit{"meters", 1},
+    HeightUnit{"ft", 0.3048},
+    HeightUnit{"foot", 0.3048},
+    HeightUnit{"feet", 0.3048},
+    HeightUnit{"us-ft", 1200.0 / 3937},
+    HeightUnit{"ftus", 1200.0 / 3937},
+    HeightUnit{"us survey foot", 1200.0 / 3937},
+    HeightUnit{"foot_us", 1200.0 / 3937},
+    HeightUnit{"cm", 0.01},
+    HeightUnit{"mm", 0.001},
+    HeightUnit{"km", 1000},
+};
+
+double metresOf(const std::string& unit, const GdalRaster& raster) {
+    const std::string lower = base::lowerCase(unit);
+    const auto* found = std::find_if(kHeightUnits.begin(), kHeightUnits.end(),
+                                     [&](const HeightUnit& candidate) { return candidate.name == lower; });
+    if (found == kHeightUnits.end()) {
+        raster.fail(
+            fmt::format("heights in '{}', which is no unit known here; say what they are: gdal_edit.py "
+                        "-units m",
+                        unit));
+    }
+    return found->metres;
+}
+
+/// The command that makes metres of degrees: into the UTM zone of the raster's middle, or around a pole.
+std::string warpCommand(const GdalRaster& raster, OGRSpatialReferenceH reference) {
+    std::array<double, 6> place{};
+    int epsg = 3857;
+    const double degrees = OSRGetAngularUnits(reference, nullptr) / 0.017453292519943295;
+    if (GDALGetGeoTransform(raster.dataset(), place.data()) == CE_None) {
+        const double longitude = (place[0] + place[1] * raster.columns() / 2) * degrees;
+        const double latitude = (place[3] + place[5] * raster.rows() / 2) * degrees;
+        epsg = metricSystemAt(longitude, latitude);
+    }
+    const std::string file = std::filesystem::path(raster.name()).filename().string();
+    return fmt::format("gdalwarp -t_srs EPSG:{} -r bilinear {} metres.tif", epsg, file);
+}
+
+std::string wktOf(OGRSpatialReferenceH reference) {
+    char* text = nullptr;
+    const std::array<const char*, 3> options = {"FORMAT=WKT2", "MULTILINE=NO", nullptr};
+    const OGRErr error = OSRExportToWktEx(reference, &text, options.data());
+    const GdalText owner(text);
+    return error == OGRERR_NONE && text != nullptr ? text : "";
+}
+
+}  // namespace
+
+RasterUnits unitsOf(const GdalRaster& raster) {
+    RasterUnits units;
+    if (const char* name = GDALGetRasterUnitType(raster.band()); name != nullptr && *name != '\0') {
+        units.heightName = name;
+        units.heightMetres = metresOf(name, raster);
+    }
+    OGRSpatialReferenceH reference = GDALGetSpatialRef(raster.dataset());
+    if (reference == nullptr) {
+        units.lengthMetres = units.heightMetres;  // without a system, lengths are what heights are
+        return units;
+    }
+    if (OSRIsGeographic(reference) != 0 || OSRIsGeocentric(reference) != 0) {
+        const char* name = OSRGetName(reference);
+        raster.fail(fmt::format("its coordinates ({}) are degrees, and sand wants lengths; make metres of them: {}",
+                                name == nullptr ? "no name" : name, warpCommand(raster, reference)));
+    }
+    units.crs = wktOf(reference);
+    units.lengthMetres = OSRGetLinearUnits(reference, nullptr);
+    if (units.heightName.empty()) {
+        const bool vertical = OSRIsCompound(reference) != 0;
+        units.heightMetres = vertical ? OSRGetTargetLinearUnits(reference, "VERT_CS", nullptr) : units.lengthMetres;
+    }
+    if (units.heightMetres != units.lengthMetres) {
+        units.heightsPerLength = units.lengthMetres / units.heightMetres;
+    }
+    return units;
+}
+
+SpatialReference referenceOf(const std::string& crs, const std::string& file) {
+    SpatialReference reference(OSRNewSpatialReference(nullptr));
+    std::string text = crs;
+    char* rest = text.data();
+    // Never GDAL's "any input", which takes the addresses of servers too.
+    if (OSRImportFromWkt(reference.get(), &rest) != OGRERR_NONE) {
+        throw base::InputError(file +
+                               ": the coordinate reference system that the terrain came with is none that GDAL "
+                               "knows");
+    }
+    return reference;
+}
+
+}  // namespace sand

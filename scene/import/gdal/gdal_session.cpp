@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/import/gdal/gdal_session.hpp"
+
+#include <cpl_error.h>
+
+namespace sand {
+
+GdalSession::GdalSession() {
+    CPLPushErrorHandlerEx(keep, this);
+    static const bool kReady = [] {
+        // Plugins are code from wherever GDAL looks, and PROJ would fetch grids: heights are not worth either.
+        CPLSetConfigOption("GDAL_DRIVER_PATH", "disable");
+        CPLSetConfigOption("AAIGRID_DATATYPE", "Float64");  // as text holds them
+        OSRSetPROJEnableNetwork(0);
+        GDALAllRegister();
+        return true;
+    }();
+    (void)kReady;
+}
+
+GdalSession::~GdalSession() { CPLPopErrorHandler(); }
+
+void GdalSession::keep(CPLErr severity, CPLErrorNum /*number*/, const char* message) {
+    auto& session = *static_cast<GdalSession*>(CPLGetErrorHandlerUserData());
+    if (severity != CE_Failure && severity != CE_Fatal && severity != CE_Warning) {
+        return;
+    }
+    std::string& kept = severity == CE_Warning ? session.warning_ : session.error_;
+    if (kept.empty()) {
+        kept = message;
+    }
+}
+
+std::string GdalSession::complaint() const {
+    if (!error_.empty()) {
+        return error_;
+    }
+    return warning_.empty() ? "GDAL does not say why" : warning_;
+}
+
+}  // namespace sand

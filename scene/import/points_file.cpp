@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/import/points_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include "base/input_error.hpp"
+#include "base/text.hpp"
+#include "scene/import/metric_system.hpp"
+
+namespace sand {
+namespace {
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8, as spreadsheets write it
+constexpr double kFlat = 1e-9;  // width over length of a cloud that has no area: doubles tell little less
+
+std::vector<std::string_view> fieldsOf(std::string_view text) {
+    for (const char separator : {';', ','}) {
+        if (text.find(separator) != std::string_view::npos) {
+            return base::split(text, separator);
+        }
+    }
+    std::vector<std::string_view> fields;
+    for (;;) {  // blanks in a row are one separator
+        const std::size_t end = text.find_first_of(" \t");
+        fields.push_back(base::trimmed(text.substr(0, end)));
+        if (end == std::string_view::npos) {
+            return fields;
+        }
+        text = base::trimmed(text.substr(end + 1));
+    }
+}
+
+std::optional<double> numberOf(std::string_view field) {
+    field.remove_prefix(field.size() > 1 && field.front() == '+' ? 1 : 0);
+    return base::numberOf(field);
+}
+
+bool isDigit(char c) { return c >= '0' && c <= '9'; }
+bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+std::string_view unquoted(std::string_view field) {
+    const bool quoted = field.size() > 1 && field.front() == '"' && field.back() == '"';
+    return quoted ? field.substr(1, field.size() - 2) : field;
+}
+
+/// "WGS84_Lat [deg]" holds wgs, lat and deg.
+std::vector<std::string> wordsOf(std::string_view field) {
+    std::vector<std::string> words;
+    for (auto at = field.begin(); (at = std::find_if(at, field.end(), isLetter)) != field.end();) {
+        const auto end = std::find_if_not(at, field.end(), isLetter);
+        words.push_back(base::lowerCase({at, end}));
+        at = end;
+    }
+    return words;
+}
+
+bool holds(const std::vector<std::string>& words, std::initializer_list<std::string_view> any) {
+    return std::any_of(words.begin(), words.end(),
+                       [&](const std::string& word) { return std::find(any.begin(), any.end(), word) != any.end(); });
+}
+
+/// A mistyped one too, in quotes, or one that is not finite: what somebody measured must not pass for a name.
+bool meansNumber(std::string_view field) {
+    const auto first = std::find_if(field.begin(), field.end(), [](char c) { return isDigit(c) || isLetter(c); });
+    if (first == field.end() || isDigit(*first)) {
+        return first != field.end();
+    }
+    return holds({wordsOf(field).front()}, {"nan", "inf", "infinity"});
+}
+
+bool isLatitude(std::string_view name) { return holds(wordsOf(name), {"lat", "latitude"}); }
+bool isDegrees(std::string_view name) {
+    return isLatitude(name) || holds(wordsOf(name), {"lon", "long", "lng", "longitude", "deg", "degree", "degrees"});
+}
+
+/// Points with the lines they stand in.
+class Cloud {
+public:
+    explicit Cloud(const std::filesystem::path& file) : file_(file.string()) {
+        std::error_code ignored;
+        std::ifstream stream(file, std::ios::binary);
+        if (!stream || std::filesystem::is_directory(file, ignored) ||
+            std::filesystem::is_character_file(file, ignored)) {  // devices may never end
+            throw base::InputError(file_ + ": cannot be read; check the path");
+        }
+        bool first = true;
+        std::string text;
+        for (long line = 1; std::getline(stream, text); ++line) {
+            std::string_view content = text;
+            if (line == 1 && content.starts_with(kByteOrderMark)) {
+                content.remove_prefix(kByteOrderMark.size());
+            }
+            content = base::trimmed(content.substr(0, content.find('#')));
+            if (!content.empty()) {
+                add(fieldsOf(content), line, std::exchange(first, false));
+            }
+        }
+        if (stream.bad()) {
+            throw base::InputError(file_ + ": cannot be read to its end; check the disk it lies on");
+        }
+    }
+
+    /// One of each place.
+    [[nodiscard]] Points distinct() const {
+        std::vector<std::size_t> order(points_.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        // By place, then by line: no two are equal, and so the order is the same everywhere.
+        std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+            return std::tuple(points_[a][0], points_[a][1], a) < std::tuple(points_[b][0], points_[b][1], b);
+        });
+        std::vector<bool> repeated(points_.size());
+        for (std::size_t i = 1; i < order.size(); ++i) {
+            const auto& before = points_[order[i - 1]];
+            const auto& point = points_[order[i]];
+            if (before[0] != point[0] || before[1] != point[1]) {
+                continue;
+            }
+            if (before[2] != point[2]) {
+                fail(lines_[order[i]], fmt::format("x = {}, y = {} has height {}, and {} in line {}; keep one of them",
+                                                   point[0], point[1], point[2], before[2], lines_[order[i - 1]]));
+            }
+            repeated[order[i]] = true;
+        }
+        Points points;
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            if (!repeated[i]) {
+                points.push_back(points_[i]);
+            }
+        }
+        return points;
+    }
+
+private:
+    void add(const std::vector<std::string_view>& fields, long line, bool mayBeTitle) {
+        if (mayBeTitle && !fields[0].empty() && std::none_of(fields.begin(), fields.end(), meansNumber)) {
+            checkTitle(fields, line);
+            return;
+        }
+        if (fields.size() != 3) {
+            fail(line, fmt::format("x, y and z are wanted, got {} values", fields.size()));
+        }
+        if (points_.size() == kMostPoints) {
+            fail(line, fmt::format("more than {} points; thin them out", kMostPoints));
+        }
+        std::array<double, 3> point{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::optional<double> value = numberOf(fields[i]);
+            if (!value) {
+                fail(line, fmt::format("{} must be a finite number, got '{}'", "xyz"[i], fields[i]));
+            }
+            point.at(i) = *value;
+        }
+        if (degrees_) {
+            failForDegrees(point);
+        }
+        points_.push_back(point);
+        lines_.push_back(line);
+    }
+    /// A title may call the columns anything, but not x, y or z where that stands in another one.
+    void checkTitle(const std::vector<std::string_view>& fields, long line) {
+        for (std::size_t i = 0; i < fields.size(); ++i) {
+            const std::string_view name = unquoted(fields[i]);
+            const std::size_t axis = name.size() == 1 ? std::string_view("xyzXYZ").find(name.front()) : i;
+            if (axis != std::string_view::npos && axis % 3 != i) {
+                fail(line, fmt::format("the columns must be x, y, z, and '{}' is number {}", name, i + 1));
+            }
+        }
+        if (fields.size() != 3) {
+            fail(line, fmt::format("three columns are wanted, x, y, z, and '{}' begins a title of {}", fields[0],
+                                   fields.size()));
+        }
+        for (const std::string_view name : {fields[0], fields[1]}) {
+            if (isDegrees(name) && !degrees_) {
+                degrees_ = Degrees{std::string(unquoted(name)), line, isLatitude(fields[0])};
+            }
+        }
+    }
+    /// With the command that makes metres, into the UTM zone of the first point.
+    [[noreturn]] void failForDegrees(const std::array<double, 3>& point) const {
+        const std::size_t north = degrees_->latitudeFirst ? 0 : 1;
+        fail(degrees_->line,
+             fmt::format("'{}' is in degrees, and sand wants lengths; make metres of lines of longitude, latitude and "
+                         "height: gdaltransform -s_srs EPSG:4326 -t_srs EPSG:{}",
+                         degrees_->name, metricSystemAt(point.at(1 - north), point.at(north))));
+    }
+    [[noreturn]] void fail(long line, const std::string& message) const {
+        throw base::InputError(file_, line, message);
+    }
+
+    /// What a title says of its columns.
+    struct Degrees {
+        std::string name;
+        long line = 0;
+        bool latitudeFirst = false;
+    };
+
+    std::string file_;
+    Points points_;
+    std::vector<long> lines_;
+    std::optional<Degrees> degrees_;
+};
+
+using Wide = long double;  // whose squares of any double neither overflow nor vanish
+
+Wide squaredDistance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+    const Wide x = Wide{a[0]} - b[0], y = Wide{a[1]} - b[1];
+    return x * x + y * y;
+}
+
+bool onOneLine(const Points& points) {
+    const auto farthest = *std::max_element(points.begin(), points.end(), [&](const auto& a, const auto& b) {
+        return squaredDistance(points[0], a) < squaredDistance(points[0], b);
+    });
+    const Wide length = squaredDistance(points[0], farthest);
+    return std::all_of(points.begin(), points.end(), [&](const auto& point) {
+        const Wide area = (Wide{farthest[0]} - points[0][0]) * (Wide{point[1]} - points[0][1]) -
+                          (Wide{farthest[1]} - points[0][1]) * (Wide{point[0]} - points[0][0]);
+        return std::abs(area) <= kFlat * length;
+    });
+}
+
+}  // namespace
+
+Points readPoints(const std::filesystem::path& file) {
+    Points points = Cloud(file).distinct();
+    if (points.size() < 3) {
+        throw base::InputError(fmt::format("{}: holds {} points at different places, and terrain takes at least 3",
+                                           file.string(), points.size()));
+    }
+    if (onOneLine(points)) {
+        throw base::InputError(
+            fmt::format("{}: all {} points lie on one line, and terrain needs an area", file.string(), points.size()));
+    }
+    return points;
+}
+
+}  // namespace sand

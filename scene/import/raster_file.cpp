@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/import/raster_file.hpp"
+
+#include <string>
+
+#include "base/input_error.hpp"
+#include "base/text.hpp"
+#include "host/whole_file.hpp"
+#include "scene/import/importer.hpp"
+
+namespace sand {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Whether a file that GDAL takes for its reference system lies beside it.
+bool hasPrj(const fs::path& file) {
+    std::error_code none;
+    return fs::exists(fs::path(file).replace_extension(".prj"), none) ||
+           fs::exists(fs::path(file).replace_extension(".PRJ"), none);
+}
+
+void write(const base::Bytes& bytes, const fs::path& file) {
+    host::WholeFile whole(file);
+    whole.stream().write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    whole.keep();
+}
+
+}  // namespace
+
+bool namesGeoTiff(const fs::path& file) {
+    const std::string ending = base::endingOf(file);
+    return ending == ".tif" || ending == ".tiff";
+}
+
+void checkRasterName(const fs::path& file) {
+    const std::string ending = base::endingOf(file);
+    std::error_code none;
+    const bool plain = !fs::exists(file, none) || fs::is_regular_file(file, none);
+    if (plain && !namesGeoTiff(file) && ending != ".asc" && ending != ".txt" && !ending.empty()) {
+        throw base::InputError(file.string() +
+                               ": no known ending; name it .tif for a GeoTIFF, .asc for an ESRI ASCII grid");
+    }
+}
+
+EsriGrid readRaster(const fs::path& file, bool withReference) {
+    const std::string ending = base::endingOf(file);
+    std::error_code none;
+    const bool plain = fs::is_regular_file(file, none);
+    if (plain && !ending.empty() && ending != ".asc" && ending != ".txt") {
+        return loadImporter(file.string()).readDem(file);
+    }
+    if (!withReference || !plain || !hasPrj(file)) {
+        return readEsriGrid(file);
+    }
+    // Only the units are GDAL's: what is wrong in the text is still told by its line.
+    const RasterUnits units = loadImporter(file.string()).readUnits(file);
+    EsriGrid grid = readEsriGrid(file);
+    grid.units = units;
+    grid.countHeightsInLengths();
+    return grid;
+}
+
+void writeRaster(const EsriGrid& grid, const fs::path& file) {
+    if (namesGeoTiff(file)) {
+        write(loadImporter(file.string()).geoTiff(grid, file.string()), file);
+        return;
+    }
+    writeEsriGrid(grid, file);
+    if (!grid.units.crs.empty()) {
+        const fs::path beside = fs::path(file).replace_extension(".prj");
+        const std::string text = loadImporter(file.string()).esriWkt(grid.units.crs, beside.string());
+        write({text.begin(), text.end()}, beside);
+    }
+}
+
+}  // namespace sand

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/load/scene_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/input_error.hpp"
+#include "host/toml_table.hpp"
+#include "sand/replica.hpp"
+#include "scene/load/terrain.hpp"
+#include "scene/load/tin_settings.hpp"
+#include "scene/load/tin_table.hpp"
+#include "scene/material.hpp"
+
+namespace sand {
+namespace {
+
+constexpr int kTooCoarse = 4096;  // [unit]: below, rest slopes come out more than a percent too steep
+
+void readMaterial(const host::TomlTable& file, Scene& scene) {
+    const host::TomlTable table = file.requiredTable("material");
+    for (const MaterialKey& key : materialKeys()) {
+        const double value = table.numberOr(key.key, key.lowest, {key.lowest, key.highest});
+        if (table.has(key.key)) {
+            if (key.highestIsOut && value == key.highest) {
+                table.fail(key.key, fmt::format("{} must be within [{}, {}), got {}", key.key, key.lowest, key.highest,
+                                                key.highest));
+            }
+            key.set(scene.material, value);
+        }
+    }
+    scene.rules.scheme = static_cast<Scheme>(table.choiceOr("scheme", {"g", "n4", "g_plain"}, 0));
+    if (scene.tin != nullptr && scene.rules.scheme != Scheme::isotropic) {
+        table.fail("scheme", fmt::format("a TIN has no scheme \"{}\", only \"g\"; leave out 'scheme', or [tin]",
+                                         table.text("scheme")));
+    }
+    if (const auto fault = faultOf(scene.material, scene.grid())) {
+        table.fail(fault->key, fault->message);
+    }
+    scene.rules.tune(tuningOf(scene.material, scene.grid()));
+    if (scene.rules.threshold < kTooCoarse) {
+        scene.warnings.push_back(fmt::format(
+            "a talus of {} deg is {} height units per cell; below {} slopes rest more than a percent too steep",
+            scene.material.talus(), scene.rules.threshold, kTooCoarse));
+    }
+    table.finish();
+}
+
+std::vector<std::string_view> toolNames() {
+    std::vector<std::string_view> names;
+    names.reserve(kToolKinds);
+    for (int kind = 0; kind < kToolKinds; ++kind) {
+        names.push_back(toolName(static_cast<ToolKind>(kind)));
+    }
+    return names;
+}
+
+void readShape(const host::TomlTable& tool, Material& material) {
+    material.toolKind = static_cast<ToolKind>(tool.choiceOr("shape", toolNames(), 0));
+    if (const double width = tool.numberOr("width", 1, {kNarrowestTool, 1}); tool.has("width")) {
+        material.toolWidth = width;
+    }
+    material.toolHeading = tool.numberOr("heading_deg", 0, {-360, 360});
+    material.leftFoot = tool.choiceOr("foot", {"right", "left"}, 0) == 1;
+}
+
+void readTool(const host::TomlTable& file, Scene& scene) {
+    const std::optional<host::TomlTable> tool = file.table("tool");
+    double& radius = scene.material.toolRadius;
+    radius = tool ? tool->numberOr("radius", radius, host::kPositive) : radius;
+    if (tool) {
+        readShape(*tool, scene.material);
+    }
+    const auto fault = faultOf(scene.material, scene.grid());
+    if (fault && tool && tool->has(fault->key)) {
+        tool->fail(fault->key, fault->message);
+    }
+    if (fault && fault->key == "radius") {
+        const std::string message = fault->message + ": set radius in [tool]";
+        tool ? tool->fail("radius", message) : file.fail("tool", message);
+    }
+    if (const double cells = radius / scene.terrain.cellSize(); cells < 1) {
+        scene.warnings.push_back(
+            fmt::format("a tool of radius {} is {:.2g} cells of {} and will hardly dig; set radius in [tool]", radius,
+                        cells, scene.terrain.cellSize()));
+    }
+    if (tool) {
+        tool->finish();
+    }
+}
+
+void readForce(const host::TomlTable& file, Scene& scene) {
+    ForceConstants& force = scene.force;
+    force.unitLength = std::max(scene.rules.columns, scene.rules.rows) * scene.terrain.cellSize();
+    const std::optional<host::TomlTable> table = file.table("force");
+    if (!table) {
+        return;
+    }
+    for (const ForceKey& key : forceKeys()) {
+        force.*key.constant = table->numberOr(key.name, force.*key.constant, {key.lowest, key.highest});
+    }
+    force.law = static_cast<ForceLaw>(table->choiceOr("law", {"repulse", "control_points"}, 0));
+    force.between = static_cast<Between>(table->choiceOr("between", {"local", "hold", "interpolate"}, 0));
+    force.literal = table->flagOr("literal", false);
+    force.frictionDirection =
+        static_cast<FrictionDirection>(table->choiceOr("friction_direction", {"tangential", "full", "vertical"}, 0));
+    if (!force.literal && force.frictionDirection != FrictionDirection::tangential) {
+        table->fail("friction_direction",
+                    "friction_direction other than tangential is for comparison: set literal = true beside it");
+    }
+    table->finish();
+}
+
+// [pixel]: GL promises vertices no finer than a sixteenth of a pixel.
+constexpr double kLeastDetail = 1.0 / 16;
+
+void readLook(const host::TomlTable& file, Scene& scene) {
+    if (const auto look = file.table("look")) {
+        scene.look.sandColour = look->numbersOr("sand", scene.look.sandColour);
+        scene.look.backgroundColour = look->numbersOr("background", scene.look.backgroundColour);
+        scene.look.sunDirection = look->numbersOr("sun", scene.look.sunDirection);
+        scene.look.hillShade = look->flagOr("hill_shade", scene.look.hillShade);
+        scene.look.flatShading = look->choiceOr("shading", {"smooth", "flat"}, 0) == 1;
+        const auto& sun = scene.look.sunDirection;
+        if (sun[0] == 0 && sun[1] == 0 && sun[2] == 0) {
+            look->fail("sun", "sun must point somewhere, got [0, 0, 0]");
+        }
+        const double& detail = scene.look.detail = look->numberOr("detail", scene.look.detail, {0, 64});
+        if (detail > 0 && detail < kLeastDetail) {
+            look->fail(
+                "detail",
+                fmt::format("detail must be 0 or at least {} pixels, which is what the graphics card can hold, got {}",
+                            kLeastDetail, detail));
+        }
+        look->finish();
+    }
+}
+
+}  // namespace
+
+Scene loadScene(const std::filesystem::path& file, const FieldCheck& check) {
+    const host::TomlTable toml = host::TomlTable::load(file);
+    Scene scene;
+    scene.name = toml.textOr("name", file.stem().string());
+    const auto control = [](char c) { return static_cast<unsigned char>(c) < ' '; };
+    if (std::any_of(scene.name.begin(), scene.name.end(), control)) {
+        toml.fail("name", "name must be one line of plain text");
+    }
+    scene.rules.stepsPerSecond = toml.integerOr("steps_per_second", 60, 1, 1000);
+    scene.rules.rim = static_cast<Rim>(toml.choiceOr("rim", {"closed", "open"}, 0));
+    const bool settle = readTerrain(toml, scene, toml.has("tin") ? FieldCheck() : check);
+    readTin(toml, scene);
+    readTool(toml, scene);
+    readMaterial(toml, scene);
+    requireSpacing(toml, scene);
+    readForce(toml, scene);
+    readLook(toml, scene);
+    toml.finish();
+    if (settle) {
+        Terrain terrain(scene);
+        terrain.apply({.epoch = 1, .number = 1, .engaged = false, .path = {}, .edit = Edit::settle});
+        startFrom(terrain, scene);
+    }
+    return scene;
+}
+
+}  // namespace sand

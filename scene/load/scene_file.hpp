@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "scene/scene.hpp"
+
+namespace sand {
+
+/// Looks at the size of a height field before its heights are made, and throws if there is no room for it.
+using FieldCheck = std::function<void(int columns, int rows)>;
+
+/// Reads a scene file. Throws base::InputError with file, line and key; a DEM's errors name the DEM's line.
+/// `check` is called once for a height field, and not for a TIN.
+[[nodiscard]] Scene loadScene(const std::filesystem::path& file, const FieldCheck& check = {});
+
+}  // namespace sand

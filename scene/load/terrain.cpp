@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/load/terrain.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sand/grid/dunes.hpp"
+#include "scene/import/raster_file.hpp"
+#include "scene/load/terrain_source.hpp"
+#include "scene/load/tin_table.hpp"
+
+namespace sand {
+namespace {
+
+HeightField levelField(const host::TomlTable& file, const FieldCheck& check) {
+    const host::TomlTable field = file.requiredTable("field");
+    const int columns = field.integerOr("columns", 512, 1, kMaxSide);
+    const int rows = field.integerOr("rows", columns, 1, kMaxSide);
+    const double width = field.numberOr("width", 2.0, host::kPositive);  // the paper's (-1, 1)
+    field.finish();
+    if (check) {
+        check(columns, rows);
+    }
+    return {columns, rows, width / columns};
+}
+
+std::int32_t heightUnits(const host::TomlTable& terrain, const std::string& key, double height, double unit) {
+    const double units = std::floor(height / unit + 0.5);
+    if (!(std::abs(units) <= kMaxHeight)) {
+        terrain.fail(key, fmt::format("a height of {} is beyond the range of ±{} (4096 cells); set 'datum'", height,
+                                      kMaxHeight * unit));
+    }
+    return static_cast<std::int32_t>(units);
+}
+
+/// The ground of a scene that turns out to need one.
+Ground& groundOf(std::shared_ptr<Ground>& ground, const HeightField& field) {
+    if (ground == nullptr) {
+        ground = std::make_shared<Ground>(field.columns(), field.rows());
+    }
+    return *ground;
+}
+
+/// Columns and rows of the field that the raster becomes.
+void checkCells(const host::TomlTable& terrain, const EsriGrid& raster) {
+    if (raster.aspect() != 1) {
+        const std::string advice =
+            raster.lines.empty() ? fmt::format("; resample it: gdalwarp -tr {0} {0} -r bilinear", raster.cellSize) : "";
+        terrain.fail("file", fmt::format("{} has cells of {} x {}; a scene's are square{}", raster.file,
+                                         raster.cellSize, *raster.cellDepth, advice));
+    }
+    if (raster.columns > kMaxSide || raster.rows > kMaxSide) {
+        terrain.fail("file", fmt::format("{} has {} x {} cells; a scene's are at most {} a side", raster.file,
+                                         raster.columns, raster.rows, kMaxSide));
+    }
+}
+
+/// Cells without data become walls, drawn as flats at the lowest height there is.
+HeightField fromSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind, Scene& scene,
+                       std::shared_ptr<Ground>& ground, const FieldCheck& check) {
+    const TerrainSource source = readSource(file, terrain, kind);
+    if (!source.points.empty()) {
+        if (!file.has("tin")) {
+            terrain.fail("kind",
+                         "points make a triangulated terrain: add [tin]; or make a raster of them, for kind = "
+                         "\"dem\": gdal_grid");
+        }
+        return layOutPoints(file, terrain, source.points, scene);
+    }
+    checkCells(terrain, source.raster);
+    // A grid of rock has the same cells, those at the edges too.
+    const EsriGrid grid = terrain.has("bedrock") ? source.raster : withoutEmptyEdges(source.raster);
+    scene.georeference = source.referenceAt(grid);
+    const double datum = scene.georeference.datum;
+    if (check) {
+        check(grid.columns, grid.rows);
+    }
+    HeightField field(grid.columns, grid.rows, grid.cellSize);
+    std::int32_t lowest = kMaxHeight;
+    const auto forEachCell = [&](auto&& visit) {
+        for (int row = 0; row < grid.rows; ++row) {
+            for (int column = 0; column < grid.columns; ++column) {
+                visit(column, row, grid.at(column, row));
+            }
+        }
+    };
+    const std::string key = terrain.has("file") ? "file" : "z";
+    forEachCell([&](int column, int row, double height) {
+        if (!std::isnan(height)) {
+            const std::int32_t units = heightUnits(terrain, key, height - datum, field.unit());
+            field.setHeight(column, row, units);
+            lowest = std::min(lowest, units);
+        }
+    });
+    forEachCell([&](int column, int row, double height) {
+        if (std::isnan(height)) {
+            field.setHeight(column, row, lowest);
+            groundOf(ground, field).setWall(column, row);
+        }
+    });
+    return field;
+}
+
+HeightField madeUp(const host::TomlTable& file, const host::TomlTable& terrain, bool withDunes,
+                   const FieldCheck& check) {
+    HeightField field = levelField(file, check);
+    const double bed = terrain.numberOr("height", 0);
+    const std::int32_t units = heightUnits(terrain, "height", bed, field.unit());
+    for (int row = 0; row < field.rows(); ++row) {
+        std::fill_n(field.row(row), field.columns(), units);
+    }
+    if (withDunes) {
+        Dunes dunes;
+        dunes.bed = bed;
+        dunes.height = terrain.numberOr("dune_height", dunes.height, {0, 1e9});
+        dunes.length = terrain.numberOr("dune_length", dunes.length, host::kPositive);
+        dunes.seed = static_cast<std::uint32_t>(terrain.integerOr("seed", 1, 0, 1 << 30));
+        heightUnits(terrain, "dune_height", bed + dunes.height, field.unit());
+        makeDunes(dunes, field);
+    }
+    return field;
+}
+
+/// Puts rock at `heightOf(column, row)` [unit] under every cell that is no wall.
+template <class HeightOf>
+void layRock(const host::TomlTable& terrain, const std::string& key, const HeightField& field, Ground& ground,
+             HeightOf heightOf) {
+    for (int row = 0; row < field.rows(); ++row) {
+        for (int column = 0; column < field.columns(); ++column) {
+            if (ground.isWall(column, row)) {
+                continue;
+            }
+            const std::int32_t rock = heightOf(column, row);
+            if (rock > field.height(column, row)) {
+                terrain.fail(key,
+                             fmt::format("the layer of sand is {} thick in column {}, row {} (from the south-west); "
+                                         "rock must lie at or below the sand",
+                                         (field.height(column, row) - rock) * field.unit(), column + 1, row + 1));
+            }
+            ground.setBedrock(column, row, rock);
+        }
+    }
+}
+
+void readBedrock(const host::TomlTable& terrain, const HeightField& field, std::shared_ptr<Ground>& ground) {
+    if (terrain.has("layer") && terrain.has("bedrock")) {
+        terrain.fail("bedrock", "give 'layer' or 'bedrock', not both: either says where the rock lies");
+    }
+    if (terrain.has("layer")) {
+        const std::int32_t layer = heightUnits(terrain, "layer", terrain.number("layer", {0, 1e9}), field.unit());
+        layRock(terrain, "layer", field, groundOf(ground, field),
+                [&](int column, int row) { return std::max(field.height(column, row) - layer, -kMaxHeight); });
+    }
+    if (terrain.has("bedrock")) {
+        const EsriGrid rock = readRaster(terrain.folder() / terrain.text("bedrock"));
+        if (rock.columns != field.columns() || rock.rows != field.rows()) {
+            terrain.fail("bedrock",
+                         fmt::format("the rock has {} x {} cells, the terrain {} x {}: they must be the same",
+                                     rock.columns, rock.rows, field.columns(), field.rows()));
+        }
+        const double datum = terrain.numberOr("datum", 0);
+        layRock(terrain, "bedrock", field, groundOf(ground, field), [&](int column, int row) {
+            const double height = rock.at(column, row);
+            if (std::isnan(height)) {
+                terrain.fail("bedrock",
+                             fmt::format("no rock in column {}, row {} (from the south-west), where there is "
+                                         "sand",
+                                         column + 1, row + 1));
+            }
+            return heightUnits(terrain, "bedrock", height - datum, field.unit());
+        });
+    }
+}
+
+}  // namespace
+
+bool readTerrain(const host::TomlTable& file, Scene& scene, const FieldCheck& check) {
+    const host::TomlTable terrain = file.requiredTable("terrain");
+    std::vector<std::string_view> kinds{"flat", "dunes"};
+    kinds.insert(kinds.end(), sourceKinds().begin(), sourceKinds().end());
+    const int kind = terrain.choiceOr("kind", kinds, 0);
+    std::shared_ptr<Ground> ground;
+    scene.terrain =
+        kind < 2 ? madeUp(file, terrain, kind == 1, check) : fromSource(file, terrain, kind - 2, scene, ground, check);
+    readBedrock(terrain, scene.terrain, ground);
+    const bool settle = terrain.flagOr("settle", false);
+    terrain.finish();
+    if (scene.tin == nullptr) {
+        scene.rules.columns = scene.terrain.columns();
+        scene.rules.rows = scene.terrain.rows();
+    }
+    scene.rules.ground = ground == nullptr ? 0 : ground->digest();
+    scene.ground = ground;
+    return settle;
+}
+
+}  // namespace sand

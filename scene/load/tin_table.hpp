@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Private to this folder.
+#pragma once
+
+#include "host/toml_table.hpp"
+#include "sand/replica.hpp"
+#include "scene/import/points_file.hpp"
+#include "scene/scene.hpp"
+
+namespace sand {
+
+/// Puts points on the lattice of nominal cells: scene.tin holds them, until readTin() makes a TIN of them, the
+/// rules know how many cells lie under them, and the georeference where they were. Returns one cell. Throws
+/// base::InputError.
+[[nodiscard]] HeightField layOutPoints(const host::TomlTable& file, const host::TomlTable& terrain,
+                                       const Points& points, Scene& scene);
+
+/// Reads [tin] of a scene file: the scene's height field becomes a TIN. Does nothing without that table. Throws
+/// base::InputError with file, line and key.
+void readTin(const host::TomlTable& file, Scene& scene);
+
+/// The scene starts with the sand as it is there.
+void startFrom(const Terrain& terrain, Scene& scene);
+
+}  // namespace sand

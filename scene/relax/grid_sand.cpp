@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/relax/grid_sand.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "base/input_error.hpp"
+
+namespace sand::relax {
+namespace {
+
+constexpr double kMostOblong = 1000;                // longer over shorter side of a cell
+constexpr double kFineThreshold = 4096;             // [unit]: from here on slopes rest within a percent
+constexpr double kLargestThreshold = 1073741824.0;  // [unit]: no difference between heights is larger
+
+/// A height of a grid, and where it stands.
+struct Cell {
+    const EsriGrid* grid = nullptr;
+    int column = 0, row = 0;
+    [[nodiscard]] double height() const { return grid->at(column, row); }
+};
+
+struct Extremes {
+    Cell lowest, highest;
+};
+
+/// Adds a grid's heights where `surface` has data.
+void include(const EsriGrid& grid, const EsriGrid& surface, Extremes& extremes) {
+    for (int row = 0; row < grid.rows; ++row) {
+        for (int column = 0; column < grid.columns; ++column) {
+            const Cell cell{&grid, column, row};
+            if (grid.isNoData(column, row) || surface.isNoData(column, row)) {
+                continue;
+            }
+            if (extremes.lowest.grid == nullptr || cell.height() < extremes.lowest.height()) {
+                extremes.lowest = cell;
+            }
+            if (extremes.highest.grid == nullptr || cell.height() > extremes.highest.height()) {
+                extremes.highest = cell;
+            }
+        }
+    }
+}
+
+std::string shapeOf(const EsriGrid& grid) {
+    return fmt::format("{}: {} x {} cells of {} x {} from ({}, {})", grid.file, grid.columns, grid.rows, grid.cellSize,
+                       grid.cellDepth.value_or(grid.cellSize), grid.westEdge, grid.southEdge);
+}
+
+/// Other programs may have printed the same corner with other digits.
+bool sameShape(const EsriGrid& a, const EsriGrid& b) {
+    const auto near = [](double x, double y, double tolerance) { return std::abs(x - y) <= tolerance; };
+    return a.columns == b.columns && a.rows == b.rows && near(a.cellSize, b.cellSize, 1e-6 * a.cellSize) &&
+           near(a.aspect(), b.aspect(), 1e-6 * a.aspect()) && near(a.westEdge, b.westEdge, 1e-3 * a.cellSize) &&
+           near(a.southEdge, b.southEdge, 1e-3 * a.cellSize * a.aspect());
+}
+
+HeightScale scaleFor(const EsriGrid& surface, const Extremes& extremes) {
+    const double shorter = surface.cellSize * std::min(1.0, surface.aspect());
+    const double lowest = extremes.lowest.height();
+    const double highest = extremes.highest.height();
+    const HeightScale scale = HeightScale::finest(shorter, lowest, highest);
+    if (scale.bits < 0) {
+        const Cell& odd = std::abs(lowest) > std::abs(highest) ? extremes.lowest : extremes.highest;
+        odd.grid->fail(odd.column, odd.row,
+                       fmt::format("a height of {} is out of range: heights may span at most {:.4g} (2^29 cells), and "
+                                   "here they lie between {} and {}",
+                                   odd.height(), 2.0 * kMaxHeight * shorter, lowest, highest));
+    }
+    return scale;
+}
+
+/// By which share slopes may rest too steep: there every flux is rounded to nothing. The excess over a threshold
+/// τ is at most (8 τ)^(1/3) + 4 where a face levels a quarter of a difference; `limit` is that share here.
+double steepening(double threshold, double limit) { return (std::cbrt(2 * threshold / limit) + 1 / limit) / threshold; }
+
+/// Of the axis that is worse off. The fluxes' shares are those of sand/grid/erosion.cpp.
+double steepening(double threshold, double aspect, Scheme scheme) {
+    if (scheme == Scheme::n4) {
+        return 0;  // it rounds up
+    }
+    const double across = 0.4998 / (1 / (aspect * aspect) + 1);
+    const double along = 0.4998 / (aspect * aspect + 1);
+    return std::max(steepening(threshold, across), steepening(threshold * aspect, along));
+}
+
+void setTalus(const EsriGrid& surface, const Extremes& extremes, const Material& material, GridSand& sand) {
+    const double aspect = surface.aspect();
+    const double slope = std::tan(material.talusDegrees * std::numbers::pi / 180);
+    const double threshold = std::min(std::floor(slope * surface.cellSize / sand.scale.unit + 0.5), kLargestThreshold);
+    sand.rules.threshold = static_cast<std::int32_t>(threshold);
+    sand.rules.startThreshold =
+        static_cast<std::int32_t>(std::min(std::floor(threshold * (1 + material.band)), kLargestThreshold));
+    const double least = std::floor(threshold * std::min(1.0, aspect));
+    const std::string units = fmt::format("{}: a talus of {} degrees is {} height units of {:.4g} from cell to cell",
+                                          surface.file, material.talusDegrees, least, sand.scale.unit);
+    // Coarse units come from heights that lie far apart, seldom from anything else.
+    const std::string span =
+        sand.scale.bits == kHeightBits
+            ? ""
+            : fmt::format("; heights from {} to {} span {:.4g} cells: if some are no terrain, make them no-data",
+                          extremes.lowest.height(), extremes.highest.height(),
+                          (extremes.highest.height() - extremes.lowest.height()) / surface.cellSize);
+    const bool level = material.talusDegrees == 0 && material.scheme != Scheme::n4;
+    if (least < kLeastThreshold && !level) {
+        throw base::InputError(fmt::format("{}, and {} is the least{}{}", units, kLeastThreshold,
+                                           material.scheme == Scheme::n4 ? " for scheme n4" : ", but for 0 degrees",
+                                           span));
+    }
+    const double tooSteep = level ? 0 : steepening(threshold, aspect, material.scheme);
+    if (tooSteep > steepening(kFineThreshold, 1, Scheme::isotropic)) {
+        sand.warnings.push_back(
+            fmt::format("{}: slopes may come to rest {:.2g} % too steep{}", units, 100 * tooSteep, span));
+    }
+}
+
+/// Height of the rock in a cell of the grids [unit], at most that of the surface.
+std::int32_t rockUnder(const EsriGrid& bedrock, const EsriGrid& surface, int column, int row,
+                       const HeightScale& scale) {
+    const double height = surface.at(column, row);
+    if (bedrock.isNoData(column, row)) {
+        bedrock.fail(column, row, fmt::format("no rock under {}'s height of {}", surface.file, height));
+    }
+    const double rock = bedrock.at(column, row);
+    // Two files that mean the same height may differ by their last digit.
+    if (rock - height >= scale.unit) {
+        bedrock.fail(
+            column, row,
+            fmt::format("rock at {} lies above {}'s height of {}: a layer below zero", rock, surface.file, height));
+    }
+    return std::min(scale.toUnits(rock), scale.toUnits(height));
+}
+
+void fill(const EsriGrid& surface, const EsriGrid* bedrock, GridSand& sand) {
+    const auto ground = [&]() -> Ground& {
+        return sand.ground ? *sand.ground : sand.ground.emplace(sand.field.columns(), sand.field.rows());
+    };
+    sand.lowest = kMaxHeight;
+    for (int y = 0; y < sand.field.rows(); ++y) {
+        for (int x = 0; x < sand.field.columns(); ++x) {
+            const int column = sand.cells.x0 + x;
+            const int row = sand.cells.y0 + y;
+            if (surface.isNoData(column, row)) {
+                ground().setWall(x, y);
+                continue;
+            }
+            const std::int32_t units = sand.scale.toUnits(surface.at(column, row));
+            sand.field.setHeight(x, y, units);
+            sand.lowest = std::min(sand.lowest, units);
+            if (bedrock != nullptr) {
+                ground().setBedrock(x, y, rockUnder(*bedrock, surface, column, row, sand.scale));
+            }
+        }
+    }
+}
+
+}  // namespace
+
+GridSand toSand(const EsriGrid& surface, const EsriGrid* bedrock, const Material& material) {
+    const double aspect = surface.aspect();
+    if (!(std::max(aspect, 1 / aspect) <= kMostOblong)) {
+        throw base::InputError(fmt::format("{}: cells of {} x {} are too oblong; sides must be within 1 : {}",
+                                           surface.file, surface.cellSize, *surface.cellDepth, kMostOblong));
+    }
+    const Rect cells = cellsWithData(surface);
+    if (cells.empty()) {
+        throw base::InputError(surface.file + ": every cell is a no-data cell; there is no sand in it");
+    }
+    if (bedrock != nullptr) {
+        if (!sameShape(surface, *bedrock)) {
+            throw base::InputError(
+                fmt::format("{}, but {}: they must be the same", shapeOf(*bedrock), shapeOf(surface)));
+        }
+    }
+    Extremes extremes;
+    include(surface, surface, extremes);
+    if (bedrock != nullptr) {
+        include(*bedrock, surface, extremes);
+    }
+    const HeightScale scale = scaleFor(surface, extremes);
+    // A field's unit is its cell over 2^16; only lengths in the scene would ask for the file's own cell.
+    GridSand sand{.cells = cells,
+                  .field = HeightField(cells.x1 - cells.x0, cells.y1 - cells.y0, scale.unit * kUnitsPerCell),
+                  .ground = std::nullopt,
+                  .rules = {},
+                  .scale = scale,
+                  .onBedrock = bedrock != nullptr,
+                  .lowest = 0,
+                  .warnings = {}};
+    sand.rules.columns = sand.field.columns();
+    sand.rules.rows = sand.field.rows();
+    sand.rules.aspect = static_cast<std::int32_t>(std::floor(aspect * kUnitsPerCell + 0.5));
+    sand.rules.scheme = material.scheme;
+    setTalus(surface, extremes, material, sand);
+    fill(surface, bedrock, sand);
+    return sand;
+}
+
+std::int64_t GridSand::volume() const {
+    std::int64_t sum = 0;
+    for (int row = 0; row < field.rows(); ++row) {
+        for (int column = 0; column < field.columns(); ++column) {
+            if (!isWall(column, row)) {
+                sum += field.height(column, row) - (onBedrock ? ground->bedrock(column, row) : lowest);
+            }
+        }
+    }
+    return sum;
+}
+
+EsriGrid GridSand::toGrid(const EsriGrid& before) const {
+    EsriGrid result = before;
+    for (int y = 0; y < field.rows(); ++y) {
+        for (int x = 0; x < field.columns(); ++x) {
+            double& height = result.heights[result.index(cells.x0 + x, cells.y0 + y)];
+            const std::int32_t units = field.height(x, y);
+            if (isWall(x, y) || units == scale.toUnits(height)) {
+                continue;
+            }
+            height = withFewDecimals(scale.toHeight(units), scale.unit);
+            if (height == before.noData) {
+                height += scale.unit / 64;  // a height must not read as none
+            }
+        }
+    }
+    return result;
+}
+
+}  // namespace sand::relax

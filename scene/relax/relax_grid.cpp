@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+// What sandwall-relax does with a grid.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "host/whole_file.hpp"
+#include "host/worker_pool.hpp"
+#include "sand/grid/tile_hash.hpp"
+#include "scene/import/raster_file.hpp"
+#include "scene/relax/options.hpp"
+#include "scene/relax/relaxation.hpp"
+#include "scene/relax/steepness.hpp"
+#include "scene/relax/ticker.hpp"
+
+namespace sand::relax {
+namespace {
+
+using nlohmann::ordered_json;
+
+Scheme schemeOf(const std::string& name) {
+    if (name == "n4") {
+        return Scheme::n4;
+    }
+    return name == "g_plain" ? Scheme::plainIsotropic : Scheme::isotropic;
+}
+
+/// Says on stderr how far long work has come: what `after` was told last, every second.
+class Progress {
+public:
+    explicit Progress(const GridSand& sand) : cells_(static_cast<double>(sand.field.columns()) * sand.field.rows()) {}
+
+    /// Called after every sweep.
+    void after(Erosion& erosion) {
+        if (Clock::now() - last_ < kReportEvery) {
+            return;
+        }
+        last_ = Clock::now();
+        double moving = 0;
+        for (const Rect& block : erosion.takeMoved()) {
+            moving += static_cast<double>(block.x1 - block.x0) * (block.y1 - block.y0);
+        }
+        fmt::print(stderr, "{:.0f} s: {} sweeps; in the last second sand moved in {:.3g} % of the grid\n",
+                   secondsSince(start_), erosion.sweepsDone(), 100 * moving / cells_);
+    }
+
+private:
+    double cells_;
+    Clock::time_point start_ = Clock::now();
+    Clock::time_point last_ = start_;
+};
+
+struct Timed {
+    Relaxed relaxed;
+    double seconds = 0;
+};
+
+Timed relaxTimed(GridSand& sand, const Options& options) {
+    host::WorkerPool pool(options.threads);
+    const base::Executor executor = pool.executor();
+    Progress progress(sand);
+    const bool settle = options.scheme == "settle";
+    const Manner manner{
+        .settle = settle,
+        .mostSweeps = options.most.value_or(std::numeric_limits<std::int64_t>::max()),
+        .executor = options.threads > 1 ? &executor : nullptr,
+        .afterSweep = [&](Erosion& erosion) { progress.after(erosion); },
+    };
+    std::optional<Ticker> ticker;
+    if (settle && !sand.ground) {
+        ticker.emplace("settling");
+    }
+    const Clock::time_point start = Clock::now();
+    Timed timed{.relaxed = relax(sand, manner)};
+    timed.seconds = secondsSince(start);
+    return timed;
+}
+
+ordered_json certificatePart(const GridSand& sand, const Relaxed& relaxed) {
+    if (!relaxed.certificate) {
+        return nullptr;
+    }
+    const double cells = static_cast<double>(sand.field.columns()) * sand.field.rows();
+    return {{"bound", relaxed.certificate->relative()},
+            {"bound_rms", std::sqrt(relaxed.certificate->squaredDistance / cells) * sand.scale.unit}};
+}
+
+ordered_json report(const GridSand& sand, const EsriGrid& grid, const Options& options, std::int64_t volumeBefore,
+                    const Timed& timed) {
+    const double steepest = steepestFace(sand.field, sand.rules, sand.ground ? &*sand.ground : nullptr);
+    const bool swept = options.scheme == "settle" && !timed.relaxed.settled;
+    ordered_json json;
+    json["scheme"] = swept ? "g" : options.scheme;
+    if (swept) {
+        json["note"] = "settle knows neither walls nor bedrock; swept to rest by g instead";
+    }
+    json["talus_deg"] = options.talus;
+    json["band"] = options.band;
+    json["columns"] = grid.columns;
+    json["rows"] = grid.rows;
+    json["unit"] = sand.scale.unit;
+    json["volume_unit"] = sand.scale.unit * grid.cellSize * grid.cellDepth.value_or(grid.cellSize);
+    json["volume_before"] = volumeBefore;
+    json["volume_after"] = sand.volume();
+    json["volume_above"] = sand.onBedrock ? ordered_json("bedrock") : ordered_json(sand.scale.toHeight(sand.lowest));
+    json["sweeps"] = timed.relaxed.sweeps;
+    json["iterations"] = timed.relaxed.iterations;
+    json["at_rest"] = timed.relaxed.atRest;
+    json["seconds"] = timed.seconds;
+    // No number, and so null, for a level talus.
+    json["steepest_over_talus"] = steepest / sand.rules.threshold;
+    json["steepest_deg"] = std::atan(steepest * sand.scale.unit / grid.cellSize) * 180 / std::numbers::pi;
+    json["certificate"] = certificatePart(sand, timed.relaxed);
+    json["state_hash"] = fmt::format("{:016x}", StateHash(sand.field).update(sand.field));
+    return json;
+}
+
+}  // namespace
+
+void relaxGrid(const Options& options) {
+    const EsriGrid grid = readRaster(options.in, true);
+    std::optional<EsriGrid> bedrock;
+    if (!options.bedrock.empty()) {
+        bedrock = readRaster(options.bedrock);
+    }
+    GridSand sand =
+        toSand(grid, bedrock ? &*bedrock : nullptr, {options.talus, options.band, schemeOf(options.scheme)});
+    { const host::WholeFile canBeWritten(options.out); }  // hours later would be too late to find out
+    for (const std::string& warning : sand.warnings) {
+        fmt::print(stderr, "warning: {}\n", warning);
+    }
+    const std::int64_t volumeBefore = sand.volume();
+    const Timed timed = relaxTimed(sand, options);
+    writeRaster(sand.toGrid(grid), options.out);
+    fmt::print("{}\n", report(sand, grid, options, volumeBefore, timed).dump());
+}
+
+}  // namespace sand::relax

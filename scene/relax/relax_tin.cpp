@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// What sandwall-relax does with points, and with a raster that is to become a mesh.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "host/whole_file.hpp"
+#include "sand/tin/flow/erosion.hpp"
+#include "sand/tin/flow/settle.hpp"
+#include "sand/tin/tile_hash.hpp"
+#include "scene/import/raster_file.hpp"
+#include "scene/relax/options.hpp"
+#include "scene/relax/ticker.hpp"
+#include "scene/relax/tin_sand.hpp"
+
+namespace sand::relax {
+namespace {
+
+struct Slid {
+    std::int64_t sweeps = 0;
+    int iterations = 0;
+    bool atRest = false;
+    double seconds = 0;
+};
+
+Slid slide(TinSand& sand, const Options& options) {
+    const Ticker ticker("the sand slides");
+    const Clock::time_point start = Clock::now();
+    Slid slid;
+    if (options.scheme == "settle") {
+        const tin::Settled settled = tin::settle(sand.layer, sand.threshold, sand.startThreshold);
+        slid = {settled.sweeps, settled.iterations, settled.atRest, 0};
+    } else {
+        // In one call: between two of them sand that has come to rest would wait for the start threshold again.
+        tin::Erosion erosion(sand.layer, sand.threshold, sand.startThreshold);
+        std::vector<tin::Vertex> moved;
+        const std::int64_t most = options.most.value_or(std::numeric_limits<int>::max());
+        slid.sweeps = erosion.settle(sand.layer, static_cast<int>(most), moved);
+        slid.atRest = erosion.settled();
+    }
+    slid.seconds = secondsSince(start);
+    return slid;
+}
+
+nlohmann::ordered_json reportOf(const TinSand& sand, const Options& options, const std::optional<Thinned>& thinned,
+                                std::int64_t volumeBefore, const Slid& slid, const Mesh& mesh) {
+    const Steepness steepness = steepnessOf(sand.layer, sand.threshold);
+    nlohmann::ordered_json json;
+    json["scheme"] = options.scheme;
+    json["talus_deg"] = options.talus;
+    json["band"] = options.band;
+    json["vertices"] = mesh.vertices.size();
+    json["triangles"] = mesh.triangles.size();
+    json["corners_added"] = sand.cornersAdded;
+    if (thinned) {
+        json["max_error"] = thinned->maxError;
+        json["rms_error"] = thinned->rmsError;
+    }
+    json["lattice"] = sand.step;
+    json["unit"] = sand.scale.unit;
+    json["volume_unit"] = sand.volumeUnit();
+    json["volume_before"] = volumeBefore;
+    json["volume_after"] = sand.volume();
+    json["volume_above"] = sand.scale.toHeight(sand.lowest);
+    json["sweeps"] = slid.sweeps;
+    json["iterations"] = slid.iterations;
+    json["at_rest"] = slid.atRest;
+    json["seconds"] = slid.seconds;
+    // No number, and so null, for a level talus.
+    json["steepest_over_talus"] = steepness.steepest / sand.threshold;
+    json["steepest_deg"] =
+        std::atan(steepness.steepest * sand.scale.unit / (sand.step * tin::kLatticePerCell)) * 180 / std::numbers::pi;
+    json["too_steep_area"] = steepness.tooSteepArea;
+    json["state_hash"] = fmt::format("{:016x}", tin::VertexHash(sand.layer).update({}));
+    return json;
+}
+
+}  // namespace
+
+void relaxTin(const Options& options) {
+    const Material material{options.talus, options.band};
+    std::optional<Thinned> thinned;
+    if (!holdsPoints(options.in)) {
+        thinned = thin(withoutEmptyEdges(readRaster(options.in, true)),
+                       {options.maxError.value_or(0), options.vertices.value_or(kMostVertices)});
+    }
+    TinSand sand =
+        thinned ? toTin(*thinned, options.in, material) : toTin(readPoints(options.in), options.in, material);
+    { const host::WholeFile canBeWritten(options.out); }  // hours later would be too late to find out
+    for (const std::string& warning : sand.warnings) {
+        fmt::print(stderr, "warning: {}\n", warning);
+    }
+    const std::int64_t volumeBefore = sand.volume();
+    const Slid slid = slide(sand, options);
+    const Mesh mesh = sand.toMesh();
+    writeMesh(mesh, options.out);
+    fmt::print("{}\n", reportOf(sand, options, thinned, volumeBefore, slid, mesh).dump());
+}
+
+}  // namespace sand::relax

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/relax/tin_sand.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "base/input_error.hpp"
+#include "base/text.hpp"
+
+namespace sand::relax {
+namespace {
+
+using tin::Place;
+using tin::Vertex;
+
+constexpr double kStepsAcross = 524288;    // of the lattice, on the longer side of a cloud: 2^19
+constexpr double kLeastDeep = 64;          // [lattice step]
+constexpr double kMostTinVolume = 4.6e18;  // [volume unit], of all: below 2^62
+constexpr int kStepsPerCell = tin::kLatticePerCell;
+
+struct Extent {
+    std::array<double, 3> least{}, most{};
+    [[nodiscard]] double side(std::size_t axis) const { return most.at(axis) - least.at(axis); }
+};
+
+Extent extentOf(const Points& points) {
+    Extent extent{points.at(0), points.at(0)};
+    for (const auto& point : points) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            extent.least.at(axis) = std::min(extent.least.at(axis), point.at(axis));
+            extent.most.at(axis) = std::max(extent.most.at(axis), point.at(axis));
+        }
+    }
+    return extent;
+}
+
+/// Where points lie on a lattice, from its south-west corner.
+struct Lattice {
+    double west = 0, south = 0, step = 1;
+    std::int32_t width = 0, depth = 0;
+
+    [[nodiscard]] Place placeOf(const std::array<double, 3>& point) const {
+        const auto on = [this](double length, std::int32_t most) {
+            return std::min(static_cast<std::int32_t>(std::floor(length / step + 0.5)), most);
+        };
+        return {on(point[0] - west, width), on(point[1] - south, depth)};
+    }
+    [[nodiscard]] std::array<double, 3> pointOf(const Place& place, double height) const {
+        return {west + place.x * step, south + place.y * step, height};
+    }
+};
+
+Lattice latticeOf(const Extent& extent, const std::string& file, std::optional<double> step) {
+    const double longer = std::max(extent.side(0), extent.side(1)), shorter = std::min(extent.side(0), extent.side(1));
+    Lattice lattice{extent.least[0], extent.least[1], step.value_or(longer / kStepsAcross), 0, 0};
+    if (!std::isnormal(lattice.step) || !std::isnormal(lattice.step * lattice.step)) {
+        throw base::InputError(fmt::format("{}: it is {} long, which is no length of terrain", file, longer));
+    }
+    if (!step && shorter < kLeastDeep * lattice.step) {
+        throw base::InputError(fmt::format("{}: all points lie in a strip {} long and {} wide; a TIN takes 1 : {}",
+                                           file, longer, shorter, kStepsAcross / kLeastDeep));
+    }
+    lattice.width = static_cast<std::int32_t>(std::floor(extent.side(0) / lattice.step + 0.5));
+    lattice.depth = static_cast<std::int32_t>(std::floor(extent.side(1) / lattice.step + 0.5));
+    return lattice;
+}
+
+/// The finest unit, of those that halve a nominal cell again and again, in which all volumes over the field fit.
+HeightScale scaleOf(const Extent& extent, const Lattice& lattice, const std::string& file) {
+    const double lowest = extent.least[2], highest = extent.most[2];
+    const double area = 6.0 * lattice.width * lattice.depth;
+    const double most = std::min(kMostTinVolume / area, static_cast<double>(kMaxHeight));
+    HeightScale scale = HeightScale::finest(lattice.step * kStepsPerCell, lowest, highest);
+    while (scale.bits >= 0 && (highest - lowest) / scale.unit > most) {
+        --scale.bits;
+        scale.unit *= 2;
+    }
+    if (scale.bits < 0) {
+        throw base::InputError(
+            fmt::format("{}: heights from {} to {} span more than a TIN of this extent can hold, "
+                        "{:.3g}; are all of them heights of terrain?",
+                        file, lowest, highest, most * lattice.step * kStepsPerCell));
+    }
+    // As high above as below: no volume is larger than need be.
+    scale.datum = scale.unit * std::floor((lowest / 2 + highest / 2) / scale.unit + 0.5);
+    return scale;
+}
+
+void setThresholds(const std::string& file, const Material& material, TinSand& sand) {
+    const double slope = std::tan(material.talusDegrees * std::numbers::pi / 180);
+    const double exact = slope * sand.step * kStepsPerCell / sand.scale.unit;
+    constexpr double kLargest = 1073741824.0;  // no difference between heights is larger
+    const double threshold = std::min(std::floor(exact + 0.5), kLargest);
+    if (threshold < kLeastThreshold && material.talusDegrees != 0) {
+        throw base::InputError(fmt::format(
+            "{}: a talus of {} degrees is {} height units of {:.4g} on {:.4g}, and {} is the least, but for 0 degrees; "
+            "heights span too much for this extent: are all of them heights of terrain?",
+            file, material.talusDegrees, threshold, sand.scale.unit, sand.step * kStepsPerCell, kLeastThreshold));
+    }
+    sand.threshold = static_cast<std::int32_t>(threshold);
+    sand.startThreshold = static_cast<std::int32_t>(std::min(std::floor(threshold * (1 + material.band)), kLargest));
+}
+
+/// A mesh of all points, and which of them each vertex is: of several at one place the first.
+struct Joined {
+    tin::Mesh mesh;
+    std::vector<std::array<double, 3>> points;  // by vertex
+    int cornersAdded = 0;
+    std::size_t near = 0;   // points that lie where one before them does
+    double nearHeight = 0;  // the largest difference in height between two such
+};
+
+Joined join(const Points& points, const Lattice& lattice, const Thinned* raster) {
+    std::vector<Place> places;
+    places.reserve(points.size());
+    for (const auto& point : points) {
+        places.push_back(lattice.placeOf(point));
+    }
+    Joined joined{.mesh = tin::Mesh(lattice.width, lattice.depth, raster == nullptr ? nullptr : raster->holes),
+                  .points = {}};
+    const std::vector<Vertex> vertices = joined.mesh.insert(places);
+    if (raster != nullptr) {
+        for (const auto& [a, b] : raster->outline) {
+            joined.mesh.constrain(vertices[static_cast<std::size_t>(a)], vertices[static_cast<std::size_t>(b)]);
+        }
+    }
+    const std::size_t count = joined.mesh.triangles().places.size();
+    joined.points.resize(count);
+    std::vector<bool> known(count);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto vertex = static_cast<std::size_t>(vertices[i]);
+        if (known[vertex]) {
+            ++joined.near;
+            joined.nearHeight = std::max(joined.nearHeight, std::abs(points[i][2] - joined.points[vertex][2]));
+            continue;
+        }
+        known[vertex] = true;
+        joined.points[vertex] = points[i];
+    }
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+        if (!known[corner]) {
+            const Place at = joined.mesh.triangles().places[corner];
+            const auto squared = [&](const Place& place) {
+                const std::int64_t x = std::int64_t{place.x} - at.x, y = std::int64_t{place.y} - at.y;
+                return x * x + y * y;
+            };
+            const auto nearest = std::min_element(
+                places.begin(), places.end(), [&](const Place& a, const Place& b) { return squared(a) < squared(b); });
+            joined.points[corner] = lattice.pointOf(at, points[static_cast<std::size_t>(nearest - places.begin())][2]);
+            ++joined.cornersAdded;
+        }
+    }
+    return joined;
+}
+
+TinSand sandOf(const Points& points, const std::string& file, const Material& material, std::optional<double> step,
+               const Thinned* raster) {
+    if (points.size() > static_cast<std::size_t>(kMostVertices)) {
+        throw base::InputError(
+            fmt::format("{}: {} points, and a TIN takes {}; thin them out", file, points.size(), kMostVertices));
+    }
+    const Extent extent = extentOf(points);
+    const Lattice lattice = latticeOf(extent, file, step);
+    const HeightScale scale = scaleOf(extent, lattice, file);
+    Joined joined = join(points, lattice, raster);
+    TinSand sand{.layer = tin::Layer(std::move(joined.mesh)),
+                 .step = lattice.step,
+                 .scale = scale,
+                 .points = std::move(joined.points),
+                 .volumes = {},
+                 .lowest = scale.toUnits(extent.least[2]),
+                 .cornersAdded = joined.cornersAdded,
+                 .warnings = {}};
+    setThresholds(file, material, sand);
+    for (std::size_t i = 0; i < sand.points.size(); ++i) {
+        sand.layer.setHeight(static_cast<Vertex>(i), scale.toUnits(sand.points[i][2]));
+    }
+    sand.volumes = sand.layer.volumes();
+    if (joined.near > 0) {
+        sand.warnings.push_back(fmt::format(
+            "{}: {} points lie within {:.3g} of another, where a TIN of this extent tells none apart; the first in the "
+            "file was taken of each, others were up to {:.3g} higher or lower",
+            file, joined.near, lattice.step, joined.nearHeight));
+    }
+    return sand;
+}
+
+}  // namespace
+
+bool holdsPoints(const std::filesystem::path& file) {
+    const std::string ending = base::endingOf(file);
+    return ending == ".csv" || ending == ".xyz";
+}
+
+TinSand toTin(const Points& points, const std::string& file, const Material& material) {
+    return sandOf(points, file, material, {}, nullptr);
+}
+
+TinSand toTin(const Thinned& thinned, const std::string& file, const Material& material) {
+    return sandOf(thinned.points, file, material, thinned.step, &thinned);
+}
+
+std::int64_t TinSand::volume() const { return static_cast<std::int64_t>(layer.volume() - layer.ground() * lowest); }
+
+Mesh TinSand::toMesh() const {
+    Mesh mesh;
+    std::vector<std::uint32_t> numbers(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (layer.stars()[i] == 0) {  // of holes alone
+            continue;
+        }
+        numbers[i] = static_cast<std::uint32_t>(mesh.vertices.size());
+        mesh.vertices.push_back(points[i]);
+        if (layer.volumes()[i] != volumes[i]) {
+            mesh.vertices.back()[2] = withFewDecimals(scale.datum + layer.heights()[i] * scale.unit, scale.unit);
+        }
+    }
+    for (const tin::Triangle& triangle : layer.triangles().triangles) {
+        if (triangle.isGround()) {
+            const auto number = [&](std::size_t k) { return numbers[static_cast<std::size_t>(triangle.corner.at(k))]; };
+            mesh.triangles.push_back({number(0), number(1), number(2)});
+        }
+    }
+    return mesh;
+}
+
+Steepness steepnessOf(const tin::Layer& layer, std::int32_t threshold) {
+    const tin::Triangles& mesh = layer.triangles();
+    Steepness result;
+    double steep = 0;  // [doubled area]
+    for (const tin::Triangle& triangle : mesh.triangles) {
+        if (!triangle.isGround()) {
+            continue;
+        }
+        const auto corner = [&](std::size_t k) { return static_cast<std::size_t>(triangle.corner.at(k)); };
+        const Place &a = mesh.places[corner(0)], &b = mesh.places[corner(1)], &c = mesh.places[corner(2)];
+        const double rise = layer.heights()[corner(1)] - layer.heights()[corner(0)];
+        const double other = layer.heights()[corner(2)] - layer.heights()[corner(0)];
+        const auto area = static_cast<double>(doubledArea(a, b, c));
+        const double slope =
+            kStepsPerCell / area *
+            std::hypot(rise * (c.y - a.y) - other * (b.y - a.y), other * (b.x - a.x) - rise * (c.x - a.x));
+        result.steepest = std::max(result.steepest, slope);
+        steep += slope > 1.01 * threshold ? area : 0;
+    }
+    result.tooSteepArea = 3 * steep / static_cast<double>(layer.ground());
+    return result;
+}
+
+}  // namespace sand::relax

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/scene.hpp"
+
+#include "sand/model/grid_codec.hpp"
+
+namespace sand {
+namespace {
+
+/// What may stand at the end of a scene, each with its length in bytes.
+enum class Part : std::uint8_t { georeference = 1 };
+
+void decodePart(base::ByteReader& reader, Scene& scene) {
+    const auto part = reader.get<std::uint8_t>();
+    base::ByteReader bytes(reader.getBlock());
+    if (part != static_cast<std::uint8_t>(Part::georeference)) {
+        throw base::FormatError("a scene with a part that this version does not know");
+    }
+    scene.georeference = Georeference::decode(bytes);
+    if (!bytes.atEnd()) {
+        throw base::FormatError("a scene with a part that is longer than it should be");
+    }
+}
+
+}  // namespace
+
+base::Bytes Scene::encode() const {
+    base::ByteWriter writer;
+    writer.putText(name);
+    rules.encode(writer);
+    for (const double constant : {force.stiffness, force.depthExponent, force.friction}) {
+        writer.put(constant);
+    }
+    for (const auto* triple : {&look.sandColour, &look.backgroundColour, &look.sunDirection}) {
+        for (const double number : *triple) {
+            writer.put(number);
+        }
+    }
+    writer.put(terrain.cellSize());
+    encodeCells(terrain.cells(), terrain.bounds(), writer);
+    if (tin != nullptr) {
+        tin->encode(writer);
+    }
+    if (ground != nullptr) {
+        encodeCells(ground->cells(), terrain.bounds(), writer);
+    }
+    writer.put(static_cast<std::uint8_t>((look.hillShade ? 1 : 0) | (look.flatShading ? 2 : 0)));
+    writer.put(look.detail);
+    force.encodeRest(writer);
+    if (georeference != Georeference{}) {
+        base::ByteWriter part;
+        georeference.encode(part);
+        writer.put(static_cast<std::uint8_t>(Part::georeference));
+        writer.putBlock(part.bytes());
+    }
+    return writer.take();
+}
+
+Scene Scene::decode(std::span<const std::uint8_t> bytes) {
+    base::ByteReader reader(bytes);
+    Scene scene;
+    scene.name = reader.getText();
+    scene.rules = Rules::decode(reader);
+    for (double* constant : {&scene.force.stiffness, &scene.force.depthExponent, &scene.force.friction}) {
+        *constant = reader.get<double>();
+    }
+    for (auto* triple : {&scene.look.sandColour, &scene.look.backgroundColour, &scene.look.sunDirection}) {
+        for (double& number : *triple) {
+            number = reader.get<double>();
+        }
+    }
+    const auto cellSize = reader.get<double>();
+    if (!(cellSize > 0)) {
+        throw base::FormatError("a scene without a cell size");
+    }
+    const bool grid = scene.rules.tin == 0;
+    scene.terrain = HeightField(grid ? scene.rules.columns : 1, grid ? scene.rules.rows : 1, cellSize);
+    decodeCells(reader, scene.terrain.bounds(), kMaxHeight, scene.terrain.cells());
+    if (!grid) {
+        scene.tin = std::make_shared<const tin::Start>(tin::Start::decode(reader));
+        if (scene.tin->digest() != scene.rules.tin || scene.rules.ground != 0) {
+            throw base::FormatError("a scene whose TIN is not that of its rules");
+        }
+    }
+    if (scene.rules.ground != 0) {
+        scene.ground = std::make_shared<const Ground>(Ground::decode(reader, scene.terrain));
+        if (scene.ground->digest() != scene.rules.ground) {
+            throw base::FormatError("a scene whose ground is not that of its rules");
+        }
+    }
+    // Journals end where what came later had not been thought of: hill-shade and levels of detail, then more forces.
+    if (!reader.atEnd()) {
+        const auto flags = reader.get<std::uint8_t>();
+        scene.look.hillShade = (flags & 1U) != 0;
+        scene.look.flatShading = (flags & 2U) != 0;
+        scene.look.detail = reader.get<double>();
+    }
+    if (!reader.atEnd()) {
+        scene.force.decodeRest(reader);
+    }
+    while (!reader.atEnd()) {
+        decodePart(reader, scene);
+    }
+    return scene;
+}
+
+}  // namespace sand

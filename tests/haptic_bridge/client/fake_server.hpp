@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <span>
+#include <thread>
+#include <utility>
+#include <variant>
+
+#include "haptic_bridge/client/client.hpp"
+#include "haptic_bridge/link/message_reader.hpp"
+#include "tests/haptic_bridge/link/socket_messages.hpp"
+
+namespace test {
+
+/// A listening socket whose every guest gets one conversation, on a thread of its own.
+class FakeServer {
+public:
+    struct Guest {
+        int socket;
+        haptic_bridge::MessageReader reader;
+
+        /// Whether somebody was there to take it.
+        bool send(std::span<const std::uint8_t> bytes) const {  // NOLINT(modernize-use-nodiscard)
+            return ::send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL) >= 0;
+        }
+        void send(const haptic_bridge::Message& message) const { send(haptic_bridge::encode(message)); }
+        /// The next message, or nothing when the client has gone.
+        std::optional<haptic_bridge::Message> next() { return nextMessage(socket, reader); }
+        /// Reads until a message of this kind comes; nothing when the client has gone.
+        template <class Kind>
+        std::optional<Kind> await() {
+            while (const auto message = next()) {
+                if (const Kind* wanted = std::get_if<Kind>(&*message)) {
+                    return *wanted;
+                }
+            }
+            return std::nullopt;
+        }
+    };
+
+    explicit FakeServer(std::function<void(Guest&)> talk) : talk_(std::move(talk)) {
+        socket_ = socket(AF_INET, SOCK_STREAM, 0);
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        socklen_t size = sizeof address;
+        EXPECT_EQ(bind(socket_, reinterpret_cast<const sockaddr*>(&address), size), 0);
+        EXPECT_EQ(listen(socket_, 8), 0);
+        EXPECT_EQ(getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size), 0);
+        port_ = ntohs(address.sin_port);
+        thread_ = std::thread([this] { serve(); });
+    }
+    ~FakeServer() {
+        shutdown(socket_, SHUT_RDWR);
+        thread_.join();
+        close(socket_);
+    }
+    FakeServer(const FakeServer&) = delete;
+    FakeServer& operator=(const FakeServer&) = delete;
+
+    [[nodiscard]] haptic_bridge::Address address() const { return {"127.0.0.1", port_}; }
+    [[nodiscard]] int guests() const { return guests_; }
+
+private:
+    void serve() {
+        while (true) {
+            Guest guest{accept(socket_, nullptr, nullptr), {}};
+            if (guest.socket < 0) {
+                return;
+            }
+            const timeval patience{.tv_sec = 5, .tv_usec = 0};
+            setsockopt(guest.socket, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+            ++guests_;
+            talk_(guest);
+            close(guest.socket);
+        }
+    }
+
+    std::function<void(Guest&)> talk_;
+    int socket_ = -1;
+    std::uint16_t port_ = 0;
+    std::atomic<int> guests_{0};
+    std::thread thread_;
+};
+
+}  // namespace test

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/devices/spacenav.hpp"
+
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include "base/input_error.hpp"
+#include "haptic_bridge/devices/device_module.hpp"
+#include "tests/haptic_bridge/server/server_process.hpp"
+
+namespace {
+
+using haptic_bridge::SpacenavDevice;
+
+/// The library that stands in, and what a test does to its cap.
+class Spacenav : public testing::Test {
+protected:
+    template <class... Words>
+    void call(const char* name, Words... words) {
+        void* handle = dlopen(library_.c_str(), RTLD_NOW | RTLD_LOCAL);
+        ASSERT_NE(handle, nullptr) << dlerror();
+        reinterpret_cast<void (*)(Words...)>(dlsym(handle, name))(words...);
+    }
+    void TearDown() override { call("fakeSpnavDaemon", 1); }
+    const std::string library_ = SANDWALL_BIN_DIR "/fake-spnav.so";
+};
+
+TEST_F(Spacenav, APushIsASpeed) {
+    SpacenavDevice device(library_);
+    call("fakeSpnavPush", 175, -350, 700);  // half to the right, down, and farther away than the cap goes
+    // The library is asked on another thread: time stands still until its news is in.
+    double x = 0, time = 0;
+    ASSERT_TRUE(test::eventually([&] { return (x = device.read(time += 1e-6).x) > 0; }));
+    const haptic_bridge::Pose from = device.read(time);
+    for (int i = 0; i < 500; ++i) {
+        (void)device.read(time += 1e-3);
+    }
+    const haptic_bridge::Pose to = device.read(time);
+    EXPECT_NEAR(to.x - from.x, 0.5 * SpacenavDevice::kSpeed * 0.5, 1e-9);
+    EXPECT_NEAR(to.y - from.y, 0.5 * SpacenavDevice::kSpeed, 1e-9) << "full speed, and no more";
+    EXPECT_NEAR(to.z - from.z, -0.5 * SpacenavDevice::kClimb, 1e-9);
+    EXPECT_FALSE(to.engaged);
+    // A cap that is let go stands still, and a clock that stands still moves nothing.
+    call("fakeSpnavPush", 0, 0, 0);
+    call("fakeSpnavButton", 0, 1);
+    ASSERT_TRUE(test::eventually([&] { return device.read(time).engaged; }));
+    EXPECT_DOUBLE_EQ(device.read(time += 0.05).x, to.x);
+    call("fakeSpnavButton", 0, 0);
+    call("fakeSpnavButton", 1, 1);
+    ASSERT_TRUE(test::eventually([&] { return device.read(time).x == 0; })) << "the second button brings it home";
+    EXPECT_FALSE(device.read(time).engaged);
+}
+
+TEST_F(Spacenav, SaysWhatIsMissing) {
+    const auto complaint = [](const std::string& library) {
+        try {
+            const SpacenavDevice device(library);
+        } catch (const base::InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_EQ(complaint("libnospnav.so"),
+              "--device spacenav: libnospnav.so cannot be loaded; install Debian's libspnav0 and spacenavd");
+    call("fakeSpnavDaemon", 0);
+    EXPECT_EQ(complaint(library_), "--device spacenav: no daemon answers; start spacenavd");
+}
+
+TEST(Driver, TheExampleOfTheDocumentIsAnArm) {
+    const auto arm = haptic_bridge::openArmModule(SANDWALL_BIN_DIR "/example-driver.so:first");
+    EXPECT_EQ(arm->physics().name, "my device");
+    arm->push({0, 0, 1});
+    EXPECT_TRUE(arm->read(0).present);
+}
+
+TEST(Driver, AFileThatIsNoneIsRefused) {
+    const auto complaint = [](const std::string& spec) {
+        try {
+            (void)haptic_bridge::openArmModule(spec);
+        } catch (const base::InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_TRUE(complaint("/nowhere/my.so").starts_with("--device driver:/nowhere/my.so: "));
+    EXPECT_NE(complaint(SANDWALL_BIN_DIR "/fake-spnav.so").find("fake-spnav.so: defines no sandwallDriverInterface"),
+              std::string::npos);
+}
+
+TEST(Driver, OfAnotherInterfaceVersionIsRefused) {
+    const std::string file = SANDWALL_BIN_DIR "/old-driver.so";
+    try {
+        (void)haptic_bridge::openArmModule(file);
+        ADD_FAILURE() << "opened";
+    } catch (const base::InputError& error) {
+        EXPECT_EQ(std::string(error.what()),
+                  std::filesystem::absolute(file).string() +
+                      ": is a driver of interface version 0, and this program takes version 1; build it with "
+                      "haptic_bridge/devices/driver.hpp of this version of Sandwall (docs/devices.md)");
+    }
+}
+
+TEST(HeadlessServer, MapsNoWindowLibrary) {
+    const test::Folder folder{};
+    const test::ServerProcess server(folder,
+                                     test::ServerProcess::usual(folder.write("s.toml", test::kSmallScene), folder));
+    ASSERT_NE(server.port(), 0) << server.errors();
+    std::ifstream maps("/proc/" + std::to_string(server.pid()) + "/maps");
+    const std::string mapped{std::istreambuf_iterator<char>(maps), {}};
+    EXPECT_NE(mapped.find("libc.so"), std::string::npos);
+    for (const char* library : {"glfw", "libGL", "libX11", "spnav", "sandwall-window"}) {
+        EXPECT_EQ(mapped.find(library), std::string::npos) << library;
+    }
+}
+
+TEST(HeadlessServer, SaysThatAMouseNeedsADisplay) {
+    const test::Folder folder{};
+    auto words = test::ServerProcess::usual(folder.write("s.toml", test::kSmallScene), folder);
+    words[3] = "mouse";
+    const char* display = getenv("DISPLAY");
+    const std::string kept = display == nullptr ? "" : display;
+    unsetenv("DISPLAY");
+    test::ServerProcess server(folder, words);
+    EXPECT_EQ(server.wait(), 2);
+    // A build without windows says that there is no such module.
+    EXPECT_TRUE(server.errors().starts_with("sandwall-haptic-server: --device mouse: ")) << server.errors();
+    if (display != nullptr) {
+        setenv("DISPLAY", kept.c_str(), 1);
+    }
+}
+
+}  // namespace

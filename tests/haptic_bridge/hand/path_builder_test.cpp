@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/hand/path_builder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "haptic_bridge/link/live_histogram.hpp"
+
+namespace {
+
+using haptic_bridge::HandSample;
+using haptic_bridge::PathBuilder;
+
+constexpr int kStepsPerSecond = 60;
+
+HandSample at(std::int32_t x, bool engaged = true) { return {x + 1, {x, 0, 0}, engaged}; }
+
+sand::Step take(PathBuilder& builder) {
+    sand::Step step;
+    (void)builder.take(step);
+    return step;
+}
+
+TEST(PathBuilder, GivesEverySampleInOrder) {
+    PathBuilder builder(kStepsPerSecond);
+    for (int x = 1; x <= 17; ++x) {
+        builder.add(at(x));
+    }
+    sand::Step step;
+    EXPECT_EQ(builder.take(step), 18) << "the time of the last sample";
+    EXPECT_TRUE(step.engaged);
+    ASSERT_EQ(step.path.size(), 17U);
+    EXPECT_EQ(step.path.front().x, 1);
+    EXPECT_EQ(step.path.back().x, 17);
+}
+
+TEST(PathBuilder, EndsAStepWhereTheHandLifts) {
+    PathBuilder builder(kStepsPerSecond);
+    for (int x = 1; x <= 9; ++x) {
+        builder.add(at(x, x <= 3 || x >= 7));
+    }
+    const sand::Step first = take(builder), second = take(builder), third = take(builder);
+    EXPECT_EQ(first.path.size(), 3U);
+    EXPECT_TRUE(first.engaged);
+    EXPECT_EQ(second.path.size(), 3U);
+    EXPECT_FALSE(second.engaged);
+    EXPECT_EQ(third.path.front().x, 7);
+    EXPECT_TRUE(third.engaged);
+}
+
+TEST(PathBuilder, LeavesOutWhereTheHandRestsButNotWherePressed) {
+    PathBuilder builder(kStepsPerSecond);
+    builder.restart({5, 0, 0}, false);
+    builder.add(at(5, false));
+    EXPECT_TRUE(take(builder).path.empty());
+    builder.add(at(5, true));
+    builder.add(at(5, true));
+    const sand::Step pressed = take(builder);
+    EXPECT_TRUE(pressed.engaged);
+    EXPECT_EQ(pressed.path.size(), 1U) << "the press itself";
+    const sand::Step held = take(builder);
+    EXPECT_TRUE(held.engaged) << "no sample: as it was";
+    EXPECT_TRUE(held.path.empty());
+}
+
+TEST(PathBuilder, GivesTheLastHeadingOfItsSamples) {
+    PathBuilder builder(kStepsPerSecond);
+    const auto east = sand::headingOf(0), north = sand::headingOf(90);
+    builder.add({1, {1, 0, 0}, true, east});
+    builder.add({2, {2, 0, 0}, true, north});
+    builder.add({3, {3, 0, 0}, true});
+    builder.add({4, {4, 0, 0}, false, east});
+    sand::Step step, lifted, resting;
+    builder.take(step);
+    EXPECT_EQ(step.heading, north);
+    builder.take(lifted);
+    EXPECT_EQ(lifted.heading, east) << "of the samples behind the lift";
+    builder.take(resting);
+    EXPECT_FALSE(resting.heading.has_value());
+}
+
+TEST(PathBuilder, ThinsALongPathEvenly) {
+    PathBuilder builder(kStepsPerSecond);
+    for (int x = 1; x <= 1000; ++x) {
+        builder.add(at(x));
+    }
+    const sand::Step step = take(builder);
+    ASSERT_EQ(step.path.size(), sand::kMaxPathPoints);
+    EXPECT_EQ(step.path.front().x, 1);
+    EXPECT_EQ(step.path.back().x, 1000);
+    for (std::size_t i = 1; i < step.path.size(); ++i) {
+        EXPECT_NEAR(step.path[i].x - step.path[i - 1].x, 999.0 / 63, 1.0);
+    }
+    EXPECT_EQ(builder.dropped(), 1000 - sand::kMaxPathPoints);
+}
+
+/// A hand that goes a probe unit each millisecond, in the sand.
+void digFor(PathBuilder& builder, int milliseconds) {
+    for (int x = 1; x <= milliseconds; ++x) {
+        builder.add({x * 1'000'000LL, {x, 0, 0}, true});
+    }
+}
+
+TEST(PathBuilder, CatchesUpByStepsOfFourPeriods) {
+    PathBuilder builder(kStepsPerSecond);
+    digFor(builder, 1000);
+    std::int32_t last = 0;
+    int steps = 0;
+    for (sand::Step step = take(builder); !step.path.empty(); step = take(builder)) {
+        EXPECT_TRUE(step.engaged);
+        EXPECT_EQ(step.path.front().x, last + 1) << "nothing of the hand is lost";
+        EXPECT_LE(step.path.back().x - last, 67) << "[ms]";
+        last = step.path.back().x;
+        ++steps;
+    }
+    EXPECT_EQ(last, 1000);
+    EXPECT_EQ(steps, 15);
+}
+
+TEST(PathBuilder, LetsGoOfAHandThatIsFarAhead) {
+    PathBuilder builder(kStepsPerSecond);
+    digFor(builder, 10);
+    EXPECT_TRUE(take(builder).engaged);
+    digFor(builder, 1500);
+    const sand::Step lifted = take(builder), down = take(builder);
+    EXPECT_FALSE(lifted.engaged);
+    ASSERT_EQ(lifted.path.size(), 1U);
+    EXPECT_TRUE(down.engaged);
+    EXPECT_EQ(down.path.front(), lifted.path.front()) << "pressed where it was put";
+    EXPECT_GT(down.path.front().x, 1500 - 67);
+    EXPECT_EQ(down.path.back().x, 1500);
+    EXPECT_GE(builder.dropped(), 1400U);
+    EXPECT_TRUE(take(builder).path.empty());
+}
+
+TEST(PathBuilder, StaysBoundedWhileNobodyTakes) {
+    PathBuilder builder(kStepsPerSecond);
+    for (int x = 1; x <= 100'000; ++x) {
+        builder.add(at(x));
+    }
+    const sand::Step step = take(builder);
+    EXPECT_EQ(step.path.size(), sand::kMaxPathPoints);
+    EXPECT_EQ(step.path.back().x, 100'000) << "the hand must end where it is";
+    EXPECT_EQ(builder.dropped(), 100'000 - sand::kMaxPathPoints);
+    for (int x = 1; x <= 100'000; ++x) {
+        builder.add(at(x, x % 2 == 0));
+    }
+    EXPECT_GT(builder.dropped(), 100'000U) << "a tapping hand is bounded too";
+}
+
+TEST(LiveHistogram, EveryDurationIsInABucketThatBeginsAtMostAPercentBelow) {
+    haptic_bridge::LiveHistogram histogram;
+    const std::vector<std::int64_t> durations{0, 1, 127, 128, 255, 256, 257, 999'999, 1'000'000, 5'000'000'000};
+    for (const std::int64_t duration : durations) {
+        histogram.add(duration);
+    }
+    std::size_t i = 0;
+    histogram.eachBucket([&](double lowest, std::uint64_t count) {
+        for (; count > 0; --count, ++i) {
+            ASSERT_LT(i, durations.size());
+            const auto duration = static_cast<double>(durations[i]);
+            EXPECT_LE(lowest, duration);
+            EXPECT_GE(lowest, duration * (1 - 1.0 / 128));
+        }
+    });
+    EXPECT_EQ(i, durations.size());
+}
+
+TEST(LiveHistogram, PercentilesAreWithinAPercent) {
+    haptic_bridge::LiveHistogram histogram;
+    EXPECT_EQ(histogram.percentileNs(0.5), 0);
+    for (int i = 1; i <= 100'000; ++i) {
+        histogram.add(i * 10);
+    }
+    EXPECT_NEAR(histogram.percentileNs(0.50), 500'000, 5'000);
+    EXPECT_NEAR(histogram.percentileNs(0.99), 990'000, 9'900);
+    EXPECT_EQ(histogram.maxNs(), 1'000'000);
+    EXPECT_NEAR(histogram.meanNs(), 500'005, 1);
+    EXPECT_NEAR(histogram.stddevNs(), 1'000'000 / std::sqrt(12.0), 10);
+}
+
+}  // namespace

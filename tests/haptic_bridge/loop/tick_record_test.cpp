@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include "base/input_error.hpp"
+#include "haptic_bridge/devices/mapped_device.hpp"
+#include "haptic_bridge/loop/felt_sand.hpp"
+#include "haptic_bridge/loop/tick_recorder.hpp"
+#include "haptic_bridge/loop/tick_replay.hpp"
+#include "scene/scene.hpp"
+#include "tests/haptic_bridge/devices/fake_arm.hpp"
+#include "tests/haptic_bridge/server/server_process.hpp"
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+using namespace haptic_bridge;
+
+/// A hand with an arm over 60 x 60 cells, its steps and its recorder: a server without its threads and its link.
+class Recorded : public testing::Test {
+protected:
+    void open(const std::string& file) {
+        auto device = std::make_unique<NotedDevice>(
+            std::make_unique<MappedDevice>(std::make_unique<test::FakeArm>(state_), HandSettings{}, scene_));
+        noted_ = device.get();
+        hand_ = std::make_unique<Hand>(scene_, std::move(device), HandSettings::Datum::level);
+        recorder_ = std::make_unique<TickRecorder>(
+            TickRecorder::Options{file, true, [this](const std::string& line) { told_.push_back(line); }}, *hand_,
+            *noted_, HandSettings::Datum::level);
+    }
+    /// A link begins: steps of 16 ticks, an arm that draws, lifts, is away for a while and sends no numbers once.
+    void sit(int steps) {
+        hand_->restart();
+        recorder_->begin();
+        PathBuilder path(scene_.rules.stepsPerSecond);
+        path.restart(terrain_.probe(), false);
+        for (int i = 0; i < steps; ++i) {
+            takeSurface(terrain_, surface_);
+            for (int tick = 0; tick < 16; ++tick) {
+                ++ticks_;
+                const double turn = static_cast<double>(ticks_) * 0.004;
+                state_.reading.place = {0.05 * std::cos(turn), 0.05 * std::sin(turn), 0.01 * std::sin(3 * turn)};
+                state_.reading.present = ticks_ % 100 != 99;
+                if (ticks_ % 130 == 0) {
+                    state_.reading.place.z = std::nan("");
+                }
+                const std::int64_t now = 1'000'003 * ticks_;
+                surface_.timeNs = now - 16'000 * (ticks_ % 7);
+                path.add(hand_->tick(1e-3 * static_cast<double>(ticks_), now, surface_));
+                recorder_->add(now, surface_);
+                engaged_ += hand_->lastTick().engaged ? 1 : 0;
+            }
+            sand::Step& step = steps_.emplace_back();
+            step.number = terrain_.stepNumber() + 1;
+            (void)path.take(step);
+            terrain_.apply(step);
+        }
+        recorder_->flush();
+        for (base::Bytes& piece : recorder_->takePieces()) {
+            pieces_.push_back(std::move(piece));
+        }
+    }
+    std::string replayed(TickReplay& replay, std::size_t steps) {
+        sand::Terrain terrain(scene_);
+        std::string rows = tickTitles();
+        replay.feel(terrain, rows);
+        for (std::size_t i = 0; i < steps; ++i) {
+            terrain.apply(steps_[i]);
+            replay.feel(terrain, rows);
+        }
+        return rows;
+    }
+    [[nodiscard]] std::string written() const { return folder_.read("ticks.csv"); }
+
+    const test::Folder folder_{};
+    const sand::Scene scene_ = samples::flatScene(60, 60);
+    test::FakeArm::State state_;
+    NotedDevice* noted_ = nullptr;
+    std::unique_ptr<Hand> hand_;
+    std::unique_ptr<TickRecorder> recorder_;
+    sand::Terrain terrain_{scene_};
+    Surface surface_;
+    std::vector<sand::Step> steps_;
+    std::vector<base::Bytes> pieces_;
+    std::vector<std::string> told_;
+    std::int64_t ticks_ = 0;
+    int engaged_ = 0;
+};
+
+TEST_F(Recorded, ReplaysToTheSameRowsByteForByte) {
+    open(folder_.file("ticks.csv"));
+    sit(40);
+    sit(20);  // the link was lost and came back: the hand begins anew
+    recorder_.reset();
+    EXPECT_GT(engaged_, 300) << "it must feel something";
+    TickReplay replay(scene_, pieces_);
+    const std::string rows = replayed(replay, steps_.size());
+    EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 1 + 60 * 16);
+    EXPECT_EQ(rows, written());
+    EXPECT_EQ(replay.left(), 0U);
+    EXPECT_NE(rows.find(",1\n"), std::string::npos);
+    EXPECT_TRUE(told_.empty());
+}
+
+TEST_F(Recorded, LeavesOutTicksOfStepsThatWereNotShown) {
+    open(folder_.file("ticks.csv"));
+    sit(30);
+    recorder_.reset();
+    TickReplay replay(scene_, pieces_);
+    const std::string rows = replayed(replay, 20);
+    EXPECT_EQ(rows, written().substr(0, rows.size()));
+    EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 1 + 21 * 16) << "step 20 is felt before the next is made";
+    EXPECT_EQ(replay.left(), 9 * 16U);
+}
+
+TEST_F(Recorded, IgnoresTheTailOfALinkBefore) {
+    open(folder_.file("ticks.csv"));
+    sit(5);
+    const std::size_t first = pieces_.size();
+    sit(5);
+    recorder_.reset();
+    // The first piece, which says what the device is, did not arrive.
+    TickReplay replay(scene_, {pieces_.begin() + 1, pieces_.end()});
+    ASSERT_GT(first, 1U);
+    const std::string rows = replayed(replay, steps_.size());
+    EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 1 + 5 * 16);
+}
+
+TEST_F(Recorded, AFullDiskEndsTheRowsAndNotTheTrack) {
+    open("/dev/full");
+    sit(20);
+    recorder_.reset();
+    ASSERT_EQ(told_.size(), 1U);
+    EXPECT_EQ(told_[0],
+              "--record /dev/full: cannot be written (No space left on device); it ends here, and the session goes on");
+    TickReplay replay(scene_, pieces_);
+    const std::string rows = replayed(replay, steps_.size());
+    EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 1 + 20 * 16);
+}
+
+TEST_F(Recorded, AFileThatCannotBeMadeIsNamed) { EXPECT_THROW(open("/nowhere/ticks.csv"), base::InputError); }
+
+TEST(TickTrack, RefusesBytesThatAreNone) {
+    TrackPiece piece;
+    piece.ticks.resize(3);
+    const base::Bytes whole = encode(piece);
+    EXPECT_EQ(decodeTrackPiece(whole).ticks.size(), 3U);
+    for (std::size_t length = 0; length < whole.size(); ++length) {
+        EXPECT_THROW((void)decodeTrackPiece(std::span(whole).first(length)), base::FormatError) << length;
+    }
+    base::Bytes longer = whole;
+    longer.push_back(0);
+    EXPECT_THROW((void)decodeTrackPiece(longer), base::FormatError);
+}
+
+}  // namespace

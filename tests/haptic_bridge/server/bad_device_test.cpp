@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Arms that do what no arm should, behind the real server: a line, and the wall goes on.
+#include "scene/load/scene_file.hpp"
+#include "tests/haptic_bridge/server/server_process.hpp"
+
+namespace {
+
+using namespace test;
+using haptic_bridge::Client;
+using haptic_bridge::Link;
+
+class BadDevice : public testing::Test {
+protected:
+    std::vector<std::string> words(const std::string& what, const std::string& pace) {
+        auto all = ServerProcess::usual(sceneFile_, folder_, 0, pace);
+        all[3] = "driver:" SANDWALL_BIN_DIR "/bad-driver.so:" + what;
+        return all;
+    }
+    Folder folder_;
+    std::string sceneFile_ = folder_.write("small.toml", kSmallScene);
+    sand::Scene scene_ = sand::loadScene(sceneFile_);
+};
+
+TEST_F(BadDevice, IsToldInALineAndTheWallGoesOn) {
+    for (const auto& [what, line] :
+         {std::pair{"stops", "does not answer; the hand is lifted and feels nothing until it does"},
+          {"nan", "sends no numbers, "},
+          {"jumps", "jumps, "}}) {
+        ServerProcess server(folder_, words(what, "fast"));
+        Client client(server.address(), offerOf(scene_));
+        Wall wall(scene_);
+        ASSERT_TRUE(wall.follow(client, 120)) << client.link().message << "\n" << server.errors();
+        EXPECT_EQ(wall.divergences, 0);
+        EXPECT_GT(wall.engaged, 20) << "half a second in the sand";
+        EXPECT_FALSE(wall.terrain.engaged() && std::string(what) != "jumps") << what << ": it must lift the tool";
+        ASSERT_TRUE(eventually([&, expected = std::string(line)] {
+            return server.errors().find(expected) != std::string::npos;
+        })) << what
+            << ": " << server.errors();
+        const std::string errors = server.errors();
+        EXPECT_EQ(errors.find(line), errors.rfind(line)) << "once:\n" << errors;
+        client.stop();
+        EXPECT_EQ(server.stop(SIGTERM), 0) << server.errors();
+    }
+}
+
+TEST_F(BadDevice, ThatCannotBeOpenedIsNamed) {
+    ServerProcess server(folder_, words("throws", "fast"));
+    EXPECT_EQ(server.wait(), 2);
+    EXPECT_NE(server.errors().find("bad-driver.so:throws: the device on USB 3 is taken"), std::string::npos)
+        << server.errors();
+}
+
+TEST_F(BadDevice, FeelsWhatTheOperatorLetsItFeel) {
+    for (const bool asked : {false, true}) {
+        auto all = words("press:" + folder_.file("pushed"), "realtime");
+        all.insert(all.end(), {"--force", "off"});
+        ServerProcess server(folder_, all);
+        Client client(server.address(), offerOf(scene_));
+        Wall wall(scene_);
+        ASSERT_TRUE(wall.follow(client, 10)) << client.link().message << "\n" << server.errors();
+        if (asked) {
+            client.shareForce(0.5);
+        }
+        ASSERT_TRUE(wall.follow(client, 90)) << client.link().message << "\n" << server.errors();
+        client.stop();
+        EXPECT_EQ(server.stop(SIGTERM), 0) << server.errors();
+        EXPECT_EQ(std::stod(folder_.read("pushed")) > 0, asked) << folder_.read("pushed");
+    }
+}
+
+}  // namespace

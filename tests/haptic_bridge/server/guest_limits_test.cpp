@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// How many guests there may be, how often they come, and how often that is said.
+#include "haptic_bridge/server/guest_limits.hpp"
+
+#include <memory>
+
+#include "tests/haptic_bridge/link/link_security_fixture.hpp"
+#include "tests/haptic_bridge/link/raw_peer.hpp"
+
+namespace {
+
+using namespace haptic_bridge;
+using namespace test;
+
+TEST_F(LinkSecurityTest, ManyGuestsAtOnceDoNotTouchWhoIsLinked) {
+    ServerProcess server(folder_, arguments({}));
+    Client master(server.address(), offerOf(scene_));
+    Wall wall(scene_);
+    ASSERT_TRUE(wall.follow(master, 10));
+    std::vector<std::unique_ptr<RawPeer>> guests;
+    for (int i = 0; i < 60; ++i) {
+        guests.push_back(std::make_unique<RawPeer>(server.port()));
+    }
+    ASSERT_TRUE(wall.follow(master, 100)) << master.link().message;
+    guests.clear();
+    EXPECT_EQ(wall.divergences + wall.outOfOrder, 0);
+    EXPECT_EQ(master.counters().reconnects, 0U);
+    master.stop();
+    ASSERT_TRUE(master.report());
+    EXPECT_GT(master.report()->refused[static_cast<std::size_t>(RefusalCode::limit) - 1], 20U);
+    Client next(server.address(), offerOf(scene_));
+    EXPECT_TRUE(wall.follow(next, 120)) << next.link().message;
+}
+
+TEST(GuestLimits, HoldsBackWhoComesOftenAndNobodyElse) {
+    GuestLimits limits;
+    const auto often = boost::asio::ip::make_address("192.0.2.1"), other = boost::asio::ip::make_address("192.0.2.2");
+    std::int64_t now = 1'000'000'000;
+    int came = 0;
+    for (int i = 0; i < 100; ++i) {
+        came += limits.mayCome(often, now) ? 1 : 0;
+    }
+    EXPECT_EQ(came, 16);
+    EXPECT_TRUE(limits.mayCome(other, now));
+    now += 1'000'000'000;
+    EXPECT_TRUE(limits.mayCome(often, now));
+    for (int i = 0; i < 100; ++i) {
+        limits.refused(often, now);
+    }
+    now += 1'900'000'000;
+    EXPECT_FALSE(limits.mayCome(often, now)) << "who was refused comes later still";
+    now += 300'000'000;
+    EXPECT_TRUE(limits.mayCome(often, now)) << "but not never";
+    for (unsigned i = 0; i < 5000; ++i) {  // more addresses than are kept apart
+        (void)limits.mayCome(boost::asio::ip::address_v4(0x0a000000U + i), now);
+    }
+    EXPECT_TRUE(limits.mayCome(often, now + 10'000'000'000));
+}
+
+TEST(GuestLimits, TakeANetworkOfIpv6ForOneGuest) {
+    const auto of = [](const char* text) { return guestOf(boost::asio::ip::make_address(text)).to_string(); };
+    EXPECT_EQ(of("192.0.2.1"), "192.0.2.1");
+    EXPECT_EQ(of("::ffff:192.0.2.1"), "192.0.2.1");
+    EXPECT_EQ(of("2001:db8:1:2:3:4:5:6"), "2001:db8:1:2::");
+    GuestLimits limits;
+    int came = 0;
+    for (int i = 0; i < 100; ++i) {
+        came += limits.mayCome(boost::asio::ip::make_address("2001:db8::" + std::to_string(i)), 1) ? 1 : 0;
+    }
+    EXPECT_EQ(came, 16);
+}
+
+TEST(RefusalLog, SaysItOnceAndCountsTheRest) {
+    RefusalLog log;
+    EXPECT_EQ(log.add(RefusalCode::secret, "a", "line", 0), "line");
+    EXPECT_FALSE(log.add(RefusalCode::secret, "a", "line", 1));
+    EXPECT_TRUE(log.add(RefusalCode::garbage, "a", "line", 1)) << "another kind";
+    EXPECT_TRUE(log.add(RefusalCode::secret, "b", "line", 1)) << "another peer";
+    EXPECT_NE(log.add(RefusalCode::secret, "a", "line", RefusalLog::kQuietNs)->find("1 more"), std::string::npos);
+    EXPECT_EQ(log.counts()[static_cast<std::size_t>(RefusalCode::secret) - 1], 4U);
+    std::size_t lines = 0;
+    for (int i = 0; i < 5000; ++i) {
+        lines += log.add(RefusalCode::garbage, "c" + std::to_string(i), "line", 2) ? 1 : 0;
+    }
+    EXPECT_LE(lines, RefusalLog::kRemembered + 1);
+}
+
+}  // namespace

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who only watches: sees every step, moves nothing and holds nobody up.
+#include <filesystem>
+
+#include "tests/haptic_bridge/link/link_security_fixture.hpp"
+#include "tests/haptic_bridge/link/raw_peer.hpp"
+
+namespace {
+
+using namespace haptic_bridge;
+using namespace test;
+
+TEST_F(LinkSecurityTest, AWatcherSeesTheStepsAndMovesNothing) {
+    ServerProcess server(folder_, arguments({}));
+    Client master(server.address(), offerOf(scene_));
+    Wall wall(scene_);
+    ASSERT_TRUE(wall.follow(master, 10));
+    RawPeer watcher(server.port());
+    Hello asking = hello(Role::watch);
+    asking.master.rulesDigest = 0;  // it has no sand
+    watcher.send(asking);
+    const auto welcome = watcher.receive();
+    ASSERT_TRUE(welcome && std::holds_alternative<Welcome>(*welcome));
+    EXPECT_EQ(std::get<Welcome>(*welcome).role, Role::watch);
+    RawPeer pushy(server.port());
+    pushy.send(asking);
+    ASSERT_TRUE(pushy.receive());
+    pushy.send(Start{9, 0, 0});
+    ASSERT_TRUE(wall.follow(master, 60));
+    std::uint64_t last = 0;
+    while (last < 50) {
+        const auto message = watcher.receive();
+        ASSERT_TRUE(message) << server.errors();
+        if (const auto* step = std::get_if<StepMessage>(&*message)) {
+            EXPECT_TRUE(last == 0 || step->step.number == last + 1);
+            last = step->step.number;
+        }
+    }
+    EXPECT_TRUE(eventually([&] { return server.errors().find("who watches only listens") != std::string::npos; }))
+        << server.errors();
+    EXPECT_EQ(wall.divergences + wall.outOfOrder, 0);
+    master.stop();
+    ASSERT_TRUE(master.report());
+    EXPECT_EQ(master.report()->refused[static_cast<std::size_t>(RefusalCode::role) - 1], 1U);
+}
+
+TEST_F(LinkSecurityTest, TheProgramThatWatchesPrintsWhereTheProbeIs) {
+    const std::string watchers = secretFile("watchers", "watch " + quoted(kWatch) + "\n");
+    ServerProcess server(folder_, arguments({"--secret-file", both_, "--tls"}, "realtime"));
+    Client master(server.address(), offerOf(scene_), client(both_, true));
+    Wall wall(scene_);
+    ASSERT_TRUE(wall.follow(master, 10)) << master.link().message;
+    const auto watch = [&](const std::string& options) {
+        const std::string command = "timeout 60 " SANDWALL_BIN_DIR "/sandwall-watch " + server.address().text() +
+                                    " --lines 2 " + options + " >" + folder_.file("watch") + " 2>&1 &";
+        std::filesystem::remove(folder_.file("watch"));
+        EXPECT_EQ(std::system(command.c_str()), 0);
+        EXPECT_TRUE(eventually([&] {
+            for (const auto& timed : master.drain(100)) {
+                wall.apply(timed);
+            }
+            master.shown(wall.terrain.stepNumber(), 16'666'667);
+            const std::string told = folder_.read("watch");
+            return told.find("steps/s", told.find("steps/s") + 1) != std::string::npos ||
+                   (told.find("127.0.0.1") != std::string::npos && told.ends_with('\n'));
+        }));
+        return folder_.read("watch");
+    };
+    const std::string told = watch("--tls --secret-file " + watchers);
+    EXPECT_EQ(told.find("scene 'small', 60 steps per second\nstep "), 0U) << told;
+    EXPECT_NE(told.find("probe at "), std::string::npos) << told;
+    const std::string plain = watch("");
+    EXPECT_NE(plain.find("this server speaks TLS alone"), std::string::npos) << plain;
+    EXPECT_EQ(wall.divergences + wall.outOfOrder, 0);
+}
+
+TEST_F(LinkSecurityTest, WhoWatchesAndDoesNotReadIsCutOff) {
+    ServerProcess server(folder_, arguments({}));
+    Client master(server.address(), offerOf(scene_));
+    Wall wall(scene_);
+    ASSERT_TRUE(wall.follow(master, 10));
+    RawPeer watcher(server.port());
+    watcher.send(hello(Role::watch));
+    ASSERT_TRUE(watcher.receive());
+    // Loopback takes some megabytes before the server sees that nobody reads: steps of loads that fit a message.
+    const auto cutOff = [&] { return server.errors().find("does not read what is sent") != std::string::npos; };
+    for (int round = 0; round < 400 && !cutOff(); ++round) {
+        master.request(sand::Edit::loaded(base::Bytes(50'000, 7)));
+        ASSERT_TRUE(wall.follow(master, wall.terrain.stepNumber() + 10)) << master.link().message;
+    }
+    EXPECT_TRUE(cutOff()) << server.errors();
+    EXPECT_EQ(wall.divergences + wall.outOfOrder, 0);
+    EXPECT_EQ(master.counters().reconnects, 0U);
+}
+
+}  // namespace

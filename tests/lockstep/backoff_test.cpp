@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lockstep/backoff.hpp"
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using lockstep::Patience;
+
+TEST(Patience, OfAShortWaitIsNotSlept) {
+    EXPECT_EQ(Patience::sleepAfter(0), 0);
+    EXPECT_EQ(Patience::sleepAfter(20'000), 0);
+}
+
+TEST(Patience, MakesNoWaitMuchLonger) {
+    for (std::int64_t waited = 0; waited < 1'000'000'000; waited = waited * 5 / 4 + 1000) {
+        EXPECT_LE(Patience::sleepAfter(waited), waited / 8) << waited;
+        EXPECT_LE(Patience::sleepAfter(waited), 125'000) << waited;
+    }
+}
+
+// What it is for: a rank of a still wall looks some hundred times in a frame, not a hundred thousand.
+TEST(Patience, LooksSeldomInALongWait) {
+    int looks = 0;
+    for (std::int64_t waited = 60'000; waited < 33'000'000; waited += Patience::sleepAfter(waited)) {
+        ++looks;
+    }
+    EXPECT_LT(looks, 400);
+}
+
+}  // namespace

@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/journal/keeper.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <thread>
+
+#include "base/input_error.hpp"
+#include "master/journal/checkpoint.hpp"
+#include "master/journal/journal.hpp"
+#include "scene/scene.hpp"
+#include "tests/support/folder_test.hpp"
+#include "tests/support/sand_samples.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/support/small_disk.hpp"
+
+namespace {
+
+/// A session of one process, without a wall.
+class Keeper : public test::FolderTest {
+protected:
+    void begin(const master::JournalOptions& options, const master::ResumedSession* resumed = nullptr) {
+        keeper_.emplace(folder_, options, scene_, resumed, "a test", "test");
+    }
+    /// False when the keeper lets nobody take a step.
+    bool showFrame(const sand::Edit& edit = {}) {
+        if (!keeper_->mayTake(1 << 16, {terrain_.stepNumber(), terrain_.stateHash()})) {
+            return false;
+        }
+        sand::Step step = samples::randomStep(terrain_.stepNumber() + 1, scene_.rules, random_);
+        step.edit = edit;
+        keeper_->keep({++frame_, terrain_.stateHash(), {step}}, {});
+        terrain_.apply(step);
+        keeper_->shown(terrain_, frame_, 1, terrain_.stateHash());
+        return true;
+    }
+    [[nodiscard]] std::filesystem::path journal() const { return folder_ / "session.journal"; }
+    void expectWhole(std::uint64_t steps) {
+        master::RestoredSand restored = master::restoreSand(journal(), steps);
+        EXPECT_EQ(restored.terrain.stateHash(), terrain_.stateHash());
+        const master::Journal journal = master::readJournal(this->journal());
+        EXPECT_EQ(journal.frames.size(), steps);
+        EXPECT_EQ(journal.tornBytes, 0);
+    }
+
+    sand::Scene scene_ = samples::flatScene(40, 30);
+    sand::Terrain terrain_{scene_};
+    std::mt19937 random_{61};
+    std::uint64_t frame_ = 0;
+    std::optional<master::JournalKeeper> keeper_;
+};
+
+/// No file of this process may be longer.
+class FileLimit {
+public:
+    explicit FileLimit(std::uintmax_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+        getrlimit(RLIMIT_FSIZE, &before_);
+        rlimit small = before_;
+        small.rlim_cur = bytes;
+        setrlimit(RLIMIT_FSIZE, &small);
+    }
+    ~FileLimit() {
+        setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, handler_);
+    }
+    FileLimit(const FileLimit&) = delete;
+    FileLimit& operator=(const FileLimit&) = delete;
+
+private:
+    rlimit before_{};
+    void (*handler_)(int);
+};
+
+TEST_F(Keeper, ARequiredJournalThatCannotBeWrittenEndsTheSession) {
+    begin({});
+    ASSERT_TRUE(showFrame());
+    const FileLimit limit(std::filesystem::file_size(journal()) + 9);
+    EXPECT_THROW(showFrame(), master::DiskFailure);
+    EXPECT_EQ(terrain_.stepNumber(), 1U) << "what is not on disk is not applied";
+    expectWhole(1);
+}
+
+TEST_F(Keeper, WithBestEffortTheSessionGoesOnWithoutAJournal) {
+    begin({.policy = master::JournalPolicy::bestEffort});
+    ASSERT_TRUE(showFrame());
+    {
+        const FileLimit limit(std::filesystem::file_size(journal()) + 9);
+        EXPECT_TRUE(showFrame());
+    }
+    EXPECT_TRUE(showFrame());
+    EXPECT_EQ(terrain_.stepNumber(), 3U);
+    EXPECT_EQ(keeper_->state(), "failed");
+    EXPECT_EQ(master::readJournal(journal()).frames.size(), 1U);
+}
+
+TEST_F(Keeper, SwitchedOffItWritesNothing) {
+    begin({.policy = master::JournalPolicy::off, .checkpointSeconds = 1e-9});
+    ASSERT_TRUE(showFrame());
+    EXPECT_TRUE(std::filesystem::is_empty(folder_));
+    EXPECT_EQ(keeper_->state(), "off");
+}
+
+TEST_F(Keeper, SwitchedOffItLeavesNoJournalOfAnotherSessionInItsPlace) {
+    begin({});
+    ASSERT_TRUE(showFrame());
+    begin({.policy = master::JournalPolicy::off});
+    EXPECT_FALSE(std::filesystem::exists(journal()));
+    EXPECT_EQ(master::readJournal(folder_ / "session.journal.previous").frames.size(), 1U);
+}
+
+TEST_F(Keeper, AFolderThatCannotBeWrittenToIsNamed) {
+    std::ofstream(folder_ / "file") << "in the way";
+    try {
+        const master::JournalKeeper keeper(folder_ / "file", {}, scene_, nullptr, "", "test");
+        ADD_FAILURE() << "not refused";
+    } catch (const base::InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("cannot be made (Not a directory); choose another --out"),
+                  std::string::npos)
+            << error.what();
+    }
+}
+
+TEST_F(Keeper, KeepsTheNewestCheckpointsAndResumesFromThem) {
+    begin({.checkpointSeconds = 1e-9});
+    for (int frame = 0; frame < 30; ++frame) {
+        ASSERT_TRUE(showFrame());
+        keeper_->shown(terrain_, frame_, 1, terrain_.stateHash());
+    }
+    keeper_->finish({terrain_.stepNumber(), terrain_.stateHash()});
+    const auto steps = master::checkpointsOf(journal());
+    ASSERT_FALSE(steps.empty());
+    EXPECT_LE(steps.size(), 3U);
+    EXPECT_GE(keeper_->copyMs().size(), steps.size());
+    EXPECT_EQ(keeper_->checkpointsFailed(), 0U);
+    EXPECT_EQ(master::restoreSand(journal(), 30).checkpointStep, steps.front());
+    expectWhole(30);
+}
+
+// Written by a session that went on, from steps that another one had then torn off.
+TEST_F(Keeper, RemovesCheckpointsOfStepsThatItsJournalDoesNotHold) {
+    begin({.checkpointSeconds = 1e-9});
+    while (master::checkpointsOf(journal()).empty()) {
+        ASSERT_TRUE(showFrame());
+        std::this_thread::yield();
+    }
+    keeper_.reset();
+    const auto newest = master::checkpointsOf(journal()).front();
+    std::optional<master::ResumedSession> resumed = master::readSession(journal(), "");
+    ASSERT_TRUE(resumed.has_value());
+    resumed->step = newest - 1;
+    begin({.checkpointSeconds = 0}, &*resumed);
+    for (const std::uint64_t step : master::checkpointsOf(journal())) {
+        EXPECT_LT(step, newest);
+    }
+}
+
+TEST_F(Keeper, GoesOnInAnotherPartAndIsReadAsOne) {
+    begin({.checkpointSeconds = 0, .partBytes = 2000});
+    for (int frame = 0; frame < 100; ++frame) {
+        ASSERT_TRUE(showFrame());
+    }
+    keeper_->finish({terrain_.stepNumber(), terrain_.stateHash()});
+    const std::uint32_t parts = keeper_->parts();
+    ASSERT_GT(parts, 2U);
+    EXPECT_TRUE(std::filesystem::exists(master::partOf(journal(), parts)));
+    EXPECT_FALSE(std::filesystem::exists(master::partOf(journal(), parts + 1)));
+    expectWhole(100);
+    // A session that goes on does so in the last part.
+    keeper_.reset();
+    const auto resumed = master::readSession(journal(), "");
+    ASSERT_TRUE(resumed.has_value());
+    EXPECT_EQ(resumed->place.part, parts);
+    begin({.checkpointSeconds = 0, .partBytes = 2000}, &*resumed);
+    for (int frame = 0; frame < 100; ++frame) {
+        ASSERT_TRUE(showFrame());
+    }
+    EXPECT_GT(keeper_->parts(), parts + 1);
+    expectWhole(200);
+    // A new one takes all of them out of the way.
+    keeper_.reset();
+    terrain_ = sand::Terrain(scene_);
+    begin({});
+    EXPECT_FALSE(std::filesystem::exists(master::partOf(journal(), 2)));
+    EXPECT_EQ(master::readJournal(journal().string() + ".previous").frames.size(), 200U);
+}
+
+TEST_F(Keeper, APartThatIsMissingOrOfAnotherSessionIsNamed) {
+    begin({.checkpointSeconds = 0, .partBytes = 2000});
+    for (int frame = 0; frame < 100; ++frame) {
+        ASSERT_TRUE(showFrame());
+    }
+    keeper_.reset();
+    const auto complaint = [this] {
+        try {
+            (void)master::readJournal(journal());
+        } catch (const base::InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string("none");
+    };
+    const std::filesystem::path second = master::partOf(journal(), 2), away = folder_ / "away";
+    std::filesystem::rename(second, away);
+    EXPECT_NE(complaint().find("session.journal: goes on in session.journal.2, which is missing"), std::string::npos)
+        << complaint();
+    std::filesystem::copy(master::partOf(journal(), 3), second);
+    EXPECT_NE(complaint().find("session.journal.2: does not go on where session.journal ends"), std::string::npos)
+        << complaint();
+    std::filesystem::remove(second);
+    std::filesystem::copy(away, second);
+    EXPECT_EQ(complaint(), "none");
+    // Without its end a part does not say that it goes on, and yet it does.
+    std::filesystem::resize_file(second, std::filesystem::file_size(second) - 40);
+    EXPECT_NE(complaint().find("session.journal.3 goes on behind what is missing"), std::string::npos) << complaint();
+    try {
+        (void)master::readJournal(master::partOf(journal(), 3));
+        ADD_FAILURE() << "a part alone was read";
+    } catch (const base::InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("is part 3 of a session; name its first part"), std::string::npos);
+    }
+}
+
+// Killed between the making of a part and the word that there is one: it holds nothing, and is made again.
+TEST_F(Keeper, APartThatWasOnlyMadeIsNoHarm) {
+    begin({.checkpointSeconds = 0, .partBytes = 2000});
+    while (keeper_->parts() < 2) {
+        ASSERT_TRUE(showFrame());
+    }
+    keeper_.reset();
+    const std::uint64_t steps = terrain_.stepNumber() - 1;  // the last is in the second part
+    std::filesystem::resize_file(journal(), std::filesystem::file_size(journal()) - 17);  // what says so
+    const auto size = [this](std::uint32_t part) {
+        return std::filesystem::file_size(master::partOf(journal(), part));
+    };
+    const auto records = master::JournalReader(journal()).header().session;
+    EXPECT_NE(records, 0U);
+    std::filesystem::resize_file(master::partOf(journal(), 2), size(2));
+    EXPECT_THROW((void)master::readJournal(journal()), base::InputError) << "a step stands in the second part";
+    // Its header alone.
+    std::uint64_t chain = 0;
+    base::ByteWriter header;
+    std::ifstream stream(master::partOf(journal(), 2), std::ios::binary);
+    const base::Bytes bytes{std::istreambuf_iterator<char>(stream), {}};
+    base::ByteReader reader(bytes);
+    (void)master::decodeHeader(reader, chain);
+    std::filesystem::resize_file(master::partOf(journal(), 2), bytes.size() - reader.rest().size());
+    EXPECT_EQ(master::readJournal(journal()).frames.size(), steps);
+    const auto resumed = master::readSession(journal(), "");
+    ASSERT_TRUE(resumed.has_value());
+    EXPECT_EQ(resumed->place.part, 1U);
+    terrain_.decodeState(resumed->state);
+    begin({.checkpointSeconds = 0, .partBytes = 2000}, &*resumed);
+    ASSERT_TRUE(showFrame());
+    expectWhole(steps + 1);
+}
+
+TEST_F(Keeper, AFullDiskStopsTheSandUntilThereIsRoom) {
+    const int status = support::onSmallDisk(folder_, "size=4m", [this] {
+        begin({.checkpointSeconds = 0});
+        ASSERT_TRUE(showFrame());
+        // What is reserved is used up first; nothing that was taken is refused.
+        support::fill(folder_ / "filler");
+        const sand::Edit large = sand::Edit::loaded(base::Bytes(60'000, 7));  // which is no sand and changes none
+        int frames = 1;
+        while (showFrame(large)) {
+            ASSERT_LT(++frames, 1000);
+        }
+        EXPECT_GT(frames, 2);
+        EXPECT_EQ(keeper_->state(), "no room");
+        EXPECT_FALSE(showFrame()) << "and it stands";
+        expectWhole(terrain_.stepNumber());
+        const std::uint64_t stood = terrain_.stepNumber();
+        std::filesystem::remove(folder_ / "filler");
+        while (!showFrame()) {  // asked about once a second
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
+        EXPECT_EQ(keeper_->state(), "written");
+        EXPECT_EQ(keeper_->stands(), 1U);
+        EXPECT_EQ(terrain_.stepNumber(), stood + 1);
+        expectWhole(terrain_.stepNumber());
+        keeper_.reset();
+    });
+    if (status == 77) {
+        GTEST_SKIP() << "this machine lets nobody mount a small disk";
+    }
+    EXPECT_EQ(status, 0);
+}
+
+TEST_F(Keeper, AReadOnlyFolderIsNamed) {
+    const int status = support::onSmallDisk(
+        folder_, "size=4m",
+        [this] {
+            try {
+                begin({});
+                ADD_FAILURE() << "not refused";
+            } catch (const base::InputError& error) {
+                EXPECT_NE(
+                    std::string(error.what()).find("cannot be made (Read-only file system); choose another --out"),
+                    std::string::npos)
+                    << error.what();
+            }
+        },
+        MS_RDONLY);
+    if (status == 77) {
+        GTEST_SKIP() << "this machine lets nobody mount a disk";
+    }
+    EXPECT_EQ(status, 0);
+}
+
+// The parent kills the child wherever it is. What append() has returned for is told through a pipe, and must be there.
+TEST_F(Keeper, KilledInTheMiddleOfWritesNothingThatWasOnDiskIsLost) {
+    const unsigned seed = test::randomSeed();
+    SCOPED_TRACE(test::again(seed));
+    std::mt19937 random(seed);
+    for (int kill = 0; kill < 20; ++kill) {
+        int told[2];
+        ASSERT_EQ(pipe(told), 0);
+        const pid_t child = fork();
+        if (child == 0) {
+            close(told[0]);
+            begin({.checkpointSeconds = 1e-9, .partBytes = 20'000});
+            while (showFrame()) {
+                const std::uint64_t steps = terrain_.stepNumber();
+                if (write(told[1], &steps, sizeof steps) != sizeof steps) {
+                    break;
+                }
+            }
+            _exit(1);
+        }
+        close(told[1]);
+        std::uint64_t steps = 0, heard = 0;
+        const auto enough = random() % 100 + 1;
+        while (heard < enough && read(told[0], &heard, sizeof heard) == sizeof heard) {
+        }
+        std::this_thread::sleep_for(std::chrono::microseconds(random() % 500));
+        ::kill(child, SIGKILL);
+        waitpid(child, nullptr, 0);
+        for (steps = heard; read(told[0], &heard, sizeof heard) == sizeof heard;) {
+            steps = heard;
+        }
+        close(told[0]);
+        const auto resumed = master::readSession(journal(), "");
+        ASSERT_TRUE(resumed.has_value()) << "seed " << seed << ", kill " << kill;
+        ASSERT_GE(resumed->step, steps) << "seed " << seed << ", kill " << kill;
+        ASSERT_LE(resumed->step, steps + 1) << "seed " << seed << ", kill " << kill;
+        // From the checkpoints to the same sand as from the scene: restoreSand() compares the hashes on the way.
+        sand::Terrain undisturbed(scene_);
+        for (const master::JournalFrame& frame : master::readJournal(journal()).frames) {
+            ASSERT_EQ(frame.hashBefore, undisturbed.stateHash());
+            undisturbed.apply(frame.steps.front());
+        }
+        ASSERT_EQ(resumed->hash, undisturbed.stateHash()) << "seed " << seed << ", kill " << kill;
+    }
+    std::printf("20 kills, seed %u\n", seed);
+}
+
+}  // namespace

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/journal/recording.hpp"
+
+#include <gtest/gtest.h>
+
+#include "base/input_error.hpp"
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+/// A session of `steps` steps at 60 a second in frames of three, which wrote 100 + step as its hash.
+master::Journal sessionOf(std::uint64_t steps) {
+    master::Journal journal;
+    journal.scene = samples::flatScene(8, 8);
+    journal.scene.rules.stepsPerSecond = 60;
+    for (std::uint64_t number = 1; number <= steps; ++number) {
+        if (number % 3 == 1) {
+            journal.frames.push_back({number, 100 + number - 1, {}});
+        }
+        journal.frames.back().steps.emplace_back().number = number;
+    }
+    journal.end = {steps, 100 + steps};
+    return journal;
+}
+
+std::string refusal(master::Journal journal) {
+    try {
+        const master::Recording recording(std::move(journal), "FILE", 30);
+    } catch (const base::InputError& error) {
+        return error.what();
+    }
+    return "taken";
+}
+
+TEST(Recording, EachFrameShowsTheStepsOfItsTime) {
+    for (const int rate : {1, 7, 24, 25, 30, 60, 144, 240}) {
+        const master::Recording recording(sessionOf(601), "FILE", rate);
+        const auto perSecond = static_cast<std::uint64_t>(rate);
+        ASSERT_EQ(recording.frames(), (601 * perSecond + 59) / 60);
+        std::uint64_t shown = 0;
+        for (std::uint64_t frame = 1; frame <= recording.frames(); ++frame) {
+            for (const sand::Step& step : recording.stepsOf(frame)) {
+                ASSERT_EQ(step.number, ++shown) << "frame " << frame << " of " << rate << " a second";
+            }
+            ASSERT_EQ(shown, std::min<std::uint64_t>(601, frame * 60 / perSecond)) << frame << " at " << rate;
+        }
+        EXPECT_EQ(shown, 601U) << rate;
+    }
+}
+
+TEST(Recording, KnowsTheHashesThatTheSessionWrote) {
+    const master::Recording recording(sessionOf(10), "FILE", 30);
+    for (const std::uint64_t step : {0U, 3U, 6U, 9U, 10U}) {
+        EXPECT_EQ(recording.hashAfter(step), 100 + step);
+    }
+    for (const std::uint64_t step : {1U, 2U, 4U, 8U, 11U}) {
+        EXPECT_EQ(recording.hashAfter(step), std::nullopt) << step;
+    }
+}
+
+TEST(Recording, SaysWhereACutOffSessionEnds) {
+    EXPECT_EQ(master::Recording(sessionOf(9), "FILE", 30).shortcoming(), "");
+    master::Journal journal = sessionOf(9);
+    journal.end.reset();
+    EXPECT_EQ(master::Recording(journal, "FILE", 30).shortcoming(),
+              "FILE: has no orderly end, the session was cut off; it ends at step 9");
+    journal.tornBytes = 5;
+    EXPECT_EQ(master::Recording(journal, "FILE", 30).shortcoming(),
+              "FILE: the last 5 bytes are no whole record and were left out; it ends at step 9");
+}
+
+TEST(Recording, RefusesASessionWithAHole) {
+    master::Journal journal = sessionOf(12);
+    journal.frames.erase(journal.frames.begin() + 1);
+    EXPECT_EQ(refusal(journal), "FILE: step 7 follows step 3; a part of the session is missing");
+    journal = sessionOf(12);
+    journal.frames.pop_back();
+    EXPECT_EQ(refusal(journal), "FILE: holds 9 steps of a session that ended at step 12");
+}
+
+TEST(Recording, RefusesASessionWithoutSteps) {
+    master::Journal journal = sessionOf(3);
+    journal.frames.clear();
+    journal.end.reset();
+    EXPECT_EQ(refusal(journal), "FILE: holds no step; there is nothing to show");
+}
+
+}  // namespace

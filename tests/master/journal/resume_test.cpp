@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/journal/resume.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "base/input_error.hpp"
+#include "master/journal/checkpoint.hpp"
+#include "master/journal/journal.hpp"
+#include "scene/load/scene_file.hpp"
+#include "tests/support/folder_test.hpp"
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+/// A session of 40 steps, two a frame, with checkpoints after every tenth.
+class Resume : public test::FolderTest {
+protected:
+    void SetUp() override {
+        scene_.material.humidity = 0.25;
+        master::JournalWriter writer(journal(), scene_, "test");
+        record(writer, 20);
+        hashes_.push_back(terrain_.stateHash());
+    }
+
+    void record(master::JournalWriter& writer, int frames, std::uint32_t epoch = 1) {
+        for (int i = 0; i < frames; ++i) {
+            master::JournalFrame written{++frame_, terrain_.stateHash(), {}};
+            for (int k = 0; k < 2; ++k) {
+                hashes_.push_back(terrain_.stateHash());
+                written.steps.push_back(samples::wildStep(terrain_.stepNumber() + 1, scene_.rules, random_));
+                written.steps.back().epoch = epoch;
+                terrain_.apply(written.steps.back());
+            }
+            writer.append(written);
+            if (terrain_.stepNumber() % 10 == 0) {
+                keepCheckpoint(writer.session());
+            }
+        }
+    }
+    void keepCheckpoint(std::uint64_t session) {
+        const master::Checkpoint checkpoint{session, "test", scene_.rules.digest(), terrain_.stepNumber(),
+                                            frame_,  1,      terrain_.stateHash(),  terrain_.encodeState()};
+        master::writeCheckpoint(journal(), checkpoint, 3);
+    }
+    [[nodiscard]] std::filesystem::path journal() const { return folder_ / "session.journal"; }
+    /// Its sand is that of an undisturbed replay of all steps.
+    void expectSand(std::uint64_t step, std::uint64_t checkpoint) const {
+        master::RestoredSand restored = master::restoreSand(journal(), step);
+        EXPECT_EQ(restored.terrain.stepNumber(), step);
+        EXPECT_EQ(restored.terrain.stateHash(), hashes_[step]) << step;
+        EXPECT_EQ(restored.checkpointStep, checkpoint) << step;
+        EXPECT_EQ(restored.replayedSteps, step - checkpoint) << step;
+    }
+    void spoil(const std::filesystem::path& file, std::streamoff at) const {
+        std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
+        stream.seekg(at);
+        const int before = stream.get();
+        stream.seekp(at);
+        stream.put(static_cast<char>(before ^ 4));
+    }
+    static std::string refusal(const std::filesystem::path& journal, const std::string& scene = "") {
+        try {
+            (void)master::readSession(journal, scene);
+        } catch (const base::InputError& error) {
+            return error.what();
+        }
+        return "not refused";
+    }
+
+    sand::Scene scene_ = samples::flatScene(40, 30);
+    sand::Terrain terrain_{scene_};
+    std::mt19937 random_{59};
+    std::uint64_t frame_ = 0;
+    std::vector<std::uint64_t> hashes_;  // after every step, from 0
+};
+
+TEST_F(Resume, FindsTheSandAfterAnyStepFromTheNewestCheckpointBefore) {
+    EXPECT_EQ(master::checkpointsOf(journal()), (std::vector<std::uint64_t>{40, 30, 20}));  // older ones are removed
+    for (std::uint64_t step = 0; step <= 40; ++step) {
+        expectSand(step, step >= 20 ? step / 10 * 10 : 0);
+    }
+    EXPECT_THROW((void)master::restoreSand(journal(), 41), base::InputError);
+}
+
+TEST_F(Resume, LeavesOutACheckpointThatIsDamagedAnywhere) {
+    const std::filesystem::path newest = master::checkpointFile(journal(), 40);
+    const auto size = static_cast<std::streamoff>(std::filesystem::file_size(newest));
+    for (std::streamoff at = 0; at < size; ++at) {
+        spoil(newest, at);
+        EXPECT_THROW((void)master::readCheckpoint(newest), base::FormatError) << at << " of " << size;
+        if (at % 97 == 0) {
+            expectSand(40, 30);
+        }
+        spoil(newest, at);
+    }
+    expectSand(40, 40);
+    for (std::uintmax_t cut = static_cast<std::uintmax_t>(size); cut-- > 0;) {
+        std::filesystem::resize_file(newest, cut);
+        EXPECT_THROW((void)master::readCheckpoint(newest), base::FormatError) << cut;
+    }
+    expectSand(40, 30);
+}
+
+// Whole, with a right checksum, of the right session: and yet not the sand that the journal comes to.
+TEST_F(Resume, LeavesOutACheckpointOfOtherSand) {
+    const std::uint64_t session = master::JournalReader(journal()).header().session;
+    terrain_ = master::restoreSand(journal(), 39).terrain;
+    terrain_.apply({.epoch = 1, .number = 40, .engaged = true, .path = {{999, 999, -99}, {5000, 5000, -99}}});
+    ASSERT_NE(terrain_.stateHash(), hashes_[40]);
+    keepCheckpoint(session);
+    std::filesystem::remove(master::checkpointFile(journal(), 30));
+    master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
+    writer.finish(40, hashes_[40]);
+    expectSand(40, 20);
+}
+
+TEST_F(Resume, LeavesOutACheckpointOfAnotherSession) {
+    const std::filesystem::path copy = folder_ / "copy" / "session.journal";
+    std::filesystem::create_directories(copy.parent_path());
+    { master::JournalWriter again(copy, scene_, "test"); }
+    std::filesystem::copy(folder_ / "checkpoints", folder_ / "copy" / "checkpoints");
+    EXPECT_EQ(master::restoreSand(copy, 0).checkpointStep, 0U);
+    // Of step 0: nothing but the session tells them apart.
+    std::filesystem::rename(master::checkpointFile(copy, 40), master::checkpointFile(copy, 0));
+    EXPECT_EQ(master::restoreSand(copy, 0).terrain.stepNumber(), 0U);
+}
+
+TEST_F(Resume, GoesOnWithTheNextStepInTheSameJournal) {
+    std::filesystem::resize_file(journal(), std::filesystem::file_size(journal()) - 5);  // tears the last frame
+    const auto session = master::readSession(journal(), "");
+    ASSERT_TRUE(session.has_value());
+    EXPECT_EQ(session->step, 38U);
+    EXPECT_EQ(session->hash, hashes_[38]);
+    EXPECT_EQ(session->frame, 19U);
+    EXPECT_EQ(session->epoch, 1U);
+    EXPECT_GT(session->cutBytes, 0);
+    EXPECT_EQ(session->checkpointStep, 30U);
+    EXPECT_EQ(session->replayedSteps, 8U);
+    EXPECT_EQ(session->scene.encode(), scene_.encode());
+    EXPECT_EQ(session->material, scene_.material);
+
+    terrain_ = sand::Terrain(session->scene);
+    terrain_.decodeState(session->state);
+    EXPECT_EQ(terrain_.stateHash(), hashes_[38]);
+    hashes_.resize(38);
+    frame_ = session->frame;
+    {
+        master::JournalWriter writer(session->place, "test");
+        writer.resume({session->frame, {session->step, session->hash}, session->cutBytes, "a test"});
+        record(writer, 6, session->epoch + 1);
+        writer.finish(terrain_.stepNumber(), terrain_.stateHash());
+    }
+    hashes_.push_back(terrain_.stateHash());
+    const master::Journal journal = master::readJournal(this->journal());
+    EXPECT_EQ(journal.frames.size(), 25U);
+    EXPECT_EQ(journal.tornBytes, 0);
+    ASSERT_EQ(journal.resumes.size(), 1U);
+    EXPECT_EQ(journal.resumes[0].failure, "a test");
+    EXPECT_EQ(journal.resumes[0].cutBytes, session->cutBytes);
+    ASSERT_TRUE(journal.end.has_value());
+    EXPECT_FALSE(std::filesystem::exists(this->journal().string() + ".previous"));
+    // From the beginning, past checkpoints: those of steps that were made twice must not be taken.
+    std::filesystem::remove_all(folder_ / "checkpoints");
+    expectSand(50, 0);
+}
+
+TEST_F(Resume, AnEndedSessionGoesOnAndItsEndCountsNoMore) {
+    {
+        master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
+        writer.finish(40, hashes_[40]);
+    }
+    const auto session = master::readSession(journal(), "");
+    ASSERT_TRUE(session.has_value());
+    EXPECT_EQ(session->step, 40U);
+    {
+        master::JournalWriter writer(session->place, "test");
+        writer.resume({session->frame, {40, hashes_[40]}, 0, ""});
+    }
+    EXPECT_FALSE(master::readJournal(journal()).end.has_value());
+}
+
+TEST_F(Resume, KnowsWhatTheOperatorMadeOfTheMaterial) {
+    sand::Material wetter = scene_.material;
+    wetter.humidity = 0.75;
+    wetter.wetTalus = 51;
+    wetter.toolKind = sand::ToolKind::ellipse;
+    wetter.toolWidth = 0.5;
+    {
+        master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
+        writer.keep(wetter);
+        record(writer, 1);
+    }
+    EXPECT_EQ(master::readSession(journal(), "")->material, wetter);
+}
+
+TEST_F(Resume, ChecksTheHashesOnTheWay) {
+    std::filesystem::remove_all(folder_ / "checkpoints");
+    {
+        master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
+        writer.append({21, hashes_[40] ^ 1, {samples::randomStep(41, scene_.rules, random_)}});
+    }
+    EXPECT_NE(refusal(journal()).find(fmt::format("after step 40 the session had {:016x}, the replay has {:016x}",
+                                                  hashes_[40] ^ 1, hashes_[40])),
+              std::string::npos)
+        << refusal(journal());
+}
+
+TEST_F(Resume, RefusesAJournalWithAHoleInItsSteps) {
+    {
+        master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
+        writer.append({21, hashes_[40], {samples::randomStep(42, scene_.rules, random_)}});
+    }
+    EXPECT_NE(refusal(journal()).find("step 42 follows step 40"), std::string::npos) << refusal(journal());
+}
+
+TEST_F(Resume, RefusesADamagedJournalAndSaysWhatCanBeKept) {
+    spoil(journal(), static_cast<std::streamoff>(std::filesystem::file_size(journal()) / 2));
+    const std::string why = refusal(journal());
+    EXPECT_NE(why.find("damaged at byte"), std::string::npos) << why;
+    EXPECT_NE(why.find("what stands before it is whole; sandwall-replay"), std::string::npos) << why;
+}
+
+TEST_F(Resume, RefusesAnotherSceneThanTheSessions) {
+    const std::filesystem::path file = folder_ / "scene.toml";
+    std::ofstream(file) << "name = \"other\"\n[field]\ncolumns = 40\nrows = 30\n[terrain]\nheight = 0.2\n[material]\n"
+                           "[tool]\nradius = 0.04\n";
+    EXPECT_NE(refusal(journal(), file.string()).find("is not the scene of the session in"), std::string::npos)
+        << refusal(journal(), file.string());
+    const std::filesystem::path other = folder_ / "other" / "session.journal";
+    std::filesystem::create_directories(other.parent_path());
+    { master::JournalWriter writer(other, sand::loadScene(file), "test"); }
+    EXPECT_EQ(refusal(other, file.string()), "not refused");
+}
+
+// Two that write one journal would each destroy what the other has shown.
+TEST_F(Resume, RefusesASessionThatStillRuns) {
+    const auto session = master::readSession(journal(), "");
+    const master::JournalWriter running(session->place, "test");
+    const auto size = std::filesystem::file_size(journal());
+    try {
+        const master::JournalWriter second(session->place, "test");
+        ADD_FAILURE() << "not refused";
+    } catch (const std::runtime_error& error) {
+        EXPECT_NE(std::string(error.what()).find("another session writes it"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(std::filesystem::file_size(journal()), size);
+}
+
+// A session that ends while the next one starts up has shown more than was read.
+TEST_F(Resume, CutsNothingThatWasWrittenSinceItWasRead) {
+    const auto session = master::readSession(journal(), "");
+    {
+        master::JournalWriter running(session->place, "test");
+        running.finish(session->step, session->hash);
+    }
+    const auto size = std::filesystem::file_size(journal());
+    try {
+        const master::JournalWriter second(session->place, "test");
+        ADD_FAILURE() << "not refused";
+    } catch (const std::runtime_error& error) {
+        EXPECT_NE(std::string(error.what()).find("written since it was read"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(std::filesystem::file_size(journal()), size);
+}
+
+// The operator's material is written before the step that brings it in.
+TEST_F(Resume, KnowsNoMaterialWhoseStepWasTornOff) {
+    const sand::Material before = master::readSession(journal(), "")->material;
+    {
+        master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
+        sand::Material wetter = before;
+        wetter.humidity = before.humidity == 0.5 ? 0.25 : 0.5;
+        (void)writer.keep(wetter);
+        writer.sync();
+    }
+    EXPECT_EQ(master::readSession(journal(), "")->material.humidity, before.humidity);
+}
+
+TEST_F(Resume, WithoutAJournalThereIsNothingToGoOnWith) {
+    EXPECT_FALSE(master::readSession(folder_ / "nowhere" / "session.journal", "").has_value());
+}
+
+}  // namespace

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/journal/saved_sand.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "base/input_error.hpp"
+#include "sand/replica.hpp"
+#include "scene/scene.hpp"
+#include "tests/support/folder_test.hpp"
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+using master::SandPlace;
+using master::SavedSand;
+
+class SavedSandFile : public test::FolderTest {
+protected:
+    [[nodiscard]] SavedSand sand() const {
+        sand::Terrain terrain(scene_);
+        terrain.apply({1, 1, true, {{8000, 8000, 0}}, sand::Edit::none});
+        return {SandPlace::of(scene_), 1, terrain.stateHash(), terrain.copySand()->encode()};
+    }
+    [[nodiscard]] std::string complaint(const sand::Scene& scene) const {
+        try {
+            (void)master::readSavedSand(file_, SandPlace::of(scene), sand::Terrain(scene).sandReader());
+        } catch (const base::InputError& error) {
+            return error.what();
+        }
+        return "nothing";
+    }
+    void expectComplaint(const sand::Scene& scene, const std::string& part) const {
+        const std::string said = complaint(scene);
+        EXPECT_NE(said.find(part), std::string::npos) << said;
+        EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+        EXPECT_EQ(said.find(file_.string()), 0U) << said;
+    }
+    sand::Scene scene_ = samples::flatScene(64, 48);
+    const std::filesystem::path file_ = master::saveFile(folder_, "dug");
+};
+
+TEST_F(SavedSandFile, GivesBackWhatWasSavedAndLeavesNothingBeside) {
+    const SavedSand saved = sand();
+    for (int i = 0; i < 2; ++i) {  // the second replaces the first
+        master::writeSavedSand(file_, saved);
+    }
+    const SavedSand read = master::readSavedSand(file_, SandPlace::of(scene_), sand::Terrain(scene_).sandReader());
+    EXPECT_EQ(read.sand, saved.sand);
+    EXPECT_EQ(read.step, 1U);
+    EXPECT_EQ(read.stateHash, saved.stateHash);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_ / "saves"), {}), 1);
+}
+
+TEST_F(SavedSandFile, AnyByteThatChangedAndAnyThatIsMissingIsFound) {
+    master::writeSavedSand(file_, sand());
+    const auto size = std::filesystem::file_size(file_);
+    for (std::uintmax_t at = 0; at < size; at += 7) {
+        std::fstream stream(file_, std::ios::binary | std::ios::in | std::ios::out);
+        stream.seekg(static_cast<std::streamoff>(at));
+        const char was = static_cast<char>(stream.get());
+        stream.seekp(static_cast<std::streamoff>(at));
+        stream.put(static_cast<char>(was ^ 4)).flush();
+        expectComplaint(scene_, "nothing was loaded");
+        stream.seekp(static_cast<std::streamoff>(at));
+        stream.put(was);
+    }
+    EXPECT_EQ(complaint(scene_), "nothing");
+    for (std::uintmax_t cut = size; cut-- > 0;) {
+        std::filesystem::resize_file(file_, cut);
+        expectComplaint(scene_, "nothing was loaded");
+    }
+}
+
+TEST_F(SavedSandFile, OfAnotherSceneIsRefusedWithWhatDiffers) {
+    master::writeSavedSand(file_, sand());
+    sand::Scene other = scene_;
+    other.name = "dunes";
+    expectComplaint(other, "sand of scene 'flat', and this is 'dunes'");
+    expectComplaint(samples::flatScene(48, 64), "sand of 64 x 48 cells, and the scene has 48 x 64");
+    other = scene_;
+    other.rules.ground = 7;
+    expectComplaint(other, "with other cells or other rock");
+}
+
+TEST_F(SavedSandFile, ThatIsNotThereOrCannotBeMadeIsOneLine) {
+    expectComplaint(scene_, "cannot be read");
+    std::ofstream(folder_ / "saves") << "no folder";
+    EXPECT_THROW(master::writeSavedSand(file_, sand()), base::InputError);
+    expectComplaint(scene_, "cannot be read");
+}
+
+TEST(SaveName, LeadsNowhereElse) {
+    for (const char* good : {"a", "Dug_2-b", "0"}) {
+        EXPECT_TRUE(master::isSaveName(good)) << good;
+    }
+    for (const std::string bad : {"", ".", "..", "../x", "a/b", "a.sand", "a b", "\xc3\xa4"}) {
+        EXPECT_FALSE(master::isSaveName(bad)) << bad;
+    }
+    EXPECT_FALSE(master::isSaveName(std::string(65, 'a')));
+    EXPECT_FALSE(master::isSaveName(std::string_view("a\0b", 3)));
+}
+
+}  // namespace

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/grid/levels.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <bit>
+#include <map>
+#include <random>
+
+#include "pictures/compare.hpp"
+#include "render_node/gl/gl_context.hpp"
+#include "render_node/gl/gl_program.hpp"
+#include "scene/scene.hpp"
+#include "tests/render_node/wall_painter.hpp"
+
+namespace {
+
+using render_node::ChunkLevels;
+using render_node::EyeTarget;
+using render_node::SandSurface;
+using render_node::SandVertex;
+using render_node::SandView;
+using VertexBits = std::array<std::uint32_t, 4>;
+
+constexpr int kSide = 32;   // [quad], of a chunk
+constexpr int kChunks = 4;  // on a side of the field
+
+double random(std::mt19937& source, double most) { return static_cast<double>(source() % 1000U) / 1000 * most; }
+
+/// Hills of many sizes.
+sand::HeightField hills(int columns, int rows, std::uint32_t seed) {
+    sand::HeightField field(columns, rows, 1);
+    std::mt19937 source(seed);
+    for (int i = 0; i < 60; ++i) {
+        const double x = random(source, columns), y = random(source, rows);
+        const double wide = 2 + random(source, 20), high = (random(source, 2) - 1) * wide / 3;
+        for (int row = 0; row < rows; ++row) {
+            for (int column = 0; column < columns; ++column) {
+                const double square = ((column - x) * (column - x) + (row - y) * (row - y)) / (wide * wide);
+                field.setHeight(
+                    column, row,
+                    field.height(column, row) + static_cast<int>(high * sand::kUnitsPerCell / (1 + square)));
+            }
+        }
+    }
+    return field;
+}
+
+sand::Rect chunkAt(int x, int y) { return {x * kSide, y * kSide, (x + 1) * kSide + 1, (y + 1) * kSide + 1}; }
+
+using Place = std::pair<int, int>;  // column and row of the vertex grid
+
+/// A field in chunks of random levels.
+class Patchwork {
+public:
+    explicit Patchwork(std::uint32_t seed) : random_(seed) {
+        for (int& level : levels_) {
+            level = static_cast<int>(random_() % render_node::kLevels);
+        }
+    }
+    [[nodiscard]] ChunkLevels at(int x, int y) const {
+        const int own = level(x, y);
+        const auto edge = [&](int u, int v) {
+            const bool rim = u < 0 || v < 0 || u == kChunks || v == kChunks;
+            return rim ? 0 : std::min(own, level(u, v));
+        };
+        return {own, {edge(x, y - 1), edge(x + 1, y), edge(x, y + 1), edge(x - 1, y)}};
+    }
+
+private:
+    [[nodiscard]] int level(int x, int y) const { return levels_.at(static_cast<std::size_t>(y * kChunks + x)); }
+    std::mt19937 random_;
+    std::array<int, kChunks * kChunks> levels_{};
+};
+
+// Every edge of every triangle is met by one of the opposite direction, between the very same vertices.
+TEST(Levels, OfAnyPatchworkMeetWithoutCracks) {
+    const SandSurface surface(hills(kChunks * kSide - 1, kChunks * kSide - 1, 1));
+    for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+        const Patchwork patchwork(seed);
+        std::map<Place, SandVertex> vertices;
+        std::map<std::pair<Place, Place>, int> edges;
+        for (int chunk = 0; chunk < kChunks * kChunks; ++chunk) {
+            const int x = chunk % kChunks, y = chunk / kChunks;
+            const ChunkLevels levels = patchwork.at(x, y);
+            const std::vector<SandVertex> own = render_node::verticesOf(surface, chunkAt(x, y), levels.level);
+            const std::vector<std::uint16_t> triangles = render_node::trianglesOf(kSide, kSide, levels);
+            for (std::size_t i = 0; i < triangles.size(); ++i) {
+                const SandVertex& from = own.at(triangles[i]);
+                const SandVertex& to = own.at(triangles[i % 3 == 2 ? i - 2 : i + 1]);
+                ++edges[{{from.column, from.row}, {to.column, to.row}}];
+                const SandVertex& known = vertices.try_emplace({from.column, from.row}, from).first->second;
+                ASSERT_EQ(std::bit_cast<VertexBits>(known), std::bit_cast<VertexBits>(from));
+            }
+        }
+        constexpr int kLast = kChunks * kSide;
+        int open = 0;
+        for (const auto& [edge, times] : edges) {
+            ASSERT_EQ(times, 1) << "seed " << seed;
+            open += edges.contains({edge.second, edge.first}) ? 0 : 1;
+        }
+        EXPECT_EQ(open, 4 * kLast) << "seed " << seed << ": only the rim is open, at all of its vertices";
+    }
+}
+
+/// The largest distance of a chunk's triangles from the vertices below or above them [cell].
+double distanceOf(const SandSurface& surface, const sand::Rect& chunk, const ChunkLevels& levels) {
+    const std::vector<SandVertex> own = render_node::verticesOf(surface, chunk, levels.level);
+    const std::vector<std::uint16_t> triangles = render_node::trianglesOf(kSide, kSide, levels);
+    double most = 0;
+    for (std::size_t i = 0; i < triangles.size(); i += 3) {
+        std::array<glm::dvec3, 3> corner{};
+        for (std::size_t j = 0; j < 3; ++j) {
+            const SandVertex& vertex = own.at(triangles[i + j]);
+            corner[j] = {surface.east(vertex.column), surface.north(vertex.row), vertex.height};
+        }
+        const glm::dvec3 normal = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+        for (int row = chunk.y0; row < chunk.y1; ++row) {
+            for (int column = chunk.x0; column < chunk.x1; ++column) {
+                const glm::dvec2 at(surface.east(column), surface.north(row));
+                bool inside = true;
+                for (std::size_t j = 0; j < 3; ++j) {
+                    const glm::dvec2 along = glm::dvec2(corner[(j + 1) % 3]) - glm::dvec2(corner[j]);
+                    const glm::dvec2 away = at - glm::dvec2(corner[j]);
+                    inside = inside && along.x * away.y - along.y * away.x >= -1e-9;
+                }
+                if (inside) {
+                    const glm::dvec2 away = at - glm::dvec2(corner[0]);
+                    const double height = corner[0].z - (normal.x * away.x + normal.y * away.y) / normal.z;
+                    most = std::max(most, std::abs(height - double{surface.height(column - 1, row - 1)}));
+                }
+            }
+        }
+    }
+    return most;
+}
+
+TEST(Levels, AreAsFarFromTheSandAsTheySay) {
+    const SandSurface surface(hills(kChunks * kSide - 1, kChunks * kSide - 1, 2));
+    const glm::vec3 sun = glm::normalize(glm::vec3(-0.55, 0.35, 0.6));
+    for (int chunk = 0; chunk < kChunks * kChunks; chunk += 3) {
+        const sand::Rect vertices = chunkAt(chunk % kChunks, chunk / kChunks);
+        const auto errors = render_node::errorsOf(surface, vertices, sun, render_node::kLevels - 1);
+        for (int level = 1; level < render_node::kLevels; ++level) {
+            const double said = errors.height[static_cast<std::size_t>(level)];
+            // The north and east edges count with the chunks beyond.
+            const double whole = distanceOf(surface, vertices, {level, {level, level, level, level}});
+            EXPECT_GE(whole, 0.999 * said) << "chunk " << chunk << ", level " << level;
+            const double inner = distanceOf(surface, vertices, {level, {0, 0, 0, 0}});
+            EXPECT_LE(inner, 1.5 * said) << "chunk " << chunk << ", level " << level << ": between finer neighbours";
+        }
+    }
+}
+
+// sand_levels.cpp weighs mottling as the shader does; neither can ask the other.
+TEST(Levels, CountMottlingAsTheShaderShadesIt) {
+    const std::string& shader = render_node::shaderSource("sunlit.glsl").text;
+    EXPECT_NE(shader.find("* (0.86 + 0.28 * mottling)"), std::string::npos) << shader;
+}
+
+TEST(Levels, OfASmallFieldAreNone) {
+    EXPECT_EQ(render_node::coarsestLevel(128, 128), 0);
+    EXPECT_EQ(render_node::coarsestLevel(255, 64), 0);
+    EXPECT_EQ(render_node::coarsestLevel(256, 64), 1);
+    EXPECT_EQ(render_node::coarsestLevel(512, 512), 2);
+    EXPECT_EQ(render_node::coarsestLevel(16384, 16384), render_node::kLevels - 1);
+}
+
+// Tiles of one plane, seen by one eye, share what is sharp: each chunk must be drawn alike by all of them.
+TEST(Levels, AreThoseOfEveryTileOfAPlane) {
+    const walls::Wall wall = walls::loadWall(sample::wallFolder() / "tiled_3x4.toml");
+    const glm::dmat4 sceneToRoom = walls::stageToRoom(wall.stage, 2, 2, 0);
+    std::mt19937 source(3);
+    int coarse = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const glm::dvec3 low(random(source, 2), random(source, 2), 0);
+        render_node::LevelErrors errors;
+        for (std::size_t level = 1; level < render_node::kLevels; ++level) {
+            errors.height[level] = static_cast<float>(random(source, 1e-3)) + errors.height[level - 1];
+        }
+        std::array<int, render_node::kLevels> asked{};
+        for (const walls::Tile& tile : wall.tiles) {
+            const auto seen = walls::viewOf(tile.screen, wall.viewer.eye, wall.clip.near, wall.clip.far);
+            const render_node::LevelRule rule(seen.viewProjection * sceneToRoom, tile.pixels, 0.5);
+            ++asked.at(static_cast<std::size_t>(rule.level({low, low + 0.03}, errors, render_node::kLevels - 1)));
+        }
+        EXPECT_EQ(*std::ranges::max_element(asked), static_cast<int>(wall.tiles.size())) << "box " << i;
+        coarse += asked[0] == 0 ? 1 : 0;
+    }
+    EXPECT_GT(coarse, 200);
+    EXPECT_LT(coarse, 1800);
+}
+
+/// A strip of dunes with a furrow, large enough for three levels.
+class LargeField : public testing::Test {
+protected:
+    static sand::Scene strip() {
+        sand::Scene scene = sample::flatScene(2048, 256, 0.012);
+        sand::makeDunes({.height = 0.008, .length = 0.1}, scene.terrain);  // at rest as they are
+        return scene;
+    }
+    std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    sand::Scene scene_ = strip();
+    sand::Terrain terrain_{scene_};
+};
+
+// Below the sand there is the floor of its box: a crack shows it, deeper than any sand.
+TEST_F(LargeField, ShowsNoHoleAtAnyBound) {
+    sample::drag(terrain_, scene_, {0.6, 0.1, 0.005}, {0.9, 0.16, 0.0});
+    SandView view(scene_, glm::dmat4(1));
+    view.update(terrain_.field(), terrain_.field().bounds());
+    const EyeTarget target(320, 240);
+    for (const glm::dvec3& eye :
+         {glm::dvec3(0.75, 0.12, 0.2), glm::dvec3(0.75, 0.03, 0.09), glm::dvec3(0.9, 0.2, 0.15)}) {
+        const render_node::Camera camera = sample::camera(eye, {0.76, 0.13, 0}, {0.25, 0.25, 0.75, 0.75});
+        const glm::dmat4 back = glm::inverse(camera.roomToClip);
+        sample::Pixels exact;
+        int coarse = 0;
+        for (const double bound : {0.0, 0.5, 4.0, 64.0}) {
+            view.setDetail(bound);
+            const sample::Pixels picture = sample::draw(view, camera, target);
+            exact = bound == 0 ? picture : exact;
+            coarse = view.counts().coarseChunks;
+            EXPECT_EQ(coarse > 0, bound > 0);
+            std::vector<float> depth(320UL * 240);
+            glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer());
+            glReadPixels(0, 0, 320, 240, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
+            int holes = 0;
+            for (std::size_t i = 0; i < depth.size(); ++i) {
+                const std::size_t column = i % 320, row = i / 320;
+                const double x = (double(column) + 0.5) / 160 - 1, y = (double(row) + 0.5) / 120 - 1;
+                const glm::dvec4 at = back * glm::dvec4(x, y, 2 * double{depth[i]} - 1, 1);
+                holes += at.z / at.w < -0.05 ? 1 : 0;
+            }
+            EXPECT_EQ(holes, 0) << "bound " << bound;
+            int bad = 0;
+            for (std::size_t i = 0; i < picture.size(); ++i) {
+                bad += std::abs(picture[i] - exact[i]) > 8 ? 1 : 0;
+            }
+            if (bound == 0.5) {
+                EXPECT_LE(bad, static_cast<int>(picture.size()) / 100);
+            }
+        }
+        EXPECT_GT(coarse, 0);
+    }
+}
+
+// While a hand digs, chunks change their level, and their neighbours' edges with them; now and then the head moves.
+TEST_F(LargeField, DrawnInPartsIsEqualToTheWhole) {
+    SandView view(scene_, glm::dmat4(1));
+    constexpr int kEyes = 2;
+    std::vector<EyeTarget> targets;
+    targets.reserve(kEyes);
+    std::array<render_node::EyeMemory, kEyes> memories;
+    const EyeTarget whole(160, 60);
+    for (int eye = 0; eye < kEyes; ++eye) {
+        targets.emplace_back(160, 60);
+    }
+    glm::dvec3 head(0.8, -0.1, 0.35);
+    int inPart = 0, fewest = 1 << 30, most = 0;
+    for (int i = 0; i < 30; ++i) {
+        const glm::dvec3 hand(0.5 + 0.012 * i, 0.06 + 0.004 * i, i < 22 ? 0.004 : 0.03);
+        terrain_.apply({0, terrain_.stepNumber() + 1, i < 22, {sample::probeAt(scene_, hand)}});
+        view.update(terrain_.field(), terrain_.takeDamage());
+        view.setTool(terrain_.probe(), terrain_.engaged());
+        head += i % 9 == 8 ? glm::dvec3(0.02, -0.01, 0.01) : glm::dvec3(0);
+        for (std::size_t eye = 0; eye < kEyes; ++eye) {
+            const glm::dvec3 place = head + glm::dvec3(0.06 * double(eye), 0, 0);
+            const auto camera = sample::camera(place, place + glm::dvec3(0, 0.25, -0.35));
+            const auto drawn = view.drawIfChanged(camera, targets[eye], memories[eye]);
+            inPart += drawn.area() > 0 && drawn.area() < 160 * 60 ? 1 : 0;
+            const sample::Pixels expected = sample::draw(view, camera, whole);
+            fewest = std::min(fewest, view.counts().coarseChunks);
+            most = std::max(most, view.counts().coarseChunks);
+            ASSERT_TRUE(targets[eye].read() == expected) << "step " << i << ", eye " << eye;
+        }
+    }
+    EXPECT_GT(inPart, 30);
+    EXPECT_GT(fewest, 0);
+    EXPECT_LT(fewest + 4, most) << "no chunk has become finer";
+    SandView fresh(scene_, glm::dmat4(1));
+    fresh.update(terrain_.field(), terrain_.field().bounds());
+    fresh.setTool(terrain_.probe(), terrain_.engaged());
+    const auto camera = sample::camera(head, head + glm::dvec3(0, 0.25, -0.35));
+    EXPECT_TRUE(sample::draw(fresh, camera, whole) == targets[0].read());
+}
+
+}  // namespace

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// The second paper's figures 1 and 3 on a TIN, drawn in one process.
+#include "tests/render_node/golden.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "haptic_bridge/devices/strokes.hpp"
+#include "render_node/gl/gl_context.hpp"
+#include "sand/tin/geometry/surface_view.hpp"
+#include "scene/load/scene_file.hpp"
+#include "tests/render_node/wall_painter.hpp"
+
+namespace {
+
+using pictures::Image;
+using sand::kProbePerCell;
+
+sand::Scene sceneOf(const std::string& name) {
+    return sand::loadScene(std::filesystem::path(SANDWALL_SOURCE_DIR) / "scenes" / (name + ".toml"));
+}
+
+void step(sand::Terrain& terrain, bool engaged, std::vector<sand::ProbePoint> path, const sand::Edit& edit = {}) {
+    terrain.apply(
+        {.epoch = 1, .number = terrain.stepNumber() + 1, .engaged = engaged, .path = std::move(path), .edit = edit});
+}
+
+/// A script's hand over sand that is level at the start, at four places a step.
+void write(sand::Terrain& terrain, const sand::Scene& scene, const haptic_bridge::Strokes& strokes) {
+    haptic_bridge::StrokeDevice device(strokes);
+    const double half = 0.5 * std::min(scene.rules.columns, scene.rules.rows) * kProbePerCell;
+    const double level = static_cast<double>(scene.referenceHeight()) * kProbePerCell / sand::kUnitsPerCell;
+    const auto lattice = [](double at) { return static_cast<std::int32_t>(std::lround(at)); };
+    for (int tick = 0; !device.finished(tick / 240.0);) {
+        std::vector<sand::ProbePoint> path;
+        bool engaged = false;
+        for (int i = 0; i < 4; ++i) {
+            const haptic_bridge::Pose pose = device.read(tick++ / 240.0);
+            engaged = pose.engaged;
+            path.push_back({lattice(half * (1 + pose.x)), lattice(half * (1 + pose.y)),
+                            lattice(level + pose.z * scene.rules.toolRadius)});
+        }
+        step(terrain, engaged, path);
+    }
+}
+
+class GoldenTin : public testing::Test {
+protected:
+    std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+};
+
+TEST_F(GoldenTin, GisIsWrittenAcrossTheWall) {
+    const sand::Scene scene = sceneOf("gis_tin");
+    sand::Terrain terrain(scene);
+    write(terrain, scene, haptic_bridge::Strokes::parse(haptic_bridge::gisStrokes(), "gis"));
+    step(terrain, false, {}, sand::Edit::settle);
+    const walls::Wall wall =
+        sample::smallWall(walls::loadWall(sample::wallFolder() / "tiled_3x4.toml"), golden::kMostPixels);
+    render_node::SandView view(scene, *terrain.tinView(), sample::sceneToRoom(wall, scene));
+    view.setTool(terrain.probe(), false);
+    golden::expect("golden_tin", "gis", sample::wallPicture(view, wall));
+}
+
+/// A stamp of half this length pressed into the sand, its length turned so far, and taken away again.
+void imprint(sand::Terrain& terrain, const glm::dvec2& place, double radius, double heading /* [degree] */) {
+    const double probe = terrain.cellSize() / kProbePerCell;  // [scene unit]
+    constexpr double kDepth = 0.06;                           // [scene unit], under the sand's middle height
+    sand::Tuning stamp = terrain.rules().tuning();
+    stamp.toolHalfWidth = static_cast<std::int32_t>(radius / probe * stamp.toolHalfWidth / stamp.toolRadius);
+    stamp.toolRadius = static_cast<std::int32_t>(radius / probe);
+    stamp.toolHeading = sand::headingOf(heading).value();
+    const auto at = [&](double height) {
+        return sand::ProbePoint{static_cast<std::int32_t>(place.x / probe), static_cast<std::int32_t>(place.y / probe),
+                                static_cast<std::int32_t>((height + radius) / probe)};
+    };
+    step(terrain, false, {at(0.5)}, sand::Edit::tuned(stamp));
+    step(terrain, true, {at(0.2 - kDepth)});
+    step(terrain, false, {at(0.5)});
+}
+
+TEST_F(GoldenTin, ThreeEllipsesAreImprintedAndTheirBordersMarked) {
+    const sand::Scene scene = sceneOf("ellipses");
+    sand::Terrain terrain(scene);
+    imprint(terrain, {0.55, 1.3}, 0.36, 35);
+    imprint(terrain, {1.45, 1.4}, 0.28, -20);
+    imprint(terrain, {1.1, 0.6}, 0.2, 80);
+    step(terrain, false, {}, sand::Edit::settle);
+    const render_node::Camera camera = sample::camera({1, 0.2, 1.9}, {1, 0.95, 0.2});
+    const render_node::EyeTarget target(240, 180);
+    render_node::SandView view(scene, *terrain.tinView(), glm::dmat4(1));
+    Image both(2 * target.width(), target.height());
+    for (const bool wires : {false, true}) {
+        lockstep::Layers layers;
+        layers.set(lockstep::Layer::wireframe, wires);
+        view.setLayers(layers);
+        view.draw(camera, target);
+        pictures::blit(both, sample::pictureOf(target), wires ? target.width() : 0, 0);
+    }
+    golden::expect("golden_tin", "ellipses", both);
+}
+
+}  // namespace

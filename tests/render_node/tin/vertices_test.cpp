@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// The drawn surface of a TIN on the CPU: a function of the TIN, whatever came between.
+#include "render_node/tin/vertices.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scene/scene.hpp"
+#include "tests/support/sample_tin.hpp"
+
+namespace {
+
+using render_node::TinChunk;
+using render_node::TinSurface;
+using sample::Tin;
+
+/// The corners of a chunk's triangles in order, and where its parts end.
+std::pair<std::vector<std::array<Tin::Vertex, 3>>, std::vector<std::size_t>> orderOf(TinSurface& surface,
+                                                                                     TinChunk& chunk) {
+    (void)surface.settle(chunk);
+    std::vector<std::array<Tin::Vertex, 3>> corners;
+    for (const std::int32_t slot : chunk.slots) {
+        corners.push_back(surface.triangles()[static_cast<std::size_t>(slot)].corner);
+    }
+    std::vector<std::size_t> ends;
+    for (const TinChunk::Part& part : surface.partsOf(chunk)) {
+        ends.push_back(part.end);
+    }
+    return {corners, ends};
+}
+
+TEST(TinSurface, KeepsChunksAndPartsInTheOrderOfTheTinAlone) {
+    const sand::Scene scene = sample::duneScene(32);
+    const double cell = scene.terrain.cellSize();
+    std::mt19937 random(9);
+    Tin tin(scene.terrain);
+    std::vector<std::pair<Tin::Vertex, std::array<Tin::Vertex, 3>>> within;
+    for (Tin::Slot slot = 0; slot < 1500; slot += 3) {
+        const auto corners = tin.mesh().triangles[static_cast<std::size_t>(slot)].corner;
+        within.emplace_back(tin.split(slot, 65536.0 * static_cast<double>(random() % 4)), corners);
+    }
+    (void)tin.takeDamage();
+    TinSurface surface(tin.view(), cell);
+    for (int round = 0; round < 4; ++round) {
+        for (const auto& [vertex, corners] : within) {  // nearer to one corner than to the others
+            const auto near = static_cast<std::size_t>(random() % 3);
+            sand::tin::Place sum{0, 0};
+            for (std::size_t k = 0; k < 3; ++k) {
+                const auto& place = tin.mesh().places[static_cast<std::size_t>(corners[k])];
+                const int weight = k == near ? 8 : 1;
+                sum = {sum.x + weight * place.x, sum.y + weight * place.y};
+            }
+            tin.move(vertex, {sum.x / 10, sum.y / 10});
+        }
+        (void)surface.update(tin.view(), tin.takeDamage());
+        TinSurface fresh(tin.view(), cell);
+        for (std::size_t i = 0; i < surface.chunks().size(); ++i) {
+            ASSERT_EQ(orderOf(surface, surface.chunks()[i]), orderOf(fresh, fresh.chunks()[i])) << "round " << round;
+        }
+    }
+}
+
+TEST(TinSurface, PartsTileAChunkAndHoldTheirTriangles) {
+    const sand::Scene scene = sample::duneScene(64);
+    const Tin tin(scene.terrain);
+    TinSurface surface(tin.view(), scene.terrain.cellSize());
+    std::size_t most = 0;
+    for (TinChunk& chunk : surface.chunks()) {
+        (void)surface.settle(chunk);
+        std::size_t last = 0;
+        for (const TinChunk::Part& part : surface.partsOf(chunk)) {
+            EXPECT_EQ(part.first, last);
+            EXPECT_GT(part.end, part.first);
+            last = part.end;
+        }
+        EXPECT_EQ(last, chunk.slots.size());
+        most = std::max(most, surface.partsOf(chunk).size());
+    }
+    EXPECT_GT(most, 1);
+}
+
+TEST(TinSurface, BesideAHoleOnlyWhatIsNearIsDrawnAnew) {
+    const sand::Scene scene = sample::duneScene(64);
+    const double cell = scene.terrain.cellSize();
+    Tin tin(scene.terrain);
+    const double middle = 32 * sand::kProbePerCell, half = 2 * sand::kProbePerCell;
+    tin.cut([&](double x, double y) { return std::abs(x - middle) < half && std::abs(y - middle) < half; });
+    (void)tin.takeDamage();
+    TinSurface surface(tin.view(), cell);
+    const Tin::Vertex beside = 32 * 66 + 30;  // in rows of 66
+    const auto place = tin.mesh().places[beside];
+    tin.setHeight(beside, tin.height(beside) + 1e6);
+    const TinSurface::Change change = surface.update(tin.view(), tin.takeDamage());
+    const glm::dvec2 at = glm::dvec2(place.x, place.y) * (cell / sand::kProbePerCell);
+    const double reach = 14 * cell;  // the light's, and a triangle's side
+    EXPECT_FALSE(change.boxes.empty());
+    for (const render_node::Box& box : change.boxes) {
+        EXPECT_TRUE(glm::all(glm::greaterThan(glm::dvec2(box.low), at - reach))) << box.low.x << ", " << box.low.y;
+        EXPECT_TRUE(glm::all(glm::lessThan(glm::dvec2(box.high), at + reach))) << box.high.x << ", " << box.high.y;
+    }
+}
+
+TEST(TinRelief, TellsTheSameHeightWhereNothingIsBeyondTheField) {
+    render_node::TinRelief relief(20 * 256, 16 * 256);
+    std::mt19937 random(5);
+    const auto corner = [&](std::int32_t x, std::int32_t y) {
+        return render_node::ReliefCorner{{x * 256, y * 256}, static_cast<double>(random() % 100000)};
+    };
+    for (int y = 0; y < 16; y += 2) {
+        for (int x = 0; x < 20; x += 2) {
+            const auto a = corner(x, y), b = corner(x + 2, y), c = corner(x + 2, y + 2), d = corner(x, y + 2);
+            relief.put({a, b, c});
+            relief.put({a, c, d});
+        }
+    }
+    constexpr int kReach = 3;
+    int within = 0, beyond = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const auto place = render_node::TinRelief::between(static_cast<std::int32_t>(random() % (20 * 256)),
+                                                           static_cast<std::int32_t>(random() % (16 * 256)));
+        const bool isWithin = relief.isWithin(place, kReach);
+        (isWithin ? within : beyond) += 1;
+        for (int north = -kReach; isWithin && north <= kReach; ++north) {
+            for (int east = -kReach; east <= kReach; ++east) {
+                ASSERT_EQ(relief.within(place, east, north), relief.at(place, east, north)) << "seed 5, " << i;
+            }
+        }
+    }
+    EXPECT_GT(within, 200);
+    EXPECT_GT(beyond, 200);
+}
+
+}  // namespace

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// A hand feels on a TIN what it feels on cells.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "sand/force/force_model.hpp"
+#include "sand/force/law.hpp"
+#include "sand/force/tool_contour.hpp"
+#include "sand/replica.hpp"
+#include "scene/load/scene_file.hpp"
+
+namespace {
+
+using sand::force::SurfacePatch;
+
+constexpr double kNominal = 0.01;  // [scene unit]
+
+/// Level sand of 96 x 96 cells under a tool of eight.
+sand::Scene sceneOf(const std::string& shape, const std::string& tin) {
+    const std::filesystem::path file =
+        std::filesystem::temp_directory_path() / ("sandwall-felt-" + std::to_string(getpid()) + ".toml");
+    std::ofstream(file) << "[field]\ncolumns = 96\nwidth = 0.96\n[terrain]\nheight = 0.3\n[material]\n"
+                        << tin << "[tool]\nshape = \"" << shape << "\"\nradius = 0.08\n";
+    sand::Scene scene = sand::loadScene(file);
+    std::filesystem::remove(file);
+    return scene;
+}
+
+/// The force on a tool whose underside stands `depth` under the level, when the sand has come to rest around it.
+double upward(const std::string& shape, const std::string& tin, sand::ForceLaw law, double depth, double east = 0) {
+    const sand::Scene scene = sceneOf(shape, tin);
+    sand::Terrain terrain(scene);
+    const auto place = [&](double under) {
+        const auto probe = [](double at) { return static_cast<std::int32_t>(std::lround(at / kNominal * 256)); };
+        return sand::ProbePoint{probe(0.48 + east), probe(0.48), probe(0.3 - under + 0.08)};
+    };
+    for (std::uint64_t number = 1; number <= 20; ++number) {
+        terrain.apply({.epoch = 1,
+                       .number = number,
+                       .engaged = number > 1,
+                       .path = {place(number == 1 ? -0.2 : depth)},
+                       .edit = {}});
+    }
+    sand::ForceConstants constants;
+    constants.law = law;
+    constants.unitLength = 0.96;
+    const SurfacePatch patch(terrain);
+    EXPECT_EQ(patch.facets().empty(), tin.empty());
+    const auto tool = sand::force::contourOf(terrain.toolShape(), terrain.heading(), terrain.cellSize());
+    const sand::ProbePoint at = terrain.probe();
+    const double probe = kNominal / 256;
+    return respond(constants, patch, tool, {probe * at.x, probe * at.y, probe * at.z}).push.z;
+}
+
+struct Agreement {
+    const char* shape;
+    double controlPoints;  // share by which a TIN may differ from cells
+};
+// A ring far outside the outline is the same sand on both. Control points stand in the side of what an upright tool has
+// cut: a slope as wide as cells or points are apart, in which a height depends on where exactly they stand. A sphere
+// cuts no such side.
+constexpr std::array kAgreements{Agreement{"sphere", 0.08}, Agreement{"circle", 0.4}, Agreement{"ellipse", 0.35},
+                                 Agreement{"footprint", 0.25}};
+
+TEST(FeltTin, AToolThatIsPressedIsHeldAsOnCells) {
+    for (const auto law : {sand::ForceLaw::repulse, sand::ForceLaw::controlPoints}) {
+        for (const auto& [name, most] : kAgreements) {
+            const std::string shape = name;
+            const bool ring = law == sand::ForceLaw::repulse;
+            SCOPED_TRACE(shape + (ring ? ", repulse" : ", control points"));
+            double cells = 0, fine = 0, coarse = 0;
+            for (const double east : {0.0, 0.5}) {  // [cell]: the outline lies now here, now there in a cell
+                cells += upward(shape, "", law, 0.03, east * kNominal) / 2;
+                fine += upward(shape, "[tin]\nspacing = 0.01\n", law, 0.03, east * kNominal) / 2;
+                coarse += upward(shape, "[tin]\nspacing = 0.02\n", law, 0.03, east * kNominal) / 2;
+            }
+            std::printf("%s: %.4f N on cells, %.4f N and %.4f N on a TIN\n", shape.c_str(), cells, fine, coarse);
+            EXPECT_GT(cells, 0);
+            EXPECT_NEAR(fine, cells, (ring ? 0.05 : most) * cells);
+            EXPECT_NEAR(coarse, cells, (ring ? 0.08 : most) * cells);
+        }
+    }
+}
+
+}  // namespace

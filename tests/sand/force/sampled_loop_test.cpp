@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// A device on the model, in a loop of a thousand ticks a second: what is stable, and what the sand gives and takes.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+#include <vector>
+
+#include "sand/force/law.hpp"
+#include "tests/sand/force/force_samples.hpp"
+#include "tests/support/point_mass.hpp"
+
+namespace {
+
+using namespace sand::force;
+using namespace samples;
+using sand::Between;
+using support::PointMass;
+
+/// Level sand as a spring of `stiffness` [N/m] over a scene whose unit is the metre; a weight holds the mass at half a
+/// radius, and it starts 0.1 mm above. Whether it comes to rest: at 95 % of the limit that takes ten seconds.
+bool settles(Between between, double stiffness) {
+    sand::ForceConstants constants;
+    constants.depthExponent = 1e-3;  // next to linear
+    constants.stiffness = stiffness / constants.depthExponent;
+    constants.between = between;
+    const SurfacePatch level = levelPatch();
+    const Contour tool = Contour::sphere(kRadius);
+    ForceModel model(constants);
+    PointMass mass;
+    mass.place = placeAt(kRadius / 2 - 1e-4);
+    const Vec3 weight{0, 0, -stiffness * kRadius / 2};
+    constexpr int kTicks = 20000;
+    double fastest = 0;  // [m/s], in the last tenth of a second
+    for (int tick = 0; tick < kTicks; ++tick) {
+        const auto step = static_cast<std::uint64_t>(tick * 60 / 1000 + 1);
+        mass.push(model.at(level, step, tool, mass.place, tick * kTick).push + weight, kTick);
+        fastest = tick < kTicks - 100 ? 0 : std::max(fastest, norm(mass.velocity));
+    }
+    return fastest < 1e-3;
+}
+
+// The paper's interpolation is a delay of a frame of the sand, and holding one of half: a device of b = 0.5 bears
+// 2 b / T of either's T, or of the local model's, which is the tick.
+TEST(SampledLoop, BearsAsMuchAsWhatLiesBetweenSurfacesAllows) {
+    EXPECT_TRUE(settles(Between::interpolate, 28));
+    EXPECT_FALSE(settles(Between::interpolate, 35));
+    EXPECT_TRUE(settles(Between::hold, 55));
+    EXPECT_FALSE(settles(Between::hold, 65));
+    EXPECT_TRUE(settles(Between::local, 950));
+    EXPECT_FALSE(settles(Between::local, 1050));
+}
+
+/// What became of a mass on sand that steps and slides under it.
+struct Session {
+    double given = 0, mostGiven = 0;  // [J], work of the sand on the mass, at the end and at most so far
+    double loss = 0, handWork = 0;    // [J], of the device's damping; of the hand and the weight
+    double energy = 0;                // [J], kinetic at the end
+    std::vector<double> fastest;      // [m/s], in every quarter of a second after the hand let go
+    double sandMoved = 0;             // [scene unit], the greatest change of any height
+};
+
+constexpr double kMetres = 0.08;  // of a scene unit: the first paper's field is two units and 0.16 m wide
+constexpr double kWeight = 0.3;   // [N]
+constexpr int kPulled = 2000, kReleased = 3000;  // [tick]
+
+/// A weighted device is pulled to and fro for two seconds, digging, and let go.
+Session pulledAndReleased(const sand::ForceConstants& constants) {
+    sand::Terrain terrain(levelScene());
+    ForceModel model(constants);
+    const Contour tool = Contour::sphere(kRadius);
+    SurfacePatch patch(terrain.field(), probeAt(placeAt(0)), kRadius);
+    PointMass mass;
+    const Vec3 start = placeAt(0, -5 * kRadius);
+    Session session;
+    sand::Step next{1, 1, true, {}};
+    double fastest = 0;
+    for (int tick = 0; tick < kPulled + kReleased; ++tick) {
+        const Vec3 place = start + (1 / kMetres) * mass.place;
+        if (tick == 0 || next.path.empty() || !(next.path.back() == probeAt(place))) {
+            next.path.push_back(probeAt(place));
+        }
+        if (tick * 60 / 1000 != (tick - 1) * 60 / 1000 || tick == 0) {
+            terrain.apply(next);
+            next = {1, next.number + 1, true, {}};
+            patch = SurfacePatch(terrain.field(), terrain.probe(), kRadius);
+        }
+        const Response felt = model.at(patch, terrain.stepNumber(), tool, place, tick * kTick);
+        const Vec3 sand = lawfulForce(felt, (1 / (60 * kMetres)) * mass.velocity);
+        Vec3 hand{0, 0, -kWeight};
+        if (tick < kPulled) {
+            hand.x = 0.012 * std::sin(2 * std::numbers::pi * tick * kTick);
+        }
+        const double before = mass.mass / 2 * dot(mass.velocity, mass.velocity);
+        const Vec3 from = mass.place;
+        mass.push(sand + hand, kTick);
+        const Vec3 moved = mass.place - from;
+        session.given += dot(sand, moved);
+        session.mostGiven = std::max(session.mostGiven, session.given);
+        session.handWork += dot(hand, moved);
+        session.energy = mass.mass / 2 * dot(mass.velocity, mass.velocity);
+        session.loss += dot(sand + hand, moved) - (session.energy - before);  // b ∫ v² dt, exactly
+        fastest = std::max(fastest, norm(mass.velocity));
+        if (tick >= kPulled && tick % 250 == 249) {
+            session.fastest.push_back(fastest);
+        }
+        fastest = tick % 250 == 249 ? 0 : fastest;
+    }
+    for (int row = 0; row < kSide; ++row) {
+        for (int column = 0; column < kSide; ++column) {
+            session.sandMoved =
+                std::max(session.sandMoved, std::abs(terrain.field().height(column, row)) * terrain.field().unit());
+        }
+    }
+    return session;
+}
+
+// 400 N/m, where half of what b = 0.5 bears is 500. Sand that a press has raised answers a frame later: felt at once,
+// as a held or an exact force on each surface is, that delay alone shakes the mass for ever (docs/forces.md).
+TEST(SampledLoop, NeverGainsFromSandThatIsDisplacedAndSlidesUnderIt) {
+    for (const auto law : {sand::ForceLaw::repulse, sand::ForceLaw::controlPoints}) {
+        sand::ForceConstants constants;
+        constants.law = law;
+        constants.stiffness = 64;  // 400 N/m at a half k_c
+        constants.unitLength = kSide * kCell;
+        constants.maxForce = 400 * kMetres * constants.unitLength;
+        const Session session = pulledAndReleased(constants);
+        std::printf("sand gave %.3g mJ (at most %.3g), hand and weight %.3g, damping took %.3g; speeds after release:",
+                    1e3 * session.given, 1e3 * session.mostGiven, 1e3 * session.handWork, 1e3 * session.loss);
+        for (const double speed : session.fastest) {
+            std::printf(" %.3g", speed);
+        }
+        std::printf(" m/s; sand moved %.3g\n", session.sandMoved);
+        EXPECT_GT(session.sandMoved, kRadius / 2) << "the sand was left alone";
+        EXPECT_NEAR(session.given + session.handWork, session.loss + session.energy, 1e-9) << "the books must balance";
+        EXPECT_LT(session.given, 0.05 * session.handWork) << "the sand is no motor";
+        EXPECT_LT(session.mostGiven, 0.3 * session.loss) << "and lends little";
+        EXPECT_LT(session.fastest.back(), 1e-3);
+        for (std::size_t i = 1; i < session.fastest.size(); ++i) {
+            EXPECT_LT(session.fastest[i], std::max(session.fastest[i - 1], 1e-4)) << "quarter " << i << ": growth";
+        }
+        constants.recoveryTime = 0;  // every surface felt at once
+        const Session shaken = pulledAndReleased(constants);
+        std::printf("at once: sand gave %.3g mJ, hand and weight %.3g, damping took %.3g; at the end %.3g m/s\n",
+                    1e3 * shaken.given, 1e3 * shaken.handWork, 1e3 * shaken.loss, shaken.fastest.back());
+        EXPECT_GT(shaken.fastest.back(), 1e-2) << "then why recover slowly?";
+        EXPECT_GT(shaken.given, shaken.handWork);
+    }
+}
+
+}  // namespace

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/grid/settle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <utility>
+
+#include "tests/support/oracles.hpp"
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+using sand::HeightField;
+using sand::Rules;
+
+Rules settlingRules(const HeightField& field, std::int32_t threshold = sand::kUnitsPerCell) {
+    Rules rules;
+    rules.columns = field.columns();
+    rules.rows = field.rows();
+    rules.threshold = rules.startThreshold = threshold;
+    return rules;
+}
+
+std::pair<std::int32_t, std::int32_t> extremes(const HeightField& field) {
+    std::pair<std::int32_t, std::int32_t> result{field.height(0, 0), field.height(0, 0)};
+    for (int y = 0; y < field.rows(); ++y) {
+        for (int x = 0; x < field.columns(); ++x) {
+            result = {std::min(result.first, field.height(x, y)), std::max(result.second, field.height(x, y))};
+        }
+    }
+    return result;
+}
+
+void expectAtRest(const HeightField& field, const Rules& rules) {
+    HeightField swept = field;
+    sand::Erosion(swept, rules).sweep(swept, 1);
+    EXPECT_TRUE(sameHeights(swept, field));
+}
+
+/// Settles, checks what must hold for every field, and returns what settle() tells.
+sand::Settled settleAndCheck(HeightField& field, const Rules& rules) {
+    const HeightField start = field;
+    const auto [least, greatest] = extremes(start);
+    sand::NetFlux flux(field.columns(), field.rows());
+    const sand::Settled settled = sand::settle(field, rules, &flux);
+    EXPECT_EQ(field.volume() + settled.outflow, start.volume());
+    const auto [low, high] = extremes(field);
+    EXPECT_GE(low, rules.rim == sand::Rim::open ? std::min(least, 0) : least);
+    EXPECT_LE(high, greatest);
+    expectAtRest(field, rules);
+    return settled;
+}
+
+double errorOfCylinder(int n, double heightPerRadius) {
+    const oracles::Cylinder pile(0.25 * n, heightPerRadius * 0.25 * n);
+    const double middle = n / 2.0;
+    HeightField field =
+        oracles::fieldOf(n, n, oracles::around(middle, middle, [&](double r) { return pile.start(r); }));
+    EXPECT_GT(settleAndCheck(field, settlingRules(field)).iterations, 0) << "the projection was of no use";
+    const auto expected =
+        oracles::sampled(n, n, oracles::around(middle, middle, [&](double r) { return pile.rest(r); }));
+    return oracles::distance(field, expected).misplaced;
+}
+
+// O1: what plain sweeps must reach (pile_oracle_test.cpp), and they take a hundred times as long.
+TEST(Settle, CylinderBecomesItsFrustum) {
+    EXPECT_LE(errorOfCylinder(64, 0.6), 0.003);
+    EXPECT_LE(errorOfCylinder(128, 0.6), 0.001);
+    EXPECT_LE(errorOfCylinder(256, 0.6), 0.0004);
+}
+
+// A cone's apex is one cell that holds a kink in every direction: it may be further off than a frustum.
+TEST(Settle, TallCylinderBecomesItsCone) {
+    EXPECT_LE(errorOfCylinder(64, 3), 0.005);
+    EXPECT_LE(errorOfCylinder(128, 3), 0.0025);
+}
+
+double errorOfPrism(int n, double heightPerWidth) {
+    const oracles::Prism pile(n / 8.0, heightPerWidth * n / 8.0);
+    HeightField field = oracles::fieldOf(n, 8, [&](double x, double) { return pile.start(x - n / 2.0); });
+    settleAndCheck(field, settlingRules(field));
+    const auto expected = oracles::sampled(n, 8, [&](double x, double) { return pile.rest(x - n / 2.0); });
+    return oracles::distance(field, expected).misplaced;
+}
+
+// O2: 0.25 % and 0.08 % at 128 and 256, for the low one and the tall one.
+TEST(Settle, PrismBecomesItsRamp) {
+    for (const double height : {1.0, 4.0}) {
+        EXPECT_LE(errorOfPrism(128, height), 0.0025) << height;
+        EXPECT_LE(errorOfPrism(256, height), 0.0008) << height;
+    }
+}
+
+TEST(Settle, RestIsAFixedPoint) {
+    HeightField field = samples::cylinder(64, 16, 12);
+    const Rules rules = settlingRules(field);
+    sand::settle(field, rules);
+    const HeightField rest = field;
+    const sand::Settled again = sand::settle(field, rules);
+    EXPECT_TRUE(sameHeights(field, rest));
+    EXPECT_EQ(again.iterations + again.sweeps, 0);
+}
+
+// Sand that a start threshold holds is at rest; sand that it does not hold settles to the threshold.
+TEST(Settle, BandHoldsOrLetsGoOfEverything) {
+    Rules rules = settlingRules(HeightField(40, 30, 1.0));
+    rules.startThreshold = rules.threshold * 5 / 4;
+    for (const auto& [slope, moves] : {std::pair{1.2, false}, {1.3, true}}) {
+        HeightField field = oracles::fieldOf(40, 30, [slope = slope](double x, double) { return slope * x; });
+        const HeightField start = field;
+        settleAndCheck(field, rules);
+        EXPECT_EQ(sameHeights(field, start), !moves);
+        if (moves) {
+            expectAtRest(field, settlingRules(field));
+        }
+    }
+}
+
+// O5: a plane steeper than the talus turns about its centroid.
+TEST(Settle, SteepPlaneTurnsAboutItsCentroid) {
+    const oracles::TiltedPlane plane(96, 3);
+    HeightField field = oracles::fieldOf(96, 40, [&](double x, double) { return plane.start(x); });
+    settleAndCheck(field, settlingRules(field));
+    const auto expected = oracles::sampled(96, 40, [&](double x, double) { return plane.rest(x); });
+    // The iteration stops at a gap of 1e-5 of the squared change, so the pile is within the root of 2e-5 of the change,
+    // which is 55 cells on the mean and the pile 144 high.
+    EXPECT_LE(oracles::distance(field, expected).misplaced, 0.0017);
+}
+
+// O4: slopes rise from a ring of cells at height 0, half a cell beyond the field's edge. Along its diagonals the roof
+// of the table has a kink, over which a quad averages: half a cell on one cell in N/4.
+TEST(Settle, OpenTableKeepsItsRoof) {
+    const int n = 64;
+    const oracles::OpenTable table(n, n);
+    HeightField field = oracles::fieldOf(n, n, [](double, double) { return 60; });
+    Rules rules = settlingRules(field);
+    rules.rim = sand::Rim::open;
+    const sand::Settled settled = settleAndCheck(field, rules);
+    EXPECT_GT(settled.iterations, 0);
+    EXPECT_GT(settled.outflow, 0);
+    const auto expected = oracles::sampled(n, n, [&](double x, double y) { return table.rest(x, y); });
+    EXPECT_LE(oracles::distance(field, expected).misplaced, 0.02);
+}
+
+TEST(Settle, RoughFieldsKeepVolumeAndExtremes) {
+    std::mt19937 random(23);
+    for (const auto rim : {sand::Rim::closed, sand::Rim::open}) {
+        HeightField field = samples::randomField(67, 45, 1 << 21, random);
+        Rules rules = settlingRules(field);
+        rules.rim = rim;
+        settleAndCheck(field, rules);
+    }
+}
+
+// The stiff cases: spikes of the greatest height there is, a pit, a chequerboard, sides of one cell, angle 0.
+TEST(Settle, EndsWithSpikesOfEitherSign) {
+    for (const auto& [columns, rows] : {std::pair{1, 1}, {1, 40}, {40, 1}, {2, 2}, {31, 33}}) {
+        for (const int sign : {-1, 1}) {
+            HeightField field(columns, rows, 1.0);
+            field.setHeight(columns / 2, rows / 2, sign * sand::kMaxHeight);
+            settleAndCheck(field, settlingRules(field, 1 << 20));
+        }
+    }
+}
+
+TEST(Settle, ChequerboardComesToRest) {
+    HeightField field(32, 31, 1.0);
+    for (int y = 0; y < 31; ++y) {
+        for (int x = 0; x < 32; ++x) {
+            field.setHeight(x, y, (x + y) % 2 == 0 ? sand::kMaxHeight : -sand::kMaxHeight);
+        }
+    }
+    settleAndCheck(field, settlingRules(field));
+}
+
+TEST(Settle, AngleZeroComesToRest) {
+    std::mt19937 random(19);
+    HeightField field = samples::randomField(16, 16, 1 << 16, random);
+    settleAndCheck(field, settlingRules(field, 0));
+    const auto [least, greatest] = extremes(field);
+    EXPECT_LE(greatest - least, 4 * 30) << "4 units for each of 30 faces from corner to corner";
+}
+
+TEST(Settle, SandBelowAnOpenRimIsSwept) {
+    HeightField field(30, 30, 1.0);
+    field.setHeight(15, 15, -40 * sand::kUnitsPerCell);
+    Rules rules = settlingRules(field);
+    rules.rim = sand::Rim::open;
+    const sand::Settled settled = settleAndCheck(field, rules);
+    EXPECT_EQ(settled.iterations, 0);
+    EXPECT_GT(settled.sweeps, 0);
+}
+
+// Cells twice as long as wide: the same prism, along the one axis and along the other, must rest alike.
+TEST(Settle, LongCellsRestAtTheTalusAlongBothAxes) {
+    const oracles::Prism pile(16, 16);
+    Rules rules = settlingRules(HeightField(8, 64, 1.0));
+    rules.aspect = 2 * sand::kUnitsPerCell;
+    HeightField field = oracles::fieldOf(8, 64, [&](double, double y) { return pile.start(2 * y - 64); });
+    settleAndCheck(field, rules);
+    const auto expected = oracles::sampled(8, 64, [&](double, double y) { return pile.rest(2 * y - 64); });
+    EXPECT_LE(oracles::distance(field, expected).misplaced, 0.01);  // as on 64 square cells, O2
+}
+
+TEST(Settle, InstructionSetChangesNothing) {
+    std::mt19937 random(29);
+    const HeightField start = samples::randomField(61, 47, 1 << 21, random);
+    HeightField automatic = start;
+    HeightField baseline = start;
+    const Rules rules = settlingRules(start);
+    sand::settle(automatic, rules);
+    sand::settle(baseline, rules, nullptr, sand::CodePath::baseline);
+    EXPECT_TRUE(sameHeights(automatic, baseline));
+}
+
+}  // namespace

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/model/ground.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <random>
+
+#include "scene/scene.hpp"
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+using sand::Ground;
+using sand::Terrain;
+
+/// A thin layer of sand over rock that is steeper than the talus, with a wall through it.
+sand::Scene layerOverRock(std::uint32_t seed) {
+    sand::Scene scene = samples::flatScene(61, 47, 5);
+    auto ground = std::make_shared<Ground>(61, 47);
+    std::mt19937 random(seed);
+    for (int y = 0; y < 47; ++y) {
+        for (int x = 0; x < 61; ++x) {
+            const std::int32_t rock = 90000 * (x % 20) + static_cast<std::int32_t>(random() % 40000);
+            const std::int32_t layer = x % 3 == 0 ? static_cast<std::int32_t>(random() % 4) : 60000;
+            scene.terrain.setHeight(x, y, rock + layer);
+            y == 23 && x > 10 ? ground->setWall(x, y) : ground->setBedrock(x, y, rock);
+        }
+    }
+    scene.rules.ground = ground->digest();
+    scene.ground = ground;
+    return scene;
+}
+
+TEST(Ground, RockAndWallsOutlastAnyHand) {
+    const sand::Scene scene = layerOverRock(3);
+    for (const auto rim : {sand::Rim::closed, sand::Rim::open}) {
+        sand::Scene rimmed = scene;
+        rimmed.rules.rim = rim;
+        Terrain terrain(rimmed);
+        std::mt19937 random(5);
+        for (std::uint64_t i = 1; i <= 300; ++i) {
+            terrain.apply(samples::randomStep(i, scene.rules, random));
+            ASSERT_EQ(terrain.field().volume() + terrain.outflow(), scene.terrain.volume()) << "step " << i;
+            for (int y = 0; y < 47; ++y) {
+                for (int x = 0; x < 61; ++x) {
+                    ASSERT_GE(scene.ground->sand(x, y, terrain.field().height(x, y)), 0)
+                        << "a layer thinner than nothing at " << x << ", " << y << " in step " << i << " of seed 5";
+                    ASSERT_TRUE(!scene.ground->isWall(x, y) ||
+                                terrain.field().height(x, y) == scene.terrain.height(x, y));
+                }
+            }
+        }
+    }
+}
+
+TEST(Ground, BlocksThreadsAndCodePathsChangeNothing) {
+    const sand::Scene scene = layerOverRock(7);
+    const auto hashWith = [&](const sand::Erosion::Options& options) {
+        Terrain terrain(scene, options);
+        std::mt19937 random(11);
+        for (std::uint64_t i = 1; i <= 100; ++i) {
+            terrain.apply(samples::randomStep(i, scene.rules, random));
+        }
+        return terrain.stateHash();
+    };
+    const std::uint64_t expected = hashWith({.skipSettled = false});
+    // Last task first: whoever depends on an order shows it.
+    const base::Executor backwards = [](int count, const std::function<void(int)>& task) {
+        for (int i = count - 1; i >= 0; --i) {
+            task(i);
+        }
+    };
+    for (const int block : {2, 16, 64}) {
+        EXPECT_EQ(hashWith({.blockSize = block}), expected);
+        EXPECT_EQ(hashWith({.blockSize = block, .path = sand::CodePath::baseline}), expected);
+        EXPECT_EQ(hashWith({.blockSize = block, .executor = &backwards}), expected);
+    }
+}
+
+// Rock so deep that nobody feels it must change nothing: the limiter is exact, not merely close.
+TEST(Ground, BottomlessRockIsAsGoodAsNone) {
+    sand::Scene scene = samples::flatScene(50, 40);
+    std::mt19937 random(13);
+    scene.terrain = samples::randomField(50, 40, 1 << 20, random);
+    sand::Scene grounded = scene;
+    grounded.ground = std::make_shared<Ground>(50, 40);
+    grounded.rules.ground = grounded.ground->digest();
+    Terrain without(scene);
+    Terrain with(grounded);
+    for (std::uint64_t i = 1; i <= 100; ++i) {
+        const sand::Step step = samples::randomStep(i, scene.rules, random);
+        without.apply(step);
+        with.apply(step);
+        ASSERT_EQ(with.stateHash(), without.stateHash()) << "step " << i;
+    }
+}
+
+TEST(Ground, TravelsWithItsScene) {
+    const sand::Scene scene = layerOverRock(17);
+    const sand::Scene copy = sand::Scene::decode(scene.encode());
+    ASSERT_NE(copy.ground, nullptr);
+    EXPECT_EQ(copy.ground->digest(), scene.ground->digest());
+    EXPECT_EQ(copy.rules.digest(), scene.rules.digest());
+    sand::Scene bare = scene;
+    bare.rules.ground = 0;
+    EXPECT_NE(bare.rules.digest(), scene.rules.digest());
+}
+
+}  // namespace

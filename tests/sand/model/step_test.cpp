@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/model/step.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <span>
+
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+base::Bytes bytesOf(const sand::Step& step) {
+    base::ByteWriter writer;
+    encode(step, writer);
+    return writer.take();
+}
+
+TEST(Step, SurvivesItsEncoding) {
+    std::mt19937 random(41);
+    for (int i = 0; i < 1000; ++i) {
+        sand::Step step = samples::randomStep(random(), samples::flatScene(900, 900).rules, random);
+        step.epoch = static_cast<std::uint32_t>(random());
+        const base::Bytes bytes = bytesOf(step);
+        base::ByteReader reader(bytes);
+        ASSERT_EQ(sand::decodeStep(reader), step);
+        ASSERT_TRUE(reader.atEnd());
+    }
+}
+
+TEST(Step, EveryEditSurvivesAndNoOtherIsRead) {
+    for (int kind = 0; kind < sand::kEdits; ++kind) {
+        sand::Edit edit = static_cast<sand::Edit::Kind>(kind);
+        if (edit.kind == sand::Edit::tune) {
+            edit = sand::Edit::tuned({7, 11, 13, 17});
+        } else if (edit.kind == sand::Edit::load) {
+            edit = sand::Edit::loaded({3, 1, 4, 1, 5});
+        }
+        for (const bool engaged : {false, true}) {
+            const sand::Step step{1, 2, engaged, {{5, 6, 7}}, edit};
+            const base::Bytes bytes = bytesOf(step);
+            base::ByteReader reader(bytes);
+            EXPECT_EQ(sand::decodeStep(reader), step);
+        }
+    }
+    const base::Bytes bytes = bytesOf({1, 2, false, {}, static_cast<sand::Edit::Kind>(sand::kEdits)});
+    base::ByteReader reader(bytes);
+    EXPECT_THROW((void)sand::decodeStep(reader), base::FormatError);
+}
+
+// What a session of spheres wrote before there were other tools, byte for byte: old journals are still read, and a
+// sphere's steps have not grown.
+TEST(Step, OfASphereIsWrittenAsItAlwaysWas) {
+    sand::Step step{3, 300, true, {{5, -6, 70}}, sand::Edit::tuned({7, 11, 13, 17})};
+    const base::Bytes before{3, 0xac, 2, 9, 1, 10, 11, 0x8c, 1, 7, 0, 0, 0, 11, 0, 0, 0, 13, 0, 0, 0, 17, 0, 0, 0};
+    EXPECT_EQ(bytesOf(step), before);
+    base::ByteReader reader(before);
+    EXPECT_EQ(sand::decodeStep(reader), step);
+    step.heading = *sand::headingOf(30, true);
+    EXPECT_EQ(bytesOf(step).size(), before.size() + 4) << "only a step that turns the tool says how";
+}
+
+TEST(Step, AHeadingAndEveryToolSurviveAndWhatIsNoneIsRefused) {
+    for (int kind = 0; kind < sand::kToolKinds; ++kind) {
+        for (const bool mirrored : {false, true}) {
+            sand::Tuning tuning{7, 11, 13, 2000};
+            tuning.toolKind = static_cast<sand::ToolKind>(kind);
+            tuning.toolHalfWidth = sand::isRound(tuning.toolKind) ? 0 : 700;
+            tuning.toolHeading = *sand::headingOf(77, mirrored);
+            sand::Step step{1, 2, true, {{5, 6, 7}}, sand::Edit::tuned(tuning)};
+            step.heading = *sand::headingOf(-123, !mirrored);
+            const base::Bytes bytes = bytesOf(step);
+            base::ByteReader reader(bytes);
+            EXPECT_EQ(sand::decodeStep(reader), step);
+            for (std::size_t length = 0; length < bytes.size(); ++length) {
+                base::ByteReader cut{std::span(bytes).first(length)};
+                EXPECT_THROW((void)sand::decodeStep(cut), base::FormatError) << length;
+            }
+        }
+    }
+    const auto refused = [](const sand::Step& step) {
+        const base::Bytes bytes = bytesOf(step);
+        base::ByteReader reader(bytes);
+        EXPECT_THROW((void)sand::decodeStep(reader), base::FormatError);
+    };
+    sand::Step crooked{1, 2, true, {}};
+    crooked.heading = sand::Heading{100, 100};
+    refused(crooked);
+    sand::Tuning wide{7, 11, 13, 17, sand::ToolKind::ellipse, 18};
+    refused({1, 2, true, {}, sand::Edit::tuned(wide)});
+    wide.toolHalfWidth = 3;
+    wide.toolKind = static_cast<sand::ToolKind>(sand::kToolKinds);
+    refused({1, 2, true, {}, sand::Edit::tuned(wide)});
+}
+
+TEST(Step, SeventeenSamplesOfAHandFitInEightyBytes) {
+    sand::Step step{3, 1000000, true, {}};
+    for (int i = 0; i < 17; ++i) {  // 1.5 cells in a step of 1/60 s
+        step.path.push_back({60000 + 23 * i, 70000 - 11 * i, 512 + i % 3});
+    }
+    EXPECT_LE(bytesOf(step).size(), 80U);
+}
+
+TEST(Step, RefusesEveryTruncation) {
+    const base::Bytes bytes = bytesOf({1, 2, true, {{1000, 2000, 3000}, {-5, 7, 9}}});
+    for (std::size_t length = 0; length < bytes.size(); ++length) {
+        base::ByteReader reader{std::span(bytes).first(length)};
+        EXPECT_THROW((void)sand::decodeStep(reader), base::FormatError) << length;
+    }
+}
+
+TEST(Step, RefusesEveryTruncationOfAnEdit) {
+    for (const sand::Edit& edit : {sand::Edit::tuned({7, 11, 13, 17}), sand::Edit::loaded({3, 1, 4, 1, 5})}) {
+        const base::Bytes bytes = bytesOf({1, 2, true, {{5, 6, 7}}, edit});
+        for (std::size_t length = 0; length < bytes.size(); ++length) {
+            base::ByteReader reader{std::span(bytes).first(length)};
+            EXPECT_THROW((void)sand::decodeStep(reader), base::FormatError) << length;
+        }
+    }
+}
+
+TEST(Step, RefusesAMaterialOrToolThatNoSceneGives) {
+    const sand::Tuning good{7, 11, 13, 17};
+    const auto refused = [](const sand::Tuning& tuning) {
+        const base::Bytes bytes = bytesOf({1, 2, false, {}, sand::Edit::tuned(tuning)});
+        base::ByteReader reader(bytes);
+        EXPECT_THROW((void)sand::decodeStep(reader), base::FormatError);
+    };
+    for (std::int32_t sand::Tuning::*number : {&sand::Tuning::threshold, &sand::Tuning::startThreshold,
+                                               &sand::Tuning::sweepsPerStep, &sand::Tuning::toolRadius}) {
+        for (const std::int32_t bad : {-1, sand::kLargestThreshold + 1}) {
+            sand::Tuning tuning = good;
+            tuning.*number = bad;
+            refused(tuning);
+        }
+    }
+    refused({12, 11, 13, 17});  // sand at rest would slide before sand that slides
+}
+
+TEST(Step, RefusesPathsTooLongAndPointsOutOfReach) {
+    base::Bytes bytes = bytesOf({1, 2, true, {}});
+    bytes.back() = sand::kMaxPathPoints + 1;
+    base::ByteReader tooLong(bytes);
+    EXPECT_THROW((void)sand::decodeStep(tooLong), base::FormatError);
+    const base::Bytes far = bytesOf({1, 2, true, {{sand::kMaxProbe + 1, 0, 0}}});
+    base::ByteReader outOfReach(far);
+    EXPECT_THROW((void)sand::decodeStep(outOfReach), base::FormatError);
+}
+
+}  // namespace

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sand/replica.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "scene/scene.hpp"
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+using sand::kProbePerCell;
+using sand::ProbePoint;
+using sand::Step;
+using sand::Terrain;
+
+ProbePoint at(double column, double row, double height /* [cell] */) {
+    return {static_cast<std::int32_t>(column * kProbePerCell), static_cast<std::int32_t>(row * kProbePerCell),
+            static_cast<std::int32_t>(height * kProbePerCell)};
+}
+
+Terrain dragged(const sand::Scene& scene, ProbePoint from, ProbePoint to, int steps) {
+    Terrain terrain(scene);
+    for (int i = 1; i <= steps; ++i) {
+        const auto between = [&](std::int32_t a, std::int32_t b) { return a + (b - a) * i / steps; };
+        terrain.apply({1,
+                       static_cast<std::uint64_t>(i),
+                       true,
+                       {{between(from.x, to.x), between(from.y, to.y), between(from.z, to.z)}}});
+    }
+    return terrain;
+}
+
+TEST(Terrain, AStrokeLeavesAFurrowWithBanks) {
+    const Terrain terrain = dragged(samples::flatScene(96, 64), at(20, 32, 2), at(70, 32, 2), 60);
+    const auto& field = terrain.field();
+    EXPECT_LT(field.height(45, 32), -sand::kUnitsPerCell) << "the furrow";
+    EXPECT_GT(field.height(45, 37), sand::kUnitsPerCell) << "the northern bank";
+    EXPECT_GT(field.height(45, 26), sand::kUnitsPerCell) << "the southern bank";
+    EXPECT_EQ(field.volume(), 0);
+}
+
+TEST(Terrain, AHeldToolComesToRest) {
+    sand::Scene scene = samples::flatScene(64, 64, 8);
+    Terrain terrain(scene);
+    std::uint64_t number = 0;
+    terrain.apply({1, ++number, true, {at(32, 32, 4)}});
+    for (int i = 0; i < 2000 && !terrain.settled(); ++i) {
+        terrain.apply({1, ++number, true, {}});
+    }
+    ASSERT_TRUE(terrain.settled()) << "a ball held still must not pump sand for ever";
+    const sand::HeightField rest = terrain.field();
+    terrain.apply({1, ++number, true, {}});
+    EXPECT_TRUE(sameHeights(terrain.field(), rest));
+    const sand::Obstacle ball = sand::Tool(scene.rules.toolShape()).obstacle(rest, terrain.probe());
+    std::size_t next = 0;
+    for (int y = ball.cells.y0; y < ball.cells.y1; ++y) {
+        for (int x = ball.cells.x0; x < ball.cells.x1; ++x) {
+            EXPECT_LE(rest.height(x, y), ball.underside[next++]) << "sand inside the ball at " << x << ", " << y;
+        }
+    }
+}
+
+TEST(Terrain, SandFallsWhenTheToolLeaves) {
+    sand::Scene scene = samples::flatScene(64, 64, 8);
+    scene.rules.sweepsPerStep = 2;
+    Terrain terrain(scene);
+    std::uint64_t number = 0;
+    terrain.apply({1, ++number, true, {at(32, 32, 0)}});
+    while (!terrain.settled()) {
+        terrain.apply({1, ++number, true, {}});
+    }
+    const std::int32_t held = terrain.field().height(32, 32);
+    for (int i = 0; i < 200; ++i) {
+        terrain.apply({1, ++number, false, {at(32, 32, 20)}});
+    }
+    EXPECT_GT(terrain.field().height(32, 32), held);
+}
+
+TEST(Terrain, VolumeIsExactWhateverTheHandDoes) {
+    for (const auto rim : {sand::Rim::closed, sand::Rim::open}) {
+        sand::Scene scene = samples::flatScene(45, 33, 2.56);
+        scene.rules.rim = rim;
+        std::mt19937 random(23);
+        scene.terrain = samples::randomField(45, 33, 1 << 18, random);
+        Terrain terrain(scene);
+        for (std::uint64_t i = 1; i <= 500; ++i) {
+            terrain.apply(samples::randomStep(i, scene.rules, random));
+            ASSERT_EQ(terrain.field().volume() + terrain.outflow(), scene.terrain.volume()) << "step " << i;
+        }
+    }
+}
+
+TEST(Terrain, AToolLargerThanTheFieldLosesNothing) {
+    const sand::Scene scene = samples::flatScene(5, 4, 40);
+    Terrain terrain(scene);
+    terrain.apply({1, 1, true, {at(2, 2, 0)}});
+    EXPECT_EQ(terrain.field().volume(), 0);
+}
+
+TEST(Terrain, HoveringLeavesTheSandAlone) {
+    const sand::Scene scene = samples::flatScene(32, 32);
+    Terrain terrain(scene);
+    terrain.apply({1, 1, false, {at(16, 16, -3), at(20, 16, -3)}});
+    EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain));
+    EXPECT_TRUE(terrain.settled());
+}
+
+TEST(Terrain, RefusesStepsOutOfOrder) {
+    Terrain terrain(samples::flatScene(8, 8));
+    terrain.apply({1, 1, false, {}});
+    EXPECT_THROW(terrain.apply({1, 1, false, {}}), std::logic_error);
+    EXPECT_THROW(terrain.apply({1, 3, false, {}}), std::logic_error);
+}
+
+TEST(Terrain, GoesOnFromAStateAsIfNothingHadHappened) {
+    const sand::Scene scene = samples::flatScene(70, 50);
+    std::mt19937 random(29);
+    Terrain whole(scene);
+    Terrain resumed(scene);
+    for (std::uint64_t i = 1; i <= 300; ++i) {
+        const Step step = samples::randomStep(i, scene.rules, random);
+        whole.apply(step);
+        resumed.apply(step);
+        if (i % 37 == 0) {
+            Terrain fresh(scene);
+            fresh.decodeState(resumed.encodeState());
+            resumed = fresh;
+        }
+        ASSERT_EQ(resumed.stateHash(), whole.stateHash()) << "step " << i << " of seed 29";
+    }
+}
+
+// Sand that slides on while the hand is away has inertia, which belongs to the state.
+TEST(Terrain, GoesOnInMidSlide) {
+    for (const auto rim : {sand::Rim::closed, sand::Rim::open}) {
+        sand::Scene scene = samples::flatScene(64, 64);
+        scene.terrain = samples::cylinder(64, 24, 40);
+        scene.rules.rim = rim;
+        Terrain whole(scene);
+        Terrain resumed(scene);
+        for (std::uint64_t i = 1; i <= 40; ++i) {
+            for (Terrain* terrain : {&whole, &resumed}) {
+                terrain->apply({1, i, i == 20, {at(32, 32, i == 20 ? 0 : 100)}});
+            }
+            Terrain fresh(scene);
+            fresh.decodeState(resumed.encodeState());
+            resumed = fresh;
+            ASSERT_EQ(resumed.stateHash(), whole.stateHash()) << "step " << i;
+        }
+        EXPECT_FALSE(whole.settled());
+    }
+}
+
+// Who joins visits every block once, where the others sleep: that must not make its inertia older than theirs.
+TEST(Terrain, GoesOnFromSettledSand) {
+    sand::Scene scene = samples::flatScene(64, 64);
+    scene.terrain = samples::cylinder(64, 12, 30);
+    Terrain whole(scene);
+    std::uint64_t step = 0;
+    while (!whole.settled()) {
+        whole.apply({1, ++step, false, {}});
+        ASSERT_LT(step, 10000U);
+    }
+    Terrain joined(scene);
+    joined.decodeState(whole.encodeState());
+    for (int i = 0; i < 5; ++i) {
+        const bool digs = i == 3;
+        for (Terrain* terrain : {&whole, &joined}) {
+            terrain->apply({1, step + 1, digs, {at(32, 32, digs ? 0 : 100)}});
+        }
+        ++step;
+        ASSERT_EQ(joined.stateHash(), whole.stateHash()) << i << " steps after joining";
+    }
+}
+
+TEST(Terrain, SettlesAtOnceWhenAsked) {
+    sand::Scene scene = samples::flatScene(64, 64);
+    scene.terrain = samples::cylinder(64, 12, 30);
+    scene.rules.sweepsPerStep = 4;
+    for (const bool onRock : {false, true}) {
+        if (onRock) {
+            scene.ground = std::make_shared<sand::Ground>(64, 64);
+            scene.rules.ground = scene.ground->digest();
+        }
+        Terrain terrain(scene);
+        terrain.apply({1, 1, false, {}, sand::Edit::settle});
+        EXPECT_TRUE(terrain.settled());
+        EXPECT_EQ(terrain.field().volume(), scene.terrain.volume());
+        EXPECT_LT(terrain.field().height(32, 32), scene.terrain.height(32, 32)) << "a cone, lower than its cylinder";
+        const std::uint64_t incremental = terrain.stateHash();
+        terrain.audit(terrain.hashTiles().tileCount());
+        EXPECT_EQ(terrain.stateHash(), incremental);
+    }
+}
+
+TEST(Terrain, IncrementalHashEqualsAFreshOne) {
+    const sand::Scene scene = samples::flatScene(70, 50);
+    std::mt19937 random(31);
+    Terrain terrain(scene);
+    for (std::uint64_t i = 1; i <= 200; ++i) {
+        terrain.apply(samples::randomStep(i, scene.rules, random));
+        const std::uint64_t incremental = terrain.stateHash();
+        terrain.audit(terrain.hashTiles().tileCount());
+        ASSERT_EQ(terrain.stateHash(), incremental) << "step " << i;
+    }
+}
+
+TEST(Terrain, AFlippedBitShowsInTheRightTile) {
+    Terrain terrain(samples::flatScene(100, 70));
+    const std::uint64_t before = terrain.stateHash();
+    const auto tiles = terrain.hashTiles().tileHashes();
+    terrain.corrupt(70, 40);
+    EXPECT_EQ(terrain.stateHash(), before) << "nobody has looked yet";
+    terrain.audit(terrain.hashTiles().tileCount());
+    EXPECT_NE(terrain.stateHash(), before);
+    for (int tile = 0; tile < terrain.hashTiles().tileCount(); ++tile) {
+        const auto i = static_cast<std::size_t>(tile);
+        EXPECT_EQ(tiles[i] != terrain.hashTiles().tileHashes()[i], tile == 4 + 2) << "tile " << tile;
+    }
+}
+
+TEST(Terrain, DamageCoversEveryChangedCell) {
+    const sand::Scene scene = samples::flatScene(100, 70);
+    std::mt19937 random(37);
+    Terrain terrain(scene);
+    (void)terrain.takeDamage();
+    for (std::uint64_t i = 1; i <= 100; ++i) {
+        const sand::HeightField before = terrain.field();
+        terrain.apply(samples::randomStep(i, scene.rules, random));
+        const sand::Rect damage = terrain.takeDamage();
+        for (int y = 0; y < 70; ++y) {
+            for (int x = 0; x < 100; ++x) {
+                const bool inside = x >= damage.x0 && x < damage.x1 && y >= damage.y0 && y < damage.y1;
+                ASSERT_TRUE(inside || before.height(x, y) == terrain.field().height(x, y)) << x << ", " << y;
+            }
+        }
+    }
+}
+
+}  // namespace

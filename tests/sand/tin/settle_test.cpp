@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sand that comes to rest at once; how right its piles are, tin_pile_test.cpp tells.
+#include "sand/tin/flow/settle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "base/byte_stream.hpp"
+#include "sand/tin/flow/dual_projection.hpp"
+#include "tests/support/oracles.hpp"
+#include "tests/support/tin_piles.hpp"
+
+namespace settling {
+namespace {
+
+using namespace tin_piles;
+
+constexpr std::int32_t kTalus = 65536;  // [unit per cell], 45 degrees
+
+/// Sand as rough as this [cell].
+Layer roughLayer(Kind kind, int n, double roughness, std::uint32_t seed) {
+    Layer layer = layerOf(kind, n, 0, seed);
+    std::mt19937 random(seed);
+    for (std::size_t i = 0; i < layer.heights().size(); ++i) {
+        if (layer.triangles().alive(static_cast<Vertex>(i))) {
+            layer.setHeight(static_cast<Vertex>(i), static_cast<std::int32_t>(chance(random) * roughness * kHeight));
+        }
+    }
+    return layer;
+}
+
+TEST(TinSettle, SandAtRestIsLeftAlone) {
+    Layer layer = roughLayer(Kind::jittered, 24, 0.05, 3);
+    const std::vector<std::int64_t> volumes = layer.volumes();
+    const auto settled = sand::tin::settle(layer, kTalus, kTalus);
+    EXPECT_TRUE(settled.atRest);
+    EXPECT_EQ(settled.iterations, 0);
+    EXPECT_TRUE(settled.moved.empty());
+    EXPECT_EQ(layer.volumes(), volumes);
+}
+
+TEST(TinSettle, RoughSandKeepsItsVolumeAndExtremesAndNamesWhoMoved) {
+    for (const Kind kind : {Kind::regular, Kind::jittered, Kind::random}) {
+        for (const std::int32_t talus : {0, 20000, 200000}) {
+            Layer layer = roughLayer(kind, 24, 40, 7);
+            const sand::tin::Wide volume = layer.volume();
+            const Extremes before = extremesOf(layer);
+            const std::vector<std::int64_t> volumes = layer.volumes();
+            const auto settled = sand::tin::settle(layer, talus, talus);
+            EXPECT_TRUE(settled.atRest) << nameOf(kind) << ", " << talus;
+            EXPECT_GT(settled.iterations, 0) << nameOf(kind) << ", " << talus;
+            EXPECT_TRUE(layer.volume() == volume);
+            EXPECT_GE(extremesOf(layer).lowest, before.lowest) << nameOf(kind) << ", " << talus;
+            EXPECT_LE(extremesOf(layer).highest, before.highest) << nameOf(kind) << ", " << talus;
+            std::vector<Vertex> moved;
+            for (std::size_t i = 0; i < volumes.size(); ++i) {
+                if (layer.volumes()[i] != volumes[i]) {
+                    moved.push_back(static_cast<Vertex>(i));
+                }
+            }
+            EXPECT_EQ(settled.moved, moved);
+        }
+    }
+}
+
+// Slots of triangles, and which corner is their first, are no state: a layer that was read again has others.
+TEST(TinSettle, DoesNotDependOnTheSlotsOfTriangles) {
+    Layer layer = roughLayer(Kind::random, 32, 20, 11);
+    for (Vertex vertex = 40; vertex < 400; vertex += 3) {
+        (void)layer.remove(vertex);
+    }
+    base::ByteWriter writer;
+    layer.encode(writer);
+    base::ByteReader reader(writer.bytes());
+    Layer again = Layer::decode(reader);
+    const auto firsts = [](const Layer& one) {
+        std::vector<Vertex> corners;
+        for (const auto& triangle : one.triangles().triangles) {
+            corners.push_back(triangle.corner[0]);
+        }
+        return corners;
+    };
+    ASSERT_NE(firsts(layer), firsts(again));
+    (void)sand::tin::settle(layer, kTalus, kTalus);
+    (void)sand::tin::settle(again, kTalus, kTalus);
+    EXPECT_EQ(layer.volumes(), again.volumes());
+}
+
+// 34 edges around what is too steep are computed at first; this tower's sand comes to lie twice as far away.
+TEST(TinSettle, TheProjectionGrowsBeforeItsSand) {
+    constexpr int kSide = 144;
+    const oracles::Cylinder tower(8, 1200);
+    Layer layer = layerOf(Kind::jittered, kSide);
+    fill(layer, oracles::around(kSide / 2.0, kSide / 2.0, [&](double r) { return tower.start(r); }));
+    sand::tin::DualProjection projection(layer, kTalus / 256.0);
+    EXPECT_GT(projection.run(), 0);
+    for (const auto& [vertex, gain] : projection.gains()) {
+        layer.add(vertex, gain);
+    }
+    EXPECT_LE(misplaced(layer, oracles::around(kSide / 2.0, kSide / 2.0, [&](double r) { return tower.rest(r); })),
+              0.01);
+}
+
+// Only a few cells of many move: what lies beyond is not even looked at twice.
+TEST(TinSettle, OnlyWhatLiesAroundMovesAndNothingElse) {
+    Layer layer = layerOf(Kind::jittered, 96);
+    fill(layer, oracles::around(20, 20, [](double r) { return r < 2 ? 4.0 : 0.0; }));
+    const auto settled = sand::tin::settle(layer, kTalus, kTalus);
+    EXPECT_TRUE(settled.atRest);
+    ASSERT_FALSE(settled.moved.empty());
+    for (const Vertex vertex : settled.moved) {
+        const Place& place = layer.triangles().places[static_cast<std::size_t>(vertex)];
+        EXPECT_LE(std::hypot(place.x / 256.0 - 20, place.y / 256.0 - 20), 7);
+    }
+}
+
+}  // namespace
+}  // namespace settling

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "scene/import/points_file.hpp"
+#include "tests/scene/import/import_fixture.hpp"
+
+namespace {
+
+class PointsFile : public Import {
+protected:
+    [[nodiscard]] sand::Points read(const std::string& text) { return sand::readPoints(write("p.csv", text)); }
+    [[nodiscard]] std::string refused(const std::string& text) {
+        try {
+            (void)read(text);
+        } catch (const base::InputError& error) {
+            return std::string(error.what()).substr(folder_.string().size() + 1);
+        }
+        return "accepted";
+    }
+};
+
+TEST_F(PointsFile, AnySeparatorGivesTheSamePoints) {
+    const sand::Points points{{0, 0, 1.5}, {1, 0, -2}, {0, 1, 1e3}};
+    EXPECT_EQ(read("0,0,1.5\n1,0,-2\n0,1,1e3\n"), points);
+    EXPECT_EQ(read("x,y,z\n0, 0, 1.5\n1, 0, -2\n0, 1, 1e3"), points);
+    EXPECT_EQ(read("# a survey\r\n\r\neast;north;height\r\n0;0;1.5\r\n1;0;-2 # a stone\r\n0;1;+1e3\r\n"), points);
+    EXPECT_EQ(read("  0 0   1.5\n1\t0\t-2\n0 \t1 1e3\n"), points);
+}
+
+TEST_F(PointsFile, WhatIsSaidTwiceComesOnce) {
+    EXPECT_EQ(read("0 0 1\n1 0 2\n0 0 1\n0 1 3\n").size(), 3U);
+    EXPECT_EQ(refused("0 0 1\n1 0 2\n0 1 3\n0 0 1.5\n"),
+              "p.csv:4: x = 0, y = 0 has height 1.5, and 1 in line 1; keep "
+              "one of them");
+}
+
+TEST_F(PointsFile, ComplaintsNameLineAndValue) {
+    EXPECT_EQ(refused("0 0 1\n1 0\n"), "p.csv:2: x, y and z are wanted, got 2 values");
+    EXPECT_EQ(refused("0,0,1\n1,0,2,9\n"), "p.csv:2: x, y and z are wanted, got 4 values");
+    EXPECT_EQ(refused("0,0,1\n1,,2\n"), "p.csv:2: y must be a finite number, got ''");
+    EXPECT_EQ(refused("0;0;1\n1;0;2,5\n"), "p.csv:2: z must be a finite number, got '2,5'");
+    EXPECT_EQ(refused("0 0 nan\n"), "p.csv:1: z must be a finite number, got 'nan'");
+    EXPECT_EQ(refused("x y z\nx y z\n"), "p.csv:2: x must be a finite number, got 'x'");
+    EXPECT_EQ(refused("z,x,y\n1,2,3\n"), "p.csv:1: the columns must be x, y, z, and 'z' is number 1");
+    EXPECT_EQ(refused("id,e,n,h\n1,2,3,4\n"),
+              "p.csv:1: three columns are wanted, x, y, z, and 'id' begins a title of 4");
+}
+
+TEST_F(PointsFile, TheFirstPointIsNoTitleHoweverItIsWritten) {
+    const std::string rest = "1,0,1\n0,1,1\n2,2,3\n";
+    EXPECT_EQ(read("\xEF\xBB\xBF"
+                   "0,0,100\n" +
+                   rest)
+                  .size(),
+              4U)
+        << "as spreadsheets write it";
+    EXPECT_EQ(refused("nan,0,100\n" + rest), "p.csv:1: x must be a finite number, got 'nan'");
+    EXPECT_EQ(refused("-inf,nan,-nan(ind)\n" + rest), "p.csv:1: x must be a finite number, got '-inf'");
+    EXPECT_EQ(refused("1e999,0,100\n" + rest), "p.csv:1: x must be a finite number, got '1e999'");
+    EXPECT_EQ(refused("1.234.5,0,100\n" + rest), "p.csv:1: x must be a finite number, got '1.234.5'");
+    EXPECT_EQ(refused("o,0,100\n" + rest), "p.csv:1: x must be a finite number, got 'o'");
+    EXPECT_EQ(refused("\"0\",\"0\",\"100\"\n" + rest), "p.csv:1: x must be a finite number, got '\"0\"'");
+    EXPECT_EQ(refused("0,5;0,5;100,2\n1;0;1\n"), "p.csv:1: x must be a finite number, got '0,5'");
+    EXPECT_EQ(refused(",,\n" + rest), "p.csv:1: x must be a finite number, got ''");
+    EXPECT_EQ(refused("\xE2\x88\x92"
+                      "5 0 1\n"),
+              "p.csv:1: x must be a finite number, got '\xE2\x88\x92"
+              "5'");
+}
+
+TEST_F(PointsFile, TitlesAreSkipped) {
+    const std::string rest = "1,0,1\n0,1,1\n2,2,3\n";
+    for (const char* title : {"x,y,z", "\xEF\xBB\xBFx,y,z", "\"x\",\"y\",\"z\"", "Easting [m],Northing [m],Height [m]",
+                              "X1,Y1,nanometres", "Rechtswert,Hochwert,H\xC3\xB6he", "\xEF\xBB\xBF# a survey\nx,y,z"}) {
+        EXPECT_EQ(read(std::string(title) + '\n' + rest).size(), 3U) << title;
+    }
+    EXPECT_EQ(refused("\"z\",\"x\",\"y\"\n" + rest), "p.csv:1: the columns must be x, y, z, and 'z' is number 1");
+}
+
+TEST_F(PointsFile, DegreesAreRefusedWithTheCommandThatMakesMetres) {
+    const std::string hint =
+        " is in degrees, and sand wants lengths; make metres of lines of longitude, latitude and height: gdaltransform "
+        "-s_srs EPSG:4326 -t_srs EPSG:";
+    EXPECT_EQ(refused("lat,lon,h\n47.1,10.2,1200\n"), "p.csv:1: 'lat'" + hint + "32632");
+    EXPECT_EQ(refused("# ours\nLon;Lat;z\n-120.2;37;3\n"), "p.csv:2: 'Lon'" + hint + "32610");
+    EXPECT_EQ(refused("\"Longitude\",\"Latitude\",h\n-43,-22.5,3\n"), "p.csv:1: 'Longitude'" + hint + "32723");
+    EXPECT_EQ(refused("x [deg],y [deg],z\n10,-88,3\n"), "p.csv:1: 'x [deg]'" + hint + "3031");
+    EXPECT_EQ(read("x,y,long term height\n1,0,1\n0,1,1\n2,2,3\n").size(), 3U);
+}
+
+TEST_F(PointsFile, CloudsWithoutAnAreaAreNoTerrain) {
+    EXPECT_EQ(refused(""), "p.csv: holds 0 points at different places, and terrain takes at least 3");
+    EXPECT_EQ(refused("1 1 1\n1 1 1\n2 2 2\n"),
+              "p.csv: holds 2 points at different places, and terrain takes at least 3");
+    std::string line;
+    for (int i = 0; i < 50; ++i) {
+        line += fmt::format("{} {} {}\n", 0.1 * i, 0.3 * i + 7, i % 3);
+    }
+    EXPECT_EQ(refused(line), "p.csv: all 50 points lie on one line, and terrain needs an area");
+    EXPECT_EQ(read(line + "0 7.001 1\n").size(), 51U);
+}
+
+TEST_F(PointsFile, HugeAndTinyCloudsHaveAnArea) {
+    for (const char* side : {"1e160", "1e308", "1e-200", "5e-324"}) {
+        const std::string points = fmt::format("0,0,0\n{0},0,0\n0,{0},0\n-{0},-{0},0\n", side);
+        EXPECT_EQ(read(points).size(), 4U) << side;
+        EXPECT_EQ(refused(fmt::format("0,0,1\n{0},{0},2\n-{0},-{0},3\n", side)),
+                  "p.csv: all 3 points lie on one line, and terrain needs an area");
+        write("p.csv", points);
+        const std::string line = refusal("[terrain]\nkind = \"points\"\nfile = \"p.csv\"\n[tin]\n");
+        EXPECT_NE(line.find("s.toml:3: the points are "), std::string::npos) << line;
+        EXPECT_NE(line.find(" long, which is no length of terrain"), std::string::npos) << line;
+    }
+}
+
+TEST_F(Import, DevicesThatNeverEndAreNoTerrain) {
+    for (const std::string kind : {"gsf", "points", "esri_ascii", "dem"}) {
+        EXPECT_EQ(refusal("[terrain]\nkind = \"" + kind + "\"\nfile = \"/dev/zero\"\n"),
+                  "/dev/zero: cannot be read; check the path");
+    }
+}
+
+TEST_F(PointsFile, AFileThatCannotBeReadToItsEndIsNotTakenForItsBeginning) {
+    try {
+        (void)sand::readPoints("/proc/self/mem");  // opens, and nothing lies at its beginning
+        FAIL() << "accepted";
+    } catch (const base::InputError& error) {
+        EXPECT_STREQ(error.what(), "/proc/self/mem: cannot be read to its end; check the disk it lies on");
+    }
+}
+
+TEST_F(PointsFile, AFieldOfCellsAsksForATriangulation) {
+    write("p.csv", "0 0 1\n1 0 2\n0 1 3\n");
+    EXPECT_EQ(refusal("[terrain]\nkind = \"points\"\nfile = \"p.csv\"\n"),
+              "s.toml:2: points make a triangulated terrain: add [tin]; or make a raster of them, for kind = \"dem\": "
+              "gdal_grid");
+}
+
+}  // namespace

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/material.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/input_error.hpp"
+#include "sand/replica.hpp"
+#include "scene/load/scene_file.hpp"
+#include "tests/scene/scene_fixture.hpp"
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+using sand::Edit;
+
+std::string complaintOf(const auto& act) {
+    try {
+        act();
+    } catch (const base::InputError& error) {
+        return error.what();
+    }
+    return "nothing";
+}
+
+// One way from a scene file's numbers to integers: what an operator types gives the rules that a file would.
+TEST_F(SceneFile, AnOperatorsNumbersBecomeTheRulesOfAFileThatSaysThem) {
+    const sand::Scene plain = sand::loadScene(write("plain.toml", kFlat));
+    const auto grid = plain.grid();
+    const auto same = [&](const sand::Material& material, const std::string& file) {
+        EXPECT_EQ(sand::tuningOf(material, grid), sand::loadScene(write("s.toml", kFlat + file)).rules.tuning())
+            << file;
+    };
+    same(plain.material, "");
+    same(sand::withNumber(plain.material, "talus", 20, grid), "talus_deg = 20\n");
+    same(sand::withNumber(plain.material, "talus_deg", 50, grid), "talus_deg = 50\n");
+    same(sand::withTool(plain.material, {.radius = 0.05}, grid), "[tool]\nradius = 0.05\n");
+    const sand::Material oval =
+        sand::withTool(plain.material, {.kind = sand::ToolKind::ellipse, .width = 0.3, .heading = -45}, grid);
+    same(oval, "[tool]\nshape = \"ellipse\"\nwidth = 0.3\nheading_deg = -45\n");
+    same(sand::withTool(oval, {.kind = sand::ToolKind::footprint, .leftFoot = true}, grid),
+         "[tool]\nshape = \"footprint\"\nfoot = \"left\"\nheading_deg = -45\n");
+    sand::Material wet = sand::withNumber(plain.material, "humidity", 0.5, grid);
+    wet = sand::withNumber(wet, "wet-talus", 60, grid);
+    wet = sand::withNumber(wet, "cohesion", 0.03, grid);
+    wet = sand::withNumber(wet, "settling-time", 0.01, grid);
+    same(wet, "humidity = 0.5\nwet_talus_deg = 60\ncohesion_length = 0.03\nsettling_time = 0.01\n");
+}
+
+TEST_F(SceneFile, AnOperatorsNumbersAreRefusedWhereAFileWouldBe) {
+    const sand::Scene scene = sand::loadScene(write("s.toml", kFlat + "wet_talus_deg = 40\n"));
+    const auto number = [&](std::string_view word, double value) {
+        return complaintOf([&] { (void)sand::withNumber(scene.material, word, value, scene.grid()); });
+    };
+    const auto tool = [&](double radius) {
+        return complaintOf([&] { (void)sand::withTool(scene.material, {.radius = radius}, scene.grid()); });
+    };
+    EXPECT_EQ(number("talus", 90), "talus must be within [0, 90), got 90");
+    EXPECT_EQ(number("talus", 41), "wet_talus_deg must be at least talus_deg = 41, got 40");
+    EXPECT_EQ(number("humidity", -0.5), "humidity must be within [0, 1], got -0.5");
+    EXPECT_EQ(number("colour", 1),
+              "a material has no 'colour'; there are talus, wet-talus, humidity, cohesion, band, settling-time");
+    EXPECT_EQ(tool(10), "a tool of radius 10 is 2560 cells of 0.00390625; 2048 is the most");
+    EXPECT_EQ(tool(0).find("a tool's radius must be at least 1.53e-05, got 0"), 0U) << tool(0);
+    EXPECT_NE(tool(-1), "nothing");
+    const auto changed = [&](const sand::ToolChange& change) {
+        return complaintOf([&] { (void)sand::withTool(scene.material, change, scene.grid()); });
+    };
+    EXPECT_EQ(changed({.kind = sand::ToolKind::footprint, .radius = 1.5}),
+              "a footprint of radius 1.5 is 3 long, and the field 2");
+    EXPECT_EQ(changed({.width = 0.5}), "a sphere is as wide as it is long; leave width out");
+    EXPECT_EQ(changed({.kind = sand::ToolKind::ellipse, .width = 0.01}),
+              "a tool's width over its length must be within [0.05, 1], got 0.01");
+    EXPECT_EQ(changed({.heading = std::nan("")}), "a tool's heading must be a number of degrees");
+}
+
+/// A pile at rest, and its talus halved by an operator.
+TEST(Tuning, AFlatterTalusWakesSandAtRest) {
+    sand::Scene scene = samples::flatScene(64, 64);
+    scene.terrain = samples::cylinder(64, 16, 20);
+    sand::Terrain terrain(scene);
+    terrain.apply({1, 1, false, {}, Edit::settle});
+    while (!terrain.settled()) {
+        terrain.apply({1, terrain.stepNumber() + 1, false, {}, Edit::none});
+    }
+    const sand::HeightField rest = terrain.field();
+    const std::uint64_t hash = terrain.stateHash();
+    sand::Tuning tuning = scene.rules.tuning();
+    terrain.apply({1, terrain.stepNumber() + 1, false, {}, Edit::tuned(tuning)});
+    EXPECT_TRUE(sameHeights(terrain.field(), rest)) << "the same material moves nothing";
+    tuning.threshold /= 2;
+    tuning.startThreshold /= 2;
+    terrain.apply({1, terrain.stepNumber() + 1, false, {}, Edit::tuned(tuning)});
+    EXPECT_FALSE(terrain.settled());
+    EXPECT_FALSE(sameHeights(terrain.field(), rest));
+    EXPECT_EQ(terrain.field().volume(), rest.volume());
+    EXPECT_NE(terrain.stateHash(), hash);
+}
+
+// Two replicas whose sand is equal and whose tool is not will differ a step later: the hash must say so now.
+TEST(Tuning, IsPartOfTheHashAndOfTheState) {
+    const sand::Scene scene = samples::flatScene(64, 64);
+    sand::Tuning tuning = scene.rules.tuning();
+    tuning.toolRadius *= 2;
+    sand::Terrain plain(scene);
+    sand::Terrain tuned(scene);
+    plain.apply({1, 1, false, {}, Edit::none});
+    tuned.apply({1, 1, false, {}, Edit::tuned(tuning)});
+    ASSERT_TRUE(sameHeights(plain.field(), tuned.field()));
+    EXPECT_NE(plain.stateHash(), tuned.stateHash());
+    sand::Terrain joined(scene);
+    joined.decodeState(tuned.encodeState());
+    EXPECT_EQ(joined.stateHash(), tuned.stateHash());
+    EXPECT_EQ(joined.rules(), tuned.rules());
+    tuned.apply({1, 2, false, {}, Edit::tuned(scene.rules.tuning())});
+    plain.apply({1, 2, false, {}, Edit::none});
+    EXPECT_EQ(plain.stateHash(), tuned.stateHash()) << "and back";
+}
+
+TEST(Tuning, AToolThatGrowsInTheSandPresses) {
+    const sand::Scene scene = samples::flatScene(64, 64);
+    sand::Terrain terrain(scene);
+    const std::int32_t middle = 32 * sand::kProbePerCell;
+    terrain.apply({1, 1, true, {{middle, middle, 2 * sand::kProbePerCell}}, Edit::none});
+    sand::Tuning tuning = scene.rules.tuning();
+    tuning.toolRadius = 8 * sand::kProbePerCell;
+    terrain.apply({1, 2, true, {}, Edit::tuned(tuning)});
+    EXPECT_LE(terrain.field().height(32, 32), -5 * sand::kUnitsPerCell);
+}
+
+}  // namespace

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "scene/import/esri_grid.hpp"
+#include "tests/support/folder_test.hpp"
+#include "tests/support/run_program.hpp"
+
+/// Runs sandwall-relax on files of its own folder.
+class Relax : public test::FolderTest {
+protected:
+    [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
+    void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
+    [[nodiscard]] std::string read(const std::string& name) const {
+        std::ifstream stream(path(name));
+        return {std::istreambuf_iterator<char>(stream), {}};
+    }
+    /// A grid of square cells of side 1, its heights from the north.
+    void writeGrid(const std::string& name, int columns, int rows, const std::vector<double>& heights) const {
+        sand::writeEsriGrid({columns, rows, 1, 0, 0, heights}, path(name));
+    }
+    /// In the test's folder, so that files go by their names.
+    [[nodiscard]] support::Ran run(const std::string& arguments) const {
+        const std::filesystem::path before = std::filesystem::current_path();
+        std::filesystem::current_path(folder_);
+        support::Ran ran =
+            support::runCommand((before / SANDWALL_BIN_DIR / "sandwall-relax").string() + " " + arguments);
+        std::filesystem::current_path(before);
+        return ran;
+    }
+    /// Runs it to success, and returns its one line; on a slow machine lines of progress stand before it.
+    [[nodiscard]] nlohmann::json relax(const std::string& arguments) const {
+        const support::Ran ran = run(arguments);
+        EXPECT_EQ(ran.status, 0) << ran.output;
+        const std::size_t line = ran.output.find('{');
+        EXPECT_NE(line, std::string::npos) << ran.output;
+        EXPECT_EQ(ran.output.find('\n', line), ran.output.size() - 1) << ran.output;
+        return nlohmann::json::parse(ran.output.substr(std::min(line, ran.output.size())), nullptr, false);
+    }
+    /// Status 2, one line that holds `words`, and no file of this name.
+    void expectRefused(const std::string& arguments, const std::string& words, const std::string& out) const {
+        const support::Ran ran = run(arguments);
+        EXPECT_EQ(ran.status, 2) << arguments << '\n' << ran.output;
+        EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
+        EXPECT_NE(ran.output.find(words), std::string::npos) << "not '" << words << "' in: " << ran.output;
+        EXPECT_FALSE(std::filesystem::exists(path(out))) << arguments;
+    }
+};

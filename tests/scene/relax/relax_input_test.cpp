@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "scene/relax/height_scale.hpp"
+#include "tests/scene/relax/relax_fixture.hpp"
+
+namespace {
+
+using sand::relax::HeightScale;
+
+TEST(HeightScale, IsTheFinestThatHoldsTheHeights) {
+    EXPECT_EQ(HeightScale::finest(10, 480, 900).bits, 16);
+    EXPECT_EQ(HeightScale::finest(1, 0, 8192).bits, 16) << "2^29 units of 2^-16, half of them below the datum";
+    EXPECT_EQ(HeightScale::finest(1, 0, 8193).bits, 15);
+    EXPECT_EQ(HeightScale::finest(1, -1e6, 1e6).bits, 8);
+    EXPECT_LT(HeightScale::finest(1, 0, 1e9).bits, 0);
+    EXPECT_LT(HeightScale::finest(1, -1e308, 1e308).bits, 0);
+    EXPECT_EQ(HeightScale::finest(0.1, 1e9, 1e9).bits, 16) << "far from 0, and level";
+}
+
+TEST(HeightScale, KeepsDistancesWhateverTheDatum) {
+    const HeightScale low = HeightScale::finest(3, 1680.25, 1726.5);
+    const HeightScale high = HeightScale::finest(3, 1680.25, 1999.75);
+    ASSERT_EQ(low.unit, high.unit);
+    ASSERT_NE(low.datum, high.datum);
+    const std::int32_t shift = low.toUnits(1700) - high.toUnits(1700);
+    for (const double height : {1680.25, 1690.1, 1700.0, 1712.345678, 1726.5}) {
+        EXPECT_EQ(low.toUnits(height) - high.toUnits(height), shift) << height;
+        EXPECT_NEAR(low.toHeight(low.toUnits(height)), height, low.unit * 0.5001) << height;
+    }
+}
+
+class RelaxInput : public Relax {
+protected:
+    RelaxInput() { write("in.asc", kGrid + "1 2\n3 4\n"); }
+
+    void expectRefused(const std::string& arguments, const std::string& words) const {
+        Relax::expectRefused(arguments, words, "out.asc");
+    }
+    void expectGridRefused(const std::string& grid, const std::string& words) const {
+        write("bad.asc", grid);
+        expectRefused("bad.asc out.asc --talus 30", words);
+    }
+
+    static inline const std::string kGrid = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -1\n";
+};
+
+TEST_F(RelaxInput, OptionsOutOfRangeAreRefusedWithTheirRange) {
+    expectRefused("in.asc out.asc", "--talus is required");
+    for (const char* talus : {"90", "-0.1", "nan", "inf"}) {
+        expectRefused("in.asc out.asc --talus " + std::string(talus),
+                      fmt::format("--talus must be within [0, 90) degrees, got {}", talus));
+    }
+    expectRefused("in.asc out.asc --talus steep", "--talus");
+    expectRefused("in.asc out.asc --talus 30 --band -0.01", "--band must be within [0, 1], got -0.01");
+    expectRefused("in.asc out.asc --talus 30 --band nan", "--band must be within [0, 1], got nan");
+    expectRefused("in.asc out.asc --talus 30 --sweeps 0", "--sweeps must be within [1, 2147483647]");
+    expectRefused("in.asc out.asc --talus 30 --sweeps 5 --scheme settle", "--sweeps must be left out");
+    expectRefused("in.asc out.asc --talus 30 --threads 0", "--threads must be within [1, 256], got 0");
+    expectRefused("in.asc out.asc --talus 30 --scheme n8", "--scheme");
+    expectRefused("in.asc out.asc --talus 30 --speed 3", "--speed");
+}
+
+TEST_F(RelaxInput, GridsThatCannotBeSandAreRefusedWithTheirLine) {
+    expectRefused("nowhere.asc out.asc --talus 30", "nowhere.asc: cannot be read");
+    expectGridRefused("", "bad.asc:1: an ESRI ASCII grid begins with");
+    expectGridRefused(kGrid + "1 2\n3 x\n", "bad.asc:8: a height must be a finite number, got 'x'");
+    expectGridRefused(kGrid + "-1 -1\n-1 -1\n", "bad.asc: every cell is a no-data cell");
+    expectGridRefused(kGrid + "1 2\n-3.4e38 4\n",
+                      "bad.asc:8: column 1 of this row: a height of -3.4e+38 is out of "
+                      "range: heights may span at most 5.369e+08 (2^29 cells)");
+    expectGridRefused("ncols 1\nnrows 2\ndx 1\ndy 1001\n1\n2\n",
+                      "bad.asc: cells of 1 x 1001 are too oblong; sides must be within 1 : 1000");
+}
+
+TEST_F(RelaxInput, ATalusWithoutUnitsIsRefusedWithAWayOut) {
+    expectRefused("in.asc out.asc --talus 0.001",
+                  "in.asc: a talus of 0.001 degrees is 1 height units of 1.526e-05 "
+                  "from cell to cell, and 4 is the least, but for 0 degrees");
+    expectRefused("in.asc out.asc --talus 0 --scheme n4", "and 4 is the least for scheme n4");
+    expectGridRefused(kGrid + "1 2\n3 4e8\n",
+                      "heights from 1 to 400000000 span 4e+08 cells: if some are no terrain, "
+                      "make them no-data");
+}
+
+TEST_F(RelaxInput, ACoarseTalusWarnsWithTheFigure) {
+    const support::Ran coarse = run("in.asc out.asc --talus 3");
+    EXPECT_EQ(coarse.status, 0);
+    EXPECT_EQ(coarse.output.find("warning: in.asc: a talus of 3 degrees is 3435 height units of 1.526e-05 from cell to "
+                                 "cell: slopes may come to rest 1 % too steep\n"),
+              0U)
+        << coarse.output;
+    (void)relax("in.asc out.asc --talus 3.6");  // 4123 units: no second line
+}
+
+TEST_F(RelaxInput, BedrockThatDoesNotMatchIsRefused) {
+    const auto refused = [&](const std::string& rock, const std::string& words) {
+        write("rock.asc", rock);
+        expectRefused("in.asc out.asc --talus 30 --bedrock rock.asc", words);
+    };
+    refused(kGrid + "0 0\n3.5 0\n",
+            "rock.asc:8: column 1 of this row: rock at 3.5 lies above in.asc's height of 3: a "
+            "layer below zero");
+    refused(kGrid + "0 0\n0 -1\n", "rock.asc:8: column 2 of this row: no rock under in.asc's height of 4");
+    refused("ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n0 0\n",
+            "rock.asc: 2 x 1 cells of 1 x 1 from (0, 0), but in.asc: 2 x 2 cells of 1 x 1 from (0, 0): they must be");
+    refused("ncols 2\nnrows 2\nxllcorner 7\nyllcorner 0\ncellsize 1\n0 0\n0 0\n", "from (7, 0), but in.asc");
+}
+
+TEST_F(RelaxInput, WhatCannotBeWrittenIsFoundOutBeforeTheWork) {
+    expectRefused("in.asc nowhere/out.asc --talus 30", "nowhere/out.asc: cannot be written; check path");
+    expectRefused("in.asc . --talus 30", ".: cannot be written");
+    expectRefused("in.asc /dev/full --talus 20", "/dev/full: cannot be written; check path and free space");
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1) << "something was left behind";
+}
+
+}  // namespace

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "sand/grid/settle.hpp"
+#include "scene/relax/steepness.hpp"
+#include "tests/scene/relax/relax_fixture.hpp"
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+constexpr double kUnit = 1.0 / sand::kUnitsPerCell;
+
+std::vector<double> heightsOf(const sand::HeightField& field) {
+    std::vector<double> heights;
+    for (int y = field.rows() - 1; y >= 0; --y) {
+        for (int x = 0; x < field.columns(); ++x) {
+            heights.push_back(field.height(x, y) * kUnit);
+        }
+    }
+    return heights;
+}
+
+void expectHeights(const std::string& file, const sand::HeightField& expected) {
+    const sand::EsriGrid grid = sand::readEsriGrid(file);
+    ASSERT_EQ(grid.columns, expected.columns());
+    ASSERT_EQ(grid.rows, expected.rows());
+    for (int y = 0; y < grid.rows; ++y) {
+        for (int x = 0; x < grid.columns; ++x) {
+            ASSERT_EQ(std::lround(grid.at(x, y) / kUnit), expected.height(x, y)) << x << ", " << y;
+        }
+    }
+}
+
+// In one call of the library and sweep by sweep in the program, around another datum: the sand knows neither.
+TEST_F(Relax, GivesWhatTheLibraryGives) {
+    const sand::HeightField start = samples::cylinder(64, 16, 9.6);
+    writeGrid("in.asc", 64, 64, heightsOf(start));
+    sand::Rules rules = samples::flatScene(64, 64).rules;
+    for (const auto& [name, scheme] : {std::pair{"g", sand::Scheme::isotropic},
+                                       {"g_plain", sand::Scheme::plainIsotropic},
+                                       {"n4", sand::Scheme::n4}}) {
+        rules.scheme = scheme;
+        sand::HeightField expected = start;
+        sand::Erosion erosion(expected, rules);
+        erosion.sweep(expected, 100000);
+        const auto json = relax(fmt::format("in.asc out.asc --talus 45 --scheme {}", name));
+        EXPECT_EQ(json["sweeps"], erosion.sweepsDone()) << name;
+        EXPECT_EQ(json["volume_after"], expected.volume()) << name;
+        expectHeights(path("out.asc"), expected);
+    }
+    rules.scheme = sand::Scheme::isotropic;
+    sand::HeightField expected = start;
+    const sand::Settled settled = settle(expected, rules);
+    const auto json = relax("in.asc out.asc --talus 45 --scheme settle");
+    EXPECT_EQ(json["iterations"], settled.iterations);
+    expectHeights(path("out.asc"), expected);
+}
+
+TEST_F(Relax, TellsWhatItDidInOneLine) {
+    const sand::HeightField start = samples::cylinder(32, 8, 5);
+    writeGrid("in.asc", 32, 32, heightsOf(start));
+    const auto json = relax("in.asc out.asc --talus 45");
+    EXPECT_EQ(json["scheme"], "g");
+    EXPECT_EQ(json["unit"], kUnit);
+    EXPECT_EQ(json["volume_unit"], kUnit);
+    EXPECT_TRUE(json["volume_before"].is_number_integer());
+    EXPECT_EQ(json["volume_before"], start.volume());
+    EXPECT_EQ(json["volume_after"], start.volume());
+    EXPECT_EQ(json["volume_above"], 0.0);
+    EXPECT_EQ(json["at_rest"], true);
+    EXPECT_GT(json["seconds"], 0.0);
+    EXPECT_LE(json["steepest_over_talus"], 1.01) << "a threshold of 4096 units or more rests within a percent";
+    EXPECT_GT(json["steepest_over_talus"], 0.9) << "a pile lies at its talus";
+    EXPECT_NEAR(json["steepest_deg"], 45, 0.3);
+    EXPECT_GT(json["certificate"]["bound"], 0.0);
+    EXPECT_EQ(json["state_hash"].get<std::string>().size(), 16U);
+    const auto n4 = relax("in.asc out.asc --talus 45 --scheme n4");
+    EXPECT_GT(n4["steepest_over_talus"], 1.2) << "n4 sees each axis alone, and lets diagonals stand steeper";
+    EXPECT_NE(n4["state_hash"], json["state_hash"]);
+}
+
+TEST_F(Relax, ThreadsChangeNothing) {
+    writeGrid("in.asc", 96, 96, heightsOf(samples::cylinder(96, 24, 20)));
+    const auto alone = relax("in.asc out.asc --talus 30");
+    const std::string heights = read("out.asc");
+    for (const int threads : {2, 3, 7}) {
+        const auto json = relax(fmt::format("in.asc out.asc --talus 30 --threads {}", threads));
+        EXPECT_EQ(json["state_hash"], alone["state_hash"]) << threads;
+        EXPECT_EQ(json["certificate"], alone["certificate"]) << threads;
+        EXPECT_EQ(read("out.asc"), heights) << threads;
+    }
+}
+
+TEST_F(Relax, StableSandComesBackCharacterForCharacter) {
+    const std::string text =
+        "ncols 4\nnrows 4\nxllcorner 361015.59563119\nyllcorner 70223.434086869\ncellsize 10\nNODATA_value 0\n"
+        "0 0 0 0\n480.123456789 481.2 0 482.3\n479.00001 480 481 482\n478.9 479.9 0 481.9\n";
+    write("in.asc", text);
+    const auto json = relax("in.asc out.asc --talus 20");
+    EXPECT_EQ(read("out.asc"), text);
+    EXPECT_EQ(json["sweeps"], 1);
+    EXPECT_TRUE(json["certificate"].is_null()) << "there are walls";
+}
+
+TEST_F(Relax, NoDataIsAWallAndComesBack) {
+    // A wall of no-data with a gap in the north divides a high bank in the west from low ground in the east.
+    std::string cells;
+    for (int row = 0; row < 12; ++row) {
+        for (int column = 0; column < 12; ++column) {
+            cells += column == 6 && row > 0 ? "-9999 " : column < 6 ? "8.5 " : "1.25 ";
+        }
+        cells += '\n';
+    }
+    const std::string head = "ncols 12\nnrows 12\nxllcorner 5\nyllcorner 6\ncellsize 1\nNODATA_value -9999\n";
+    write("in.asc", head + cells);
+    const auto json = relax("in.asc out.asc --talus 35");
+    EXPECT_EQ(json["volume_after"], json["volume_before"]);
+    EXPECT_LE(json["steepest_over_talus"], 1.01);
+    const sand::EsriGrid before = sand::readEsriGrid(path("in.asc"));
+    const sand::EsriGrid after = sand::readEsriGrid(path("out.asc"));
+    EXPECT_EQ(read("out.asc").substr(0, head.size()), head);
+    for (std::size_t i = 0; i < before.heights.size(); ++i) {
+        EXPECT_EQ(std::isnan(before.heights[i]), std::isnan(after.heights[i])) << i;
+    }
+    EXPECT_GT(after.at(7, 11), 2) << "sand came through the gap";
+    EXPECT_EQ(after.at(7, 0), 1.25) << "and not through the wall";
+    EXPECT_EQ(after.at(5, 0), 8.5);
+}
+
+TEST_F(Relax, EmptyEdgesAreNoWallsForSettle) {
+    const std::string head = "ncols 5\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -1\n";
+    write("edge.asc", head + "5 0 0 0 -1\n5 0 0 0 -1\n-1 -1 -1 -1 -1\n");
+    EXPECT_EQ(relax("edge.asc out.asc --talus 30 --scheme settle")["scheme"], "settle");
+    write("wall.asc", head + "5 0 0 0 -1\n5 0 0 0 -1\n-1 0 0 0 0\n");
+    const auto json = relax("wall.asc out.asc --talus 30 --scheme settle");
+    EXPECT_EQ(json["scheme"], "g");
+    EXPECT_TRUE(json.contains("note"));
+    EXPECT_EQ(json["at_rest"], true);
+}
+
+TEST_F(Relax, RestIsAFixedPoint) {
+    constexpr unsigned kSeed = 47;
+    std::mt19937 random(kSeed);
+    const sand::HeightField start = samples::randomField(40, 30, 40 * sand::kUnitsPerCell, random);
+    writeGrid("in.asc", 40, 30, heightsOf(start));
+    (void)relax("in.asc out.asc --talus 33");
+    const auto again = relax("out.asc out2.asc --talus 33");
+    EXPECT_EQ(again["sweeps"], 1) << "seed " << kSeed;
+    EXPECT_EQ(read("out2.asc"), read("out.asc")) << "seed " << kSeed;
+}
+
+TEST_F(Relax, AGridMayBeReplacedByItself) {
+    writeGrid("a.asc", 32, 32, heightsOf(samples::cylinder(32, 8, 5)));
+    (void)relax("a.asc b.asc --talus 40");
+    (void)relax("a.asc a.asc --talus 40");
+    EXPECT_EQ(read("a.asc"), read("b.asc"));
+}
+
+TEST_F(Relax, StopsAfterAsManySweepsAsItIsTold) {
+    const sand::HeightField start = samples::cylinder(64, 16, 12);
+    writeGrid("in.asc", 64, 64, heightsOf(start));
+    const auto json = relax("in.asc out.asc --talus 45 --sweeps 7");
+    EXPECT_EQ(json["sweeps"], 7);
+    EXPECT_EQ(json["at_rest"], false);
+    EXPECT_EQ(json["volume_after"], start.volume());
+}
+
+// A 0.9 ramp along a bare cliff is stable, though the step down the cliff is as steep as can be.
+TEST_F(Relax, StableSandBesideBareRockStays) {
+    std::vector<double> surface, rock;
+    for (int row = 0; row < 20; ++row) {
+        for (int column = 0; column < 20; ++column) {
+            const double ramp = 0.9 * (20 - row);
+            const bool cliff = column >= 10;
+            surface.push_back(cliff ? 60 : ramp);
+            rock.push_back(cliff ? 60 : -5);
+        }
+    }
+    writeGrid("in.asc", 20, 20, surface);
+    writeGrid("rock.asc", 20, 20, rock);
+    const auto json = relax("in.asc out.asc --talus 45 --bedrock rock.asc");
+    EXPECT_EQ(read("out.asc"), read("in.asc"));
+    EXPECT_EQ(json["volume_above"], "bedrock");
+    EXPECT_LT(json["steepest_over_talus"], 1.0) << "bare rock is no sand";
+    EXPECT_GT(json["steepest_over_talus"], 0.8);
+}
+
+TEST_F(Relax, ALayerNeverBecomesThinnerThanNothing) {
+    constexpr unsigned kSeed = 53;
+    std::mt19937 random(kSeed);
+    std::vector<double> surface, rock;
+    for (int i = 0; i < 30 * 30; ++i) {
+        rock.push_back(static_cast<double>(random() % 1000) / 100);
+        surface.push_back(rock.back() + static_cast<double>(random() % 100) / 100);
+    }
+    writeGrid("in.asc", 30, 30, surface);
+    writeGrid("rock.asc", 30, 30, rock);
+    const auto json = relax("in.asc out.asc --talus 30 --bedrock rock.asc");
+    EXPECT_EQ(json["volume_after"], json["volume_before"]);
+    EXPECT_GT(json["volume_before"], 0);
+    const sand::EsriGrid out = sand::readEsriGrid(path("out.asc"));
+    for (std::size_t i = 0; i < rock.size(); ++i) {
+        ASSERT_GE(out.heights[i], rock[i] - kUnit / 2) << i << ", seed " << kSeed;
+    }
+}
+
+TEST_F(Relax, CellsThatAreNotSquareRestAtTheSameAngle) {
+    std::string east = "ncols 40\nnrows 1\nxllcorner 0\nyllcorner 0\ndx 1\ndy 4\n";
+    std::string north = "ncols 1\nnrows 40\nxllcorner 0\nyllcorner 0\ndx 4\ndy 1\n";
+    for (int i = 0; i < 40; ++i) {
+        east += i < 10 ? "8 " : "0 ";
+        north += i < 10 ? "8\n" : "0\n";
+    }
+    write("east.asc", east);
+    write("north.asc", north);
+    EXPECT_EQ(relax("east.asc east_out.asc --talus 40")["unit"], kUnit);
+    EXPECT_EQ(relax("north.asc north_out.asc --talus 40")["unit"], kUnit) << "the shorter side tells";
+    const sand::EsriGrid alongX = sand::readEsriGrid(path("east_out.asc"));
+    const sand::EsriGrid alongY = sand::readEsriGrid(path("north_out.asc"));
+    EXPECT_EQ(alongY.aspect(), 0.25);
+    const double step = std::tan(40 * 3.14159265358979 / 180);
+    double steepestX = 0;
+    double steepestY = 0;
+    for (std::size_t i = 1; i < 40; ++i) {
+        steepestX = std::max(steepestX, alongX.heights[i - 1] - alongX.heights[i]);
+        steepestY = std::max(steepestY, alongY.heights[i - 1] - alongY.heights[i]);
+    }
+    // The excess of a threshold of 54991 units, where a face levels 0.47 of a difference: 66 units.
+    EXPECT_NEAR(steepestX, step, 66 * kUnit);
+    EXPECT_NEAR(steepestY, step, 66 * kUnit);
+}
+
+TEST_F(Relax, TheSmallestGridsWork) {
+    for (const auto& [columns, rows] : {std::pair{1, 1}, {1, 7}, {7, 1}, {2, 2}}) {
+        std::vector<double> heights(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), 0.0);
+        heights[0] = 3;
+        writeGrid("in.asc", columns, rows, heights);
+        for (const char* scheme : {"g", "g_plain", "n4", "settle"}) {
+            const auto json = relax(fmt::format("in.asc out.asc --talus 30 --scheme {}", scheme));
+            const int highest = columns * rows == 1 ? 0 : 3;  // above the lowest cell
+            EXPECT_EQ(json["volume_after"], highest * sand::kUnitsPerCell) << columns << " x " << rows << ' ' << scheme;
+            EXPECT_EQ(json["at_rest"], true);
+        }
+    }
+}
+
+TEST_F(Relax, AngleZeroLevelsTheSand) {
+    writeGrid("in.asc", 8, 1, {4, 0, 0, 0, 0, 0, 0, 0});
+    const auto json = relax("in.asc out.asc --talus 0");
+    EXPECT_TRUE(json["steepest_over_talus"].is_null());
+    const sand::EsriGrid out = sand::readEsriGrid(path("out.asc"));
+    for (int x = 1; x < 8; ++x) {
+        EXPECT_LE(std::abs(out.at(x, 0) - out.at(x - 1, 0)), 5 * kUnit) << "a talus of 0 rests within 4 units per cell";
+    }
+}
+
+}  // namespace

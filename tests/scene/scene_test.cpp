@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "base/input_error.hpp"
+#include "scene/import/esri_grid.hpp"
+#include "scene/load/scene_file.hpp"
+#include "tests/scene/scene_fixture.hpp"
+
+namespace {
+
+TEST_F(SceneFile, DefaultsAreThePapers) {
+    const sand::Scene scene = sand::loadScene(write("s.toml", kFlat));
+    EXPECT_EQ(scene.rules.columns, 512);
+    EXPECT_EQ(scene.rules.rows, 512);
+    EXPECT_DOUBLE_EQ(scene.terrain.cellSize(), 2.0 / 512);
+    EXPECT_EQ(scene.rules.toolRadius, 655);  // 2.56 cells
+    EXPECT_EQ(scene.rules.threshold, std::lround(std::tan(34 * std::numbers::pi / 180) * 65536));
+    EXPECT_EQ(scene.rules.stepsPerSecond, 60);
+}
+
+long residentKilobytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss;
+}
+
+// 16384 x 16384 heights are 1 GiB: a host that lacks it must say so at once, and not after it has made them.
+TEST_F(SceneFile, ItsSizeIsLookedAtBeforeItsHeightsAreMade) {
+    const std::string file = write("s.toml", "[field]\ncolumns = 16384\nrows = 16384\n[terrain]\n[material]\n");
+    const long before = residentKilobytes();
+    const auto tooLarge = [](int columns, int rows) {
+        throw base::InputError(fmt::format("{} x {} are too many", columns, rows));
+    };
+    EXPECT_THROW((void)sand::loadScene(file, tooLarge), base::InputError);
+    EXPECT_LT(residentKilobytes() - before, 100'000);
+    int asked = 0;
+    const auto fits = [&](int columns, int rows) { asked += columns == 512 && rows == 512 ? 1 : 100; };
+    (void)sand::loadScene(write("small.toml", kFlat), fits);
+    EXPECT_EQ(asked, 1);
+}
+
+TEST_F(SceneFile, SweepsFollowTheSquareOfTheToolsCells) {
+    const auto sweeps = [&](const std::string& radius) {
+        return sand::loadScene(write("s.toml", kFlat + "[tool]\nradius = " + radius)).rules.sweepsPerStep;
+    };
+    EXPECT_EQ(sweeps("0.046875"), 24);  // 12 cells: 144 / (0.1 s * 60)
+    EXPECT_NEAR(sweeps("0.09375"), 4 * 24, 3);
+}
+
+TEST_F(SceneFile, ErrorsNameFileLineKeyAndRange) {
+    EXPECT_EQ(complaint(kFlat + "talus_deg = 90\n"), "s.toml:4: talus_deg must be within [0, 90), got 90");
+    EXPECT_EQ(complaint(kFlat + "talus_deg = -1\n"), "s.toml:4: talus_deg must be within [0, 90], got -1");
+    EXPECT_EQ(complaint(kFlat + "talus_deg = nan\n"), "s.toml:4: talus_deg must be a finite number");
+    EXPECT_EQ(complaint("[field]\ncolumns = 0\n[terrain]\n[material]\n"),
+              "s.toml:2: columns must be within [1, 16384], got 0");
+    EXPECT_EQ(complaint("[field]\nwidth = -2\n[terrain]\n[material]\n"), "s.toml:2: width must be positive, got -2");
+    EXPECT_EQ(
+        complaint(kFlat + "talus = 3\n"),
+        "s.toml:4: unknown key 'talus'; known here: band, cohesion_length, humidity, scheme, settling_time, talus_deg, "
+        "wet_talus_deg");
+    EXPECT_EQ(complaint("[terrain]\n[field]\n"), "s.toml:1: a table [material] is missing");
+    EXPECT_NE(complaint("[terrain\n").find("s.toml:1: "), std::string::npos);
+    EXPECT_EQ(complaint("[field]\n[terrain]\nheight = 1e9\n[material]\n").find("s.toml:3: a height of 1000000000"), 0U);
+}
+
+TEST_F(SceneFile, AToolOutOfScaleIsRefusedOrWarnedOf) {
+    EXPECT_EQ(complaint("[field]\nwidth = 1e-10\n[terrain]\n[material]\n").find("s.toml:1: a tool of radius 0.01 is"),
+              0U);
+    EXPECT_EQ(complaint(kFlat + "[tool]\nradius = 10\n").find("s.toml:5: a tool of radius 10 is 2560 cells"), 0U);
+    EXPECT_EQ(sand::loadScene(write("s.toml", kFlat + "[tool]\nradius = 0.003\n")).warnings.size(), 1U);
+}
+
+TEST_F(SceneFile, AToolHasAShapeAWidthAndAHeading) {
+    const sand::Scene scene = sand::loadScene(
+        write("s.toml", kFlat + "[tool]\nshape = \"footprint\"\nradius = 0.1\nheading_deg = 90\nfoot = \"left\"\n"));
+    EXPECT_EQ(scene.rules.toolShape(), (sand::ToolShape{sand::ToolKind::footprint, 6554, 2622}));
+    EXPECT_EQ(scene.rules.toolHeading, (sand::Heading{0, sand::Heading::kLength, true}));
+    EXPECT_EQ(sand::Scene::decode(scene.encode()).rules, scene.rules);
+    const sand::Scene plain = sand::loadScene(write("p.toml", kFlat + "[tool]\nshape = \"sphere\"\nradius = 0.1\n"));
+    EXPECT_NE(plain.rules.digest(), scene.rules.digest()) << "server and master must have the same tool";
+    EXPECT_EQ(scene.encode().size(), plain.encode().size() + 9);
+    const auto tool = [&](const std::string& keys) { return complaint(kFlat + "[tool]\n" + keys); };
+    EXPECT_EQ(tool("shape = \"cube\"\n"),
+              "s.toml:5: shape must be one of sphere, circle, rectangle, ellipse, ellipsoid, footprint, got 'cube'");
+    EXPECT_EQ(tool("shape = \"ellipse\"\nwidth = 2\n"), "s.toml:6: width must be within [0.05, 1], got 2");
+    EXPECT_EQ(tool("width = 0.5\n"), "s.toml:5: a sphere is as wide as it is long; leave width out");
+    EXPECT_EQ(tool("heading_deg = nan\n"), "s.toml:5: heading_deg must be a finite number");
+    EXPECT_EQ(tool("shape = \"ellipse\"\nfoot = \"left\"\n"),
+              "s.toml:6: left and right are of a footprint, not of this ellipse");
+    EXPECT_EQ(tool("shape = \"footprint\"\nradius = 1.5\n"),
+              "s.toml:6: a footprint of radius 1.5 is 3 long, and the field 2");
+}
+
+TEST_F(SceneFile, ALevelOfDetailThatCannotHoldItsErrorIsRefused) {
+    EXPECT_EQ(sand::loadScene(write("s.toml", kFlat + "[look]\ndetail = 0\n")).look.detail, 0);
+    const sand::Scene scene = sand::loadScene(write("s.toml", kFlat + "[look]\ndetail = 2.5\n"));
+    EXPECT_EQ(sand::Scene::decode(scene.encode()).look.detail, 2.5);
+    for (const std::string bound : {"-1", "nan", "inf", "0.001", "1000"}) {
+        const std::string said = complaint(fmt::format("{}[look]\ndetail = {}\n", kFlat, bound));
+        EXPECT_EQ(said.rfind("s.toml:5: detail must be ", 0), 0U) << bound << ": " << said;
+    }
+}
+
+TEST_F(SceneFile, AMissingFileIsNamed) { EXPECT_THROW((void)sand::loadScene(folder_ / "none.toml"), base::InputError); }
+
+TEST_F(SceneFile, AFlatTalusWarns) {
+    EXPECT_EQ(sand::loadScene(write("s.toml", kFlat + "talus_deg = 3\n")).warnings.size(), 1U);
+    EXPECT_TRUE(sand::loadScene(write("s.toml", kFlat + "talus_deg = 4\n")).warnings.empty());
+}
+
+TEST_F(SceneFile, LoadsAnEsriGridFromTheNorth) {
+    write("t.asc", "NCOLS 3\nnrows 2\nxllcorner 5\nyllcorner 6\ncellsize 10\nNODATA_value -9999\n1 2 3\n4 5 6.5\n");
+    const sand::Scene scene = sand::loadScene(
+        write("s.toml", "[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n[material]\n[tool]\nradius = 5\n"));
+    EXPECT_EQ(scene.rules.columns, 3);
+    EXPECT_EQ(scene.rules.rows, 2);
+    EXPECT_EQ(scene.terrain.height(2, 0), 42598);  // 6.5 / 10 * 65536, south-east
+    EXPECT_EQ(scene.terrain.height(0, 1), 6554);   // 1 / 10, north-west
+}
+
+TEST_F(SceneFile, EsriGridErrorsNameTheGridsLine) {
+    const auto complaintOf = [&](const std::string& grid) {
+        write("t.asc", grid);
+        return complaint("[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n[material]\n");
+    };
+    EXPECT_EQ(complaintOf("ncols 2\nnrows 2\ncellsize 1\n1 2\n3\n"), "t.asc:6: the file ends where a height should be");
+    EXPECT_EQ(complaintOf("ncols 1\nnrows 1\ndx 2\ndy 3\n1\n"),
+              "s.toml:3: " + (folder_ / "t.asc").string() + " has cells of 2 x 3; a scene's are square");
+    EXPECT_EQ(complaintOf("nodata_value -1\nncols 1\nnrows 1\ncellsize 1\n-1\n"),
+              "t.asc: every cell is a no-data cell; there is no terrain in it");
+    EXPECT_EQ(complaintOf("depth 3\n"), "t.asc:1: 'depth' is no key of an ESRI ASCII grid");
+}
+
+TEST_F(SceneFile, FlatShadingSurvivesItsEncodingAndIsNoHillShade) {
+    const sand::Scene scene = sand::loadScene(write("s.toml", kFlat + "[look]\nshading = \"flat\"\n"));
+    const sand::Look look = sand::Scene::decode(scene.encode()).look;
+    EXPECT_TRUE(look.flatShading);
+    EXPECT_FALSE(look.hillShade);
+}
+
+TEST_F(SceneFile, ShadedLikeAMapSurvivesItsEncodingAndOlderOnesAreNot) {
+    const sand::Scene scene = sand::loadScene(write("s.toml", kFlat + "[look]\nhill_shade = true\n"));
+    EXPECT_FALSE(sand::Scene::decode(scene.encode()).look.flatShading);
+    base::Bytes bytes = scene.encode();
+    EXPECT_TRUE(sand::Scene::decode(bytes).look.hillShade);
+    base::ByteWriter later;
+    scene.force.encodeRest(later);
+    // Journals from before there were hill-shade and levels of detail end here.
+    bytes.resize(bytes.size() - later.bytes().size() - 1 - sizeof(double));
+    EXPECT_FALSE(sand::Scene::decode(bytes).look.hillShade);
+    EXPECT_EQ(complaint(kFlat + "[look]\nhill_shade = 1\n").rfind("s.toml:5: hill_shade must be", 0), 0U)
+        << complaint(kFlat + "[look]\nhill_shade = 1\n");
+}
+
+TEST_F(SceneFile, EverySceneOfTheProjectLoadsAndSurvivesItsEncoding) {
+    int scenes = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(SANDWALL_SOURCE_DIR "/scenes")) {
+        const sand::Scene scene = sand::loadScene(entry.path());
+        const sand::Scene copy = sand::Scene::decode(scene.encode());
+        EXPECT_EQ(copy.rules, scene.rules) << entry.path();
+        EXPECT_EQ(copy.rules.digest(), scene.rules.digest());
+        EXPECT_TRUE(sameHeights(copy.terrain, scene.terrain)) << entry.path();
+        ++scenes;
+    }
+    EXPECT_GE(scenes, 2);
+}
+
+}  // namespace
