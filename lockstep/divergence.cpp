@@ -7,13 +7,13 @@
 namespace lockstep {
 namespace {
 
-Account accountOf(sand::Terrain& terrain) {
+Account accountOf(sand::Replica& terrain) {
     Account account{terrain.stateHash(), {}};
     account.tiles = terrain.hashTiles().tileHashes();
     return account;
 }
 
-std::vector<Account> collectAccounts(FrameBarrier& barrier, sand::Terrain& terrain) {
+std::vector<Account> collectAccounts(FrameBarrier& barrier, sand::Replica& terrain) {
     const Account mine = accountOf(terrain);
     base::ByteWriter writer;
     writer.put(mine.hash);
@@ -32,12 +32,12 @@ std::vector<Account> collectAccounts(FrameBarrier& barrier, sand::Terrain& terra
     return accounts;
 }
 
-std::vector<std::int32_t> heightsOf(const sand::Terrain& terrain, int tile) {
+std::vector<std::int32_t> heightsOf(const sand::Replica& terrain, int tile) {
     return tile >= 0 ? terrain.valuesOf(tile) : std::vector<std::int32_t>();
 }
 
 /// The heights of one tile of every rank, by rank, at the master.
-std::vector<std::vector<std::int32_t>> collectHeights(FrameBarrier& barrier, const sand::Terrain& terrain, int tile) {
+std::vector<std::vector<std::int32_t>> collectHeights(FrameBarrier& barrier, const sand::Replica& terrain, int tile) {
     base::ByteWriter writer;
     for (const std::int32_t height : heightsOf(terrain, tile)) {
         writer.put(height);
@@ -92,7 +92,7 @@ Vote countVotes(const std::vector<Account>& accounts) {
     return result;
 }
 
-std::optional<Divergence> findDivergence(FrameBarrier& barrier, sand::Terrain& terrain, const Arbiter& arbiter) {
+std::optional<Divergence> findDivergence(FrameBarrier& barrier, sand::Replica& terrain, const Arbiter& arbiter) {
     terrain.audit(terrain.hashTiles().tileCount());
     const std::vector<Account> accounts = collectAccounts(barrier, terrain);
     Divergence result;

@@ -31,7 +31,7 @@ struct Divergence {
     Judge judge = Judge::majority;
     int agreeing = 0;                        // ranks with that hash
     int source = 0;                          // the first of them
-    std::unique_ptr<sand::Terrain> journal;  // the right sand, where no rank has it
+    std::unique_ptr<sand::Replica> journal;  // the right sand, where no rank has it
     std::vector<Odd> odd;                    // by rank
 };
 
@@ -50,11 +50,11 @@ struct Vote {
 [[nodiscard]] Vote countVotes(const std::vector<Account>& accounts /* by rank, the master's first */);
 
 /// The right sand where no hash has a majority; nothing where nobody can tell.
-using Arbiter = std::function<std::unique_ptr<sand::Terrain>()>;
+using Arbiter = std::function<std::unique_ptr<sand::Replica>()>;
 
 /// Collective, after a barrier whose hashes differed: finds the odd ranks, by hashes computed afresh from memory. The
 /// master, who alone gives an arbiter, gets the answer, others nothing.
-[[nodiscard]] std::optional<Divergence> findDivergence(FrameBarrier& barrier, sand::Terrain& terrain,
+[[nodiscard]] std::optional<Divergence> findDivergence(FrameBarrier& barrier, sand::Replica& terrain,
                                                        const Arbiter& arbiter = {});
 
 }  // namespace lockstep

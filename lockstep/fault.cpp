@@ -40,7 +40,7 @@ FaultsOfRank::FaultsOfRank(const std::vector<Fault>& all, int rank) {
                  [rank](const Fault& fault) { return fault.rank == rank; });
 }
 
-void FaultsOfRank::strike(std::uint64_t frame, sand::Terrain& terrain) const {
+void FaultsOfRank::strike(std::uint64_t frame, sand::Replica& terrain) const {
     for (const Fault& fault : faults_) {
         if (fault.frame != frame) {
             continue;
@@ -65,10 +65,15 @@ void FaultsOfRank::delay(std::uint64_t frame) const {
     }
 }
 
-bool FaultsOfRank::garbles(std::uint64_t frame) const {
-    return std::any_of(faults_.begin(), faults_.end(), [frame](const Fault& fault) {
-        return fault.kind == Fault::Kind::garbage && fault.frame == frame;
-    });
+bool FaultsOfRank::any(Fault::Kind kind, std::uint64_t frame) const {
+    return std::any_of(faults_.begin(), faults_.end(),
+                       [&](const Fault& fault) { return fault.kind == kind && fault.frame == frame; });
 }
+
+bool FaultsOfRank::garbles(std::uint64_t frame) const { return any(Fault::Kind::garbage, frame); }
+
+bool FaultsOfRank::movesView(std::uint64_t frame) const { return any(Fault::Kind::view, frame); }
+
+bool FaultsOfRank::spoilsShader() const { return any(Fault::Kind::shader, 0); }
 
 }  // namespace lockstep

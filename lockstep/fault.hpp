@@ -15,12 +15,14 @@ namespace lockstep {
 /// A fault made on purpose, so that operators and tests can see what becomes of it (docs/operator.md).
 struct Fault {
     enum class Kind : std::uint8_t {
-        slow,      // takes longer to draw
-        diverge,   // one bit of its sand flips
-        die,       // of a signal
-        hang,      // never comes back
-        garbage,   // sends random bytes
-        partition  // nothing is heard of it for a while
+        slow,       // takes longer to draw
+        diverge,    // one bit of its sand flips
+        die,        // of a signal
+        hang,       // never comes back
+        garbage,    // sends random bytes
+        partition,  // nothing is heard of it for a while
+        view,       // draws one frame from another place
+        shader      // finds that one of its shaders does not compile, before the first frame
     };
     static constexpr int kLink = -1;  // not a rank: the link to the haptic server
 
@@ -39,7 +41,8 @@ struct Fault {
     friend bool operator==(const Fault&, const Fault&) = default;
 };
 
-inline constexpr std::array<std::string_view, 6> kFaultNames{"slow", "diverge", "die", "hang", "garbage", "partition"};
+inline constexpr std::array<std::string_view, 8> kFaultNames{"slow",    "diverge",   "die",  "hang",
+                                                             "garbage", "partition", "view", "shader"};
 
 /// The faults that strike one rank, and how they do.
 class FaultsOfRank {
@@ -47,13 +50,19 @@ public:
     FaultsOfRank(const std::vector<Fault>& all, int rank);
 
     /// When a frame begins: dies, never returns, or flips a bit of a cell behind the hash's back.
-    void strike(std::uint64_t frame, sand::Terrain& terrain) const;
+    void strike(std::uint64_t frame, sand::Replica& terrain) const;
     /// When it has been drawn: sleeps, which leaves the cores alone as a slow graphics card does.
     void delay(std::uint64_t frame) const;
     /// Whether this rank comes to the frame's barrier with random bytes.
     [[nodiscard]] bool garbles(std::uint64_t frame) const;
+    /// Whether it draws this frame from elsewhere.
+    [[nodiscard]] bool movesView(std::uint64_t frame) const;
+    /// Whether a shader is to fail.
+    [[nodiscard]] bool spoilsShader() const;
 
 private:
+    [[nodiscard]] bool any(Fault::Kind kind, std::uint64_t frame) const;
+
     std::vector<Fault> faults_;
 };
 

@@ -28,7 +28,7 @@ Remedy Remedy::decode(std::span<const std::uint8_t> bytes) {
     return remedy;
 }
 
-Healing heal(FrameBarrier& barrier, sand::Terrain& terrain, const Remedy& fromMaster) {
+Healing heal(FrameBarrier& barrier, sand::Replica& terrain, const Remedy& fromMaster) {
     const Remedy remedy = Remedy::decode(barrier.tellAll(fromMaster.encode()));
     if (!remedy.goOn) {
         return Healing::ended;

@@ -31,6 +31,6 @@ enum class Healing : std::uint8_t {
 /// Collective, after findDivergence(): the whole state of the remedy's source goes to the odd ranks, point to point.
 /// Only the master gives a remedy. Everyone's hash is then computed afresh from memory; whether all agree is seen when
 /// they meet at the barrier of the same frame once more. Throws base::FormatError when a state is none.
-[[nodiscard]] Healing heal(FrameBarrier& barrier, sand::Terrain& terrain, const Remedy& fromMaster = {});
+[[nodiscard]] Healing heal(FrameBarrier& barrier, sand::Replica& terrain, const Remedy& fromMaster = {});
 
 }  // namespace lockstep

@@ -10,12 +10,6 @@ base::Bytes SessionMessage::encode() const {
     writer.putBlock(scene);
     writer.putBlock(wall);
     writer.put(frameTimeout);
-    writer.put(static_cast<std::uint8_t>(skew.has_value() ? 1 : 0));
-    if (skew) {
-        writer.put(skew->rank);
-        writer.put(skew->frame);
-    }
-    writer.put(spoiltShader);
     writer.putVarint(faults.size());
     for (const Fault& fault : faults) {
         fault.encode(writer);
@@ -32,12 +26,6 @@ SessionMessage SessionMessage::decode(std::span<const std::uint8_t> bytes) {
     const auto wall = reader.getBlock();
     session.wall.assign(wall.begin(), wall.end());
     session.frameTimeout = reader.get<double>();
-    if (reader.get<std::uint8_t>() != 0) {
-        session.skew.emplace();
-        session.skew->rank = reader.get<int>();
-        session.skew->frame = reader.get<std::uint64_t>();
-    }
-    session.spoiltShader = reader.get<std::int32_t>();
     const std::uint64_t faults = reader.getVarint();
     for (std::uint64_t i = 0; i < faults; ++i) {
         session.faults.push_back(Fault::decode(reader));

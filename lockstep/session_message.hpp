@@ -14,21 +14,13 @@ namespace lockstep {
 
 class FrameBarrier;
 
-/// A fault for tests: one rank sees one frame from a metre beside where the master sent it.
-struct SkewedView {
-    int rank = 0;
-    std::uint64_t frame = 0;
-};
-
 /// What every rank is told before the first frame. Ranks read no file: the scene and the wall come from the master.
 struct SessionMessage {
-    base::Bytes scene;        // sand::Scene::encode
-    base::Bytes wall;         // walls::Wall::encode
-    double frameTimeout = 0;  // [s] without a sign of the master, after which a rank ends
-    std::optional<SkewedView> skew;
-    std::int32_t spoiltShader = 0;  // the rank that is to find one of its shaders broken, for tests; 0 for none
-    std::vector<Fault> faults{};    // made on purpose
-    base::Bytes state{};            // sand::Terrain::encodeState, where a session goes on; empty: as the scene begins
+    base::Bytes scene;            // sand::Scene::encode
+    base::Bytes wall;             // walls::Wall::encode
+    double frameTimeout = 0;      // [s] without a sign of the master, after which a rank ends
+    std::vector<Fault> faults{};  // made on purpose
+    base::Bytes state{};          // sand::Replica::encodeState, where a session goes on; empty: as the scene begins
 
     [[nodiscard]] base::Bytes encode() const;
     static SessionMessage decode(std::span<const std::uint8_t> bytes);

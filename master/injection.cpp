@@ -35,7 +35,9 @@ constexpr std::array<std::string_view, lockstep::kFaultNames.size()> kUsage{
     "die:rank=R,frame=F[,signal=S]",
     "hang:rank=R,frame=F",
     "garbage:frame=F[,rank=R]",
-    "partition:ms=MS,frame=F[,rank=R]"};
+    "partition:ms=MS,frame=F[,rank=R]",
+    "view:rank=R,frame=F",
+    "shader:rank=R"};
 
 /// A number that a kind of fault takes.
 struct Key {
@@ -121,6 +123,13 @@ lockstep::Fault parseFault(const std::string& text, const FaultTargets& targets)
             break;
         case Kind::hang:
             keys = {ofAll, frame};
+            break;
+        case Kind::view:
+            keys = {{"rank", 1, ranks, &rank}, frame};
+            break;
+        case Kind::shader:
+            keys = {{"rank", 1, ranks, &rank}};
+            fault.frame = 0;  // before the first
             break;
         case Kind::garbage:
             keys = {{"rank", 1, ranks, &rank, false}, frame};

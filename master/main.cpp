@@ -32,8 +32,6 @@ struct Options {
     std::string pattern = "none";
     std::vector<std::string> layers;
     std::vector<std::string> injections;
-    std::string skew;
-    int spoiltShader = 0;
     bool noPictures = false;
     master::SessionOptions session;
     bool resume = false;
@@ -42,17 +40,6 @@ struct Options {
     haptic_bridge::LinkOptions link;
     int sandThreads = 1;
 };
-
-/// "rank=5,frame=20"
-lockstep::SkewedView parseSkew(const std::string& text) {
-    lockstep::SkewedView skew;
-    int used = 0;
-    if (std::sscanf(text.c_str(), "rank=%d,frame=%lu%n", &skew.rank, &skew.frame, &used) != 2 ||
-        used != static_cast<int>(text.size())) {
-        throw base::InputError(fmt::format("--skew-view: '{}' is not rank=R,frame=F with whole numbers", text));
-    }
-    return skew;
-}
 
 /// What everyone needs to know, from the files the user named.
 struct World {
@@ -172,8 +159,6 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
     world.message = {world.scene.encode(),
                      world.wall.encode(),
                      options.session.frameTimeout,
-                     std::nullopt,
-                     options.spoiltShader,
                      {},
                      options.session.resumed ? options.session.resumed->state : base::Bytes()};
     const master::FaultTargets targets{world.wall.ranks(), world.scene.rules.columns, world.scene.rules.rows,
@@ -185,9 +170,6 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
         master::withoutDone(std::move(options.session.drills), options.session.out, options.session.resumed != nullptr);
     for (const master::Drill& drill : options.session.drills) {
         world.message.faults.push_back(drill.fault);
-    }
-    if (!options.skew.empty()) {
-        world.message.skew = parseSkew(options.skew);
     }
     return world;
 }
@@ -254,8 +236,6 @@ void describeOptions(host::CommandLine& line, Options& options) {
     line.flag("--control-stdin", session.readInput,
               "obeys lines on standard input (docs/operator.md); its end is a stop");
     line.option("--inject", options.injections, "a fault on purpose, such as slow:rank=5,ms=30 (docs/operator.md)");
-    line.option("--spoil-shader", options.spoiltShader, "for tests: a shader of that rank does not compile");
-    line.option("--skew-view", options.skew, "for tests: rank=R,frame=F shows that rank another view");
 }
 
 void describeResume(host::CommandLine& line, Options& options) {

@@ -104,7 +104,7 @@ Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, con
     summary_.wall = wall.name;
     summary_.ranks = wall.ranks();
     // A resumed terrain has lost and won since.
-    summary_.volumeInitial = scene.tin != nullptr ? sand::Terrain(scene).volume() : scene.terrain.volume();
+    summary_.volumeInitial = scene.tin != nullptr ? sand::Replica(scene).volume() : scene.terrain.volume();
     for (const walls::Tile& tile : wall.tiles) {
         summary_.tileNames.push_back(tile.name);
     }

@@ -135,7 +135,7 @@ private:
     bool reachAgreement(lockstep::Verdict verdict, lockstep::Arrival mine);
     bool healSand(bool again);
     [[nodiscard]] std::filesystem::path writtenJournal() const;  // empty when there is none
-    [[nodiscard]] std::unique_ptr<sand::Terrain> sandOfJournal();
+    [[nodiscard]] std::unique_ptr<sand::Replica> sandOfJournal();
     [[nodiscard]] std::optional<int> brokenAmong(const std::vector<int>& odd) const;
     [[nodiscard]] std::string giveUp(int rank, bool again);
     void reportOtherViews();
@@ -151,7 +151,7 @@ private:
     const sand::MaterialGrid grid_;
     sand::Material material_;  // with all that the operator has asked for
     SessionOptions options_;
-    sand::Terrain terrain_;
+    sand::Replica terrain_;
     std::vector<std::string> names_;  // of ranks, as messages speak of them
     lockstep::FrameBarrier barrier_;
     ViewSource views_;

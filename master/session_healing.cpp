@@ -117,15 +117,15 @@ std::filesystem::path Session::writtenJournal() const {
     return journal_ && journal_->written() ? options_.out / "session.journal" : std::filesystem::path();
 }
 
-std::unique_ptr<sand::Terrain> Session::sandOfJournal() {
+std::unique_ptr<sand::Replica> Session::sandOfJournal() {
     const std::filesystem::path journal = writtenJournal();
     if (journal.empty()) {
         return nullptr;
     }
     const lockstep::Busy busy(barrier_, "the sand of its journal");
-    std::unique_ptr<sand::Terrain> sand;
+    std::unique_ptr<sand::Replica> sand;
     try {
-        sand = std::make_unique<sand::Terrain>(restoreSand(journal, terrain_.stepNumber(), options_.sweeps).terrain);
+        sand = std::make_unique<sand::Replica>(restoreSand(journal, terrain_.stepNumber(), options_.sweeps).terrain);
     } catch (const std::exception& error) {  // the ranks wait for an answer, whatever it is
         fmt::print(stderr, "sandwall: {}\n", error.what());
     }

@@ -19,7 +19,7 @@ std::vector<std::string> namesOf(const lockstep::Cluster& cluster, const walls::
 }
 
 void requireMemory(const std::vector<lockstep::RankHost>& ranks, int columns, int rows, const std::string& file) {
-    if (const auto lack = lockstep::lackOfMemory(ranks, sand::Terrain::leastBytes(columns, rows), 0)) {
+    if (const auto lack = lockstep::lackOfMemory(ranks, sand::Replica::leastBytes(columns, rows), 0)) {
         throw base::InputError(
             fmt::format("{}: {} x {} cells need {}: fewer cells, or more hosts", file, columns, rows, *lack));
     }
@@ -33,7 +33,7 @@ void requireMemory(const std::vector<lockstep::RankHost>& ranks, const sand::Sce
     const int rows = scene.rules.rows;
     // How much sky a place sees is looked up in a height for each nominal cell.
     const std::int64_t toDraw = std::int64_t{sizeof(float)} * columns * rows;
-    const auto lack = lockstep::lackOfMemory(ranks, sand::Terrain::leastBytes(scene), toDraw);
+    const auto lack = lockstep::lackOfMemory(ranks, sand::Replica::leastBytes(scene), toDraw);
     if (lack) {
         throw base::InputError(
             fmt::format("{}: a TIN of {} vertices over {} x {} nominal cells needs {}: fewer of either, or more hosts",

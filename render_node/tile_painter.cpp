@@ -61,7 +61,7 @@ void TilePainter::drawAnew() {
     shown_.assign(shown_.size(), lockstep::Pattern::none);
 }
 
-void TilePainter::paint(sand::Terrain& terrain, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye,
+void TilePainter::paint(sand::Replica& terrain, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye,
                         const TileFigures& figures) {
     sand_.setLayers(view.layers);
     sand_.setSceneToRoom(glm::make_mat4(view.sceneToRoom.data()));

@@ -49,7 +49,7 @@ public:
     /// Brings every eye that differs up to date with `terrain` as `view` sees it, or with its test pattern, and puts
     /// them together; with `oneEye` only that which the frame shows, the left one in even frames. `figures` are shown
     /// over the sand where the view has Layer::statistics. Does not wait for GL.
-    void paint(sand::Terrain& terrain, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye = false,
+    void paint(sand::Replica& terrain, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye = false,
                const TileFigures& figures = {});
     /// What each output shows, in the order of tile.outputs; good until the next paint().
     [[nodiscard]] std::vector<OutputPicture> outputs() const { return composer_.shown(targets_); }

@@ -42,7 +42,7 @@ public:
           tile_(wall_.tiles.at(static_cast<std::size_t>(cluster.rank() - 1))),
           viewProof_(wall_.encode()),
           context_(makeContext(backend, wall_, tile_)) {
-        if (message.spoiltShader == cluster.rank()) {
+        if (faults_.spoilsShader()) {
             const GlProgram broken(shaderSource("solid.vert.glsl"), shaderSource("light.glsl"),
                                    {"sand.frag.glsl", "spoilt on purpose"});
         }
@@ -107,7 +107,7 @@ public:
 private:
     void applyFaults(lockstep::FrameMessage& frame) {
         faults_.strike(frame.frame, *terrain_);
-        if (const auto& skew = message_.skew; skew && skew->rank == cluster_.rank() && skew->frame == frame.frame) {
+        if (faults_.movesView(frame.frame)) {
             frame.view.head[0] += 1;
         }
     }
@@ -198,7 +198,7 @@ private:
     const walls::Tile& tile_;
     lockstep::ViewProof viewProof_;
     std::unique_ptr<GlContext> context_;  // before everything that holds GL objects
-    std::optional<sand::Terrain> terrain_;
+    std::optional<sand::Replica> terrain_;
     std::optional<TilePainter> painter_;
     lockstep::Statistics drawMs_, waitMs_;
 };

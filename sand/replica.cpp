@@ -22,14 +22,14 @@ std::uint64_t mix(std::uint64_t value) {
 
 }  // namespace
 
-Terrain::Terrain(const Start& start, const Erosion::Options& options)
+Replica::Replica(const Start& start, const Erosion::Options& options)
     : rules_(start.rules),
       startRules_(start.rules),
       cellSize_(start.terrain.cellSize()),
       surface_(makeSurface(start, options)),
       heading_(start.rules.toolHeading) {}
 
-Terrain::Terrain(const Terrain& other)
+Replica::Replica(const Replica& other)
     : rules_(other.rules_),
       startRules_(other.startRules_),
       cellSize_(other.cellSize_),
@@ -39,17 +39,17 @@ Terrain::Terrain(const Terrain& other)
       heading_(other.heading_),
       engaged_(other.engaged_) {}
 
-Terrain& Terrain::operator=(const Terrain& other) { return *this = Terrain(other); }
+Replica& Replica::operator=(const Replica& other) { return *this = Replica(other); }
 
-const GridSurface& Terrain::grid() const {
+const GridSurface& Replica::grid() const {
     const auto* grid = dynamic_cast<const GridSurface*>(surface_.get());
     if (grid == nullptr) {
-        throw std::logic_error("Terrain: a TIN has no height field");
+        throw std::logic_error("Replica: a TIN has no height field");
     }
     return *grid;
 }
 
-std::int64_t Terrain::leastBytes(const Start& start) {
+std::int64_t Replica::leastBytes(const Start& start) {
     if (start.tin != nullptr) {
         // Of 66 thousand to a million vertices 329 to 401 were measured, by the layout of the mesh.
         constexpr std::int64_t kPerVertex = 320;
@@ -58,15 +58,15 @@ std::int64_t Terrain::leastBytes(const Start& start) {
     return leastBytes(start.rules.columns, start.rules.rows);
 }
 
-std::int64_t Terrain::leastBytes(int columns, int rows) {
+std::int64_t Replica::leastBytes(int columns, int rows) {
     // The scene's heights, the replica's, and a flux through two faces of every cell.
     constexpr std::int64_t kPerCell = 4 * sizeof(std::int32_t);
     return kPerCell * columns * rows;
 }
 
-void Terrain::apply(const Step& step) {
+void Replica::apply(const Step& step) {
     if (step.number != stepNumber_ + 1) {
-        throw std::logic_error("Terrain::apply: step " + std::to_string(step.number) + " after step " +
+        throw std::logic_error("Replica::apply: step " + std::to_string(step.number) + " after step " +
                                std::to_string(stepNumber_));
     }
     const bool wasEngaged = engaged_;
@@ -109,7 +109,7 @@ void Terrain::apply(const Step& step) {
     surface_->sweep(rules_.sweepsPerStep, engaged_ ? &here : nullptr, probe_);
 }
 
-void Terrain::tune(const Tuning& tuning) {
+void Replica::tune(const Tuning& tuning) {
     // A hand that has turned its tool keeps it turned, unless the operator turns it.
     heading_ = tuning.toolHeading != rules_.toolHeading ? tuning.toolHeading : heading_;
     const bool otherTool = tuning.tool() != rules_.tuning().tool();
@@ -120,12 +120,12 @@ void Terrain::tune(const Tuning& tuning) {
     }
 }
 
-void Terrain::press() {
+void Replica::press() {
     const std::array<ProbePoint, 2> here{probe_, probe_};
     surface_->drag(tool(), here);
 }
 
-bool Terrain::putBack(const Edit& edit) {
+bool Replica::putBack(const Edit& edit) {
     if (edit.kind == Edit::reset) {
         surface_->reset();
     } else if (edit.kind == Edit::undo && canUndo()) {
@@ -148,7 +148,7 @@ bool Terrain::putBack(const Edit& edit) {
     return true;
 }
 
-std::uint64_t Terrain::stateHash() {
+std::uint64_t Replica::stateHash() {
     std::uint64_t hash = surface_->hash();
     const auto fold = [&hash](std::uint64_t value) { hash = mix(hash ^ value) + std::rotl(value, 17); };
     fold(stepNumber_);
@@ -175,7 +175,7 @@ std::uint64_t Terrain::stateHash() {
     return hash;
 }
 
-StateCopy Terrain::copyState() const {
+StateCopy Replica::copyState() const {
     base::ByteWriter writer;
     writer.put(kStateVersion);
     writer.put(stepNumber_);
@@ -196,7 +196,7 @@ base::Bytes StateCopy::encode() const {
     return writer.take();
 }
 
-void Terrain::decodeState(std::span<const std::uint8_t> bytes) {
+void Replica::decodeState(std::span<const std::uint8_t> bytes) {
     base::ByteReader reader(bytes);
     if (const auto version = reader.get<std::uint32_t>(); version != kStateVersion) {
         throw base::FormatError("a state of version " + std::to_string(version));

@@ -22,7 +22,7 @@ struct StateCopy {
     std::shared_ptr<const SurfaceCopy> beforeStroke;  // null when there is nothing to undo
     std::shared_ptr<const SurfaceCopy> sand;
 
-    /// What Terrain::decodeState takes (compressed).
+    /// What Replica::decodeState takes (compressed).
     [[nodiscard]] base::Bytes encode() const;
 };
 
@@ -30,15 +30,15 @@ struct StateCopy {
 ///
 /// Two replicas that start from one scene and apply the same steps are equal bit for bit, whatever the compiler, the
 /// number of threads or the size of the blocks. Not thread-safe.
-class Terrain {
+class Replica {
 public:
     /// `options` say how the sand of a height field is swept, not what comes of it; their ground is that of `start`.
-    explicit Terrain(const Start& start, const Erosion::Options& options = {});
-    Terrain(const Terrain& other);
-    Terrain& operator=(const Terrain& other);
-    Terrain(Terrain&&) noexcept = default;
-    Terrain& operator=(Terrain&&) noexcept = default;
-    ~Terrain() = default;
+    explicit Replica(const Start& start, const Erosion::Options& options = {});
+    Replica(const Replica& other);
+    Replica& operator=(const Replica& other);
+    Replica(Replica&&) noexcept = default;
+    Replica& operator=(Replica&&) noexcept = default;
+    ~Replica() = default;
 
     /// The tool displaces sand along the step's path, what an operator asked is done, then Rules::sweepsPerStep sweeps
     /// let the sand slide. Steps must come in order: throws std::logic_error when step.number is not stepNumber() + 1.

@@ -31,7 +31,7 @@ for name in "${names[@]}"; do
     for folder in "$corpus/written/$name" "tests/fuzz/corpus/$name"; do
         [[ -d $folder ]] && seeds+=("$folder")
     done
-    [[ $name == wall ]] && seeds+=(walls/configs walls/configs/broken)
+    [[ $name == wall ]] && seeds+=(walls/configs tests/walls/broken)
     log=$corpus/$name.log
     # The largest tool, dragged from as far away as a step may be, takes 5 s here; beside other work much more.
     build/fuzz/bin/"fuzz_$name" -max_total_time="$seconds" -rss_limit_mb=4096 -timeout=120 -max_len=8192 \

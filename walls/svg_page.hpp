@@ -15,7 +15,7 @@ public:
     enum class Anchor { start, middle, end };
     /// A line's or area's look: CSS colours, "none" for no filling; `dash` as SVG writes it, empty for a whole line.
     struct Style {
-        std::string_view stroke = "#333333", fill = "none", dash = "";
+        std::string_view stroke = "#333333", fill = "none", dash{};
         double width = 1;  // [pixel]
     };
 

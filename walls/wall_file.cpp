@@ -134,11 +134,11 @@ std::string fallbackName(const std::filesystem::path& file) {
 Wall loadWall(const std::filesystem::path& file) { return readWall(TomlTable::load(file), fallbackName(file)); }
 
 Wall loadWallAs(const std::filesystem::path& file, const std::string& stereo) {
-    const Wall wall = loadWall(file);
+    Wall wall = loadWall(file);
     if (stereo.empty()) {
         return wall;
     }
-    const Wall other = shownIn(wall, stereoNamed(stereo));
+    Wall other = shownIn(wall, stereoNamed(stereo));
     if (const auto fault = viewFault(other)) {
         throw base::InputError(fmt::format("{}: shown in {}: {}", file.string(), stereo, *fault));
     }

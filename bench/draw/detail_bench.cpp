@@ -25,7 +25,7 @@ struct Sums {
 sand::Scene dunesOf(int side, std::uint32_t seed) {
     sand::Scene scene = sample::flatScene(side, side, 0.01);
     sand::makeDunes({.height = 0.012, .length = 0.08, .seed = seed}, scene.terrain);  // crests in every chunk
-    sand::Terrain terrain(scene);
+    sand::Replica terrain(scene);
     sample::drag(terrain, scene, {0.6, 0.7, 0.0}, {1.1, 1.0, 0.0});
     scene.terrain = terrain.field();
     return scene;

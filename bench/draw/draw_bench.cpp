@@ -111,7 +111,7 @@ void dig(benchmark::State& state) {
     // As many as a scene file gives it.
     const double radius = 0.01 / scene.terrain.cellSize();
     scene.rules.sweepsPerStep = std::max(4, static_cast<int>(std::ceil(radius * radius / 6)));
-    sand::Terrain terrain(scene);
+    sand::Replica terrain(scene);
     render_node::SandView view(scene, glm::dmat4(1));
     const render_node::EyeTarget target(1024, 768);
     const sample::Window window{0.25, 0.25, 0.75, 0.75};

@@ -78,7 +78,7 @@ sand::ProbePoint handAt(const sand::Rules& rules, std::int32_t level, double sec
 }
 
 /// The steps of one frame, at as many samples of the hand as a device gives.
-void dig(sand::Terrain& terrain, std::int32_t level, int steps) {
+void dig(sand::Replica& terrain, std::int32_t level, int steps) {
     constexpr int kSamples = 17;  // in a step
     for (int i = 0; i < steps; ++i) {
         sand::Step step{1, terrain.stepNumber() + 1, true, {}};
@@ -99,7 +99,7 @@ struct Measured {
 
 /// What changed of the sand, for every tile to take over.
 struct Damage {
-    explicit Damage(sand::Terrain& terrain) {
+    explicit Damage(sand::Replica& terrain) {
         if (terrain.tinView() != nullptr) {
             triangles = terrain.takeTinDamage();
         } else {
@@ -110,7 +110,7 @@ struct Damage {
     sand::TinChange triangles;
 };
 
-void takeOver(Tile& tile, const sand::Terrain& terrain, const Damage& damage) {
+void takeOver(Tile& tile, const sand::Replica& terrain, const Damage& damage) {
     render_node::SandView& view = tile.view;
     if (const sand::tin::SurfaceView* tin = terrain.tinView()) {
         std::vector<render_node::Camera> cameras;
@@ -125,7 +125,7 @@ void takeOver(Tile& tile, const sand::Terrain& terrain, const Damage& damage) {
 }
 
 /// Takes over what changed and draws it, tile by tile.
-void show(const std::vector<std::unique_ptr<Tile>>& tiles, sand::Terrain& terrain, Measured& measured) {
+void show(const std::vector<std::unique_ptr<Tile>>& tiles, sand::Replica& terrain, Measured& measured) {
     const Damage damage(terrain);
     double update = 0, draw = 0, busiest = 0, busiestUpdate = 0, drawn = 0, pixels = 0, all = 0;
     for (const auto& tile : tiles) {
@@ -166,7 +166,7 @@ int measure(const Options& options) {
     const walls::Wall wall = walls::loadWall(options.wall);
     const sand::Scene scene = sand::loadScene(options.scene);
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
-    sand::Terrain terrain(scene);
+    sand::Replica terrain(scene);
     const std::vector<std::unique_ptr<Tile>> tiles = tilesOf(wall, scene, terrain.tinView());
     const std::int32_t level = scene.referenceHeight();
     Measured measured;

@@ -110,7 +110,7 @@ struct Drag {
 
 private:
     void run(const sand::ForceConstants& constants, int side) {
-        sand::Terrain terrain(sceneOf(side));
+        sand::Replica terrain(sceneOf(side));
         const auto tool = sand::force::Contour::sphere(kRadius);
         sand::force::SurfacePatch patch;
         Vec3 last;

@@ -32,7 +32,7 @@ sand::Scene sceneFor(const Stroke& stroke) {
     return scene;
 }
 
-sand::Step stepOf(const sand::Terrain& terrain, const Stroke& stroke, int number) {
+sand::Step stepOf(const sand::Replica& terrain, const Stroke& stroke, int number) {
     const auto probe = [](double cells) { return static_cast<std::int32_t>(std::lround(cells * sand::kProbePerCell)); };
     // Along the diagonal: 480 cells and their banks fit into a field of 512.
     const double at = stroke.side / 2.0 + stroke.speed * (number - kSteps / 2.0) / std::numbers::sqrt2;
@@ -40,7 +40,7 @@ sand::Step stepOf(const sand::Terrain& terrain, const Stroke& stroke, int number
 }
 
 /// Digs one stroke and leaves the tool in the sand; seconds of each step go to `seconds`. Returns the last hash.
-std::uint64_t digStroke(sand::Terrain& terrain, const Stroke& stroke, std::vector<double>& seconds) {
+std::uint64_t digStroke(sand::Replica& terrain, const Stroke& stroke, std::vector<double>& seconds) {
     std::uint64_t hash = 0;
     for (int i = 0; i <= kSteps; ++i) {
         const sand::Step step = stepOf(terrain, stroke, i);
@@ -66,7 +66,7 @@ struct Lag {
 /// Sum of |a - b| over that of |b|: half of each is a volume, of sand that has to move and of sand that was displaced.
 double behind(const sand::HeightField& field, const sand::HeightField& rest) { return misplaced(field, rest); }
 
-Lag lagOf(sand::Terrain& terrain, const Stroke& stroke) {
+Lag lagOf(sand::Replica& terrain, const Stroke& stroke) {
     Lag lag;
     const sand::HeightField end = terrain.field();
     const sand::Obstacle tool = sand::Tool(terrain.toolShape()).obstacle(end, terrain.probe());
@@ -97,7 +97,7 @@ void measure(const Stroke& stroke, int runs, Csv& csv) {
     std::uint64_t hash = 0;
     Lag lag;
     for (int run = 0; run < runs; ++run) {
-        sand::Terrain terrain(sceneFor(stroke));
+        sand::Replica terrain(sceneFor(stroke));
         hash = digStroke(terrain, stroke, seconds);
         if (run == 0) {
             lag = lagOf(terrain, stroke);
@@ -106,7 +106,7 @@ void measure(const Stroke& stroke, int runs, Csv& csv) {
     std::uint64_t idleHash = 0;
     std::vector<double> idle;
     idle.reserve(kSteps);
-    sand::Terrain settled(sceneFor(stroke));
+    sand::Replica settled(sceneFor(stroke));
     for (int i = 0; i < kSteps; ++i) {
         idle.push_back(secondsOf([&] {
             settled.apply({1, settled.stepNumber() + 1, false, {}});

@@ -2,6 +2,7 @@
 #include "bench/sand/relaxations.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 
@@ -155,8 +156,8 @@ sand::Rules rulesFor(const sand::HeightField& field, double talus, double band) 
     sand::Rules rules;
     rules.columns = field.columns();
     rules.rows = field.rows();
-    rules.threshold = static_cast<std::int32_t>(talus * sand::kUnitsPerCell + 0.5);
-    rules.startThreshold = static_cast<std::int32_t>(talus * (1 + band) * sand::kUnitsPerCell + 0.5);
+    rules.threshold = static_cast<std::int32_t>(std::lround(talus * sand::kUnitsPerCell));
+    rules.startThreshold = static_cast<std::int32_t>(std::lround(talus * (1 + band) * sand::kUnitsPerCell));
     return rules;
 }
 

@@ -25,6 +25,7 @@ constexpr double kRestPatience = 60;  // [s] of all runs of one method: a slower
 std::vector<Contender> race(const std::vector<Method>& all, const sand::HeightField& start, int runs,
                             const std::string& field) {
     std::vector<Contender> contenders;
+    contenders.reserve(all.size());
     for (const Method& method : all) {
         contenders.push_back({&method, {}, {}, 0});
     }

@@ -72,7 +72,7 @@ sand::Scene level(double toolCells, int sweeps) {
 
 /// A step of digging in circles, 1.5 cells long, hash included.
 void dig(benchmark::State& state, double toolCells, int sweeps) {
-    sand::Terrain terrain(level(toolCells, sweeps));
+    sand::Replica terrain(level(toolCells, sweeps));
     for (auto _ : state) {
         const double angle = static_cast<double>(terrain.stepNumber()) * 1.5 / 120;
         const auto at = [](double cell) { return static_cast<std::int32_t>(cell * sand::kProbePerCell); };
@@ -93,7 +93,7 @@ void touchDown(benchmark::State& state) {
     scene.terrain = sand::HeightField(side, side, 1.0);
     sand::makeDunes({}, scene.terrain);
     scene.rules.columns = scene.rules.rows = side;
-    sand::Terrain terrain(scene);
+    sand::Replica terrain(scene);
     for (auto _ : state) {
         for (const bool engaged : {true, false}) {
             const auto place = static_cast<std::int32_t>(side / 2 * sand::kProbePerCell);
@@ -110,7 +110,7 @@ void compressed(benchmark::State& state) {
     scene.terrain = sand::HeightField(side, side, 1.0);
     sand::makeDunes({}, scene.terrain);
     scene.rules.columns = scene.rules.rows = side;
-    const sand::Terrain terrain(scene);
+    const sand::Replica terrain(scene);
     for (auto _ : state) {
         benchmark::DoNotOptimize(terrain.copySand()->encode());
     }
@@ -119,7 +119,7 @@ BENCHMARK(compressed)->Arg(512)->Arg(2048)->Unit(benchmark::kMillisecond);
 
 /// Settled sand and a hovering hand.
 void idle(benchmark::State& state) {
-    sand::Terrain terrain(level(12, 24));
+    sand::Replica terrain(level(12, 24));
     for (auto _ : state) {
         terrain.apply({1, terrain.stepNumber() + 1, false, {}});
         benchmark::DoNotOptimize(terrain.stateHash());

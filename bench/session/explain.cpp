@@ -58,7 +58,7 @@ private:
 };
 
 void explainTinMemory(const sand::Scene& scene, Explanation& rows) {
-    const sand::Terrain terrain(scene);
+    const sand::Replica terrain(scene);
     const sand::tin::Triangles& mesh = terrain.tinView()->triangles;
     const std::size_t perVertex = sizeof(sand::tin::Place) + 2 * sizeof(std::int32_t) + 4 * sizeof(std::int64_t);
     rows.memory("vertices", mesh.places.size() * perVertex,
@@ -102,7 +102,7 @@ void explainRules(const sand::Scene& scene, Explanation& rows) {
     rows.rule("tool as an obstacle", rules.toolRadius > 0, "only in patches that the engaged tool reaches");
 }
 
-std::vector<double> timeSteps(sand::Terrain& terrain, const std::vector<sand::Step>& steps, std::uint64_t& hash) {
+std::vector<double> timeSteps(sand::Replica& terrain, const std::vector<sand::Step>& steps, std::uint64_t& hash) {
     std::vector<double> seconds;
     for (sand::Step step : steps) {
         step.epoch = 1;
@@ -150,7 +150,7 @@ void explainSteps(const sand::Scene& scene, const Settings& settings, Explanatio
 
     progress("the scene comes to rest");
     constexpr std::uint64_t kMostSteps = 100000;
-    sand::Terrain terrain(scene);
+    sand::Replica terrain(scene);
     std::vector<double> toRest;
     while (!terrain.settled() && terrain.stepNumber() < kMostSteps) {
         toRest.push_back(timeSteps(terrain, {sand::Step{}}, hash).front());
@@ -176,7 +176,7 @@ void explainSteps(const sand::Scene& scene, const Settings& settings, Explanatio
 
     progress("everything moving");
     constexpr std::size_t kMoving = 10;  // before much of it rests
-    sand::Terrain moving(stirred(scene, settings.seed));
+    sand::Replica moving(stirred(scene, settings.seed));
     rows.step("everything moving", timeSteps(moving, std::vector<sand::Step>(kMoving), hash),
               fmt::format("{} steps of {}", kMoving, sweepsPerStep));
 }

@@ -87,7 +87,7 @@ std::vector<Action> actionsOf(int side, std::uint32_t seed) {
 
 /// As a rank and the master do it: the step, its hash, and what is to be drawn anew.
 void measureWhole(const sand::Scene& scene, const std::vector<Action>& actions, Times& times) {
-    sand::Terrain terrain(scene);
+    sand::Replica terrain(scene);
     terrain.apply({1, 1, false, {}});  // everything moves at first
     static_cast<void>(terrain.stateHash());
     static_cast<void>(terrain.takeTinDamage());
@@ -101,7 +101,7 @@ void measureWhole(const sand::Scene& scene, const std::vector<Action>& actions, 
     }
 }
 
-/// The same, part by part: the surface's calls as Terrain::apply() makes them.
+/// The same, part by part: the surface's calls as Replica::apply() makes them.
 void measureParts(const sand::Scene& scene, const std::vector<Action>& actions, Times& times) {
     sand::tin::TinSurface surface(scene.rules, scene.tin);
     const sand::HeldTool tool{scene.rules.toolShape(), {}};

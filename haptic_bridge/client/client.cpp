@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "haptic_bridge/client/client.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <random>
 #include <utility>
 
 #include "haptic_bridge/client/connection_thread.hpp"
+#include "host/clock.hpp"
 
 namespace haptic_bridge {
 
@@ -83,5 +89,84 @@ std::uint32_t Client::stepsPerSecond() const {
 void Client::drill(LinkDrill drill, std::chrono::milliseconds length) { session_->drill(drill, length); }
 
 void Client::stop() { session_->stop(); }
+
+// The link with a server that has no sand and streams where its hand is.
+
+void Client::Session::greet(const PositionGreeting& greeting) {
+    if (up()) {
+        connection_->close("it sent a message out of turn", RefusalCode::garbage);
+        return;
+    }
+    if (greeting.protocol != kProtocolVersion) {
+        refuse(fmt::format("refused: it streams positions in protocol version {}, the master speaks {}; "
+                           "docs/protocol.md has the present one",
+                           greeting.protocol, kProtocolVersion),
+               RefusalCode::protocol);
+        return;
+    }
+    if (!handshake_->accepts(greeting)) {
+        refuse("refused: " + handshake_->because().text, handshake_->because().code);
+        return;
+    }
+    {
+        const std::lock_guard lock(shelf.mutex);
+        ++shelf.counters.links;
+        shelf.counters.reconnects += everWelcomed_ ? 1 : 0;
+        shelf.positions.clear();
+    }
+    everWelcomed_ = true;
+    backOff_ = kFirstBackOff;
+    tell(Link::streaming,
+         fmt::format("{}: connected, '{}' streams positions; the master numbers the steps", peer_, greeting.name));
+}
+
+void Client::Session::accept(const Position& position) {
+    bool full = false;
+    {
+        const std::lock_guard lock(shelf.mutex);
+        shelf.positions.push_back({position, host::monotonicNs()});
+        full = shelf.positions.size() >= kMaxPositions && !shelf.full;
+        shelf.full = shelf.full || full;
+        shelf.floods += full ? 1 : 0;
+    }
+    if (full) {
+        connection_->pause();
+    }
+}
+
+std::vector<TimedPosition> Client::Session::drainPositions() {
+    const std::lock_guard lock(shelf.mutex);
+    if (shelf.full) {
+        resumeReading();
+    }
+    return std::exchange(shelf.positions, {});
+}
+
+// Faults of the link on purpose.
+
+void Client::Session::drill(LinkDrill drill, std::chrono::milliseconds length) {
+    boost::asio::post(io_, [this, drill, length] {
+        if (!connection_) {
+            return;
+        }
+        if (drill == LinkDrill::garbage) {
+            std::minstd_rand noise;
+            base::Bytes bytes(4096);
+            std::generate(bytes.begin(), bytes.end(), [&] { return static_cast<std::uint8_t>(noise() >> 8); });
+            connection_->sendBytes(std::move(bytes));
+            return;
+        }
+        connection_->pause();
+        silentUntil_ = std::chrono::steady_clock::now() + length;
+        drillTimer_.expires_at(silentUntil_);
+        drillTimer_.async_wait([this](boost::system::error_code error) {
+            if (!error && connection_) {
+                connection_->resume();
+            }
+        });
+    });
+}
+
+bool Client::Session::silent() const { return std::chrono::steady_clock::now() < silentUntil_; }
 
 }  // namespace haptic_bridge

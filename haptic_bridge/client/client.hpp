@@ -93,7 +93,7 @@ public:
 
     [[nodiscard]] LinkStatus link() const;
     /// Makes the server the sequencer of `epoch` from its next step, stepNumber + 1, on. `state` is
-    /// sand::Terrain::encodeState() at stepNumber, sent only when the server's replica is elsewhere, and not on the
+    /// sand::Replica::encodeState() at stepNumber, sent only when the server's replica is elsewhere, and not on the
     /// way of the steps in `recent`. Drops steps that were not drained. Without effect unless the link is offered.
     void grant(std::uint32_t epoch, std::uint64_t stepNumber, std::uint64_t stateHash, base::Bytes state,
                StepRing recent = {});

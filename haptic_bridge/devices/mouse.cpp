@@ -45,7 +45,7 @@ MouseDevice::~MouseDevice() {
     thread_.join();
 }
 
-void MouseDevice::stepped(const sand::Terrain& terrain) {
+void MouseDevice::stepped(const sand::Replica& terrain) {
     const std::int64_t now = host::monotonicNs();
     if (sketchedNs_ == 0 || now - sketchedNs_ >= kFrameNs) {
         sketchedNs_ = now;

@@ -33,7 +33,7 @@ public:
     [[nodiscard]] bool finished(double) const override { return false; }
     [[nodiscard]] const TroubleCounts* troubles() const override { return &troubles_; }
     [[nodiscard]] SandWatcher* watcher() override { return this; }
-    void stepped(const sand::Terrain& terrain) override;
+    void stepped(const sand::Replica& terrain) override;
     /// Also by keys in the window: f all or nothing, + and - a tenth more or less.
     void shareForce(double share) override { share_ = share; }
 

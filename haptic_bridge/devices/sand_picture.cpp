@@ -11,7 +11,9 @@ constexpr double kPixelsPerNewton = 40;
 constexpr double kBarDepth = 3;  // [tool radius], at the bar's end
 
 std::uint32_t colour(double red, double green, double blue) {
-    const auto level = [](double share) { return static_cast<std::uint32_t>(std::clamp(share, 0.0, 1.0) * 255 + 0.5); };
+    const auto level = [](double share) {
+        return static_cast<std::uint32_t>(std::lround(std::clamp(share, 0.0, 1.0) * 255));
+    };
     return 0xff000000U | level(blue) << 16 | level(green) << 8 | level(red);
 }
 
@@ -55,9 +57,11 @@ public:
     /// From the middle of the picture's height up or down.
     void bar(int left, double share, std::uint32_t c) {
         const double middle = picture_.height / 2.0, end = middle * (1 - std::clamp(share, -1.0, 1.0));
-        for (double y = std::min(middle, end); y <= std::max(middle, end); ++y) {
+        const double lowest = std::min(middle, end);
+        const int rows = static_cast<int>(std::abs(end - middle)) + 1;
+        for (int row = 0; row < rows; ++row) {
             for (int x = 0; x < 6; ++x) {
-                dot(left + x, y, c);
+                dot(left + x, lowest + row, c);
             }
         }
     }
@@ -107,7 +111,7 @@ void paintSand(const SandSketch& sand, const SketchFrame& frame, Picture& pictur
 
 }  // namespace
 
-void SandSketch::take(const sand::Terrain& terrain) {
+void SandSketch::take(const sand::Replica& terrain) {
     const sand::Rules& field = terrain.rules();
     const int every = (std::max(field.columns, field.rows) + kMostSide - 1) / kMostSide;
     columns = (field.columns + every - 1) / every;

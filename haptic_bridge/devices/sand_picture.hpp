@@ -19,7 +19,7 @@ struct SandSketch {
     std::uint64_t step = 0;
 
     /// Asks for memory the first time alone.
-    void take(const sand::Terrain& terrain);
+    void take(const sand::Replica& terrain);
 };
 
 /// Where the hand is in the picture, and what it feels.

@@ -12,7 +12,7 @@ public:
     virtual ~SandWatcher() = default;
     SandWatcher(const SandWatcher&) = delete;
     SandWatcher& operator=(const SandWatcher&) = delete;
-    virtual void stepped(const sand::Terrain& terrain) = 0;
+    virtual void stepped(const sand::Replica& terrain) = 0;
 };
 
 }  // namespace haptic_bridge

@@ -77,7 +77,7 @@ struct Hello {
 struct Start {
     std::uint32_t epoch = 0;
     std::uint64_t stepNumber = 0;
-    std::uint64_t stateHash = 0;  // sand::Terrain::stateHash() at stepNumber
+    std::uint64_t stateHash = 0;  // sand::Replica::stateHash() at stepNumber
     friend bool operator==(const Start&, const Start&) = default;
 };
 struct State {

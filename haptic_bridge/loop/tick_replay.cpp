@@ -43,7 +43,7 @@ void TickReplay::begin(const TrackPiece& piece) {
                                    piece.header.literal ? Guards::Mode::literal : Guards::Mode::on);
 }
 
-void TickReplay::tick(const TickInput& input, const sand::Terrain& terrain, std::string& rows) {
+void TickReplay::tick(const TickInput& input, const sand::Replica& terrain, std::string& rows) {
     if (surface_.patch.empty() || surface_.step != terrain.stepNumber()) {
         takeSurface(terrain, surface_);
     }
@@ -53,7 +53,7 @@ void TickReplay::tick(const TickInput& input, const sand::Terrain& terrain, std:
     appendRow(hand_->lastTick(), rows);
 }
 
-void TickReplay::feel(const sand::Terrain& terrain, std::string& rows) {
+void TickReplay::feel(const sand::Replica& terrain, std::string& rows) {
     while (!pieces_.empty()) {
         const TrackPiece& piece = pieces_.front();
         if (piece.begins) {

@@ -22,14 +22,14 @@ public:
 
     [[nodiscard]] bool empty() const { return pieces_.empty(); }
     /// Ticks the hand for as long as it felt the sand as it is now. Call it at the start and after every step.
-    void feel(const sand::Terrain& terrain, std::string& rows);
+    void feel(const sand::Replica& terrain, std::string& rows);
     /// Ticks that felt steps which the session did not keep, at its end.
     [[nodiscard]] std::size_t left() const;
 
 private:
     class Player;
     void begin(const TrackPiece& piece);
-    void tick(const TickInput& input, const sand::Terrain& terrain, std::string& rows);
+    void tick(const TickInput& input, const sand::Replica& terrain, std::string& rows);
 
     const sand::Scene* scene_;
     std::deque<TrackPiece> pieces_;

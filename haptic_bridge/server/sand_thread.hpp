@@ -99,7 +99,7 @@ private:
     std::deque<Command> commands_;
 
     // The sand thread's own.
-    sand::Terrain terrain_;
+    sand::Replica terrain_;
     PathBuilder path_;
     StepClock clock_;
     Surface virtualSurface_;

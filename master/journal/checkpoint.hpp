@@ -18,7 +18,7 @@ struct Checkpoint {
     std::uint64_t step = 0, frame = 0;
     std::uint32_t epoch = 0;
     std::uint64_t stateHash = 0;
-    base::Bytes state;  // sand::Terrain::encodeState
+    base::Bytes state;  // sand::Replica::encodeState
 
     [[nodiscard]] base::Bytes encode() const;
     /// Throws base::FormatError, in words that follow a file's name. The state is not looked into.

@@ -193,7 +193,7 @@ void JournalKeeper::endCheckpoint(bool wait) {
     complaint_ = complaint;
 }
 
-void JournalKeeper::shown(const sand::Terrain& terrain, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash) {
+void JournalKeeper::shown(const sand::Replica& terrain, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash) {
     endCheckpoint(false);
     const bool due = options_.checkpointSeconds > 0 && now() - lastCheckpoint_ >= options_.checkpointSeconds;
     if (!writer_ || !due || checkpoint_.valid() || terrain.stepNumber() == checkpointStep_) {

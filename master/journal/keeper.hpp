@@ -60,7 +60,7 @@ public:
     /// Pieces of the tick track: on disk with later steps. Throws as keep() does.
     void keepTicks(const std::vector<base::Bytes>& pieces);
     /// After every frame: begins a checkpoint when it is time to. All steps of the sand are in the journal.
-    void shown(const sand::Terrain& terrain, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash);
+    void shown(const sand::Replica& terrain, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash);
     void finish(const JournalEnd& end);
 
     [[nodiscard]] JournalPolicy policy() const { return options_.policy; }

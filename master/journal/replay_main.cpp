@@ -59,7 +59,7 @@ public:
         stream_.open(options.forces, std::ios::binary);
         rows_ = haptic_bridge::tickTitles();
     }
-    void feel(const sand::Terrain& terrain) {
+    void feel(const sand::Replica& terrain) {
         if (options_.forces.empty()) {
             return;
         }
@@ -89,7 +89,7 @@ private:
 };
 
 /// Applies the journal's steps and checks the session's hashes on the way. Returns how many frames differed.
-int replay(const master::Journal& journal, std::uint64_t until, sand::Terrain& terrain, Forces& forces) {
+int replay(const master::Journal& journal, std::uint64_t until, sand::Replica& terrain, Forces& forces) {
     int differing = 0;
     forces.feel(terrain);
     for (const master::JournalFrame& frame : journal.frames) {
@@ -147,7 +147,7 @@ void writeRasters(const sand::HeightField& field, const sand::Scene& scene, cons
     }
 }
 
-void writeOutputs(const sand::Terrain& terrain, const sand::Scene& scene, const Options& options) {
+void writeOutputs(const sand::Replica& terrain, const sand::Scene& scene, const Options& options) {
     const sand::tin::SurfaceView* tin = terrain.tinView();
     if (!options.mesh.empty()) {
         sand::writeMesh(tin != nullptr ? sand::meshOf(*tin, scene) : sand::meshOf(terrain.field(), scene),
@@ -175,7 +175,7 @@ int run(const Options& options) {
     checkOutputs(options);
     const master::Journal journal = master::readJournal(options.file);
     master::sayWhatIsMissing(options.file, journal.tornBytes, journal.end.has_value());
-    sand::Terrain terrain(journal.scene);
+    sand::Replica terrain(journal.scene);
     Forces forces(journal, options);
     int differing = replay(journal, options.until.value_or(std::numeric_limits<std::uint64_t>::max()), terrain, forces);
     forces.finish();

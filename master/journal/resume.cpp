@@ -23,7 +23,7 @@ public:
     using base::InputError::InputError;
 };
 
-void requireHash(sand::Terrain& terrain, const JournalEnd& said, const fs::path& journal) {
+void requireHash(sand::Replica& terrain, const JournalEnd& said, const fs::path& journal) {
     if (terrain.stepNumber() == said.step && terrain.stateHash() != said.hash) {
         throw OtherSand(fmt::format(
             "{}: after step {} the session had {:016x}, the replay has {:016x}; it is of another version or damaged",
@@ -32,7 +32,7 @@ void requireHash(sand::Terrain& terrain, const JournalEnd& said, const fs::path&
 }
 
 /// Applies the journal's steps up to `step` to sand that has some of them. Returns how many.
-std::uint64_t replayUntil(const fs::path& journal, std::uint64_t step, sand::Terrain& terrain) {
+std::uint64_t replayUntil(const fs::path& journal, std::uint64_t step, sand::Replica& terrain) {
     const std::uint64_t first = terrain.stepNumber();
     JournalReader reader(journal);
     while (const auto record = reader.next()) {
@@ -104,12 +104,12 @@ void requireScene(const JournalReader& reader, const std::string& file) {
 
 }  // namespace
 
-sand::Terrain sandOfCheckpoint(const fs::path& file, const JournalHeader& header, const sand::Terrain& start) {
+sand::Replica sandOfCheckpoint(const fs::path& file, const JournalHeader& header, const sand::Replica& start) {
     const Checkpoint checkpoint = readCheckpoint(file);
     if (checkpoint.session != header.session || checkpoint.sceneDigest != start.rules().digest()) {
         throw base::FormatError("is of another session");
     }
-    sand::Terrain terrain = start;
+    sand::Replica terrain = start;
     terrain.decodeState(checkpoint.state);
     if (terrain.stepNumber() != checkpoint.step || terrain.stateHash() != checkpoint.stateHash) {
         throw base::FormatError("its sand is not what it says");
@@ -119,7 +119,7 @@ sand::Terrain sandOfCheckpoint(const fs::path& file, const JournalHeader& header
 
 RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const sand::Erosion::Options& sweeps) {
     const JournalReader head(journal);
-    const sand::Terrain start(sceneOf(head), sweeps);
+    const sand::Replica start(sceneOf(head), sweeps);
     for (const std::uint64_t at : checkpointsOf(journal)) {
         const fs::path file = checkpointFile(journal, at);
         try {

@@ -14,7 +14,7 @@ namespace master {
 
 /// The sand of a session after one of its steps, as its journal has it.
 struct RestoredSand {
-    sand::Terrain terrain;
+    sand::Replica terrain;
     std::uint64_t checkpointStep = 0;  // the step of the checkpoint it was computed from; 0 for the scene itself
     std::uint64_t replayedSteps = 0;   // from there
 };
@@ -27,8 +27,8 @@ struct RestoredSand {
 
 /// The sand of a checkpoint, of the session with this header, whose sand began as `start`. Throws base::FormatError
 /// when it is another's, or damaged.
-[[nodiscard]] sand::Terrain sandOfCheckpoint(const std::filesystem::path& file, const JournalHeader& header,
-                                             const sand::Terrain& start);
+[[nodiscard]] sand::Replica sandOfCheckpoint(const std::filesystem::path& file, const JournalHeader& header,
+                                             const sand::Replica& start);
 
 /// A session that stopped, and all that it takes to go on.
 struct ResumedSession {
@@ -39,7 +39,7 @@ struct ResumedSession {
     std::uint32_t epoch = 0;  // the last
     std::uint64_t edits = 0;
     std::uint64_t step = 0, hash = 0;  // the sand
-    base::Bytes state;                 // as well, sand::Terrain::encodeState
+    base::Bytes state;                 // as well, sand::Replica::encodeState
     std::int64_t cutBytes = 0;         // behind the last whole record of the journal: left out
     std::uint64_t checkpointStep = 0, replayedSteps = 0;
 };

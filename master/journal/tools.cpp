@@ -29,7 +29,7 @@ public:
 
     /// The tool with which the hand of this step moves.
     void begin(const sand::Step& step) { heading_ = step.heading.value_or(heading_); }
-    /// As sand::Terrain::tune has it: for the next step.
+    /// As sand::Replica::tune has it: for the next step.
     void end(const sand::Step& step) {
         if (step.edit.kind == sand::Edit::tune) {
             heading_ = step.edit.tuning.toolHeading != rules_.toolHeading ? step.edit.tuning.toolHeading : heading_;

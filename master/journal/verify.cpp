@@ -82,7 +82,7 @@ private:
             return;
         }
         try {
-            sand::Terrain sand = sandOfCheckpoint(checkpointFile(journal_, found->first), reader_.header(), start_);
+            sand::Replica sand = sandOfCheckpoint(checkpointFile(journal_, found->first), reader_.header(), start_);
             found->second =
                 sand.stateHash() == terrain_.stateHash() ? "the replay's sand" : "other sand than the replay's";
         } catch (const base::FormatError& error) {
@@ -113,7 +113,7 @@ private:
 
     std::filesystem::path journal_;
     JournalReader reader_;
-    sand::Terrain start_, terrain_;
+    sand::Replica start_, terrain_;
     std::map<std::uint64_t, std::string> checkpoints_;  // what is found of each
     std::uint64_t records_ = 0, ticks_ = 0, hashes_ = 0, differing_ = 0, badCheckpoints_ = 0, resumes_ = 0;
     std::uint64_t firstFrame_ = 0, lastFrame_ = 0;

@@ -80,7 +80,7 @@ void Sequencer::takeOver(const std::string& reason, const std::string& why) {
     lastOwnNs_ = monotonicNs();
 }
 
-void Sequencer::grant(const sand::Terrain& terrain, std::uint64_t stateHash) {
+void Sequencer::grant(const sand::Replica& terrain, std::uint64_t stateHash) {
     ++epoch_;
     client_->grant(epoch_, terrain.stepNumber(), stateHash, terrain.encodeState(), recent_);
     source_ = Source::granting;
@@ -97,7 +97,7 @@ void Sequencer::sayLink(const haptic_bridge::LinkStatus& status) {
     }
 }
 
-void Sequencer::followLink(const sand::Terrain& terrain, std::uint64_t stateHash) {
+void Sequencer::followLink(const sand::Replica& terrain, std::uint64_t stateHash) {
     if (!client_ && server_ && secondsSince(waitingSinceNs_) > kRetryWait) {
         client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_, security_);
     }
@@ -132,7 +132,7 @@ void Sequencer::followLink(const sand::Terrain& terrain, std::uint64_t stateHash
     }
 }
 
-void Sequencer::followPositions(const haptic_bridge::LinkStatus& status, const sand::Terrain& terrain) {
+void Sequencer::followPositions(const haptic_bridge::LinkStatus& status, const sand::Replica& terrain) {
     if (status.link != Link::streaming) {
         positions_.end();
         return;
@@ -178,7 +178,7 @@ void Sequencer::passEdits(const std::vector<TimedStep>& steps) {
     }
 }
 
-std::vector<TimedStep> Sequencer::next(const sand::Terrain& terrain, std::uint64_t stateHash, std::size_t most) {
+std::vector<TimedStep> Sequencer::next(const sand::Replica& terrain, std::uint64_t stateHash, std::size_t most) {
     if (server_) {
         recent_.reached(terrain.stepNumber(), stateHash);
     }
@@ -196,7 +196,7 @@ std::vector<TimedStep> Sequencer::next(const sand::Terrain& terrain, std::uint64
     return steps;
 }
 
-std::vector<TimedStep> Sequencer::stepsDue(const sand::Terrain& terrain, std::uint64_t stateHash, std::size_t most) {
+std::vector<TimedStep> Sequencer::stepsDue(const sand::Replica& terrain, std::uint64_t stateHash, std::size_t most) {
     std::vector<TimedStep> steps;
     if (client_ && source_ == Source::server) {
         steps = client_->drain(most);

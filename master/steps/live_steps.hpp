@@ -35,7 +35,7 @@ public:
               std::uint32_t epoch = 0, haptic_bridge::LinkSecurity security = {});
 
     /// At most `most` steps for the next frame, numbered on from the terrain's; none when nothing is due.
-    [[nodiscard]] std::vector<haptic_bridge::TimedStep> next(const sand::Terrain& terrain, std::uint64_t stateHash,
+    [[nodiscard]] std::vector<haptic_bridge::TimedStep> next(const sand::Replica& terrain, std::uint64_t stateHash,
                                                              std::size_t most);
     /// The wall has swapped and shows the terrain at this step.
     void shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs);
@@ -71,17 +71,17 @@ public:
 private:
     enum class Source : std::uint8_t { starting, server, granting, own };
 
-    void followLink(const sand::Terrain& terrain, std::uint64_t stateHash);
+    void followLink(const sand::Replica& terrain, std::uint64_t stateHash);
     void startDrills();
     void sayLink(const haptic_bridge::LinkStatus& status);
-    void grant(const sand::Terrain& terrain, std::uint64_t stateHash);
+    void grant(const sand::Replica& terrain, std::uint64_t stateHash);
     /// `reason` is the word for programs, `why` the words for people; both empty where nothing was lost.
     void takeOver(const std::string& reason = "", const std::string& why = "");
     void leaveServer();
     [[nodiscard]] std::size_t ownStepsDue();
-    void followPositions(const haptic_bridge::LinkStatus& status, const sand::Terrain& terrain);
+    void followPositions(const haptic_bridge::LinkStatus& status, const sand::Replica& terrain);
     void passEdits(const std::vector<haptic_bridge::TimedStep>& steps);
-    [[nodiscard]] std::vector<haptic_bridge::TimedStep> stepsDue(const sand::Terrain& terrain, std::uint64_t stateHash,
+    [[nodiscard]] std::vector<haptic_bridge::TimedStep> stepsDue(const sand::Replica& terrain, std::uint64_t stateHash,
                                                                  std::size_t most);
 
     std::optional<haptic_bridge::Address> server_;

@@ -12,7 +12,7 @@ using haptic_bridge::Trouble;
 PositionSource::PositionSource(const sand::Scene& scene)
     : mapping_(scene, haptic_bridge::HandSettings::Datum::surface), path_(scene.rules.stepsPerSecond) {}
 
-void PositionSource::begin(const sand::Terrain& terrain) {
+void PositionSource::begin(const sand::Replica& terrain) {
     streaming_ = true;
     // Whoever numbered before may have left the tool in the sand elsewhere: no furrow from there to here.
     liftFirst_ = terrain.engaged();

@@ -27,7 +27,7 @@ public:
     explicit PositionSource(const sand::Scene& scene);
 
     /// A server begins to stream; the tool is where the terrain has it.
-    void begin(const sand::Terrain& terrain);
+    void begin(const sand::Replica& terrain);
     void end() { streaming_ = false; }
     [[nodiscard]] bool streaming() const { return streaming_; }
 

@@ -8,7 +8,7 @@ namespace render_node {
 
 using sand::force::Vec3;
 
-std::optional<ForceArrow> ToolForce::arrow(const sand::Terrain& terrain) {
+std::optional<ForceArrow> ToolForce::arrow(const sand::Replica& terrain) {
     const double unit = terrain.cellSize() / sand::kProbePerCell;
     const double radius = unit * terrain.rules().toolRadius;
     const sand::ProbePoint probe = terrain.probe();

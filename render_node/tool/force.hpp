@@ -21,7 +21,7 @@ public:
     explicit ToolForce(const sand::ForceConstants& constants) : constants_(constants) {}
 
     /// Once a frame. Nothing while the tool hovers or feels no force.
-    [[nodiscard]] std::optional<ForceArrow> arrow(const sand::Terrain& terrain);
+    [[nodiscard]] std::optional<ForceArrow> arrow(const sand::Replica& terrain);
 
 private:
     sand::ForceConstants constants_;

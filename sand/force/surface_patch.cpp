@@ -67,7 +67,7 @@ bool SurfacePatch::takeFacets(const tin::SurfaceView& tin, double cellSize, Prob
     return true;
 }
 
-void SurfacePatch::take(const Terrain& terrain) {
+void SurfacePatch::take(const Replica& terrain) {
     const double cell = terrain.cellSize(), radius = terrain.toolRadius();
     if (terrain.tinView() == nullptr) {
         const HeightField& field = terrain.field();

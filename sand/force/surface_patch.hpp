@@ -27,9 +27,9 @@ public:
     /// The triangles of a TIN of such nominal cells; empty where these are too many.
     SurfacePatch(const tin::SurfaceView& tin, double cellSize, ProbePoint centre, double toolRadius);
     /// Around the tool.
-    explicit SurfacePatch(const Terrain& terrain) { take(terrain); }
+    explicit SurfacePatch(const Replica& terrain) { take(terrain); }
     /// The same in place of what it was: in the memory that it has.
-    void take(const Terrain& terrain);
+    void take(const Replica& terrain);
 
     /// Whether (x, y) lies over the field.
     [[nodiscard]] bool overField(double x, double y) const {

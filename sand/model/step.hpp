@@ -40,7 +40,7 @@ struct Edit {
 
     Kind kind = Kind::none;
     Tuning tuning;                            // of Kind::tune
-    std::shared_ptr<const base::Bytes> sand;  // of Kind::load, Terrain::encodeSand(); copies of a step share it
+    std::shared_ptr<const base::Bytes> sand;  // of Kind::load, Replica::encodeSand(); copies of a step share it
 
     Edit() = default;
     Edit(Kind what) : kind(what) {}  // not explicit: most edits are nothing but their kind

@@ -59,7 +59,7 @@ public:
 /// any thread, as long as anybody likes.
 using SurfaceReader = std::function<std::shared_ptr<const SurfaceCopy>(std::span<const std::uint8_t>)>;
 
-/// What lies in the box and can be dug: sand as a height field, or as a TIN. Terrain alone changes it, by steps, and
+/// What lies in the box and can be dug: sand as a height field, or as a TIN. Replica alone changes it, by steps, and
 /// says what of it they depend on. Not thread-safe.
 class Surface {
 public:

@@ -7,7 +7,7 @@
 
 namespace sand {
 
-HeightField sampled(const Terrain& terrain, const tin::Holes* holes) {
+HeightField sampled(const Replica& terrain, const tin::Holes* holes) {
     HeightField field(terrain.rules().columns, terrain.rules().rows, terrain.cellSize());
     for (int row = 0; row < field.rows(); ++row) {
         for (int column = 0; column < field.columns(); ++column) {
@@ -24,7 +24,7 @@ HeightField sampled(const Terrain& terrain, const tin::Holes* holes) {
 Scene sampledScene(const Scene& scene) {
     Scene result = scene;
     const tin::Holes* holes = scene.tin->holes.get();
-    result.terrain = sampled(Terrain(scene), holes);
+    result.terrain = sampled(Replica(scene), holes);
     if (holes != nullptr) {
         auto ground = std::make_shared<Ground>(scene.rules.columns, scene.rules.rows);
         for (const tin::Holes::Run& run : holes->runs()) {

@@ -8,7 +8,7 @@
 namespace sand {
 
 /// A TIN's surface at the middles of its nominal cells, rounded to whole units; 0 in its holes, which may be null.
-[[nodiscard]] HeightField sampled(const Terrain& terrain, const tin::Holes* holes);
+[[nodiscard]] HeightField sampled(const Replica& terrain, const tin::Holes* holes);
 
 /// The scene of a TIN with the heights it starts with as a field of nominal cells, for whoever compares rasters: holes
 /// are walls of its ground.

@@ -158,7 +158,7 @@ Scene loadScene(const std::filesystem::path& file, const FieldCheck& check) {
     readLook(toml, scene);
     toml.finish();
     if (settle) {
-        Terrain terrain(scene);
+        Replica terrain(scene);
         terrain.apply({.epoch = 1, .number = 1, .engaged = false, .path = {}, .edit = Edit::settle});
         startFrom(terrain, scene);
     }

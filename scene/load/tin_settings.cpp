@@ -66,7 +66,7 @@ tin::Settings readTinSettings(const host::TomlTable& tin, const TinCells& cells)
             fmt::format("points {} apart on {} x {} cells are {} vertices, and {} are the most; widest "
                         "must be {}",
                         tin.number("widest"), cells.columns, cells.rows, wanted, most,
-                        least == 0 ? "0 (none)" : fmt::format("at least {:.9g}", least / kProbePerCell * cells.side)));
+                        least == 0 ? "0 (none)" : fmt::format("at least {:.9g}", least * cells.side / kProbePerCell)));
     }
     if (!tin.has("vertices")) {
         settings.mostVertices = static_cast<std::int32_t>(std::min<std::int64_t>(wanted + kUsual, most));

@@ -194,7 +194,7 @@ void readTin(const host::TomlTable& file, Scene& scene) {
     setTin(std::move(start), scene);
 }
 
-void startFrom(const Terrain& terrain, Scene& scene) {
+void startFrom(const Replica& terrain, Scene& scene) {
     if (scene.tin != nullptr) {
         const auto& surface = dynamic_cast<const tin::TinSurface&>(terrain.surface());
         setTin(tin::startOf(surface.layer(), surface.start().settings), scene);

@@ -20,6 +20,6 @@ namespace sand {
 void readTin(const host::TomlTable& file, Scene& scene);
 
 /// The scene starts with the sand as it is there.
-void startFrom(const Terrain& terrain, Scene& scene);
+void startFrom(const Replica& terrain, Scene& scene);
 
 }  // namespace sand

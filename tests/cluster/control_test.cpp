@@ -141,8 +141,8 @@ TEST_F(Operator, ChangesToolMaterialAndSandOfTwelveRanksAndAReplayEndsInTheSameH
     EXPECT_EQ(heightsAfter(undone), heightsAfter(kept)) << "undone by step " << undone << ", kept after " << kept;
 
     support::ChildProcess film(
-        {"/usr/bin/env", "-u", "DISPLAY", SANDWALL_SOURCE_DIR "/scripts/sandwall", "film", out() + "/session.journal",
-         "--wall", wall(1, 1, "mono"), "--fps", "2", "--out", (folder_ / "film").string()},
+        {"/usr/bin/env", "-u", "DISPLAY", support::launcher(), "film", out() + "/session.journal", "--wall",
+         wall(1, 1, "mono"), "--fps", "2", "--out", (folder_ / "film").string()},
         folder_ / "film.txt");
     EXPECT_EQ(film.wait(300), 0) << film.output();
     EXPECT_EQ(json("film/summary.json")["state_hash"], summary()["state_hash"]);

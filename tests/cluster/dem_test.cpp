@@ -26,9 +26,10 @@ protected:
             "500000],PARAMETER[\"false_northing\",0],UNIT[\"metre\",1]]";
         grid.units.lengthMetres = grid.units.heightMetres = 1;
         grid.units.heightName = "m";
-        for (int i = 0; i < grid.columns * grid.rows; ++i) {
-            grid.heights.push_back(1200 +
-                                   12 * std::sin(0.2 * (i % grid.columns)) * std::cos(0.15 * (i / grid.columns)));
+        for (int row = 0; row < grid.rows; ++row) {
+            for (int column = 0; column < grid.columns; ++column) {
+                grid.heights.push_back(1200 + 12 * std::sin(0.2 * column) * std::cos(0.15 * row));
+            }
         }
         return grid;
     }

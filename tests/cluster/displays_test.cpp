@@ -16,7 +16,7 @@ protected:
     }
     /// Two mono tiles side by side on the screen, each in its window.
     std::string placedWall() {
-        const std::string file = wall(1, 2, "mono");
+        std::string file = wall(1, 2, "mono");
         std::ofstream(file, std::ios::app) << "[[place]]\ntiles = [\"r1c1\"]\nwindows = [[10, 20]]\n"
                                               "[[place]]\ntiles = [\"r1c2\"]\nwindows = [[200, 20]]\n";
         return file;
@@ -124,7 +124,7 @@ TEST_F(NoDisplay, IsReportedOfOneThatCannotBeOpened) {
 }
 
 TEST_F(NoDisplay, IsReportedOfAShaderThatDoesNotCompile) {
-    expectNamed("", {"--gl", "osmesa", "--spoil-shader", "2"}, "render_node/shaders/sand.frag.glsl: ");
+    expectNamed("", {"--gl", "osmesa", "--inject", "shader:rank=2"}, "render_node/shaders/sand.frag.glsl: ");
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ protected:
                                          "-u",
                                          "DISPLAY",
                                          "OMPI_MCA_odls_base_sigkill_timeout=0",
-                                         SANDWALL_SOURCE_DIR "/scripts/sandwall",
+                                         support::launcher(),
                                          "film",
                                          journal.string(),
                                          "--wall",

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include "tests/cluster/session_fixture.hpp"
 
 namespace {
@@ -38,7 +40,8 @@ protected:
             const std::string name = entry.path().filename().string();
             if (entry.path().extension() == ".png") {
                 ++pictures;
-                EXPECT_EQ(read(one + "/" + name) == read(other + "/" + name), true) << name;
+                const auto in = [&](const std::string& folder) { return read(fmt::format("{}/{}", folder, name)); };
+                EXPECT_TRUE(in(one) == in(other)) << name;
             }
         }
         EXPECT_EQ(pictures, 7) << "two eyes of two tiles, of the wall, and for red-cyan glasses";

@@ -12,7 +12,7 @@ class Probe : public SessionTest {
 protected:
     /// A mono wall of two tiles, the second with this in its [[place]].
     std::string placedWall(const std::string& place) {
-        const std::string file = wall(1, 2, "mono");
+        std::string file = wall(1, 2, "mono");
         std::ofstream(file, std::ios::app) << "[[place]]\ntiles = [\"r1c2\"]\n" << place << "\n";
         return file;
     }

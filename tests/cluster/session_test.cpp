@@ -75,7 +75,7 @@ TEST_F(Lockstep, ASessionLeavesItsPicturesAndItsFigures) {
 
 TEST_F(Lockstep, ARankThatSeesAnotherViewIsNamed) {
     const Ended ended = runToEnd({"--wall", wall(1, 3), "--scene", scene(), "--device", "script:gis", "--pace", "fast",
-                                  "--steps", "100000", "--out", out(), "--skew-view", "rank=2,frame=20"});
+                                  "--steps", "100000", "--out", out(), "--inject", "view:rank=2,frame=20"});
     EXPECT_EQ(ended.status, 1) << ended.output;
     EXPECT_TRUE(ended.has("view_divergence", {{"frame", 20}, {"rank", 2}})) << ended.output;
     EXPECT_TRUE(support::holds(json("out/failure.json"), {{"what", "broken"}, {"rank", 2}, {"tile", "r1c2"}}));
@@ -86,7 +86,7 @@ TEST_F(Lockstep, AHapticServerThatComesBackIsLinkedAgain) {
     const std::string sceneFile = scene();
     const auto serve = [&](const std::string& address) {
         return std::make_unique<support::ChildProcess>(
-            std::vector<std::string>{SANDWALL_BIN_DIR "/sandwall-haptic-server", "--scene", sceneFile, "--device",
+            std::vector<std::string>{support::pathOfProgram("sandwall-haptic-server"), "--scene", sceneFile, "--device",
                                      "script:gis", "--listen", address, "--port-file", (folder_ / "port").string()},
             folder_ / "server.txt");
     };
@@ -124,7 +124,7 @@ TEST_F(Lockstep, AnAbsentServerIsNamedAndTheWallGoesOn) {
 TEST_F(Lockstep, AServerWithAnotherMaterialIsRefusedAndTheWallGoesOn) {
     const std::string other = write("other.toml", "name = \"test\"\n[field]\ncolumns = 128\n[terrain]\n[material]\n");
     const std::string portFile = (folder_ / "port").string();
-    support::ChildProcess server({SANDWALL_BIN_DIR "/sandwall-haptic-server", "--scene", other, "--device",
+    support::ChildProcess server({support::pathOfProgram("sandwall-haptic-server"), "--scene", other, "--device",
                                   "script:gis", "--listen", "127.0.0.1:0", "--port-file", portFile},
                                  folder_ / "server.txt");
     ASSERT_FALSE(server.waitForEvent("listening").is_null()) << server.output();

@@ -23,7 +23,7 @@ SANDWALL_FUZZER(checkpoint) {
     const fuzz::MemoryFile file(bytes.bytes());
     fuzz::takeOrRefuse([&] {
         const master::Checkpoint checkpoint = master::readCheckpoint(file.path());
-        sand::Terrain terrain(kScene);
+        sand::Replica terrain(kScene);
         terrain.decodeState(checkpoint.state);
         (void)terrain.stateHash();
     });

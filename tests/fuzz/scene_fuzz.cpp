@@ -30,7 +30,7 @@ SANDWALL_FUZZER(scene) {
     const fuzz::MemoryFile file(input);
     fuzz::takeOrRefuse([&] {
         const sand::Scene scene = sand::loadScene(file.path());
-        sand::Terrain terrain(scene);
+        sand::Replica terrain(scene);
         terrain.apply({.epoch = 1, .number = 1, .engaged = true, .path = {{0, 0, 0}}});
         (void)sand::Scene::decode(scene.encode());
     });

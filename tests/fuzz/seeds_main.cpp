@@ -122,7 +122,7 @@ void writeJournal(Folder folder, const fs::path& scratch) {
 }
 
 void writeCheckpoints(Folder folder) {
-    sand::Terrain terrain(samples::flatScene(24, 16));
+    sand::Replica terrain(samples::flatScene(24, 16));
     for (std::uint64_t number = 1; number <= 3; ++number) {
         terrain.apply(step(number));
         const master::Checkpoint checkpoint{1,      "build", terrain.rules().digest(), number,
@@ -135,7 +135,7 @@ void writeCheckpoints(Folder folder) {
 
 void writeState(Folder folder) {
     const sand::Scene scene = samples::flatScene(24, 16);
-    sand::Terrain terrain(scene);
+    sand::Replica terrain(scene);
     for (std::uint64_t number = 1; number <= 3; ++number) {
         terrain.apply(step(number));
     }
@@ -147,7 +147,7 @@ void writeState(Folder folder) {
 
 void writeTin(Folder folder) {
     const sand::Scene scene = fuzz::tinScene();
-    sand::tin::TinSurface surface(scene);
+    sand::tin::TinSurface surface(scene.rules, scene.tin);
     const sand::HeldTool tool{scene.rules.toolShape(), {}};
     const auto add = [&] {
         folder.add(surface.copy()->encode(), {1});

@@ -28,7 +28,7 @@ SANDWALL_FUZZER(state) {
     fuzz::takeOrRefuse([&] {
         switch (data[0] & 3U) {
             case 0: {
-                sand::Terrain terrain(kScene);
+                sand::Replica terrain(kScene);
                 terrain.decodeState(packed);
                 terrain.apply({.epoch = 1, .number = terrain.stepNumber() + 1, .engaged = true, .path = {{0, 0, 0}}});
                 break;
@@ -41,7 +41,7 @@ SANDWALL_FUZZER(state) {
                 (void)sand::Scene::decode(packed);
                 break;
             default: {
-                sand::Terrain terrain(kScene);
+                sand::Replica terrain(kScene);
                 terrain.apply(
                     {.epoch = 1, .number = 1, .engaged = false, .path = {}, .edit = sand::Edit::loaded(packed)});
             }

@@ -50,7 +50,7 @@ void goOn(TinSurface& surface, const sand::Scene& scene) {
 
 void takeState(fuzz::Input bytes) {
     static const sand::Scene kScene = fuzz::tinScene();
-    TinSurface surface(kScene);
+    TinSurface surface(kScene.rules, kScene.tin);
     const auto copy = surface.reader()(bytes);
     require(surface.reader()(copy->encode())->encode() == copy->encode(), "a state that is said otherwise again");
     surface.replace(*copy);

@@ -24,7 +24,7 @@ def identified():
 
 
 def of_the_sand_alone():
-    """A build without ranks (SANDWALL_SAND_ONLY) identifies the modules only."""
+    """A build without ranks (SANDWALL_SAND_ONLY) identifies the haptic server and modules only."""
     return "flags sandwall-master " not in MANIFEST.read_text()
 
 

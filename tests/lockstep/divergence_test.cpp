@@ -9,6 +9,7 @@ namespace {
 
 lockstep::Vote voteOf(const std::vector<std::uint64_t>& hashes) {
     std::vector<lockstep::Account> accounts;
+    accounts.reserve(hashes.size());
     for (const std::uint64_t hash : hashes) {
         accounts.push_back({hash, {}});
     }

@@ -61,7 +61,7 @@ std::uint64_t editAll(int rank, std::string_view kind, std::uint64_t& all) {
     host::WorkerPool team(kThreads.at(way % kThreads.size()));
     const sand::Scene scene = kind == "tin" ? smallTin() : smallScene();
     const bool wild = !kind.empty();
-    sand::Terrain terrain(scene, {.blockSize = kBlocks.at(way % kBlocks.size()),
+    sand::Replica terrain(scene, {.blockSize = kBlocks.at(way % kBlocks.size()),
                                   .path = way % 2 == 0 ? sand::CodePath::automatic : sand::CodePath::baseline,
                                   .executor = team.lend()});
     std::mt19937 random(53);

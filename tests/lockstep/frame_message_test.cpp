@@ -75,8 +75,6 @@ TEST(SessionMessage, SurvivesItsEncoding) {
         {1, 2, 3},
         {4, 5},
         12.5,
-        lockstep::SkewedView{2, 98},
-        4,
         {{.kind = Fault::Kind::slow, .rank = 5, .frame = 7, .frames = 9, .milliseconds = 30},
          {.kind = Fault::Kind::diverge, .rank = 0, .frame = 99, .column = 7, .row = 8, .bit = 9},
          {.kind = Fault::Kind::die, .rank = 2, .signal = 11},
@@ -86,10 +84,6 @@ TEST(SessionMessage, SurvivesItsEncoding) {
     EXPECT_EQ(copy.scene, message.scene);
     EXPECT_EQ(copy.wall, message.wall);
     EXPECT_EQ(copy.frameTimeout, 12.5);
-    ASSERT_TRUE(copy.skew.has_value());
-    EXPECT_EQ(copy.skew->rank, 2);
-    EXPECT_EQ(copy.skew->frame, 98U);
-    EXPECT_EQ(copy.spoiltShader, 4);
     EXPECT_EQ(copy.faults, message.faults);
     EXPECT_EQ(copy.state, message.state);
 }

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "base/input_error.hpp"
 #include "tests/support/folder_test.hpp"
 

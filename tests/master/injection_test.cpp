@@ -38,6 +38,9 @@ TEST(Injection, KnowsEveryKindOfFault) {
               (Fault{.kind = Fault::Kind::garbage, .rank = 2, .frame = 9}));
     EXPECT_EQ(master::parseFault("partition:rank=2,frame=9,ms=60000", kWall),
               (Fault{.kind = Fault::Kind::partition, .rank = 2, .frame = 9, .milliseconds = 60000}));
+    EXPECT_EQ(master::parseFault("view:rank=2,frame=9", kWall),
+              (Fault{.kind = Fault::Kind::view, .rank = 2, .frame = 9}));
+    EXPECT_EQ(master::parseFault("shader:rank=2", kWall), (Fault{.kind = Fault::Kind::shader, .rank = 2, .frame = 0}));
 }
 
 TEST(Injection, WithoutARankStrikesTheHapticLink) {

@@ -34,7 +34,7 @@ protected:
         try {
             (void)readPng(file_);
         } catch (const base::InputError& error) {
-            const std::string line = error.what();
+            std::string line = error.what();
             EXPECT_EQ(line.rfind(file_.string() + ":", 0), 0U) << line;
             EXPECT_EQ(line.find('\n'), std::string::npos) << line;
             return line;
@@ -137,7 +137,8 @@ TEST_F(PngFile, SurvivesDamagedBytes) {
     const std::vector<char> whole = bytes();
     for (int round = 0; round < 300; ++round) {
         std::vector<char> damaged = whole;
-        damaged[random() % damaged.size()] ^= static_cast<char>(1 << random() % 8);
+        char& byte = damaged[random() % damaged.size()];
+        byte = static_cast<char>(byte ^ (1 << random() % 8));
         store(damaged);
         try {
             EXPECT_LE(readPng(file_).pixels(), static_cast<std::size_t>(kMaxPixels));

@@ -72,7 +72,7 @@ TEST_F(Picture, OfASandBedIsFullOfSandColouredGrains) {
 
 TEST_F(Picture, OfAFurrowHasASunnyAndAShadyBank) {
     const sand::Scene scene = sample::flatScene(256, 256);
-    sand::Terrain terrain(scene);
+    sand::Replica terrain(scene);
     SandView view(scene, glm::dmat4(1));
     // North-south through the middle; the sun stands in the west, so that the eastern slope faces it.
     sample::drag(terrain, scene, {1, 0.5, 0.01}, {1, 1.5, 0.01});
@@ -88,7 +88,7 @@ TEST_F(Picture, OfAFurrowHasASunnyAndAShadyBank) {
 
 TEST_F(Picture, OfDamageAloneEqualsThatOfEverything) {
     const sand::Scene scene = sample::duneScene(150);
-    sand::Terrain terrain(scene);
+    sand::Replica terrain(scene);
     SandView partial(scene, glm::dmat4(1));
     (void)terrain.takeDamage();
     const auto camera = sample::camera({1, -0.4, 1.1}, {1, 0.9, 0});

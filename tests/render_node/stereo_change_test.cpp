@@ -46,7 +46,7 @@ TEST(StereoChange, OfATileShowsWhatATileOfThatModeShows) {
     lockstep::ViewState view;
     std::copy_n(glm::value_ptr(wall.viewer.eye), 3, view.head.begin());
     view.eyeSeparation = 0.3;
-    sand::Terrain terrain(scene);
+    sand::Replica terrain(scene);
     walls::Wall shown = wall;
     render_node::TilePainter painter(shown, shown.tiles[0], scene, "host");
     std::uint64_t frame = 0;
@@ -57,7 +57,7 @@ TEST(StereoChange, OfATileShowsWhatATileOfThatModeShows) {
         painter.showAs(shown, shown.tiles[0]);
         painter.paint(terrain, view, ++frame);
         render_node::TilePainter fresh(shown, shown.tiles[0], scene, "host");
-        sand::Terrain same(scene);
+        sand::Replica same(scene);
         fresh.paint(same, view, 1);
         EXPECT_EQ(picturesOf(painter), picturesOf(fresh)) << walls::stereoName(stereo);
         EXPECT_EQ(painter.frameBufferBytes(), fresh.frameBufferBytes()) << walls::stereoName(stereo);

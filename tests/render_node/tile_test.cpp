@@ -171,7 +171,7 @@ TEST_F(TiledWall, DrawsOnlyTheChunksEachTileSees) {
 
 TEST_F(TiledWall, LeavesOutTilesThatCannotHaveChangedAndMissesNone) {
     scene_ = sample::flatScene(300, 300, 0.03);
-    sand::Terrain terrain(scene_);
+    sand::Replica terrain(scene_);
     SandView lazy = makeView();
     std::vector<EyeTarget> targets;
     std::vector<render_node::EyeMemory> memories(kAcross * kDown);
@@ -191,8 +191,8 @@ TEST_F(TiledWall, LeavesOutTilesThatCannotHaveChangedAndMissesNone) {
             if (frame == 0) {
                 targets.emplace_back(kTileWidth, kTileHeight);
             }
-            const double x = tile % kAcross / double{kAcross};
-            const double y = tile / kAcross / double{kDown};
+            const int column = tile % kAcross, row = tile / kAcross;
+            const double x = column / double{kAcross}, y = row / double{kDown};
             const auto camera =
                 sample::camera(leftEye_, leftEye_ + forward_, {x, y, x + 1.0 / kAcross, y + 1.0 / kDown});
             const auto at = static_cast<std::size_t>(tile);

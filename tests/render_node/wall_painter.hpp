@@ -22,7 +22,7 @@ using pictures::Image;
 /// Dunes with a furrow dug through them, the tool still in the sand.
 struct DugScene {
     sand::Scene scene = ballInDunes();
-    sand::Terrain terrain{scene};
+    sand::Replica terrain{scene};
 
     DugScene() {
         drag(terrain, scene, {0.4, 0.4, 0.07}, {1.5, 0.6, 0.06});

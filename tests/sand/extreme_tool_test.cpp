@@ -15,8 +15,8 @@ namespace {
 
 using sand::kProbePerCell;
 using sand::ProbePoint;
+using sand::Replica;
 using sand::Rim;
-using sand::Terrain;
 
 ProbePoint probeAt(double column, double row, double height /* [cell] */) {
     return {static_cast<std::int32_t>(column * kProbePerCell), static_cast<std::int32_t>(row * kProbePerCell),
@@ -34,7 +34,7 @@ sand::Scene sceneWith(double toolCells, Rim rim) {
 TEST(ExtremeTool, OutsideTheFieldItTouchesNothing) {
     for (const Rim rim : kRims) {
         const sand::Scene scene = sceneWith(4, rim);
-        Terrain terrain(scene);
+        Replica terrain(scene);
         std::uint64_t number = 0;
         for (const ProbePoint point :
              {probeAt(-4, 16, -1), probeAt(49, 16, -1), probeAt(20, -4, -1), probeAt(20, 37, -1), probeAt(20, 16, 4),
@@ -55,7 +55,7 @@ TEST(ExtremeTool, AtACornerAndOnTheRimsItLosesNothing) {
             for (const ProbePoint point : {probeAt(0, 0, -1), probeAt(45, 33, -1), probeAt(0, 33, 0), probeAt(45, 0, 0),
                                            probeAt(22, 0, -2), probeAt(0, 16, -2), probeAt(44.5, 32.5, 0)}) {
                 const sand::Scene scene = sceneWith(radius, rim);
-                Terrain terrain(scene);
+                Replica terrain(scene);
                 for (std::uint64_t i = 1; i <= 200; ++i) {
                     terrain.apply({1, i, i < 100, i == 1 ? std::vector{point} : std::vector<ProbePoint>{}});
                     ASSERT_EQ(terrain.field().volume() + terrain.outflow(), 0)
@@ -69,10 +69,10 @@ TEST(ExtremeTool, AtACornerAndOnTheRimsItLosesNothing) {
 
 TEST(ExtremeTool, LargerThanTheFieldItHasNowhereToPutTheSand) {
     const sand::Scene scene = sceneWith(2048, Rim::closed);
-    Terrain terrain(scene);
+    Replica terrain(scene);
     terrain.apply({1, 1, true, {probeAt(22, 16, 2000)}});
     EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain)) << "it passes through the sand";
-    Terrain open(sceneWith(2048, Rim::open));
+    Replica open(sceneWith(2048, Rim::open));
     open.apply({1, 1, true, {probeAt(22, 16, 2000)}});
     EXPECT_GT(open.outflow(), 0) << "over an open rim it clears the table";
     EXPECT_EQ(open.field().volume() + open.outflow(), 0);
@@ -80,13 +80,13 @@ TEST(ExtremeTool, LargerThanTheFieldItHasNowhereToPutTheSand) {
 
 TEST(ExtremeTool, OfNoRadiusItDigsNothing) {
     const sand::Scene scene = sceneWith(0, Rim::closed);
-    Terrain terrain(scene);
+    Replica terrain(scene);
     terrain.apply({1, 1, true, {probeAt(5.5, 5.5, -3), probeAt(40, 30, -3)}});
     EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain));
 }
 
 TEST(ExtremeTool, ThePapersOf256HundredthsDigsAFurrow) {
-    Terrain terrain(sceneWith(2.56, Rim::closed));
+    Replica terrain(sceneWith(2.56, Rim::closed));
     for (std::uint64_t i = 1; i <= 30; ++i) {
         terrain.apply({1, i, true, {probeAt(8 + static_cast<double>(i), 16.5, 1)}});
     }
@@ -97,7 +97,7 @@ TEST(ExtremeTool, ThePapersOf256HundredthsDigsAFurrow) {
 
 TEST(ExtremeTool, TeleportingItPloughsAllTheWay) {
     for (const Rim rim : kRims) {
-        Terrain terrain(sceneWith(2.56, rim));
+        Replica terrain(sceneWith(2.56, rim));
         terrain.apply({1, 1, true, {probeAt(4, 16.5, 1)}});
         terrain.apply({1, 2, true, {probeAt(40, 16.5, 1)}});
         for (const int column : {10, 20, 30}) {
@@ -113,7 +113,7 @@ TEST(ExtremeTool, TeleportingItPloughsAllTheWay) {
 TEST(ExtremeTool, HeldStillItLetsTheSweepsStop) {
     for (const double radius : {2.56, 8.0}) {
         for (const double height : {0.0, 1.0, -3.0}) {
-            Terrain terrain(sceneWith(radius, Rim::closed));
+            Replica terrain(sceneWith(radius, Rim::closed));
             std::uint64_t number = 0;
             terrain.apply({1, ++number, true, {probeAt(22.3, 16.1, height)}});
             for (int i = 0; i < 2000 && !terrain.settled(); ++i) {
@@ -143,7 +143,7 @@ TEST(ExtremeTool, DiggingToBedrockStopsThere) {
     }
     scene.ground = ground;
     scene.rules.ground = ground->digest();
-    Terrain terrain(scene);
+    Replica terrain(scene);
     for (std::uint64_t i = 1; i <= 60; ++i) {
         terrain.apply({1, i, true, {probeAt(10 + 0.4 * static_cast<double>(i), 16.5, 2)}});
         ASSERT_GE(samples::extremesOf(terrain.field()).lowest, -2 * sand::kUnitsPerCell) << "step " << i;

@@ -13,8 +13,8 @@ namespace {
 
 using sand::Edit;
 using sand::kProbePerCell;
+using sand::Replica;
 using sand::Step;
-using sand::Terrain;
 
 sand::ProbePoint cellAt(int column, int row, int height /* [cell] */) {
     return {column * kProbePerCell, row * kProbePerCell, height * kProbePerCell};
@@ -23,11 +23,11 @@ sand::ProbePoint cellAt(int column, int row, int height /* [cell] */) {
 /// Numbers the steps of one replica.
 class Hand {
 public:
-    explicit Hand(Terrain& terrain) : terrain_(terrain) {}
+    explicit Hand(Replica& terrain) : terrain_(terrain) {}
 
-    void hover(Edit edit = Edit::none) { terrain_.apply({1, terrain_.stepNumber() + 1, false, {}, edit}); }
+    void hover(const Edit& edit = Edit::none) { terrain_.apply({1, terrain_.stepNumber() + 1, false, {}, edit}); }
     void lift() { terrain_.apply({1, terrain_.stepNumber() + 1, false, {cellAt(32, 32, 30)}, Edit::none}); }
-    void dig(int column, int row, Edit edit = Edit::none) {
+    void dig(int column, int row, const Edit& edit = Edit::none) {
         terrain_.apply({1, terrain_.stepNumber() + 1, true, {cellAt(column, row, 0)}, edit});
     }
     void stroke(int row) {
@@ -38,7 +38,7 @@ public:
     }
 
 private:
-    Terrain& terrain_;
+    Replica& terrain_;
 };
 
 /// Sand in mid-slide under an open rim: heights, outflow and inertia all have something to lose.
@@ -51,7 +51,7 @@ sand::Scene slidingScene() {
 
 TEST(Undo, RestoresTheHeightsOfBeforeTheLastStroke) {
     const sand::Scene scene = samples::flatScene(64, 64);
-    Terrain terrain(scene);
+    Replica terrain(scene);
     Hand hand(terrain);
     hand.stroke(20);
     const sand::HeightField first = terrain.field();
@@ -64,12 +64,12 @@ TEST(Undo, RestoresTheHeightsOfBeforeTheLastStroke) {
 
 // But for step number and tool the whole state is what it was, so that what follows is what would have followed.
 TEST(Undo, GoesOnAsIfTheStrokeHadNotBeen) {
-    Terrain terrain(slidingScene());
+    Replica terrain(slidingScene());
     Hand hand(terrain);
     for (int i = 0; i < 5; ++i) {
         hand.hover();
     }
-    Terrain other(terrain);
+    Replica other(terrain);
     hand.stroke(32);
     hand.hover(Edit::undo);
     ASSERT_FALSE(terrain.settled());
@@ -87,22 +87,22 @@ TEST(Undo, GoesOnAsIfTheStrokeHadNotBeen) {
 
 // The tool is back where it was, so that only the step number differs: it is written into the state of before.
 TEST(Undo, RestoresTheHashOfBeforeTheStroke) {
-    Terrain undone(slidingScene());
+    Replica undone(slidingScene());
     Hand hand(undone);
     hand.lift();
-    Terrain idle(undone);
+    Replica idle(undone);
     hand.dig(32, 32);
     hand.lift();
     hand.hover(Edit::undo);
     base::Bytes state = idle.encodeState();
     state[4] = static_cast<std::uint8_t>(undone.stepNumber());  // eight bytes, behind the version
-    Terrain expected(slidingScene());
+    Replica expected(slidingScene());
     expected.decodeState(state);
     EXPECT_EQ(undone.stateHash(), expected.stateHash());
 }
 
 TEST(Undo, OfAnUndoDoesNothingMore) {
-    Terrain terrain(samples::flatScene(64, 64));
+    Replica terrain(samples::flatScene(64, 64));
     Hand hand(terrain);
     EXPECT_FALSE(terrain.canUndo());
     hand.hover(Edit::undo);
@@ -111,14 +111,14 @@ TEST(Undo, OfAnUndoDoesNothingMore) {
     EXPECT_TRUE(terrain.canUndo());
     hand.hover(Edit::undo);
     EXPECT_FALSE(terrain.canUndo());
-    Terrain other(terrain);
+    Replica other(terrain);
     hand.hover(Edit::undo);
     Hand(other).hover();
     EXPECT_EQ(terrain.stateHash(), other.stateHash()) << "a step like any other";
 }
 
 TEST(Undo, TakesBackWhatSettledSince) {
-    Terrain terrain(slidingScene());
+    Replica terrain(slidingScene());
     Hand hand(terrain);
     hand.hover();
     const sand::HeightField before = terrain.field();
@@ -133,7 +133,7 @@ TEST(Undo, TakesBackWhatSettledSince) {
 // The operator is quicker than the hand: its stroke then begins where the undo left the sand.
 TEST(Undo, InMidStrokeLetsTheStrokeBeginAnew) {
     const sand::Scene scene = samples::flatScene(64, 64);
-    Terrain terrain(scene);
+    Replica terrain(scene);
     Hand hand(terrain);
     hand.dig(20, 32);
     hand.dig(24, 32, Edit::undo);
@@ -147,7 +147,7 @@ TEST(Undo, InMidStrokeLetsTheStrokeBeginAnew) {
 
 TEST(Reset, RestoresTheSceneAndForgetsTheStroke) {
     const sand::Scene scene = slidingScene();
-    Terrain terrain(scene);
+    Replica terrain(scene);
     Hand hand(terrain);
     hand.stroke(20);
     ASSERT_NE(terrain.outflow(), 0);
@@ -155,7 +155,7 @@ TEST(Reset, RestoresTheSceneAndForgetsTheStroke) {
     EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain));
     EXPECT_EQ(terrain.outflow(), 0);
     EXPECT_FALSE(terrain.canUndo());
-    Terrain fresh(scene);
+    Replica fresh(scene);
     Hand untouched(fresh);
     for (int i = 0; i < 30; ++i) {
         hand.hover();
@@ -165,13 +165,13 @@ TEST(Reset, RestoresTheSceneAndForgetsTheStroke) {
 }
 
 TEST(Load, PutsBackHeightsOutflowAndInertiaAndForgetsTheStroke) {
-    Terrain terrain(slidingScene());
+    Replica terrain(slidingScene());
     Hand hand(terrain);
     for (int i = 0; i < 5; ++i) {
         hand.hover();
     }
     ASSERT_FALSE(terrain.settled()) << "sand at rest has no inertia to lose";
-    Terrain other(terrain);
+    Replica other(terrain);
     const Edit load = Edit::loaded(terrain.copySand()->encode());
     hand.stroke(32);
     hand.hover(load);
@@ -187,13 +187,13 @@ TEST(Load, PutsBackHeightsOutflowAndInertiaAndForgetsTheStroke) {
 }
 
 TEST(Load, OfBytesThatAreNoSandOfThisFieldIsAStepLikeAnyOther) {
-    const base::Bytes whole = Terrain(slidingScene()).copySand()->encode();
+    const base::Bytes whole = Replica(slidingScene()).copySand()->encode();
     base::Bytes longer = whole;
     longer.push_back(0);
-    const base::Bytes larger = Terrain(samples::flatScene(65, 64)).copySand()->encode();
+    const base::Bytes larger = Replica(samples::flatScene(65, 64)).copySand()->encode();
     for (const base::Bytes& bytes : {base::Bytes(), base::Bytes(whole.begin(), whole.end() - 1), longer, larger}) {
-        Terrain terrain(slidingScene());
-        Terrain other(terrain);
+        Replica terrain(slidingScene());
+        Replica other(terrain);
         Hand(terrain).hover(Edit::loaded(bytes));
         Hand(other).hover();
         EXPECT_EQ(terrain.stateHash(), other.stateHash());
@@ -202,7 +202,7 @@ TEST(Load, OfBytesThatAreNoSandOfThisFieldIsAStepLikeAnyOther) {
 
 TEST(Undo, KeepsWhatTheOperatorHasChosen) {
     const sand::Scene scene = samples::flatScene(64, 64);
-    Terrain terrain(scene);
+    Replica terrain(scene);
     Hand hand(terrain);
     hand.stroke(20);
     sand::Tuning tuning = scene.rules.tuning();
@@ -236,7 +236,7 @@ TEST(Edits, VolumeIsExactAndTheHashIsTheWholeFields) {
         scene.rules.rim = rim;
         std::mt19937 random(53);
         scene.terrain = samples::randomField(45, 33, 1 << 18, random);
-        Terrain terrain(scene);
+        Replica terrain(scene);
         for (std::uint64_t i = 1; i <= 200; ++i) {
             const sand::HeightField before = terrain.field();
             (void)terrain.takeDamage();
@@ -262,17 +262,17 @@ TEST(Edits, ThreadsAndBlocksChangeNothingAndAStateTakesTheStrokeAlong) {
     sand::Erosion::Options threaded;
     threaded.executor = pool.lend();
     threaded.blockSize = 8;
-    Terrain plain(scene);
-    Terrain blocks(scene, threaded);
-    Terrain joined(scene);
+    Replica plain(scene);
+    Replica blocks(scene, threaded);
+    Replica joined(scene);
     std::mt19937 random(59);
     for (std::uint64_t i = 1; i <= 150; ++i) {
         const Step step = editedStep(i, scene.rules, random);
-        for (Terrain* terrain : {&plain, &blocks, &joined}) {
+        for (Replica* terrain : {&plain, &blocks, &joined}) {
             terrain->apply(step);
         }
         if (i % 7 == 0) {
-            Terrain fresh(scene);
+            Replica fresh(scene);
             fresh.decodeState(joined.encodeState());
             joined = fresh;
         }
@@ -284,11 +284,11 @@ TEST(Edits, ThreadsAndBlocksChangeNothingAndAStateTakesTheStrokeAlong) {
 
 TEST(Edits, AStateWithASpoiltStrokeIsRefusedWhole) {
     const sand::Scene scene = samples::flatScene(64, 64);
-    Terrain dug(scene);
+    Replica dug(scene);
     Hand(dug).stroke(32);
     base::Bytes state = dug.encodeState();
     state[4 + 8 + 12 + 4 + 16 + 4 + 8 + 4] ^= 0xff;  // the first byte that zstd wrote of the heights before the stroke
-    Terrain terrain(scene);
+    Replica terrain(scene);
     const std::uint64_t hash = terrain.stateHash();
     EXPECT_THROW(terrain.decodeState(state), base::FormatError);
     EXPECT_EQ(terrain.stateHash(), hash);

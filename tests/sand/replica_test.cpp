@@ -12,16 +12,16 @@ namespace {
 
 using sand::kProbePerCell;
 using sand::ProbePoint;
+using sand::Replica;
 using sand::Step;
-using sand::Terrain;
 
 ProbePoint at(double column, double row, double height /* [cell] */) {
     return {static_cast<std::int32_t>(column * kProbePerCell), static_cast<std::int32_t>(row * kProbePerCell),
             static_cast<std::int32_t>(height * kProbePerCell)};
 }
 
-Terrain dragged(const sand::Scene& scene, ProbePoint from, ProbePoint to, int steps) {
-    Terrain terrain(scene);
+Replica dragged(const sand::Scene& scene, ProbePoint from, ProbePoint to, int steps) {
+    Replica terrain(scene);
     for (int i = 1; i <= steps; ++i) {
         const auto between = [&](std::int32_t a, std::int32_t b) { return a + (b - a) * i / steps; };
         terrain.apply({1,
@@ -32,8 +32,8 @@ Terrain dragged(const sand::Scene& scene, ProbePoint from, ProbePoint to, int st
     return terrain;
 }
 
-TEST(Terrain, AStrokeLeavesAFurrowWithBanks) {
-    const Terrain terrain = dragged(samples::flatScene(96, 64), at(20, 32, 2), at(70, 32, 2), 60);
+TEST(Replica, AStrokeLeavesAFurrowWithBanks) {
+    const Replica terrain = dragged(samples::flatScene(96, 64), at(20, 32, 2), at(70, 32, 2), 60);
     const auto& field = terrain.field();
     EXPECT_LT(field.height(45, 32), -sand::kUnitsPerCell) << "the furrow";
     EXPECT_GT(field.height(45, 37), sand::kUnitsPerCell) << "the northern bank";
@@ -41,9 +41,9 @@ TEST(Terrain, AStrokeLeavesAFurrowWithBanks) {
     EXPECT_EQ(field.volume(), 0);
 }
 
-TEST(Terrain, AHeldToolComesToRest) {
+TEST(Replica, AHeldToolComesToRest) {
     sand::Scene scene = samples::flatScene(64, 64, 8);
-    Terrain terrain(scene);
+    Replica terrain(scene);
     std::uint64_t number = 0;
     terrain.apply({1, ++number, true, {at(32, 32, 4)}});
     for (int i = 0; i < 2000 && !terrain.settled(); ++i) {
@@ -62,10 +62,10 @@ TEST(Terrain, AHeldToolComesToRest) {
     }
 }
 
-TEST(Terrain, SandFallsWhenTheToolLeaves) {
+TEST(Replica, SandFallsWhenTheToolLeaves) {
     sand::Scene scene = samples::flatScene(64, 64, 8);
     scene.rules.sweepsPerStep = 2;
-    Terrain terrain(scene);
+    Replica terrain(scene);
     std::uint64_t number = 0;
     terrain.apply({1, ++number, true, {at(32, 32, 0)}});
     while (!terrain.settled()) {
@@ -78,13 +78,13 @@ TEST(Terrain, SandFallsWhenTheToolLeaves) {
     EXPECT_GT(terrain.field().height(32, 32), held);
 }
 
-TEST(Terrain, VolumeIsExactWhateverTheHandDoes) {
+TEST(Replica, VolumeIsExactWhateverTheHandDoes) {
     for (const auto rim : {sand::Rim::closed, sand::Rim::open}) {
         sand::Scene scene = samples::flatScene(45, 33, 2.56);
         scene.rules.rim = rim;
         std::mt19937 random(23);
         scene.terrain = samples::randomField(45, 33, 1 << 18, random);
-        Terrain terrain(scene);
+        Replica terrain(scene);
         for (std::uint64_t i = 1; i <= 500; ++i) {
             terrain.apply(samples::randomStep(i, scene.rules, random));
             ASSERT_EQ(terrain.field().volume() + terrain.outflow(), scene.terrain.volume()) << "step " << i;
@@ -92,39 +92,39 @@ TEST(Terrain, VolumeIsExactWhateverTheHandDoes) {
     }
 }
 
-TEST(Terrain, AToolLargerThanTheFieldLosesNothing) {
+TEST(Replica, AToolLargerThanTheFieldLosesNothing) {
     const sand::Scene scene = samples::flatScene(5, 4, 40);
-    Terrain terrain(scene);
+    Replica terrain(scene);
     terrain.apply({1, 1, true, {at(2, 2, 0)}});
     EXPECT_EQ(terrain.field().volume(), 0);
 }
 
-TEST(Terrain, HoveringLeavesTheSandAlone) {
+TEST(Replica, HoveringLeavesTheSandAlone) {
     const sand::Scene scene = samples::flatScene(32, 32);
-    Terrain terrain(scene);
+    Replica terrain(scene);
     terrain.apply({1, 1, false, {at(16, 16, -3), at(20, 16, -3)}});
     EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain));
     EXPECT_TRUE(terrain.settled());
 }
 
-TEST(Terrain, RefusesStepsOutOfOrder) {
-    Terrain terrain(samples::flatScene(8, 8));
+TEST(Replica, RefusesStepsOutOfOrder) {
+    Replica terrain(samples::flatScene(8, 8));
     terrain.apply({1, 1, false, {}});
     EXPECT_THROW(terrain.apply({1, 1, false, {}}), std::logic_error);
     EXPECT_THROW(terrain.apply({1, 3, false, {}}), std::logic_error);
 }
 
-TEST(Terrain, GoesOnFromAStateAsIfNothingHadHappened) {
+TEST(Replica, GoesOnFromAStateAsIfNothingHadHappened) {
     const sand::Scene scene = samples::flatScene(70, 50);
     std::mt19937 random(29);
-    Terrain whole(scene);
-    Terrain resumed(scene);
+    Replica whole(scene);
+    Replica resumed(scene);
     for (std::uint64_t i = 1; i <= 300; ++i) {
         const Step step = samples::randomStep(i, scene.rules, random);
         whole.apply(step);
         resumed.apply(step);
         if (i % 37 == 0) {
-            Terrain fresh(scene);
+            Replica fresh(scene);
             fresh.decodeState(resumed.encodeState());
             resumed = fresh;
         }
@@ -133,18 +133,18 @@ TEST(Terrain, GoesOnFromAStateAsIfNothingHadHappened) {
 }
 
 // Sand that slides on while the hand is away has inertia, which belongs to the state.
-TEST(Terrain, GoesOnInMidSlide) {
+TEST(Replica, GoesOnInMidSlide) {
     for (const auto rim : {sand::Rim::closed, sand::Rim::open}) {
         sand::Scene scene = samples::flatScene(64, 64);
         scene.terrain = samples::cylinder(64, 24, 40);
         scene.rules.rim = rim;
-        Terrain whole(scene);
-        Terrain resumed(scene);
+        Replica whole(scene);
+        Replica resumed(scene);
         for (std::uint64_t i = 1; i <= 40; ++i) {
-            for (Terrain* terrain : {&whole, &resumed}) {
+            for (Replica* terrain : {&whole, &resumed}) {
                 terrain->apply({1, i, i == 20, {at(32, 32, i == 20 ? 0 : 100)}});
             }
-            Terrain fresh(scene);
+            Replica fresh(scene);
             fresh.decodeState(resumed.encodeState());
             resumed = fresh;
             ASSERT_EQ(resumed.stateHash(), whole.stateHash()) << "step " << i;
@@ -154,20 +154,20 @@ TEST(Terrain, GoesOnInMidSlide) {
 }
 
 // Who joins visits every block once, where the others sleep: that must not make its inertia older than theirs.
-TEST(Terrain, GoesOnFromSettledSand) {
+TEST(Replica, GoesOnFromSettledSand) {
     sand::Scene scene = samples::flatScene(64, 64);
     scene.terrain = samples::cylinder(64, 12, 30);
-    Terrain whole(scene);
+    Replica whole(scene);
     std::uint64_t step = 0;
     while (!whole.settled()) {
         whole.apply({1, ++step, false, {}});
         ASSERT_LT(step, 10000U);
     }
-    Terrain joined(scene);
+    Replica joined(scene);
     joined.decodeState(whole.encodeState());
     for (int i = 0; i < 5; ++i) {
         const bool digs = i == 3;
-        for (Terrain* terrain : {&whole, &joined}) {
+        for (Replica* terrain : {&whole, &joined}) {
             terrain->apply({1, step + 1, digs, {at(32, 32, digs ? 0 : 100)}});
         }
         ++step;
@@ -175,7 +175,7 @@ TEST(Terrain, GoesOnFromSettledSand) {
     }
 }
 
-TEST(Terrain, SettlesAtOnceWhenAsked) {
+TEST(Replica, SettlesAtOnceWhenAsked) {
     sand::Scene scene = samples::flatScene(64, 64);
     scene.terrain = samples::cylinder(64, 12, 30);
     scene.rules.sweepsPerStep = 4;
@@ -184,7 +184,7 @@ TEST(Terrain, SettlesAtOnceWhenAsked) {
             scene.ground = std::make_shared<sand::Ground>(64, 64);
             scene.rules.ground = scene.ground->digest();
         }
-        Terrain terrain(scene);
+        Replica terrain(scene);
         terrain.apply({1, 1, false, {}, sand::Edit::settle});
         EXPECT_TRUE(terrain.settled());
         EXPECT_EQ(terrain.field().volume(), scene.terrain.volume());
@@ -195,10 +195,10 @@ TEST(Terrain, SettlesAtOnceWhenAsked) {
     }
 }
 
-TEST(Terrain, IncrementalHashEqualsAFreshOne) {
+TEST(Replica, IncrementalHashEqualsAFreshOne) {
     const sand::Scene scene = samples::flatScene(70, 50);
     std::mt19937 random(31);
-    Terrain terrain(scene);
+    Replica terrain(scene);
     for (std::uint64_t i = 1; i <= 200; ++i) {
         terrain.apply(samples::randomStep(i, scene.rules, random));
         const std::uint64_t incremental = terrain.stateHash();
@@ -207,8 +207,8 @@ TEST(Terrain, IncrementalHashEqualsAFreshOne) {
     }
 }
 
-TEST(Terrain, AFlippedBitShowsInTheRightTile) {
-    Terrain terrain(samples::flatScene(100, 70));
+TEST(Replica, AFlippedBitShowsInTheRightTile) {
+    Replica terrain(samples::flatScene(100, 70));
     const std::uint64_t before = terrain.stateHash();
     const auto tiles = terrain.hashTiles().tileHashes();
     terrain.corrupt(70, 40);
@@ -221,10 +221,10 @@ TEST(Terrain, AFlippedBitShowsInTheRightTile) {
     }
 }
 
-TEST(Terrain, DamageCoversEveryChangedCell) {
+TEST(Replica, DamageCoversEveryChangedCell) {
     const sand::Scene scene = samples::flatScene(100, 70);
     std::mt19937 random(37);
-    Terrain terrain(scene);
+    Replica terrain(scene);
     (void)terrain.takeDamage();
     for (std::uint64_t i = 1; i <= 100; ++i) {
         const sand::HeightField before = terrain.field();

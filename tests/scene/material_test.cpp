@@ -79,7 +79,7 @@ TEST_F(SceneFile, AnOperatorsNumbersAreRefusedWhereAFileWouldBe) {
 TEST(Tuning, AFlatterTalusWakesSandAtRest) {
     sand::Scene scene = samples::flatScene(64, 64);
     scene.terrain = samples::cylinder(64, 16, 20);
-    sand::Terrain terrain(scene);
+    sand::Replica terrain(scene);
     terrain.apply({1, 1, false, {}, Edit::settle});
     while (!terrain.settled()) {
         terrain.apply({1, terrain.stepNumber() + 1, false, {}, Edit::none});
@@ -103,13 +103,13 @@ TEST(Tuning, IsPartOfTheHashAndOfTheState) {
     const sand::Scene scene = samples::flatScene(64, 64);
     sand::Tuning tuning = scene.rules.tuning();
     tuning.toolRadius *= 2;
-    sand::Terrain plain(scene);
-    sand::Terrain tuned(scene);
+    sand::Replica plain(scene);
+    sand::Replica tuned(scene);
     plain.apply({1, 1, false, {}, Edit::none});
     tuned.apply({1, 1, false, {}, Edit::tuned(tuning)});
     ASSERT_TRUE(sameHeights(plain.field(), tuned.field()));
     EXPECT_NE(plain.stateHash(), tuned.stateHash());
-    sand::Terrain joined(scene);
+    sand::Replica joined(scene);
     joined.decodeState(tuned.encodeState());
     EXPECT_EQ(joined.stateHash(), tuned.stateHash());
     EXPECT_EQ(joined.rules(), tuned.rules());
@@ -120,7 +120,7 @@ TEST(Tuning, IsPartOfTheHashAndOfTheState) {
 
 TEST(Tuning, AToolThatGrowsInTheSandPresses) {
     const sand::Scene scene = samples::flatScene(64, 64);
-    sand::Terrain terrain(scene);
+    sand::Replica terrain(scene);
     const std::int32_t middle = 32 * sand::kProbePerCell;
     terrain.apply({1, 1, true, {{middle, middle, 2 * sand::kProbePerCell}}, Edit::none});
     sand::Tuning tuning = scene.rules.tuning();

@@ -21,8 +21,8 @@
 
 namespace {
 
+using sand::Replica;
 using sand::Step;
-using sand::Terrain;
 
 constexpr int kRasterSide = 48;
 
@@ -82,7 +82,7 @@ TEST_F(TinHoleScene, ASessionIsTheSameTwiceFromItsMiddleAndAfterItsSceneTravelle
 
 TEST_F(TinHoleScene, HolesComeBackWithoutData) {
     const sand::Scene start = scene("[tin]\nmax_error = 0.05\n");
-    Terrain terrain(start);
+    Replica terrain(start);
     for (const Step& step : strokes(9, 40)) {
         terrain.apply(step);
     }
@@ -109,7 +109,7 @@ TEST_F(TinHoleScene, HolesComeBackWithoutData) {
 // there, by sweeps alone. Measured: 0.467 cells at most, 0.041 RMS; a tenth more is let through.
 TEST_F(TinHoleScene, TheSamePileOnGridAndTinAgrees) {
     const sand::Scene asGrid = scene("settle = true\n"), asTin = scene("settle = true\n[tin]\nmax_error = 0\n");
-    const Terrain tin(asTin);
+    const Replica tin(asTin);
     const sand::HeightField there = sand::sampled(tin, asTin.tin->holes.get());
     double worst = 0, sum = 0;
     int count = 0;

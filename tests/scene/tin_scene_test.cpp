@@ -138,12 +138,12 @@ TEST_F(TinScene, AReplicaTakesNoLessMemoryThanItsHostIsAskedFor) {
     };
     const std::size_t before = taken();
     const sand::Scene received = sand::Scene::decode(bytes);
-    sand::Terrain terrain(received);
+    sand::Replica terrain(received);
     (void)terrain.stateHash();
     const std::size_t after = taken();
     ASSERT_GT(after, 0U);
-    EXPECT_GE(after - before, static_cast<std::size_t>(sand::Terrain::leastBytes(received)));
-    EXPECT_LE(after - before, static_cast<std::size_t>(sand::Terrain::leastBytes(received)) * 3 / 2);
+    EXPECT_GE(after - before, static_cast<std::size_t>(sand::Replica::leastBytes(received)));
+    EXPECT_LE(after - before, static_cast<std::size_t>(sand::Replica::leastBytes(received)) * 3 / 2);
 }
 #endif
 

@@ -76,6 +76,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command, std::filesys
     const std::string value = std::to_string(getpid()) + "-" + std::to_string(++started);
     mark_ = name + "=" + value;
     std::vector<char*> words;
+    words.reserve(command.size() + 1);
     for (const std::string& word : command) {
         words.push_back(const_cast<char*>(word.c_str()));
     }

@@ -31,9 +31,15 @@ inline Ran runCommand(const std::string& command) {
     return ran;
 }
 
+/// Where a program of this build is.
+inline std::string pathOfProgram(const std::string& name) { return SANDWALL_BIN_DIR "/" + name; }
+
+/// The script that starts sessions.
+inline std::string launcher() { return SANDWALL_SOURCE_DIR "/scripts/sandwall"; }
+
 /// Runs one of our programs to its end; `arguments` are words of the shell.
 inline Ran runProgram(const std::string& name, const std::string& arguments) {
-    return runCommand(SANDWALL_BIN_DIR "/" + name + " " + arguments);
+    return runCommand(pathOfProgram(name) + " " + arguments);
 }
 
 }  // namespace support

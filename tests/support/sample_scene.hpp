@@ -42,7 +42,7 @@ inline sand::ProbePoint probeAt(const sand::Scene& scene, const glm::dvec3& plac
 }
 
 /// Drags the tool along a straight line, a step each centimetre, and lets the sand settle for some steps.
-inline void drag(sand::Terrain& terrain, const sand::Scene& scene, const glm::dvec3& from, const glm::dvec3& to) {
+inline void drag(sand::Replica& terrain, const sand::Scene& scene, const glm::dvec3& from, const glm::dvec3& to) {
     sand::Step step;
     const int steps = 1 + static_cast<int>(glm::length(to - from) / 0.01);
     for (int i = 0; i <= steps; ++i) {

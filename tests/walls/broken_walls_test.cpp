@@ -12,6 +12,9 @@
 namespace walls {
 namespace {
 
+/// Walls with the mistakes that people make.
+std::filesystem::path brokenWalls() { return SANDWALL_SOURCE_DIR "/tests/walls/broken"; }
+
 /// What the first comment of a broken wall promises: "# expect: 12: eye_separation must be positive".
 struct Promise {
     std::string line, message;
@@ -44,7 +47,7 @@ std::string complaintAbout(const std::filesystem::path& file) {
 
 TEST(BrokenWalls, GiveOneClearLineEach) {
     int count = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(configFolder() / "broken")) {
+    for (const auto& entry : std::filesystem::directory_iterator(brokenWalls())) {
         SCOPED_TRACE(entry.path().filename().string());
         ++count;
         const Promise promise = promiseOf(entry.path());
@@ -58,7 +61,7 @@ TEST(BrokenWalls, GiveOneClearLineEach) {
 }
 
 TEST(BrokenWalls, AreRefusedByTheProgramInTheSameLine) {
-    const std::filesystem::path file = configFolder() / "broken" / "eye_misspelt.toml";
+    const std::filesystem::path file = brokenWalls() / "eye_misspelt.toml";
     const support::Ran ran = support::runProgram("sandwall-check", file.string());
     EXPECT_EQ(ran.status, 2);
     EXPECT_EQ(ran.output, complaintAbout(file) + "\n");
@@ -66,7 +69,7 @@ TEST(BrokenWalls, AreRefusedByTheProgramInTheSameLine) {
 
 TEST(BrokenWalls, BecomeWholeByOneEdit) {
     // The gallery's frame is sound: it is the one mistake that each file is refused for.
-    std::ifstream stream(configFolder() / "broken/eye_misspelt.toml");
+    std::ifstream stream(brokenWalls() / "eye_misspelt.toml");
     std::string text{std::istreambuf_iterator<char>(stream), {}};
     text.replace(text.find("eyes ="), 4, "eye ");
     EXPECT_EQ(parseWall(text, "mended.toml").ranks(), 4);

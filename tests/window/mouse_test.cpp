@@ -32,8 +32,8 @@ pictures::Image imageOf(const Picture& picture) {
 }
 
 /// Sand with a furrow from west to east, a little north of the middle.
-sand::Terrain furrowed(const sand::Scene& scene) {
-    sand::Terrain terrain(scene);
+sand::Replica furrowed(const sand::Scene& scene) {
+    sand::Replica terrain(scene);
     sand::Step step;
     step.number = 1;
     step.engaged = true;
@@ -44,7 +44,7 @@ sand::Terrain furrowed(const sand::Scene& scene) {
     return terrain;
 }
 
-Picture painted(const sand::Terrain& terrain, const SketchedHand& hand) {
+Picture painted(const sand::Replica& terrain, const SketchedHand& hand) {
     SandSketch sketch;
     sketch.take(terrain);
     Picture picture{kSide, kSide, {}};
@@ -82,7 +82,7 @@ protected:
     Pose pose() { return mouse_->read(time_ += 1e-3); }
 
     const sand::Scene scene_ = samples::flatScene(96, 96);
-    const sand::Terrain terrain_ = furrowed(scene_);
+    const sand::Replica terrain_ = furrowed(scene_);
     std::unique_ptr<support::XServer> server_;
     std::unique_ptr<MouseDevice> mouse_;
     std::unique_ptr<support::XScreen> screen_;
@@ -122,7 +122,7 @@ TEST_F(Mouse, ShowsTheSandTheToolAndTheForce) {
     hand.force = {};
     EXPECT_NE(imageOf(painted(terrain_, hand)).rgb, expected.rgb) << "the arrow must be there";
     hand = {0.25, 0.25, true, 0.5, {1, -0.5, 1.5}};
-    EXPECT_NE(imageOf(painted(sand::Terrain(scene_), hand)).rgb, expected.rgb) << "and the furrow";
+    EXPECT_NE(imageOf(painted(sand::Replica(scene_), hand)).rgb, expected.rgb) << "and the furrow";
 }
 
 TEST_F(Mouse, AKeyTakesTheForceAway) {

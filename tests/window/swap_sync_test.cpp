@@ -173,7 +173,7 @@ TEST(OutputPictures, FillBothQuadBuffersInEveryFrame) {
     // Only their addresses are looked at.
     const auto* left = reinterpret_cast<const render_node::EyeTarget*>(&driver);
     const auto* right = reinterpret_cast<const render_node::EyeTarget*>(&driver.msc);
-    for (const std::uint64_t frame : {0, 1}) {
+    for (const std::uint64_t frame : {0U, 1U}) {
         EXPECT_EQ(render_node::copiesOf({left, right}, true, frame),
                   (std::vector<render_node::Copy>{{left, BackBuffer::left}, {right, BackBuffer::right}}));
     }

@@ -192,7 +192,7 @@ private:
         fresh_ = true;
     }
     const sand::Scene& scene_;
-    sand::Terrain terrain_;
+    sand::Replica terrain_;
     ArmSession& hand_;
     PathBuilder path_;
     long ticks_ = 0;

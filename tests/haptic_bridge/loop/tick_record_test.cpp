@@ -64,7 +64,7 @@ protected:
         }
     }
     std::string replayed(TickReplay& replay, std::size_t steps) {
-        sand::Terrain terrain(scene_);
+        sand::Replica terrain(scene_);
         std::string rows = tickTitles();
         replay.feel(terrain, rows);
         for (std::size_t i = 0; i < steps; ++i) {
@@ -81,7 +81,7 @@ protected:
     NotedDevice* noted_ = nullptr;
     std::unique_ptr<Hand> hand_;
     std::unique_ptr<TickRecorder> recorder_;
-    sand::Terrain terrain_{scene_};
+    sand::Replica terrain_{scene_};
     Surface surface_;
     std::vector<sand::Step> steps_;
     std::vector<base::Bytes> pieces_;

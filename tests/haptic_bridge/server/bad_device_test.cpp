@@ -7,7 +7,6 @@ namespace {
 
 using namespace test;
 using haptic_bridge::Client;
-using haptic_bridge::Link;
 
 class BadDevice : public testing::Test {
 protected:

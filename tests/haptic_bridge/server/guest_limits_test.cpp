@@ -18,6 +18,7 @@ TEST_F(LinkSecurityTest, ManyGuestsAtOnceDoNotTouchWhoIsLinked) {
     Wall wall(scene_);
     ASSERT_TRUE(wall.follow(master, 10));
     std::vector<std::unique_ptr<RawPeer>> guests;
+    guests.reserve(60);
     for (int i = 0; i < 60; ++i) {
         guests.push_back(std::make_unique<RawPeer>(server.port()));
     }

@@ -20,7 +20,7 @@ TEST(Sequencer, WhatIsFeltDoesNotAgeWhileStepsAreWithheld) {
     Sequencer sequencer(scene, Pace::realtime, hand, channel,
                         {[](std::uint32_t) {}, [](std::uint32_t, NeedState) {},
                          [](std::uint32_t, const std::string&) {}, [](std::uint32_t, const base::Bytes&) {}});
-    sequencer.start(1, {1, 0, sand::Terrain(scene).stateHash()});
+    sequencer.start(1, {1, 0, sand::Replica(scene).stateHash()});
     const auto withheld = [&](std::uint64_t steps) {
         return eventually([&] { return sequencer.withheld() >= steps; });
     };

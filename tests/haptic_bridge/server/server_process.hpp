@@ -185,7 +185,7 @@ struct Wall {
         }
     }
 
-    sand::Terrain terrain;
+    sand::Replica terrain;
     std::uint32_t epoch = 0;
     int divergences = 0, outOfOrder = 0, engaged = 0, strokes = 0, turns = 0;
     std::size_t longest = 0;

@@ -40,7 +40,7 @@ TEST_F(HapticServer, WritesTheSameSandTwice) {
         EXPECT_EQ(server.stop(SIGTERM), 0) << server.errors();
     }
     EXPECT_EQ(hashes[0], hashes[1]);
-    EXPECT_NE(hashes[0], sand::Terrain(scene_).stateHash());
+    EXPECT_NE(hashes[0], sand::Replica(scene_).stateHash());
 }
 
 TEST_F(HapticServer, WritesWithARecordedHand) {
@@ -164,7 +164,7 @@ TEST_F(HapticServer, DoesWhatAnOperatorAsksAndTakesTheWallsMaterialWhenItComesBa
     tuning.threshold /= 2;
     // The second is no sand of this field and changes nothing, but it is as long as that of a large one.
     const std::vector<sand::Edit> asked{sand::Edit::tuned(tuning), sand::Edit::loaded(base::Bytes(300'000, 7)),
-                                        sand::Edit::loaded(sand::Terrain(scene_).copySand()->encode())};
+                                        sand::Edit::loaded(sand::Replica(scene_).copySand()->encode())};
     for (const sand::Edit& edit : asked) {
         client.request(edit);
         ASSERT_TRUE(wall.follow(client, wall.terrain.stepNumber() + 40)) << client.link().message;
@@ -274,7 +274,7 @@ TEST_F(HapticServer, SendsTimingTestsAsLongAsAStepAndCountsEachLegOnce) {
     const Identity mine{kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), "small"};
     RawPeer master(server.port());
     master.send(Hello{mine});
-    master.send(Start{1, 0, sand::Terrain(scene_).stateHash()});
+    master.send(Start{1, 0, sand::Replica(scene_).stateHash()});
     std::size_t step = 0;
     int tests = 0;
     while (tests < 3) {
@@ -310,7 +310,7 @@ TEST_F(HapticServer, SendsTimingTestsAsLongAsAStepAndCountsEachLegOnce) {
 std::string complaint(const Folder& folder, const std::vector<std::string>& arguments) {
     ServerProcess server(folder, arguments);
     EXPECT_EQ(server.wait(), base::kExitBadInput) << server.errors();
-    const std::string errors = server.errors();
+    std::string errors = server.errors();
     EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
     return errors;
 }

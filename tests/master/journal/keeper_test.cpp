@@ -53,7 +53,7 @@ protected:
     }
 
     sand::Scene scene_ = samples::flatScene(40, 30);
-    sand::Terrain terrain_{scene_};
+    sand::Replica terrain_{scene_};
     std::mt19937 random_{61};
     std::uint64_t frame_ = 0;
     std::optional<master::JournalKeeper> keeper_;
@@ -187,7 +187,7 @@ TEST_F(Keeper, GoesOnInAnotherPartAndIsReadAsOne) {
     expectWhole(200);
     // A new one takes all of them out of the way.
     keeper_.reset();
-    terrain_ = sand::Terrain(scene_);
+    terrain_ = sand::Replica(scene_);
     begin({});
     EXPECT_FALSE(std::filesystem::exists(master::partOf(journal(), 2)));
     EXPECT_EQ(master::readJournal(journal().string() + ".previous").frames.size(), 200U);
@@ -352,7 +352,7 @@ TEST_F(Keeper, KilledInTheMiddleOfWritesNothingThatWasOnDiskIsLost) {
         ASSERT_GE(resumed->step, steps) << "seed " << seed << ", kill " << kill;
         ASSERT_LE(resumed->step, steps + 1) << "seed " << seed << ", kill " << kill;
         // From the checkpoints to the same sand as from the scene: restoreSand() compares the hashes on the way.
-        sand::Terrain undisturbed(scene_);
+        sand::Replica undisturbed(scene_);
         for (const master::JournalFrame& frame : master::readJournal(journal()).frames) {
             ASSERT_EQ(frame.hashBefore, undisturbed.stateHash());
             undisturbed.apply(frame.steps.front());

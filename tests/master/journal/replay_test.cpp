@@ -21,9 +21,9 @@ namespace {
 class Replay : public test::FolderTest {
 protected:
     /// Records 40 steps in frames of two; `hashError` spoils the hash of frame 10.
-    sand::Terrain record(std::uint64_t hashError = 0) { return record(samples::flatScene(40, 30), hashError); }
-    sand::Terrain record(const sand::Scene& scene, std::uint64_t hashError) {
-        sand::Terrain terrain(scene);
+    sand::Replica record(std::uint64_t hashError = 0) { return record(samples::flatScene(40, 30), hashError); }
+    sand::Replica record(const sand::Scene& scene, std::uint64_t hashError) {
+        sand::Replica terrain(scene);
         std::mt19937 random(53);
         master::JournalWriter writer(journal(), scene, "test");
         for (std::uint64_t frame = 1; frame <= 20; ++frame) {
@@ -41,14 +41,14 @@ protected:
 };
 
 TEST_F(Replay, EndsInTheSessionsHash) {
-    sand::Terrain terrain = record();
+    sand::Replica terrain = record();
     const support::Ran ran = support::runProgram("sandwall-replay", journal() + " --hash");
     EXPECT_EQ(ran.status, 0);
     EXPECT_EQ(ran.output, fmt::format("{:016x}\n", terrain.stateHash()));
 }
 
 TEST_F(Replay, WritesTheHeights) {
-    const sand::Terrain terrain = record();
+    const sand::Replica terrain = record();
     const std::string file = (folder_ / "h.asc").string();
     ASSERT_EQ(support::runProgram("sandwall-replay", journal() + " --heights " + file).status, 0);
     const sand::EsriGrid grid = sand::readEsriGrid(file);
@@ -74,12 +74,12 @@ TEST_F(Replay, WritesNoDataWhereATinHasHoles) {
     dem.close();
     std::ofstream(folder_ / "s.toml") << "[terrain]\nkind = \"esri_ascii\"\nfile = \"dem.asc\"\n[tin]\n[material]\n"
                                          "settling_time = 0.1\n[tool]\nradius = 4\n";
-    sand::Terrain terrain = record(sand::loadScene(folder_ / "s.toml"), 0);
+    sand::Replica terrain = record(sand::loadScene(folder_ / "s.toml"), 0);
     EXPECT_EQ(support::runProgram("sandwall-replay", journal() + " --hash").output,
               fmt::format("{:016x}\n", terrain.stateHash()));
     for (const std::string option : {"--heights", "--difference"}) {
         const std::string file = (folder_ / "h.asc").string();
-        ASSERT_EQ(support::runProgram("sandwall-replay", journal() + " " + option + " " + file).status, 0);
+        ASSERT_EQ(support::runProgram("sandwall-replay", fmt::format("{} {} {}", journal(), option, file)).status, 0);
         const sand::EsriGrid grid = sand::readEsriGrid(file);
         for (int row = 0; row < 20; ++row) {
             for (int column = 0; column < 24; ++column) {
@@ -97,10 +97,10 @@ TEST_F(Replay, SaysWhereASessionDiffers) {
 }
 
 TEST_F(Replay, VerifiesAllThatAJournalSays) {
-    const sand::Terrain terrain = record();
+    const sand::Replica terrain = record();
     const std::uint64_t session = master::JournalReader(journal()).header().session;
-    const auto keep = [&](const sand::Terrain& sand) {
-        sand::Terrain copy = sand;
+    const auto keep = [&](const sand::Replica& sand) {
+        sand::Replica copy = sand;
         master::writeCheckpoint(
             journal(),
             {session, "test", sand.rules().digest(), sand.stepNumber(), 20, 1, copy.stateHash(), copy.encodeState()},
@@ -116,7 +116,7 @@ TEST_F(Replay, VerifiesAllThatAJournalSays) {
         EXPECT_NE(good.output.find(line), std::string::npos) << line << "\n" << good.output;
     }
     // The same step, and other sand.
-    sand::Terrain other(samples::flatScene(40, 30));
+    sand::Replica other(samples::flatScene(40, 30));
     for (std::uint64_t number = 1; number <= 40; ++number) {
         other.apply({.epoch = 1, .number = number, .engaged = false, .path = {}});
     }
@@ -160,7 +160,7 @@ TEST_F(Replay, WritesEveryStepAsARow) {
 }
 
 TEST_F(Replay, RecoversWhatStandsBeforeTheDamage) {
-    sand::Terrain terrain = record();
+    sand::Replica terrain = record();
     const auto middle = static_cast<std::streamoff>(std::filesystem::file_size(journal()) * 3 / 4);
     std::fstream stream(journal(), std::ios::in | std::ios::out | std::ios::binary);
     stream.seekg(middle);
@@ -185,7 +185,7 @@ TEST_F(Replay, RecoversWhatStandsBeforeTheDamage) {
 }
 
 TEST_F(Replay, SaysWhatItReplayedWhereNothingElseIsAskedFor) {
-    sand::Terrain terrain = record();
+    sand::Replica terrain = record();
     EXPECT_EQ(support::runProgram("sandwall-replay", journal()).output,
               fmt::format("{}: 40 steps replayed, state hash {:016x}; no hash differs from the session's\n", journal(),
                           terrain.stateHash()));
@@ -262,7 +262,7 @@ TEST_F(Replay, RefusesStepsBelowZero) {
                   std::string::npos)
             << ran.output;
     }
-    const std::string start = fmt::format("{:016x}\n", sand::Terrain(samples::flatScene(40, 30)).stateHash());
+    const std::string start = fmt::format("{:016x}\n", sand::Replica(samples::flatScene(40, 30)).stateHash());
     EXPECT_EQ(support::runProgram("sandwall-replay", journal() + " --hash --until 0").output, start);
 }
 

@@ -73,7 +73,7 @@ protected:
     }
 
     sand::Scene scene_ = samples::flatScene(40, 30);
-    sand::Terrain terrain_{scene_};
+    sand::Replica terrain_{scene_};
     std::mt19937 random_{59};
     std::uint64_t frame_ = 0;
     std::vector<std::uint64_t> hashes_;  // after every step, from 0
@@ -144,7 +144,7 @@ TEST_F(Resume, GoesOnWithTheNextStepInTheSameJournal) {
     EXPECT_EQ(session->scene.encode(), scene_.encode());
     EXPECT_EQ(session->material, scene_.material);
 
-    terrain_ = sand::Terrain(session->scene);
+    terrain_ = sand::Replica(session->scene);
     terrain_.decodeState(session->state);
     EXPECT_EQ(terrain_.stateHash(), hashes_[38]);
     hashes_.resize(38);

@@ -20,13 +20,13 @@ using master::SavedSand;
 class SavedSandFile : public test::FolderTest {
 protected:
     [[nodiscard]] SavedSand sand() const {
-        sand::Terrain terrain(scene_);
+        sand::Replica terrain(scene_);
         terrain.apply({1, 1, true, {{8000, 8000, 0}}, sand::Edit::none});
         return {SandPlace::of(scene_), 1, terrain.stateHash(), terrain.copySand()->encode()};
     }
     [[nodiscard]] std::string complaint(const sand::Scene& scene) const {
         try {
-            (void)master::readSavedSand(file_, SandPlace::of(scene), sand::Terrain(scene).sandReader());
+            (void)master::readSavedSand(file_, SandPlace::of(scene), sand::Replica(scene).sandReader());
         } catch (const base::InputError& error) {
             return error.what();
         }
@@ -47,7 +47,7 @@ TEST_F(SavedSandFile, GivesBackWhatWasSavedAndLeavesNothingBeside) {
     for (int i = 0; i < 2; ++i) {  // the second replaces the first
         master::writeSavedSand(file_, saved);
     }
-    const SavedSand read = master::readSavedSand(file_, SandPlace::of(scene_), sand::Terrain(scene_).sandReader());
+    const SavedSand read = master::readSavedSand(file_, SandPlace::of(scene_), sand::Replica(scene_).sandReader());
     EXPECT_EQ(read.sand, saved.sand);
     EXPECT_EQ(read.step, 1U);
     EXPECT_EQ(read.stateHash, saved.stateHash);

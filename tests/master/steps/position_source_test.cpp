@@ -38,7 +38,7 @@ protected:
         return all;
     }
     const sand::Scene scene_ = samples::flatScene(64, 64);
-    sand::Terrain terrain_{scene_};
+    sand::Replica terrain_{scene_};
     master::PositionSource source_{scene_};
     std::int64_t clock_ = 20'000 * kMillisecond;
     std::uint64_t floods_ = 0;

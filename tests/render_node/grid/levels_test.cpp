@@ -202,7 +202,7 @@ protected:
     }
     std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     sand::Scene scene_ = strip();
-    sand::Terrain terrain_{scene_};
+    sand::Replica terrain_{scene_};
 };
 
 // Below the sand there is the floor of its box: a crack shows it, deeper than any sand.

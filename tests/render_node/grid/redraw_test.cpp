@@ -114,7 +114,7 @@ protected:
     }
 
     /// Another view of the same scene that has taken over the sand at once shows the same.
-    static void checkAgainstFreshView(const sand::Scene& scene, const sand::Terrain& terrain,
+    static void checkAgainstFreshView(const sand::Scene& scene, const sand::Replica& terrain,
                                       const glm::dmat4& sceneToRoom, const Shown& shown,
                                       const render_node::Camera& camera, const Twice& twice) {
         SandView fresh(scene, sceneToRoom);
@@ -130,7 +130,7 @@ protected:
                       bool headMoves, walls::Stereo stereo, LayersAt layersAt = noLayers) {
         walls::Wall wall = sample::reduced(walls::loadWall(sample::wallFolder() / (name + ".toml")), smaller);
         const sand::Scene scene = sessionScene(rim);
-        sand::Terrain terrain(scene);
+        sand::Replica terrain(scene);
         const double width = scene.terrain.columns() * scene.terrain.cellSize();
         const glm::dmat4 sceneToRoom = walls::stageToRoom(
             wall.stage, width, width, static_cast<double>(scene.referenceHeight()) * scene.terrain.unit());
@@ -318,7 +318,7 @@ TEST_F(Redraw, FollowsAToolThatChangesItsSizeWhereItIs) {
 TEST_F(Redraw, FollowsToolsOfEveryShapeAsTheyTurnAndAreSwitched) {
     sand::Scene scene = sample::duneScene(128);
     scene.rules.toolRadius = static_cast<std::int32_t>(0.14 / scene.terrain.cellSize() * sand::kProbePerCell);
-    sand::Terrain terrain(scene);
+    sand::Replica terrain(scene);
     SandView view(scene, glm::dmat4(1));
     const render_node::Camera slanted = sample::camera({1, -0.9, 1.3}, {1, 0.9, 0});
     const EyeTarget inParts(200, 150), whole(200, 150);
@@ -351,7 +351,7 @@ TEST_F(Redraw, FollowsToolsOfEveryShapeAsTheyTurnAndAreSwitched) {
 
 TEST_F(Redraw, OfRestingSandDrawsNothing) {
     const sand::Scene scene = sample::flatScene(64, 64);
-    sand::Terrain terrain(scene);
+    sand::Replica terrain(scene);
     SandView view(scene, glm::dmat4(1));
     const render_node::Camera above = sample::camera({1, 1, 2.2}, {1, 1, 0});
     const EyeTarget target(200, 150);

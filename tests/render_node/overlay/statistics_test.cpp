@@ -76,7 +76,7 @@ protected:
     /// A frame of digging, or of rest.
     void paintBoth(bool statistics, bool dig, bool oneEye = false) {
         ++frame_;
-        for (sand::Terrain* terrain : {&first_, &second_}) {
+        for (sand::Replica* terrain : {&first_, &second_}) {
             sand::Step step;
             step.number = terrain->stepNumber() + 1;
             step.engaged = dig;
@@ -99,7 +99,7 @@ protected:
     std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     walls::Wall wall_;
     sand::Scene scene_ = sample::duneScene(128);
-    sand::Terrain first_{scene_}, second_{scene_};
+    sand::Replica first_{scene_}, second_{scene_};
     PixelRect covered_;
     std::uint64_t frame_ = 0;
     std::unique_ptr<TilePainter> shown_, never_;

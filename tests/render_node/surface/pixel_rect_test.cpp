@@ -25,6 +25,7 @@ TEST(FewCovering, LeavesApartWhatLiesFarApartAndJoinsWhatDoesNot) {
 
 TEST(FewCovering, GivesNoMoreThanWasAskedFor) {
     std::vector<PixelRect> rects;
+    rects.reserve(5000);
     for (int i = 0; i < 5000; ++i) {
         rects.push_back({i % 100 * 40, i / 100 * 60, i % 100 * 40 + 2, i / 100 * 60 + 2});
     }

@@ -21,13 +21,13 @@ sand::Scene sceneOf(const std::string& name) {
     return sand::loadScene(std::filesystem::path(SANDWALL_SOURCE_DIR) / "scenes" / (name + ".toml"));
 }
 
-void step(sand::Terrain& terrain, bool engaged, std::vector<sand::ProbePoint> path, const sand::Edit& edit = {}) {
+void step(sand::Replica& terrain, bool engaged, std::vector<sand::ProbePoint> path, const sand::Edit& edit = {}) {
     terrain.apply(
         {.epoch = 1, .number = terrain.stepNumber() + 1, .engaged = engaged, .path = std::move(path), .edit = edit});
 }
 
 /// A script's hand over sand that is level at the start, at four places a step.
-void write(sand::Terrain& terrain, const sand::Scene& scene, const haptic_bridge::Strokes& strokes) {
+void write(sand::Replica& terrain, const sand::Scene& scene, const haptic_bridge::Strokes& strokes) {
     haptic_bridge::StrokeDevice device(strokes);
     const double half = 0.5 * std::min(scene.rules.columns, scene.rules.rows) * kProbePerCell;
     const double level = static_cast<double>(scene.referenceHeight()) * kProbePerCell / sand::kUnitsPerCell;
@@ -52,7 +52,7 @@ protected:
 
 TEST_F(GoldenTin, GisIsWrittenAcrossTheWall) {
     const sand::Scene scene = sceneOf("gis_tin");
-    sand::Terrain terrain(scene);
+    sand::Replica terrain(scene);
     write(terrain, scene, haptic_bridge::Strokes::parse(haptic_bridge::gisStrokes(), "gis"));
     step(terrain, false, {}, sand::Edit::settle);
     const walls::Wall wall =
@@ -63,7 +63,7 @@ TEST_F(GoldenTin, GisIsWrittenAcrossTheWall) {
 }
 
 /// A stamp of half this length pressed into the sand, its length turned so far, and taken away again.
-void imprint(sand::Terrain& terrain, const glm::dvec2& place, double radius, double heading /* [degree] */) {
+void imprint(sand::Replica& terrain, const glm::dvec2& place, double radius, double heading /* [degree] */) {
     const double probe = terrain.cellSize() / kProbePerCell;  // [scene unit]
     constexpr double kDepth = 0.06;                           // [scene unit], under the sand's middle height
     sand::Tuning stamp = terrain.rules().tuning();
@@ -81,7 +81,7 @@ void imprint(sand::Terrain& terrain, const glm::dvec2& place, double radius, dou
 
 TEST_F(GoldenTin, ThreeEllipsesAreImprintedAndTheirBordersMarked) {
     const sand::Scene scene = sceneOf("ellipses");
-    sand::Terrain terrain(scene);
+    sand::Replica terrain(scene);
     imprint(terrain, {0.55, 1.3}, 0.36, 35);
     imprint(terrain, {1.45, 1.4}, 0.28, -20);
     imprint(terrain, {1.1, 0.6}, 0.2, 80);

@@ -24,7 +24,7 @@ protected:
     }
 
     sand::Scene scene_ = sample::flatScene(256, 256, double{kRadius});
-    sand::Terrain terrain_{scene_};
+    sand::Replica terrain_{scene_};
 };
 
 TEST_F(Arrow, IsAsLongAsTheForceIsLarge) {
@@ -95,7 +95,7 @@ TEST_F(Arrow, IsNotThereWhileTheToolHoversOrTouchesNothing) {
 
 TEST_F(Arrow, LeavesTheSandAlone) {
     ToolForce force(scene_.force);
-    sand::Terrain untouched(scene_);
+    sand::Replica untouched(scene_);
     for (int i = 0; i < 20; ++i) {
         press({1 + 0.01 * i, 1, 0.5F * kRadius});
         untouched.apply({0, untouched.stepNumber() + 1, true, {terrain_.probe()}});

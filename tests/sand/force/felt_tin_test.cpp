@@ -34,7 +34,7 @@ sand::Scene sceneOf(const std::string& shape, const std::string& tin) {
 /// The force on a tool whose underside stands `depth` under the level, when the sand has come to rest around it.
 double upward(const std::string& shape, const std::string& tin, sand::ForceLaw law, double depth, double east = 0) {
     const sand::Scene scene = sceneOf(shape, tin);
-    sand::Terrain terrain(scene);
+    sand::Replica terrain(scene);
     const auto place = [&](double under) {
         const auto probe = [](double at) { return static_cast<std::int32_t>(std::lround(at / kNominal * 256)); };
         return sand::ProbePoint{probe(0.48 + east), probe(0.48), probe(0.3 - under + 0.08)};

@@ -24,7 +24,7 @@ struct Felt {
 /// The tool's lowest point `depth` under the level sand, moving at `speed` [radius per step] after ten steps.
 Felt dragged(const ForceConstants& constants, double depth, double speed) {
     const int steps = 10 + (speed > 0 ? static_cast<int>(std::min(50.0, 12 / speed)) : 50);
-    sand::Terrain terrain(levelScene());
+    sand::Replica terrain(levelScene());
     ForceModel model(constants);
     const Contour tool = Contour::sphere(kRadius);
     SurfacePatch patch;

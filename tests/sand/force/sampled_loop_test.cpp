@@ -66,7 +66,7 @@ constexpr int kPulled = 2000, kReleased = 3000;  // [tick]
 
 /// A weighted device is pulled to and fro for two seconds, digging, and let go.
 Session pulledAndReleased(const sand::ForceConstants& constants) {
-    sand::Terrain terrain(levelScene());
+    sand::Replica terrain(levelScene());
     ForceModel model(constants);
     const Contour tool = Contour::sphere(kRadius);
     SurfacePatch patch(terrain.field(), probeAt(placeAt(0)), kRadius);

@@ -36,7 +36,8 @@ public:
         std::array<double, 3> sum{};
         for (std::size_t i = 0; i < waves_.size(); ++i) {
             const auto [phase, size] = waves_[i];
-            const double angle = 2 * std::numbers::pi * turn * static_cast<double>(i / 3 + 1);
+            const std::size_t harmonic = i / 3 + 1;
+            const double angle = 2 * std::numbers::pi * turn * static_cast<double>(harmonic);
             sum[i % 3] += kRadius * size * (std::sin(angle + phase) - std::sin(phase));
         }
         return placeAt(0.5 * kRadius + sum[2], sum[0], sum[1]);

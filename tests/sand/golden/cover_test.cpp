@@ -56,7 +56,7 @@ TEST_P(Cover, TenThousandEditsHashAlike) {
     const Way way = wayOf(GetParam());
     host::WorkerPool team(way.threads);
     const base::Executor executor = team.executor();
-    sand::Terrain terrain(scene, {.blockSize = way.block, .path = way.path, .executor = &executor});
+    sand::Replica terrain(scene, {.blockSize = way.block, .path = way.path, .executor = &executor});
     std::mt19937 random(47);
     std::uint64_t all = 0;  // of every step's hash, so that none may differ
     for (std::uint64_t edit = 1; edit <= (samples::kSlowBuild ? kFew : kEdits); ++edit) {

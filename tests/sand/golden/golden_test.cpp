@@ -19,7 +19,7 @@ std::uint64_t hashOfSession(sand::Scheme scheme, sand::Rim rim) {
     sand::makeDunes({.bed = 2, .height = 6, .length = 30, .seed = 5}, scene.terrain);
     scene.rules.scheme = scheme;
     scene.rules.rim = rim;
-    sand::Terrain terrain(scene);
+    sand::Replica terrain(scene);
     std::mt19937 random(43);
     for (std::uint64_t i = 1; i <= 400; ++i) {
         terrain.apply(samples::randomStep(i, scene.rules, random));
@@ -72,7 +72,7 @@ std::uint64_t hashOf(const Variant& variant) {
         scene.ground = groundOf(variant, scene.terrain);
         scene.rules.ground = scene.ground->digest();
     }
-    sand::Terrain terrain(scene);
+    sand::Replica terrain(scene);
     std::mt19937 random(43);
     for (std::uint64_t i = 1; i <= 200; ++i) {
         terrain.apply(samples::randomStep(i, scene.rules, random));
@@ -102,7 +102,7 @@ TEST(Golden, ASessionOfEveryToolIsTheSameEverywhere) {
     scene.rules.rim = sand::Rim::open;
     scene.rules.toolKind = sand::ToolKind::footprint;
     scene.rules.toolHalfWidth = scene.rules.toolRadius * 2 / 5;
-    sand::Terrain terrain(scene);
+    sand::Replica terrain(scene);
     std::mt19937 random(73);
     for (std::uint64_t i = 1; i <= 400; ++i) {
         terrain.apply(samples::wildStep(i, scene.rules, random));
@@ -117,7 +117,7 @@ std::uint64_t hashOfSettled(sand::Rim rim) {
     scene.terrain = samples::randomField(97, 61, 12 * sand::kUnitsPerCell, random);
     scene.rules.rim = rim;
     sand::settle(scene.terrain, scene.rules);
-    return sand::Terrain(scene).stateHash();
+    return sand::Replica(scene).stateHash();
 }
 
 // The projection works in doubles: whether to drop its momentum, and when to stop, hangs on sums that every compiler

@@ -12,7 +12,7 @@
 namespace {
 
 using sand::Ground;
-using sand::Terrain;
+using sand::Replica;
 
 /// A thin layer of sand over rock that is steeper than the talus, with a wall through it.
 sand::Scene layerOverRock(std::uint32_t seed) {
@@ -37,7 +37,7 @@ TEST(Ground, RockAndWallsOutlastAnyHand) {
     for (const auto rim : {sand::Rim::closed, sand::Rim::open}) {
         sand::Scene rimmed = scene;
         rimmed.rules.rim = rim;
-        Terrain terrain(rimmed);
+        Replica terrain(rimmed);
         std::mt19937 random(5);
         for (std::uint64_t i = 1; i <= 300; ++i) {
             terrain.apply(samples::randomStep(i, scene.rules, random));
@@ -57,7 +57,7 @@ TEST(Ground, RockAndWallsOutlastAnyHand) {
 TEST(Ground, BlocksThreadsAndCodePathsChangeNothing) {
     const sand::Scene scene = layerOverRock(7);
     const auto hashWith = [&](const sand::Erosion::Options& options) {
-        Terrain terrain(scene, options);
+        Replica terrain(scene, options);
         std::mt19937 random(11);
         for (std::uint64_t i = 1; i <= 100; ++i) {
             terrain.apply(samples::randomStep(i, scene.rules, random));
@@ -86,8 +86,8 @@ TEST(Ground, BottomlessRockIsAsGoodAsNone) {
     sand::Scene grounded = scene;
     grounded.ground = std::make_shared<Ground>(50, 40);
     grounded.rules.ground = grounded.ground->digest();
-    Terrain without(scene);
-    Terrain with(grounded);
+    Replica without(scene);
+    Replica with(grounded);
     for (std::uint64_t i = 1; i <= 100; ++i) {
         const sand::Step step = samples::randomStep(i, scene.rules, random);
         without.apply(step);

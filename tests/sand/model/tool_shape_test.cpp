@@ -141,7 +141,7 @@ struct Way {
 
 /// What a scene's sand is after a press, a drag and a turn of its tool; seen the way `way` looks at it.
 sand::HeightField dug(const sand::Scene& scene, const std::vector<ProbePoint>& path, double degrees, const Way& way) {
-    sand::Terrain terrain(scene);
+    sand::Replica terrain(scene);
     for (std::uint64_t i = 1; i <= 12; ++i) {
         sand::Step step{.epoch = 1, .number = i, .engaged = true, .path = {}};
         step.heading = way.of(heading(degrees + (i > 6 ? 20 : 0)));
@@ -251,7 +251,7 @@ TEST(ToolShape, EveryOneKeepsTheVolumeWhereverItIs) {
                 const sand::Scene scene = sceneWith(kind, radius, rim);
                 const std::int64_t before = scene.terrain.volume();
                 std::mt19937 random(67);
-                sand::Terrain terrain(scene);
+                sand::Replica terrain(scene);
                 std::uint64_t number = 0;
                 for (const auto& [x, y] : {std::pair{0, 0}, {45, 33}, {22, 0}, {20, 16}}) {
                     sand::Step step = samples::randomStep(++number, scene.rules, random);
@@ -272,7 +272,7 @@ TEST(ToolShape, OfNoRadiusItDigsNothing) {
     for (const ToolKind kind : kEvery) {
         sand::Scene scene = samples::flatScene(45, 33, 0);
         scene.rules.toolKind = kind;
-        sand::Terrain terrain(scene);
+        sand::Replica terrain(scene);
         terrain.apply({1, 1, true, {{probes(5.5), probes(5.5), probes(-3)}, {probes(40), probes(30), probes(-3)}}});
         EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain)) << sand::toolName(kind);
     }
@@ -282,7 +282,7 @@ TEST(ToolShape, SwitchedTurnedAndDraggedAtRandomItKeepsTheVolumeAndTheStatesOfCo
     for (const Rim rim : {Rim::closed, Rim::open}) {
         const sand::Scene scene = sceneWith(footprint, 7, rim);
         const std::int64_t before = scene.terrain.volume();
-        sand::Terrain terrain(scene), copy(scene);
+        sand::Replica terrain(scene), copy(scene);
         std::mt19937 random(71);
         for (std::uint64_t i = 1; i <= 600; ++i) {
             const sand::Step step = samples::wildStep(i, scene.rules, random);
@@ -304,7 +304,7 @@ TEST(ToolShape, TurnedOnTheSpotItMakesRoomAndHeldStillItComesToRest) {
         sand::Scene scene = samples::flatScene(60, 60, 12);
         scene.rules.toolKind = kind;
         scene.rules.toolHalfWidth = shapeOf(kind, 12).halfWidth;
-        sand::Terrain terrain(scene);
+        sand::Replica terrain(scene);
         terrain.apply({1, 1, true, {{probes(30), probes(30), probes(9)}}});
         sand::Step turn{1, 2, true, {}};
         turn.heading = heading(90);
@@ -327,7 +327,7 @@ TEST(ToolShape, TurnedOnTheSpotItMakesRoomAndHeldStillItComesToRest) {
 
 TEST(ToolShape, AnOperatorWhoChangesTheToolAloneLeavesAHandsHeading) {
     const sand::Scene scene = sceneWith(ellipse, 5);
-    sand::Terrain terrain(scene);
+    sand::Replica terrain(scene);
     sand::Step turned{1, 1, false, {}};
     turned.heading = heading(40);
     terrain.apply(turned);

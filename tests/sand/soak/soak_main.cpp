@@ -41,7 +41,7 @@ int run(const Options& options) {
     host::WorkerPool team(options.threads);
     const base::Executor executor = team.executor();
     const sand::Rules rules = dunes(options).rules;
-    sand::Terrain terrain(dunes(options),
+    sand::Replica terrain(dunes(options),
                           {.blockSize = options.block,
                            .path = options.baseline ? sand::CodePath::baseline : sand::CodePath::automatic,
                            .executor = options.threads > 1 ? &executor : nullptr});

@@ -12,7 +12,6 @@ namespace moving_sand {
 namespace {
 
 using namespace tin_piles;
-using sand::tin::Facet;
 using sand::tin::MovingSand;
 
 constexpr std::int32_t kTalus = 65536;  // [unit per cell], 45 degrees

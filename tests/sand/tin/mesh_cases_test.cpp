@@ -70,6 +70,7 @@ TEST(MeshCases, GivesTheSmallestFreeNumber) {
 TEST(MeshCases, TakesManyAtOnceAsOneByOne) {
     std::mt19937 random(1);
     std::vector<Place> places;
+    places.reserve(3000);
     for (int i = 0; i < 3000; ++i) {
         places.push_back({static_cast<std::int32_t>(random() % 50), static_cast<std::int32_t>(random() % 60)});
     }
@@ -205,6 +206,7 @@ TEST(MeshCases, LaysARingThroughAVertexAndOverARing) {
     mesh.insert(ring[0]);
     for (const std::int32_t shift : {0, 40, 40, 1}) {
         std::vector<Vertex> vertices;
+        vertices.reserve(ring.size());
         for (const Place& place : ring) {
             vertices.push_back(mesh.insert(Place{place.x + shift, place.y}));
         }

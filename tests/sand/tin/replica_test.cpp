@@ -19,8 +19,8 @@
 namespace {
 
 using sand::Edit;
+using sand::Replica;
 using sand::Step;
-using sand::Terrain;
 
 /// A scene file as a person writes it: dunes of 64 x 64 nominal cells, as a TIN.
 class TinTerrain : public test::FolderTest {
@@ -35,7 +35,7 @@ protected:
     }
 };
 
-int verticesOf(const Terrain& terrain) {
+int verticesOf(const Replica& terrain) {
     const auto& alive = terrain.tinView()->triangles.triangleAt;
     return static_cast<int>(std::count_if(alive.begin(), alive.end(), [](std::int32_t at) { return at >= 0; }));
 }
@@ -91,7 +91,7 @@ sand::Scene levelSand(int side, std::uint32_t seed) {
 TEST(TinTerrainUnderATool, WhatWasForgottenSlidesAsSoonAsItIsAskedFor) {
     constexpr std::uint32_t kSeed = 1;
     const sand::Scene scene = levelSand(100, kSeed);
-    Terrain terrain(scene), joined(scene);
+    Replica terrain(scene), joined(scene);
     std::mt19937 random(kSeed);
     const auto somewhere = [&random] {
         return static_cast<std::int32_t>(std::floor((26 + tin_piles::chance(random) * 48) * sand::kProbePerCell));
@@ -116,8 +116,8 @@ TEST(TinTerrainUnderATool, WhatWasForgottenSlidesAsSoonAsItIsAskedFor) {
 // docs/terrain.md has these figures. The sand's own volume is exact: what is not are samples of a surface that bends
 // between them, whose error falls with the square of their distance.
 TEST_F(TinTerrain, CutAndFillDifferByWhatSamplesMiss) {
-    const Terrain before(scene());
-    Terrain after(scene());
+    const Replica before(scene());
+    Replica after(scene());
     for (Step step : session(7, 120)) {
         step.edit = {};
         after.apply(step);
@@ -147,13 +147,13 @@ TEST_F(TinTerrain, TravelsWholeWithItsScene) {
     EXPECT_EQ(read.rules, start.rules);
     EXPECT_EQ(read.tin->places, start.tin->places);
     EXPECT_EQ(read.tin->settings, start.tin->settings);
-    EXPECT_EQ(Terrain(read).stateHash(), Terrain(start).stateHash());
+    EXPECT_EQ(Replica(read).stateHash(), Replica(start).stateHash());
     EXPECT_EQ(read.referenceHeight(), start.referenceHeight());
 }
 
 TEST_F(TinTerrain, ResetUndoAndLoadPutTheSandBack) {
     const sand::Scene start = scene();
-    Terrain terrain(start);
+    Replica terrain(start);
     const std::int64_t volume = terrain.volume();
     const auto untouched = terrain.surface().valuesOf(0);
     const base::Bytes saved = terrain.copySand()->encode();
@@ -175,7 +175,7 @@ TEST_F(TinTerrain, ResetUndoAndLoadPutTheSandBack) {
 }
 
 TEST_F(TinTerrain, WhatHasLookedInVainCoarsensAgainOnceSandHasSlid) {
-    Terrain terrain(scene());
+    Replica terrain(scene());
     std::uint64_t number = 0;
     terrain.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {{8000, 8000, 2300}, {8600, 8000, 2300}}});
     for (int vertices = 0; number < 4000;) {  // until no vertex that could go is left
@@ -190,7 +190,7 @@ TEST_F(TinTerrain, WhatHasLookedInVainCoarsensAgainOnceSandHasSlid) {
     }
     ASSERT_LT(number, 4000U);
     const int rested = verticesOf(terrain);
-    Terrain joined(scene());  // whose coarsening has not looked yet
+    Replica joined(scene());  // whose coarsening has not looked yet
     joined.decodeState(terrain.encodeState());
     sand::Tuning softer = terrain.rules().tuning();
     softer.threshold /= 4;
@@ -210,7 +210,7 @@ TEST_F(TinTerrain, WhatHasLookedInVainCoarsensAgainOnceSandHasSlid) {
 
 TEST_F(TinTerrain, EveryStepIsAFunctionOfTheStateWhileAToolSettlesOnSlopes) {
     const sand::Scene start = scene();
-    Terrain terrain(start), fresh(start);
+    Replica terrain(start), fresh(start);
     for (std::uint64_t number = 1; number <= 160; ++number) {
         // Held still for nine steps, in which the sand comes to rest, then put down a little elsewhere.
         const auto place = static_cast<std::int32_t>(number / 10);
@@ -247,11 +247,11 @@ TEST_F(TinTerrain, SandSlidesThatLeansOnAToolWhichHasMovedNone) {
     int slid = 0;
     for (sand::ProbePoint at : places) {
         at.z += scene.rules.toolRadius;
-        Terrain terrain(scene), fresh(scene);
+        Replica terrain(scene), fresh(scene);
         terrain.apply({.epoch = 1, .number = 1, .engaged = false, .path = {}});
         ASSERT_TRUE(terrain.settled());
         fresh.decodeState(terrain.encodeState());
-        for (Terrain* one : {&terrain, &fresh}) {
+        for (Replica* one : {&terrain, &fresh}) {
             one->apply({.epoch = 1, .number = 2, .engaged = true, .path = {at}});
         }
         ASSERT_EQ(fresh.stateHash(), terrain.stateHash()) << at.x << ", " << at.y;
@@ -261,7 +261,7 @@ TEST_F(TinTerrain, SandSlidesThatLeansOnAToolWhichHasMovedNone) {
 }
 
 TEST_F(TinTerrain, ComesToRestAndThenCostsNoChange) {
-    Terrain terrain(scene());
+    Replica terrain(scene());
     std::uint64_t number = 0;
     terrain.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {{8000, 8000, 2300}, {8600, 8000, 2300}}});
     while (number < 4000 && !terrain.settled()) {
@@ -277,7 +277,7 @@ TEST_F(TinTerrain, ComesToRestAndThenCostsNoChange) {
 }
 
 TEST_F(TinTerrain, AFlippedBitShowsInTheNextAudit) {
-    Terrain terrain(scene());
+    Replica terrain(scene());
     const std::uint64_t right = terrain.stateHash();
     terrain.corrupt(40, 13, 3);
     EXPECT_EQ(terrain.stateHash(), right) << "behind the hash's back";
@@ -286,7 +286,7 @@ TEST_F(TinTerrain, AFlippedBitShowsInTheNextAudit) {
 }
 
 TEST_F(TinTerrain, DamageNamesAllThatChanged) {
-    Terrain terrain(scene());
+    Replica terrain(scene());
     ASSERT_TRUE(terrain.takeTinDamage().whole);
     auto triangles = terrain.tinView()->triangles;
     auto heights = terrain.tinView()->heights;
@@ -332,7 +332,7 @@ TEST_F(TinTerrain, IsMadeOfTheSurveyPointsThemselves) {
     EXPECT_EQ(read.rules.columns, 20);
     EXPECT_EQ(read.rules.rows, 10);
     ASSERT_EQ(read.tin->places.size(), 5U) << "four points, three of which are corners, and the fourth corner";
-    const Terrain terrain(read);
+    const Replica terrain(read);
     const auto height = [&](double x, double y) {
         return terrain.surface().height((x - 100) / 0.5 * 256, (y - 200) / 0.5 * 256) * 0.5 / 65536;
     };

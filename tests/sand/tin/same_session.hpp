@@ -15,7 +15,7 @@ namespace tin_samples {
 /// that `joins` divides: after each step all have the same sand, and none of it is lost.
 inline void expectSameSession(const sand::Scene& scene, const sand::Scene& alike, const std::vector<sand::Step>& steps,
                               std::uint64_t joins) {
-    sand::Terrain whole(scene), again(alike), joined(scene);
+    sand::Replica whole(scene), again(alike), joined(scene);
     const std::int64_t volume = whole.volume();
     for (const sand::Step& step : steps) {
         whole.apply(step);

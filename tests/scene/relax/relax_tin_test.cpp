@@ -201,8 +201,11 @@ TEST_F(RelaxTin, EndingsInLargeLettersMeanTheSame) {
 
 TEST_F(RelaxTin, ARasterBecomesTheMeshThatItsErrorAllows) {
     std::vector<double> heights;
-    for (int i = 0; i < 48 * 40; ++i) {
-        heights.push_back(8 * std::sin(i % 48 * 0.3) * std::cos(i / 48 * 0.2));
+    heights.reserve(std::size_t{48} * 40);
+    for (int row = 0; row < 40; ++row) {
+        for (int column = 0; column < 48; ++column) {
+            heights.push_back(8 * std::sin(column * 0.3) * std::cos(row * 0.2));
+        }
     }
     sand::writeEsriGrid({48, 40, 3, kWest, kSouth, heights}, path("in.asc"));
     const auto json = relax("in.asc out.obj --talus 80 --max-error 0.25");
