@@ -83,8 +83,8 @@ TEST_F(TinScene, RefusesPointsThatLieNearerThanItsVerticesAllow) {
     EXPECT_EQ(
         refusal([&] { return scene(1024, "flat", "vertices = 100\nwidest = 0.002\n"); }),
         "s.toml:8: points 0.002 apart on 1024 x 1024 cells are 1048580 vertices, and 100 are the most; widest must "
-        "be at least 0.2109375");
-    EXPECT_EQ(scene(1024, "flat", "vertices = 100\nwidest = 0.2109375\n").tin->places.size(), 4U + 9 * 9);
+        "be at least 0.210983276");
+    EXPECT_EQ(scene(1024, "flat", "vertices = 100\nwidest = 0.210983276\n").tin->places.size(), 4U + 9 * 9);
     EXPECT_EQ(refusal([&] { return scene(64, "flat", "vertices = 4\nwidest = 1\n"); }),
               "s.toml:8: points 1 apart on 64 x 64 cells are 8 vertices, and 4 are the most; widest must be 0 (none)");
     EXPECT_EQ(refusal([&] { return scene(5000, "flat", "widest = 0.0004\n"); }),
