@@ -12,8 +12,8 @@ int main() {
     start.terrain = sand::HeightField(kSide, kSide, kCell);
     start.terrain.setHeight(kSide / 2, kSide / 2, 1200 * sand::kUnitsPerCell);  // a column 1200 cells high
     start.rules.columns = start.rules.rows = kSide;
-    start.rules.threshold = start.rules.startThreshold =
-        sand::kUnitsPerCell;  // stable up to a cell per cell: 45 degrees
+    start.rules.threshold = sand::kUnitsPerCell;  // stable up to a cell per cell: 45 degrees
+    start.rules.startThreshold = start.rules.threshold;
     start.rules.sweepsPerStep = 16;
     start.rules.stepsPerSecond = 60;
     start.rules.toolRadius = sand::kProbePerCell;
@@ -26,7 +26,8 @@ int main() {
     }
     const double unit = kCell / sand::kUnitsPerCell;
     const sand::HeightField& pile = replica.field();
+    const bool exact = replica.volume() == start.terrain.volume();
     std::printf("%" PRIu64 " steps, %.3f high, volume %s, hash %016" PRIx64 "\n", step.number,
-                pile.height(kSide / 2, kSide / 2) * unit, replica.volume() == start.terrain.volume() ? "exact" : "lost",
-                replica.stateHash());
+                pile.height(kSide / 2, kSide / 2) * unit, exact ? "exact" : "lost", replica.stateHash());
+    return exact ? 0 : 1;
 }

@@ -60,6 +60,10 @@ class Layers(unittest.TestCase):
         more = {f"examples/much/part_{i}.cpp": "" for i in range(layers.MOST_SOURCES + 1)}
         self.assertEqual(changed(more), ["examples/much: holds 26 sources, 25 are the most; divide it"])
 
+    def test_a_source_of_no_library_is_named(self):
+        self.assertEqual(changed({"dust/grain.cpp": ""}),
+                         ["dust/grain.cpp: no library of the project holds it; add it to a CMakeLists.txt"])
+
     def test_the_drawing_is_of_these_arrows(self):
         self.assertIn(layers.fingerprint(PROJECT), (ROOT / "docs" / "layers.svg").read_text(),
                       "draw it again: scripts/layers.py build/release --svg docs/layers.svg")
