@@ -87,11 +87,6 @@ std::optional<MaterialFault> faultOf(const Material& material, const MaterialGri
         return MaterialFault{"wet_talus_deg", fmt::format("wet_talus_deg must be at least talus_deg = {}, got {}",
                                                           material.dryTalus, material.wetTalusNow())};
     }
-    if (const double threshold = thresholdOf(material); grid.scheme == Scheme::n4 && threshold < 4) {
-        return MaterialFault{"talus_deg", fmt::format("talus_deg is too flat for scheme n4: its threshold is {} units, "
-                                                      "and 4 is the least; use scheme \"g\"",
-                                                      threshold)};
-    }
     return std::nullopt;
 }
 

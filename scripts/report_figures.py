@@ -227,7 +227,7 @@ def dig(table):
 def throughput(table):
     figure, axes = panels(1, 4.2)
     axis = axes[0]
-    colours = {"copy": "#000000", "G": "#0072B2", "G plain": "#56B4E9", "N4": "#E69F00", "G baseline x86-64": "#009E73",
+    colours = {"copy": "#000000", "G": "#0072B2", "G plain": "#56B4E9", "G baseline x86-64": "#009E73",
                "float32 N4 in place": "#D55E00", "float32 N4 Jacobi": "#CC79A7", "float32 N8 sqrt2 Jacobi": "#777777"}
     for variant, marker in zip(table.distinct("variant"), MARKERS * 2):
         rows = table.where(variant=variant)

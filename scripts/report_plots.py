@@ -24,10 +24,11 @@ one (height 0.6 of the radius, radius 0.3 N) becomes a frustum, the *tall* one (
 a cone; both are known in closed form. *Sand in the wrong place* is the sum of |height − analytic mean over the cell|
 over the pile's volume.
 
-**The methods.** *G*: the default, isotropic fluxes with inertia. *G plain*: the same without inertia. *N4*: the integer
-four-neighbour preview. *settle*: the dual projection. The four *float32* ones are the explicit talus rules in common use,
-written for this comparison alone (`bench/sand/baseline_schemes.cpp`): in place or Jacobi, four or eight neighbours, the
-diagonal ones with or without a √2; whole rows, vectorised, with the flags and instruction sets of our own sweeps.
+**The methods.** *G*: the default, isotropic fluxes with inertia. *G plain*: the same without inertia. *settle*: the dual
+projection. *N4* is the four-neighbour rule in integers, and the four *float32* ones are the explicit talus rules in common
+use, in place or Jacobi, four or eight neighbours, the diagonal ones with or without a √2. These five are written for this
+comparison alone (`bench/sand/integer_n4.cpp`, `bench/sand/baseline_schemes.cpp`): whole rows, vectorised, with the flags
+and instruction sets of our own sweeps.
 """
 
 

@@ -42,7 +42,8 @@ void hashes(const Settings& settings, Csv& csv) {
                     kEdits));
     csv.columns("compiler,flags,scheme,code_path,threads,block,N,hash");
     for (const int side : settings.sizes) {
-        for (const auto& [scheme, name] : {std::pair{sand::Scheme::isotropic, "G"}, {sand::Scheme::n4, "N4"}}) {
+        for (const auto& [scheme, name] :
+             {std::pair{sand::Scheme::isotropic, "G"}, {sand::Scheme::plainIsotropic, "G plain"}}) {
             for (const auto path : {sand::CodePath::automatic, sand::CodePath::baseline}) {
                 for (const int threads : {1, 2, 3, 7}) {
                     host::WorkerPool pool(threads);

@@ -14,7 +14,7 @@ namespace {
 /// their piles have long had the shape that they keep.
 std::unique_ptr<Relaxation> relaxed(const Method& method, const Pile& pile) {
     std::unique_ptr<Relaxation> relaxation = method.start(pile.start, rulesFor(pile.start));
-    relaxation->sweep(method.ours ? kMostSweeps : pile.side() * pile.side() / 2);
+    relaxation->sweep(method.integers ? kMostSweeps : pile.side() * pile.side() / 2);
     return relaxation;
 }
 
@@ -36,7 +36,7 @@ void errorAtRest(const Settings& settings, Csv& csv) {
     csv.note("largest, apex: L-infinity error and error of the highest point [cell of this N]");
     csv.note("order: of `misplaced`, from the size before: log of the errors' ratio over log of the sizes'");
     csv.note("sweeps: until nothing moves; a float baseline until no sweep moves 1e-6 cells, at most N x N / 2");
-    csv.columns("pile,method,ours,N,sweeps,at_rest,seconds,misplaced,largest,apex,order");
+    csv.columns("pile,method,integers,N,sweeps,at_rest,seconds,misplaced,largest,apex,order");
     struct Before {
         int side = 0;
         double error = 0;
@@ -52,7 +52,7 @@ void errorAtRest(const Settings& settings, Csv& csv) {
                 const auto error = oracles::distance(
                     side, pile.rest, [&](std::size_t i) { return heights[i]; }, [](int, int) { return true; });
                 Before& last = before[pile.name + method.name];
-                csv.row(pile.name, method.name, method.ours ? 1 : 0, side, relaxation->sweepsDone(),
+                csv.row(pile.name, method.name, method.integers ? 1 : 0, side, relaxation->sweepsDone(),
                         relaxation->atRest() ? 1 : 0, seconds, error.misplaced, error.largest, error.apex,
                         observedOrder(last.error, last.side, error.misplaced, side));
                 last = {side, error.misplaced};

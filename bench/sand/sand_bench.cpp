@@ -44,7 +44,6 @@ void sweep(benchmark::State& state, sand::Scheme scheme, sand::CodePath path) {
 }
 BENCHMARK_CAPTURE(sweep, G, sand::Scheme::isotropic, sand::CodePath::automatic)->Arg(512)->Arg(1024)->Arg(2048);
 BENCHMARK_CAPTURE(sweep, G_plain, sand::Scheme::plainIsotropic, sand::CodePath::automatic)->Arg(512);
-BENCHMARK_CAPTURE(sweep, N4, sand::Scheme::n4, sand::CodePath::automatic)->Arg(512);
 BENCHMARK_CAPTURE(sweep, G_baseline, sand::Scheme::isotropic, sand::CodePath::baseline)->Arg(512);
 
 void copy(benchmark::State& state) {

@@ -113,7 +113,6 @@ void throughput(const Settings& settings, Csv& csv) {
     using sand::Scheme;
     std::vector<Variant> variants{{"G", Scheme::isotropic, CodePath::automatic, 1},
                                   {"G plain", Scheme::plainIsotropic, CodePath::automatic, 1},
-                                  {"N4", Scheme::n4, CodePath::automatic, 1},
                                   {"G baseline x86-64", Scheme::isotropic, CodePath::baseline, 1}};
     for (int threads = 2; threads <= static_cast<int>(std::thread::hardware_concurrency()); threads *= 2) {
         variants.push_back({fmt::format("G {} threads", threads), Scheme::isotropic, CodePath::automatic, threads});

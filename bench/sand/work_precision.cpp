@@ -79,7 +79,7 @@ public:
             sample.error = errorOf(pile_, *relaxation_);
             sample.atRest = relaxation_->atRest();
             samples.push_back(sample);
-            if (sweeps >= kMostSweeps || (!method_.ours && onPlateau(samples))) {
+            if (sweeps >= kMostSweeps || (!method_.integers && onPlateau(samples))) {
                 break;
             }
         }
@@ -152,7 +152,8 @@ void workPrecision(const Settings& settings, Csv& csv) {
                     kFloatTolerance));
     csv.note(fmt::format("a method that has taken {} s in all is not run again; no tall pile beyond N = {}", kPatience,
                          kLargestTall));
-    csv.columns("pile,method,ours,N,runs,sweeps,seconds_median,seconds_min,seconds_max,misplaced,largest,apex,at_rest");
+    csv.columns(
+        "pile,method,integers,N,runs,sweeps,seconds_median,seconds_min,seconds_max,misplaced,largest,apex,at_rest");
     for (const int side : settings.sizes) {
         for (const Pile& pile : pilesOf(side)) {
             for (const Method& method : methods(kRaced)) {
@@ -164,7 +165,7 @@ void workPrecision(const Settings& settings, Csv& csv) {
                 }
                 for (const Sample& sample : samples) {
                     const Spread seconds = spreadOf(sample.seconds);
-                    csv.row(pile.name, method.name, method.ours ? 1 : 0, side, sample.seconds.size(), sample.sweeps,
+                    csv.row(pile.name, method.name, method.integers ? 1 : 0, side, sample.seconds.size(), sample.sweeps,
                             seconds.median, seconds.lowest, seconds.highest, sample.error.misplaced,
                             sample.error.largest, sample.error.apex, sample.atRest ? 1 : 0);
                 }

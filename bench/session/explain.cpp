@@ -92,7 +92,6 @@ void explainRules(const sand::Scene& scene, Explanation& rows) {
     const bool grid = scene.tin == nullptr;
     rows.rule("flux over a TIN's edges", !grid, "only with [tin]: the scene's module is loaded");
     rows.rule("isotropic flux with inertia", grid && rules.scheme == sand::Scheme::isotropic, "scheme = g");
-    rows.rule("four-neighbour flux", grid && rules.scheme == sand::Scheme::n4, "only with scheme = n4");
     rows.rule("layer limiter", scene.ground != nullptr, "only with bedrock or walls");
     rows.rule("non-square cells", rules.aspect != sand::kUnitsPerCell,
               "a law per axis: only where a cell is not square");

@@ -35,10 +35,6 @@ AxisLaw axisLaw(Scheme scheme, double threshold, double startThreshold, double r
             static_cast<float>(push), static_cast<float>(0.25 * ratio)};
 }
 
-std::int32_t scaled(std::int32_t threshold, double ratio) {
-    return static_cast<std::int32_t>(std::min(std::floor(threshold * ratio), 1073741824.0));
-}
-
 }  // namespace
 
 Erosion::Erosion(const HeightField& field, const Rules& rules, const Options& options)
@@ -116,8 +112,6 @@ std::int64_t Erosion::sweepFluxes(const HeightField& field, const Rect& blocks, 
     const bool grounded = options_.ground != nullptr;
     const int heldWidth = cells.x1 - cells.x0 + 2;
     const double ratio = static_cast<double>(rules_.aspect) / kUnitsPerCell;
-    using Law = FluxPatch::Law;
-    const Law isotropic = rules_.scheme == Scheme::isotropic ? Law::inertial : Law::isotropic;
     const FluxPatch patch{
         .heights = grounded ? held->heights.data() + heldWidth + 1 : field.row(cells.y0) + cells.x0,
         .heightStride = grounded ? heldWidth : field.stride(),
@@ -129,12 +123,8 @@ std::int64_t Erosion::sweepFluxes(const HeightField& field, const Rect& blocks, 
         .rows = field.rows(),
         .eastLaw = axisLaw(rules_.scheme, rules_.threshold, rules_.startThreshold, 1 / ratio),
         .northLaw = axisLaw(rules_.scheme, rules_.threshold * ratio, rules_.startThreshold * ratio, ratio),
-        .eastThreshold = rules_.threshold,
-        .northThreshold = scaled(rules_.threshold, ratio),
-        .eastStartThreshold = rules_.startThreshold,
-        .northStartThreshold = scaled(rules_.startThreshold, ratio),
         .momentum = momentum,
-        .law = rules_.scheme == Scheme::n4 ? Law::n4 : isotropic,
+        .inertial = rules_.scheme == Scheme::isotropic,
         .openRim = rules_.rim == Rim::open,
         .room = held ? held->room.data() : nullptr,
         .sand = grounded ? held->sand.data() : nullptr};

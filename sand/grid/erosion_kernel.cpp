@@ -23,8 +23,6 @@ struct alignas(64) Row {
 /// compared: a root would cost a quarter of the sweep. Without a band sand that is not pushed is braked anyway.
 template <bool kBand>
 struct Inertial {
-    static constexpr bool kNeedsAlong = true;
-
     Inertial(const AxisLaw& law, float momentumNow)
         : threshold(law.threshold * law.threshold),
           startThreshold(law.startThreshold * law.startThreshold),
@@ -58,7 +56,6 @@ struct Inertial {
 
 /// The law without inertia: slope across the face from its two cells, slope along it as the mean of four differences.
 struct Isotropic {
-    static constexpr bool kNeedsAlong = true;
     AxisLaw axis;
 
     std::int32_t operator()(std::int32_t difference, float along, std::int32_t) const {
@@ -67,18 +64,6 @@ struct Isotropic {
         const float slope = std::sqrt(across * across + mean * mean);
         const float share = slope > axis.startThreshold ? axis.limit * (1.0F - axis.threshold / slope) : 0.0F;
         return static_cast<std::int32_t>(share * across);
-    }
-};
-
-/// Scheme N4: each pair of neighbours by itself, integers only. A preview: it rests in the wrong pile.
-struct FourNeighbours {
-    static constexpr bool kNeedsAlong = false;
-    std::int32_t threshold, startThreshold;
-
-    std::int32_t operator()(std::int32_t difference, float, std::int32_t) const {
-        const std::int32_t size = difference < 0 ? -difference : difference;
-        const std::int32_t flux = size > startThreshold ? (size - threshold + 3) / 4 : 0;
-        return difference < 0 ? -flux : flux;
     }
 };
 
@@ -275,12 +260,8 @@ private:
 
 template <class Law>
 std::int64_t run(const FluxPatch& patch, const Law& east, const Law& north) {
-    if constexpr (Law::kNeedsAlong) {
-        if (patch.sand != nullptr) {
-            return Fluxes<Law, true>(patch, east, north).run();
-        }
-    }
-    return Fluxes<Law, false>(patch, east, north).run();
+    return patch.sand != nullptr ? Fluxes<Law, true>(patch, east, north).run()
+                                 : Fluxes<Law, false>(patch, east, north).run();
 }
 
 template <bool kBand>
@@ -326,17 +307,11 @@ void reportMoved(const BalancePatch& patch, int blockRow, Row<std::int32_t>& mov
 }  // namespace
 
 std::int64_t sweepFluxes(const FluxPatch& patch) {
-    switch (patch.law) {
-        case FluxPatch::Law::inertial:
-            return patch.eastLaw.startThreshold > patch.eastLaw.threshold ? runInertial<true>(patch)
-                                                                          : runInertial<false>(patch);
-        case FluxPatch::Law::isotropic:
-            return run(patch, Isotropic{patch.eastLaw}, Isotropic{patch.northLaw});
-        case FluxPatch::Law::n4:
-            break;
+    if (!patch.inertial) {
+        return run(patch, Isotropic{patch.eastLaw}, Isotropic{patch.northLaw});
     }
-    return run(patch, FourNeighbours{patch.eastThreshold, patch.eastStartThreshold},
-               FourNeighbours{patch.northThreshold, patch.northStartThreshold});
+    return patch.eastLaw.startThreshold > patch.eastLaw.threshold ? runInertial<true>(patch)
+                                                                  : runInertial<false>(patch);
 }
 
 void balance(const BalancePatch& patch) {

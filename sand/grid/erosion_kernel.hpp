@@ -32,11 +32,9 @@ struct FluxPatch {
     std::ptrdiff_t fluxStride;    // [cell]
     Rect cells;                   // of the patch, at most kMaxPatch wide
     int columns, rows;            // of the field
-    AxisLaw eastLaw, northLaw;    // of the isotropic schemes
-    std::int32_t eastThreshold, northThreshold;            // [unit], of N4
-    std::int32_t eastStartThreshold, northStartThreshold;  // [unit], of N4
-    float momentum;                                        // share of the last sweep's flux that goes on
-    enum class Law : std::uint8_t { inertial, isotropic, n4 } law;
+    AxisLaw eastLaw, northLaw;
+    float momentum;  // share of the last sweep's flux that goes on
+    bool inertial;   // with inertia; else the plain law
     bool openRim;
     // Over `cells` grown by one on every side, row by row; null where nothing holds the sand:
     const std::int32_t* room;  // what each cell may receive through a face [unit]

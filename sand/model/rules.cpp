@@ -3,10 +3,22 @@
 
 #include <xxhash.h>
 
+#include <algorithm>
+#include <string>
+
 namespace sand {
 namespace {
 
 constexpr unsigned kTinFlag = 0x80;  // beside the scheme: the rules of height fields are the bytes they always were
+
+Scheme schemeOf(unsigned number) {
+    const auto* const found = std::ranges::find_if(
+        kSchemes, [&](const NamedScheme& known) { return static_cast<unsigned>(known.scheme) == number; });
+    if (found == kSchemes.end()) {
+        throw base::FormatError("a scene with the unknown scheme " + std::to_string(number));
+    }
+    return found->scheme;
+}
 
 }  // namespace
 
@@ -49,13 +61,12 @@ Rules Rules::decode(base::ByteReader& reader) {
     rules.toolHalfWidth = tool.shape.halfWidth;
     rules.toolHeading = tool.heading;
     const auto coded = reader.get<std::uint8_t>();
-    const unsigned scheme = coded & ~kTinFlag;
+    rules.scheme = schemeOf(coded & ~kTinFlag);
     const auto rim = reader.get<std::uint8_t>();
     const bool sides = rules.columns >= 1 && rules.columns <= kMaxSide && rules.rows >= 1 && rules.rows <= kMaxSide;
-    if (!sides || rules.aspect < 1 || scheme > 2 || rim > 1 || rules.stepsPerSecond < 1) {
+    if (!sides || rules.aspect < 1 || rim > 1 || rules.stepsPerSecond < 1) {
         throw base::FormatError("a scene with rules out of range");
     }
-    rules.scheme = static_cast<Scheme>(scheme);
     rules.rim = static_cast<Rim>(rim);
     rules.ground = reader.get<std::uint64_t>();
     if ((coded & kTinFlag) != 0 && (rules.tin = reader.get<std::uint64_t>()) == 0) {

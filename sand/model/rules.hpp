@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "base/byte_stream.hpp"
 #include "sand/model/tuning.hpp"
@@ -12,8 +14,19 @@ namespace sand {
 /// Changes with anything that changes what a step does to the sand; replicas of different versions refuse each other.
 inline constexpr std::uint32_t kAlgorithmVersion = 6;
 
-/// sand/grid/erosion.hpp says what they are; plainIsotropic is called G elsewhere, n4 N4.
-enum class Scheme : std::uint8_t { isotropic, n4, plainIsotropic };
+/// sand/grid/erosion.hpp states both laws. The documents call isotropic G, and plainIsotropic plain G.
+///
+/// The numbers enter digests, messages, journals and checkpoints: no scheme ever gets another one. 1 belonged to a
+/// scheme that is gone; decode() refuses it.
+enum class Scheme : std::uint8_t { isotropic = 0, plainIsotropic = 2 };
+
+struct NamedScheme {
+    Scheme scheme;
+    std::string_view name;
+};
+/// Every scheme, the default first, by its name in scene files and on command lines.
+inline constexpr std::array<NamedScheme, 2> kSchemes{{{Scheme::isotropic, "g"}, {Scheme::plainIsotropic, "g_plain"}}};
+
 enum class Rim : std::uint8_t { closed, open };
 
 /// Every number the sand is computed from: derived once by whoever loads the scene, then broadcast, never recomputed.

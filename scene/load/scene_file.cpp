@@ -18,6 +18,12 @@ namespace {
 
 constexpr int kTooCoarse = 4096;  // [unit]: below, rest slopes come out more than a percent too steep
 
+Scheme schemeIn(const host::TomlTable& material) {
+    std::vector<std::string_view> names(kSchemes.size());
+    std::ranges::transform(kSchemes, names.begin(), &NamedScheme::name);
+    return kSchemes.at(static_cast<std::size_t>(material.choiceOr("scheme", names, 0))).scheme;
+}
+
 void readMaterial(const host::TomlTable& file, Scene& scene) {
     const host::TomlTable table = file.requiredTable("material");
     for (const MaterialKey& key : materialKeys()) {
@@ -30,7 +36,7 @@ void readMaterial(const host::TomlTable& file, Scene& scene) {
             key.set(scene.material, value);
         }
     }
-    scene.rules.scheme = static_cast<Scheme>(table.choiceOr("scheme", {"g", "n4", "g_plain"}, 0));
+    scene.rules.scheme = schemeIn(table);
     if (scene.tin != nullptr && scene.rules.scheme != Scheme::isotropic) {
         table.fail("scheme", fmt::format("a TIN has no scheme \"{}\", only \"g\"; leave out 'scheme', or [tin]",
                                          table.text("scheme")));

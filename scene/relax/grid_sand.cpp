@@ -79,10 +79,7 @@ HeightScale scaleFor(const EsriGrid& surface, const Extremes& extremes) {
 double steepening(double threshold, double limit) { return (std::cbrt(2 * threshold / limit) + 1 / limit) / threshold; }
 
 /// Of the axis that is worse off. The fluxes' shares are those of sand/grid/erosion.cpp.
-double steepening(double threshold, double aspect, Scheme scheme) {
-    if (scheme == Scheme::n4) {
-        return 0;  // it rounds up
-    }
+double steepeningOfGrid(double threshold, double aspect) {
     const double across = 0.4998 / (1 / (aspect * aspect) + 1);
     const double along = 0.4998 / (aspect * aspect + 1);
     return std::max(steepening(threshold, across), steepening(threshold * aspect, along));
@@ -105,14 +102,13 @@ void setTalus(const EsriGrid& surface, const Extremes& extremes, const Material&
             : fmt::format("; heights from {} to {} span {:.4g} cells: if some are no terrain, make them no-data",
                           extremes.lowest.height(), extremes.highest.height(),
                           (extremes.highest.height() - extremes.lowest.height()) / surface.cellSize);
-    const bool level = material.talusDegrees == 0 && material.scheme != Scheme::n4;
+    const bool level = material.talusDegrees == 0;
     if (least < kLeastThreshold && !level) {
-        throw base::InputError(fmt::format("{}, and {} is the least{}{}", units, kLeastThreshold,
-                                           material.scheme == Scheme::n4 ? " for scheme n4" : ", but for 0 degrees",
-                                           span));
+        throw base::InputError(
+            fmt::format("{}, and {} is the least, but for 0 degrees{}", units, kLeastThreshold, span));
     }
-    const double tooSteep = level ? 0 : steepening(threshold, aspect, material.scheme);
-    if (tooSteep > steepening(kFineThreshold, 1, Scheme::isotropic)) {
+    const double tooSteep = level ? 0 : steepeningOfGrid(threshold, aspect);
+    if (tooSteep > steepeningOfGrid(kFineThreshold, 1)) {
         sand.warnings.push_back(
             fmt::format("{}: slopes may come to rest {:.2g} % too steep{}", units, 100 * tooSteep, span));
     }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "base/input_error.hpp"
 #include "host/command_line.hpp"
@@ -67,6 +68,16 @@ void checkKind(const Options& options, bool toMesh) {
     }
 }
 
+/// The values of --scheme.
+std::vector<std::string> schemes() {
+    std::vector<std::string> names;
+    for (const sand::NamedScheme& known : sand::kSchemes) {
+        names.emplace_back(known.name);
+    }
+    names.emplace_back("settle");
+    return names;
+}
+
 int run(const Options& options) {
     check(options);
     const bool toMesh = sand::namesMesh(options.out);
@@ -97,8 +108,8 @@ int main(int argc, char** argv) {
         .required();
     line.option("--talus", options.talus, "steepest angle at which sand rests, in degrees, from 0 to below 90")
         .required();
-    line.option("--scheme", options.scheme, "g or settle; for grids also g_plain and n4 (docs/relax.md)")
-        .oneOf({"g", "g_plain", "n4", "settle"})
+    line.option("--scheme", options.scheme, "g or settle; for grids also g_plain (docs/relax.md)")
+        .oneOf(schemes())
         .showDefault();
     line.option("--band", options.band, "resting sand starts to slide this share beyond the talus, from 0 to 1")
         .showDefault();

@@ -2,6 +2,7 @@
 // What sandwall-relax does with a grid.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -21,11 +22,10 @@ namespace {
 
 using nlohmann::ordered_json;
 
+/// The scheme of this name. settle ends with sweeps of the default.
 Scheme schemeOf(const std::string& name) {
-    if (name == "n4") {
-        return Scheme::n4;
-    }
-    return name == "g_plain" ? Scheme::plainIsotropic : Scheme::isotropic;
+    const auto* const found = std::ranges::find(kSchemes, name, &NamedScheme::name);
+    return found != kSchemes.end() ? found->scheme : kSchemes.front().scheme;
 }
 
 /// Says on stderr how far long work has come: what `after` was told last, every second.

@@ -3,10 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "bench/sand/baseline_schemes.hpp"
+#include "bench/sand/integer_n4.hpp"
 #include "bench/sand/piles.hpp"
 #include "bench/sand/relaxations.hpp"
+#include "tests/support/reference_sweep.hpp"
+#include "tests/support/sand_samples.hpp"
 
 namespace {
 
@@ -101,8 +105,48 @@ TEST(Baselines, AreTheSameInBothInstructionSets) {
     }
 }
 
+// Vectors and whole rows, against faces one after another.
+TEST(Baselines, IntegerN4GivesWhatPlainSweepsGive) {
+    std::mt19937 random(51);
+    for (const auto& [columns, rows] : {std::pair{37, 23}, {1, 9}, {9, 1}, {1, 1}}) {
+        const sand::HeightField start = samples::randomField(columns, rows, 8 * sand::kUnitsPerCell, random);
+        sand::HeightField expected = start;
+        const sand::NetFlux expectedFlux = reference::relax(expected, sand::kUnitsPerCell, reference::FourNeighbours());
+        for (const bool v3 : {false, base::machineHasV3()}) {
+            bench::IntegerN4 n4(start, bench::rulesFor(start), v3);
+            sand::NetFlux flux(columns, rows);
+            for (int sweep = 0; sweep < 100000 && !n4.atRest(); ++sweep) {
+                n4.sweep(1);
+                n4.addFluxes(flux);
+            }
+            EXPECT_TRUE(n4.atRest());
+            EXPECT_TRUE(sameHeights(n4.field(), expected)) << columns << " x " << rows;
+            EXPECT_EQ(n4.field().volume(), start.volume());
+            for (int y = 0; y < rows; ++y) {
+                for (int x = 0; x < columns; ++x) {
+                    ASSERT_EQ(flux.east(y)[x], expectedFlux.east(y)[x]) << x << ", " << y;
+                    ASSERT_EQ(flux.north(y)[x], expectedFlux.north(y)[x]) << x << ", " << y;
+                }
+            }
+        }
+    }
+}
+
+TEST(Baselines, IntegerN4StartsBeyondTheBandAlone) {
+    sand::HeightField field(8, 1, 1.0);
+    field.setHeight(0, 0, sand::kUnitsPerCell + 6000);
+    bench::IntegerN4 within(field, bench::rulesFor(field, 1, 0.1));
+    within.sweep(9);
+    EXPECT_TRUE(sameHeights(within.field(), field));
+    EXPECT_EQ(within.sweepsDone(), 1) << "the one sweep that finds nothing to do";
+    field.setHeight(0, 0, sand::kUnitsPerCell + 7002);
+    bench::IntegerN4 beyond(field, bench::rulesFor(field, 1, 0.1));
+    beyond.sweep(1);
+    EXPECT_EQ(beyond.field().height(1, 0), 1751) << "a quarter of 7002, rounded up";
+}
+
 // Without it, error against time compares nothing: the rules rest in the pile that the integer N4 rests in.
-TEST(Baselines, JacobiN4RestsInThePileOfOurN4) {
+TEST(Baselines, JacobiN4RestsInThePileOfTheIntegerN4) {
     const bench::Pile pile = bench::lowPile(32);
     std::vector<std::vector<double>> heights;
     for (const bench::Method& method : bench::methods({"N4", "float32 N4 Jacobi"})) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sand/grid/erosion.hpp"
+#include "tests/support/relaxing.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -51,7 +52,7 @@ TEST(WorkerPool, TheSandIsTheSameOnAnyNumberOfThreads) {
         ground.setWall(97, y);
         ground.setBedrock(60, y, start.height(60, y) / 2);
     }
-    for (const auto scheme : {sand::Scheme::isotropic, sand::Scheme::n4, sand::Scheme::plainIsotropic}) {
+    for (const auto scheme : samples::kSchemes) {
         sand::Rules rules = samples::flatScene(203, 151).rules;
         rules.scheme = scheme;
         rules.rim = sand::Rim::open;

@@ -68,6 +68,15 @@ TEST_F(SceneFile, ErrorsNameFileLineKeyAndRange) {
     EXPECT_EQ(complaint("[field]\n[terrain]\nheight = 1e9\n[material]\n").find("s.toml:3: a height of 1000000000"), 0U);
 }
 
+TEST_F(SceneFile, UnknownSchemesAreRefusedWithTheKnownOnes) {
+    EXPECT_EQ(complaint(kFlat + "talus_deg = 34\nscheme = \"n4\"\n"),
+              "s.toml:5: scheme must be one of g, g_plain, got 'n4'");
+    for (const sand::NamedScheme& known : sand::kSchemes) {
+        const std::string text = fmt::format("{}scheme = \"{}\"\n", kFlat, known.name);
+        EXPECT_EQ(sand::loadScene(write("s.toml", text)).rules.scheme, known.scheme) << known.name;
+    }
+}
+
 TEST_F(SceneFile, AToolOutOfScaleIsRefusedOrWarnedOf) {
     EXPECT_EQ(complaint("[field]\nwidth = 1e-10\n[terrain]\n[material]\n").find("s.toml:1: a tool of radius 0.01 is"),
               0U);

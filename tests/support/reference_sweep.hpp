@@ -37,7 +37,7 @@ struct Isotropic {
     }
 };
 
-/// N4: each pair of neighbours by itself.
+/// Each pair of neighbours by itself. No scheme of ours: it rests in the wrong pile, which oracles must notice.
 struct FourNeighbours {
     std::int64_t operator()(double across, double, double threshold) const {
         const double flux = std::ceil(std::max(std::abs(across) - threshold, 0.0) / 4);

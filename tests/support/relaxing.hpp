@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <string_view>
 
 #include "sand/grid/erosion.hpp"
 
@@ -28,13 +29,15 @@ inline constexpr bool kSlowBuild = kSanitized;
 inline constexpr bool kSlowBuild = true;
 #endif
 
-/// The schemes that converge, the default first.
-inline constexpr std::array kIsotropic{sand::Scheme::isotropic, sand::Scheme::plainIsotropic};
-inline constexpr std::array kEverySlope{sand::Scheme::isotropic, sand::Scheme::plainIsotropic, sand::Scheme::n4};
+/// Every scheme, the default first.
+inline constexpr auto kSchemes = [] {
+    std::array<sand::Scheme, sand::kSchemes.size()> schemes{};
+    std::ranges::transform(sand::kSchemes, schemes.begin(), &sand::NamedScheme::scheme);
+    return schemes;
+}();
 
-inline const char* nameOf(sand::Scheme scheme) {
-    constexpr std::array kNames{"isotropic", "n4", "plainIsotropic"};
-    return kNames.at(static_cast<std::size_t>(scheme));
+inline std::string_view nameOf(sand::Scheme scheme) {
+    return std::ranges::find(sand::kSchemes, scheme, &sand::NamedScheme::scheme)->name;
 }
 
 /// Rules for a field alone: no band, closed rim, square cells; 45 degrees unless said.

@@ -137,8 +137,8 @@ TEST(Certificate, OfPlainSweepsShrinksWithTheCells) {
     EXPECT_GT(fine.relative(), 0);
 }
 
-// N4 rests in a wrong pile at every cell size, along the diagonals too steep by the root of two, and its certificate
-// says so.
+// A rule that looks along the axes only rests in a wrong pile at every cell size, along the diagonals too steep by the
+// root of two. Its certificate says so.
 TEST(Certificate, FailsOnThePileOfFourNeighbours) {
     EXPECT_GE(certificateOfCylinder(64, reference::FourNeighbours()).relative(), 0.07);
     EXPECT_GE(certificateOfCylinder(128, reference::FourNeighbours()).relative(), 0.07);

@@ -41,7 +41,7 @@ bool moves(HeightField field, Scheme scheme, std::int32_t threshold) {
 
 // A face rests once a quarter of its difference is less than a unit.
 TEST(ExtremeAngle, ZeroRestsWithinFourUnitsPerCell) {
-    for (const Scheme scheme : samples::kIsotropic) {
+    for (const Scheme scheme : samples::kSchemes) {
         std::mt19937 random(19);
         HeightField field = samples::randomField(31, 33, 1 << 16, random);
         samples::relax(field, samples::rulesFor(field, scheme, 0));
@@ -55,7 +55,7 @@ TEST(ExtremeAngle, ZeroRestsWithinFourUnitsPerCell) {
 }
 
 TEST(ExtremeAngle, SpikesMoveBeyondTheThresholdAndNoOthers) {
-    for (const Scheme scheme : samples::kEverySlope) {
+    for (const Scheme scheme : samples::kSchemes) {
         const std::int32_t steep = thresholdOf(89.9);  // 573 cells from one to the next
         EXPECT_FALSE(moves(spike(0, steep), scheme, steep)) << nameOf(scheme);
         EXPECT_TRUE(moves(spike(0, steep + 1000), scheme, steep)) << nameOf(scheme);
@@ -71,22 +71,19 @@ TEST(ExtremeAngle, SpikesMoveBeyondTheThresholdAndNoOthers) {
 }
 
 TEST(ExtremeHeight, SpikesAndPitsOfTheWholeRangeComeToRest) {
-    for (const Scheme scheme : samples::kEverySlope) {
+    for (const Scheme scheme : samples::kSchemes) {
         for (const auto& [base, height] :
              {std::pair{0, kMaxHeight}, {0, -kMaxHeight}, {-kMaxHeight, kMaxHeight}, {kMaxHeight, -kMaxHeight}}) {
             HeightField field = spike(base, height);
             samples::relax(field, samples::rulesFor(field, scheme));
-            if (scheme != Scheme::n4) {
-                EXPECT_LE(samples::steepestExcess(field, sand::kUnitsPerCell),
-                          samples::restingExcess(sand::kUnitsPerCell))
-                    << nameOf(scheme) << ", " << height << " over " << base;
-            }
+            EXPECT_LE(samples::steepestExcess(field, sand::kUnitsPerCell), samples::restingExcess(sand::kUnitsPerCell))
+                << nameOf(scheme) << ", " << height << " over " << base;
         }
     }
 }
 
 TEST(ExtremeHeight, ACheckerboardOfTheWholeRangeComesToRest) {
-    for (const Scheme scheme : samples::kEverySlope) {
+    for (const Scheme scheme : samples::kSchemes) {
         HeightField field(33, 31, 1.0);
         for (int y = 0; y < 31; ++y) {
             for (int x = 0; x < 33; ++x) {
@@ -101,7 +98,7 @@ TEST(ExtremeHeight, ACheckerboardOfTheWholeRangeComesToRest) {
 }
 
 TEST(ExtremeHeight, RandomHeightsOfTheWholeRangeFallOverAnOpenRim) {
-    for (const Scheme scheme : samples::kEverySlope) {
+    for (const Scheme scheme : samples::kSchemes) {
         std::mt19937 random(23);
         HeightField field = samples::randomField(33, 31, kMaxHeight, random);
         sand::Rules rules = samples::rulesFor(field, scheme);
@@ -113,14 +110,14 @@ TEST(ExtremeHeight, RandomHeightsOfTheWholeRangeFallOverAnOpenRim) {
 }
 
 TEST(ExtremeHeight, AShallowPitStays) {
-    for (const Scheme scheme : samples::kEverySlope) {
+    for (const Scheme scheme : samples::kSchemes) {
         EXPECT_FALSE(moves(spike(0, -sand::kUnitsPerCell), scheme, sand::kUnitsPerCell)) << nameOf(scheme);
         EXPECT_TRUE(moves(spike(0, -2 * sand::kUnitsPerCell), scheme, sand::kUnitsPerCell)) << nameOf(scheme);
     }
 }
 
 TEST(ExtremeHeight, DifferencesOfAUnitRestAtAnyAngle) {
-    for (const Scheme scheme : samples::kIsotropic) {
+    for (const Scheme scheme : samples::kSchemes) {
         EXPECT_FALSE(moves(spike(0, 1), scheme, 0)) << nameOf(scheme);
         EXPECT_FALSE(moves(spike(0, 1), scheme, 1)) << nameOf(scheme);
     }
@@ -132,7 +129,7 @@ TEST(ExtremeHeight, DifferencesOfAUnitRestAtAnyAngle) {
 // long from west to east, and heights come in units of that length, 34 times the threshold.
 TEST(ExtremeCell, OneToAThousandRestsWithinItsDeadBand) {
     constexpr double kRatio = 1000;
-    for (const Scheme scheme : samples::kIsotropic) {
+    for (const Scheme scheme : samples::kSchemes) {
         const double share = scheme == Scheme::isotropic ? 0.45 / (kRatio * kRatio) : 0.4998 / (kRatio * kRatio + 1);
         if (samples::kSanitized && scheme != Scheme::isotropic) {
             continue;  // ten times the sweeps without inertia
@@ -158,7 +155,7 @@ TEST(ExtremeCell, OneToAThousandRestsWithinItsDeadBand) {
 }
 
 TEST(ExtremeCell, OneToAThousandMovesNothingWithinItsDeadBand) {
-    for (const Scheme scheme : samples::kIsotropic) {
+    for (const Scheme scheme : samples::kSchemes) {
         HeightField field(9, 3, 1.0);
         for (int y = 0; y < 3; ++y) {
             field.setHeight(4, y, 2000000);  // 30 times the threshold
@@ -172,7 +169,7 @@ TEST(ExtremeCell, OneToAThousandMovesNothingWithinItsDeadBand) {
 }
 
 TEST(ExtremeSize, FieldsOfAnyShapeKeepTheirVolume) {
-    for (const Scheme scheme : samples::kEverySlope) {
+    for (const Scheme scheme : samples::kSchemes) {
         for (const auto rim : {sand::Rim::closed, sand::Rim::open}) {
             for (const auto& [columns, rows] : {std::pair{1, 1},
                                                 {1, 40},

@@ -58,7 +58,7 @@ struct Resolution {
 constexpr std::array kResolutions{Resolution{64, 0.003}, Resolution{128, 0.0025}, Resolution{256, 0.0008}};
 
 TEST(PrismOracle, LowWallBecomesItsRampOnEitherAxis) {
-    for (const Scheme scheme : samples::kIsotropic) {
+    for (const Scheme scheme : samples::kSchemes) {
         for (const auto& [n, allowed] : kResolutions) {
             for (const bool alongRows : {false, true}) {
                 EXPECT_LE(misplacedOnAxis(n, {0.25 * n, 0.15 * n}, alongRows, scheme), allowed)
@@ -69,7 +69,7 @@ TEST(PrismOracle, LowWallBecomesItsRampOnEitherAxis) {
 }
 
 TEST(PrismOracle, LowWallBecomesItsRampOffTheAxes) {
-    for (const Scheme scheme : samples::kIsotropic) {
+    for (const Scheme scheme : samples::kSchemes) {
         for (const auto& [n, allowed] : kResolutions) {
             if (n == 256 && samples::kSanitized) {
                 continue;
@@ -89,7 +89,7 @@ double allowedForRoof(const Prism& prism) {
 }
 
 TEST(PrismOracle, TallWallBecomesARoofInAnyDirection) {
-    for (const Scheme scheme : samples::kIsotropic) {
+    for (const Scheme scheme : samples::kSchemes) {
         for (const int n : {64, 128, 256}) {
             if (n > (scheme == Scheme::isotropic ? 256 : 128)) {
                 continue;  // seconds without inertia
@@ -106,7 +106,7 @@ TEST(PrismOracle, TallWallBecomesARoofInAnyDirection) {
 }
 
 TEST(PlaneOracle, UpToTheTalusNothingMovesInAnyDirection) {
-    for (const Scheme scheme : samples::kIsotropic) {
+    for (const Scheme scheme : samples::kSchemes) {
         for (int degrees = 0; degrees < 360; degrees += 15) {
             // Rounded down twice, a difference may exceed the slope by a unit on either axis.
             const double slope = sand::kUnitsPerCell - 2;
@@ -130,7 +130,7 @@ TEST(PlaneOracle, UpToTheTalusNothingMovesInAnyDirection) {
 // less than a unit: up to 1 / 0.2499 units above the threshold without inertia, 1 / 0.45 with. Over half a field that
 // adds up to at most n / 2 times as much at the ends.
 TEST(PlaneOracle, AboveTheTalusAPlaneTurnsAboutItsCentroid) {
-    for (const Scheme scheme : samples::kIsotropic) {
+    for (const Scheme scheme : samples::kSchemes) {
         const double excess = scheme == Scheme::isotropic ? 1 / 0.45 : 1 / 0.2499;  // [unit]
         for (const double slope : {1.2, 2.0, 5.0}) {
             for (const int n : {64, 128, 256}) {

@@ -66,7 +66,7 @@ double allowedForCone(double foot) {
 constexpr double kTowersOvershoot = 0.0008;
 
 TEST(SourceOracle, WhatIsPouredOnASpotIsACone) {
-    for (const Scheme scheme : samples::kIsotropic) {
+    for (const Scheme scheme : samples::kSchemes) {
         for (const int portions : {1, 10, 40}) {
             double coarser = 1;
             for (const int n : {32, 64, 128}) {
@@ -86,7 +86,7 @@ TEST(SourceOracle, WhatIsPouredOnASpotIsACone) {
 
 // A column of one cell is the steepest start there is: whoever lets inertia carry it away gets a plate, no cone.
 TEST(SourceOracle, ANeedleOfOneCellBecomesACone) {
-    for (const Scheme scheme : samples::kIsotropic) {
+    for (const Scheme scheme : samples::kSchemes) {
         for (const int height : {800, 2196}) {
             HeightField field(65, 65, 1.0);
             field.setHeight(32, 32, height * sand::kUnitsPerCell);
@@ -126,7 +126,7 @@ double allowedOnTable(double columns, double rows) {
 }
 
 TEST(TableOracle, AnOpenTableKeepsWhatItsRimsHold) {
-    for (const Scheme scheme : samples::kIsotropic) {
+    for (const Scheme scheme : samples::kSchemes) {
         double coarser = 1;
         for (const int n : {32, 64, 128}) {
             if (n > (scheme == Scheme::isotropic ? 128 : 64)) {

@@ -57,7 +57,7 @@ TEST_F(RelaxInput, OptionsOutOfRangeAreRefusedWithTheirRange) {
     expectRefused("in.asc out.asc --talus 30 --sweeps 0", "--sweeps must be within [1, 2147483647]");
     expectRefused("in.asc out.asc --talus 30 --sweeps 5 --scheme settle", "--sweeps must be left out");
     expectRefused("in.asc out.asc --talus 30 --threads 0", "--threads must be within [1, 256], got 0");
-    expectRefused("in.asc out.asc --talus 30 --scheme n8", "--scheme");
+    expectRefused("in.asc out.asc --talus 30 --scheme n4", "--scheme: n4 not in {g,g_plain,settle}");
     expectRefused("in.asc out.asc --talus 30 --speed 3", "--speed");
 }
 
@@ -77,7 +77,6 @@ TEST_F(RelaxInput, ATalusWithoutUnitsIsRefusedWithAWayOut) {
     expectRefused("in.asc out.asc --talus 0.001",
                   "in.asc: a talus of 0.001 degrees is 1 height units of 1.526e-05 "
                   "from cell to cell, and 4 is the least, but for 0 degrees");
-    expectRefused("in.asc out.asc --talus 0 --scheme n4", "and 4 is the least for scheme n4");
     expectGridRefused(kGrid + "1 2\n3 4e8\n",
                       "heights from 1 to 400000000 span 4e+08 cells: if some are no terrain, "
                       "make them no-data");

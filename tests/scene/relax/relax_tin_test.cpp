@@ -259,7 +259,7 @@ TEST_F(RelaxTin, OptionsThatWouldDoNothingAreRefused) {
     expectRefused("in.asc out.asc --talus 30 --vertices 9", "left out unless OUT is a mesh, .ply or .obj");
     expectRefused("in.asc out.ply --talus 30", "in.asc: how finely should a TIN follow it?");
     expectRefused("in.csv out.ply --talus 30 --max-error 1", "left out for points");
-    expectRefused("in.csv out.ply --talus 30 --scheme n4", "--scheme must be g or settle for a TIN, got n4");
+    expectRefused("in.csv out.ply --talus 30 --scheme g_plain", "--scheme must be g or settle for a TIN, got g_plain");
     expectRefused("in.csv out.ply --talus 30 --threads 2", "--threads must be left out for a TIN");
     expectRefused("in.csv out.ply --talus 30 --bedrock in.asc", "--bedrock must be left out for a TIN");
     expectRefused("in.asc out.ply --talus 30 --max-error nan", "--max-error must be 0 or more, got nan");

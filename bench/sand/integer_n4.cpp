@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiled twice, as the sweeps of sand/ are: once for every x86-64 and once for x86-64-v3.
+#include "bench/sand/integer_n4.hpp"
+
+namespace bench::SANDWALL_CODE_PATH {
+namespace {
+
+/// The fluxes between two parallel runs of cells.
+void fluxesBetween(const std::int32_t* __restrict from, const std::int32_t* __restrict to, int count,
+                   std::int32_t threshold, std::int32_t startThreshold, std::int32_t* __restrict flux) {
+    for (int i = 0; i < count; ++i) {
+        const std::int32_t difference = from[i] - to[i];
+        const std::int32_t size = difference < 0 ? -difference : difference;
+        const std::int32_t amount = size > startThreshold ? (size - threshold + 3) / 4 : 0;
+        flux[i] = difference < 0 ? -amount : amount;
+    }
+}
+
+/// Gives a row of cells what passed its faces. Returns 0 if nothing did.
+std::int32_t addUp(const std::int32_t* __restrict east, const std::int32_t* __restrict south,
+                   const std::int32_t* __restrict north, int count, std::int32_t* __restrict heights) {
+    std::int32_t moved = 0;
+    for (int i = 0; i < count; ++i) {
+        heights[i] += east[i - 1] - east[i] + south[i] - north[i];
+        moved |= east[i] | north[i];
+    }
+    return moved;
+}
+
+}  // namespace
+
+bool sweep(const IntegerN4Sweep& patch) {
+    std::int32_t moved = 0;
+    // A row changes once the fluxes to the row north of it are known, which is still as it was then.
+    for (int y = 0; y < patch.rows; ++y) {
+        const std::ptrdiff_t row = y * patch.stride;
+        std::int32_t* const heights = patch.heights + row;
+        fluxesBetween(heights, heights + 1, patch.columns - 1, patch.threshold, patch.startThreshold, patch.east + row);
+        // The northernmost fluxes stay zero, like those over the other rims.
+        if (y + 1 < patch.rows) {
+            fluxesBetween(heights, heights + patch.stride, patch.columns, patch.threshold, patch.startThreshold,
+                          patch.north + row);
+        }
+        moved |= addUp(patch.east + row, patch.north + row - patch.stride, patch.north + row, patch.columns, heights);
+    }
+    return moved != 0;
+}
+
+}  // namespace bench::SANDWALL_CODE_PATH

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "base/code_path.hpp"
+#include "sand/grid/net_flux.hpp"
+#include "sand/model/height_field.hpp"
+#include "sand/model/rules.hpp"
+
+namespace bench {
+
+/// The arrays of one sweep. All three have the same stride, and a cell of margin on every side.
+struct IntegerN4Sweep {
+    std::int32_t* heights;  // [unit], at cell (0,0)
+    std::int32_t* east;     // flux from each cell to its eastern neighbour [unit]; written
+    std::int32_t* north;    // flux from each cell to its northern neighbour [unit]; written
+    std::ptrdiff_t stride;  // [cell]
+    int columns, rows;
+    std::int32_t threshold, startThreshold;  // [unit]
+};
+
+// One source, compiled twice like baseline_schemes.cpp. Returns whether any sand moved.
+namespace baseline {
+bool sweep(const IntegerN4Sweep& patch);
+}
+namespace v3 {
+bool sweep(const IntegerN4Sweep& patch);
+}
+
+/// The four-neighbour rule in integers, for comparison only: it rests in the wrong pile at every resolution.
+///
+/// Each face looks at its two cells alone. If their difference is above the start threshold, a quarter of the excess
+/// over the threshold flows, rounded up. All fluxes come from the old heights, so that volume is exact. The box is
+/// closed and its cells are square. Below a threshold of 4 units rounding up never lets the sand rest.
+class IntegerN4 {
+public:
+    /// `v3`: sweeps with the instructions of x86-64-v3, which give the same heights.
+    IntegerN4(const sand::HeightField& start, const sand::Rules& rules, bool v3 = base::machineHasV3())
+        : field_(start),
+          east_(start.columns(), start.rows()),
+          north_(start.columns(), start.rows()),
+          patch_{.heights = field_.row(0),
+                 .east = east_.row(0),
+                 .north = north_.row(0),
+                 .stride = field_.stride(),
+                 .columns = start.columns(),
+                 .rows = start.rows(),
+                 .threshold = rules.threshold,
+                 .startThreshold = rules.startThreshold},
+          v3_(v3) {}
+    IntegerN4(const IntegerN4&) = delete;
+    IntegerN4& operator=(const IntegerN4&) = delete;
+
+    /// Runs at most `count` sweeps, fewer when nothing moves any more. The sweep that finds nothing to move counts.
+    void sweep(int count) {
+        for (int i = 0; i < count && !atRest_; ++i) {
+            atRest_ = !(v3_ ? v3::sweep(patch_) : baseline::sweep(patch_));
+            ++sweepsDone_;
+        }
+    }
+    /// Adds what passed every face in the last sweep.
+    void addFluxes(sand::NetFlux& sum) const {
+        for (int y = 0; y < field_.rows(); ++y) {
+            for (int x = 0; x < field_.columns(); ++x) {
+                sum.east(y)[x] += east_.row(y)[x];
+                sum.north(y)[x] += north_.row(y)[x];
+            }
+        }
+    }
+    [[nodiscard]] bool atRest() const { return atRest_; }
+    [[nodiscard]] std::int64_t sweepsDone() const { return sweepsDone_; }
+    [[nodiscard]] const sand::HeightField& field() const { return field_; }
+
+private:
+    sand::HeightField field_;
+    sand::Grid east_, north_;
+    IntegerN4Sweep patch_;
+    bool v3_;
+    bool atRest_ = false;
+    std::int64_t sweepsDone_ = 0;
+};
+
+}  // namespace bench
