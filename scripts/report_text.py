@@ -313,10 +313,10 @@ def force_rate(tables):
     return ("What is felt between two surfaces of the sand, against the law evaluated at every tick on that tick's sand, "
             "while the hand writes, presses and lifts; *jump* is the most that the force changes from a tick to the next. "
             "*local* is the default. *local at once*, without its recovery, is the most exact and leaps at every surface; what recovery "
-            "is for is stability, and [forces.md](../forces.md) says how much there is of that: hold and eq. 9 bear 60 and "
-            f"31 N/m where local bears 1000. The second law pays most for it: its control points lie where the tool cuts a wall a "
-            "cell thick, whose unrest recovery turns into an error of one sign. Where that counts more than stiffness, a "
-            f"scene takes hold or eq. 9. At {rate:g} surfaces per second:\n\n" +
+            "is for is stability, and [figures.md](../figures.md#the-stiffest-spring) says how much there is of that: "
+            "hold and eq. 9 bear 60 and 31 N/m where local bears 1000. The second law pays most for it: its control points "
+            "lie where the tool cuts a wall a cell thick, whose unrest recovery turns into an error of one sign. Where that "
+            f"counts more than stiffness, a scene takes hold or eq. 9. At {rate:g} surfaces per second:\n\n" +
             markdown(["law", "method", "RMS error [N]", "share", "most [N]", "jump [N]", "jump of truth [N]", "µs per tick",
                       "p99 [µs]"], lines))
 

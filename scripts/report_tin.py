@@ -38,7 +38,8 @@ def tin_simplify(tables):
     return ("How near a TIN of few vertices comes to a raster of dunes: greedy insertion, vertical errors over all samples "
             "as a share of the relief, beside a regular grid of as many samples. With 1 % of the samples the largest "
             f"error of {one['columns']}² dunes is {percent(one['max'] / one['relief'])} of the relief, a regular grid's "
-            f"{percent(one['grid_max'] / one['relief'])}. [tin.md](../tin.md) has real terrain.\n\n" +
+            f"{percent(one['grid_max'] / one['relief'])}. "
+            "[figures.md](../figures.md#few-vertices-on-real-ground) has real terrain.\n\n" +
             markdown(["dunes", "vertices", "share", "max", "RMS", "grid: max", "grid: RMS", "ms"], lines))
 
 

@@ -17,7 +17,7 @@ namespace sand::force {
 ///
 /// Sand that a press has raised answers a frame late, as a spring with a delay, which gives energy to the hand that it
 /// pushes back late. So a change of the force that goes along with the tool's motion waits until it does not, or takes
-/// ten times as long (docs/forces.md has the energies).
+/// ten times as long (docs/figures.md has the energies).
 class LocalModel {
 public:
     /// The gauges at `place`. `replaced`: the surface is not the last call's. `forget`: nothing is known of before.

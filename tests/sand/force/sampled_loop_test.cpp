@@ -116,7 +116,7 @@ Session pulledAndReleased(const sand::ForceConstants& constants) {
 }
 
 // 400 N/m, where half of what b = 0.5 bears is 500. Sand that a press has raised answers a frame later: felt at once,
-// as a held or an exact force on each surface is, that delay alone shakes the mass for ever (docs/forces.md).
+// as a held or an exact force on each surface is, that delay alone shakes the mass for ever (docs/figures.md).
 TEST(SampledLoop, NeverGainsFromSandThatIsDisplacedAndSlidesUnderIt) {
     for (const auto law : {sand::ForceLaw::repulse, sand::ForceLaw::controlPoints}) {
         sand::ForceConstants constants;
