@@ -9,15 +9,17 @@
 
 namespace host {
 
+std::string_view release() { return SANDWALL_VERSION; }
+
 std::string versionText(std::string_view program, const KnownVersions& known, bool json) {
     if (json) {
-        nlohmann::ordered_json object{{"program", program}, {"version", SANDWALL_VERSION}, {"build", buildId()}};
+        nlohmann::ordered_json object{{"program", program}, {"version", release()}, {"build", buildId()}};
         for (const auto& [name, number] : known) {
             object[std::string(name)] = number;
         }
         return object.dump();
     }
-    std::string text = std::string(program) + " " + SANDWALL_VERSION + ", build " + buildId();
+    std::string text = std::string(program) + " " + std::string(release()) + ", build " + buildId();
     for (const auto& [name, number] : known) {
         text += ", " + std::string(name) + " " + std::to_string(number);
     }

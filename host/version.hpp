@@ -9,6 +9,9 @@
 
 namespace host {
 
+/// The release that this build is of, such as "0.2.0": the version in the topmost CMakeLists.txt.
+[[nodiscard]] std::string_view release();
+
 /// Numbers of the formats and rules that a program knows, such as {"journal", 7}.
 using KnownVersions = std::vector<std::pair<std::string_view, std::uint32_t>>;
 

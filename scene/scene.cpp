@@ -87,16 +87,11 @@ Scene Scene::decode(std::span<const std::uint8_t> bytes) {
             throw base::FormatError("a scene whose ground is not that of its rules");
         }
     }
-    // Journals end where what came later had not been thought of: hill-shade and levels of detail, then more forces.
-    if (!reader.atEnd()) {
-        const auto flags = reader.get<std::uint8_t>();
-        scene.look.hillShade = (flags & 1U) != 0;
-        scene.look.flatShading = (flags & 2U) != 0;
-        scene.look.detail = reader.get<double>();
-    }
-    if (!reader.atEnd()) {
-        scene.force.decodeRest(reader);
-    }
+    const auto flags = reader.get<std::uint8_t>();
+    scene.look.hillShade = (flags & 1U) != 0;
+    scene.look.flatShading = (flags & 2U) != 0;
+    scene.look.detail = reader.get<double>();
+    scene.force.decodeRest(reader);
     while (!reader.atEnd()) {
         decodePart(reader, scene);
     }

@@ -13,7 +13,7 @@
 
 #include "base/input_error.hpp"
 #include "host/whole_file.hpp"
-#include "scene/scene.hpp"
+#include "master/journal/file_origin.hpp"
 
 namespace master {
 namespace {
@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint32_t kCheckpointMagic = 0x50435753;  // "SWCP"
-constexpr std::uint32_t kCheckpointVersion = 1;
+constexpr FileKind kCheckpointKind{.name = "checkpoint", .magic = kCheckpointMagic, .format = 2, .firstFormat = 2};
 constexpr std::string_view kEnding = ".checkpoint";
 
 std::uint64_t checkpointSum(std::span<const std::uint8_t> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
@@ -40,9 +40,7 @@ std::optional<std::uint64_t> stepOf(const std::string& name) {
 
 base::Bytes Checkpoint::encode() const {
     base::ByteWriter writer;
-    writer.put(kCheckpointMagic);
-    writer.put(kCheckpointVersion);
-    writer.put(sand::kAlgorithmVersion);
+    writeOrigin(kCheckpointKind, writer);
     writer.put(session);
     writer.putText(buildId);
     for (const std::uint64_t number : {sceneDigest, step, frame}) {
@@ -57,15 +55,7 @@ base::Bytes Checkpoint::encode() const {
 
 Checkpoint Checkpoint::decode(std::span<const std::uint8_t> bytes) {
     base::ByteReader reader(bytes);
-    if (reader.get<std::uint32_t>() != kCheckpointMagic) {
-        throw base::FormatError("no checkpoint");
-    }
-    const auto version = reader.get<std::uint32_t>();
-    const auto algorithm = reader.get<std::uint32_t>();
-    if (version != kCheckpointVersion || algorithm != sand::kAlgorithmVersion) {
-        throw base::FormatError(
-            fmt::format("a checkpoint of another version of Sandwall ({}, algorithm {})", version, algorithm));
-    }
+    (void)readOrigin(kCheckpointKind, reader);
     Checkpoint checkpoint;
     checkpoint.session = reader.get<std::uint64_t>();
     checkpoint.buildId = reader.getText();

@@ -11,8 +11,7 @@ namespace master {
 namespace {
 
 constexpr std::uint32_t kJournalMagic = 0x4c4a5753;  // "SWJL"
-// 1 knew settle alone of the edits; 2 no tune and no load; 3 only spheres, and no ticks; 4 no parts and no chain.
-constexpr std::uint32_t kOldestVersion = 1;
+constexpr FileKind kJournalKind{.name = "journal", .magic = kJournalMagic, .format = kJournalVersion, .firstFormat = 6};
 enum Type : std::uint8_t { kFrame = 1, kEnd, kTicks, kResumed, kMaterial, kContinued };
 
 std::uint64_t chainedSum(std::span<const std::uint8_t> bytes, std::uint64_t seed) {
@@ -152,9 +151,8 @@ bool recordAt(std::span<const std::uint8_t> rest, std::size_t at, std::uint64_t 
 
 base::Bytes encodeHeader(const JournalHeader& header, std::uint64_t& chain) {
     base::ByteWriter writer;
-    for (const std::uint32_t number : {kJournalMagic, kJournalVersion, header.part}) {
-        writer.put(number);
-    }
+    writeOrigin(kJournalKind, writer);
+    writer.put(header.part);
     for (const std::uint64_t number : {header.session, header.continues, header.sand.step, header.sand.hash}) {
         writer.put(number);
     }
@@ -172,19 +170,16 @@ base::Bytes encodeHeader(const JournalHeader& header, std::uint64_t& chain) {
 
 namespace {
 
-/// What stands behind magic and version.
+/// What stands behind the origin.
 void decodeRest(JournalHeader& header, base::ByteReader& reader, std::span<const std::uint8_t> all,
                 std::uint64_t& chain) {
-    const bool chained = header.version >= kChainedSince;
-    if (chained) {
-        header.part = reader.get<std::uint32_t>();
-        header.session = reader.get<std::uint64_t>();
-        header.continues = reader.get<std::uint64_t>();
-        header.sand = getEnd(reader);
-    }
+    header.part = reader.get<std::uint32_t>();
+    header.session = reader.get<std::uint64_t>();
+    header.continues = reader.get<std::uint64_t>();
+    header.sand = getEnd(reader);
     header.buildId = reader.getText();
     const auto scene = reader.getBlock();
-    const auto material = chained ? reader.getBlock() : std::span<const std::uint8_t>();
+    const auto material = reader.getBlock();
     const std::size_t checked = all.size() - reader.rest().size();
     chain = reader.get<std::uint64_t>();
     if (chain != chainedSum(all.first(checked), header.continues)) {
@@ -195,7 +190,6 @@ void decodeRest(JournalHeader& header, base::ByteReader& reader, std::span<const
         base::ByteReader numbers(material);
         header.material = getMaterial(numbers);
     }
-    chain = chained ? chain : 0;
 }
 
 }  // namespace
@@ -203,16 +197,11 @@ void decodeRest(JournalHeader& header, base::ByteReader& reader, std::span<const
 JournalHeader decodeHeader(base::ByteReader& reader, std::uint64_t& chain) {
     const std::span<const std::uint8_t> all = reader.rest();
     JournalHeader header;
-    if (reader.get<std::uint32_t>() != kJournalMagic) {
-        throw base::FormatError("no journal of Sandwall");
-    }
-    header.version = reader.get<std::uint32_t>();
-    if (header.version < kOldestVersion || header.version > kJournalVersion) {
-        throw base::FormatError(fmt::format("a journal of version {}; this program reads {} to {}", header.version,
-                                            kOldestVersion, kJournalVersion));
-    }
     try {
+        header.origin = readOrigin(kJournalKind, reader);
         decodeRest(header, reader, all, chain);
+    } catch (const ForeignFile&) {
+        throw;
     } catch (const base::FormatError& error) {
         throw HeaderLost(fmt::format("its header is cut off or damaged ({})", error.what()));
     }
@@ -255,9 +244,8 @@ std::uint64_t recordChecksum(std::span<const std::uint8_t> body, std::uint64_t c
     return chainedSum(body, chain);
 }
 
-bool holdsRecords(std::span<const std::uint8_t> rest, bool chained, std::uint64_t chain) {
-    std::uint64_t before = 0;
-    if (chained && rest.size() >= kAroundPayload) {
+bool holdsRecords(std::span<const std::uint8_t> rest, std::uint64_t chain) {
+    if (rest.size() >= kAroundPayload) {
         // Only the checksum of the record may be wrong: then the next one hangs on what it should be.
         std::uint32_t length = 0;
         std::memcpy(&length, rest.data(), sizeof length);
@@ -268,10 +256,9 @@ bool holdsRecords(std::span<const std::uint8_t> rest, bool chained, std::uint64_
             }
         }
     }
-    for (std::size_t at = chained ? sizeof before : 1; at + kAroundPayload <= rest.size(); ++at) {
-        if (chained) {
-            std::memcpy(&before, &rest[at - sizeof before], sizeof before);
-        }
+    std::uint64_t before = 0;
+    for (std::size_t at = sizeof before; at + kAroundPayload <= rest.size(); ++at) {
+        std::memcpy(&before, &rest[at - sizeof before], sizeof before);
         if (recordAt(rest, at, before)) {
             return true;
         }

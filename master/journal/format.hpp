@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/byte_stream.hpp"
+#include "master/journal/file_origin.hpp"
 #include "sand/model/step.hpp"
 #include "scene/material.hpp"
 #include "scene/scene.hpp"
@@ -17,8 +18,7 @@
 /// The bytes of a journal: header and records (docs/journal.md). Nothing here touches a file.
 namespace master {
 
-inline constexpr std::uint32_t kJournalVersion = 5;
-inline constexpr std::uint32_t kChainedSince = 5;  // parts, and checksums that hang together
+inline constexpr std::uint32_t kJournalVersion = 6;
 
 /// The steps of one frame, as the journal holds them.
 struct JournalFrame {
@@ -55,17 +55,17 @@ using JournalRecord =
 
 /// What a journal's file begins with.
 struct JournalHeader {
-    std::uint32_t version = kJournalVersion;
-    std::uint64_t session = 0;  // a number that no other session has; 0 before version 5
+    FileOrigin origin;          // of a header that was read; encodeHeader writes that of this program
+    std::uint64_t session = 0;  // a number that no other session has
     std::uint32_t part = 1;
     std::uint64_t continues = 0;  // checksum of the last record of the part before; 0 in the first
     JournalEnd sand;              // before its first step
     std::string buildId;
     base::Bytes scene;                       // sand::Scene::encode; empty in later parts
-    std::optional<sand::Material> material;  // as the operator knows it; none in later parts and before version 5
+    std::optional<sand::Material> material;  // as the operator knows it; none in later parts
 };
 
-/// Of a journal whose version is read, but no more of its header.
+/// Of a journal whose header is cut off or damaged.
 class HeaderLost : public base::FormatError {
 public:
     using base::FormatError::FormatError;
@@ -73,7 +73,7 @@ public:
 
 /// With its checksum, which begins the chain of the records behind it.
 [[nodiscard]] base::Bytes encodeHeader(const JournalHeader& header, std::uint64_t& chain);
-/// Throws base::FormatError, HeaderLost perhaps, in words that follow a file's name. The scene is not looked into.
+/// Throws HeaderLost or ForeignFile, in words that follow a file's name. The scene is not looked into.
 [[nodiscard]] JournalHeader decodeHeader(base::ByteReader& reader, std::uint64_t& chain);
 
 /// One whole record; `chain` is the checksum of the one before, and then its own.
@@ -84,8 +84,8 @@ public:
 [[nodiscard]] std::uint64_t recordChecksum(std::span<const std::uint8_t> body, std::uint64_t chain);
 
 /// Whether a whole record stands anywhere behind the first byte of `rest`, which begins with one that is not: then the
-/// file was damaged, and not only cut off. `chain` is the checksum before `rest`; `chained` whether there are such.
-[[nodiscard]] bool holdsRecords(std::span<const std::uint8_t> rest, bool chained, std::uint64_t chain);
+/// file was damaged, and not only cut off. `chain` is the checksum before `rest`.
+[[nodiscard]] bool holdsRecords(std::span<const std::uint8_t> rest, std::uint64_t chain);
 
 inline constexpr std::size_t kAroundPayload = sizeof(std::uint32_t) + 1 + sizeof(std::uint64_t);  // [byte]
 

@@ -25,8 +25,8 @@ struct Journal {
     std::int64_t tornBytes = 0;     // at the end of the last part, behind the last whole record; left out
 };
 
-/// Throws base::InputError for a file that is missing, no journal, of another version, or damaged before its end, and
-/// for a journal of whose parts one is missing.
+/// Throws base::InputError for a file that is missing, no journal, of a release with another format or algorithm, or
+/// damaged before its end, and for a journal of whose parts one is missing.
 [[nodiscard]] Journal readJournal(const std::filesystem::path& file);
 /// Of the header. Throws base::InputError.
 [[nodiscard]] sand::Scene sceneOf(const JournalReader& reader);

@@ -33,7 +33,7 @@ JournalHeader readHeader(std::ifstream& stream, std::int64_t size, std::uint64_t
             JournalHeader header = decodeHeader(reader, chain);
             length = static_cast<std::int64_t>(bytes.size() - reader.rest().size());
             return header;
-        } catch (const base::FormatError&) {
+        } catch (const HeaderLost&) {
             if (piece >= size) {
                 throw;
             }
@@ -107,9 +107,6 @@ void JournalReader::fail(const std::string& why) const {
 }
 
 bool JournalReader::goesOn() const {
-    if (header_.version < kChainedSince) {
-        return false;
-    }
     std::ifstream next(partOf(place_.journal, place_.part + 1), std::ios::binary | std::ios::ate);
     if (!next) {
         return false;
@@ -143,11 +140,10 @@ bool JournalReader::readRecord(base::Bytes& body) {
     }
     std::memcpy(&said, body.data() + body.size() - sizeof said, sizeof said);
     body.resize(body.size() - sizeof said);
-    const bool chained = header_.version >= kChainedSince;
-    if (recordChecksum(body, chained ? place_.chain : 0) != said) {
+    if (recordChecksum(body, place_.chain) != said) {
         return false;
     }
-    place_.chain = chained ? said : 0;
+    place_.chain = said;
     return true;
 }
 
@@ -158,7 +154,7 @@ void JournalReader::endHere(const std::string& why) {
         stream_.clear();
         stream_.seekg(place_.offset);
         // A crash tears the last record. One that is followed by more was damaged on the disk, its length perhaps.
-        if (holdsRecords(readInto(stream_, rest, left), header_.version >= kChainedSince, place_.chain)) {
+        if (holdsRecords(readInto(stream_, rest, left), place_.chain)) {
             fail(
                 fmt::format("damaged at byte {} of {}: {}; what stands before it is whole", place_.offset, size_, why));
         }

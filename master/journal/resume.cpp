@@ -146,12 +146,6 @@ std::optional<ResumedSession> readSession(const fs::path& journal, const std::st
         return std::nullopt;
     }
     JournalReader reader(journal);
-    if (reader.header().version < kChainedSince) {
-        throw base::InputError(
-            fmt::format("{}: a journal of version {} can be replayed, and not gone on with; choose "
-                        "another --out",
-                        journal.string(), reader.header().version));
-    }
     requireScene(reader, scene);
     ResumedSession session;
     session.scene = sceneOf(reader);

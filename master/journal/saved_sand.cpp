@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "base/input_error.hpp"
+#include "master/journal/file_origin.hpp"
 #include "sand/grid/snapshot.hpp"
 #include "sand/model/step.hpp"
 
@@ -22,8 +23,8 @@ namespace master {
 namespace {
 
 constexpr std::uint32_t kSavedMagic = 0x44535753;  // "SWSD"
-constexpr std::uint32_t kSavedVersion = 1;
-constexpr std::size_t kMostAround = 4096;  // [byte] that are not sand: the scene's name is the only text
+constexpr FileKind kSavedKind{.name = "saved sand", .magic = kSavedMagic, .format = 2, .firstFormat = 2};
+constexpr std::size_t kMostAround = 4096;  // [byte] that are not sand: the scene's name is the only long text
 
 std::uint64_t savedSum(std::span<const std::uint8_t> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
 
@@ -31,9 +32,7 @@ std::string shortName(const std::string& scene) { return scene.substr(0, kMostAr
 
 base::Bytes encode(const SavedSand& saved) {
     base::ByteWriter writer;
-    writer.put(kSavedMagic);
-    writer.put(kSavedVersion);
-    writer.put(sand::kAlgorithmVersion);
+    writeOrigin(kSavedKind, writer);
     writer.putText(shortName(saved.place.scene));
     for (const std::int32_t number : {saved.place.columns, saved.place.rows, saved.place.aspect}) {
         writer.put(number);
@@ -49,15 +48,7 @@ base::Bytes encode(const SavedSand& saved) {
 
 SavedSand decode(std::span<const std::uint8_t> bytes) {
     base::ByteReader reader(bytes);
-    if (reader.get<std::uint32_t>() != kSavedMagic) {
-        throw base::FormatError("no saved sand");
-    }
-    const auto version = reader.get<std::uint32_t>();
-    const auto algorithm = reader.get<std::uint32_t>();
-    if (version != kSavedVersion || algorithm != sand::kAlgorithmVersion) {
-        throw base::FormatError(
-            fmt::format("saved by another version of Sandwall ({}, algorithm {})", version, algorithm));
-    }
+    (void)readOrigin(kSavedKind, reader);
     std::uint64_t expected = 0;
     if (bytes.size() < sizeof expected) {
         throw base::FormatError("cut short");

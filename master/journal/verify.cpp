@@ -91,11 +91,11 @@ private:
         badCheckpoints_ += found->second == "the replay's sand" ? 0 : 1;
     }
     void say() {
-        const bool chained = reader_.header().version >= kChainedSince;
-        fmt::print("records      {} whole, {} bytes, in a journal of version {}\n", records_, reader_.wholeBytes(),
-                   reader_.header().version);
-        fmt::print("chain        {}\n", chained ? "whole: every checksum hangs on the one before"
-                                                : "none before version 5: every checksum is right");
+        const FileOrigin& origin = reader_.header().origin;
+        fmt::print("origin       sandwall {}, journal format {}, algorithm {}\n", origin.release, origin.format,
+                   origin.algorithm);
+        fmt::print("records      {} whole, {} bytes\n", records_, reader_.wholeBytes());
+        fmt::print("chain        whole: every checksum hangs on the one before\n");
         fmt::print("parts        {}\n", reader_.parts());
         fmt::print("tail         {}\n", reader_.tornBytes() == 0
                                             ? std::string("whole")

@@ -34,6 +34,13 @@ TEST_F(BadInput, OfTheMasterIsNamed) {
                   "--inject slow:rank=9,ms=30");
 }
 
+// "SWJL" and version 5: a journal of before release 0.2.0, which no program reads.
+TEST_F(BadInput, AJournalThatNoReleaseReadsIsRefusedByTheMaster) {
+    std::filesystem::create_directories(out());
+    const std::string journal = write("out/session.journal", {'S', 'W', 'J', 'L', 5, 0, 0, 0, 1, 0, 0, 0});
+    expectRefusal({"--wall", wall(1, 1), "--out", out(), "--resume"}, journal + ": ");
+}
+
 TEST_F(BadInput, AFieldThatDoesNotFitTheMemoryIsRefused) {
     // Three replicas of it are 12 GiB, and a machine that has that for a test is asked for more.
     const std::int64_t free = lockstep::freeMemory();

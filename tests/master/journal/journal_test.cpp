@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#define XXH_INLINE_ALL
-#include <xxhash.h>
 
 #include <algorithm>
 #include <csignal>
@@ -216,53 +214,6 @@ TEST_F(JournalFile, ADiskThatRefusesIsNamed) {
         EXPECT_THROW(master::JournalWriter("/dev/full", samples::flatScene(8, 8), "x"), base::InputError);
     }
     EXPECT_THROW(master::JournalWriter("/nowhere/session.journal", samples::flatScene(8, 8), "x"), base::InputError);
-}
-
-// As programs of before there were parts wrote it: checksums that do not hang together, and no number of the session.
-// Sessions of spheres are the same in versions 3 and 4 (tests/sand/model/step_test.cpp).
-TEST_F(JournalFile, ReadsOnesFromBeforeThereWereParts) {
-    const auto frames = writeSession(true);
-    const sand::Scene scene = samples::flatScene(20, 10);
-    for (const std::uint32_t version : {3U, 4U}) {
-        base::ByteWriter writer;
-        writer.put(std::uint32_t{0x4c4a5753});
-        writer.put(version);
-        writer.putText("0123456789abcdef");
-        writer.putBlock(scene.encode());
-        writer.put(XXH3_64bits(writer.bytes().data(), writer.bytes().size()));
-        std::vector<master::JournalRecord> records(frames.begin(), frames.end());
-        records.emplace_back(master::JournalEnd{30, 77});
-        for (const master::JournalRecord& record : records) {
-            std::uint64_t chain = 0;
-            writer.putBytes(master::encodeRecord(record, chain));
-        }
-        const base::Bytes bytes = writer.take();
-        std::ofstream(file_, std::ios::binary)
-            .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-        const master::Journal journal = master::readJournal(file_);
-        expectFrames(journal.frames, frames, frames.size());
-        ASSERT_TRUE(journal.end.has_value());
-        EXPECT_EQ(journal.end->hash, 77U);
-        EXPECT_EQ(journal.scene.rules.toolKind, sand::ToolKind::sphere);
-    }
-}
-
-// The version stands behind the four bytes of the name, and in front of all that a later one may change.
-TEST_F(JournalFile, TellsTheVersionsItReads) {
-    for (const auto& [version, complaint] : {std::pair{0, "a journal of version 0; this program reads 1 to 5"},
-                                             {6, "a journal of version 6; this program reads 1 to 5"}}) {
-        writeSession(true);
-        std::fstream stream(file_, std::ios::in | std::ios::out | std::ios::binary);
-        stream.seekp(4);
-        stream.put(static_cast<char>(version));
-        stream.close();
-        try {
-            (void)master::readJournal(file_);
-            ADD_FAILURE() << version;
-        } catch (const base::InputError& error) {
-            EXPECT_NE(std::string(error.what()).find(complaint), std::string::npos) << error.what();
-        }
-    }
 }
 
 }  // namespace

@@ -41,17 +41,6 @@ TEST_F(ForceTable, TravelsWithTheSceneAndIsNoPartOfItsRules) {
     EXPECT_EQ(scene.rules.digest(), plain.rules.digest());
 }
 
-TEST_F(ForceTable, AnOlderJournalsSceneHasTheFirstPapersLaw) {
-    const sand::Scene scene = sand::loadScene(write("s.toml", kFlat + "[force]\nstiffness = 7\n"));
-    base::Bytes bytes = scene.encode();
-    base::ByteWriter rest;
-    scene.force.encodeRest(rest);
-    bytes.resize(bytes.size() - rest.bytes().size());
-    const sand::ForceConstants force = sand::Scene::decode(bytes).force;
-    EXPECT_EQ(force.stiffness, 7);
-    EXPECT_EQ(force.law, sand::ForceLaw::repulse);
-}
-
 TEST_F(ForceTable, RefusesInOneLineWhatIsNoConstant) {
     EXPECT_EQ(said("stiffness = -1"), "s.toml:5: stiffness must be within [0, 1000000000], got -1");
     EXPECT_EQ(said("stiffness = nan"), "s.toml:5: stiffness must be a finite number");

@@ -48,16 +48,15 @@ TEST(Step, EveryEditSurvivesAndNoOtherIsRead) {
     EXPECT_THROW((void)sand::decodeStep(reader), base::FormatError);
 }
 
-// What a session of spheres wrote before there were other tools, byte for byte: old journals are still read, and a
-// sphere's steps have not grown.
-TEST(Step, OfASphereIsWrittenAsItAlwaysWas) {
+// Byte for byte, in journals and on the wire. The tool of a sphere is its radius alone.
+TEST(Step, OfASphereTakesTheseBytes) {
     sand::Step step{3, 300, true, {{5, -6, 70}}, sand::Edit::tuned({7, 11, 13, 17})};
-    const base::Bytes before{3, 0xac, 2, 9, 1, 10, 11, 0x8c, 1, 7, 0, 0, 0, 11, 0, 0, 0, 13, 0, 0, 0, 17, 0, 0, 0};
-    EXPECT_EQ(bytesOf(step), before);
-    base::ByteReader reader(before);
+    const base::Bytes expected{3, 0xac, 2, 9, 1, 10, 11, 0x8c, 1, 7, 0, 0, 0, 11, 0, 0, 0, 13, 0, 0, 0, 17, 0, 0, 0};
+    EXPECT_EQ(bytesOf(step), expected);
+    base::ByteReader reader(expected);
     EXPECT_EQ(sand::decodeStep(reader), step);
     step.heading = *sand::headingOf(30, true);
-    EXPECT_EQ(bytesOf(step).size(), before.size() + 4) << "only a step that turns the tool says how";
+    EXPECT_EQ(bytesOf(step).size(), expected.size() + 4) << "only a step that turns the tool says how";
 }
 
 TEST(Step, AHeadingAndEveryToolSurviveAndWhatIsNoneIsRefused) {
