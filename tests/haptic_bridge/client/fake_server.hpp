@@ -6,7 +6,10 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
+#include <cerrno>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -44,6 +47,14 @@ public:
             }
             return std::nullopt;
         }
+        /// Returns when the client has gone.
+        void ignoreTheRest() const {
+            std::array<std::uint8_t, 4096> chunk{};
+            ssize_t count = 0;
+            do {
+                count = recv(socket, chunk.data(), chunk.size(), 0);
+            } while (count > 0 || (count < 0 && errno == EAGAIN));
+        }
     };
 
     explicit FakeServer(std::function<void(Guest&)> talk) : talk_(std::move(talk)) {
@@ -80,6 +91,9 @@ private:
             setsockopt(guest.socket, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
             ++guests_;
             talk_(guest);
+            // To close while a ping is unread would reset the connection, and the client would not find its end.
+            shutdown(guest.socket, SHUT_WR);
+            guest.ignoreTheRest();
             close(guest.socket);
         }
     }
@@ -90,5 +104,17 @@ private:
     std::atomic<int> guests_{0};
     std::thread thread_;
 };
+
+/// Talks to the first guest only; later guests get silence until they leave. For tests of how one conversation ends:
+/// the client connects again, and a second conversation would change what the test looks at.
+inline std::function<void(FakeServer::Guest&)> toTheFirst(std::function<void(FakeServer::Guest&)> talk) {
+    return [talk = std::move(talk), first = true](FakeServer::Guest& guest) mutable {
+        if (std::exchange(first, false)) {
+            talk(guest);
+            return;
+        }
+        guest.ignoreTheRest();
+    };
+}
 
 }  // namespace test
