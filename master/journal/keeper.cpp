@@ -104,7 +104,7 @@ void JournalKeeper::setAside(std::uint64_t step) {
 }
 
 std::string_view JournalKeeper::state() const {
-    return standing_ ? "no room" : writer_ ? "written" : options_.policy == JournalPolicy::off ? "off" : "failed";
+    return standing_ ? "no_room" : writer_ ? "written" : options_.policy == JournalPolicy::off ? "off" : "failed";
 }
 
 bool JournalKeeper::hasRoom(std::int64_t bytes, const JournalEnd& sand) {

@@ -64,7 +64,7 @@ public:
     void finish(const JournalEnd& end);
 
     [[nodiscard]] JournalPolicy policy() const { return options_.policy; }
-    /// written, no room, failed or off.
+    /// written, no_room, failed or off.
     [[nodiscard]] std::string_view state() const;
     [[nodiscard]] bool written() const { return writer_.has_value(); }
     [[nodiscard]] std::uint32_t parts() const { return writer_ ? writer_->part() : 0; }

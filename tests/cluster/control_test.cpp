@@ -214,7 +214,7 @@ TEST_F(Operator, IsToldAtOnceThatTheSandStandsForWantOfRoomAndNothingIsDoneLater
         const auto journalIs = [](const char* state) {
             return [state](const nlohmann::json& now) { return now.value("journal_state", "") == state; };
         };
-        awaitStatus(journalIs("no room"));
+        awaitStatus(journalIs("no_room"));
         for (const char* edit : {"settle", "material talus 20", "load level"}) {
             expectRefusal(edit);
         }

@@ -274,7 +274,7 @@ TEST_F(Keeper, AFullDiskStopsTheSandUntilThereIsRoom) {
             ASSERT_LT(++frames, 1000);
         }
         EXPECT_GT(frames, 2);
-        EXPECT_EQ(keeper_->state(), "no room");
+        EXPECT_EQ(keeper_->state(), "no_room");
         EXPECT_FALSE(showFrame()) << "and it stands";
         expectWhole(terrain_.stepNumber());
         const std::uint64_t stood = terrain_.stepNumber();
