@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <string_view>
 
 #include "base/input_error.hpp"
 #include "host/worker_pool.hpp"
@@ -129,6 +130,15 @@ bool CommandLine::given() const { return app_->parsed(); }
 std::string CommandLine::name() const { return app_->get_name(); }
 
 void CommandLine::footer(const std::string& text) { app_->footer(text); }
+
+bool CommandLine::answersHelp(int argc, char** argv) const {
+    const auto asks = [](const std::string_view word) { return word == "--help" || word == "-h"; };
+    if (std::none_of(argv + std::min(argc, 1), argv + argc, asks)) {
+        return false;
+    }
+    std::fputs(app_->help().c_str(), stdout);
+    return true;
+}
 
 std::optional<int> CommandLine::parse(int argc, char** argv) {
     try {

@@ -82,6 +82,9 @@ public:
     /// The last lines of --help.
     void footer(const std::string& text);
 
+    /// Prints --help if it is asked for, and returns whether it is. For programs that must answer it before they start
+    /// something slow; parse() answers it as well.
+    [[nodiscard]] bool answersHelp(int argc, char** argv) const;
     /// Reads the arguments. Returns the exit status with which the program has to end, after --help or after a line on
     /// stderr that says what is wrong; nullopt if the program can start.
     [[nodiscard]] std::optional<int> parse(int argc, char** argv);

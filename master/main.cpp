@@ -283,15 +283,18 @@ int main(int argc, char** argv) {
                               {"state", sand::kStateVersion}})) {
         return 0;
     }
-    lockstep::dieWithParent();
-    // Open MPI starts before the options are read: mpirun counts a process that ends without it as crashed.
-    lockstep::Cluster cluster(&argc, &argv);
     host::CommandLine line("Rank 0 of a wall: bridges the haptic server to all ranks, paces frames, keeps the journal.",
                            "sandwall-master");
     Options options;
     describeOptions(line, options);
     describeReplay(line, options);
     describeResume(line, options);
+    if (line.answersHelp(argc, argv)) {
+        return 0;
+    }
+    lockstep::dieWithParent();
+    // Open MPI starts before the options are checked: mpirun counts a process that ends without it as crashed.
+    lockstep::Cluster cluster(&argc, &argv);
     bool parsed = false;
     const int status = host::runMain(line, argc, argv, [&] {
         parsed = true;

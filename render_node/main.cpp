@@ -12,7 +12,7 @@
 #include "scene/scene.hpp"
 
 int main(int argc, char** argv) {
-    // Questions about this host, asked before a job: they need no MPI.
+    // Questions about this program and this host, asked before a job: they need no MPI.
     const std::string_view question = argc > 1 ? argv[1] : "";
     if (host::answersVersion(argc, argv, "sandwall-render-node",
                              {{"algorithm", sand::kAlgorithmVersion}, {"state", sand::kStateVersion}})) {
@@ -21,8 +21,6 @@ int main(int argc, char** argv) {
     if (question == "--probe") {
         return render_node::probeMain(argc, argv);
     }
-    lockstep::dieWithParent();
-    lockstep::Cluster cluster(&argc, &argv);
     host::CommandLine line(
         "A render rank of a wall: one tile. Started by mpirun beside sandwall-master, which tells it everything.",
         "sandwall-render-node");
@@ -35,6 +33,11 @@ int main(int argc, char** argv) {
         .showDefault();
     int sandThreads = 1;
     host::addSandThreads(line, sandThreads);
+    if (line.answersHelp(argc, argv)) {
+        return 0;
+    }
+    lockstep::dieWithParent();
+    lockstep::Cluster cluster(&argc, &argv);
     const int status = host::runMain(line, argc, argv, [&] {
         const host::WorkerPool pool(sandThreads);
         return render_node::showTile(cluster, render_node::backendNamed(gl), {.executor = pool.lend()});

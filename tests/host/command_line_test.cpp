@@ -77,6 +77,20 @@ TEST_F(CommandLineOptions, TakesValuesOfEveryKind) {
     EXPECT_EQ(until_, 12U);
 }
 
+TEST_F(CommandLineOptions, AnswersHelpWhereverItIsAsked) {
+    const auto answers = [&](std::vector<const char*> words) {
+        words.insert(words.begin(), "--help");  // the program's name, which asks for nothing
+        testing::internal::CaptureStdout();
+        const bool answered = line_.answersHelp(static_cast<int>(words.size()), const_cast<char**>(words.data()));
+        EXPECT_EQ(testing::internal::GetCapturedStdout().empty(), !answered);
+        return answered;
+    };
+    EXPECT_TRUE(answers({"--help"}));
+    EXPECT_TRUE(answers({"--rate", "0", "-h"}));
+    EXPECT_FALSE(answers({"a.txt", "--rate", "3"}));
+    EXPECT_FALSE(answers({}));
+}
+
 TEST_F(CommandLineOptions, LeavesDefaultsAlone) {
     EXPECT_EQ(parse(line_, {"a.txt"}).status, std::nullopt);
     EXPECT_EQ(rate_, 5);
