@@ -49,10 +49,13 @@ struct World {
 };
 
 /// Where the session in --out stopped, if there is one.
-void resume(Options& options) {
+void resume(const lockstep::Cluster& cluster, Options& options) {
     const std::filesystem::path journal = std::filesystem::path(options.out) / "session.journal";
     if (options.session.journal.policy == master::JournalPolicy::off) {
         throw base::InputError("--resume: without a journal there is nothing to go on with; leave --journal off out");
+    }
+    if (std::error_code none; std::filesystem::exists(journal, none)) {
+        master::requireMemoryOfJournal(cluster.hosts(), journal);
     }
     std::optional<master::ResumedSession> resumed = master::readSession(journal, options.scene);
     if (!resumed) {
@@ -81,7 +84,7 @@ sand::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
     options.session.journal.policy = master::parseJournalPolicy(options.journal);
     options.session.journal.partBytes = options.partMegabytes << 20;
     if (options.resume) {
-        resume(options);
+        resume(cluster, options);
         if (options.session.resumed) {
             options.scene = options.scene.empty() ? options.out : options.scene;  // for complaints
             return options.session.resumed->scene;
@@ -91,8 +94,8 @@ sand::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
         if (options.scene.empty()) {
             throw base::InputError("sandwall-master: name a --scene, or a journal to --replay");
         }
-        sand::Scene scene = sand::loadScene(options.scene, [&](int columns, int rows) {
-            master::requireMemory(cluster.hosts(), columns, rows, options.scene);
+        sand::Scene scene = sand::loadScene(options.scene, [&](int columns, int rows, bool tin) {
+            master::requireMemory(cluster.hosts(), columns, rows, tin, options.scene);
         });
         for (const std::string& warning : scene.warnings) {
             fmt::print(stderr, "{}: warning: {}\n", options.scene, warning);
@@ -103,6 +106,7 @@ sand::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
         throw base::InputError(
             fmt::format("{}: holds a session, whose results would be lost; choose another --out", options.out));
     }
+    master::requireMemoryOfJournal(cluster.hosts(), options.replay);
     master::SessionOptions& session = options.session;
     session.recording = std::make_shared<const master::Recording>(master::readJournal(options.replay), options.replay,
                                                                   options.framesPerSecond);

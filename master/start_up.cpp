@@ -5,6 +5,7 @@
 
 #include "base/input_error.hpp"
 #include "host/build_id.hpp"
+#include "master/journal/journal.hpp"
 #include "sand/replica.hpp"
 
 namespace master {
@@ -18,16 +19,20 @@ std::vector<std::string> namesOf(const lockstep::Cluster& cluster, const walls::
     return names;
 }
 
-void requireMemory(const std::vector<lockstep::RankHost>& ranks, int columns, int rows, const std::string& file) {
-    if (const auto lack = lockstep::lackOfMemory(ranks, sand::Replica::leastBytes(columns, rows), 0)) {
-        throw base::InputError(
-            fmt::format("{}: {} x {} cells need {}: fewer cells, or more hosts", file, columns, rows, *lack));
+void requireMemory(const std::vector<lockstep::RankHost>& ranks, int columns, int rows, bool tin,
+                   const std::string& file) {
+    // Of a TIN the master makes the heights that its vertices are chosen from; ranks that draw need as much.
+    const std::int64_t bytes =
+        tin ? std::int64_t{sizeof(std::int32_t)} * columns * rows : sand::Replica::leastBytes(columns, rows);
+    if (const auto lack = lockstep::lackOfMemory(ranks, bytes)) {
+        throw base::InputError(fmt::format("{}: {} x {} {} need {}: fewer cells, or more hosts", file, columns, rows,
+                                           tin ? "nominal cells of a TIN" : "cells", *lack));
     }
 }
 
 void requireMemory(const std::vector<lockstep::RankHost>& ranks, const sand::Scene& scene, const std::string& file) {
     if (scene.tin == nullptr) {
-        return requireMemory(ranks, scene.rules.columns, scene.rules.rows, file);
+        return requireMemory(ranks, scene.rules.columns, scene.rules.rows, false, file);
     }
     const int columns = scene.rules.columns;
     const int rows = scene.rules.rows;
@@ -38,6 +43,17 @@ void requireMemory(const std::vector<lockstep::RankHost>& ranks, const sand::Sce
         throw base::InputError(
             fmt::format("{}: a TIN of {} vertices over {} x {} nominal cells needs {}: fewer of either, or more hosts",
                         file, scene.tin->places.size(), columns, rows, *lack));
+    }
+}
+
+void requireMemoryOfJournal(const std::vector<lockstep::RankHost>& ranks, const std::filesystem::path& journal) {
+    const JournalReader reader(journal);
+    const sand::Rules rules = rulesOf(reader);
+    if (rules.tin == 0) {
+        requireMemory(ranks, rules.columns, rules.rows, false, journal.string());
+    } else {
+        // The journal holds no more of a TIN than its vertices: a small part of what a replica takes.
+        requireMemory(ranks, sceneOf(reader), journal.string());
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,12 @@ namespace master {
 /// Throws base::InputError unless every host has memory for the replicas of its ranks, and for what those that draw a
 /// TIN keep of its nominal cells. `file` is the scene's.
 void requireMemory(const std::vector<lockstep::RankHost>& ranks, const sand::Scene& scene, const std::string& file);
-/// The same of a height field of this size, which need not be made for it.
-void requireMemory(const std::vector<lockstep::RankHost>& ranks, int columns, int rows, const std::string& file);
+/// The same of a height field of this size, which need not be made for it. `tin`: a TIN is made of it, whose vertices
+/// are not known yet; every rank needs a height for each nominal cell.
+void requireMemory(const std::vector<lockstep::RankHost>& ranks, int columns, int rows, bool tin,
+                   const std::string& file);
+/// The same of the sand in a journal, before it is made. Throws base::InputError for a journal that cannot be read.
+void requireMemoryOfJournal(const std::vector<lockstep::RankHost>& ranks, const std::filesystem::path& journal);
 
 /// Throws base::InputError for the first rank that cannot take part, in its own words; prints what the others cannot
 /// do of what the wall file asks for.

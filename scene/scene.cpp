@@ -55,6 +55,12 @@ base::Bytes Scene::encode() const {
     return writer.take();
 }
 
+Rules Scene::decodeRules(std::span<const std::uint8_t> bytes) {
+    base::ByteReader reader(bytes);
+    (void)reader.getText();  // the name
+    return Rules::decode(reader);
+}
+
 Scene Scene::decode(std::span<const std::uint8_t> bytes) {
     base::ByteReader reader(bytes);
     Scene scene;

@@ -42,6 +42,8 @@ struct Scene : Start {
     [[nodiscard]] base::Bytes encode() const;
     /// Throws base::FormatError.
     static Scene decode(std::span<const std::uint8_t> bytes);
+    /// Decodes the rules only, which say how large the rest is. Throws base::FormatError.
+    static Rules decodeRules(std::span<const std::uint8_t> bytes);
 };
 
 }  // namespace sand

@@ -24,15 +24,21 @@ struct Gather {
     void operator()(const JournalContinued&) const {}
 };
 
-}  // namespace
-
-sand::Scene sceneOf(const JournalReader& reader) {
+/// What `decode` makes of the scene in the header.
+template <class Decode>
+auto decoded(const JournalReader& reader, Decode decode) {
     try {
-        return sand::Scene::decode(reader.header().scene);
+        return decode(reader.header().scene);
     } catch (const base::FormatError& error) {
         throw base::InputError(fmt::format("{}: {}", reader.place().journal.string(), error.what()));
     }
 }
+
+}  // namespace
+
+sand::Scene sceneOf(const JournalReader& reader) { return decoded(reader, sand::Scene::decode); }
+
+sand::Rules rulesOf(const JournalReader& reader) { return decoded(reader, sand::Scene::decodeRules); }
 
 Journal readJournal(const std::filesystem::path& file) {
     JournalReader reader(file);

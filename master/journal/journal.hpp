@@ -30,5 +30,7 @@ struct Journal {
 [[nodiscard]] Journal readJournal(const std::filesystem::path& file);
 /// Of the header. Throws base::InputError.
 [[nodiscard]] sand::Scene sceneOf(const JournalReader& reader);
+/// The rules of that scene, read without its heights. Throws base::InputError.
+[[nodiscard]] sand::Rules rulesOf(const JournalReader& reader);
 
 }  // namespace master

@@ -94,11 +94,23 @@ struct Walk {
 };
 
 void requireScene(const JournalReader& reader, const std::string& file) {
-    if (!file.empty() && sand::loadScene(file).encode() != reader.header().scene) {
+    if (file.empty()) {
+        return;
+    }
+    const auto fail = [&] {
         throw base::InputError(
             fmt::format("{}: is not the scene of the session in {}; leave --scene out to go on with "
                         "that one, or choose another --out",
                         file, reader.place().journal.string()));
+    };
+    // One of another size is refused before its heights are made.
+    const auto otherSize = [&, rules = rulesOf(reader)](int columns, int rows, bool tin) {
+        if (columns != rules.columns || rows != rules.rows || tin != (rules.tin != 0)) {
+            fail();
+        }
+    };
+    if (sand::loadScene(file, otherSize).encode() != reader.header().scene) {
+        fail();
     }
 }
 

@@ -155,7 +155,7 @@ Scene loadScene(const std::filesystem::path& file, const FieldCheck& check) {
     }
     scene.rules.stepsPerSecond = toml.integerOr("steps_per_second", 60, 1, 1000);
     scene.rules.rim = static_cast<Rim>(toml.choiceOr("rim", {"closed", "open"}, 0));
-    const bool settle = readTerrain(toml, scene, toml.has("tin") ? FieldCheck() : check);
+    const bool settle = readTerrain(toml, scene, check);
     readTin(toml, scene);
     readTool(toml, scene);
     readMaterial(toml, scene);

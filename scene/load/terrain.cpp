@@ -21,7 +21,7 @@ HeightField levelField(const host::TomlTable& file, const FieldCheck& check) {
     const double width = field.numberOr("width", 2.0, host::kPositive);  // the paper's (-1, 1)
     field.finish();
     if (check) {
-        check(columns, rows);
+        check(columns, rows, file.has("tin"));
     }
     return {columns, rows, width / columns};
 }
@@ -60,7 +60,7 @@ void checkCells(const host::TomlTable& terrain, const EsriGrid& raster) {
 /// Cells without data become walls, drawn as flats at the lowest height there is.
 HeightField fromSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind, Scene& scene,
                        std::shared_ptr<Ground>& ground, const FieldCheck& check) {
-    const TerrainSource source = readSource(file, terrain, kind);
+    const TerrainSource source = readSource(file, terrain, kind, check);
     if (!source.points.empty()) {
         if (!file.has("tin")) {
             terrain.fail("kind",
@@ -74,8 +74,8 @@ HeightField fromSource(const host::TomlTable& file, const host::TomlTable& terra
     const EsriGrid grid = terrain.has("bedrock") ? source.raster : withoutEmptyEdges(source.raster);
     scene.georeference = source.referenceAt(grid);
     const double datum = scene.georeference.datum;
-    if (check) {
-        check(grid.columns, grid.rows);
+    if (check && !file.has("field")) {
+        check(grid.columns, grid.rows, file.has("tin"));
     }
     HeightField field(grid.columns, grid.rows, grid.cellSize);
     std::int32_t lowest = kMaxHeight;

@@ -9,7 +9,8 @@ namespace sand {
 
 /// Reads [field] and [terrain] of a scene file: heights, rock, walls, and what the rules say of them. Throws
 /// base::InputError with file, line and key; a DEM's errors name the DEM's line. Returns whether the sand shall come
-/// to rest before anybody touches it. `check`, unless empty, is called before the heights of a field are made.
+/// to rest before anybody touches it. `check`, unless empty, is called before the heights of a field are made, or of a
+/// function are computed.
 [[nodiscard]] bool readTerrain(const host::TomlTable& file, Scene& scene, const FieldCheck& check);
 
 }  // namespace sand

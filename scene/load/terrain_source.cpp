@@ -52,7 +52,7 @@ std::pair<double, double> stretchOf(const host::TomlTable& terrain, const std::s
 }
 
 /// Rows follow from the columns, as cells are square; where they are given, they must fit.
-EsriGrid readFunction(const host::TomlTable& file, const host::TomlTable& terrain) {
+EsriGrid readFunction(const host::TomlTable& file, const host::TomlTable& terrain, const FieldCheck& check) {
     Function function;
     function.text = terrain.text("z");
     std::tie(function.west, function.east) = stretchOf(terrain, "x");
@@ -76,6 +76,9 @@ EsriGrid readFunction(const host::TomlTable& file, const host::TomlTable& terrai
                    fmt::format("{} columns of x make {} rows of y; leave rows out", function.columns, function.rows));
     }
     field.finish();
+    if (check) {
+        check(function.columns, function.rows, file.has("tin"));
+    }
     const Importer& importer = importerFor(terrain);
     try {
         return importer.evaluate(function);
@@ -114,14 +117,14 @@ TerrainSource readScan(const host::TomlTable& terrain) {
 
 enum Kind { kEsriAscii, kDem, kImage, kFunction, kGsf, kPoints };
 
-TerrainSource readKind(const host::TomlTable& file, const host::TomlTable& terrain, int kind) {
+TerrainSource readKind(const host::TomlTable& file, const host::TomlTable& terrain, int kind, const FieldCheck& check) {
     switch (kind) {
         case kDem:
             return {.raster = readDem(terrain)};
         case kImage:
             return {.raster = readImage(terrain)};
         case kFunction:
-            return {.raster = readFunction(file, terrain)};
+            return {.raster = readFunction(file, terrain, check)};
         case kGsf:
             return readScan(terrain);
         case kPoints:
@@ -145,11 +148,12 @@ const std::vector<std::string_view>& sourceKinds() {
     return kKinds;
 }
 
-TerrainSource readSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind) {
+TerrainSource readSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind,
+                         const FieldCheck& check) {
     if (kind != kFunction && file.has("field")) {
         file.fail("field", "[field] is for flat, dunes and functions; a file brings its own columns, rows and cells");
     }
-    TerrainSource source = readKind(file, terrain, kind);
+    TerrainSource source = readKind(file, terrain, kind, check);
     source.georeference.units = source.raster.units;
     source.georeference.datum = terrain.numberOr("datum", 0);
     return source;

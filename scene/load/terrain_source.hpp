@@ -9,6 +9,7 @@
 #include "scene/georeference.hpp"
 #include "scene/import/esri_grid.hpp"
 #include "scene/import/points_file.hpp"
+#include "scene/load/scene_file.hpp"
 
 namespace sand {
 
@@ -27,7 +28,9 @@ struct TerrainSource {
 
 /// Reads the keys of one of sourceKinds() in [terrain], and of [field] for a function, which says how many cells there
 /// are. `kind` is its index. Throws base::InputError with file, line and key; what is wrong in another file names
-/// that. Loads GDAL or muParser where the kind needs them.
-[[nodiscard]] TerrainSource readSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind);
+/// that. Loads GDAL or muParser where the kind needs them. Where [field] says how many cells there are, `check`, unless
+/// empty, is called before heights are computed.
+[[nodiscard]] TerrainSource readSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind,
+                                       const FieldCheck& check = {});
 
 }  // namespace sand

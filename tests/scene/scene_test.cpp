@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "base/input_error.hpp"
 #include "scene/import/esri_grid.hpp"
@@ -31,17 +33,32 @@ long residentKilobytes() {
 
 // 16384 x 16384 heights are 1 GiB: a host that lacks it must say so at once, and not after it has made them.
 TEST_F(SceneFile, ItsSizeIsLookedAtBeforeItsHeightsAreMade) {
-    const std::string file = write("s.toml", "[field]\ncolumns = 16384\nrows = 16384\n[terrain]\n[material]\n");
+    const std::string huge = "[field]\ncolumns = 16384\nrows = 16384\n[material]\n";
     const long before = residentKilobytes();
-    const auto tooLarge = [](int columns, int rows) {
-        throw base::InputError(fmt::format("{} x {} are too many", columns, rows));
-    };
-    EXPECT_THROW((void)sand::loadScene(file, tooLarge), base::InputError);
+    for (const char* kind : {"[terrain]\n", "[terrain]\nkind = \"dunes\"\n", "[terrain]\nkind = \"dunes\"\n[tin]\n"}) {
+        bool isTin = false;
+        const auto tooLarge = [&](int columns, int rows, bool tin) {
+            isTin = tin;
+            throw base::InputError(fmt::format("{} x {} are too many", columns, rows));
+        };
+        EXPECT_THROW((void)sand::loadScene(write("s.toml", huge + kind), tooLarge), base::InputError) << kind;
+        EXPECT_EQ(isTin, std::string(kind).ends_with("[tin]\n"));
+    }
     EXPECT_LT(residentKilobytes() - before, 100'000);
-    int asked = 0;
-    const auto fits = [&](int columns, int rows) { asked += columns == 512 && rows == 512 ? 1 : 100; };
-    (void)sand::loadScene(write("small.toml", kFlat), fits);
-    EXPECT_EQ(asked, 1);
+}
+
+TEST_F(SceneFile, ItsSizeIsLookedAtOnce) {
+    write("t.asc", "ncols 3\nnrows 2\ncellsize 1\n0 0 0\n0 0 0\n");
+    const std::string raster = "[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n[material]\n[tool]\nradius = 1\n";
+    for (const std::string& text : {kFlat, kFlat + "[tin]\n", raster, raster + "[tin]\n"}) {
+        std::vector<std::array<int, 3>> asked;
+        (void)sand::loadScene(write("s.toml", text), [&](int columns, int rows, bool tin) {
+            asked.push_back({columns, rows, tin ? 1 : 0});
+        });
+        const bool flat = text.starts_with(kFlat);
+        const std::array<int, 3> wanted{flat ? 512 : 3, flat ? 512 : 2, text.ends_with("[tin]\n") ? 1 : 0};
+        EXPECT_EQ(asked, std::vector{wanted}) << text;
+    }
 }
 
 TEST_F(SceneFile, SweepsFollowTheSquareOfTheToolsCells) {

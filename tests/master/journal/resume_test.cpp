@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <filesystem>
 #include <fstream>
@@ -235,6 +236,20 @@ TEST_F(Resume, RefusesAnotherSceneThanTheSessions) {
     std::filesystem::create_directories(other.parent_path());
     { master::JournalWriter writer(other, sand::loadScene(file), "test"); }
     EXPECT_EQ(refusal(other, file.string()), "not refused");
+}
+
+// Its heights would be 1 GiB.
+TEST_F(Resume, RefusesASceneOfAnotherSizeBeforeItsHeightsAreMade) {
+    const std::filesystem::path file = folder_ / "scene.toml";
+    std::ofstream(file) << "[field]\ncolumns = 16384\nrows = 16384\n[terrain]\n[material]\n";
+    const auto residentKilobytes = [] {
+        rusage usage{};
+        getrusage(RUSAGE_SELF, &usage);
+        return usage.ru_maxrss;
+    };
+    const long before = residentKilobytes();
+    EXPECT_NE(refusal(journal(), file.string()).find("is not the scene of the session in"), std::string::npos);
+    EXPECT_LT(residentKilobytes() - before, 100'000);
 }
 
 // Two that write one journal would each destroy what the other has shown.
