@@ -119,6 +119,7 @@ sand::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
 
 World loadWorld(const lockstep::Cluster& cluster, Options& options) {
     cluster.mayTakeLong(true);  // until the ranks have been told of it
+    master::requireFolder(options.out);
     World world{loadScene(cluster, options), walls::loadWallAs(options.wall, options.stereo), {}};
     master::requireMemory(cluster.hosts(), world.scene, options.scene + options.replay);
     if (world.wall.ranks() != cluster.renderRanks()) {

@@ -57,6 +57,13 @@ void requireMemoryOfJournal(const std::vector<lockstep::RankHost>& ranks, const 
     }
 }
 
+void requireFolder(const std::filesystem::path& out) {
+    std::error_code none;
+    if (std::filesystem::exists(out, none) && !std::filesystem::is_directory(out, none)) {
+        throw base::InputError(fmt::format("{}: is a file, and --out names a folder; choose another", out.string()));
+    }
+}
+
 void requireReady(const std::vector<lockstep::Readiness>& ranks, const std::vector<std::string>& names) {
     for (std::size_t rank = 1; rank < ranks.size(); ++rank) {
         if (ranks[rank].buildId != host::buildId()) {

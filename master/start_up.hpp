@@ -26,6 +26,9 @@ void requireMemory(const std::vector<lockstep::RankHost>& ranks, int columns, in
 /// The same of the sand in a journal, before it is made. Throws base::InputError for a journal that cannot be read.
 void requireMemoryOfJournal(const std::vector<lockstep::RankHost>& ranks, const std::filesystem::path& journal);
 
+/// Throws base::InputError where --out names something that is there and is no folder.
+void requireFolder(const std::filesystem::path& out);
+
 /// Throws base::InputError for the first rank that cannot take part, in its own words; prints what the others cannot
 /// do of what the wall file asks for.
 void requireReady(const std::vector<lockstep::Readiness>& ranks, const std::vector<std::string>& names);

@@ -30,6 +30,7 @@ TEST_F(BadInput, OfTheMasterIsNamed) {
     expectRefusal({"--wall", wall(1, 1), "--scene", broken, "--out", out()}, "broken.toml:2: ");
     const std::string file = write("file", "");
     expectRefusal({"--wall", wall(1, 1), "--scene", scene(), "--out", file + "/out"}, file + "/out");
+    expectRefusal({"--wall", wall(1, 1), "--scene", scene(), "--out", file, "--resume"}, file + ": ");
     expectRefusal({"--wall", wall(1, 1), "--scene", scene(), "--out", out(), "--inject", "slow:rank=9,ms=30"},
                   "--inject slow:rank=9,ms=30");
 }

@@ -131,4 +131,15 @@ TEST_F(StartUpFiles, AJournalThatIsMissingIsNamed) {
               journal_.string() + ": cannot be read; check the path");
 }
 
+TEST_F(StartUpFiles, AFileInPlaceOfTheFolderForResultsIsRefused) {
+    const std::filesystem::path out = folder_ / "out";
+    const auto refused = [&] { return refusalOf([&] { master::requireFolder(out); }); };
+    EXPECT_EQ(refused(), "nothing") << "it can be made";
+    std::filesystem::create_directory(out);
+    EXPECT_EQ(refused(), "nothing");
+    std::filesystem::remove(out);
+    std::ofstream(out) << "text";
+    EXPECT_EQ(refused(), out.string() + ": is a file, and --out names a folder; choose another");
+}
+
 }  // namespace

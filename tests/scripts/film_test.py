@@ -25,6 +25,7 @@ echo "$*" > "$last"
 class Film(LauncherTest):
     def setUp(self):
         super().setUp()
+        self.write("s.journal", "")
         self.script("mpirun", MPIRUN)
         # Whether this machine has ffmpeg or not must not matter: only what the launcher itself needs is on the path.
         for name in ("env", "python3", "sh", "mkdir", "grep", "cat"):
@@ -37,7 +38,7 @@ class Film(LauncherTest):
     def film(self, *options, hosts=("-", "node1")):
         ended = subprocess.run([str(ROOT / "scripts" / "sandwall"), "film", "s.journal", "--wall",
                                 self.write("wall", "\n".join(hosts) + "\n"), "--out", str(self.folder / "out %d"), *options],
-                               env=self.environment, text=True, capture_output=True, timeout=120, stdin=subprocess.DEVNULL)
+                               cwd=self.folder, env=self.environment, text=True, capture_output=True, timeout=120, stdin=subprocess.DEVNULL)
         return (ended.returncode, ended.stdout.replace(str(self.folder) + "/", "").replace("bin/", ""),
                 ended.stderr.replace(str(self.folder) + "/", ""))
 
@@ -77,6 +78,17 @@ class Film(LauncherTest):
         self.script("mpirun", MPIRUN + "exit 2\n")
         self.assertEqual(self.film()[0], 2)
         self.assertFalse((self.folder / "out %d" / "film.mp4").exists())
+
+    def test_a_rate_of_no_frames_is_refused(self):
+        self.assertEqual(self.film("--fps", "0"), (2, "", "sandwall film: argument --fps: 0 must be 1 or more; try --help\n"))
+
+    def test_a_journal_that_is_missing_or_a_folder_is_refused(self):
+        (self.folder / "s.journal").unlink()
+        refusal = (2, "", "s.journal: cannot be read; check the path\n")
+        self.assertEqual(self.film(), refusal)
+        self.assertFalse((self.folder / "out %d").exists())
+        (self.folder / "s.journal").mkdir()
+        self.assertEqual(self.film(), refusal)
 
     def test_a_wall_that_does_not_pass_the_check_is_refused_in_its_words(self):
         self.script("sandwall-check", "#!/bin/sh\necho 'wall.toml:3: no' >&2; exit 2\n")
