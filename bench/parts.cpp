@@ -43,15 +43,15 @@ Cost measure(int side, bool withBedrock, Happening happening, const Settings& se
         }
     }
     const sand::Rules rules = rulesFor(start, kTalus);
-    sand::Erosion::Options options;
+    sand::grid::Erosion::Options options;
     options.ground = ground ? &*ground : nullptr;
-    const sand::Tool tool({.radius = 3 * sand::kProbePerCell});
+    const sand::grid::Displacement tool({.radius = 3 * sand::kProbePerCell});
     const sand::ProbePoint middle{side * sand::kProbePerCell / 2, side * sand::kProbePerCell / 2, 0};
 
     Cost cost;
     for (int run = 0; run < settings.runs; ++run) {
         sand::HeightField field = start;
-        sand::Erosion erosion(field, rules, options);
+        sand::grid::Erosion erosion(field, rules, options);
         if (happening != Happening::everythingMoves) {
             erosion.sweep(field, kMostSweeps);
         }

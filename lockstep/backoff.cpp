@@ -35,13 +35,13 @@ struct SliceOfTime {
 
 }  // namespace
 
-std::int64_t Patience::sleepAfter(std::int64_t waited) {
+std::int64_t Backoff::sleepAfter(std::int64_t waited) {
     return waited < kYielding ? 0 : std::min(waited / kShare, kLongest);
 }
 
-Patience::Patience(const std::optional<Doorbell>& bell) : bell_(bell), heard_(bell ? bell->rings() : 0) {}
+Backoff::Backoff(const std::optional<Doorbell>& bell) : bell_(bell), heard_(bell ? bell->rings() : 0) {}
 
-void Patience::look() {
+void Backoff::look() {
     if (bell_) {
         const std::uint32_t rings = bell_->rings();
         rang_ = rang_ || rings != heard_;
@@ -49,9 +49,9 @@ void Patience::look() {
     }
 }
 
-void Patience::found() { rang_ = false; }
+void Backoff::found() { rang_ = false; }
 
-Patience::Rest Patience::nextRest(std::int64_t now) {
+Backoff::Rest Backoff::nextRest(std::int64_t now) {
     since_ = since_.value_or(now);
     const std::int64_t waited = now - *since_;
     if (bell_ && !rang_ && waited >= kYielding) {
@@ -61,7 +61,7 @@ Patience::Rest Patience::nextRest(std::int64_t now) {
     return {pause > 0 ? Rest::Kind::sleep : Rest::Kind::yield, pause};
 }
 
-void Patience::rest() {
+void Backoff::rest() {
     const Rest next = nextRest(host::monotonicNs());
     switch (next.kind) {
         case Rest::Kind::yield:

@@ -15,9 +15,9 @@ namespace lockstep {
 /// wait has taken so far, so that no wait is made longer by more than that share, nor by more than an eighth of a
 /// millisecond: swaps lie no further apart for it. Where a bell rings behind all that is waited for, it sleeps until
 /// then instead; what has rung and is not yet there is asked for as without a bell. One wait per object; any thread.
-class Patience {
+class Backoff {
 public:
-    explicit Patience(const std::optional<Doorbell>& bell = std::nullopt);
+    explicit Backoff(const std::optional<Doorbell>& bell = std::nullopt);
     /// Before each look.
     void look();
     /// The look found something, and there is more to come.

@@ -19,7 +19,7 @@ struct Divergence {
         int rank = 0;
         std::uint64_t hash = 0;
         int tile = -1;           // first differing hash tile; -1 when only pose, step or outflow differ
-        sand::Rect cells;        // of that tile
+        sand::CellRect cells;    // of that tile
         int cellsDiffering = 0;  // in that tile; of the first odd rank, and others that differ in the same
     };
     enum class Judge : std::uint8_t {

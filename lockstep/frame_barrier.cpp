@@ -92,10 +92,10 @@ Wait FrameBarrier::describeWait() const {
 }
 
 /// For messages from these ranks, which ring if they can.
-Patience FrameBarrier::patienceFor(std::span<const int> ranks) const {
+Backoff FrameBarrier::patienceFor(std::span<const int> ranks) const {
     const HostBells& bells = cluster_.bells();
     const bool allRing = std::all_of(ranks.begin(), ranks.end(), [&](int rank) { return bells.of(rank).has_value(); });
-    return Patience(allRing ? bells.of(cluster_.rank()) : std::nullopt);
+    return Backoff(allRing ? bells.of(cluster_.rank()) : std::nullopt);
 }
 
 /// Behind messages to these ranks.
@@ -108,7 +108,7 @@ void FrameBarrier::ring(std::span<const int> ranks) const {
 }
 
 /// Until all requests are done. `ranks` are those at their other ends; `lengths` are what was received.
-void FrameBarrier::await(std::span<MPI_Request> requests, std::span<const int> ranks, Patience patience,
+void FrameBarrier::await(std::span<MPI_Request> requests, std::span<const int> ranks, Backoff patience,
                          std::vector<int>* lengths) {
     const auto miss = [&](std::size_t which, bool missing) {
         if (cluster_.isMaster()) {
@@ -147,7 +147,7 @@ void FrameBarrier::sendToAll(const void* data, std::size_t bytes, int tag) {
         MPI_Isend(data, static_cast<int>(bytes), MPI_BYTE, ranks_[i], tag, cluster_.frames(), &requests[i]);
     }
     ring(ranks_);
-    await(requests, ranks_, Patience());
+    await(requests, ranks_, Backoff());
 }
 
 void FrameBarrier::receiveFromMaster(void* data, std::size_t bytes, int tag) {

@@ -41,7 +41,7 @@ enum class Verdict : std::uint8_t {
 /// Every rank sends its Arrival, state hash and all, to the master by itself; the master compares and tells the
 /// verdict. All of it goes point to point, and the master polls: inside a broadcast or an allreduce of MPI a rank that
 /// has stopped cannot be told from those that wait for it, and would take the master with it. All waiting is
-/// Patience's, so that who waits leaves the core to who draws. Main thread only.
+/// Backoff's, so that who waits leaves the core to who draws. Main thread only.
 class FrameBarrier {
 public:
     /// Frame messages up to this size travel whole; longer ones send their rest behind [byte].
@@ -94,9 +94,9 @@ public:
 private:
     void sendToAll(const void* data, std::size_t bytes, int tag);
     void receiveFromMaster(void* data, std::size_t bytes, int tag);
-    void await(std::span<MPI_Request> requests, std::span<const int> ranks, Patience patience,
+    void await(std::span<MPI_Request> requests, std::span<const int> ranks, Backoff patience,
                std::vector<int>* lengths = nullptr);
-    [[nodiscard]] Patience patienceFor(std::span<const int> ranks) const;
+    [[nodiscard]] Backoff patienceFor(std::span<const int> ranks) const;
     void ring(std::span<const int> ranks) const;
     void receiveArrivals(std::uint64_t frame);
     void sendArrival(const Arrival& mine);

@@ -33,7 +33,7 @@ base::Bytes FrameBarrier::pass(int from, const std::vector<int>& to, const base:
         if (sends) {
             ring(peers);
         }
-        await(requests, peers, sends ? Patience() : patienceFor(peers));
+        await(requests, peers, sends ? Backoff() : patienceFor(peers));
     };
     std::uint64_t length = bytes.size();
     move(reinterpret_cast<std::uint8_t*>(&length), sizeof length, kLengthTag);

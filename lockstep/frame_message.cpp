@@ -37,7 +37,7 @@ ViewState ViewState::decode(base::ByteReader& reader) {
     view.eyeSeparation = reader.get<double>();
     getEach(reader, view.sceneToRoom);
     view.pattern = reader.get<std::uint8_t>();
-    view.layers = Layers(reader.get<std::uint8_t>());
+    view.layers = Overlays(reader.get<std::uint8_t>());
     view.stereo = reader.get<std::uint8_t>();
     return view;
 }

@@ -22,7 +22,7 @@ struct ViewState {
     // Column by column: scene units to metres in the room.
     std::array<double, 16> sceneToRoom{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     std::uint8_t pattern = 0;  // lockstep::Pattern shown instead of the sand
-    Layers layers{};           // shown beside the sand
+    Overlays layers{};         // shown beside the sand
     std::uint8_t stereo = 0;   // walls::Stereo, which an operator may change
 
     void encode(base::ByteWriter& writer) const;
@@ -39,7 +39,7 @@ struct FrameMessage {
     bool capture = false;          // send the pictures of this frame to the master
     bool stop = false;             // the last frame
     std::vector<sand::Step> steps;
-    std::optional<WallFigures> figures;  // while Layer::statistics is shown; what they say need not agree
+    std::optional<WallFigures> figures;  // while Overlay::statistics is shown; what they say need not agree
 
     [[nodiscard]] base::Bytes encode() const;
     /// Throws base::FormatError.

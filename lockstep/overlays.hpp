@@ -11,35 +11,35 @@
 namespace lockstep {
 
 /// What a wall shows beside the sand when it is asked to (docs/operator.md). ViewState::layers has a bit for each.
-enum class Layer : std::uint8_t {
+enum class Overlay : std::uint8_t {
     wireframe,  // the triangles' edges
     hillShade,  // light and dark by slope, as maps have it
     force,      // the tool's force, as an arrow
     statistics  // how the wall keeps up, on every tile
 };
 
-inline constexpr std::array<std::string_view, 4> kLayerNames{"wireframe", "hill-shade", "force", "statistics"};
+inline constexpr std::array<std::string_view, 4> kOverlayNames{"wireframe", "hill-shade", "force", "statistics"};
 
 /// Layers that are shown, as one number; all off at first.
-class Layers {
+class Overlays {
 public:
-    constexpr Layers() = default;
-    constexpr explicit Layers(std::uint8_t bits) : bits_(bits) {}
-    [[nodiscard]] constexpr bool shows(Layer layer) const { return (bits_ & bit(layer)) != 0; }
-    constexpr void set(Layer layer, bool shown) {
+    constexpr Overlays() = default;
+    constexpr explicit Overlays(std::uint8_t bits) : bits_(bits) {}
+    [[nodiscard]] constexpr bool shows(Overlay layer) const { return (bits_ & bit(layer)) != 0; }
+    constexpr void set(Overlay layer, bool shown) {
         bits_ = static_cast<std::uint8_t>(shown ? bits_ | bit(layer) : bits_ & ~bit(layer));
     }
     [[nodiscard]] constexpr std::uint8_t bits() const { return bits_; }
-    friend constexpr bool operator==(Layers, Layers) = default;
+    friend constexpr bool operator==(Overlays, Overlays) = default;
 
 private:
-    static constexpr unsigned bit(Layer layer) { return 1U << static_cast<unsigned>(layer); }
+    static constexpr unsigned bit(Overlay layer) { return 1U << static_cast<unsigned>(layer); }
     std::uint8_t bits_ = 0;
 };
 
 /// Throws base::InputError that lists the names.
-[[nodiscard]] inline Layer parseLayer(std::string_view name) {
-    return static_cast<Layer>(base::indexOf(name, kLayerNames, "layer"));
+[[nodiscard]] inline Overlay parseOverlay(std::string_view name) {
+    return static_cast<Overlay>(base::indexOf(name, kOverlayNames, "layer"));
 }
 
 }  // namespace lockstep

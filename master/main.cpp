@@ -43,7 +43,7 @@ struct Options {
 
 /// What everyone needs to know, from the files the user named.
 struct World {
-    sand::Scene scene;
+    scene::Scene scene;
     walls::Wall wall;
     lockstep::SessionMessage message;
 };
@@ -80,7 +80,7 @@ void resume(const lockstep::Cluster& cluster, Options& options) {
 }
 
 /// The scene of the file named, or of the journal that is to be replayed or gone on with.
-sand::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
+scene::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
     options.session.journal.policy = master::parseJournalPolicy(options.journal);
     options.session.journal.partBytes = options.partMegabytes << 20;
     if (options.resume) {
@@ -94,7 +94,7 @@ sand::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
         if (options.scene.empty()) {
             throw base::InputError("sandwall-master: name a --scene, or a journal to --replay");
         }
-        sand::Scene scene = sand::loadScene(options.scene, [&](int columns, int rows, bool tin) {
+        scene::Scene scene = scene::loadScene(options.scene, [&](int columns, int rows, bool tin) {
             master::requireMemory(cluster.hosts(), columns, rows, tin, options.scene);
         });
         for (const std::string& warning : scene.warnings) {
@@ -151,9 +151,9 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
     options.session.pictures = !options.noPictures;
     options.session.out = options.out;
     options.session.pattern = lockstep::parsePattern(options.pattern);
-    options.session.layers.set(lockstep::Layer::hillShade, world.scene.look.hillShade);
+    options.session.layers.set(lockstep::Overlay::hillShade, world.scene.look.hillShade);
     for (const std::string& layer : options.layers) {
-        options.session.layers.set(lockstep::parseLayer(layer), true);
+        options.session.layers.set(lockstep::parseOverlay(layer), true);
     }
     if (!options.track.empty()) {
         options.session.tracker = tracking::Source::parse(options.track, "--track");

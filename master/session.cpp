@@ -68,7 +68,7 @@ double milliseconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-6; }
 
 }  // namespace
 
-Session::Session(const lockstep::Cluster& cluster, const sand::Scene& scene, const walls::Wall& wall,
+Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, const walls::Wall& wall,
                  SessionOptions options)
     : cluster_(cluster),
       wall_(wall),
@@ -178,7 +178,7 @@ lockstep::FrameMessage Session::prepare(std::vector<TimedStep>& steps) {
     for (const TimedStep& timed : steps) {
         message.steps.push_back(timed.step);
     }
-    if (message.view.layers.shows(lockstep::Layer::statistics)) {
+    if (message.view.layers.shows(lockstep::Overlay::statistics)) {
         message.figures = wallFigures();
     }
     const std::uint64_t shownThen = terrain_.stepNumber() + steps.size();

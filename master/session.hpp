@@ -51,12 +51,12 @@ struct SessionOptions {
     double frameTimeout = 30;          // [s] that a frame may take before the job ends
     bool pictures = true;
     lockstep::Pattern pattern = lockstep::Pattern::none;  // shown from the start
-    lockstep::Layers layers;                              // as well
+    lockstep::Overlays layers;                            // as well
     tracking::Source tracker;                             // where the head's pose comes from
     bool readInput = false;                               // "stop" on standard input, or its end, ends the session
     std::filesystem::path out;
     JournalOptions journal;
-    sand::Erosion::Options sweeps;                  // how the master's own replica is swept
+    sand::grid::Erosion::Options sweeps;            // how the master's own replica is swept
     std::shared_ptr<const Recording> recording;     // steps come from there, and no journal is written
     std::shared_ptr<const ResumedSession> resumed;  // goes on where that one stopped
     Failure failure;                                // that made it stop
@@ -68,7 +68,7 @@ struct SessionOptions {
 /// The frame loop of the master: number, broadcast, journal, apply, agree, swap; 60 times a second if the wall can.
 class Session {
 public:
-    Session(const lockstep::Cluster& cluster, const sand::Scene& scene, const walls::Wall& wall,
+    Session(const lockstep::Cluster& cluster, const scene::Scene& scene, const walls::Wall& wall,
             SessionOptions options);
 
     /// Runs to the end and writes journal, pictures and summary. Returns the exit status: 0, or 1 when replicas
@@ -83,9 +83,9 @@ private:
     void obey(const std::string& line, std::optional<ControlSocket::Client> client);
     void carryOut(const Command& command, std::optional<ControlSocket::Client> client);
     void askEdit(sand::Edit edit, std::optional<ControlSocket::Client> client,
-                 const std::optional<sand::Material>& material = std::nullopt);
+                 const std::optional<scene::Material>& material = std::nullopt);
     /// Only a material that is in a step's queue becomes the one that the next is made from.
-    void askMaterial(const sand::Material& material, std::optional<ControlSocket::Client> client);
+    void askMaterial(const scene::Material& material, std::optional<ControlSocket::Client> client);
     void changeStereo(walls::Stereo stereo);
     /// Who asked; nothing stands for somebody who typed it.
     using Clients = std::vector<std::optional<ControlSocket::Client>>;
@@ -114,7 +114,7 @@ private:
     void keepJournal(const JournalFrame& frame);
     void keepTicks();
     void endJournal(bool agreed);
-    void beginJournal(const sand::Scene& scene);
+    void beginJournal(const scene::Scene& scene);
     /// Whether the disk has room for the steps of the next frame, with one more edit.
     [[nodiscard]] bool mayTakeSteps(const sand::Edit& more = {});
     /// A server may have their edits already, so that they cannot be taken back: they are done when there is room.
@@ -148,8 +148,8 @@ private:
     const walls::Wall& wall_;
     walls::Wall shown_;  // in the stereo mode that the operator has chosen
     const SandPlace place_;
-    const sand::MaterialGrid grid_;
-    sand::Material material_;  // with all that the operator has asked for
+    const scene::MaterialGrid grid_;
+    scene::Material material_;  // with all that the operator has asked for
     SessionOptions options_;
     sand::Replica terrain_;
     std::vector<std::string> names_;  // of ranks, as messages speak of them
@@ -158,13 +158,13 @@ private:
     lockstep::ViewProof viewProof_;
     std::optional<JournalKeeper> journal_;  // none for a recording, which has one
     std::optional<Film> film_;
-    Sequencer sequencer_;
+    LiveSteps sequencer_;
     OperatorInput operator_;
     std::optional<ControlSocket> control_;
     struct Asker {
         sand::Edit edit;
         std::optional<ControlSocket::Client> client;  // none: typed, or answered already
-        std::optional<sand::Material> material;       // that the edit makes the session's
+        std::optional<scene::Material> material;      // that the edit makes the session's
     };
     struct Errand {
         std::future<ErrandDone> work;

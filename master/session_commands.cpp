@@ -33,7 +33,7 @@ std::string refusal(const std::string& why) { return line({{"ok", false}, {"erro
 std::string done() { return line({{"ok", true}}); }
 
 /// As an operator would type it.
-Json materialNow(const sand::Material& material) {
+Json materialNow(const scene::Material& material) {
     return {{"talus", material.dryTalus},    {"wet-talus", material.wetTalusNow()},
             {"humidity", material.humidity}, {"cohesion", material.cohesionLength},
             {"band", material.band},         {"settling-time", material.settlingSeconds}};
@@ -110,9 +110,9 @@ void Session::carryOut(const Command& command, std::optional<Client> client) {
         case Verb::settle:
             return askEdit(sand::Edit::settle, client);
         case Verb::tool:
-            return askMaterial(sand::withTool(material_, command.tool, grid_), client);
+            return askMaterial(scene::withTool(material_, command.tool, grid_), client);
         case Verb::material:
-            return askMaterial(sand::withNumber(material_, command.word, command.number, grid_), client);
+            return askMaterial(scene::withNumber(material_, command.word, command.number, grid_), client);
         case Verb::save:
             return save(command.word, client);
         case Verb::load:
@@ -149,7 +149,7 @@ void Session::carryOut(const Command& command, std::optional<Client> client) {
     }
 }
 
-void Session::askEdit(sand::Edit edit, std::optional<Client> client, const std::optional<sand::Material>& material) {
+void Session::askEdit(sand::Edit edit, std::optional<Client> client, const std::optional<scene::Material>& material) {
     const auto loads = [](const Asker& asker) { return asker.edit.kind == sand::Edit::load; };
     if (edit.kind == sand::Edit::load && std::any_of(askers_.begin(), askers_.end(), loads)) {
         throw base::InputError("another load waits for its step already");  // each holds the whole sand
@@ -182,8 +182,8 @@ void Session::tellWhoWaitsForRoom() {
     }
 }
 
-void Session::askMaterial(const sand::Material& material, std::optional<Client> client) {
-    askEdit(sand::Edit::tuned(sand::tuningOf(material, grid_)), client, material);
+void Session::askMaterial(const scene::Material& material, std::optional<Client> client) {
+    askEdit(sand::Edit::tuned(scene::tuningOf(material, grid_)), client, material);
     material_ = material;
 }
 

@@ -16,7 +16,7 @@ std::int64_t sandBytes(const sand::Edit& edit) { return edit.sand ? static_cast<
 
 }  // namespace
 
-void Session::beginJournal(const sand::Scene& scene) {
+void Session::beginJournal(const scene::Scene& scene) {
     const ResumedSession* resumed = options_.resumed.get();
     if (resumed != nullptr) {
         terrain_.decodeState(resumed->state);
@@ -54,7 +54,7 @@ void Session::keepJournal(const JournalFrame& frame) {
         return;
     }
     const lockstep::Busy busy(barrier_, "the disk of its journal");
-    std::vector<sand::Material> materials;
+    std::vector<scene::Material> materials;
     for (const sand::Step& step : frame.steps) {
         for (const Asker& asker : askers_) {
             if (asker.material && asker.edit == step.edit) {

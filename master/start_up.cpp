@@ -30,7 +30,7 @@ void requireMemory(const std::vector<lockstep::RankHost>& ranks, int columns, in
     }
 }
 
-void requireMemory(const std::vector<lockstep::RankHost>& ranks, const sand::Scene& scene, const std::string& file) {
+void requireMemory(const std::vector<lockstep::RankHost>& ranks, const scene::Scene& scene, const std::string& file) {
     if (scene.tin == nullptr) {
         return requireMemory(ranks, scene.rules.columns, scene.rules.rows, false, file);
     }

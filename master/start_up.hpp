@@ -18,7 +18,7 @@ namespace master {
 
 /// Throws base::InputError unless every host has memory for the replicas of its ranks, and for what those that draw a
 /// TIN keep of its nominal cells. `file` is the scene's.
-void requireMemory(const std::vector<lockstep::RankHost>& ranks, const sand::Scene& scene, const std::string& file);
+void requireMemory(const std::vector<lockstep::RankHost>& ranks, const scene::Scene& scene, const std::string& file);
 /// The same of a height field of this size, which need not be made for it. `tin`: a TIN is made of it, whose vertices
 /// are not known yet; every rank needs a height for each nominal cell.
 void requireMemory(const std::vector<lockstep::RankHost>& ranks, int columns, int rows, bool tin,

@@ -10,7 +10,7 @@
 
 namespace master {
 
-ViewSource::ViewSource(const walls::Wall& wall, const sand::Scene& scene, const tracking::Source& source)
+ViewSource::ViewSource(const walls::Wall& wall, const scene::Scene& scene, const tracking::Source& source)
     : viewer_(wall, source, [](const std::string& line) { fmt::print(stderr, "sandwall: {}\n", line); }) {
     const double cell = scene.terrain.cellSize();
     const glm::dmat4 toRoom = walls::stageToRoom(wall.stage, scene.rules.columns * cell, scene.rules.rows * cell,

@@ -17,7 +17,7 @@ namespace master {
 class ViewSource {
 public:
     /// Throws base::InputError when the tracker cannot be had.
-    ViewSource(const walls::Wall& wall, const sand::Scene& scene, const tracking::Source& source);
+    ViewSource(const walls::Wall& wall, const scene::Scene& scene, const tracking::Source& source);
 
     /// At this time of the session [s].
     [[nodiscard]] lockstep::ViewState at(double seconds);
@@ -25,9 +25,9 @@ public:
     void show(lockstep::Pattern pattern) { state_.pattern = static_cast<std::uint8_t>(pattern); }
     [[nodiscard]] lockstep::Pattern pattern() const { return static_cast<lockstep::Pattern>(state_.pattern); }
     void show(walls::Stereo stereo) { state_.stereo = static_cast<std::uint8_t>(stereo); }
-    void show(lockstep::Layers layers) { state_.layers = layers; }
-    void show(lockstep::Layer layer, bool shown) { state_.layers.set(layer, shown); }
-    [[nodiscard]] lockstep::Layers layers() const { return state_.layers; }
+    void show(lockstep::Overlays layers) { state_.layers = layers; }
+    void show(lockstep::Overlay layer, bool shown) { state_.layers.set(layer, shown); }
+    [[nodiscard]] lockstep::Overlays layers() const { return state_.layers; }
     /// As TrackedViewer's.
     void separateEyes(double metres) { viewer_.separateEyes(metres); }
     [[nodiscard]] double eyeSeparation() const { return state_.eyeSeparation; }  // [m], of the last at()

@@ -23,15 +23,16 @@ float encoded(float linear) {
 
 }  // namespace
 
-SandView::SandView(const sand::Scene& scene, const glm::dmat4& sceneToRoom)
-    : SandView(scene, sceneToRoom,
-               std::make_unique<SandMesh>(scene.terrain, glm::normalize(toVector(scene.look.sunDirection))), nullptr) {}
+ScenePainter::ScenePainter(const scene::Scene& scene, const glm::dmat4& sceneToRoom)
+    : ScenePainter(scene, sceneToRoom,
+                   std::make_unique<SandMesh>(scene.terrain, glm::normalize(toVector(scene.look.sunDirection))),
+                   nullptr) {}
 
-SandView::SandView(const sand::Scene& scene, const sand::tin::SurfaceView& tin, const glm::dmat4& sceneToRoom)
-    : SandView(scene, sceneToRoom, nullptr, std::make_unique<TinMesh>(tin, scene.terrain.cellSize())) {}
+ScenePainter::ScenePainter(const scene::Scene& scene, const sand::tin::SurfaceView& tin, const glm::dmat4& sceneToRoom)
+    : ScenePainter(scene, sceneToRoom, nullptr, std::make_unique<TinMesh>(tin, scene.terrain.cellSize())) {}
 
-SandView::SandView(const sand::Scene& scene, const glm::dmat4& sceneToRoom, std::unique_ptr<SandMesh> grid,
-                   std::unique_ptr<TinMesh> tin)
+ScenePainter::ScenePainter(const scene::Scene& scene, const glm::dmat4& sceneToRoom, std::unique_ptr<SandMesh> grid,
+                           std::unique_ptr<TinMesh> tin)
     : sceneToRoom_(sceneToRoom),
       look_(scene.look),
       sun_(glm::normalize(toVector(scene.look.sunDirection))),
@@ -50,24 +51,24 @@ SandView::SandView(const sand::Scene& scene, const glm::dmat4& sceneToRoom, std:
     startCounting();
 }
 
-void SandView::startCounting() {
+void ScenePainter::startCounting() {
     counts_ = {};
     counts_.chunksOfField = surface().chunks();
 }
 
-SandView::SandView(SandView&&) noexcept = default;
-SandView::~SandView() = default;
+ScenePainter::ScenePainter(ScenePainter&&) noexcept = default;
+ScenePainter::~ScenePainter() = default;
 
-void SandView::update(const sand::HeightField& field, sand::Rect damage) {
-    const sand::Rect cells = damage.clippedTo(field.bounds());
+void ScenePainter::update(const sand::HeightField& field, sand::CellRect damage) {
+    const sand::CellRect cells = damage.clippedTo(field.bounds());
     grid_->update(field, cells);
     if (grid_->surface().touchesRim(cells)) {
         box_.update(grid_->rim());
     }
 }
 
-void SandView::update(const sand::tin::SurfaceView& tin, const sand::TinChange& damage,
-                      std::span<const Camera> cameras) {
+void ScenePainter::update(const sand::tin::SurfaceView& tin, const sand::TinChange& damage,
+                          std::span<const Camera> cameras) {
     const auto sees = [&](const Box& box) {
         return cameras.empty() || std::any_of(cameras.begin(), cameras.end(), [&](const Camera& camera) {
                    return inFrustum(box, camera.roomToClip * sceneToRoom_);
@@ -78,35 +79,35 @@ void SandView::update(const sand::tin::SurfaceView& tin, const sand::TinChange& 
     }
 }
 
-DrawnSurface& SandView::surface() const {
+DrawnSurface& ScenePainter::surface() const {
     return grid_ ? static_cast<DrawnSurface&>(*grid_) : static_cast<DrawnSurface&>(*tin_);
 }
 
-SurfaceShaders SandView::shaders() const {
+SurfaceShaders ScenePainter::shaders() const {
     return look_.flatShading ? SurfaceShaders{"facet.vert.glsl", "facet.geom.glsl"} : SurfaceShaders{"sand.vert.glsl"};
 }
 
-void SandView::setTool(sand::ProbePoint centre, bool engaged) {
+void ScenePainter::setTool(sand::ProbePoint centre, bool engaged) {
     const glm::dvec3 cells = glm::dvec3(centre.x, centre.y, centre.z) / double{sand::kProbePerCell};
     tool_ = EyeMemory::Tool{glm::vec3(cells * double{cellSize_}), engaged, toolRadius_, toolShape_, toolHeading_};
 }
 
-void SandView::setTool(sand::ProbePoint centre, bool engaged, const sand::ToolShape& shape,
-                       const sand::Heading& heading) {
+void ScenePainter::setTool(sand::ProbePoint centre, bool engaged, const sand::ToolShape& shape,
+                           const sand::Heading& heading) {
     toolShape_ = shape;
     toolHeading_ = heading;
     toolRadius_ = static_cast<float>(shape.radius * probeUnit_);
     setTool(centre, engaged);
 }
 
-void SandView::setLayers(lockstep::Layers layers) {
+void ScenePainter::setLayers(lockstep::Overlays layers) {
     layers_ = {};
-    for (const lockstep::Layer layer : {lockstep::Layer::wireframe, lockstep::Layer::hillShade}) {
+    for (const lockstep::Overlay layer : {lockstep::Overlay::wireframe, lockstep::Overlay::hillShade}) {
         layers_.set(layer, layers.shows(layer));
     }
 }
 
-void SandView::prepare(const GlProgram& program, const Camera& camera) const {
+void ScenePainter::prepare(const GlProgram& program, const Camera& camera) const {
     program.use();
     program.set("uSceneToRoom", glm::mat4(sceneToRoom_));
     program.set("uRoomToClip", glm::mat4(camera.roomToClip));
@@ -122,7 +123,7 @@ void SandView::prepare(const GlProgram& program, const Camera& camera) const {
     program.set("uModel", glm::vec4(0, 0, 0, 1));
 }
 
-void SandView::prepareTool(const GlProgram& program) const {
+void ScenePainter::prepareTool(const GlProgram& program) const {
     if (!tool_ || !(toolRadius_ > 0)) {
         program.set("uTool", kNoTool);
     } else if (isBall(*tool_)) {
@@ -137,27 +138,27 @@ void SandView::prepareTool(const GlProgram& program) const {
     }
 }
 
-void SandView::prepareSurface(const GlProgram& program, const Camera& camera) const {
+void ScenePainter::prepareSurface(const GlProgram& program, const Camera& camera) const {
     prepare(program, camera);
     surface().prepare(program);
 }
 
-Box SandView::bodyOf(const EyeMemory::Tool& tool) {
+Box ScenePainter::bodyOf(const EyeMemory::Tool& tool) {
     const Box box = boxOfTool(tool.shape);
     return {glm::dvec3(tool.centre) + double{tool.radius} * box.low,
             glm::dvec3(tool.centre) + double{tool.radius} * box.high};
 }
 
-ToolLight SandView::lightOf(const EyeMemory::Tool& tool) {
+ToolLight ScenePainter::lightOf(const EyeMemory::Tool& tool) {
     return {tool.shape, tool.heading, glm::dvec3(tool.centre), double{tool.radius}};
 }
 
-void SandView::draw(const Camera& camera, const EyeTarget& target) {
+void ScenePainter::draw(const Camera& camera, const EyeTarget& target) {
     startCounting();
     drawWithin({0, 0, target.width(), target.height()}, camera, target);
 }
 
-void SandView::drawWithin(const PixelRect& pixels, const Camera& camera, const EyeTarget& target) {
+void ScenePainter::drawWithin(const PixelRect& pixels, const Camera& camera, const EyeTarget& target) {
     const glm::ivec2 size(target.width(), target.height());
     const glm::dmat4 sceneToClip = camera.roomToClip * sceneToRoom_;
     const glm::dmat4 sceneToPart = clipOf(pixels, size) * sceneToClip;
@@ -183,7 +184,7 @@ void SandView::drawWithin(const PixelRect& pixels, const Camera& camera, const E
     }
     const LevelRule rule = ruleFor(camera, size);
     drawSand(camera, sceneToPart, rule);
-    if (layers_.shows(lockstep::Layer::wireframe)) {
+    if (layers_.shows(lockstep::Overlay::wireframe)) {
         drawWires(camera, sceneToPart, rule);
     }
     const GlProgram& wood = woodProgram();
@@ -193,7 +194,7 @@ void SandView::drawWithin(const PixelRect& pixels, const Camera& camera, const E
     glDisable(GL_SCISSOR_TEST);
 }
 
-void SandView::drawTool(const Camera& camera, const glm::dmat4& sceneToPart) {
+void ScenePainter::drawTool(const Camera& camera, const glm::dmat4& sceneToPart) {
     if (tool_ && toolRadius_ > 0 && (!culling_ || inFrustum(bodyOf(*tool_), sceneToPart))) {
         prepare(toolProgram_, camera);
         toolProgram_.set("uModel", glm::vec4(tool_->centre, toolRadius_));
@@ -204,7 +205,7 @@ void SandView::drawTool(const Camera& camera, const glm::dmat4& sceneToPart) {
     }
 }
 
-void SandView::drawForce(const Camera& camera) {
+void ScenePainter::drawForce(const Camera& camera) {
     if (!forceView_) {
         forceView_.emplace();
     }
@@ -212,8 +213,8 @@ void SandView::drawForce(const Camera& camera) {
     forceView_->draw(*force_, toolRadius_);
 }
 
-const SandPrograms& SandView::sandPrograms() {
-    const bool hillShade = layers_.shows(lockstep::Layer::hillShade);
+const SandPrograms& ScenePainter::sandPrograms() {
+    const bool hillShade = layers_.shows(lockstep::Overlay::hillShade);
     const bool ball = !tool_ || isBall(*tool_);
     if (ball && !hillShade) {
         return sunlit_;
@@ -225,7 +226,7 @@ const SandPrograms& SandView::sandPrograms() {
     return *programs;
 }
 
-const GlProgram& SandView::woodProgram() {
+const GlProgram& ScenePainter::woodProgram() {
     if (!tool_ || isBall(*tool_)) {
         return woodProgram_;
     }
@@ -235,7 +236,7 @@ const GlProgram& SandView::woodProgram() {
     return *stampWood_;
 }
 
-void SandView::drawSand(const Camera& camera, const glm::dmat4& sceneToPart, const LevelRule& rule) {
+void ScenePainter::drawSand(const Camera& camera, const glm::dmat4& sceneToPart, const LevelRule& rule) {
     const SandPrograms& programs = sandPrograms();
     prepareSurface(programs.near, camera);
     prepareSurface(programs.far, camera);
@@ -260,7 +261,7 @@ void SandView::drawSand(const Camera& camera, const glm::dmat4& sceneToPart, con
     programs.sides.drawn();
 }
 
-void SandView::drawWires(const Camera& camera, const glm::dmat4& sceneToPart, const LevelRule& rule) {
+void ScenePainter::drawWires(const Camera& camera, const glm::dmat4& sceneToPart, const LevelRule& rule) {
     if (!wireProgram_) {
         wireProgram_.emplace(ProgramFiles{"sand.vert.glsl", "wire.frag.glsl", "sunlit.glsl", "wire.geom.glsl"});
     }
@@ -277,7 +278,7 @@ void SandView::drawWires(const Camera& camera, const glm::dmat4& sceneToPart, co
     glDepthFunc(GL_LESS);
 }
 
-LevelRule SandView::ruleFor(const Camera& camera, glm::ivec2 size) const {
+LevelRule ScenePainter::ruleFor(const Camera& camera, glm::ivec2 size) const {
     // A facet shows how fine the mesh is.
     return {camera.roomToClip * sceneToRoom_, size, look_.flatShading ? 0 : look_.detail};
 }

@@ -62,8 +62,8 @@ struct EyeMemory {
     DrawnLevels levels;
     std::optional<Tool> tool;
     std::optional<ForceArrow> force;
-    lockstep::Layers layers;  // of those that change every pixel of sand
-    PixelRect covered{};      // that something else was drawn over since, and is to go
+    lockstep::Overlays layers;  // of those that change every pixel of sand
+    PixelRect covered{};        // that something else was drawn over since, and is to go
 };
 
 /// The files that place the surface's vertices, and light them or whole triangles.
@@ -89,21 +89,21 @@ struct SandPrograms {
 /// units; `sceneToRoom` (a similarity: turned, moved and scaled alike in all axes) takes them to metres in the room.
 /// Every position and colour is a function of the scene alone, so that the tiles of a wall join. Only the chunks a
 /// camera sees are ever built, sent to GL and drawn. Needs its context current; one thread.
-class SandView {
+class ScenePainter {
 public:
     /// Takes heights, tool radius and look from the scene. Throws std::runtime_error when a shader does not compile.
-    SandView(const sand::Scene& scene, const glm::dmat4& sceneToRoom);
+    ScenePainter(const scene::Scene& scene, const glm::dmat4& sceneToRoom);
     /// The same for a scene whose terrain is a TIN, as the session starts; of scene.terrain the cell size alone counts.
-    SandView(const sand::Scene& scene, const sand::tin::SurfaceView& tin, const glm::dmat4& sceneToRoom);
+    ScenePainter(const scene::Scene& scene, const sand::tin::SurfaceView& tin, const glm::dmat4& sceneToRoom);
 
-    SandView(SandView&&) noexcept;
-    ~SandView();
+    ScenePainter(ScenePainter&&) noexcept;
+    ~ScenePainter();
 
     /// Where the scene stands from now on.
     void setSceneToRoom(const glm::dmat4& sceneToRoom) { sceneToRoom_ = sceneToRoom; }
     /// Takes over the heights of `damage`, which may be empty or reach beyond the field. `field` must have the size
     /// of the scene's; it is copied, not kept.
-    void update(const sand::HeightField& field, sand::Rect damage);
+    void update(const sand::HeightField& field, sand::CellRect damage);
     /// The same of a TIN. With cameras, the only ones that will draw before the next update: what none of them can see
     /// is put off until one can.
     void update(const sand::tin::SurfaceView& tin, const sand::TinChange& damage, std::span<const Camera> cameras = {});
@@ -114,7 +114,7 @@ public:
 
     /// Hill-shade and wireframe; other layers are not drawn here. What a layer needs of GL is made when it is first
     /// drawn, which throws std::runtime_error when a shader does not compile.
-    void setLayers(lockstep::Layers layers);
+    void setLayers(lockstep::Overlays layers);
     /// Draws this arrow from now on, or none, as at first. Likewise.
     void setForce(const std::optional<ForceArrow>& force) { force_ = force; }
 
@@ -137,8 +137,8 @@ public:
     void setDetail(double bound) { look_.detail = bound; }
 
 private:
-    SandView(const sand::Scene& scene, const glm::dmat4& sceneToRoom, std::unique_ptr<SandMesh> grid,
-             std::unique_ptr<TinMesh> tin);
+    ScenePainter(const scene::Scene& scene, const glm::dmat4& sceneToRoom, std::unique_ptr<SandMesh> grid,
+                 std::unique_ptr<TinMesh> tin);
     [[nodiscard]] DrawnSurface& surface() const;
     [[nodiscard]] SurfaceShaders shaders() const;
     void prepare(const GlProgram& program, const Camera& camera) const;
@@ -161,7 +161,7 @@ private:
     [[nodiscard]] std::vector<std::vector<glm::dvec3>> hullsOf(const EyeMemory::Tool& tool) const;
 
     glm::dmat4 sceneToRoom_;
-    sand::Look look_;
+    scene::Look look_;
     glm::vec2 halfPicture_{};  // [pixel], of what is drawn now
     glm::vec3 sun_;            // towards it, of length 1
     float cellSize_;           // [scene unit]
@@ -171,7 +171,7 @@ private:
     sand::Heading toolHeading_;
     std::optional<EyeMemory::Tool> tool_;
     std::optional<ForceArrow> force_;
-    lockstep::Layers layers_;
+    lockstep::Overlays layers_;
     bool culling_ = true;
     DrawCounts counts_;
 

@@ -15,13 +15,13 @@ constexpr std::size_t kMostPasses = 4;  // each of which asks every chunk whethe
 
 }  // namespace
 
-ToolReach SandView::reachOf(const EyeMemory::Tool& tool) const {
+ToolReach ScenePainter::reachOf(const EyeMemory::Tool& tool) const {
     const ToolLight light = lightOf(tool);
     return {light.centre, light.radius, sun_};
 }
 
 /// What a tool changes, as convex hulls: the sand that it dims, its shadow, and itself.
-std::vector<std::vector<glm::dvec3>> SandView::hullsOf(const EyeMemory::Tool& tool) const {
+std::vector<std::vector<glm::dvec3>> ScenePainter::hullsOf(const EyeMemory::Tool& tool) const {
     const ToolReach reach = reachOf(tool);
     const HeightRange sand = surface().heightsEver();
     const double highest = std::max(double{sand.highest}, box_.highest());
@@ -44,7 +44,7 @@ std::vector<std::vector<glm::dvec3>> SandView::hullsOf(const EyeMemory::Tool& to
     return hulls;
 }
 
-std::vector<PixelRect> SandView::changedPixels(const Camera& camera, glm::ivec2 size, EyeMemory& memory) {
+std::vector<PixelRect> ScenePainter::changedPixels(const Camera& camera, glm::ivec2 size, EyeMemory& memory) {
     const PixelRect whole{0, 0, size.x, size.y};
     const glm::dmat4 sceneToClip = camera.roomToClip * sceneToRoom_;
     const LevelRule rule = ruleFor(camera, size);
@@ -82,7 +82,7 @@ std::vector<PixelRect> SandView::changedPixels(const Camera& camera, glm::ivec2 
     return static_cast<double>(area) > kMostOfAll * static_cast<double>(whole.area()) ? std::vector{whole} : changed;
 }
 
-PixelRect SandView::drawIfChanged(const Camera& camera, const EyeTarget& target, EyeMemory& memory) {
+PixelRect ScenePainter::drawIfChanged(const Camera& camera, const EyeTarget& target, EyeMemory& memory) {
     startCounting();
     PixelRect changed;
     for (const PixelRect& rect : changedPixels(camera, {target.width(), target.height()}, memory)) {

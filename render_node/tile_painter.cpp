@@ -25,13 +25,13 @@ void ViewCounts::add(std::int64_t drawn, const EyeTarget& target) {
     pixels += all;
 }
 
-TilePainter::TilePainter(const walls::Wall& wall, const walls::Tile& tile, const sand::Scene& scene, std::string host,
+TilePainter::TilePainter(const walls::Wall& wall, const walls::Tile& tile, const scene::Scene& scene, std::string host,
                          const sand::tin::SurfaceView* tin)
     : wall_(&wall),
       tile_(&tile),
       host_(std::move(host)),
       forceConstants_(scene.force),
-      sand_(tin != nullptr ? SandView(scene, *tin, glm::dmat4(1)) : SandView(scene, glm::dmat4(1))),
+      sand_(tin != nullptr ? ScenePainter(scene, *tin, glm::dmat4(1)) : ScenePainter(scene, glm::dmat4(1))),
       composer_(wall.stereo, tile) {
     makeTargets();
 }
@@ -74,7 +74,7 @@ void TilePainter::paint(sand::Replica& terrain, const lockstep::ViewState& view,
     if (terrain.probe() != sand::ProbePoint{}) {  // a hand has been somewhere
         sand_.setTool(terrain.probe(), terrain.engaged(), terrain.toolShape(), terrain.heading());
     }
-    if (!view.layers.shows(lockstep::Layer::force)) {
+    if (!view.layers.shows(lockstep::Overlay::force)) {
         force_.reset();
     } else if (!force_) {
         force_.emplace(forceConstants_);
@@ -83,7 +83,7 @@ void TilePainter::paint(sand::Replica& terrain, const lockstep::ViewState& view,
     const std::size_t shownEye = frame % targets_.size();
     const EyeRange range = oneEye ? EyeRange{shownEye, shownEye + 1} : EyeRange{0, targets_.size()};
     const auto pattern = static_cast<lockstep::Pattern>(view.pattern);
-    if (!view.layers.shows(lockstep::Layer::statistics)) {
+    if (!view.layers.shows(lockstep::Overlay::statistics)) {
         overlay_.reset();
         uncover(range);
     } else {

@@ -37,7 +37,7 @@ class TilePainter {
 public:
     /// `wall` and `tile` must outlive it; test patterns show the host. Where the scene's terrain is a TIN, `tin` is
     /// that as the scene starts. Throws std::runtime_error when a shader does not compile or a size is refused.
-    TilePainter(const walls::Wall& wall, const walls::Tile& tile, const sand::Scene& scene, std::string host,
+    TilePainter(const walls::Wall& wall, const walls::Tile& tile, const scene::Scene& scene, std::string host,
                 const sand::tin::SurfaceView* tin = nullptr);
 
     /// From now on as another stereo mode of the same wall, on the same outputs. `wall` and `tile` must outlive it.
@@ -48,7 +48,7 @@ public:
 
     /// Brings every eye that differs up to date with `terrain` as `view` sees it, or with its test pattern, and puts
     /// them together; with `oneEye` only that which the frame shows, the left one in even frames. `figures` are shown
-    /// over the sand where the view has Layer::statistics. Does not wait for GL.
+    /// over the sand where the view has Overlay::statistics. Does not wait for GL.
     void paint(sand::Replica& terrain, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye = false,
                const TileFigures& figures = {});
     /// What each output shows, in the order of tile.outputs; good until the next paint().
@@ -77,7 +77,7 @@ private:
     const walls::Tile* tile_;
     std::string host_;
     sand::ForceConstants forceConstants_;
-    SandView sand_;
+    ScenePainter sand_;
     std::optional<ToolForce> force_;  // while its layer is shown
     std::vector<EyeTarget> targets_;
     std::vector<EyeMemory> memories_;  // what each target shows already

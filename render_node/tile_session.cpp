@@ -33,7 +33,7 @@ using host::monotonicNs;
 class TileSession {
 public:
     TileSession(const lockstep::Cluster& cluster, const lockstep::SessionMessage& message, Backend backend,
-                const sand::Erosion::Options& sweeps)
+                const sand::grid::Erosion::Options& sweeps)
         : cluster_(cluster),
           message_(message),
           faults_(message.faults, cluster.rank()),
@@ -46,7 +46,7 @@ public:
             const GlProgram broken(shaderSource("solid.vert.glsl"), shaderSource("light.glsl"),
                                    {"sand.frag.glsl", "spoilt on purpose"});
         }
-        const sand::Scene scene = sand::Scene::decode(message.scene);
+        const scene::Scene scene = scene::Scene::decode(message.scene);
         terrain_.emplace(scene, sweeps);
         painter_.emplace(shown_, shown_.tiles.at(static_cast<std::size_t>(cluster.rank() - 1)), scene,
                          lockstep::hostName(), terrain_->tinView());
@@ -205,7 +205,7 @@ private:
 
 }  // namespace
 
-int showTile(const lockstep::Cluster& cluster, Backend backend, const sand::Erosion::Options& sweeps) {
+int showTile(const lockstep::Cluster& cluster, Backend backend, const sand::grid::Erosion::Options& sweeps) {
     const std::optional<lockstep::SessionMessage> message = lockstep::broadcastSession(cluster, std::nullopt);
     if (!message) {
         return 0;  // the master has said why

@@ -13,6 +13,6 @@ namespace render_node {
 /// until the master says stop. `sweeps` says how its replica is swept. Returns the exit status. Collective with the
 /// master's Session.
 [[nodiscard]] int showTile(const lockstep::Cluster& cluster, Backend backend,
-                           const sand::Erosion::Options& sweeps = {});
+                           const sand::grid::Erosion::Options& sweeps = {});
 
 }  // namespace render_node

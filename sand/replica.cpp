@@ -22,7 +22,7 @@ std::uint64_t mix(std::uint64_t value) {
 
 }  // namespace
 
-Replica::Replica(const Start& start, const Erosion::Options& options)
+Replica::Replica(const Start& start, const grid::Erosion::Options& options)
     : rules_(start.rules),
       startRules_(start.rules),
       cellSize_(start.terrain.cellSize()),
@@ -41,8 +41,8 @@ Replica::Replica(const Replica& other)
 
 Replica& Replica::operator=(const Replica& other) { return *this = Replica(other); }
 
-const GridSurface& Replica::grid() const {
-    const auto* grid = dynamic_cast<const GridSurface*>(surface_.get());
+const grid::GridSurface& Replica::grid() const {
+    const auto* grid = dynamic_cast<const grid::GridSurface*>(surface_.get());
     if (grid == nullptr) {
         throw std::logic_error("Replica: a TIN has no height field");
     }

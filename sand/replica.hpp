@@ -33,7 +33,7 @@ struct StateCopy {
 class Replica {
 public:
     /// `options` say how the sand of a height field is swept, not what comes of it; their ground is that of `start`.
-    explicit Replica(const Start& start, const Erosion::Options& options = {});
+    explicit Replica(const Start& start, const grid::Erosion::Options& options = {});
     Replica(const Replica& other);
     Replica& operator=(const Replica& other);
     Replica(Replica&&) noexcept = default;
@@ -54,7 +54,7 @@ public:
     /// Of a height field; a TIN has none of the three: std::logic_error.
     [[nodiscard]] const HeightField& field() const { return grid().field(); }
     [[nodiscard]] const Ground* ground() const { return grid().ground(); }  // null without rock and walls
-    [[nodiscard]] const Erosion& erosion() const { return grid().erosion(); }
+    [[nodiscard]] const grid::Erosion& erosion() const { return grid().erosion(); }
     /// Null unless the terrain is a TIN.
     [[nodiscard]] const tin::SurfaceView* tinView() const { return surface_->tinView(); }
     [[nodiscard]] std::uint64_t stepNumber() const { return stepNumber_; }
@@ -84,7 +84,7 @@ public:
     [[nodiscard]] std::vector<std::int32_t> valuesOf(int tile) const { return surface_->valuesOf(tile); }
 
     /// The cells that changed since this was called last: one rectangle around them, empty when nothing did.
-    [[nodiscard]] Rect takeDamage() { return surface_->takeDamage(); }
+    [[nodiscard]] CellRect takeDamage() { return surface_->takeDamage(); }
     /// The same of a TIN.
     [[nodiscard]] TinChange takeTinDamage() { return surface_->takeTinDamage(); }
 
@@ -107,7 +107,7 @@ public:
     void corrupt(int column, int row, int bit = 0) { surface_->corrupt(column, row, bit); }
 
 private:
-    [[nodiscard]] const GridSurface& grid() const;
+    [[nodiscard]] const grid::GridSurface& grid() const;
     [[nodiscard]] HeldTool tool() const { return {rules_.toolShape(), heading_}; }
     void tune(const Tuning& tuning);
     void press();

@@ -13,9 +13,9 @@ namespace sand {
 /// What a replica starts with. Equal starts and equal steps make equal sand.
 struct Start {
     Rules rules;
-    HeightField terrain{1, 1, 1.0};         // of a TIN one cell, for its nominal size
-    std::shared_ptr<const tin::Start> tin;  // null for a height field
-    std::shared_ptr<const Ground> ground;   // null without rock and walls
+    HeightField terrain{1, 1, 1.0};            // of a TIN one cell, for its nominal size
+    std::shared_ptr<const tin::TinStart> tin;  // null for a height field
+    std::shared_ptr<const Ground> ground;      // null without rock and walls
 
     [[nodiscard]] double toolRadius() const {  // [scene unit]
         return rules.toolRadius * terrain.cellSize() / kProbePerCell;

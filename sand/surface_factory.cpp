@@ -6,11 +6,11 @@
 
 namespace sand {
 
-std::unique_ptr<Surface> makeSurface(const Start& start, const Erosion::Options& options) {
+std::unique_ptr<Surface> makeSurface(const Start& start, const grid::Erosion::Options& options) {
     if (start.tin != nullptr) {
         return std::make_unique<tin::TinSurface>(start.rules, start.tin);
     }
-    return std::make_unique<GridSurface>(start.rules, start.terrain, start.ground, options);
+    return std::make_unique<grid::GridSurface>(start.rules, start.terrain, start.ground, options);
 }
 
 }  // namespace sand

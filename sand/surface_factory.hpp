@@ -11,6 +11,6 @@ namespace sand {
 
 /// The sand that a replica starts with. `options` say how the sand of a height field is swept, not what comes of it;
 /// their ground is that of `start`.
-[[nodiscard]] std::unique_ptr<Surface> makeSurface(const Start& start, const Erosion::Options& options = {});
+[[nodiscard]] std::unique_ptr<Surface> makeSurface(const Start& start, const grid::Erosion::Options& options = {});
 
 }  // namespace sand

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace sand {
+namespace scene {
 namespace {
 
 constexpr std::size_t kLongestText = 1 << 16;  // [byte]: the WKT of a compound system takes a tenth of it
@@ -51,4 +51,4 @@ Georeference Georeference::decode(base::ByteReader& reader) {
     return result;
 }
 
-}  // namespace sand
+}  // namespace scene

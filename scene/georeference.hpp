@@ -5,7 +5,7 @@
 
 #include "base/byte_stream.hpp"
 
-namespace sand {
+namespace scene {
 
 /// What the lengths and heights of a raster are. Programs hold heights in the unit of lengths, whatever the file's.
 struct RasterUnits {
@@ -34,4 +34,4 @@ struct Georeference {
     static Georeference decode(base::ByteReader& reader);
 };
 
-}  // namespace sand
+}  // namespace scene

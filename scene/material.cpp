@@ -11,10 +11,10 @@
 #include "base/input_error.hpp"
 #include "scene/scene.hpp"
 
-namespace sand {
+namespace scene {
 namespace {
 
-constexpr double kLargestTool = double{kLargestToolRadius} / kProbePerCell;  // [cell]
+constexpr double kLargestTool = double{sand::kLargestToolRadius} / sand::kProbePerCell;  // [cell]
 
 constexpr std::array<MaterialKey, 6> kMaterialKeys{{
     {"talus_deg", "talus", 0, 90, true, [](Material& m, double value) { m.dryTalus = value; }},
@@ -26,23 +26,23 @@ constexpr std::array<MaterialKey, 6> kMaterialKeys{{
 }};
 
 double thresholdOf(const Material& material) {
-    return std::min(std::floor(std::tan(material.talus() * std::numbers::pi / 180) * kUnitsPerCell + 0.5),
-                    double{kLargestThreshold});
+    return std::min(std::floor(std::tan(material.talus() * std::numbers::pi / 180) * sand::kUnitsPerCell + 0.5),
+                    double{sand::kLargestThreshold});
 }
 
 /// How many sweeps a step needs for sand beside the tool to rest after the settling time. A disturbance of R cells
 /// needs about R² sweeps to come within a percent, and 2.4 R² without inertia (R = 12: 144 and 350). With fewer than
 /// four a step, no inertia would arise.
-std::int32_t sweepsFor(Scheme scheme, double radius /* [cell] */, double settlingSeconds, int stepsPerSecond) {
-    const double perSquare = scheme == Scheme::isotropic ? 1.0 : 2.4;
+std::int32_t sweepsFor(sand::Scheme scheme, double radius /* [cell] */, double settlingSeconds, int stepsPerSecond) {
+    const double perSquare = scheme == sand::Scheme::isotropic ? 1.0 : 2.4;
     const double sweeps = perSquare * radius * radius / (settlingSeconds * stepsPerSecond);
-    return static_cast<std::int32_t>(std::clamp(std::ceil(sweeps), 4.0, double{kMostSweeps}));
+    return static_cast<std::int32_t>(std::clamp(std::ceil(sweeps), 4.0, double{sand::kMostSweeps}));
 }
 
 /// What of the tool's shape cannot be.
 std::optional<MaterialFault> toolFaultOf(const Material& material, const MaterialGrid& grid) {
-    const std::string_view name = toolName(material.toolKind);
-    if (material.toolWidth && isRound(material.toolKind)) {
+    const std::string_view name = sand::toolName(material.toolKind);
+    if (material.toolWidth && sand::isRound(material.toolKind)) {
         return MaterialFault{"width", fmt::format("a {} is as wide as it is long; leave width out", name)};
     }
     // Written so that what is no number is out of range.
@@ -50,11 +50,12 @@ std::optional<MaterialFault> toolFaultOf(const Material& material, const Materia
         return MaterialFault{"width", fmt::format("a tool's width over its length must be within [{}, 1], got {}",
                                                   kNarrowestTool, width)};
     }
-    if (material.leftFoot && material.toolKind != ToolKind::footprint) {
+    if (material.leftFoot && material.toolKind != sand::ToolKind::footprint) {
         return MaterialFault{"foot", fmt::format("left and right are of a footprint, not of this {}", name)};
     }
     const double length = 2 * material.toolRadius;
-    if (const double side = grid.longerSide * grid.cellSize; material.toolKind != ToolKind::sphere && length > side) {
+    if (const double side = grid.longerSide * grid.cellSize;
+        material.toolKind != sand::ToolKind::sphere && length > side) {
         return MaterialFault{"radius", fmt::format("a {} of radius {} is {} long, and the field {}", name,
                                                    material.toolRadius, length, side)};
     }
@@ -90,22 +91,22 @@ std::optional<MaterialFault> faultOf(const Material& material, const MaterialGri
     return std::nullopt;
 }
 
-Tuning tuningOf(const Material& material, const MaterialGrid& grid) {
+sand::Tuning tuningOf(const Material& material, const MaterialGrid& grid) {
     const double threshold = thresholdOf(material);
-    const double cohesion = material.humidity * material.cohesionLength / (grid.cellSize / kUnitsPerCell);
+    const double cohesion = material.humidity * material.cohesionLength / (grid.cellSize / sand::kUnitsPerCell);
     const double start = std::max(std::floor(threshold * (1 + material.band)), std::floor(cohesion));
-    Tuning tuning;
+    sand::Tuning tuning;
     tuning.threshold = static_cast<std::int32_t>(threshold);
-    tuning.startThreshold = static_cast<std::int32_t>(std::min(start, double{kLargestThreshold}));
+    tuning.startThreshold = static_cast<std::int32_t>(std::min(start, double{sand::kLargestThreshold}));
     tuning.toolRadius =
-        static_cast<std::int32_t>(std::floor(material.toolRadius / grid.cellSize * kProbePerCell + 0.5));
+        static_cast<std::int32_t>(std::floor(material.toolRadius / grid.cellSize * sand::kProbePerCell + 0.5));
     tuning.toolKind = material.toolKind;
-    if (!isRound(material.toolKind)) {
-        const double width = material.toolWidth.value_or(usualWidth(material.toolKind));
+    if (!sand::isRound(material.toolKind)) {
+        const double width = material.toolWidth.value_or(sand::usualWidth(material.toolKind));
         tuning.toolHalfWidth = static_cast<std::int32_t>(std::floor(width * tuning.toolRadius + 0.5));
     }
-    tuning.toolHeading = headingOf(material.toolHeading, material.leftFoot).value_or(Heading{});
-    tuning.sweepsPerStep = sweepsFor(grid.scheme, static_cast<double>(tuning.toolRadius) / kProbePerCell,
+    tuning.toolHeading = sand::headingOf(material.toolHeading, material.leftFoot).value_or(sand::Heading{});
+    tuning.sweepsPerStep = sweepsFor(grid.scheme, static_cast<double>(tuning.toolRadius) / sand::kProbePerCell,
                                      material.settlingSeconds, grid.stepsPerSecond);
     return tuning;
 }
@@ -129,11 +130,11 @@ Material withNumber(Material material, std::string_view word, double value, cons
 
 Material withTool(Material material, const ToolChange& change, const MaterialGrid& grid) {
     // A scene without a tool to speak of may be; a tool that vanishes under somebody's hand may not.
-    const double least = grid.cellSize / kProbePerCell;
+    const double least = grid.cellSize / sand::kProbePerCell;
     if (change.radius && !(*change.radius >= least)) {
         throw base::InputError(fmt::format("a tool's radius must be at least {:.3g}, got {}", least, *change.radius));
     }
-    if (change.heading && !headingOf(*change.heading)) {
+    if (change.heading && !sand::headingOf(*change.heading)) {
         throw base::InputError("a tool's heading must be a number of degrees");
     }
     if (change.kind && *change.kind != material.toolKind) {
@@ -148,4 +149,4 @@ Material withTool(Material material, const ToolChange& change, const MaterialGri
     return checked(material, grid);
 }
 
-}  // namespace sand
+}  // namespace scene

@@ -9,8 +9,10 @@
 #include "sand/model/tuning.hpp"
 
 namespace sand {
-
 enum class Scheme : std::uint8_t;
+}
+
+namespace scene {
 
 /// Material and tool in the units of a scene file. Stays with whoever has read the file: replicas get what follows.
 struct Material {
@@ -21,7 +23,7 @@ struct Material {
     double band = 0.001;             // share of the threshold beyond which sand at rest starts to slide
     double settlingSeconds = 0.1;    // until sand beside the tool rests
     double toolRadius = 0.01;        // [scene unit], half of its length; the default is the first paper's sphere
-    ToolKind toolKind = ToolKind::sphere;
+    sand::ToolKind toolKind = sand::ToolKind::sphere;
     std::optional<double> toolWidth;  // over its length; none: the kind's usual one
     double toolHeading = 0;           // [deg] from east, counter-clockwise; where a footprint's toes point
     bool leftFoot = false;            // a footprint is of a right foot, unless
@@ -45,7 +47,7 @@ struct MaterialKey {
 
 /// What the numbers are used with.
 struct MaterialGrid {
-    Scheme scheme;
+    sand::Scheme scheme;
     int stepsPerSecond;
     double cellSize;  // [scene unit]
     int longerSide;   // of the field [cell]
@@ -58,7 +60,7 @@ struct MaterialFault {
 [[nodiscard]] std::optional<MaterialFault> faultOf(const Material& material, const MaterialGrid& grid);
 /// The integers that sand is computed from, of a material without fault. Nobody else may compute them again: libm's
 /// last digit differs from host to host.
-[[nodiscard]] Tuning tuningOf(const Material& material, const MaterialGrid& grid);
+[[nodiscard]] sand::Tuning tuningOf(const Material& material, const MaterialGrid& grid);
 
 /// An operator's command: the material with one number changed. Throws base::InputError with the keys there are or
 /// the range, in one line.
@@ -68,7 +70,7 @@ inline constexpr double kNarrowestTool = 0.05;  // width over length
 /// What an operator changes of the tool; what is left out stays as it is, but for the width of another kind, which is
 /// then its usual one.
 struct ToolChange {
-    std::optional<ToolKind> kind{};
+    std::optional<sand::ToolKind> kind{};
     std::optional<double> radius{};   // [scene unit]
     std::optional<double> width{};    // over the length
     std::optional<double> heading{};  // [deg]
@@ -77,4 +79,4 @@ struct ToolChange {
 /// The same for the tool.
 [[nodiscard]] Material withTool(Material material, const ToolChange& change, const MaterialGrid& grid);
 
-}  // namespace sand
+}  // namespace scene

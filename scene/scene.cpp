@@ -3,7 +3,7 @@
 
 #include "sand/model/grid_codec.hpp"
 
-namespace sand {
+namespace scene {
 namespace {
 
 /// What may stand at the end of a scene, each with its length in bytes.
@@ -36,12 +36,12 @@ base::Bytes Scene::encode() const {
         }
     }
     writer.put(terrain.cellSize());
-    encodeCells(terrain.cells(), terrain.bounds(), writer);
+    sand::encodeCells(terrain.cells(), terrain.bounds(), writer);
     if (tin != nullptr) {
         tin->encode(writer);
     }
     if (ground != nullptr) {
-        encodeCells(ground->cells(), terrain.bounds(), writer);
+        sand::encodeCells(ground->cells(), terrain.bounds(), writer);
     }
     writer.put(static_cast<std::uint8_t>((look.hillShade ? 1 : 0) | (look.flatShading ? 2 : 0)));
     writer.put(look.detail);
@@ -55,17 +55,17 @@ base::Bytes Scene::encode() const {
     return writer.take();
 }
 
-Rules Scene::decodeRules(std::span<const std::uint8_t> bytes) {
+sand::Rules Scene::decodeRules(std::span<const std::uint8_t> bytes) {
     base::ByteReader reader(bytes);
     (void)reader.getText();  // the name
-    return Rules::decode(reader);
+    return sand::Rules::decode(reader);
 }
 
 Scene Scene::decode(std::span<const std::uint8_t> bytes) {
     base::ByteReader reader(bytes);
     Scene scene;
     scene.name = reader.getText();
-    scene.rules = Rules::decode(reader);
+    scene.rules = sand::Rules::decode(reader);
     for (double* constant : {&scene.force.stiffness, &scene.force.depthExponent, &scene.force.friction}) {
         *constant = reader.get<double>();
     }
@@ -79,16 +79,16 @@ Scene Scene::decode(std::span<const std::uint8_t> bytes) {
         throw base::FormatError("a scene without a cell size");
     }
     const bool grid = scene.rules.tin == 0;
-    scene.terrain = HeightField(grid ? scene.rules.columns : 1, grid ? scene.rules.rows : 1, cellSize);
-    decodeCells(reader, scene.terrain.bounds(), kMaxHeight, scene.terrain.cells());
+    scene.terrain = sand::HeightField(grid ? scene.rules.columns : 1, grid ? scene.rules.rows : 1, cellSize);
+    sand::decodeCells(reader, scene.terrain.bounds(), sand::kMaxHeight, scene.terrain.cells());
     if (!grid) {
-        scene.tin = std::make_shared<const tin::Start>(tin::Start::decode(reader));
+        scene.tin = std::make_shared<const sand::tin::TinStart>(sand::tin::TinStart::decode(reader));
         if (scene.tin->digest() != scene.rules.tin || scene.rules.ground != 0) {
             throw base::FormatError("a scene whose TIN is not that of its rules");
         }
     }
     if (scene.rules.ground != 0) {
-        scene.ground = std::make_shared<const Ground>(Ground::decode(reader, scene.terrain));
+        scene.ground = std::make_shared<const sand::Ground>(sand::Ground::decode(reader, scene.terrain));
         if (scene.ground->digest() != scene.rules.ground) {
             throw base::FormatError("a scene whose ground is not that of its rules");
         }
@@ -104,4 +104,4 @@ Scene Scene::decode(std::span<const std::uint8_t> bytes) {
     return scene;
 }
 
-}  // namespace sand
+}  // namespace scene

@@ -12,7 +12,7 @@
 #include "scene/georeference.hpp"
 #include "scene/material.hpp"
 
-namespace sand {
+namespace scene {
 
 /// What to look at, not what to compute: never part of a digest.
 struct Look {
@@ -26,9 +26,9 @@ struct Look {
 };
 
 /// One session's world, read from a TOML file: what every replica starts with, material, force, look.
-struct Scene : Start {
+struct Scene : sand::Start {
     std::string name;
-    ForceConstants force;
+    sand::ForceConstants force;
     Look look;
     Georeference georeference;          // where the terrain came from; as it begins where it came from nowhere
     std::vector<std::string> warnings;  // one line each, for whoever loads it to print
@@ -43,7 +43,7 @@ struct Scene : Start {
     /// Throws base::FormatError.
     static Scene decode(std::span<const std::uint8_t> bytes);
     /// Decodes the rules only, which say how large the rest is. Throws base::FormatError.
-    static Rules decodeRules(std::span<const std::uint8_t> bytes);
+    static sand::Rules decodeRules(std::span<const std::uint8_t> bytes);
 };
 
-}  // namespace sand
+}  // namespace scene

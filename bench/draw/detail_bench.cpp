@@ -22,9 +22,9 @@ struct Sums {
 };
 
 /// Dunes with a furrow, and sand that has slid into it.
-sand::Scene dunesOf(int side, std::uint32_t seed) {
-    sand::Scene scene = sample::flatScene(side, side, 0.01);
-    sand::makeDunes({.height = 0.012, .length = 0.08, .seed = seed}, scene.terrain);  // crests in every chunk
+scene::Scene dunesOf(int side, std::uint32_t seed) {
+    scene::Scene scene = sample::flatScene(side, side, 0.01);
+    sand::grid::makeDunes({.height = 0.012, .length = 0.08, .seed = seed}, scene.terrain);  // crests in every chunk
     sand::Replica terrain(scene);
     sample::drag(terrain, scene, {0.6, 0.7, 0.0}, {1.1, 1.0, 0.0});
     scene.terrain = terrain.field();
@@ -44,7 +44,7 @@ void addDifference(const sample::Pixels& exact, const sample::Pixels& picture, S
 }
 
 /// One frame at one bound, built once before it is timed.
-sample::Pixels drawFrame(render_node::SandView& view, const render_node::Camera& camera,
+sample::Pixels drawFrame(render_node::ScenePainter& view, const render_node::Camera& camera,
                          const render_node::EyeTarget& target, int runs, Sums& sums) {
     view.draw(camera, target);
     target.finish();
@@ -64,7 +64,7 @@ void measure(int side, int frames, const bench::Settings& settings, bench::Csv& 
     const std::vector<double> bounds{0, 0.25, 0.5, 1, 2, 4};
     std::vector<Sums> sums(bounds.size());
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
-    render_node::SandView view(dunesOf(side, settings.seed), glm::dmat4(1));
+    render_node::ScenePainter view(dunesOf(side, settings.seed), glm::dmat4(1));
     const render_node::EyeTarget target(kWidth, kHeight);
     for (int frame = 0; frame < frames; ++frame) {
         bench::progress("N = {}, frame {} of {}", side, frame + 1, frames);

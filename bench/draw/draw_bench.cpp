@@ -25,14 +25,14 @@ sample::Window windowOf(int tile) {
 /// Argument 0: whether chunks that a tile does not see are left out. Argument 1: cells on a side.
 void drawWall(benchmark::State& state) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
-    const sand::Scene scene = sample::duneScene(static_cast<int>(state.range(1)));
+    const scene::Scene scene = sample::duneScene(static_cast<int>(state.range(1)));
     const render_node::EyeTarget target(1024, 768);
     const bool culling = state.range(0) != 0;
     // One view per tile, as on the ranks: each holds only what its tile sees.
     double chunks = 0;
     double kilobytes = 0;
     for (int tile = 0; tile < kAcross * kDown; ++tile) {
-        render_node::SandView view(scene, glm::dmat4(1));
+        render_node::ScenePainter view(scene, glm::dmat4(1));
         view.setCulling(culling);
         view.draw(sample::camera({1, 0.2, 0.9}, {1, 1, 0}, windowOf(tile)), target);
         target.finish();
@@ -40,7 +40,7 @@ void drawWall(benchmark::State& state) {
         kilobytes += static_cast<double>(view.geometryBytes()) / 1024;
         state.counters["chunks_of_field"] = view.counts().chunksOfField;
     }
-    render_node::SandView view(scene, glm::dmat4(1));
+    render_node::ScenePainter view(scene, glm::dmat4(1));
     view.setCulling(culling);
     int tile = 0;
     for (auto _ : state) {
@@ -65,9 +65,9 @@ BENCHMARK(drawWall)
 /// The head moves, so that all of a tile is drawn in every frame, and chunks come into view. Argument: cells on a side.
 void moveHead(benchmark::State& state) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
-    const sand::Scene scene = sample::duneScene(static_cast<int>(state.range(0)));
+    const scene::Scene scene = sample::duneScene(static_cast<int>(state.range(0)));
     const render_node::EyeTarget target(1024, 768);
-    render_node::SandView view(scene, glm::dmat4(1));
+    render_node::ScenePainter view(scene, glm::dmat4(1));
     render_node::EyeMemory memory;
     int frame = 0;
     for (auto _ : state) {
@@ -89,9 +89,9 @@ BENCHMARK(moveHead)
 /// A new furrow: the damaged heights to the view, and what is drawn of them.
 void updateDamage(benchmark::State& state) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
-    const sand::Scene scene = sample::duneScene(512);
+    const scene::Scene scene = sample::duneScene(512);
     const render_node::EyeTarget target(64, 48);
-    render_node::SandView view(scene, glm::dmat4(1));
+    render_node::ScenePainter view(scene, glm::dmat4(1));
     const int side = static_cast<int>(state.range(0));
     for (auto _ : state) {
         view.update(scene.terrain, {200, 200, 200 + side, 200 + side});
@@ -106,13 +106,13 @@ BENCHMARK(updateDamage)->ArgName("cells")->Arg(0)->Arg(64)->Arg(312)->Unit(bench
 void dig(benchmark::State& state) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     const int side = static_cast<int>(state.range(1));
-    sand::Scene scene = sample::flatScene(side, side, 0.01);
-    sand::makeDunes({.height = 0.02}, scene.terrain);  // at rest as they are
+    scene::Scene scene = sample::flatScene(side, side, 0.01);
+    sand::grid::makeDunes({.height = 0.02}, scene.terrain);  // at rest as they are
     // As many as a scene file gives it.
     const double radius = 0.01 / scene.terrain.cellSize();
     scene.rules.sweepsPerStep = std::max(4, static_cast<int>(std::ceil(radius * radius / 6)));
     sand::Replica terrain(scene);
-    render_node::SandView view(scene, glm::dmat4(1));
+    render_node::ScenePainter view(scene, glm::dmat4(1));
     const render_node::EyeTarget target(1024, 768);
     const sample::Window window{0.25, 0.25, 0.75, 0.75};
     const render_node::Camera camera = sample::camera({1, 0.2, 0.9}, {1, 1, 0}, window);
@@ -142,12 +142,12 @@ BENCHMARK(dig)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
-/// A tile of the wall with what is shown beside the sand. Argument 0: Layers::bits().
+/// A tile of the wall with what is shown beside the sand. Argument 0: Overlays::bits().
 void layers(benchmark::State& state) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
-    const sand::Scene scene = sample::duneScene(512);
-    render_node::SandView view(scene, glm::dmat4(1));
-    view.setLayers(lockstep::Layers(static_cast<std::uint8_t>(state.range(0))));
+    const scene::Scene scene = sample::duneScene(512);
+    render_node::ScenePainter view(scene, glm::dmat4(1));
+    view.setLayers(lockstep::Overlays(static_cast<std::uint8_t>(state.range(0))));
     const render_node::EyeTarget target(1024, 768);
     const render_node::Camera camera = sample::camera({1, 0.2, 0.9}, {1, 1, 0}, windowOf(6));
     view.draw(camera, target);

@@ -33,7 +33,7 @@ struct Options {
 
 /// A tile as a rank has it.
 struct Tile {
-    render_node::SandView view;
+    render_node::ScenePainter view;
     struct Eye {
         render_node::Camera camera;
         render_node::EyeTarget target;
@@ -42,7 +42,7 @@ struct Tile {
     std::vector<std::unique_ptr<Eye>> eyes;
 };
 
-std::vector<std::unique_ptr<Tile>> tilesOf(const walls::Wall& wall, const sand::Scene& scene,
+std::vector<std::unique_ptr<Tile>> tilesOf(const walls::Wall& wall, const scene::Scene& scene,
                                            const sand::tin::SurfaceView* tin) {
     const sand::HeightField& field = scene.terrain;
     const double cell = field.cellSize();
@@ -50,8 +50,8 @@ std::vector<std::unique_ptr<Tile>> tilesOf(const walls::Wall& wall, const sand::
                                                       scene.referenceHeight() * field.unit());
     std::vector<std::unique_ptr<Tile>> tiles;
     for (const walls::Tile& tile : wall.tiles) {
-        tiles.push_back(std::make_unique<Tile>(Tile{tin != nullptr ? render_node::SandView(scene, *tin, sceneToRoom)
-                                                                   : render_node::SandView(scene, sceneToRoom),
+        tiles.push_back(std::make_unique<Tile>(Tile{tin != nullptr ? render_node::ScenePainter(scene, *tin, sceneToRoom)
+                                                                   : render_node::ScenePainter(scene, sceneToRoom),
                                                     {}}));
         for (const walls::Eye eye : walls::eyesOf(wall.stereo)) {
             const walls::View seen = walls::viewOf(wall, tile, eye);
@@ -106,12 +106,12 @@ struct Damage {
             cells = terrain.takeDamage();
         }
     }
-    sand::Rect cells;
+    sand::CellRect cells;
     sand::TinChange triangles;
 };
 
 void takeOver(Tile& tile, const sand::Replica& terrain, const Damage& damage) {
-    render_node::SandView& view = tile.view;
+    render_node::ScenePainter& view = tile.view;
     if (const sand::tin::SurfaceView* tin = terrain.tinView()) {
         std::vector<render_node::Camera> cameras;
         for (const auto& eye : tile.eyes) {
@@ -164,7 +164,7 @@ void show(const std::vector<std::unique_ptr<Tile>>& tiles, sand::Replica& terrai
 
 int measure(const Options& options) {
     const walls::Wall wall = walls::loadWall(options.wall);
-    const sand::Scene scene = sand::loadScene(options.scene);
+    const scene::Scene scene = scene::loadScene(options.scene);
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     sand::Replica terrain(scene);
     const std::vector<std::unique_ptr<Tile>> tiles = tilesOf(wall, scene, terrain.tinView());

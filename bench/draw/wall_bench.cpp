@@ -41,7 +41,7 @@ void main() { oColour = vec4(vColour, 1.0); })"};
 /// Draws the sand and nothing else, as plainly as can be.
 class BareView {
 public:
-    explicit BareView(const sand::Scene& scene)
+    explicit BareView(const scene::Scene& scene)
         : mesh_(scene.terrain, {0, 0, 1}), program_(kBareVertex, {}, kBareFragment) {}
 
     void draw(const glm::dmat4& sceneToClip, const render_node::EyeTarget& target) {
@@ -74,7 +74,7 @@ std::vector<render_node::Camera> camerasOf(const walls::Wall& wall) {
 
 int measure(const std::string& wallFile, const std::string& sceneFile, int rounds, bool json) {
     const walls::Wall wall = walls::loadWall(wallFile);
-    const sand::Scene scene = sand::loadScene(sceneFile);
+    const scene::Scene scene = scene::loadScene(sceneFile);
     const sand::HeightField& field = scene.terrain;
     const glm::dmat4 sceneToRoom =
         walls::stageToRoom(wall.stage, field.columns() * field.cellSize(), field.rows() * field.cellSize(),
@@ -83,7 +83,7 @@ int measure(const std::string& wallFile, const std::string& sceneFile, int round
     const glm::ivec2 pixels = wall.tiles.front().pixels;
     const render_node::EyeTarget target(pixels.x, pixels.y);
     const std::vector<render_node::Camera> cameras = camerasOf(wall);
-    render_node::SandView sand(scene, sceneToRoom);
+    render_node::ScenePainter sand(scene, sceneToRoom);
     BareView bare(scene);
     std::vector<double> bareMs, sandMs, ratios;
     for (int round = -1; round < rounds; ++round) {  // the first compiles shaders and fills buffers

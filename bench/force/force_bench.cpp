@@ -30,7 +30,7 @@ sand::HeightField ripples(int side) {
 sand::ProbePoint middle(int side) { return {side / 2 * sand::kProbePerCell, side / 2 * sand::kProbePerCell, 0}; }
 
 /// The same on a TIN with a vertex in the middle of every cell, beside one another as far as the tool reaches.
-sand::tin::Layer tinRipples(int side) {
+sand::tin::VertexSand tinRipples(int side) {
     sand::tin::Mesh mesh(side * sand::kProbePerCell, side * sand::kProbePerCell);
     std::vector<sand::tin::Place> places;
     places.reserve(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
@@ -39,14 +39,14 @@ sand::tin::Layer tinRipples(int side) {
             {(cell % side * 2 + 1) * sand::kProbePerCell / 2, (cell / side * 2 + 1) * sand::kProbePerCell / 2});
     }
     mesh.insert(places);
-    sand::tin::Layer layer(std::move(mesh));
+    sand::tin::VertexSand layer(std::move(mesh));
     for (sand::tin::Vertex vertex = 4; vertex < static_cast<sand::tin::Vertex>(places.size() + 4); ++vertex) {
         layer.setHeight(vertex, (((vertex - 4) % side * 7 + (vertex - 4) / side * 13) % 64) * 1024);
     }
     return layer;
 }
 
-sand::tin::SurfaceView viewOf(const sand::tin::Layer& layer) { return {layer.triangles(), layer.heights()}; }
+sand::tin::SurfaceView viewOf(const sand::tin::VertexSand& layer) { return {layer.triangles(), layer.heights()}; }
 
 /// ForceModel::at with another surface every sixteenth tick.
 void tick(benchmark::State& state, const sand::force::SurfacePatch& patch, double side /* [cell] */) {
@@ -89,7 +89,7 @@ BENCHMARK(forceTick)
 
 /// range: law, radius [cell].
 void forceTickOfTin(benchmark::State& state) {
-    const sand::tin::Layer layer = tinRipples(kTinSide);
+    const sand::tin::VertexSand layer = tinRipples(kTinSide);
     const double radius = static_cast<double>(state.range(1)) * kCell;
     const sand::force::SurfacePatch patch(viewOf(layer), kCell, middle(kTinSide), radius);
     tick(state, patch, kTinSide);
@@ -109,7 +109,7 @@ BENCHMARK(surfacePatch)->Arg(2)->Arg(10)->Arg(50);
 
 /// The same of a TIN, in the memory of the one before.
 void facets(benchmark::State& state) {
-    const sand::tin::Layer layer = tinRipples(kTinSide);
+    const sand::tin::VertexSand layer = tinRipples(kTinSide);
     sand::force::Facets facets;
     const auto reach = static_cast<std::int32_t>(std::max<std::int64_t>(4 * state.range(0), 8)) * sand::kProbePerCell;
     for (auto step : state) {

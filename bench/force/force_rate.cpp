@@ -46,8 +46,8 @@ sand::ProbePoint probeAt(Vec3 place) {
     return {probe(place.x), probe(place.y), probe(place.z)};
 }
 
-sand::Scene sceneOf(int side) {
-    sand::Scene scene;
+scene::Scene sceneOf(int side) {
+    scene::Scene scene;
     scene.terrain = sand::HeightField(side, side, kRadius / kCells);
     scene.rules.columns = scene.rules.rows = side;
     scene.rules.threshold = 44204;  // 34 degrees

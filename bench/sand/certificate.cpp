@@ -16,14 +16,14 @@ namespace {
 /// The end of a relaxation, and what passed every face on the way.
 struct Relaxed {
     sand::HeightField field;
-    sand::NetFlux flux;
+    sand::grid::NetFlux flux;
 };
 
 Relaxed swept(const sand::HeightField& start, const sand::Rules& rules, sand::Scheme scheme) {
     Relaxed result{start, {start.columns(), start.rows()}};
     sand::Rules own = rules;
     own.scheme = scheme;
-    sand::Erosion erosion(start, own);
+    sand::grid::Erosion erosion(start, own);
     while (!erosion.settled()) {
         erosion.sweep(result.field, 1);
         erosion.addFluxes(result.flux);
@@ -32,7 +32,7 @@ Relaxed swept(const sand::HeightField& start, const sand::Rules& rules, sand::Sc
 }
 
 Relaxed byFourNeighbours(const sand::HeightField& start, const sand::Rules& rules) {
-    sand::NetFlux flux(start.columns(), start.rows());
+    sand::grid::NetFlux flux(start.columns(), start.rows());
     IntegerN4 n4(start, rules);
     while (!n4.atRest()) {
         n4.sweep(1);
@@ -43,7 +43,7 @@ Relaxed byFourNeighbours(const sand::HeightField& start, const sand::Rules& rule
 
 Relaxed bySettle(const sand::HeightField& start, const sand::Rules& rules) {
     Relaxed result{start, {start.columns(), start.rows()}};
-    sand::settle(result.field, rules, &result.flux);
+    sand::grid::settle(result.field, rules, &result.flux);
     return result;
 }
 
@@ -71,10 +71,10 @@ double squaredDistance(const sand::HeightField& a, const sand::HeightField& b) {
 
 /// The start projected onto the fields without a quad steeper than the talus.
 sand::HeightField projected(const sand::HeightField& start, const sand::Rules& rules) {
-    sand::DualProjection projection(start, rules);
+    sand::grid::DualProjection projection(start, rules);
     projection.run();
-    sand::NetFlux flux(start.columns(), start.rows());
-    const sand::Rect& box = projection.box();
+    sand::grid::NetFlux flux(start.columns(), start.rows());
+    const sand::CellRect& box = projection.box();
     for (int y = box.y0; y < box.y1; ++y) {
         for (int x = box.x0; x < box.x1; ++x) {
             flux.east(y)[x] = projection.eastFlux(x, y);
@@ -102,7 +102,7 @@ void certificate(const Settings& settings, Csv& csv) {
                 progress("{} pile, N = {}, {}", pile.name, side, name);
                 const sand::Rules rules = rulesFor(pile.start);
                 const Relaxed rest = relax(name, pile.start, rules);
-                const sand::Certificate proof = sand::certify(pile.start, rest.field, rest.flux, rules);
+                const sand::grid::Certificate proof = sand::grid::certify(pile.start, rest.field, rest.flux, rules);
                 const double truth = squaredDistance(projected(pile.start, rules), rest.field) / proof.squaredMoved;
                 csv.row(pile.name, name, side, proof.relative(), truth);
             }

@@ -22,8 +22,8 @@ struct Stroke {
     int sweeps;            // per step
 };
 
-sand::Scene sceneFor(const Stroke& stroke) {
-    sand::Scene scene;
+scene::Scene sceneFor(const Stroke& stroke) {
+    scene::Scene scene;
     scene.terrain = sand::HeightField(stroke.side, stroke.side, 1.0);
     scene.rules = rulesFor(scene.terrain, kTalus, 1e-3);
     scene.rules.sweepsPerStep = stroke.sweeps;
@@ -69,9 +69,9 @@ double behind(const sand::HeightField& field, const sand::HeightField& rest) { r
 Lag lagOf(sand::Replica& terrain, const Stroke& stroke) {
     Lag lag;
     const sand::HeightField end = terrain.field();
-    const sand::Obstacle tool = sand::Tool(terrain.toolShape()).obstacle(end, terrain.probe());
+    const sand::grid::Obstacle tool = sand::grid::Displacement(terrain.toolShape()).obstacle(end, terrain.probe());
     sand::HeightField held = end;
-    sand::Erosion(held, terrain.rules()).sweep(held, kMostSweeps, &tool);
+    sand::grid::Erosion(held, terrain.rules()).sweep(held, kMostSweeps, &tool);
     sand::HeightField lifted = end;
     sweepToRest(lifted, terrain.rules());
     lag.held = behind(end, held);

@@ -23,14 +23,14 @@ struct Costs {
 Costs measure(int side, double radius, bool skipSettled, int runs) {
     const sand::HeightField level(side, side, 1.0);
     const sand::Rules rules = rulesFor(level, kTalus);
-    const sand::Tool tool({.radius = static_cast<std::int32_t>(radius * sand::kProbePerCell)});
+    const sand::grid::Displacement tool({.radius = static_cast<std::int32_t>(radius * sand::kProbePerCell)});
     const sand::ProbePoint at = probeAt(side / 2.0, side / 2.0, 0);
-    sand::Erosion::Options options;
+    sand::grid::Erosion::Options options;
     options.skipSettled = skipSettled;
     Costs costs;
     for (int run = 0; run < runs; ++run) {
         sand::HeightField field = level;
-        sand::Erosion erosion(field, rules, options);
+        sand::grid::Erosion erosion(field, rules, options);
         erosion.sweep(field, 2);
         const double before = cpuSeconds();
         erosion.touch(tool.drag(field, rules.rim, nullptr, at, at).cells);

@@ -13,14 +13,15 @@ namespace {
 
 constexpr int kEdits = 300;
 
-std::uint64_t hashAfterEdits(int side, std::uint32_t seed, sand::Scheme scheme, const sand::Erosion::Options& options) {
+std::uint64_t hashAfterEdits(int side, std::uint32_t seed, sand::Scheme scheme,
+                             const sand::grid::Erosion::Options& options) {
     std::mt19937 random(seed);
     // Odd sides, so that blocks and vectors are cut short at the rim.
     sand::HeightField field(side | 1, (side / 2) | 1, 1.0);
     sand::Rules rules = rulesFor(field, 0.6745, 1e-3);
     rules.scheme = scheme;
-    sand::Erosion erosion(field, rules, options);
-    const sand::Tool tool({.radius = 5 * sand::kProbePerCell});
+    sand::grid::Erosion erosion(field, rules, options);
+    const sand::grid::Displacement tool({.radius = 5 * sand::kProbePerCell});
     const auto within = [&](int cells) {
         return static_cast<std::int32_t>(random() % static_cast<std::uint32_t>(cells * sand::kProbePerCell));
     };
@@ -30,7 +31,7 @@ std::uint64_t hashAfterEdits(int side, std::uint32_t seed, sand::Scheme scheme, 
         erosion.touch(tool.drag(field, rules.rim, nullptr, from, to).cells);
         erosion.sweep(field, 1 + static_cast<int>(random() % 8));
     }
-    return sand::StateHash(field).update(field);
+    return sand::grid::TileHash(field).update(field);
 }
 
 }  // namespace
@@ -44,18 +45,18 @@ void hashes(const Settings& settings, Csv& csv) {
     for (const int side : settings.sizes) {
         for (const auto& [scheme, name] :
              {std::pair{sand::Scheme::isotropic, "G"}, {sand::Scheme::plainIsotropic, "G plain"}}) {
-            for (const auto path : {sand::CodePath::automatic, sand::CodePath::baseline}) {
+            for (const auto path : {sand::grid::CodePath::automatic, sand::grid::CodePath::baseline}) {
                 for (const int threads : {1, 2, 3, 7}) {
                     host::WorkerPool pool(threads);
                     const base::Executor executor = pool.executor();
                     for (const int block : {16, 32, 64}) {
-                        sand::Erosion::Options options;
+                        sand::grid::Erosion::Options options;
                         options.blockSize = block;
                         options.path = path;
                         options.executor = &executor;
                         progress("N = {}, {}, {} threads, blocks of {}", side, name, threads, block);
                         csv.row(SANDWALL_COMPILER, "\"" SANDWALL_FLAGS "\"", name,
-                                path == sand::CodePath::automatic ? codePath() : "baseline", threads, block, side,
+                                path == sand::grid::CodePath::automatic ? codePath() : "baseline", threads, block, side,
                                 fmt::format("{:016x}", hashAfterEdits(side, settings.seed, scheme, options)));
                     }
                 }

@@ -61,7 +61,7 @@ public:
         }
     }
     /// Adds what passed every face in the last sweep.
-    void addFluxes(sand::NetFlux& sum) const {
+    void addFluxes(sand::grid::NetFlux& sum) const {
         for (int y = 0; y < field_.rows(); ++y) {
             for (int x = 0; x < field_.columns(); ++x) {
                 sum.east(y)[x] += east_.row(y)[x];
@@ -75,7 +75,7 @@ public:
 
 private:
     sand::HeightField field_;
-    sand::Grid east_, north_;
+    sand::CellArray east_, north_;
     IntegerN4Sweep patch_;
     bool v3_;
     bool atRest_ = false;

@@ -27,7 +27,7 @@ std::vector<double> heightsOf(const sand::HeightField& field) {
 
 class Ours : public Relaxation {
 public:
-    Ours(const sand::HeightField& field, const sand::Rules& rules, const sand::Erosion::Options& options)
+    Ours(const sand::HeightField& field, const sand::Rules& rules, const sand::grid::Erosion::Options& options)
         : field_(field), erosion_(field_, rules, options) {}
     void sweep(int count) override { erosion_.sweep(field_, count); }
     [[nodiscard]] bool atRest() const override { return erosion_.settled(); }
@@ -36,7 +36,7 @@ public:
 
 private:
     sand::HeightField field_;
-    sand::Erosion erosion_;
+    sand::grid::Erosion erosion_;
 };
 
 class Baseline : public Relaxation {
@@ -86,7 +86,7 @@ Method ours(const std::string& name, sand::Scheme scheme, bool skipSettled) {
     return {name, true, [=](const sand::HeightField& field, const sand::Rules& rules) -> std::unique_ptr<Relaxation> {
                 sand::Rules own = rules;
                 own.scheme = scheme;
-                sand::Erosion::Options options;
+                sand::grid::Erosion::Options options;
                 options.skipSettled = skipSettled;
                 return std::make_unique<Ours>(field, own, options);
             }};
@@ -98,7 +98,7 @@ public:
     Direct(const sand::HeightField& field, const sand::Rules& rules) : field_(field), rules_(rules) {}
     void sweep(int count) override {
         if (count > 0 && !atRest_) {
-            sweepsDone_ = sand::settle(field_, rules_).sweeps;
+            sweepsDone_ = sand::grid::settle(field_, rules_).sweeps;
             atRest_ = true;
         }
     }
@@ -181,14 +181,14 @@ sand::Rules rulesFor(const sand::HeightField& field, double talus, double band) 
 }
 
 std::int64_t sweepToRest(sand::HeightField& field, const sand::Rules& rules) {
-    sand::Erosion erosion(field, rules);
+    sand::grid::Erosion erosion(field, rules);
     erosion.sweep(field, kMostSweeps);
     return erosion.sweepsDone();
 }
 
 const char* codePath() {
     static const sand::HeightField field(1, 1, 1.0);
-    static const sand::Erosion erosion(field, rulesFor(field));
+    static const sand::grid::Erosion erosion(field, rulesFor(field));
     return erosion.codePath();
 }
 

@@ -28,23 +28,23 @@ void reportPerCell(benchmark::State& state, double cells) {
         benchmark::Counter(cells * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-void sweep(benchmark::State& state, sand::Scheme scheme, sand::CodePath path) {
+void sweep(benchmark::State& state, sand::Scheme scheme, sand::grid::CodePath path) {
     const int side = static_cast<int>(state.range(0));
     sand::HeightField field = roughField(side);
     sand::Rules rules;
     rules.columns = rules.rows = side;
     rules.threshold = rules.startThreshold = 64;  // next to nothing rests
     rules.scheme = scheme;
-    sand::Erosion erosion(field, rules, {.path = path});
+    sand::grid::Erosion erosion(field, rules, {.path = path});
     for (auto _ : state) {
         erosion.sweep(field, 1);
     }
     state.SetLabel(erosion.codePath());
     reportPerCell(state, static_cast<double>(side) * side);
 }
-BENCHMARK_CAPTURE(sweep, G, sand::Scheme::isotropic, sand::CodePath::automatic)->Arg(512)->Arg(1024)->Arg(2048);
-BENCHMARK_CAPTURE(sweep, G_plain, sand::Scheme::plainIsotropic, sand::CodePath::automatic)->Arg(512);
-BENCHMARK_CAPTURE(sweep, G_baseline, sand::Scheme::isotropic, sand::CodePath::baseline)->Arg(512);
+BENCHMARK_CAPTURE(sweep, G, sand::Scheme::isotropic, sand::grid::CodePath::automatic)->Arg(512)->Arg(1024)->Arg(2048);
+BENCHMARK_CAPTURE(sweep, G_plain, sand::Scheme::plainIsotropic, sand::grid::CodePath::automatic)->Arg(512);
+BENCHMARK_CAPTURE(sweep, G_baseline, sand::Scheme::isotropic, sand::grid::CodePath::baseline)->Arg(512);
 
 void copy(benchmark::State& state) {
     const auto cells = static_cast<std::size_t>(state.range(0) * state.range(0));
@@ -58,8 +58,8 @@ void copy(benchmark::State& state) {
 }
 BENCHMARK(copy)->Name("memcpy")->Arg(512)->Arg(1024)->Arg(2048);
 
-sand::Scene level(double toolCells, int sweeps) {
-    sand::Scene scene;
+scene::Scene level(double toolCells, int sweeps) {
+    scene::Scene scene;
     scene.terrain = sand::HeightField(512, 512, 1.0);
     scene.rules.columns = scene.rules.rows = 512;
     scene.rules.threshold = scene.rules.startThreshold = 44204;  // 34 degrees
@@ -88,9 +88,9 @@ BENCHMARK_CAPTURE(dig, tool_of_12_cells, 12.0, 24)->Unit(benchmark::kMillisecond
 /// A hand touches down, far from where sand still moves, and leaves again: what keeping the sand for an undo costs.
 void touchDown(benchmark::State& state) {
     const int side = static_cast<int>(state.range(0));
-    sand::Scene scene = level(2.56, 4);
+    scene::Scene scene = level(2.56, 4);
     scene.terrain = sand::HeightField(side, side, 1.0);
-    sand::makeDunes({}, scene.terrain);
+    sand::grid::makeDunes({}, scene.terrain);
     scene.rules.columns = scene.rules.rows = side;
     sand::Replica terrain(scene);
     for (auto _ : state) {
@@ -105,9 +105,9 @@ BENCHMARK(touchDown)->Arg(512)->Arg(2048)->Unit(benchmark::kMillisecond);
 /// The same sand compressed, as it was kept before.
 void compressed(benchmark::State& state) {
     const int side = static_cast<int>(state.range(0));
-    sand::Scene scene = level(2.56, 4);
+    scene::Scene scene = level(2.56, 4);
     scene.terrain = sand::HeightField(side, side, 1.0);
-    sand::makeDunes({}, scene.terrain);
+    sand::grid::makeDunes({}, scene.terrain);
     scene.rules.columns = scene.rules.rows = side;
     const sand::Replica terrain(scene);
     for (auto _ : state) {

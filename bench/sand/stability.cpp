@@ -104,7 +104,7 @@ void guardedSweep(const Settings& settings, Csv& csv) {
         "greatest asked of the device [N]; deviation: of what is sent from the law with the constants said at start,");
     csv.note("where nothing else limits it; unlimited: share of the ticks in the sand of which that holds.");
     csv.columns("arm,delay,b,hand,trials,rest,force,max_force,deviation,unlimited,literal_rest,literal_force");
-    const sand::Scene scene = test::levelSand();
+    const scene::Scene scene = test::levelSand();
     const bool full = settings.runs > 1;
     const std::vector<double> dampings = full ? std::vector<double>{0.5, 1, 2, 3.5, 5} : std::vector<double>{0.5};
     const std::vector<double> depths = full ? std::vector<double>{0, 0.5, 1, 2, 3} : std::vector<double>{1};

@@ -33,7 +33,7 @@ int sweepsFor(int side) { return std::clamp((1 << 24) / (side * side), 2, 64); }
 struct Variant {
     std::string name;
     sand::Scheme scheme;
-    sand::CodePath path;
+    sand::grid::CodePath path;
     int threads;
 };
 
@@ -43,14 +43,14 @@ std::vector<double> measure(const Variant& variant, const sand::HeightField& sta
     rules.scheme = variant.scheme;
     host::WorkerPool pool(variant.threads);
     const base::Executor executor = pool.executor();
-    sand::Erosion::Options options;
+    sand::grid::Erosion::Options options;
     options.path = variant.path;
     options.executor = variant.threads > 1 ? &executor : nullptr;
     const int count = sweepsFor(start.columns());
     std::vector<double> seconds;
     for (int run = 0; run < runs; ++run) {
         sand::HeightField field = start;
-        sand::Erosion erosion(field, rules, options);
+        sand::grid::Erosion erosion(field, rules, options);
         erosion.sweep(field, 1);  // touches every page, and wakes the threads
         const auto clock = variant.threads > 1 ? wallSeconds : cpuSeconds;
         const double before = clock();
@@ -109,8 +109,8 @@ std::vector<double> measureBaseline(BaselineScheme scheme, const sand::HeightFie
 }  // namespace
 
 void throughput(const Settings& settings, Csv& csv) {
-    using sand::CodePath;
     using sand::Scheme;
+    using sand::grid::CodePath;
     std::vector<Variant> variants{{"G", Scheme::isotropic, CodePath::automatic, 1},
                                   {"G plain", Scheme::plainIsotropic, CodePath::automatic, 1},
                                   {"G baseline x86-64", Scheme::isotropic, CodePath::baseline, 1}};

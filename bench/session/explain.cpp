@@ -57,7 +57,7 @@ private:
     Csv& csv_;
 };
 
-void explainTinMemory(const sand::Scene& scene, Explanation& rows) {
+void explainTinMemory(const scene::Scene& scene, Explanation& rows) {
     const sand::Replica terrain(scene);
     const sand::tin::Triangles& mesh = terrain.tinView()->triangles;
     const std::size_t perVertex = sizeof(sand::tin::Place) + 2 * sizeof(std::int32_t) + 4 * sizeof(std::int64_t);
@@ -68,26 +68,27 @@ void explainTinMemory(const sand::Scene& scene, Explanation& rows) {
     rows.memory("bedrock and walls", 0, "a TIN has none");
 }
 
-void explainMemory(const sand::Scene& scene, Explanation& rows) {
+void explainMemory(const scene::Scene& scene, Explanation& rows) {
     if (scene.tin != nullptr) {
         explainTinMemory(scene, rows);
         return;
     }
-    const sand::Erosion erosion(scene.terrain, scene.rules, sand::Erosion::Options{.ground = scene.ground.get()});
-    const sand::StateHash hash(scene.terrain);
+    const sand::grid::Erosion erosion(scene.terrain, scene.rules,
+                                      sand::grid::Erosion::Options{.ground = scene.ground.get()});
+    const sand::grid::TileHash hash(scene.terrain);
     rows.memory("heights",
                 static_cast<std::size_t>(scene.terrain.stride()) * static_cast<std::size_t>(scene.rules.rows + 2) *
                     sizeof(std::int32_t),
                 fmt::format("{} x {} cells of 4 bytes and their rim", scene.rules.columns, scene.rules.rows));
     rows.memory("fluxes and blocks", erosion.bytes(),
-                fmt::format("a flux per face; flags per block of {0} x {0} cells", sand::Erosion::kDefaultBlock));
+                fmt::format("a flux per face; flags per block of {0} x {0} cells", sand::grid::Erosion::kDefaultBlock));
     rows.memory("hash tiles", static_cast<std::size_t>(hash.tileCount()) * (sizeof(std::uint64_t) + 1),
                 "a hash and a flag per tile of 32 x 32 cells");
     rows.memory("bedrock and walls", scene.ground ? scene.ground->cells().bytes() : 0,
                 scene.ground ? "a height of rock per cell" : "the scene has none");
 }
 
-void explainRules(const sand::Scene& scene, Explanation& rows) {
+void explainRules(const scene::Scene& scene, Explanation& rows) {
     const sand::Rules& rules = scene.rules;
     const bool grid = scene.tin == nullptr;
     rows.rule("flux over a TIN's edges", !grid, "only with [tin]: the scene's module is loaded");
@@ -116,9 +117,9 @@ std::vector<double> timeSteps(sand::Replica& terrain, const std::vector<sand::St
 
 /// The scene's sand under noise of the scene's own tool's height, at least a cell, and no more than a TIN's volumes
 /// can hold: next to nothing rests.
-sand::Scene stirred(const sand::Scene& scene, std::uint32_t seed) {
+scene::Scene stirred(const scene::Scene& scene, std::uint32_t seed) {
     std::mt19937 random(seed);
-    sand::Scene result = scene;
+    scene::Scene result = scene;
     const auto range = static_cast<std::uint32_t>(std::max(scene.rules.toolRadius / kProbePerCell, 1) * 4) *
                        static_cast<std::uint32_t>(sand::kUnitsPerCell);
     if (scene.tin != nullptr) {
@@ -130,7 +131,7 @@ sand::Scene stirred(const sand::Scene& scene, std::uint32_t seed) {
             height = std::min(height, most - noise) + noise;
         }
         result.rules.tin = start.digest();
-        result.tin = std::make_shared<const sand::tin::Start>(std::move(start));
+        result.tin = std::make_shared<const sand::tin::TinStart>(std::move(start));
         return result;
     }
     for (int y = 0; y < scene.rules.rows; ++y) {
@@ -142,7 +143,7 @@ sand::Scene stirred(const sand::Scene& scene, std::uint32_t seed) {
     return result;
 }
 
-void explainSteps(const sand::Scene& scene, const Settings& settings, Explanation& rows) {
+void explainSteps(const scene::Scene& scene, const Settings& settings, Explanation& rows) {
     const std::string sweepsPerStep = fmt::format("{} sweeps at most", scene.rules.sweepsPerStep);
     const auto runs = static_cast<std::size_t>(settings.runs);
     std::uint64_t hash = 0;
@@ -183,7 +184,7 @@ void explainSteps(const sand::Scene& scene, const Settings& settings, Explanatio
 }  // namespace
 
 void explain(const Settings& settings, Csv& csv) {
-    const sand::Scene scene = sand::loadScene(settings.scene);
+    const scene::Scene scene = scene::loadScene(settings.scene);
     for (const std::string& warning : scene.warnings) {
         csv.note("warning: " + warning);
     }

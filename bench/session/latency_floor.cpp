@@ -89,7 +89,7 @@ int message(const Options& options) {
 /// Waits as the ranks of a wall do: by MPI's own waiting, which never sleeps, they would be pushed aside by whatever
 /// else runs on their cores.
 void await(MPI_Request request) {
-    lockstep::Patience patience;
+    lockstep::Backoff patience;
     for (int done = 0; MPI_Test(&request, &done, MPI_STATUS_IGNORE), done == 0;) {
         patience.rest();
     }

@@ -11,8 +11,8 @@
 namespace bench {
 namespace {
 
-using sand::tin::Layer;
 using sand::tin::Place;
+using sand::tin::VertexSand;
 
 constexpr double kToolRadius = 16.8;  // [cell]: about 1000 cells below a round tool and in the ring beside it
 constexpr double kDepth = 2;          // [cell]
@@ -21,7 +21,7 @@ constexpr double kWay = 1.5;          // [cell], of one step
 constexpr int kEach = 10;             // imprints a run, and steps of its drag
 
 /// A vertex somewhere in the middle half of every cell, level sand.
-Layer jittered(int side, std::mt19937& random) {
+VertexSand jittered(int side, std::mt19937& random) {
     sand::tin::Mesh mesh(side * sand::kProbePerCell, side * sand::kProbePerCell);
     std::vector<Place> places;
     for (std::int32_t y = 0; y < side; ++y) {
@@ -34,7 +34,7 @@ Layer jittered(int side, std::mt19937& random) {
         }
     }
     mesh.insert(places);
-    return Layer(std::move(mesh));
+    return VertexSand(std::move(mesh));
 }
 
 sand::ProbePoint handAt(double x, double y, double z /* [cell] */) {
@@ -43,7 +43,7 @@ sand::ProbePoint handAt(double x, double y, double z /* [cell] */) {
 }
 
 /// Vertices that the tool takes sand from or gives it to, at one place.
-int verticesNear(const Layer& layer, const sand::TurnedShape& shape, const sand::ProbePoint& at) {
+int verticesNear(const VertexSand& layer, const sand::TurnedShape& shape, const sand::ProbePoint& at) {
     int count = 0;
     for (const Place& place : layer.triangles().places) {
         const sand::Offset offset{std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
@@ -62,7 +62,7 @@ void measure(int side, sand::ToolKind kind, bool refines, const Settings& settin
     std::vector<double> imprints, steps;
     int near = 0, vertices = 0;
     for (int run = 0; run < settings.runs; ++run) {
-        Layer layer = jittered(side, random);
+        VertexSand layer = jittered(side, random);
         vertices = layer.mesh().vertexCount();
         const auto somewhere = [&] {
             const auto cells = static_cast<double>(random() % 65536) / 65536;
@@ -74,14 +74,14 @@ void measure(int side, sand::ToolKind kind, bool refines, const Settings& settin
             near = verticesNear(layer, sand::TurnedShape(shape), at);
             sand::tin::Imprint imprint;
             imprints.push_back(secondsOf([&] {
-                sand::tin::Tool tool(shape, {}, rules);
+                sand::tin::Displacement tool(shape, {}, rules);
                 tool.drag(layer, imprint, sand::Rim::closed, std::array{at});
             }));
-            sand::tin::Tool(shape, {}, rules).leave(layer, imprint);
+            sand::tin::Displacement(shape, {}, rules).leave(layer, imprint);
             static_cast<void>(layer.takeChange());
         }
         sand::tin::Imprint imprint;
-        sand::tin::Tool tool(shape, {}, rules);
+        sand::tin::Displacement tool(shape, {}, rules);
         double x = 2 * kToolRadius;
         for (int i = 0; i < kEach; ++i, x += kWay) {
             std::vector<sand::ProbePoint> path;

@@ -30,7 +30,7 @@ struct Terrain {
 
 Terrain dunesOf(int side, std::uint32_t seed) {
     sand::HeightField field(side, side, 1.0);
-    sand::makeDunes({.height = 6, .length = 60, .seed = seed}, field);
+    sand::grid::makeDunes({.height = 6, .length = 60, .seed = seed}, field);
     Terrain terrain{"dunes", side, side, kCell, {}};
     for (int y = 0; y < side; ++y) {
         for (int x = 0; x < side; ++x) {
@@ -40,7 +40,7 @@ Terrain dunesOf(int side, std::uint32_t seed) {
     return terrain;
 }
 
-Terrain terrainOf(const sand::EsriGrid& grid) {
+Terrain terrainOf(const scene::EsriGrid& grid) {
     Terrain terrain{"file", grid.columns, grid.rows, static_cast<std::int32_t>(std::lround(kCell * grid.aspect())), {}};
     for (int y = 0; y < grid.rows; ++y) {
         for (int x = 0; x < grid.columns; ++x) {
@@ -109,7 +109,7 @@ void measure(const Terrain& terrain, int runs, Csv& csv) {
 void simplify(const Settings& settings, Csv& csv) {
     std::vector<Terrain> terrains;
     if (!settings.raster.empty()) {
-        terrains.push_back(terrainOf(sand::withoutEmptyEdges(sand::readEsriGrid(settings.raster))));
+        terrains.push_back(terrainOf(scene::withoutEmptyEdges(scene::readEsriGrid(settings.raster))));
     } else {
         for (const int side : settings.sizes) {
             terrains.push_back(dunesOf(side, settings.seed));

@@ -10,10 +10,10 @@
 
 namespace {
 
-using sand::tin::Layer;
 using sand::tin::Mesh;
 using sand::tin::Place;
 using sand::tin::Vertex;
+using sand::tin::VertexSand;
 
 constexpr std::int32_t kSide = 512 * 256;  // as wide as 512 cells [probe unit]
 constexpr int kVertices = 250'000;
@@ -105,7 +105,7 @@ void imprintMesh(benchmark::State& state) {
 
 /// The same with the sand on it, as one change.
 void imprintLayer(benchmark::State& state) {
-    Layer layer(meshOf(randomPlaces(kVertices)));
+    VertexSand layer(meshOf(randomPlaces(kVertices)));
     (void)layer.takeChange();  // everything, the first time
     std::mt19937 random(3);
     for (auto _ : state) {
@@ -123,7 +123,7 @@ void imprintLayer(benchmark::State& state) {
 }
 
 void dissolveLayer(benchmark::State& state) {
-    Layer layer(meshOf(randomPlaces(kVertices)));
+    VertexSand layer(meshOf(randomPlaces(kVertices)));
     (void)layer.takeChange();  // everything, the first time
     std::mt19937 random(3);
     for (auto _ : state) {

@@ -13,7 +13,7 @@ namespace bench {
 namespace {
 
 using tin_piles::Kind;
-using tin_piles::Layer;
+using tin_piles::VertexSand;
 
 constexpr std::int32_t kSteepest = 65536;  // [unit per cell], 45 degrees
 
@@ -25,7 +25,7 @@ struct Shape {
 void measurePile(Kind kind, int side, double degrees, const Shape& shape, const Settings& settings, Csv& csv) {
     progress("{}, {} x {}, turned by {}, {}", nameOf(kind), side, side, degrees, shape.name);
     const oracles::Cylinder cylinder(shape.radius * side, shape.height * side);
-    Layer layer = tin_piles::layerOf(kind, side, degrees, settings.seed);
+    VertexSand layer = tin_piles::layerOf(kind, side, degrees, settings.seed);
     tin_piles::fill(layer, oracles::around(side / 2.0, side / 2.0, [&](double r) { return cylinder.start(r); }));
     const sand::tin::Wide before = layer.volume();
     sand::tin::Settled settled;
@@ -62,7 +62,7 @@ void tinActive(const Settings& settings, Csv& csv) {
     csv.columns("N,vertices,raised,moved,first_ms,again_ms,first_ns_per_vertex_sweep,again_ns_per_vertex_sweep");
     constexpr int kSweeps = 100;
     for (const int side : settings.sizes) {
-        Layer layer = tin_piles::layerOf(Kind::jittered, side, 0, settings.seed);
+        VertexSand layer = tin_piles::layerOf(Kind::jittered, side, 0, settings.seed);
         sand::tin::Erosion erosion(layer, kSteepest, kSteepest);
         std::vector<sand::tin::Vertex> moved;
         erosion.sweep(layer, 1, nullptr, moved);

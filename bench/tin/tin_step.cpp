@@ -30,19 +30,19 @@ constexpr std::int32_t kMostVertices = 1 << 19;
 /// Seconds by kind of step and part.
 using Times = std::map<std::pair<std::string, std::string>, std::vector<double>>;
 
-sand::Scene levelScene(int side, bool refines, std::uint32_t seed) {
-    sand::tin::Start start = tin_piles::levelStart(side, seed);
+scene::Scene levelScene(int side, bool refines, std::uint32_t seed) {
+    sand::tin::TinStart start = tin_piles::levelStart(side, seed);
     start.settings.spacing = refines ? sand::kProbePerCell : 0;
     start.settings.maxError = refines ? kMaxError : 0;
     start.settings.mostVertices = kMostVertices;
-    sand::Scene scene;
+    scene::Scene scene;
     scene.rules.columns = scene.rules.rows = side;
     scene.rules.threshold = kSlope;
     scene.rules.startThreshold = kSlope + kBand;
     scene.rules.sweepsPerStep = kSweepsPerStep;
     scene.rules.toolKind = sand::ToolKind::circle;
     scene.rules.toolRadius = static_cast<std::int32_t>(kToolCells * sand::kProbePerCell);
-    scene.tin = std::make_shared<const sand::tin::Start>(std::move(start));
+    scene.tin = std::make_shared<const sand::tin::TinStart>(std::move(start));
     return scene;
 }
 
@@ -86,7 +86,7 @@ std::vector<Action> actionsOf(int side, std::uint32_t seed) {
 }
 
 /// As a rank and the master do it: the step, its hash, and what is to be drawn anew.
-void measureWhole(const sand::Scene& scene, const std::vector<Action>& actions, Times& times) {
+void measureWhole(const scene::Scene& scene, const std::vector<Action>& actions, Times& times) {
     sand::Replica terrain(scene);
     terrain.apply({1, 1, false, {}});  // everything moves at first
     static_cast<void>(terrain.stateHash());
@@ -102,7 +102,7 @@ void measureWhole(const sand::Scene& scene, const std::vector<Action>& actions, 
 }
 
 /// The same, part by part: the surface's calls as Replica::apply() makes them.
-void measureParts(const sand::Scene& scene, const std::vector<Action>& actions, Times& times) {
+void measureParts(const scene::Scene& scene, const std::vector<Action>& actions, Times& times) {
     sand::tin::TinSurface surface(scene.rules, scene.tin);
     const sand::HeldTool tool{scene.rules.toolShape(), {}};
     sand::ProbePoint at;
@@ -135,9 +135,9 @@ void measureParts(const sand::Scene& scene, const std::vector<Action>& actions, 
 }
 
 /// What of an imprint is the mesh's change, and what the remap; each is taken back again.
-void measureImprints(const sand::Scene& scene, const std::vector<Action>& actions, Times& times) {
+void measureImprints(const scene::Scene& scene, const std::vector<Action>& actions, Times& times) {
     sand::tin::TinSurface surface(scene.rules, scene.tin);
-    sand::tin::Layer layer = sand::tin::LayerCopy(surface.layer(), {}).layer();
+    sand::tin::VertexSand layer = sand::tin::Snapshot(surface.layer(), {}).layer();
     const auto outline = sand::tin::Outline::of(scene.rules.toolShape(), {});
     for (const auto& [kind, step] : actions) {
         if (kind != "imprint") {
@@ -157,7 +157,7 @@ void measureImprints(const sand::Scene& scene, const std::vector<Action>& action
     }
 }
 
-int verticesBelowAndBeside(const sand::Scene& scene, const sand::ProbePoint& at) {
+int verticesBelowAndBeside(const scene::Scene& scene, const sand::ProbePoint& at) {
     const sand::TurnedShape tool(scene.rules.toolShape(), {});
     const auto& places = scene.tin->places;
     return static_cast<int>(std::count_if(places.begin(), places.end(), [&](const sand::tin::Place& place) {
@@ -184,7 +184,7 @@ void tinStep(const Settings& settings, Csv& csv) {
             for (int run = 0; run < settings.runs; ++run) {
                 progress("N = {}, run {}", side, run);
                 const std::uint32_t seed = settings.seed + static_cast<std::uint32_t>(run);
-                const sand::Scene scene = levelScene(side, refines, seed);
+                const scene::Scene scene = levelScene(side, refines, seed);
                 const std::vector<Action> actions = actionsOf(side, seed);
                 vertices = scene.tin->places.size();
                 near = verticesBelowAndBeside(scene, actions.front().step.path.front());

@@ -16,13 +16,13 @@ constexpr double kFittedShare = 0.8;  // of the field's shorter side, when no sc
 
 double& part(Vec3& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
-double halfSide(const sand::Scene& scene) {
+double halfSide(const scene::Scene& scene) {
     return std::min(scene.rules.columns, scene.rules.rows) * scene.terrain.cellSize() / 2;
 }
 
 }  // namespace
 
-MappedDevice::MappedDevice(std::unique_ptr<Arm> arm, const HandSettings& settings, const sand::Scene& scene)
+MappedDevice::MappedDevice(std::unique_ptr<Arm> arm, const HandSettings& settings, const scene::Scene& scene)
     : arm_(std::move(arm)),
       settings_(settings),
       scale_(scaleFor(arm_->physics(), settings, scene)),
@@ -37,7 +37,7 @@ MappedDevice::MappedDevice(std::unique_ptr<Arm> arm, const HandSettings& setting
     }
 }
 
-double MappedDevice::scaleFor(const ArmPhysics& arm, const HandSettings& settings, const sand::Scene& scene) {
+double MappedDevice::scaleFor(const ArmPhysics& arm, const HandSettings& settings, const scene::Scene& scene) {
     return settings.scale.value_or(kFittedShare * halfSide(scene) / arm.reach);
 }
 

@@ -25,10 +25,11 @@ public:
     static constexpr double kFarthestShare = 0.5;  // [reach], of a movement between two readings
 
     /// The arm over this scene. Throws base::InputError for settings that an arm cannot have.
-    MappedDevice(std::unique_ptr<Arm> arm, const HandSettings& settings, const sand::Scene& scene);
+    MappedDevice(std::unique_ptr<Arm> arm, const HandSettings& settings, const scene::Scene& scene);
 
     /// [scene unit/m] that an arm gets over this scene.
-    [[nodiscard]] static double scaleFor(const ArmPhysics& arm, const HandSettings& settings, const sand::Scene& scene);
+    [[nodiscard]] static double scaleFor(const ArmPhysics& arm, const HandSettings& settings,
+                                         const scene::Scene& scene);
 
     [[nodiscard]] Pose read(double time) override;
     void sendForce(sand::force::Vec3 force) override;

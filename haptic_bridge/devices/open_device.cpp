@@ -27,14 +27,15 @@ std::ifstream openToRead(const std::string& file) {
 }
 
 /// Its stroke list is in hand space, so the arm is asked for its reach before it is told how large that is.
-std::unique_ptr<Device> openSimulated(const std::string& spec, const HandSettings& settings, const sand::Scene& scene) {
+std::unique_ptr<Device> openSimulated(const std::string& spec, const HandSettings& settings,
+                                      const scene::Scene& scene) {
     const double scale = MappedDevice::scaleFor(openSimulatedArm(spec)->physics(), settings, scene);
     const double half = std::min(scene.rules.columns, scene.rules.rows) * scene.terrain.cellSize() / 2;
     const StrokeSpace space{half / scale, scene.toolRadius() / (scale * settings.verticalScale)};
     return std::make_unique<MappedDevice>(openSimulatedArm(spec, space), settings, scene);
 }
 
-std::unique_ptr<Device> openTrace(const std::string& what, const HandSettings& settings, const sand::Scene& scene) {
+std::unique_ptr<Device> openTrace(const std::string& what, const HandSettings& settings, const scene::Scene& scene) {
     if (settings.engage == HandSettings::Engage::button) {
         throw base::InputError("--map engage=button: a trace records no buttons; give near or always");
     }
@@ -46,7 +47,7 @@ std::unique_ptr<Device> openTrace(const std::string& what, const HandSettings& s
 
 }  // namespace
 
-std::unique_ptr<Device> openDevice(const std::string& spec, const HandSettings& settings, const sand::Scene& scene) {
+std::unique_ptr<Device> openDevice(const std::string& spec, const HandSettings& settings, const scene::Scene& scene) {
     const auto colon = spec.find(':');
     const std::string kind = spec.substr(0, colon);
     const std::string what = colon == std::string::npos ? "" : spec.substr(colon + 1);

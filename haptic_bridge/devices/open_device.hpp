@@ -14,6 +14,6 @@ namespace haptic_bridge {
 /// "mouse", "spacenav". Throws base::InputError for anything else, for files that cannot be read and devices that are
 /// not there.
 [[nodiscard]] std::unique_ptr<Device> openDevice(const std::string& spec, const HandSettings& settings,
-                                                 const sand::Scene& scene);
+                                                 const scene::Scene& scene);
 
 }  // namespace haptic_bridge

@@ -8,7 +8,7 @@
 
 namespace haptic_bridge {
 
-HandMapping::HandMapping(const sand::Scene& scene, HandSettings::Datum datum)
+HandMapping::HandMapping(const scene::Scene& scene, HandSettings::Datum datum)
     : scene_(scene),
       datum_(datum),
       halfSide_(std::min(scene.rules.columns, scene.rules.rows) / 2.0),

@@ -12,7 +12,7 @@ namespace haptic_bridge {
 /// Puts a hand over the sand: hand space to quantised probe points. Reads the scene, which must outlive it.
 class HandMapping {
 public:
-    HandMapping(const sand::Scene& scene, HandSettings::Datum datum);
+    HandMapping(const scene::Scene& scene, HandSettings::Datum datum);
 
     /// Poses beyond reach are clamped to sand::kMaxProbe. A pose that holds no number gives nothing.
     [[nodiscard]] std::optional<sand::ProbePoint> probe(const Pose& pose) const;
@@ -26,7 +26,7 @@ public:
 private:
     [[nodiscard]] double surface(double x, double y) const;  // [cell]
 
-    const sand::Scene& scene_;
+    const scene::Scene& scene_;
     HandSettings::Datum datum_;
     double halfSide_;                           // [cell], of the shorter side
     double radius_;                             // [cell]

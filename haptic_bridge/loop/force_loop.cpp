@@ -24,7 +24,7 @@ void sleepUntil(std::int64_t whenNs) {
 
 }  // namespace
 
-ForceLoop::ForceLoop(Hand& hand, HandChannel& channel) : hand_(hand), channel_(channel) {
+ForceLoop::ForceLoop(HapticTick& hand, HandChannel& channel) : hand_(hand), channel_(channel) {
     thread_ = std::thread([this] { run(); });
     const sched_param priority{.sched_priority = 10};
     const int error = pthread_setschedparam(thread_.native_handle(), SCHED_FIFO, &priority);
@@ -66,7 +66,7 @@ void ForceLoop::run() {
             sitting = latest;
             channel_.beginSitting(hand_);
         }
-        const Surface& surface = channel_.surface.latest();
+        const FeltSand& surface = channel_.surface.latest();
         const HandSample sample = hand_.tick(handTime, now, surface);
         channel_.keep(now, surface);
         if (!channel_.samples.push(sample)) {

@@ -15,7 +15,7 @@ namespace haptic_bridge {
 /// whole tick or more is skipped: a burst of late ticks would feel the same place again and again.
 class ForceLoop {
 public:
-    ForceLoop(Hand& hand, HandChannel& channel);
+    ForceLoop(HapticTick& hand, HandChannel& channel);
     ~ForceLoop();
     ForceLoop(const ForceLoop&) = delete;
     ForceLoop& operator=(const ForceLoop&) = delete;
@@ -32,7 +32,7 @@ public:
 private:
     void run();
 
-    Hand& hand_;
+    HapticTick& hand_;
     HandChannel& channel_;
     LiveHistogram period_, computing_;
     std::atomic<std::uint64_t> missed_{0};

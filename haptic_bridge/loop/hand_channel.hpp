@@ -15,19 +15,19 @@ namespace haptic_bridge {
 struct HandChannel {
     boost::lockfree::spsc_queue<HandSample, boost::lockfree::capacity<8192>> samples;  // force thread to sand
     std::atomic<std::uint64_t> overflow{0};  // samples that found the queue full
-    base::TripleBuffer<Surface> surface;     // sand to force thread
+    base::TripleBuffer<FeltSand> surface;    // sand to force thread
     std::atomic<bool> moving{false};         // the hand's recording runs; it rests while nobody is linked
     std::atomic<std::uint32_t> sitting{0};   // counts the links: the hand begins anew with each
     TickRecorder* recorder = nullptr;        // of every tick, when somebody wants them
 
     // For the thread that ticks.
-    void beginSitting(Hand& hand) const {
+    void beginSitting(HapticTick& hand) const {
         hand.restart();
         if (recorder != nullptr) {
             recorder->begin();
         }
     }
-    void keep(std::int64_t nowNs, const Surface& felt) const {
+    void keep(std::int64_t nowNs, const FeltSand& felt) const {
         if (recorder != nullptr) {
             recorder->add(nowNs, felt);
         }

@@ -13,9 +13,9 @@ namespace haptic_bridge {
 namespace {
 
 /// [scene unit], of one step of a quantised place.
-double probeStep(const sand::Scene& scene) { return scene.terrain.cellSize() / sand::kProbePerCell; }
+double probeStep(const scene::Scene& scene) { return scene.terrain.cellSize() / sand::kProbePerCell; }
 
-ForceLimits limitsFor(const sand::Scene& scene, const Device& device, const LawAtRadius& law) {
+ForceLimits limitsFor(const scene::Scene& scene, const Device& device, const LawAtRadius& law) {
     const double friction = static_cast<double>(scene.rules.threshold) / sand::kUnitsPerCell;
     if (const ArmPhysics* arm = device.physics()) {
         return ForceLimits::of(*arm, device.scale(), law, friction, probeStep(scene) / device.scale());
@@ -39,11 +39,12 @@ std::vector<std::string> inWords(const sand::ForceConstants& constants, const Fo
 
 }  // namespace
 
-Hand::Hand(const sand::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum, Guards::Mode mode)
-    : Hand(scene, std::move(device), datum, mode, lawAtRadius(scene)) {}
+HapticTick::HapticTick(const scene::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum,
+                       Guards::Mode mode)
+    : HapticTick(scene, std::move(device), datum, mode, lawAtRadius(scene)) {}
 
-Hand::Hand(const sand::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum, Guards::Mode mode,
-           const LawAtRadius& law)
+HapticTick::HapticTick(const scene::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum,
+                       Guards::Mode mode, const LawAtRadius& law)
     : constants_(scene.force),
       model_(scene.force),
       device_(std::move(device)),
@@ -55,7 +56,7 @@ Hand::Hand(const sand::Scene& scene, std::unique_ptr<Device> device, HandSetting
     restart();
 }
 
-void Hand::restart() {
+void HapticTick::restart() {
     model_ = sand::force::ForceModel(constants_);
     guards_.forget();
     armVelocity_.restart();
@@ -63,12 +64,12 @@ void Hand::restart() {
     last_ = mapping_.probe(Pose{}).value_or(sand::ProbePoint{});
 }
 
-void Hand::rest(double deviceTime) {
+void HapticTick::rest(double deviceTime) {
     (void)device_->read(deviceTime);
     device_->sendForce({});
 }
 
-HandSample Hand::tick(double deviceTime, std::int64_t nowNs, const Surface& surface) {
+HandSample HapticTick::tick(double deviceTime, std::int64_t nowNs, const FeltSand& surface) {
     const Pose pose = device_->read(deviceTime);
     const auto probe = mapping_.probe(pose);
     last_ = probe.value_or(last_);
@@ -105,7 +106,7 @@ HandSample Hand::tick(double deviceTime, std::int64_t nowNs, const Surface& surf
     return sample;
 }
 
-void Hand::fillTick(double deviceTime, const Surface& surface, const HandSample& sample) {
+void HapticTick::fillTick(double deviceTime, const FeltSand& surface, const HandSample& sample) {
     tick_.time = deviceTime;
     tick_.armPlace = device_->reading().place;
     tick_.armVelocity = armVelocity_.add(deviceTime, tick_.armPlace);

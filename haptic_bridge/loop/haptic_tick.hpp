@@ -19,7 +19,7 @@
 namespace haptic_bridge {
 
 /// The sand around the tool after a step, for whoever computes forces.
-struct Surface {
+struct FeltSand {
     sand::force::SurfacePatch patch;
     sand::force::Contour tool;  // which an operator may change
     std::uint64_t step = 0;     // number of the step that made it
@@ -34,15 +34,15 @@ struct Surface {
 ///
 /// Used by one thread: the force thread in real time, the sand's own under a virtual clock. A tick asks for no memory
 /// and waits for nobody.
-class Hand {
+class HapticTick {
 public:
     static constexpr double kTick = ForceLimits::kTick;  // [s]
 
-    Hand(const sand::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum,
-         Guards::Mode mode = Guards::Mode::on);
+    HapticTick(const scene::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum,
+               Guards::Mode mode = Guards::Mode::on);
 
     /// `deviceTime` [s] is what the device is read at; now and surface.timeNs are on one clock.
-    HandSample tick(double deviceTime, std::int64_t nowNs, const Surface& surface);
+    HandSample tick(double deviceTime, std::int64_t nowNs, const FeltSand& surface);
     /// Nobody is linked: the device is read, so that its troubles are told, and gets no force.
     void rest(double deviceTime);
     /// Forgets every tick before, as if it had just been made: what follows depends on the ticks of one link alone.
@@ -59,9 +59,9 @@ public:
     [[nodiscard]] const GuardCounts& guardCounts() const { return counts_; }     // [tick]
 
 private:
-    Hand(const sand::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum, Guards::Mode mode,
-         const LawAtRadius& law);
-    void fillTick(double deviceTime, const Surface& surface, const HandSample& sample);
+    HapticTick(const scene::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum, Guards::Mode mode,
+               const LawAtRadius& law);
+    void fillTick(double deviceTime, const FeltSand& surface, const HandSample& sample);
 
     const sand::ForceConstants constants_;
     sand::force::ForceModel model_;

@@ -22,7 +22,8 @@ constexpr std::size_t kMostPieces = 4096;  // a master that takes none is not th
 
 }  // namespace
 
-TickRecorder::TickRecorder(Options options, const Hand& hand, const NotedDevice& device, HandSettings::Datum datum)
+TickRecorder::TickRecorder(Options options, const HapticTick& hand, const NotedDevice& device,
+                           HandSettings::Datum datum)
     : options_(std::move(options)),
       hand_(hand),
       device_(device),
@@ -50,7 +51,7 @@ void TickRecorder::begin() {
     push(entry);
 }
 
-void TickRecorder::add(std::int64_t nowNs, const Surface& surface) {
+void TickRecorder::add(std::int64_t nowNs, const FeltSand& surface) {
     const Tick& tick = hand_.lastTick();
     push({false, tick, {tick.time, device_.pose(), device_.reading(), nowNs, nowNs - surface.timeNs, surface.step}});
 }

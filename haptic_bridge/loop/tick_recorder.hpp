@@ -27,7 +27,7 @@ public:
         std::function<void(const std::string&)> log;  // one line for a person; on the recorder's thread
     };
     /// Throws base::InputError when the file cannot be made. `device` is the one that `hand` reads; both outlive this.
-    TickRecorder(Options options, const Hand& hand, const NotedDevice& device, HandSettings::Datum datum);
+    TickRecorder(Options options, const HapticTick& hand, const NotedDevice& device, HandSettings::Datum datum);
     ~TickRecorder();
     TickRecorder(const TickRecorder&) = delete;
     TickRecorder& operator=(const TickRecorder&) = delete;
@@ -36,7 +36,7 @@ public:
     /// A link begins: the hand has forgotten what was before.
     void begin();
     /// The hand has ticked.
-    void add(std::int64_t nowNs, const Surface& surface);
+    void add(std::int64_t nowNs, const FeltSand& surface);
 
     // The streaming thread:
     /// What the master has not got yet.
@@ -58,7 +58,7 @@ private:
     void giveUp(int error);
 
     Options options_;
-    const Hand& hand_;
+    const HapticTick& hand_;
     const NotedDevice& device_;
     const TrackHeader header_;
     boost::lockfree::spsc_queue<Entry, boost::lockfree::capacity<8192>> queue_;

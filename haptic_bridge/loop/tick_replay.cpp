@@ -26,7 +26,7 @@ private:
     TickInput input_;
 };
 
-TickReplay::TickReplay(const sand::Scene& scene, const std::vector<base::Bytes>& pieces) : scene_(&scene) {
+TickReplay::TickReplay(const scene::Scene& scene, const std::vector<base::Bytes>& pieces) : scene_(&scene) {
     for (const base::Bytes& bytes : pieces) {
         TrackPiece piece = decodeTrackPiece(bytes);
         sitting_ = piece.begins ? piece.sitting : sitting_;
@@ -39,8 +39,8 @@ TickReplay::TickReplay(const sand::Scene& scene, const std::vector<base::Bytes>&
 void TickReplay::begin(const TrackPiece& piece) {
     auto player = std::make_unique<Player>(piece.header);
     player_ = player.get();
-    hand_ = std::make_unique<Hand>(*scene_, std::move(player), piece.header.datum,
-                                   piece.header.literal ? Guards::Mode::literal : Guards::Mode::on);
+    hand_ = std::make_unique<HapticTick>(*scene_, std::move(player), piece.header.datum,
+                                         piece.header.literal ? Guards::Mode::literal : Guards::Mode::on);
 }
 
 void TickReplay::tick(const TickInput& input, const sand::Replica& terrain, std::string& rows) {

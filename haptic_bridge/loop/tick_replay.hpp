@@ -18,7 +18,7 @@ namespace haptic_bridge {
 class TickReplay {
 public:
     /// `scene` outlives this. Throws base::FormatError for pieces that are none.
-    TickReplay(const sand::Scene& scene, const std::vector<base::Bytes>& pieces);
+    TickReplay(const scene::Scene& scene, const std::vector<base::Bytes>& pieces);
 
     [[nodiscard]] bool empty() const { return pieces_.empty(); }
     /// Ticks the hand for as long as it felt the sand as it is now. Call it at the start and after every step.
@@ -31,13 +31,13 @@ private:
     void begin(const TrackPiece& piece);
     void tick(const TickInput& input, const sand::Replica& terrain, std::string& rows);
 
-    const sand::Scene* scene_;
+    const scene::Scene* scene_;
     std::deque<TrackPiece> pieces_;
     std::size_t next_ = 0;  // in the first piece
     std::uint32_t sitting_ = 0;
-    std::unique_ptr<Hand> hand_;
+    std::unique_ptr<HapticTick> hand_;
     Player* player_ = nullptr;  // the hand's
-    Surface surface_;
+    FeltSand surface_;
 };
 
 }  // namespace haptic_bridge

@@ -14,8 +14,8 @@ namespace haptic_bridge {
 namespace asio = boost::asio;
 using boost::system::error_code;
 
-LinkServer::LinkServer(asio::io_context& io, asio::ip::tcp::acceptor acceptor, Identity identity,
-                       std::uint32_t stepsPerSecond, Sources sources, TimingTests tests, LinkSecurity security)
+Listener::Listener(asio::io_context& io, asio::ip::tcp::acceptor acceptor, Identity identity,
+                   std::uint32_t stepsPerSecond, Sources sources, TimingTests tests, LinkSecurity security)
     : io_(io),
       acceptor_(std::move(acceptor)),
       pause_(io),
@@ -25,13 +25,13 @@ LinkServer::LinkServer(asio::io_context& io, asio::ip::tcp::acceptor acceptor, I
       tests_(tests),
       security_(std::move(security)) {}
 
-LinkServer::~LinkServer() = default;
+Listener::~Listener() = default;
 
-std::shared_ptr<MasterLink> LinkServer::linked(std::uint32_t session) const {
+std::shared_ptr<Peer> Listener::linked(std::uint32_t session) const {
     return current_ && current_->session() == session ? current_ : nullptr;
 }
 
-Sequencer::Output LinkServer::output() {
+SandThread::Output Listener::output() {
     // What comes for a session that has ended meanwhile is for nobody.
     const auto hand = [this](std::uint32_t session, auto act) {
         asio::post(io_, [this, session, act = std::move(act)]() mutable {
@@ -40,25 +40,23 @@ Sequencer::Output LinkServer::output() {
             }
         });
     };
-    return {[hand](std::uint32_t session) { hand(session, [](MasterLink& link) { link.ready(); }); },
-            [hand](std::uint32_t session, NeedState need) {
-                hand(session, [need](MasterLink& link) { link.needState(need); });
-            },
-            [hand](std::uint32_t session, std::string why) {
-                hand(session, [why = std::move(why)](MasterLink& link) { link.unusable(why); });
-            },
-            [hand](std::uint32_t session, base::Bytes message) {
-                hand(session,
-                     [message = std::move(message)](MasterLink& link) mutable { link.step(std::move(message)); });
-            }};
+    return {
+        [hand](std::uint32_t session) { hand(session, [](Peer& link) { link.ready(); }); },
+        [hand](std::uint32_t session, NeedState need) { hand(session, [need](Peer& link) { link.needState(need); }); },
+        [hand](std::uint32_t session, std::string why) {
+            hand(session, [why = std::move(why)](Peer& link) { link.unusable(why); });
+        },
+        [hand](std::uint32_t session, base::Bytes message) {
+            hand(session, [message = std::move(message)](Peer& link) mutable { link.step(std::move(message)); });
+        }};
 }
 
-void LinkServer::serve(Sequencer& sequencer) {
+void Listener::serve(SandThread& sequencer) {
     sequencer_ = &sequencer;
     accept();
 }
 
-void LinkServer::accept() {
+void Listener::accept() {
     acceptor_.async_accept([this](error_code error, Connection::Socket socket) {
         if (shutting_) {
             return;
@@ -81,7 +79,7 @@ void LinkServer::accept() {
     });
 }
 
-void LinkServer::admit(Connection::Socket socket) {
+void Listener::admit(Connection::Socket socket) {
     error_code gone;
     const asio::ip::address address = socket.remote_endpoint(gone).address();
     if (gone) {
@@ -99,18 +97,18 @@ void LinkServer::admit(Connection::Socket socket) {
         // Not the newcomer: sixteen who say nothing would keep out the master. A greeting takes milliseconds.
         guests_.front()->makeRoom();
     }
-    guests_.push_back(std::make_shared<MasterLink>(*this, std::move(socket)));
+    guests_.push_back(std::make_shared<Peer>(*this, std::move(socket)));
     std::shared_ptr(guests_.back())->start();
 }
 
-bool LinkServer::tooManyOf(const asio::ip::address& address) const {
+bool Listener::tooManyOf(const asio::ip::address& address) const {
     const auto same = std::count_if(guests_.begin(), guests_.end(), [guest = guestOf(address)](const auto& one) {
         return guestOf(one->address()) == guest;
     });
     return same >= kMaxGuestsOfOne && !isLoopback(address);
 }
 
-void LinkServer::refused(RefusalCode code, const asio::ip::address& address, const std::string& line) {
+void Listener::refused(RefusalCode code, const asio::ip::address& address, const std::string& line) {
     const std::int64_t now = host::monotonicNs();
     if (code != RefusalCode::limit && code != RefusalCode::busy) {
         limits_.refused(address, now);
@@ -123,11 +121,11 @@ void LinkServer::refused(RefusalCode code, const asio::ip::address& address, con
     }
 }
 
-void LinkServer::guestWent(const MasterLink& guest) {
+void Listener::guestWent(const Peer& guest) {
     std::erase_if(guests_, [&](const auto& one) { return one.get() == &guest; });
 }
 
-void LinkServer::shut(const std::string& reason) {
+void Listener::shut(const std::string& reason) {
     shutting_ = true;
     error_code ignored;
     acceptor_.close(ignored);
@@ -145,7 +143,7 @@ void LinkServer::shut(const std::string& reason) {
     stopWhenGone(last, 60);
 }
 
-void LinkServer::stopWhenGone(const std::weak_ptr<Connection>& last, int polls) {
+void Listener::stopWhenGone(const std::weak_ptr<Connection>& last, int polls) {
     if (last.expired() || polls == 0) {
         io_.stop();
         return;

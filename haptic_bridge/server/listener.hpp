@@ -17,7 +17,7 @@
 
 namespace haptic_bridge {
 
-class MasterLink;
+class Peer;
 
 /// At which times a master is sent timing tests: at random, from a seed, because nothing in a session should differ by
 /// chance.
@@ -33,7 +33,7 @@ struct TimingTests {
 /// nothing else; the next one may come. Who has not proved what the server asks for costs little: kMaxGuests of them
 /// at once, of whom the oldest goes when another comes, kMaxGuestsOfOne of one address beyond this machine, and as
 /// often as GuestLimits lets them.
-class LinkServer {
+class Listener {
 public:
     struct Sources {
         std::function<Report()> report;               // the parts of a report that the link does not measure itself
@@ -45,14 +45,14 @@ public:
     };
 
     /// Takes over a listening acceptor.
-    LinkServer(boost::asio::io_context& io, boost::asio::ip::tcp::acceptor acceptor, Identity identity,
-               std::uint32_t stepsPerSecond, Sources sources, TimingTests tests = {}, LinkSecurity security = {});
-    ~LinkServer();
+    Listener(boost::asio::io_context& io, boost::asio::ip::tcp::acceptor acceptor, Identity identity,
+             std::uint32_t stepsPerSecond, Sources sources, TimingTests tests = {}, LinkSecurity security = {});
+    ~Listener();
 
     /// What the sequencer calls on its own thread; hands over to this one.
-    [[nodiscard]] Sequencer::Output output();
+    [[nodiscard]] SandThread::Output output();
     /// Masters are taken in from now on.
-    void serve(Sequencer& sequencer);
+    void serve(SandThread& sequencer);
     /// Says goodbye to the master and stops listening; stops the io context when that has arrived, or after 0.6 s.
     void shut(const std::string& reason);
     [[nodiscard]] const RefusalCounts& refused() const { return refusals_.counts(); }
@@ -63,15 +63,15 @@ public:
     static constexpr int kMaxConnections = 64;  // of all kinds, those included that are being closed
 
 private:
-    friend class MasterLink;
+    friend class Peer;
     void accept();
     void admit(Connection::Socket socket);
     /// Counts it, and says so unless `line` is empty.
     void refused(RefusalCode code, const boost::asio::ip::address& address, const std::string& line);
     [[nodiscard]] bool tooManyOf(const boost::asio::ip::address& address) const;
-    void guestWent(const MasterLink& guest);
+    void guestWent(const Peer& guest);
     void stopWhenGone(const std::weak_ptr<Connection>& last, int polls);
-    [[nodiscard]] std::shared_ptr<MasterLink> linked(std::uint32_t session) const;
+    [[nodiscard]] std::shared_ptr<Peer> linked(std::uint32_t session) const;
 
     boost::asio::io_context& io_;
     boost::asio::ip::tcp::acceptor acceptor_;
@@ -81,13 +81,13 @@ private:
     Sources sources_;
     TimingTests tests_;
     LinkSecurity security_;
-    Sequencer* sequencer_ = nullptr;
-    std::shared_ptr<MasterLink> current_;  // the one that passed the handshake and may move
-    std::set<std::shared_ptr<MasterLink>> watchers_;
+    SandThread* sequencer_ = nullptr;
+    std::shared_ptr<Peer> current_;  // the one that passed the handshake and may move
+    std::set<std::shared_ptr<Peer>> watchers_;
     GuestLimits limits_;
     RefusalLog refusals_;
     std::uint32_t sessions_ = 0;
-    std::list<std::shared_ptr<MasterLink>> guests_;  // who has not been welcomed yet, the oldest first
+    std::list<std::shared_ptr<Peer>> guests_;  // who has not been welcomed yet, the oldest first
     std::shared_ptr<int> connections_ = std::make_shared<int>(0);
     bool shutting_ = false;
 };

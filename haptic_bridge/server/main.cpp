@@ -103,7 +103,7 @@ void writePortFile(const std::string& file, std::uint16_t port) {
     }
 }
 
-Report measured(const Hand& hand, const ForceLoop* loop, const Sequencer& sequencer) {
+Report measured(const HapticTick& hand, const ForceLoop* loop, const SandThread& sequencer) {
     Report report;
     if (loop != nullptr) {
         report.hapticPeriodUsP50 = loop->period().percentileNs(0.50) * 1e-3;
@@ -163,7 +163,7 @@ std::function<std::vector<base::Bytes>(bool)> ticksOf(TickRecorder* recorder) {
 
 void serve(const Options& options) {
     const LinkSecurity security = options.link.forServer();
-    const sand::Scene scene = sand::loadScene(options.scene);
+    const scene::Scene scene = scene::loadScene(options.scene);
     for (const std::string& warning : scene.warnings) {
         print("warning: " + warning);
     }
@@ -173,7 +173,7 @@ void serve(const Options& options) {
     noted.shareForce(options.force ? options.forceScale : 0);
     const auto datum =
         settings.datum.value_or(device->physics() ? HandSettings::Datum::level : HandSettings::Datum::surface);
-    Hand hand(scene, std::move(device), datum, options.guards);
+    HapticTick hand(scene, std::move(device), datum, options.guards);
     HandChannel channel;
     std::unique_ptr<TickRecorder> recorder;
     if (!options.record.empty()) {
@@ -187,14 +187,14 @@ void serve(const Options& options) {
     const auto endpoint = acceptor.local_endpoint();
     const Identity identity{kProtocolVersion, sand::kAlgorithmVersion, scene.rules.digest(), scene.name};
     std::function<Report()> measure;
-    LinkServer server(io, std::move(acceptor), identity, static_cast<std::uint32_t>(scene.rules.stepsPerSecond),
-                      {[&measure] { return measure(); }, print, ticksOf(recorder.get()),
-                       [&noted](double share) { noted.shareForce(share); }},
-                      options.tests, security);
+    Listener server(io, std::move(acceptor), identity, static_cast<std::uint32_t>(scene.rules.stepsPerSecond),
+                    {[&measure] { return measure(); }, print, ticksOf(recorder.get()),
+                     [&noted](double share) { noted.shareForce(share); }},
+                    options.tests, security);
     // The sand and force threads end before the link they report to.
     const host::WorkerPool pool(options.sandThreads);
-    Sequencer sequencer(scene, options.pace, hand, channel, server.output(), {.executor = pool.lend()},
-                        noted.watcher());
+    SandThread sequencer(scene, options.pace, hand, channel, server.output(), {.executor = pool.lend()},
+                         noted.watcher());
     const auto loop = options.pace == Pace::realtime ? std::make_unique<ForceLoop>(hand, channel) : nullptr;
     measure = [&] { return measured(hand, loop.get(), sequencer); };
     if (loop != nullptr && !loop->priorityRefused().empty()) {

@@ -41,7 +41,7 @@ HalfRoundTrip told(const LiveHistogram& halves) {
 
 }  // namespace
 
-MasterLink::MasterLink(LinkServer& server, Connection::Socket socket)
+Peer::Peer(Listener& server, Connection::Socket socket)
     : server_(server),
       connection_(counted(std::make_unique<Connection>(std::move(socket),
                                                        server.security_.tls ? server.security_.tls->open() : nullptr),
@@ -52,11 +52,11 @@ MasterLink::MasterLink(LinkServer& server, Connection::Socket socket)
       handshake_(server.security_),
       random_(server.tests_.seed) {}
 
-void MasterLink::start() {
+void Peer::start() {
     heardNs_ = host::monotonicNs();
     connection_->limit(kMaxGreeting);
     connection_->setMaxIn(kMaxGuestBytes);
-    if (*server_.connections_ > LinkServer::kMaxConnections / 2) {
+    if (*server_.connections_ > Listener::kMaxConnections / 2) {
         connection_->setLinger(milliseconds(0));  // no place is kept for who is refused
     }
     connection_->start(
@@ -66,17 +66,17 @@ void MasterLink::start() {
     watch();
 }
 
-void MasterLink::makeRoom() {
+void Peer::makeRoom() {
     const auto kept = shared_from_this();
     connection_->close("others wait, and it has not greeted yet", RefusalCode::limit);
 }
 
-void MasterLink::log(const std::string& what) const {
+void Peer::log(const std::string& what) const {
     server_.sources_.log(
         fmt::format("{} {}: {}", role_ == Role::move ? "master" : "watcher", connection_->peer(), what));
 }
 
-void MasterLink::watch() {
+void Peer::watch() {
     watchTimer_.expires_after(milliseconds(500));
     watchTimer_.async_wait([self = shared_from_this()](error_code error) {
         if (error || self->phase_ == Phase::over) {
@@ -94,7 +94,7 @@ void MasterLink::watch() {
     });
 }
 
-void MasterLink::receive(Message&& message) {
+void Peer::receive(Message&& message) {
     if (phase_ == Phase::over) {
         return;
     }
@@ -116,7 +116,7 @@ void MasterLink::receive(Message&& message) {
     }
 }
 
-void MasterLink::receiveLinked(Message&& message) {
+void Peer::receiveLinked(Message&& message) {
     if (const auto* start = std::get_if<Start>(&message); start != nullptr && phase_ == Phase::waiting) {
         phase_ = Phase::granting;
         epoch_ = start->epoch;
@@ -149,7 +149,7 @@ void MasterLink::receiveLinked(Message&& message) {
     }
 }
 
-void MasterLink::greet(const Hello& hello) {
+void Peer::greet(const Hello& hello) {
     // A watcher has no sand that could differ.
     const bool versionAlone = hello.role == Role::watch && hello.master.protocol == kProtocolVersion;
     if (const auto refusal = versionAlone ? std::nullopt : refusalFor(server_.identity_, hello.master)) {
@@ -170,7 +170,7 @@ void MasterLink::greet(const Hello& hello) {
     }
 }
 
-void MasterLink::judge(const Proof& proof) {
+void Peer::judge(const Proof& proof) {
     if (!handshake_.accepts(proof)) {
         refuse({RefusalCode::secret,
                 fmt::format("the secret of role {} is another here; give both sides the same --secret-file",
@@ -181,14 +181,14 @@ void MasterLink::judge(const Proof& proof) {
 }
 
 /// Only now is it told who else is here: before, nobody knows who asks.
-void MasterLink::welcome() {
+void Peer::welcome() {
     if (role_ == Role::move && server_.current_) {
         refuse({RefusalCode::busy, fmt::format("busy: the master at {} is linked; one wall at a time",
                                                server_.current_->connection_->peer())});
         return;
     }
-    if (role_ == Role::watch && server_.watchers_.size() >= LinkServer::kMaxWatchers) {
-        refuse({RefusalCode::busy, fmt::format("busy: {} watch already", LinkServer::kMaxWatchers)});
+    if (role_ == Role::watch && server_.watchers_.size() >= Listener::kMaxWatchers) {
+        refuse({RefusalCode::busy, fmt::format("busy: {} watch already", Listener::kMaxWatchers)});
         return;
     }
     server_.guestWent(*this);
@@ -213,16 +213,16 @@ void MasterLink::welcome() {
     tickReport();
 }
 
-void MasterLink::refuse(const Refusal& refusal) {
+void Peer::refuse(const Refusal& refusal) {
     connection_->send(refusal);
     const auto kept = connection_;
     end("refused: " + refusal.text, refusal.code);
     kept->finish();
 }
 
-void MasterLink::outOfTurn() { refuse({RefusalCode::garbage, "that message was out of turn"}); }
+void Peer::outOfTurn() { refuse({RefusalCode::garbage, "that message was out of turn"}); }
 
-void MasterLink::ready() {
+void Peer::ready() {
     phase_ = Phase::linked;
     connection_->expectState(false);
     connection_->expectLoads(true);
@@ -231,16 +231,16 @@ void MasterLink::ready() {
     tickTimingTest(server_.tests_.after);
 }
 
-void MasterLink::needState(const NeedState& need) {
+void Peer::needState(const NeedState& need) {
     connection_->expectState(true);
     // By steps at the first time alone; then it is the whole sand.
     catchUpsLeft_ = std::exchange(askedForSteps_, true) ? 0 : StepRing::kSteps / kMaxCatchUp;
     connection_->send(need);
 }
 
-void MasterLink::unusable(const std::string& why) { refuse({RefusalCode::state, why}); }
+void Peer::unusable(const std::string& why) { refuse({RefusalCode::state, why}); }
 
-void MasterLink::sendTicks(bool all) {
+void Peer::sendTicks(bool all) {
     if (!server_.sources_.ticks) {
         return;
     }
@@ -249,7 +249,7 @@ void MasterLink::sendTicks(bool all) {
     }
 }
 
-void MasterLink::step(base::Bytes message) {
+void Peer::step(base::Bytes message) {
     sendTicks(false);
     ++steps_;
     if (message.size() <= kMaxMessage) {  // not one with sand that is loaded: timing tests are as long as the last
@@ -263,13 +263,13 @@ void MasterLink::step(base::Bytes message) {
     connection_->sendBytes(std::move(message));
 }
 
-void MasterLink::watchStep(const base::Bytes& message) {
+void Peer::watchStep(const base::Bytes& message) {
     if (message.size() <= kMaxMessage) {  // not sand that is loaded: the master alone has asked for so much
         connection_->sendBytes(base::Bytes(message));
     }
 }
 
-void MasterLink::tickTimingTest(double pause) {
+void Peer::tickTimingTest(double pause) {
     // Poisson arrivals see time averages: no phase of a frame is met more often than it lasts.
     std::exponential_distribution<double> wait(server_.tests_.perSecond);  // [s]
     testTimer_.expires_after(std::chrono::nanoseconds(static_cast<std::int64_t>((pause + wait(random_)) * 1e9)));
@@ -289,7 +289,7 @@ void MasterLink::tickTimingTest(double pause) {
     });
 }
 
-void MasterLink::echoed(const TimingEcho& echo) {
+void Peer::echoed(const TimingEcho& echo) {
     const auto test = testsOut_.find(echo.id);
     if (test == testsOut_.end()) {
         return;
@@ -303,7 +303,7 @@ void MasterLink::echoed(const TimingEcho& echo) {
     }
 }
 
-void MasterLink::tickReport() {
+void Peer::tickReport() {
     reportTimer_.expires_after(milliseconds(1000));
     reportTimer_.async_wait([self = shared_from_this()](error_code error) {
         if (!error && self->phase_ != Phase::over) {
@@ -313,7 +313,7 @@ void MasterLink::tickReport() {
     });
 }
 
-Report MasterLink::report() const {
+Report Peer::report() const {
     Report report = server_.sources_.report();
     report.toWall = told(toWall_);
     report.toMaster = told(toMaster_);
@@ -323,7 +323,7 @@ Report MasterLink::report() const {
     return report;
 }
 
-void MasterLink::sayGoodbye(const std::string& reason) {
+void Peer::sayGoodbye(const std::string& reason) {
     if (phase_ == Phase::over) {
         return;
     }
@@ -337,7 +337,7 @@ void MasterLink::sayGoodbye(const std::string& reason) {
     kept->finish();
 }
 
-void MasterLink::end(const std::string& why, Connection::Fault fault) {
+void Peer::end(const std::string& why, Connection::Fault fault) {
     if (phase_ == Phase::over) {
         return;
     }

@@ -10,9 +10,9 @@
 namespace haptic_bridge {
 
 /// The server's end of one connection, from the greeting to the goodbye. On the streaming thread alone.
-class MasterLink : public std::enable_shared_from_this<MasterLink> {
+class Peer : public std::enable_shared_from_this<Peer> {
 public:
-    MasterLink(LinkServer& server, Connection::Socket socket);
+    Peer(Listener& server, Connection::Socket socket);
     void start();
 
     void ready();
@@ -48,7 +48,7 @@ private:
     void log(const std::string& what) const;
     [[nodiscard]] Report report() const;
 
-    LinkServer& server_;
+    Listener& server_;
     std::shared_ptr<Connection> connection_;
     boost::asio::steady_timer reportTimer_, testTimer_, watchTimer_;
     ServerHandshake handshake_;

@@ -18,8 +18,8 @@ constexpr std::int64_t kMillisecond = 1'000'000;  // [ns]
 
 }  // namespace
 
-Sequencer::Sequencer(const sand::Scene& scene, Pace pace, Hand& hand, HandChannel& channel, Output output,
-                     const sand::Erosion::Options& sweeps, SandWatcher* watcher)
+SandThread::SandThread(const scene::Scene& scene, Pace pace, HapticTick& hand, HandChannel& channel, Output output,
+                       const sand::grid::Erosion::Options& sweeps, SandWatcher* watcher)
     : scene_(scene),
       pace_(pace),
       hand_(hand),
@@ -33,12 +33,12 @@ Sequencer::Sequencer(const sand::Scene& scene, Pace pace, Hand& hand, HandChanne
     thread_ = std::thread([this] { run(); });
 }
 
-Sequencer::~Sequencer() {
+SandThread::~SandThread() {
     post(Stop{});
     thread_.join();
 }
 
-void Sequencer::post(Command command) {
+void SandThread::post(Command command) {
     {
         const std::lock_guard lock(mutex_);
         commands_.push_back(std::move(command));
@@ -46,7 +46,7 @@ void Sequencer::post(Command command) {
     wake_.notify_one();
 }
 
-void Sequencer::run() {
+void SandThread::run() {
     while (!stopping_) {
         const bool stepDue = waitForWork();
         std::deque<Command> commands;
@@ -65,7 +65,7 @@ void Sequencer::run() {
 }
 
 /// Sleeps until a command comes or a step is due; says whether one is.
-bool Sequencer::waitForWork() {
+bool SandThread::waitForWork() {
     std::unique_lock lock(mutex_);
     const auto commanded = [this] { return !commands_.empty(); };
     if (pace_ == Pace::fast) {
@@ -81,7 +81,7 @@ bool Sequencer::waitForWork() {
     return !wake_.wait_until(lock, when, commanded) && running;
 }
 
-void Sequencer::obey(Granted& command) {
+void SandThread::obey(Granted& command) {
     session_ = command.session;
     start_ = command.start;
     if (terrain_.stepNumber() == start_.stepNumber && terrain_.stateHash() == start_.stateHash) {
@@ -92,7 +92,7 @@ void Sequencer::obey(Granted& command) {
     }
 }
 
-void Sequencer::obey(State& command) {
+void SandThread::obey(State& command) {
     if (phase_ != Phase::awaitingState) {
         return;
     }
@@ -110,7 +110,7 @@ void Sequencer::obey(State& command) {
     begin();
 }
 
-void Sequencer::obey(CatchUp& command) {
+void SandThread::obey(CatchUp& command) {
     if (phase_ != Phase::awaitingState) {
         return;
     }
@@ -131,7 +131,7 @@ void Sequencer::obey(CatchUp& command) {
     }
 }
 
-void Sequencer::obey(Frame& command) {
+void SandThread::obey(Frame& command) {
     if (phase_ != Phase::running) {
         return;
     }
@@ -140,13 +140,13 @@ void Sequencer::obey(Frame& command) {
     clock_.frameShown(command.nowNs, command.shown.frameIntervalNs);
 }
 
-void Sequencer::obey(Released&) {
+void SandThread::obey(Released&) {
     phase_ = Phase::idle;
     channel_.moving = false;
     path_.dropWaiting();
 }
 
-void Sequencer::begin() {
+void SandThread::begin() {
     phase_ = Phase::running;
     edit_ = {};
     shown_ = start_.stepNumber;
@@ -164,7 +164,7 @@ void Sequencer::begin() {
     output_.ready(session_);
 }
 
-void Sequencer::collect() {
+void SandThread::collect() {
     channel_.samples.consume_all([this](const HandSample& sample) {
         if (phase_ == Phase::running) {
             path_.add(sample);
@@ -173,7 +173,7 @@ void Sequencer::collect() {
     dropped_ = path_.dropped();
 }
 
-void Sequencer::gatherVirtual() {
+void SandThread::gatherVirtual() {
     const auto rate = static_cast<std::uint64_t>(scene_.rules.stepsPerSecond);
     const std::uint64_t first = virtualSteps_ * 1000 / rate + 1, last = (virtualSteps_ + 1) * 1000 / rate;
     ++virtualSteps_;
@@ -181,12 +181,12 @@ void Sequencer::gatherVirtual() {
         // The sand was last computed one step ago; under a virtual clock it is never stale.
         const auto now = static_cast<std::int64_t>(millisecond) * kMillisecond;
         virtualSurface_.timeNs = now;
-        path_.add(hand_.tick(static_cast<double>(millisecond) * Hand::kTick, now, virtualSurface_));
+        path_.add(hand_.tick(static_cast<double>(millisecond) * HapticTick::kTick, now, virtualSurface_));
         channel_.keep(now, virtualSurface_);
     }
 }
 
-void Sequencer::makeStep() {
+void SandThread::makeStep() {
     if (blocked()) {  // in real time only: the fast pace waits instead
         ++withheld_;
         publishSurface();  // the same sand, but not a stale one: a hand goes on to feel a wall that waits
@@ -219,18 +219,18 @@ void Sequencer::makeStep() {
     clock_.advance(host::monotonicNs());
 }
 
-void Sequencer::publishSurface() {
+void SandThread::publishSurface() {
     if (pace_ == Pace::fast) {
         takeSurface(terrain_, virtualSurface_);
         return;
     }
-    Surface& next = channel_.surface.next();
+    FeltSand& next = channel_.surface.next();
     takeSurface(terrain_, next);
     next.timeNs = host::monotonicNs();
     channel_.surface.publish();
 }
 
-void Sequencer::showSand() {
+void SandThread::showSand() {
     if (watcher_ != nullptr) {
         watcher_->stepped(terrain_);
     }

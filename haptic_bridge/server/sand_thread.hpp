@@ -25,7 +25,7 @@ enum class Pace : std::uint8_t { realtime, fast };
 /// In real time a step is due by the StepClock and takes what the force thread has queued, of a hand that is ahead of
 /// its wall a part (PathBuilder). Under the fast pace there is no clock: step n takes exactly the samples at the
 /// virtual milliseconds in ((n−1)/rate, n/rate], counted from the first start, as quickly as the wall's window allows.
-class Sequencer {
+class SandThread {
 public:
     // What a wall that cannot keep up has queued is how late it shows the hand: 32 steps made a second of it.
     static constexpr std::uint64_t kWindow = 8;  // [step] that may be ahead of the wall
@@ -40,11 +40,11 @@ public:
 
     /// Under Pace::fast `hand` is ticked by this thread, and must not be used by another.
     /// `watcher` may be null: told of the sand after every step, on the sand thread.
-    Sequencer(const sand::Scene& scene, Pace pace, Hand& hand, HandChannel& channel, Output output,
-              const sand::Erosion::Options& sweeps = {}, SandWatcher* watcher = nullptr);
-    ~Sequencer();
-    Sequencer(const Sequencer&) = delete;
-    Sequencer& operator=(const Sequencer&) = delete;
+    SandThread(const scene::Scene& scene, Pace pace, HapticTick& hand, HandChannel& channel, Output output,
+               const sand::grid::Erosion::Options& sweeps = {}, SandWatcher* watcher = nullptr);
+    ~SandThread();
+    SandThread(const SandThread&) = delete;
+    SandThread& operator=(const SandThread&) = delete;
 
     // From any thread; the answer comes through Output.
     void start(std::uint32_t session, const Start& start) { post(Granted{session, start}); }
@@ -88,9 +88,9 @@ private:
     void publishSurface();
     void showSand();
 
-    const sand::Scene& scene_;
+    const scene::Scene& scene_;
     const Pace pace_;
-    Hand& hand_;
+    HapticTick& hand_;
     HandChannel& channel_;
     Output output_;
 
@@ -102,7 +102,7 @@ private:
     sand::Replica terrain_;
     PathBuilder path_;
     StepClock clock_;
-    Surface virtualSurface_;
+    FeltSand virtualSurface_;
     std::uint32_t session_ = 0;
     Start start_;
     enum class Phase { idle, awaitingState, running } phase_ = Phase::idle;

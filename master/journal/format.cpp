@@ -30,7 +30,7 @@ JournalEnd getEnd(base::ByteReader& reader) {
     return end;
 }
 
-void put(const sand::Material& material, base::ByteWriter& writer) {
+void put(const scene::Material& material, base::ByteWriter& writer) {
     for (const double number : {material.dryTalus, material.humidity, material.cohesionLength, material.band,
                                 material.settlingSeconds, material.toolRadius, material.toolHeading}) {
         writer.put(number);
@@ -43,8 +43,8 @@ void put(const sand::Material& material, base::ByteWriter& writer) {
     writer.put(static_cast<std::uint8_t>(material.leftFoot ? 1 : 0));
 }
 
-sand::Material getMaterial(base::ByteReader& reader) {
-    sand::Material material;
+scene::Material getMaterial(base::ByteReader& reader) {
+    scene::Material material;
     for (double* number : {&material.dryTalus, &material.humidity, &material.cohesionLength, &material.band,
                            &material.settlingSeconds, &material.toolRadius, &material.toolHeading}) {
         *number = reader.get<double>();
@@ -111,7 +111,7 @@ struct Encode {
         writer.put(resumed.cutBytes);
         writer.putText(resumed.failure);
     }
-    void operator()(const sand::Material& material) {
+    void operator()(const scene::Material& material) {
         writer.put(std::uint8_t{kMaterial});
         put(material, writer);
     }

@@ -51,7 +51,7 @@ struct JournalContinued {
 };
 
 using JournalRecord =
-    std::variant<JournalFrame, JournalEnd, JournalTicks, JournalResumed, sand::Material, JournalContinued>;
+    std::variant<JournalFrame, JournalEnd, JournalTicks, JournalResumed, scene::Material, JournalContinued>;
 
 /// What a journal's file begins with.
 struct JournalHeader {
@@ -61,8 +61,8 @@ struct JournalHeader {
     std::uint64_t continues = 0;  // checksum of the last record of the part before; 0 in the first
     JournalEnd sand;              // before its first step
     std::string buildId;
-    base::Bytes scene;                       // sand::Scene::encode; empty in later parts
-    std::optional<sand::Material> material;  // as the operator knows it; none in later parts
+    base::Bytes scene;                        // sand::Scene::encode; empty in later parts
+    std::optional<scene::Material> material;  // as the operator knows it; none in later parts
 };
 
 /// Of a journal whose header is cut off or damaged.

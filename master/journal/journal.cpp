@@ -20,7 +20,7 @@ struct Gather {
         journal.end.reset();
         journal.resumes.push_back(std::move(resumed));
     }
-    void operator()(const sand::Material&) const {}
+    void operator()(const scene::Material&) const {}
     void operator()(const JournalContinued&) const {}
 };
 
@@ -36,9 +36,9 @@ auto decoded(const JournalReader& reader, Decode decode) {
 
 }  // namespace
 
-sand::Scene sceneOf(const JournalReader& reader) { return decoded(reader, sand::Scene::decode); }
+scene::Scene sceneOf(const JournalReader& reader) { return decoded(reader, scene::Scene::decode); }
 
-sand::Rules rulesOf(const JournalReader& reader) { return decoded(reader, sand::Scene::decodeRules); }
+sand::Rules rulesOf(const JournalReader& reader) { return decoded(reader, scene::Scene::decodeRules); }
 
 Journal readJournal(const std::filesystem::path& file) {
     JournalReader reader(file);

@@ -16,7 +16,7 @@ namespace master {
 
 /// A session read back, all of it: about 400 bytes a step and 65 a tick of the track.
 struct Journal {
-    sand::Scene scene;
+    scene::Scene scene;
     std::string buildId;
     std::vector<JournalFrame> frames;
     std::vector<base::Bytes> ticks;  // pieces of the haptic server's tick track, when it recorded
@@ -29,7 +29,7 @@ struct Journal {
 /// damaged before its end, and for a journal of whose parts one is missing.
 [[nodiscard]] Journal readJournal(const std::filesystem::path& file);
 /// Of the header. Throws base::InputError.
-[[nodiscard]] sand::Scene sceneOf(const JournalReader& reader);
+[[nodiscard]] scene::Scene sceneOf(const JournalReader& reader);
 /// The rules of that scene, read without its heights. Throws base::InputError.
 [[nodiscard]] sand::Rules rulesOf(const JournalReader& reader);
 

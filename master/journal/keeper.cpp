@@ -37,7 +37,7 @@ JournalPolicy parseJournalPolicy(const std::string& word) {
 
 std::string_view journalPolicyName(JournalPolicy policy) { return kPolicies.at(static_cast<std::size_t>(policy)); }
 
-JournalKeeper::JournalKeeper(const std::filesystem::path& out, const JournalOptions& options, const sand::Scene& scene,
+JournalKeeper::JournalKeeper(const std::filesystem::path& out, const JournalOptions& options, const scene::Scene& scene,
                              const ResumedSession* resumed, const std::string& failure, std::string buildId)
     : options_(options),
       journal_(out / "session.journal"),
@@ -155,12 +155,12 @@ void JournalKeeper::giveUp(const std::string& why) {
     host::emitEvent("journal", {{"state", "failed"}, {"error", why}});
 }
 
-void JournalKeeper::keep(const JournalFrame& frame, const std::vector<sand::Material>& materials) {
+void JournalKeeper::keep(const JournalFrame& frame, const std::vector<scene::Material>& materials) {
     if (!writer_) {
         return;
     }
     try {
-        for (const sand::Material& material : materials) {
+        for (const scene::Material& material : materials) {
             writer_->keep(material);
         }
         writer_->append(frame);

@@ -45,7 +45,7 @@ class JournalKeeper {
 public:
     /// Begins OUT/session.journal, or goes on with that of `resumed`. Throws base::InputError when it cannot be made,
     /// std::runtime_error while another session writes it, and when it is not what was read any more.
-    JournalKeeper(const std::filesystem::path& out, const JournalOptions& options, const sand::Scene& scene,
+    JournalKeeper(const std::filesystem::path& out, const JournalOptions& options, const scene::Scene& scene,
                   const ResumedSession* resumed, const std::string& failure, std::string buildId);
     ~JournalKeeper();
     JournalKeeper(const JournalKeeper&) = delete;
@@ -56,7 +56,7 @@ public:
     /// that the wall shows.
     [[nodiscard]] bool mayTake(std::int64_t bytes, const JournalEnd& now);
     /// Returns when the steps are on disk. Throws DiskFailure when the disk refuses them and the policy is required.
-    void keep(const JournalFrame& frame, const std::vector<sand::Material>& materials);
+    void keep(const JournalFrame& frame, const std::vector<scene::Material>& materials);
     /// Pieces of the tick track: on disk with later steps. Throws as keep() does.
     void keepTicks(const std::vector<base::Bytes>& pieces);
     /// After every frame: begins a checkpoint when it is time to. All steps of the sand are in the journal.

@@ -21,7 +21,7 @@ public:
     /// Throws base::InputError, with `file` in it, when the journal holds no steps or one of them is missing.
     Recording(Journal journal, std::string file, int framesPerSecond);
 
-    [[nodiscard]] const sand::Scene& scene() const { return scene_; }
+    [[nodiscard]] const scene::Scene& scene() const { return scene_; }
     [[nodiscard]] int framesPerSecond() const { return framesPerSecond_; }
     [[nodiscard]] std::uint64_t lastStep() const { return steps_.size(); }
     [[nodiscard]] std::uint64_t frames() const { return frames_; }
@@ -36,7 +36,7 @@ public:
 private:
     [[nodiscard]] std::uint64_t stepsUntil(std::uint64_t frame) const;
 
-    sand::Scene scene_;
+    scene::Scene scene_;
     int framesPerSecond_;
     std::vector<sand::Step> steps_;                  // number n at n - 1
     std::map<std::uint64_t, std::uint64_t> hashes_;  // by the step they were written after

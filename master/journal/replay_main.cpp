@@ -113,11 +113,11 @@ int replay(const master::Journal& journal, std::uint64_t until, sand::Replica& t
 /// Long before there is something to be written.
 void checkOutputs(const Options& options) {
     if (!options.mesh.empty()) {
-        sand::checkMeshName(options.mesh);
+        scene::checkMeshName(options.mesh);
     }
     for (const std::string& file : {options.heights, options.difference}) {
         if (!file.empty()) {
-            sand::checkRasterName(file);
+            scene::checkRasterName(file);
         }
     }
     for (const std::string& file : {options.heights, options.difference, options.mesh}) {
@@ -127,15 +127,15 @@ void checkOutputs(const Options& options) {
     }
 }
 
-void writeRasters(const sand::HeightField& field, const sand::Scene& scene, const Options& options) {
+void writeRasters(const sand::HeightField& field, const scene::Scene& scene, const Options& options) {
     if (!options.heights.empty()) {
-        sand::writeRaster(sand::heightsOf(field, scene), options.heights);
+        scene::writeRaster(scene::heightsOf(field, scene), options.heights);
     }
     if (!options.difference.empty()) {
-        sand::writeRaster(sand::differenceOf(field, scene), options.difference);
+        scene::writeRaster(scene::differenceOf(field, scene), options.difference);
     }
     if (options.volumes) {
-        const sand::Earthwork work = sand::earthworkOf(field, scene);
+        const scene::Earthwork work = scene::earthworkOf(field, scene);
         const auto both = [&](double unit) -> nlohmann::ordered_json {
             return {{"cut", static_cast<double>(work.cut) * unit}, {"fill", static_cast<double>(work.fill) * unit}};
         };
@@ -147,16 +147,16 @@ void writeRasters(const sand::HeightField& field, const sand::Scene& scene, cons
     }
 }
 
-void writeOutputs(const sand::Replica& terrain, const sand::Scene& scene, const Options& options) {
+void writeOutputs(const sand::Replica& terrain, const scene::Scene& scene, const Options& options) {
     const sand::tin::SurfaceView* tin = terrain.tinView();
     if (!options.mesh.empty()) {
-        sand::writeMesh(tin != nullptr ? sand::meshOf(*tin, scene) : sand::meshOf(terrain.field(), scene),
-                        options.mesh);
+        scene::writeMesh(tin != nullptr ? scene::meshOf(*tin, scene) : scene::meshOf(terrain.field(), scene),
+                         options.mesh);
     }
     if (tin == nullptr) {
         writeRasters(terrain.field(), scene, options);
     } else if (!options.heights.empty() || !options.difference.empty() || options.volumes) {
-        writeRasters(sand::sampled(terrain, scene.tin->holes.get()), sand::sampledScene(scene), options);
+        writeRasters(scene::sampled(terrain, scene.tin->holes.get()), scene::sampledScene(scene), options);
     }
 }
 

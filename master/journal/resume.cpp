@@ -68,7 +68,7 @@ std::uint64_t replayUntil(const fs::path& journal, std::uint64_t step, sand::Rep
 struct Walk {
     ResumedSession& session;
     const fs::path& journal;
-    std::optional<sand::Material> pending;  // of steps that follow: a crash may have torn them off
+    std::optional<scene::Material> pending;  // of steps that follow: a crash may have torn them off
 
     void operator()(const JournalFrame& frame) {
         session.frame = std::max(session.frame, frame.frame);
@@ -83,7 +83,7 @@ struct Walk {
             session.edits += step.edit.any() ? 1 : 0;
         }
     }
-    void operator()(const sand::Material& material) { pending = material; }
+    void operator()(const scene::Material& material) { pending = material; }
     void operator()(const JournalResumed& resumed) {
         session.frame = std::max(session.frame, resumed.frame);
         pending.reset();
@@ -109,7 +109,7 @@ void requireScene(const JournalReader& reader, const std::string& file) {
             fail();
         }
     };
-    if (sand::loadScene(file, otherSize).encode() != reader.header().scene) {
+    if (scene::loadScene(file, otherSize).encode() != reader.header().scene) {
         fail();
     }
 }
@@ -129,7 +129,7 @@ sand::Replica sandOfCheckpoint(const fs::path& file, const JournalHeader& header
     return terrain;
 }
 
-RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const sand::Erosion::Options& sweeps) {
+RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const sand::grid::Erosion::Options& sweeps) {
     const JournalReader head(journal);
     const sand::Replica start(sceneOf(head), sweeps);
     for (const std::uint64_t at : checkpointsOf(journal)) {
@@ -152,7 +152,7 @@ RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const sand
 }
 
 std::optional<ResumedSession> readSession(const fs::path& journal, const std::string& scene,
-                                          const sand::Erosion::Options& sweeps) {
+                                          const sand::grid::Erosion::Options& sweeps) {
     std::error_code none;
     if (!fs::exists(journal, none)) {
         return std::nullopt;
@@ -161,7 +161,7 @@ std::optional<ResumedSession> readSession(const fs::path& journal, const std::st
     requireScene(reader, scene);
     ResumedSession session;
     session.scene = sceneOf(reader);
-    session.scene.material = session.material = reader.header().material.value_or(sand::Material());
+    session.scene.material = session.material = reader.header().material.value_or(scene::Material());
     try {
         Walk walk{session, journal, {}};
         while (const auto record = reader.next()) {

@@ -23,7 +23,7 @@ struct RestoredSand {
 /// that. `journal` is the session's file (session.journal); checkpoints lie beside it. Throws base::InputError when
 /// the journal cannot be read, ends before `step`, or disagrees with the hashes it holds. Any thread.
 [[nodiscard]] RestoredSand restoreSand(const std::filesystem::path& journal, std::uint64_t step,
-                                       const sand::Erosion::Options& sweeps = {});
+                                       const sand::grid::Erosion::Options& sweeps = {});
 
 /// The sand of a checkpoint, of the session with this header, whose sand began as `start`. Throws base::FormatError
 /// when it is another's, or damaged.
@@ -32,11 +32,11 @@ struct RestoredSand {
 
 /// A session that stopped, and all that it takes to go on.
 struct ResumedSession {
-    sand::Scene scene;
-    sand::Material material;  // with all that its operator had asked for
-    JournalPlace place;       // where its journal goes on
-    std::uint64_t frame = 0;  // the last in the journal
-    std::uint32_t epoch = 0;  // the last
+    scene::Scene scene;
+    scene::Material material;  // with all that its operator had asked for
+    JournalPlace place;        // where its journal goes on
+    std::uint64_t frame = 0;   // the last in the journal
+    std::uint32_t epoch = 0;   // the last
     std::uint64_t edits = 0;
     std::uint64_t step = 0, hash = 0;  // the sand
     base::Bytes state;                 // as well, sand::Replica::encodeState
@@ -48,6 +48,6 @@ struct ResumedSession {
 /// must describe its scene. Throws base::InputError for a journal that cannot be gone on with, and says what can be
 /// done with it.
 [[nodiscard]] std::optional<ResumedSession> readSession(const std::filesystem::path& journal, const std::string& scene,
-                                                        const sand::Erosion::Options& sweeps = {});
+                                                        const sand::grid::Erosion::Options& sweeps = {});
 
 }  // namespace master

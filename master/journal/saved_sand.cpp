@@ -130,7 +130,7 @@ private:
 
 }  // namespace
 
-SandPlace SandPlace::of(const sand::Scene& scene) {
+SandPlace SandPlace::of(const scene::Scene& scene) {
     return {scene.name,         scene.rules.columns,      scene.rules.rows,
             scene.rules.aspect, scene.terrain.cellSize(), scene.rules.ground ^ scene.rules.tin};
 }

@@ -19,7 +19,7 @@ struct SandPlace {
     double cellSize = 0;       // [scene unit]
     std::uint64_t ground = 0;  // Rules::ground, or a TIN's
 
-    static SandPlace of(const sand::Scene& scene);
+    static SandPlace of(const scene::Scene& scene);
 };
 
 /// Whether a file of saved sand may be called that: letters, digits, - and _, at most 64, so that no name leads out of

@@ -22,7 +22,7 @@ constexpr std::array<std::string_view, sand::kEdits> kEditNames{"", "settle", "r
 /// The tool as steps have made it.
 class ExportedTool {
 public:
-    explicit ExportedTool(const sand::Scene& scene)
+    explicit ExportedTool(const scene::Scene& scene)
         : rules_(scene.rules),
           heading_(scene.rules.toolHeading),
           unit_(scene.terrain.cellSize() / sand::kProbePerCell) {}
@@ -99,8 +99,8 @@ void recoverJournal(const std::filesystem::path& journal, const std::filesystem:
         throw base::InputError(fmt::format("{}: is there already; choose another file", file.string()));
     }
     JournalReader reader(journal);
-    sand::Scene scene = sceneOf(reader);
-    scene.material = reader.header().material.value_or(sand::Material());
+    scene::Scene scene = sceneOf(reader);
+    scene.material = reader.header().material.value_or(scene::Material());
     if (file.has_parent_path()) {
         std::filesystem::create_directories(file.parent_path(), error);
     }

@@ -62,7 +62,7 @@ public:
         compare(resumed.sand);
     }
     void operator()(const JournalTicks&) { ++ticks_; }
-    void operator()(const sand::Material&) {}
+    void operator()(const scene::Material&) {}
     void operator()(const JournalContinued&) {}
 
 private:

@@ -24,7 +24,7 @@ std::uint64_t newSession() {
     return std::uint64_t{random()} << 32U | random();
 }
 
-PartFile makeFirst(const fs::path& file, const sand::Scene& scene, const std::string& buildId, std::uint64_t session,
+PartFile makeFirst(const fs::path& file, const scene::Scene& scene, const std::string& buildId, std::uint64_t session,
                    std::uint64_t& chain) {
     keepPreviousJournal(file);
     JournalHeader header;
@@ -56,7 +56,7 @@ void keepPreviousJournal(const fs::path& journal) {
     }
 }
 
-JournalWriter::JournalWriter(const fs::path& file, const sand::Scene& scene, const std::string& buildId,
+JournalWriter::JournalWriter(const fs::path& file, const scene::Scene& scene, const std::string& buildId,
                              std::int64_t partBytes)
     : journal_(file),
       buildId_(buildId),

@@ -27,7 +27,7 @@ class JournalWriter {
 public:
     /// Makes the file, header and all, after keepPreviousJournal(). A part that has grown beyond `partBytes` is
     /// followed by another.
-    JournalWriter(const std::filesystem::path& file, const sand::Scene& scene, const std::string& buildId,
+    JournalWriter(const std::filesystem::path& file, const scene::Scene& scene, const std::string& buildId,
                   std::int64_t partBytes = kPartBytes);
     /// Goes on behind a whole record; what stands there is cut off. Throws std::runtime_error as PartFile::open.
     JournalWriter(const JournalPlace& place, const std::string& buildId, std::int64_t partBytes = kPartBytes);

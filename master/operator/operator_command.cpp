@@ -76,8 +76,8 @@ double parseNumber(std::string_view what, std::string_view text) {
 }
 
 /// SHAPE, or the radius alone, and KEY=VALUE, in any order.
-sand::ToolChange parseTool(std::string_view text) {
-    sand::ToolChange change;
+scene::ToolChange parseTool(std::string_view text) {
+    scene::ToolChange change;
     while (!text.empty()) {
         const std::size_t space = text.find(' ');
         const std::string_view word = text.substr(0, space);
@@ -154,7 +154,7 @@ void parseArgument(std::string_view argument, Command& command) {
             break;
         case Verb::show:
         case Verb::hide:
-            command.layer = lockstep::parseLayer(argument.substr(0, 80));
+            command.layer = lockstep::parseOverlay(argument.substr(0, 80));
             break;
         case Verb::pattern:
             if (argument == "next") {

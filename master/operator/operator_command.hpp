@@ -40,9 +40,9 @@ enum class Verb : std::uint8_t {
 struct Command {
     Verb verb = Verb::status;
     std::optional<lockstep::Pattern> pattern;  // of Verb::pattern; none: the next one
-    lockstep::Layer layer{};                   // of Verb::show and Verb::hide
+    lockstep::Overlay layer{};                 // of Verb::show and Verb::hide
     double number = 0;                         // of Verb::eyeSeparation [m], Verb::material, Verb::force [share]
-    sand::ToolChange tool{};                   // of Verb::tool
+    scene::ToolChange tool{};                  // of Verb::tool
     std::string word;                          // of Verb::material, which number; of Verb::save and Verb::load
     walls::Stereo stereo{};                    // of Verb::stereo
 };

@@ -49,7 +49,7 @@ const char* nameOf(Link link) {
 
 }  // namespace
 
-Sequencer::Sequencer(std::optional<haptic_bridge::Address> server, const sand::Scene& scene, Pace pace,
+LiveSteps::LiveSteps(std::optional<haptic_bridge::Address> server, const scene::Scene& scene, Pace pace,
                      std::uint32_t epoch, haptic_bridge::LinkSecurity security)
     : server_(std::move(server)),
       offer_{scene.rules.digest(), scene.name},
@@ -67,7 +67,7 @@ Sequencer::Sequencer(std::optional<haptic_bridge::Address> server, const sand::S
     }
 }
 
-void Sequencer::takeOver(const std::string& reason, const std::string& why) {
+void LiveSteps::takeOver(const std::string& reason, const std::string& why) {
     if (!why.empty()) {
         fmt::print(stderr, "haptic link: {}; the wall goes on without a hand\n", why);
     }
@@ -80,14 +80,14 @@ void Sequencer::takeOver(const std::string& reason, const std::string& why) {
     lastOwnNs_ = monotonicNs();
 }
 
-void Sequencer::grant(const sand::Replica& terrain, std::uint64_t stateHash) {
+void LiveSteps::grant(const sand::Replica& terrain, std::uint64_t stateHash) {
     ++epoch_;
     client_->grant(epoch_, terrain.stepNumber(), stateHash, terrain.encodeState(), recent_);
     source_ = Source::granting;
     waitingSinceNs_ = monotonicNs();
 }
 
-void Sequencer::sayLink(const haptic_bridge::LinkStatus& status) {
+void LiveSteps::sayLink(const haptic_bridge::LinkStatus& status) {
     if (status.changes != linkChanges_) {
         linkChanges_ = status.changes;
         host::emitEvent("link", {{"state", nameOf(status.link)}, {"epoch", epoch_}, {"server", server_->text()}});
@@ -97,7 +97,7 @@ void Sequencer::sayLink(const haptic_bridge::LinkStatus& status) {
     }
 }
 
-void Sequencer::followLink(const sand::Replica& terrain, std::uint64_t stateHash) {
+void LiveSteps::followLink(const sand::Replica& terrain, std::uint64_t stateHash) {
     if (!client_ && server_ && secondsSince(waitingSinceNs_) > kRetryWait) {
         client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_, security_);
     }
@@ -132,7 +132,7 @@ void Sequencer::followLink(const sand::Replica& terrain, std::uint64_t stateHash
     }
 }
 
-void Sequencer::followPositions(const haptic_bridge::LinkStatus& status, const sand::Replica& terrain) {
+void LiveSteps::followPositions(const haptic_bridge::LinkStatus& status, const sand::Replica& terrain) {
     if (status.link != Link::streaming) {
         positions_.end();
         return;
@@ -146,7 +146,7 @@ void Sequencer::followPositions(const haptic_bridge::LinkStatus& status, const s
     }
 }
 
-std::size_t Sequencer::ownStepsDue() {
+std::size_t LiveSteps::ownStepsDue() {
     if (pace_ == Pace::fast) {
         return 1;
     }
@@ -158,7 +158,7 @@ std::size_t Sequencer::ownStepsDue() {
     return static_cast<std::size_t>(due);
 }
 
-void Sequencer::passEdits(const std::vector<TimedStep>& steps) {
+void LiveSteps::passEdits(const std::vector<TimedStep>& steps) {
     for (const TimedStep& timed : steps) {
         if (timed.step.edit.any() && !edits_.empty() && timed.step.edit == edits_.front()) {
             edits_.pop_front();
@@ -178,7 +178,7 @@ void Sequencer::passEdits(const std::vector<TimedStep>& steps) {
     }
 }
 
-std::vector<TimedStep> Sequencer::next(const sand::Replica& terrain, std::uint64_t stateHash, std::size_t most) {
+std::vector<TimedStep> LiveSteps::next(const sand::Replica& terrain, std::uint64_t stateHash, std::size_t most) {
     if (server_) {
         recent_.reached(terrain.stepNumber(), stateHash);
     }
@@ -196,7 +196,7 @@ std::vector<TimedStep> Sequencer::next(const sand::Replica& terrain, std::uint64
     return steps;
 }
 
-std::vector<TimedStep> Sequencer::stepsDue(const sand::Replica& terrain, std::uint64_t stateHash, std::size_t most) {
+std::vector<TimedStep> LiveSteps::stepsDue(const sand::Replica& terrain, std::uint64_t stateHash, std::size_t most) {
     std::vector<TimedStep> steps;
     if (client_ && source_ == Source::server) {
         steps = client_->drain(most);
@@ -229,15 +229,15 @@ std::vector<TimedStep> Sequencer::stepsDue(const sand::Replica& terrain, std::ui
     return steps;
 }
 
-void Sequencer::shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs) {
+void LiveSteps::shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs) {
     if (client_) {
         client_->shown(stepNumber, frameIntervalNs);
     }
 }
 
-void Sequencer::shareForce(double share) { share_ = share; }
+void LiveSteps::shareForce(double share) { share_ = share; }
 
-std::vector<base::Bytes> Sequencer::ticks() {
+std::vector<base::Bytes> LiveSteps::ticks() {
     std::vector<base::Bytes> pieces = std::exchange(ticks_, {});
     if (client_) {
         for (base::Bytes& piece : client_->drainTicks()) {
@@ -247,7 +247,7 @@ std::vector<base::Bytes> Sequencer::ticks() {
     return pieces;
 }
 
-void Sequencer::leaveServer() {
+void LiveSteps::leaveServer() {
     ticks_ = ticks();
     earlierReport_ = report();
     earlierLinks_ = counters();
@@ -257,14 +257,14 @@ void Sequencer::leaveServer() {
     linkChanges_ = 0;
 }
 
-void Sequencer::distrustServer() {
+void LiveSteps::distrustServer() {
     leaveServer();
     recent_ = {};  // it holds what that server has said of the sand
     client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_, security_);
     takeOver("other_sand", "the server's sand differs from the wall's, it must start again from the wall's");
 }
 
-void Sequencer::startDrills() {
+void LiveSteps::startDrills() {
     if (!client_ || !(linked() || streaming())) {
         return;
     }
@@ -275,12 +275,12 @@ void Sequencer::startDrills() {
     }
 }
 
-std::optional<haptic_bridge::Report> Sequencer::report() const {
+std::optional<haptic_bridge::Report> LiveSteps::report() const {
     const auto latest = client_ ? client_->report() : std::nullopt;
     return latest ? latest : earlierReport_;
 }
 
-haptic_bridge::LinkCounters Sequencer::counters() const {
+haptic_bridge::LinkCounters LiveSteps::counters() const {
     haptic_bridge::LinkCounters sum = earlierLinks_;
     if (client_) {
         sum.add(client_->counters());
@@ -288,7 +288,7 @@ haptic_bridge::LinkCounters Sequencer::counters() const {
     return sum;
 }
 
-void Sequencer::stop() {
+void LiveSteps::stop() {
     if (client_) {
         client_->stop();
     }

@@ -22,7 +22,7 @@ enum class Pace : std::uint8_t { realtime, fast };
 ///
 /// While a server with sand of its own is linked it numbers; else the master does, with the tool where a server without
 /// sand says, or hovering, so that sand never freezes in mid-slide. Every change is a new epoch. Main thread only.
-class Sequencer {
+class LiveSteps {
 public:
     /// At the start a haptic server is waited for this long before the master numbers by itself [s].
     static constexpr double kStartWait = 10;
@@ -31,7 +31,7 @@ public:
     static constexpr double kRetryWait = 30;  // [s] until it is tried again
 
     /// Epochs begin above `epoch`, the last of a session that goes on.
-    Sequencer(std::optional<haptic_bridge::Address> server, const sand::Scene& scene, Pace pace,
+    LiveSteps(std::optional<haptic_bridge::Address> server, const scene::Scene& scene, Pace pace,
               std::uint32_t epoch = 0, haptic_bridge::LinkSecurity security = {});
 
     /// At most `most` steps for the next frame, numbered on from the terrain's; none when nothing is due.

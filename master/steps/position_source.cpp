@@ -9,7 +9,7 @@ namespace master {
 
 using haptic_bridge::Trouble;
 
-PositionSource::PositionSource(const sand::Scene& scene)
+PositionSource::PositionSource(const scene::Scene& scene)
     : mapping_(scene, haptic_bridge::HandSettings::Datum::surface), path_(scene.rules.stepsPerSecond) {}
 
 void PositionSource::begin(const sand::Replica& terrain) {

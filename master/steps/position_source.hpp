@@ -24,7 +24,7 @@ public:
     static constexpr double kFarthest =
         0.5;  // [hand space], of a movement between two positions: a quarter of the field
 
-    explicit PositionSource(const sand::Scene& scene);
+    explicit PositionSource(const scene::Scene& scene);
 
     /// A server begins to stream; the tool is where the terrain has it.
     void begin(const sand::Replica& terrain);

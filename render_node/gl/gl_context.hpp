@@ -37,7 +37,7 @@ struct OutputPicture {
 /// An OpenGL 3.3 core context, current on the thread that made it and used by that thread alone, and the windows of
 /// the tile where it has some.
 ///
-/// Everything that holds GL objects (EyeTarget, SandView) must be destroyed before its context is.
+/// Everything that holds GL objects (EyeTarget, ScenePainter) must be destroyed before its context is.
 class GlContext {
 public:
     GlContext() = default;

@@ -30,16 +30,16 @@ std::span<GLFWmonitor*> monitors() {
 }
 
 /// Where a monitor's picture lies on the X screen.
-PixelRectangle areaOf(GLFWmonitor* monitor) {
-    PixelRectangle area;
+ScreenRect areaOf(GLFWmonitor* monitor) {
+    ScreenRect area;
     glfwGetMonitorPos(monitor, &area.low.x, &area.low.y);
     const GLFWvidmode* mode = glfwGetVideoMode(monitor);
     area.high = area.low + (mode == nullptr ? glm::ivec2(0) : glm::ivec2(mode->width, mode->height));
     return area;
 }
 
-std::vector<PixelRectangle> lightedAreas() {
-    std::vector<PixelRectangle> areas;
+std::vector<ScreenRect> lightedAreas() {
+    std::vector<ScreenRect> areas;
     for (GLFWmonitor* monitor : monitors()) {
         areas.push_back(areaOf(monitor));
     }
@@ -53,7 +53,7 @@ std::vector<PixelRectangle> lightedAreas() {
 GLFWmonitor* monitorNamed(const WindowRequest& wanted, const std::string& display) {
     std::string there;
     for (GLFWmonitor* monitor : monitors()) {
-        const PixelRectangle area = areaOf(monitor);
+        const ScreenRect area = areaOf(monitor);
         const std::string name = glfwGetMonitorName(monitor);
         if (name == wanted.output.monitor) {
             return monitor;
@@ -72,7 +72,7 @@ void requireMode(GLFWmonitor* monitor, const WindowRequest& wanted) {
             return;
         }
     }
-    const PixelRectangle area = areaOf(monitor);
+    const ScreenRect area = areaOf(monitor);
     throw InputError("output " + wanted.output.name + ": monitor " + wanted.output.monitor + " shows " +
                      sizeText(area.high - area.low) + " pixels and has no mode of " + sizeText(wanted.pixels) +
                      "; correct the pixels in the wall file");
@@ -181,7 +181,7 @@ void GlfwWindow::addShortcomings(std::vector<std::string>& lines) const {
     const std::string output = "output " + name() + ": ";
     glm::ivec2 size;
     glfwGetFramebufferSize(handle(), &size.x, &size.y);
-    PixelRectangle area;
+    ScreenRect area;
     glfwGetWindowPos(handle(), &area.low.x, &area.low.y);
     area.high = area.low + size;
     if (size != wanted_.pixels) {

@@ -3,7 +3,7 @@
 
 namespace render_node {
 
-std::int64_t hiddenPixels(const PixelRectangle& window, std::span<const PixelRectangle> monitors) {
+std::int64_t hiddenPixels(const ScreenRect& window, std::span<const ScreenRect> monitors) {
     const glm::i64vec2 size = glm::i64vec2(window.high) - glm::i64vec2(window.low);
     if (size.x <= 0 || size.y <= 0) {
         return 0;
@@ -11,10 +11,10 @@ std::int64_t hiddenPixels(const PixelRectangle& window, std::span<const PixelRec
     if (monitors.empty()) {
         return size.x * size.y;
     }
-    const PixelRectangle& monitor = monitors.front();
+    const ScreenRect& monitor = monitors.front();
     const glm::ivec2 low = glm::clamp(monitor.low, window.low, window.high);
     const glm::ivec2 high = glm::clamp(monitor.high, window.low, window.high);
-    const std::span<const PixelRectangle> others = monitors.subspan(1);
+    const std::span<const ScreenRect> others = monitors.subspan(1);
     if (low.x >= high.x || low.y >= high.y) {
         return hiddenPixels(window, others);
     }

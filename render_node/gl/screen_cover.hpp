@@ -8,11 +8,11 @@
 namespace render_node {
 
 /// Pixels from `low` up to, but without, `high`; y down as on an X screen.
-struct PixelRectangle {
+struct ScreenRect {
     glm::ivec2 low{0}, high{0};
 };
 
 /// How many pixels of a window no monitor shows.
-[[nodiscard]] std::int64_t hiddenPixels(const PixelRectangle& window, std::span<const PixelRectangle> monitors);
+[[nodiscard]] std::int64_t hiddenPixels(const ScreenRect& window, std::span<const ScreenRect> monitors);
 
 }  // namespace render_node

@@ -27,10 +27,12 @@ GLintptr bytesOf(std::size_t vertices) { return static_cast<GLintptr>(vertices *
 
 }  // namespace
 
-ChunkGeometry::ChunkGeometry(const sand::Rect& vertices, int level)
+ChunkGeometry::ChunkGeometry(const sand::CellRect& vertices, int level)
     : vertices_(vertices), stale_(vertices), level_(level) {}
 
-void ChunkGeometry::markStale(const sand::Rect& vertices) { stale_ = stale_.joinedWith(vertices.clippedTo(vertices_)); }
+void ChunkGeometry::markStale(const sand::CellRect& vertices) {
+    stale_ = stale_.joinedWith(vertices.clippedTo(vertices_));
+}
 
 void ChunkGeometry::refresh(const SandSurface& surface) {
     if (stale_.empty()) {

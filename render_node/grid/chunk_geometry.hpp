@@ -13,10 +13,10 @@ namespace render_node {
 class ChunkGeometry {
 public:
     /// Nothing is computed before the first refresh().
-    ChunkGeometry(const sand::Rect& vertices, int level);
+    ChunkGeometry(const sand::CellRect& vertices, int level);
 
     /// The sand has changed the look of these vertices.
-    void markStale(const sand::Rect& vertices);
+    void markStale(const sand::CellRect& vertices);
     /// Computes what is stale, and sends that.
     void refresh(const SandSurface& surface);
     [[nodiscard]] int level() const { return level_; }
@@ -28,7 +28,7 @@ public:
 private:
     void sendAll(const SandSurface& surface);
 
-    sand::Rect vertices_, stale_;  // of the vertex grid
+    sand::CellRect vertices_, stale_;  // of the vertex grid
     int level_;
     std::size_t bytes_ = 0;
     GlVertexArray array_;

@@ -110,7 +110,7 @@ private:
 
 }  // namespace
 
-std::vector<SandVertex> verticesOf(const SandSurface& surface, const sand::Rect& vertices, int level) {
+std::vector<SandVertex> verticesOf(const SandSurface& surface, const sand::CellRect& vertices, int level) {
     std::vector<SandVertex> out;
     const int stride = 1 << level;
     const auto across = static_cast<std::size_t>(vertices.x1 - vertices.x0);
@@ -140,7 +140,7 @@ std::vector<TriangleBlock> blocksOf(int quadsAcross, int quadsDown) {
     int first = 0;
     for (int y = 0; y < quadsDown; y += kSide) {
         for (int x = 0; x < quadsAcross; x += kSide) {
-            const sand::Rect quads{x, y, std::min(x + kSide, quadsAcross), std::min(y + kSide, quadsDown)};
+            const sand::CellRect quads{x, y, std::min(x + kSide, quadsAcross), std::min(y + kSide, quadsDown)};
             const int count = 6 * (quads.x1 - quads.x0) * (quads.y1 - quads.y0);
             blocks.push_back({quads, first, count});
             first += count;

@@ -19,7 +19,7 @@ namespace render_node {
 
 /// The errors of a square part of the vertex grid, which may reach beyond the field; levels above `coarsest` are left
 /// 0. `sun` points towards it and has length 1.
-[[nodiscard]] LevelErrors errorsOf(const SandSurface& surface, const sand::Rect& vertices, const glm::vec3& sun,
+[[nodiscard]] LevelErrors errorsOf(const SandSurface& surface, const sand::CellRect& vertices, const glm::vec3& sun,
                                    int coarsest);
 
 /// The level that a chunk is drawn at, and those of its edges, none of which is coarser: south, east, north, west.
@@ -32,11 +32,11 @@ struct ChunkLevels {
 
 /// Vertices of a chunk of side × side quads at one level: the grid row by row from the south-west, then, above level 0,
 /// all vertices of the four edges counter-clockwise, for where a finer chunk or the rim lies beyond.
-[[nodiscard]] std::vector<SandVertex> verticesOf(const SandSurface& surface, const sand::Rect& vertices, int level);
+[[nodiscard]] std::vector<SandVertex> verticesOf(const SandSurface& surface, const sand::CellRect& vertices, int level);
 
 /// Triangles side by side that stand together in trianglesOf(), so that a part of a chunk may be drawn.
 struct TriangleBlock {
-    sand::Rect quads;
+    sand::CellRect quads;
     int first, count;  // [index]
 };
 /// Those of level 0, of 8 × 8 quads each. A coarser level has few triangles and no blocks.

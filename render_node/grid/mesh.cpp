@@ -68,10 +68,10 @@ void SandMesh::makeGroups() {
 }
 
 /// The vertices that look different when these cells have changed.
-sand::Rect SandMesh::verticesOver(const sand::Rect& cells) const {
+sand::CellRect SandMesh::verticesOver(const sand::CellRect& cells) const {
     // Cell c lies under vertex c + 1; normals and shade of the vertices around depend on it.
-    const sand::Rect reached =
-        sand::Rect{cells.x0 + 1, cells.y0 + 1, cells.x1 + 1, cells.y1 + 1}.grownBy(SandSurface::kReach);
+    const sand::CellRect reached =
+        sand::CellRect{cells.x0 + 1, cells.y0 + 1, cells.x1 + 1, cells.y1 + 1}.grownBy(SandSurface::kReach);
     // The outermost ring repeats the next one, and what chunks have beyond the grid repeats that.
     const auto first = [](int vertex) { return vertex <= 1 ? 0 : vertex; };
     const auto end = [](int vertex, int count, int withBeyond) { return vertex > count ? withBeyond : vertex; };
@@ -79,7 +79,7 @@ sand::Rect SandMesh::verticesOver(const sand::Rect& cells) const {
             end(reached.y1, surface_.rows(), down_ * quadsDown_ + 1)};
 }
 
-std::vector<SandMesh::Change> SandMesh::changesOf(const sand::HeightField& field, const sand::Rect& cells) const {
+std::vector<SandMesh::Change> SandMesh::changesOf(const sand::HeightField& field, const sand::CellRect& cells) const {
     // Small parts follow the sand closely, few parts are soon looked through.
     int side = kSmallestPart;
     while ((cells.x1 - cells.x0 + side - 1) / side * ((cells.y1 - cells.y0 + side - 1) / side) > kMostChanges) {
@@ -88,9 +88,10 @@ std::vector<SandMesh::Change> SandMesh::changesOf(const sand::HeightField& field
     std::vector<Change> changes;
     for (int y = cells.y0; y < cells.y1; y += side) {
         for (int x = cells.x0; x < cells.x1; x += side) {
-            const sand::Rect changed = surface_.differing(field, sand::Rect{x, y, x + side, y + side}.clippedTo(cells));
+            const sand::CellRect changed =
+                surface_.differing(field, sand::CellRect{x, y, x + side, y + side}.clippedTo(cells));
             if (!changed.empty()) {
-                const sand::Rect vertices = verticesOver(changed);
+                const sand::CellRect vertices = verticesOver(changed);
                 changes.push_back({vertices, surface_.heights(vertices.grownBy(longestStride()))});
             }
         }
@@ -98,7 +99,7 @@ std::vector<SandMesh::Change> SandMesh::changesOf(const sand::HeightField& field
     return changes;
 }
 
-void SandMesh::update(const sand::HeightField& field, const sand::Rect& cells) {
+void SandMesh::update(const sand::HeightField& field, const sand::CellRect& cells) {
     const std::vector<Change> changes = changesOf(field, cells);
     if (changes.empty()) {
         return;
@@ -113,14 +114,14 @@ void SandMesh::update(const sand::HeightField& field, const sand::Rect& cells) {
     }
 }
 
-sand::Rect SandMesh::chunksAround(const sand::Rect& vertices) const {
+sand::CellRect SandMesh::chunksAround(const sand::CellRect& vertices) const {
     // A vertex on an edge is part of both chunks.
-    return sand::Rect{(vertices.x0 - 1) / quadsAcross_, (vertices.y0 - 1) / quadsDown_,
-                      (vertices.x1 - 1) / quadsAcross_ + 1, (vertices.y1 - 1) / quadsDown_ + 1}
+    return sand::CellRect{(vertices.x0 - 1) / quadsAcross_, (vertices.y0 - 1) / quadsDown_,
+                          (vertices.x1 - 1) / quadsAcross_ + 1, (vertices.y1 - 1) / quadsDown_ + 1}
         .clippedTo({0, 0, across_, down_});
 }
 
-void SandMesh::markChanged(const sand::Rect& chunks, const sand::Rect& vertices) {
+void SandMesh::markChanged(const sand::CellRect& chunks, const sand::CellRect& vertices) {
     for (int y = chunks.y0; y < chunks.y1; ++y) {
         for (int x = chunks.x0; x < chunks.x1; ++x) {
             Chunk& changed = chunk(x, y);
@@ -138,7 +139,7 @@ void SandMesh::markChanged(const sand::Rect& chunks, const sand::Rect& vertices)
     }
 }
 
-Box SandMesh::boxOf(const sand::Rect& vertices, const HeightRange& heights) const {
+Box SandMesh::boxOf(const sand::CellRect& vertices, const HeightRange& heights) const {
     // A hundredth of a cell more, for what GL's floats may round.
     const double margin = 0.01 * double{surface_.cellSize()};
     const glm::dvec3 low(surface_.east(vertices.x0), surface_.north(vertices.y0), heights.lowest);
@@ -197,7 +198,7 @@ DrawnLevels SandMesh::levelsWithin(const glm::dmat4& sceneToClip, const LevelRul
     ++choice_;
     DrawnLevels levels(chunks_.size(), -1);
     visitSeen(sceneToClip, true, [&](int x, int y) {
-        const sand::Rect beside = sand::Rect{x - 1, y - 1, x + 2, y + 2}.clippedTo({0, 0, across_, down_});
+        const sand::CellRect beside = sand::CellRect{x - 1, y - 1, x + 2, y + 2}.clippedTo({0, 0, across_, down_});
         for (int v = beside.y0; v < beside.y1; ++v) {
             for (int u = beside.x0; u < beside.x1; ++u) {
                 levels[static_cast<std::size_t>(v * across_ + u)] = static_cast<std::int8_t>(levelOf(u, v, rule));
@@ -209,7 +210,7 @@ DrawnLevels SandMesh::levelsWithin(const glm::dmat4& sceneToClip, const LevelRul
 
 /// Whether the level of a chunk may show: in it, or along the edges of those around.
 bool SandMesh::mayMatter(int x, int y, const LevelRule& rule) const {
-    const sand::Rect beside = sand::Rect{x - 1, y - 1, x + 2, y + 2}.clippedTo({0, 0, across_, down_});
+    const sand::CellRect beside = sand::CellRect{x - 1, y - 1, x + 2, y + 2}.clippedTo({0, 0, across_, down_});
     for (int v = beside.y0; v < beside.y1; ++v) {
         for (int u = beside.x0; u < beside.x1; ++u) {
             const Chunk& near = chunks_[static_cast<std::size_t>(v * across_ + u)];
@@ -222,9 +223,9 @@ bool SandMesh::mayMatter(int x, int y, const LevelRule& rule) const {
 }
 
 /// The longest side along an axis of the triangles drawn at any of these vertices [cell].
-int SandMesh::strideAround(const sand::Rect& vertices, const DrawnLevels& levels) const {
+int SandMesh::strideAround(const sand::CellRect& vertices, const DrawnLevels& levels) const {
     int level = 0;
-    const sand::Rect chunks = levels.empty() ? sand::Rect{} : chunksAround(vertices);
+    const sand::CellRect chunks = levels.empty() ? sand::CellRect{} : chunksAround(vertices);
     for (int y = chunks.y0; y < chunks.y1; ++y) {
         for (int x = chunks.x0; x < chunks.x1; ++x) {
             level = std::max(level, static_cast<int>(levels[static_cast<std::size_t>(y * across_ + x)]));
@@ -234,8 +235,8 @@ int SandMesh::strideAround(const sand::Rect& vertices, const DrawnLevels& levels
 }
 
 /// So many more vertices around.
-Box SandMesh::boxAround(const sand::Rect& vertices, const HeightRange& heights, int margin) const {
-    const sand::Rect grid{0, 0, surface_.columns() + 2, surface_.rows() + 2};
+Box SandMesh::boxAround(const sand::CellRect& vertices, const HeightRange& heights, int margin) const {
+    const sand::CellRect grid{0, 0, surface_.columns() + 2, surface_.rows() + 2};
     return boxOf(vertices.grownBy(margin).clippedTo(grid), heights);
 }
 
@@ -264,7 +265,7 @@ void SandMesh::updateLevels(DrawnLevels& levels, std::uint64_t revision, const L
                 if (drawn != levelOf(x, y, rule)) {
                     drawn = static_cast<std::int8_t>(levelOf(x, y, rule));
                     // The outermost triangles of its neighbours follow its edges.
-                    const sand::Rect& vertices = chunk(x, y).vertices;
+                    const sand::CellRect& vertices = chunk(x, y).vertices;
                     const HeightRange heights = surface_.heights(vertices.grownBy(longestStride()));
                     changed.push_back(boxAround(vertices, heights, strideAround(vertices, levels)));
                 }
@@ -346,8 +347,8 @@ int SandMesh::drawTriangles(const Chunk& chunk, const Indices& indices, const gl
     }
     int first = 0, count = 0, triangles = 0;  // first and count: of blocks that stand together, not drawn yet
     for (const TriangleBlock& block : indices.blocks) {
-        const sand::Rect vertices{chunk.vertices.x0 + block.quads.x0, chunk.vertices.y0 + block.quads.y0,
-                                  chunk.vertices.x0 + block.quads.x1 + 1, chunk.vertices.y0 + block.quads.y1 + 1};
+        const sand::CellRect vertices{chunk.vertices.x0 + block.quads.x0, chunk.vertices.y0 + block.quads.y0,
+                                      chunk.vertices.x0 + block.quads.x1 + 1, chunk.vertices.y0 + block.quads.y1 + 1};
         if (!inFrustum(boxOf(vertices, chunk.heights), *frustum)) {
             continue;
         }

@@ -21,7 +21,7 @@ namespace render_node {
 /// Vertices of the grid that may look different, and the heights before and after of all triangles that reach there, of
 /// any level.
 struct ChangedVertices {
-    sand::Rect vertices;
+    sand::CellRect vertices;
     HeightRange heights;
     friend ChangedVertices around(const ChangedVertices& a, const ChangedVertices& b) {
         return {a.vertices.joinedWith(b.vertices), render_node::around(a.heights, b.heights)};
@@ -39,7 +39,7 @@ public:
     SandMesh(const sand::HeightField& field, const glm::vec3& sun);
 
     /// Takes over the heights of these cells, which must lie within the field.
-    void update(const sand::HeightField& field, const sand::Rect& cells);
+    void update(const sand::HeightField& field, const sand::CellRect& cells);
 
     void prepare(const GlProgram& program) const override;
     Drawn draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
@@ -57,7 +57,7 @@ public:
 
 private:
     struct Chunk {
-        sand::Rect vertices;  // of the vertex grid
+        sand::CellRect vertices;  // of the vertex grid
         HeightRange heights;
         std::uint64_t revision = 0;  // that changed it last
         bool measured = false;       // its errors are those of the surface
@@ -68,8 +68,8 @@ private:
     };
     /// Some chunks side by side, so that few are looked at one by one.
     struct Group {
-        sand::Rect chunks;  // columns and rows of chunks
-        sand::Rect vertices;
+        sand::CellRect chunks;  // columns and rows of chunks
+        sand::CellRect vertices;
         HeightRange heights;
         std::uint64_t revision = 0;
     };
@@ -80,24 +80,24 @@ private:
     };
     /// Part of an update.
     struct Change {
-        sand::Rect vertices;  // that may look different
-        HeightRange before;   // of all triangles that reach there
+        sand::CellRect vertices;  // that may look different
+        HeightRange before;       // of all triangles that reach there
     };
     void makeChunks();
     void makeGroups();
-    [[nodiscard]] std::vector<Change> changesOf(const sand::HeightField& field, const sand::Rect& cells) const;
-    [[nodiscard]] sand::Rect verticesOver(const sand::Rect& cells) const;
-    [[nodiscard]] sand::Rect chunksAround(const sand::Rect& vertices) const;
-    void markChanged(const sand::Rect& chunks, const sand::Rect& vertices);
-    [[nodiscard]] Box boxOf(const sand::Rect& vertices, const HeightRange& heights) const;
+    [[nodiscard]] std::vector<Change> changesOf(const sand::HeightField& field, const sand::CellRect& cells) const;
+    [[nodiscard]] sand::CellRect verticesOver(const sand::CellRect& cells) const;
+    [[nodiscard]] sand::CellRect chunksAround(const sand::CellRect& vertices) const;
+    void markChanged(const sand::CellRect& chunks, const sand::CellRect& vertices);
+    [[nodiscard]] Box boxOf(const sand::CellRect& vertices, const HeightRange& heights) const;
     [[nodiscard]] Chunk& chunk(int x, int y) { return chunks_[static_cast<std::size_t>(y * across_ + x)]; }
     template <class Visit>  // void(int x, int y), of chunks
     void visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit& visit);
     [[nodiscard]] int levelOf(int x, int y, const LevelRule& rule);
     /// The longest side of a triangle of any level along an axis [cell].
     [[nodiscard]] int longestStride() const { return 1 << coarsest_; }
-    [[nodiscard]] int strideAround(const sand::Rect& vertices, const DrawnLevels& levels) const;
-    [[nodiscard]] Box boxAround(const sand::Rect& vertices, const HeightRange& heights, int margin) const;
+    [[nodiscard]] int strideAround(const sand::CellRect& vertices, const DrawnLevels& levels) const;
+    [[nodiscard]] Box boxAround(const sand::CellRect& vertices, const HeightRange& heights, int margin) const;
     void updateLevels(DrawnLevels& levels, std::uint64_t revision, const LevelRule& rule, std::vector<Box>& changed);
     [[nodiscard]] bool mayMatter(int x, int y, const LevelRule& rule) const;
     [[nodiscard]] ChunkLevels levelsOf(int x, int y, const LevelRule& rule);

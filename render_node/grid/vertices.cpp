@@ -17,7 +17,7 @@ SandSurface::SandSurface(const sand::HeightField& field)
     update(field, field.bounds());
 }
 
-void SandSurface::update(const sand::HeightField& field, const sand::Rect& cells) {
+void SandSurface::update(const sand::HeightField& field, const sand::CellRect& cells) {
     const double unit = field.unit();
     for (int row = cells.y0; row < cells.y1; ++row) {
         const std::int32_t* from = field.row(row);
@@ -28,9 +28,9 @@ void SandSurface::update(const sand::HeightField& field, const sand::Rect& cells
     }
 }
 
-sand::Rect SandSurface::differing(const sand::HeightField& field, const sand::Rect& cells) const {
+sand::CellRect SandSurface::differing(const sand::HeightField& field, const sand::CellRect& cells) const {
     const double unit = field.unit();
-    sand::Rect found{cells.x1, cells.y1, cells.x0, cells.y0};
+    sand::CellRect found{cells.x1, cells.y1, cells.x0, cells.y0};
     for (int row = cells.y0; row < cells.y1; ++row) {
         const std::int32_t* now = field.row(row);
         const float* drawn = heights_.data() + static_cast<std::ptrdiff_t>(row) * columns_;
@@ -48,10 +48,10 @@ sand::Rect SandSurface::differing(const sand::HeightField& field, const sand::Re
         }
         found = {std::min(found.x0, first), std::min(found.y0, row), std::max(found.x1, end), row + 1};
     }
-    return found.empty() ? sand::Rect{} : found;
+    return found.empty() ? sand::CellRect{} : found;
 }
 
-HeightRange SandSurface::heights(const sand::Rect& vertices) const {
+HeightRange SandSurface::heights(const sand::CellRect& vertices) const {
     const int west = std::clamp(vertices.x0 - 1, 0, columns_ - 1);
     const int east = std::clamp(vertices.x1 - 2, 0, columns_ - 1);
     const int south = std::clamp(vertices.y0 - 1, 0, rows_ - 1);

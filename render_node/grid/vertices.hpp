@@ -35,9 +35,9 @@ public:
     explicit SandSurface(const sand::HeightField& field);
 
     /// The smallest rectangle around those of these cells whose height is not drawn yet.
-    [[nodiscard]] sand::Rect differing(const sand::HeightField& field, const sand::Rect& cells) const;
+    [[nodiscard]] sand::CellRect differing(const sand::HeightField& field, const sand::CellRect& cells) const;
     /// Takes over the heights of these cells, which must lie within the field.
-    void update(const sand::HeightField& field, const sand::Rect& cells);
+    void update(const sand::HeightField& field, const sand::CellRect& cells);
 
     [[nodiscard]] int columns() const { return columns_; }      // [cell]
     [[nodiscard]] int rows() const { return rows_; }            // [cell]
@@ -45,7 +45,7 @@ public:
     /// Height over the nearest cell of the field [scene unit].
     [[nodiscard]] float height(int column, int row) const;
     /// The lowest and the highest vertex of a rectangle of the vertex grid that may reach beyond it [scene unit].
-    [[nodiscard]] HeightRange heights(const sand::Rect& vertices) const;
+    [[nodiscard]] HeightRange heights(const sand::CellRect& vertices) const;
     /// East (from a vertex column) or north (from a vertex row) of the field's corner [scene unit].
     [[nodiscard]] float east(int vertexColumn) const { return along(vertexColumn, columns_); }
     [[nodiscard]] float north(int vertexRow) const { return along(vertexRow, rows_); }
@@ -53,7 +53,7 @@ public:
     /// Where the field ends.
     [[nodiscard]] SandRim rim() const;
     /// Whether a change of these cells changes it.
-    [[nodiscard]] bool touchesRim(const sand::Rect& cells) const {
+    [[nodiscard]] bool touchesRim(const sand::CellRect& cells) const {
         return !cells.empty() && (cells.x0 <= 0 || cells.y0 <= 0 || cells.x1 >= columns_ || cells.y1 >= rows_);
     }
 

@@ -18,7 +18,7 @@ namespace render_node {
 /// The level at which each chunk was drawn; −1 where it was out of sight. Empty for a field that has no levels.
 using DrawnLevels = std::vector<std::int8_t>;
 
-/// The surface of the sand in GL, whatever the terrain is made of: what SandView lights, bounds and draws anew.
+/// The surface of the sand in GL, whatever the terrain is made of: what ScenePainter lights, bounds and draws anew.
 ///
 /// Every camera gets the same vertices. One thread, its context current.
 class DrawnSurface {

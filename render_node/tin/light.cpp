@@ -217,9 +217,9 @@ bool TinSurface::openTo(const SurfaceView& tin, Vertex number) {
 }
 
 /// Adds the vertices that may see these cells of the relief to lit_.
-void TinSurface::addVerticesAround(const std::vector<sand::Rect>& cells) {
-    for (const sand::Rect& rect : cells) {
-        const sand::Rect reach = rect.grownBy(kLightReach);
+void TinSurface::addVerticesAround(const std::vector<sand::CellRect>& cells) {
+    for (const sand::CellRect& rect : cells) {
+        const sand::CellRect reach = rect.grownBy(kLightReach);
         const Place southWest{reach.x0 * kCell, reach.y0 * kCell}, northEast{reach.x1 * kCell, reach.y1 * kCell};
         squares_.visitNear(southWest, northEast, [&](Vertex number) {
             const TinVertex& drawn = vertex(number);

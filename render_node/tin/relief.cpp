@@ -87,7 +87,7 @@ void TinRelief::set(int column, int row, float height) {
     }
     here = height;
     const int tile = row / kTile * tilesAcross_ + column / kTile;
-    sand::Rect& changed = changed_[static_cast<std::size_t>(tile)];
+    sand::CellRect& changed = changed_[static_cast<std::size_t>(tile)];
     if (changed.empty()) {
         changedTiles_.push_back(tile);
     }
@@ -114,8 +114,8 @@ float TinRelief::at(const Between& place, int east, int north) const {
     return linear(place, cell(westOf, southOf), cell(eastOf, southOf), cell(westOf, northOf), cell(eastOf, northOf));
 }
 
-std::vector<sand::Rect> TinRelief::takeChanged() {
-    std::vector<sand::Rect> all;
+std::vector<sand::CellRect> TinRelief::takeChanged() {
+    std::vector<sand::CellRect> all;
     for (const int tile : changedTiles_) {
         all.push_back(std::exchange(changed_[static_cast<std::size_t>(tile)], {}));
     }

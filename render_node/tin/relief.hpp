@@ -51,7 +51,7 @@ public:
     }
 
     /// Rectangles of cells that have other heights than when this was called last, each within a tile of kTile cells.
-    [[nodiscard]] std::vector<sand::Rect> takeChanged();
+    [[nodiscard]] std::vector<sand::CellRect> takeChanged();
 
 private:
     static constexpr int kTile = 32;  // [cell]
@@ -68,8 +68,8 @@ private:
     }
 
     int columns_, rows_, tilesAcross_;
-    std::vector<float> heights_;       // [unit], row by row
-    std::vector<sand::Rect> changed_;  // of each tile
+    std::vector<float> heights_;           // [unit], row by row
+    std::vector<sand::CellRect> changed_;  // of each tile
     std::vector<int> changedTiles_;
 };
 

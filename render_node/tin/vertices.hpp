@@ -125,7 +125,7 @@ private:
     void addToRelief(const sand::tin::SurfaceView& tin, const TinTriangle& triangle);
     bool lightFrom(const sand::tin::SurfaceView& tin, Vertex vertex);
     bool openTo(const sand::tin::SurfaceView& tin, Vertex vertex);
-    void addVerticesAround(const std::vector<sand::Rect>& cells);
+    void addVerticesAround(const std::vector<sand::CellRect>& cells);
     [[nodiscard]] std::vector<Vertex> relight(const sand::tin::SurfaceView& tin,
                                               const std::vector<std::int32_t>& reshaped);
     [[nodiscard]] TinTriangle& triangle(std::int32_t slot) { return triangles_[static_cast<std::size_t>(slot)]; }

@@ -3,16 +3,16 @@
 
 #include <algorithm>
 
-namespace sand {
+namespace sand::grid {
 
 BlockMarks::BlockMarks(int across, int down)
     : across_(across), marks_(static_cast<std::size_t>(across) * static_cast<std::size_t>(down)) {}
 
-void BlockMarks::add(const Rect& blocks) {
+void BlockMarks::add(const CellRect& blocks) {
     around_ = around_.joinedWith(blocks);
     for (int y = blocks.y0; y < blocks.y1; ++y) {
         std::fill_n(&marks_[static_cast<std::size_t>(y * across_ + blocks.x0)], blocks.x1 - blocks.x0, std::uint8_t{1});
     }
 }
 
-}  // namespace sand
+}  // namespace sand::grid

@@ -7,7 +7,7 @@
 
 #include "sand/model/cell_array.hpp"
 
-namespace sand {
+namespace sand::grid {
 
 /// A set of blocks out of all blocks of a field, numbered row by row from the south-west. What it costs to take them
 /// out grows with the rectangle around them and not with the field: on a large one most hold none. Not thread-safe.
@@ -15,7 +15,7 @@ class BlockMarks {
 public:
     BlockMarks(int across, int down);
 
-    void add(const Rect& blocks);  // within all blocks
+    void add(const CellRect& blocks);  // within all blocks
     [[nodiscard]] bool empty() const { return around_.empty(); }
     /// Calls visit(int block) for each in ascending order, and leaves the set empty. `visit` may add none.
     template <class Visit>
@@ -35,7 +35,7 @@ public:
 private:
     int across_;
     std::vector<std::uint8_t> marks_;
-    Rect around_;  // holds every mark
+    CellRect around_;  // holds every mark
 };
 
-}  // namespace sand
+}  // namespace sand::grid

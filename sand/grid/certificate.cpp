@@ -7,10 +7,10 @@
 
 #include "sand/grid/quad_energy.hpp"
 
-namespace sand {
+namespace sand::grid {
 namespace {
 
-using Faces = Quads::Faces;
+using Faces = QuadEnergy::Faces;
 
 double dot(const Faces& a, const Faces& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]; }
 
@@ -62,8 +62,8 @@ double squaredDistance(const HeightField& a, const HeightField& b) {
 }  // namespace
 
 Certificate certify(const HeightField& start, const HeightField& rest, const NetFlux& flux, const Rules& rules) {
-    const Quads asIs(rest, rules);
-    Quads stable = asIs;
+    const QuadEnergy asIs(rest, rules);
+    QuadEnergy stable = asIs;
     stable.flatten(rules.threshold);
     const QuadFluxes fluxes(flux, rules, asIs.northing());
     double gap = 0;
@@ -78,4 +78,4 @@ Certificate certify(const HeightField& start, const HeightField& rest, const Net
     return {.squaredDistance = distance * distance, .squaredMoved = squaredDistance(start, rest)};
 }
 
-}  // namespace sand
+}  // namespace sand::grid

@@ -5,7 +5,7 @@
 #include "sand/model/height_field.hpp"
 #include "sand/model/rules.hpp"
 
-namespace sand {
+namespace sand::grid {
 
 /// How far a field at rest can at most be from the right one.
 ///
@@ -27,8 +27,8 @@ struct Certificate {
 /// Why it holds: let S(w) be the sum over quads of threshold·√2·|V| - V·Dw, where V are half the fluxes through the
 /// quad's four faces and Dw the falls of w across them. S(w) ≥ 0 where no quad of w is too steep, and (start - rest)·(w
 /// - v) = S(v) - S(w), since the start less the divergence is the rest. The projection p satisfies (start - p)·(w - p)
-/// ≤ 0 for every such w. The rest may be a little too steep; let w be a field near it that is not (Quads::flatten).
-/// Then with x = |p - rest| and e = |w - rest|
+/// ≤ 0 for every such w. The rest may be a little too steep; let w be a field near it that is not
+/// (QuadEnergy::flatten). Then with x = |p - rest| and e = |w - rest|
 ///     x² = (start - p)·(rest - p) + (start - rest)·(p - rest)
 ///        ≤ (start - p)·(rest - w) + S(rest) - S(p)
 ///        ≤ (start - rest)·(rest - w) + x·e + S(rest) = S(w) + x·e,
@@ -36,4 +36,4 @@ struct Certificate {
 [[nodiscard]] Certificate certify(const HeightField& start, const HeightField& rest, const NetFlux& flux,
                                   const Rules& rules);
 
-}  // namespace sand
+}  // namespace sand::grid

@@ -6,7 +6,7 @@
 
 #include "sand/model/tool_kernel.hpp"
 
-namespace sand {
+namespace sand::grid {
 namespace {
 
 constexpr std::int32_t kHalfCell = kProbePerCell / 2;
@@ -26,10 +26,10 @@ struct Receiver {
 
 /// The cells around the tool that take sand. With a drag direction, those ahead; without one, all of them
 /// alike. Walls and cells beyond a closed rim do not count; beyond an open one they swallow.
-std::vector<Receiver> receivers(const Rect& bounds, Rim rim, const Ground* ground, ProbePoint at,
+std::vector<Receiver> receivers(const CellRect& bounds, Rim rim, const Ground* ground, ProbePoint at,
                                 const TurnedShape& shape, const Offset& ahead) {
     const bool everywhere = ahead.x == 0 && ahead.y == 0;
-    Rect around = shape.cellsThatTake(at.x, at.y);
+    CellRect around = shape.cellsThatTake(at.x, at.y);
     if (rim == Rim::closed) {
         around = around.clippedTo(bounds);
     }
@@ -94,11 +94,12 @@ void shareOut(std::vector<Receiver>& ring, std::int64_t amount, ProbePoint at, c
 
 }  // namespace
 
-Rect Tool::cells(const HeightField& field, ProbePoint at) const {
+CellRect Displacement::cells(const HeightField& field, ProbePoint at) const {
     return shape_.cellsAround(at.x, at.y, 0).clippedTo(field.bounds());
 }
 
-void Tool::findLowest(const Ground* ground, ProbePoint at, int column, int row, std::span<std::int32_t> lowest) const {
+void Displacement::findLowest(const Ground* ground, ProbePoint at, int column, int row,
+                              std::span<std::int32_t> lowest) const {
     shape_.undersides(at.z, offsetOf(at, column, row), lowest);
     for (std::size_t i = 0; ground != nullptr && i < lowest.size(); ++i) {
         const int x = column + static_cast<int>(i);
@@ -106,9 +107,9 @@ void Tool::findLowest(const Ground* ground, ProbePoint at, int column, int row, 
     }
 }
 
-Tool::Displacement Tool::press(HeightField& field, Rim rim, const Ground* ground, ProbePoint at,
-                               const Offset& ahead) const {
-    const Rect cells = this->cells(field, at);
+Displacement::Work Displacement::press(HeightField& field, Rim rim, const Ground* ground, ProbePoint at,
+                                       const Offset& ahead) const {
+    const CellRect cells = this->cells(field, at);
     const auto across = static_cast<std::size_t>(std::max(cells.x1 - cells.x0, 0));
     const auto above = v3_ ? v3::sandAbove : baseline::sandAbove;
     std::int64_t taken = 0;
@@ -145,7 +146,7 @@ Tool::Displacement Tool::press(HeightField& field, Rim rim, const Ground* ground
         std::transform(ofRow.begin(), ofRow.end(), row, row,
                        [](std::int32_t least, std::int32_t height) { return std::min(height, least); });
     }
-    Displacement result{shape_.cellsChanged(at.x, at.y).clippedTo(field.bounds()), 0};
+    Work result{shape_.cellsChanged(at.x, at.y).clippedTo(field.bounds()), 0};
     for (const Receiver& receiver : ring) {
         if (receiver.outside) {
             result.outflow += receiver.share;
@@ -157,13 +158,14 @@ Tool::Displacement Tool::press(HeightField& field, Rim rim, const Ground* ground
     return result;
 }
 
-Tool::Displacement Tool::drag(HeightField& field, Rim rim, const Ground* ground, ProbePoint from, ProbePoint to) const {
+Displacement::Work Displacement::drag(HeightField& field, Rim rim, const Ground* ground, ProbePoint from,
+                                      ProbePoint to) const {
     const std::int64_t dx = std::int64_t{to.x} - from.x;
     const std::int64_t dy = std::int64_t{to.y} - from.y;
     const std::int64_t dz = std::int64_t{to.z} - from.z;
     const std::int64_t longest = std::max({std::abs(dx), std::abs(dy), std::abs(dz)});
     const std::int64_t steps = std::max<std::int64_t>((longest + kProbePerCell - 1) / kProbePerCell, 1);
-    Displacement all{{field.columns(), field.rows(), 0, 0}, 0};
+    Work all{{field.columns(), field.rows(), 0, 0}, 0};
     for (std::int64_t i = 1; i <= steps; ++i) {
         const ProbePoint at{static_cast<std::int32_t>(from.x + dx * i / steps),
                             static_cast<std::int32_t>(from.y + dy * i / steps),
@@ -173,7 +175,7 @@ Tool::Displacement Tool::drag(HeightField& field, Rim rim, const Ground* ground,
         }
         // A direction in whole probe units of one sub-step would lose its angle when the hand is slow.
         const std::int64_t scale = std::max<std::int64_t>(longest / kProbePerCell, 1);
-        const Displacement one = press(field, rim, ground, at, {dx / scale, dy / scale});
+        const Work one = press(field, rim, ground, at, {dx / scale, dy / scale});
         if (!one.cells.empty()) {
             all.cells = {std::min(all.cells.x0, one.cells.x0), std::min(all.cells.y0, one.cells.y0),
                          std::max(all.cells.x1, one.cells.x1), std::max(all.cells.y1, one.cells.y1)};
@@ -183,7 +185,7 @@ Tool::Displacement Tool::drag(HeightField& field, Rim rim, const Ground* ground,
     return all;
 }
 
-Obstacle Tool::obstacle(const HeightField& field, ProbePoint at) const {
+Obstacle Displacement::obstacle(const HeightField& field, ProbePoint at) const {
     Obstacle result;
     result.cells = cells(field, at);
     const auto across = static_cast<std::size_t>(std::max(result.cells.x1 - result.cells.x0, 0));
@@ -195,4 +197,4 @@ Obstacle Tool::obstacle(const HeightField& field, ProbePoint at) const {
     return result;
 }
 
-}  // namespace sand
+}  // namespace sand::grid

@@ -12,11 +12,11 @@
 #include "sand/model/step.hpp"
 #include "sand/model/tool_shape.hpp"
 
-namespace sand {
+namespace sand::grid {
 
 /// The underside of the tool while it stands in the sand: no flux may raise a cell above it.
 struct Obstacle {
-    Rect cells;                           // where the underside is defined
+    CellRect cells;                       // where the underside is defined
     std::vector<std::int32_t> underside;  // [unit], row by row over `cells`; kFree beside the tool
     static constexpr std::int32_t kFree = TurnedShape::kFree;
 
@@ -26,29 +26,29 @@ struct Obstacle {
 };
 
 /// A tool in the sand: it takes out what lies above its underside and puts it down ahead (first paper, section 3).
-class Tool {
+class Displacement {
 public:
     /// `v3`: with instructions of x86-64-v3, for the same results.
-    explicit Tool(const ToolShape& shape, const Heading& heading = {}, bool v3 = base::machineHasV3())
+    explicit Displacement(const ToolShape& shape, const Heading& heading = {}, bool v3 = base::machineHasV3())
         : shape_(shape, heading, v3), v3_(v3) {}
 
     /// What one drag did to the sand.
-    struct Displacement {
-        Rect cells;                // may have changed
+    struct Work {
+        CellRect cells;            // may have changed
         std::int64_t outflow = 0;  // [unit · cell] pushed over an open rim
     };
 
     /// Sweeps the tool from `from` to `to` in sub-steps of at most a cell. Where no cell could take the sand, it stays.
     /// Rock and walls of `ground`, which may be null, stay where they are.
-    Displacement drag(HeightField& field, Rim rim, const Ground* ground, ProbePoint from, ProbePoint to) const;
+    Work drag(HeightField& field, Rim rim, const Ground* ground, ProbePoint from, ProbePoint to) const;
 
     /// The tool at rest at `at`, as seen by flowing sand.
     [[nodiscard]] Obstacle obstacle(const HeightField& field, ProbePoint at) const;
     /// The cells that its underside may cover there.
-    [[nodiscard]] Rect cells(const HeightField& field, ProbePoint at) const;
+    [[nodiscard]] CellRect cells(const HeightField& field, ProbePoint at) const;
 
 private:
-    Displacement press(HeightField& field, Rim rim, const Ground* ground, ProbePoint at, const Offset& ahead) const;
+    Work press(HeightField& field, Rim rim, const Ground* ground, ProbePoint at, const Offset& ahead) const;
     /// How low the tool takes the cells of a row, whatever lies there: its underside, or the rock beneath.
     void findLowest(const Ground* ground, ProbePoint at, int column, int row, std::span<std::int32_t> lowest) const;
 
@@ -56,4 +56,4 @@ private:
     bool v3_;
 };
 
-}  // namespace sand
+}  // namespace sand::grid

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-namespace sand::SANDWALL_CODE_PATH {
+namespace sand::grid::SANDWALL_CODE_PATH {
 namespace {
 
 /// One row of quads.
@@ -171,4 +171,4 @@ private:
 
 void iterateDual(const DualIteration& iteration) { Iteration(iteration).run(); }
 
-}  // namespace sand::SANDWALL_CODE_PATH
+}  // namespace sand::grid::SANDWALL_CODE_PATH

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-namespace sand {
+namespace sand::grid {
 
 inline constexpr int kDualLanes = 8;  // rows of the dual's arrays are whole vectors of this many numbers
 inline constexpr int kDualRows = 8;   // rows of scratch an iteration needs
@@ -46,4 +46,4 @@ namespace v3 {
 void iterateDual(const DualIteration& iteration);
 }
 
-}  // namespace sand
+}  // namespace sand::grid

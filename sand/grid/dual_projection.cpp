@@ -8,7 +8,7 @@
 
 #include "base/code_path.hpp"
 
-namespace sand {
+namespace sand::grid {
 namespace {
 
 constexpr double kRelativeExcess = 0.03;  // of the talus, so that a gap that only changes its sign does not
@@ -22,7 +22,7 @@ constexpr double kLeastExcess = 4.0 / kUnitsPerCell;  // [cell], what the sweeps
 std::int64_t rounded(double flux) { return static_cast<std::int64_t>(flux < 0 ? flux - 0.5 : flux + 0.5); }
 
 /// A field one cell wide is solved beside its mirror image, for quads need two.
-Rect domainOf(const HeightField& field, Rim rim) {
+CellRect domainOf(const HeightField& field, Rim rim) {
     if (rim == Rim::open) {
         return field.bounds().grownBy(1);
     }
@@ -38,7 +38,7 @@ DualProjection::DualProjection(const HeightField& field, const Rules& rules, Cod
       northing_(static_cast<double>(kUnitsPerCell) / rules.aspect),
       twist_(std::max(northing_, 1.0)),
       domain_(domainOf(field, rules.rim)) {
-    const Rect steep = steepQuads();
+    const CellRect steep = steepQuads();
     if (!steep.empty()) {
         allocate(steep.grownBy(2 * kMargin).clippedTo(domain_));
     }
@@ -46,14 +46,14 @@ DualProjection::DualProjection(const HeightField& field, const Rules& rules, Cod
 
 std::int32_t DualProjection::startHeight(int column, int row) const {
     if (rules_.rim == Rim::open) {
-        const Rect cell = Rect{column, row, column + 1, row + 1}.clippedTo(field_.bounds());
+        const CellRect cell = CellRect{column, row, column + 1, row + 1}.clippedTo(field_.bounds());
         return cell.empty() ? 0 : field_.height(column, row);
     }
     return field_.height(std::min(column, field_.columns() - 1), std::min(row, field_.rows() - 1));
 }
 
-Rect DualProjection::steepQuads() const {
-    Rect steep{domain_.x1, domain_.y1, domain_.x0, domain_.y0};
+CellRect DualProjection::steepQuads() const {
+    CellRect steep{domain_.x1, domain_.y1, domain_.x0, domain_.y0};
     for (int y = domain_.y0; y + 1 < domain_.y1; ++y) {
         for (int x = domain_.x0; x + 1 < domain_.x1; ++x) {
             const double a = startHeight(x, y);
@@ -72,7 +72,7 @@ Rect DualProjection::steepQuads() const {
     return steep;
 }
 
-void DualProjection::allocate(const Rect& box) {
+void DualProjection::allocate(const CellRect& box) {
     box_ = box;
     const int columns = box.x1 - box.x0;
     const int rows = box.y1 - box.y0;
@@ -167,7 +167,7 @@ int DualProjection::run(double relativeGap) {
 }
 
 bool DualProjection::nearEdge() const {
-    const auto pressed = [this](const Rect& quads) {
+    const auto pressed = [this](const CellRect& quads) {
         for (int y = quads.y0; y < quads.y1; ++y) {
             for (int x = quads.x0; x < quads.x1; ++x) {
                 if (pressure(0, x, y) != 0 || pressure(1, x, y) != 0 || pressure(2, x, y) != 0) {
@@ -177,7 +177,7 @@ bool DualProjection::nearEdge() const {
         }
         return false;
     };
-    Rect inner = box_;  // an edge of the domain is no edge: nothing lies beyond
+    CellRect inner = box_;  // an edge of the domain is no edge: nothing lies beyond
     inner.x0 += box_.x0 == domain_.x0 ? 0 : kMargin;
     inner.y0 += box_.y0 == domain_.y0 ? 0 : kMargin;
     inner.x1 -= box_.x1 == domain_.x1 ? 0 : kMargin + 1;
@@ -187,7 +187,7 @@ bool DualProjection::nearEdge() const {
 }
 
 void DualProjection::grow() {
-    const Rect old = box_;
+    const CellRect old = box_;
     const std::ptrdiff_t oldStride = stride_;
     const std::array<std::vector<double>, 7> oldArrays = std::move(arrays_);
     const bool swapped = now_[0] != oldArrays[1].data() + kDualLanes;
@@ -222,4 +222,4 @@ std::int64_t DualProjection::northFlux(int column, int row) const {
     return rounded(-kUnitsPerCell * (mean + twist));
 }
 
-}  // namespace sand
+}  // namespace sand::grid

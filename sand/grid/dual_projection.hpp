@@ -9,7 +9,7 @@
 #include "sand/grid/dual_kernel.hpp"
 #include "sand/grid/erosion.hpp"
 
-namespace sand {
+namespace sand::grid {
 
 /// The pile nearest to a field in which no quad is steeper than the talus, found through its fluxes.
 ///
@@ -40,7 +40,7 @@ public:
     void startFrom(const DualProjection& coarse);
 
     /// Cells, rim included, whose faces may have fluxes: a cell outside has none.
-    [[nodiscard]] const Rect& box() const { return box_; }
+    [[nodiscard]] const CellRect& box() const { return box_; }
     /// What the projection sends through a cell's eastern and northern face [unit · cell], rounded. A cell of the ring
     /// around an open field has faces too.
     [[nodiscard]] std::int64_t eastFlux(int column, int row) const;
@@ -55,13 +55,13 @@ private:
     };
 
     [[nodiscard]] std::int32_t startHeight(int column, int row) const;
-    [[nodiscard]] Rect steepQuads() const;
+    [[nodiscard]] CellRect steepQuads() const;
     [[nodiscard]] double pressure(std::size_t component, int column, int row) const;
     // Of a coarser projection, and of one that starts from it (sand/grid/multigrid_start.cpp).
     [[nodiscard]] double pressureBeyond(std::size_t component, int column, int row) const;
-    [[nodiscard]] Rect pressedCells() const;
+    [[nodiscard]] CellRect pressedCells() const;
     void allocateFor(const DualProjection& coarse);
-    void allocate(const Rect& box);
+    void allocate(const CellRect& box);
     /// One step, and whether it turned back.
     bool iterate(double momentum, Measures* measures);
     [[nodiscard]] bool nearEdge() const;
@@ -72,8 +72,8 @@ private:
     bool v3_;
     double northing_;  // slope north per difference, over slope east per difference
     double twist_;     // weight of the twist: as much as leaves the slope's norm, and with it the step, alone
-    Rect domain_;      // the field, with a ring around it where the rim is open
-    Rect box_;         // the part of it that is computed
+    CellRect domain_;  // the field, with a ring around it where the rim is open
+    CellRect box_;     // the part of it that is computed
     std::ptrdiff_t stride_ = 0;
     std::array<std::vector<double>, 7> arrays_;  // start, pressure now, pressure before
     QuadPressure now_{}, before_{};
@@ -81,4 +81,4 @@ private:
     std::array<std::vector<double>, 4> sums_;
 };
 
-}  // namespace sand
+}  // namespace sand::grid

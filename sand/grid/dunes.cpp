@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace sand {
+namespace sand::grid {
 namespace {
 
 /// A number in [0, 1) per lattice point (an integer hash after Wang).
@@ -51,4 +51,4 @@ void makeDunes(const Dunes& dunes, HeightField& field) {
     }
 }
 
-}  // namespace sand
+}  // namespace sand::grid

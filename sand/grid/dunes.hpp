@@ -5,7 +5,7 @@
 
 #include "sand/model/height_field.hpp"
 
-namespace sand {
+namespace sand::grid {
 
 /// A field of transverse dunes: long windward slopes from the west, steep lee sides, crests that wind and fade.
 struct Dunes {
@@ -18,4 +18,4 @@ struct Dunes {
 /// Fills the field. Uses + - * / only, so that every machine gets the same dunes.
 void makeDunes(const Dunes& dunes, HeightField& field);
 
-}  // namespace sand
+}  // namespace sand::grid

@@ -10,7 +10,7 @@
 #include "sand/grid/flux_limits.hpp"
 #include "sand/model/momentum.hpp"
 
-namespace sand {
+namespace sand::grid {
 namespace {
 
 /// Beyond the rim the ground goes on as it came: the slope along the rim is then that of the cell's one neighbour.
@@ -101,11 +101,11 @@ void Erosion::forEachPatch(const std::function<void(int)>& task) const {
     }
 }
 
-std::int64_t Erosion::sweepFluxes(const HeightField& field, const Rect& blocks, float momentum,
+std::int64_t Erosion::sweepFluxes(const HeightField& field, const CellRect& blocks, float momentum,
                                   const Obstacle* obstacle) {
-    const Rect cells = cellsOf(blocks);
+    const CellRect cells = cellsOf(blocks);
     const bool toolNear = obstacle != nullptr && !obstacle->cells.clippedTo(cells.grownBy(1)).empty();
-    std::optional<HeldPatch> held;
+    std::optional<FluxLimits> held;
     if (toolNear || options_.ground != nullptr) {
         held.emplace(field, cells, options_.ground, toolNear ? obstacle : nullptr);
     }
@@ -131,7 +131,7 @@ std::int64_t Erosion::sweepFluxes(const HeightField& field, const Rect& blocks, 
     return v3_ ? v3::sweepFluxes(patch) : baseline::sweepFluxes(patch);
 }
 
-void Erosion::balance(HeightField& field, const Rect& blocks) {
+void Erosion::balance(HeightField& field, const CellRect& blocks) {
     const BalancePatch patch{.heights = field.row(0),
                              .heightStride = field.stride(),
                              .east = east_.row(0),
@@ -152,7 +152,7 @@ void Erosion::addFluxes(NetFlux& sum) const {
     };
     // Outside the patches of that sweep nothing flowed.
     forEachPatch([&](int i) {
-        const Rect cells = cellsOf(patches_[static_cast<std::size_t>(i)]);
+        const CellRect cells = cellsOf(patches_[static_cast<std::size_t>(i)]);
         for (int y = cells.y0; y < cells.y1; ++y) {
             add(east_.row(y), sum.east(y), cells.x0 == 0 ? -1 : cells.x0, cells.x1);
         }
@@ -162,10 +162,10 @@ void Erosion::addFluxes(NetFlux& sum) const {
     });
 }
 
-void Erosion::refreshGhosts(HeightField& field, const Rect& cells) const {
+void Erosion::refreshGhosts(HeightField& field, const CellRect& cells) const {
     const int columns = field.columns();
     const int rows = field.rows();
-    const Rect reach = cells.grownBy(1).clippedTo(field.bounds());
+    const CellRect reach = cells.grownBy(1).clippedTo(field.bounds());
     const auto ghostRow = [&](int ghost, int edge, int inner) {
         extrapolate(field.row(edge) + reach.x0, field.row(inner) + reach.x0, 1, reach.x1 - reach.x0,
                     field.row(ghost) + reach.x0);
@@ -194,7 +194,7 @@ Inertia Erosion::inertia() const {
     for (std::size_t i = 0; undisturbed_ > 0 && i < active_.size(); ++i) {
         const int x = active_[i] % across_;
         const int y = active_[i] / across_;
-        Rect cells = cellsOf({x, y, x + 1, y + 1});
+        CellRect cells = cellsOf({x, y, x + 1, y + 1});
         cells.x0 -= x == 0 ? 1 : 0;  // what flows over the western rim
         cells.y0 -= y == 0 ? 1 : 0;
         inertia.keep(east_, north_, cells);
@@ -204,7 +204,7 @@ Inertia Erosion::inertia() const {
 
 void Erosion::resume(const Inertia& inertia) {
     // Only active blocks hold anything, but their rows are as quickly cleared whole.
-    for (Grid* flux : {&east_, &north_}) {
+    for (CellArray* flux : {&east_, &north_}) {
         for (int y = -1; y < flux->rows(); ++y) {
             std::fill(flux->row(y) - 1, flux->row(y) + flux->columns(), 0);
         }
@@ -219,7 +219,7 @@ void Erosion::changeRules(const Rules& rules) {
     touch(east_.bounds());
 }
 
-bool Erosion::amiss(const Rect& cells) const {
+bool Erosion::amiss(const CellRect& cells) const {
     for (int y = cells.y0; y < cells.y1; ++y) {
         std::int32_t flows = 0;  // all of memory is asked, and nearly nowhere does anything
         for (int x = cells.x0; x < cells.x1; ++x) {
@@ -235,4 +235,4 @@ bool Erosion::amiss(const Rect& cells) const {
     return false;
 }
 
-}  // namespace sand
+}  // namespace sand::grid

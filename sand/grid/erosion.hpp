@@ -13,7 +13,7 @@
 #include "sand/model/height_field.hpp"
 #include "sand/model/rules.hpp"
 
-namespace sand {
+namespace sand::grid {
 
 struct FluxPatch;
 
@@ -52,7 +52,7 @@ public:
     Erosion(const HeightField& field, const Rules& rules) : Erosion(field, rules, Options{}) {}
 
     /// Somebody else changed these cells of the field: they and their neighbours may move again.
-    void touch(const Rect& cells);
+    void touch(const CellRect& cells);
 
     /// Runs at most `sweeps` sweeps over `field`, fewer when nothing moves any more, and returns the volume that fell
     /// over an open rim [unit · cell]. No flux raises a cell above the underside of `obstacle`.
@@ -75,11 +75,11 @@ public:
     /// How many sweeps have been run since the start.
     [[nodiscard]] std::int64_t sweepsDone() const { return sweepsDone_; }
     /// Whether sand flows in a block of these cells that is not visited any more: memory went bad where nothing moves.
-    [[nodiscard]] bool amiss(const Rect& cells) const;
+    [[nodiscard]] bool amiss(const CellRect& cells) const;
     /// Everything may move again: the tool has left, or the rules have changed.
     void wakeAll();
     /// Blocks in which sweep() changed a cell since this was called last, side by side ones as one.
-    [[nodiscard]] std::vector<Rect> takeMoved();
+    [[nodiscard]] std::vector<CellRect> takeMoved();
 
     /// "x86-64-v3" or "baseline".
     [[nodiscard]] const char* codePath() const;
@@ -87,20 +87,20 @@ public:
     [[nodiscard]] std::size_t bytes() const;
 
 private:
-    [[nodiscard]] Rect cellsOf(const Rect& blocks) const;
-    [[nodiscard]] Rect blocksAround(const Rect& cells) const;
-    void refreshGhosts(HeightField& field, const Rect& cells) const;
+    [[nodiscard]] CellRect cellsOf(const CellRect& blocks) const;
+    [[nodiscard]] CellRect blocksAround(const CellRect& cells) const;
+    void refreshGhosts(HeightField& field, const CellRect& cells) const;
     /// The run of waiting blocks that begins with `block`, and the rows above it that wait in just the same run; they
     /// wait no longer. A wider run above is left whole: narrow patches cost more per cell.
-    [[nodiscard]] Rect takePatch(int block);
+    [[nodiscard]] CellRect takePatch(int block);
     void collectPatches(HeightField& field);
-    [[nodiscard]] std::int64_t sweepFluxes(const HeightField& field, const Rect& blocks, float momentum,
+    [[nodiscard]] std::int64_t sweepFluxes(const HeightField& field, const CellRect& blocks, float momentum,
                                            const Obstacle* obstacle);
-    void balance(HeightField& field, const Rect& blocks);
+    void balance(HeightField& field, const CellRect& blocks);
     void forEachPatch(const std::function<void(int)>& task) const;
-    void markAroundMoved(const Rect& blocks);
+    void markAroundMoved(const CellRect& blocks);
     /// Marks, in a row of blocks, those that lie beside flow at this side of a block; `flowed` by column.
-    void markBeside(const std::uint8_t* flowed, int side, const Rect& row);
+    void markBeside(const std::uint8_t* flowed, int side, const CellRect& row);
     void collectMarked();
     void wakeTouched();
 
@@ -111,11 +111,11 @@ private:
     bool v3_;
     // Flux out of each cell to the east and to the north [unit] of the last sweep; column and row -1 hold what flows
     // over the western and southern rim. Zero wherever a block is not active.
-    Grid east_, north_;
+    CellArray east_, north_;
     std::int64_t sweepsDone_ = 0;
     int undisturbed_ = 0;                 // sweeps that moved sand since touch()
     std::vector<int> active_;             // ascending
-    std::vector<Rect> patches_;           // of this sweep [block]
+    std::vector<CellRect> patches_;       // of this sweep [block]
     std::vector<std::int64_t> outflows_;  // of each patch
     BlockMarks marked_;                   // belong to the next active set
     BlockMarks moved_;                    // changed since takeMoved()
@@ -124,4 +124,4 @@ private:
     std::vector<std::uint8_t> movedNow_;  // where sand flowed in the sweep that visited it last, as bits of `flow`
 };
 
-}  // namespace sand
+}  // namespace sand::grid

@@ -6,7 +6,7 @@
 #include "sand/grid/erosion.hpp"
 #include "sand/grid/erosion_kernel.hpp"
 
-namespace sand {
+namespace sand::grid {
 namespace {
 
 constexpr int kSharedPatch = 32;  // [cell], height of a patch where several threads want some
@@ -18,14 +18,14 @@ void Erosion::wakeAll() {
     std::iota(active_.begin(), active_.end(), 0);
 }
 
-Rect Erosion::cellsOf(const Rect& blocks) const {
-    return Rect{blocks.x0 * blockSize_, blocks.y0 * blockSize_, blocks.x1 * blockSize_, blocks.y1 * blockSize_}
+CellRect Erosion::cellsOf(const CellRect& blocks) const {
+    return CellRect{blocks.x0 * blockSize_, blocks.y0 * blockSize_, blocks.x1 * blockSize_, blocks.y1 * blockSize_}
         .clippedTo(east_.bounds());
 }
 
-Rect Erosion::blocksAround(const Rect& cells) const {
-    return Rect{cells.x0 / blockSize_ - 1, cells.y0 / blockSize_ - 1, (cells.x1 - 1) / blockSize_ + 2,
-                (cells.y1 - 1) / blockSize_ + 2}
+CellRect Erosion::blocksAround(const CellRect& cells) const {
+    return CellRect{cells.x0 / blockSize_ - 1, cells.y0 / blockSize_ - 1, (cells.x1 - 1) / blockSize_ + 2,
+                    (cells.y1 - 1) / blockSize_ + 2}
         .clippedTo({0, 0, across_, down_});
 }
 
@@ -34,7 +34,7 @@ void Erosion::collectMarked() {
     marked_.takeAll([this](int block) { active_.push_back(block); });
 }
 
-void Erosion::touch(const Rect& cells) {
+void Erosion::touch(const CellRect& cells) {
     if (!cells.empty()) {
         marked_.add(blocksAround(cells));
         undisturbed_ = 0;
@@ -67,13 +67,13 @@ void Erosion::collectPatches(HeightField& field) {
     outflows_.assign(patches_.size(), 0);
 }
 
-Rect Erosion::takePatch(int block) {
+CellRect Erosion::takePatch(int block) {
     const int x0 = block % across_;
     const int y0 = block / across_;
     const auto waiting = [this](int x, int y) {
         return x >= 0 && x < across_ && waiting_[static_cast<std::size_t>(y * across_ + x)] != 0;
     };
-    Rect blocks{x0, y0, x0 + 1, y0};
+    CellRect blocks{x0, y0, x0 + 1, y0};
     const int longest = x0 + kMaxPatch / blockSize_;
     // A column of patches as high as 2048 cells runs through the whole field once for each: a third slower.
     const int high = options_.executor != nullptr ? kSharedPatch : kMaxBlock;
@@ -97,8 +97,8 @@ Rect Erosion::takePatch(int block) {
     return blocks;
 }
 
-void Erosion::markAroundMoved(const Rect& blocks) {
-    const Rect all{0, 0, across_, down_};
+void Erosion::markAroundMoved(const CellRect& blocks) {
+    const CellRect all{0, 0, across_, down_};
     for (int y = blocks.y0; y < blocks.y1; ++y) {
         const std::uint8_t* const flowed = movedNow_.data() + y * across_;
         for (int x = blocks.x0; x < blocks.x1; ++x) {
@@ -108,8 +108,8 @@ void Erosion::markAroundMoved(const Rect& blocks) {
             }
             if (x > first) {
                 // What they give changes the blocks behind their eastern and northern faces too.
-                moved_.add(Rect{first, y, x + 1, y + 1}.clippedTo(all));
-                moved_.add(Rect{first, y, x, y + 2}.clippedTo(all));
+                moved_.add(CellRect{first, y, x + 1, y + 1}.clippedTo(all));
+                moved_.add(CellRect{first, y, x, y + 2}.clippedTo(all));
             }
         }
         markBeside(flowed, flow::kSouth, {blocks.x0, y - 1, blocks.x1, y});
@@ -118,9 +118,9 @@ void Erosion::markAroundMoved(const Rect& blocks) {
     }
 }
 
-void Erosion::markBeside(const std::uint8_t* flowed, int side, const Rect& row) {
-    const Rect all{0, 0, across_, down_};
-    Rect run;  // side by side, as one
+void Erosion::markBeside(const std::uint8_t* flowed, int side, const CellRect& row) {
+    const CellRect all{0, 0, across_, down_};
+    CellRect run;  // side by side, as one
     for (int x = row.x0; x < row.x1; ++x) {
         if ((flowed[x] & side) == 0) {
             continue;
@@ -136,8 +136,8 @@ void Erosion::markBeside(const std::uint8_t* flowed, int side, const Rect& row) 
     marked_.add(run.clippedTo(all));
 }
 
-std::vector<Rect> Erosion::takeMoved() {
-    std::vector<Rect> blocks;
+std::vector<CellRect> Erosion::takeMoved() {
+    std::vector<CellRect> blocks;
     moved_.takeAll([&](int block) {
         const int x = block % across_;
         const int y = block / across_;
@@ -147,8 +147,8 @@ std::vector<Rect> Erosion::takeMoved() {
             blocks.push_back({x, y, x + 1, y + 1});
         }
     });
-    std::ranges::transform(blocks, blocks.begin(), [this](const Rect& run) { return cellsOf(run); });
+    std::ranges::transform(blocks, blocks.begin(), [this](const CellRect& run) { return cellsOf(run); });
     return blocks;
 }
 
-}  // namespace sand
+}  // namespace sand::grid

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace sand::SANDWALL_CODE_PATH {
+namespace sand::grid::SANDWALL_CODE_PATH {
 namespace {
 
 /// A number per cell of a row of the patch, and one before and one behind; left uninitialised, since rows are long.
@@ -338,4 +338,4 @@ void balance(const BalancePatch& patch) {
     }
 }
 
-}  // namespace sand::SANDWALL_CODE_PATH
+}  // namespace sand::grid::SANDWALL_CODE_PATH

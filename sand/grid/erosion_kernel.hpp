@@ -7,7 +7,7 @@
 
 #include "sand/model/cell_array.hpp"
 
-namespace sand {
+namespace sand::grid {
 
 inline constexpr int kMaxBlock = 128;    // [cell], side of the largest block
 inline constexpr int kMaxPatch = 512;    // [cell], longest row a kernel takes at once
@@ -30,7 +30,7 @@ struct FluxPatch {
     std::int32_t* east;           // at cell (0,0) of the field: flux to the eastern neighbour [unit]; of the last
     std::int32_t* north;          // sweep when called, of this one on return
     std::ptrdiff_t fluxStride;    // [cell]
-    Rect cells;                   // of the patch, at most kMaxPatch wide
+    CellRect cells;               // of the patch, at most kMaxPatch wide
     int columns, rows;            // of the field
     AxisLaw eastLaw, northLaw;
     float momentum;  // share of the last sweep's flux that goes on
@@ -57,7 +57,7 @@ struct BalancePatch {
     const std::int32_t* east;  // as in FluxPatch
     const std::int32_t* north;
     std::ptrdiff_t fluxStride;
-    Rect cells;
+    CellRect cells;
     int blockSize;        // [cell]
     std::uint8_t* moved;  // of the patch's first block: where in it sand flows, as bits of `flow`; written
     int blocksAcross;     // from a block's `moved` to that of the block north of it
@@ -74,4 +74,4 @@ std::int64_t sweepFluxes(const FluxPatch& patch);
 void balance(const BalancePatch& patch);
 }  // namespace v3
 
-}  // namespace sand
+}  // namespace sand::grid

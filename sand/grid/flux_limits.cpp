@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace sand {
+namespace sand::grid {
 namespace {
 
 /// Heights as the slope law shall see them. Beyond the rim the ground goes on as it came, unless a wall is in the way.
@@ -41,7 +41,7 @@ void keepRowBelow(const std::int32_t* __restrict undersides, const std::int32_t*
 
 }  // namespace
 
-HeldPatch::HeldPatch(const HeightField& field, const Rect& cells, const Ground* ground, const Obstacle* obstacle)
+FluxLimits::FluxLimits(const HeightField& field, const CellRect& cells, const Ground* ground, const Obstacle* obstacle)
     : grown_(cells.grownBy(1)) {
     room.assign(static_cast<std::size_t>(grown_.x1 - grown_.x0) * static_cast<std::size_t>(grown_.y1 - grown_.y0),
                 Obstacle::kFree);
@@ -56,13 +56,13 @@ HeldPatch::HeldPatch(const HeightField& field, const Rect& cells, const Ground* 
     }
 }
 
-std::size_t HeldPatch::index(int column, int row) const {
+std::size_t FluxLimits::index(int column, int row) const {
     return static_cast<std::size_t>(row - grown_.y0) * static_cast<std::size_t>(grown_.x1 - grown_.x0) +
            static_cast<std::size_t>(column - grown_.x0);
 }
 
-void HeldPatch::copyField(const HeightField& field, const Ground& ground) {
-    const Rect inside = grown_.clippedTo(field.bounds());
+void FluxLimits::copyField(const HeightField& field, const Ground& ground) {
+    const CellRect inside = grown_.clippedTo(field.bounds());
     for (int y = inside.y0; y < inside.y1; ++y) {
         const std::size_t first = index(inside.x0, y);
         copyRow(field.row(y) + inside.x0, ground.cells().row(y) + inside.x0, inside.x1 - inside.x0, &heights[first],
@@ -70,7 +70,7 @@ void HeldPatch::copyField(const HeightField& field, const Ground& ground) {
     }
 }
 
-void HeldPatch::extendBeyondRim(const HeightField& field, const Ground& ground) {
+void FluxLimits::extendBeyondRim(const HeightField& field, const Ground& ground) {
     for (int y = grown_.y0; y < grown_.y1; ++y) {
         const bool rowInside = y >= 0 && y < field.rows();
         for (int x = grown_.x0; x < grown_.x1; ++x) {
@@ -87,12 +87,12 @@ void HeldPatch::extendBeyondRim(const HeightField& field, const Ground& ground) 
     }
 }
 
-void HeldPatch::keepBelow(const HeightField& field, const Obstacle& obstacle) {
-    const Rect shared = obstacle.cells.clippedTo(grown_);
+void FluxLimits::keepBelow(const HeightField& field, const Obstacle& obstacle) {
+    const CellRect shared = obstacle.cells.clippedTo(grown_);
     for (int y = shared.y0; y < shared.y1 && shared.x0 < shared.x1; ++y) {
         keepRowBelow(obstacle.row(y) + (shared.x0 - obstacle.cells.x0), field.row(y) + shared.x0, shared.x1 - shared.x0,
                      &room[index(shared.x0, y)]);
     }
 }
 
-}  // namespace sand
+}  // namespace sand::grid

@@ -6,15 +6,15 @@
 #include "sand/model/grid_codec.hpp"
 #include "sand/model/height_field.hpp"
 
-namespace sand {
+namespace sand::grid {
 namespace {
 
 constexpr int kPiece = 64;  // [cell], side of the pieces of what was read
 
 /// With what flows over the western and southern rim.
-Rect withRim(int columns, int rows) { return {-1, -1, columns, rows}; }
+CellRect withRim(int columns, int rows) { return {-1, -1, columns, rows}; }
 
-std::vector<std::int32_t> copyOf(const Grid& grid, const Rect& cells) {
+std::vector<std::int32_t> copyOf(const CellArray& grid, const CellRect& cells) {
     std::vector<std::int32_t> copy;
     for (int y = cells.y0; y < cells.y1; ++y) {
         copy.insert(copy.end(), grid.row(y) + cells.x0, grid.row(y) + cells.x1);
@@ -26,7 +26,7 @@ bool isZero(const std::vector<std::int32_t>& numbers) {
     return std::all_of(numbers.begin(), numbers.end(), [](std::int32_t number) { return number == 0; });
 }
 
-void write(const std::vector<std::int32_t>& numbers, const Rect& cells, Grid& grid) {
+void write(const std::vector<std::int32_t>& numbers, const CellRect& cells, CellArray& grid) {
     auto next = numbers.begin();
     for (int y = cells.y0; y < cells.y1; ++y) {
         std::copy_n(next, cells.x1 - cells.x0, grid.row(y) + cells.x0);
@@ -36,14 +36,14 @@ void write(const std::vector<std::int32_t>& numbers, const Rect& cells, Grid& gr
 
 }  // namespace
 
-void Inertia::keep(const Grid& east, const Grid& north, const Rect& cells) {
+void Inertia::keep(const CellArray& east, const CellArray& north, const CellRect& cells) {
     Piece piece{cells, copyOf(east, cells), copyOf(north, cells)};
     if (!isZero(piece.east) || !isZero(piece.north)) {
         pieces_.push_back(std::move(piece));
     }
 }
 
-void Inertia::putInto(Grid& east, Grid& north) const {
+void Inertia::putInto(CellArray& east, CellArray& north) const {
     for (const Piece& piece : pieces_) {
         write(piece.east, piece.cells, east);
         write(piece.north, piece.cells, north);
@@ -53,8 +53,8 @@ void Inertia::putInto(Grid& east, Grid& north) const {
 void Inertia::encode(int columns, int rows, base::ByteWriter& writer) const {
     writer.put(static_cast<std::int32_t>(undisturbed_));
     if (undisturbed_ > 0) {
-        Grid east(columns, rows);
-        Grid north(columns, rows);
+        CellArray east(columns, rows);
+        CellArray north(columns, rows);
         putInto(east, north);
         encodeCells(east, withRim(columns, rows), writer);
         encodeCells(north, withRim(columns, rows), writer);
@@ -68,18 +68,18 @@ Inertia Inertia::decode(base::ByteReader& reader, int columns, int rows) {
     }
     Inertia inertia(undisturbed);
     if (undisturbed > 0) {
-        Grid east(columns, rows);
-        Grid north(columns, rows);
-        const Rect all = withRim(columns, rows);
+        CellArray east(columns, rows);
+        CellArray north(columns, rows);
+        const CellRect all = withRim(columns, rows);
         decodeCells(reader, all, kMaxHeight, east);
         decodeCells(reader, all, kMaxHeight, north);
         for (int y = all.y0; y < all.y1; y += kPiece) {
             for (int x = all.x0; x < all.x1; x += kPiece) {
-                inertia.keep(east, north, Rect{x, y, x + kPiece, y + kPiece}.clippedTo(all));
+                inertia.keep(east, north, CellRect{x, y, x + kPiece, y + kPiece}.clippedTo(all));
             }
         }
     }
     return inertia;
 }
 
-}  // namespace sand
+}  // namespace sand::grid

@@ -8,7 +8,7 @@
 #include "base/byte_stream.hpp"
 #include "sand/model/cell_array.hpp"
 
-namespace sand {
+namespace sand::grid {
 
 /// What the next sweeps depend on beside the heights: the fluxes of the last one, and for how long sand has slid
 /// undisturbed. Holds the cells in which sand flowed and no others: of sand at rest nothing.
@@ -20,9 +20,9 @@ public:
     explicit Inertia(int undisturbed) : undisturbed_(undisturbed) {}
 
     /// Copies the fluxes of these cells, unless all of them are zero. Cells are to be given once.
-    void keep(const Grid& east, const Grid& north, const Rect& cells);
+    void keep(const CellArray& east, const CellArray& north, const CellRect& cells);
     /// Writes what was kept into fluxes that are zero.
-    void putInto(Grid& east, Grid& north) const;
+    void putInto(CellArray& east, CellArray& north) const;
     [[nodiscard]] int undisturbed() const { return undisturbed_; }  // [sweep]
 
     /// As two whole grids of a field of this size, whatever the pieces were.
@@ -32,11 +32,11 @@ public:
 
 private:
     struct Piece {
-        Rect cells;
+        CellRect cells;
         std::vector<std::int32_t> east, north;  // row by row
     };
     int undisturbed_ = 0;
     std::vector<Piece> pieces_;
 };
 
-}  // namespace sand
+}  // namespace sand::grid

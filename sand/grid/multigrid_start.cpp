@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-namespace sand {
+namespace sand::grid {
 namespace {
 
 constexpr int kLeastSide = 32;  // [cell]; a field as small as this is projected at once
@@ -30,8 +30,8 @@ HeightField coarser(const HeightField& field) {
 
 }  // namespace
 
-Rect DualProjection::pressedCells() const {
-    Rect pressed{box_.x1, box_.y1, box_.x0, box_.y0};
+CellRect DualProjection::pressedCells() const {
+    CellRect pressed{box_.x1, box_.y1, box_.x0, box_.y0};
     for (int y = box_.y0; y + 1 < box_.y1; ++y) {
         for (int x = box_.x0; x + 1 < box_.x1; ++x) {
             if (pressure(0, x, y) != 0 || pressure(1, x, y) != 0 || pressure(2, x, y) != 0) {
@@ -44,11 +44,12 @@ Rect DualProjection::pressedCells() const {
 }
 
 void DualProjection::allocateFor(const DualProjection& coarse) {
-    const Rect pressed = coarse.pressedCells();
+    const CellRect pressed = coarse.pressedCells();
     if (!pressed.empty()) {
-        const Rect reached = Rect{2 * pressed.x0 - 1, 2 * pressed.y0 - 1, 2 * pressed.x1 + 1, 2 * pressed.y1 + 1}
-                                 .grownBy(2 * kMargin)
-                                 .clippedTo(domain_);
+        const CellRect reached =
+            CellRect{2 * pressed.x0 - 1, 2 * pressed.y0 - 1, 2 * pressed.x1 + 1, 2 * pressed.y1 + 1}
+                .grownBy(2 * kMargin)
+                .clippedTo(domain_);
         allocate({std::min(reached.x0, box_.x0), std::min(reached.y0, box_.y0), std::max(reached.x1, box_.x1),
                   std::max(reached.y1, box_.y1)});
     }
@@ -104,4 +105,4 @@ void startFromCoarser(DualProjection& projection, const HeightField& field, cons
     projection.startFrom(coarse);
 }
 
-}  // namespace sand
+}  // namespace sand::grid

@@ -4,7 +4,7 @@
 
 #include "sand/grid/dual_projection.hpp"
 
-namespace sand {
+namespace sand::grid {
 
 /// Lets a projection of `field` start near its end: projects the mean heights of two by two cells, which starts in the
 /// same way, down to a few cells, and hands on those pressures. What they miss is mostly local, and that is what the
@@ -16,4 +16,4 @@ namespace sand {
 void startFromCoarser(DualProjection& projection, const HeightField& field, const Rules& rules,
                       CodePath path = CodePath::automatic);
 
-}  // namespace sand
+}  // namespace sand::grid

@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-namespace sand {
+namespace sand::grid {
 
 /// What went through every face of a grid while it relaxed, in total: the start minus its divergence is the end.
 ///
@@ -55,4 +55,4 @@ private:
     std::vector<std::int64_t> north_;
 };
 
-}  // namespace sand
+}  // namespace sand::grid

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <utility>
 
-namespace sand {
+namespace sand::grid {
 namespace {
 
 // Of a quad that is too steep more is taken than it has too much, for its neighbours give some back: a fifth of the
@@ -17,13 +17,13 @@ constexpr double kOverrelaxation = 1.8;
 constexpr double kNearlyFlat = 1e-4;  // share of the threshold at which iterating ends: shrinking does the rest
 constexpr int kMostPasses = 1000;     // as many as rough ground of a thousand cells may take; then it shrinks by more
 
-double slopeOf(const Quads::Faces& d) {
+double slopeOf(const QuadEnergy::Faces& d) {
     return std::sqrt(0.5 * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] + d[3] * d[3]));
 }
 
 }  // namespace
 
-Quads::Quads(const HeightField& field, const Rules& rules)
+QuadEnergy::QuadEnergy(const HeightField& field, const Rules& rules)
     : columns_(field.columns()),
       rows_(field.rows()),
       ring_(rules.rim == Rim::open ? 1 : 0),
@@ -38,9 +38,9 @@ Quads::Quads(const HeightField& field, const Rules& rules)
     }
 }
 
-double Quads::images() const { return ring_ == 1 ? 1.0 : (columns_ == 1 ? 2.0 : 1.0) * (rows_ == 1 ? 2.0 : 1.0); }
+double QuadEnergy::images() const { return ring_ == 1 ? 1.0 : (columns_ == 1 ? 2.0 : 1.0) * (rows_ == 1 ? 2.0 : 1.0); }
 
-Quads::Faces Quads::differences(int x, int y) const {
+QuadEnergy::Faces QuadEnergy::differences(int x, int y) const {
     const double a = heights_[cell(x, y)];
     const double b = heights_[cell(x + 1, y)];
     const double c = heights_[cell(x, y + 1)];
@@ -48,14 +48,14 @@ Quads::Faces Quads::differences(int x, int y) const {
     return {b - a, d - c, northing_ * (c - a), northing_ * (d - b)};
 }
 
-double Quads::steepest() const {
+double QuadEnergy::steepest() const {
     double steepest = 0;
     forEach([&](int x, int y) { steepest = std::max(steepest, slopeOf(differences(x, y))); });
     return steepest;
 }
 
 /// Brings each quad of a row that is too steep nearer to its own mean, or to the ring; whether one was far too steep.
-bool Quads::flattenRow(int y, double threshold) {
+bool QuadEnergy::flattenRow(int y, double threshold) {
     bool moved = false;
     for (int x = -ring_; x + ring_ + 1 < across_; ++x) {
         const double slope = slopeOf(differences(x, y));
@@ -78,7 +78,7 @@ bool Quads::flattenRow(int y, double threshold) {
     return moved;
 }
 
-void Quads::shrink(double share) {
+void QuadEnergy::shrink(double share) {
     const double sum = std::accumulate(heights_.begin(), heights_.end(), 0.0);
     const double level = ring_ == 1 ? 0 : sum / static_cast<double>(heights_.size());
     for (double& height : heights_) {
@@ -86,7 +86,7 @@ void Quads::shrink(double share) {
     }
 }
 
-void Quads::flatten(double threshold) {
+void QuadEnergy::flatten(double threshold) {
     const int quadRows = down_ - 1;
     std::vector<std::uint8_t> waiting(static_cast<std::size_t>(quadRows) + 2, 1);  // a row before, and one behind
     for (int pass = 0; pass < kMostPasses; ++pass) {
@@ -108,9 +108,9 @@ void Quads::flatten(double threshold) {
     }
 }
 
-double Quads::squaredDistanceTo(const Quads& other) const {
+double QuadEnergy::squaredDistanceTo(const QuadEnergy& other) const {
     return std::transform_reduce(heights_.begin(), heights_.end(), other.heights_.begin(), 0.0, std::plus<>(),
                                  [](double a, double b) { return (a - b) * (a - b); });
 }
 
-}  // namespace sand
+}  // namespace sand::grid

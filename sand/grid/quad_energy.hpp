@@ -9,17 +9,17 @@
 #include "sand/model/height_field.hpp"
 #include "sand/model/rules.hpp"
 
-namespace sand {
+namespace sand::grid {
 
 /// The squares between four cell centres of a field, and heights that may be moved. Around an open field lies a ring of
 /// cells at height 0; one that is a single cell wide lies beside its mirror image, since quads need two. Not
 /// thread-safe.
-class Quads {
+class QuadEnergy {
 public:
     /// What belongs to a quad's southern, northern, western and eastern face; positive towards east and north.
     using Faces = std::array<double, 4>;
 
-    Quads(const HeightField& field, const Rules& rules);
+    QuadEnergy(const HeightField& field, const Rules& rules);
 
     /// Calls visit(x, y) for every quad, row by row, with the cell of the field at its south-west: -1 in the ring.
     template <class Visit>
@@ -43,7 +43,7 @@ public:
     /// `threshold` [unit]: exactly, but for rounding.
     void flatten(double threshold);
     /// Summed over the cells [unit²], as often as they count; of the same field.
-    [[nodiscard]] double squaredDistanceTo(const Quads& other) const;
+    [[nodiscard]] double squaredDistanceTo(const QuadEnergy& other) const;
 
 private:
     [[nodiscard]] std::size_t cell(int x, int y) const {
@@ -63,4 +63,4 @@ private:
     std::vector<double> heights_;  // [unit], row by row
 };
 
-}  // namespace sand
+}  // namespace sand::grid

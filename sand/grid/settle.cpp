@@ -8,7 +8,7 @@
 #include "sand/grid/dual_projection.hpp"
 #include "sand/grid/multigrid_start.hpp"
 
-namespace sand {
+namespace sand::grid {
 namespace {
 
 struct Extremes {
@@ -188,4 +188,4 @@ Settled settle(HeightField& field, const Rules& rules, NetFlux* flux, CodePath p
     return result;
 }
 
-}  // namespace sand
+}  // namespace sand::grid

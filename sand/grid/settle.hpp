@@ -8,7 +8,7 @@
 #include "sand/model/height_field.hpp"
 #include "sand/model/rules.hpp"
 
-namespace sand {
+namespace sand::grid {
 
 struct Settled {
     int iterations = 0;        // of the dual projection on the field's own cells; 0: sweeps alone did the work
@@ -28,4 +28,4 @@ struct Settled {
 /// is not null, what passed every face is added to it.
 Settled settle(HeightField& field, const Rules& rules, NetFlux* flux = nullptr, CodePath path = CodePath::automatic);
 
-}  // namespace sand
+}  // namespace sand::grid

@@ -6,14 +6,14 @@
 
 #include "sand/model/grid_codec.hpp"
 
-namespace sand {
+namespace sand::grid {
 namespace {
 
 constexpr int kTile = 64;  // [cell]
 
 int tilesIn(int cells) { return (cells + kTile - 1) / kTile; }
 
-void copyCells(const HeightField& from, const Rect& cells, HeightField& to) {
+void copyCells(const HeightField& from, const CellRect& cells, HeightField& to) {
     for (int y = cells.y0; y < cells.y1; ++y) {
         std::copy(from.row(y) + cells.x0, from.row(y) + cells.x1, to.row(y) + cells.x0);
     }
@@ -21,7 +21,7 @@ void copyCells(const HeightField& from, const Rect& cells, HeightField& to) {
 
 }  // namespace
 
-base::Bytes SandCopy::encode() const {
+base::Bytes Snapshot::encode() const {
     base::ByteWriter writer;
     writer.put(outflow);
     encodeCells(field.cells(), field.bounds(), writer);
@@ -29,10 +29,10 @@ base::Bytes SandCopy::encode() const {
     return writer.take();
 }
 
-SandCopy SandCopy::decode(std::span<const std::uint8_t> bytes, int columns, int rows, double cellSize) {
+Snapshot Snapshot::decode(std::span<const std::uint8_t> bytes, int columns, int rows, double cellSize) {
     base::ByteReader reader(bytes);
     const auto outflow = reader.get<std::int64_t>();
-    SandCopy copy(HeightField(columns, rows, cellSize), {}, outflow);
+    Snapshot copy(HeightField(columns, rows, cellSize), {}, outflow);
     decodeCells(reader, copy.field.bounds(), kMaxHeight, copy.field.cells());
     copy.inertia = Inertia::decode(reader, columns, rows);
     if (!reader.atEnd()) {
@@ -41,11 +41,11 @@ SandCopy SandCopy::decode(std::span<const std::uint8_t> bytes, int columns, int 
     return copy;
 }
 
-void KeptSand::touch(const Rect& cells) {
+void Undo::touch(const CellRect& cells) {
     if (!copy_) {
         return;
     }
-    const Rect inside = cells.clippedTo(copy_->field.bounds());
+    const CellRect inside = cells.clippedTo(copy_->field.bounds());
     if (inside.empty()) {
         return;
     }
@@ -55,25 +55,25 @@ void KeptSand::touch(const Rect& cells) {
     }
 }
 
-std::vector<Rect> KeptSand::takeTouched() {
-    std::vector<Rect> tiles;
+std::vector<CellRect> Undo::takeTouched() {
+    std::vector<CellRect> tiles;
     for (std::size_t i = 0; i < touched_.size(); ++i) {
         if (std::exchange(touched_[i], std::uint8_t{0}) != 0) {
             const int x = static_cast<int>(i) % tilesAcross_ * kTile;
             const int y = static_cast<int>(i) / tilesAcross_ * kTile;
-            tiles.push_back(Rect{x, y, x + kTile, y + kTile}.clippedTo(copy_->field.bounds()));
+            tiles.push_back(CellRect{x, y, x + kTile, y + kTile}.clippedTo(copy_->field.bounds()));
         }
     }
     return tiles;
 }
 
-void KeptSand::keep(const HeightField& field, Inertia inertia, std::int64_t outflow) {
+void Undo::keep(const HeightField& field, Inertia inertia, std::int64_t outflow) {
     if (!copy_) {
         copy_.emplace(field, std::move(inertia), outflow);
         tilesAcross_ = tilesIn(field.columns());
         touched_.assign(static_cast<std::size_t>(tilesAcross_) * static_cast<std::size_t>(tilesIn(field.rows())), 0);
     } else {
-        for (const Rect& tile : takeTouched()) {
+        for (const CellRect& tile : takeTouched()) {
             copyCells(field, tile, copy_->field);
         }
         copy_->inertia = std::move(inertia);
@@ -82,18 +82,18 @@ void KeptSand::keep(const HeightField& field, Inertia inertia, std::int64_t outf
     kept_ = true;
 }
 
-void KeptSand::keep(const SandCopy& copy) {
+void Undo::keep(const Snapshot& copy) {
     copy_.reset();
     keep(copy.field, copy.inertia, copy.outflow);
     touch(copy_->field.bounds());  // nobody knows how far the field has come since
 }
 
-std::vector<Rect> KeptSand::putBackHeights(HeightField& field) {
-    std::vector<Rect> tiles = takeTouched();
-    for (const Rect& tile : tiles) {
+std::vector<CellRect> Undo::putBackHeights(HeightField& field) {
+    std::vector<CellRect> tiles = takeTouched();
+    for (const CellRect& tile : tiles) {
         copyCells(copy_->field, tile, field);
     }
     return tiles;
 }
 
-}  // namespace sand
+}  // namespace sand::grid

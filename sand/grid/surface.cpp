@@ -7,7 +7,7 @@
 #include "sand/grid/settle.hpp"
 #include "sand/model/grid_codec.hpp"
 
-namespace sand {
+namespace sand::grid {
 namespace {
 
 constexpr int kSweepsToRest = 1 << 20;  // more than any field that is worth waiting for
@@ -32,7 +32,7 @@ GridSurface::GridSurface(const Rules& rules, const HeightField& field, std::shar
     start_ = std::make_shared<const base::Bytes>(writer.take());
 }
 
-void GridSurface::touch(const Rect& cells) {
+void GridSurface::touch(const CellRect& cells) {
     if (!cells.empty()) {
         hash_.touch(cells);
         beforeStroke_.touch(cells);
@@ -41,9 +41,9 @@ void GridSurface::touch(const Rect& cells) {
 }
 
 void GridSurface::drag(const HeldTool& tool, std::span<const ProbePoint> path) {
-    const Tool held(tool.shape, tool.heading);
+    const Displacement held(tool.shape, tool.heading);
     for (std::size_t i = 1; i < path.size(); ++i) {
-        const Tool::Displacement done = held.drag(field_, rules_.rim, ground_.get(), path[i - 1], path[i]);
+        const Displacement::Work done = held.drag(field_, rules_.rim, ground_.get(), path[i - 1], path[i]);
         erosion_.touch(done.cells);
         touch(done.cells);
         outflow_ += done.outflow;
@@ -51,13 +51,13 @@ void GridSurface::drag(const HeldTool& tool, std::span<const ProbePoint> path) {
 }
 
 void GridSurface::release(const HeldTool& tool, const ProbePoint& at) {
-    erosion_.touch(Tool(tool.shape, tool.heading).cells(field_, at));
+    erosion_.touch(Displacement(tool.shape, tool.heading).cells(field_, at));
 }
 
 void GridSurface::sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) {
-    const Obstacle here = tool == nullptr ? Obstacle{} : Tool(tool->shape, tool->heading).obstacle(field_, at);
+    const Obstacle here = tool == nullptr ? Obstacle{} : Displacement(tool->shape, tool->heading).obstacle(field_, at);
     outflow_ += erosion_.sweep(field_, sweeps, tool == nullptr ? nullptr : &here);
-    for (const Rect& block : erosion_.takeMoved()) {
+    for (const CellRect& block : erosion_.takeMoved()) {
         touch(block);
     }
 }
@@ -74,7 +74,7 @@ void GridSurface::settle() {
         outflow_ += erosion_.sweep(field_, kSweepsToRest);
         return;
     }
-    outflow_ += sand::settle(field_, rules_).outflow;
+    outflow_ += sand::grid::settle(field_, rules_).outflow;
     erosion_.touch(field_.bounds());
     touch(field_.bounds());
 }
@@ -88,11 +88,11 @@ void GridSurface::reset() {
 }
 
 std::shared_ptr<const SurfaceCopy> GridSurface::kept() const {
-    return hasKept() ? std::make_shared<const SandCopy>(*beforeStroke_.kept()) : nullptr;
+    return hasKept() ? std::make_shared<const Snapshot>(*beforeStroke_.kept()) : nullptr;
 }
 
 void GridSurface::putBackKept() {
-    for (const Rect& tile : beforeStroke_.putBackHeights(field_)) {
+    for (const CellRect& tile : beforeStroke_.putBackHeights(field_)) {
         touch(tile);
     }
     erosion_.resume(beforeStroke_.kept()->inertia);
@@ -100,18 +100,18 @@ void GridSurface::putBackKept() {
 }
 
 std::shared_ptr<const SurfaceCopy> GridSurface::copy() const {
-    return std::make_shared<const SandCopy>(field_, erosion_.inertia(), outflow_);
+    return std::make_shared<const Snapshot>(field_, erosion_.inertia(), outflow_);
 }
 
 SurfaceReader GridSurface::reader() const {
     return [columns = field_.columns(), rows = field_.rows(),
             cellSize = field_.cellSize()](std::span<const std::uint8_t> bytes) -> std::shared_ptr<const SurfaceCopy> {
-        return std::make_shared<const SandCopy>(SandCopy::decode(bytes, columns, rows, cellSize));
+        return std::make_shared<const Snapshot>(Snapshot::decode(bytes, columns, rows, cellSize));
     };
 }
 
 void GridSurface::replace(const SurfaceCopy& copy) {
-    const auto& sand = dynamic_cast<const SandCopy&>(copy);
+    const auto& sand = dynamic_cast<const Snapshot&>(copy);
     field_ = sand.field;
     erosion_.resume(sand.inertia);
     outflow_ = sand.outflow;
@@ -130,7 +130,7 @@ void GridSurface::audit(int tiles) {
 
 std::vector<std::int32_t> GridSurface::valuesOf(int tile) const {
     std::vector<std::int32_t> heights;
-    const Rect cells = hash_.cellsOf(tile);
+    const CellRect cells = hash_.cellsOf(tile);
     for (int y = cells.y0; y < cells.y1; ++y) {
         heights.insert(heights.end(), field_.row(y) + cells.x0, field_.row(y) + cells.x1);
     }
@@ -148,4 +148,4 @@ double GridSurface::height(double x, double y) const {
     return field_.height(cell(x, field_.columns()), cell(y, field_.rows()));
 }
 
-}  // namespace sand
+}  // namespace sand::grid

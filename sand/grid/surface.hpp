@@ -9,7 +9,7 @@
 #include "sand/grid/tile_hash.hpp"
 #include "sand/model/surface.hpp"
 
-namespace sand {
+namespace sand::grid {
 
 /// Sand as a height field, over rock and between walls where the scene has them.
 class GridSurface final : public Surface {
@@ -31,7 +31,7 @@ public:
     void reset() override;
 
     void keep() override { beforeStroke_.keep(field_, erosion_.inertia(), outflow_); }
-    void keep(const SurfaceCopy& copy) override { beforeStroke_.keep(dynamic_cast<const SandCopy&>(copy)); }
+    void keep(const SurfaceCopy& copy) override { beforeStroke_.keep(dynamic_cast<const Snapshot&>(copy)); }
     void forget() override { beforeStroke_.forget(); }
     [[nodiscard]] std::shared_ptr<const SurfaceCopy> kept() const override;
     [[nodiscard]] bool hasKept() const override { return beforeStroke_.kept() != nullptr; }
@@ -53,20 +53,20 @@ public:
     void corrupt(int column, int row, int bit) override;
 
     [[nodiscard]] double height(double x, double y) const override;
-    [[nodiscard]] Rect takeDamage() override { return std::exchange(damage_, Rect{}); }
+    [[nodiscard]] CellRect takeDamage() override { return std::exchange(damage_, CellRect{}); }
 
 private:
-    void touch(const Rect& cells);
+    void touch(const CellRect& cells);
 
     Rules rules_;
     std::shared_ptr<const Ground> ground_;
     HeightField field_;
     Erosion erosion_;
-    StateHash hash_;
+    TileHash hash_;
     std::int64_t outflow_ = 0;
     std::shared_ptr<const base::Bytes> start_;  // the scene's heights, compressed; copies of a replica share them
-    KeptSand beforeStroke_;                     // the last one
-    Rect damage_;
+    Undo beforeStroke_;                         // the last one
+    CellRect damage_;
 };
 
-}  // namespace sand
+}  // namespace sand::grid

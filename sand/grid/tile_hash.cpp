@@ -6,22 +6,22 @@
 #include <algorithm>
 #include <array>
 
-namespace sand {
+namespace sand::grid {
 
-StateHash::StateHash(const HeightField& field)
+TileHash::TileHash(const HeightField& field)
     : columns_(field.columns()), rows_(field.rows()), tilesAcross_((columns_ + kHashTile - 1) / kHashTile) {
     const int tilesDown = (rows_ + kHashTile - 1) / kHashTile;
     hashes_.assign(static_cast<std::size_t>(tilesAcross_) * static_cast<std::size_t>(tilesDown), 0);
     dirty_.assign(hashes_.size(), 1);
 }
 
-Rect StateHash::cellsOf(int tile) const {
+CellRect TileHash::cellsOf(int tile) const {
     const int x = tile % tilesAcross_ * kHashTile;
     const int y = tile / tilesAcross_ * kHashTile;
-    return Rect{x, y, x + kHashTile, y + kHashTile}.clippedTo({0, 0, columns_, rows_});
+    return CellRect{x, y, x + kHashTile, y + kHashTile}.clippedTo({0, 0, columns_, rows_});
 }
 
-void StateHash::touch(const Rect& cells) {
+void TileHash::touch(const CellRect& cells) {
     for (int ty = cells.y0 / kHashTile; ty * kHashTile < cells.y1; ++ty) {
         for (int tx = cells.x0 / kHashTile; tx * kHashTile < cells.x1; ++tx) {
             dirty_[static_cast<std::size_t>(ty * tilesAcross_ + tx)] = 1;
@@ -29,10 +29,10 @@ void StateHash::touch(const Rect& cells) {
     }
 }
 
-void StateHash::rehash(const HeightField& field, int tile) {
+void TileHash::rehash(const HeightField& field, int tile) {
     // The heights of a tile, packed: one call on 4 KiB is faster than 32 streamed rows.
     std::array<std::int32_t, kHashTile * kHashTile> packed;
-    const Rect cells = cellsOf(tile);
+    const CellRect cells = cellsOf(tile);
     auto end = packed.begin();
     for (int y = cells.y0; y < cells.y1; ++y) {
         end = std::copy(field.row(y) + cells.x0, field.row(y) + cells.x1, end);
@@ -45,7 +45,7 @@ void StateHash::rehash(const HeightField& field, int tile) {
     dirty_[static_cast<std::size_t>(tile)] = 0;
 }
 
-std::uint64_t StateHash::update(const HeightField& field) {
+std::uint64_t TileHash::update(const HeightField& field) {
     for (int tile = 0; tile < tileCount(); ++tile) {
         if (dirty_[static_cast<std::size_t>(tile)] != 0) {
             rehash(field, tile);
@@ -54,16 +54,16 @@ std::uint64_t StateHash::update(const HeightField& field) {
     return sum_;
 }
 
-int StateHash::auditNext(const HeightField& field) {
+int TileHash::auditNext(const HeightField& field) {
     const int tile = nextAudited_;
     rehash(field, tile);
     nextAudited_ = (nextAudited_ + 1) % tileCount();
     return tile;
 }
 
-void StateHash::spoil(int tile) {
+void TileHash::spoil(int tile) {
     ++hashes_[static_cast<std::size_t>(tile)];
     ++sum_;
 }
 
-}  // namespace sand
+}  // namespace sand::grid

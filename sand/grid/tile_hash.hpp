@@ -7,7 +7,7 @@
 #include "sand/model/height_field.hpp"
 #include "sand/model/surface.hpp"
 
-namespace sand {
+namespace sand::grid {
 
 inline constexpr int kHashTile = 32;  // [cell], side of a hash tile
 
@@ -15,12 +15,12 @@ inline constexpr int kHashTile = 32;  // [cell], side of a hash tile
 ///
 /// A tile's index is its seed, so that exchanged tiles do not cancel. The tiling is part of the definition and does
 /// not follow the blocks that erosion works in.
-class StateHash final : public HashTiles {
+class TileHash final : public HashTiles {
 public:
-    explicit StateHash(const HeightField& field);
+    explicit TileHash(const HeightField& field);
 
     /// Marks the tiles that overlap `cells` as changed.
-    void touch(const Rect& cells);
+    void touch(const CellRect& cells);
     /// Hashes the changed tiles, and returns the sum over all.
     [[nodiscard]] std::uint64_t update(const HeightField& field);
     /// Hashes the next tile again, in turn over the field, whether or not it changed; returns which it was.
@@ -29,7 +29,7 @@ public:
     void spoil(int tile);
 
     /// Tiles go row by row, south first.
-    [[nodiscard]] Rect cellsOf(int tile) const override;
+    [[nodiscard]] CellRect cellsOf(int tile) const override;
 
 private:
     void rehash(const HeightField& field, int tile);
@@ -40,4 +40,4 @@ private:
     int nextAudited_ = 0;
 };
 
-}  // namespace sand
+}  // namespace sand::grid

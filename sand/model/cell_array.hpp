@@ -9,31 +9,31 @@
 namespace sand {
 
 /// Cells of a half-open rectangle: columns [x0, x1), rows [y0, y1).
-struct Rect {
+struct CellRect {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
     [[nodiscard]] bool empty() const { return x0 >= x1 || y0 >= y1; }
     /// The part of it that lies in `other`.
-    [[nodiscard]] Rect clippedTo(const Rect& other) const;
+    [[nodiscard]] CellRect clippedTo(const CellRect& other) const;
     /// The smallest around both; an empty one counts for nothing.
-    [[nodiscard]] Rect joinedWith(const Rect& other) const;
+    [[nodiscard]] CellRect joinedWith(const CellRect& other) const;
     /// With `margin` more cells on every side.
-    [[nodiscard]] Rect grownBy(int margin) const { return {x0 - margin, y0 - margin, x1 + margin, y1 + margin}; }
-    friend bool operator==(const Rect&, const Rect&) = default;
+    [[nodiscard]] CellRect grownBy(int margin) const { return {x0 - margin, y0 - margin, x1 + margin, y1 + margin}; }
+    friend bool operator==(const CellRect&, const CellRect&) = default;
 };
 
 /// A 32-bit number per cell, with ghost cells around: rows -1 and `rows`, columns -1 and `columns`.
 ///
 /// Cell (0,0) is the south-west corner; columns run east, rows north. Starts as zeros. Not thread-safe.
-class Grid {
+class CellArray {
 public:
-    Grid(int columns, int rows)
+    CellArray(int columns, int rows)
         : columns_(columns),
           rows_(rows),
           cells_(static_cast<std::size_t>(stride()) * (static_cast<std::size_t>(rows) + 2)) {}
 
     [[nodiscard]] int columns() const { return columns_; }
     [[nodiscard]] int rows() const { return rows_; }
-    [[nodiscard]] Rect bounds() const { return {0, 0, columns_, rows_}; }
+    [[nodiscard]] CellRect bounds() const { return {0, 0, columns_, rows_}; }
 
     /// Cell 0 of a row in [-1, rows]; cells -1 and columns are ghosts.
     [[nodiscard]] const std::int32_t* row(int row) const { return cells_.data() + offset(row); }

@@ -9,13 +9,13 @@
 namespace sand {
 namespace {
 
-std::size_t countOf(const Rect& cells) {
+std::size_t countOf(const CellRect& cells) {
     return static_cast<std::size_t>(cells.x1 - cells.x0) * static_cast<std::size_t>(cells.y1 - cells.y0);
 }
 
 }  // namespace
 
-void encodeCells(const Grid& grid, const Rect& cells, base::ByteWriter& writer) {
+void encodeCells(const CellArray& grid, const CellRect& cells, base::ByteWriter& writer) {
     std::vector<std::int32_t> plain;
     plain.reserve(countOf(cells));
     for (int y = cells.y0; y < cells.y1; ++y) {
@@ -31,7 +31,7 @@ void encodeCells(const Grid& grid, const Rect& cells, base::ByteWriter& writer) 
     writer.putBlock(packed);
 }
 
-void decodeCells(base::ByteReader& reader, const Rect& cells, std::int32_t most, Grid& grid) {
+void decodeCells(base::ByteReader& reader, const CellRect& cells, std::int32_t most, CellArray& grid) {
     const auto packed = reader.getBlock();
     std::vector<std::int32_t> plain(countOf(cells));
     const std::size_t size = plain.size() * sizeof plain[0];

@@ -27,7 +27,7 @@ public:
     [[nodiscard]] std::int32_t sand(int column, int row, std::int32_t height) const {
         return isWall(column, row) ? 0 : height - bedrock(column, row);
     }
-    [[nodiscard]] const Grid& cells() const { return bed_; }
+    [[nodiscard]] const CellArray& cells() const { return bed_; }
     /// Equal digests mean equal rock and walls; never 0.
     [[nodiscard]] std::uint64_t digest() const;
     /// Reads what encodeCells() wrote of cells(). Throws base::FormatError, also for rock above the sand of `field`.
@@ -37,7 +37,7 @@ public:
     static constexpr std::int32_t kWall = std::numeric_limits<std::int32_t>::max();
 
 private:
-    Grid bed_;
+    CellArray bed_;
 };
 
 }  // namespace sand

@@ -8,11 +8,11 @@
 
 namespace sand {
 
-Rect Rect::clippedTo(const Rect& other) const {
+CellRect CellRect::clippedTo(const CellRect& other) const {
     return {std::max(x0, other.x0), std::max(y0, other.y0), std::min(x1, other.x1), std::min(y1, other.y1)};
 }
 
-Rect Rect::joinedWith(const Rect& other) const {
+CellRect CellRect::joinedWith(const CellRect& other) const {
     if (empty() || other.empty()) {
         return empty() ? other : *this;
     }

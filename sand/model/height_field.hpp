@@ -24,7 +24,7 @@ public:
     [[nodiscard]] int rows() const { return cells_.rows(); }
     [[nodiscard]] double cellSize() const { return cellSize_; }              // [scene unit], east to west
     [[nodiscard]] double unit() const { return cellSize_ / kUnitsPerCell; }  // [scene unit], of one height unit
-    [[nodiscard]] Rect bounds() const { return cells_.bounds(); }
+    [[nodiscard]] CellRect bounds() const { return cells_.bounds(); }
 
     [[nodiscard]] std::int32_t height(int column, int row) const { return cells_.row(row)[column]; }  // [unit]
     void setHeight(int column, int row, std::int32_t height) { cells_.row(row)[column] = height; }    // [unit]
@@ -33,8 +33,8 @@ public:
     [[nodiscard]] const std::int32_t* row(int row) const { return cells_.row(row); }
     [[nodiscard]] std::int32_t* row(int row) { return cells_.row(row); }
     [[nodiscard]] std::ptrdiff_t stride() const { return cells_.stride(); }
-    [[nodiscard]] const Grid& cells() const { return cells_; }
-    [[nodiscard]] Grid& cells() { return cells_; }
+    [[nodiscard]] const CellArray& cells() const { return cells_; }
+    [[nodiscard]] CellArray& cells() { return cells_; }
 
     /// The sum of all heights [unit · cell], exact.
     [[nodiscard]] std::int64_t volume() const;
@@ -43,7 +43,7 @@ public:
 
 private:
     double cellSize_;
-    Grid cells_;
+    CellArray cells_;
 };
 
 }  // namespace sand

@@ -44,7 +44,7 @@ struct Rules {
     Scheme scheme = Scheme::isotropic;
     Rim rim = Rim::closed;
     std::uint64_t ground = 0;  // Ground::digest(), 0 without rock and walls
-    std::uint64_t tin = 0;     // tin::Start::digest(), 0 for a height field; then columns and rows are nominal
+    std::uint64_t tin = 0;     // tin::TinStart::digest(), 0 for a height field; then columns and rows are nominal
 
     [[nodiscard]] ToolShape toolShape() const { return {toolKind, toolRadius, toolHalfWidth}; }
     [[nodiscard]] Tuning tuning() const {

@@ -33,7 +33,7 @@ public:
     [[nodiscard]] int tileCount() const { return static_cast<int>(hashes_.size()); }
     [[nodiscard]] const std::vector<std::uint64_t>& tileHashes() const { return hashes_; }
     /// The nominal cells around it; empty when it holds nothing.
-    [[nodiscard]] virtual Rect cellsOf(int tile) const = 0;
+    [[nodiscard]] virtual CellRect cellsOf(int tile) const = 0;
 
 protected:
     HashTiles() = default;
@@ -107,7 +107,7 @@ public:
     [[nodiscard]] virtual double height(double x, double y /* [probe unit] */) const = 0;
 
     /// The cells that changed since this was called last: one rectangle around them, empty when nothing did.
-    [[nodiscard]] virtual Rect takeDamage() = 0;
+    [[nodiscard]] virtual CellRect takeDamage() = 0;
     /// Null unless it is a TIN, and what changed of it since this was called last.
     [[nodiscard]] virtual const tin::SurfaceView* tinView() const { return nullptr; }
     [[nodiscard]] virtual TinChange takeTinDamage() { return {}; }

@@ -167,7 +167,7 @@ bool TurnedShape::before(const Offset& a, const Offset& b) const {
     return first.along != second.along ? first.along < second.along : first.across < second.across;
 }
 
-Rect TurnedShape::cellsAround(std::int64_t x, std::int64_t y, std::int64_t margin) const {
+CellRect TurnedShape::cellsAround(std::int64_t x, std::int64_t y, std::int64_t margin) const {
     // Rounds down, below zero too.
     const auto cell = [](std::int64_t coordinate) { return static_cast<int>(coordinate >> kProbeBits); };
     return {cell(x - east_ - margin), cell(y - north_ - margin), cell(x + east_ + margin) + 1,

@@ -112,14 +112,16 @@ public:
     [[nodiscard]] bool hasHeading() const { return !isRound(shape_.kind); }
 
     /// The cells that lie below a tool with its centre there, and so many around them; others may be among them.
-    [[nodiscard]] Rect cellsAround(std::int64_t x, std::int64_t y, std::int64_t margin /* [probe unit] */) const;
+    [[nodiscard]] CellRect cellsAround(std::int64_t x, std::int64_t y, std::int64_t margin /* [probe unit] */) const;
     /// The same with all that take sand.
-    [[nodiscard]] Rect cellsThatTake(std::int64_t x, std::int64_t y) const {
+    [[nodiscard]] CellRect cellsThatTake(std::int64_t x, std::int64_t y) const {
         // A corner that grows to both sides comes farther out by the root of two.
         return cellsAround(x, y, isRound(shape_.kind) ? ring_ : ring_ * 3 / 2);
     }
     /// The same, and a cell more.
-    [[nodiscard]] Rect cellsChanged(std::int64_t x, std::int64_t y) const { return cellsAround(x, y, ring_ * 3 / 2); }
+    [[nodiscard]] CellRect cellsChanged(std::int64_t x, std::int64_t y) const {
+        return cellsAround(x, y, ring_ * 3 / 2);
+    }
 
 private:
     static constexpr std::int64_t kRing = 2 * kProbePerCell;  // [probe unit]

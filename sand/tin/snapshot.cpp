@@ -13,14 +13,14 @@ constexpr std::uint64_t kMostPlain = std::uint64_t{1} << 30;  // [byte], of some
 
 }  // namespace
 
-void LayerState::encode(base::ByteWriter& writer) const {
+void TinState::encode(base::ByteWriter& writer) const {
     writer.put(outflow);
     writer.put(nextToGo);
     imprint.encode(writer);
 }
 
-LayerState LayerState::decode(base::ByteReader& reader) {
-    LayerState state;
+TinState TinState::decode(base::ByteReader& reader) {
+    TinState state;
     state.outflow = reader.get<std::int64_t>();
     state.nextToGo = reader.get<Vertex>();
     if (state.nextToGo < 0) {
@@ -30,17 +30,17 @@ LayerState LayerState::decode(base::ByteReader& reader) {
     return state;
 }
 
-LayerCopy::LayerCopy(const LayerParts& layer, LayerState state) : holes_(layer.holes), state_(std::move(state)) {
+Snapshot::Snapshot(const VertexSandParts& layer, TinState state) : holes_(layer.holes), state_(std::move(state)) {
     base::ByteWriter writer;
     layer.encode(writer);
     plain_ = writer.take();
 }
 
-LayerCopy::LayerCopy(std::span<const std::uint8_t> packed, std::int32_t width, std::int32_t depth,
-                     std::shared_ptr<const Holes> holes)
+Snapshot::Snapshot(std::span<const std::uint8_t> packed, std::int32_t width, std::int32_t depth,
+                   std::shared_ptr<const Holes> holes)
     : holes_(std::move(holes)) {
     base::ByteReader reader(packed);
-    state_ = LayerState::decode(reader);
+    state_ = TinState::decode(reader);
     const auto size = reader.get<std::uint64_t>();
     if (size > kMostPlain) {
         throw base::FormatError("a TIN of too many bytes");
@@ -50,13 +50,13 @@ LayerCopy::LayerCopy(std::span<const std::uint8_t> packed, std::int32_t width, s
     if (ZSTD_decompress(plain_.data(), plain_.size(), rest.data(), rest.size()) != size) {
         throw base::FormatError("a TIN that does not unpack to its size");
     }
-    const Layer whole = layer();  // throws for bytes that are none
+    const VertexSand whole = layer();  // throws for bytes that are none
     if (whole.triangles().width != width || whole.triangles().depth != depth) {
         throw base::FormatError("a TIN of another field");
     }
 }
 
-base::Bytes LayerCopy::encode() const {
+base::Bytes Snapshot::encode() const {
     base::ByteWriter writer;
     state_.encode(writer);
     writer.put(static_cast<std::uint64_t>(plain_.size()));
@@ -70,9 +70,9 @@ base::Bytes LayerCopy::encode() const {
     return writer.take();
 }
 
-Layer LayerCopy::layer() const {
+VertexSand Snapshot::layer() const {
     base::ByteReader reader(plain_);
-    Layer layer = Layer::decode(reader, holes_);
+    VertexSand layer = VertexSand::decode(reader, holes_);
     if (!reader.atEnd()) {
         throw base::FormatError("a TIN with more behind it");
     }

@@ -13,33 +13,33 @@
 namespace sand::tin {
 
 /// What of a TIN is state beside its layer.
-struct LayerState {
+struct TinState {
     Imprint imprint;           // of the tool that stands in it
     Vertex nextToGo = 0;       // where coarsening goes on
     std::int64_t outflow = 0;  // [volume unit] lost over an open rim
 
     void encode(base::ByteWriter& writer) const;
     /// Throws base::FormatError.
-    static LayerState decode(base::ByteReader& reader);
+    static TinState decode(base::ByteReader& reader);
 };
 
 /// The sand of a TIN as bytes: what is saved, loaded and put back.
-class LayerCopy final : public SurfaceCopy {
+class Snapshot final : public SurfaceCopy {
 public:
-    LayerCopy(const LayerParts& layer, LayerState state);
-    LayerCopy(const Layer& layer, LayerState state) : LayerCopy(layer.parts(), std::move(state)) {}
+    Snapshot(const VertexSandParts& layer, TinState state);
+    Snapshot(const VertexSand& layer, TinState state) : Snapshot(layer.parts(), std::move(state)) {}
     /// Throws base::FormatError for bytes that are no TIN of this size with these holes, or go on behind it.
-    LayerCopy(std::span<const std::uint8_t> packed, std::int32_t width, std::int32_t depth,
-              std::shared_ptr<const Holes> holes = nullptr);
+    Snapshot(std::span<const std::uint8_t> packed, std::int32_t width, std::int32_t depth,
+             std::shared_ptr<const Holes> holes = nullptr);
 
     [[nodiscard]] base::Bytes encode() const override;
-    [[nodiscard]] Layer layer() const;
-    [[nodiscard]] const LayerState& state() const { return state_; }
+    [[nodiscard]] VertexSand layer() const;
+    [[nodiscard]] const TinState& state() const { return state_; }
 
 private:
     base::Bytes plain_;  // the layer
     std::shared_ptr<const Holes> holes_;
-    LayerState state_;
+    TinState state_;
 };
 
 }  // namespace sand::tin

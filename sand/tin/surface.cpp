@@ -15,7 +15,7 @@ constexpr int kRemovalsPerStep = 64;
 constexpr int kSweepsToRest = 1 << 20;       // more than any TIN that is worth waiting for
 constexpr std::size_t kMoreVertices = 4096;  // at least, than a session starts with
 
-DetailRules detailOf(const Start& start) {
+DetailRules detailOf(const TinStart& start) {
     const Settings& settings = start.settings;
     DetailRules rules;
     rules.firstToGo = static_cast<Vertex>(start.places.size());
@@ -33,7 +33,7 @@ void addTo(std::vector<std::int32_t>& all, const std::vector<std::int32_t>& more
 
 }  // namespace
 
-TinSurface::TinSurface(const Rules& rules, std::shared_ptr<const Start> start)
+TinSurface::TinSurface(const Rules& rules, std::shared_ptr<const TinStart> start)
     : start_(std::move(start)),
       detail_(detailOf(*start_)),
       rim_(rules.rim),
@@ -53,7 +53,7 @@ TinSurface::TinSurface(const TinSurface& other)
       rim_(other.rim_),
       threshold_(other.threshold_),
       startThreshold_(other.startThreshold_),
-      layer_(LayerCopy(other.layer_, other.state_).layer()),
+      layer_(Snapshot(other.layer_, other.state_).layer()),
       state_(other.state_),
       erosion_(layer_, threshold_, startThreshold_),
       hash_(layer_),
@@ -77,7 +77,7 @@ void TinSurface::reserve() {
     coarsening_.reserve(vertices);
 }
 
-Tool& TinSurface::toolOf(const HeldTool& tool) {
+Displacement& TinSurface::toolOf(const HeldTool& tool) {
     if (!tool_ || !tool_->is(tool.shape, tool.heading)) {
         tool_.emplace(tool.shape, tool.heading, detail_, near_);
     }
@@ -133,7 +133,7 @@ void TinSurface::sandMoved(const std::vector<Vertex>& vertices) {
 }
 
 void TinSurface::drag(const HeldTool& tool, std::span<const ProbePoint> path) {
-    const Tool::Work done = toolOf(tool).drag(layer_, state_.imprint, rim_, path);
+    const Displacement::Work done = toolOf(tool).drag(layer_, state_.imprint, rim_, path);
     state_.outflow += static_cast<std::int64_t>(done.outflow);
     meshChanged();
     sandMoved(done.touched);
@@ -155,7 +155,7 @@ void TinSurface::sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) {
     }
     moved_.clear();
     if (tool != nullptr) {
-        const Tool& here = toolOf(*tool);
+        const Displacement& here = toolOf(*tool);
         const Underside under = here.underside(at);
         const Imprint::Stand stand{at, tool->shape, tool->heading};
         if (held_ != stand) {
@@ -189,30 +189,28 @@ void TinSurface::settle() {
     sandMoved(moved_);
 }
 
-void TinSurface::reset() { replace(LayerCopy(layerOf(*start_), {})); }
+void TinSurface::reset() { replace(Snapshot(layerOf(*start_), {})); }
 
 void TinSurface::keep(const SurfaceCopy& copy) {
-    kept_.keep(std::make_shared<const LayerCopy>(dynamic_cast<const LayerCopy&>(copy)));
+    kept_.keep(std::make_shared<const Snapshot>(dynamic_cast<const Snapshot&>(copy)));
 }
 
-std::shared_ptr<const SurfaceCopy> TinSurface::copy() const {
-    return std::make_shared<const LayerCopy>(layer_, state_);
-}
+std::shared_ptr<const SurfaceCopy> TinSurface::copy() const { return std::make_shared<const Snapshot>(layer_, state_); }
 
 SurfaceReader TinSurface::reader() const {
     return [width = start_->width, depth = start_->depth,
             holes = start_->holes](std::span<const std::uint8_t> bytes) -> std::shared_ptr<const SurfaceCopy> {
-        return std::make_shared<const LayerCopy>(bytes, width, depth, holes);
+        return std::make_shared<const Snapshot>(bytes, width, depth, holes);
     };
 }
 
 void TinSurface::replace(const SurfaceCopy& copy) {
-    const auto& sand = dynamic_cast<const LayerCopy&>(copy);
+    const auto& sand = dynamic_cast<const Snapshot&>(copy);
     layer_ = sand.layer();
     (void)layer_.takeChange();
     state_ = sand.state();
     erosion_ = Erosion(layer_, threshold_, startThreshold_);
-    hash_ = VertexHash(layer_);
+    hash_ = TileHash(layer_);
     kept_.replaced(layer_);
     reserve();
     held_.reset();
@@ -228,7 +226,7 @@ void TinSurface::audit(int tiles) {
     }
 }
 
-std::vector<std::int32_t> TinSurface::valuesOf(int tile) const { return VertexHash::valuesOf(layer_, tile); }
+std::vector<std::int32_t> TinSurface::valuesOf(int tile) const { return TileHash::valuesOf(layer_, tile); }
 
 void TinSurface::corrupt(int column, int row, int bit) {
     const Place place{(column * 2 + 1) * kLatticePerCell / 2, (row * 2 + 1) * kLatticePerCell / 2};

@@ -21,13 +21,13 @@ namespace sand::tin {
 /// Sand as a TIN: a layer, a tool that stands in it, and sand that slides.
 class TinSurface final : public Surface {
 public:
-    TinSurface(const Rules& rules, std::shared_ptr<const Start> start);
+    TinSurface(const Rules& rules, std::shared_ptr<const TinStart> start);
     TinSurface(const TinSurface& other);
     TinSurface& operator=(const TinSurface&) = delete;
     [[nodiscard]] std::unique_ptr<Surface> clone() const override { return std::make_unique<TinSurface>(*this); }
 
-    [[nodiscard]] const Layer& layer() const { return layer_; }
-    [[nodiscard]] const Start& start() const { return *start_; }
+    [[nodiscard]] const VertexSand& layer() const { return layer_; }
+    [[nodiscard]] const TinStart& start() const { return *start_; }
 
     void drag(const HeldTool& tool, std::span<const ProbePoint> path) override;
     /// Erosion itself finds the sand that a tool holds back no more.
@@ -61,12 +61,12 @@ public:
     void corrupt(int column, int row, int bit) override;
 
     [[nodiscard]] double height(double x, double y) const override;
-    [[nodiscard]] Rect takeDamage() override { return {}; }
+    [[nodiscard]] CellRect takeDamage() override { return {}; }
     [[nodiscard]] const SurfaceView* tinView() const override { return &view_; }
     [[nodiscard]] TinChange takeTinDamage() override;
 
 private:
-    [[nodiscard]] Tool& toolOf(const HeldTool& tool);
+    [[nodiscard]] Displacement& toolOf(const HeldTool& tool);
     /// Tells hash, erosion and whoever draws what the layer has become.
     void meshChanged();
     /// So that hardly a step makes what is kept for every vertex move in memory.
@@ -74,20 +74,20 @@ private:
     void wakeFull(const Underside& under, const Box& reach);
     void sandMoved(const std::vector<Vertex>& vertices);
 
-    std::shared_ptr<const Start> start_;
+    std::shared_ptr<const TinStart> start_;
     DetailRules detail_;
     Rim rim_;
     std::int32_t threshold_, startThreshold_;
-    Layer layer_;
-    LayerState state_;
+    VertexSand layer_;
+    TinState state_;
     Coarsening coarsening_;
     Erosion erosion_;
-    VertexHash hash_;
+    TileHash hash_;
     SurfaceView view_{layer_.triangles(), layer_.heights(), detail_.spacing};
-    KeptLayer kept_;
+    Undo kept_;
     TinChange damage_{.whole = true, .triangles = {}, .vertices = {}};
-    std::optional<Tool> tool_;  // of the last toolOf()
-    std::shared_ptr<Window> near_ = std::make_shared<Window>();
+    std::optional<Displacement> tool_;  // of the last toolOf()
+    std::shared_ptr<Neighbourhood> near_ = std::make_shared<Neighbourhood>();
     bool sawAll_ = false;                       // near_ shows the mesh as it is, around the tool
     std::optional<Imprint::Stand> held_;        // the obstacle of the last sweeps: only to save work
     std::vector<Vertex> moved_;                 // scratch

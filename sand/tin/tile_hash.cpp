@@ -23,7 +23,7 @@ std::uint64_t together(std::int32_t high, std::int32_t low) {
 
 }  // namespace
 
-VertexHash::VertexHash(const Layer& layer) {
+TileHash::TileHash(const VertexSand& layer) {
     hashes_.assign(kTiles + 1, 0);
     std::vector<Vertex> all(layer.triangles().triangleAt.size());
     std::iota(all.begin(), all.end(), 0);
@@ -31,7 +31,7 @@ VertexHash::VertexHash(const Layer& layer) {
     hashConstraints(layer);
 }
 
-std::uint64_t VertexHash::hashOf(const Layer& layer, Vertex vertex) {
+std::uint64_t TileHash::hashOf(const VertexSand& layer, Vertex vertex) {
     if (!layer.triangles().alive(vertex)) {
         return 0;
     }
@@ -41,7 +41,7 @@ std::uint64_t VertexHash::hashOf(const Layer& layer, Vertex vertex) {
                  static_cast<std::uint64_t>(layer.volumes()[i]));
 }
 
-void VertexHash::touch(const Layer& layer, const std::vector<Vertex>& vertices) {
+void TileHash::touch(const VertexSand& layer, const std::vector<Vertex>& vertices) {
     byVertex_.resize(std::max(byVertex_.size(), layer.triangles().triangleAt.size()), 0);
     for (const Vertex vertex : vertices) {
         const std::uint64_t now = hashOf(layer, vertex);
@@ -52,7 +52,7 @@ void VertexHash::touch(const Layer& layer, const std::vector<Vertex>& vertices) 
 }
 
 /// A constraint is owned by the triangle in which it runs from its smaller vertex to the larger.
-std::uint64_t VertexHash::constraintsOf(const Layer& layer, std::int32_t slot) {
+std::uint64_t TileHash::constraintsOf(const VertexSand& layer, std::int32_t slot) {
     const Triangle& triangle = layer.triangles().triangles[static_cast<std::size_t>(slot)];
     std::uint64_t sum = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -64,7 +64,7 @@ std::uint64_t VertexHash::constraintsOf(const Layer& layer, std::int32_t slot) {
     return sum;
 }
 
-void VertexHash::touchTriangles(const Layer& layer, const std::vector<std::int32_t>& slots) {
+void TileHash::touchTriangles(const VertexSand& layer, const std::vector<std::int32_t>& slots) {
     bySlot_.resize(std::max(bySlot_.size(), layer.triangles().triangles.size()), 0);
     for (const std::int32_t slot : slots) {
         const std::uint64_t now = constraintsOf(layer, slot);
@@ -74,7 +74,7 @@ void VertexHash::touchTriangles(const Layer& layer, const std::vector<std::int32
     }
 }
 
-void VertexHash::hashConstraints(const Layer& layer) {
+void TileHash::hashConstraints(const VertexSand& layer) {
     bySlot_.assign(layer.triangles().triangles.size(), 0);
     constraints_ = 0;
     for (std::size_t slot = 0; slot < bySlot_.size(); ++slot) {
@@ -82,7 +82,7 @@ void VertexHash::hashConstraints(const Layer& layer) {
     }
 }
 
-std::uint64_t VertexHash::update(const LayerState& state) {
+std::uint64_t TileHash::update(const TinState& state) {
     base::ByteWriter writer;
     state.encode(writer);
     hashes_.back() = constraints_ + XXH3_64bits(writer.bytes().data(), writer.bytes().size());
@@ -90,7 +90,7 @@ std::uint64_t VertexHash::update(const LayerState& state) {
 }
 
 template <class Visit>
-void VertexHash::forEachOf(const Layer& layer, int tile, Visit visit) {
+void TileHash::forEachOf(const VertexSand& layer, int tile, Visit visit) {
     const auto count = static_cast<Vertex>(layer.triangles().triangleAt.size());
     for (Vertex first = tile * kTogether; first < count; first += kTogether * kTiles) {
         for (Vertex vertex = first; vertex < std::min(count, first + kTogether); ++vertex) {
@@ -99,7 +99,7 @@ void VertexHash::forEachOf(const Layer& layer, int tile, Visit visit) {
     }
 }
 
-void VertexHash::auditNext(const Layer& layer) {
+void TileHash::auditNext(const VertexSand& layer) {
     const int tile = nextAudited_;
     nextAudited_ = (nextAudited_ + 1) % (kTiles + 1);
     if (tile == kTiles) {
@@ -115,7 +115,7 @@ void VertexHash::auditNext(const Layer& layer) {
     hashes_[static_cast<std::size_t>(tile)] = sum;
 }
 
-std::vector<std::int32_t> VertexHash::valuesOf(const Layer& layer, int tile) {
+std::vector<std::int32_t> TileHash::valuesOf(const VertexSand& layer, int tile) {
     std::vector<std::int32_t> values;
     if (tile == kTiles) {
         for (const auto& [a, b] : layer.mesh().constraints()) {

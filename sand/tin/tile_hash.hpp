@@ -13,25 +13,25 @@ namespace sand::tin {
 /// number, its place and its volume, one for every constraint, and one for the state beside the layer.
 ///
 /// A vertex belongs to the hash tile of its number; the last tile is the constraints' and the state's.
-class VertexHash final : public HashTiles {
+class TileHash final : public HashTiles {
 public:
-    explicit VertexHash(const Layer& layer);
+    explicit TileHash(const VertexSand& layer);
 
     void reserve(std::size_t vertices) {
         byVertex_.reserve(vertices);
         bySlot_.reserve(2 * vertices);
     }
     /// These vertices may have come, gone, or changed.
-    void touch(const Layer& layer, const std::vector<Vertex>& vertices);
+    void touch(const VertexSand& layer, const std::vector<Vertex>& vertices);
     /// These triangles may have come, gone, or been constrained otherwise, by slot.
-    void touchTriangles(const Layer& layer, const std::vector<std::int32_t>& slots);
-    [[nodiscard]] std::uint64_t update(const LayerState& state);
+    void touchTriangles(const VertexSand& layer, const std::vector<std::int32_t>& slots);
+    [[nodiscard]] std::uint64_t update(const TinState& state);
     /// Hashes the next tile again from memory.
-    void auditNext(const Layer& layer);
+    void auditNext(const VertexSand& layer);
 
     /// None: which vertices a tile holds says nothing of where they lie.
-    [[nodiscard]] Rect cellsOf(int) const override { return {}; }
-    [[nodiscard]] static std::vector<std::int32_t> valuesOf(const Layer& layer, int tile);
+    [[nodiscard]] CellRect cellsOf(int) const override { return {}; }
+    [[nodiscard]] static std::vector<std::int32_t> valuesOf(const VertexSand& layer, int tile);
 
 private:
     static constexpr int kTiles = 256;    // of vertices; one more is the constraints'
@@ -41,11 +41,11 @@ private:
         return static_cast<std::size_t>(vertex / kTogether % kTiles);
     }
     template <class Visit>
-    static void forEachOf(const Layer& layer, int tile, Visit visit);
-    [[nodiscard]] static std::uint64_t hashOf(const Layer& layer, Vertex vertex);
+    static void forEachOf(const VertexSand& layer, int tile, Visit visit);
+    [[nodiscard]] static std::uint64_t hashOf(const VertexSand& layer, Vertex vertex);
 
-    [[nodiscard]] static std::uint64_t constraintsOf(const Layer& layer, std::int32_t slot);
-    void hashConstraints(const Layer& layer);
+    [[nodiscard]] static std::uint64_t constraintsOf(const VertexSand& layer, std::int32_t slot);
+    void hashConstraints(const VertexSand& layer);
 
     std::vector<std::uint64_t> byVertex_;
     std::vector<std::uint64_t> bySlot_;  // of the constraints that a triangle owns

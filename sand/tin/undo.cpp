@@ -6,7 +6,7 @@
 
 namespace sand::tin {
 
-void KeptLayer::replaced(const Layer& layer) {
+void Undo::replaced(const VertexSand& layer) {
     copy_ = copy();
     parts_ = layer.parts();
     parts_.constraints = {};
@@ -18,19 +18,19 @@ void KeptLayer::replaced(const Layer& layer) {
     }
 }
 
-void KeptLayer::followVertex(const Layer& layer, Vertex vertex) {
+void Undo::followVertex(const VertexSand& layer, Vertex vertex) {
     const auto at = static_cast<std::size_t>(vertex);
     if (at >= parts_.places.size()) {
         const std::size_t count = layer.triangles().places.size();
-        parts_.places.resize(count, LayerParts::kNowhere);
+        parts_.places.resize(count, VertexSandParts::kNowhere);
         parts_.volumes.resize(count, 0);
     }
-    parts_.places[at] = layer.triangles().alive(vertex) ? layer.triangles().places[at] : LayerParts::kNowhere;
+    parts_.places[at] = layer.triangles().alive(vertex) ? layer.triangles().places[at] : VertexSandParts::kNowhere;
     parts_.volumes[at] = layer.volumes()[at];
 }
 
 /// A constraint is owned by the triangle in which it runs from its smaller vertex to the larger.
-void KeptLayer::followTriangle(const Layer& layer, std::int32_t slot) {
+void Undo::followTriangle(const VertexSand& layer, std::int32_t slot) {
     const Triangle& triangle = layer.triangles().triangles[static_cast<std::size_t>(slot)];
     std::vector<std::pair<Vertex, Vertex>> owned;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -46,7 +46,7 @@ void KeptLayer::followTriangle(const Layer& layer, std::int32_t slot) {
     }
 }
 
-void KeptLayer::keep(const Layer& layer, const LayerState& state) {
+void Undo::keep(const VertexSand& layer, const TinState& state) {
     for (const Vertex vertex : vertices_.all()) {
         followVertex(layer, vertex);
     }
@@ -60,24 +60,24 @@ void KeptLayer::keep(const Layer& layer, const LayerState& state) {
     any_ = true;
 }
 
-void KeptLayer::keep(std::shared_ptr<const LayerCopy> copy) {
+void Undo::keep(std::shared_ptr<const Snapshot> copy) {
     copy_ = std::move(copy);
     any_ = true;
 }
 
-void KeptLayer::forget() {
+void Undo::forget() {
     copy_ = nullptr;
     any_ = false;
 }
 
-std::shared_ptr<const LayerCopy> KeptLayer::copy() const {
+std::shared_ptr<const Snapshot> Undo::copy() const {
     if (any_ && copy_ == nullptr) {
-        LayerParts whole = parts_;
+        VertexSandParts whole = parts_;
         for (const auto& [slot, owned] : constraints_) {
             whole.constraints.insert(whole.constraints.end(), owned.begin(), owned.end());
         }
         std::sort(whole.constraints.begin(), whole.constraints.end());
-        copy_ = std::make_shared<const LayerCopy>(whole, state_);
+        copy_ = std::make_shared<const Snapshot>(whole, state_);
     }
     return copy_;
 }

@@ -14,12 +14,12 @@ namespace sand::tin {
 
 /// A layer as it was when it was kept, for an undo: keeping it again costs what has changed since, and not the whole
 /// mesh, for every stroke of a hand begins with it. Bytes are made when somebody asks for them. Not thread-safe.
-class KeptLayer {
+class Undo {
 public:
     /// Nothing is kept yet.
-    explicit KeptLayer(const Layer& layer) { replaced(layer); }
+    explicit Undo(const VertexSand& layer) { replaced(layer); }
     /// The layer is another one now; what is kept stays. Costs the whole.
-    void replaced(const Layer& layer);
+    void replaced(const VertexSand& layer);
 
     void reserve(std::size_t vertices) {
         parts_.places.reserve(vertices);
@@ -32,24 +32,24 @@ public:
     void touch(const std::vector<Vertex>& vertices) { vertices_.add(vertices); }
     void touchTriangles(const std::vector<std::int32_t>& slots) { slots_.add(slots); }
 
-    void keep(const Layer& layer, const LayerState& state);
-    void keep(std::shared_ptr<const LayerCopy> copy);
+    void keep(const VertexSand& layer, const TinState& state);
+    void keep(std::shared_ptr<const Snapshot> copy);
     void forget();
     [[nodiscard]] bool any() const { return any_; }
     /// Null when nothing is kept. Costs the whole the first time.
-    [[nodiscard]] std::shared_ptr<const LayerCopy> copy() const;
+    [[nodiscard]] std::shared_ptr<const Snapshot> copy() const;
 
 private:
-    void followVertex(const Layer& layer, Vertex vertex);
-    void followTriangle(const Layer& layer, std::int32_t slot);
+    void followVertex(const VertexSand& layer, Vertex vertex);
+    void followTriangle(const VertexSand& layer, std::int32_t slot);
 
-    LayerParts parts_;  // but for the constraints
+    VertexSandParts parts_;  // but for the constraints
     std::map<std::int32_t, std::vector<std::pair<Vertex, Vertex>>>
         constraints_;                   // by the slot that owns them; few have any
     base::IndexList vertices_, slots_;  // touched
-    LayerState state_;
+    TinState state_;
     bool any_ = false;
-    mutable std::shared_ptr<const LayerCopy> copy_;  // once somebody has asked, or what was given
+    mutable std::shared_ptr<const Snapshot> copy_;  // once somebody has asked, or what was given
 };
 
 }  // namespace sand::tin

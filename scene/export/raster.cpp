@@ -5,10 +5,10 @@
 #include <stdexcept>
 #include <vector>
 
-namespace sand {
+namespace scene {
 namespace {
 
-void wantSameCells(const HeightField& field, const Scene& scene) {
+void wantSameCells(const sand::HeightField& field, const Scene& scene) {
     if (field.columns() != scene.terrain.columns() || field.rows() != scene.terrain.rows()) {
         throw std::invalid_argument("a field of other cells than the scene's");
     }
@@ -22,7 +22,7 @@ bool isWall(const Scene& scene, int column, int row) {
 template <class HeightOf>
 EsriGrid rasterOf(const Scene& scene, double datum, HeightOf heightOf) {
     const Georeference& reference = scene.georeference;
-    const HeightField& field = scene.terrain;
+    const sand::HeightField& field = scene.terrain;
     EsriGrid grid;
     grid.columns = field.columns();
     grid.rows = field.rows();
@@ -43,20 +43,20 @@ EsriGrid rasterOf(const Scene& scene, double datum, HeightOf heightOf) {
 
 }  // namespace
 
-EsriGrid heightsOf(const HeightField& field, const Scene& scene) {
+EsriGrid heightsOf(const sand::HeightField& field, const Scene& scene) {
     wantSameCells(field, scene);
     return rasterOf(scene, scene.georeference.datum,
                     [&](int column, int row) { return static_cast<double>(field.height(column, row)); });
 }
 
-EsriGrid differenceOf(const HeightField& field, const Scene& scene) {
+EsriGrid differenceOf(const sand::HeightField& field, const Scene& scene) {
     wantSameCells(field, scene);
     return rasterOf(scene, 0, [&](int column, int row) {
         return static_cast<double>(field.height(column, row)) - scene.terrain.height(column, row);
     });
 }
 
-Mesh meshOf(const HeightField& field, const Scene& scene) {
+Mesh meshOf(const sand::HeightField& field, const Scene& scene) {
     const EsriGrid grid = heightsOf(field, scene);
     constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
     Mesh mesh;
@@ -91,7 +91,7 @@ Mesh meshOf(const HeightField& field, const Scene& scene) {
     return mesh;
 }
 
-Earthwork earthworkOf(const HeightField& field, const Scene& scene) {
+Earthwork earthworkOf(const sand::HeightField& field, const Scene& scene) {
     wantSameCells(field, scene);
     Earthwork work;
     for (int row = 0; row < field.rows(); ++row) {
@@ -105,4 +105,4 @@ Earthwork earthworkOf(const HeightField& field, const Scene& scene) {
     return work;
 }
 
-}  // namespace sand
+}  // namespace scene

@@ -5,16 +5,17 @@
 
 #include "sand/tin/geometry/surface_view.hpp"
 
-namespace sand {
+namespace scene {
 
-HeightField sampled(const Replica& terrain, const tin::Holes* holes) {
-    HeightField field(terrain.rules().columns, terrain.rules().rows, terrain.cellSize());
+sand::HeightField sampled(const sand::Replica& terrain, const sand::tin::Holes* holes) {
+    sand::HeightField field(terrain.rules().columns, terrain.rules().rows, terrain.cellSize());
     for (int row = 0; row < field.rows(); ++row) {
         for (int column = 0; column < field.columns(); ++column) {
             if (holes != nullptr && holes->isHole(column, row)) {
                 continue;
             }
-            const double height = terrain.surface().height((column + 0.5) * kProbePerCell, (row + 0.5) * kProbePerCell);
+            const double height =
+                terrain.surface().height((column + 0.5) * sand::kProbePerCell, (row + 0.5) * sand::kProbePerCell);
             field.setHeight(column, row, static_cast<std::int32_t>(std::floor(height + 0.5)));
         }
     }
@@ -23,11 +24,11 @@ HeightField sampled(const Replica& terrain, const tin::Holes* holes) {
 
 Scene sampledScene(const Scene& scene) {
     Scene result = scene;
-    const tin::Holes* holes = scene.tin->holes.get();
-    result.terrain = sampled(Replica(scene), holes);
+    const sand::tin::Holes* holes = scene.tin->holes.get();
+    result.terrain = sampled(sand::Replica(scene), holes);
     if (holes != nullptr) {
-        auto ground = std::make_shared<Ground>(scene.rules.columns, scene.rules.rows);
-        for (const tin::Holes::Run& run : holes->runs()) {
+        auto ground = std::make_shared<sand::Ground>(scene.rules.columns, scene.rules.rows);
+        for (const sand::tin::Holes::Run& run : holes->runs()) {
             for (int column = run.first; column < run.end; ++column) {
                 ground->setWall(column, run.row);
             }
@@ -37,13 +38,13 @@ Scene sampledScene(const Scene& scene) {
     return result;
 }
 
-Mesh meshOf(const tin::SurfaceView& tin, const Scene& scene) {
+Mesh meshOf(const sand::tin::SurfaceView& tin, const Scene& scene) {
     const Georeference& reference = scene.georeference;
-    const double length = scene.terrain.cellSize() / kProbePerCell * reference.lengthPerUnit;
+    const double length = scene.terrain.cellSize() / sand::kProbePerCell * reference.lengthPerUnit;
     Mesh mesh;
     std::vector<std::uint32_t> numbers(tin.triangles.places.size(), 0);
     std::vector<bool> onGround(numbers.size(), false);
-    for (const tin::Triangle& triangle : tin.triangles.triangles) {
+    for (const sand::tin::Triangle& triangle : tin.triangles.triangles) {
         for (std::size_t corner = 0; corner < 3 && triangle.isGround(); ++corner) {
             onGround[static_cast<std::size_t>(triangle.corner[corner])] = true;
         }
@@ -51,13 +52,13 @@ Mesh meshOf(const tin::SurfaceView& tin, const Scene& scene) {
     for (std::size_t i = 0; i < tin.triangles.places.size(); ++i) {
         if (onGround[i]) {
             numbers[i] = static_cast<std::uint32_t>(mesh.vertices.size());
-            const tin::Place place = tin.triangles.places[i];
+            const sand::tin::Place place = tin.triangles.places[i];
             mesh.vertices.push_back(
                 {reference.west + place.x * length, reference.south + place.y * length,
                  (tin.heights[i] * scene.terrain.unit() + reference.datum) * reference.heightPerUnit});
         }
     }
-    for (const tin::Triangle& triangle : tin.triangles.triangles) {
+    for (const sand::tin::Triangle& triangle : tin.triangles.triangles) {
         if (triangle.isGround()) {
             const auto number = [&](std::size_t corner) {
                 return numbers[static_cast<std::size_t>(triangle.corner[corner])];
@@ -68,4 +69,4 @@ Mesh meshOf(const tin::SurfaceView& tin, const Scene& scene) {
     return mesh;
 }
 
-}  // namespace sand
+}  // namespace scene

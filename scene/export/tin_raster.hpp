@@ -5,16 +5,16 @@
 #include "scene/import/mesh_file.hpp"
 #include "scene/scene.hpp"
 
-namespace sand {
+namespace scene {
 
 /// A TIN's surface at the middles of its nominal cells, rounded to whole units; 0 in its holes, which may be null.
-[[nodiscard]] HeightField sampled(const Replica& terrain, const tin::Holes* holes);
+[[nodiscard]] sand::HeightField sampled(const sand::Replica& terrain, const sand::tin::Holes* holes);
 
 /// The scene of a TIN with the heights it starts with as a field of nominal cells, for whoever compares rasters: holes
 /// are walls of its ground.
 [[nodiscard]] Scene sampledScene(const Scene& scene);
 
 /// A TIN's own triangles, without its holes, in the units of the scene's source.
-[[nodiscard]] Mesh meshOf(const tin::SurfaceView& tin, const Scene& scene);
+[[nodiscard]] Mesh meshOf(const sand::tin::SurfaceView& tin, const Scene& scene);
 
-}  // namespace sand
+}  // namespace scene

@@ -18,7 +18,7 @@
 #include "host/whole_file.hpp"
 #include "sand/model/height_field.hpp"
 
-namespace sand {
+namespace scene {
 namespace {
 
 /// The words of a text, each with its line.
@@ -70,8 +70,8 @@ private:
 
 int sideOf(Words& words, const std::string& key) {
     const double side = words.number(key);
-    if (side != std::floor(side) || side < 1 || side > kMaxSide) {
-        words.fail(fmt::format("{} must be a whole number within [1, {}], got {}", key, kMaxSide, side));
+    if (side != std::floor(side) || side < 1 || side > sand::kMaxSide) {
+        words.fail(fmt::format("{} must be a whole number within [1, {}], got {}", key, sand::kMaxSide, side));
     }
     return static_cast<int>(side);
 }
@@ -185,8 +185,8 @@ void EsriGrid::fail(int column, int rowFromSouth, const std::string& message) co
     throw base::InputError(file, line, fmt::format("column {} of this row: {}", column + 1, message));
 }
 
-Rect cellsWithData(const EsriGrid& grid) {
-    Rect filled{grid.columns, grid.rows, 0, 0};
+sand::CellRect cellsWithData(const EsriGrid& grid) {
+    sand::CellRect filled{grid.columns, grid.rows, 0, 0};
     for (int row = 0; row < grid.rows; ++row) {
         for (int column = 0; column < grid.columns; ++column) {
             if (!grid.isNoData(column, row)) {
@@ -195,11 +195,11 @@ Rect cellsWithData(const EsriGrid& grid) {
             }
         }
     }
-    return filled.empty() ? Rect{} : filled;
+    return filled.empty() ? sand::CellRect{} : filled;
 }
 
 EsriGrid withoutEmptyEdges(const EsriGrid& grid) {
-    const Rect filled = cellsWithData(grid);
+    const sand::CellRect filled = cellsWithData(grid);
     if (filled.empty()) {
         throw base::InputError(grid.file + ": every cell is a no-data cell; there is no terrain in it");
     }
@@ -249,4 +249,4 @@ double withFewDecimals(double height, double unit) {
     return std::isfinite(shifted) ? shifted / power : height;
 }
 
-}  // namespace sand
+}  // namespace scene

@@ -10,7 +10,7 @@
 #include "sand/model/cell_array.hpp"
 #include "scene/georeference.hpp"
 
-namespace sand {
+namespace scene {
 
 /// A raster as ESRI ASCII grids hold it: rows from the north, cells that may have no data. Those that come from other
 /// formats say more of their units (scene/import/importer.hpp).
@@ -48,7 +48,7 @@ struct EsriGrid {
 [[nodiscard]] EsriGrid readEsriGrid(const std::filesystem::path& file);
 
 /// The smallest rectangle, from the south-west cell, that holds every cell with data; empty when there is none.
-[[nodiscard]] Rect cellsWithData(const EsriGrid& grid);
+[[nodiscard]] sand::CellRect cellsWithData(const EsriGrid& grid);
 
 /// Less the rows and columns at the edges that hold no data at all, which exporters leave around a rotated or resampled
 /// raster. Throws base::InputError when there is no data anywhere.
@@ -61,4 +61,4 @@ void writeEsriGrid(const EsriGrid& grid, const std::filesystem::path& file);
 /// A height with as few decimals as tell it from those a `unit` away: within a hundredth of a unit.
 [[nodiscard]] double withFewDecimals(double height, double unit);
 
-}  // namespace sand
+}  // namespace scene

@@ -2,7 +2,7 @@
 #include "host/module.hpp"
 #include "scene/import/importer.hpp"
 
-namespace sand {
+namespace scene {
 namespace {
 
 const Importer& load(const std::string& what) {
@@ -21,4 +21,4 @@ const Importer& loadImporter(const std::string& what) {
     return importer;
 }
 
-}  // namespace sand
+}  // namespace scene

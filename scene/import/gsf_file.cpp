@@ -18,7 +18,7 @@
 #include "base/text.hpp"
 #include "sand/model/height_field.hpp"
 
-namespace sand {
+namespace scene {
 namespace {
 
 constexpr std::string_view kMagic = "Gwyddion Simple Field 1.0\n";
@@ -60,8 +60,9 @@ public:
             throw base::InputError(fmt::format("{}: its header says no {}", file_, name));
         }
         const double side = number(name, *entry);
-        if (side != std::floor(side) || side < 1 || side > kMaxSide) {
-            fail(*entry, fmt::format("{} must be a whole number within [1, {}], got {}", name, kMaxSide, entry->value));
+        if (side != std::floor(side) || side < 1 || side > sand::kMaxSide) {
+            fail(*entry,
+                 fmt::format("{} must be a whole number within [1, {}], got {}", name, sand::kMaxSide, entry->value));
         }
         return static_cast<int>(side);
     }
@@ -159,4 +160,4 @@ EsriGrid readGsf(const std::filesystem::path& file) {
     return grid;
 }
 
-}  // namespace sand
+}  // namespace scene

@@ -5,7 +5,7 @@
 
 #include "scene/import/esri_grid.hpp"
 
-namespace sand {
+namespace scene {
 
 /// Reads a Gwyddion Simple Field 1.0: a scan of heights in metres, lengths in metres. Not a number is no data.
 ///
@@ -14,4 +14,4 @@ namespace sand {
 /// header that is none, numbers missing or too many, infinite heights, values that are not metres.
 [[nodiscard]] EsriGrid readGsf(const std::filesystem::path& file);
 
-}  // namespace sand
+}  // namespace scene

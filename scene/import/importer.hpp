@@ -7,7 +7,7 @@
 #include "base/byte_stream.hpp"
 #include "scene/import/esri_grid.hpp"
 
-namespace sand {
+namespace scene {
 
 /// z = f(x, y) as text, over a rectangle that is cut into cells.
 struct Function {
@@ -61,4 +61,4 @@ using GetImporter = const Importer*();
 /// muParser. Throws base::InputError that begins with `what`, for which it is needed, when it is missing.
 [[nodiscard]] const Importer& loadImporter(const std::string& what);
 
-}  // namespace sand
+}  // namespace scene

@@ -11,7 +11,7 @@
 #include "base/text.hpp"
 #include "host/whole_file.hpp"
 
-namespace sand {
+namespace scene {
 namespace {
 
 constexpr std::size_t kReadPiece = 1 << 20;  // [byte], about: what is written at once
@@ -89,4 +89,4 @@ void writeMesh(const Mesh& mesh, const std::filesystem::path& file) {
     whole.keep();
 }
 
-}  // namespace sand
+}  // namespace scene

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace sand {
+namespace scene {
 
 /// Triangles over points, counter-clockwise from above.
 struct Mesh {
@@ -25,4 +25,4 @@ void writeMesh(const Mesh& mesh, const std::filesystem::path& file);
 /// Throws base::InputError unless it does: asked before long work.
 void checkMeshName(const std::filesystem::path& file);
 
-}  // namespace sand
+}  // namespace scene

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace sand {
+namespace scene {
 
 /// The EPSG code of a system that has metres there: the UTM zone, or around a pole a stereographic one. 3857, which has
 /// them everywhere and badly, for what is no place.
@@ -20,4 +20,4 @@ namespace sand {
     return (latitude < 0 ? 32700 : 32600) + std::clamp(static_cast<int>(fromDateLine / 6) + 1, 1, 60);
 }
 
-}  // namespace sand
+}  // namespace scene

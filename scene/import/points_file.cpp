@@ -17,7 +17,7 @@
 #include "base/text.hpp"
 #include "scene/import/metric_system.hpp"
 
-namespace sand {
+namespace scene {
 namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8, as spreadsheets write it
@@ -244,4 +244,4 @@ Points readPoints(const std::filesystem::path& file) {
     return points;
 }
 
-}  // namespace sand
+}  // namespace scene

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace sand {
+namespace scene {
 
 /// Points [x, y, z] of a survey, in the order of the file, no place twice [file's length unit].
 using Points = std::vector<std::array<double, 3>>;
@@ -20,4 +20,4 @@ using Points = std::vector<std::array<double, 3>>;
 
 inline constexpr std::size_t kMostPoints = 50'000'000;  // 2.4 GB while they are read
 
-}  // namespace sand
+}  // namespace scene

@@ -8,7 +8,7 @@
 #include "host/whole_file.hpp"
 #include "scene/import/importer.hpp"
 
-namespace sand {
+namespace scene {
 namespace {
 
 namespace fs = std::filesystem;
@@ -74,4 +74,4 @@ void writeRaster(const EsriGrid& grid, const fs::path& file) {
     }
 }
 
-}  // namespace sand
+}  // namespace scene

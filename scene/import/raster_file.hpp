@@ -5,7 +5,7 @@
 
 #include "scene/import/esri_grid.hpp"
 
-namespace sand {
+namespace scene {
 
 /// Whether the name asks for a GeoTIFF: .tif or .tiff.
 [[nodiscard]] bool namesGeoTiff(const std::filesystem::path& file);
@@ -24,4 +24,4 @@ void checkRasterName(const std::filesystem::path& file);
 /// there is replaced when all is written. Throws base::InputError.
 void writeRaster(const EsriGrid& grid, const std::filesystem::path& file);
 
-}  // namespace sand
+}  // namespace scene

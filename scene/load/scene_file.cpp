@@ -13,15 +13,15 @@
 #include "scene/load/tin_table.hpp"
 #include "scene/material.hpp"
 
-namespace sand {
+namespace scene {
 namespace {
 
 constexpr int kTooCoarse = 4096;  // [unit]: below, rest slopes come out more than a percent too steep
 
-Scheme schemeIn(const host::TomlTable& material) {
-    std::vector<std::string_view> names(kSchemes.size());
-    std::ranges::transform(kSchemes, names.begin(), &NamedScheme::name);
-    return kSchemes.at(static_cast<std::size_t>(material.choiceOr("scheme", names, 0))).scheme;
+sand::Scheme schemeIn(const host::TomlTable& material) {
+    std::vector<std::string_view> names(sand::kSchemes.size());
+    std::ranges::transform(sand::kSchemes, names.begin(), &sand::NamedScheme::name);
+    return sand::kSchemes.at(static_cast<std::size_t>(material.choiceOr("scheme", names, 0))).scheme;
 }
 
 void readMaterial(const host::TomlTable& file, Scene& scene) {
@@ -37,7 +37,7 @@ void readMaterial(const host::TomlTable& file, Scene& scene) {
         }
     }
     scene.rules.scheme = schemeIn(table);
-    if (scene.tin != nullptr && scene.rules.scheme != Scheme::isotropic) {
+    if (scene.tin != nullptr && scene.rules.scheme != sand::Scheme::isotropic) {
         table.fail("scheme", fmt::format("a TIN has no scheme \"{}\", only \"g\"; leave out 'scheme', or [tin]",
                                          table.text("scheme")));
     }
@@ -55,15 +55,15 @@ void readMaterial(const host::TomlTable& file, Scene& scene) {
 
 std::vector<std::string_view> toolNames() {
     std::vector<std::string_view> names;
-    names.reserve(kToolKinds);
-    for (int kind = 0; kind < kToolKinds; ++kind) {
-        names.push_back(toolName(static_cast<ToolKind>(kind)));
+    names.reserve(sand::kToolKinds);
+    for (int kind = 0; kind < sand::kToolKinds; ++kind) {
+        names.push_back(sand::toolName(static_cast<sand::ToolKind>(kind)));
     }
     return names;
 }
 
 void readShape(const host::TomlTable& tool, Material& material) {
-    material.toolKind = static_cast<ToolKind>(tool.choiceOr("shape", toolNames(), 0));
+    material.toolKind = static_cast<sand::ToolKind>(tool.choiceOr("shape", toolNames(), 0));
     if (const double width = tool.numberOr("width", 1, {kNarrowestTool, 1}); tool.has("width")) {
         material.toolWidth = width;
     }
@@ -97,21 +97,21 @@ void readTool(const host::TomlTable& file, Scene& scene) {
 }
 
 void readForce(const host::TomlTable& file, Scene& scene) {
-    ForceConstants& force = scene.force;
+    sand::ForceConstants& force = scene.force;
     force.unitLength = std::max(scene.rules.columns, scene.rules.rows) * scene.terrain.cellSize();
     const std::optional<host::TomlTable> table = file.table("force");
     if (!table) {
         return;
     }
-    for (const ForceKey& key : forceKeys()) {
+    for (const sand::ForceKey& key : sand::forceKeys()) {
         force.*key.constant = table->numberOr(key.name, force.*key.constant, {key.lowest, key.highest});
     }
-    force.law = static_cast<ForceLaw>(table->choiceOr("law", {"repulse", "control_points"}, 0));
-    force.between = static_cast<Between>(table->choiceOr("between", {"local", "hold", "interpolate"}, 0));
+    force.law = static_cast<sand::ForceLaw>(table->choiceOr("law", {"repulse", "control_points"}, 0));
+    force.between = static_cast<sand::Between>(table->choiceOr("between", {"local", "hold", "interpolate"}, 0));
     force.literal = table->flagOr("literal", false);
-    force.frictionDirection =
-        static_cast<FrictionDirection>(table->choiceOr("friction_direction", {"tangential", "full", "vertical"}, 0));
-    if (!force.literal && force.frictionDirection != FrictionDirection::tangential) {
+    force.frictionDirection = static_cast<sand::FrictionDirection>(
+        table->choiceOr("friction_direction", {"tangential", "full", "vertical"}, 0));
+    if (!force.literal && force.frictionDirection != sand::FrictionDirection::tangential) {
         table->fail("friction_direction",
                     "friction_direction other than tangential is for comparison: set literal = true beside it");
     }
@@ -154,7 +154,7 @@ Scene loadScene(const std::filesystem::path& file, const FieldCheck& check) {
         toml.fail("name", "name must be one line of plain text");
     }
     scene.rules.stepsPerSecond = toml.integerOr("steps_per_second", 60, 1, 1000);
-    scene.rules.rim = static_cast<Rim>(toml.choiceOr("rim", {"closed", "open"}, 0));
+    scene.rules.rim = static_cast<sand::Rim>(toml.choiceOr("rim", {"closed", "open"}, 0));
     const bool settle = readTerrain(toml, scene, check);
     readTin(toml, scene);
     readTool(toml, scene);
@@ -164,11 +164,11 @@ Scene loadScene(const std::filesystem::path& file, const FieldCheck& check) {
     readLook(toml, scene);
     toml.finish();
     if (settle) {
-        Replica terrain(scene);
-        terrain.apply({.epoch = 1, .number = 1, .engaged = false, .path = {}, .edit = Edit::settle});
+        sand::Replica terrain(scene);
+        terrain.apply({.epoch = 1, .number = 1, .engaged = false, .path = {}, .edit = sand::Edit::settle});
         startFrom(terrain, scene);
     }
     return scene;
 }
 
-}  // namespace sand
+}  // namespace scene

@@ -6,7 +6,7 @@
 
 #include "scene/scene.hpp"
 
-namespace sand {
+namespace scene {
 
 /// Looks at the size of a height field before its heights are made, and throws if there is no room for it. `tin`: a TIN
 /// is made of it, and these are its nominal cells.
@@ -16,4 +16,4 @@ using FieldCheck = std::function<void(int columns, int rows, bool tin)>;
 /// `check` is called once, unless the terrain is points, of which no field is made.
 [[nodiscard]] Scene loadScene(const std::filesystem::path& file, const FieldCheck& check = {});
 
-}  // namespace sand
+}  // namespace scene

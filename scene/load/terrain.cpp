@@ -11,13 +11,13 @@
 #include "scene/load/terrain_source.hpp"
 #include "scene/load/tin_table.hpp"
 
-namespace sand {
+namespace scene {
 namespace {
 
-HeightField levelField(const host::TomlTable& file, const FieldCheck& check) {
+sand::HeightField levelField(const host::TomlTable& file, const FieldCheck& check) {
     const host::TomlTable field = file.requiredTable("field");
-    const int columns = field.integerOr("columns", 512, 1, kMaxSide);
-    const int rows = field.integerOr("rows", columns, 1, kMaxSide);
+    const int columns = field.integerOr("columns", 512, 1, sand::kMaxSide);
+    const int rows = field.integerOr("rows", columns, 1, sand::kMaxSide);
     const double width = field.numberOr("width", 2.0, host::kPositive);  // the paper's (-1, 1)
     field.finish();
     if (check) {
@@ -28,17 +28,17 @@ HeightField levelField(const host::TomlTable& file, const FieldCheck& check) {
 
 std::int32_t heightUnits(const host::TomlTable& terrain, const std::string& key, double height, double unit) {
     const double units = std::floor(height / unit + 0.5);
-    if (!(std::abs(units) <= kMaxHeight)) {
+    if (!(std::abs(units) <= sand::kMaxHeight)) {
         terrain.fail(key, fmt::format("a height of {} is beyond the range of ±{} (4096 cells); set 'datum'", height,
-                                      kMaxHeight * unit));
+                                      sand::kMaxHeight * unit));
     }
     return static_cast<std::int32_t>(units);
 }
 
 /// The ground of a scene that turns out to need one.
-Ground& groundOf(std::shared_ptr<Ground>& ground, const HeightField& field) {
+sand::Ground& groundOf(std::shared_ptr<sand::Ground>& ground, const sand::HeightField& field) {
     if (ground == nullptr) {
-        ground = std::make_shared<Ground>(field.columns(), field.rows());
+        ground = std::make_shared<sand::Ground>(field.columns(), field.rows());
     }
     return *ground;
 }
@@ -51,15 +51,15 @@ void checkCells(const host::TomlTable& terrain, const EsriGrid& raster) {
         terrain.fail("file", fmt::format("{} has cells of {} x {}; a scene's are square{}", raster.file,
                                          raster.cellSize, *raster.cellDepth, advice));
     }
-    if (raster.columns > kMaxSide || raster.rows > kMaxSide) {
+    if (raster.columns > sand::kMaxSide || raster.rows > sand::kMaxSide) {
         terrain.fail("file", fmt::format("{} has {} x {} cells; a scene's are at most {} a side", raster.file,
-                                         raster.columns, raster.rows, kMaxSide));
+                                         raster.columns, raster.rows, sand::kMaxSide));
     }
 }
 
 /// Cells without data become walls, drawn as flats at the lowest height there is.
-HeightField fromSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind, Scene& scene,
-                       std::shared_ptr<Ground>& ground, const FieldCheck& check) {
+sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind, Scene& scene,
+                             std::shared_ptr<sand::Ground>& ground, const FieldCheck& check) {
     const TerrainSource source = readSource(file, terrain, kind, check);
     if (!source.points.empty()) {
         if (!file.has("tin")) {
@@ -77,8 +77,8 @@ HeightField fromSource(const host::TomlTable& file, const host::TomlTable& terra
     if (check && !file.has("field")) {
         check(grid.columns, grid.rows, file.has("tin"));
     }
-    HeightField field(grid.columns, grid.rows, grid.cellSize);
-    std::int32_t lowest = kMaxHeight;
+    sand::HeightField field(grid.columns, grid.rows, grid.cellSize);
+    std::int32_t lowest = sand::kMaxHeight;
     const auto forEachCell = [&](auto&& visit) {
         for (int row = 0; row < grid.rows; ++row) {
             for (int column = 0; column < grid.columns; ++column) {
@@ -103,30 +103,30 @@ HeightField fromSource(const host::TomlTable& file, const host::TomlTable& terra
     return field;
 }
 
-HeightField madeUp(const host::TomlTable& file, const host::TomlTable& terrain, bool withDunes,
-                   const FieldCheck& check) {
-    HeightField field = levelField(file, check);
+sand::HeightField madeUp(const host::TomlTable& file, const host::TomlTable& terrain, bool withDunes,
+                         const FieldCheck& check) {
+    sand::HeightField field = levelField(file, check);
     const double bed = terrain.numberOr("height", 0);
     const std::int32_t units = heightUnits(terrain, "height", bed, field.unit());
     for (int row = 0; row < field.rows(); ++row) {
         std::fill_n(field.row(row), field.columns(), units);
     }
     if (withDunes) {
-        Dunes dunes;
+        sand::grid::Dunes dunes;
         dunes.bed = bed;
         dunes.height = terrain.numberOr("dune_height", dunes.height, {0, 1e9});
         dunes.length = terrain.numberOr("dune_length", dunes.length, host::kPositive);
         dunes.seed = static_cast<std::uint32_t>(terrain.integerOr("seed", 1, 0, 1 << 30));
         heightUnits(terrain, "dune_height", bed + dunes.height, field.unit());
-        makeDunes(dunes, field);
+        sand::grid::makeDunes(dunes, field);
     }
     return field;
 }
 
 /// Puts rock at `heightOf(column, row)` [unit] under every cell that is no wall.
 template <class HeightOf>
-void layRock(const host::TomlTable& terrain, const std::string& key, const HeightField& field, Ground& ground,
-             HeightOf heightOf) {
+void layRock(const host::TomlTable& terrain, const std::string& key, const sand::HeightField& field,
+             sand::Ground& ground, HeightOf heightOf) {
     for (int row = 0; row < field.rows(); ++row) {
         for (int column = 0; column < field.columns(); ++column) {
             if (ground.isWall(column, row)) {
@@ -144,14 +144,15 @@ void layRock(const host::TomlTable& terrain, const std::string& key, const Heigh
     }
 }
 
-void readBedrock(const host::TomlTable& terrain, const HeightField& field, std::shared_ptr<Ground>& ground) {
+void readBedrock(const host::TomlTable& terrain, const sand::HeightField& field,
+                 std::shared_ptr<sand::Ground>& ground) {
     if (terrain.has("layer") && terrain.has("bedrock")) {
         terrain.fail("bedrock", "give 'layer' or 'bedrock', not both: either says where the rock lies");
     }
     if (terrain.has("layer")) {
         const std::int32_t layer = heightUnits(terrain, "layer", terrain.number("layer", {0, 1e9}), field.unit());
         layRock(terrain, "layer", field, groundOf(ground, field),
-                [&](int column, int row) { return std::max(field.height(column, row) - layer, -kMaxHeight); });
+                [&](int column, int row) { return std::max(field.height(column, row) - layer, -sand::kMaxHeight); });
     }
     if (terrain.has("bedrock")) {
         const EsriGrid rock = readRaster(terrain.folder() / terrain.text("bedrock"));
@@ -181,7 +182,7 @@ bool readTerrain(const host::TomlTable& file, Scene& scene, const FieldCheck& ch
     std::vector<std::string_view> kinds{"flat", "dunes"};
     kinds.insert(kinds.end(), sourceKinds().begin(), sourceKinds().end());
     const int kind = terrain.choiceOr("kind", kinds, 0);
-    std::shared_ptr<Ground> ground;
+    std::shared_ptr<sand::Ground> ground;
     scene.terrain =
         kind < 2 ? madeUp(file, terrain, kind == 1, check) : fromSource(file, terrain, kind - 2, scene, ground, check);
     readBedrock(terrain, scene.terrain, ground);
@@ -196,4 +197,4 @@ bool readTerrain(const host::TomlTable& file, Scene& scene, const FieldCheck& ch
     return settle;
 }
 
-}  // namespace sand
+}  // namespace scene

@@ -5,7 +5,7 @@
 #include "host/toml_table.hpp"
 #include "scene/load/scene_file.hpp"
 
-namespace sand {
+namespace scene {
 
 /// Reads [field] and [terrain] of a scene file: heights, rock, walls, and what the rules say of them. Throws
 /// base::InputError with file, line and key; a DEM's errors name the DEM's line. Returns whether the sand shall come
@@ -13,4 +13,4 @@ namespace sand {
 /// function are computed.
 [[nodiscard]] bool readTerrain(const host::TomlTable& file, Scene& scene, const FieldCheck& check);
 
-}  // namespace sand
+}  // namespace scene

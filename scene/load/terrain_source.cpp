@@ -12,7 +12,7 @@
 #include "scene/import/gsf_file.hpp"
 #include "scene/import/importer.hpp"
 
-namespace sand {
+namespace scene {
 namespace {
 
 std::filesystem::path fileOf(const host::TomlTable& terrain) { return terrain.folder() / terrain.text("file"); }
@@ -61,17 +61,17 @@ EsriGrid readFunction(const host::TomlTable& file, const host::TomlTable& terrai
     if (field.has("width")) {
         field.fail("width", "a function's width is that of its x");
     }
-    function.columns = field.integerOr("columns", 512, 1, kMaxSide);
+    function.columns = field.integerOr("columns", 512, 1, sand::kMaxSide);
     const double cell = (function.east - function.west) / function.columns;
     const double rows = (function.north - function.south) / cell;
     const double whole = std::floor(rows + 0.5);
-    if (!(whole >= 1 && whole <= kMaxSide) || std::abs(rows - whole) > 1e-6 * whole) {
+    if (!(whole >= 1 && whole <= sand::kMaxSide) || std::abs(rows - whole) > 1e-6 * whole) {
         terrain.fail("y", fmt::format("{} columns make cells of {:.6g}, and y is {:.6g} of them long; that must be a "
                                       "whole number within [1, {}]",
-                                      function.columns, cell, rows, kMaxSide));
+                                      function.columns, cell, rows, sand::kMaxSide));
     }
     function.rows = static_cast<int>(whole);
-    if (field.integerOr("rows", function.rows, 1, kMaxSide) != function.rows) {
+    if (field.integerOr("rows", function.rows, 1, sand::kMaxSide) != function.rows) {
         field.fail("rows",
                    fmt::format("{} columns of x make {} rows of y; leave rows out", function.columns, function.rows));
     }
@@ -159,4 +159,4 @@ TerrainSource readSource(const host::TomlTable& file, const host::TomlTable& ter
     return source;
 }
 
-}  // namespace sand
+}  // namespace scene

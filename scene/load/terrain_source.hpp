@@ -11,7 +11,7 @@
 #include "scene/import/points_file.hpp"
 #include "scene/load/scene_file.hpp"
 
-namespace sand {
+namespace scene {
 
 /// Heights from outside, as a scene names them: on a raster, or at points.
 struct TerrainSource {
@@ -33,4 +33,4 @@ struct TerrainSource {
 [[nodiscard]] TerrainSource readSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind,
                                        const FieldCheck& check = {});
 
-}  // namespace sand
+}  // namespace scene

@@ -13,14 +13,14 @@
 #include "sand/tin/surface.hpp"
 #include "scene/load/tin_settings.hpp"
 
-namespace sand {
+namespace scene {
 namespace {
 
 constexpr int kUsualSide = 512;  // nominal cells, of points that nobody says more of
 
 /// Whether volumes of heights up to `highest` [unit] fit over this field.
 void requireRange(const host::TomlTable& file, double highest, int columns, int rows, double unit) {
-    const double most = tin::mostHeight(columns, rows);
+    const double most = sand::tin::mostHeight(columns, rows);
     if (highest > most) {
         file.fail("tin", fmt::format("heights of up to {} on {} x {} cells are more than a TIN's volumes can hold, {} "
                                      "is the most; set 'datum', or fewer cells",
@@ -28,11 +28,11 @@ void requireRange(const host::TomlTable& file, double highest, int columns, int 
     }
 }
 
-bool hasRock(const Ground& ground) {
-    const Grid& cells = ground.cells();
+bool hasRock(const sand::Ground& ground) {
+    const sand::CellArray& cells = ground.cells();
     for (int row = 0; row < cells.rows(); ++row) {
         const bool rock = std::any_of(cells.row(row), cells.row(row) + cells.columns(), [](std::int32_t bed) {
-            return bed != Ground::kBottomless && bed != Ground::kWall;
+            return bed != sand::Ground::kBottomless && bed != sand::Ground::kWall;
         });
         if (rock) {
             return true;
@@ -42,38 +42,38 @@ bool hasRock(const Ground& ground) {
 }
 
 /// Of points where they lie on the lattice, and the corners of their field, which the TIN has besides.
-std::size_t distinctPlaces(const tin::Start& start) {
-    std::vector<tin::Place> places = start.places;
+std::size_t distinctPlaces(const sand::tin::TinStart& start) {
+    std::vector<sand::tin::Place> places = start.places;
     places.insert(places.end(), {{0, 0}, {start.width, 0}, {start.width, start.depth}, {0, start.depth}});
     std::sort(places.begin(), places.end());
     return static_cast<std::size_t>(std::unique(places.begin(), places.end()) - places.begin());
 }
 
 /// Makes the TIN of points that are laid out already.
-tin::Start joined(const host::TomlTable& file, const host::TomlTable& tin, const Scene& scene) {
-    tin::Start start = *scene.tin;
+sand::tin::TinStart joined(const host::TomlTable& file, const host::TomlTable& tin, const Scene& scene) {
+    sand::tin::TinStart start = *scene.tin;
     const std::size_t places = distinctPlaces(start);
-    if (places > std::size_t{tin::kMostPlaces}) {
+    if (places > std::size_t{sand::tin::kMostPlaces}) {
         file.requiredTable("terrain").fail(
             "file", fmt::format("{} vertices with the field's corners are more than a TIN can have, {} are the most; "
                                 "thin out the points",
-                                places, tin::kMostPlaces));
+                                places, sand::tin::kMostPlaces));
     }
     (void)tin.numberOr("cell", 1);  // has been read
     start.settings = readTinSettings(tin, {scene.rules.columns, scene.rules.rows, scene.terrain.cellSize()}, places);
     tin.finish();
-    start = tin::join(start);
+    start = sand::tin::join(start);
     keepUsual(tin, start);
     return start;
 }
 
 /// Makes a TIN of the scene's height field.
-tin::Start followed(const host::TomlTable& tin, const Scene& scene) {
-    const HeightField& field = scene.terrain;
-    const tin::Settings settings = readTinSettings(tin, {field.columns(), field.rows(), field.cellSize()});
+sand::tin::TinStart followed(const host::TomlTable& tin, const Scene& scene) {
+    const sand::HeightField& field = scene.terrain;
+    const sand::tin::Settings settings = readTinSettings(tin, {field.columns(), field.rows(), field.cellSize()});
     tin.finish();
     try {
-        tin::Start start = tin::follow(field, scene.ground.get(), settings);
+        sand::tin::TinStart start = sand::tin::follow(field, scene.ground.get(), settings);
         keepUsual(tin, start);
         return start;
     } catch (const std::length_error& error) {
@@ -81,30 +81,33 @@ tin::Start followed(const host::TomlTable& tin, const Scene& scene) {
     }
 }
 
-void setTin(tin::Start start, Scene& scene) {
-    scene.tin = std::make_shared<const tin::Start>(std::move(start));
+void setTin(sand::tin::TinStart start, Scene& scene) {
+    scene.tin = std::make_shared<const sand::tin::TinStart>(std::move(start));
     scene.rules.tin = scene.tin->digest();
-    scene.terrain = HeightField(1, 1, scene.terrain.cellSize());
+    scene.terrain = sand::HeightField(1, 1, scene.terrain.cellSize());
 }
 
 /// Returns the largest distance of a point from the datum [unit], which may be beyond what a height can be.
-double putOnLattice(const Points& points, const Georeference& origin, const HeightField& cell, tin::Start& start) {
+double putOnLattice(const Points& points, const Georeference& origin, const sand::HeightField& cell,
+                    sand::tin::TinStart& start) {
     const auto lattice = [&](double length, std::int32_t most) {
-        return std::min(static_cast<std::int32_t>(std::floor(length / cell.cellSize() * kProbePerCell + 0.5)), most);
+        return std::min(static_cast<std::int32_t>(std::floor(length / cell.cellSize() * sand::kProbePerCell + 0.5)),
+                        most);
     };
     double highest = 0;
     for (const auto& [x, y, z] : points) {
         const double units = std::floor((z - origin.datum) / cell.unit() + 0.5);
         highest = std::max(highest, std::abs(units));
         start.places.push_back({lattice(x - origin.west, start.width), lattice(y - origin.south, start.depth)});
-        start.heights.push_back(static_cast<std::int32_t>(std::clamp(units, double{-kMaxHeight}, double{kMaxHeight})));
+        start.heights.push_back(
+            static_cast<std::int32_t>(std::clamp(units, double{-sand::kMaxHeight}, double{sand::kMaxHeight})));
     }
     return highest;
 }
 
 /// Of points at one place of the lattice the first in the file is taken.
-void warnOfNearPoints(const std::string& file, const Points& points, const std::vector<tin::Place>& places, double step,
-                      Scene& scene) {
+void warnOfNearPoints(const std::string& file, const Points& points, const std::vector<sand::tin::Place>& places,
+                      double step, Scene& scene) {
     std::vector<std::size_t> order(points.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(),
@@ -129,8 +132,8 @@ void warnOfNearPoints(const std::string& file, const Points& points, const std::
 
 }  // namespace
 
-HeightField layOutPoints(const host::TomlTable& file, const host::TomlTable& terrain, const Points& points,
-                         Scene& scene) {
+sand::HeightField layOutPoints(const host::TomlTable& file, const host::TomlTable& terrain, const Points& points,
+                               Scene& scene) {
     double west = points[0][0], south = points[0][1], east = west, north = south;
     for (const auto& [x, y, z] : points) {
         west = std::min(west, x);
@@ -142,28 +145,29 @@ HeightField layOutPoints(const host::TomlTable& file, const host::TomlTable& ter
     if (!std::isnormal(longer * longer)) {
         terrain.fail("file", fmt::format("the points are {} long, which is no length of terrain", longer));
     }
-    const double cell = file.requiredTable("tin").numberOr("cell", longer / kUsualSide, {longer / kMaxSide, longer});
+    const double cell =
+        file.requiredTable("tin").numberOr("cell", longer / kUsualSide, {longer / sand::kMaxSide, longer});
     const auto cellsOf = [cell](double side) {
-        return std::clamp(static_cast<int>(std::ceil(side / cell)), 1, kMaxSide);
+        return std::clamp(static_cast<int>(std::ceil(side / cell)), 1, sand::kMaxSide);
     };
     scene.rules.columns = cellsOf(east - west);
     scene.rules.rows = cellsOf(north - south);
-    HeightField one(1, 1, cell);
+    sand::HeightField one(1, 1, cell);
     scene.georeference.west = west;
     scene.georeference.south = south;
     scene.georeference.datum = terrain.numberOr("datum", 0);
-    auto start = std::make_shared<tin::Start>();
-    start->width = scene.rules.columns * kProbePerCell;
-    start->depth = scene.rules.rows * kProbePerCell;
+    auto start = std::make_shared<sand::tin::TinStart>();
+    start->width = scene.rules.columns * sand::kProbePerCell;
+    start->depth = scene.rules.rows * sand::kProbePerCell;
     const double highest = putOnLattice(points, scene.georeference, one, *start);
-    if (highest > kMaxHeight) {
+    if (highest > sand::kMaxHeight) {
         terrain.fail("file",
                      fmt::format("a height of {} from 'datum' is beyond the range of ±{} (4096 cells); set 'datum'",
-                                 highest * one.unit(), kMaxHeight * one.unit()));
+                                 highest * one.unit(), sand::kMaxHeight * one.unit()));
     }
     requireRange(file, highest, scene.rules.columns, scene.rules.rows, one.unit());
-    warnOfNearPoints((terrain.folder() / terrain.text("file")).string(), points, start->places, cell / kProbePerCell,
-                     scene);
+    warnOfNearPoints((terrain.folder() / terrain.text("file")).string(), points, start->places,
+                     cell / sand::kProbePerCell, scene);
     scene.tin = start;
     return one;
 }
@@ -180,7 +184,7 @@ void readTin(const host::TomlTable& file, Scene& scene) {
         setTin(joined(file, *tin, scene), scene);
         return;
     }
-    const HeightField& field = scene.terrain;
+    const sand::HeightField& field = scene.terrain;
     std::int32_t highest = 0;
     for (int row = 0; row < field.rows(); ++row) {
         for (int column = 0; column < field.columns(); ++column) {
@@ -188,19 +192,19 @@ void readTin(const host::TomlTable& file, Scene& scene) {
         }
     }
     requireRange(file, highest, field.columns(), field.rows(), field.unit());
-    tin::Start start = followed(*tin, scene);
+    sand::tin::TinStart start = followed(*tin, scene);
     scene.ground = nullptr;  // its walls are the TIN's own
     scene.rules.ground = 0;
     setTin(std::move(start), scene);
 }
 
-void startFrom(const Replica& terrain, Scene& scene) {
+void startFrom(const sand::Replica& terrain, Scene& scene) {
     if (scene.tin != nullptr) {
-        const auto& surface = dynamic_cast<const tin::TinSurface&>(terrain.surface());
-        setTin(tin::startOf(surface.layer(), surface.start().settings), scene);
+        const auto& surface = dynamic_cast<const sand::tin::TinSurface&>(terrain.surface());
+        setTin(sand::tin::startOf(surface.layer(), surface.start().settings), scene);
     } else {
         scene.terrain = terrain.field();
     }
 }
 
-}  // namespace sand
+}  // namespace scene

@@ -7,19 +7,19 @@
 #include "scene/import/points_file.hpp"
 #include "scene/scene.hpp"
 
-namespace sand {
+namespace scene {
 
 /// Puts points on the lattice of nominal cells: scene.tin holds them, until readTin() makes a TIN of them, the
 /// rules know how many cells lie under them, and the georeference where they were. Returns one cell. Throws
 /// base::InputError.
-[[nodiscard]] HeightField layOutPoints(const host::TomlTable& file, const host::TomlTable& terrain,
-                                       const Points& points, Scene& scene);
+[[nodiscard]] sand::HeightField layOutPoints(const host::TomlTable& file, const host::TomlTable& terrain,
+                                             const Points& points, Scene& scene);
 
 /// Reads [tin] of a scene file: the scene's height field becomes a TIN. Does nothing without that table. Throws
 /// base::InputError with file, line and key.
 void readTin(const host::TomlTable& file, Scene& scene);
 
 /// The scene starts with the sand as it is there.
-void startFrom(const Replica& terrain, Scene& scene);
+void startFrom(const sand::Replica& terrain, Scene& scene);
 
-}  // namespace sand
+}  // namespace scene

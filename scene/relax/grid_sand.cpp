@@ -10,7 +10,7 @@
 
 #include "base/input_error.hpp"
 
-namespace sand::relax {
+namespace scene::relax {
 namespace {
 
 constexpr double kMostOblong = 1000;                // longer over shorter side of a cell
@@ -69,7 +69,7 @@ HeightScale scaleFor(const EsriGrid& surface, const Extremes& extremes) {
         odd.grid->fail(odd.column, odd.row,
                        fmt::format("a height of {} is out of range: heights may span at most {:.4g} (2^29 cells), and "
                                    "here they lie between {} and {}",
-                                   odd.height(), 2.0 * kMaxHeight * shorter, lowest, highest));
+                                   odd.height(), 2.0 * sand::kMaxHeight * shorter, lowest, highest));
     }
     return scale;
 }
@@ -85,7 +85,7 @@ double steepeningOfGrid(double threshold, double aspect) {
     return std::max(steepening(threshold, across), steepening(threshold * aspect, along));
 }
 
-void setTalus(const EsriGrid& surface, const Extremes& extremes, const Material& material, GridSand& sand) {
+void setTalus(const EsriGrid& surface, const Extremes& extremes, const TalusSettings& material, GridSand& sand) {
     const double aspect = surface.aspect();
     const double slope = std::tan(material.talusDegrees * std::numbers::pi / 180);
     const double threshold = std::min(std::floor(slope * surface.cellSize / sand.scale.unit + 0.5), kLargestThreshold);
@@ -97,7 +97,7 @@ void setTalus(const EsriGrid& surface, const Extremes& extremes, const Material&
                                           surface.file, material.talusDegrees, least, sand.scale.unit);
     // Coarse units come from heights that lie far apart, seldom from anything else.
     const std::string span =
-        sand.scale.bits == kHeightBits
+        sand.scale.bits == sand::kHeightBits
             ? ""
             : fmt::format("; heights from {} to {} span {:.4g} cells: if some are no terrain, make them no-data",
                           extremes.lowest.height(), extremes.highest.height(),
@@ -132,10 +132,10 @@ std::int32_t rockUnder(const EsriGrid& bedrock, const EsriGrid& surface, int col
 }
 
 void fill(const EsriGrid& surface, const EsriGrid* bedrock, GridSand& sand) {
-    const auto ground = [&]() -> Ground& {
+    const auto ground = [&]() -> sand::Ground& {
         return sand.ground ? *sand.ground : sand.ground.emplace(sand.field.columns(), sand.field.rows());
     };
-    sand.lowest = kMaxHeight;
+    sand.lowest = sand::kMaxHeight;
     for (int y = 0; y < sand.field.rows(); ++y) {
         for (int x = 0; x < sand.field.columns(); ++x) {
             const int column = sand.cells.x0 + x;
@@ -156,13 +156,13 @@ void fill(const EsriGrid& surface, const EsriGrid* bedrock, GridSand& sand) {
 
 }  // namespace
 
-GridSand toSand(const EsriGrid& surface, const EsriGrid* bedrock, const Material& material) {
+GridSand toSand(const EsriGrid& surface, const EsriGrid* bedrock, const TalusSettings& material) {
     const double aspect = surface.aspect();
     if (!(std::max(aspect, 1 / aspect) <= kMostOblong)) {
         throw base::InputError(fmt::format("{}: cells of {} x {} are too oblong; sides must be within 1 : {}",
                                            surface.file, surface.cellSize, *surface.cellDepth, kMostOblong));
     }
-    const Rect cells = cellsWithData(surface);
+    const sand::CellRect cells = cellsWithData(surface);
     if (cells.empty()) {
         throw base::InputError(surface.file + ": every cell is a no-data cell; there is no sand in it");
     }
@@ -179,17 +179,18 @@ GridSand toSand(const EsriGrid& surface, const EsriGrid* bedrock, const Material
     }
     const HeightScale scale = scaleFor(surface, extremes);
     // A field's unit is its cell over 2^16; only lengths in the scene would ask for the file's own cell.
-    GridSand sand{.cells = cells,
-                  .field = HeightField(cells.x1 - cells.x0, cells.y1 - cells.y0, scale.unit * kUnitsPerCell),
-                  .ground = std::nullopt,
-                  .rules = {},
-                  .scale = scale,
-                  .onBedrock = bedrock != nullptr,
-                  .lowest = 0,
-                  .warnings = {}};
+    GridSand sand{
+        .cells = cells,
+        .field = sand::HeightField(cells.x1 - cells.x0, cells.y1 - cells.y0, scale.unit * sand::kUnitsPerCell),
+        .ground = std::nullopt,
+        .rules = {},
+        .scale = scale,
+        .onBedrock = bedrock != nullptr,
+        .lowest = 0,
+        .warnings = {}};
     sand.rules.columns = sand.field.columns();
     sand.rules.rows = sand.field.rows();
-    sand.rules.aspect = static_cast<std::int32_t>(std::floor(aspect * kUnitsPerCell + 0.5));
+    sand.rules.aspect = static_cast<std::int32_t>(std::floor(aspect * sand::kUnitsPerCell + 0.5));
     sand.rules.scheme = material.scheme;
     setTalus(surface, extremes, material, sand);
     fill(surface, bedrock, sand);
@@ -226,4 +227,4 @@ EsriGrid GridSand::toGrid(const EsriGrid& before) const {
     return result;
 }
 
-}  // namespace sand::relax
+}  // namespace scene::relax

@@ -12,23 +12,23 @@
 #include "scene/relax/height_scale.hpp"
 #include "scene/scene.hpp"
 
-namespace sand::relax {
+namespace scene::relax {
 
 inline constexpr int kLeastThreshold = 4;  // [unit]: a coarser talus is no angle any more
 
-struct Material {
+struct TalusSettings {
     double talusDegrees = 0;  // [degree], in [0, 90)
     double band = 0;          // sand at rest starts to slide this share beyond the talus
-    Scheme scheme = Scheme::isotropic;
+    sand::Scheme scheme = sand::Scheme::isotropic;
 };
 
 /// A grid from a file, as sand: whole numbers, and what they stand for. Edges without any data are left out: the rim
 /// of the sand is where data ends.
 struct GridSand {
-    Rect cells;                    // of the grid: those that are in the field
-    HeightField field;             // walls lie at 0
-    std::optional<Ground> ground;  // only where there is bedrock or a cell without data, which is a wall
-    Rules rules;                   // rim closed
+    sand::CellRect cells;                // of the grid: those that are in the field
+    sand::HeightField field;             // walls lie at 0
+    std::optional<sand::Ground> ground;  // only where there is bedrock or a cell without data, which is a wall
+    sand::Rules rules;                   // rim closed
     HeightScale scale;
     bool onBedrock = false;
     std::int32_t lowest = 0;            // surface at the start [unit]: what volumes are counted from without bedrock
@@ -43,6 +43,6 @@ struct GridSand {
 
 /// Throws base::InputError with file, line, value and range: no data at all, cells more oblong than 1 to 1000, heights
 /// that do not fit, a talus of fewer than kLeastThreshold units, bedrock that does not match or lies above the surface.
-[[nodiscard]] GridSand toSand(const EsriGrid& surface, const EsriGrid* bedrock, const Material& material);
+[[nodiscard]] GridSand toSand(const EsriGrid& surface, const EsriGrid* bedrock, const TalusSettings& material);
 
-}  // namespace sand::relax
+}  // namespace scene::relax

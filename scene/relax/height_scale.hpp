@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace sand::relax {
+namespace scene::relax {
 
 /// Which whole numbers stand for a file's heights.
 ///
@@ -23,4 +23,4 @@ struct HeightScale {
     static HeightScale finest(double shorterSide, double lowest, double highest);
 };
 
-}  // namespace sand::relax
+}  // namespace scene::relax

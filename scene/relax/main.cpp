@@ -16,7 +16,7 @@
 
 namespace {
 
-using sand::relax::Options;
+using scene::relax::Options;
 
 template <class Number>
 void require(bool good, const char* option, const char* range, Number got) {
@@ -42,14 +42,14 @@ void check(const Options& options) {
                 *options.maxError);
     }
     if (options.vertices) {
-        require(*options.vertices >= 4 && *options.vertices <= sand::relax::kMostVertices, "--vertices",
+        require(*options.vertices >= 4 && *options.vertices <= scene::relax::kMostVertices, "--vertices",
                 "within [4, 4194304]", *options.vertices);
     }
 }
 
 /// Options that only a grid or only the TIN of a raster knows are refused elsewhere: they would do nothing.
 void checkKind(const Options& options, bool toMesh) {
-    const bool points = sand::relax::holdsPoints(options.in);
+    const bool points = scene::relax::holdsPoints(options.in);
     if (!toMesh) {
         require(!points, "OUT", "a mesh, .ply or .obj, where IN holds points", options.out);
         require(!options.maxError && !options.vertices, "--max-error and --vertices",
@@ -80,7 +80,7 @@ std::vector<std::string> schemes() {
 
 int run(const Options& options) {
     check(options);
-    const bool toMesh = sand::namesMesh(options.out);
+    const bool toMesh = scene::namesMesh(options.out);
     checkKind(options, toMesh);
     if (toMesh) {
         relaxTin(options);

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace sand::relax {
+namespace scene::relax {
 
 /// What sandwall-relax was asked for (docs/relax.md).
 struct Options {
@@ -22,4 +22,4 @@ struct Options {
 void relaxGrid(const Options& options);
 void relaxTin(const Options& options);
 
-}  // namespace sand::relax
+}  // namespace scene::relax

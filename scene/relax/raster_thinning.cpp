@@ -7,7 +7,7 @@
 #include "base/input_error.hpp"
 #include "scene/relax/tin_sand.hpp"
 
-namespace sand::relax {
+namespace scene::relax {
 namespace {
 
 constexpr double kMostOblongCell = 1000;      // longer over shorter side
@@ -16,7 +16,7 @@ constexpr double kMostLatticeSide = 4194304;  // 2^22: what a mesh takes
 constexpr std::int32_t kLeastSpacing = 4, kMostSpacing = 4096;
 
 /// Lattice steps on a cell's sides: a power of two on the shorter one.
-tin::Place spacingOf(const EsriGrid& raster) {
+sand::tin::Place spacingOf(const EsriGrid& raster) {
     const double ratio = std::max(raster.aspect(), 1 / raster.aspect());
     if (!(ratio <= kMostOblongCell)) {
         throw base::InputError(fmt::format("{}: cells of {} x {} are too oblong; sides must be within 1 : {}",
@@ -34,17 +34,17 @@ tin::Place spacingOf(const EsriGrid& raster) {
                                            raster.file, raster.columns, raster.rows));
     }
     const auto longer = static_cast<std::int32_t>(std::floor(shorter * ratio + 0.5));
-    return wide ? tin::Place{longer, shorter} : tin::Place{shorter, longer};
+    return wide ? sand::tin::Place{longer, shorter} : sand::tin::Place{shorter, longer};
 }
 
 }  // namespace
 
-Thinned thin(const EsriGrid& raster, const tin::SimplifyGoal& goal) {
+Thinned thin(const EsriGrid& raster, const sand::tin::SimplifyGoal& goal) {
     if (std::min(raster.columns, raster.rows) < 2) {
         throw base::InputError(fmt::format("{}: {} x {} cells with data have no area between their middles",
                                            raster.file, raster.columns, raster.rows));
     }
-    const tin::Place spacing = spacingOf(raster);
+    const sand::tin::Place spacing = spacingOf(raster);
     std::vector<double> heights;
     heights.reserve(raster.heights.size());
     for (int row = 0; row < raster.rows; ++row) {
@@ -59,22 +59,22 @@ Thinned thin(const EsriGrid& raster, const tin::SimplifyGoal& goal) {
         }
     }
     // From middle to middle: beyond, the ground would be a strip without any vertex but the corners, and a cliff.
-    const tin::Raster samples{heights, raster.columns, raster.rows, {0, 0}, spacing};
-    const tin::Cells cells{.columns = raster.columns,
-                           .rows = raster.rows,
-                           .first = {},
-                           .spacing = spacing,
-                           .width = spacing.x * (raster.columns - 1),
-                           .depth = spacing.y * (raster.rows - 1)};
-    const auto holes = tin::holesOf(heights, cells);
-    const tin::Border border = tin::borderOf(heights, cells, holes.get(), goal.maxError);
+    const sand::tin::Raster samples{heights, raster.columns, raster.rows, {0, 0}, spacing};
+    const sand::tin::Cells cells{.columns = raster.columns,
+                                 .rows = raster.rows,
+                                 .first = {},
+                                 .spacing = spacing,
+                                 .width = spacing.x * (raster.columns - 1),
+                                 .depth = spacing.y * (raster.rows - 1)};
+    const auto holes = sand::tin::holesOf(heights, cells);
+    const sand::tin::Border border = sand::tin::borderOf(heights, cells, holes.get(), goal.maxError);
     if (border.places.size() + 4 > static_cast<std::size_t>(goal.maxVertices)) {
         throw base::InputError(
             fmt::format("{}: the outline of its cells without data takes {} vertices, and {} are the "
                         "most; give more, or a larger --max-error",
                         raster.file, border.places.size() + 4, goal.maxVertices));
     }
-    const tin::Simplified chosen = tin::simplify(cells.width, cells.depth, samples, goal, border);
+    const sand::tin::Simplified chosen = sand::tin::simplify(cells.width, cells.depth, samples, goal, border);
     Thinned thinned{{}, raster.cellSize / spacing.x, chosen.maxError, chosen.rmsError, holes, border.edges};
     for (std::size_t i = 0; i < chosen.places.size(); ++i) {
         const double column = static_cast<double>(chosen.places[i].x) / spacing.x + 0.5;
@@ -86,4 +86,4 @@ Thinned thin(const EsriGrid& raster, const tin::SimplifyGoal& goal) {
     return thinned;
 }
 
-}  // namespace sand::relax
+}  // namespace scene::relax

@@ -17,15 +17,15 @@
 #include "scene/relax/steepness.hpp"
 #include "scene/relax/ticker.hpp"
 
-namespace sand::relax {
+namespace scene::relax {
 namespace {
 
 using nlohmann::ordered_json;
 
 /// The scheme of this name. settle ends with sweeps of the default.
-Scheme schemeOf(const std::string& name) {
-    const auto* const found = std::ranges::find(kSchemes, name, &NamedScheme::name);
-    return found != kSchemes.end() ? found->scheme : kSchemes.front().scheme;
+sand::Scheme schemeOf(const std::string& name) {
+    const auto* const found = std::ranges::find(sand::kSchemes, name, &sand::NamedScheme::name);
+    return found != sand::kSchemes.end() ? found->scheme : sand::kSchemes.front().scheme;
 }
 
 /// Says on stderr how far long work has come: what `after` was told last, every second.
@@ -34,13 +34,13 @@ public:
     explicit Progress(const GridSand& sand) : cells_(static_cast<double>(sand.field.columns()) * sand.field.rows()) {}
 
     /// Called after every sweep.
-    void after(Erosion& erosion) {
+    void after(sand::grid::Erosion& erosion) {
         if (Clock::now() - last_ < kReportEvery) {
             return;
         }
         last_ = Clock::now();
         double moving = 0;
-        for (const Rect& block : erosion.takeMoved()) {
+        for (const sand::CellRect& block : erosion.takeMoved()) {
             moving += static_cast<double>(block.x1 - block.x0) * (block.y1 - block.y0);
         }
         fmt::print(stderr, "{:.0f} s: {} sweeps; in the last second sand moved in {:.3g} % of the grid\n",
@@ -67,7 +67,7 @@ Timed relaxTimed(GridSand& sand, const Options& options) {
         .settle = settle,
         .mostSweeps = options.most.value_or(std::numeric_limits<std::int64_t>::max()),
         .executor = options.threads > 1 ? &executor : nullptr,
-        .afterSweep = [&](Erosion& erosion) { progress.after(erosion); },
+        .afterSweep = [&](sand::grid::Erosion& erosion) { progress.after(erosion); },
     };
     std::optional<Ticker> ticker;
     if (settle && !sand.ground) {
@@ -114,7 +114,7 @@ ordered_json report(const GridSand& sand, const EsriGrid& grid, const Options& o
     json["steepest_over_talus"] = steepest / sand.rules.threshold;
     json["steepest_deg"] = std::atan(steepest * sand.scale.unit / grid.cellSize) * 180 / std::numbers::pi;
     json["certificate"] = certificatePart(sand, timed.relaxed);
-    json["state_hash"] = fmt::format("{:016x}", StateHash(sand.field).update(sand.field));
+    json["state_hash"] = fmt::format("{:016x}", sand::grid::TileHash(sand.field).update(sand.field));
     return json;
 }
 
@@ -138,4 +138,4 @@ void relaxGrid(const Options& options) {
     fmt::print("{}\n", report(sand, grid, options, volumeBefore, timed).dump());
 }
 
-}  // namespace sand::relax
+}  // namespace scene::relax

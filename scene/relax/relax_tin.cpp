@@ -16,7 +16,7 @@
 #include "scene/relax/ticker.hpp"
 #include "scene/relax/tin_sand.hpp"
 
-namespace sand::relax {
+namespace scene::relax {
 namespace {
 
 struct Slid {
@@ -31,12 +31,12 @@ Slid slide(TinSand& sand, const Options& options) {
     const Clock::time_point start = Clock::now();
     Slid slid;
     if (options.scheme == "settle") {
-        const tin::Settled settled = tin::settle(sand.layer, sand.threshold, sand.startThreshold);
+        const sand::tin::Settled settled = sand::tin::settle(sand.layer, sand.threshold, sand.startThreshold);
         slid = {settled.sweeps, settled.iterations, settled.atRest, 0};
     } else {
         // In one call: between two of them sand that has come to rest would wait for the start threshold again.
-        tin::Erosion erosion(sand.layer, sand.threshold, sand.startThreshold);
-        std::vector<tin::Vertex> moved;
+        sand::tin::Erosion erosion(sand.layer, sand.threshold, sand.startThreshold);
+        std::vector<sand::tin::Vertex> moved;
         const std::int64_t most = options.most.value_or(std::numeric_limits<int>::max());
         slid.sweeps = erosion.settle(sand.layer, static_cast<int>(most), moved);
         slid.atRest = erosion.settled();
@@ -71,17 +71,17 @@ nlohmann::ordered_json reportOf(const TinSand& sand, const Options& options, con
     json["seconds"] = slid.seconds;
     // No number, and so null, for a level talus.
     json["steepest_over_talus"] = steepness.steepest / sand.threshold;
-    json["steepest_deg"] =
-        std::atan(steepness.steepest * sand.scale.unit / (sand.step * tin::kLatticePerCell)) * 180 / std::numbers::pi;
+    json["steepest_deg"] = std::atan(steepness.steepest * sand.scale.unit / (sand.step * sand::tin::kLatticePerCell)) *
+                           180 / std::numbers::pi;
     json["too_steep_area"] = steepness.tooSteepArea;
-    json["state_hash"] = fmt::format("{:016x}", tin::VertexHash(sand.layer).update({}));
+    json["state_hash"] = fmt::format("{:016x}", sand::tin::TileHash(sand.layer).update({}));
     return json;
 }
 
 }  // namespace
 
 void relaxTin(const Options& options) {
-    const Material material{options.talus, options.band};
+    const TalusSettings material{options.talus, options.band};
     std::optional<Thinned> thinned;
     if (!holdsPoints(options.in)) {
         thinned = thin(withoutEmptyEdges(readRaster(options.in, true)),
@@ -100,4 +100,4 @@ void relaxTin(const Options& options) {
     fmt::print("{}\n", reportOf(sand, options, thinned, volumeBefore, slid, mesh).dump());
 }
 
-}  // namespace sand::relax
+}  // namespace scene::relax

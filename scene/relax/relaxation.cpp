@@ -4,29 +4,29 @@
 #include "sand/grid/net_flux.hpp"
 #include "sand/grid/settle.hpp"
 
-namespace sand::relax {
+namespace scene::relax {
 namespace {
 
 Relaxed settleAll(GridSand& sand) {
-    const HeightField start = sand.field;
-    NetFlux flux(start.columns(), start.rows());
-    const Settled settled = settle(sand.field, sand.rules, &flux);
+    const sand::HeightField start = sand.field;
+    sand::grid::NetFlux flux(start.columns(), start.rows());
+    const sand::grid::Settled settled = sand::grid::settle(sand.field, sand.rules, &flux);
     return {.settled = true,
             .sweeps = settled.sweeps,
             .iterations = settled.iterations,
             .atRest = true,
-            .certificate = certify(start, sand.field, flux, sand.rules)};
+            .certificate = sand::grid::certify(start, sand.field, flux, sand.rules)};
 }
 
 Relaxed sweepAll(GridSand& sand, const Manner& manner) {
-    std::optional<HeightField> start;
-    std::optional<NetFlux> flux;
+    std::optional<sand::HeightField> start;
+    std::optional<sand::grid::NetFlux> flux;
     if (!sand.ground) {
         start = sand.field;
         flux.emplace(sand.field.columns(), sand.field.rows());
     }
-    Erosion erosion(sand.field, sand.rules,
-                    {.ground = sand.ground ? &*sand.ground : nullptr, .executor = manner.executor});
+    sand::grid::Erosion erosion(sand.field, sand.rules,
+                                {.ground = sand.ground ? &*sand.ground : nullptr, .executor = manner.executor});
     // One by one: a call for several sweeps begins with more inertia when they are few.
     while (!erosion.settled() && erosion.sweepsDone() < manner.mostSweeps) {
         erosion.sweep(sand.field, 1);
@@ -39,7 +39,7 @@ Relaxed sweepAll(GridSand& sand, const Manner& manner) {
     }
     Relaxed relaxed{.sweeps = erosion.sweepsDone(), .atRest = erosion.settled(), .certificate = std::nullopt};
     if (flux) {
-        relaxed.certificate = certify(*start, sand.field, *flux, sand.rules);
+        relaxed.certificate = sand::grid::certify(*start, sand.field, *flux, sand.rules);
     }
     return relaxed;
 }
@@ -50,4 +50,4 @@ Relaxed relax(GridSand& sand, const Manner& manner) {
     return manner.settle && !sand.ground ? settleAll(sand) : sweepAll(sand, manner);
 }
 
-}  // namespace sand::relax
+}  // namespace scene::relax

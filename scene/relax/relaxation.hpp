@@ -10,13 +10,13 @@
 #include "sand/grid/erosion.hpp"
 #include "scene/relax/grid_sand.hpp"
 
-namespace sand::relax {
+namespace scene::relax {
 
 struct Manner {
     bool settle = false;                                                 // by sand::settle() instead of sweep by sweep
     std::int64_t mostSweeps = std::numeric_limits<std::int64_t>::max();  // not of settle()
     const base::Executor* executor = nullptr;                            // not for settle()
-    std::function<void(Erosion&)> afterSweep{};                          // may be empty; not called by settle()
+    std::function<void(sand::grid::Erosion&)> afterSweep{};              // may be empty; not called by settle()
 };
 
 struct Relaxed {
@@ -24,10 +24,10 @@ struct Relaxed {
     std::int64_t sweeps = 0;
     int iterations = 0;  // of settle()
     bool atRest = false;
-    std::optional<Certificate> certificate;  // not with a ground, on which nobody knows the right pile
+    std::optional<sand::grid::Certificate> certificate;  // not with a ground, on which nobody knows the right pile
 };
 
 /// Lets the sand of a grid slide by its rules. The first n sweeps are the same however many follow.
 [[nodiscard]] Relaxed relax(GridSand& sand, const Manner& manner);
 
-}  // namespace sand::relax
+}  // namespace scene::relax

@@ -7,7 +7,7 @@
 
 #include "sand/grid/flux_limits.hpp"
 
-namespace sand::relax {
+namespace scene::relax {
 namespace {
 
 constexpr int kTile = 256;       // [cell]: what is copied at a time
@@ -16,7 +16,7 @@ constexpr int kLeastToFlow = 4;  // [unit]: a face gives at most a quarter of wh
 /// The slopes of the faces east and north of a tile's cells.
 class Tile {
 public:
-    Tile(const HeightField& field, const Ground& ground, const Rect& cells, double aspect)
+    Tile(const sand::HeightField& field, const sand::Ground& ground, const sand::CellRect& cells, double aspect)
         : field_(field), cells_(cells), aspect_(aspect), held_(field, cells, &ground, nullptr) {}
 
     [[nodiscard]] double steepest() const {
@@ -58,26 +58,26 @@ private:
     [[nodiscard]] double riseEast(int x, int y) const { return rise(x - 1, y, x, y) + rise(x, y, x + 1, y); }
     [[nodiscard]] double riseNorth(int x, int y) const { return rise(x, y - 1, x, y) + rise(x, y, x, y + 1); }
 
-    const HeightField& field_;
-    Rect cells_;
+    const sand::HeightField& field_;
+    sand::CellRect cells_;
     double aspect_;
-    HeldPatch held_;
+    sand::grid::FluxLimits held_;
 };
 
 }  // namespace
 
-double steepestFace(const HeightField& field, const Rules& rules, const Ground* ground) {
-    std::optional<Ground> none;
-    const Ground& bed = ground != nullptr ? *ground : none.emplace(field.columns(), field.rows());
-    const double aspect = static_cast<double>(rules.aspect) / kUnitsPerCell;
+double steepestFace(const sand::HeightField& field, const sand::Rules& rules, const sand::Ground* ground) {
+    std::optional<sand::Ground> none;
+    const sand::Ground& bed = ground != nullptr ? *ground : none.emplace(field.columns(), field.rows());
+    const double aspect = static_cast<double>(rules.aspect) / sand::kUnitsPerCell;
     double steepest = 0;
     for (int y = 0; y < field.rows(); y += kTile) {
         for (int x = 0; x < field.columns(); x += kTile) {
-            const Rect cells = Rect{x, y, x + kTile, y + kTile}.clippedTo(field.bounds());
+            const sand::CellRect cells = sand::CellRect{x, y, x + kTile, y + kTile}.clippedTo(field.bounds());
             steepest = std::max(steepest, Tile(field, bed, cells, aspect).steepest());
         }
     }
     return steepest;
 }
 
-}  // namespace sand::relax
+}  // namespace scene::relax

@@ -11,7 +11,7 @@
 #include <thread>
 #include <utility>
 
-namespace sand::relax {
+namespace scene::relax {
 
 using Clock = std::chrono::steady_clock;
 
@@ -42,4 +42,4 @@ private:
     std::jthread thread_;  // last: it uses the others
 };
 
-}  // namespace sand::relax
+}  // namespace scene::relax

@@ -11,16 +11,16 @@
 #include "base/input_error.hpp"
 #include "base/text.hpp"
 
-namespace sand::relax {
+namespace scene::relax {
 namespace {
 
-using tin::Place;
-using tin::Vertex;
+using sand::tin::Place;
+using sand::tin::Vertex;
 
 constexpr double kStepsAcross = 524288;    // of the lattice, on the longer side of a cloud: 2^19
 constexpr double kLeastDeep = 64;          // [lattice step]
 constexpr double kMostTinVolume = 4.6e18;  // [volume unit], of all: below 2^62
-constexpr int kStepsPerCell = tin::kLatticePerCell;
+constexpr int kStepsPerCell = sand::tin::kLatticePerCell;
 
 struct Extent {
     std::array<double, 3> least{}, most{};
@@ -73,7 +73,7 @@ Lattice latticeOf(const Extent& extent, const std::string& file, std::optional<d
 HeightScale scaleOf(const Extent& extent, const Lattice& lattice, const std::string& file) {
     const double lowest = extent.least[2], highest = extent.most[2];
     const double area = 6.0 * lattice.width * lattice.depth;
-    const double most = std::min(kMostTinVolume / area, static_cast<double>(kMaxHeight));
+    const double most = std::min(kMostTinVolume / area, static_cast<double>(sand::kMaxHeight));
     HeightScale scale = HeightScale::finest(lattice.step * kStepsPerCell, lowest, highest);
     while (scale.bits >= 0 && (highest - lowest) / scale.unit > most) {
         --scale.bits;
@@ -90,7 +90,7 @@ HeightScale scaleOf(const Extent& extent, const Lattice& lattice, const std::str
     return scale;
 }
 
-void setThresholds(const std::string& file, const Material& material, TinSand& sand) {
+void setThresholds(const std::string& file, const TalusSettings& material, TinSand& sand) {
     const double slope = std::tan(material.talusDegrees * std::numbers::pi / 180);
     const double exact = slope * sand.step * kStepsPerCell / sand.scale.unit;
     constexpr double kLargest = 1073741824.0;  // no difference between heights is larger
@@ -107,7 +107,7 @@ void setThresholds(const std::string& file, const Material& material, TinSand& s
 
 /// A mesh of all points, and which of them each vertex is: of several at one place the first.
 struct Joined {
-    tin::Mesh mesh;
+    sand::tin::Mesh mesh;
     std::vector<std::array<double, 3>> points;  // by vertex
     int cornersAdded = 0;
     std::size_t near = 0;   // points that lie where one before them does
@@ -120,7 +120,7 @@ Joined join(const Points& points, const Lattice& lattice, const Thinned* raster)
     for (const auto& point : points) {
         places.push_back(lattice.placeOf(point));
     }
-    Joined joined{.mesh = tin::Mesh(lattice.width, lattice.depth, raster == nullptr ? nullptr : raster->holes),
+    Joined joined{.mesh = sand::tin::Mesh(lattice.width, lattice.depth, raster == nullptr ? nullptr : raster->holes),
                   .points = {}};
     const std::vector<Vertex> vertices = joined.mesh.insert(places);
     if (raster != nullptr) {
@@ -157,7 +157,7 @@ Joined join(const Points& points, const Lattice& lattice, const Thinned* raster)
     return joined;
 }
 
-TinSand sandOf(const Points& points, const std::string& file, const Material& material, std::optional<double> step,
+TinSand sandOf(const Points& points, const std::string& file, const TalusSettings& material, std::optional<double> step,
                const Thinned* raster) {
     if (points.size() > static_cast<std::size_t>(kMostVertices)) {
         throw base::InputError(
@@ -167,7 +167,7 @@ TinSand sandOf(const Points& points, const std::string& file, const Material& ma
     const Lattice lattice = latticeOf(extent, file, step);
     const HeightScale scale = scaleOf(extent, lattice, file);
     Joined joined = join(points, lattice, raster);
-    TinSand sand{.layer = tin::Layer(std::move(joined.mesh)),
+    TinSand sand{.layer = sand::tin::VertexSand(std::move(joined.mesh)),
                  .step = lattice.step,
                  .scale = scale,
                  .points = std::move(joined.points),
@@ -196,11 +196,11 @@ bool holdsPoints(const std::filesystem::path& file) {
     return ending == ".csv" || ending == ".xyz";
 }
 
-TinSand toTin(const Points& points, const std::string& file, const Material& material) {
+TinSand toTin(const Points& points, const std::string& file, const TalusSettings& material) {
     return sandOf(points, file, material, {}, nullptr);
 }
 
-TinSand toTin(const Thinned& thinned, const std::string& file, const Material& material) {
+TinSand toTin(const Thinned& thinned, const std::string& file, const TalusSettings& material) {
     return sandOf(thinned.points, file, material, thinned.step, &thinned);
 }
 
@@ -219,7 +219,7 @@ Mesh TinSand::toMesh() const {
             mesh.vertices.back()[2] = withFewDecimals(scale.datum + layer.heights()[i] * scale.unit, scale.unit);
         }
     }
-    for (const tin::Triangle& triangle : layer.triangles().triangles) {
+    for (const sand::tin::Triangle& triangle : layer.triangles().triangles) {
         if (triangle.isGround()) {
             const auto number = [&](std::size_t k) { return numbers[static_cast<std::size_t>(triangle.corner.at(k))]; };
             mesh.triangles.push_back({number(0), number(1), number(2)});
@@ -228,11 +228,11 @@ Mesh TinSand::toMesh() const {
     return mesh;
 }
 
-Steepness steepnessOf(const tin::Layer& layer, std::int32_t threshold) {
-    const tin::Triangles& mesh = layer.triangles();
+Steepness steepnessOf(const sand::tin::VertexSand& layer, std::int32_t threshold) {
+    const sand::tin::Triangles& mesh = layer.triangles();
     Steepness result;
     double steep = 0;  // [doubled area]
-    for (const tin::Triangle& triangle : mesh.triangles) {
+    for (const sand::tin::Triangle& triangle : mesh.triangles) {
         if (!triangle.isGround()) {
             continue;
         }
@@ -251,4 +251,4 @@ Steepness steepnessOf(const tin::Layer& layer, std::int32_t threshold) {
     return result;
 }
 
-}  // namespace sand::relax
+}  // namespace scene::relax

@@ -18,7 +18,7 @@
 #include "scene/relax/grid_sand.hpp"
 #include "scene/relax/height_scale.hpp"
 
-namespace sand::relax {
+namespace scene::relax {
 
 inline constexpr int kMostVertices = 1 << 22;
 
@@ -29,7 +29,7 @@ inline constexpr int kMostVertices = 1 << 22;
 ///
 /// The field is the rectangle around what was read; corners of it that are no point are as high as the nearest one.
 struct TinSand {
-    tin::Layer layer;
+    sand::tin::VertexSand layer;
     double step = 1;                                 // of the lattice [file's length unit]
     HeightScale scale;                               // of heights
     std::vector<std::array<double, 3>> points;       // by vertex, as they were read [file's unit]
@@ -49,28 +49,28 @@ struct TinSand {
 
 /// What greedy insertion takes of a raster, and how near that comes to all of it [raster's unit].
 struct Thinned {
-    Points points;                                             // middles of cells, those in its four corners among them
-    double step = 1;                                           // of the lattice that its cells lie on
-    double maxError = 0, rmsError = 0;                         // vertical, over all cells with data
-    std::shared_ptr<const tin::Holes> holes;                   // on that lattice; null when all have data
-    std::vector<std::pair<tin::Vertex, tin::Vertex>> outline;  // of holes, edges between points
+    Points points;                                  // middles of cells, those in its four corners among them
+    double step = 1;                                // of the lattice that its cells lie on
+    double maxError = 0, rmsError = 0;              // vertical, over all cells with data
+    std::shared_ptr<const sand::tin::Holes> holes;  // on that lattice; null when all have data
+    std::vector<std::pair<sand::tin::Vertex, sand::tin::Vertex>> outline;  // of holes, edges between points
 };
 
 /// Throws base::InputError for a single row or column, for cells more oblong than 1 : 1000 or without data where they
 /// are not square, and for fewer vertices than the outline of those without data has.
-[[nodiscard]] Thinned thin(const EsriGrid& raster, const tin::SimplifyGoal& goal);
+[[nodiscard]] Thinned thin(const EsriGrid& raster, const sand::tin::SimplifyGoal& goal);
 
 /// Throws base::InputError: more than kMostVertices, a strip too thin for the lattice, heights that do not fit, a
 /// talus of fewer than kLeastThreshold units. `file` is for messages; `step` of the lattice is 2^-19 of the longer side
 /// unless given.
-[[nodiscard]] TinSand toTin(const Points& points, const std::string& file, const Material& material);
-[[nodiscard]] TinSand toTin(const Thinned& thinned, const std::string& file, const Material& material);
+[[nodiscard]] TinSand toTin(const Points& points, const std::string& file, const TalusSettings& material);
+[[nodiscard]] TinSand toTin(const Thinned& thinned, const std::string& file, const TalusSettings& material);
 
 /// How steep the triangles of a TIN are.
 struct Steepness {
     double steepest = 0;      // [unit per 256 lattice steps]
     double tooSteepArea = 0;  // share of the ground that is steeper than the threshold by more than a percent
 };
-[[nodiscard]] Steepness steepnessOf(const tin::Layer& layer, std::int32_t threshold);
+[[nodiscard]] Steepness steepnessOf(const sand::tin::VertexSand& layer, std::int32_t threshold);
 
-}  // namespace sand::relax
+}  // namespace scene::relax

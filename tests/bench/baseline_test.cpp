@@ -111,10 +111,11 @@ TEST(Baselines, IntegerN4GivesWhatPlainSweepsGive) {
     for (const auto& [columns, rows] : {std::pair{37, 23}, {1, 9}, {9, 1}, {1, 1}}) {
         const sand::HeightField start = samples::randomField(columns, rows, 8 * sand::kUnitsPerCell, random);
         sand::HeightField expected = start;
-        const sand::NetFlux expectedFlux = reference::relax(expected, sand::kUnitsPerCell, reference::FourNeighbours());
+        const sand::grid::NetFlux expectedFlux =
+            reference::relax(expected, sand::kUnitsPerCell, reference::FourNeighbours());
         for (const bool v3 : {false, base::machineHasV3()}) {
             bench::IntegerN4 n4(start, bench::rulesFor(start), v3);
-            sand::NetFlux flux(columns, rows);
+            sand::grid::NetFlux flux(columns, rows);
             for (int sweep = 0; sweep < 100000 && !n4.atRest(); ++sweep) {
                 n4.sweep(1);
                 n4.addFluxes(flux);

@@ -11,8 +11,8 @@ namespace {
 class Dem : public SessionTest {
 protected:
     /// Hills of 24 m on cells of 10 m, somewhere in UTM zone 33.
-    [[nodiscard]] static sand::EsriGrid hills() {
-        sand::EsriGrid grid;
+    [[nodiscard]] static scene::EsriGrid hills() {
+        scene::EsriGrid grid;
         grid.columns = 96;
         grid.rows = 64;
         grid.cellSize = 10;
@@ -36,7 +36,7 @@ protected:
 };
 
 TEST_F(Dem, AsATinOverOneAndFourRanksIsOneAndGoesHome) {
-    const sand::Importer& importer = sand::loadImporter("a test");
+    const scene::Importer& importer = scene::loadImporter("a test");
     const std::string file = (folder_ / "hills.tif").string(), home = (folder_ / "home.tif").string();
     const base::Bytes bytes = importer.geoTiff(hills(), file);
     write("hills.tif", std::string(bytes.begin(), bytes.end()));
@@ -73,7 +73,7 @@ TEST_F(Dem, AsATinOverOneAndFourRanksIsOneAndGoesHome) {
     EXPECT_NE(same.find(",1\n"), std::string::npos) << "the hand never touched the sand";
     EXPECT_TRUE(same == rows.substr(0, same.size())) << "forces are others when the journal is replayed";
 
-    const sand::EsriGrid before = importer.readDem(file), after = importer.readDem(home);
+    const scene::EsriGrid before = importer.readDem(file), after = importer.readDem(home);
     EXPECT_EQ(after.units, before.units);
     EXPECT_EQ(after.westEdge, before.westEdge);
     EXPECT_EQ(after.southEdge, before.southEdge);

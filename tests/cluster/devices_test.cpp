@@ -34,7 +34,7 @@ TEST_F(Devices, ASenderOfPositionsAloneMovesTheSandOfEveryRank) {
         "sandwall-replay", out() + "/session.journal --hash --heights " + (folder_ / "h.asc").string());
     EXPECT_EQ(replayed.status, 0);
     EXPECT_EQ(replayed.output, summary()["state_hash"].get<std::string>() + "\n");
-    const sand::EsriGrid grid = sand::readEsriGrid((folder_ / "h.asc").string());
+    const scene::EsriGrid grid = scene::readEsriGrid((folder_ / "h.asc").string());
     double lowest = 1;
     for (const double height : grid.heights) {
         lowest = std::min(lowest, height);

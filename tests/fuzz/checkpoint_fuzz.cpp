@@ -13,7 +13,7 @@ SANDWALL_FUZZER(checkpoint) {
     if (size == 0) {
         return 0;
     }
-    static const sand::Scene kScene = samples::flatScene(24, 16);
+    static const scene::Scene kScene = samples::flatScene(24, 16);
     const fuzz::Input input = fuzz::Input(data, size).subspan(1);
     base::ByteWriter bytes;
     bytes.putBytes(input);

@@ -5,6 +5,6 @@
 
 SANDWALL_FUZZER(grid) {
     const fuzz::MemoryFile file({data, size});
-    fuzz::takeOrRefuse([&] { (void)sand::withoutEmptyEdges(sand::readEsriGrid(file.path())); });
+    fuzz::takeOrRefuse([&] { (void)scene::withoutEmptyEdges(scene::readEsriGrid(file.path())); });
     return 0;
 }

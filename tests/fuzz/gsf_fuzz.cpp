@@ -5,6 +5,6 @@
 
 SANDWALL_FUZZER(gsf) {
     const fuzz::MemoryFile file({data, size});
-    fuzz::takeOrRefuse([&] { (void)sand::withoutEmptyEdges(sand::readGsf(file.path())); });
+    fuzz::takeOrRefuse([&] { (void)scene::withoutEmptyEdges(scene::readGsf(file.path())); });
     return 0;
 }

@@ -13,7 +13,7 @@ base::Bytes header(std::uint64_t& chain) {
     header.session = 1;
     header.buildId = "build";
     header.scene = samples::flatScene(8, 8).encode();
-    header.material = sand::Material();
+    header.material = scene::Material();
     return master::encodeHeader(header, chain);
 }
 

@@ -8,7 +8,7 @@
 SANDWALL_FUZZER(points) {
     const fuzz::MemoryFile file({data, size});
     fuzz::takeOrRefuse([&] {
-        const sand::Points points = sand::readPoints(file.path());
+        const scene::Points points = scene::readPoints(file.path());
         for (const auto& [x, y, z] : points) {
             if (points.size() < 3 || !std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z)) {
                 throw std::logic_error("a cloud that is no terrain");

@@ -29,10 +29,10 @@ SANDWALL_FUZZER(scene) {
     }
     const fuzz::MemoryFile file(input);
     fuzz::takeOrRefuse([&] {
-        const sand::Scene scene = sand::loadScene(file.path());
+        const scene::Scene scene = scene::loadScene(file.path());
         sand::Replica terrain(scene);
         terrain.apply({.epoch = 1, .number = 1, .engaged = true, .path = {{0, 0, 0}}});
-        (void)sand::Scene::decode(scene.encode());
+        (void)scene::Scene::decode(scene.encode());
     });
     return 0;
 }

@@ -91,11 +91,11 @@ void writeWire(Folder folder) {
 }
 
 void writeJournal(Folder folder, const fs::path& scratch) {
-    const sand::Scene scene = samples::flatScene(8, 8);
+    const scene::Scene scene = samples::flatScene(8, 8);
     {
         master::JournalWriter journal(scratch, scene, "build");
         journal.append({1, 17, {step(1), step(2)}});
-        journal.keep(sand::Material());
+        journal.keep(scene::Material());
         journal.append({2, 18, {step(3)}});
         journal.finish(3, 19);
         journal.resume({2, {3, 19}, 7, "a kill"});
@@ -134,7 +134,7 @@ void writeCheckpoints(Folder folder) {
 }
 
 void writeState(Folder folder) {
-    const sand::Scene scene = samples::flatScene(24, 16);
+    const scene::Scene scene = samples::flatScene(24, 16);
     sand::Replica terrain(scene);
     for (std::uint64_t number = 1; number <= 3; ++number) {
         terrain.apply(step(number));
@@ -146,13 +146,13 @@ void writeState(Folder folder) {
 }
 
 void writeTin(Folder folder) {
-    const sand::Scene scene = fuzz::tinScene();
+    const scene::Scene scene = fuzz::tinScene();
     sand::tin::TinSurface surface(scene.rules, scene.tin);
     const sand::HeldTool tool{scene.rules.toolShape(), {}};
     const auto add = [&] {
         folder.add(surface.copy()->encode(), {1});
         base::ByteWriter plain;
-        dynamic_cast<const sand::tin::LayerCopy&>(*surface.copy()).state().encode(plain);
+        dynamic_cast<const sand::tin::Snapshot&>(*surface.copy()).state().encode(plain);
         surface.layer().encode(plain);
         folder.add(plain.take(), {0});
     };

@@ -22,7 +22,7 @@ SANDWALL_FUZZER(state) {
     if (size == 0) {
         return 0;
     }
-    static const sand::Scene kScene = samples::flatScene(24, 16);
+    static const scene::Scene kScene = samples::flatScene(24, 16);
     const fuzz::Input raw = fuzz::Input(data, size).subspan(1);
     const base::Bytes packed = (data[0] & 4U) != 0 ? compressed(raw) : base::Bytes(raw.begin(), raw.end());
     fuzz::takeOrRefuse([&] {
@@ -34,11 +34,11 @@ SANDWALL_FUZZER(state) {
                 break;
             }
             case 1:
-                (void)sand::SandCopy::decode(packed, kScene.terrain.columns(), kScene.terrain.rows(),
-                                             kScene.terrain.cellSize());
+                (void)sand::grid::Snapshot::decode(packed, kScene.terrain.columns(), kScene.terrain.rows(),
+                                                   kScene.terrain.cellSize());
                 break;
             case 2:
-                (void)sand::Scene::decode(packed);
+                (void)scene::Scene::decode(packed);
                 break;
             default: {
                 sand::Replica terrain(kScene);

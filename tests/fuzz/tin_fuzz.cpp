@@ -15,10 +15,10 @@ namespace {
 using sand::ProbePoint;
 using sand::tin::TinSurface;
 
-/// The bytes of a state, of which `plain` holds a LayerState and a layer one behind the other.
+/// The bytes of a state, of which `plain` holds a TinState and a layer one behind the other.
 base::Bytes packed(fuzz::Input plain) {
     base::ByteReader reader(plain);
-    const auto state = sand::tin::LayerState::decode(reader);
+    const auto state = sand::tin::TinState::decode(reader);
     const auto rest = reader.rest();
     base::ByteWriter writer;
     state.encode(writer);
@@ -35,7 +35,7 @@ void require(bool good, const char* what) {
     }
 }
 
-void goOn(TinSurface& surface, const sand::Scene& scene) {
+void goOn(TinSurface& surface, const scene::Scene& scene) {
     const sand::HeldTool tool{scene.rules.toolShape(), {}};
     const auto outside = surface.outflow();
     const auto volume = surface.layer().volume();
@@ -49,7 +49,7 @@ void goOn(TinSurface& surface, const sand::Scene& scene) {
 }
 
 void takeState(fuzz::Input bytes) {
-    static const sand::Scene kScene = fuzz::tinScene();
+    static const scene::Scene kScene = fuzz::tinScene();
     TinSurface surface(kScene.rules, kScene.tin);
     const auto copy = surface.reader()(bytes);
     require(surface.reader()(copy->encode())->encode() == copy->encode(), "a state that is said otherwise again");
@@ -77,11 +77,11 @@ SANDWALL_FUZZER(tin) {
                 break;
             default: {
                 base::ByteReader reader(raw);
-                const auto start = sand::tin::Start::decode(reader);
+                const auto start = sand::tin::TinStart::decode(reader);
                 base::ByteWriter writer;
                 start.encode(writer);
                 base::ByteReader again(writer.bytes());
-                require(sand::tin::Start::decode(again).digest() == start.digest(), "a start that is another again");
+                require(sand::tin::TinStart::decode(again).digest() == start.digest(), "a start that is another again");
                 if (start.places.size() < 1000) {
                     (void)sand::tin::layerOf(start).volume();
                 }

@@ -12,12 +12,12 @@
 namespace fuzz {
 
 /// Dunes of 24 x 16 nominal cells as a TIN, for a surface that is made without the module.
-inline sand::Scene tinScene() {
-    sand::Scene scene = samples::flatScene(24, 16);
-    sand::makeDunes({.bed = 2, .height = 3, .length = 10, .seed = 7}, scene.terrain);
+inline scene::Scene tinScene() {
+    scene::Scene scene = samples::flatScene(24, 16);
+    sand::grid::makeDunes({.bed = 2, .height = 3, .length = 10, .seed = 7}, scene.terrain);
     auto start = sand::tin::follow(scene.terrain, nullptr, {.spacing = 300, .maxError = 20000, .mostVertices = 400});
     scene.rules.tin = start.digest();
-    scene.tin = std::make_shared<const sand::tin::Start>(std::move(start));
+    scene.tin = std::make_shared<const sand::tin::TinStart>(std::move(start));
     scene.terrain = sand::HeightField(1, 1, scene.terrain.cellSize());
     return scene;
 }

@@ -57,12 +57,12 @@ TEST(WorkerPool, TheSandIsTheSameOnAnyNumberOfThreads) {
         rules.scheme = scheme;
         rules.rim = sand::Rim::open;
         sand::HeightField expected = start;
-        const std::int64_t outflow = sand::Erosion(expected, rules, {.ground = &ground}).sweep(expected, 40);
+        const std::int64_t outflow = sand::grid::Erosion(expected, rules, {.ground = &ground}).sweep(expected, 40);
         for (const int threads : {1, 2, 3, 7}) {
             WorkerPool pool(threads);
             const base::Executor executor = pool.executor();
             sand::HeightField field = start;
-            sand::Erosion erosion(field, rules, {.ground = &ground, .executor = &executor});
+            sand::grid::Erosion erosion(field, rules, {.ground = &ground, .executor = &executor});
             EXPECT_EQ(erosion.sweep(field, 40), outflow);
             EXPECT_TRUE(sameHeights(field, expected)) << threads << " threads, seed " << kSeed;
         }

@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
     link.addTo(line, false);
     return host::runMain(line, argc, argv, [&] {
         prctl(PR_SET_PDEATHSIG, SIGKILL);
-        const sand::Scene known = sand::loadScene(scene);
+        const scene::Scene known = scene::loadScene(scene);
         const haptic_bridge::Identity identity{haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion,
                                                known.rules.digest(), known.name};
         if (server != 0) {

@@ -5,24 +5,24 @@
 
 namespace {
 
-using lockstep::Patience;
+using lockstep::Backoff;
 
-TEST(Patience, OfAShortWaitIsNotSlept) {
-    EXPECT_EQ(Patience::sleepAfter(0), 0);
-    EXPECT_EQ(Patience::sleepAfter(20'000), 0);
+TEST(Backoff, OfAShortWaitIsNotSlept) {
+    EXPECT_EQ(Backoff::sleepAfter(0), 0);
+    EXPECT_EQ(Backoff::sleepAfter(20'000), 0);
 }
 
-TEST(Patience, MakesNoWaitMuchLonger) {
+TEST(Backoff, MakesNoWaitMuchLonger) {
     for (std::int64_t waited = 0; waited < 1'000'000'000; waited = waited * 5 / 4 + 1000) {
-        EXPECT_LE(Patience::sleepAfter(waited), waited / 8) << waited;
-        EXPECT_LE(Patience::sleepAfter(waited), 125'000) << waited;
+        EXPECT_LE(Backoff::sleepAfter(waited), waited / 8) << waited;
+        EXPECT_LE(Backoff::sleepAfter(waited), 125'000) << waited;
     }
 }
 
 // What it is for: a rank of a still wall looks some hundred times in a frame, not a hundred thousand.
-TEST(Patience, LooksSeldomInALongWait) {
+TEST(Backoff, LooksSeldomInALongWait) {
     int looks = 0;
-    for (std::int64_t waited = 60'000; waited < 33'000'000; waited += Patience::sleepAfter(waited)) {
+    for (std::int64_t waited = 60'000; waited < 33'000'000; waited += Backoff::sleepAfter(waited)) {
         ++looks;
     }
     EXPECT_LT(looks, 400);

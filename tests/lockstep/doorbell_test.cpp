@@ -14,8 +14,8 @@
 
 namespace {
 
+using lockstep::Backoff;
 using lockstep::Doorbell;
-using lockstep::Patience;
 
 constexpr std::int64_t kMoment = 20'000'000;    // [ns]
 constexpr std::int64_t kLong = 60'000'000'000;  // [ns]: a test that sleeps through has failed
@@ -52,29 +52,29 @@ TEST(Doorbell, WakesAnotherProcess) {
 }
 
 // By a clock of the test's own: what a wait does at each time does not depend on how busy the machine is.
-TEST(Patience, SleepsUntilTheBellRings) {
-    using Kind = Patience::Rest::Kind;
+TEST(Backoff, SleepsUntilTheBellRings) {
+    using Kind = Backoff::Rest::Kind;
     std::atomic<std::uint32_t> rings = 0;
-    Patience patience{Doorbell(rings)};
+    Backoff patience{Doorbell(rings)};
     EXPECT_EQ(patience.nextRest(1000).kind, Kind::yield) << "a short wait";
-    const Patience::Rest later = patience.nextRest(1000 + kMoment);
+    const Backoff::Rest later = patience.nextRest(1000 + kMoment);
     EXPECT_EQ(later.kind, Kind::sleepUntilRung);
     EXPECT_EQ(later.longest, 5'000'000) << "in case a message comes without a ring";
-    Patience asking;
+    Backoff asking;
     (void)asking.nextRest(1000);
-    EXPECT_EQ(asking.nextRest(1000 + kMoment), (Patience::Rest{Kind::sleep, 125'000})) << "without a bell";
+    EXPECT_EQ(asking.nextRest(1000 + kMoment), (Backoff::Rest{Kind::sleep, 125'000})) << "without a bell";
 }
 
 // A long message is announced before it is there: the wait asks for it, and does not sleep until a second ring.
-TEST(Patience, AsksForAMessageThatHasRungAndIsNotThere) {
-    using Kind = Patience::Rest::Kind;
+TEST(Backoff, AsksForAMessageThatHasRungAndIsNotThere) {
+    using Kind = Backoff::Rest::Kind;
     std::atomic<std::uint32_t> rings = 0;
     const Doorbell bell(rings);
-    Patience patience{bell};
+    Backoff patience{bell};
     (void)patience.nextRest(0);
     bell.ring();
     patience.look();
-    EXPECT_EQ(patience.nextRest(kMoment), (Patience::Rest{Kind::sleep, 125'000}));
+    EXPECT_EQ(patience.nextRest(kMoment), (Backoff::Rest{Kind::sleep, 125'000}));
     patience.look();
     EXPECT_EQ(patience.nextRest(2 * kMoment).kind, Kind::sleep) << "still not there";
     patience.found();
@@ -82,15 +82,15 @@ TEST(Patience, AsksForAMessageThatHasRungAndIsNotThere) {
 }
 
 // rest() itself: with a bell that has rung since the last look it must not sleep at all.
-TEST(Patience, ReturnsAtOnceWhenTheBellRangBeforeItSlept) {
+TEST(Backoff, ReturnsAtOnceWhenTheBellRangBeforeItSlept) {
     std::atomic<std::uint32_t> rings = 0;
     const Doorbell bell(rings);
-    Patience patience{bell};
+    Backoff patience{bell};
     patience.look();
     bell.ring();
     EXPECT_TRUE(bell.sleep(0, kLong)) << "the number is another than the one that was heard";
     patience.look();
-    EXPECT_NE(patience.nextRest(kLong).kind, Patience::Rest::Kind::sleepUntilRung);
+    EXPECT_NE(patience.nextRest(kLong).kind, Backoff::Rest::Kind::sleepUntilRung);
 }
 
 }  // namespace

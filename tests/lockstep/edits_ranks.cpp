@@ -22,19 +22,19 @@ constexpr std::uint64_t kEdits = 10000, kWildEdits = 1000, kTogether = 100;
 constexpr std::array kThreads{1, 2, 3, 7};
 constexpr std::array kBlocks{16, 32, 64};
 
-sand::Scene smallScene() {
-    sand::Scene scene = samples::flatScene(41, 29, 2.56);
+scene::Scene smallScene() {
+    scene::Scene scene = samples::flatScene(41, 29, 2.56);
     scene.rules.sweepsPerStep = 4;
     scene.rules.rim = sand::Rim::open;
-    sand::makeDunes({.bed = 2, .height = 5, .length = 20, .seed = 7}, scene.terrain);
+    sand::grid::makeDunes({.bed = 2, .height = 5, .length = 20, .seed = 7}, scene.terrain);
     return scene;
 }
 
-sand::Scene smallTin() {
-    sand::Scene scene = smallScene();
+scene::Scene smallTin() {
+    scene::Scene scene = smallScene();
     auto start = sand::tin::follow(scene.terrain, nullptr, {.spacing = 300, .maxError = 8000, .mostVertices = 2000});
     scene.rules.tin = start.digest();
-    scene.tin = std::make_shared<const sand::tin::Start>(std::move(start));
+    scene.tin = std::make_shared<const sand::tin::TinStart>(std::move(start));
     scene.terrain = sand::HeightField(1, 1, scene.terrain.cellSize());
     return scene;
 }
@@ -59,11 +59,12 @@ std::size_t firstDifference(const std::vector<std::uint64_t>& hashes) {
 std::uint64_t editAll(int rank, std::string_view kind, std::uint64_t& all) {
     const auto way = static_cast<std::size_t>(rank);
     host::WorkerPool team(kThreads.at(way % kThreads.size()));
-    const sand::Scene scene = kind == "tin" ? smallTin() : smallScene();
+    const scene::Scene scene = kind == "tin" ? smallTin() : smallScene();
     const bool wild = !kind.empty();
-    sand::Replica terrain(scene, {.blockSize = kBlocks.at(way % kBlocks.size()),
-                                  .path = way % 2 == 0 ? sand::CodePath::automatic : sand::CodePath::baseline,
-                                  .executor = team.lend()});
+    sand::Replica terrain(scene,
+                          {.blockSize = kBlocks.at(way % kBlocks.size()),
+                           .path = way % 2 == 0 ? sand::grid::CodePath::automatic : sand::grid::CodePath::baseline,
+                           .executor = team.lend()});
     std::mt19937 random(53);
     for (std::uint64_t before = 0; before < (wild ? kWildEdits : kEdits); before += kTogether) {
         std::vector<std::uint64_t> hashes;

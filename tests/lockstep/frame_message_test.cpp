@@ -16,7 +16,7 @@ lockstep::FrameMessage digging() {
                                    .stop = false,
                                    .steps = {},
                                    .figures = {}};
-    message.view.layers.set(lockstep::Layer::hillShade, true);
+    message.view.layers.set(lockstep::Overlay::hillShade, true);
     for (std::uint64_t i = 0; i < 8; ++i) {
         sand::Step& step = message.steps.emplace_back();
         step = {2, 500000 + i, true, {}};

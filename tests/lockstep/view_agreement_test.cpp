@@ -39,7 +39,7 @@ TEST(ViewAgreement, EveryPartOfAViewCounts) {
     other.pattern = 3;
     EXPECT_NE(proof.hash(other), hash);
     other = seen();
-    other.layers.set(lockstep::Layer::force, true);
+    other.layers.set(lockstep::Overlay::force, true);
     EXPECT_NE(proof.hash(other), hash);
 }
 

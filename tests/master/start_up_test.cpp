@@ -26,21 +26,21 @@ std::string refusalOf(const std::function<void()>& check) {
     return "nothing";
 }
 
-std::string refusal(const std::vector<lockstep::RankHost>& ranks, const sand::Scene& scene) {
+std::string refusal(const std::vector<lockstep::RankHost>& ranks, const scene::Scene& scene) {
     return refusalOf([&] { master::requireMemory(ranks, scene, "s.toml"); });
 }
 
-sand::Scene sceneOf(int side) {
-    sand::Scene scene;
+scene::Scene sceneOf(int side) {
+    scene::Scene scene;
     scene.rules.columns = scene.rules.rows = side;
     return scene;
 }
 
-sand::Scene tinOf(int side, std::size_t vertices) {
-    sand::Scene scene = sceneOf(side);
-    sand::tin::Start start;
+scene::Scene tinOf(int side, std::size_t vertices) {
+    scene::Scene scene = sceneOf(side);
+    sand::tin::TinStart start;
     start.places.resize(vertices);
-    scene.tin = std::make_shared<const sand::tin::Start>(std::move(start));
+    scene.tin = std::make_shared<const sand::tin::TinStart>(std::move(start));
     return scene;
 }
 
@@ -86,7 +86,7 @@ protected:
         master::JournalHeader header;
         header.session = 1;
         header.scene = scene;
-        header.material = sand::Material();
+        header.material = scene::Material();
         std::uint64_t chain = 0;
         const base::Bytes bytes = master::encodeHeader(header, chain);
         std::ofstream(journal_, std::ios::binary)
@@ -118,7 +118,7 @@ TEST_F(StartUpFiles, AJournalThatDoesNotFitTheMemoryIsRefusedBeforeItsHeightsAre
 TEST_F(StartUpFiles, AJournalOfATinThatDoesNotFitTheMemoryIsRefused) {
     const std::filesystem::path file = folder_ / "s.toml";
     std::ofstream(file) << "[field]\ncolumns = 64\n[terrain]\n[material]\n[tool]\nradius = 0.1\n[tin]\n";
-    const std::filesystem::path journal = journalOf(sand::loadScene(file).encode());
+    const std::filesystem::path journal = journalOf(scene::loadScene(file).encode());
     EXPECT_EQ(refusalOf([&] { master::requireMemoryOfJournal({{"a", kGiB}}, journal); }), "nothing");
     const std::string refused = refusalOf([&] { master::requireMemoryOfJournal({{"a", 1000}}, journal); });
     EXPECT_TRUE(refused.starts_with(journal.string() + ": a TIN of ")) << refused;

@@ -22,7 +22,7 @@ TEST_F(GoldenWalls, LookAsTheyDid) {
         SCOPED_TRACE(name);
         const walls::Wall wall =
             sample::smallWall(walls::loadWall(sample::wallFolder() / (name + ".toml")), golden::kMostPixels);
-        render_node::SandView view = sample::makeView(dug_, wall);
+        render_node::ScenePainter view = sample::makeView(dug_, wall);
         golden::expect("golden", name, sample::wallPicture(view, wall));
     }
 }

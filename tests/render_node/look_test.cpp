@@ -16,7 +16,7 @@
 namespace {
 
 using render_node::EyeTarget;
-using render_node::SandView;
+using render_node::ScenePainter;
 using sample::layersOf;
 using sample::Pixels;
 
@@ -48,8 +48,8 @@ double roughness(const Pixels& pixels, int y0, int y1) {
 }
 
 /// A plane that rises to the east (1 is 45 degrees) with the given seed in its rows.
-sand::Scene slopeScene(double east, double north) {
-    sand::Scene scene = sample::flatScene(128, 128);
+scene::Scene slopeScene(double east, double north) {
+    scene::Scene scene = sample::flatScene(128, 128);
     for (int row = 0; row < 128; ++row) {
         for (int column = 0; column < 128; ++column) {
             const double height = (column - 64) * east + (row - 64) * north;
@@ -68,7 +68,7 @@ protected:
 
 // Sand in the plane of a screen comes out on the same pixels wherever the head is: so must its grains.
 TEST_F(Look, GrainStaysOnItsSandWhenTheHeadMoves) {
-    SandView view(sample::flatScene(128, 128), glm::dmat4(1));
+    ScenePainter view(sample::flatScene(128, 128), glm::dmat4(1));
     const walls::Screen screen{{0.75, 0.8, 0}, {1.25, 0.8, 0}, {0.75, 1.175, 0}};
     Pixels first;
     for (const glm::dvec3 eye : {glm::dvec3(1, 1, 0.8), {1.3, 0.7, 0.6}, {0.55, 1.3, 1.1}}) {
@@ -86,7 +86,7 @@ TEST_F(Look, GrainStaysOnItsSandWhenTheHeadMoves) {
 // Far sand is what a finer picture shows, averaged: no grain stands for its neighbours.
 TEST_F(Look, GrainFadesWithTheDistanceWithoutAliasing) {
     constexpr int kFiner = 6;
-    SandView view(sample::flatScene(256, 256), glm::dmat4(1));
+    ScenePainter view(sample::flatScene(256, 256), glm::dmat4(1));
     const render_node::Camera along = sample::camera({1, -0.2, 0.35}, {1, 0.8, 0});
     const Pixels seen = sample::draw(view, along, target_);
     const Pixels fine = sample::draw(view, along, EyeTarget(kFiner * kLookWidth, kFiner * kLookHeight));
@@ -118,9 +118,9 @@ TEST_F(Look, GrainFadesWithTheDistanceWithoutAliasing) {
 TEST_F(Look, SlidSandIsDarkerAndWarmerThanLevelSand) {
     const auto colourOf = [&](double slope) {
         // The sun stands on the axis of slopes that rise to the north: both get the same share of it.
-        sand::Scene scene = slopeScene(0, slope);
+        scene::Scene scene = slopeScene(0, slope);
         scene.look.sunDirection = {0, std::sin(0.5 * std::atan(-slope)), std::cos(0.5 * std::atan(slope))};
-        SandView view(scene, glm::dmat4(1));
+        ScenePainter view(scene, glm::dmat4(1));
         const Pixels pixels = sample::draw(view, above_, target_);
         glm::dvec3 sum(0);
         for (int y = 140; y < 160; ++y) {
@@ -144,9 +144,9 @@ struct Shadow {
 };
 
 TEST_F(Look, ToolsShadowIsDarkerAndTighterTheCloserItComes) {
-    sand::Scene scene = sample::flatScene(256, 256, 0.05);
+    scene::Scene scene = sample::flatScene(256, 256, 0.05);
     scene.look.sunDirection = {0, 0, 1};
-    SandView view(scene, glm::dmat4(1));
+    ScenePainter view(scene, glm::dmat4(1));
     // From beside, so that the ball hides nothing that it shades; it is in the upper half of the picture.
     const auto beside = sample::camera({1, 0.2, 0.6}, {1, 1, 0});
     const Pixels ground = sample::draw(view, beside, target_);
@@ -182,10 +182,10 @@ TEST_F(Look, ToolsShadowIsDarkerAndTighterTheCloserItComes) {
 
 TEST_F(Look, HillShadeIsLitFromTheNorthWestWhateverTheSun) {
     const auto shadeOf = [&](double east, double north, const std::vector<double>& sun) {
-        sand::Scene scene = slopeScene(east, north);
+        scene::Scene scene = slopeScene(east, north);
         scene.look.sunDirection = sun;
-        SandView view(scene, glm::dmat4(1));
-        view.setLayers(layersOf({lockstep::Layer::hillShade}));
+        ScenePainter view(scene, glm::dmat4(1));
+        view.setLayers(layersOf({lockstep::Overlay::hillShade}));
         return mean(sample::draw(view, above_, target_), 180, 130, 220, 170);
     };
     const std::vector<double> morning{0.6, 0, 0.8};
@@ -197,9 +197,9 @@ TEST_F(Look, HillShadeIsLitFromTheNorthWestWhateverTheSun) {
 }
 
 TEST_F(Look, WireframeDrawsEveryEdgeAndLeavesTheFacesAlone) {
-    SandView view(sample::flatScene(32, 32), glm::dmat4(1));
+    ScenePainter view(sample::flatScene(32, 32), glm::dmat4(1));
     const Pixels without = sample::draw(view, above_, target_);
-    view.setLayers(layersOf({lockstep::Layer::wireframe}));
+    view.setLayers(layersOf({lockstep::Overlay::wireframe}));
     const Pixels with = sample::draw(view, above_, target_);
     // 3.75 mm to a pixel, 62.5 mm to a cell; vertices are over the middle of cells, cells (15, 15) and (16, 16) are
     // half a cell from the middle of the picture.
@@ -229,10 +229,10 @@ TEST_F(Look, WireframeDrawsEveryEdgeAndLeavesTheFacesAlone) {
 }
 
 TEST_F(Look, LayersThatAreOffLeaveNoTrace) {
-    sand::Scene scene = sample::duneScene(64);
-    SandView view(scene, glm::dmat4(1));
+    scene::Scene scene = sample::duneScene(64);
+    ScenePainter view(scene, glm::dmat4(1));
     const Pixels before = sample::draw(view, above_, target_);
-    view.setLayers(layersOf({lockstep::Layer::wireframe, lockstep::Layer::hillShade}));
+    view.setLayers(layersOf({lockstep::Overlay::wireframe, lockstep::Overlay::hillShade}));
     view.setForce(render_node::ForceArrow{{1, 1, 0.1}, {1, 1, 0.3}, false});
     EXPECT_FALSE(sample::draw(view, above_, target_) == before);
     view.setLayers({});

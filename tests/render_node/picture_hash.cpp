@@ -8,8 +8,8 @@
 
 int main() try {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
-    const sand::Scene scene = sample::duneScene(200);
-    render_node::SandView view(scene, glm::dmat4(1));
+    const scene::Scene scene = sample::duneScene(200);
+    render_node::ScenePainter view(scene, glm::dmat4(1));
     view.setTool(sample::probeAt(scene, {1, 1, 0.05}), true);
     const render_node::EyeTarget target(320, 240);
     std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a

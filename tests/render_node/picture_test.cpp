@@ -13,7 +13,7 @@
 namespace {
 
 using render_node::EyeTarget;
-using render_node::SandView;
+using render_node::ScenePainter;
 using sample::Pixels;
 
 constexpr int kWidth = 400;
@@ -52,7 +52,7 @@ TEST_F(Picture, NamesItsRenderer) {
 }
 
 TEST_F(Picture, OfASandBedIsFullOfSandColouredGrains) {
-    SandView view(sample::flatScene(128, 128), glm::dmat4(1));
+    ScenePainter view(sample::flatScene(128, 128), glm::dmat4(1));
     const Pixels pixels = sample::draw(view, above_, target_);
     int sandy = 0;
     int darkest = 255;
@@ -71,9 +71,9 @@ TEST_F(Picture, OfASandBedIsFullOfSandColouredGrains) {
 }
 
 TEST_F(Picture, OfAFurrowHasASunnyAndAShadyBank) {
-    const sand::Scene scene = sample::flatScene(256, 256);
+    const scene::Scene scene = sample::flatScene(256, 256);
     sand::Replica terrain(scene);
-    SandView view(scene, glm::dmat4(1));
+    ScenePainter view(scene, glm::dmat4(1));
     // North-south through the middle; the sun stands in the west, so that the eastern slope faces it.
     sample::drag(terrain, scene, {1, 0.5, 0.01}, {1, 1.5, 0.01});
     view.update(terrain.field(), terrain.takeDamage());
@@ -87,16 +87,16 @@ TEST_F(Picture, OfAFurrowHasASunnyAndAShadyBank) {
 }
 
 TEST_F(Picture, OfDamageAloneEqualsThatOfEverything) {
-    const sand::Scene scene = sample::duneScene(150);
+    const scene::Scene scene = sample::duneScene(150);
     sand::Replica terrain(scene);
-    SandView partial(scene, glm::dmat4(1));
+    ScenePainter partial(scene, glm::dmat4(1));
     (void)terrain.takeDamage();
     const auto camera = sample::camera({1, -0.4, 1.1}, {1, 0.9, 0});
     const Pixels before = sample::draw(partial, camera, target_);
     for (const double x : {0.02, 0.5, 1.3}) {  // the first touches the rim
         sample::drag(terrain, scene, {x, 0.4, 0.03}, {x + 0.3, 1.2, 0.02});
         partial.update(terrain.field(), terrain.takeDamage());
-        SandView whole(scene, glm::dmat4(1));
+        ScenePainter whole(scene, glm::dmat4(1));
         whole.update(terrain.field(), terrain.field().bounds());
         const Pixels got = sample::draw(partial, camera, target_);
         EXPECT_TRUE(got == sample::draw(whole, camera, target_)) << "after the furrow at " << x;
@@ -105,15 +105,15 @@ TEST_F(Picture, OfDamageAloneEqualsThatOfEverything) {
 }
 
 TEST_F(Picture, KeepsNoTraceOfTheOneBefore) {
-    SandView view(sample::duneScene(100), glm::dmat4(1));
+    ScenePainter view(sample::duneScene(100), glm::dmat4(1));
     const Pixels first = sample::draw(view, above_, target_);
     sample::draw(view, sample::camera({0.3, -1, 0.4}, {1, 1, 0}), target_);
     EXPECT_TRUE(sample::draw(view, above_, target_) == first);
 }
 
 TEST_F(Picture, ShowsTheToolTrueToSize) {
-    const sand::Scene scene = sample::flatScene(128, 128, 0.05);
-    SandView view(scene, glm::dmat4(1));
+    const scene::Scene scene = sample::flatScene(128, 128, 0.05);
+    ScenePainter view(scene, glm::dmat4(1));
     const Pixels without = sample::draw(view, above_, target_);
     view.setTool(sample::probeAt(scene, {1, 1, 0.5}), true);
     const Pixels with = sample::draw(view, above_, target_);
@@ -133,7 +133,7 @@ TEST_F(Picture, ShowsTheToolTrueToSize) {
 
 TEST_F(Picture, OfEveryFieldSizeIsDrawn) {
     for (const auto& [columns, rows] : {std::pair{1, 1}, {2, 1}, {1, 40}, {31, 33}, {63, 64}, {80, 122}, {100, 7}}) {
-        SandView view(sample::flatScene(columns, rows), glm::dmat4(1));
+        ScenePainter view(sample::flatScene(columns, rows), glm::dmat4(1));
         const auto middle = glm::dvec3(1, sample::kWidth * rows / columns / 2, 0);
         const Pixels pixels = sample::draw(view, sample::camera(middle + glm::dvec3(0, 0, 1.5), middle), target_);
         const glm::ivec3 centre = sample::pixel(pixels, kWidth, kWidth / 2, kHeight / 2);

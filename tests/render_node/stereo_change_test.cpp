@@ -41,7 +41,7 @@ Pictures picturesOf(const render_node::TilePainter& painter) {
 // Whatever mode a tile comes from, it shows what a tile shows that was started in that mode.
 TEST(StereoChange, OfATileShowsWhatATileOfThatModeShows) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
-    const sand::Scene scene = sample::duneScene(48);
+    const scene::Scene scene = sample::duneScene(48);
     const walls::Wall wall = smallWall();
     lockstep::ViewState view;
     std::copy_n(glm::value_ptr(wall.viewer.eye), 3, view.head.begin());
@@ -67,7 +67,7 @@ TEST(StereoChange, OfATileShowsWhatATileOfThatModeShows) {
 
 TEST(FrameBuffers, HoldTheEyesOfAModeAndWhatItComposesOfThem) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
-    const sand::Scene scene = sample::duneScene(48);
+    const scene::Scene scene = sample::duneScene(48);
     const walls::Wall wall = smallWall();
     constexpr int kPixels = 80 * 60, kEye = 8, kColour = 4;  // [byte]: colour and depth, or colour alone
     const std::map<std::string, int> perPixel{{"mono", kEye},

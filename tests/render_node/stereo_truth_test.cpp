@@ -57,11 +57,11 @@ glm::dvec2 middleOf(const Image& image, glm::ivec3 background) {
 
 TEST_F(StereoPicture, ShowsAPointWithTheParallaxOfItsDepth) {
     const walls::Wall wall = plainWall();
-    sand::Scene scene = sample::flatScene(16, 16, 0.015);
+    scene::Scene scene = sample::flatScene(16, 16, 0.015);
     scene.look.backgroundColour = {0, 1, 0};
     // Upright like the room, the sand five metres below the floor, out of sight: only the tool is seen.
     const glm::dmat4 sceneToRoom({1, 0, 0, 0}, {0, 0, -1, 0}, {0, 1, 0, 0}, {0, -5, 0, 1});
-    render_node::SandView view(scene, sceneToRoom);
+    render_node::ScenePainter view(scene, sceneToRoom);
     for (const double wanted : {-1.0, -0.5, 0.0, 0.5, 2.0}) {
         const sand::ProbePoint probe = sample::probeAt(scene, {0.06, wanted, 5.25});
         view.setTool(probe, true);
@@ -90,7 +90,7 @@ TEST_F(StereoPicture, OfOneEyeIsTheMiddleBetweenTwo) {
     walls::Wall mono = sample::reduced(walls::loadWall(sample::wallFolder() / "desktop.toml"), 4);
     mono.viewer.eyeSeparation = 0.065;
     ASSERT_EQ(mono.stereo, Stereo::mono);
-    render_node::SandView view = sample::makeView(dug, mono);
+    render_node::ScenePainter view = sample::makeView(dug, mono);
     const auto monoShown = sample::outputsOf(view, mono, mono.tiles[0]);
     ASSERT_EQ(monoShown.size(), 1U);
     walls::Wall joined = walls::shownIn(mono, Stereo::passive);
@@ -113,7 +113,7 @@ TEST_F(StereoPicture, OfMonoIsTheMiddleOfTheEyesOnEveryWall) {
         SCOPED_TRACE(name);
         walls::Wall wall = sample::smallWall(walls::loadWall(sample::wallFolder() / (name + ".toml")), 400);
         wall.viewer.eyeSeparation = 0.065;
-        render_node::SandView view = sample::makeView(dug, wall);
+        render_node::ScenePainter view = sample::makeView(dug, wall);
         const walls::Wall mono = walls::shownIn(wall, Stereo::mono);
         const walls::Wall left = walls::shownIn(wall, Stereo::left);
         walls::Wall joined = left;
@@ -132,7 +132,7 @@ TEST_F(StereoPicture, OfMonoIsTheMiddleOfTheEyesOnEveryWall) {
 TEST_F(StereoPicture, OfTheLeftEyeAloneIsThatOfTheLeftOutput) {
     const sample::DugScene dug;
     const walls::Wall wall = sample::reduced(walls::loadWall(sample::wallFolder() / "tiled_3x4.toml"), 8);
-    render_node::SandView view = sample::makeView(dug, wall);
+    render_node::ScenePainter view = sample::makeView(dug, wall);
     const auto both = sample::outputsOf(view, wall, wall.tiles[5]);
     for (const auto& [stereo, expected] : {std::pair{Stereo::left, 0U}, {Stereo::right, 1U}}) {
         const walls::Wall one = walls::shownIn(wall, stereo);
@@ -163,7 +163,7 @@ std::optional<Joint> jointOf(const Screen& first, const Screen& second) {
 
 /// What a face shows along one of its edges. The face is moved outwards by half a pixel, so that its last pixels lie on
 /// the edge itself, as those of the other face do: both then look along the same rays.
-std::vector<glm::ivec3> alongEdge(render_node::SandView& view, const walls::Wall& wall, const walls::Tile& tile,
+std::vector<glm::ivec3> alongEdge(render_node::ScenePainter& view, const walls::Wall& wall, const walls::Tile& tile,
                                   const Joint& joint, Eye eye) {
     Screen screen = tile.screen;
     const glm::dvec3 middle = (screen.lowerRight + screen.upperLeft) / 2.0;
@@ -198,7 +198,7 @@ double meanDifference(const std::vector<glm::ivec3>& a, const std::vector<glm::i
 TEST_F(StereoPicture, FacesOfACaveJoinAlongTheirEdges) {
     const sample::DugScene dug;
     const walls::Wall cave = sample::reduced(walls::loadWall(sample::wallFolder() / "flex_cave.toml"), 2);
-    render_node::SandView view = sample::makeView(dug, cave);
+    render_node::ScenePainter view = sample::makeView(dug, cave);
     int joints = 0;
     for (std::size_t i = 0; i < cave.tiles.size(); ++i) {
         for (std::size_t j = i + 1; j < cave.tiles.size(); ++j) {

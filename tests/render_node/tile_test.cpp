@@ -12,7 +12,7 @@
 namespace {
 
 using render_node::EyeTarget;
-using render_node::SandView;
+using render_node::ScenePainter;
 using sample::Pixels;
 
 constexpr int kAcross = 4;  // tiles
@@ -64,7 +64,7 @@ protected:
         const EyeTarget target(kTileWidth, kTileHeight);
         for (int row = 0; row < kDown; ++row) {
             for (int column = 0; column < kAcross; ++column) {
-                SandView view = makeView();
+                ScenePainter view = makeView();
                 const sample::Window window{column / double{kAcross}, 1 - (row + 1) / double{kDown},
                                             (column + 1) / double{kAcross}, 1 - row / double{kDown}};
                 const Pixels tile = sample::draw(view, sample::camera(eye, eye + forward_, window), target);
@@ -81,7 +81,7 @@ protected:
         return wall;
     }
     Pixels whole(const glm::dvec3& eye, const glm::dvec2& moved = {} /* [pixel] */) {
-        SandView view = makeView();
+        ScenePainter view = makeView();
         const glm::dvec2 share = moved / glm::dvec2(kWallWidth, kWallHeight);
         const sample::Window window{share.x, share.y, 1 + share.x, 1 + share.y};
         return sample::draw(view, sample::camera(eye, eye + forward_, window), wholeTarget_);
@@ -99,8 +99,8 @@ protected:
         }
         return mask;
     }
-    [[nodiscard]] SandView makeView() const {
-        SandView view(scene_, glm::dmat4(1));
+    [[nodiscard]] ScenePainter makeView() const {
+        ScenePainter view(scene_, glm::dmat4(1));
         view.setTool(sample::probeAt(scene_, {1.1, 0.9, 0.06}), true);
         return view;
     }
@@ -125,7 +125,7 @@ protected:
     }
 
     std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
-    sand::Scene scene_ = sample::duneScene(300);
+    scene::Scene scene_ = sample::duneScene(300);
     EyeTarget wholeTarget_{kWallWidth, kWallHeight};
     glm::dvec3 leftEye_{0.9675, -0.1, 0.75};
     glm::dvec3 rightEye_{1.0325, -0.1, 0.75};
@@ -172,7 +172,7 @@ TEST_F(TiledWall, DrawsOnlyTheChunksEachTileSees) {
 TEST_F(TiledWall, LeavesOutTilesThatCannotHaveChangedAndMissesNone) {
     scene_ = sample::flatScene(300, 300, 0.03);
     sand::Replica terrain(scene_);
-    SandView lazy = makeView();
+    ScenePainter lazy = makeView();
     std::vector<EyeTarget> targets;
     std::vector<render_node::EyeMemory> memories(kAcross * kDown);
     int left = 0;

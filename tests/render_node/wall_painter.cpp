@@ -69,21 +69,21 @@ Image pictureOf(const render_node::EyeTarget& target) {
     return image;
 }
 
-glm::dmat4 sceneToRoom(const walls::Wall& wall, const sand::Scene& scene) {
+glm::dmat4 sceneToRoom(const walls::Wall& wall, const scene::Scene& scene) {
     const double cell = scene.terrain.cellSize();
     return walls::stageToRoom(wall.stage, scene.rules.columns * cell, scene.rules.rows * cell,
                               static_cast<double>(scene.referenceHeight()) * cell / sand::kUnitsPerCell);
 }
 
-render_node::SandView makeView(const DugScene& dug, const walls::Wall& wall) {
-    render_node::SandView view(dug.scene, sceneToRoom(wall, dug.scene));
+render_node::ScenePainter makeView(const DugScene& dug, const walls::Wall& wall) {
+    render_node::ScenePainter view(dug.scene, sceneToRoom(wall, dug.scene));
     view.update(dug.terrain.field(), dug.terrain.field().bounds());
     view.setTool(dug.terrain.probe(), true);
     return view;
 }
 
-Image drawThrough(render_node::SandView& sand, const walls::Wall& wall, const walls::Screen& screen, glm::ivec2 pixels,
-                  walls::Eye eye, std::vector<float>* depth) {
+Image drawThrough(render_node::ScenePainter& sand, const walls::Wall& wall, const walls::Screen& screen,
+                  glm::ivec2 pixels, walls::Eye eye, std::vector<float>* depth) {
     const render_node::EyeTarget target(pixels.x, pixels.y);
     sand.draw(cameraOf(wall, screen, eye), target);
     Image image = pictureOf(target);
@@ -94,7 +94,7 @@ Image drawThrough(render_node::SandView& sand, const walls::Wall& wall, const wa
     return image;
 }
 
-std::vector<Image> outputsOf(render_node::SandView& sand, const walls::Wall& wall, const walls::Tile& tile) {
+std::vector<Image> outputsOf(render_node::ScenePainter& sand, const walls::Wall& wall, const walls::Tile& tile) {
     std::vector<render_node::EyeTarget> targets;
     for (const walls::Eye eye : walls::eyesOf(wall.stereo)) {
         targets.emplace_back(tile.pixels.x, tile.pixels.y);
@@ -128,7 +128,7 @@ Image wallOfOutputs(const walls::Wall& wall, const std::vector<std::vector<Image
     return whole;
 }
 
-Image wallPicture(render_node::SandView& sand, const walls::Wall& wall) {
+Image wallPicture(render_node::ScenePainter& sand, const walls::Wall& wall) {
     std::vector<std::vector<Image>> outputs;
     for (const walls::Tile& tile : wall.tiles) {
         outputs.push_back(outputsOf(sand, wall, tile));

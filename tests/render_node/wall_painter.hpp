@@ -21,7 +21,7 @@ using pictures::Image;
 
 /// Dunes with a furrow dug through them, the tool still in the sand.
 struct DugScene {
-    sand::Scene scene = ballInDunes();
+    scene::Scene scene = ballInDunes();
     sand::Replica terrain{scene};
 
     DugScene() {
@@ -30,8 +30,8 @@ struct DugScene {
     }
 
 private:
-    static sand::Scene ballInDunes() {
-        sand::Scene dunes = duneScene(128);
+    static scene::Scene ballInDunes() {
+        scene::Scene dunes = duneScene(128);
         dunes.rules.toolRadius *= 2;
         return dunes;
     }
@@ -52,15 +52,15 @@ inline std::filesystem::path wallFolder() { return std::filesystem::path(SANDWAL
 
 /// Draws the sand as seen through one screen. `sand` must have the wall's stage (makeView). `depth` takes GL's depths,
 /// the lowest row first.
-[[nodiscard]] Image drawThrough(render_node::SandView& sand, const walls::Wall& wall, const walls::Screen& screen,
+[[nodiscard]] Image drawThrough(render_node::ScenePainter& sand, const walls::Wall& wall, const walls::Screen& screen,
                                 glm::ivec2 pixels, walls::Eye eye, std::vector<float>* depth = nullptr);
-[[nodiscard]] render_node::SandView makeView(const DugScene& dug, const walls::Wall& wall);
+[[nodiscard]] render_node::ScenePainter makeView(const DugScene& dug, const walls::Wall& wall);
 /// Where the wall has the sand stand.
-[[nodiscard]] glm::dmat4 sceneToRoom(const walls::Wall& wall, const sand::Scene& scene);
+[[nodiscard]] glm::dmat4 sceneToRoom(const walls::Wall& wall, const scene::Scene& scene);
 
 /// What the outputs of a tile show, in their order; an output that shows the eyes in turn gives the left, then the
 /// right.
-[[nodiscard]] std::vector<Image> outputsOf(render_node::SandView& sand, const walls::Wall& wall,
+[[nodiscard]] std::vector<Image> outputsOf(render_node::ScenePainter& sand, const walls::Wall& wall,
                                            const walls::Tile& tile);
 
 /// One picture of all that the wall's outputs show, bezels black: first outputs as they stand on the wall, second
@@ -68,7 +68,7 @@ inline std::filesystem::path wallFolder() { return std::filesystem::path(SANDWAL
 [[nodiscard]] Image wallOfOutputs(const walls::Wall& wall, const std::vector<std::vector<Image>>& outputsByTile);
 
 /// All that the wall shows of the sand.
-[[nodiscard]] Image wallPicture(render_node::SandView& sand, const walls::Wall& wall);
+[[nodiscard]] Image wallPicture(render_node::ScenePainter& sand, const walls::Wall& wall);
 
 /// Every tile's pattern for one eye, put together.
 [[nodiscard]] Image patternOfWall(const walls::Wall& wall, lockstep::Pattern pattern, walls::Eye eye,

@@ -124,7 +124,7 @@ pictures::Mask silhouettes(const std::vector<float>& depth, const walls::Clip& c
 
 /// Adds to `edges` what is other where the screen is moved by a hair: there a rounding decides which of two levels of
 /// the grain is drawn.
-void addUndecided(pictures::Mask& edges, render_node::SandView& view, const walls::Wall& wall, const Whole& whole,
+void addUndecided(pictures::Mask& edges, render_node::ScenePainter& view, const walls::Wall& wall, const Whole& whole,
                   const Image& picture) {
     const pictures::Mask known = edges;
     std::int64_t undecided = 0;
@@ -154,7 +154,8 @@ pictures::Mask cropOf(const pictures::Mask& mask, int width, const walls::PixelR
 class WallSeams : public testing::Test {
 protected:
     /// Draws every part alone and holds it against the crop of the whole.
-    static void compareParts(render_node::SandView& view, const walls::Wall& wall, const Whole& whole, Count& count) {
+    static void compareParts(render_node::ScenePainter& view, const walls::Wall& wall, const Whole& whole,
+                             Count& count) {
         std::vector<float> depth;
         const Image left = sample::drawThrough(view, wall, whole.screen, whole.pixels, Eye::left, &depth);
         const Image right = sample::drawThrough(view, wall, whole.screen, whole.pixels, Eye::right);
@@ -194,7 +195,7 @@ TEST_F(WallSeams, EveryTileOfEverySampleIsItsPartOfTheWhole) {
         const walls::Wall full = walls::loadWall(sample::wallFolder() / (name + ".toml"));
         walls::Wall wall = sample::reduced(full, reductionFor(full));
         wall.viewer.eyeSeparation = std::max(wall.viewer.eyeSeparation, 0.06);  // a mono wall may have none
-        render_node::SandView view = sample::makeView(dug_, wall);
+        render_node::ScenePainter view = sample::makeView(dug_, wall);
         Count count;
         for (const Whole& whole : wholesOf(wall)) {
             compareParts(view, wall, whole, count);

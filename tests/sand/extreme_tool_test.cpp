@@ -25,15 +25,15 @@ ProbePoint probeAt(double column, double row, double height /* [cell] */) {
 
 constexpr std::array kRims{Rim::closed, Rim::open};
 
-sand::Scene sceneWith(double toolCells, Rim rim) {
-    sand::Scene scene = samples::flatScene(45, 33, toolCells);
+scene::Scene sceneWith(double toolCells, Rim rim) {
+    scene::Scene scene = samples::flatScene(45, 33, toolCells);
     scene.rules.rim = rim;
     return scene;
 }
 
 TEST(ExtremeTool, OutsideTheFieldItTouchesNothing) {
     for (const Rim rim : kRims) {
-        const sand::Scene scene = sceneWith(4, rim);
+        const scene::Scene scene = sceneWith(4, rim);
         Replica terrain(scene);
         std::uint64_t number = 0;
         for (const ProbePoint point :
@@ -54,7 +54,7 @@ TEST(ExtremeTool, AtACornerAndOnTheRimsItLosesNothing) {
         for (const double radius : {0.6, 2.56, 8.0, 20.0}) {
             for (const ProbePoint point : {probeAt(0, 0, -1), probeAt(45, 33, -1), probeAt(0, 33, 0), probeAt(45, 0, 0),
                                            probeAt(22, 0, -2), probeAt(0, 16, -2), probeAt(44.5, 32.5, 0)}) {
-                const sand::Scene scene = sceneWith(radius, rim);
+                const scene::Scene scene = sceneWith(radius, rim);
                 Replica terrain(scene);
                 for (std::uint64_t i = 1; i <= 200; ++i) {
                     terrain.apply({1, i, i < 100, i == 1 ? std::vector{point} : std::vector<ProbePoint>{}});
@@ -68,7 +68,7 @@ TEST(ExtremeTool, AtACornerAndOnTheRimsItLosesNothing) {
 }
 
 TEST(ExtremeTool, LargerThanTheFieldItHasNowhereToPutTheSand) {
-    const sand::Scene scene = sceneWith(2048, Rim::closed);
+    const scene::Scene scene = sceneWith(2048, Rim::closed);
     Replica terrain(scene);
     terrain.apply({1, 1, true, {probeAt(22, 16, 2000)}});
     EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain)) << "it passes through the sand";
@@ -79,7 +79,7 @@ TEST(ExtremeTool, LargerThanTheFieldItHasNowhereToPutTheSand) {
 }
 
 TEST(ExtremeTool, OfNoRadiusItDigsNothing) {
-    const sand::Scene scene = sceneWith(0, Rim::closed);
+    const scene::Scene scene = sceneWith(0, Rim::closed);
     Replica terrain(scene);
     terrain.apply({1, 1, true, {probeAt(5.5, 5.5, -3), probeAt(40, 30, -3)}});
     EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain));
@@ -134,7 +134,7 @@ TEST(ExtremeTool, HeldStillItLetsTheSweepsStop) {
 }
 
 TEST(ExtremeTool, DiggingToBedrockStopsThere) {
-    sand::Scene scene = sceneWith(6, Rim::closed);
+    scene::Scene scene = sceneWith(6, Rim::closed);
     auto ground = std::make_shared<sand::Ground>(45, 33);
     for (int y = 0; y < 33; ++y) {
         for (int x = 0; x < 45; ++x) {

@@ -42,15 +42,15 @@ private:
 };
 
 /// Sand in mid-slide under an open rim: heights, outflow and inertia all have something to lose.
-sand::Scene slidingScene() {
-    sand::Scene scene = samples::flatScene(64, 64);
+scene::Scene slidingScene() {
+    scene::Scene scene = samples::flatScene(64, 64);
     scene.terrain = samples::cylinder(64, 24, 40);
     scene.rules.rim = sand::Rim::open;
     return scene;
 }
 
 TEST(Undo, RestoresTheHeightsOfBeforeTheLastStroke) {
-    const sand::Scene scene = samples::flatScene(64, 64);
+    const scene::Scene scene = samples::flatScene(64, 64);
     Replica terrain(scene);
     Hand hand(terrain);
     hand.stroke(20);
@@ -132,7 +132,7 @@ TEST(Undo, TakesBackWhatSettledSince) {
 
 // The operator is quicker than the hand: its stroke then begins where the undo left the sand.
 TEST(Undo, InMidStrokeLetsTheStrokeBeginAnew) {
-    const sand::Scene scene = samples::flatScene(64, 64);
+    const scene::Scene scene = samples::flatScene(64, 64);
     Replica terrain(scene);
     Hand hand(terrain);
     hand.dig(20, 32);
@@ -146,7 +146,7 @@ TEST(Undo, InMidStrokeLetsTheStrokeBeginAnew) {
 }
 
 TEST(Reset, RestoresTheSceneAndForgetsTheStroke) {
-    const sand::Scene scene = slidingScene();
+    const scene::Scene scene = slidingScene();
     Replica terrain(scene);
     Hand hand(terrain);
     hand.stroke(20);
@@ -201,7 +201,7 @@ TEST(Load, OfBytesThatAreNoSandOfThisFieldIsAStepLikeAnyOther) {
 }
 
 TEST(Undo, KeepsWhatTheOperatorHasChosen) {
-    const sand::Scene scene = samples::flatScene(64, 64);
+    const scene::Scene scene = samples::flatScene(64, 64);
     Replica terrain(scene);
     Hand hand(terrain);
     hand.stroke(20);
@@ -232,7 +232,7 @@ Step editedStep(std::uint64_t number, const sand::Rules& rules, std::mt19937& ra
 
 TEST(Edits, VolumeIsExactAndTheHashIsTheWholeFields) {
     for (const auto rim : {sand::Rim::closed, sand::Rim::open}) {
-        sand::Scene scene = samples::flatScene(45, 33, 2.56);
+        scene::Scene scene = samples::flatScene(45, 33, 2.56);
         scene.rules.rim = rim;
         std::mt19937 random(53);
         scene.terrain = samples::randomField(45, 33, 1 << 18, random);
@@ -242,7 +242,7 @@ TEST(Edits, VolumeIsExactAndTheHashIsTheWholeFields) {
             (void)terrain.takeDamage();
             terrain.apply(editedStep(i, scene.rules, random));
             ASSERT_EQ(terrain.field().volume() + terrain.outflow(), scene.terrain.volume()) << "step " << i;
-            const sand::Rect damage = terrain.takeDamage();
+            const sand::CellRect damage = terrain.takeDamage();
             for (int y = 0; y < 33; ++y) {
                 for (int x = 0; x < 45; ++x) {
                     const bool inside = x >= damage.x0 && x < damage.x1 && y >= damage.y0 && y < damage.y1;
@@ -257,9 +257,9 @@ TEST(Edits, VolumeIsExactAndTheHashIsTheWholeFields) {
 }
 
 TEST(Edits, ThreadsAndBlocksChangeNothingAndAStateTakesTheStrokeAlong) {
-    const sand::Scene scene = slidingScene();
+    const scene::Scene scene = slidingScene();
     const host::WorkerPool pool(3);
-    sand::Erosion::Options threaded;
+    sand::grid::Erosion::Options threaded;
     threaded.executor = pool.lend();
     threaded.blockSize = 8;
     Replica plain(scene);
@@ -283,7 +283,7 @@ TEST(Edits, ThreadsAndBlocksChangeNothingAndAStateTakesTheStrokeAlong) {
 }
 
 TEST(Edits, AStateWithASpoiltStrokeIsRefusedWhole) {
-    const sand::Scene scene = samples::flatScene(64, 64);
+    const scene::Scene scene = samples::flatScene(64, 64);
     Replica dug(scene);
     Hand(dug).stroke(32);
     base::Bytes state = dug.encodeState();

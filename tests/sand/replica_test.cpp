@@ -20,7 +20,7 @@ ProbePoint at(double column, double row, double height /* [cell] */) {
             static_cast<std::int32_t>(height * kProbePerCell)};
 }
 
-Replica dragged(const sand::Scene& scene, ProbePoint from, ProbePoint to, int steps) {
+Replica dragged(const scene::Scene& scene, ProbePoint from, ProbePoint to, int steps) {
     Replica terrain(scene);
     for (int i = 1; i <= steps; ++i) {
         const auto between = [&](std::int32_t a, std::int32_t b) { return a + (b - a) * i / steps; };
@@ -42,7 +42,7 @@ TEST(Replica, AStrokeLeavesAFurrowWithBanks) {
 }
 
 TEST(Replica, AHeldToolComesToRest) {
-    sand::Scene scene = samples::flatScene(64, 64, 8);
+    scene::Scene scene = samples::flatScene(64, 64, 8);
     Replica terrain(scene);
     std::uint64_t number = 0;
     terrain.apply({1, ++number, true, {at(32, 32, 4)}});
@@ -53,7 +53,7 @@ TEST(Replica, AHeldToolComesToRest) {
     const sand::HeightField rest = terrain.field();
     terrain.apply({1, ++number, true, {}});
     EXPECT_TRUE(sameHeights(terrain.field(), rest));
-    const sand::Obstacle ball = sand::Tool(scene.rules.toolShape()).obstacle(rest, terrain.probe());
+    const sand::grid::Obstacle ball = sand::grid::Displacement(scene.rules.toolShape()).obstacle(rest, terrain.probe());
     std::size_t next = 0;
     for (int y = ball.cells.y0; y < ball.cells.y1; ++y) {
         for (int x = ball.cells.x0; x < ball.cells.x1; ++x) {
@@ -63,7 +63,7 @@ TEST(Replica, AHeldToolComesToRest) {
 }
 
 TEST(Replica, SandFallsWhenTheToolLeaves) {
-    sand::Scene scene = samples::flatScene(64, 64, 8);
+    scene::Scene scene = samples::flatScene(64, 64, 8);
     scene.rules.sweepsPerStep = 2;
     Replica terrain(scene);
     std::uint64_t number = 0;
@@ -80,7 +80,7 @@ TEST(Replica, SandFallsWhenTheToolLeaves) {
 
 TEST(Replica, VolumeIsExactWhateverTheHandDoes) {
     for (const auto rim : {sand::Rim::closed, sand::Rim::open}) {
-        sand::Scene scene = samples::flatScene(45, 33, 2.56);
+        scene::Scene scene = samples::flatScene(45, 33, 2.56);
         scene.rules.rim = rim;
         std::mt19937 random(23);
         scene.terrain = samples::randomField(45, 33, 1 << 18, random);
@@ -93,14 +93,14 @@ TEST(Replica, VolumeIsExactWhateverTheHandDoes) {
 }
 
 TEST(Replica, AToolLargerThanTheFieldLosesNothing) {
-    const sand::Scene scene = samples::flatScene(5, 4, 40);
+    const scene::Scene scene = samples::flatScene(5, 4, 40);
     Replica terrain(scene);
     terrain.apply({1, 1, true, {at(2, 2, 0)}});
     EXPECT_EQ(terrain.field().volume(), 0);
 }
 
 TEST(Replica, HoveringLeavesTheSandAlone) {
-    const sand::Scene scene = samples::flatScene(32, 32);
+    const scene::Scene scene = samples::flatScene(32, 32);
     Replica terrain(scene);
     terrain.apply({1, 1, false, {at(16, 16, -3), at(20, 16, -3)}});
     EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain));
@@ -115,7 +115,7 @@ TEST(Replica, RefusesStepsOutOfOrder) {
 }
 
 TEST(Replica, GoesOnFromAStateAsIfNothingHadHappened) {
-    const sand::Scene scene = samples::flatScene(70, 50);
+    const scene::Scene scene = samples::flatScene(70, 50);
     std::mt19937 random(29);
     Replica whole(scene);
     Replica resumed(scene);
@@ -135,7 +135,7 @@ TEST(Replica, GoesOnFromAStateAsIfNothingHadHappened) {
 // Sand that slides on while the hand is away has inertia, which belongs to the state.
 TEST(Replica, GoesOnInMidSlide) {
     for (const auto rim : {sand::Rim::closed, sand::Rim::open}) {
-        sand::Scene scene = samples::flatScene(64, 64);
+        scene::Scene scene = samples::flatScene(64, 64);
         scene.terrain = samples::cylinder(64, 24, 40);
         scene.rules.rim = rim;
         Replica whole(scene);
@@ -155,7 +155,7 @@ TEST(Replica, GoesOnInMidSlide) {
 
 // Who joins visits every block once, where the others sleep: that must not make its inertia older than theirs.
 TEST(Replica, GoesOnFromSettledSand) {
-    sand::Scene scene = samples::flatScene(64, 64);
+    scene::Scene scene = samples::flatScene(64, 64);
     scene.terrain = samples::cylinder(64, 12, 30);
     Replica whole(scene);
     std::uint64_t step = 0;
@@ -176,7 +176,7 @@ TEST(Replica, GoesOnFromSettledSand) {
 }
 
 TEST(Replica, SettlesAtOnceWhenAsked) {
-    sand::Scene scene = samples::flatScene(64, 64);
+    scene::Scene scene = samples::flatScene(64, 64);
     scene.terrain = samples::cylinder(64, 12, 30);
     scene.rules.sweepsPerStep = 4;
     for (const bool onRock : {false, true}) {
@@ -196,7 +196,7 @@ TEST(Replica, SettlesAtOnceWhenAsked) {
 }
 
 TEST(Replica, IncrementalHashEqualsAFreshOne) {
-    const sand::Scene scene = samples::flatScene(70, 50);
+    const scene::Scene scene = samples::flatScene(70, 50);
     std::mt19937 random(31);
     Replica terrain(scene);
     for (std::uint64_t i = 1; i <= 200; ++i) {
@@ -222,14 +222,14 @@ TEST(Replica, AFlippedBitShowsInTheRightTile) {
 }
 
 TEST(Replica, DamageCoversEveryChangedCell) {
-    const sand::Scene scene = samples::flatScene(100, 70);
+    const scene::Scene scene = samples::flatScene(100, 70);
     std::mt19937 random(37);
     Replica terrain(scene);
     (void)terrain.takeDamage();
     for (std::uint64_t i = 1; i <= 100; ++i) {
         const sand::HeightField before = terrain.field();
         terrain.apply(samples::randomStep(i, scene.rules, random));
-        const sand::Rect damage = terrain.takeDamage();
+        const sand::CellRect damage = terrain.takeDamage();
         for (int y = 0; y < 70; ++y) {
             for (int x = 0; x < 100; ++x) {
                 const bool inside = x >= damage.x0 && x < damage.x1 && y >= damage.y0 && y < damage.y1;

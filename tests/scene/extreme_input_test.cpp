@@ -13,7 +13,7 @@ using ExtremeInput = SceneFile;
 
 TEST_F(ExtremeInput, AnglesEndBelow90Degrees) {
     const auto thresholdAt = [&](const std::string& degrees) {
-        return sand::loadScene(write("s.toml", kFlat + "band = 0\ntalus_deg = " + degrees + "\n")).rules.threshold;
+        return scene::loadScene(write("s.toml", kFlat + "band = 0\ntalus_deg = " + degrees + "\n")).rules.threshold;
     };
     EXPECT_EQ(thresholdAt("0"), 0);
     EXPECT_EQ(thresholdAt("45"), sand::kUnitsPerCell);
@@ -44,7 +44,7 @@ TEST_F(ExtremeInput, HeightsBeyondTheRangeAreRefusedWithIt) {
 }
 
 TEST_F(ExtremeInput, HeightsBelowHalfAUnitAreLevel) {
-    const sand::Scene scene = sand::loadScene(write("s.toml", "[field]\n[terrain]\nheight = 2.9e-8\n[material]\n"));
+    const scene::Scene scene = scene::loadScene(write("s.toml", "[field]\n[terrain]\nheight = 2.9e-8\n[material]\n"));
     EXPECT_EQ(scene.terrain.volume(), 0) << "a unit is 2 / 512 / 65536 = 6.0e-8";
 }
 
@@ -77,7 +77,7 @@ TEST_F(ExtremeInput, SidesBeyondTheLargestAreRefused) {
 }
 
 TEST_F(ExtremeInput, RulesOutOfRangeAreRefusedOnTheWire) {
-    sand::Rules rules = sand::loadScene(write("s.toml", kFlat)).rules;
+    sand::Rules rules = scene::loadScene(write("s.toml", kFlat)).rules;
     const auto accepted = [](const sand::Rules& sent) {
         base::ByteWriter writer;
         sent.encode(writer);

@@ -26,35 +26,35 @@ std::string complaintOf(const auto& act) {
 
 // One way from a scene file's numbers to integers: what an operator types gives the rules that a file would.
 TEST_F(SceneFile, AnOperatorsNumbersBecomeTheRulesOfAFileThatSaysThem) {
-    const sand::Scene plain = sand::loadScene(write("plain.toml", kFlat));
+    const scene::Scene plain = scene::loadScene(write("plain.toml", kFlat));
     const auto grid = plain.grid();
-    const auto same = [&](const sand::Material& material, const std::string& file) {
-        EXPECT_EQ(sand::tuningOf(material, grid), sand::loadScene(write("s.toml", kFlat + file)).rules.tuning())
+    const auto same = [&](const scene::Material& material, const std::string& file) {
+        EXPECT_EQ(scene::tuningOf(material, grid), scene::loadScene(write("s.toml", kFlat + file)).rules.tuning())
             << file;
     };
     same(plain.material, "");
-    same(sand::withNumber(plain.material, "talus", 20, grid), "talus_deg = 20\n");
-    same(sand::withNumber(plain.material, "talus_deg", 50, grid), "talus_deg = 50\n");
-    same(sand::withTool(plain.material, {.radius = 0.05}, grid), "[tool]\nradius = 0.05\n");
-    const sand::Material oval =
-        sand::withTool(plain.material, {.kind = sand::ToolKind::ellipse, .width = 0.3, .heading = -45}, grid);
+    same(scene::withNumber(plain.material, "talus", 20, grid), "talus_deg = 20\n");
+    same(scene::withNumber(plain.material, "talus_deg", 50, grid), "talus_deg = 50\n");
+    same(scene::withTool(plain.material, {.radius = 0.05}, grid), "[tool]\nradius = 0.05\n");
+    const scene::Material oval =
+        scene::withTool(plain.material, {.kind = sand::ToolKind::ellipse, .width = 0.3, .heading = -45}, grid);
     same(oval, "[tool]\nshape = \"ellipse\"\nwidth = 0.3\nheading_deg = -45\n");
-    same(sand::withTool(oval, {.kind = sand::ToolKind::footprint, .leftFoot = true}, grid),
+    same(scene::withTool(oval, {.kind = sand::ToolKind::footprint, .leftFoot = true}, grid),
          "[tool]\nshape = \"footprint\"\nfoot = \"left\"\nheading_deg = -45\n");
-    sand::Material wet = sand::withNumber(plain.material, "humidity", 0.5, grid);
-    wet = sand::withNumber(wet, "wet-talus", 60, grid);
-    wet = sand::withNumber(wet, "cohesion", 0.03, grid);
-    wet = sand::withNumber(wet, "settling-time", 0.01, grid);
+    scene::Material wet = scene::withNumber(plain.material, "humidity", 0.5, grid);
+    wet = scene::withNumber(wet, "wet-talus", 60, grid);
+    wet = scene::withNumber(wet, "cohesion", 0.03, grid);
+    wet = scene::withNumber(wet, "settling-time", 0.01, grid);
     same(wet, "humidity = 0.5\nwet_talus_deg = 60\ncohesion_length = 0.03\nsettling_time = 0.01\n");
 }
 
 TEST_F(SceneFile, AnOperatorsNumbersAreRefusedWhereAFileWouldBe) {
-    const sand::Scene scene = sand::loadScene(write("s.toml", kFlat + "wet_talus_deg = 40\n"));
+    const scene::Scene scene = scene::loadScene(write("s.toml", kFlat + "wet_talus_deg = 40\n"));
     const auto number = [&](std::string_view word, double value) {
-        return complaintOf([&] { (void)sand::withNumber(scene.material, word, value, scene.grid()); });
+        return complaintOf([&] { (void)scene::withNumber(scene.material, word, value, scene.grid()); });
     };
     const auto tool = [&](double radius) {
-        return complaintOf([&] { (void)sand::withTool(scene.material, {.radius = radius}, scene.grid()); });
+        return complaintOf([&] { (void)scene::withTool(scene.material, {.radius = radius}, scene.grid()); });
     };
     EXPECT_EQ(number("talus", 90), "talus must be within [0, 90), got 90");
     EXPECT_EQ(number("talus", 41), "wet_talus_deg must be at least talus_deg = 41, got 40");
@@ -64,8 +64,8 @@ TEST_F(SceneFile, AnOperatorsNumbersAreRefusedWhereAFileWouldBe) {
     EXPECT_EQ(tool(10), "a tool of radius 10 is 2560 cells of 0.00390625; 2048 is the most");
     EXPECT_EQ(tool(0).find("a tool's radius must be at least 1.53e-05, got 0"), 0U) << tool(0);
     EXPECT_NE(tool(-1), "nothing");
-    const auto changed = [&](const sand::ToolChange& change) {
-        return complaintOf([&] { (void)sand::withTool(scene.material, change, scene.grid()); });
+    const auto changed = [&](const scene::ToolChange& change) {
+        return complaintOf([&] { (void)scene::withTool(scene.material, change, scene.grid()); });
     };
     EXPECT_EQ(changed({.kind = sand::ToolKind::footprint, .radius = 1.5}),
               "a footprint of radius 1.5 is 3 long, and the field 2");
@@ -77,7 +77,7 @@ TEST_F(SceneFile, AnOperatorsNumbersAreRefusedWhereAFileWouldBe) {
 
 /// A pile at rest, and its talus halved by an operator.
 TEST(Tuning, AFlatterTalusWakesSandAtRest) {
-    sand::Scene scene = samples::flatScene(64, 64);
+    scene::Scene scene = samples::flatScene(64, 64);
     scene.terrain = samples::cylinder(64, 16, 20);
     sand::Replica terrain(scene);
     terrain.apply({1, 1, false, {}, Edit::settle});
@@ -100,7 +100,7 @@ TEST(Tuning, AFlatterTalusWakesSandAtRest) {
 
 // Two replicas whose sand is equal and whose tool is not will differ a step later: the hash must say so now.
 TEST(Tuning, IsPartOfTheHashAndOfTheState) {
-    const sand::Scene scene = samples::flatScene(64, 64);
+    const scene::Scene scene = samples::flatScene(64, 64);
     sand::Tuning tuning = scene.rules.tuning();
     tuning.toolRadius *= 2;
     sand::Replica plain(scene);
@@ -119,7 +119,7 @@ TEST(Tuning, IsPartOfTheHashAndOfTheState) {
 }
 
 TEST(Tuning, AToolThatGrowsInTheSandPresses) {
-    const sand::Scene scene = samples::flatScene(64, 64);
+    const scene::Scene scene = samples::flatScene(64, 64);
     sand::Replica terrain(scene);
     const std::int32_t middle = 32 * sand::kProbePerCell;
     terrain.apply({1, 1, true, {{middle, middle, 2 * sand::kProbePerCell}}, Edit::none});

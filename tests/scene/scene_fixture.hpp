@@ -21,7 +21,7 @@ protected:
     /// The one line a person reads, without the folder.
     std::string complaint(const std::string& text) {
         try {
-            (void)sand::loadScene(write("s.toml", text));
+            (void)scene::loadScene(write("s.toml", text));
         } catch (const base::InputError& error) {
             const std::string line = error.what();
             return line.substr(line.find(folder_.string()) == 0 ? folder_.string().size() + 1 : 0);

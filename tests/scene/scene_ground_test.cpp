@@ -14,21 +14,21 @@ const std::string kGrid = "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 
 const std::string kFromGrid = "[material]\n[tool]\nradius = 2\n[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n";
 
 TEST_F(SceneFile, SandWithoutEndHasNoGround) {
-    const sand::Scene scene = sand::loadScene(write("s.toml", kFlat));
+    const scene::Scene scene = scene::loadScene(write("s.toml", kFlat));
     EXPECT_EQ(scene.ground, nullptr);
     EXPECT_EQ(scene.rules.ground, 0U);
 }
 
 TEST_F(SceneFile, ALayerLiesOnRock) {
     write("t.asc", kGrid + "1 2 3\n4 5 6\n");
-    const sand::Scene scene = sand::loadScene(write("s.toml", kFromGrid + "layer = 0.5\n"));
+    const scene::Scene scene = scene::loadScene(write("s.toml", kFromGrid + "layer = 0.5\n"));
     ASSERT_NE(scene.ground, nullptr);
     EXPECT_EQ(scene.ground->sand(2, 0, scene.terrain.height(2, 0)), sand::kUnitsPerCell / 2);
 }
 
 TEST_F(SceneFile, CellsWithoutDataAreWallsAndEmptyEdgesAreCutOff) {
     write("t.asc", "ncols 4\nnrows 4\ncellsize 1\nNODATA_value -1\n-1 -1 -1 -1\n1 2 3 -1\n4 -1 6 -1\n7 8 9 -1\n");
-    const sand::Scene scene = sand::loadScene(write("s.toml", kFromGrid));
+    const scene::Scene scene = scene::loadScene(write("s.toml", kFromGrid));
     ASSERT_EQ(scene.terrain.columns(), 3);
     ASSERT_EQ(scene.terrain.rows(), 3);
     ASSERT_NE(scene.ground, nullptr);
@@ -40,7 +40,7 @@ TEST_F(SceneFile, CellsWithoutDataAreWallsAndEmptyEdgesAreCutOff) {
 TEST_F(SceneFile, RockComesFromASecondGrid) {
     write("t.asc", kGrid + "1 2 3\n4 5 6\n");
     write("rock.asc", kGrid + "0 0 0\n4 4 4\n");
-    const sand::Scene scene = sand::loadScene(write("s.toml", kFromGrid + "bedrock = \"rock.asc\"\n"));
+    const scene::Scene scene = scene::loadScene(write("s.toml", kFromGrid + "bedrock = \"rock.asc\"\n"));
     ASSERT_NE(scene.ground, nullptr);
     EXPECT_EQ(scene.ground->bedrock(2, 0), 4 * sand::kUnitsPerCell);
     EXPECT_EQ(scene.ground->sand(0, 0, scene.terrain.height(0, 0)), 0);
@@ -65,10 +65,10 @@ TEST_F(SceneFile, SettlesBeforeAnybodyTouchesIt) {
     const std::string steep =
         "[field]\ncolumns = 64\nwidth = 64\n[material]\n[tool]\nradius = 2\n[terrain]\nkind = "
         "\"dunes\"\ndune_height = 30\ndune_length = 20\n";
-    const sand::Scene raw = sand::loadScene(write("s.toml", steep));
-    const sand::Scene settled = sand::loadScene(write("s.toml", steep + "settle = true\n"));
+    const scene::Scene raw = scene::loadScene(write("s.toml", steep));
+    const scene::Scene settled = scene::loadScene(write("s.toml", steep + "settle = true\n"));
     sand::HeightField field = settled.terrain;
-    sand::Erosion erosion(field, settled.rules);
+    sand::grid::Erosion erosion(field, settled.rules);
     erosion.sweep(field, 1);
     EXPECT_TRUE(erosion.settled());
     EXPECT_FALSE(sameHeights(raw.terrain, settled.terrain));
@@ -77,7 +77,7 @@ TEST_F(SceneFile, SettlesBeforeAnybodyTouchesIt) {
 
 TEST_F(SceneFile, WetSandIsSteeperAndItsBanksStand) {
     const auto rulesOf = [&](const std::string& material) {
-        return sand::loadScene(
+        return scene::loadScene(
                    write("s.toml", kFlat + "band = 0\nwet_talus_deg = 44\ncohesion_length = 0.1\n" + material))
             .rules;
     };

@@ -16,7 +16,7 @@
 namespace {
 
 TEST_F(SceneFile, DefaultsAreThePapers) {
-    const sand::Scene scene = sand::loadScene(write("s.toml", kFlat));
+    const scene::Scene scene = scene::loadScene(write("s.toml", kFlat));
     EXPECT_EQ(scene.rules.columns, 512);
     EXPECT_EQ(scene.rules.rows, 512);
     EXPECT_DOUBLE_EQ(scene.terrain.cellSize(), 2.0 / 512);
@@ -41,7 +41,7 @@ TEST_F(SceneFile, ItsSizeIsLookedAtBeforeItsHeightsAreMade) {
             isTin = tin;
             throw base::InputError(fmt::format("{} x {} are too many", columns, rows));
         };
-        EXPECT_THROW((void)sand::loadScene(write("s.toml", huge + kind), tooLarge), base::InputError) << kind;
+        EXPECT_THROW((void)scene::loadScene(write("s.toml", huge + kind), tooLarge), base::InputError) << kind;
         EXPECT_EQ(isTin, std::string(kind).ends_with("[tin]\n"));
     }
     EXPECT_LT(residentKilobytes() - before, 100'000);
@@ -52,7 +52,7 @@ TEST_F(SceneFile, ItsSizeIsLookedAtOnce) {
     const std::string raster = "[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n[material]\n[tool]\nradius = 1\n";
     for (const std::string& text : {kFlat, kFlat + "[tin]\n", raster, raster + "[tin]\n"}) {
         std::vector<std::array<int, 3>> asked;
-        (void)sand::loadScene(write("s.toml", text), [&](int columns, int rows, bool tin) {
+        (void)scene::loadScene(write("s.toml", text), [&](int columns, int rows, bool tin) {
             asked.push_back({columns, rows, tin ? 1 : 0});
         });
         const bool flat = text.starts_with(kFlat);
@@ -63,7 +63,7 @@ TEST_F(SceneFile, ItsSizeIsLookedAtOnce) {
 
 TEST_F(SceneFile, SweepsFollowTheSquareOfTheToolsCells) {
     const auto sweeps = [&](const std::string& radius) {
-        return sand::loadScene(write("s.toml", kFlat + "[tool]\nradius = " + radius)).rules.sweepsPerStep;
+        return scene::loadScene(write("s.toml", kFlat + "[tool]\nradius = " + radius)).rules.sweepsPerStep;
     };
     EXPECT_EQ(sweeps("0.046875"), 24);  // 12 cells: 144 / (0.1 s * 60)
     EXPECT_NEAR(sweeps("0.09375"), 4 * 24, 3);
@@ -90,7 +90,7 @@ TEST_F(SceneFile, UnknownSchemesAreRefusedWithTheKnownOnes) {
               "s.toml:5: scheme must be one of g, g_plain, got 'n4'");
     for (const sand::NamedScheme& known : sand::kSchemes) {
         const std::string text = fmt::format("{}scheme = \"{}\"\n", kFlat, known.name);
-        EXPECT_EQ(sand::loadScene(write("s.toml", text)).rules.scheme, known.scheme) << known.name;
+        EXPECT_EQ(scene::loadScene(write("s.toml", text)).rules.scheme, known.scheme) << known.name;
     }
 }
 
@@ -98,16 +98,16 @@ TEST_F(SceneFile, AToolOutOfScaleIsRefusedOrWarnedOf) {
     EXPECT_EQ(complaint("[field]\nwidth = 1e-10\n[terrain]\n[material]\n").find("s.toml:1: a tool of radius 0.01 is"),
               0U);
     EXPECT_EQ(complaint(kFlat + "[tool]\nradius = 10\n").find("s.toml:5: a tool of radius 10 is 2560 cells"), 0U);
-    EXPECT_EQ(sand::loadScene(write("s.toml", kFlat + "[tool]\nradius = 0.003\n")).warnings.size(), 1U);
+    EXPECT_EQ(scene::loadScene(write("s.toml", kFlat + "[tool]\nradius = 0.003\n")).warnings.size(), 1U);
 }
 
 TEST_F(SceneFile, AToolHasAShapeAWidthAndAHeading) {
-    const sand::Scene scene = sand::loadScene(
+    const scene::Scene scene = scene::loadScene(
         write("s.toml", kFlat + "[tool]\nshape = \"footprint\"\nradius = 0.1\nheading_deg = 90\nfoot = \"left\"\n"));
     EXPECT_EQ(scene.rules.toolShape(), (sand::ToolShape{sand::ToolKind::footprint, 6554, 2622}));
     EXPECT_EQ(scene.rules.toolHeading, (sand::Heading{0, sand::Heading::kLength, true}));
-    EXPECT_EQ(sand::Scene::decode(scene.encode()).rules, scene.rules);
-    const sand::Scene plain = sand::loadScene(write("p.toml", kFlat + "[tool]\nshape = \"sphere\"\nradius = 0.1\n"));
+    EXPECT_EQ(scene::Scene::decode(scene.encode()).rules, scene.rules);
+    const scene::Scene plain = scene::loadScene(write("p.toml", kFlat + "[tool]\nshape = \"sphere\"\nradius = 0.1\n"));
     EXPECT_NE(plain.rules.digest(), scene.rules.digest()) << "server and master must have the same tool";
     EXPECT_EQ(scene.encode().size(), plain.encode().size() + 9);
     const auto tool = [&](const std::string& keys) { return complaint(kFlat + "[tool]\n" + keys); };
@@ -123,25 +123,27 @@ TEST_F(SceneFile, AToolHasAShapeAWidthAndAHeading) {
 }
 
 TEST_F(SceneFile, ALevelOfDetailThatCannotHoldItsErrorIsRefused) {
-    EXPECT_EQ(sand::loadScene(write("s.toml", kFlat + "[look]\ndetail = 0\n")).look.detail, 0);
-    const sand::Scene scene = sand::loadScene(write("s.toml", kFlat + "[look]\ndetail = 2.5\n"));
-    EXPECT_EQ(sand::Scene::decode(scene.encode()).look.detail, 2.5);
+    EXPECT_EQ(scene::loadScene(write("s.toml", kFlat + "[look]\ndetail = 0\n")).look.detail, 0);
+    const scene::Scene scene = scene::loadScene(write("s.toml", kFlat + "[look]\ndetail = 2.5\n"));
+    EXPECT_EQ(scene::Scene::decode(scene.encode()).look.detail, 2.5);
     for (const std::string bound : {"-1", "nan", "inf", "0.001", "1000"}) {
         const std::string said = complaint(fmt::format("{}[look]\ndetail = {}\n", kFlat, bound));
         EXPECT_EQ(said.rfind("s.toml:5: detail must be ", 0), 0U) << bound << ": " << said;
     }
 }
 
-TEST_F(SceneFile, AMissingFileIsNamed) { EXPECT_THROW((void)sand::loadScene(folder_ / "none.toml"), base::InputError); }
+TEST_F(SceneFile, AMissingFileIsNamed) {
+    EXPECT_THROW((void)scene::loadScene(folder_ / "none.toml"), base::InputError);
+}
 
 TEST_F(SceneFile, AFlatTalusWarns) {
-    EXPECT_EQ(sand::loadScene(write("s.toml", kFlat + "talus_deg = 3\n")).warnings.size(), 1U);
-    EXPECT_TRUE(sand::loadScene(write("s.toml", kFlat + "talus_deg = 4\n")).warnings.empty());
+    EXPECT_EQ(scene::loadScene(write("s.toml", kFlat + "talus_deg = 3\n")).warnings.size(), 1U);
+    EXPECT_TRUE(scene::loadScene(write("s.toml", kFlat + "talus_deg = 4\n")).warnings.empty());
 }
 
 TEST_F(SceneFile, LoadsAnEsriGridFromTheNorth) {
     write("t.asc", "NCOLS 3\nnrows 2\nxllcorner 5\nyllcorner 6\ncellsize 10\nNODATA_value -9999\n1 2 3\n4 5 6.5\n");
-    const sand::Scene scene = sand::loadScene(
+    const scene::Scene scene = scene::loadScene(
         write("s.toml", "[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n[material]\n[tool]\nradius = 5\n"));
     EXPECT_EQ(scene.rules.columns, 3);
     EXPECT_EQ(scene.rules.rows, 2);
@@ -163,32 +165,32 @@ TEST_F(SceneFile, EsriGridErrorsNameTheGridsLine) {
 }
 
 TEST_F(SceneFile, FlatShadingSurvivesItsEncodingAndIsNoHillShade) {
-    const sand::Scene scene = sand::loadScene(write("s.toml", kFlat + "[look]\nshading = \"flat\"\n"));
-    const sand::Look look = sand::Scene::decode(scene.encode()).look;
+    const scene::Scene scene = scene::loadScene(write("s.toml", kFlat + "[look]\nshading = \"flat\"\n"));
+    const scene::Look look = scene::Scene::decode(scene.encode()).look;
     EXPECT_TRUE(look.flatShading);
     EXPECT_FALSE(look.hillShade);
 }
 
 TEST_F(SceneFile, ShadedLikeAMapSurvivesItsEncoding) {
-    const sand::Scene scene = sand::loadScene(write("s.toml", kFlat + "[look]\nhill_shade = true\n"));
-    EXPECT_FALSE(sand::Scene::decode(scene.encode()).look.flatShading);
-    EXPECT_TRUE(sand::Scene::decode(scene.encode()).look.hillShade);
+    const scene::Scene scene = scene::loadScene(write("s.toml", kFlat + "[look]\nhill_shade = true\n"));
+    EXPECT_FALSE(scene::Scene::decode(scene.encode()).look.flatShading);
+    EXPECT_TRUE(scene::Scene::decode(scene.encode()).look.hillShade);
     EXPECT_EQ(complaint(kFlat + "[look]\nhill_shade = 1\n").rfind("s.toml:5: hill_shade must be", 0), 0U)
         << complaint(kFlat + "[look]\nhill_shade = 1\n");
 }
 
 TEST_F(SceneFile, AnEncodingThatIsCutAnywhereIsRefused) {
-    const base::Bytes bytes = sand::loadScene(write("s.toml", kFlat)).encode();
+    const base::Bytes bytes = scene::loadScene(write("s.toml", kFlat)).encode();
     for (std::size_t length = 0; length < bytes.size(); ++length) {
-        EXPECT_THROW((void)sand::Scene::decode(std::span(bytes).first(length)), base::FormatError) << length;
+        EXPECT_THROW((void)scene::Scene::decode(std::span(bytes).first(length)), base::FormatError) << length;
     }
 }
 
 TEST_F(SceneFile, EverySceneOfTheProjectLoadsAndSurvivesItsEncoding) {
     int scenes = 0;
     for (const auto& entry : std::filesystem::directory_iterator(SANDWALL_SOURCE_DIR "/scenes")) {
-        const sand::Scene scene = sand::loadScene(entry.path());
-        const sand::Scene copy = sand::Scene::decode(scene.encode());
+        const scene::Scene scene = scene::loadScene(entry.path());
+        const scene::Scene copy = scene::Scene::decode(scene.encode());
         EXPECT_EQ(copy.rules, scene.rules) << entry.path();
         EXPECT_EQ(copy.rules.digest(), scene.rules.digest());
         EXPECT_TRUE(sameHeights(copy.terrain, scene.terrain)) << entry.path();

@@ -35,7 +35,7 @@ bool isGap(int column, int row) {
 class TinHoleScene : public test::FolderTest {
 protected:
     /// Ground that rises to the north-east with a steep heap on it.
-    [[nodiscard]] sand::Scene scene(const std::string& more, double heap = 12) const {
+    [[nodiscard]] scene::Scene scene(const std::string& more, double heap = 12) const {
         std::ofstream grid(folder_ / "dem.asc");
         grid << fmt::format("ncols {0}\nnrows {0}\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n",
                             kRasterSide);
@@ -51,7 +51,7 @@ protected:
         const std::filesystem::path file = folder_ / "scene.toml";
         std::ofstream(file) << "[terrain]\nkind = \"esri_ascii\"\nfile = \"dem.asc\"\n"
                             << more << "[material]\ntalus_deg = 34\nsettling_time = 0.1\n[tool]\nradius = 2\n";
-        return sand::loadScene(file);
+        return scene::loadScene(file);
     }
 };
 
@@ -73,29 +73,29 @@ std::vector<Step> strokes(std::uint32_t seed, int steps) {
 }
 
 TEST_F(TinHoleScene, ASessionIsTheSameTwiceFromItsMiddleAndAfterItsSceneTravelled) {
-    const sand::Scene start = scene("[tin]\nmax_error = 0.05\n");
+    const scene::Scene start = scene("[tin]\nmax_error = 0.05\n");
     ASSERT_NE(start.tin->holes, nullptr);
-    const sand::Scene travelled = sand::Scene::decode(start.encode());
+    const scene::Scene travelled = scene::Scene::decode(start.encode());
     EXPECT_EQ(travelled.rules, start.rules);
     tin_samples::expectSameSession(start, travelled, strokes(5, 160), 53);
 }
 
 TEST_F(TinHoleScene, HolesComeBackWithoutData) {
-    const sand::Scene start = scene("[tin]\nmax_error = 0.05\n");
+    const scene::Scene start = scene("[tin]\nmax_error = 0.05\n");
     Replica terrain(start);
     for (const Step& step : strokes(9, 40)) {
         terrain.apply(step);
     }
-    const sand::Scene before = sand::sampledScene(start);
-    const sand::HeightField after = sand::sampled(terrain, start.tin->holes.get());
-    const sand::EsriGrid heights = sand::heightsOf(after, before), change = sand::differenceOf(after, before);
+    const scene::Scene before = scene::sampledScene(start);
+    const sand::HeightField after = scene::sampled(terrain, start.tin->holes.get());
+    const scene::EsriGrid heights = scene::heightsOf(after, before), change = scene::differenceOf(after, before);
     for (int row = 0; row < kRasterSide; ++row) {
         for (int column = 0; column < kRasterSide; ++column) {
             EXPECT_EQ(heights.isNoData(column, row), isGap(column, row)) << column << ", " << row;
             EXPECT_EQ(change.isNoData(column, row), isGap(column, row)) << column << ", " << row;
         }
     }
-    const sand::Mesh mesh = sand::meshOf(*terrain.tinView(), start);
+    const scene::Mesh mesh = scene::meshOf(*terrain.tinView(), start);
     EXPECT_GT(mesh.triangles.size(), 10U);
     for (const auto& triangle : mesh.triangles) {
         const auto& a = mesh.vertices[triangle[0]];
@@ -108,9 +108,9 @@ TEST_F(TinHoleScene, HolesComeBackWithoutData) {
 // The heap comes down on both as far as the block of cells without data, and round it: on the grid, which has walls
 // there, by sweeps alone. Measured: 0.467 cells at most, 0.041 RMS; a tenth more is let through.
 TEST_F(TinHoleScene, TheSamePileOnGridAndTinAgrees) {
-    const sand::Scene asGrid = scene("settle = true\n"), asTin = scene("settle = true\n[tin]\nmax_error = 0\n");
+    const scene::Scene asGrid = scene("settle = true\n"), asTin = scene("settle = true\n[tin]\nmax_error = 0\n");
     const Replica tin(asTin);
-    const sand::HeightField there = sand::sampled(tin, asTin.tin->holes.get());
+    const sand::HeightField there = scene::sampled(tin, asTin.tin->holes.get());
     double worst = 0, sum = 0;
     int count = 0;
     for (int row = 0; row < kRasterSide; ++row) {

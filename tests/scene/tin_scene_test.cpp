@@ -17,16 +17,16 @@ namespace {
 class TinScene : public test::FolderTest {
 protected:
     /// `tin` begins on line 7.
-    [[nodiscard]] sand::Scene scene(int columns, const std::string& kind, const std::string& tin,
-                                    const std::string& material = "") const {
+    [[nodiscard]] scene::Scene scene(int columns, const std::string& kind, const std::string& tin,
+                                     const std::string& material = "") const {
         return loaded(
             fmt::format("[field]\ncolumns = {}\nwidth = 2.0\n[terrain]\nkind = \"{}\"\n[tin]\n{}"
                         "[material]\n{}[tool]\nradius = 0.1\n",
                         columns, kind, tin, material));
     }
-    [[nodiscard]] sand::Scene loaded(const std::string& text) const {
+    [[nodiscard]] scene::Scene loaded(const std::string& text) const {
         std::ofstream(folder_ / "s.toml") << text;
-        return sand::loadScene(folder_ / "s.toml");
+        return scene::loadScene(folder_ / "s.toml");
     }
     /// Without the folder.
     template <class Load>
@@ -45,7 +45,7 @@ protected:
         }
     }
     /// `tin` begins on line 5.
-    [[nodiscard]] sand::Scene survey(const std::string& tin) const {
+    [[nodiscard]] scene::Scene survey(const std::string& tin) const {
         return loaded(
             fmt::format("[terrain]\nkind = \"points\"\nfile = \"p.csv\"\n[tin]\n{}"
                         "[material]\ntalus_deg = 34\n[tool]\nradius = 1\n",
@@ -72,7 +72,7 @@ TEST_F(TinScene, HasNoMoreVerticesThanTheFileAllows) {
     EXPECT_EQ(scene(64, "dunes", "vertices = 4\n").tin->places.size(), 4U);
     for (const int vertices : {5, 20, 100, 1000}) {
         for (const char* widest : {"", "widest = 0\n", "widest = 2\n"}) {
-            const sand::Scene read = scene(64, "dunes", fmt::format("vertices = {}\n{}", vertices, widest));
+            const scene::Scene read = scene(64, "dunes", fmt::format("vertices = {}\n{}", vertices, widest));
             EXPECT_LE(read.tin->places.size(), static_cast<std::size_t>(vertices)) << widest;
             EXPECT_EQ(read.tin->settings.mostVertices, vertices);
         }
@@ -93,7 +93,7 @@ TEST_F(TinScene, RefusesPointsThatLieNearerThanItsVerticesAllow) {
 }
 
 TEST_F(TinScene, PointsAtWidestMayBeMoreThanTheUsualVertices) {
-    const sand::Scene read = scene(512, "flat", "widest = 0.00390625\n");
+    const scene::Scene read = scene(512, "flat", "widest = 0.00390625\n");
     EXPECT_EQ(read.tin->places.size(), 4U + 512 * 512);
     EXPECT_EQ(read.tin->settings.mostVertices, 4 + 512 * 512) << "and the tool makes none";
     EXPECT_EQ(scene(512, "flat", "").tin->settings.mostVertices, 1 << 18);
@@ -134,7 +134,7 @@ TEST_F(TinScene, AReplicaTakesNoLessMemoryThanItsHostIsAskedFor) {
         return heap.uordblks + heap.hblkhd;
     };
     const std::size_t before = taken();
-    const sand::Scene received = sand::Scene::decode(bytes);
+    const scene::Scene received = scene::Scene::decode(bytes);
     sand::Replica terrain(received);
     (void)terrain.stateHash();
     const std::size_t after = taken();
@@ -145,7 +145,7 @@ TEST_F(TinScene, AReplicaTakesNoLessMemoryThanItsHostIsAskedFor) {
 #endif
 
 TEST_F(TinScene, LevelGroundIsItsCornersAndThePointsAtWidest) {
-    const sand::Scene read = scene(40, "flat", "max_error = 0\nwidest = 0.4\n");  // 8 cells
+    const scene::Scene read = scene(40, "flat", "max_error = 0\nwidest = 0.4\n");  // 8 cells
     EXPECT_EQ(read.tin->places.size(), 4U + 5 * 5);
     EXPECT_EQ(read.tin->places[2], (sand::tin::Place{40 * 256, 40 * 256}));
     EXPECT_EQ(read.tin->heights, std::vector<std::int32_t>(29, 0));

@@ -21,8 +21,8 @@ inline constexpr double kScale = haptic_bridge::kTouchField > 0 ? 2 / haptic_bri
 inline constexpr double kPapersRadius = 0.01;                                                          // [scene unit]
 
 /// Level sand, by default the first paper's field (−1,1)²; the tool's radius is 0.01.
-inline sand::Scene levelSand(const sand::ForceConstants& force = {}, int cells = 512, double side = 2) {
-    sand::Scene scene;
+inline scene::Scene levelSand(const sand::ForceConstants& force = {}, int cells = 512, double side = 2) {
+    scene::Scene scene;
     scene.terrain = sand::HeightField(cells, cells, side / cells);
     scene.force = force;
     scene.rules.columns = scene.rules.rows = cells;
@@ -37,7 +37,7 @@ inline sand::Scene levelSand(const sand::ForceConstants& force = {}, int cells =
 class ArmOnSand : public haptic_bridge::Device {
 public:
     /// `claimed` is what its maker says of it, which may be wrong.
-    ArmOnSand(std::unique_ptr<SimulatedArm> arm, const sand::Scene& scene, const ArmPhysics& claimed)
+    ArmOnSand(std::unique_ptr<SimulatedArm> arm, const scene::Scene& scene, const ArmPhysics& claimed)
         : arm_(std::move(arm)),
           claimed_(claimed),
           halfSide_(scene.terrain.columns() * scene.terrain.cellSize() / 2),
@@ -64,11 +64,11 @@ private:
 /// One arm, one hand and one surface under a virtual clock.
 class ArmSession {
 public:
-    ArmSession(const sand::Scene& scene, std::unique_ptr<SimulatedArm> arm,
+    ArmSession(const scene::Scene& scene, std::unique_ptr<SimulatedArm> arm,
                haptic_bridge::Guards::Mode mode = haptic_bridge::Guards::Mode::on)
         : ArmSession(scene, std::move(arm), mode, nullptr) {}
     /// `claimed`, unless null, is what the guards are told of the arm.
-    ArmSession(const sand::Scene& scene, std::unique_ptr<SimulatedArm> arm, haptic_bridge::Guards::Mode mode,
+    ArmSession(const scene::Scene& scene, std::unique_ptr<SimulatedArm> arm, haptic_bridge::Guards::Mode mode,
                const ArmPhysics* claimed)
         : arm_(arm.get()),
           hand_(scene,
@@ -95,15 +95,15 @@ public:
         }
     }
     [[nodiscard]] SimulatedArm& arm() { return *arm_; }
-    [[nodiscard]] haptic_bridge::Hand& hand() { return hand_; }
-    [[nodiscard]] haptic_bridge::Surface& surface() { return surface_; }
+    [[nodiscard]] haptic_bridge::HapticTick& hand() { return hand_; }
+    [[nodiscard]] haptic_bridge::FeltSand& surface() { return surface_; }
     [[nodiscard]] const haptic_bridge::HandSample& sample() const { return sample_; }
     [[nodiscard]] double time() const { return time_; }
 
 private:
     SimulatedArm* arm_;
-    haptic_bridge::Hand hand_;
-    haptic_bridge::Surface surface_;
+    haptic_bridge::HapticTick hand_;
+    haptic_bridge::FeltSand surface_;
     haptic_bridge::HandSample sample_;
     double time_ = 0;
 };
@@ -140,7 +140,7 @@ inline SimulatedArm::Path toAndFro(double depth /* [m] */, double speed /* [m/s]
 
 /// "Rests" is below 1 mm/s within 3 s. An arm that is heavier than its damping can stop in that time, were it free, is
 /// given what the slowest loop within its limits takes: half of the damping is left to decay at b/4m.
-inline Outcome run(const Trial& trial, const sand::Scene& scene) {
+inline Outcome run(const Trial& trial, const scene::Scene& scene) {
     const double depth = trial.depth * scene.toolRadius() / kScale;  // [m]
     constexpr double kWarm = 2.01;
     constexpr haptic_bridge::Grip kGrip{300, 5};

@@ -47,11 +47,11 @@ struct FourNeighbours {
 
 /// Sweeps a closed field of square cells until nothing moves; returns all that passed its faces.
 template <class Law>
-sand::NetFlux relax(sand::HeightField& field, std::int32_t threshold, Law law) {
-    sand::NetFlux total(field.columns(), field.rows());
+sand::grid::NetFlux relax(sand::HeightField& field, std::int32_t threshold, Law law) {
+    sand::grid::NetFlux total(field.columns(), field.rows());
     for (bool moved = true; moved;) {
         moved = false;
-        sand::NetFlux now(field.columns(), field.rows());
+        sand::grid::NetFlux now(field.columns(), field.rows());
         for (int y = 0; y < field.rows(); ++y) {
             for (int x = 0; x < field.columns(); ++x) {
                 const double here = field.height(x, y);

@@ -70,7 +70,7 @@ inline Extremes extremesOf(const sand::HeightField& field) {
 inline std::int64_t relax(sand::HeightField& field, const sand::Rules& rules, int most = 1000000) {
     const std::int64_t volume = field.volume();
     const Extremes before = extremesOf(field);
-    sand::Erosion erosion(field, rules);
+    sand::grid::Erosion erosion(field, rules);
     const std::int64_t outflow = erosion.sweep(field, most);
     EXPECT_TRUE(erosion.settled()) << nameOf(rules.scheme) << " still moves after " << most << " sweeps";
     EXPECT_EQ(field.volume() + outflow, volume);

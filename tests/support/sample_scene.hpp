@@ -17,8 +17,8 @@ namespace sample {
 
 inline constexpr double kWidth = 2;  // [scene unit], as in the first paper
 
-inline sand::Scene flatScene(int columns, int rows, double toolRadius = 0.04) {
-    sand::Scene scene;
+inline scene::Scene flatScene(int columns, int rows, double toolRadius = 0.04) {
+    scene::Scene scene;
     scene.terrain = sand::HeightField(columns, rows, kWidth / columns);
     scene.rules.columns = columns;
     scene.rules.rows = rows;
@@ -30,19 +30,19 @@ inline sand::Scene flatScene(int columns, int rows, double toolRadius = 0.04) {
     return scene;
 }
 
-inline sand::Scene duneScene(int columns) {
-    sand::Scene scene = flatScene(columns, columns);
-    sand::makeDunes({}, scene.terrain);
+inline scene::Scene duneScene(int columns) {
+    scene::Scene scene = flatScene(columns, columns);
+    sand::grid::makeDunes({}, scene.terrain);
     return scene;
 }
 
-inline sand::ProbePoint probeAt(const sand::Scene& scene, const glm::dvec3& place) {
+inline sand::ProbePoint probeAt(const scene::Scene& scene, const glm::dvec3& place) {
     const glm::dvec3 units = place / scene.terrain.cellSize() * double{sand::kProbePerCell};
     return {static_cast<std::int32_t>(units.x), static_cast<std::int32_t>(units.y), static_cast<std::int32_t>(units.z)};
 }
 
 /// Drags the tool along a straight line, a step each centimetre, and lets the sand settle for some steps.
-inline void drag(sand::Replica& terrain, const sand::Scene& scene, const glm::dvec3& from, const glm::dvec3& to) {
+inline void drag(sand::Replica& terrain, const scene::Scene& scene, const glm::dvec3& from, const glm::dvec3& to) {
     sand::Step step;
     const int steps = 1 + static_cast<int>(glm::length(to - from) / 0.01);
     for (int i = 0; i <= steps; ++i) {
@@ -76,9 +76,9 @@ inline render_node::Camera camera(const glm::dvec3& eye, const glm::dvec3& targe
 }
 
 /// These layers are shown, no other.
-inline lockstep::Layers layersOf(std::initializer_list<lockstep::Layer> shown) {
-    lockstep::Layers layers;
-    for (const lockstep::Layer layer : shown) {
+inline lockstep::Overlays layersOf(std::initializer_list<lockstep::Overlay> shown) {
+    lockstep::Overlays layers;
+    for (const lockstep::Overlay layer : shown) {
         layers.set(layer, true);
     }
     return layers;
@@ -86,7 +86,7 @@ inline lockstep::Layers layersOf(std::initializer_list<lockstep::Layer> shown) {
 
 using Pixels = std::vector<std::uint8_t>;
 
-inline Pixels draw(render_node::SandView& view, const render_node::Camera& camera,
+inline Pixels draw(render_node::ScenePainter& view, const render_node::Camera& camera,
                    const render_node::EyeTarget& target) {
     view.draw(camera, target);
     return target.read();

@@ -14,8 +14,8 @@
 namespace samples {
 
 /// Level sand, talus 45 degrees, no band, a tool of `toolCells` cells.
-inline sand::Scene flatScene(int columns, int rows, double toolCells = 4) {
-    sand::Scene scene;
+inline scene::Scene flatScene(int columns, int rows, double toolCells = 4) {
+    scene::Scene scene;
     scene.name = "flat";
     scene.terrain = sand::HeightField(columns, rows, 1.0);
     scene.rules.columns = columns;

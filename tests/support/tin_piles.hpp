@@ -17,9 +17,9 @@
 /// units.
 namespace tin_piles {
 
-using sand::tin::Layer;
 using sand::tin::Place;
 using sand::tin::Vertex;
+using sand::tin::VertexSand;
 
 inline constexpr int kCell = 256;         // [probe unit]
 inline constexpr double kHeight = 65536;  // [unit], of a cell
@@ -69,8 +69,8 @@ inline std::vector<Place> placesOf(Kind kind, int n, double degrees, std::uint32
 }
 
 /// Level sand with jittered places.
-inline sand::tin::Start levelStart(int side /* [cell] */, std::uint32_t seed) {
-    sand::tin::Start start;
+inline sand::tin::TinStart levelStart(int side /* [cell] */, std::uint32_t seed) {
+    sand::tin::TinStart start;
     start.width = start.depth = side * kCell;
     start.places = {{0, 0}, {start.width, 0}, {start.width, start.depth}, {0, start.depth}};
     const auto more = placesOf(Kind::jittered, side, 0, seed);
@@ -79,10 +79,10 @@ inline sand::tin::Start levelStart(int side /* [cell] */, std::uint32_t seed) {
     return start;
 }
 
-inline Layer layerOf(Kind kind, int n, double degrees = 0, std::uint32_t seed = 1) {
+inline VertexSand layerOf(Kind kind, int n, double degrees = 0, std::uint32_t seed = 1) {
     sand::tin::Mesh mesh(n * kCell, n * kCell);
     static_cast<void>(mesh.insert(placesOf(kind, n, degrees, seed)));
-    return Layer(std::move(mesh));
+    return VertexSand(std::move(mesh));
 }
 
 /// Calls visit(weights, x, y) for the centres of 256 equal parts of a triangle.
@@ -106,7 +106,7 @@ void everywhereIn(const std::array<Place, 3>& at, const Visit& visit) {
 
 /// Calls visit(corners, doubled area [probe unit²], weights, x, y) all over the field.
 template <class Visit>
-void everywhere(const Layer& layer, const Visit& visit) {
+void everywhere(const VertexSand& layer, const Visit& visit) {
     const sand::tin::Triangles& mesh = layer.triangles();
     for (const sand::tin::Triangle& triangle : mesh.triangles) {
         if (triangle.alive()) {
@@ -123,7 +123,7 @@ void everywhere(const Layer& layer, const Visit& visit) {
 
 /// Makes the volume of every vertex what the profile z = f(x, y) [cell] has under the vertex's share of the surface.
 template <class Profile>
-void fill(Layer& layer, const Profile& profile) {
+void fill(VertexSand& layer, const Profile& profile) {
     std::vector<double> volumes(layer.volumes().size());
     everywhere(layer, [&](const std::array<Vertex, 3>& corner, double area, const auto& weights, double x, double y) {
         for (std::size_t k = 0; k < 3; ++k) {
@@ -140,7 +140,7 @@ void fill(Layer& layer, const Profile& profile) {
 
 /// Volume between the surface and a profile, over that of the profile, where `counts(x, y)`.
 template <class Profile, class Counts>
-double misplaced(const Layer& layer, const Profile& profile, const Counts& counts) {
+double misplaced(const VertexSand& layer, const Profile& profile, const Counts& counts) {
     double wrong = 0;
     double all = 0;
     everywhere(layer, [&](const std::array<Vertex, 3>& corner, double area, const auto& weights, double x, double y) {
@@ -158,12 +158,12 @@ double misplaced(const Layer& layer, const Profile& profile, const Counts& count
 }
 
 template <class Profile>
-double misplaced(const Layer& layer, const Profile& profile) {
+double misplaced(const VertexSand& layer, const Profile& profile) {
     return misplaced(layer, profile, [](double, double) { return true; });
 }
 
 /// Height of the surface over a place [cell].
-inline double heightAt(const Layer& layer, Place place, std::int32_t& triangle) {
+inline double heightAt(const VertexSand& layer, Place place, std::int32_t& triangle) {
     const sand::tin::Located there = locate(layer.triangles(), place, triangle);
     triangle = there.triangle;
     const auto& corner = layer.triangles().triangles[static_cast<std::size_t>(triangle)].corner;
@@ -182,7 +182,7 @@ struct Extremes {
     double lowest = std::numeric_limits<double>::max(), highest = std::numeric_limits<double>::lowest();
 };
 
-inline Extremes extremesOf(const Layer& layer) {
+inline Extremes extremesOf(const VertexSand& layer) {
     Extremes result;
     for (Vertex vertex = 0; vertex < static_cast<Vertex>(layer.heights().size()); ++vertex) {
         if (layer.triangles().alive(vertex)) {

@@ -32,7 +32,7 @@ pictures::Image imageOf(const Picture& picture) {
 }
 
 /// Sand with a furrow from west to east, a little north of the middle.
-sand::Replica furrowed(const sand::Scene& scene) {
+sand::Replica furrowed(const scene::Scene& scene) {
     sand::Replica terrain(scene);
     sand::Step step;
     step.number = 1;
@@ -81,7 +81,7 @@ protected:
     }
     Pose pose() { return mouse_->read(time_ += 1e-3); }
 
-    const sand::Scene scene_ = samples::flatScene(96, 96);
+    const scene::Scene scene_ = samples::flatScene(96, 96);
     const sand::Replica terrain_ = furrowed(scene_);
     std::unique_ptr<support::XServer> server_;
     std::unique_ptr<MouseDevice> mouse_;

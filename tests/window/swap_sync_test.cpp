@@ -19,7 +19,7 @@ using render_node::EyesByRetrace;
 using render_node::GlxDrawable;
 using render_node::GlxLoader;
 using render_node::hiddenPixels;
-using render_node::PixelRectangle;
+using render_node::ScreenRect;
 using render_node::SwapGroup;
 
 /// A driver; its functions are plain pointers, so it is one for all tests, made anew by each.
@@ -185,13 +185,13 @@ TEST(OutputPictures, FillBothQuadBuffersInEveryFrame) {
 }
 
 TEST(ScreenCover, CountsThePixelsThatNoMonitorShows) {
-    const PixelRectangle window{{100, 50}, {300, 150}};
+    const ScreenRect window{{100, 50}, {300, 150}};
     EXPECT_EQ(hiddenPixels(window, {}), 200 * 100);
-    const PixelRectangle all{{0, 0}, {400, 300}};
-    const PixelRectangle leftHalf{{0, 0}, {200, 300}};
-    const PixelRectangle rightHalf{{200, 0}, {400, 300}};
-    const PixelRectangle inside{{120, 60}, {130, 80}};
-    const PixelRectangle elsewhere{{300, 0}, {400, 300}};
+    const ScreenRect all{{0, 0}, {400, 300}};
+    const ScreenRect leftHalf{{0, 0}, {200, 300}};
+    const ScreenRect rightHalf{{200, 0}, {400, 300}};
+    const ScreenRect inside{{120, 60}, {130, 80}};
+    const ScreenRect elsewhere{{300, 0}, {400, 300}};
     EXPECT_EQ(hiddenPixels(window, std::array{all}), 0);
     EXPECT_EQ(hiddenPixels(window, std::array{leftHalf}), 100 * 100);
     EXPECT_EQ(hiddenPixels(window, std::array{leftHalf, rightHalf}), 0);

@@ -107,8 +107,8 @@ int show(const Options& options) {
     const auto context = render_node::makeContext(render_node::backendNamed(options.gl), wall, wall.tiles[0]);
     std::cout << "context " << context->name() << "\nrenderer " << context->renderer() << "\n";
 
-    const sand::Scene scene = sample::duneScene(options.cells);
-    render_node::SandView view(scene, glm::dmat4(1));
+    const scene::Scene scene = sample::duneScene(options.cells);
+    render_node::ScenePainter view(scene, glm::dmat4(1));
     view.setTool(sample::probeAt(scene, {1, 1, 0.05}), true);
     const EyeTarget left(options.width, options.height);
     const EyeTarget right(options.width, options.height);

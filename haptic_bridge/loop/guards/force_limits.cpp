@@ -27,7 +27,7 @@ double rounded(double number, int digits = 2) {
 
 }  // namespace
 
-LawAtRadius lawAtRadius(const sand::Scene& scene) {
+LawAtRadius lawAtRadius(const scene::Scene& scene) {
     const double radius = scene.toolRadius();
     if (!(radius > 0)) {
         return {};

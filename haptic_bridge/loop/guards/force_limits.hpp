@@ -17,7 +17,7 @@ struct LawAtRadius {
 };
 
 /// Asks the scene's own force model, on level sand.
-[[nodiscard]] LawAtRadius lawAtRadius(const sand::Scene& scene);
+[[nodiscard]] LawAtRadius lawAtRadius(const scene::Scene& scene);
 
 /// What forces a device can be trusted with: computed once, from its physics, the scale it works at and the law.
 ///

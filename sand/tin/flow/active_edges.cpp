@@ -37,13 +37,13 @@ std::vector<Vertex> ActiveEdges::takeReleased(const Underside* held) {
 
 double ActiveEdges::undersideAt(Vertex vertex, const Place& place) {
     if (held_ == nullptr) {
-        return MovingSand::kFree;
+        return ActiveMesh::kFree;
     }
     VertexNote& note = noteOf(vertex);
     if (note.undersideKnown != turn_) {
         note.undersideKnown = turn_;
         const std::int32_t underside = (*held_)(place);
-        note.underside = underside == kNoUnderside ? MovingSand::kFree : underside;
+        note.underside = underside == kNoUnderside ? ActiveMesh::kFree : underside;
         if (underside != kNoUnderside && !note.isHeldBack) {
             note.isHeldBack = true;
             heldBack_.push_back({vertex, place, underside});
@@ -57,7 +57,7 @@ void ActiveEdges::makeRoom(std::size_t vertices, std::size_t slots) {
     ofSlots_.resize(std::max(ofSlots_.size(), slots));
 }
 
-void ActiveEdges::begin(const Layer& layer, bool band, const Underside* held) {
+void ActiveEdges::begin(const VertexSand& layer, bool band, const Underside* held) {
     band_ = band;
     held_ = held;
     restAround_ = 0;
@@ -79,7 +79,7 @@ void ActiveEdges::begin(const Layer& layer, bool band, const Underside* held) {
     }
 }
 
-std::int32_t ActiveEdges::localOf(const Layer& layer, Vertex vertex) {
+std::int32_t ActiveEdges::localOf(const VertexSand& layer, Vertex vertex) {
     std::int32_t& local = noteOf(vertex).local;
     if (local == kNobody) {
         const auto at = index(vertex);
@@ -90,7 +90,7 @@ std::int32_t ActiveEdges::localOf(const Layer& layer, Vertex vertex) {
     return local;
 }
 
-std::int32_t ActiveEdges::facetAt(const Layer& layer, const Slopes& slopes, std::int32_t slot) {
+std::int32_t ActiveEdges::facetAt(const VertexSand& layer, const Slopes& slopes, std::int32_t slot) {
     std::int32_t& number = noteOfSlot(slot).facet;
     if (number == kNobody) {
         Facet facet = facetOf(layer.triangles(), slot, slopes);
@@ -103,7 +103,7 @@ std::int32_t ActiveEdges::facetAt(const Layer& layer, const Slopes& slopes, std:
     return number;
 }
 
-void ActiveEdges::watch(const Layer& layer, const Slopes& slopes, Vertex vertex) {
+void ActiveEdges::watch(const VertexSand& layer, const Slopes& slopes, Vertex vertex) {
     const Triangles& mesh = layer.triangles();
     if (!mesh.alive(vertex) || layer.stars()[index(vertex)] == 0) {
         return;
@@ -120,7 +120,7 @@ void ActiveEdges::watch(const Layer& layer, const Slopes& slopes, Vertex vertex)
     });
 }
 
-void ActiveEdges::watchEdges(const Layer& layer, const Slopes& slopes, Weights& weights, std::int32_t slot) {
+void ActiveEdges::watchEdges(const VertexSand& layer, const Slopes& slopes, Weights& weights, std::int32_t slot) {
     const Triangles& mesh = layer.triangles();
     std::uint8_t& watched = noteOfSlot(slot).watched;
     for (int corner = 0; corner < 3 && watched != kAllSides; ++corner) {
@@ -147,7 +147,7 @@ void ActiveEdges::watchEdges(const Layer& layer, const Slopes& slopes, Weights& 
 }
 
 // Where nothing has flowed before, a triangle slides from a slope on that is never below the one without slack.
-bool ActiveEdges::maySlide(const Layer& layer, const Slopes& slopes, std::int32_t slot) {
+bool ActiveEdges::maySlide(const VertexSand& layer, const Slopes& slopes, std::int32_t slot) {
     const Triangles& mesh = layer.triangles();
     std::array<Place, 3> at;
     std::array<double, 3> was{}, under{};
@@ -185,7 +185,7 @@ void ActiveEdges::fetchBeside(const Triangles& mesh, Vertex vertex) const {
     }
 }
 
-void ActiveEdges::wake(const Layer& layer, const Slopes& slopes, std::span<const Vertex> vertices) {
+void ActiveEdges::wake(const VertexSand& layer, const Slopes& slopes, std::span<const Vertex> vertices) {
     const Triangles& mesh = layer.triangles();
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         const Vertex vertex = vertices[i];
@@ -221,13 +221,13 @@ void ActiveEdges::wake(const Layer& layer, const Slopes& slopes, std::span<const
 
 bool ActiveEdges::isHeld(const Triangle& triangle) {
     return held_ != nullptr && std::any_of(triangle.corner.begin(), triangle.corner.end(), [this](Vertex corner) {
-               return noteOf(corner).underside < MovingSand::kFree;
+               return noteOf(corner).underside < ActiveMesh::kFree;
            });
 }
 
 // Beside an edge that nobody watches no triangle slides, and nothing flows over it that could go on. Where no volume
 // changes no height does, and none begins to; but with a band, sand that flows through moves what it touches.
-bool ActiveEdges::sweep(const Layer& layer, const Slopes& slopes, Weights& weights, double momentum) {
+bool ActiveEdges::sweep(const VertexSand& layer, const Slopes& slopes, Weights& weights, double momentum) {
     std::size_t known = 0;
     do {
         const std::size_t first = std::exchange(known, sand_.facetCount());
@@ -253,7 +253,7 @@ bool ActiveEdges::sweep(const Layer& layer, const Slopes& slopes, Weights& weigh
     return result.moved;
 }
 
-void ActiveEdges::store(Layer& layer, std::vector<Vertex>& moved) const {
+void ActiveEdges::store(VertexSand& layer, std::vector<Vertex>& moved) const {
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
         const Vertex vertex = vertices_[i];
         if (const std::int64_t risen = sand_.volume(i) - layer.volumes()[index(vertex)]; risen != 0) {

@@ -30,15 +30,15 @@ public:
     [[nodiscard]] std::vector<Vertex> takeReleased(const Underside* held);
     /// Takes the layer's sand as it is now, for a run of sweeps under this obstacle, or none; nothing flows yet.
     /// `band`: sand at rest starts to slide later than sliding sand stops.
-    void begin(const Layer& layer, bool band, const Underside* held);
+    void begin(const VertexSand& layer, bool band, const Underside* held);
     /// Watches every triangle that may slide in the next sweep because of these vertices: those around them that are
     /// steep enough. To be called right after begin().
-    void wake(const Layer& layer, const Slopes& slopes, std::span<const Vertex> vertices);
+    void wake(const VertexSand& layer, const Slopes& slopes, std::span<const Vertex> vertices);
     /// One sweep, which then watches all that it may have set in motion; false when nothing flowed. `momentum`: what of
     /// the last sweep's fluxes goes on, 0 to 1.
-    bool sweep(const Layer& layer, const Slopes& slopes, Weights& weights, double momentum);
+    bool sweep(const VertexSand& layer, const Slopes& slopes, Weights& weights, double momentum);
     /// Gives the layer its sand, and adds who has another volume now to `moved`.
-    void store(Layer& layer, std::vector<Vertex>& moved) const;
+    void store(VertexSand& layer, std::vector<Vertex>& moved) const;
     /// Whether so much has been swept in vain since it was forgotten last that to forget it would have paid.
     [[nodiscard]] bool manyRest() const;
     /// Forgets what the last sweep cannot have set in motion. The layer must have got its sand.
@@ -62,15 +62,15 @@ private:
     void fetch(const Triangles& mesh, Vertex vertex) const;
     void fetchBeside(const Triangles& mesh, Vertex vertex) const;
     [[nodiscard]] bool isHeld(const Triangle& triangle);  // its corners' undersides are known
-    [[nodiscard]] bool maySlide(const Layer& layer, const Slopes& slopes, std::int32_t slot);
+    [[nodiscard]] bool maySlide(const VertexSand& layer, const Slopes& slopes, std::int32_t slot);
     /// All triangles around a vertex.
-    void watch(const Layer& layer, const Slopes& slopes, Vertex vertex);
-    void watchEdges(const Layer& layer, const Slopes& slopes, Weights& weights, std::int32_t slot);
+    void watch(const VertexSand& layer, const Slopes& slopes, Vertex vertex);
+    void watchEdges(const VertexSand& layer, const Slopes& slopes, Weights& weights, std::int32_t slot);
     void makeRoom(std::size_t vertices, std::size_t slots);
-    [[nodiscard]] std::int32_t facetAt(const Layer& layer, const Slopes& slopes, std::int32_t slot);
-    [[nodiscard]] std::int32_t localOf(const Layer& layer, Vertex vertex);
+    [[nodiscard]] std::int32_t facetAt(const VertexSand& layer, const Slopes& slopes, std::int32_t slot);
+    [[nodiscard]] std::int32_t localOf(const VertexSand& layer, Vertex vertex);
     [[nodiscard]] double undersideAt(Vertex vertex, const Place& place);
-    void keep(const MovingSand::Marks& kept);
+    void keep(const ActiveMesh::Marks& kept);
 
     /// Of a vertex, and of a slot: all that is asked for at once, for where sand begins to move it is in no cache.
     struct VertexNote {
@@ -92,7 +92,7 @@ private:
     [[nodiscard]] VertexNote& noteOf(Vertex vertex) { return ofVertices_[static_cast<std::size_t>(vertex)]; }
     [[nodiscard]] SlotNote& noteOfSlot(std::int32_t slot) { return ofSlots_[static_cast<std::size_t>(slot)]; }
 
-    MovingSand sand_;                  // by local numbers
+    ActiveMesh sand_;                  // by local numbers
     std::vector<Vertex> vertices_;     // of a local vertex
     std::vector<std::int32_t> slots_;  // of a local facet
     std::vector<Bits> bits_;           // of a local edge

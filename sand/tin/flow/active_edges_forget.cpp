@@ -15,7 +15,7 @@ bool ActiveEdges::manyRest() const {
     return inVain_ > static_cast<std::int64_t>(kSweepsToForget * sand_.vertexCount());
 }
 
-void ActiveEdges::keep(const MovingSand::Marks& kept) {
+void ActiveEdges::keep(const ActiveMesh::Marks& kept) {
     const auto areAll = [](const std::vector<std::uint8_t>& marks) {
         return std::find(marks.begin(), marks.end(), 0) == marks.end();
     };
@@ -37,7 +37,7 @@ void ActiveEdges::keep(const MovingSand::Marks& kept) {
         forget(edge.rightFacet, bits_[i].right);
     }
     bits_.resize(edges);
-    const MovingSand::Renumbering now = sand_.keep(kept);
+    const ActiveMesh::Renumbering now = sand_.keep(kept);
     const auto renumber = [](std::vector<std::int32_t>& names, const std::vector<std::int32_t>& by, const auto& local,
                              std::size_t count) {
         for (std::size_t i = 0; i < names.size(); ++i) {
@@ -69,7 +69,7 @@ std::vector<Vertex> ActiveEdges::meshChanged(const Mesh::Change& change) {
         noteOf(one.vertex).isHeldBack = !gone;
         return gone;
     });
-    MovingSand::Marks kept{std::vector<std::uint8_t>(sand_.facetCount(), 1),
+    ActiveMesh::Marks kept{std::vector<std::uint8_t>(sand_.facetCount(), 1),
                            std::vector<std::uint8_t>(sand_.edgeCount())};
     std::vector<std::uint8_t> staleVertices(sand_.vertexCount());
     for (const Vertex vertex : change.vertices) {

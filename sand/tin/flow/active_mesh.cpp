@@ -17,7 +17,7 @@ void note(std::vector<std::uint8_t>& together, std::size_t number, bool held) {
 
 }  // namespace
 
-void MovingSand::notice(std::int64_t volume, std::int64_t star) {
+void ActiveMesh::notice(std::int64_t volume, std::int64_t star) {
     largestStar_ = std::max(largestStar_, static_cast<double>(star));
     greatestHeight_ = std::max(greatestHeight_, std::abs(static_cast<double>(volume) / static_cast<double>(star)));
     if (!isWide_ && largestStar_ * greatestHeight_ >= kExactSum) {
@@ -25,13 +25,13 @@ void MovingSand::notice(std::int64_t volume, std::int64_t star) {
     }
 }
 
-void MovingSand::widen() {
+void ActiveMesh::widen() {
     isWide_ = true;
     std::transform(volumes_.begin(), volumes_.end(), wide_.begin(),
                    [](double volume) { return static_cast<std::int64_t>(volume); });
 }
 
-std::int32_t MovingSand::addVertex(std::int64_t volume, std::int64_t star, double underside) {
+std::int32_t ActiveMesh::addVertex(std::int64_t volume, std::int64_t star, double underside) {
     const auto number = static_cast<std::int32_t>(vertexCount());
     notice(volume, star);
     volumes_.push_back(static_cast<double>(volume));
@@ -43,7 +43,7 @@ std::int32_t MovingSand::addVertex(std::int64_t volume, std::int64_t star, doubl
     return number;
 }
 
-std::int32_t MovingSand::addFacet(const Facet& facet) {
+std::int32_t ActiveMesh::addFacet(const Facet& facet) {
     const auto number = static_cast<std::int32_t>(facetCount());
     first_.push_back(facet.corner[0]);
     second_.push_back(facet.corner[1]);
@@ -59,7 +59,7 @@ std::int32_t MovingSand::addFacet(const Facet& facet) {
     return number;
 }
 
-void MovingSand::addEdge(const Edge& edge) {
+void ActiveMesh::addEdge(const Edge& edge) {
     from_.push_back(edge.from);
     to_.push_back(edge.to);
     left_.push_back(edge.leftFacet);
@@ -70,7 +70,7 @@ void MovingSand::addEdge(const Edge& edge) {
     note(heldEdges_, edgeCount() - 1, isHeld(edge.from) || isHeld(edge.to));
 }
 
-void MovingSand::findHeld() {
+void ActiveMesh::findHeld() {
     std::vector<std::uint8_t> held(vertexCount());
     std::transform(undersides_.begin(), undersides_.end(), held.begin(),
                    [](double underside) { return underside < kFree ? 1 : 0; });
@@ -88,24 +88,24 @@ void MovingSand::findHeld() {
     heldKnown_ = true;
 }
 
-Facet MovingSand::facet(std::int32_t number) const {
+Facet ActiveMesh::facet(std::int32_t number) const {
     Facet facet;
     facet.corner = {first_[index(number)], second_[index(number)], third_[index(number)]};
     return facet;
 }
 
-Edge MovingSand::edge(std::size_t number) const {
+Edge ActiveMesh::edge(std::size_t number) const {
     return {.from = from_[number], .to = to_[number], .leftFacet = left_[number], .rightFacet = right_[number]};
 }
 
-void MovingSand::restart() {
+void ActiveMesh::restart() {
     largestStar_ = greatestHeight_ = 0;
     isWide_ = alwaysWide_;
     heldKnown_ = false;
     std::fill(fluxes_.begin(), fluxes_.end(), 0.0);
 }
 
-void MovingSand::place(std::size_t vertex, std::int64_t volume, std::int64_t star, double underside) {
+void ActiveMesh::place(std::size_t vertex, std::int64_t volume, std::int64_t star, double underside) {
     volumes_[vertex] = static_cast<double>(volume);
     stars_[vertex] = static_cast<double>(star);
     levels_[vertex] = {volumes_[vertex] / stars_[vertex], 0};
@@ -114,7 +114,7 @@ void MovingSand::place(std::size_t vertex, std::int64_t volume, std::int64_t sta
     wide_[vertex] = volume;
 }
 
-void MovingSand::findUnwatched(std::vector<std::int32_t>& found) const {
+void ActiveMesh::findUnwatched(std::vector<std::int32_t>& found) const {
     // Most often it is one or two of a thousand.
     constexpr std::size_t kAtOnce = 8;
     const auto isFound = [this](std::size_t i) { return static_cast<std::uint64_t>(flowed(i)) & unwatched_[i]; };
@@ -132,7 +132,7 @@ void MovingSand::findUnwatched(std::vector<std::int32_t>& found) const {
     }
 }
 
-std::span<const std::int32_t> MovingSand::slide(bool held, bool band, std::size_t first) {
+std::span<const std::int32_t> ActiveMesh::slide(bool held, bool band, std::size_t first) {
     if (held && !heldKnown_) {
         findHeld();
     }
@@ -159,7 +159,7 @@ std::span<const std::int32_t> MovingSand::slide(bool held, bool band, std::size_
     return {slidBare_.data(), count};
 }
 
-SweepResult MovingSand::move(bool held, double momentum) {
+SweepResult ActiveMesh::move(bool held, double momentum) {
     inflow_.resize(2 * vertexCount());
     const SweepEdges sweep{.edges = edgeCount(),
                            .levels = levels_.data(),
@@ -191,7 +191,7 @@ SweepResult MovingSand::move(bool held, double momentum) {
     return v3_ ? v3::moveSand(sand) : baseline::moveSand(sand);
 }
 
-SweepResult MovingSand::moveWide() {
+SweepResult ActiveMesh::moveWide() {
     wideInflow_.assign(vertexCount(), 0);
     for (Level& level : levels_) {
         level.flow = 0;

@@ -18,12 +18,12 @@ namespace sand::tin {
 /// Volumes are whole numbers, and so are fluxes. As long as the largest star times the greatest height is below 2^51
 /// they and all their sums are exact as doubles, which processors move four at a time; beyond, they are 64-bit
 /// integers, for the same result. Not thread-safe.
-class MovingSand {
+class ActiveMesh {
 public:
     static constexpr double kFree = 0x1p40;  // [unit], an underside where there is no obstacle: above all sand
 
     /// `wide` has integers from the start: for tests.
-    explicit MovingSand(bool v3 = base::machineHasV3(), bool wide = false) : v3_(v3), alwaysWide_(wide) {}
+    explicit ActiveMesh(bool v3 = base::machineHasV3(), bool wide = false) : v3_(v3), alwaysWide_(wide) {}
 
     std::int32_t addVertex(std::int64_t volume, std::int64_t star, double underside = kFree);
     /// Corners, ends and facets by their numbers here.

@@ -35,11 +35,11 @@ std::vector<std::int32_t> numberMarked(std::vector<std::int32_t>& marks) {
 
 }  // namespace
 
-std::int64_t MovingSand::restingCount() const {
+std::int64_t ActiveMesh::restingCount() const {
     return std::count_if(levels_.begin(), levels_.end(), [](const Level& level) { return !(level.flow > 0); });
 }
 
-MovingSand::Marks MovingSand::whatMayFlow() const {
+ActiveMesh::Marks ActiveMesh::whatMayFlow() const {
     std::vector<std::uint8_t> flows(vertexCount()), slides(facetCount());
     Marks marks{std::vector<std::uint8_t>(facetCount()), std::vector<std::uint8_t>(edgeCount())};
     for (std::size_t i = 0; i < flows.size(); ++i) {
@@ -55,7 +55,7 @@ MovingSand::Marks MovingSand::whatMayFlow() const {
     return marks;
 }
 
-MovingSand::Renumbering MovingSand::keep(const Marks& kept) {
+ActiveMesh::Renumbering ActiveMesh::keep(const Marks& kept) {
     Renumbering now{std::vector<std::int32_t>(vertexCount(), kNobody),
                     std::vector<std::int32_t>(facetCount(), kNobody)};
     std::vector<std::int32_t> edges(edgeCount(), kNobody);

@@ -26,7 +26,7 @@ namespace sand::tin {
 class DualProjection {
 public:
     /// `slope` [unit per probe unit]. Triangles may be steeper by what tells heights apart (slackOf).
-    DualProjection(const Layer& layer, double slope);
+    DualProjection(const VertexSand& layer, double slope);
 
     /// Iterates until the relative duality gap is small enough, or a cap, and returns the number of iterations: 0 where
     /// no triangle is too steep.
@@ -80,7 +80,7 @@ private:
     static constexpr int kReach = 2 * kMargin;       // [edge], that are computed around it
     static constexpr std::uint8_t kFar = kReach + 1;
 
-    const Layer& layer_;
+    const VertexSand& layer_;
     double slope_;
     std::vector<std::uint8_t> edges_;  // by vertex of the layer: how many lie between it and what moves
     std::vector<Vertex> vertices_;     // by local number, ascending

@@ -15,7 +15,7 @@ constexpr double kSlack = 1.0 / 16384;  // as of a grid's: fluxes are rounded, a
 
 }  // namespace
 
-DualProjection::DualProjection(const Layer& layer, double slope) : layer_(layer), slope_(slope) {
+DualProjection::DualProjection(const VertexSand& layer, double slope) : layer_(layer), slope_(slope) {
     const std::vector<Vertex> steep = steepCorners();
     if (!steep.empty()) {
         surround(steep);

@@ -18,7 +18,7 @@ Slopes slopesOf(std::int32_t threshold, std::int32_t startThreshold) {
     return {threshold / kCellSide, std::max(threshold, startThreshold) / kCellSide};
 }
 
-Erosion::Erosion(const Layer&, std::int32_t threshold, std::int32_t startThreshold) {
+Erosion::Erosion(const VertexSand&, std::int32_t threshold, std::int32_t startThreshold) {
     changeThresholds(threshold, startThreshold);
 }
 
@@ -33,7 +33,7 @@ void Erosion::changeThresholds(std::int32_t threshold, std::int32_t startThresho
     wakeAll_ = true;
 }
 
-void Erosion::changed(const Layer&, const Mesh::Change& change) {
+void Erosion::changed(const VertexSand&, const Mesh::Change& change) {
     weights_.forget(change);
     wake(active_.meshChanged(change));
     wake(change.vertices);
@@ -45,15 +45,15 @@ void Erosion::wake(const std::vector<Vertex>& vertices) {
 
 bool Erosion::settled() const { return active_.empty() && woken_.empty() && !wakeAll_; }
 
-int Erosion::sweep(Layer& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved) {
+int Erosion::sweep(VertexSand& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved) {
     return run(layer, sweeps, held, moved, true);
 }
 
-int Erosion::settle(Layer& layer, int most, std::vector<Vertex>& moved) {
+int Erosion::settle(VertexSand& layer, int most, std::vector<Vertex>& moved) {
     return run(layer, most, nullptr, moved, false);
 }
 
-int Erosion::run(Layer& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved, bool momentum) {
+int Erosion::run(VertexSand& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved, bool momentum) {
     if (sweeps <= 0) {
         return 0;
     }
@@ -76,7 +76,7 @@ int Erosion::run(Layer& layer, int sweeps, const Underside* held, std::vector<Ve
     return done;
 }
 
-void Erosion::watchWoken(const Layer& layer) {
+void Erosion::watchWoken(const VertexSand& layer) {
     if (wakeAll_) {
         woken_.resize(layer.triangles().places.size());
         std::iota(woken_.begin(), woken_.end(), 0);

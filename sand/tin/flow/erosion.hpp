@@ -43,13 +43,13 @@ using Underside = ActiveEdges::Underside;
 class Erosion {
 public:
     /// `threshold` and `startThreshold` as Rules': height units per cell size, sliding and starting to. All may move.
-    Erosion(const Layer& layer, std::int32_t threshold, std::int32_t startThreshold);
+    Erosion(const VertexSand& layer, std::int32_t threshold, std::int32_t startThreshold);
 
     /// As Mesh's.
     void reserve(std::size_t vertices);
     void changeThresholds(std::int32_t threshold, std::int32_t startThreshold);  // wakes everything
     /// The layer's mesh or sand is another there now: its weights are made anew, and it may move.
-    void changed(const Layer& layer, const Mesh::Change& change);
+    void changed(const VertexSand& layer, const Mesh::Change& change);
     /// These may move again, mesh and sand being as they were.
     void wake(const std::vector<Vertex>& vertices);
 
@@ -58,18 +58,19 @@ public:
     /// ascending, each once. Costs what moves: next to nothing once the sand lies still. Sand under an obstacle is
     /// looked at again by the next call for which it is another one there, so that nobody need wake it when the tool
     /// leaves.
-    int sweep(Layer& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved);
+    int sweep(VertexSand& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved);
     /// The same without momentum nor obstacle, until nothing moves or there were so many: it takes longer to come to
     /// rest than many calls of sweep() do, and the pile is righter.
-    int settle(Layer& layer, int most, std::vector<Vertex>& moved);
+    int settle(VertexSand& layer, int most, std::vector<Vertex>& moved);
     /// Whether nothing moves any more as things are.
     [[nodiscard]] bool settled() const;
     /// How many edges the next sweep looks at, woken ones apart.
     [[nodiscard]] std::size_t activeEdges() const { return active_.size(); }
 
 private:
-    [[nodiscard]] int run(Layer& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved, bool momentum);
-    void watchWoken(const Layer& layer);
+    [[nodiscard]] int run(VertexSand& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved,
+                          bool momentum);
+    void watchWoken(const VertexSand& layer);
 
     Slopes slopes_;
     Weights weights_;

@@ -15,7 +15,7 @@ struct Extremes {
     double least = 0, greatest = 0;  // [unit]
 };
 
-Extremes extremesOf(const Layer& layer) {
+Extremes extremesOf(const VertexSand& layer) {
     Extremes result;
     bool any = false;
     for (std::size_t i = 0; i < layer.stars().size(); ++i) {
@@ -30,14 +30,14 @@ Extremes extremesOf(const Layer& layer) {
 }
 
 /// The volume at which a vertex lies at an extreme, rounded to the inside: its quotient does not round out again.
-std::int64_t volumeAt(const Layer& layer, Vertex vertex, double extreme, double inside) {
+std::int64_t volumeAt(const VertexSand& layer, Vertex vertex, double extreme, double inside) {
     const double volume = extreme * static_cast<double>(layer.stars()[index(vertex)]);
     const double within = std::nextafter(volume, inside);
     return static_cast<std::int64_t>(inside < 0 ? std::floor(within) : std::ceil(within));
 }
 
 /// How far a vertex lies beyond the extremes: what it has too much, or too little, below 0 [volume unit].
-std::int64_t overOf(const Layer& layer, Vertex vertex, const Extremes& extremes) {
+std::int64_t overOf(const VertexSand& layer, Vertex vertex, const Extremes& extremes) {
     const double height = layer.heights()[index(vertex)];
     const std::int64_t volume = layer.volumes()[index(vertex)];
     if (height > extremes.greatest) {
@@ -46,7 +46,7 @@ std::int64_t overOf(const Layer& layer, Vertex vertex, const Extremes& extremes)
     return height < extremes.least ? volume - volumeAt(layer, vertex, extremes.least, HUGE_VAL) : 0;
 }
 
-std::vector<Vertex> besideOf(const Layer& layer, Vertex vertex) {
+std::vector<Vertex> besideOf(const VertexSand& layer, Vertex vertex) {
     std::vector<Vertex> beside;
     aroundVertex(layer.triangles(), vertex, [&](std::int32_t slot, int) {
         const Triangle& triangle = layer.triangles().triangles[index(slot)];
@@ -62,7 +62,7 @@ std::vector<Vertex> besideOf(const Layer& layer, Vertex vertex) {
 
 /// Shares `over` among the neighbours, first evenly among those that have room for it, then among those that have some
 /// left; what there is no room for evenly again: they will share it in turn.
-void share(Layer& layer, Vertex vertex, std::int64_t over, const Extremes& extremes) {
+void share(VertexSand& layer, Vertex vertex, std::int64_t over, const Extremes& extremes) {
     const std::vector<Vertex> beside = besideOf(layer, vertex);
     layer.add(vertex, -over);
     for (const int turn : {0, 1, 2}) {
@@ -84,7 +84,7 @@ void share(Layer& layer, Vertex vertex, std::int64_t over, const Extremes& extre
 
 /// What the last iteration left to do may push a vertex past the extremes: it then shares the surplus with its
 /// neighbours. False when after some rounds one is still beyond them.
-bool keepWithin(Layer& layer, const Extremes& extremes) {
+bool keepWithin(VertexSand& layer, const Extremes& extremes) {
     constexpr int kRounds = 64;
     for (int round = 0; round < kRounds; ++round) {
         bool within = true;
@@ -103,7 +103,7 @@ bool keepWithin(Layer& layer, const Extremes& extremes) {
     return false;
 }
 
-void giveBack(Layer& layer, const std::vector<std::int64_t>& volumes) {
+void giveBack(VertexSand& layer, const std::vector<std::int64_t>& volumes) {
     for (std::size_t i = 0; i < volumes.size(); ++i) {
         if (layer.volumes()[i] != volumes[i]) {
             layer.add(static_cast<Vertex>(i), volumes[i] - layer.volumes()[i]);
@@ -112,7 +112,7 @@ void giveBack(Layer& layer, const std::vector<std::int64_t>& volumes) {
 }
 
 /// Replaces the sand by its projection, or leaves it as it is where that is not possible; the number of iterations.
-int project(Layer& layer, double slope) {
+int project(VertexSand& layer, double slope) {
     const Extremes extremes = extremesOf(layer);
     const std::vector<std::int64_t> before = layer.volumes();
     DualProjection projection(layer, slope);
@@ -129,7 +129,7 @@ int project(Layer& layer, double slope) {
 
 }  // namespace
 
-Settled settle(Layer& layer, std::int32_t threshold, std::int32_t startThreshold, int most) {
+Settled settle(VertexSand& layer, std::int32_t threshold, std::int32_t startThreshold, int most) {
     const std::vector<std::int64_t> before = layer.volumes();
     Settled result;
     std::vector<Vertex> moved;

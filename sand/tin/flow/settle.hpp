@@ -22,6 +22,6 @@ struct Settled {
 /// Volume is exact, and no vertex ends higher than the highest or lower than the lowest was: where the projection would
 /// leave these, sweeps do all of it. It ends by itself; `most` bounds how long that takes, for meshes with stars of
 /// very different size.
-Settled settle(Layer& layer, std::int32_t threshold, std::int32_t startThreshold, int most = 1'000'000);
+Settled settle(VertexSand& layer, std::int32_t threshold, std::int32_t startThreshold, int most = 1'000'000);
 
 }  // namespace sand::tin

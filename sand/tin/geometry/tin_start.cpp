@@ -39,7 +39,7 @@ void encodeHoles(const Holes& holes, base::ByteWriter& writer) {
     }
 }
 
-std::shared_ptr<const Holes> decodeHoles(base::ByteReader& reader, const Start& start) {
+std::shared_ptr<const Holes> decodeHoles(base::ByteReader& reader, const TinStart& start) {
     if (start.width % kLatticePerCell != 0 || start.depth % kLatticePerCell != 0) {
         throw base::FormatError("a TIN with holes in cells that are not whole");
     }
@@ -59,7 +59,7 @@ std::shared_ptr<const Holes> decodeHoles(base::ByteReader& reader, const Start& 
     }
 }
 
-void requireCorners(const Start& start) {
+void requireCorners(const TinStart& start) {
     const std::vector<Place> corners{{0, 0}, {start.width, 0}, {start.width, start.depth}, {0, start.depth}};
     if (start.places.size() < 4 || !std::equal(corners.begin(), corners.end(), start.places.begin())) {
         throw base::FormatError("a TIN without its field's corners");
@@ -87,7 +87,7 @@ double mostHeight(int columns, int rows) {
     return kMostVolume / (6.0 * columns * rows * kLatticePerCell * kLatticePerCell);
 }
 
-void Start::encode(base::ByteWriter& writer) const {
+void TinStart::encode(base::ByteWriter& writer) const {
     for (const std::int32_t number :
          {width, depth, meanHeight, settings.spacing, settings.widest, settings.maxError, settings.mostVertices,
           (settings.keepConstraints ? kKeeps : 0) | (holes != nullptr ? kHasHoles : 0)}) {
@@ -109,9 +109,9 @@ void Start::encode(base::ByteWriter& writer) const {
     }
 }
 
-Start Start::decode(base::ByteReader& reader) {
+TinStart TinStart::decode(base::ByteReader& reader) {
     constexpr std::int32_t kLongest = kMaxSide * kLatticePerCell;
-    Start start;
+    TinStart start;
     start.width = between(reader, 1, kLongest);
     start.depth = between(reader, 1, kLongest);
     start.meanHeight = between(reader, -kMaxHeight, kMaxHeight);
@@ -142,7 +142,7 @@ Start Start::decode(base::ByteReader& reader) {
     return start;
 }
 
-std::uint64_t Start::digest() const {
+std::uint64_t TinStart::digest() const {
     base::ByteWriter writer;
     encode(writer);
     const std::uint64_t digest = XXH3_64bits(writer.bytes().data(), writer.bytes().size());

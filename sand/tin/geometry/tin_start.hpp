@@ -33,7 +33,7 @@ struct Settings {
 /// The TIN a session starts with: vertices, their heights, and edges that must be there. Its vertices stay; those that
 /// a tool has put between them may go again. Computed once by whoever loads
 /// the scene; every replica triangulates it alike.
-struct Start {
+struct TinStart {
     std::int32_t width = 0, depth = 0;  // [probe unit]; the first four places are the corners, as Mesh's
     std::vector<Place> places;
     std::vector<std::int32_t> heights;                   // [unit], by place
@@ -45,7 +45,7 @@ struct Start {
     void encode(base::ByteWriter& writer) const;
     /// Throws base::FormatError for bytes that are none: places beside the field or twice, edges of nobody, holes out
     /// of order or on cells that are not whole.
-    static Start decode(base::ByteReader& reader);
+    static TinStart decode(base::ByteReader& reader);
     /// Equal digests mean equal sand from equal steps; never 0.
     [[nodiscard]] std::uint64_t digest() const;
 };

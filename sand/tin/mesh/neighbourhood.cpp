@@ -47,7 +47,7 @@ void sortOnce(std::vector<std::int32_t>& numbers) {
 }
 
 // Where a tool comes down nothing is in any cache, and each triangle tells where the next are.
-void Window::fetchAhead(const Triangles& mesh, std::size_t next, std::size_t end) const {
+void Neighbourhood::fetchAhead(const Triangles& mesh, std::size_t next, std::size_t end) const {
     constexpr std::size_t kFar = 16, kNear = 8;  // triangles, until they are looked at
     if (next + kFar < end) {
         __builtin_prefetch(&mesh.triangles[static_cast<std::size_t>(found_[next + kFar])]);
@@ -64,7 +64,7 @@ void Window::fetchAhead(const Triangles& mesh, std::size_t next, std::size_t end
 
 // A box is convex: the triangles that reach into it hang together by their edges, and so does the search, which goes on
 // through every triangle whose own box overlaps it.
-void Window::look(const Triangles& mesh, const Box& wanted) {
+void Neighbourhood::look(const Triangles& mesh, const Box& wanted) {
     vertices_.clear();
     triangles_.clear();
     const Box box = box_ = wanted.clippedTo(mesh);
@@ -114,7 +114,7 @@ void Window::look(const Triangles& mesh, const Box& wanted) {
     sortOnce(vertices_);
 }
 
-void Window::follow(const Triangles& mesh, const std::vector<Vertex>& changed) {
+void Neighbourhood::follow(const Triangles& mesh, const std::vector<Vertex>& changed) {
     triangles_.clear();
     stay_.clear();
     std::set_difference(vertices_.begin(), vertices_.end(), changed.begin(), changed.end(), std::back_inserter(stay_));

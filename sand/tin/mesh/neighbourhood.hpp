@@ -39,7 +39,7 @@ void sortOnce(std::vector<std::int32_t>& numbers);
 
 /// What of a mesh lies around some place. Costs what lies there, and the way from where it was asked for last; the
 /// first time, the whole mesh.
-class Window {
+class Neighbourhood {
 public:
     void reserve(std::size_t vertices) { seen_.reserve(2 * vertices); }
     /// Looks again. `box` is clipped to the field; an empty one shows nothing.

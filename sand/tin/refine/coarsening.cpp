@@ -13,7 +13,7 @@ constexpr std::size_t kMostAround = 64;  // a vertex with more is looked at too 
 
 /// How far a vertex or one around it lies from the plane that fits them best [unit]. Its own place is the origin: sums
 /// of products of small numbers.
-double farthestFromPlane(const Layer& layer, Vertex vertex, const Link& link) {
+double farthestFromPlane(const VertexSand& layer, Vertex vertex, const Link& link) {
     const auto& places = layer.triangles().places;
     const Place origin = places[static_cast<std::size_t>(vertex)];
     const double base = layer.heights()[static_cast<std::size_t>(vertex)];
@@ -50,7 +50,7 @@ double farthestFromPlane(const Layer& layer, Vertex vertex, const Link& link) {
 }
 
 /// Whether it went.
-bool takeOut(Layer& layer, const DetailRules& rules, Vertex vertex, Link& link) {
+bool takeOut(VertexSand& layer, const DetailRules& rules, Vertex vertex, Link& link) {
     findLink(layer.triangles(), vertex, link);
     // The triangles before and after span the same vertices, but for the one that goes: all lie within `far` of a
     // plane, and so do both surfaces, which are 2 far apart at most. The remap moves them by the mean of that at most.
@@ -60,7 +60,7 @@ bool takeOut(Layer& layer, const DetailRules& rules, Vertex vertex, Link& link) 
 
 /// Looks at those that `maySkip` does not name, and tells `looked` of each and whether it went, and of all around it.
 template <class MaySkip, class Looked>
-int coarsenBut(Layer& layer, const DetailRules& rules, Vertex& next, const Box& keepOut, const MaySkip& maySkip,
+int coarsenBut(VertexSand& layer, const DetailRules& rules, Vertex& next, const Box& keepOut, const MaySkip& maySkip,
                const Looked& looked) {
     if (rules.maxError <= 0) {
         return 0;
@@ -85,12 +85,12 @@ int coarsenBut(Layer& layer, const DetailRules& rules, Vertex& next, const Box& 
 
 }  // namespace
 
-int coarsen(Layer& layer, const DetailRules& rules, Vertex& next, const Box& keepOut) {
+int coarsen(VertexSand& layer, const DetailRules& rules, Vertex& next, const Box& keepOut) {
     return coarsenBut(
         layer, rules, next, keepOut, [](Vertex) { return false; }, [](Vertex, bool, const std::vector<Vertex>&) {});
 }
 
-int Coarsening::step(Layer& layer, const DetailRules& rules, Vertex& next, const Box& keepOut) {
+int Coarsening::step(VertexSand& layer, const DetailRules& rules, Vertex& next, const Box& keepOut) {
     known_.resize(std::max(known_.size(), layer.triangles().triangleAt.size()), 0);
     const auto looked = [&](Vertex vertex, bool went, const std::vector<Vertex>& around) {
         if (went) {  // and they rose or sank: whoever is next may be beside one of them

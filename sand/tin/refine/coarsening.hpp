@@ -17,7 +17,7 @@ namespace sand::tin {
 /// One goes when all around it and itself lie so near to one plane that neither the other triangles nor the remap
 /// moves the surface anywhere by more than maxError. The sand stays, to the last unit; errors of removals one after
 /// the other add up. `keepOut`: where the tool works. Returns how many went.
-int coarsen(Layer& layer, const DetailRules& rules, Vertex& next, const Box& keepOut);
+int coarsen(VertexSand& layer, const DetailRules& rules, Vertex& next, const Box& keepOut);
 
 /// The same, step by step, and nobody is looked at again around whom nothing has changed since it was in vain: most of
 /// what has been dug is too rough for good. What it knows is no state: without it a step does and leaves the same, as
@@ -32,7 +32,7 @@ public:
     /// The mesh is another there, and some heights too. What step() takes out it knows itself.
     void touch(const Triangles& mesh, const Mesh::Change& change);
     void forget() { known_.clear(); }
-    int step(Layer& layer, const DetailRules& rules, Vertex& next, const Box& keepOut);
+    int step(VertexSand& layer, const DetailRules& rules, Vertex& next, const Box& keepOut);
 
 private:
     void lookAgain(const Triangle& triangle);

@@ -24,8 +24,8 @@ std::int32_t nearestHeight(double height) {
         std::clamp(std::floor(height + 0.5), -static_cast<double>(kMaxHeight), static_cast<double>(kMaxHeight)));
 }
 
-std::int32_t meanHeight(const Start& start) {
-    const Layer layer = layerOf(start);
+std::int32_t meanHeight(const TinStart& start) {
+    const VertexSand layer = layerOf(start);
     return nearestHeight(static_cast<double>(layer.volume()) / static_cast<double>(layer.ground()));
 }
 
@@ -41,7 +41,7 @@ std::size_t nearest(const std::vector<Place>& places, const Place& to) {
 
 /// Middles of cells at settings.widest, where no vertex is: without them level ground is two triangles, and a furrow's
 /// bank hangs on the field's far corners by slivers, which sand slides over badly and light shows as rays.
-void addLattice(const HeightField& field, Start& start) {
+void addLattice(const HeightField& field, TinStart& start) {
     const std::int32_t every = Lattice(start.settings.widest).every;
     if (every == 0) {
         return;
@@ -90,7 +90,7 @@ bool isLevel(const HeightField& field) {
 }
 
 /// What the rim, the holes and the heights of a field need.
-void addChosen(const HeightField& field, const Ground* walls, Start& start) {
+void addChosen(const HeightField& field, const Ground* walls, TinStart& start) {
     std::vector<double> heights;
     heights.reserve(static_cast<std::size_t>(field.columns()) * static_cast<std::size_t>(field.rows()));
     for (int row = 0; row < field.rows(); ++row) {
@@ -121,7 +121,7 @@ void addChosen(const HeightField& field, const Ground* walls, Start& start) {
 
 }  // namespace
 
-Layer layerOf(const Start& start) {
+VertexSand layerOf(const TinStart& start) {
     Mesh mesh(start.width, start.depth, start.holes);
     mesh.insert(start.places);  // the corners are there, and are the first four
     for (const auto& [a, b] : start.constraints) {
@@ -130,15 +130,15 @@ Layer layerOf(const Start& start) {
     if (!mesh.hasOutline()) {  // as somebody sent it
         throw base::FormatError("a TIN with holes that have no outline");
     }
-    Layer layer(std::move(mesh));
+    VertexSand layer(std::move(mesh));
     for (std::size_t i = 0; i < start.heights.size(); ++i) {
         layer.setHeight(static_cast<Vertex>(i), start.heights[i]);
     }
     return layer;
 }
 
-Start follow(const HeightField& field, const Ground* walls, const Settings& settings) {
-    Start start;
+TinStart follow(const HeightField& field, const Ground* walls, const Settings& settings) {
+    TinStart start;
     start.width = field.columns() * kLatticePerCell;
     start.depth = field.rows() * kLatticePerCell;
     start.settings = settings;
@@ -153,8 +153,8 @@ Start follow(const HeightField& field, const Ground* walls, const Settings& sett
     return start;
 }
 
-Start join(const Start& given) {
-    Start start;
+TinStart join(const TinStart& given) {
+    TinStart start;
     start.width = given.width;
     start.depth = given.depth;
     start.settings = given.settings;
@@ -186,9 +186,9 @@ Start join(const Start& given) {
     return start;
 }
 
-Start startOf(const Layer& layer, const Settings& settings) {
+TinStart startOf(const VertexSand& layer, const Settings& settings) {
     const Triangles& mesh = layer.triangles();
-    Start start;
+    TinStart start;
     start.width = mesh.width;
     start.depth = mesh.depth;
     start.settings = settings;

@@ -17,7 +17,7 @@ Offset offsetOf(const Place& place, const ProbePoint& at) {
     return {std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
 }
 
-Box boxOf(const Rect& cells) {
+Box boxOf(const CellRect& cells) {
     return {cells.x0 * kProbePerCell, cells.y0 * kProbePerCell, cells.x1 * kProbePerCell, cells.y1 * kProbePerCell};
 }
 
@@ -46,7 +46,8 @@ void forEachSubstep(const ProbePoint& from, const ProbePoint& to, const Visit& v
 
 }  // namespace
 
-Tool::Tool(const ToolShape& shape, const Heading& heading, const DetailRules& rules, std::shared_ptr<Window> window)
+Displacement::Displacement(const ToolShape& shape, const Heading& heading, const DetailRules& rules,
+                           std::shared_ptr<Neighbourhood> window)
     : shape_(shape),
       heading_(heading),
       rules_(rules),
@@ -54,13 +55,13 @@ Tool::Tool(const ToolShape& shape, const Heading& heading, const DetailRules& ru
       outline_(Outline::of(shape, heading)),
       window_(std::move(window)) {}
 
-Underside Tool::underside(const ProbePoint& at) const {
+Underside Displacement::underside(const ProbePoint& at) const {
     return [shape = turned_, at](const Place& place) { return shape.underside(at.z, offsetOf(place, at)); };
 }
 
-Box Tool::reach(const ProbePoint& at) const { return boxOf(turned_.cellsChanged(at.x, at.y)); }
+Box Displacement::reach(const ProbePoint& at) const { return boxOf(turned_.cellsChanged(at.x, at.y)); }
 
-Tool::Work Tool::drag(Layer& layer, Imprint& imprint, Rim rim, std::span<const ProbePoint> path) {
+Displacement::Work Displacement::drag(VertexSand& layer, Imprint& imprint, Rim rim, std::span<const ProbePoint> path) {
     Work done;
     Chunk chunk;
     const auto add = [&](const Press& press) {
@@ -106,7 +107,7 @@ Tool::Work Tool::drag(Layer& layer, Imprint& imprint, Rim rim, std::span<const P
     return done;
 }
 
-void Tool::leave(Layer& layer, Imprint& imprint) {
+void Displacement::leave(VertexSand& layer, Imprint& imprint) {
     if (imprint.stand && !rules_.keepsConstraints) {
         const ProbePoint at = imprint.stand->at;
         const Box box = reach(at);
@@ -118,7 +119,7 @@ void Tool::leave(Layer& layer, Imprint& imprint) {
     imprint = {};
 }
 
-void Tool::work(Layer& layer, Imprint& imprint, Rim rim, const Chunk& chunk, Work& done) {
+void Displacement::work(VertexSand& layer, Imprint& imprint, Rim rim, const Chunk& chunk, Work& done) {
     window_->look(layer.triangles(), chunk.box);
     const Imprint::Stand here{chunk.presses.back().at, shape_, heading_};
     const bool still = imprint.stand == here && std::all_of(chunk.presses.begin(), chunk.presses.end(),
@@ -135,7 +136,7 @@ void Tool::work(Layer& layer, Imprint& imprint, Rim rim, const Chunk& chunk, Wor
     }
 }
 
-bool Tool::reachesSand(const Layer& layer, const Chunk& chunk) const {
+bool Displacement::reachesSand(const VertexSand& layer, const Chunk& chunk) const {
     std::int64_t lowest = chunk.presses.front().at.z;
     for (const Press& press : chunk.presses) {
         lowest = std::min<std::int64_t>(lowest, press.at.z);
@@ -149,7 +150,7 @@ bool Tool::reachesSand(const Layer& layer, const Chunk& chunk) const {
     });
 }
 
-std::vector<Vertex> Tool::changeMesh(Layer& layer, Imprint& imprint, const Chunk& chunk) const {
+std::vector<Vertex> Displacement::changeMesh(VertexSand& layer, Imprint& imprint, const Chunk& chunk) const {
     const ProbePoint at = chunk.presses.back().at;
     const Holes* holes = layer.mesh().holes().get();
     const PlacedOutline outline = chunk.last ? placed(outline_, at.x, at.y, layer.triangles(), holes) : PlacedOutline{};
@@ -181,7 +182,7 @@ std::vector<Vertex> Tool::changeMesh(Layer& layer, Imprint& imprint, const Chunk
 
 /// Whether the tool takes sand there, lays it down there, or does so a square farther: those that take sand should
 /// have small shares of the ground all alike.
-bool Tool::isNearTool(const Place& place, const std::vector<Press>& presses) const {
+bool Displacement::isNearTool(const Place& place, const std::vector<Press>& presses) const {
     const std::int64_t step = rules_.spacing;
     for (const Press& press : presses) {
         const Offset offset = offsetOf(place, press.at);
@@ -196,7 +197,7 @@ bool Tool::isNearTool(const Place& place, const std::vector<Press>& presses) con
 }
 
 /// Constraints of earlier imprints.
-Edges Tool::edgesThatStay(const Triangles& mesh, const Imprint& imprint) const {
+Edges Displacement::edgesThatStay(const Triangles& mesh, const Imprint& imprint) const {
     std::vector<std::pair<Vertex, Vertex>> ours;
     for (const auto& [a, b] : imprint.edges) {
         ours.emplace_back(std::minmax(a, b));
@@ -217,7 +218,7 @@ Edges Tool::edgesThatStay(const Triangles& mesh, const Imprint& imprint) const {
 }
 
 /// Takes out what would make slivers with the outline.
-void Tool::thin(Mesh& mesh, const PlacedOutline& outline) const {
+void Displacement::thin(Mesh& mesh, const PlacedOutline& outline) const {
     const std::int32_t distance = rules_.spacing / 4;
     if (outline.points.empty() || distance == 0) {
         return;

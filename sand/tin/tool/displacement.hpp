@@ -19,12 +19,12 @@ using Volume = Wide;  // [volume unit of Layer]
 
 /// A tool in the sand of a TIN (second paper): its outline's edges become constraints, its inside takes its shape and
 /// depth, and what lay above is pushed away. A function of layer, imprint and path. Not thread-safe.
-class Tool {
+class Displacement {
 public:
     /// Poses beyond kMaxProbe and shapes beyond kLargestToolRadius are refused by whoever decodes steps and rules.
     /// With a window that others use too, between two calls.
-    Tool(const ToolShape& shape, const Heading& heading, const DetailRules& rules,
-         std::shared_ptr<Window> window = std::make_shared<Window>());
+    Displacement(const ToolShape& shape, const Heading& heading, const DetailRules& rules,
+                 std::shared_ptr<Neighbourhood> window = std::make_shared<Neighbourhood>());
     [[nodiscard]] bool is(const ToolShape& shape, const Heading& heading) const {
         return shape_ == shape && heading_ == heading;
     }
@@ -44,9 +44,9 @@ public:
     /// out.
     ///
     /// A tool held still changes nothing once it has pressed; a tool that does not reach the sand at all leaves it.
-    Work drag(Layer& layer, Imprint& imprint, Rim rim, std::span<const ProbePoint> path);
+    Work drag(VertexSand& layer, Imprint& imprint, Rim rim, std::span<const ProbePoint> path);
     /// The tool is lifted: its outline stays, with its constraints, or is taken out, as the rules say.
-    void leave(Layer& layer, Imprint& imprint);
+    void leave(VertexSand& layer, Imprint& imprint);
 
     /// For sand that flows while the tool stands there.
     [[nodiscard]] Underside underside(const ProbePoint& at) const;
@@ -74,28 +74,28 @@ private:
         Volume share = 0;
     };
 
-    void work(Layer& layer, Imprint& imprint, Rim rim, const Chunk& chunk, Work& work);
-    [[nodiscard]] bool reachesSand(const Layer& layer, const Chunk& chunk) const;
-    /// Returns what Layer::edit() does.
-    std::vector<Vertex> changeMesh(Layer& layer, Imprint& imprint, const Chunk& chunk) const;
+    void work(VertexSand& layer, Imprint& imprint, Rim rim, const Chunk& chunk, Work& work);
+    [[nodiscard]] bool reachesSand(const VertexSand& layer, const Chunk& chunk) const;
+    /// Returns what VertexSand::edit() does.
+    std::vector<Vertex> changeMesh(VertexSand& layer, Imprint& imprint, const Chunk& chunk) const;
     void thin(Mesh& mesh, const PlacedOutline& outline) const;
     [[nodiscard]] Edges edgesThatStay(const Triangles& mesh, const Imprint& imprint) const;
     [[nodiscard]] bool isNearTool(const Place& place, const std::vector<Press>& presses) const;
 
-    void press(Layer& layer, Rim rim, const Press& press, Work& work);
-    [[nodiscard]] bool findCut(const Layer& layer, const ProbePoint& at);
-    void findReceivers(const Layer& layer, Rim rim, const Press& press);
-    void addBeyond(const Layer& layer, const Press& press, bool everywhere);
-    void addNeighbours(const Layer& layer, const ProbePoint& at);
+    void press(VertexSand& layer, Rim rim, const Press& press, Work& work);
+    [[nodiscard]] bool findCut(const VertexSand& layer, const ProbePoint& at);
+    void findReceivers(const VertexSand& layer, Rim rim, const Press& press);
+    void addBeyond(const VertexSand& layer, const Press& press, bool everywhere);
+    void addNeighbours(const VertexSand& layer, const ProbePoint& at);
     void shareOut();
-    [[nodiscard]] bool hasRoom(const Layer& layer) const;
+    [[nodiscard]] bool hasRoom(const VertexSand& layer) const;
 
     ToolShape shape_;
     Heading heading_;
     DetailRules rules_;
     TurnedShape turned_;
     Outline outline_;
-    std::shared_ptr<Window> window_;
+    std::shared_ptr<Neighbourhood> window_;
     // Of one press.
     std::vector<Cut> cut_;
     Volume taken_ = 0;

@@ -20,10 +20,10 @@ Volume floorDivided(Volume value, Volume by) { return value / by - (value % by <
 }  // namespace
 
 /// What the tool takes out; false when that is nothing, or would leave the range of numbers.
-bool Tool::findCut(const Layer& layer, const ProbePoint& at) {
+bool Displacement::findCut(const VertexSand& layer, const ProbePoint& at) {
     cut_.clear();
     taken_ = 0;
-    const Rect cells = turned_.cellsAround(at.x, at.y, 0);
+    const CellRect cells = turned_.cellsAround(at.x, at.y, 0);
     const Box box{cells.x0 * kProbePerCell, cells.y0 * kProbePerCell, cells.x1 * kProbePerCell,
                   cells.y1 * kProbePerCell};
     for (const Vertex vertex : window_->vertices()) {
@@ -50,7 +50,7 @@ bool Tool::findCut(const Layer& layer, const ProbePoint& at) {
     return !cut_.empty();
 }
 
-void Tool::findReceivers(const Layer& layer, Rim rim, const Press& press) {
+void Displacement::findReceivers(const VertexSand& layer, Rim rim, const Press& press) {
     const auto find = [&](bool everywhere) {
         receivers_.clear();
         for (const Vertex vertex : window_->vertices()) {
@@ -78,7 +78,7 @@ void Tool::findReceivers(const Layer& layer, Rim rim, const Press& press) {
 }
 
 /// The ground beyond the rim takes sand as if the field went on there, on a lattice.
-void Tool::addBeyond(const Layer& layer, const Press& press, bool everywhere) {
+void Displacement::addBeyond(const VertexSand& layer, const Press& press, bool everywhere) {
     const Box box = reach(press.at);
     if (box.clippedTo(layer.triangles()) == box) {
         return;
@@ -104,7 +104,7 @@ void Tool::addBeyond(const Layer& layer, const Press& press, bool everywhere) {
     }
 }
 
-void Tool::addNeighbours(const Layer& layer, const ProbePoint& at) {
+void Displacement::addNeighbours(const VertexSand& layer, const ProbePoint& at) {
     const auto isCovered = [&](Vertex vertex) {
         return turned_.covers(offsetFrom(layer.triangles().places[static_cast<std::size_t>(vertex)], at));
     };
@@ -126,7 +126,7 @@ void Tool::addNeighbours(const Layer& layer, const ProbePoint& at) {
 
 /// What the weights' rounding and that of whole units leave over, of either sign, is dealt out alike, and the last
 /// units to those of the smallest numbers.
-void Tool::shareOut() {
+void Displacement::shareOut() {
     double total = 0;
     for (const Receiver& receiver : receivers_) {
         total += receiver.weight;
@@ -146,7 +146,7 @@ void Tool::shareOut() {
     }
 }
 
-bool Tool::hasRoom(const Layer& layer) const {
+bool Displacement::hasRoom(const VertexSand& layer) const {
     return std::all_of(receivers_.begin(), receivers_.end(), [&](const Receiver& receiver) {
         if (receiver.vertex == kNobody) {
             return true;
@@ -157,7 +157,7 @@ bool Tool::hasRoom(const Layer& layer) const {
     });
 }
 
-void Tool::press(Layer& layer, Rim rim, const Press& press, Work& done) {
+void Displacement::press(VertexSand& layer, Rim rim, const Press& press, Work& done) {
     if (!findCut(layer, press.at)) {
         return;
     }

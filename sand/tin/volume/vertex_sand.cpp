@@ -28,7 +28,7 @@ double quotient(std::int64_t volume, std::int64_t star) {
 
 }  // namespace
 
-Layer::Layer(Mesh mesh) : mesh_(std::move(mesh)) {
+VertexSand::VertexSand(Mesh mesh) : mesh_(std::move(mesh)) {
     if (!mesh_.hasOutline()) {
         throw std::invalid_argument("holes without their outline");
     }
@@ -49,15 +49,15 @@ Layer::Layer(Mesh mesh) : mesh_(std::move(mesh)) {
     }
 }
 
-void Layer::reserve(std::size_t vertices) {
+void VertexSand::reserve(std::size_t vertices) {
     mesh_.reserve(vertices);
     volumes_.reserve(vertices);
     stars_.reserve(vertices);
     heights_.reserve(vertices);
 }
-Wide Layer::ground() const { return std::accumulate(stars_.begin(), stars_.end(), Wide{0}); }
+Wide VertexSand::ground() const { return std::accumulate(stars_.begin(), stars_.end(), Wide{0}); }
 
-Wide Layer::volume() const {
+Wide VertexSand::volume() const {
     Wide sum = 0;
     for (const std::int64_t volume : volumes_) {  // none where no vertex lives
         sum += volume;
@@ -65,12 +65,12 @@ Wide Layer::volume() const {
     return sum;
 }
 
-void Layer::setVolume(Vertex vertex, std::int64_t volume) {
+void VertexSand::setVolume(Vertex vertex, std::int64_t volume) {
     volumes_[at(vertex)] = volume;
     heights_[at(vertex)] = stars_[at(vertex)] == 0 ? 0 : quotient(volume, stars_[at(vertex)]);
 }
 
-void Layer::add(Vertex vertex, std::int64_t volume) {
+void VertexSand::add(Vertex vertex, std::int64_t volume) {
     std::int64_t sum = 0;
     if (__builtin_add_overflow(volumes_[at(vertex)], volume, &sum) || sum >= kVolumeLimit || sum <= -kVolumeLimit) {
         throw std::overflow_error("too much sand on vertex " + std::to_string(vertex));
@@ -78,7 +78,7 @@ void Layer::add(Vertex vertex, std::int64_t volume) {
     setVolume(vertex, sum);
 }
 
-void Layer::setHeight(Vertex vertex, std::int32_t height) {
+void VertexSand::setHeight(Vertex vertex, std::int32_t height) {
     const Wide volume = static_cast<Wide>(stars_[at(vertex)]) * height;
     if (volume >= kVolumeLimit || volume <= -kVolumeLimit) {
         throw std::overflow_error("too much sand on vertex " + std::to_string(vertex));
@@ -86,30 +86,30 @@ void Layer::setHeight(Vertex vertex, std::int32_t height) {
     setVolume(vertex, static_cast<std::int64_t>(volume));
 }
 
-Vertex Layer::insert(Place place) {
+Vertex VertexSand::insert(Place place) {
     const Vertex vertex = mesh_.insert(place);
     remap();
     return vertex;
 }
 
-bool Layer::remove(Vertex vertex) {
+bool VertexSand::remove(Vertex vertex) {
     const bool removed = mesh_.remove(vertex);
     remap();
     return removed;
 }
 
-std::vector<Vertex> Layer::constrain(Vertex from, Vertex to) {
+std::vector<Vertex> VertexSand::constrain(Vertex from, Vertex to) {
     std::vector<Vertex> path = mesh_.constrain(from, to).vertices;
     remap();
     return path;
 }
 
-void Layer::release(Vertex a, Vertex b) {
+void VertexSand::release(Vertex a, Vertex b) {
     mesh_.release(a, b);
     remap();
 }
 
-std::vector<Vertex> Layer::edit(const std::function<void(Mesh&)>& edits) {
+std::vector<Vertex> VertexSand::edit(const std::function<void(Mesh&)>& edits) {
     const auto before = static_cast<std::ptrdiff_t>(remapped_.size());
     try {
         edits(mesh_);
@@ -123,7 +123,7 @@ std::vector<Vertex> Layer::edit(const std::function<void(Mesh&)>& edits) {
     return changed;
 }
 
-void Layer::remap() {
+void VertexSand::remap() {
     Mesh::Difference difference = mesh_.takeDifference();
     if (const Holes* holes = mesh_.holes().get(); holes != nullptr) {
         const auto isHole = [holes](const Mesh::Piece& piece) {
@@ -159,9 +159,9 @@ void Layer::remap() {
     }
 }
 
-Layer::Remap Layer::takeLargestRemap() { return std::exchange(largest_, {}); }
+VertexSand::Remap VertexSand::takeLargestRemap() { return std::exchange(largest_, {}); }
 
-Mesh::Change Layer::takeChange() {
+Mesh::Change VertexSand::takeChange() {
     // Whoever changed since the last call was remapped, and is noted; not what lies in holes, nor a mesh just made.
     const bool knows = knowsChange_ && mesh_.holes() == nullptr;
     knowsChange_ = true;

@@ -13,7 +13,7 @@
 namespace sand::tin {
 
 /// What makes a layer, whatever has become of it before.
-struct LayerParts {
+struct VertexSandParts {
     static constexpr Place kNowhere{-1, -1};  // where no such vertex lives
 
     std::int32_t width = 0, depth = 0;                   // of the field [probe unit]
@@ -35,10 +35,10 @@ struct LayerParts {
 /// the whole is summed in 128 bits. Whatever would go beyond throws std::overflow_error, and the layer is then of no
 /// use. Triangles in a hole (holes.hpp) are no ground: they count for no star, and a vertex that has no others has
 /// neither star nor sand, and lies at 0. Not thread-safe.
-class Layer {
+class VertexSand {
 public:
     /// Throws std::invalid_argument where a hole's outline is not there.
-    explicit Layer(Mesh mesh);
+    explicit VertexSand(Mesh mesh);
 
     [[nodiscard]] const Mesh& mesh() const { return mesh_; }
     [[nodiscard]] const Triangles& triangles() const { return mesh_.triangles(); }
@@ -80,11 +80,11 @@ public:
     /// As Mesh's: for whoever erodes it. Vertices that only rose or sank by a remap are among them.
     [[nodiscard]] Mesh::Change takeChange();
 
-    [[nodiscard]] LayerParts parts() const;
+    [[nodiscard]] VertexSandParts parts() const;
     void encode(base::ByteWriter& writer) const { parts().encode(writer); }
     /// Throws base::FormatError when the bytes are no layer, or none with these holes, which they do not tell. Reads
     /// no further than its end.
-    static Layer decode(base::ByteReader& reader, const std::shared_ptr<const Holes>& holes = nullptr);
+    static VertexSand decode(base::ByteReader& reader, const std::shared_ptr<const Holes>& holes = nullptr);
 
 private:
     void setVolume(Vertex vertex, std::int64_t volume);

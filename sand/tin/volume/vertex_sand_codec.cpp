@@ -13,7 +13,7 @@ using base::FormatError;
 
 std::size_t livingEnd(const std::vector<Place>& places) {
     std::size_t end = places.size();
-    while (end > 0 && places[end - 1] == LayerParts::kNowhere) {
+    while (end > 0 && places[end - 1] == VertexSandParts::kNowhere) {
         --end;
     }
     return end;
@@ -55,18 +55,18 @@ std::vector<std::pair<Vertex, Vertex>> getConstraints(base::ByteReader& reader, 
 
 }  // namespace
 
-LayerParts Layer::parts() const {
+VertexSandParts VertexSand::parts() const {
     const Triangles& mesh = triangles();
-    LayerParts parts{mesh.width, mesh.depth, mesh.places, volumes_, mesh_.constraints(), mesh_.holes()};
+    VertexSandParts parts{mesh.width, mesh.depth, mesh.places, volumes_, mesh_.constraints(), mesh_.holes()};
     for (std::size_t i = 0; i < parts.places.size(); ++i) {
         if (mesh.triangleAt[i] == kNobody) {
-            parts.places[i] = LayerParts::kNowhere;
+            parts.places[i] = VertexSandParts::kNowhere;
         }
     }
     return parts;
 }
 
-void LayerParts::encode(base::ByteWriter& writer) const {
+void VertexSandParts::encode(base::ByteWriter& writer) const {
     writer.put(width);
     writer.put(depth);
     // Numbers beyond the last that lives say only what once was.
@@ -88,7 +88,7 @@ void LayerParts::encode(base::ByteWriter& writer) const {
     }
 }
 
-Layer Layer::decode(base::ByteReader& reader, const std::shared_ptr<const Holes>& holes) {
+VertexSand VertexSand::decode(base::ByteReader& reader, const std::shared_ptr<const Holes>& holes) {
     const auto width = reader.get<std::int32_t>();
     const auto depth = reader.get<std::int32_t>();
     std::vector<std::optional<Place>> places(getCount(reader, 1));
@@ -105,7 +105,7 @@ Layer Layer::decode(base::ByteReader& reader, const std::shared_ptr<const Holes>
     }
     const auto constraints = getConstraints(reader, places.size());
     try {
-        Layer layer(Mesh::restore(width, depth, places, constraints, holes));
+        VertexSand layer(Mesh::restore(width, depth, places, constraints, holes));
         for (std::size_t i = 0; i < volumes.size(); ++i) {
             // No height that an integer of 32 bits cannot say, or not by much.
             const Wide most = static_cast<Wide>(layer.stars_[i]) << 32U;

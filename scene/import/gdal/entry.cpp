@@ -13,7 +13,7 @@
 #include "scene/import/gdal/gdal_reference.hpp"
 #include "scene/import/importer.hpp"
 
-namespace sand {
+namespace scene {
 namespace {
 
 constexpr double kSquare = 1e-6;  // by which share the sides of a cell may differ: other programs print fewer digits
@@ -127,9 +127,9 @@ public:
 };
 
 }  // namespace
-}  // namespace sand
+}  // namespace scene
 
-extern "C" const sand::Importer* sandwallImport2() {
-    static const sand::GdalImporter kImporter;
+extern "C" const scene::Importer* sandwallImport2() {
+    static const scene::GdalImporter kImporter;
     return &kImporter;
 }

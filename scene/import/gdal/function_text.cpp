@@ -9,7 +9,7 @@
 
 #include "base/input_error.hpp"
 
-namespace sand {
+namespace scene {
 namespace {
 
 [[noreturn]] void fail(const std::string& text, const std::string& message) {
@@ -83,4 +83,4 @@ EsriGrid evaluateFunction(const Function& function) {
     return grid;
 }
 
-}  // namespace sand
+}  // namespace scene

@@ -4,10 +4,10 @@
 
 #include "scene/import/importer.hpp"
 
-namespace sand {
+namespace scene {
 
 /// Importer::evaluate(). Trigonometry and powers may differ in a last bit between C libraries: whoever loads a scene
 /// evaluates it once, and its heights as whole numbers travel.
 [[nodiscard]] EsriGrid evaluateFunction(const Function& function);
 
-}  // namespace sand
+}  // namespace scene

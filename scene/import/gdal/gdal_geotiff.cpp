@@ -9,7 +9,7 @@
 #include "base/input_error.hpp"
 #include "scene/import/gdal/gdal_reference.hpp"
 
-namespace sand {
+namespace scene {
 namespace {
 
 // GDAL writes into memory, so that a file on the disk is replaced whole or not at all.
@@ -75,4 +75,4 @@ base::Bytes geoTiffOf(const EsriGrid& grid, const std::string& file) {
     return {bytes, bytes + length};
 }
 
-}  // namespace sand
+}  // namespace scene

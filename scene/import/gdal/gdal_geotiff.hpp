@@ -4,9 +4,9 @@
 
 #include "scene/import/importer.hpp"
 
-namespace sand {
+namespace scene {
 
 /// Importer::geoTiff().
 [[nodiscard]] base::Bytes geoTiffOf(const EsriGrid& grid, const std::string& file);
 
-}  // namespace sand
+}  // namespace scene

@@ -9,7 +9,7 @@
 #include "base/input_error.hpp"
 #include "scene/import/importer.hpp"
 
-namespace sand {
+namespace scene {
 namespace {
 
 namespace fs = std::filesystem;
@@ -118,4 +118,4 @@ void GdalRaster::mask(std::vector<double>& pixels) const {
     }
 }
 
-}  // namespace sand
+}  // namespace scene

@@ -7,7 +7,7 @@
 #include "scene/import/esri_grid.hpp"
 #include "scene/import/gdal/gdal_session.hpp"
 
-namespace sand {
+namespace scene {
 
 /// A local file's one band of numbers, opened and found to be neither too large nor of another kind. Every member
 /// throws base::InputError that begins with the file.
@@ -37,4 +37,4 @@ private:
     GDALRasterBandH band_ = nullptr;
 };
 
-}  // namespace sand
+}  // namespace scene

@@ -13,7 +13,7 @@
 #include "base/text.hpp"
 #include "scene/import/metric_system.hpp"
 
-namespace sand {
+namespace scene {
 namespace {
 
 struct HeightUnit {
@@ -117,4 +117,4 @@ SpatialReference referenceOf(const std::string& crs, const std::string& file) {
     return reference;
 }
 
-}  // namespace sand
+}  // namespace scene

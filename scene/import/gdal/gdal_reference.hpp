@@ -4,7 +4,7 @@
 
 #include "scene/import/gdal/gdal_raster.hpp"
 
-namespace sand {
+namespace scene {
 
 /// What the raster's lengths and heights are. Throws base::InputError: degrees, with the command that makes metres of
 /// them, and height units nobody knows.
@@ -13,4 +13,4 @@ namespace sand {
 /// The reference system of a WKT. Throws base::InputError, which begins with `file`.
 [[nodiscard]] SpatialReference referenceOf(const std::string& crs, const std::string& file);
 
-}  // namespace sand
+}  // namespace scene

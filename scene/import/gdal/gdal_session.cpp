@@ -3,7 +3,7 @@
 
 #include <cpl_error.h>
 
-namespace sand {
+namespace scene {
 
 GdalSession::GdalSession() {
     CPLPushErrorHandlerEx(keep, this);
@@ -38,4 +38,4 @@ std::string GdalSession::complaint() const {
     return warning_.empty() ? "GDAL does not say why" : warning_;
 }
 
-}  // namespace sand
+}  // namespace scene

@@ -10,7 +10,7 @@
 #include <string>
 #include <type_traits>
 
-namespace sand {
+namespace scene {
 
 struct CloseDataset {
     void operator()(void* dataset) const { GDALClose(dataset); }
@@ -44,4 +44,4 @@ private:
     std::string error_, warning_;
 };
 
-}  // namespace sand
+}  // namespace scene

@@ -195,8 +195,8 @@ TEST(StrokeDevice, WritesGisInLessThanFourSeconds) {
     }
 }
 
-sand::Scene wideScene() {
-    sand::Scene scene;
+scene::Scene wideScene() {
+    scene::Scene scene;
     scene.terrain = sand::HeightField(200, 100, 0.01);
     scene.rules.columns = 200;
     scene.rules.rows = 100;
@@ -210,7 +210,7 @@ sand::Scene wideScene() {
 }
 
 TEST(HandMapping, CountsHalfTheShorterSideFromTheCentre) {
-    const sand::Scene scene = wideScene();
+    const scene::Scene scene = wideScene();
     const HandMapping mapping(scene, HandSettings::Datum::level);
     const auto at = [&](double x, double y, double z) { return *mapping.probe({x, y, z, true}); };
     EXPECT_EQ(at(0, 0, 0), (sand::ProbePoint{100 * 256, 50 * 256, 5 * 256})) << "the mean height is 5 cells";
@@ -220,7 +220,7 @@ TEST(HandMapping, CountsHalfTheShorterSideFromTheCentre) {
 }
 
 TEST(HandMapping, FollowsTheStartingSurface) {
-    const sand::Scene scene = wideScene();
+    const scene::Scene scene = wideScene();
     const HandMapping mapping(scene, HandSettings::Datum::surface);
     EXPECT_EQ(mapping.probe({-1, 0, 0.5, true})->z, 2 * 256);
     EXPECT_EQ(mapping.probe({1, 0, 0.5, true})->z, 12 * 256);
@@ -228,7 +228,7 @@ TEST(HandMapping, FollowsTheStartingSurface) {
 }
 
 TEST(HandMapping, ClampsWhatIsOutOfReachAndDropsWhatIsNoNumber) {
-    const sand::Scene scene = wideScene();
+    const scene::Scene scene = wideScene();
     const HandMapping mapping(scene, HandSettings::Datum::surface);
     const auto far = mapping.probe({1e30, -1e30, 1e30, true});
     ASSERT_TRUE(far);

@@ -48,7 +48,7 @@ protected:
         EXPECT_DOUBLE_EQ(a.y, b.y);
         EXPECT_DOUBLE_EQ(a.z, b.z);
     }
-    const sand::Scene scene_ = samples::flatScene(40, 30);
+    const scene::Scene scene_ = samples::flatScene(40, 30);
     const double half_ = 15 * scene_.terrain.cellSize();  // [scene unit]
     FakeArm::State state_;
     std::unique_ptr<MappedDevice> device_;

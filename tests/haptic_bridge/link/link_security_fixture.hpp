@@ -68,7 +68,7 @@ protected:
     Folder folder_;
     std::string both_ = secretFile("both", "move " + quoted(kMove) + "\nwatch " + quoted(kWatch) + "\n");
     std::string sceneFile_ = folder_.write("small.toml", kSmallScene);
-    sand::Scene scene_ = sand::loadScene(sceneFile_);
+    scene::Scene scene_ = scene::loadScene(sceneFile_);
 };
 
 }  // namespace test

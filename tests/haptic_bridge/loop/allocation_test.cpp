@@ -13,7 +13,7 @@ namespace {
 using namespace haptic_bridge;
 
 TEST(ForceTick, AsksForNoMemory) {
-    const sand::Scene scene = test::levelSand();
+    const scene::Scene scene = test::levelSand();
     test::ArmSession session(
         scene, std::make_unique<SimulatedArm>(touchPreset(), Grip{300, 5}, test::toAndFro(0.002, 0.3, 0.5)));
     const auto channel = std::make_unique<HandChannel>();

@@ -52,7 +52,7 @@ TEST(VelocityWindow, IsADifferenceOverOneTickWithoutAResolutionAndExactOnALine) 
 }
 
 TEST(ForceLimits, AreHalfOfWhatTheArmBearsInWords) {
-    const sand::Scene scene = test::levelSand();
+    const scene::Scene scene = test::levelSand();
     const LawAtRadius law = lawAtRadius(scene);
     EXPECT_NEAR(law.stiffness, 500 * std::exp(0.005), 1);
     EXPECT_NEAR(law.push, 5.0125, 0.01);
@@ -76,10 +76,10 @@ TEST(ForceLimits, AreHalfOfWhatTheArmBearsInWords) {
 
 TEST(ForceLimits, NameTheConstantOfTheSceneLaw) {
     const auto words = [](sand::ForceLaw law) {
-        sand::Scene scene = test::levelSand();
+        scene::Scene scene = test::levelSand();
         scene.force.law = law;
         auto strokes = std::make_unique<StrokeDevice>(Strokes::parse(gisStrokes(), "gis.strokes"));
-        return Hand(scene, std::move(strokes), HandSettings::Datum::surface).limitsInWords().front();
+        return HapticTick(scene, std::move(strokes), HandSettings::Datum::surface).limitsInWords().front();
     };
     EXPECT_EQ(words(sand::ForceLaw::repulse).substr(0, 9), "k_s 1000 ");
     EXPECT_EQ(words(sand::ForceLaw::controlPoints).substr(0, 7), "F_M 10 ");

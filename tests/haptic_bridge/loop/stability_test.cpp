@@ -23,8 +23,8 @@ using test::Trial;
 
 constexpr double kPapersTouch = test::kPapersRadius;  // [scene unit], of the centre, as the tool touches
 
-const sand::Scene& papersSand() {
-    static const sand::Scene scene = test::levelSand();
+const scene::Scene& papersSand() {
+    static const scene::Scene scene = test::levelSand();
     return scene;
 }
 
@@ -69,7 +69,7 @@ TEST(GuardedLoop, IsTheLiteralOneWhereNothingLimitsIt) {
     // A hundredth of the paper's stiffness: 62 N/m, of 117 that a Touch bears.
     sand::ForceConstants soft;
     soft.stiffness = 10;
-    const sand::Scene scene = test::levelSand(soft);
+    const scene::Scene scene = test::levelSand(soft);
     const auto path = test::toAndFro(0.003, 0.1, 2.01);
     ArmSession guarded(scene, std::make_unique<SimulatedArm>(touchPreset(), Grip{300, 5}, path));
     ArmSession literal(scene, std::make_unique<SimulatedArm>(touchPreset(), Grip{300, 5}, path), Guards::Mode::literal);
@@ -160,7 +160,7 @@ TEST(GuardedLoop, FallsSilentWithItsSandAndWithItsDevice) {
 /// Steps of the sand as the sequencer makes them, 60 a second, between the ticks of a hand.
 class MovingSand {
 public:
-    MovingSand(const sand::Scene& scene, ArmSession& hand)
+    MovingSand(const scene::Scene& scene, ArmSession& hand)
         : scene_(scene), terrain_(scene), hand_(hand), path_(kStepsPerSecond) {
         publish();
     }
@@ -191,7 +191,7 @@ private:
         stepTime_ = hand_.time();
         fresh_ = true;
     }
-    const sand::Scene& scene_;
+    const scene::Scene& scene_;
     sand::Replica terrain_;
     ArmSession& hand_;
     PathBuilder path_;
@@ -201,8 +201,8 @@ private:
 };
 
 TEST(GuardedLoop, GainsNothingFromSandThatIsDisplacedAndErodes) {
-    const sand::Scene scene = test::levelSand({}, 128, 0.25);  // a radius is five cells
-    const auto path = test::toAndFro(0.0016, 0.012, 2.01);     // two radii deep, for 6 mm
+    const scene::Scene scene = test::levelSand({}, 128, 0.25);  // a radius is five cells
+    const auto path = test::toAndFro(0.0016, 0.012, 2.01);      // two radii deep, for 6 mm
     ArmSession session(scene, std::make_unique<SimulatedArm>(touchPreset(), Grip{300, 5}, path));
     MovingSand sand(scene, session);
     while (session.time() < 2.01) {
@@ -287,7 +287,7 @@ TEST(GuardedForce, DoesNoWorkOnAClosedPathInLevelSandButFriction) {
     for (const double friction : {0.0, 10.0}) {
         sand::ForceConstants constants;
         constants.friction = friction;
-        const sand::Scene scene = test::levelSand(constants);
+        const scene::Scene scene = test::levelSand(constants);
         ArmPhysics arm = touchPreset();
         arm.resolution = 0;
         ArmSession session(scene, std::make_unique<SimulatedArm>(arm));

@@ -26,7 +26,7 @@ protected:
         auto device = std::make_unique<NotedDevice>(
             std::make_unique<MappedDevice>(std::make_unique<test::FakeArm>(state_), HandSettings{}, scene_));
         noted_ = device.get();
-        hand_ = std::make_unique<Hand>(scene_, std::move(device), HandSettings::Datum::level);
+        hand_ = std::make_unique<HapticTick>(scene_, std::move(device), HandSettings::Datum::level);
         recorder_ = std::make_unique<TickRecorder>(
             TickRecorder::Options{file, true, [this](const std::string& line) { told_.push_back(line); }}, *hand_,
             *noted_, HandSettings::Datum::level);
@@ -76,13 +76,13 @@ protected:
     [[nodiscard]] std::string written() const { return folder_.read("ticks.csv"); }
 
     const test::Folder folder_{};
-    const sand::Scene scene_ = samples::flatScene(60, 60);
+    const scene::Scene scene_ = samples::flatScene(60, 60);
     test::FakeArm::State state_;
     NotedDevice* noted_ = nullptr;
-    std::unique_ptr<Hand> hand_;
+    std::unique_ptr<HapticTick> hand_;
     std::unique_ptr<TickRecorder> recorder_;
     sand::Replica terrain_{scene_};
-    Surface surface_;
+    FeltSand surface_;
     std::vector<sand::Step> steps_;
     std::vector<base::Bytes> pieces_;
     std::vector<std::string> told_;

@@ -17,7 +17,7 @@ protected:
     }
     Folder folder_;
     std::string sceneFile_ = folder_.write("small.toml", kSmallScene);
-    sand::Scene scene_ = sand::loadScene(sceneFile_);
+    scene::Scene scene_ = scene::loadScene(sceneFile_);
 };
 
 TEST_F(BadDevice, IsToldInALineAndTheWallGoesOn) {

@@ -19,7 +19,7 @@ protected:
     testing::ScopedTrace trace_{__FILE__, __LINE__, test::again(seed_)};
     Folder folder_;
     std::string sceneFile_ = folder_.write("small.toml", kSmallScene);
-    sand::Scene scene_ = sand::loadScene(sceneFile_);
+    scene::Scene scene_ = scene::loadScene(sceneFile_);
     Identity identity_{kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), "small"};
 };
 

@@ -157,7 +157,7 @@ class HandOverABadLink : public testing::Test {
 protected:
     Folder folder_;
     std::string sceneFile_ = folder_.write("small.toml", kSmallScene);
-    sand::Scene scene_ = sand::loadScene(sceneFile_);
+    scene::Scene scene_ = scene::loadScene(sceneFile_);
 };
 
 TEST_F(HandOverABadLink, TheSandIsTheSameAndAResetEndsNothing) {

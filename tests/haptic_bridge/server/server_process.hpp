@@ -149,7 +149,7 @@ private:
 
 /// A master without a wall: a replica that applies what the client hands over, and shows it at once.
 struct Wall {
-    explicit Wall(const sand::Scene& scene) : terrain(scene) {}
+    explicit Wall(const scene::Scene& scene) : terrain(scene) {}
 
     /// Grants when offered, and follows until `steps` is reached or time is up. Counts hashes that differ.
     bool follow(haptic_bridge::Client& client, std::uint64_t steps) {
@@ -192,6 +192,6 @@ struct Wall {
     std::vector<sand::Edit> edits;
 };
 
-inline haptic_bridge::Offer offerOf(const sand::Scene& scene) { return {scene.rules.digest(), scene.name}; }
+inline haptic_bridge::Offer offerOf(const scene::Scene& scene) { return {scene.rules.digest(), scene.name}; }
 
 }  // namespace test

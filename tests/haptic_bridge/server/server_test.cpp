@@ -15,7 +15,7 @@ class HapticServer : public testing::Test {
 protected:
     Folder folder_;
     std::string sceneFile_ = folder_.write("small.toml", kSmallScene);
-    sand::Scene scene_ = sand::loadScene(sceneFile_);
+    scene::Scene scene_ = scene::loadScene(sceneFile_);
 };
 
 TEST_F(HapticServer, WritesTheSameSandTwice) {
@@ -71,7 +71,7 @@ TEST_F(HapticServer, TurnsTheToolThatHasAHeading) {
         text.replace(text.find("radius"), 0, "shape = \"" + shape + "\"\n");
         std::vector<std::string> arguments = ServerProcess::usual(folder_.write("walk.toml", text), folder_);
         arguments[3] = "script:" + walk;
-        const sand::Scene scene = sand::loadScene(arguments[1]);
+        const scene::Scene scene = scene::loadScene(arguments[1]);
         ServerProcess server(folder_, arguments);
         Client client(server.address(), offerOf(scene));
         Wall wall(scene);

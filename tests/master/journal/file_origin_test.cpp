@@ -95,7 +95,7 @@ protected:
     const std::vector<Kind> kinds_{
         {kJournal, master::kJournalVersion, "journal"}, {kCheckpoint, 2, "checkpoint"}, {kSand, 2, "saved sand"}};
     const std::string here_{host::release()};
-    const sand::Scene scene_ = samples::flatScene(20, 10);
+    const scene::Scene scene_ = samples::flatScene(20, 10);
     const master::SandPlace place_ = master::SandPlace::of(scene_);
 };
 

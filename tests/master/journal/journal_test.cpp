@@ -22,7 +22,7 @@ class JournalFile : public test::FolderTest {
 protected:
     /// Ten frames of a random hand, three steps each.
     std::vector<master::JournalFrame> writeSession(bool finished) {
-        const sand::Scene scene = samples::flatScene(20, 10);
+        const scene::Scene scene = samples::flatScene(20, 10);
         std::mt19937 random(47);
         master::JournalWriter writer(file_, scene, "0123456789abcdef");
         std::vector<master::JournalFrame> frames;
@@ -64,7 +64,7 @@ TEST_F(JournalFile, GivesBackWhatWasWritten) {
 }
 
 TEST_F(JournalFile, KeepsWhatAnOperatorAskedFor) {
-    const sand::Scene scene = samples::flatScene(20, 10);
+    const scene::Scene scene = samples::flatScene(20, 10);
     master::JournalFrame frame{1, 5, {}};
     for (const sand::Edit& edit : {sand::Edit::tuned({7, 11, 13, 17}), sand::Edit::loaded(base::Bytes(200'000, 9)),
                                    sand::Edit(sand::Edit::undo)}) {
@@ -80,7 +80,7 @@ TEST_F(JournalFile, KeepsWhatAnOperatorAskedFor) {
 }
 
 TEST_F(JournalFile, AFullDiskLeavesTheFramesBeforeWhole) {
-    const sand::Scene scene = samples::flatScene(20, 10);
+    const scene::Scene scene = samples::flatScene(20, 10);
     std::mt19937 random(47);
     master::JournalWriter writer(file_, scene, "0123456789abcdef");
     const auto append = [&](std::uint64_t number) {
@@ -104,7 +104,7 @@ TEST_F(JournalFile, AFullDiskLeavesTheFramesBeforeWhole) {
 // At every length that a file can have been cut to: refused within the header, else whole records and the rest counted.
 TEST_F(JournalFile, CutAnywhereItKeepsEveryRecordBeforeTheCut) {
     std::vector<std::uintmax_t> ends;  // of the header, and of every frame
-    const sand::Scene scene = samples::flatScene(20, 10);
+    const scene::Scene scene = samples::flatScene(20, 10);
     std::mt19937 random(48);
     std::vector<master::JournalFrame> frames;
     {
@@ -171,7 +171,7 @@ TEST_F(JournalFile, RefusesAFlippedBitOfAnyByteBeforeItsLastRecord) {
 
 // One record of a session put into the place of another's: each is whole, and the chain is not.
 TEST_F(JournalFile, RefusesARecordThatWasLeftOut) {
-    const sand::Scene scene = samples::flatScene(20, 10);
+    const scene::Scene scene = samples::flatScene(20, 10);
     std::vector<std::uintmax_t> ends;
     {
         master::JournalWriter writer(file_, scene, "0123456789abcdef");

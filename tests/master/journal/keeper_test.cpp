@@ -52,7 +52,7 @@ protected:
         EXPECT_EQ(journal.tornBytes, 0);
     }
 
-    sand::Scene scene_ = samples::flatScene(40, 30);
+    scene::Scene scene_ = samples::flatScene(40, 30);
     sand::Replica terrain_{scene_};
     std::mt19937 random_{61};
     std::uint64_t frame_ = 0;

@@ -22,7 +22,7 @@ class Replay : public test::FolderTest {
 protected:
     /// Records 40 steps in frames of two; `hashError` spoils the hash of frame 10.
     sand::Replica record(std::uint64_t hashError = 0) { return record(samples::flatScene(40, 30), hashError); }
-    sand::Replica record(const sand::Scene& scene, std::uint64_t hashError) {
+    sand::Replica record(const scene::Scene& scene, std::uint64_t hashError) {
         sand::Replica terrain(scene);
         std::mt19937 random(53);
         master::JournalWriter writer(journal(), scene, "test");
@@ -51,7 +51,7 @@ TEST_F(Replay, WritesTheHeights) {
     const sand::Replica terrain = record();
     const std::string file = (folder_ / "h.asc").string();
     ASSERT_EQ(support::runProgram("sandwall-replay", journal() + " --heights " + file).status, 0);
-    const sand::EsriGrid grid = sand::readEsriGrid(file);
+    const scene::EsriGrid grid = scene::readEsriGrid(file);
     for (int y = 0; y < 30; ++y) {
         for (int x = 0; x < 40; ++x) {
             ASSERT_NEAR(grid.at(x, y), terrain.field().height(x, y) * terrain.field().unit(), 1e-6);
@@ -74,13 +74,13 @@ TEST_F(Replay, WritesNoDataWhereATinHasHoles) {
     dem.close();
     std::ofstream(folder_ / "s.toml") << "[terrain]\nkind = \"esri_ascii\"\nfile = \"dem.asc\"\n[tin]\n[material]\n"
                                          "settling_time = 0.1\n[tool]\nradius = 4\n";
-    sand::Replica terrain = record(sand::loadScene(folder_ / "s.toml"), 0);
+    sand::Replica terrain = record(scene::loadScene(folder_ / "s.toml"), 0);
     EXPECT_EQ(support::runProgram("sandwall-replay", journal() + " --hash").output,
               fmt::format("{:016x}\n", terrain.stateHash()));
     for (const std::string option : {"--heights", "--difference"}) {
         const std::string file = (folder_ / "h.asc").string();
         ASSERT_EQ(support::runProgram("sandwall-replay", fmt::format("{} {} {}", journal(), option, file)).status, 0);
-        const sand::EsriGrid grid = sand::readEsriGrid(file);
+        const scene::EsriGrid grid = scene::readEsriGrid(file);
         for (int row = 0; row < 20; ++row) {
             for (int column = 0; column < 24; ++column) {
                 ASSERT_EQ(grid.isNoData(column, row), isGap(column, row)) << option << ' ' << column << ", " << row;
@@ -131,7 +131,7 @@ TEST_F(Replay, VerifiesAllThatAJournalSays) {
 }
 
 TEST_F(Replay, WritesEveryStepAsARow) {
-    sand::Scene scene = samples::flatScene(40, 30);
+    scene::Scene scene = samples::flatScene(40, 30);
     {
         master::JournalWriter writer(journal(), scene, "test");
         sand::Tuning tuning = scene.rules.tuning();

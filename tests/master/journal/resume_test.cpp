@@ -73,7 +73,7 @@ protected:
         return "not refused";
     }
 
-    sand::Scene scene_ = samples::flatScene(40, 30);
+    scene::Scene scene_ = samples::flatScene(40, 30);
     sand::Replica terrain_{scene_};
     std::mt19937 random_{59};
     std::uint64_t frame_ = 0;
@@ -186,7 +186,7 @@ TEST_F(Resume, AnEndedSessionGoesOnAndItsEndCountsNoMore) {
 }
 
 TEST_F(Resume, KnowsWhatTheOperatorMadeOfTheMaterial) {
-    sand::Material wetter = scene_.material;
+    scene::Material wetter = scene_.material;
     wetter.humidity = 0.75;
     wetter.wetTalus = 51;
     wetter.toolKind = sand::ToolKind::ellipse;
@@ -234,7 +234,7 @@ TEST_F(Resume, RefusesAnotherSceneThanTheSessions) {
         << refusal(journal(), file.string());
     const std::filesystem::path other = folder_ / "other" / "session.journal";
     std::filesystem::create_directories(other.parent_path());
-    { master::JournalWriter writer(other, sand::loadScene(file), "test"); }
+    { master::JournalWriter writer(other, scene::loadScene(file), "test"); }
     EXPECT_EQ(refusal(other, file.string()), "not refused");
 }
 
@@ -285,10 +285,10 @@ TEST_F(Resume, CutsNothingThatWasWrittenSinceItWasRead) {
 
 // The operator's material is written before the step that brings it in.
 TEST_F(Resume, KnowsNoMaterialWhoseStepWasTornOff) {
-    const sand::Material before = master::readSession(journal(), "")->material;
+    const scene::Material before = master::readSession(journal(), "")->material;
     {
         master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
-        sand::Material wetter = before;
+        scene::Material wetter = before;
         wetter.humidity = before.humidity == 0.5 ? 0.25 : 0.5;
         (void)writer.keep(wetter);
         writer.sync();

@@ -24,7 +24,7 @@ protected:
         terrain.apply({1, 1, true, {{8000, 8000, 0}}, sand::Edit::none});
         return {SandPlace::of(scene_), 1, terrain.stateHash(), terrain.copySand()->encode()};
     }
-    [[nodiscard]] std::string complaint(const sand::Scene& scene) const {
+    [[nodiscard]] std::string complaint(const scene::Scene& scene) const {
         try {
             (void)master::readSavedSand(file_, SandPlace::of(scene), sand::Replica(scene).sandReader());
         } catch (const base::InputError& error) {
@@ -32,13 +32,13 @@ protected:
         }
         return "nothing";
     }
-    void expectComplaint(const sand::Scene& scene, const std::string& part) const {
+    void expectComplaint(const scene::Scene& scene, const std::string& part) const {
         const std::string said = complaint(scene);
         EXPECT_NE(said.find(part), std::string::npos) << said;
         EXPECT_EQ(said.find('\n'), std::string::npos) << said;
         EXPECT_EQ(said.find(file_.string()), 0U) << said;
     }
-    sand::Scene scene_ = samples::flatScene(64, 48);
+    scene::Scene scene_ = samples::flatScene(64, 48);
     const std::filesystem::path file_ = master::saveFile(folder_, "dug");
 };
 
@@ -76,7 +76,7 @@ TEST_F(SavedSandFile, AnyByteThatChangedAndAnyThatIsMissingIsFound) {
 
 TEST_F(SavedSandFile, OfAnotherSceneIsRefusedWithWhatDiffers) {
     master::writeSavedSand(file_, sand());
-    sand::Scene other = scene_;
+    scene::Scene other = scene_;
     other.name = "dunes";
     expectComplaint(other, "sand of scene 'flat', and this is 'dunes'");
     expectComplaint(samples::flatScene(48, 64), "sand of 64 x 48 cells, and the scene has 48 x 64");

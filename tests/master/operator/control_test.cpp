@@ -41,8 +41,8 @@ TEST(OperatorCommand, EveryVerbIsRead) {
     EXPECT_EQ(parseCommand("pattern ramp").pattern, lockstep::Pattern::ramp);
     EXPECT_EQ(parseCommand("pattern none").pattern, lockstep::Pattern::none);
     EXPECT_FALSE(parseCommand("pattern next").pattern.has_value());
-    EXPECT_EQ(parseCommand("show hill-shade").layer, lockstep::Layer::hillShade);
-    EXPECT_EQ(parseCommand("hide statistics").layer, lockstep::Layer::statistics);
+    EXPECT_EQ(parseCommand("show hill-shade").layer, lockstep::Overlay::hillShade);
+    EXPECT_EQ(parseCommand("hide statistics").layer, lockstep::Overlay::statistics);
     EXPECT_DOUBLE_EQ(parseCommand("eye-separation 0.5").number, 0.5);
     EXPECT_DOUBLE_EQ(parseCommand("eye-separation 0").number, 0);
     EXPECT_EQ(parseCommand("stereo anaglyph").stereo, walls::Stereo::anaglyphColour);

@@ -37,7 +37,7 @@ protected:
         }
         return all;
     }
-    const sand::Scene scene_ = samples::flatScene(64, 64);
+    const scene::Scene scene_ = samples::flatScene(64, 64);
     sand::Replica terrain_{scene_};
     master::PositionSource source_{scene_};
     std::int64_t clock_ = 20'000 * kMillisecond;

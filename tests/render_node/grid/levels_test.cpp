@@ -20,7 +20,7 @@ using render_node::ChunkLevels;
 using render_node::EyeTarget;
 using render_node::SandSurface;
 using render_node::SandVertex;
-using render_node::SandView;
+using render_node::ScenePainter;
 using VertexBits = std::array<std::uint32_t, 4>;
 
 constexpr int kSide = 32;   // [quad], of a chunk
@@ -47,7 +47,7 @@ sand::HeightField hills(int columns, int rows, std::uint32_t seed) {
     return field;
 }
 
-sand::Rect chunkAt(int x, int y) { return {x * kSide, y * kSide, (x + 1) * kSide + 1, (y + 1) * kSide + 1}; }
+sand::CellRect chunkAt(int x, int y) { return {x * kSide, y * kSide, (x + 1) * kSide + 1, (y + 1) * kSide + 1}; }
 
 using Place = std::pair<int, int>;  // column and row of the vertex grid
 
@@ -105,7 +105,7 @@ TEST(Levels, OfAnyPatchworkMeetWithoutCracks) {
 }
 
 /// The largest distance of a chunk's triangles from the vertices below or above them [cell].
-double distanceOf(const SandSurface& surface, const sand::Rect& chunk, const ChunkLevels& levels) {
+double distanceOf(const SandSurface& surface, const sand::CellRect& chunk, const ChunkLevels& levels) {
     const std::vector<SandVertex> own = render_node::verticesOf(surface, chunk, levels.level);
     const std::vector<std::uint16_t> triangles = render_node::trianglesOf(kSide, kSide, levels);
     double most = 0;
@@ -140,7 +140,7 @@ TEST(Levels, AreAsFarFromTheSandAsTheySay) {
     const SandSurface surface(hills(kChunks * kSide - 1, kChunks * kSide - 1, 2));
     const glm::vec3 sun = glm::normalize(glm::vec3(-0.55, 0.35, 0.6));
     for (int chunk = 0; chunk < kChunks * kChunks; chunk += 3) {
-        const sand::Rect vertices = chunkAt(chunk % kChunks, chunk / kChunks);
+        const sand::CellRect vertices = chunkAt(chunk % kChunks, chunk / kChunks);
         const auto errors = render_node::errorsOf(surface, vertices, sun, render_node::kLevels - 1);
         for (int level = 1; level < render_node::kLevels; ++level) {
             const double said = errors.height[static_cast<std::size_t>(level)];
@@ -195,20 +195,20 @@ TEST(Levels, AreThoseOfEveryTileOfAPlane) {
 /// A strip of dunes with a furrow, large enough for three levels.
 class LargeField : public testing::Test {
 protected:
-    static sand::Scene strip() {
-        sand::Scene scene = sample::flatScene(2048, 256, 0.012);
-        sand::makeDunes({.height = 0.008, .length = 0.1}, scene.terrain);  // at rest as they are
+    static scene::Scene strip() {
+        scene::Scene scene = sample::flatScene(2048, 256, 0.012);
+        sand::grid::makeDunes({.height = 0.008, .length = 0.1}, scene.terrain);  // at rest as they are
         return scene;
     }
     std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
-    sand::Scene scene_ = strip();
+    scene::Scene scene_ = strip();
     sand::Replica terrain_{scene_};
 };
 
 // Below the sand there is the floor of its box: a crack shows it, deeper than any sand.
 TEST_F(LargeField, ShowsNoHoleAtAnyBound) {
     sample::drag(terrain_, scene_, {0.6, 0.1, 0.005}, {0.9, 0.16, 0.0});
-    SandView view(scene_, glm::dmat4(1));
+    ScenePainter view(scene_, glm::dmat4(1));
     view.update(terrain_.field(), terrain_.field().bounds());
     const EyeTarget target(320, 240);
     for (const glm::dvec3& eye :
@@ -248,7 +248,7 @@ TEST_F(LargeField, ShowsNoHoleAtAnyBound) {
 
 // While a hand digs, chunks change their level, and their neighbours' edges with them; now and then the head moves.
 TEST_F(LargeField, DrawnInPartsIsEqualToTheWhole) {
-    SandView view(scene_, glm::dmat4(1));
+    ScenePainter view(scene_, glm::dmat4(1));
     constexpr int kEyes = 2;
     std::vector<EyeTarget> targets;
     targets.reserve(kEyes);
@@ -279,7 +279,7 @@ TEST_F(LargeField, DrawnInPartsIsEqualToTheWhole) {
     EXPECT_GT(inPart, 30);
     EXPECT_GT(fewest, 0);
     EXPECT_LT(fewest + 4, most) << "no chunk has become finer";
-    SandView fresh(scene_, glm::dmat4(1));
+    ScenePainter fresh(scene_, glm::dmat4(1));
     fresh.update(terrain_.field(), terrain_.field().bounds());
     fresh.setTool(terrain_.probe(), terrain_.engaged());
     const auto camera = sample::camera(head, head + glm::dvec3(0, 0.25, -0.35));

@@ -12,16 +12,16 @@
 
 namespace {
 
-using lockstep::Layer;
+using lockstep::Overlay;
 using render_node::EyeTarget;
 using render_node::PixelRect;
-using render_node::SandView;
+using render_node::ScenePainter;
 using sample::Pixels;
 
 constexpr int kSteps = 170;
 
 /// What a hand does: it drags through the sand, lifts, rests while sand slides, digs along the rim and out over it.
-sand::Step stepOf(const sand::Scene& scene, int i) {
+sand::Step stepOf(const scene::Scene& scene, int i) {
     const auto between = [&](int first, int end, glm::dvec3 from, glm::dvec3 to) {
         return glm::mix(from, to, double(i - first) / (end - first));
     };
@@ -41,8 +41,8 @@ sand::Step stepOf(const sand::Scene& scene, int i) {
 }
 
 /// Steep heaps, so that sand still slides when the hand rests.
-sand::Scene sessionScene(sand::Rim rim) {
-    sand::Scene scene = sample::duneScene(128);
+scene::Scene sessionScene(sand::Rim rim) {
+    scene::Scene scene = sample::duneScene(128);
     scene.rules.rim = rim;
     scene.rules.toolRadius = static_cast<std::int32_t>(0.05 / scene.terrain.cellSize() * sand::kProbePerCell);
     return scene;
@@ -62,15 +62,15 @@ struct Twice {
 
 /// What a step's frame shows beside the sand.
 struct Shown {
-    lockstep::Layers layers;
+    lockstep::Overlays layers;
     std::optional<render_node::ForceArrow> force;
 };
 
-using LayersAt = lockstep::Layers (*)(int step);
-lockstep::Layers noLayers(int) { return {}; }
-template <Layer... layers>
-lockstep::Layers always(int) {
-    lockstep::Layers shown;
+using LayersAt = lockstep::Overlays (*)(int step);
+lockstep::Overlays noLayers(int) { return {}; }
+template <Overlay... layers>
+lockstep::Overlays always(int) {
+    lockstep::Overlays shown;
     (shown.set(layers, true), ...);
     return shown;
 }
@@ -97,7 +97,7 @@ PixelRect difference(const Pixels& a, const Pixels& b, int width) {
 class Redraw : public testing::Test {
 protected:
     /// Draws and compares one eye; the first difference fails the test.
-    static void drawTwice(SandView& view, const walls::Wall& wall, const walls::Viewer& viewer, Twice& twice,
+    static void drawTwice(ScenePainter& view, const walls::Wall& wall, const walls::Viewer& viewer, Twice& twice,
                           Tally& tally) {
         const glm::dvec3 position = walls::eyePosition(viewer, twice.eye);
         const render_node::Camera camera{
@@ -114,10 +114,10 @@ protected:
     }
 
     /// Another view of the same scene that has taken over the sand at once shows the same.
-    static void checkAgainstFreshView(const sand::Scene& scene, const sand::Replica& terrain,
+    static void checkAgainstFreshView(const scene::Scene& scene, const sand::Replica& terrain,
                                       const glm::dmat4& sceneToRoom, const Shown& shown,
                                       const render_node::Camera& camera, const Twice& twice) {
-        SandView fresh(scene, sceneToRoom);
+        ScenePainter fresh(scene, sceneToRoom);
         fresh.update(terrain.field(), terrain.field().bounds());
         fresh.setTool(terrain.probe(), terrain.engaged());
         fresh.setLayers(shown.layers);
@@ -129,12 +129,12 @@ protected:
     static Tally play(const std::string& name, int smaller, const std::vector<std::size_t>& tiles, sand::Rim rim,
                       bool headMoves, walls::Stereo stereo, LayersAt layersAt = noLayers) {
         walls::Wall wall = sample::reduced(walls::loadWall(sample::wallFolder() / (name + ".toml")), smaller);
-        const sand::Scene scene = sessionScene(rim);
+        const scene::Scene scene = sessionScene(rim);
         sand::Replica terrain(scene);
         const double width = scene.terrain.columns() * scene.terrain.cellSize();
         const glm::dmat4 sceneToRoom = walls::stageToRoom(
             wall.stage, width, width, static_cast<double>(scene.referenceHeight()) * scene.terrain.unit());
-        SandView view(scene, sceneToRoom);
+        ScenePainter view(scene, sceneToRoom);
         std::vector<Twice> eyes;
         for (const std::size_t tile : tiles) {
             for (const walls::Eye eye : walls::eyesOf(stereo)) {
@@ -149,7 +149,7 @@ protected:
             view.update(terrain.field(), terrain.takeDamage());
             view.setTool(terrain.probe(), terrain.engaged());
             Shown shown{layersAt(i), force.arrow(terrain)};
-            shown.force = shown.layers.shows(Layer::force) ? shown.force : std::nullopt;
+            shown.force = shown.layers.shows(Overlay::force) ? shown.force : std::nullopt;
             view.setLayers(shown.layers);
             view.setForce(shown.force);
             if (headMoves && i % 23 == 22) {
@@ -200,20 +200,20 @@ TEST_F(Redraw, OfACaveAroundTheViewerIsEqualToTheWhole) {
 
 TEST_F(Redraw, WithAWireframeIsEqualToTheWhole) {
     const Tally tally =
-        play("tiled_3x4", 8, {10}, sand::Rim::open, false, walls::Stereo::passive, always<Layer::wireframe>);
+        play("tiled_3x4", 8, {10}, sand::Rim::open, false, walls::Stereo::passive, always<Overlay::wireframe>);
     EXPECT_GE(tally.whole, 2);
     EXPECT_GT(tally.inPart, kSteps / 3);
 }
 
 TEST_F(Redraw, WithHillShadeIsEqualToTheWhole) {
     const Tally tally =
-        play("tiled_3x4", 8, {10}, sand::Rim::closed, false, walls::Stereo::passive, always<Layer::hillShade>);
+        play("tiled_3x4", 8, {10}, sand::Rim::closed, false, walls::Stereo::passive, always<Overlay::hillShade>);
     EXPECT_GE(tally.whole, 2);
     EXPECT_GT(tally.inPart, kSteps / 3);
 }
 
 TEST_F(Redraw, WithTheForcesArrowIsEqualToTheWhole) {
-    const Tally tally = play("desktop", 8, {0}, sand::Rim::closed, false, walls::Stereo::mono, always<Layer::force>);
+    const Tally tally = play("desktop", 8, {0}, sand::Rim::closed, false, walls::Stereo::mono, always<Overlay::force>);
     EXPECT_GE(tally.whole, 1);
     EXPECT_GT(tally.inPart, kSteps / 3);
 }
@@ -221,11 +221,11 @@ TEST_F(Redraw, WithTheForcesArrowIsEqualToTheWhole) {
 // Each layer comes and goes while the tool drags, rests and digs along the rim; two change in one frame.
 TEST_F(Redraw, WhileLayersAreSwitchedIsEqualToTheWhole) {
     const LayersAt switched = [](int step) {
-        lockstep::Layers layers;
-        layers.set(Layer::wireframe, (step >= 10 && step < 20) || step >= 110);
-        layers.set(Layer::hillShade, (step >= 15 && step < 30) || (step >= 75 && step < 80));
-        layers.set(Layer::force, (step >= 5 && step < 40) || (step >= 95 && step < 125));
-        layers.set(Layer::statistics, step % 7 == 0);  // not the sand's affair
+        lockstep::Overlays layers;
+        layers.set(Overlay::wireframe, (step >= 10 && step < 20) || step >= 110);
+        layers.set(Overlay::hillShade, (step >= 15 && step < 30) || (step >= 75 && step < 80));
+        layers.set(Overlay::force, (step >= 5 && step < 40) || (step >= 95 && step < 125));
+        layers.set(Overlay::statistics, step % 7 == 0);  // not the sand's affair
         return layers;
     };
     const Tally tally = play("desktop", 8, {0}, sand::Rim::closed, false, walls::Stereo::mono, switched);
@@ -248,8 +248,8 @@ int slack(const PixelRect& drawn, const PixelRect& changed, const EyeTarget& tar
 // A session's changes fade out before the edge of what may change. Posts on level sand hide the sky as far away as
 // sand can, so that a rectangle that is two pixels too small on any side is found out.
 TEST_F(Redraw, ReachesAsFarAsAPostHidesTheSkyAndNotMuchFurther) {
-    sand::Scene scene = sample::flatScene(128, 128);
-    SandView view(scene, glm::dmat4(1));
+    scene::Scene scene = sample::flatScene(128, 128);
+    ScenePainter view(scene, glm::dmat4(1));
     const render_node::Camera above = sample::camera({1, 1, 2.2}, {1, 1, 0});
     const EyeTarget inParts(200, 150), whole(200, 150);
     render_node::EyeMemory memory;
@@ -275,10 +275,10 @@ TEST_F(Redraw, ReachesAsFarAsAPostHidesTheSkyAndNotMuchFurther) {
 // closely.
 TEST_F(Redraw, FollowsAToolHighAboveTheSandAndItsShadow) {
     for (const std::vector<double>& sun :
-         std::vector<std::vector<double>>{sand::Look{}.sunDirection, {0, 0, 1}, {-0.6, 0.7, 0.3}, {0.9, -0.4, 0.1}}) {
-        sand::Scene scene = sample::flatScene(128, 128, 0.05);
+         std::vector<std::vector<double>>{scene::Look{}.sunDirection, {0, 0, 1}, {-0.6, 0.7, 0.3}, {0.9, -0.4, 0.1}}) {
+        scene::Scene scene = sample::flatScene(128, 128, 0.05);
         scene.look.sunDirection = sun;
-        SandView view(scene, glm::dmat4(1));
+        ScenePainter view(scene, glm::dmat4(1));
         const render_node::Camera above = sample::camera({1, 1, 2.2}, {1, 1, 0});
         const EyeTarget inParts(200, 150), whole(200, 150);
         render_node::EyeMemory memory;
@@ -294,8 +294,8 @@ TEST_F(Redraw, FollowsAToolHighAboveTheSandAndItsShadow) {
 }
 
 TEST_F(Redraw, FollowsAToolThatChangesItsSizeWhereItIs) {
-    const sand::Scene scene = sample::flatScene(128, 128, 0.05);
-    SandView view(scene, glm::dmat4(1));
+    const scene::Scene scene = sample::flatScene(128, 128, 0.05);
+    ScenePainter view(scene, glm::dmat4(1));
     const render_node::Camera above = sample::camera({1, 1, 2.2}, {1, 1, 0});
     const EyeTarget inParts(200, 150), whole(200, 150);
     render_node::EyeMemory memory;
@@ -316,10 +316,10 @@ TEST_F(Redraw, FollowsAToolThatChangesItsSizeWhereItIs) {
 // Tools of every shape, lifted, dragged, turned on the spot and switched while they stand in the sand, low over the rim
 // too, whose boards take their shadow.
 TEST_F(Redraw, FollowsToolsOfEveryShapeAsTheyTurnAndAreSwitched) {
-    sand::Scene scene = sample::duneScene(128);
+    scene::Scene scene = sample::duneScene(128);
     scene.rules.toolRadius = static_cast<std::int32_t>(0.14 / scene.terrain.cellSize() * sand::kProbePerCell);
     sand::Replica terrain(scene);
-    SandView view(scene, glm::dmat4(1));
+    ScenePainter view(scene, glm::dmat4(1));
     const render_node::Camera slanted = sample::camera({1, -0.9, 1.3}, {1, 0.9, 0});
     const EyeTarget inParts(200, 150), whole(200, 150);
     render_node::EyeMemory memory;
@@ -350,9 +350,9 @@ TEST_F(Redraw, FollowsToolsOfEveryShapeAsTheyTurnAndAreSwitched) {
 }
 
 TEST_F(Redraw, OfRestingSandDrawsNothing) {
-    const sand::Scene scene = sample::flatScene(64, 64);
+    const scene::Scene scene = sample::flatScene(64, 64);
     sand::Replica terrain(scene);
-    SandView view(scene, glm::dmat4(1));
+    ScenePainter view(scene, glm::dmat4(1));
     const render_node::Camera above = sample::camera({1, 1, 2.2}, {1, 1, 0});
     const EyeTarget target(200, 150);
     render_node::EyeMemory memory;

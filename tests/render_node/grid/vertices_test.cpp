@@ -19,7 +19,7 @@ using render_node::SandVertex;
 using VertexBits = std::array<std::uint32_t, 4>;
 
 std::vector<SandVertex> allVertices(const SandSurface& surface) {
-    const sand::Rect whole{0, 0, surface.columns() + 2, surface.rows() + 2};
+    const sand::CellRect whole{0, 0, surface.columns() + 2, surface.rows() + 2};
     return render_node::verticesOf(surface, whole, 0);
 }
 

@@ -11,7 +11,7 @@
 
 namespace {
 
-using lockstep::Layer;
+using lockstep::Overlay;
 using render_node::EyeTarget;
 using render_node::overlayLayout;
 using render_node::OverlayLayout;
@@ -23,7 +23,7 @@ using sample::Pixels;
 
 constexpr std::size_t kTile = 5;  // of the tiled wall, counted from 0: rank 6, in the middle of the sand
 
-lockstep::ViewState viewOf(const walls::Wall& wall, const sand::Scene& scene, bool statistics) {
+lockstep::ViewState viewOf(const walls::Wall& wall, const scene::Scene& scene, bool statistics) {
     lockstep::ViewState view;
     const double width = scene.terrain.columns() * scene.terrain.cellSize();
     const glm::dmat4 toRoom = walls::stageToRoom(wall.stage, width, width,
@@ -36,7 +36,7 @@ lockstep::ViewState viewOf(const walls::Wall& wall, const sand::Scene& scene, bo
     for (int i = 0; i < 16; ++i) {
         view.sceneToRoom.at(static_cast<std::size_t>(i)) = toRoom[i / 4][i % 4];
     }
-    view.layers.set(Layer::statistics, statistics);
+    view.layers.set(Overlay::statistics, statistics);
     return view;
 }
 
@@ -63,7 +63,7 @@ testing::AssertionResult equalOutside(const PixelRect& rect, const Pixels& a, co
 }
 
 /// The same session on one tile twice: one shows the statistics for a while, one never does.
-class Overlay : public testing::Test {
+class StatisticsOverlay : public testing::Test {
 protected:
     void prepare(walls::Stereo stereo, int smaller) {
         wall_ = sample::reduced(walls::loadWall(sample::wallFolder() / "tiled_3x4.toml"), smaller);
@@ -98,14 +98,14 @@ protected:
 
     std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     walls::Wall wall_;
-    sand::Scene scene_ = sample::duneScene(128);
+    scene::Scene scene_ = sample::duneScene(128);
     sand::Replica first_{scene_}, second_{scene_};
     PixelRect covered_;
     std::uint64_t frame_ = 0;
     std::unique_ptr<TilePainter> shown_, never_;
 };
 
-TEST_F(Overlay, LeavesTheSandAroundItAloneAndComesOffWithoutATrace) {
+TEST_F(StatisticsOverlay, LeavesTheSandAroundItAloneAndComesOffWithoutATrace) {
     prepare(walls::Stereo::passive, 4);
     ASSERT_FALSE(covered_.empty());
     for (int i = 0; i < 60; ++i) {
@@ -120,7 +120,7 @@ TEST_F(Overlay, LeavesTheSandAroundItAloneAndComesOffWithoutATrace) {
     }
 }
 
-TEST_F(Overlay, IsThereInThePicturesThatHoldBothEyes) {
+TEST_F(StatisticsOverlay, IsThereInThePicturesThatHoldBothEyes) {
     for (const walls::Stereo stereo : {walls::Stereo::anaglyphDubois, walls::Stereo::rowInterlaced}) {
         prepare(stereo, 4);
         for (int i = 0; i < 9; ++i) {
@@ -132,7 +132,7 @@ TEST_F(Overlay, IsThereInThePicturesThatHoldBothEyes) {
     }
 }
 
-TEST_F(Overlay, ComesOffEachEyeThatIsShownInTurn) {
+TEST_F(StatisticsOverlay, ComesOffEachEyeThatIsShownInTurn) {
     prepare(walls::Stereo::active, 4);
     for (int i = 0; i < 20; ++i) {
         const bool on = i >= 4 && i < 9;
@@ -145,7 +145,7 @@ TEST_F(Overlay, ComesOffEachEyeThatIsShownInTurn) {
     }
 }
 
-TEST_F(Overlay, IsTheSameForBothEyes) {
+TEST_F(StatisticsOverlay, IsTheSameForBothEyes) {
     prepare(walls::Stereo::passive, 2);
     for (int i = 0; i < 5; ++i) {
         paintBoth(true, true);
@@ -162,7 +162,7 @@ TEST_F(Overlay, IsTheSameForBothEyes) {
     }
 }
 
-TEST_F(Overlay, OfAStillWallHasNoSandDrawnButWhereItWas) {
+TEST_F(StatisticsOverlay, OfAStillWallHasNoSandDrawnButWhereItWas) {
     prepare(walls::Stereo::passive, 2);
     paintBoth(false, false);
     paintBoth(false, false);
@@ -177,7 +177,7 @@ TEST_F(Overlay, OfAStillWallHasNoSandDrawnButWhereItWas) {
     EXPECT_EQ(shown_->viewCounts().pixelsDrawn, before + 2 * covered_.area());
 }
 
-TEST_F(Overlay, GivesWayToATestPattern) {
+TEST_F(StatisticsOverlay, GivesWayToATestPattern) {
     prepare(walls::Stereo::passive, 4);
     paintBoth(true, true);
     lockstep::ViewState grid = viewOf(wall_, scene_, true), bare = viewOf(wall_, scene_, false);

@@ -17,8 +17,8 @@ namespace {
 using pictures::Image;
 using sand::kProbePerCell;
 
-sand::Scene sceneOf(const std::string& name) {
-    return sand::loadScene(std::filesystem::path(SANDWALL_SOURCE_DIR) / "scenes" / (name + ".toml"));
+scene::Scene sceneOf(const std::string& name) {
+    return scene::loadScene(std::filesystem::path(SANDWALL_SOURCE_DIR) / "scenes" / (name + ".toml"));
 }
 
 void step(sand::Replica& terrain, bool engaged, std::vector<sand::ProbePoint> path, const sand::Edit& edit = {}) {
@@ -27,7 +27,7 @@ void step(sand::Replica& terrain, bool engaged, std::vector<sand::ProbePoint> pa
 }
 
 /// A script's hand over sand that is level at the start, at four places a step.
-void write(sand::Replica& terrain, const sand::Scene& scene, const haptic_bridge::Strokes& strokes) {
+void write(sand::Replica& terrain, const scene::Scene& scene, const haptic_bridge::Strokes& strokes) {
     haptic_bridge::StrokeDevice device(strokes);
     const double half = 0.5 * std::min(scene.rules.columns, scene.rules.rows) * kProbePerCell;
     const double level = static_cast<double>(scene.referenceHeight()) * kProbePerCell / sand::kUnitsPerCell;
@@ -51,13 +51,13 @@ protected:
 };
 
 TEST_F(GoldenTin, GisIsWrittenAcrossTheWall) {
-    const sand::Scene scene = sceneOf("gis_tin");
+    const scene::Scene scene = sceneOf("gis_tin");
     sand::Replica terrain(scene);
     write(terrain, scene, haptic_bridge::Strokes::parse(haptic_bridge::gisStrokes(), "gis"));
     step(terrain, false, {}, sand::Edit::settle);
     const walls::Wall wall =
         sample::smallWall(walls::loadWall(sample::wallFolder() / "tiled_3x4.toml"), golden::kMostPixels);
-    render_node::SandView view(scene, *terrain.tinView(), sample::sceneToRoom(wall, scene));
+    render_node::ScenePainter view(scene, *terrain.tinView(), sample::sceneToRoom(wall, scene));
     view.setTool(terrain.probe(), false);
     golden::expect("golden_tin", "gis", sample::wallPicture(view, wall));
 }
@@ -80,7 +80,7 @@ void imprint(sand::Replica& terrain, const glm::dvec2& place, double radius, dou
 }
 
 TEST_F(GoldenTin, ThreeEllipsesAreImprintedAndTheirBordersMarked) {
-    const sand::Scene scene = sceneOf("ellipses");
+    const scene::Scene scene = sceneOf("ellipses");
     sand::Replica terrain(scene);
     imprint(terrain, {0.55, 1.3}, 0.36, 35);
     imprint(terrain, {1.45, 1.4}, 0.28, -20);
@@ -88,11 +88,11 @@ TEST_F(GoldenTin, ThreeEllipsesAreImprintedAndTheirBordersMarked) {
     step(terrain, false, {}, sand::Edit::settle);
     const render_node::Camera camera = sample::camera({1, 0.2, 1.9}, {1, 0.95, 0.2});
     const render_node::EyeTarget target(240, 180);
-    render_node::SandView view(scene, *terrain.tinView(), glm::dmat4(1));
+    render_node::ScenePainter view(scene, *terrain.tinView(), glm::dmat4(1));
     Image both(2 * target.width(), target.height());
     for (const bool wires : {false, true}) {
-        lockstep::Layers layers;
-        layers.set(lockstep::Layer::wireframe, wires);
+        lockstep::Overlays layers;
+        layers.set(lockstep::Overlay::wireframe, wires);
         view.setLayers(layers);
         view.draw(camera, target);
         pictures::blit(both, sample::pictureOf(target), wires ? target.width() : 0, 0);

@@ -13,9 +13,9 @@
 
 namespace {
 
-using lockstep::Layer;
+using lockstep::Overlay;
 using render_node::EyeTarget;
-using render_node::SandView;
+using render_node::ScenePainter;
 using sample::layersOf;
 using sample::Pixels;
 using sample::Tin;
@@ -74,14 +74,14 @@ protected:
 
 // The same vertices: what differs are normals, from the triangles around and not from the cells beside.
 TEST_F(TinLook, OfAGridsSurfaceIsThatOfTheGrid) {
-    sand::Scene scene = sample::duneScene(128);
+    scene::Scene scene = sample::duneScene(128);
     scene.look.detail = 0;
     const Tin tin(scene.terrain);
-    SandView grid(scene, glm::dmat4(1)), view(scene, tin.view(), glm::dmat4(1));
+    ScenePainter grid(scene, glm::dmat4(1)), view(scene, tin.view(), glm::dmat4(1));
     for (const bool map : {false, true}) {
-        for (SandView* one : {&grid, &view}) {
+        for (ScenePainter* one : {&grid, &view}) {
             one->setTool(sample::probeAt(scene, {0.8, 0.7, 0.1}), false);
-            one->setLayers(map ? layersOf({Layer::hillShade}) : layersOf({}));
+            one->setLayers(map ? layersOf({Overlay::hillShade}) : layersOf({}));
         }
         const Unlike apart = compare(sample::draw(grid, slanted_, target_), sample::draw(view, slanted_, target_));
         std::printf("hill-shade %d: at most %d, %.3f in the mean, %.4f %% by more than 8\n", map, apart.most,
@@ -94,15 +94,15 @@ TEST_F(TinLook, OfAGridsSurfaceIsThatOfTheGrid) {
 
 // Few large triangles under the sun of a map, which no grain hides.
 TEST_F(TinLook, IsFlatOrSmoothAsTheSceneSays) {
-    sand::Scene scene = sample::flatScene(6, 6);
+    scene::Scene scene = sample::flatScene(6, 6);
     for (int i = 0; i < 36; ++i) {
         scene.terrain.setHeight(i % 6, i / 6, (3 - std::abs(i % 6 - 2)) * sand::kUnitsPerCell / 4);
     }
     const Tin tin(scene.terrain);
     const auto shades = [&](bool flat) {
         scene.look.flatShading = flat;
-        SandView view(scene, tin.view(), glm::dmat4(1));
-        view.setLayers(layersOf({Layer::hillShade}));
+        ScenePainter view(scene, tin.view(), glm::dmat4(1));
+        view.setLayers(layersOf({Overlay::hillShade}));
         const Pixels seen = sample::draw(view, above_, target_);
         std::set<int> found;
         for (int y = 75; y < 225; ++y) {
@@ -126,7 +126,7 @@ int apart(const glm::ivec3& a, const glm::ivec3& b) {
 
 // A corner of the field and a place within it, each some triangles wide.
 TEST_F(TinLook, LeavesHolesOpenWhicheverSlotsTheirTrianglesHave) {
-    sand::Scene scene = sample::duneScene(32);
+    scene::Scene scene = sample::duneScene(32);
     scene.look.detail = 0;
     const auto isHole = [](double x, double y) {
         return std::max(std::abs(x - 16 * 256), std::abs(y - 16 * 256)) < 2.5 * 256 || x + y < 6 * 256;
@@ -136,10 +136,10 @@ TEST_F(TinLook, LeavesHolesOpenWhicheverSlotsTheirTrianglesHave) {
     other.cut(isHole);
     std::mt19937 random(5);
     other.shuffle(random);
-    SandView whole(scene, Tin(scene.terrain).view(), glm::dmat4(1));
-    SandView view(scene, tin.view(), glm::dmat4(1)), again(scene, other.view(), glm::dmat4(1));
-    for (SandView* one : {&whole, &view, &again}) {
-        one->setLayers(layersOf({Layer::hillShade}));
+    ScenePainter whole(scene, Tin(scene.terrain).view(), glm::dmat4(1));
+    ScenePainter view(scene, tin.view(), glm::dmat4(1)), again(scene, other.view(), glm::dmat4(1));
+    for (ScenePainter* one : {&whole, &view, &again}) {
+        one->setLayers(layersOf({Overlay::hillShade}));
     }
     const Pixels open = sample::draw(view, above_, target_), closed = sample::draw(whole, above_, target_);
     const auto colour = [](const Pixels& seen, int x, int y) { return sample::pixel(seen, kPictureWidth, x, y); };
@@ -152,7 +152,7 @@ TEST_F(TinLook, LeavesHolesOpenWhicheverSlotsTheirTrianglesHave) {
 }
 
 TEST_F(TinLook, MarksConstraintsInTheWireframeAlone) {
-    sand::Scene scene = sample::flatScene(16, 16);
+    scene::Scene scene = sample::flatScene(16, 16);
     Tin tin(scene.terrain);
     // From the middle of cell (7, 7) to that of (8, 7), as its edges lie: south of the picture's middle.
     const glm::dvec2 middle(1, 0.9375);
@@ -165,9 +165,9 @@ TEST_F(TinLook, MarksConstraintsInTheWireframeAlone) {
         }
         return most;
     };
-    SandView view(scene, tin.view(), glm::dmat4(1));
+    ScenePainter view(scene, tin.view(), glm::dmat4(1));
     const Pixels without = sample::draw(view, above_, target_);
-    view.setLayers(layersOf({Layer::wireframe}));
+    view.setLayers(layersOf({Overlay::wireframe}));
     const Pixels wires = sample::draw(view, above_, target_);
     EXPECT_LT(reddest(wires), 0) << "ink is brown";
     const auto& places = tin.mesh().places;
@@ -195,12 +195,12 @@ TEST_F(TinLook, MarksConstraintsInTheWireframeAlone) {
 }
 
 TEST_F(TinLook, LeavesItsShadersOutWhereNothingAsksForThem) {
-    sand::Scene scene = sample::duneScene(32);
+    scene::Scene scene = sample::duneScene(32);
     const Tin tin(scene.terrain);
     {
         const CompiledShaders compiled;
-        SandView grid(scene, glm::dmat4(1));
-        grid.setLayers(layersOf({Layer::wireframe, Layer::hillShade}));
+        ScenePainter grid(scene, glm::dmat4(1));
+        grid.setLayers(layersOf({Overlay::wireframe, Overlay::hillShade}));
         (void)sample::draw(grid, above_, target_);
         EXPECT_TRUE(CompiledShaders::with("wire.geom.glsl"));
         for (const auto* file : {"facet.vert.glsl", "facet.geom.glsl", "mark.geom.glsl", "mark.frag.glsl"}) {
@@ -208,10 +208,10 @@ TEST_F(TinLook, LeavesItsShadersOutWhereNothingAsksForThem) {
         }
     }
     const CompiledShaders compiled;
-    SandView view(scene, tin.view(), glm::dmat4(1));
+    ScenePainter view(scene, tin.view(), glm::dmat4(1));
     (void)sample::draw(view, above_, target_);
     EXPECT_FALSE(CompiledShaders::with("mark.frag.glsl"));
-    view.setLayers(layersOf({Layer::wireframe}));
+    view.setLayers(layersOf({Overlay::wireframe}));
     (void)sample::draw(view, above_, target_);
     EXPECT_TRUE(CompiledShaders::with("mark.frag.glsl"));
     EXPECT_FALSE(CompiledShaders::with("facet.geom.glsl"));

@@ -11,10 +11,10 @@
 
 namespace {
 
-using lockstep::Layer;
+using lockstep::Overlay;
 using render_node::EyeTarget;
 using render_node::PixelRect;
-using render_node::SandView;
+using render_node::ScenePainter;
 using sample::Tin;
 
 constexpr int kRedrawWidth = 200, kRedrawHeight = 150, kCells = 64;
@@ -66,14 +66,14 @@ void edit(Tin& tin, std::mt19937& random, std::vector<Tin::Vertex>& added) {
 class TinRedraw : public testing::Test {
 protected:
     /// Draws what random edits leave, with a tool that hovers and rests. `layers` are shown in every third ten steps.
-    void play(unsigned seed, sand::Rim rim, const render_node::Camera& camera, lockstep::Layers layers, bool flat) {
+    void play(unsigned seed, sand::Rim rim, const render_node::Camera& camera, lockstep::Overlays layers, bool flat) {
         std::mt19937 random(seed);
-        sand::Scene scene = sample::duneScene(kCells);
+        scene::Scene scene = sample::duneScene(kCells);
         scene.rules.rim = rim;
         scene.look.flatShading = flat;
         Tin tin(scene.terrain);
         const Tin start = tin;
-        SandView view(scene, tin.view(), glm::dmat4(1));
+        ScenePainter view(scene, tin.view(), glm::dmat4(1));
         const EyeTarget inParts(kRedrawWidth, kRedrawHeight), whole(kRedrawWidth, kRedrawHeight);
         render_node::EyeMemory memory;
         std::vector<Tin::Vertex> added;
@@ -86,19 +86,19 @@ protected:
             if (i % 5 == 2) {
                 view.setTool(sample::probeAt(scene, {0.03 * i, 0.9, 0.1 + 0.005 * i}), i % 2 == 0);
             }
-            view.setLayers(i / 10 % 3 == 1 ? layers : lockstep::Layers{});
+            view.setLayers(i / 10 % 3 == 1 ? layers : lockstep::Overlays{});
             const PixelRect drawn = view.drawIfChanged(camera, inParts, memory);
             parts += !drawn.empty() && drawn.area() < kRedrawWidth * kRedrawHeight ? 1 : 0;
             skipped += drawn.empty() ? 1 : 0;
             severalParts += view.counts().pixels < drawn.area() ? 1 : 0;
             ASSERT_TRUE(inParts.read() == sample::draw(view, camera, whole)) << "seed " << seed << ", step " << i;
             if (i % 20 == 19) {  // a replica that starts here, its triangles in other slots, begun at other corners
-                SandView fresh(scene, start.view(), glm::dmat4(1));
+                ScenePainter fresh(scene, start.view(), glm::dmat4(1));
                 Tin other = tin;
                 other.shuffle(random);
                 fresh.update(other.view(), {.whole = true, .triangles = {}, .vertices = {}});
                 fresh.setTool(sample::probeAt(scene, {0.03 * (i - 2), 0.9, 0.1 + 0.005 * (i - 2)}), (i - 2) % 2 == 0);
-                fresh.setLayers(i / 10 % 3 == 1 ? layers : lockstep::Layers{});
+                fresh.setLayers(i / 10 % 3 == 1 ? layers : lockstep::Overlays{});
                 ASSERT_TRUE(inParts.read() == sample::draw(fresh, camera, whole)) << "seed " << seed << ", step " << i;
             }
         }
@@ -117,9 +117,9 @@ protected:
 TEST_F(TinRedraw, OfRandomEditsInPartsIsEqualToTheWhole) { play(1, sand::Rim::closed, slanted_, {}, false); }
 
 TEST_F(TinRedraw, OverAnOpenRimWithWiresIsEqualToTheWhole) {
-    lockstep::Layers layers;
-    layers.set(Layer::wireframe, true);
-    layers.set(Layer::hillShade, true);
+    lockstep::Overlays layers;
+    layers.set(Overlay::wireframe, true);
+    layers.set(Overlay::hillShade, true);
     play(2, sand::Rim::open, slanted_, layers, false);
 }
 
@@ -132,11 +132,11 @@ TEST_F(TinRedraw, OfAnIslandThatRisesAsAWholeIsEqualToTheWhole) {
         constexpr int kMiddle = kCells / 2;
         return std::max(std::abs(x / 256 - kMiddle), std::abs(y / 256 - kMiddle));  // [cell]
     };
-    const sand::Scene scene = sample::flatScene(kCells, kCells);
+    const scene::Scene scene = sample::flatScene(kCells, kCells);
     Tin tin(scene.terrain);
     tin.cut([&](double x, double y) { return fromMiddle(x, y) > 6 && fromMiddle(x, y) < 24; });
     (void)tin.takeDamage();
-    SandView view(scene, tin.view(), glm::dmat4(1));
+    ScenePainter view(scene, tin.view(), glm::dmat4(1));
     const EyeTarget inParts(kRedrawWidth, kRedrawHeight), whole(kRedrawWidth, kRedrawHeight);
     render_node::EyeMemory memory;
     view.drawIfChanged(slanted_, inParts, memory);
@@ -186,9 +186,9 @@ private:
 TEST_F(TinRedraw, WithWhatIsUnseenPutOffIsEqualToTheWhole) {
     for (const unsigned seed : {5U, 6U, 7U}) {
         std::mt19937 random(seed);
-        const sand::Scene scene = sample::duneScene(kCells);
+        const scene::Scene scene = sample::duneScene(kCells);
         Tin tin(scene.terrain);
-        SandView prompt(scene, tin.view(), glm::dmat4(1)), late(scene, tin.view(), glm::dmat4(1));
+        ScenePainter prompt(scene, tin.view(), glm::dmat4(1)), late(scene, tin.view(), glm::dmat4(1));
         const EyeTarget promptly(kRedrawWidth, kRedrawHeight), lately(kRedrawWidth, kRedrawHeight);
         render_node::EyeMemory ofPrompt, ofLate;
         std::vector<Tin::Vertex> added;
@@ -210,9 +210,9 @@ TEST_F(TinRedraw, WithWhatIsUnseenPutOffIsEqualToTheWhole) {
 }
 
 TEST_F(TinRedraw, SendsWhatChangedAndNothingElse) {
-    sand::Scene scene = sample::flatScene(kCells, kCells);
+    scene::Scene scene = sample::flatScene(kCells, kCells);
     Tin tin(scene.terrain);
-    SandView view(scene, tin.view(), glm::dmat4(1));
+    ScenePainter view(scene, tin.view(), glm::dmat4(1));
     const EyeTarget target(kRedrawWidth, kRedrawHeight);
     render_node::EyeMemory memory;
     view.drawIfChanged(above_, target, memory);

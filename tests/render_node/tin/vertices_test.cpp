@@ -31,7 +31,7 @@ std::pair<std::vector<std::array<Tin::Vertex, 3>>, std::vector<std::size_t>> ord
 }
 
 TEST(TinSurface, KeepsChunksAndPartsInTheOrderOfTheTinAlone) {
-    const sand::Scene scene = sample::duneScene(32);
+    const scene::Scene scene = sample::duneScene(32);
     const double cell = scene.terrain.cellSize();
     std::mt19937 random(9);
     Tin tin(scene.terrain);
@@ -62,7 +62,7 @@ TEST(TinSurface, KeepsChunksAndPartsInTheOrderOfTheTinAlone) {
 }
 
 TEST(TinSurface, PartsTileAChunkAndHoldTheirTriangles) {
-    const sand::Scene scene = sample::duneScene(64);
+    const scene::Scene scene = sample::duneScene(64);
     const Tin tin(scene.terrain);
     TinSurface surface(tin.view(), scene.terrain.cellSize());
     std::size_t most = 0;
@@ -81,7 +81,7 @@ TEST(TinSurface, PartsTileAChunkAndHoldTheirTriangles) {
 }
 
 TEST(TinSurface, BesideAHoleOnlyWhatIsNearIsDrawnAnew) {
-    const sand::Scene scene = sample::duneScene(64);
+    const scene::Scene scene = sample::duneScene(64);
     const double cell = scene.terrain.cellSize();
     Tin tin(scene.terrain);
     const double middle = 32 * sand::kProbePerCell, half = 2 * sand::kProbePerCell;

@@ -23,7 +23,7 @@ protected:
         return double{glm::length(arrow.to - arrow.from)} / (render_node::kArrowPerNewton * scene_.toolRadius());
     }
 
-    sand::Scene scene_ = sample::flatScene(256, 256, double{kRadius});
+    scene::Scene scene_ = sample::flatScene(256, 256, double{kRadius});
     sand::Replica terrain_{scene_};
 };
 

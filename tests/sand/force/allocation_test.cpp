@@ -29,7 +29,7 @@ using namespace samples;
 
 TEST(ForceModel, AsksForNoMemory) {
     const SurfacePatch rough = roughPatch(1), level = levelPatch();
-    const sand::tin::Layer layer = tin_samples::levelLayer(kSide, kSide, 4 * sand::kProbePerCell);
+    const sand::tin::VertexSand layer = tin_samples::levelLayer(kSide, kSide, 4 * sand::kProbePerCell);
     const SurfacePatch tin({layer.triangles(), layer.heights()}, kCell, probeAt({kMiddle, kMiddle, 0}), kRadius);
     ASSERT_FALSE(tin.facets().empty());
     const std::array surfaces{&rough, &level, &tin};

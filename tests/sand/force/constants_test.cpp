@@ -14,7 +14,7 @@ protected:
 };
 
 TEST_F(ForceTable, DefaultsAreThePapers) {
-    const sand::ForceConstants force = sand::loadScene(write("s.toml", kFlat)).force;
+    const sand::ForceConstants force = scene::loadScene(write("s.toml", kFlat)).force;
     EXPECT_EQ(force.law, sand::ForceLaw::repulse);
     EXPECT_EQ(force.between, sand::Between::local);
     EXPECT_FALSE(force.literal);
@@ -23,12 +23,12 @@ TEST_F(ForceTable, DefaultsAreThePapers) {
     EXPECT_EQ(force.friction, 10);
     EXPECT_EQ(force.maxForce, 10);
     EXPECT_EQ(force.unitLength, 2) << "the field's side, with or without a table";
-    EXPECT_EQ(sand::loadScene(write("s.toml", kFlat + "[force]\nfriction = 0\n")).force.unitLength, 2);
+    EXPECT_EQ(scene::loadScene(write("s.toml", kFlat + "[force]\nfriction = 0\n")).force.unitLength, 2);
 }
 
 TEST_F(ForceTable, TravelsWithTheSceneAndIsNoPartOfItsRules) {
-    const sand::Scene plain = sand::loadScene(write("s.toml", kFlat));
-    const sand::Scene scene = sand::loadScene(write(
+    const scene::Scene plain = scene::loadScene(write("s.toml", kFlat));
+    const scene::Scene scene = scene::loadScene(write(
         "s.toml", kFlat + "[force]\nlaw = \"control_points\"\nliteral = true\nbetween = \"interpolate\"\n"
                           "stiffness = 1\ndepth_exponent = 2\nfriction = 3\nfriction_area = 4\n"
                           "friction_direction = \"vertical\"\nmax_force = 5\ntolerance = 0.25\nunit_length = 7\n"
@@ -37,7 +37,7 @@ TEST_F(ForceTable, TravelsWithTheSceneAndIsNoPartOfItsRules) {
     EXPECT_EQ(scene.force.frictionDirection, sand::FrictionDirection::vertical);
     EXPECT_EQ(scene.force.unitLength, 7);
     EXPECT_EQ(scene.force.recoveryTime, 0.5);
-    EXPECT_EQ(sand::Scene::decode(scene.encode()).force, scene.force);
+    EXPECT_EQ(scene::Scene::decode(scene.encode()).force, scene.force);
     EXPECT_EQ(scene.rules.digest(), plain.rules.digest());
 }
 
@@ -62,13 +62,13 @@ TEST_F(ForceTable, RefusesInOneLineWhatIsNoConstant) {
 }
 
 TEST_F(ForceTable, RefusesBytesThatNoSceneFileGives) {
-    const sand::Scene scene = sand::loadScene(write("s.toml", kFlat));
+    const scene::Scene scene = scene::loadScene(write("s.toml", kFlat));
     base::Bytes bytes = scene.encode();
     bytes[bytes.size() - 4] = 9;  // the law
-    EXPECT_THROW((void)sand::Scene::decode(bytes), base::FormatError);
-    sand::Scene negative = scene;
+    EXPECT_THROW((void)scene::Scene::decode(bytes), base::FormatError);
+    scene::Scene negative = scene;
     negative.force.maxForce = -1;
-    EXPECT_THROW((void)sand::Scene::decode(negative.encode()), base::FormatError);
+    EXPECT_THROW((void)scene::Scene::decode(negative.encode()), base::FormatError);
 }
 
 }  // namespace

@@ -16,14 +16,14 @@ namespace {
 
 using sand::force::Dual;
 using sand::force::Facets;
-using sand::tin::Layer;
 using sand::tin::Place;
 using sand::tin::Triangles;
+using sand::tin::VertexSand;
 
 constexpr double kProbe = 1.0 / sand::kProbePerCell;  // [scene unit], a cell being one
 
 /// A rough TIN of 48 x 48 cells, two sheer steps with constrained edges and a crowd of slivers in it.
-Layer roughLayer(std::uint32_t seed) {
+VertexSand roughLayer(std::uint32_t seed) {
     std::mt19937 random(seed);
     const auto below = [&](std::uint32_t most) { return static_cast<std::int32_t>(random() % most); };
     constexpr std::int32_t kSide = 48 * sand::kProbePerCell;
@@ -37,7 +37,7 @@ Layer roughLayer(std::uint32_t seed) {
     for (const std::int32_t x : {5200, 5202}) {
         mesh.constrain(mesh.insert(Place{x, 4000}), mesh.insert(Place{x + 300, 8000}));
     }
-    Layer layer(std::move(mesh));
+    VertexSand layer(std::move(mesh));
     const auto places = layer.triangles().places;
     for (sand::tin::Vertex vertex = 0; vertex < static_cast<sand::tin::Vertex>(places.size()); ++vertex) {
         const auto& place = places[static_cast<std::size_t>(vertex)];
@@ -47,7 +47,7 @@ Layer roughLayer(std::uint32_t seed) {
 }
 
 /// A slope with a hole of 8 x 8 cells in its middle.
-Layer layerWithAHole() {
+VertexSand layerWithAHole() {
     const sand::tin::Cells cells = sand::tin::nominalCells(24 * 256, 24 * 256);
     std::vector<sand::tin::Holes::Run> runs;
     for (std::int32_t row = 8; row < 16; ++row) {
@@ -58,7 +58,7 @@ Layer layerWithAHole() {
         const sand::tin::Vertex from = mesh.insert(part.from);
         mesh.constrain(from, mesh.insert(part.to));
     }
-    Layer layer(std::move(mesh));
+    VertexSand layer(std::move(mesh));
     const auto places = layer.triangles().places;
     for (std::size_t i = 0; i < places.size(); ++i) {
         layer.setHeight(static_cast<sand::tin::Vertex>(i), 100 * places[i].x);
@@ -66,14 +66,14 @@ Layer layerWithAHole() {
     return layer;
 }
 
-sand::tin::SurfaceView viewOf(const Layer& layer) { return {layer.triangles(), layer.heights()}; }
+sand::tin::SurfaceView viewOf(const VertexSand& layer) { return {layer.triangles(), layer.heights()}; }
 
 /// The heights of all triangles that hold the place, each as their plane has it, lowest and highest [cell], with the
 /// steepest slope of them, summed over both axes.
 struct Found {
     double lowest = 1e30, highest = -1e30, slope = 0;
 };
-Found search(const Layer& layer, double x, double y /* [probe unit] */) {
+Found search(const VertexSand& layer, double x, double y /* [probe unit] */) {
     Found found;
     for (const auto& triangle : layer.triangles().triangles) {
         if (!triangle.alive()) {
@@ -106,7 +106,7 @@ Found search(const Layer& layer, double x, double y /* [probe unit] */) {
 TEST(Facets, AreTheTrianglesToAPartOfAHeightUnit) {
     constexpr std::uint32_t kSeed = 4;
     SCOPED_TRACE(kSeed);
-    const Layer layer = roughLayer(kSeed);
+    const VertexSand layer = roughLayer(kSeed);
     Facets facets;
     ASSERT_TRUE(facets.take(viewOf(layer), {5200, 6000, 0}, 4000, kProbe));
     EXPECT_LT(facets.size(), layer.triangles().triangles.size());
@@ -137,7 +137,7 @@ TEST(Facets, TellTheSideOfAnEdgeExactlyOfTheRoundedPlace) {
     constexpr std::uint32_t kSeed = 12;
     SCOPED_TRACE(kSeed);
     std::mt19937 random(kSeed);
-    const Layer layer = roughLayer(kSeed);
+    const VertexSand layer = roughLayer(kSeed);
     const Triangles& mesh = layer.triangles();
     Facets facets;
     ASSERT_TRUE(facets.take(viewOf(layer), {6144, 6144, 0}, 6144, kProbe));
@@ -200,7 +200,7 @@ TEST(Facets, SayTheSameWhicheverWayTheyWalkThroughWhicheverSlots) {
     constexpr std::uint32_t kSeed = 9;
     SCOPED_TRACE(kSeed);
     std::mt19937 random(kSeed);
-    const Layer layer = roughLayer(kSeed);
+    const VertexSand layer = roughLayer(kSeed);
     const Triangles other = shuffled(layer.triangles(), random);
     std::vector<std::pair<double, double>> places;  // [probe unit]: vertices, middles of edges, the rim, anywhere
     for (const auto& triangle : layer.triangles().triangles) {
@@ -235,7 +235,7 @@ TEST(Facets, SayTheSameWhicheverWayTheyWalkThroughWhicheverSlots) {
 }
 
 TEST(Facets, AreFlatBeyondTheirSquareAndRefuseToBeTooMany) {
-    const Layer layer = roughLayer(3);
+    const VertexSand layer = roughLayer(3);
     Facets facets;
     ASSERT_TRUE(facets.take(viewOf(layer), {-90000, 6000, 0}, 1000, kProbe));
     const Dual corner = facets.tangent(-3, 100), inside = facets.tangent(kProbe / 256, 7000 * kProbe);
@@ -245,7 +245,7 @@ TEST(Facets, AreFlatBeyondTheirSquareAndRefuseToBeTooMany) {
     const Dual west = facets.tangent(-3, 6500 * kProbe);
     EXPECT_EQ(west.slope.x, 0);
     EXPECT_NE(west.slope.y, 0);
-    const Layer dense = tin_samples::levelLayer(64, 64, sand::kProbePerCell);
+    const VertexSand dense = tin_samples::levelLayer(64, 64, sand::kProbePerCell);
     ASSERT_GT(dense.triangles().triangles.size(), Facets::kMost);
     EXPECT_FALSE(facets.take(viewOf(dense), {8192, 8192, 0}, 8192, kProbe));
     EXPECT_TRUE(facets.empty());
@@ -253,7 +253,7 @@ TEST(Facets, AreFlatBeyondTheirSquareAndRefuseToBeTooMany) {
 }
 
 TEST(Facets, FeelAHoleAsTheLowestGroundAround) {
-    const Layer layer = layerWithAHole();
+    const VertexSand layer = layerWithAHole();
     Facets facets;
     ASSERT_TRUE(facets.take(viewOf(layer), {12 * 256, 12 * 256, 0}, 8 * 256, kProbe));
     const Dual inside = facets.tangent(11, 13);

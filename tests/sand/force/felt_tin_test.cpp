@@ -21,19 +21,19 @@ using sand::force::SurfacePatch;
 constexpr double kNominal = 0.01;  // [scene unit]
 
 /// Level sand of 96 x 96 cells under a tool of eight.
-sand::Scene sceneOf(const std::string& shape, const std::string& tin) {
+scene::Scene sceneOf(const std::string& shape, const std::string& tin) {
     const std::filesystem::path file =
         std::filesystem::temp_directory_path() / ("sandwall-felt-" + std::to_string(getpid()) + ".toml");
     std::ofstream(file) << "[field]\ncolumns = 96\nwidth = 0.96\n[terrain]\nheight = 0.3\n[material]\n"
                         << tin << "[tool]\nshape = \"" << shape << "\"\nradius = 0.08\n";
-    sand::Scene scene = sand::loadScene(file);
+    scene::Scene scene = scene::loadScene(file);
     std::filesystem::remove(file);
     return scene;
 }
 
 /// The force on a tool whose underside stands `depth` under the level, when the sand has come to rest around it.
 double upward(const std::string& shape, const std::string& tin, sand::ForceLaw law, double depth, double east = 0) {
-    const sand::Scene scene = sceneOf(shape, tin);
+    const scene::Scene scene = sceneOf(shape, tin);
     sand::Replica terrain(scene);
     const auto place = [&](double under) {
         const auto probe = [](double at) { return static_cast<std::int32_t>(std::lround(at / kNominal * 256)); };

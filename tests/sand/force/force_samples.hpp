@@ -65,8 +65,8 @@ inline SurfacePatch roughPatch(std::uint32_t seed) {
 }
 
 /// Level sand under a tool of ten cells, at sixty steps a second.
-inline sand::Scene levelScene(std::int32_t sweepsPerStep = 40) {
-    sand::Scene scene;
+inline scene::Scene levelScene(std::int32_t sweepsPerStep = 40) {
+    scene::Scene scene;
     scene.terrain = sand::HeightField(kSide, kSide, kCell);
     scene.rules = {.columns = kSide,
                    .rows = kSide,

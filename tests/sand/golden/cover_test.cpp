@@ -18,7 +18,7 @@ class Cover : public testing::TestWithParam<std::size_t> {};
 
 struct Way {
     int threads, block;
-    sand::CodePath path;
+    sand::grid::CodePath path;
 };
 
 // A pairwise cover: each number of threads meets each size of block in one of the three kinds of build.
@@ -35,15 +35,15 @@ constexpr std::array kBlocks{16, 32, 64};
 
 Way wayOf(std::size_t i) {
     return {kThreads[i], kBlocks[(i + kBuild) % kBlocks.size()],
-            i % 2 == 0 ? sand::CodePath::automatic : sand::CodePath::baseline};
+            i % 2 == 0 ? sand::grid::CodePath::automatic : sand::grid::CodePath::baseline};
 }
 
 /// Dunes on a field of odd size, whose sand may fall off.
-sand::Scene coveredScene() {
-    sand::Scene scene = samples::flatScene(97, 61, 2.56);
+scene::Scene coveredScene() {
+    scene::Scene scene = samples::flatScene(97, 61, 2.56);
     scene.rules.sweepsPerStep = 4;
     scene.rules.rim = sand::Rim::open;
-    sand::makeDunes({.bed = 2, .height = 6, .length = 30, .seed = 5}, scene.terrain);
+    sand::grid::makeDunes({.bed = 2, .height = 6, .length = 30, .seed = 5}, scene.terrain);
     return scene;
 }
 
@@ -52,7 +52,7 @@ sand::Scene coveredScene() {
 TEST_P(Cover, TenThousandEditsHashAlike) {
     constexpr std::uint64_t kEdits = 10000;
     constexpr std::uint64_t kFew = 1000;  // for slow builds
-    const sand::Scene scene = coveredScene();
+    const scene::Scene scene = coveredScene();
     const Way way = wayOf(GetParam());
     host::WorkerPool team(way.threads);
     const base::Executor executor = team.executor();

@@ -15,8 +15,8 @@ namespace {
 
 /// 400 steps of a senseless hand over dunes on an odd-sized field.
 std::uint64_t hashOfSession(sand::Scheme scheme, sand::Rim rim) {
-    sand::Scene scene = samples::flatScene(97, 61, 2.56);
-    sand::makeDunes({.bed = 2, .height = 6, .length = 30, .seed = 5}, scene.terrain);
+    scene::Scene scene = samples::flatScene(97, 61, 2.56);
+    sand::grid::makeDunes({.bed = 2, .height = 6, .length = 30, .seed = 5}, scene.terrain);
     scene.rules.scheme = scheme;
     scene.rules.rim = rim;
     sand::Replica terrain(scene);
@@ -62,8 +62,8 @@ std::shared_ptr<const sand::Ground> groundOf(const Variant& variant, const sand:
 }
 
 std::uint64_t hashOf(const Variant& variant) {
-    sand::Scene scene = samples::flatScene(97, 61, 2.56);
-    sand::makeDunes({.bed = 2, .height = 6, .length = 30, .seed = 5}, scene.terrain);
+    scene::Scene scene = samples::flatScene(97, 61, 2.56);
+    sand::grid::makeDunes({.bed = 2, .height = 6, .length = 30, .seed = 5}, scene.terrain);
     scene.rules.aspect = variant.aspect;
     scene.rules.startThreshold = variant.startThreshold;
     scene.rules.rim = variant.rim;
@@ -96,8 +96,8 @@ TEST(Golden, BandRockWallsAndLongCellsAreTheSameEverywhere) {
 
 // Tools of every shape, turned and switched at random: doubles that turn, square and divide must not be fused anywhere.
 TEST(Golden, ASessionOfEveryToolIsTheSameEverywhere) {
-    sand::Scene scene = samples::flatScene(45, 33, 6);
-    sand::makeDunes({.bed = 2, .height = 4, .length = 20, .seed = 3}, scene.terrain);
+    scene::Scene scene = samples::flatScene(45, 33, 6);
+    sand::grid::makeDunes({.bed = 2, .height = 4, .length = 20, .seed = 3}, scene.terrain);
     scene.rules.rim = sand::Rim::open;
     scene.rules.toolKind = sand::ToolKind::footprint;
     scene.rules.toolHalfWidth = scene.rules.toolRadius * 2 / 5;
@@ -111,11 +111,11 @@ TEST(Golden, ASessionOfEveryToolIsTheSameEverywhere) {
 
 /// What settle() makes of noise.
 std::uint64_t hashOfSettled(sand::Rim rim) {
-    sand::Scene scene = samples::flatScene(97, 61);
+    scene::Scene scene = samples::flatScene(97, 61);
     std::mt19937 random(47);
     scene.terrain = samples::randomField(97, 61, 12 * sand::kUnitsPerCell, random);
     scene.rules.rim = rim;
-    sand::settle(scene.terrain, scene.rules);
+    sand::grid::settle(scene.terrain, scene.rules);
     return sand::Replica(scene).stateHash();
 }
 

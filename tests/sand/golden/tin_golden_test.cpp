@@ -10,10 +10,10 @@
 
 namespace {
 
-using sand::tin::Layer;
 using sand::tin::Mesh;
 using sand::tin::Place;
 using sand::tin::Vertex;
+using sand::tin::VertexSand;
 
 constexpr std::int32_t kSide = 1 << 13;  // [probe unit]
 
@@ -26,7 +26,7 @@ Place anywhere(std::mt19937& random) {
     return {x, below(kSide + 1, random)};
 }
 
-Vertex anyOf(const Layer& layer, std::mt19937& random) {
+Vertex anyOf(const VertexSand& layer, std::mt19937& random) {
     const auto count = static_cast<std::int32_t>(layer.triangles().places.size());
     Vertex vertex = below(count, random);
     while (!layer.triangles().alive(vertex)) {
@@ -45,7 +45,7 @@ std::uint64_t hashOfSession(std::int32_t threshold, std::int32_t startThreshold,
         place = anywhere(random);
     }
     mesh.insert(places);
-    Layer layer(std::move(mesh));
+    VertexSand layer(std::move(mesh));
     sand::tin::Erosion erosion(layer, threshold, startThreshold);
     std::vector<Vertex> moved;
     std::uint64_t hash = 14695981039346656037U;

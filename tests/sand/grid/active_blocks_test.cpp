@@ -12,10 +12,10 @@
 namespace {
 
 using samples::nameOf;
-using sand::CodePath;
-using sand::Erosion;
 using sand::HeightField;
 using sand::Scheme;
+using sand::grid::CodePath;
+using sand::grid::Erosion;
 
 /// A plane that rises in the direction (3, 4) or one of its mirror images, just below 45 degrees, roughened by a few
 /// units so that it is critical here and there, with a bump at a corner of a block.

@@ -14,8 +14,8 @@
 
 namespace {
 
-using sand::Certificate;
 using sand::HeightField;
+using sand::grid::Certificate;
 
 sand::Rules certifiedRules(const HeightField& field) {
     sand::Rules rules;
@@ -25,7 +25,7 @@ sand::Rules certifiedRules(const HeightField& field) {
     return rules;
 }
 
-void expectFluxesLeadTo(const HeightField& start, const HeightField& rest, const sand::NetFlux& flux) {
+void expectFluxesLeadTo(const HeightField& start, const HeightField& rest, const sand::grid::NetFlux& flux) {
     for (int y = 0; y < start.rows(); ++y) {
         for (int x = 0; x < start.columns(); ++x) {
             ASSERT_EQ(start.height(x, y) + flux.rise(x, y), rest.height(x, y)) << x << ", " << y;
@@ -35,7 +35,7 @@ void expectFluxesLeadTo(const HeightField& start, const HeightField& rest, const
 
 template <class Law>
 Certificate certificateOfSweeps(const HeightField& start, HeightField& rest, Law law) {
-    const sand::NetFlux flux = reference::relax(rest, sand::kUnitsPerCell, law);
+    const sand::grid::NetFlux flux = reference::relax(rest, sand::kUnitsPerCell, law);
     expectFluxesLeadTo(start, rest, flux);
     return certify(start, rest, flux, certifiedRules(start));
 }
@@ -62,10 +62,10 @@ TEST(Certificate, HoldsOnRoughFields) {
 
 /// The projection as settle() computes it, as near as its gap can come.
 HeightField projected(const HeightField& start, const sand::Rules& rules) {
-    sand::DualProjection projection(start, rules);
+    sand::grid::DualProjection projection(start, rules);
     projection.run(1e-9);
-    sand::NetFlux flux(start.columns(), start.rows());
-    const sand::Rect box = projection.box();
+    sand::grid::NetFlux flux(start.columns(), start.rows());
+    const sand::CellRect box = projection.box();
     for (int y = box.y0; y < box.y1; ++y) {
         for (int x = box.x0; x < box.x1; ++x) {
             if (y >= 0 && y < start.rows() && x < start.columns()) {
@@ -95,8 +95,8 @@ TEST(Certificate, HoldsAtAnOpenRimAndWhereCellsAreNotSquare) {
             rules.rim = rim;
             rules.aspect = aspect * sand::kUnitsPerCell;
             HeightField rest = start;
-            sand::Erosion erosion(rest, rules);
-            sand::NetFlux flux(start.columns(), start.rows());
+            sand::grid::Erosion erosion(rest, rules);
+            sand::grid::NetFlux flux(start.columns(), start.rows());
             while (!erosion.settled()) {
                 erosion.sweep(rest, 1);
                 erosion.addFluxes(flux);
@@ -153,7 +153,7 @@ TEST(Certificate, IsTakenAtAFieldThatIsNowhereTooSteep) {
             sand::Rules rules = certifiedRules(rough);
             rules.rim = rim;
             rules.aspect = 2 * sand::kUnitsPerCell;
-            sand::Quads quads(rough, rules);
+            sand::grid::QuadEnergy quads(rough, rules);
             quads.flatten(rules.threshold);
             EXPECT_LE(quads.steepest(), rules.threshold * (1 + 1e-12)) << columns << " x " << rows;
         }
@@ -162,7 +162,7 @@ TEST(Certificate, IsTakenAtAFieldThatIsNowhereTooSteep) {
 
 TEST(Certificate, OfAFieldAtRestIsZero) {
     const HeightField flat(9, 7, 1.0);
-    const Certificate certificate = certify(flat, flat, sand::NetFlux(9, 7), certifiedRules(flat));
+    const Certificate certificate = certify(flat, flat, sand::grid::NetFlux(9, 7), certifiedRules(flat));
     EXPECT_EQ(certificate.squaredDistance, 0);
     EXPECT_EQ(certificate.relative(), 0);
 }

@@ -122,7 +122,7 @@ TEST(Envelope, NoNewExtremesInAnySweep) {
         HeightField field = samples::randomField(67, 45, 1 << 24, random);
         const std::int64_t volume = field.volume();
         samples::Extremes before = samples::extremesOf(field);
-        sand::Erosion erosion(field, samples::rulesFor(field, scheme, 1000));
+        sand::grid::Erosion erosion(field, samples::rulesFor(field, scheme, 1000));
         for (int sweep = 0; sweep < 200; ++sweep) {
             erosion.sweep(field, 1);
             const samples::Extremes after = samples::extremesOf(field);

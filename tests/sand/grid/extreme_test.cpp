@@ -189,7 +189,7 @@ TEST(ExtremeSize, FieldsOfAnyShapeKeepTheirVolume) {
                 for (const int block : {16, 32}) {
                     HeightField copy = field;
                     const std::int64_t volume = copy.volume();
-                    sand::Erosion erosion(copy, rules, {.blockSize = block});
+                    sand::grid::Erosion erosion(copy, rules, {.blockSize = block});
                     const std::int64_t outflow = erosion.sweep(copy, 1000000);
                     EXPECT_TRUE(erosion.settled()) << nameOf(scheme) << ", " << columns << " x " << rows;
                     EXPECT_EQ(copy.volume() + outflow, volume) << nameOf(scheme) << ", " << columns << " x " << rows;

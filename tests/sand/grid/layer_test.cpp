@@ -11,10 +11,10 @@
 namespace {
 
 using samples::nameOf;
-using sand::Erosion;
 using sand::Ground;
 using sand::HeightField;
 using sand::Scheme;
+using sand::grid::Erosion;
 
 constexpr int kColumns = 37;
 constexpr int kRows = 29;

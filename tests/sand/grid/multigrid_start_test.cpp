@@ -12,9 +12,9 @@
 
 namespace {
 
-using sand::DualProjection;
 using sand::HeightField;
 using sand::Rules;
+using sand::grid::DualProjection;
 
 Rules rulesFor(const HeightField& field, sand::Rim rim = sand::Rim::closed) {
     Rules rules;
@@ -71,7 +71,7 @@ struct Runs {
 Runs expectSamePile(const HeightField& field, const Rules& rules) {
     DualProjection direct(field, rules);
     DualProjection nested(field, rules);
-    sand::startFromCoarser(nested, field, rules);
+    sand::grid::startFromCoarser(nested, field, rules);
     const Runs runs{direct.run(), nested.run()};
     // Heights whose duality gap is g lie within the root of 2g of the projection where no quad is too steep, and either
     // stops at 1e-5 of the squared change. They may be 3 % too steep here and there, which the gap does not see: twice.
@@ -116,7 +116,7 @@ TEST(CoarseStart, LeavesRestAlone) {
     const HeightField level(100, 70, 1.0);
     const Rules rules = rulesFor(level);
     DualProjection projection(level, rules);
-    sand::startFromCoarser(projection, level, rules);
+    sand::grid::startFromCoarser(projection, level, rules);
     EXPECT_TRUE(projection.atRest());
     EXPECT_EQ(projection.run(), 0);
 }

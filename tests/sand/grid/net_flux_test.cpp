@@ -11,7 +11,7 @@
 namespace {
 
 using sand::HeightField;
-using sand::NetFlux;
+using sand::grid::NetFlux;
 
 void expectLeadsTo(const HeightField& start, const NetFlux& flux, const HeightField& end) {
     for (int y = 0; y < start.rows(); ++y) {
@@ -29,7 +29,7 @@ TEST(NetFlux, OfSweepsLeadsFromStartToEnd) {
         sand::Rules rules = samples::flatScene(70, 45).rules;
         rules.rim = rim;
         HeightField field = start;
-        sand::Erosion erosion(field, rules);
+        sand::grid::Erosion erosion(field, rules);
         NetFlux flux(70, 45);
         while (!erosion.settled()) {
             erosion.sweep(field, 1);

@@ -35,16 +35,16 @@ std::pair<std::int32_t, std::int32_t> extremes(const HeightField& field) {
 
 void expectAtRest(const HeightField& field, const Rules& rules) {
     HeightField swept = field;
-    sand::Erosion(swept, rules).sweep(swept, 1);
+    sand::grid::Erosion(swept, rules).sweep(swept, 1);
     EXPECT_TRUE(sameHeights(swept, field));
 }
 
 /// Settles, checks what must hold for every field, and returns what settle() tells.
-sand::Settled settleAndCheck(HeightField& field, const Rules& rules) {
+sand::grid::Settled settleAndCheck(HeightField& field, const Rules& rules) {
     const HeightField start = field;
     const auto [least, greatest] = extremes(start);
-    sand::NetFlux flux(field.columns(), field.rows());
-    const sand::Settled settled = sand::settle(field, rules, &flux);
+    sand::grid::NetFlux flux(field.columns(), field.rows());
+    const sand::grid::Settled settled = sand::grid::settle(field, rules, &flux);
     EXPECT_EQ(field.volume() + settled.outflow, start.volume());
     const auto [low, high] = extremes(field);
     EXPECT_GE(low, rules.rim == sand::Rim::open ? std::min(least, 0) : least);
@@ -96,9 +96,9 @@ TEST(Settle, PrismBecomesItsRamp) {
 TEST(Settle, RestIsAFixedPoint) {
     HeightField field = samples::cylinder(64, 16, 12);
     const Rules rules = settlingRules(field);
-    sand::settle(field, rules);
+    sand::grid::settle(field, rules);
     const HeightField rest = field;
-    const sand::Settled again = sand::settle(field, rules);
+    const sand::grid::Settled again = sand::grid::settle(field, rules);
     EXPECT_TRUE(sameHeights(field, rest));
     EXPECT_EQ(again.iterations + again.sweeps, 0);
 }
@@ -137,7 +137,7 @@ TEST(Settle, OpenTableKeepsItsRoof) {
     HeightField field = oracles::fieldOf(n, n, [](double, double) { return 60; });
     Rules rules = settlingRules(field);
     rules.rim = sand::Rim::open;
-    const sand::Settled settled = settleAndCheck(field, rules);
+    const sand::grid::Settled settled = settleAndCheck(field, rules);
     EXPECT_GT(settled.iterations, 0);
     EXPECT_GT(settled.outflow, 0);
     const auto expected = oracles::sampled(n, n, [&](double x, double y) { return table.rest(x, y); });
@@ -188,7 +188,7 @@ TEST(Settle, SandBelowAnOpenRimIsSwept) {
     field.setHeight(15, 15, -40 * sand::kUnitsPerCell);
     Rules rules = settlingRules(field);
     rules.rim = sand::Rim::open;
-    const sand::Settled settled = settleAndCheck(field, rules);
+    const sand::grid::Settled settled = settleAndCheck(field, rules);
     EXPECT_EQ(settled.iterations, 0);
     EXPECT_GT(settled.sweeps, 0);
 }
@@ -210,8 +210,8 @@ TEST(Settle, InstructionSetChangesNothing) {
     HeightField automatic = start;
     HeightField baseline = start;
     const Rules rules = settlingRules(start);
-    sand::settle(automatic, rules);
-    sand::settle(baseline, rules, nullptr, sand::CodePath::baseline);
+    sand::grid::settle(automatic, rules);
+    sand::grid::settle(baseline, rules, nullptr, sand::grid::CodePath::baseline);
     EXPECT_TRUE(sameHeights(automatic, baseline));
 }
 

@@ -12,9 +12,9 @@
 namespace {
 
 using samples::nameOf;
-using sand::Erosion;
 using sand::HeightField;
 using sand::Scheme;
+using sand::grid::Erosion;
 
 /// Adds `units` of sand to the square of cells within `reach` of (column, row), evenly and to the last unit.
 void pour(HeightField& field, int column, int row, int reach, std::int64_t units) {

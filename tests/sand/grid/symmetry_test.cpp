@@ -10,10 +10,10 @@
 namespace {
 
 using samples::nameOf;
-using sand::Erosion;
 using sand::HeightField;
 using sand::Rim;
 using sand::Scheme;
+using sand::grid::Erosion;
 
 /// One of the eight ways to lay a rectangle onto a grid: bit 0 mirrors east and west, bit 1 north and south, and bit 2
 /// then exchanges columns and rows.

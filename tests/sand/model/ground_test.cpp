@@ -15,8 +15,8 @@ using sand::Ground;
 using sand::Replica;
 
 /// A thin layer of sand over rock that is steeper than the talus, with a wall through it.
-sand::Scene layerOverRock(std::uint32_t seed) {
-    sand::Scene scene = samples::flatScene(61, 47, 5);
+scene::Scene layerOverRock(std::uint32_t seed) {
+    scene::Scene scene = samples::flatScene(61, 47, 5);
     auto ground = std::make_shared<Ground>(61, 47);
     std::mt19937 random(seed);
     for (int y = 0; y < 47; ++y) {
@@ -33,9 +33,9 @@ sand::Scene layerOverRock(std::uint32_t seed) {
 }
 
 TEST(Ground, RockAndWallsOutlastAnyHand) {
-    const sand::Scene scene = layerOverRock(3);
+    const scene::Scene scene = layerOverRock(3);
     for (const auto rim : {sand::Rim::closed, sand::Rim::open}) {
-        sand::Scene rimmed = scene;
+        scene::Scene rimmed = scene;
         rimmed.rules.rim = rim;
         Replica terrain(rimmed);
         std::mt19937 random(5);
@@ -55,8 +55,8 @@ TEST(Ground, RockAndWallsOutlastAnyHand) {
 }
 
 TEST(Ground, BlocksThreadsAndCodePathsChangeNothing) {
-    const sand::Scene scene = layerOverRock(7);
-    const auto hashWith = [&](const sand::Erosion::Options& options) {
+    const scene::Scene scene = layerOverRock(7);
+    const auto hashWith = [&](const sand::grid::Erosion::Options& options) {
         Replica terrain(scene, options);
         std::mt19937 random(11);
         for (std::uint64_t i = 1; i <= 100; ++i) {
@@ -73,17 +73,17 @@ TEST(Ground, BlocksThreadsAndCodePathsChangeNothing) {
     };
     for (const int block : {2, 16, 64}) {
         EXPECT_EQ(hashWith({.blockSize = block}), expected);
-        EXPECT_EQ(hashWith({.blockSize = block, .path = sand::CodePath::baseline}), expected);
+        EXPECT_EQ(hashWith({.blockSize = block, .path = sand::grid::CodePath::baseline}), expected);
         EXPECT_EQ(hashWith({.blockSize = block, .executor = &backwards}), expected);
     }
 }
 
 // Rock so deep that nobody feels it must change nothing: the limiter is exact, not merely close.
 TEST(Ground, BottomlessRockIsAsGoodAsNone) {
-    sand::Scene scene = samples::flatScene(50, 40);
+    scene::Scene scene = samples::flatScene(50, 40);
     std::mt19937 random(13);
     scene.terrain = samples::randomField(50, 40, 1 << 20, random);
-    sand::Scene grounded = scene;
+    scene::Scene grounded = scene;
     grounded.ground = std::make_shared<Ground>(50, 40);
     grounded.rules.ground = grounded.ground->digest();
     Replica without(scene);
@@ -97,12 +97,12 @@ TEST(Ground, BottomlessRockIsAsGoodAsNone) {
 }
 
 TEST(Ground, TravelsWithItsScene) {
-    const sand::Scene scene = layerOverRock(17);
-    const sand::Scene copy = sand::Scene::decode(scene.encode());
+    const scene::Scene scene = layerOverRock(17);
+    const scene::Scene copy = scene::Scene::decode(scene.encode());
     ASSERT_NE(copy.ground, nullptr);
     EXPECT_EQ(copy.ground->digest(), scene.ground->digest());
     EXPECT_EQ(copy.rules.digest(), scene.rules.digest());
-    sand::Scene bare = scene;
+    scene::Scene bare = scene;
     bare.rules.ground = 0;
     EXPECT_NE(bare.rules.digest(), scene.rules.digest());
 }

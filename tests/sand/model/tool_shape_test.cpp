@@ -23,9 +23,9 @@ using sand::kProbePerCell;
 using sand::kUnitsPerCell;
 using sand::ProbePoint;
 using sand::Rim;
-using sand::Tool;
 using sand::ToolKind;
 using sand::ToolShape;
+using sand::grid::Displacement;
 using enum sand::ToolKind;
 
 constexpr std::array kEvery{sphere, circle, rectangle, ellipse, ellipsoid, footprint};
@@ -77,7 +77,7 @@ TEST(ToolShape, PrintsItsUndersideAndNothingElse) {
             sand::HeightField field(90, 80, 1.0);
             const ToolShape shape = shapeOf(kind, 24);
             const ProbePoint at{probes(44.3), probes(39.6), probes(20)};
-            Tool(shape, turn).drag(field, Rim::closed, nullptr, at, at);
+            Displacement(shape, turn).drag(field, Rim::closed, nullptr, at, at);
             int below = 0;
             for (int row = 0; row < field.rows(); ++row) {
                 for (int column = 0; column < field.columns(); ++column) {
@@ -140,7 +140,7 @@ struct Way {
 };
 
 /// What a scene's sand is after a press, a drag and a turn of its tool; seen the way `way` looks at it.
-sand::HeightField dug(const sand::Scene& scene, const std::vector<ProbePoint>& path, double degrees, const Way& way) {
+sand::HeightField dug(const scene::Scene& scene, const std::vector<ProbePoint>& path, double degrees, const Way& way) {
     sand::Replica terrain(scene);
     for (std::uint64_t i = 1; i <= 12; ++i) {
         sand::Step step{.epoch = 1, .number = i, .engaged = true, .path = {}};
@@ -162,7 +162,7 @@ TEST(ToolShape, TurnedOrMirroredItDoesTheSameTurnedOrMirrored) {
         samples::kSanitized ? std::vector{3U, 6U} : std::vector{1U, 2U, 3U, 4U, 5U, 6U, 7U};
     for (const ToolKind kind : kTurned) {
         for (const double degrees : {0.0, 33.0, 90.0, -140.0}) {
-            sand::Scene scene = samples::flatScene(75, 52, 0);
+            scene::Scene scene = samples::flatScene(75, 52, 0);
             scene.terrain = samples::randomField(75, 52, 1 << 18, random);
             scene.rules.toolRadius = shapeOf(kind, 11).radius;
             scene.rules.toolKind = kind;
@@ -174,7 +174,7 @@ TEST(ToolShape, TurnedOrMirroredItDoesTheSameTurnedOrMirrored) {
             ASSERT_FALSE(sameHeights(first, scene.terrain));
             for (const unsigned bits : ways) {
                 const Way way{bits, 75, 52};
-                sand::Scene image = scene;
+                scene::Scene image = scene;
                 image.terrain = way.of(scene.terrain);
                 image.rules.columns = image.terrain.columns();
                 image.rules.rows = image.terrain.rows();
@@ -215,7 +215,7 @@ std::int64_t raisedWhere(const sand::HeightField& field, const auto& side) {
 TEST(ToolShape, DraggedSidewaysItPushesToTheSideAhead) {
     for (const ToolKind kind : {rectangle, ellipse, footprint}) {
         sand::HeightField field(90, 90, 1.0);
-        const Tool tool(shapeOf(kind, 16), heading(90));  // its long side to the east
+        const Displacement tool(shapeOf(kind, 16), heading(90));  // its long side to the east
         const ProbePoint from{probes(30), probes(45), probes(14)}, to{probes(50), probes(45), probes(14)};
         tool.drag(field, Rim::closed, nullptr, from, from);
         const std::int64_t imprint = raisedWhere(field, [](double, double) { return true; });
@@ -228,16 +228,16 @@ TEST(ToolShape, DraggedSidewaysItPushesToTheSideAhead) {
     }
     // Along its length, the same blade ploughs a furrow that is no wider than it is.
     sand::HeightField field(120, 90, 1.0);
-    const Tool blade(shapeOf(rectangle, 16), heading(0));
+    const Displacement blade(shapeOf(rectangle, 16), heading(0));
     blade.drag(field, Rim::closed, nullptr, {probes(30), probes(45), probes(14)}, {probes(80), probes(45), probes(14)});
     for (int row = 0; row < 90; ++row) {
         EXPECT_EQ(field.height(60, row) < 0, std::abs(row + 0.5 - 45) < 8) << row;
     }
 }
 
-sand::Scene sceneWith(ToolKind kind, double radius, Rim rim = Rim::closed) {
-    sand::Scene scene = samples::flatScene(45, 33, radius);
-    sand::makeDunes({.bed = 2, .height = 4, .length = 20, .seed = 3}, scene.terrain);
+scene::Scene sceneWith(ToolKind kind, double radius, Rim rim = Rim::closed) {
+    scene::Scene scene = samples::flatScene(45, 33, radius);
+    sand::grid::makeDunes({.bed = 2, .height = 4, .length = 20, .seed = 3}, scene.terrain);
     scene.rules.rim = rim;
     scene.rules.toolKind = kind;
     scene.rules.toolHalfWidth = shapeOf(kind, radius).halfWidth;
@@ -248,7 +248,7 @@ TEST(ToolShape, EveryOneKeepsTheVolumeWhereverItIs) {
     for (const Rim rim : {Rim::closed, Rim::open}) {
         for (const ToolKind kind : kEvery) {
             for (const double radius : {0.3, 2.56, 9.0, 60.0, 150.0}) {
-                const sand::Scene scene = sceneWith(kind, radius, rim);
+                const scene::Scene scene = sceneWith(kind, radius, rim);
                 const std::int64_t before = scene.terrain.volume();
                 std::mt19937 random(67);
                 sand::Replica terrain(scene);
@@ -270,7 +270,7 @@ TEST(ToolShape, EveryOneKeepsTheVolumeWhereverItIs) {
 
 TEST(ToolShape, OfNoRadiusItDigsNothing) {
     for (const ToolKind kind : kEvery) {
-        sand::Scene scene = samples::flatScene(45, 33, 0);
+        scene::Scene scene = samples::flatScene(45, 33, 0);
         scene.rules.toolKind = kind;
         sand::Replica terrain(scene);
         terrain.apply({1, 1, true, {{probes(5.5), probes(5.5), probes(-3)}, {probes(40), probes(30), probes(-3)}}});
@@ -280,7 +280,7 @@ TEST(ToolShape, OfNoRadiusItDigsNothing) {
 
 TEST(ToolShape, SwitchedTurnedAndDraggedAtRandomItKeepsTheVolumeAndTheStatesOfCopies) {
     for (const Rim rim : {Rim::closed, Rim::open}) {
-        const sand::Scene scene = sceneWith(footprint, 7, rim);
+        const scene::Scene scene = sceneWith(footprint, 7, rim);
         const std::int64_t before = scene.terrain.volume();
         sand::Replica terrain(scene), copy(scene);
         std::mt19937 random(71);
@@ -301,7 +301,7 @@ TEST(ToolShape, SwitchedTurnedAndDraggedAtRandomItKeepsTheVolumeAndTheStatesOfCo
 
 TEST(ToolShape, TurnedOnTheSpotItMakesRoomAndHeldStillItComesToRest) {
     for (const ToolKind kind : kTurned) {
-        sand::Scene scene = samples::flatScene(60, 60, 12);
+        scene::Scene scene = samples::flatScene(60, 60, 12);
         scene.rules.toolKind = kind;
         scene.rules.toolHalfWidth = shapeOf(kind, 12).halfWidth;
         sand::Replica terrain(scene);
@@ -309,8 +309,8 @@ TEST(ToolShape, TurnedOnTheSpotItMakesRoomAndHeldStillItComesToRest) {
         sand::Step turn{1, 2, true, {}};
         turn.heading = heading(90);
         terrain.apply(turn);
-        const sand::Obstacle under =
-            Tool(terrain.toolShape(), terrain.heading()).obstacle(terrain.field(), terrain.probe());
+        const sand::grid::Obstacle under =
+            Displacement(terrain.toolShape(), terrain.heading()).obstacle(terrain.field(), terrain.probe());
         for (int row = under.cells.y0; row < under.cells.y1; ++row) {
             for (int column = under.cells.x0; column < under.cells.x1; ++column) {
                 ASSERT_LE(terrain.field().height(column, row), under.row(row)[column - under.cells.x0])
@@ -326,7 +326,7 @@ TEST(ToolShape, TurnedOnTheSpotItMakesRoomAndHeldStillItComesToRest) {
 }
 
 TEST(ToolShape, AnOperatorWhoChangesTheToolAloneLeavesAHandsHeading) {
-    const sand::Scene scene = sceneWith(ellipse, 5);
+    const scene::Scene scene = sceneWith(ellipse, 5);
     sand::Replica terrain(scene);
     sand::Step turned{1, 1, false, {}};
     turned.heading = heading(40);

@@ -19,7 +19,7 @@ struct Options {
     std::uint64_t edits = 1000000;
     int columns = 61, rows = 43;  // [cell]
     int threads = 1;
-    int block = sand::Erosion::kDefaultBlock;  // [cell]
+    int block = sand::grid::Erosion::kDefaultBlock;  // [cell]
     bool baseline = false;
     std::uint32_t seed = 53;
 };
@@ -30,9 +30,9 @@ double peakGibibytes() {
     return static_cast<double>(usage.ru_maxrss) / (1 << 20);  // Linux counts in KiB
 }
 
-sand::Scene dunes(const Options& options) {
-    sand::Scene scene = samples::flatScene(options.columns, options.rows, 2.56);
-    sand::makeDunes({.bed = 2, .height = 6, .length = 30, .seed = 5}, scene.terrain);
+scene::Scene dunes(const Options& options) {
+    scene::Scene scene = samples::flatScene(options.columns, options.rows, 2.56);
+    sand::grid::makeDunes({.bed = 2, .height = 6, .length = 30, .seed = 5}, scene.terrain);
     scene.rules.sweepsPerStep = 4;
     return scene;
 }
@@ -43,7 +43,7 @@ int run(const Options& options) {
     const sand::Rules rules = dunes(options).rules;
     sand::Replica terrain(dunes(options),
                           {.blockSize = options.block,
-                           .path = options.baseline ? sand::CodePath::baseline : sand::CodePath::automatic,
+                           .path = options.baseline ? sand::grid::CodePath::baseline : sand::grid::CodePath::automatic,
                            .executor = options.threads > 1 ? &executor : nullptr});
     const std::int64_t volume = terrain.field().volume();
     std::mt19937 random(options.seed);

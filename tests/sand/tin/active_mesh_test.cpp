@@ -12,18 +12,18 @@ namespace moving_sand {
 namespace {
 
 using namespace tin_piles;
-using sand::tin::MovingSand;
+using sand::tin::ActiveMesh;
 
 constexpr std::int32_t kTalus = 65536;  // [unit per cell], 45 degrees
 
 /// All of a layer, by its own numbers.
-MovingSand everythingOf(const Layer& layer, bool obstacle, MovingSand sand) {
+ActiveMesh everythingOf(const VertexSand& layer, bool obstacle, ActiveMesh sand) {
     const sand::tin::Triangles& mesh = layer.triangles();
     const sand::tin::Slopes slopes = sand::tin::slopesOf(kTalus, kTalus * 5 / 4);
     sand::tin::Weights weights;
     for (std::size_t i = 0; i < mesh.places.size(); ++i) {
         const bool under = obstacle && mesh.places[i].x < 8 * kCell;
-        sand.addVertex(layer.volumes()[i], layer.stars()[i], under ? 2 * kTalus : MovingSand::kFree);
+        sand.addVertex(layer.volumes()[i], layer.stars()[i], under ? 2 * kTalus : ActiveMesh::kFree);
     }
     const auto slots = static_cast<std::int32_t>(mesh.triangles.size());
     for (std::int32_t slot = 0; slot < slots; ++slot) {
@@ -40,12 +40,12 @@ MovingSand everythingOf(const Layer& layer, bool obstacle, MovingSand sand) {
     return sand;
 }
 
-bool sweep(MovingSand& sand, bool held, bool band, double momentum) {
+bool sweep(ActiveMesh& sand, bool held, bool band, double momentum) {
     static_cast<void>(sand.slide(held, band));  // its edges are all there
     return sand.move(held, momentum).moved;
 }
 
-std::vector<std::int64_t> volumesOf(const MovingSand& sand) {
+std::vector<std::int64_t> volumesOf(const ActiveMesh& sand) {
     std::vector<std::int64_t> volumes(sand.vertexCount());
     for (std::size_t i = 0; i < volumes.size(); ++i) {
         volumes[i] = sand.volume(i);
@@ -53,14 +53,14 @@ std::vector<std::int64_t> volumesOf(const MovingSand& sand) {
     return volumes;
 }
 
-TEST(MovingSand, DoublesAndIntegersAndEveryCodePathMoveTheSameSand) {
-    Layer layer = layerOf(Kind::random, 16);
+TEST(ActiveMesh, DoublesAndIntegersAndEveryCodePathMoveTheSameSand) {
+    VertexSand layer = layerOf(Kind::random, 16);
     fill(layer, [](double x, double y) { return std::hypot(x - 8, y - 8) < 5 ? 12.0 : 0.0; });
     for (const bool held : {false, true}) {
         for (const bool band : {false, true}) {
-            MovingSand doubles = everythingOf(layer, held, MovingSand(false));
-            MovingSand integers = everythingOf(layer, held, MovingSand(false, true));
-            MovingSand fast = everythingOf(layer, held, MovingSand(base::machineHasV3()));
+            ActiveMesh doubles = everythingOf(layer, held, ActiveMesh(false));
+            ActiveMesh integers = everythingOf(layer, held, ActiveMesh(false, true));
+            ActiveMesh fast = everythingOf(layer, held, ActiveMesh(base::machineHasV3()));
             for (int done = 0; done < 200; ++done) {
                 const double momentum = done % 40 < 20 ? 0 : 0.9;  // both while much moves
                 const bool moved = sweep(doubles, held, band, momentum);
@@ -74,13 +74,13 @@ TEST(MovingSand, DoublesAndIntegersAndEveryCodePathMoveTheSameSand) {
     }
 }
 
-TEST(MovingSand, MomentumKeepsVolumeAndExtremesAndLowersTheEnergyInEverySweep) {
-    Layer layer = layerOf(Kind::random, 16);
+TEST(ActiveMesh, MomentumKeepsVolumeAndExtremesAndLowersTheEnergyInEverySweep) {
+    VertexSand layer = layerOf(Kind::random, 16);
     std::mt19937 random(3);
     for (sand::tin::Vertex vertex = 0; vertex < layer.mesh().vertexCount(); ++vertex) {
         layer.setHeight(vertex, static_cast<std::int32_t>(random() % (40 * kTalus)));
     }
-    const auto heights = [&layer](const MovingSand& sand) {
+    const auto heights = [&layer](const ActiveMesh& sand) {
         std::vector<double> all(sand.vertexCount());
         for (std::size_t i = 0; i < all.size(); ++i) {
             all[i] = static_cast<double>(sand.volume(i)) / static_cast<double>(layer.stars()[i]);
@@ -88,7 +88,7 @@ TEST(MovingSand, MomentumKeepsVolumeAndExtremesAndLowersTheEnergyInEverySweep) {
         return all;
     };
     for (const bool held : {false, true}) {
-        MovingSand sand = everythingOf(layer, held, MovingSand());
+        ActiveMesh sand = everythingOf(layer, held, ActiveMesh());
         std::vector<double> before = heights(sand);
         const std::vector<std::int64_t> first = volumesOf(sand);
         const std::int64_t volume = std::accumulate(first.begin(), first.end(), std::int64_t{0});
@@ -111,8 +111,8 @@ TEST(MovingSand, MomentumKeepsVolumeAndExtremesAndLowersTheEnergyInEverySweep) {
     }
 }
 
-TEST(MovingSand, CountsInIntegersWhatDoublesWouldRound) {
-    MovingSand sand;
+TEST(ActiveMesh, CountsInIntegersWhatDoublesWouldRound) {
+    ActiveMesh sand;
     const std::int64_t star = std::int64_t{1} << 34, volume = (star << 20) + 1;  // an odd number beyond 2^53
     for (const std::int64_t each : {std::int64_t{0}, volume, std::int64_t{7}}) {
         sand.addVertex(each, star);

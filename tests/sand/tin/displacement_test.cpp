@@ -18,23 +18,24 @@ using sand::ProbePoint;
 using sand::Rim;
 using sand::ToolKind;
 using sand::tin::DetailRules;
+using sand::tin::Displacement;
 using sand::tin::Imprint;
-using sand::tin::Tool;
 
 constexpr double kCell = sand::kUnitsPerCell;
 
-Tool::Work press(Layer& layer, Imprint& imprint, Tool& tool, const ProbePoint& at, Rim rim = Rim::closed) {
+Displacement::Work press(VertexSand& layer, Imprint& imprint, Displacement& tool, const ProbePoint& at,
+                         Rim rim = Rim::closed) {
     return tool.drag(layer, imprint, rim, std::array{at});
 }
 
-double lowest(const Layer& layer) {
+double lowest(const VertexSand& layer) {
     double result = 0;
     forEachVertex(layer, [&](Vertex, const Place&, double height) { result = std::min(result, height); });
     return result;
 }
 
 /// Every vertex below the tool is at its underside or lower.
-void expectClear(const Layer& layer, const Tool& tool, const ProbePoint& at) {
+void expectClear(const VertexSand& layer, const Displacement& tool, const ProbePoint& at) {
     const auto underside = tool.underside(at);
     forEachVertex(layer, [&](Vertex vertex, const Place& place, double height) {
         EXPECT_LE(height, underside(place)) << "vertex " << vertex;
@@ -49,7 +50,7 @@ TEST(TinTool, VolumeIsExactAfterRandomStrokesOfAllTools) {
         return low + (high - low) * static_cast<double>(random() % 4096) / 4096;
     };
     for (const Rim rim : {Rim::closed, Rim::open}) {
-        Layer layer = levelLayer(40, 30, 512);
+        VertexSand layer = levelLayer(40, 30, 512);
         Imprint imprint;
         sand::tin::Volume outflow = 0;
         const sand::tin::Volume before = layer.volume();
@@ -57,14 +58,14 @@ TEST(TinTool, VolumeIsExactAfterRandomStrokesOfAllTools) {
             DetailRules rules = fineRules();
             rules.keepsConstraints = stroke % 3 == 0;
             const auto kind = static_cast<ToolKind>(stroke % sand::kToolKinds);
-            Tool tool(shapeOf(kind, within(0.2, 8)), *sand::headingOf(within(0, 360), stroke % 2 == 0), rules);
+            Displacement tool(shapeOf(kind, within(0.2, 8)), *sand::headingOf(within(0, 360), stroke % 2 == 0), rules);
             std::vector<ProbePoint> path{probeAt(within(-3, 43), within(-3, 33), within(-1, 3))};
             for (int point = 0; point < 3; ++point) {
                 const ProbePoint last = path.back();
                 path.push_back({last.x + static_cast<std::int32_t>(within(-900, 900)),
                                 last.y + static_cast<std::int32_t>(within(-900, 900)),
                                 last.z + static_cast<std::int32_t>(within(-200, 200))});
-                const Tool::Work done = tool.drag(layer, imprint, rim, std::array{last, path.back()});
+                const Displacement::Work done = tool.drag(layer, imprint, rim, std::array{last, path.back()});
                 outflow += done.outflow;
                 ASSERT_TRUE(layer.volume() + outflow == before) << "stroke " << stroke;
                 EXPECT_TRUE(std::is_sorted(done.touched.begin(), done.touched.end()));
@@ -77,7 +78,7 @@ TEST(TinTool, VolumeIsExactAfterRandomStrokesOfAllTools) {
 }
 
 TEST(TinTool, ThreeEllipsesLeaveTheirDepthAndConstrainedOutlines) {
-    Layer layer = levelLayer(60, 40, 512);
+    VertexSand layer = levelLayer(60, 40, 512);
     DetailRules rules = fineRules();
     rules.keepsConstraints = true;
     const sand::ToolShape shape = shapeOf(ToolKind::ellipse, 8);
@@ -85,7 +86,7 @@ TEST(TinTool, ThreeEllipsesLeaveTheirDepthAndConstrainedOutlines) {
         {{probeAt(12, 12, 6), 20}, {probeAt(30, 27, 6.5), -40}, {probeAt(46, 12, 7), 75}}};
     Imprint imprint;
     for (const auto& [at, degrees] : poses) {
-        Tool tool(shape, *sand::headingOf(degrees), rules);
+        Displacement tool(shape, *sand::headingOf(degrees), rules);
         press(layer, imprint, tool, at);
         expectClear(layer, tool, at);
         tool.leave(layer, imprint);
@@ -117,7 +118,7 @@ TEST(TinTool, ThreeEllipsesLeaveTheirDepthAndConstrainedOutlines) {
 }
 
 /// [cell]
-double lengthOfConstraints(const Layer& layer) {
+double lengthOfConstraints(const VertexSand& layer) {
     double length = 0;
     for (const auto& [a, b] : layer.mesh().constraints()) {
         const Place &from = layer.triangles().places[sand::tin::index(a)],
@@ -130,10 +131,10 @@ double lengthOfConstraints(const Layer& layer) {
 // The second stamp's points stand in the first one's edges, and its edges lie along them: what it puts in goes with it,
 // what was there does not.
 TEST(TinTool, DraggedAwayItLeavesTheEarlierOutlineItStoodOn) {
-    Layer layer = levelLayer(60, 40, 256);
+    VertexSand layer = levelLayer(60, 40, 256);
     DetailRules rules = fineRules();
     rules.keepsConstraints = true;
-    Tool tool(shapeOf(ToolKind::rectangle, 4), {}, rules);
+    Displacement tool(shapeOf(ToolKind::rectangle, 4), {}, rules);
     Imprint imprint;
     press(layer, imprint, tool, probeAt(15, 20, 3.5));
     tool.leave(layer, imprint);
@@ -151,8 +152,8 @@ TEST(TinTool, DraggedAwayItLeavesTheEarlierOutlineItStoodOn) {
 
 TEST(TinTool, LiftedItsOutlineDissolvesUnlessTheSceneKeepsIt) {
     for (int kind = 0; kind < sand::kToolKinds; ++kind) {
-        Layer layer = levelLayer(40, 30, 256);
-        Tool tool(shapeOf(static_cast<ToolKind>(kind), 7), *sand::headingOf(31), fineRules());
+        VertexSand layer = levelLayer(40, 30, 256);
+        Displacement tool(shapeOf(static_cast<ToolKind>(kind), 7), *sand::headingOf(31), fineRules());
         Imprint imprint;
         const auto before = layer.volume();
         const ProbePoint at = probeAt(20, 15, 6);
@@ -170,8 +171,8 @@ TEST(TinTool, LiftedItsOutlineDissolvesUnlessTheSceneKeepsIt) {
 
 TEST(TinTool, HeldStillItChangesNothing) {
     for (int kind = 0; kind < sand::kToolKinds; ++kind) {
-        Layer layer = levelLayer(40, 30, 256);
-        Tool tool(shapeOf(static_cast<ToolKind>(kind), 6), *sand::headingOf(31), fineRules());
+        VertexSand layer = levelLayer(40, 30, 256);
+        Displacement tool(shapeOf(static_cast<ToolKind>(kind), 6), *sand::headingOf(31), fineRules());
         Imprint imprint;
         const ProbePoint from = probeAt(18, 14, 5), to = probeAt(20, 15.5, 4.5);
         tool.drag(layer, imprint, Rim::closed, std::array{from, to});
@@ -179,7 +180,7 @@ TEST(TinTool, HeldStillItChangesNothing) {
         const base::Bytes before = bytesOf(layer);
         const Imprint placed = imprint;
         for (int step = 0; step < 3; ++step) {
-            const Tool::Work done = tool.drag(layer, imprint, Rim::closed, std::array{to, to});
+            const Displacement::Work done = tool.drag(layer, imprint, Rim::closed, std::array{to, to});
             EXPECT_TRUE(done.touched.empty());
         }
         EXPECT_EQ(bytesOf(layer), before);
@@ -189,8 +190,8 @@ TEST(TinTool, HeldStillItChangesNothing) {
 }
 
 TEST(TinTool, PushesSandAheadAndToTheSidesAndNotBehind) {
-    Layer layer = levelLayer(60, 40, 256);
-    Tool tool(shapeOf(ToolKind::sphere, 5), {}, fineRules());
+    VertexSand layer = levelLayer(60, 40, 256);
+    Displacement tool(shapeOf(ToolKind::sphere, 5), {}, fineRules());
     Imprint imprint;
     const ProbePoint from = probeAt(20, 20, 4), to = probeAt(35, 20, 4);
     tool.drag(layer, imprint, Rim::closed, std::array{from, to});
@@ -209,10 +210,10 @@ TEST(TinTool, PushesSandAheadAndToTheSidesAndNotBehind) {
 }
 
 TEST(TinTool, OutsideOrAboveTheSandItLeavesTheLayerAlone) {
-    Layer layer = levelLayer(30, 30, 256);
+    VertexSand layer = levelLayer(30, 30, 256);
     const base::Bytes before = bytesOf(layer);
     Imprint imprint;
-    Tool tool(shapeOf(ToolKind::ellipsoid, 4), {}, fineRules());
+    Displacement tool(shapeOf(ToolKind::ellipsoid, 4), {}, fineRules());
     const std::array<ProbePoint, 4> poses{probeAt(-20, 15, 0), probeAt(60, 60, -10), probeAt(15, 15, 4.5),
                                           ProbePoint{sand::kMaxProbe, -sand::kMaxProbe, -sand::kMaxProbe}};
     for (const ProbePoint& at : poses) {
@@ -223,9 +224,9 @@ TEST(TinTool, OutsideOrAboveTheSandItLeavesTheLayerAlone) {
 }
 
 TEST(TinTool, OfRadiusZeroItDoesNothing) {
-    Layer layer = levelLayer(20, 20, 256);
+    VertexSand layer = levelLayer(20, 20, 256);
     for (int kind = 0; kind < sand::kToolKinds; ++kind) {
-        Tool tool({static_cast<ToolKind>(kind), 0, 0}, {}, DetailRules{});
+        Displacement tool({static_cast<ToolKind>(kind), 0, 0}, {}, DetailRules{});
         Imprint imprint;
         const auto before = layer.volumes();
         EXPECT_TRUE(press(layer, imprint, tool, probeAt(10.5, 10.5, -3)).touched.empty());
@@ -234,15 +235,15 @@ TEST(TinTool, OfRadiusZeroItDoesNothing) {
 }
 
 TEST(TinTool, LargerThanTheFieldItLeavesTheSandWhereItIs) {
-    Layer layer = levelLayer(12, 8, 256);
+    VertexSand layer = levelLayer(12, 8, 256);
     const auto before = layer.volume();
-    Tool tool(shapeOf(ToolKind::circle, 40), {}, fineRules());
+    Displacement tool(shapeOf(ToolKind::circle, 40), {}, fineRules());
     Imprint imprint;
-    const Tool::Work done = press(layer, imprint, tool, probeAt(6, 4, 30));
+    const Displacement::Work done = press(layer, imprint, tool, probeAt(6, 4, 30));
     EXPECT_TRUE(done.touched.empty());
     EXPECT_TRUE(layer.volume() == before);
     forEachVertex(layer, [](Vertex, const Place&, double height) { EXPECT_EQ(height, 0); });
-    const Tool::Work spilt = press(layer, imprint, tool, probeAt(6, 4, 30), Rim::open);
+    const Displacement::Work spilt = press(layer, imprint, tool, probeAt(6, 4, 30), Rim::open);
     EXPECT_TRUE(spilt.outflow > 0);
     EXPECT_TRUE(layer.volume() + spilt.outflow == before);
     forEachVertex(layer, [](Vertex, const Place&, double height) { EXPECT_EQ(height, -10 * kCell); });
@@ -250,12 +251,12 @@ TEST(TinTool, LargerThanTheFieldItLeavesTheSandWhereItIs) {
 
 TEST(TinTool, AtACornerTheOpenRimSwallowsAndTheClosedOneKeeps) {
     for (const Rim rim : {Rim::closed, Rim::open}) {
-        Layer layer = levelLayer(30, 30, 256);
-        Tool tool(shapeOf(ToolKind::sphere, 4), {}, fineRules());
+        VertexSand layer = levelLayer(30, 30, 256);
+        Displacement tool(shapeOf(ToolKind::sphere, 4), {}, fineRules());
         Imprint imprint;
         const auto before = layer.volume();
         const ProbePoint at = probeAt(0, 0, 2);
-        const Tool::Work done = press(layer, imprint, tool, at, rim);
+        const Displacement::Work done = press(layer, imprint, tool, at, rim);
         expectClear(layer, tool, at);
         EXPECT_TRUE(layer.volume() + done.outflow == before);
         // What a quarter of the ring does not take, three quarters do.
@@ -276,8 +277,8 @@ TEST(TinTool, AtACornerTheOpenRimSwallowsAndTheClosedOneKeeps) {
 }
 
 TEST(TinTool, TeleportingItSweepsTheWholeWay) {
-    Layer layer = levelLayer(120, 120, 1024);
-    Tool tool(shapeOf(ToolKind::circle, 3), {}, fineRules());
+    VertexSand layer = levelLayer(120, 120, 1024);
+    Displacement tool(shapeOf(ToolKind::circle, 3), {}, fineRules());
     Imprint imprint;
     const auto before = layer.volume();
     tool.drag(layer, imprint, Rim::closed, std::array{probeAt(5, 5, 1), probeAt(115, 115, 1)});
@@ -289,9 +290,9 @@ TEST(TinTool, TeleportingItSweepsTheWholeWay) {
 }
 
 TEST(TinTool, GoesOnTheSameFromARestoredLayer) {
-    Layer layer = levelLayer(40, 30, 512);
+    VertexSand layer = levelLayer(40, 30, 512);
     Imprint imprint;
-    Tool tool(shapeOf(ToolKind::footprint, 8), *sand::headingOf(25), fineRules());
+    Displacement tool(shapeOf(ToolKind::footprint, 8), *sand::headingOf(25), fineRules());
     for (int step = 0; step < 4; ++step) {
         tool.drag(layer, imprint, Rim::open,
                   std::array{probeAt(12 + step, 12, 7.5), probeAt(13 + step, 12 + step, 7.2)});
@@ -301,16 +302,16 @@ TEST(TinTool, GoesOnTheSameFromARestoredLayer) {
         layer.encode(writer);
         imprint.encode(writer);
         base::ByteReader reader(writer.bytes());
-        Layer other = Layer::decode(reader);
+        VertexSand other = VertexSand::decode(reader);
         return std::pair(std::move(other), Imprint::decode(reader));
     };
     auto [otherLayer, otherImprint] = restore();
     EXPECT_EQ(otherImprint, imprint);
-    Tool other(shapeOf(ToolKind::footprint, 8), *sand::headingOf(25), fineRules());
+    Displacement other(shapeOf(ToolKind::footprint, 8), *sand::headingOf(25), fineRules());
     for (int step = 0; step < 6; ++step) {
         const std::array path{probeAt(17 + step, 13, 7.2), probeAt(18 + step, 14, 7.1)};
-        const Tool::Work one = tool.drag(layer, imprint, Rim::open, path);
-        const Tool::Work two = other.drag(otherLayer, otherImprint, Rim::open, path);
+        const Displacement::Work one = tool.drag(layer, imprint, Rim::open, path);
+        const Displacement::Work two = other.drag(otherLayer, otherImprint, Rim::open, path);
         ASSERT_EQ(one.touched, two.touched) << "step " << step;
         ASSERT_EQ(bytesOf(layer), bytesOf(otherLayer)) << "step " << step;
         ASSERT_EQ(imprint, otherImprint);
@@ -321,10 +322,10 @@ TEST(TinTool, GoesOnTheSameFromARestoredLayer) {
 }
 
 TEST(TinTool, KeepsTheBudgetOfVertices) {
-    Layer layer = levelLayer(60, 60, 1024);
+    VertexSand layer = levelLayer(60, 60, 1024);
     DetailRules rules = fineRules();
     rules.maxVertices = layer.mesh().vertexCount() + 150;
-    Tool tool(shapeOf(ToolKind::ellipsoid, 6), *sand::headingOf(40), rules);
+    Displacement tool(shapeOf(ToolKind::ellipsoid, 6), *sand::headingOf(40), rules);
     Imprint imprint;
     const auto before = layer.volume();
     int most = 0;
@@ -340,12 +341,12 @@ TEST(TinTool, KeepsTheBudgetOfVertices) {
 
 TEST(TinTool, ACoarseMeshWithoutDetailTakesTheImprint) {
     sand::tin::Mesh bare(40 * 256, 40 * 256);
-    Layer layer(std::move(bare));
-    Tool tool(shapeOf(ToolKind::rectangle, 5), *sand::headingOf(10), DetailRules{});
+    VertexSand layer(std::move(bare));
+    Displacement tool(shapeOf(ToolKind::rectangle, 5), *sand::headingOf(10), DetailRules{});
     Imprint imprint;
     const auto before = layer.volume();
     const ProbePoint at = probeAt(20, 20, 4);
-    const Tool::Work done = press(layer, imprint, tool, at);
+    const Displacement::Work done = press(layer, imprint, tool, at);
     EXPECT_EQ(done.touched.size(), 36U);  // 32 control points, and the field's corners
     EXPECT_EQ(layer.mesh().constraints().size(), 32U);
     expectClear(layer, tool, at);
@@ -353,9 +354,9 @@ TEST(TinTool, ACoarseMeshWithoutDetailTakesTheImprint) {
 }
 
 TEST(TinTool, RefusesADamagedImprint) {
-    Layer layer = levelLayer(20, 20, 512);
+    VertexSand layer = levelLayer(20, 20, 512);
     Imprint imprint;
-    Tool tool(shapeOf(ToolKind::sphere, 4), {}, fineRules());
+    Displacement tool(shapeOf(ToolKind::sphere, 4), {}, fineRules());
     press(layer, imprint, tool, probeAt(10, 10, 3));
     base::ByteWriter writer;
     imprint.encode(writer);

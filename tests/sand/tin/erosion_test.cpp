@@ -22,16 +22,16 @@ using sand::tin::Wide;
 constexpr std::int32_t kTalus = 65536;  // [unit per cell], 45 degrees
 constexpr std::array kKinds{Kind::regular, Kind::jittered, Kind::random};
 
-base::Bytes bytesOf(const Layer& layer) {
+base::Bytes bytesOf(const VertexSand& layer) {
     base::ByteWriter writer;
     layer.encode(writer);
     return writer.bytes();
 }
 
-Layer restored(const Layer& layer) {
+VertexSand restored(const VertexSand& layer) {
     const base::Bytes bytes = bytesOf(layer);
     base::ByteReader reader(bytes);
-    return Layer::decode(reader);
+    return VertexSand::decode(reader);
 }
 
 std::int32_t heightWithin(std::int32_t range, std::mt19937& random) {
@@ -39,14 +39,14 @@ std::int32_t heightWithin(std::int32_t range, std::mt19937& random) {
 }
 
 /// A mesh that edits have made, slivers, constraints and holes in its numbers included, under noise.
-Layer roughLayer(std::int32_t side, int edits, std::int32_t range, std::uint32_t seed) {
+VertexSand roughLayer(std::int32_t side, int edits, std::int32_t range, std::uint32_t seed) {
     testing::Test::RecordProperty("seed", static_cast<int>(seed));
     std::mt19937 random(seed);
     sand::tin::Mesh mesh(side, side);
     for (int i = 0; i < edits; ++i) {
         mesh_checks::editAtRandom(mesh, random, edits);
     }
-    Layer layer(std::move(mesh));
+    VertexSand layer(std::move(mesh));
     for (const Vertex vertex : mesh_checks::livingVertices(layer.mesh())) {
         layer.setHeight(vertex, heightWithin(range, random));
     }
@@ -55,7 +55,7 @@ Layer roughLayer(std::int32_t side, int edits, std::int32_t range, std::uint32_t
 }
 
 /// Lays a plane that rises by `slope` [unit per cell] in a direction on the layer.
-void incline(Layer& layer, double slope, double degrees) {
+void incline(VertexSand& layer, double slope, double degrees) {
     const double east = slope * std::cos(degrees * std::numbers::pi / 180) / kCell;
     const double north = slope * std::sin(degrees * std::numbers::pi / 180) / kCell;
     for (const Vertex vertex : mesh_checks::livingVertices(layer.mesh())) {
@@ -65,7 +65,7 @@ void incline(Layer& layer, double slope, double degrees) {
 }
 
 /// Sum of V²/star: what falls in every sweep that moves anything.
-double energyOf(const Layer& layer) {
+double energyOf(const VertexSand& layer) {
     double sum = 0;
     for (std::size_t i = 0; i < layer.volumes().size(); ++i) {
         sum += layer.triangles().alive(static_cast<Vertex>(i))
@@ -77,7 +77,7 @@ double energyOf(const Layer& layer) {
 
 TEST(TinErosion, ASlopeUpToTheTalusIsLeftAloneBitByBit) {
     for (const Kind kind : kKinds) {
-        Layer layer = layerOf(kind, 24);
+        VertexSand layer = layerOf(kind, 24);
         for (int degrees = 0; degrees < 360; degrees += 15) {
             incline(layer, kTalus, degrees);
             const base::Bytes before = bytesOf(layer);
@@ -95,7 +95,7 @@ TEST(TinErosion, ASlopeUpToTheTalusIsLeftAloneBitByBit) {
 
 TEST(TinErosion, EverySweepKeepsVolumeAndExtremesAndLowersTheEnergy) {
     for (const std::int32_t range : {1000, 1 << 20, 1 << 28}) {
-        Layer layer = roughLayer(3000, 150, range, 11);
+        VertexSand layer = roughLayer(3000, 150, range, 11);
         const Wide volume = layer.volume();
         Extremes before = extremesOf(layer);
         double energy = energyOf(layer);
@@ -124,7 +124,7 @@ TEST(TinErosion, TwoVerticesDoNotSwapForEver) {
         sand::tin::Mesh mesh(4000, 4000);
         const Vertex one = mesh.insert({2000, 2000});
         const Vertex other = mesh.insert({2000 + apart, 2000});
-        Layer layer(std::move(mesh));
+        VertexSand layer(std::move(mesh));
         layer.setHeight(one, 1 << 28);
         layer.setHeight(other, -(1 << 28));
         const sand::tin::Settled settled = sand::tin::settle(layer, kTalus, kTalus, 20'000);
@@ -134,7 +134,7 @@ TEST(TinErosion, TwoVerticesDoNotSwapForEver) {
 
 TEST(TinErosion, SandAtRestIsAFixedPoint) {
     for (const Kind kind : kKinds) {
-        Layer layer = layerOf(kind, 16);
+        VertexSand layer = layerOf(kind, 16);
         std::mt19937 random(5);
         for (const Vertex vertex : mesh_checks::livingVertices(layer.mesh())) {
             layer.setHeight(vertex, heightWithin(4 * kTalus, random));
@@ -153,7 +153,7 @@ TEST(TinErosion, ActiveEdgesGiveWhatAllEdgesGive) {
     // With a band so narrow that sand comes to rest within it, too.
     for (const auto& [threshold, start] :
          {std::pair{kTalus, kTalus}, {kTalus, kTalus * 5 / 4}, {kTalus, kTalus + kTalus / 2000}}) {
-        Layer some = layerOf(Kind::random, 24);
+        VertexSand some = layerOf(Kind::random, 24);
         std::mt19937 random(7);
         for (int lump = 0; lump < 5; ++lump) {
             const double x = 24 * chance(random), y = 24 * chance(random);
@@ -165,7 +165,7 @@ TEST(TinErosion, ActiveEdgesGiveWhatAllEdgesGive) {
                 }
             }
         }
-        Layer all = restored(some);
+        VertexSand all = restored(some);
         Erosion active(some, threshold, start);
         std::vector<Vertex> moved, movedOfAll;
         for (int step = 0; step < 60; ++step) {
@@ -187,16 +187,16 @@ TEST(TinErosion, ActiveEdgesGiveWhatAllEdgesGive) {
 }
 
 TEST(TinErosion, ARestoredReplicaGoesOnAlikeWhileTheMeshChanges) {
-    Layer layer = roughLayer(2000, 80, 1 << 20, 13);
+    VertexSand layer = roughLayer(2000, 80, 1 << 20, 13);
     constexpr std::int32_t kSlide = kTalus / 8, kStart = kSlide + kSlide / 1500;
     Erosion erosion(layer, kSlide, kStart);
     std::mt19937 random(17);
     std::vector<Vertex> moved;
     for (int step = 0; step < 60; ++step) {
-        Layer other = restored(layer);  // its slots are others, and everything is awake
+        VertexSand other = restored(layer);  // its slots are others, and everything is awake
         Erosion fresh(other, kSlide, kStart);
         std::mt19937 same = random;
-        const auto edit = [](Layer& edited, std::mt19937& chances) {
+        const auto edit = [](VertexSand& edited, std::mt19937& chances) {
             edited.edit([&](sand::tin::Mesh& mesh) { mesh_checks::editAtRandom(mesh, chances, 100); });
         };
         edit(layer, random);
@@ -223,7 +223,7 @@ TEST(TinErosion, ARestoredReplicaGoesOnAlikeWhileTheMeshChanges) {
 }
 
 TEST(TinErosion, NoSandRisesAboveAToolThatStandsInIt) {
-    Layer layer = layerOf(Kind::jittered, 24);
+    VertexSand layer = layerOf(Kind::jittered, 24);
     fill(layer, [](double x, double) { return x < 12 ? 9.0 : 0.0; });
     const std::int32_t underside = kTalus / 2;
     const sand::tin::Underside held = [&](Place place) {
@@ -258,7 +258,7 @@ TEST(TinErosion, NoSandRisesAboveAToolThatStandsInIt) {
 }
 
 TEST(TinErosion, ABankStandsUntilTheStartThresholdAndThenSlidesUntilTheThreshold) {
-    Layer layer = layerOf(Kind::jittered, 24);
+    VertexSand layer = layerOf(Kind::jittered, 24);
     incline(layer, 1.5 * kTalus, 20);
     EXPECT_EQ(sand::tin::settle(layer, kTalus, 2 * kTalus).sweeps, 1);
     const auto edge = static_cast<Vertex>(mesh_checks::livingVertices(layer.mesh()).size() / 2);
@@ -270,7 +270,7 @@ TEST(TinErosion, ABankStandsUntilTheStartThresholdAndThenSlidesUntilTheThreshold
 }
 
 TEST(TinErosion, WithoutAnAngleSandLevels) {
-    Layer layer = layerOf(Kind::random, 8);
+    VertexSand layer = layerOf(Kind::random, 8);
     fill(layer, [](double x, double y) { return std::hypot(x - 4, y - 4) < 2 ? 3.0 : 0.0; });
     ASSERT_TRUE(sand::tin::settle(layer, 0, 0).atRest);
     const Extremes rest = extremesOf(layer);
@@ -279,7 +279,7 @@ TEST(TinErosion, WithoutAnAngleSandLevels) {
 
 TEST(TinErosion, AtAlmostARightAngleOnlySpikesMove) {
     constexpr std::int32_t kSteep = 37'549'361;  // tan 89.9 degrees
-    Layer layer = layerOf(Kind::jittered, 16);
+    VertexSand layer = layerOf(Kind::jittered, 16);
     incline(layer, 0.99 * kSteep, 40);
     EXPECT_EQ(sand::tin::settle(layer, kSteep, kSteep).sweeps, 0) << "no triangle is worth a sweep";
     const Vertex spike = 100;
@@ -303,7 +303,7 @@ TEST(TinErosion, WallsAlmostUprightFallAndKeepTheirSand) {
     };
     ring(1000);
     const std::array<Vertex, 4> top = ring(1001);
-    Layer layer(std::move(mesh));
+    VertexSand layer(std::move(mesh));
     for (const Vertex corner : top) {
         layer.setHeight(corner, 256'000'000);
     }
@@ -319,7 +319,7 @@ TEST(TinErosion, WallsAlmostUprightFallAndKeepTheirSand) {
 TEST(TinErosion, RestingEdgesAreLeftThoughStepsAreShortAndSomethingAlwaysMoves) {
     constexpr std::uint32_t kSeed = 71;
     std::mt19937 random(kSeed);
-    Layer layer = layerOf(Kind::jittered, 40, 0, kSeed);
+    VertexSand layer = layerOf(Kind::jittered, 40, 0, kSeed);
     const std::vector<Vertex> all = mesh_checks::livingVertices(layer.mesh());
     for (const Vertex vertex : all) {
         layer.setHeight(vertex, static_cast<std::int32_t>(4 * kTalus * chance(random)));

@@ -26,10 +26,10 @@ using sand::Ground;
 using sand::HeightField;
 using sand::ProbePoint;
 using sand::tin::Cells;
+using sand::tin::Displacement;
 using sand::tin::Holes;
 using sand::tin::Imprint;
-using sand::tin::Start;
-using sand::tin::Tool;
+using sand::tin::TinStart;
 using sand::tin::Wide;
 
 constexpr std::int32_t kTalus = 65536;  // [unit per cell], 45 degrees
@@ -49,7 +49,7 @@ Ground wallsWhere(int columns, int rows, const CellTest& isWall) {
 }
 
 /// A vertex in every cell's middle but in holes, at heights from a function [unit].
-Start startOf(int columns, int rows, const CellTest& isWall, const std::function<int(int, int)>& heightOf) {
+TinStart startOf(int columns, int rows, const CellTest& isWall, const std::function<int(int, int)>& heightOf) {
     HeightField field(columns, rows, 1);
     for (int row = 0; row < rows; ++row) {
         for (int column = 0; column < columns; ++column) {
@@ -60,8 +60,8 @@ Start startOf(int columns, int rows, const CellTest& isWall, const std::function
     return sand::tin::follow(field, &walls, {.widest = sand::kProbePerCell, .maxError = 0});
 }
 
-Layer layerAt(const Start& start) {
-    Layer layer = sand::tin::layerOf(start);
+VertexSand layerAt(const TinStart& start) {
+    VertexSand layer = sand::tin::layerOf(start);
     static_cast<void>(layer.takeChange());
     return layer;
 }
@@ -76,7 +76,7 @@ bool isRing(int column, int row) {
 }
 
 /// Puts a lump of so many cells' height on the vertex nearest to the middle of a cell.
-void lump(Layer& layer, int column, int row, int cells) {
+void lump(VertexSand& layer, int column, int row, int cells) {
     const Place at{column * 256 + 128, row * 256 + 128};
     forEachVertex(layer, [&](Vertex vertex, const Place& place, double) {
         if (place == at) {
@@ -112,14 +112,14 @@ TEST(TinHoles, CellsThatTouchAtACornerCloseIt) {
     ASSERT_TRUE(holes.isPinch(2, 2));
     EXPECT_TRUE(holes.holds(Place{500, 520}));
     EXPECT_FALSE(holes.holds(Place{470, 520}));
-    const Layer layer = layerAt(startOf(
+    const VertexSand layer = layerAt(startOf(
         4, 4, [](int c, int r) { return c == r && (c == 1 || c == 2); }, levelAt));
     const std::int64_t lost = 2 * 32 * 32;  // of the square around the corner, beside both holes
     EXPECT_TRUE(layer.ground() == Wide{6} * ((16 - 2) * 256 * 256 - lost)) << static_cast<double>(layer.ground()) / 6;
 }
 
 TEST(TinHoles, ALevelFieldWithAHoleKeepsItsSand) {
-    Layer layer = layerAt(startOf(
+    VertexSand layer = layerAt(startOf(
         12, 9, [](int c, int r) { return c >= 3 && c < 7 && r >= 2 && r < 6; }, levelAt));
     ASSERT_EQ(mesh_checks::whatIsWrong(layer.mesh()), "");
     EXPECT_TRUE(layer.mesh().hasOutline());
@@ -132,7 +132,7 @@ TEST(TinHoles, ALevelFieldWithAHoleKeepsItsSand) {
 
 TEST(TinHoles, APileFlowsRoundAHoleAndNotIn) {
     const auto isWall = [](int c, int r) { return c >= 10 && c < 13 && r >= 6 && r < 14; };
-    Layer layer = layerAt(startOf(24, 20, isWall, levelAt));
+    VertexSand layer = layerAt(startOf(24, 20, isWall, levelAt));
     lump(layer, 8, 10, 900);
     const Wide before = layer.volume();
     ASSERT_TRUE(sand::tin::settle(layer, kTalus, kTalus).atRest);
@@ -153,7 +153,7 @@ TEST(TinHoles, APileFlowsRoundAHoleAndNotIn) {
 }
 
 TEST(TinHoles, SandInARingCannotLeave) {
-    Layer layer = layerAt(startOf(24, 24, isRing, levelAt));
+    VertexSand layer = layerAt(startOf(24, 24, isRing, levelAt));
     ASSERT_EQ(mesh_checks::whatIsWrong(layer.mesh()), "");
     int pinches = 0;
     for (int row = 1; row < 24; ++row) {
@@ -200,8 +200,8 @@ TEST(TinHoles, VolumeAndOutlineHoldThroughTenThousandEdits) {
     constexpr unsigned kSeed = 29;
     SCOPED_TRACE(fmt::format("seed {}", kSeed));
     std::mt19937 random(kSeed);
-    const Start start = startOf(24, 24, isRing, [&](int c, int r) { return 700 * c - 300 * r; });
-    Layer layer = layerAt(start);
+    const TinStart start = startOf(24, 24, isRing, [&](int c, int r) { return 700 * c - 300 * r; });
+    VertexSand layer = layerAt(start);
     const Wide before = layer.volume(), ground = layer.ground();
     for (int edit = 0; edit < 10000; ++edit) {
         std::string did;
@@ -226,14 +226,14 @@ TEST(TinHoles, ToolsOfAllKindsLeaveSandAndOutline) {
     const auto within = [&](double low, double high) {
         return low + (high - low) * static_cast<double>(random() % 4096) / 4096;
     };
-    Layer layer = layerAt(startOf(24, 24, isRing, levelAt));
+    VertexSand layer = layerAt(startOf(24, 24, isRing, levelAt));
     const Wide before = layer.volume(), ground = layer.ground();
     Imprint imprint;
     for (int stroke = 0; stroke < 60; ++stroke) {
         sand::tin::DetailRules rules = fineRules();
         rules.keepsConstraints = stroke % 4 == 0;
         const auto kind = static_cast<sand::ToolKind>(stroke % sand::kToolKinds);
-        Tool tool(shapeOf(kind, within(0.3, 4)), *sand::headingOf(within(0, 360), stroke % 2 == 0), rules);
+        Displacement tool(shapeOf(kind, within(0.3, 4)), *sand::headingOf(within(0, 360), stroke % 2 == 0), rules);
         const ProbePoint from = probeAt(within(2, 22), within(2, 22), within(-1, 1));
         const std::array path{from, probeAt(within(2, 22), within(2, 22), within(-1, 1))};
         (void)tool.drag(layer, imprint, sand::Rim::closed, path);
@@ -251,13 +251,13 @@ TEST(TinHoles, ToolsOfAllKindsLeaveSandAndOutline) {
 }
 
 TEST(TinHoles, ACopyOfAStateIsTheSameAndGoesOnAlike) {
-    Layer layer = layerAt(startOf(24, 24, isRing, levelAt));
+    VertexSand layer = layerAt(startOf(24, 24, isRing, levelAt));
     lump(layer, 4, 12, 50);
     lump(layer, 12, 12, 300);
     sand::tin::settle(layer, kTalus, kTalus, 10);
     const base::Bytes bytes = bytesOf(layer);
     base::ByteReader reader(bytes);
-    Layer other = Layer::decode(reader, layer.mesh().holes());
+    VertexSand other = VertexSand::decode(reader, layer.mesh().holes());
     EXPECT_EQ(bytesOf(other), bytes);
     EXPECT_TRUE(other.ground() == layer.ground());
     EXPECT_EQ(mesh_checks::trianglesOf(other.mesh()), mesh_checks::trianglesOf(layer.mesh()));
@@ -267,24 +267,24 @@ TEST(TinHoles, ACopyOfAStateIsTheSameAndGoesOnAlike) {
 }
 
 TEST(TinHoles, AStateWithoutTheOutlineIsRefused) {
-    const Layer whole = levelLayer(24, 24, 256);
+    const VertexSand whole = levelLayer(24, 24, 256);
     const base::Bytes bytes = bytesOf(whole);
     base::ByteReader reader(bytes);
     const auto holes = startOf(24, 24, isRing, levelAt).holes;
-    EXPECT_THROW((void)Layer::decode(reader, holes), base::FormatError);
+    EXPECT_THROW((void)VertexSand::decode(reader, holes), base::FormatError);
 }
 
 TEST(TinHoles, AStartTravelsWithItsHoles) {
-    const Start start = startOf(24, 24, isRing, levelAt);
+    const TinStart start = startOf(24, 24, isRing, levelAt);
     base::ByteWriter writer;
     start.encode(writer);
     base::ByteReader reader(writer.bytes());
-    const Start read = Start::decode(reader);
+    const TinStart read = TinStart::decode(reader);
     ASSERT_NE(read.holes, nullptr);
     EXPECT_EQ(read.holes->runs(), start.holes->runs());
     EXPECT_EQ(read.digest(), start.digest());
     EXPECT_EQ(bytesOf(sand::tin::layerOf(read)), bytesOf(sand::tin::layerOf(start)));
-    const Start level = startOf(
+    const TinStart level = startOf(
         24, 24, [](int, int) { return false; }, levelAt);
     EXPECT_EQ(level.holes, nullptr);
     EXPECT_NE(level.digest(), start.digest());
@@ -300,7 +300,7 @@ TEST(TinHoles, TheRimIsAsHighAsTheCellsAlongIt) {
         }
     }
     constexpr std::int32_t kError = 6000;
-    const Layer layer = layerAt(sand::tin::follow(field, nullptr, {.maxError = kError}));
+    const VertexSand layer = layerAt(sand::tin::follow(field, nullptr, {.maxError = kError}));
     for (int column = 0; column < 40; ++column) {
         EXPECT_NEAR(heightAt(layer, {column * 256 + 128, 0}), field.height(column, 0), kError);
         EXPECT_NEAR(heightAt(layer, {column * 256 + 128, 30 * 256}), field.height(column, 29), kError);

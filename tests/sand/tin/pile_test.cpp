@@ -22,7 +22,7 @@ using oracles::Cylinder;
 constexpr std::int32_t kTalus = 65536;  // [unit per cell], 45 degrees
 
 /// Settles, and expects that volume and extremes are kept.
-void settleAll(Layer& layer) {
+void settleAll(VertexSand& layer) {
     const sand::tin::Wide volume = layer.volume();
     const Extremes before = extremesOf(layer);
     EXPECT_TRUE(sand::tin::settle(layer, kTalus, kTalus).atRest);
@@ -33,14 +33,14 @@ void settleAll(Layer& layer) {
 }
 
 /// A cylinder in the middle of n x n cells, at rest.
-Layer settledCylinder(Kind kind, int n, double degrees, const Cylinder& cylinder) {
-    Layer layer = layerOf(kind, n, degrees);
+VertexSand settledCylinder(Kind kind, int n, double degrees, const Cylinder& cylinder) {
+    VertexSand layer = layerOf(kind, n, degrees);
     fill(layer, oracles::around(n / 2.0, n / 2.0, [&](double r) { return cylinder.start(r); }));
     settleAll(layer);
     return layer;
 }
 
-double misplacedOf(const Layer& layer, int n, const Cylinder& cylinder) {
+double misplacedOf(const VertexSand& layer, int n, const Cylinder& cylinder) {
     return misplaced(layer, oracles::around(n / 2.0, n / 2.0, [&](double r) { return cylinder.rest(r); }));
 }
 
@@ -97,7 +97,7 @@ TEST(TinPile, FinerMeshesAreNearerToTheCone) {
 TEST(TinPile, InertiaWithinStepsLeavesPilesNearlyAsRight) {
     const Cylinder tall(9.6, 28.8);
     const auto atRest = [&](Kind kind, int sweepsOfAStep) {
-        Layer layer = layerOf(kind, 64);
+        VertexSand layer = layerOf(kind, 64);
         fill(layer, oracles::around(32, 32, [&](double r) { return tall.start(r); }));
         sand::tin::Erosion erosion(layer, kTalus, kTalus);
         std::vector<sand::tin::Vertex> moved;
@@ -128,7 +128,7 @@ TEST(TinPile, AWallOfSandBecomesItsRampInAnyDirection) {
             const oracles::Prism wall(0.12 * kSide, 0.1 * kSide);
             const oracles::Line line{kSide / 2.0, kSide / 2.0, degrees};
             const auto inTheMiddle = [&](double x, double y) { return std::abs(line.along(x, y)) < 0.15 * kSide; };
-            Layer layer = layerOf(kind, kSide);
+            VertexSand layer = layerOf(kind, kSide);
             fill(layer, [&](double x, double y) {
                 return std::abs(line.along(x, y)) < 0.4 * kSide ? wall.start(line.across(x, y)) : 0;
             });
@@ -145,7 +145,7 @@ TEST(TinPile, AWallOfSandBecomesItsRampInAnyDirection) {
 TEST(TinPile, PouredSandIsACone) {
     double coarser = 1;
     for (const int n : {32, 64}) {
-        Layer layer = layerOf(Kind::jittered, n);
+        VertexSand layer = layerOf(Kind::jittered, n);
         const sand::tin::Vertex top = layer.insert({n * kCell / 2, n * kCell / 2});
         static_cast<void>(layer.takeChange());
         const double foot = 0.3 * n;
@@ -170,7 +170,7 @@ TEST(TinPile, PouredSandIsACone) {
 }
 
 /// Share of the sand between two surfaces, by heights at the middles of cells.
-double between(const Layer& one, const Layer& other, int n) {
+double between(const VertexSand& one, const VertexSand& other, int n) {
     double sum = 0, all = 0;
     std::int32_t here = sand::tin::kNobody, there = sand::tin::kNobody;
     for (int y = 0; y < n; ++y) {
@@ -188,7 +188,7 @@ double between(const Layer& one, const Layer& other, int n) {
 TEST(TinPile, TurningTheMeshChangesThePileByLessThanItsError) {
     constexpr int kSide = 64;
     const Cylinder cylinder(0.25 * kSide, 0.15 * kSide);
-    const Layer straight = settledCylinder(Kind::jittered, kSide, 0, cylinder);
+    const VertexSand straight = settledCylinder(Kind::jittered, kSide, 0, cylinder);
     const double error = misplacedOf(straight, kSide, cylinder);
     for (const double degrees : {9.0, 22.5, 45.0}) {
         EXPECT_LE(between(straight, settledCylinder(Kind::jittered, kSide, degrees, cylinder), kSide), error)
@@ -199,13 +199,13 @@ TEST(TinPile, TurningTheMeshChangesThePileByLessThanItsError) {
 TEST(TinPile, TheSamePileOnGridAndTinAgrees) {
     constexpr int kSide = 64;
     const Cylinder cylinder(0.25 * kSide, 0.15 * kSide);
-    const Layer layer = settledCylinder(Kind::jittered, kSide, 0, cylinder);
+    const VertexSand layer = settledCylinder(Kind::jittered, kSide, 0, cylinder);
     sand::HeightField field = oracles::fieldOf(
         kSide, kSide, oracles::around(kSide / 2.0, kSide / 2.0, [&](double r) { return cylinder.start(r); }));
     sand::Rules rules;
     rules.columns = rules.rows = kSide;
     rules.threshold = rules.startThreshold = kTalus;
-    sand::settle(field, rules);
+    sand::grid::settle(field, rules);
     double sum = 0, all = 0;
     std::int32_t triangle = sand::tin::kNobody;
     for (int y = 0; y < kSide; ++y) {

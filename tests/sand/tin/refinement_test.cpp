@@ -24,7 +24,7 @@ DetailRules rulesOf(std::int32_t spacing, double maxError, std::int32_t removals
     return rules;
 }
 
-int refineAll(Layer& layer, const DetailRules& rules, const Box& box) {
+int refineAll(VertexSand& layer, const DetailRules& rules, const Box& box) {
     int came = 0;
     std::vector<Place> there;
     forEachVertex(layer, [&](Vertex, const Place& place, double) { there.push_back(place); });
@@ -35,7 +35,7 @@ int refineAll(Layer& layer, const DetailRules& rules, const Box& box) {
 }
 
 TEST(TinDetail, AVertexComesIntoEverySquareOnce) {
-    Layer layer(sand::tin::Mesh(20 * 256, 10 * 256));
+    VertexSand layer(sand::tin::Mesh(20 * 256, 10 * 256));
     const DetailRules rules = rulesOf(256, 0, 0);
     EXPECT_EQ(refineAll(layer, rules, {0, 0, 20 * 256, 10 * 256}), 200 - 1);  // the corner's square has one
     EXPECT_EQ(refineAll(layer, rules, {0, 0, 20 * 256, 10 * 256}), 0);
@@ -44,7 +44,7 @@ TEST(TinDetail, AVertexComesIntoEverySquareOnce) {
 }
 
 TEST(TinDetail, RefinementKeepsAwayFromEdges) {
-    Layer layer(sand::tin::Mesh(20 * 256, 20 * 256));
+    VertexSand layer(sand::tin::Mesh(20 * 256, 20 * 256));
     layer.edit([](sand::tin::Mesh& mesh) {
         const std::pair edge{Place{100, 300}, Place{5000, 4000}};
         sand::tin::refine(mesh, rulesOf(256, 0, 0), {0, 0, 20 * 256, 20 * 256}, [](const Place&) { return true; }, {},
@@ -57,7 +57,7 @@ TEST(TinDetail, RefinementKeepsAwayFromEdges) {
 }
 
 TEST(TinDetail, RefinementStopsAtTheBudgetAndGoesOnWhenThereIsRoomAgain) {
-    Layer layer(sand::tin::Mesh(40 * 256, 40 * 256));
+    VertexSand layer(sand::tin::Mesh(40 * 256, 40 * 256));
     DetailRules rules = rulesOf(256, 1, 50);
     rules.maxVertices = 404;
     EXPECT_EQ(refineAll(layer, rules, {0, 0, 40 * 256, 40 * 256}), 400);
@@ -73,7 +73,7 @@ TEST(TinDetail, RefinementStopsAtTheBudgetAndGoesOnWhenThereIsRoomAgain) {
 }
 
 TEST(TinDetail, ALevelLayerLosesAllThatNothingHolds) {
-    Layer layer = levelLayer(20, 20, 256);
+    VertexSand layer = levelLayer(20, 20, 256);
     std::vector<Vertex> chain;
     layer.edit([&](sand::tin::Mesh& mesh) {
         chain = mesh.constrain(mesh.insert({1100, 1200}), mesh.insert({3000, 1300})).vertices;
@@ -104,7 +104,7 @@ TEST(TinDetail, NoRemovalMovesTheSurfaceByMoreThanItMay) {
     constexpr unsigned kSeed = 3;
     std::mt19937 random(kSeed);
     SCOPED_TRACE("seed 3");
-    Layer layer = levelLayer(24, 24, 256);
+    VertexSand layer = levelLayer(24, 24, 256);
     forEachVertex(layer, [&](Vertex vertex, const Place& place, double) {
         const double x = place.x / 256.0 - 12, y = place.y / 256.0 - 12;
         layer.setHeight(vertex, static_cast<std::int32_t>(kCell * (0.02 * x * x + 0.01 * x * y)) +
@@ -143,14 +143,14 @@ TEST(TinDetail, CoarseningThatRemembersLeavesWhatOneThatLooksAgainLeaves) {
     constexpr unsigned kSeed = 4;
     std::mt19937 random(kSeed);
     SCOPED_TRACE("seed 4");
-    Layer forgetful = levelLayer(24, 24, 256), layer = levelLayer(24, 24, 256);
+    VertexSand forgetful = levelLayer(24, 24, 256), layer = levelLayer(24, 24, 256);
     const DetailRules rules = rulesOf(256, 0.02 * kCell, 3);
     Vertex next = 0, other = 0;
     sand::tin::Coarsening coarsening;
     std::vector<std::pair<Vertex, Vertex>> constrained;
     const auto somewhere = [&] { return static_cast<std::int32_t>(1 + random() % (24 * 256 - 1)); };
     const auto both = [&](const auto& change) {
-        for (Layer* one : {&forgetful, &layer}) {
+        for (VertexSand* one : {&forgetful, &layer}) {
             change(*one);
         }
     };
@@ -158,7 +158,7 @@ TEST(TinDetail, CoarseningThatRemembersLeavesWhatOneThatLooksAgainLeaves) {
     const auto shake = [&](Vertex vertex) {
         const bool rough = layer.triangles().places[sand::tin::index(vertex)].x < 3000;
         const auto height = static_cast<std::int32_t>(random() % (rough ? 3000 : 100));
-        both([&](Layer& one) { one.setHeight(vertex, height); });
+        both([&](VertexSand& one) { one.setHeight(vertex, height); });
     };
     forEachVertex(layer, [&](Vertex vertex, const Place&, double) { shake(vertex); });
     static_cast<void>(layer.takeChange());
@@ -172,16 +172,16 @@ TEST(TinDetail, CoarseningThatRemembersLeavesWhatOneThatLooksAgainLeaves) {
         Vertex came = sand::tin::kNobody;
         if (step % 8 == 0) {
             const Place place{somewhere(), somewhere()};
-            both([&](Layer& one) { came = one.insert(place); });
+            both([&](VertexSand& one) { came = one.insert(place); });
         }
         if (step % 32 == 0) {
             const auto& triangles = layer.triangles();
             const auto& corner =
                 triangles.triangles[sand::tin::index(triangles.triangleAt[sand::tin::index(came)])].corner;
             constrained.emplace_back(came, corner[0] == came ? corner[1] : corner[0]);
-            both([&](Layer& one) { one.constrain(constrained.back().first, constrained.back().second); });
+            both([&](VertexSand& one) { one.constrain(constrained.back().first, constrained.back().second); });
         } else if (step % 32 == 16 && constrained.size() > 4) {
-            both([&](Layer& one) { one.release(constrained.front().first, constrained.front().second); });
+            both([&](VertexSand& one) { one.release(constrained.front().first, constrained.front().second); });
             constrained.erase(constrained.begin());
         }
         coarsening.touch(layer.triangles(), layer.takeChange());
@@ -197,7 +197,7 @@ TEST(TinDetail, CoarseningThatRemembersLeavesWhatOneThatLooksAgainLeaves) {
 }
 
 TEST(TinDetail, WithoutAnErrorNothingGoes) {
-    Layer layer = levelLayer(10, 10, 256);
+    VertexSand layer = levelLayer(10, 10, 256);
     const base::Bytes before = bytesOf(layer);
     Vertex next = 0;
     EXPECT_EQ(sand::tin::coarsen(layer, rulesOf(256, 0, 100), next, kNowhere), 0);

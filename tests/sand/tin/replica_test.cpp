@@ -25,13 +25,14 @@ using sand::Step;
 /// A scene file as a person writes it: dunes of 64 x 64 nominal cells, as a TIN.
 class TinTerrain : public test::FolderTest {
 protected:
-    [[nodiscard]] sand::Scene scene(const std::string& tin = "max_error = 0.01\n", const std::string& more = "") const {
+    [[nodiscard]] scene::Scene scene(const std::string& tin = "max_error = 0.01\n",
+                                     const std::string& more = "") const {
         const std::filesystem::path file = folder_ / "scene.toml";
         std::ofstream(file) << "[field]\ncolumns = 64\nwidth = 2.0\n[terrain]\nkind = \"dunes\"\nheight = 0.3\n"
                                "dune_height = 0.15\ndune_length = 0.8\n"
                             << more << "[tin]\n"
                             << tin << "[material]\ntalus_deg = 34\nsettling_time = 0.1\n[tool]\nradius = 0.1\n";
-        return sand::loadScene(file);
+        return scene::loadScene(file);
     }
 };
 
@@ -64,25 +65,25 @@ std::vector<Step> session(std::uint32_t seed, int steps) {
 }
 
 TEST_F(TinTerrain, ASessionIsTheSameTwiceAndFromItsMiddle) {
-    const sand::Scene start = scene();
+    const scene::Scene start = scene();
     ASSERT_NE(start.tin, nullptr);
     ASSERT_LT(start.tin->places.size(), 64U * 64U / 2);
     tin_samples::expectSameSession(start, start, session(7, 120), 37);
 }
 
 /// Level sand, points at random all over it, and a tool as wide as a quarter of it that is put here and there.
-sand::Scene levelSand(int side, std::uint32_t seed) {
-    sand::tin::Start start = tin_piles::levelStart(side, seed);
+scene::Scene levelSand(int side, std::uint32_t seed) {
+    sand::tin::TinStart start = tin_piles::levelStart(side, seed);
     start.settings.spacing = start.settings.maxError = 0;
     start.settings.mostVertices = 1 << 19;
-    sand::Scene scene;
+    scene::Scene scene;
     scene.rules.columns = scene.rules.rows = side;
     scene.rules.threshold = 65536;
     scene.rules.startThreshold = 65536 + 65536 / 1000;
     scene.rules.sweepsPerStep = 64;
     scene.rules.toolKind = sand::ToolKind::circle;
     scene.rules.toolRadius = 13 * sand::kProbePerCell;
-    scene.tin = std::make_shared<const sand::tin::Start>(std::move(start));
+    scene.tin = std::make_shared<const sand::tin::TinStart>(std::move(start));
     return scene;
 }
 
@@ -90,7 +91,7 @@ sand::Scene levelSand(int side, std::uint32_t seed) {
 // a replica that has just joined never forgot them.
 TEST(TinTerrainUnderATool, WhatWasForgottenSlidesAsSoonAsItIsAskedFor) {
     constexpr std::uint32_t kSeed = 1;
-    const sand::Scene scene = levelSand(100, kSeed);
+    const scene::Scene scene = levelSand(100, kSeed);
     Replica terrain(scene), joined(scene);
     std::mt19937 random(kSeed);
     const auto somewhere = [&random] {
@@ -141,8 +142,8 @@ TEST_F(TinTerrain, CutAndFillDifferByWhatSamplesMiss) {
 }
 
 TEST_F(TinTerrain, TravelsWholeWithItsScene) {
-    const sand::Scene start = scene("max_error = 0.02\nspacing = 0.05\nkeep_constraints = true\n");
-    const sand::Scene read = sand::Scene::decode(start.encode());
+    const scene::Scene start = scene("max_error = 0.02\nspacing = 0.05\nkeep_constraints = true\n");
+    const scene::Scene read = scene::Scene::decode(start.encode());
     ASSERT_NE(read.tin, nullptr);
     EXPECT_EQ(read.rules, start.rules);
     EXPECT_EQ(read.tin->places, start.tin->places);
@@ -152,7 +153,7 @@ TEST_F(TinTerrain, TravelsWholeWithItsScene) {
 }
 
 TEST_F(TinTerrain, ResetUndoAndLoadPutTheSandBack) {
-    const sand::Scene start = scene();
+    const scene::Scene start = scene();
     Replica terrain(start);
     const std::int64_t volume = terrain.volume();
     const auto untouched = terrain.surface().valuesOf(0);
@@ -209,7 +210,7 @@ TEST_F(TinTerrain, WhatHasLookedInVainCoarsensAgainOnceSandHasSlid) {
 }
 
 TEST_F(TinTerrain, EveryStepIsAFunctionOfTheStateWhileAToolSettlesOnSlopes) {
-    const sand::Scene start = scene();
+    const scene::Scene start = scene();
     Replica terrain(start), fresh(start);
     for (std::uint64_t number = 1; number <= 160; ++number) {
         // Held still for nine steps, in which the sand comes to rest, then put down a little elsewhere.
@@ -243,7 +244,7 @@ TEST_F(TinTerrain, SandSlidesThatLeansOnAToolWhichHasMovedNone) {
                                              "max_error = 0\nvertices = "
                                           << kPoints + 4  // and none for the tool's outline
                                           << "\n[material]\ntalus_deg = 34\n[tool]\nshape = \"circle\"\nradius = 0.5\n";
-    const sand::Scene scene = sand::loadScene(folder_ / "slope.toml");
+    const scene::Scene scene = scene::loadScene(folder_ / "slope.toml");
     int slid = 0;
     for (sand::ProbePoint at : places) {
         at.z += scene.rules.toolRadius;
@@ -327,7 +328,7 @@ TEST_F(TinTerrain, IsMadeOfTheSurveyPointsThemselves) {
     std::ofstream(folder_ / "survey.csv") << "x,y,z\n100,200,3\n110,200,5\n110,205,7\n104,203,4\n";
     std::ofstream(folder_ / "points.toml") << "[terrain]\nkind = \"points\"\nfile = \"survey.csv\"\n[tin]\ncell = 0.5\n"
                                               "[material]\ntalus_deg = 34\n[tool]\nradius = 1\n";
-    const sand::Scene read = sand::loadScene(folder_ / "points.toml");
+    const scene::Scene read = scene::loadScene(folder_ / "points.toml");
     ASSERT_NE(read.tin, nullptr);
     EXPECT_EQ(read.rules.columns, 20);
     EXPECT_EQ(read.rules.rows, 10);
@@ -348,7 +349,7 @@ TEST_F(TinTerrain, SaysHowManySurveyPointsItDoesNotTellApart) {
         std::ofstream(folder_ / "points.toml")
             << "[terrain]\nkind = \"points\"\nfile = \"survey.csv\"\n[tin]\ncell = " << cell
             << "\n[material]\ntalus_deg = 34\n[tool]\nradius = 10\n";
-        const sand::Scene read = sand::loadScene(folder_ / "points.toml");
+        const scene::Scene read = scene::loadScene(folder_ / "points.toml");
         EXPECT_EQ(read.tin->places.size(), read.warnings.empty() ? 8U : 5U) << "and a corner";
         return read.warnings;
     };
@@ -383,7 +384,7 @@ TEST_F(TinTerrain, RefusesWhatItCannotHoldInOneLine) {
         << "[terrain]\nkind = \"points\"\nfile = \"survey.csv\"\nlayer = 0.1\n[tin]\n"
            "[material]\n[tool]\nradius = 1\n";
     try {
-        (void)sand::loadScene(folder_ / "points.toml");
+        (void)scene::loadScene(folder_ / "points.toml");
         FAIL() << "accepted";
     } catch (const base::InputError& error) {
         EXPECT_NE(std::string(error.what()).find("points.toml:5: a TIN has no rock"), std::string::npos)

@@ -13,8 +13,8 @@ namespace tin_samples {
 
 /// Plays a session on two scenes that must be alike, and on a replica that takes over the whole state at every step
 /// that `joins` divides: after each step all have the same sand, and none of it is lost.
-inline void expectSameSession(const sand::Scene& scene, const sand::Scene& alike, const std::vector<sand::Step>& steps,
-                              std::uint64_t joins) {
+inline void expectSameSession(const scene::Scene& scene, const scene::Scene& alike,
+                              const std::vector<sand::Step>& steps, std::uint64_t joins) {
     sand::Replica whole(scene), again(alike), joined(scene);
     const std::int64_t volume = whole.volume();
     for (const sand::Step& step : steps) {

@@ -20,8 +20,8 @@ using namespace tin_piles;
 constexpr std::int32_t kTalus = 65536;  // [unit per cell], 45 degrees
 
 /// Sand as rough as this [cell].
-Layer roughLayer(Kind kind, int n, double roughness, std::uint32_t seed) {
-    Layer layer = layerOf(kind, n, 0, seed);
+VertexSand roughLayer(Kind kind, int n, double roughness, std::uint32_t seed) {
+    VertexSand layer = layerOf(kind, n, 0, seed);
     std::mt19937 random(seed);
     for (std::size_t i = 0; i < layer.heights().size(); ++i) {
         if (layer.triangles().alive(static_cast<Vertex>(i))) {
@@ -32,7 +32,7 @@ Layer roughLayer(Kind kind, int n, double roughness, std::uint32_t seed) {
 }
 
 TEST(TinSettle, SandAtRestIsLeftAlone) {
-    Layer layer = roughLayer(Kind::jittered, 24, 0.05, 3);
+    VertexSand layer = roughLayer(Kind::jittered, 24, 0.05, 3);
     const std::vector<std::int64_t> volumes = layer.volumes();
     const auto settled = sand::tin::settle(layer, kTalus, kTalus);
     EXPECT_TRUE(settled.atRest);
@@ -44,7 +44,7 @@ TEST(TinSettle, SandAtRestIsLeftAlone) {
 TEST(TinSettle, RoughSandKeepsItsVolumeAndExtremesAndNamesWhoMoved) {
     for (const Kind kind : {Kind::regular, Kind::jittered, Kind::random}) {
         for (const std::int32_t talus : {0, 20000, 200000}) {
-            Layer layer = roughLayer(kind, 24, 40, 7);
+            VertexSand layer = roughLayer(kind, 24, 40, 7);
             const sand::tin::Wide volume = layer.volume();
             const Extremes before = extremesOf(layer);
             const std::vector<std::int64_t> volumes = layer.volumes();
@@ -67,15 +67,15 @@ TEST(TinSettle, RoughSandKeepsItsVolumeAndExtremesAndNamesWhoMoved) {
 
 // Slots of triangles, and which corner is their first, are no state: a layer that was read again has others.
 TEST(TinSettle, DoesNotDependOnTheSlotsOfTriangles) {
-    Layer layer = roughLayer(Kind::random, 32, 20, 11);
+    VertexSand layer = roughLayer(Kind::random, 32, 20, 11);
     for (Vertex vertex = 40; vertex < 400; vertex += 3) {
         (void)layer.remove(vertex);
     }
     base::ByteWriter writer;
     layer.encode(writer);
     base::ByteReader reader(writer.bytes());
-    Layer again = Layer::decode(reader);
-    const auto firsts = [](const Layer& one) {
+    VertexSand again = VertexSand::decode(reader);
+    const auto firsts = [](const VertexSand& one) {
         std::vector<Vertex> corners;
         for (const auto& triangle : one.triangles().triangles) {
             corners.push_back(triangle.corner[0]);
@@ -92,7 +92,7 @@ TEST(TinSettle, DoesNotDependOnTheSlotsOfTriangles) {
 TEST(TinSettle, TheProjectionGrowsBeforeItsSand) {
     constexpr int kSide = 144;
     const oracles::Cylinder tower(8, 1200);
-    Layer layer = layerOf(Kind::jittered, kSide);
+    VertexSand layer = layerOf(Kind::jittered, kSide);
     fill(layer, oracles::around(kSide / 2.0, kSide / 2.0, [&](double r) { return tower.start(r); }));
     sand::tin::DualProjection projection(layer, kTalus / 256.0);
     EXPECT_GT(projection.run(), 0);
@@ -105,7 +105,7 @@ TEST(TinSettle, TheProjectionGrowsBeforeItsSand) {
 
 // Only a few cells of many move: what lies beyond is not even looked at twice.
 TEST(TinSettle, OnlyWhatLiesAroundMovesAndNothingElse) {
-    Layer layer = layerOf(Kind::jittered, 96);
+    VertexSand layer = layerOf(Kind::jittered, 96);
     fill(layer, oracles::around(20, 20, [](double r) { return r < 2 ? 4.0 : 0.0; }));
     const auto settled = sand::tin::settle(layer, kTalus, kTalus);
     EXPECT_TRUE(settled.atRest);

@@ -21,7 +21,7 @@ constexpr std::int32_t kWidth = kColumns * 256, kDepth = kRows * 256;
 
 std::vector<double> dunes() {
     sand::HeightField field(kColumns, kRows, 0.05);
-    sand::makeDunes({.height = 0.2, .length = 0.9}, field);
+    sand::grid::makeDunes({.height = 0.2, .length = 0.9}, field);
     std::vector<double> heights;
     for (int y = 0; y < kRows; ++y) {
         for (int x = 0; x < kColumns; ++x) {

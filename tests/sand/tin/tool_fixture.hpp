@@ -10,12 +10,12 @@
 
 namespace tin_samples {
 
-using sand::tin::Layer;
 using sand::tin::Place;
 using sand::tin::Vertex;
+using sand::tin::VertexSand;
 
 /// A field of so many cells with a vertex in the middle of every square of `spacing` [probe unit], level at height 0.
-inline Layer levelLayer(int columns, int rows, std::int32_t spacing) {
+inline VertexSand levelLayer(int columns, int rows, std::int32_t spacing) {
     const std::int32_t width = columns * sand::kProbePerCell, depth = rows * sand::kProbePerCell;
     sand::tin::Mesh mesh(width, depth);
     std::vector<Place> places;
@@ -25,19 +25,19 @@ inline Layer levelLayer(int columns, int rows, std::int32_t spacing) {
         }
     }
     mesh.insert(places);
-    Layer layer(std::move(mesh));
+    VertexSand layer(std::move(mesh));
     static_cast<void>(layer.takeChange());
     return layer;
 }
 
-inline base::Bytes bytesOf(const Layer& layer) {
+inline base::Bytes bytesOf(const VertexSand& layer) {
     base::ByteWriter writer;
     layer.encode(writer);
     return writer.take();
 }
 
 /// Height of the linear surface [unit]. `near`: a triangle to look from first, then the one that was found.
-inline double heightAt(const Layer& layer, const Place& place, std::int32_t& near) {
+inline double heightAt(const VertexSand& layer, const Place& place, std::int32_t& near) {
     const auto& mesh = layer.triangles();
     const auto found = sand::tin::locate(mesh, place, near);
     near = found.triangle;
@@ -50,7 +50,7 @@ inline double heightAt(const Layer& layer, const Place& place, std::int32_t& nea
     }
     return sum / weights;
 }
-inline double heightAt(const Layer& layer, const Place& place) {
+inline double heightAt(const VertexSand& layer, const Place& place) {
     std::int32_t near = sand::tin::kNobody;
     return heightAt(layer, place, near);
 }
@@ -73,7 +73,7 @@ inline sand::ToolShape shapeOf(sand::ToolKind kind, double radius /* [cell] */) 
 }
 
 template <class Visit>
-void forEachVertex(const Layer& layer, const Visit& visit) {
+void forEachVertex(const VertexSand& layer, const Visit& visit) {
     const auto& mesh = layer.triangles();
     for (Vertex vertex = 0; vertex < static_cast<Vertex>(mesh.triangleAt.size()); ++vertex) {
         if (mesh.alive(vertex)) {

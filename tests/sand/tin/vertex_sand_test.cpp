@@ -13,22 +13,22 @@ namespace layers {
 namespace {
 
 using namespace mesh_checks;
-using sand::tin::Layer;
+using sand::tin::VertexSand;
 using sand::tin::Wide;
 
-void editAtRandom(Layer& layer, std::mt19937& random, int most) {
+void editAtRandom(VertexSand& layer, std::mt19937& random, int most) {
     layer.edit([&](Mesh& mesh) { mesh_checks::editAtRandom(mesh, random, most); });
 }
 
-Layer layerOf(std::int32_t width, std::int32_t depth, int edits, std::mt19937& random) {
+VertexSand layerOf(std::int32_t width, std::int32_t depth, int edits, std::mt19937& random) {
     Mesh mesh(width, depth);
     for (int i = 0; i < edits; ++i) {
         mesh_checks::editAtRandom(mesh, random, edits);
     }
-    return Layer(std::move(mesh));
+    return VertexSand(std::move(mesh));
 }
 
-void pile(Layer& layer, std::mt19937& random, std::int32_t range) {
+void pile(VertexSand& layer, std::mt19937& random, std::int32_t range) {
     for (const Vertex vertex : livingVertices(layer.mesh())) {
         layer.setHeight(vertex, static_cast<std::int32_t>(random() % static_cast<std::uint32_t>(2 * range)) - range);
     }
@@ -38,12 +38,12 @@ void pile(Layer& layer, std::mt19937& random, std::int32_t range) {
 void editAndWeigh(int edits, std::uint32_t seed) {
     testing::Test::RecordProperty("seed", static_cast<int>(seed));
     std::mt19937 random(seed);
-    Layer layer = layerOf(4000, 3000, 60, random);
+    VertexSand layer = layerOf(4000, 3000, 60, random);
     pile(layer, random, 1 << 24);
     Wide volume = layer.volume();
     for (int i = 0; i < edits; ++i) {
         editAtRandom(layer, random, 80);
-        const Layer::Remap remap = layer.takeLargestRemap();
+        const VertexSand::Remap remap = layer.takeLargestRemap();
         ASSERT_TRUE(layer.volume() == volume) << "seed " << seed << ", edit " << i;
         ASSERT_LE(remap.moved, remap.bound) << "seed " << seed << ", edit " << i;
         if (i % 1000 == 0) {
@@ -57,7 +57,7 @@ TEST(Layer, KeepsItsVolumeThroughHundredThousandEdits) { editAndWeigh(samples::k
 
 TEST(Layer, StaysLevelBitByBit) {
     std::mt19937 random(3);
-    Layer layer = layerOf(1 << 17, 1 << 17, 40, random);
+    VertexSand layer = layerOf(1 << 17, 1 << 17, 40, random);
     for (const Vertex vertex : livingVertices(layer.mesh())) {
         layer.setHeight(vertex, 77'777'777);
     }
@@ -71,7 +71,7 @@ TEST(Layer, StaysLevelBitByBit) {
 
 TEST(Layer, KeepsAnInclinedPlaneWithinRounding) {
     std::mt19937 random(4);
-    Layer layer = layerOf(3000, 2000, 40, random);
+    VertexSand layer = layerOf(3000, 2000, 40, random);
     const auto plane = [&layer](Vertex vertex) {
         const Place& place = layer.triangles().places[static_cast<std::size_t>(vertex)];
         return 300 * place.x - 700 * place.y + 12345;
@@ -88,7 +88,7 @@ TEST(Layer, KeepsAnInclinedPlaneWithinRounding) {
     }
 }
 
-base::Bytes bytesOf(const Layer& layer) {
+base::Bytes bytesOf(const VertexSand& layer) {
     base::ByteWriter writer;
     layer.encode(writer);
     return writer.take();
@@ -96,12 +96,12 @@ base::Bytes bytesOf(const Layer& layer) {
 
 TEST(Layer, ReadsNoFurtherThanItsEnd) {
     std::mt19937 random(6);
-    Layer layer = layerOf(500, 400, 60, random);
+    VertexSand layer = layerOf(500, 400, 60, random);
     pile(layer, random, 1 << 20);
     base::Bytes bytes = bytesOf(layer);
     bytes.push_back(42);
     base::ByteReader reader(bytes);
-    const Layer again = Layer::decode(reader);
+    const VertexSand again = VertexSand::decode(reader);
     ASSERT_EQ(reader.rest().size(), 1U);
     EXPECT_EQ(again.volumes(), layer.volumes());
     EXPECT_EQ(again.heights(), layer.heights());
@@ -113,14 +113,14 @@ TEST(Layer, ReadsNoFurtherThanItsEnd) {
 /// Every byte in turn cut off or changed: refused, or a layer that is a sound one.
 TEST(Layer, RefusesDamagedBytesOrReadsAnotherSoundLayer) {
     std::mt19937 random(7);
-    Layer layer = layerOf(60, 50, 30, random);
+    VertexSand layer = layerOf(60, 50, 30, random);
     pile(layer, random, 1 << 20);
     const base::Bytes whole = bytesOf(layer);
     int taken = 0, refused = 0;
     const auto tryOn = [&](const base::Bytes& bytes) {
         base::ByteReader reader(bytes);
         try {
-            ASSERT_EQ(whatIsWrong(Layer::decode(reader).mesh()), "");
+            ASSERT_EQ(whatIsWrong(VertexSand::decode(reader).mesh()), "");
             ++taken;
         } catch (const base::FormatError&) {
             ++refused;
@@ -141,7 +141,7 @@ TEST(Layer, RefusesDamagedBytesOrReadsAnotherSoundLayer) {
 }
 
 TEST(Layer, RefusesMoreSandThanItCanCount) {
-    Layer layer(Mesh(1 << 18, 1 << 18));
+    VertexSand layer(Mesh(1 << 18, 1 << 18));
     EXPECT_THROW(layer.setHeight(0, 1 << 30), std::overflow_error);
     layer.setHeight(0, 1 << 20);
     EXPECT_THROW(layer.add(0, std::int64_t{1} << 62), std::overflow_error);
@@ -149,11 +149,11 @@ TEST(Layer, RefusesMoreSandThanItCanCount) {
 
 TEST(Layer, IsAFunctionOfTheEditsAndNotOfTheSlots) {
     std::mt19937 random(5);
-    Layer layer = layerOf(500, 400, 60, random);
+    VertexSand layer = layerOf(500, 400, 60, random);
     pile(layer, random, 1 << 20);
     const base::Bytes start = bytesOf(layer);
     base::ByteReader reader(start);
-    Layer restored = Layer::decode(reader);
+    VertexSand restored = VertexSand::decode(reader);
     std::mt19937 same = random;
     for (int i = 0; i < 1000; ++i) {
         editAtRandom(layer, random, 80);

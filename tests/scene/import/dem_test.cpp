@@ -12,7 +12,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST_F(Import, ADemBringsHeightsAndItsPlace) {
     writeRaster("t.tif", {.columns = 3, .rows = 2, .heights = {1, 2, 3, 4, 5, 6}});
-    const sand::Scene scene = load(kDem + "datum = 1\n");
+    const scene::Scene scene = load(kDem + "datum = 1\n");
     ASSERT_EQ(scene.terrain.columns(), 3);
     ASSERT_EQ(scene.terrain.rows(), 2);
     EXPECT_EQ(scene.terrain.cellSize(), 10);
@@ -28,28 +28,28 @@ TEST_F(Import, ADemBringsHeightsAndItsPlace) {
 
 TEST_F(Import, TheGeoreferenceTravelsWithTheSceneAndOlderScenesHaveNone) {
     writeRaster("t.tif", {.columns = 2, .rows = 2, .heights = {1, 2, 3, 4}});
-    const sand::Scene scene = load(kDem);
+    const scene::Scene scene = load(kDem);
     base::Bytes bytes = scene.encode();
-    EXPECT_EQ(sand::Scene::decode(bytes).georeference, scene.georeference);
-    sand::Scene nowhere = scene;
+    EXPECT_EQ(scene::Scene::decode(bytes).georeference, scene.georeference);
+    scene::Scene nowhere = scene;
     nowhere.georeference = {};
     const base::Bytes older = nowhere.encode();
     ASSERT_LT(older.size(), bytes.size());
     EXPECT_TRUE(std::equal(older.begin(), older.end(), bytes.begin())) << "what stands before it is as it was";
-    EXPECT_EQ(sand::Scene::decode(older).georeference, sand::Georeference{});
+    EXPECT_EQ(scene::Scene::decode(older).georeference, scene::Georeference{});
     EXPECT_EQ(nowhere.rules.digest(), scene.rules.digest());
     bytes[older.size()] = 200;
-    EXPECT_THROW((void)sand::Scene::decode(bytes), base::FormatError);
+    EXPECT_THROW((void)scene::Scene::decode(bytes), base::FormatError);
     bytes[older.size()] = 1;
     bytes.pop_back();
-    EXPECT_THROW((void)sand::Scene::decode(bytes), base::FormatError);
+    EXPECT_THROW((void)scene::Scene::decode(bytes), base::FormatError);
 }
 
 TEST_F(Import, PixelsWithoutDataAreWalls) {
     writeRaster(
         "t.tif",
         {.columns = 4, .rows = 3, .heights = {-9999, 1, 1, 1, -9999, 2, -9999, 2, -9999, 3, 3, kNan}, .noData = -9999});
-    const sand::Scene scene = load(kDem);
+    const scene::Scene scene = load(kDem);
     ASSERT_EQ(scene.terrain.columns(), 3) << "the edge without data is cut off";
     EXPECT_EQ(scene.georeference.west, 1010);
     ASSERT_NE(scene.ground, nullptr);
@@ -65,7 +65,7 @@ TEST_F(Import, TransparentPixelsAreWalls) {
                           .type = GDT_Byte,
                           .bands = 2,
                           .options = {"ALPHA=YES"}});
-    const sand::Scene scene = load(kDem);
+    const scene::Scene scene = load(kDem);
     ASSERT_NE(scene.ground, nullptr) << "both bands hold the same, and where the second is 0 nothing is known";
     EXPECT_TRUE(scene.ground->isWall(1, 0));
     EXPECT_FALSE(scene.ground->isWall(1, 1));
@@ -76,7 +76,7 @@ TEST_F(Import, PixelsThatArePointsLieHalfAPixelFurther) {
     Raster point = area;
     point.pixelIs = "Point";
     writeRaster("t.tif", area);
-    const sand::Scene areas = load(kDem);
+    const scene::Scene areas = load(kDem);
     // GDAL hands corners to whoever writes; in the file stands the middle, which is read as a corner again.
     writeRaster("t.tif", point);
     EXPECT_EQ(load(kDem).georeference, areas.georeference);
@@ -84,7 +84,7 @@ TEST_F(Import, PixelsThatArePointsLieHalfAPixelFurther) {
 
 TEST_F(Import, RowsFromTheSouthAreTurnedOver) {
     writeRaster("t.tif", {.columns = 1, .rows = 3, .heights = {10, 20, 30}, .place = {{0, 10, 0, 500, 0, 10}}});
-    const sand::Scene scene = load(kDem);
+    const scene::Scene scene = load(kDem);
     EXPECT_EQ(scene.georeference.south, 500);
     EXPECT_EQ(scene.terrain.height(0, 0), sand::kUnitsPerCell);
     EXPECT_EQ(scene.terrain.height(0, 2), 3 * sand::kUnitsPerCell);
@@ -92,12 +92,12 @@ TEST_F(Import, RowsFromTheSouthAreTurnedOver) {
 
 TEST_F(Import, HeightsInFeetOverMetresAreConverted) {
     writeRaster("t.tif", {.columns = 1, .rows = 2, .heights = {0, 1000}, .unit = "ft"});
-    const sand::Scene scene = load(kDem);
+    const scene::Scene scene = load(kDem);
     EXPECT_EQ(scene.terrain.height(0, 0), std::lround(304.8 / 10 * sand::kUnitsPerCell));
     EXPECT_NEAR(scene.georeference.cubicMetres(), 1, 1e-12);
     // EPSG 2227 counts in survey feet, lengths and heights alike: nothing is to be done but for cubic metres.
     writeRaster("t.tif", {.columns = 1, .rows = 2, .heights = {0, 1000}, .epsg = 2227});
-    const sand::Scene feet = load(kDem);
+    const scene::Scene feet = load(kDem);
     EXPECT_EQ(feet.terrain.height(0, 0), 100 * sand::kUnitsPerCell);
     EXPECT_NEAR(feet.georeference.cubicMetres(), std::pow(1200.0 / 3937, 3), 1e-12);
 }
@@ -115,7 +115,7 @@ TEST_F(Import, ScaledNumbersAreHeights) {
 TEST_F(Import, AnEsriGridHasTheSystemThatStandsBesideIt) {
     write("t.asc", "ncols 2\nnrows 1\nxllcorner 300\nyllcorner 400\ncellsize 2\n1.1 2\n");
     writePrj("t.prj", 32633);
-    const sand::Scene scene = load("[terrain]\nkind = \"dem\"\nfile = \"t.asc\"\n");
+    const scene::Scene scene = load("[terrain]\nkind = \"dem\"\nfile = \"t.asc\"\n");
     EXPECT_EQ(scene.georeference.west, 300);
     EXPECT_NE(scene.georeference.units.crs.find("zone"), std::string::npos) << scene.georeference.units.crs;
     EXPECT_EQ(scene.terrain.height(0, 0), std::lround(1.1 / 2 * sand::kUnitsPerCell)) << "as text holds it";

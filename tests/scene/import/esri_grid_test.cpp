@@ -13,18 +13,18 @@
 
 namespace {
 
-using sand::EsriGrid;
+using scene::EsriGrid;
 
 class EsriFile : public test::FolderTest {
 protected:
     [[nodiscard]] std::filesystem::path file() const { return folder_ / "t.asc"; }
     [[nodiscard]] EsriGrid read(const std::string& text) const {
         std::ofstream(file()) << text;
-        return sand::readEsriGrid(file());
+        return scene::readEsriGrid(file());
     }
     [[nodiscard]] std::string complaint(const std::string& text) const {
         try {
-            (void)sand::withoutEmptyEdges(read(text));
+            (void)scene::withoutEmptyEdges(read(text));
         } catch (const base::InputError& error) {
             const std::string line = error.what();
             return line.substr(line.find("t.asc"));
@@ -41,7 +41,7 @@ TEST_F(EsriFile, ComesBackCharacterForCharacter) {
     const std::string text =
         "ncols 3\nnrows 2\nxllcorner 361015.59563119\nyllcorner -6\ncellsize 0.1\nNODATA_value -9999\n"
         "1 2.25 -9999\n482.1234436035156 1e+20 -0.001\n";
-    sand::writeEsriGrid(read(text), file());
+    scene::writeEsriGrid(read(text), file());
     EXPECT_EQ(this->text(), text);
 }
 
@@ -51,7 +51,7 @@ TEST_F(EsriFile, ComesBackWithCellsThatAreNotSquare) {
     EXPECT_EQ(grid.aspect(), 0.25);
     EXPECT_TRUE(grid.isNoData(0, 1));
     EXPECT_FALSE(grid.isNoData(0, 0));
-    sand::writeEsriGrid(grid, file());
+    scene::writeEsriGrid(grid, file());
     EXPECT_EQ(this->text(), text);
 }
 
@@ -59,10 +59,10 @@ TEST_F(EsriFile, KeepsItsOwnNoDataAndWritesNoneThatItHasNot) {
     EXPECT_EQ(read("ncols 2\nnrows 1\ncellsize 1\n5 -9999\n").at(1, 0), -9999);
     const EsriGrid grid = read("ncols 2\nnrows 1\ncellsize 1\nnodata_value 0\n5 0\n");
     EXPECT_TRUE(grid.isNoData(1, 0));
-    sand::writeEsriGrid({2, 1, 1, 0, 0, {5, -9999}}, file());
+    scene::writeEsriGrid({2, 1, 1, 0, 0, {5, -9999}}, file());
     EXPECT_EQ(text().find("NODATA"), std::string::npos) << "the second cell would be lost";
-    sand::writeEsriGrid({2, 1, 1, 0, 0, {5, std::numeric_limits<double>::quiet_NaN()}}, file());
-    EXPECT_TRUE(sand::readEsriGrid(file()).isNoData(1, 0));
+    scene::writeEsriGrid({2, 1, 1, 0, 0, {5, std::numeric_limits<double>::quiet_NaN()}}, file());
+    EXPECT_TRUE(scene::readEsriGrid(file()).isNoData(1, 0));
 }
 
 TEST_F(EsriFile, CentresAreHalfACellFromCorners) {
@@ -72,10 +72,10 @@ TEST_F(EsriFile, CentresAreHalfACellFromCorners) {
 }
 
 TEST_F(EsriFile, EdgesWithoutDataCanBeCutOff) {
-    const EsriGrid grid =
-        sand::withoutEmptyEdges(read("ncols 5\nnrows 4\nxllcorner 100\nyllcorner 200\ncellsize 10\nNODATA_value -9999\n"
-                                     "-9999 -9999 -9999 -9999 -9999\n-9999 1 2 3 -9999\n-9999 4 -9999 5 -9999\n"
-                                     "-9999 -9999 -9999 -9999 -9999\n"));
+    const EsriGrid grid = scene::withoutEmptyEdges(
+        read("ncols 5\nnrows 4\nxllcorner 100\nyllcorner 200\ncellsize 10\nNODATA_value -9999\n"
+             "-9999 -9999 -9999 -9999 -9999\n-9999 1 2 3 -9999\n-9999 4 -9999 5 -9999\n"
+             "-9999 -9999 -9999 -9999 -9999\n"));
     EXPECT_EQ(grid.columns, 3);
     EXPECT_EQ(grid.rows, 2);
     EXPECT_EQ(grid.westEdge, 110);
@@ -106,11 +106,11 @@ TEST_F(EsriFile, ComplaintsNameTheLine) {
 TEST_F(EsriFile, FewDecimalsStillTellAHeightFromTheNextUnit) {
     for (const double unit : {10.0 / 65536, 1.0 / 3, 0.2, 1.0, 1000.0, 1e-9}) {
         for (const double height : {0.0, 1.0 / 3, -482.123456789, 12345.678}) {
-            EXPECT_LE(std::abs(sand::withFewDecimals(height, unit) - height), unit / 100) << height << ", " << unit;
+            EXPECT_LE(std::abs(scene::withFewDecimals(height, unit) - height), unit / 100) << height << ", " << unit;
         }
     }
-    EXPECT_EQ(sand::withFewDecimals(482.1234567891, 10.0 / 65536), 482.123457);
-    EXPECT_EQ(sand::withFewDecimals(1e300, 1e-300), 1e300);
+    EXPECT_EQ(scene::withFewDecimals(482.1234567891, 10.0 / 65536), 482.123457);
+    EXPECT_EQ(scene::withFewDecimals(1e300, 1e-300), 1e300);
 }
 
 TEST_F(EsriFile, WhatCannotBeWrittenLeavesWhatWasThere) {
@@ -128,7 +128,7 @@ TEST_F(EsriFile, WhatCannotBeWrittenLeavesWhatWasThere) {
     EXPECT_THROW(host::WholeFile(folder_ / "nowhere" / "t.asc"), base::InputError);
     EXPECT_THROW(host::WholeFile{folder_}, base::InputError);
     const EsriGrid grid = read("ncols 1\nnrows 1\ncellsize 1\n5\n");
-    EXPECT_THROW(sand::writeEsriGrid(grid, "/dev/full"), base::InputError);
+    EXPECT_THROW(scene::writeEsriGrid(grid, "/dev/full"), base::InputError);
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1) << "something was left beside it";
 }
 

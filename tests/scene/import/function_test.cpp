@@ -9,7 +9,7 @@ std::string function(const std::string& z, const std::string& field = "columns =
 }
 
 TEST_F(Import, AFunctionIsEvaluatedInTheMiddleOfEveryCell) {
-    const sand::Scene scene = load(function("x + 10*y"));
+    const scene::Scene scene = load(function("x + 10*y"));
     ASSERT_EQ(scene.terrain.columns(), 4);
     ASSERT_EQ(scene.terrain.rows(), 2) << "cells are square";
     EXPECT_EQ(scene.terrain.cellSize(), 0.5);

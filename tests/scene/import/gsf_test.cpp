@@ -24,7 +24,7 @@ std::string scan(std::string text, const std::vector<float>& heights) {
 
 TEST_F(Import, AScanOfNanometresBecomesLargeEnoughToTouch) {
     write("t.gsf", scan(kHeader, {0, 1e-7F, 2e-8F, 5e-8F}));
-    const sand::Scene scene = load(kScan);
+    const scene::Scene scene = load(kScan);
     ASSERT_EQ(scene.terrain.columns(), 2);
     EXPECT_EQ(scene.terrain.cellSize(), 1) << "two units wide";
     EXPECT_NEAR(scene.terrain.height(1, 1), sand::kUnitsPerCell, 1);
@@ -37,8 +37,8 @@ TEST_F(Import, AScanOfNanometresBecomesLargeEnoughToTouch) {
 
 TEST_F(Import, AScanGoesBackOutInMetres) {
     write("t.gsf", scan(kHeader, {0, 1e-7F, 2e-8F, std::numeric_limits<float>::quiet_NaN()}));
-    const sand::Scene scene = load(kScan + "exaggeration = 10\ndatum = 0.5\n");
-    const sand::EsriGrid out = sand::heightsOf(scene.terrain, scene);
+    const scene::Scene scene = load(kScan + "exaggeration = 10\ndatum = 0.5\n");
+    const scene::EsriGrid out = scene::heightsOf(scene.terrain, scene);
     EXPECT_NEAR(out.cellSize, 1e-7, 1e-20);
     EXPECT_NEAR(out.at(1, 1), 1e-7, 1e-13);
     EXPECT_NEAR(out.at(0, 0), 2e-8, 1e-13);
@@ -49,7 +49,7 @@ TEST_F(Import, AScanGoesBackOutInMetres) {
 TEST_F(Import, EveryLengthOfAHeaderIsPadded) {
     for (const char* title : {"", "Title = a\n", "Title = ab\n", "Title = abc\n", "Title = abcd\n"}) {
         write("t.gsf", scan(kHeader + title, {1, 2, 3, 4}));
-        EXPECT_EQ(sand::readGsf(path("t.gsf")).heights, (std::vector<double>{1, 2, 3, 4})) << title;
+        EXPECT_EQ(scene::readGsf(path("t.gsf")).heights, (std::vector<double>{1, 2, 3, 4})) << title;
     }
 }
 

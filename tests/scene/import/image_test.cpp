@@ -10,11 +10,11 @@ TEST_F(Import, APicturesWhiteIsTheHighestGround) {
     writeRaster(
         "t.png",
         {.columns = 2, .rows = 1, .heights = {0, 255}, .place = {}, .epsg = 0, .type = GDT_Byte, .driver = "PNG"});
-    const sand::Scene eight = load(kImage);
+    const scene::Scene eight = load(kImage);
     EXPECT_EQ(eight.terrain.cellSize(), 2);
     EXPECT_EQ(eight.terrain.height(0, 0), sand::kUnitsPerCell / 2);
     EXPECT_EQ(eight.terrain.height(1, 0), sand::kUnitsPerCell);
-    EXPECT_EQ(eight.georeference, sand::Georeference{}) << "a picture lies nowhere";
+    EXPECT_EQ(eight.georeference, scene::Georeference{}) << "a picture lies nowhere";
     writeRaster(
         "t.png",
         {.columns = 2, .rows = 1, .heights = {0, 65535}, .place = {}, .epsg = 0, .type = GDT_UInt16, .driver = "PNG"});

@@ -70,8 +70,8 @@ protected:
     }
 
     /// The scene of a terrain, all else as it begins; the tool so large that nobody warns.
-    [[nodiscard]] sand::Scene load(const std::string& terrain) {
-        return sand::loadScene(write("s.toml", text(terrain)));
+    [[nodiscard]] scene::Scene load(const std::string& terrain) {
+        return scene::loadScene(write("s.toml", text(terrain)));
     }
     [[nodiscard]] std::string refusal(const std::string& terrain) {
         std::string line = complaint(text(terrain));

@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
     if (argc != 2) {
         return 2;
     }
-    (void)sand::loadScene(argv[1]);
+    (void)scene::loadScene(argv[1]);
     std::ifstream maps("/proc/self/maps");
     const std::string text{std::istreambuf_iterator<char>(maps), {}};
     for (const char* library : {"sandwall-import", "libgdal", "libmuparser", "libproj"}) {

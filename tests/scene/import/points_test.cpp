@@ -8,7 +8,7 @@ namespace {
 
 class PointsFile : public Import {
 protected:
-    [[nodiscard]] sand::Points read(const std::string& text) { return sand::readPoints(write("p.csv", text)); }
+    [[nodiscard]] scene::Points read(const std::string& text) { return scene::readPoints(write("p.csv", text)); }
     [[nodiscard]] std::string refused(const std::string& text) {
         try {
             (void)read(text);
@@ -20,7 +20,7 @@ protected:
 };
 
 TEST_F(PointsFile, AnySeparatorGivesTheSamePoints) {
-    const sand::Points points{{0, 0, 1.5}, {1, 0, -2}, {0, 1, 1e3}};
+    const scene::Points points{{0, 0, 1.5}, {1, 0, -2}, {0, 1, 1e3}};
     EXPECT_EQ(read("0,0,1.5\n1,0,-2\n0,1,1e3\n"), points);
     EXPECT_EQ(read("x,y,z\n0, 0, 1.5\n1, 0, -2\n0, 1, 1e3"), points);
     EXPECT_EQ(read("# a survey\r\n\r\neast;north;height\r\n0;0;1.5\r\n1;0;-2 # a stone\r\n0;1;+1e3\r\n"), points);
@@ -122,7 +122,7 @@ TEST_F(Import, DevicesThatNeverEndAreNoTerrain) {
 
 TEST_F(PointsFile, AFileThatCannotBeReadToItsEndIsNotTakenForItsBeginning) {
     try {
-        (void)sand::readPoints("/proc/self/mem");  // opens, and nothing lies at its beginning
+        (void)scene::readPoints("/proc/self/mem");  // opens, and nothing lies at its beginning
         FAIL() << "accepted";
     } catch (const base::InputError& error) {
         EXPECT_STREQ(error.what(), "/proc/self/mem: cannot be read to its end; check the disk it lies on");

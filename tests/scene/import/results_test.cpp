@@ -35,7 +35,7 @@ protected:
             raster.heights.push_back(i == 5 * kColumns + 7 ? -1 : 100 + i % 5 * 0.25);
         }
         writeRaster("t.tif", raster);
-        scene_ = sand::loadScene(write(
+        scene_ = scene::loadScene(write(
             "s.toml", "[terrain]\nkind = \"dem\"\nfile = \"t.tif\"\ndatum = 100\n[material]\n[tool]\nradius = 5\n"));
         terrain_ = sand::Replica(scene_);
         std::mt19937 random(71);
@@ -59,13 +59,13 @@ protected:
         return (terrain_.field().height(column, row) - scene_.terrain.height(column, row)) * scene_.terrain.unit();
     }
 
-    sand::Scene scene_;
+    scene::Scene scene_;
     sand::Replica terrain_;
 };
 
 TEST_F(Results, HeightsGoBackWhereTheTerrainCameFrom) {
     ASSERT_EQ(replay("--heights " + path("h.tif")).status, 0);
-    const sand::EsriGrid grid = sand::loadImporter("test").readDem(path("h.tif"));
+    const scene::EsriGrid grid = scene::loadImporter("test").readDem(path("h.tif"));
     EXPECT_EQ(grid.westEdge, 500000);
     EXPECT_EQ(grid.southEdge, 4100000 - 2 * kRows);
     EXPECT_EQ(grid.cellSize, 2);
@@ -85,7 +85,7 @@ TEST_F(Results, HeightsGoBackWhereTheTerrainCameFrom) {
 
 TEST_F(Results, TextHasItsSystemBesideIt) {
     ASSERT_EQ(replay("--difference " + path("d.asc")).status, 0);
-    const sand::EsriGrid grid = sand::readEsriGrid(path("d.asc"));
+    const scene::EsriGrid grid = scene::readEsriGrid(path("d.asc"));
     EXPECT_EQ(grid.westEdge, 500000);
     EXPECT_TRUE(grid.isNoData(7, kRows - 6));
     double most = 0;
@@ -99,7 +99,7 @@ TEST_F(Results, TextHasItsSystemBesideIt) {
     }
     EXPECT_GT(most, 0) << "the session dug";
     EXPECT_NE(bytes("d.prj").find("UTM"), std::string::npos);
-    EXPECT_NE(sand::loadImporter("test").readDem(path("d.asc")).units.crs.find("UTM"), std::string::npos);
+    EXPECT_NE(scene::loadImporter("test").readDem(path("d.asc")).units.crs.find("UTM"), std::string::npos);
 }
 
 TEST_F(Results, CutAndFillAreExact) {
@@ -135,7 +135,7 @@ TEST_F(Results, AMeshHasTheSurfaceOfTheCellsWithData) {
         vertices, triangles);
     ASSERT_EQ(ply.substr(0, header.size()), header);
     ASSERT_EQ(ply.size(), header.size() + vertices * 24 + triangles * 13);
-    const sand::Mesh mesh = sand::meshOf(terrain_.field(), scene_);
+    const scene::Mesh mesh = scene::meshOf(terrain_.field(), scene_);
     std::vector<std::array<double, 3>> written(vertices);
     std::memcpy(written.data(), ply.data() + header.size(), vertices * 24);
     EXPECT_EQ(written, mesh.vertices);
@@ -158,7 +158,7 @@ TEST_F(Results, AMeshHasTheSurfaceOfTheCellsWithData) {
 
 TEST_F(Results, AMeshAsTextIsTheSameMesh) {
     ASSERT_EQ(replay("--mesh " + path("m.obj")).status, 0);
-    const sand::Mesh mesh = sand::meshOf(terrain_.field(), scene_);
+    const scene::Mesh mesh = scene::meshOf(terrain_.field(), scene_);
     std::istringstream stream(bytes("m.obj"));
     for (const auto& vertex : mesh.vertices) {
         std::string letter;
@@ -187,7 +187,7 @@ TEST_F(Import, PointsGoBackWhereTheyWereSurveyed) {
     write("p.csv",
           "500000,5200000,1200.5\n500040,5200000,1201\n500000,5200030,1202\n500040,5200030,1203\n"
           "500021.25,5200011.5,1199\n");
-    const sand::Scene scene = load("[terrain]\nkind = \"points\"\nfile = \"p.csv\"\ndatum = 1200\n[tin]\ncell = 1\n");
+    const scene::Scene scene = load("[terrain]\nkind = \"points\"\nfile = \"p.csv\"\ndatum = 1200\n[tin]\ncell = 1\n");
     sand::Replica terrain(scene);
     master::JournalWriter writer(path("s.journal"), scene, "test");
     writer.finish(terrain.stepNumber(), terrain.stateHash());
@@ -198,7 +198,7 @@ TEST_F(Import, PointsGoBackWhereTheyWereSurveyed) {
         ran.output,
         "{\"units\":{\"cut\":0,\"fill\":0},\"cubic_scene_units\":{\"cut\":0.0,\"fill\":0.0},\"cubic_metres\":null}"
         "\n");
-    const sand::EsriGrid grid = sand::readEsriGrid(path("h.asc"));
+    const scene::EsriGrid grid = scene::readEsriGrid(path("h.asc"));
     EXPECT_EQ(grid.westEdge, 500000);
     EXPECT_EQ(grid.southEdge, 5200000);
     EXPECT_EQ(grid.columns, 40);

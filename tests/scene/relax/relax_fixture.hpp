@@ -26,7 +26,7 @@ protected:
     }
     /// A grid of square cells of side 1, its heights from the north.
     void writeGrid(const std::string& name, int columns, int rows, const std::vector<double>& heights) const {
-        sand::writeEsriGrid({columns, rows, 1, 0, 0, heights}, path(name));
+        scene::writeEsriGrid({columns, rows, 1, 0, 0, heights}, path(name));
     }
     /// In the test's folder, so that files go by their names.
     [[nodiscard]] support::Ran run(const std::string& arguments) const {

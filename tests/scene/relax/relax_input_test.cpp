@@ -6,7 +6,7 @@
 
 namespace {
 
-using sand::relax::HeightScale;
+using scene::relax::HeightScale;
 
 TEST(HeightScale, IsTheFinestThatHoldsTheHeights) {
     EXPECT_EQ(HeightScale::finest(10, 480, 900).bits, 16);

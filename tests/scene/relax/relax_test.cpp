@@ -23,7 +23,7 @@ std::vector<double> heightsOf(const sand::HeightField& field) {
 }
 
 void expectHeights(const std::string& file, const sand::HeightField& expected) {
-    const sand::EsriGrid grid = sand::readEsriGrid(file);
+    const scene::EsriGrid grid = scene::readEsriGrid(file);
     ASSERT_EQ(grid.columns, expected.columns());
     ASSERT_EQ(grid.rows, expected.rows());
     for (int y = 0; y < grid.rows; ++y) {
@@ -41,7 +41,7 @@ TEST_F(Relax, GivesWhatTheLibraryGives) {
     for (const auto& [scheme, name] : sand::kSchemes) {
         rules.scheme = scheme;
         sand::HeightField expected = start;
-        sand::Erosion erosion(expected, rules);
+        sand::grid::Erosion erosion(expected, rules);
         erosion.sweep(expected, 100000);
         const auto json = relax(fmt::format("in.asc out.asc --talus 45 --scheme {}", name));
         EXPECT_EQ(json["sweeps"], erosion.sweepsDone()) << name;
@@ -50,7 +50,7 @@ TEST_F(Relax, GivesWhatTheLibraryGives) {
     }
     rules.scheme = sand::Scheme::isotropic;
     sand::HeightField expected = start;
-    const sand::Settled settled = settle(expected, rules);
+    const sand::grid::Settled settled = sand::grid::settle(expected, rules);
     const auto json = relax("in.asc out.asc --talus 45 --scheme settle");
     EXPECT_EQ(json["iterations"], settled.iterations);
     expectHeights(path("out.asc"), expected);
@@ -117,8 +117,8 @@ TEST_F(Relax, NoDataIsAWallAndComesBack) {
     const auto json = relax("in.asc out.asc --talus 35");
     EXPECT_EQ(json["volume_after"], json["volume_before"]);
     EXPECT_LE(json["steepest_over_talus"], 1.01);
-    const sand::EsriGrid before = sand::readEsriGrid(path("in.asc"));
-    const sand::EsriGrid after = sand::readEsriGrid(path("out.asc"));
+    const scene::EsriGrid before = scene::readEsriGrid(path("in.asc"));
+    const scene::EsriGrid after = scene::readEsriGrid(path("out.asc"));
     EXPECT_EQ(read("out.asc").substr(0, head.size()), head);
     for (std::size_t i = 0; i < before.heights.size(); ++i) {
         EXPECT_EQ(std::isnan(before.heights[i]), std::isnan(after.heights[i])) << i;
@@ -199,7 +199,7 @@ TEST_F(Relax, ALayerNeverBecomesThinnerThanNothing) {
     const auto json = relax("in.asc out.asc --talus 30 --bedrock rock.asc");
     EXPECT_EQ(json["volume_after"], json["volume_before"]);
     EXPECT_GT(json["volume_before"], 0);
-    const sand::EsriGrid out = sand::readEsriGrid(path("out.asc"));
+    const scene::EsriGrid out = scene::readEsriGrid(path("out.asc"));
     for (std::size_t i = 0; i < rock.size(); ++i) {
         ASSERT_GE(out.heights[i], rock[i] - kUnit / 2) << i << ", seed " << kSeed;
     }
@@ -216,8 +216,8 @@ TEST_F(Relax, CellsThatAreNotSquareRestAtTheSameAngle) {
     write("north.asc", north);
     EXPECT_EQ(relax("east.asc east_out.asc --talus 40")["unit"], kUnit);
     EXPECT_EQ(relax("north.asc north_out.asc --talus 40")["unit"], kUnit) << "the shorter side tells";
-    const sand::EsriGrid alongX = sand::readEsriGrid(path("east_out.asc"));
-    const sand::EsriGrid alongY = sand::readEsriGrid(path("north_out.asc"));
+    const scene::EsriGrid alongX = scene::readEsriGrid(path("east_out.asc"));
+    const scene::EsriGrid alongY = scene::readEsriGrid(path("north_out.asc"));
     EXPECT_EQ(alongY.aspect(), 0.25);
     const double step = std::tan(40 * 3.14159265358979 / 180);
     double steepestX = 0;
@@ -249,7 +249,7 @@ TEST_F(Relax, AngleZeroLevelsTheSand) {
     writeGrid("in.asc", 8, 1, {4, 0, 0, 0, 0, 0, 0, 0});
     const auto json = relax("in.asc out.asc --talus 0");
     EXPECT_TRUE(json["steepest_over_talus"].is_null());
-    const sand::EsriGrid out = sand::readEsriGrid(path("out.asc"));
+    const scene::EsriGrid out = scene::readEsriGrid(path("out.asc"));
     for (int x = 1; x < 8; ++x) {
         EXPECT_LE(std::abs(out.at(x, 0) - out.at(x - 1, 0)), 5 * kUnit) << "a talus of 0 rests within 4 units per cell";
     }

@@ -18,15 +18,15 @@ constexpr double kWest = 361015.25, kSouth = 5070223.5;  // somewhere in a UTM z
 /// Points and rasters in, meshes out.
 class RelaxTin : public Relax {
 protected:
-    void writePoints(const std::string& name, const sand::Points& points) const {
+    void writePoints(const std::string& name, const scene::Points& points) const {
         std::string text = "x, y, z\n";
         for (const auto& [x, y, z] : points) {
             text += fmt::format("{}, {}, {}\n", x, y, z);
         }
         write(name, text);
     }
-    [[nodiscard]] sand::Mesh readObj(const std::string& name) const {
-        sand::Mesh mesh;
+    [[nodiscard]] scene::Mesh readObj(const std::string& name) const {
+        scene::Mesh mesh;
         std::istringstream stream(read(name));
         char kind = 0;
         while (stream >> kind) {
@@ -52,10 +52,10 @@ protected:
 
 /// A point somewhere in the middle half of every cell of 2 m, the corners of the field, and heights from a function.
 template <class HeightAt>
-sand::Points survey(int side, unsigned seed, HeightAt heightAt) {
+scene::Points survey(int side, unsigned seed, HeightAt heightAt) {
     std::mt19937 random(seed);
     const auto within = [&] { return 0.25 + static_cast<double>(random() % 512) / 1024; };
-    sand::Points points;
+    scene::Points points;
     for (const double x : {0.0, 1.0}) {
         for (const double y : {0.0, 1.0}) {
             points.push_back({kWest + 2 * side * x, kSouth + 2 * side * y, heightAt(side * x, side * y)});
@@ -70,7 +70,7 @@ sand::Points survey(int side, unsigned seed, HeightAt heightAt) {
     return points;
 }
 
-double volumeOf(const sand::Mesh& mesh) {
+double volumeOf(const scene::Mesh& mesh) {
     double sum = 0;
     for (const auto& [a, b, c] : mesh.triangles) {
         const auto &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
@@ -83,7 +83,7 @@ double volumeOf(const sand::Mesh& mesh) {
 
 TEST_F(RelaxTin, PointsSlideToTheTalusWhereTheyLie) {
     constexpr unsigned kSeed = 61;
-    const sand::Points points =
+    const scene::Points points =
         survey(40, kSeed, [](double x, double y) { return 1200.0 + (std::hypot(x - 20, y - 20) < 9 ? 15 : 0); });
     writePoints("in.csv", points);
     const auto json = relax("in.csv out.obj --talus 35");
@@ -97,7 +97,7 @@ TEST_F(RelaxTin, PointsSlideToTheTalusWhereTheyLie) {
     EXPECT_GT(json["steepest_over_talus"], 0.98) << "a pile lies at its talus";
     EXPECT_FALSE(json.contains("certificate"));
 
-    const sand::Mesh mesh = readObj("out.obj");
+    const scene::Mesh mesh = readObj("out.obj");
     ASSERT_EQ(mesh.vertices.size(), points.size());
     std::set<std::array<double, 2>> places;
     double highest = 0;
@@ -116,7 +116,7 @@ TEST_F(RelaxTin, PointsSlideToTheTalusWhereTheyLie) {
 }
 
 /// The height of a grid there, linear between the middles of four cells.
-double between(const sand::EsriGrid& grid, double x, double y) {
+double between(const scene::EsriGrid& grid, double x, double y) {
     const double east = std::clamp((x - grid.westEdge) / grid.cellSize - 0.5, 0.0, grid.columns - 1.001);
     const double north = std::clamp((y - grid.southEdge) / grid.cellSize - 0.5, 0.0, grid.rows - 1.001);
     const int column = static_cast<int>(east), row = static_cast<int>(north);
@@ -135,9 +135,9 @@ TEST_F(RelaxTin, ATinAndAGridOfTheSamePileAgree) {
             heights.push_back(pile(column + 0.5, row + 0.5));
         }
     }
-    sand::writeEsriGrid({40, 40, 2, kWest, kSouth, heights}, path("in.asc"));
+    scene::writeEsriGrid({40, 40, 2, kWest, kSouth, heights}, path("in.asc"));
     (void)relax("in.asc out.asc --talus 35");
-    const sand::EsriGrid grid = sand::readEsriGrid(path("out.asc"));
+    const scene::EsriGrid grid = scene::readEsriGrid(path("out.asc"));
     double off = 0, all = 0;
     for (const auto& [x, y, z] : readObj("out.obj").vertices) {
         off += std::abs(z - between(grid, x, y));
@@ -151,7 +151,7 @@ TEST_F(RelaxTin, ATinAndAGridOfTheSamePileAgree) {
 TEST_F(RelaxTin, StablePointsComeBackToTheLastDigit) {
     constexpr unsigned kSeed = 63;
     std::mt19937 random(kSeed);
-    const sand::Points points = survey(20, kSeed, [&](double x, double y) {
+    const scene::Points points = survey(20, kSeed, [&](double x, double y) {
         return 480.123456789 + 0.2 * x + 0.1 * y + static_cast<double>(random() % 1000) / 1e5;
     });
     writePoints("in.xyz", points);
@@ -159,7 +159,7 @@ TEST_F(RelaxTin, StablePointsComeBackToTheLastDigit) {
     EXPECT_EQ(json["at_rest"], true);
     EXPECT_LT(json["steepest_over_talus"], 1.0);
     const std::set<std::array<double, 3>> before(points.begin(), points.end());
-    const sand::Mesh mesh = readObj("out.obj");
+    const scene::Mesh mesh = readObj("out.obj");
     EXPECT_EQ(std::set(mesh.vertices.begin(), mesh.vertices.end()), before) << "seed " << kSeed;
 }
 
@@ -207,13 +207,13 @@ TEST_F(RelaxTin, ARasterBecomesTheMeshThatItsErrorAllows) {
             heights.push_back(8 * std::sin(column * 0.3) * std::cos(row * 0.2));
         }
     }
-    sand::writeEsriGrid({48, 40, 3, kWest, kSouth, heights}, path("in.asc"));
+    scene::writeEsriGrid({48, 40, 3, kWest, kSouth, heights}, path("in.asc"));
     const auto json = relax("in.asc out.obj --talus 80 --max-error 0.25");
     EXPECT_LE(json["max_error"], 0.25);
     EXPECT_GT(json["max_error"], 0.0);
     EXPECT_LT(json["rms_error"], json["max_error"]);
     EXPECT_LT(json["vertices"], 48 * 40 / 2);
-    const sand::Mesh mesh = readObj("out.obj");
+    const scene::Mesh mesh = readObj("out.obj");
     const std::set<double> known(heights.begin(), heights.end());
     double east = 0;
     for (const auto& [x, y, z] : mesh.vertices) {
@@ -227,7 +227,7 @@ TEST_F(RelaxTin, ARasterBecomesTheMeshThatItsErrorAllows) {
 TEST_F(RelaxTin, CellsThatAreNotSquareKeepTheirShape) {
     write("in.asc", "ncols 3\nnrows 2\nxllcorner 10\nyllcorner 20\ndx 3\ndy 1\n1 7 3\n4 5 60\n");
     (void)relax("in.asc out.obj --talus 89.9 --max-error 0");
-    const sand::Mesh mesh = readObj("out.obj");
+    const scene::Mesh mesh = readObj("out.obj");
     std::set<std::array<double, 3>> vertices(mesh.vertices.begin(), mesh.vertices.end());
     EXPECT_EQ(
         vertices,
@@ -249,7 +249,7 @@ TEST_F(RelaxTin, BadPointsAreOneLine) {
     expectPointsRefused("0 0 1\n1e-200 0 2\n0 1e-200 3\n", "bad.csv: it is 1e-200 long, which is no length of terrain");
     expectPointsRefused("0 0 1\n1e-155 0 2\n0 1e-155 3\n", "which is no length of terrain");
     expectRefused("none.csv out.ply --talus 30", "none.csv: cannot be read");
-    EXPECT_THROW((void)sand::relax::toTin(sand::Points((1U << 22U) + 1), "large.csv", {30, 0}), base::InputError);
+    EXPECT_THROW((void)scene::relax::toTin(scene::Points((1U << 22U) + 1), "large.csv", {30, 0}), base::InputError);
 }
 
 TEST_F(RelaxTin, OptionsThatWouldDoNothingAreRefused) {
@@ -274,12 +274,12 @@ TEST_F(RelaxTin, CellsWithoutDataAreAHoleInTheMesh) {
         const bool gap = (column >= 3 && column < 6 && row >= 2 && row < 6) || (column < 2 && row == 0);
         heights.push_back(gap ? std::nan("") : column == 7 && row == 4 ? 40 : 5);
     }
-    sand::writeEsriGrid({12, 9, 2, kWest, kSouth, heights}, path("in.asc"));
+    scene::writeEsriGrid({12, 9, 2, kWest, kSouth, heights}, path("in.asc"));
     const auto json = relax("in.asc out.obj --talus 34 --max-error 0.01");
     EXPECT_EQ(json["volume_before"], json["volume_after"]);
     EXPECT_TRUE(json["at_rest"]);
     EXPECT_GT(json["sweeps"], 10);
-    const sand::Mesh mesh = readObj("out.obj");
+    const scene::Mesh mesh = readObj("out.obj");
     double area = 0;
     for (const auto& triangle : mesh.triangles) {
         const auto& [a, b, c] =
