@@ -20,6 +20,8 @@ std::uint8_t bitOf(const Triangles& mesh, TriangleSide side) {
     return static_cast<std::uint8_t>(1 << (side.corner - least + 3) % 3);
 }
 
+constexpr std::size_t kSweepsToForget = 5;  // of all sand: what it costs to forget some of it
+
 }  // namespace
 
 std::vector<Vertex> ActiveEdges::takeReleased(const Underside* held) {
@@ -261,6 +263,95 @@ void ActiveEdges::store(VertexSand& layer, std::vector<Vertex>& moved) const {
             moved.push_back(vertex);
         }
     }
+}
+
+bool ActiveEdges::manyRest() const {
+    return inVain_ > static_cast<std::int64_t>(kSweepsToForget * sand_.vertexCount());
+}
+
+void ActiveEdges::keep(const ActiveMesh::Marks& kept) {
+    const auto areAll = [](const std::vector<std::uint8_t>& marks) {
+        return std::find(marks.begin(), marks.end(), 0) == marks.end();
+    };
+    if (areAll(kept.facets) && areAll(kept.edges)) {
+        return;
+    }
+    const auto forget = [this](std::int32_t facet, std::uint8_t bit) {
+        std::uint8_t& watched = noteOfSlot(slots_[index(facet)]).watched;
+        watched = static_cast<std::uint8_t>(watched & ~bit);
+    };
+    std::size_t edges = 0;
+    for (std::size_t i = 0; i < bits_.size(); ++i) {
+        if (kept.edges[i] != 0) {
+            bits_[edges++] = bits_[i];
+            continue;
+        }
+        const Edge edge = sand_.edge(i);
+        forget(edge.leftFacet, bits_[i].left);
+        forget(edge.rightFacet, bits_[i].right);
+    }
+    bits_.resize(edges);
+    const ActiveMesh::Renumbering now = sand_.keep(kept);
+    const auto renumber = [](std::vector<std::int32_t>& names, const std::vector<std::int32_t>& by, const auto& local,
+                             std::size_t count) {
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            local(names[i]) = by[i];
+            if (by[i] != kNobody) {
+                names[index(by[i])] = names[i];
+            }
+        }
+        names.resize(count);
+    };
+    const auto localOf = [this](Vertex vertex) -> std::int32_t& { return noteOf(vertex).local; };
+    const auto facetOf = [this](std::int32_t slot) -> std::int32_t& { return noteOfSlot(slot).facet; };
+    renumber(vertices_, now.vertices, localOf, sand_.vertexCount());
+    renumber(slots_, now.facets, facetOf, sand_.facetCount());
+}
+
+void ActiveEdges::forgetResting() {
+    inVain_ = 0;
+    for (std::size_t i = 0; i < sand_.vertexCount(); ++i) {
+        sand_.setWatched(i, sand_.flowed(i));
+    }
+    keep(sand_.whatMayFlow());
+    restAround_ = sand_.restingCount();
+}
+
+std::vector<Vertex> ActiveEdges::meshChanged(const Mesh::Change& change) {
+    std::erase_if(heldBack_, [&](const Held& one) {
+        const bool gone = std::binary_search(change.vertices.begin(), change.vertices.end(), one.vertex);
+        noteOf(one.vertex).isHeldBack = !gone;
+        return gone;
+    });
+    ActiveMesh::Marks kept{std::vector<std::uint8_t>(sand_.facetCount(), 1),
+                           std::vector<std::uint8_t>(sand_.edgeCount())};
+    std::vector<std::uint8_t> staleVertices(sand_.vertexCount());
+    for (const Vertex vertex : change.vertices) {
+        if (index(vertex) < ofVertices_.size() && noteOf(vertex).local != kNobody) {
+            staleVertices[index(noteOf(vertex).local)] = 1;
+        }
+    }
+    std::vector<Vertex> corners;
+    for (const std::int32_t slot : change.triangles) {
+        if (index(slot) < ofSlots_.size() && noteOfSlot(slot).facet != kNobody) {
+            kept.facets[index(noteOfSlot(slot).facet)] = 0;
+            for (const std::int32_t corner : sand_.facet(noteOfSlot(slot).facet).corner) {
+                corners.push_back(vertices_[index(corner)]);
+                sand_.setWatched(index(corner), false);
+            }
+        }
+    }
+    for (std::size_t i = 0; i < kept.edges.size(); ++i) {
+        const Edge edge = sand_.edge(i);
+        const bool stale = (staleVertices[index(edge.from)] | staleVertices[index(edge.to)]) != 0;
+        kept.edges[i] = stale ? 0 : kept.facets[index(edge.leftFacet)] & kept.facets[index(edge.rightFacet)];
+    }
+    keep(kept);
+    return corners;
+}
+
+void ActiveEdges::clear() {
+    keep({std::vector<std::uint8_t>(sand_.facetCount()), std::vector<std::uint8_t>(sand_.edgeCount())});
 }
 
 }  // namespace sand::tin
