@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <stdexcept>
+
 #include "scene/scene.hpp"
 #include "tests/scene/import/import_fixture.hpp"
 
@@ -16,6 +18,18 @@ TEST_F(Import, AFunctionIsEvaluatedInTheMiddleOfEveryCell) {
     EXPECT_EQ(scene.terrain.height(0, 0), (-0.75 + 2.5) / 0.5 * sand::kUnitsPerCell);
     EXPECT_EQ(scene.terrain.height(3, 1), (0.75 + 7.5) / 0.5 * sand::kUnitsPerCell);
     EXPECT_EQ(scene.georeference.west, -1);
+}
+
+// It is nowhere a number: whoever evaluated it first would complain of that.
+TEST_F(Import, AFunctionsSizeIsLookedAtBeforeItIsEvaluated) {
+    const std::string file = write("s.toml", text(function("sqrt(-1)", "columns = 400")));
+    const auto tooLarge = [](int columns, int rows, bool) {
+        throw std::length_error(std::to_string(columns) + " x " + std::to_string(rows));
+    };
+    EXPECT_THROW((void)scene::loadScene(file, tooLarge), std::length_error);
+    int asked = 0;
+    (void)scene::loadScene(write("s.toml", text(function("x"))), [&](int, int, bool) { ++asked; });
+    EXPECT_EQ(asked, 1);
 }
 
 TEST_F(Import, FunctionsThatAreNoneSayWhere) {
