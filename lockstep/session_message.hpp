@@ -16,7 +16,7 @@ class FrameBarrier;
 
 /// What every rank is told before the first frame. Ranks read no file: the scene and the wall come from the master.
 struct SessionMessage {
-    base::Bytes scene;            // sand::Scene::encode
+    base::Bytes scene;            // scene::Scene::encode
     base::Bytes wall;             // walls::Wall::encode
     double frameTimeout = 0;      // [s] without a sign of the master, after which a rank ends
     std::vector<Fault> faults{};  // made on purpose

@@ -61,7 +61,7 @@ struct JournalHeader {
     std::uint64_t continues = 0;  // checksum of the last record of the part before; 0 in the first
     JournalEnd sand;              // before its first step
     std::string buildId;
-    base::Bytes scene;                        // sand::Scene::encode; empty in later parts
+    base::Bytes scene;                        // scene::Scene::encode; empty in later parts
     std::optional<scene::Material> material;  // as the operator knows it; none in later parts
 };
 

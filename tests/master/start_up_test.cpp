@@ -8,8 +8,6 @@
 #include <functional>
 
 #include "base/input_error.hpp"
-#include "master/journal/format.hpp"
-#include "scene/load/scene_file.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/folder_test.hpp"
 
@@ -79,57 +77,7 @@ TEST(StartUp, RefusesTheHeightsThatATinIsMadeOf) {
               "are free: fewer cells, or more hosts");
 }
 
-class StartUpFiles : public test::FolderTest {
-protected:
-    /// Writes the header of a journal, with these bytes for a scene.
-    std::filesystem::path journalOf(const base::Bytes& scene) {
-        master::JournalHeader header;
-        header.session = 1;
-        header.scene = scene;
-        header.material = scene::Material();
-        std::uint64_t chain = 0;
-        const base::Bytes bytes = master::encodeHeader(header, chain);
-        std::ofstream(journal_, std::ios::binary)
-            .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-        return journal_;
-    }
-
-    const std::filesystem::path journal_ = folder_ / "session.journal";
-};
-
-// The scene ends behind its rules: whoever looked for its heights would complain of that.
-TEST_F(StartUpFiles, AJournalThatDoesNotFitTheMemoryIsRefusedBeforeItsHeightsAreMade) {
-    sand::Rules rules;
-    rules.columns = rules.rows = 16384;
-    rules.stepsPerSecond = 60;
-    base::ByteWriter writer;
-    writer.putText("huge");
-    rules.encode(writer);
-    const std::filesystem::path journal = journalOf(writer.take());
-    const auto refusalOn = [&](std::int64_t free) {
-        return refusalOf([&] { master::requireMemoryOfJournal({{"a", free}, {"a", free}}, journal); });
-    };
-    EXPECT_EQ(refusalOn(8 * kGiB), "nothing");
-    EXPECT_EQ(refusalOn(4 * kGiB), journal.string() +
-                                       ": 16384 x 16384 cells need at least 8.0 GiB for the 2 ranks on a, where 4.0 "
-                                       "GiB are free: fewer cells, or more hosts");
-}
-
-TEST_F(StartUpFiles, AJournalOfATinThatDoesNotFitTheMemoryIsRefused) {
-    const std::filesystem::path file = folder_ / "s.toml";
-    std::ofstream(file) << "[field]\ncolumns = 64\n[terrain]\n[material]\n[tool]\nradius = 0.1\n[tin]\n";
-    const std::filesystem::path journal = journalOf(scene::loadScene(file).encode());
-    EXPECT_EQ(refusalOf([&] { master::requireMemoryOfJournal({{"a", kGiB}}, journal); }), "nothing");
-    const std::string refused = refusalOf([&] { master::requireMemoryOfJournal({{"a", 1000}}, journal); });
-    EXPECT_TRUE(refused.starts_with(journal.string() + ": a TIN of ")) << refused;
-}
-
-TEST_F(StartUpFiles, AJournalThatIsMissingIsNamed) {
-    EXPECT_EQ(refusalOf([&] {
-                  master::requireMemoryOfJournal({{"a", kGiB}}, journal_);
-              }),
-              journal_.string() + ": cannot be read; check the path");
-}
+class StartUpFiles : public test::FolderTest {};
 
 TEST_F(StartUpFiles, AFileInPlaceOfTheFolderForResultsIsRefused) {
     const std::filesystem::path out = folder_ / "out";

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the journal of a session needs is looked at before its sand is made.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+
+#include "base/input_error.hpp"
+#include "master/journal/format.hpp"
+#include "master/start_up.hpp"
+#include "scene/load/scene_file.hpp"
+#include "scene/scene.hpp"
+#include "tests/support/folder_test.hpp"
+
+namespace {
+
+constexpr std::int64_t kGibibyte = std::int64_t{1} << 30;
+
+std::string complaintOf(const std::function<void()>& check) {
+    try {
+        check();
+    } catch (const base::InputError& error) {
+        return error.what();
+    }
+    return "nothing";
+}
+
+class JournalMemory : public test::FolderTest {
+protected:
+    /// Writes the header of a journal, with these bytes for a scene.
+    std::filesystem::path journalOf(const base::Bytes& scene) {
+        master::JournalHeader header;
+        header.session = 1;
+        header.scene = scene;
+        header.material = scene::Material();
+        std::uint64_t chain = 0;
+        const base::Bytes bytes = master::encodeHeader(header, chain);
+        std::ofstream(journal_, std::ios::binary)
+            .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+        return journal_;
+    }
+
+    const std::filesystem::path journal_ = folder_ / "session.journal";
+};
+
+// The scene ends behind its rules: whoever looked for its heights would complain of that.
+TEST_F(JournalMemory, IsRefusedBeforeItsHeightsAreMade) {
+    sand::Rules rules;
+    rules.columns = rules.rows = 16384;
+    rules.stepsPerSecond = 60;
+    base::ByteWriter writer;
+    writer.putText("huge");
+    rules.encode(writer);
+    const std::filesystem::path journal = journalOf(writer.take());
+    const auto refusalOn = [&](std::int64_t free) {
+        return complaintOf([&] { master::requireMemoryOfJournal({{"a", free}, {"a", free}}, journal); });
+    };
+    EXPECT_EQ(refusalOn(8 * kGibibyte), "nothing");
+    EXPECT_EQ(refusalOn(4 * kGibibyte),
+              journal.string() +
+                  ": 16384 x 16384 cells need at least 8.0 GiB for the 2 ranks on a, where 4.0 "
+                  "GiB are free: fewer cells, or more hosts");
+}
+
+TEST_F(JournalMemory, OfATinIsRefused) {
+    const std::filesystem::path file = folder_ / "s.toml";
+    std::ofstream(file) << "[field]\ncolumns = 64\n[terrain]\n[material]\n[tool]\nradius = 0.1\n[tin]\n";
+    const std::filesystem::path journal = journalOf(scene::loadScene(file).encode());
+    EXPECT_EQ(complaintOf([&] { master::requireMemoryOfJournal({{"a", kGibibyte}}, journal); }), "nothing");
+    const std::string refused = complaintOf([&] { master::requireMemoryOfJournal({{"a", 1000}}, journal); });
+    EXPECT_TRUE(refused.starts_with(journal.string() + ": a TIN of ")) << refused;
+}
+
+TEST_F(JournalMemory, OfAMissingJournalIsRefused) {
+    EXPECT_EQ(complaintOf([&] {
+                  master::requireMemoryOfJournal({{"a", kGibibyte}}, journal_);
+              }),
+              journal_.string() + ": cannot be read; check the path");
+}
+
+}  // namespace
