@@ -25,7 +25,7 @@ def tracked(*patterns):
 def linted():
     """The sources that run-clang-tidy selects: compiled ones that match the pattern in scripts/lint.sh."""
     script = (ROOT / "scripts" / "lint.sh").read_text()
-    pattern = re.search(r'run-clang-tidy-14 .* "([^"]+)"$', script, re.MULTILINE)[1].replace("$PWD", re.escape(str(ROOT)))
+    pattern = re.search(r'^every_source="([^"]+)"$', script, re.MULTILINE)[1].replace("$PWD", re.escape(str(ROOT)))
     compiled = json.loads((BUILD / "compile_commands.json").read_text())
     found = set()
     for command in compiled:
