@@ -95,7 +95,7 @@ Wait FrameBarrier::describeWait() const {
 }
 
 /// For messages from these ranks, which ring if they can.
-Backoff FrameBarrier::patienceFor(std::span<const int> ranks) const {
+Backoff FrameBarrier::backoffFor(std::span<const int> ranks) const {
     const HostBells& bells = cluster_.bells();
     const bool allRing = std::all_of(ranks.begin(), ranks.end(), [&](int rank) { return bells.of(rank).has_value(); });
     return Backoff(allRing ? bells.of(cluster_.rank()) : std::nullopt);
@@ -111,7 +111,7 @@ void FrameBarrier::ring(std::span<const int> ranks) const {
 }
 
 /// Until all requests are done. `ranks` are those at their other ends; `lengths` are what was received.
-void FrameBarrier::await(std::span<MPI_Request> requests, std::span<const int> ranks, Backoff patience,
+void FrameBarrier::await(std::span<MPI_Request> requests, std::span<const int> ranks, Backoff backoff,
                          std::vector<int>* lengths) {
     const auto miss = [&](std::size_t which, bool missing) {
         if (cluster_.isMaster()) {
@@ -122,18 +122,18 @@ void FrameBarrier::await(std::span<MPI_Request> requests, std::span<const int> r
         miss(i, true);
     }
     for (std::size_t done = 0; done < requests.size();) {
-        patience.look();
+        backoff.look();
         int which = MPI_UNDEFINED;
         int found = 0;
         MPI_Status status;
         const int error = MPI_Testany(static_cast<int>(requests.size()), requests.data(), &which, &found, &status);
         if ((found == 0 && error == MPI_SUCCESS) || which == MPI_UNDEFINED) {
-            patience.rest();
+            backoff.rest();
             continue;
         }
         const auto index = static_cast<std::size_t>(which);
         miss(index, false);
-        patience.found();
+        backoff.found();
         ++done;
         if (lengths != nullptr) {
             int& length = (*lengths)[index] = kCutShort;
@@ -157,7 +157,7 @@ void FrameBarrier::receiveFromMaster(void* data, std::size_t bytes, int tag) {
     MPI_Request request = MPI_REQUEST_NULL;
     MPI_Irecv(data, static_cast<int>(bytes), MPI_BYTE, kMaster, tag, cluster_.frames(), &request);
     // NOLINTNEXTLINE(clang-analyzer-optin.mpi.MPI-Checker): await() waits for it
-    await({&request, 1}, {&kMaster, 1}, patienceFor({&kMaster, 1}));
+    await({&request, 1}, {&kMaster, 1}, backoffFor({&kMaster, 1}));
 }
 
 FrameMessage FrameBarrier::begin(const FrameMessage& fromMaster, std::size_t& bytes) {
@@ -201,7 +201,7 @@ void FrameBarrier::receiveArrivals(std::uint64_t frame) {
         MPI_Irecv(letters[i].data(), static_cast<int>(sizeof(Letter)), MPI_BYTE, ranks_[i], kArrivalTag,
                   cluster_.arrivals(), &requests[i]);
     }
-    await(requests, ranks_, patienceFor(ranks_), &lengths);
+    await(requests, ranks_, backoffFor(ranks_), &lengths);
     nonsense_.clear();
     for (std::size_t i = 0; i < ranks_.size(); ++i) {
         Arrival& arrival = arrivals_[i + 1];
@@ -280,7 +280,7 @@ base::Bytes FrameBarrier::pass(int from, const std::vector<int>& to, const base:
         if (sends) {
             ring(peers);
         }
-        await(requests, peers, sends ? Backoff() : patienceFor(peers));
+        await(requests, peers, sends ? Backoff() : backoffFor(peers));
     };
     std::uint64_t length = bytes.size();
     move(reinterpret_cast<std::uint8_t*>(&length), sizeof length, kLengthTag);

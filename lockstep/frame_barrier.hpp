@@ -94,9 +94,9 @@ public:
 private:
     void sendToAll(const void* data, std::size_t bytes, int tag);
     void receiveFromMaster(void* data, std::size_t bytes, int tag);
-    void await(std::span<MPI_Request> requests, std::span<const int> ranks, Backoff patience,
+    void await(std::span<MPI_Request> requests, std::span<const int> ranks, Backoff backoff,
                std::vector<int>* lengths = nullptr);
-    [[nodiscard]] Backoff patienceFor(std::span<const int> ranks) const;
+    [[nodiscard]] Backoff backoffFor(std::span<const int> ranks) const;
     void ring(std::span<const int> ranks) const;
     void receiveArrivals(std::uint64_t frame);
     void sendArrival(const Arrival& mine);

@@ -85,7 +85,7 @@ Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, co
                }),
       views_(wall, scene, options_.tracker),
       viewProof_(wall.encode()),
-      sequencer_(options_.server, scene, options_.pace, options_.resumed ? options_.resumed->epoch : 0,
+      liveSteps_(options_.server, scene, options_.pace, options_.resumed ? options_.resumed->epoch : 0,
                  options_.security),
       operator_(options_.readInput),
       faults_(faultsOf(options_.drills), lockstep::kMaster),
@@ -162,11 +162,11 @@ std::vector<TimedStep> Session::awaitSteps() {
     const std::uint64_t left = options_.steps - std::min(options_.steps, terrain_.stepNumber());
     most = paused_ || !mayTakeSteps() ? 0 : std::min<std::uint64_t>(most, left);
     const std::int64_t since = monotonicNs();
-    std::vector<TimedStep> steps = sequencer_.next(terrain_, hash_, most);
+    std::vector<TimedStep> steps = liveSteps_.next(terrain_, hash_, most);
     while (fast && most > 0 && steps.empty() && !operator_.stopAsked() &&
            static_cast<double>(monotonicNs() - since) * 1e-9 < kFastPatience) {
         sleepNs(500'000);
-        steps = sequencer_.next(terrain_, hash_, most);
+        steps = liveSteps_.next(terrain_, hash_, most);
     }
     return steps;
 }
@@ -248,15 +248,15 @@ bool Session::showFrame() {
     if (message.capture && !message.stop && !film_) {  // a film takes its own
         takeCapture();
     }
-    sequencer_.shown(terrain_.stepNumber(), swapped - (lastSwap_ == 0 ? swapped : lastSwap_));
+    liveSteps_.shown(terrain_.stepNumber(), swapped - (lastSwap_ == 0 ? swapped : lastSwap_));
     lastSwap_ = swapped;
-    if (!steps.empty() && sequencer_.linked() && steps.back().step.epoch == sequencer_.epoch() &&
+    if (!steps.empty() && liveSteps_.linked() && steps.back().step.epoch == liveSteps_.epoch() &&
         steps.back().serverHash != hash_) {
         ++summary_.serverDivergences;
-        sequencer_.distrustServer();
+        liveSteps_.distrustServer();
     }
     if (journal_) {
-        journal_->shown(terrain_, frame_, sequencer_.epoch(), hash_);
+        journal_->shown(terrain_, frame_, liveSteps_.epoch(), hash_);
     }
     stopping_ = message.stop;
     return true;
@@ -298,7 +298,7 @@ void Session::measureLatency(const std::vector<TimedStep>& steps, std::int64_t b
         if (timed.serverTimeNs == 0) {  // the master's own
             continue;
         }
-        const std::int64_t sent = timed.serverTimeNs - sequencer_.clockOffsetNs();
+        const std::int64_t sent = timed.serverTimeNs - liveSteps_.clockOffsetNs();
         Latency& latency = summary_.latency;
         latency.toMaster.add(milliseconds(timed.receivedNs - sent));
         latency.queued.add(milliseconds(broadcast - timed.receivedNs));
@@ -310,9 +310,9 @@ void Session::measureLatency(const std::vector<TimedStep>& steps, std::int64_t b
 
 const char* Session::handInWords() const {
     return options_.recording       ? "recorded"
-           : sequencer_.linked()    ? "hand linked"
-           : sequencer_.streaming() ? "hand streams"
-           : sequencer_.starting()  ? "waiting for a hand"
+           : liveSteps_.linked()    ? "hand linked"
+           : liveSteps_.streaming() ? "hand streams"
+           : liveSteps_.starting()  ? "waiting for a hand"
                                     : "no hand";
 }
 
@@ -339,7 +339,7 @@ void Session::sayProgress(bool last) {
 
 void Session::finish(bool agreed) {
     const lockstep::Watched watched(barrier_.watchdog());
-    sequencer_.stop();
+    liveSteps_.stop();
     try {
         keepTicks();                        // the last come with the goodbye
     } catch (const DiskFailure& failure) {  // the ranks still have reports and pictures to send
@@ -354,11 +354,11 @@ void Session::finish(bool agreed) {
     summary_.volumeFinal = terrain_.volume();
     summary_.volumeOutflow = terrain_.outflow();
     summary_.seconds = static_cast<double>(lastSwap_ - firstSwap_) * 1e-9;
-    summary_.haptic = sequencer_.report();
+    summary_.haptic = liveSteps_.report();
     if (views_.viewer().tracked()) {
         summary_.tracking = views_.viewer().counters();
     }
-    summary_.link = sequencer_.counters();
+    summary_.link = liveSteps_.counters();
     summary_.link.links = all.links;
     summary_.link.reconnects = all.reconnects;
     summary_.link.refusedHere = all.refusedHere;

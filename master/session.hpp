@@ -158,7 +158,7 @@ private:
     lockstep::ViewProof viewProof_;
     std::optional<JournalKeeper> journal_;  // none for a recording, which has one
     std::optional<Film> film_;
-    LiveSteps sequencer_;
+    LiveSteps liveSteps_;
     OperatorInput operator_;
     std::optional<ControlSocket> control_;
     struct Asker {

@@ -135,7 +135,7 @@ void Session::carryOut(const Command& command, std::optional<Client> client) {
             views_.separateEyes(command.number);
             break;
         case Verb::force:
-            sequencer_.shareForce(command.number);
+            liveSteps_.shareForce(command.number);
             break;
         case Verb::stereo:
             changeStereo(command.stereo);
@@ -169,7 +169,7 @@ void Session::askEdit(sand::Edit edit, std::optional<Client> client, const std::
         control_->answer(*client, line({{"ok", true}, {"waits_for", "resume"}}));
         client.reset();
     }
-    sequencer_.request(edit);
+    liveSteps_.request(edit);
     askers_.push_back({std::move(edit), client, material});
 }
 
@@ -251,8 +251,8 @@ std::string Session::status() const {
                  {"fps", fps_},
                  {"ranks", wall_.ranks()},
                  {"slowest", slowestRank(rankStatistics_.recentDrag(), names_)},
-                 {"linked", sequencer_.linked()},
-                 {"streaming", sequencer_.streaming()},
+                 {"linked", liveSteps_.linked()},
+                 {"streaming", liveSteps_.streaming()},
                  {"paused", paused_},
                  {"pattern", std::string(lockstep::patternName(views_.pattern()))},
                  {"stereo", std::string(walls::stereoName(shown_.stereo))},

@@ -34,7 +34,7 @@ Incidents Session::incidents() const {
     all.divergences = summary_.divergences;  // which began with those before
     all.healed = summary_.healed;
     all.serverDivergences = summary_.serverDivergences;
-    const haptic_bridge::LinkCounters link = sequencer_.counters();
+    const haptic_bridge::LinkCounters link = liveSteps_.counters();
     all.links += link.links;
     all.reconnects += link.reconnects;
     for (std::size_t i = 0; i < all.refused.size(); ++i) {
@@ -185,7 +185,7 @@ void Session::reportNonsense() {
 
 void Session::startDrills() {
     for (const lockstep::Fault& fault : beginDrills(options_.drills, frame_, options_.out)) {
-        sequencer_.drill(fault);
+        liveSteps_.drill(fault);
     }
 }
 

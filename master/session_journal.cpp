@@ -71,7 +71,7 @@ void Session::keepJournal(const JournalFrame& frame) {
 }
 
 void Session::keepTicks() {
-    const std::vector<base::Bytes> pieces = sequencer_.ticks();
+    const std::vector<base::Bytes> pieces = liveSteps_.ticks();
     try {
         if (journal_) {
             journal_->keepTicks(pieces);

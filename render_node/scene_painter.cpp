@@ -101,9 +101,9 @@ void ScenePainter::setTool(sand::ProbePoint centre, bool engaged, const sand::To
 }
 
 void ScenePainter::setLayers(lockstep::Overlays layers) {
-    layers_ = {};
+    overlays_ = {};
     for (const lockstep::Overlay layer : {lockstep::Overlay::wireframe, lockstep::Overlay::hillShade}) {
-        layers_.set(layer, layers.shows(layer));
+        overlays_.set(layer, layers.shows(layer));
     }
 }
 
@@ -184,7 +184,7 @@ void ScenePainter::drawWithin(const PixelRect& pixels, const Camera& camera, con
     }
     const LevelRule rule = ruleFor(camera, size);
     drawSand(camera, sceneToPart, rule);
-    if (layers_.shows(lockstep::Overlay::wireframe)) {
+    if (overlays_.shows(lockstep::Overlay::wireframe)) {
         drawWires(camera, sceneToPart, rule);
     }
     const GlProgram& wood = woodProgram();
@@ -214,7 +214,7 @@ void ScenePainter::drawForce(const Camera& camera) {
 }
 
 const SandPrograms& ScenePainter::sandPrograms() {
-    const bool hillShade = layers_.shows(lockstep::Overlay::hillShade);
+    const bool hillShade = overlays_.shows(lockstep::Overlay::hillShade);
     const bool ball = !tool_ || isBall(*tool_);
     if (ball && !hillShade) {
         return sunlit_;

@@ -171,7 +171,7 @@ private:
     sand::Heading toolHeading_;
     std::optional<EyeMemory::Tool> tool_;
     std::optional<ForceArrow> force_;
-    lockstep::Overlays layers_;
+    lockstep::Overlays overlays_;
     bool culling_ = true;
     DrawCounts counts_;
 

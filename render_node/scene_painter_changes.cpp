@@ -50,7 +50,7 @@ std::vector<PixelRect> ScenePainter::changedPixels(const Camera& camera, glm::iv
     const LevelRule rule = ruleFor(camera, size);
     const bool toolMoved = memory.tool != tool_;
     if (!memory.drawn || memory.roomToClip != camera.roomToClip || memory.eye != camera.eye ||
-        memory.sceneToRoom != sceneToRoom_ || memory.layers != layers_) {
+        memory.sceneToRoom != sceneToRoom_ || memory.layers != overlays_) {
         memory.levels = surface().levelsWithin(sceneToClip, rule);
         return {whole};
     }
@@ -97,7 +97,7 @@ PixelRect ScenePainter::drawIfChanged(const Camera& camera, const EyeTarget& tar
               std::move(memory.levels),
               tool_,
               force_,
-              layers_,
+              overlays_,
               {}};
     return changed;
 }

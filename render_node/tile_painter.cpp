@@ -31,7 +31,7 @@ TilePainter::TilePainter(const walls::Wall& wall, const walls::Tile& tile, const
       tile_(&tile),
       host_(std::move(host)),
       forceConstants_(scene.force),
-      sand_(tin != nullptr ? ScenePainter(scene, *tin, glm::dmat4(1)) : ScenePainter(scene, glm::dmat4(1))),
+      scenePainter_(tin != nullptr ? ScenePainter(scene, *tin, glm::dmat4(1)) : ScenePainter(scene, glm::dmat4(1))),
       composer_(wall.stereo, tile) {
     makeTargets();
 }
@@ -63,23 +63,23 @@ void TilePainter::drawAnew() {
 
 void TilePainter::paint(sand::Replica& terrain, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye,
                         const TileFigures& figures) {
-    sand_.setLayers(view.layers);
-    sand_.setSceneToRoom(glm::make_mat4(view.sceneToRoom.data()));
+    scenePainter_.setLayers(view.layers);
+    scenePainter_.setSceneToRoom(glm::make_mat4(view.sceneToRoom.data()));
     const std::vector<Camera> cameras = camerasOf(view);
     if (const sand::tin::SurfaceView* tin = terrain.tinView()) {
-        sand_.update(*tin, terrain.takeTinDamage(), cameras);
+        scenePainter_.update(*tin, terrain.takeTinDamage(), cameras);
     } else {
-        sand_.update(terrain.field(), terrain.takeDamage());
+        scenePainter_.update(terrain.field(), terrain.takeDamage());
     }
     if (terrain.probe() != sand::ProbePoint{}) {  // a hand has been somewhere
-        sand_.setTool(terrain.probe(), terrain.engaged(), terrain.toolShape(), terrain.heading());
+        scenePainter_.setTool(terrain.probe(), terrain.engaged(), terrain.toolShape(), terrain.heading());
     }
     if (!view.layers.shows(lockstep::Overlay::force)) {
         force_.reset();
     } else if (!force_) {
         force_.emplace(forceConstants_);
     }
-    sand_.setForce(force_ ? force_->arrow(terrain) : std::nullopt);
+    scenePainter_.setForce(force_ ? force_->arrow(terrain) : std::nullopt);
     const std::size_t shownEye = frame % targets_.size();
     const EyeRange range = oneEye ? EyeRange{shownEye, shownEye + 1} : EyeRange{0, targets_.size()};
     const auto pattern = static_cast<lockstep::Pattern>(view.pattern);
@@ -132,8 +132,8 @@ std::vector<Camera> TilePainter::camerasOf(const lockstep::ViewState& view) cons
 PixelRect TilePainter::paintSand(std::span<const Camera> cameras, EyeRange range) {
     PixelRect changed;
     for (std::size_t i = range.from; i < range.end; ++i) {
-        const PixelRect drawn = sand_.drawIfChanged(cameras[i], targets_[i], memories_[i]);
-        counts_.add(sand_.counts().pixels, targets_[i]);
+        const PixelRect drawn = scenePainter_.drawIfChanged(cameras[i], targets_[i], memories_[i]);
+        counts_.add(scenePainter_.counts().pixels, targets_[i]);
         changed = around(changed, drawn);
     }
     return changed;

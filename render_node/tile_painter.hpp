@@ -77,7 +77,7 @@ private:
     const walls::Tile* tile_;
     std::string host_;
     sand::ForceConstants forceConstants_;
-    ScenePainter sand_;
+    ScenePainter scenePainter_;
     std::optional<ToolForce> force_;  // while its layer is shown
     std::vector<EyeTarget> targets_;
     std::vector<EyeMemory> memories_;  // what each target shows already

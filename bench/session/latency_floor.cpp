@@ -89,9 +89,9 @@ int message(const Options& options) {
 /// Waits as the ranks of a wall do: by MPI's own waiting, which never sleeps, they would be pushed aside by whatever
 /// else runs on their cores.
 void await(MPI_Request request) {
-    lockstep::Backoff patience;
+    lockstep::Backoff backoff;
     for (int done = 0; MPI_Test(&request, &done, MPI_STATUS_IGNORE), done == 0;) {
-        patience.rest();
+        backoff.rest();
     }
 }
 

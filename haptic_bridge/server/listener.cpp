@@ -35,24 +35,24 @@ SandThread::Output Listener::output() {
     // What comes for a session that has ended meanwhile is for nobody.
     const auto hand = [this](std::uint32_t session, auto act) {
         asio::post(io_, [this, session, act = std::move(act)]() mutable {
-            if (const auto link = linked(session)) {
-                act(*link);
+            if (const auto peer = linked(session)) {
+                act(*peer);
             }
         });
     };
     return {
-        [hand](std::uint32_t session) { hand(session, [](Peer& link) { link.ready(); }); },
-        [hand](std::uint32_t session, NeedState need) { hand(session, [need](Peer& link) { link.needState(need); }); },
+        [hand](std::uint32_t session) { hand(session, [](Peer& peer) { peer.ready(); }); },
+        [hand](std::uint32_t session, NeedState need) { hand(session, [need](Peer& peer) { peer.needState(need); }); },
         [hand](std::uint32_t session, std::string why) {
-            hand(session, [why = std::move(why)](Peer& link) { link.unusable(why); });
+            hand(session, [why = std::move(why)](Peer& peer) { peer.unusable(why); });
         },
         [hand](std::uint32_t session, base::Bytes message) {
-            hand(session, [message = std::move(message)](Peer& link) mutable { link.step(std::move(message)); });
+            hand(session, [message = std::move(message)](Peer& peer) mutable { peer.step(std::move(message)); });
         }};
 }
 
-void Listener::serve(SandThread& sequencer) {
-    sequencer_ = &sequencer;
+void Listener::serve(SandThread& sandThread) {
+    sandThread_ = &sandThread;
     accept();
 }
 

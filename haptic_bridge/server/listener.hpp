@@ -52,7 +52,7 @@ public:
     /// What the sequencer calls on its own thread; hands over to this one.
     [[nodiscard]] SandThread::Output output();
     /// Masters are taken in from now on.
-    void serve(SandThread& sequencer);
+    void serve(SandThread& sandThread);
     /// Says goodbye to the master and stops listening; stops the io context when that has arrived, or after 0.6 s.
     void shut(const std::string& reason);
     [[nodiscard]] const RefusalCounts& refused() const { return refusals_.counts(); }
@@ -81,7 +81,7 @@ private:
     Sources sources_;
     TimingTests tests_;
     LinkSecurity security_;
-    SandThread* sequencer_ = nullptr;
+    SandThread* sandThread_ = nullptr;
     std::shared_ptr<Peer> current_;  // the one that passed the handshake and may move
     std::set<std::shared_ptr<Peer>> watchers_;
     GuestLimits limits_;

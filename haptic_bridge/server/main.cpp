@@ -103,7 +103,7 @@ void writePortFile(const std::string& file, std::uint16_t port) {
     }
 }
 
-Report measured(const HapticTick& hand, const ForceLoop* loop, const SandThread& sequencer) {
+Report measured(const HapticTick& hand, const ForceLoop* loop, const SandThread& sandThread) {
     Report report;
     if (loop != nullptr) {
         report.hapticPeriodUsP50 = loop->period().percentileNs(0.50) * 1e-3;
@@ -114,8 +114,8 @@ Report measured(const HapticTick& hand, const ForceLoop* loop, const SandThread&
     }
     report.forceUsP50 = hand.forceCost().percentileNs(0.50) * 1e-3;
     report.forceUsP99 = hand.forceCost().percentileNs(0.99) * 1e-3;
-    report.stepsWithheld = sequencer.withheld();
-    report.samplesDropped = sequencer.dropped();
+    report.stepsWithheld = sandThread.withheld();
+    report.samplesDropped = sandThread.dropped();
     report.guards = hand.guardCounts().all();
     return report;
 }
@@ -187,28 +187,28 @@ void serve(const Options& options) {
     const auto endpoint = acceptor.local_endpoint();
     const Identity identity{kProtocolVersion, sand::kAlgorithmVersion, scene.rules.digest(), scene.name};
     std::function<Report()> measure;
-    Listener server(io, std::move(acceptor), identity, static_cast<std::uint32_t>(scene.rules.stepsPerSecond),
-                    {[&measure] { return measure(); }, print, ticksOf(recorder.get()),
-                     [&noted](double share) { noted.shareForce(share); }},
-                    options.tests, security);
+    Listener listener(io, std::move(acceptor), identity, static_cast<std::uint32_t>(scene.rules.stepsPerSecond),
+                      {[&measure] { return measure(); }, print, ticksOf(recorder.get()),
+                       [&noted](double share) { noted.shareForce(share); }},
+                      options.tests, security);
     // The sand and force threads end before the link they report to.
     const host::WorkerPool pool(options.sandThreads);
-    SandThread sequencer(scene, options.pace, hand, channel, server.output(), {.executor = pool.lend()},
-                         noted.watcher());
+    SandThread sandThread(scene, options.pace, hand, channel, listener.output(), {.executor = pool.lend()},
+                          noted.watcher());
     const auto loop = options.pace == Pace::realtime ? std::make_unique<ForceLoop>(hand, channel) : nullptr;
-    measure = [&] { return measured(hand, loop.get(), sequencer); };
+    measure = [&] { return measured(hand, loop.get(), sandThread); };
     if (loop != nullptr && !loop->priorityRefused().empty()) {
         print("no real-time priority for the force loop: " + loop->priorityRefused());
     }
 
     DeviceWatch watch(io, options.device, noted);
     asio::signal_set signals(io, SIGINT, SIGTERM);
-    signals.async_wait([&server](error_code error, int) {
+    signals.async_wait([&listener](error_code error, int) {
         if (!error) {
-            server.shut("the server was stopped");
+            listener.shut("the server was stopped");
         }
     });
-    server.serve(sequencer);
+    listener.serve(sandThread);
     writePortFile(options.portFile, endpoint.port());
     for (const std::string& line : hand.limitsInWords()) {
         print(line);

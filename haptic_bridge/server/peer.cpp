@@ -41,22 +41,22 @@ HalfRoundTrip told(const LiveHistogram& halves) {
 
 }  // namespace
 
-Peer::Peer(Listener& server, Connection::Socket socket)
-    : server_(server),
-      connection_(counted(std::make_unique<Connection>(std::move(socket),
-                                                       server.security_.tls ? server.security_.tls->open() : nullptr),
-                          server.connections_)),
-      reportTimer_(server.io_),
-      testTimer_(server.io_),
-      watchTimer_(server.io_),
-      handshake_(server.security_),
-      random_(server.tests_.seed) {}
+Peer::Peer(Listener& listener, Connection::Socket socket)
+    : listener_(listener),
+      connection_(counted(std::make_unique<Connection>(
+                              std::move(socket), listener.security_.tls ? listener.security_.tls->open() : nullptr),
+                          listener.connections_)),
+      reportTimer_(listener.io_),
+      testTimer_(listener.io_),
+      watchTimer_(listener.io_),
+      handshake_(listener.security_),
+      random_(listener.tests_.seed) {}
 
 void Peer::start() {
     heardNs_ = host::monotonicNs();
     connection_->limit(kMaxGreeting);
     connection_->setMaxIn(kMaxGuestBytes);
-    if (*server_.connections_ > Listener::kMaxConnections / 2) {
+    if (*listener_.connections_ > Listener::kMaxConnections / 2) {
         connection_->setLinger(milliseconds(0));  // no place is kept for who is refused
     }
     connection_->start(
@@ -72,7 +72,7 @@ void Peer::makeRoom() {
 }
 
 void Peer::log(const std::string& what) const {
-    server_.sources_.log(
+    listener_.sources_.log(
         fmt::format("{} {}: {}", role_ == Role::move ? "master" : "watcher", connection_->peer(), what));
 }
 
@@ -121,28 +121,28 @@ void Peer::receiveLinked(Message&& message) {
         phase_ = Phase::granting;
         epoch_ = start->epoch;
         firstStep_ = start->stepNumber + 1;
-        server_.sequencer_->start(session_, *start);
+        listener_.sandThread_->start(session_, *start);
     } else if (auto* state = std::get_if<State>(&message); state != nullptr && phase_ == Phase::granting) {
-        server_.sequencer_->state(std::move(state->bytes));
+        listener_.sandThread_->state(std::move(state->bytes));
     } else if (auto* catchUp = std::get_if<CatchUp>(&message);
                catchUp != nullptr && phase_ == Phase::granting && catchUpsLeft_ > 0) {
         catchUpsLeft_ = catchUp->last ? 0 : catchUpsLeft_ - 1;
-        server_.sequencer_->catchUp(std::move(*catchUp));
+        listener_.sandThread_->catchUp(std::move(*catchUp));
     } else if (const auto* shown = std::get_if<Shown>(&message); shown != nullptr && phase_ == Phase::linked) {
         if (shown->stepNumber + 1 > firstStep_ + steps_) {
             connection_->close(fmt::format("it claims to show step {}, which was not sent", shown->stepNumber),
                                RefusalCode::garbage);
             return;
         }
-        server_.sequencer_->shown(*shown, host::monotonicNs());
+        listener_.sandThread_->shown(*shown, host::monotonicNs());
     } else if (const auto* echo = std::get_if<TimingEcho>(&message); echo != nullptr && phase_ == Phase::linked) {
         echoed(*echo);
     } else if (auto* request = std::get_if<EditRequest>(&message); request != nullptr && phase_ == Phase::linked) {
         connection_->expectLoads(request->edit.kind != sand::Edit::load);  // one at a time: until it is in a step
-        server_.sequencer_->edit(std::move(*request));
+        listener_.sandThread_->edit(std::move(*request));
     } else if (const auto* force = std::get_if<ForceShare>(&message); force != nullptr && phase_ == Phase::linked) {
-        if (server_.sources_.shareForce) {
-            server_.sources_.shareForce(force->share);
+        if (listener_.sources_.shareForce) {
+            listener_.sources_.shareForce(force->share);
         }
     } else {
         outOfTurn();
@@ -152,7 +152,7 @@ void Peer::receiveLinked(Message&& message) {
 void Peer::greet(const Hello& hello) {
     // A watcher has no sand that could differ.
     const bool versionAlone = hello.role == Role::watch && hello.master.protocol == kProtocolVersion;
-    if (const auto refusal = versionAlone ? std::nullopt : refusalFor(server_.identity_, hello.master)) {
+    if (const auto refusal = versionAlone ? std::nullopt : refusalFor(listener_.identity_, hello.master)) {
         refuse(*refusal);
         return;
     }
@@ -162,7 +162,7 @@ void Peer::greet(const Hello& hello) {
     }
     role_ = hello.role;
     scene_ = hello.master.sceneName;
-    if (const auto challenge = handshake_.challenge(hello, server_.identity_, connection_->binding())) {
+    if (const auto challenge = handshake_.challenge(hello, listener_.identity_, connection_->binding())) {
         phase_ = Phase::proving;
         connection_->send(*challenge);
     } else {
@@ -182,32 +182,32 @@ void Peer::judge(const Proof& proof) {
 
 /// Only now is it told who else is here: before, nobody knows who asks.
 void Peer::welcome() {
-    if (role_ == Role::move && server_.current_) {
+    if (role_ == Role::move && listener_.current_) {
         refuse({RefusalCode::busy, fmt::format("busy: the master at {} is linked; one wall at a time",
-                                               server_.current_->connection_->peer())});
+                                               listener_.current_->connection_->peer())});
         return;
     }
-    if (role_ == Role::watch && server_.watchers_.size() >= Listener::kMaxWatchers) {
+    if (role_ == Role::watch && listener_.watchers_.size() >= Listener::kMaxWatchers) {
         refuse({RefusalCode::busy, fmt::format("busy: {} watch already", Listener::kMaxWatchers)});
         return;
     }
-    server_.guestWent(*this);
+    listener_.guestWent(*this);
     connection_->setMaxIn(std::numeric_limits<std::uint64_t>::max());
     connection_->setLinger(Connection::kLinger);
     if (role_ == Role::move) {
         phase_ = Phase::waiting;
-        session_ = ++server_.sessions_;
-        server_.current_ = shared_from_this();
+        session_ = ++listener_.sessions_;
+        listener_.current_ = shared_from_this();
         connection_->limit(kMaxMessage);
     } else {
         phase_ = Phase::watching;
-        server_.watchers_.insert(shared_from_this());
+        listener_.watchers_.insert(shared_from_this());
         connection_->setRate(kWatcherRate);
         connection_->setMaxUnsent(kWatcherUnsent);
     }
-    connection_->send(Welcome{server_.identity_, server_.stepsPerSecond_, role_, handshake_.mac()});
+    connection_->send(Welcome{listener_.identity_, listener_.stepsPerSecond_, role_, handshake_.mac()});
     if (role_ == Role::move) {
-        log(fmt::format("welcome, scene '{}'{}{}", scene_, server_.security_.proves() ? ", secret proved" : "",
+        log(fmt::format("welcome, scene '{}'{}{}", scene_, listener_.security_.proves() ? ", secret proved" : "",
                         connection_->overTls() ? ", TLS 1.3" : ""));
     }
     tickReport();
@@ -228,7 +228,7 @@ void Peer::ready() {
     connection_->expectLoads(true);
     log(fmt::format("linked, epoch {} from step {}", epoch_, firstStep_));
     connection_->send(Ready{});
-    tickTimingTest(server_.tests_.after);
+    tickTimingTest(listener_.tests_.after);
 }
 
 void Peer::needState(const NeedState& need) {
@@ -241,10 +241,10 @@ void Peer::needState(const NeedState& need) {
 void Peer::unusable(const std::string& why) { refuse({RefusalCode::state, why}); }
 
 void Peer::sendTicks(bool all) {
-    if (!server_.sources_.ticks) {
+    if (!listener_.sources_.ticks) {
         return;
     }
-    for (base::Bytes& piece : server_.sources_.ticks(all)) {
+    for (base::Bytes& piece : listener_.sources_.ticks(all)) {
         connection_->send(TickPiece{std::move(piece)});
     }
 }
@@ -257,7 +257,7 @@ void Peer::step(base::Bytes message) {
         lastStepBytes_ = message.size();
     }
     connection_->expectLoads(true);
-    for (const auto& watcher : std::set(server_.watchers_)) {  // a copy: who does not read leaves
+    for (const auto& watcher : std::set(listener_.watchers_)) {  // a copy: who does not read leaves
         watcher->watchStep(message);
     }
     connection_->sendBytes(std::move(message));
@@ -271,7 +271,7 @@ void Peer::watchStep(const base::Bytes& message) {
 
 void Peer::tickTimingTest(double pause) {
     // Poisson arrivals see time averages: no phase of a frame is met more often than it lasts.
-    std::exponential_distribution<double> wait(server_.tests_.perSecond);  // [s]
+    std::exponential_distribution<double> wait(listener_.tests_.perSecond);  // [s]
     testTimer_.expires_after(std::chrono::nanoseconds(static_cast<std::int64_t>((pause + wait(random_)) * 1e9)));
     testTimer_.async_wait([self = shared_from_this()](error_code error) {
         if (error || self->phase_ != Phase::linked) {
@@ -314,12 +314,12 @@ void Peer::tickReport() {
 }
 
 Report Peer::report() const {
-    Report report = server_.sources_.report();
+    Report report = listener_.sources_.report();
     report.toWall = told(toWall_);
     report.toMaster = told(toMaster_);
     report.stepBytesMean = steps_ == 0 ? 0 : static_cast<double>(stepBytes_) / static_cast<double>(steps_);
     report.steps = steps_;
-    report.refused = server_.refused();
+    report.refused = listener_.refused();
     return report;
 }
 
@@ -350,19 +350,19 @@ void Peer::end(const std::string& why, Connection::Fault fault) {
     }
     if (fault) {
         const std::string who = guest ? "a guest: " : "a watcher: ";
-        server_.refused(*fault, connection_->address(), master ? "" : who + why);
+        listener_.refused(*fault, connection_->address(), master ? "" : who + why);
     }
     if (guest) {
-        server_.guestWent(*this);
+        listener_.guestWent(*this);
     }
     phase_ = Phase::over;
     reportTimer_.cancel();
     testTimer_.cancel();
     watchTimer_.cancel();
-    server_.watchers_.erase(kept);
-    if (server_.current_.get() == this) {
-        server_.current_ = nullptr;
-        server_.sequencer_->release();
+    listener_.watchers_.erase(kept);
+    if (listener_.current_.get() == this) {
+        listener_.current_ = nullptr;
+        listener_.sandThread_->release();
     }
 }
 

@@ -12,7 +12,7 @@ namespace haptic_bridge {
 /// The server's end of one connection, from the greeting to the goodbye. On the streaming thread alone.
 class Peer : public std::enable_shared_from_this<Peer> {
 public:
-    Peer(Listener& server, Connection::Socket socket);
+    Peer(Listener& listener, Connection::Socket socket);
     void start();
 
     void ready();
@@ -48,7 +48,7 @@ private:
     void log(const std::string& what) const;
     [[nodiscard]] Report report() const;
 
-    Listener& server_;
+    Listener& listener_;
     std::shared_ptr<Connection> connection_;
     boost::asio::steady_timer reportTimer_, testTimer_, watchTimer_;
     ServerHandshake handshake_;

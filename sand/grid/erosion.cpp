@@ -105,16 +105,16 @@ std::int64_t Erosion::sweepFluxes(const HeightField& field, const CellRect& bloc
                                   const Obstacle* obstacle) {
     const CellRect cells = cellsOf(blocks);
     const bool toolNear = obstacle != nullptr && !obstacle->cells.clippedTo(cells.grownBy(1)).empty();
-    std::optional<FluxLimits> held;
+    std::optional<FluxLimits> limits;
     if (toolNear || options_.ground != nullptr) {
-        held.emplace(field, cells, options_.ground, toolNear ? obstacle : nullptr);
+        limits.emplace(field, cells, options_.ground, toolNear ? obstacle : nullptr);
     }
     const bool grounded = options_.ground != nullptr;
-    const int heldWidth = cells.x1 - cells.x0 + 2;
+    const int limitsWidth = cells.x1 - cells.x0 + 2;
     const double ratio = static_cast<double>(rules_.aspect) / kUnitsPerCell;
     const FluxPatch patch{
-        .heights = grounded ? held->heights.data() + heldWidth + 1 : field.row(cells.y0) + cells.x0,
-        .heightStride = grounded ? heldWidth : field.stride(),
+        .heights = grounded ? limits->heights.data() + limitsWidth + 1 : field.row(cells.y0) + cells.x0,
+        .heightStride = grounded ? limitsWidth : field.stride(),
         .east = east_.row(0),
         .north = north_.row(0),
         .fluxStride = east_.stride(),
@@ -126,8 +126,8 @@ std::int64_t Erosion::sweepFluxes(const HeightField& field, const CellRect& bloc
         .momentum = momentum,
         .inertial = rules_.scheme == Scheme::isotropic,
         .openRim = rules_.rim == Rim::open,
-        .room = held ? held->room.data() : nullptr,
-        .sand = grounded ? held->sand.data() : nullptr};
+        .room = limits ? limits->room.data() : nullptr,
+        .sand = grounded ? limits->sand.data() : nullptr};
     return v3_ ? v3::sweepFluxes(patch) : baseline::sweepFluxes(patch);
 }
 

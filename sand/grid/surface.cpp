@@ -41,9 +41,9 @@ void GridSurface::touch(const CellRect& cells) {
 }
 
 void GridSurface::drag(const HeldTool& tool, std::span<const ProbePoint> path) {
-    const Displacement held(tool.shape, tool.heading);
+    const Displacement displacement(tool.shape, tool.heading);
     for (std::size_t i = 1; i < path.size(); ++i) {
-        const Displacement::Work done = held.drag(field_, rules_.rim, ground_.get(), path[i - 1], path[i]);
+        const Displacement::Work done = displacement.drag(field_, rules_.rim, ground_.get(), path[i - 1], path[i]);
         erosion_.touch(done.cells);
         touch(done.cells);
         outflow_ += done.outflow;

@@ -42,7 +42,7 @@ TinSurface::TinSurface(const Rules& rules, std::shared_ptr<const TinStart> start
       layer_(layerOf(*start_)),
       erosion_(layer_, threshold_, startThreshold_),
       hash_(layer_),
-      kept_(layer_) {
+      beforeStroke_(layer_) {
     (void)layer_.takeChange();
     reserve();
 }
@@ -57,11 +57,11 @@ TinSurface::TinSurface(const TinSurface& other)
       state_(other.state_),
       erosion_(layer_, threshold_, startThreshold_),
       hash_(layer_),
-      kept_(layer_) {
+      beforeStroke_(layer_) {
     (void)layer_.takeChange();
     reserve();
-    if (other.kept_.any()) {
-        kept_.keep(other.kept_.copy());
+    if (other.beforeStroke_.any()) {
+        beforeStroke_.keep(other.beforeStroke_.copy());
     }
 }
 
@@ -72,16 +72,16 @@ void TinSurface::reserve() {
     layer_.reserve(vertices);
     erosion_.reserve(vertices);
     hash_.reserve(vertices);
-    kept_.reserve(vertices);
-    near_->reserve(vertices);
+    beforeStroke_.reserve(vertices);
+    neighbourhood_->reserve(vertices);
     coarsening_.reserve(vertices);
 }
 
-Displacement& TinSurface::toolOf(const HeldTool& tool) {
-    if (!tool_ || !tool_->is(tool.shape, tool.heading)) {
-        tool_.emplace(tool.shape, tool.heading, detail_, near_);
+Displacement& TinSurface::displacementOf(const HeldTool& tool) {
+    if (!displacement_ || !displacement_->is(tool.shape, tool.heading)) {
+        displacement_.emplace(tool.shape, tool.heading, detail_, neighbourhood_);
     }
-    return *tool_;
+    return *displacement_;
 }
 
 void TinSurface::meshChanged() {
@@ -93,8 +93,8 @@ void TinSurface::meshChanged() {
     erosion_.changed(layer_, change);
     hash_.touch(layer_, change.vertices);
     hash_.touchTriangles(layer_, change.triangles);
-    kept_.touch(change.vertices);
-    kept_.touchTriangles(change.triangles);
+    beforeStroke_.touch(change.vertices);
+    beforeStroke_.touchTriangles(change.triangles);
     if (detail_.removals > 0) {
         coarsening_.touch(layer_.triangles(), change);
     }
@@ -106,15 +106,16 @@ void TinSurface::meshChanged() {
 
 /// Sand that fills the room below a tool: that beside it leans on the tool now.
 void TinSurface::wakeFull(const Underside& under, const Box& reach) {
-    if (!sawAll_ || near_->box().joinedWith(reach.clippedTo(layer_.triangles())) != near_->box()) {
-        near_->look(layer_.triangles(), reach);
+    if (!sawAll_ || neighbourhood_->box().joinedWith(reach.clippedTo(layer_.triangles())) != neighbourhood_->box()) {
+        neighbourhood_->look(layer_.triangles(), reach);
     }
     std::vector<Vertex> full;
-    std::copy_if(near_->vertices().begin(), near_->vertices().end(), std::back_inserter(full), [&](Vertex vertex) {
-        const auto i = static_cast<std::size_t>(vertex);
-        return reach.holds(layer_.triangles().places[i]) &&
-               layer_.heights()[i] > under(layer_.triangles().places[i]) - 1.0;
-    });
+    std::copy_if(neighbourhood_->vertices().begin(), neighbourhood_->vertices().end(), std::back_inserter(full),
+                 [&](Vertex vertex) {
+                     const auto i = static_cast<std::size_t>(vertex);
+                     return reach.holds(layer_.triangles().places[i]) &&
+                            layer_.heights()[i] > under(layer_.triangles().places[i]) - 1.0;
+                 });
     erosion_.wake(full);
 }
 
@@ -126,14 +127,14 @@ void TinSurface::sandMoved(const std::vector<Vertex>& vertices) {
         coarsening_.touch(layer_.triangles(), vertices);
     }
     hash_.touch(layer_, vertices);
-    kept_.touch(vertices);
+    beforeStroke_.touch(vertices);
     if (!damage_.whole) {
         addTo(damage_.vertices, vertices);
     }
 }
 
 void TinSurface::drag(const HeldTool& tool, std::span<const ProbePoint> path) {
-    const Displacement::Work done = toolOf(tool).drag(layer_, state_.imprint, rim_, path);
+    const Displacement::Work done = displacementOf(tool).drag(layer_, state_.imprint, rim_, path);
     state_.outflow += static_cast<std::int64_t>(done.outflow);
     meshChanged();
     sandMoved(done.touched);
@@ -142,20 +143,20 @@ void TinSurface::drag(const HeldTool& tool, std::span<const ProbePoint> path) {
 }
 
 void TinSurface::leave(const HeldTool& tool) {
-    toolOf(tool).leave(layer_, state_.imprint);
+    displacementOf(tool).leave(layer_, state_.imprint);
     meshChanged();
 }
 
 void TinSurface::sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) {
     if (detail_.removals > 0) {
-        const Box keepOut = tool == nullptr ? Box{} : toolOf(*tool).reach(at);
+        const Box keepOut = tool == nullptr ? Box{} : displacementOf(*tool).reach(at);
         if (coarsening_.step(layer_, detail_, state_.nextToGo, keepOut) > 0) {
             meshChanged();
         }
     }
     moved_.clear();
     if (tool != nullptr) {
-        const Displacement& here = toolOf(*tool);
+        const Displacement& here = displacementOf(*tool);
         const Underside under = here.underside(at);
         const Imprint::Stand stand{at, tool->shape, tool->heading};
         if (held_ != stand) {
@@ -192,7 +193,7 @@ void TinSurface::settle() {
 void TinSurface::reset() { replace(Snapshot(layerOf(*start_), {})); }
 
 void TinSurface::keep(const SurfaceCopy& copy) {
-    kept_.keep(std::make_shared<const Snapshot>(dynamic_cast<const Snapshot&>(copy)));
+    beforeStroke_.keep(std::make_shared<const Snapshot>(dynamic_cast<const Snapshot&>(copy)));
 }
 
 std::shared_ptr<const SurfaceCopy> TinSurface::copy() const { return std::make_shared<const Snapshot>(layer_, state_); }
@@ -211,7 +212,7 @@ void TinSurface::replace(const SurfaceCopy& copy) {
     state_ = sand.state();
     erosion_ = Erosion(layer_, threshold_, startThreshold_);
     hash_ = TileHash(layer_);
-    kept_.replaced(layer_);
+    beforeStroke_.replaced(layer_);
     reserve();
     held_.reset();
     sawAll_ = false;

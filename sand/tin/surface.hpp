@@ -38,12 +38,12 @@ public:
     void settle() override;
     void reset() override;
 
-    void keep() override { kept_.keep(layer_, state_); }
+    void keep() override { beforeStroke_.keep(layer_, state_); }
     void keep(const SurfaceCopy& copy) override;
-    void forget() override { kept_.forget(); }
-    [[nodiscard]] std::shared_ptr<const SurfaceCopy> kept() const override { return kept_.copy(); }
-    [[nodiscard]] bool hasKept() const override { return kept_.any(); }
-    void putBackKept() override { replace(*kept_.copy()); }
+    void forget() override { beforeStroke_.forget(); }
+    [[nodiscard]] std::shared_ptr<const SurfaceCopy> kept() const override { return beforeStroke_.copy(); }
+    [[nodiscard]] bool hasKept() const override { return beforeStroke_.any(); }
+    void putBackKept() override { replace(*beforeStroke_.copy()); }
 
     [[nodiscard]] std::shared_ptr<const SurfaceCopy> copy() const override;
     [[nodiscard]] SurfaceReader reader() const override;
@@ -66,7 +66,7 @@ public:
     [[nodiscard]] TinChange takeTinDamage() override;
 
 private:
-    [[nodiscard]] Displacement& toolOf(const HeldTool& tool);
+    [[nodiscard]] Displacement& displacementOf(const HeldTool& tool);
     /// Tells hash, erosion and whoever draws what the layer has become.
     void meshChanged();
     /// So that hardly a step makes what is kept for every vertex move in memory.
@@ -84,11 +84,11 @@ private:
     Erosion erosion_;
     TileHash hash_;
     SurfaceView view_{layer_.triangles(), layer_.heights(), detail_.spacing};
-    Undo kept_;
+    Undo beforeStroke_;
     TinChange damage_{.whole = true, .triangles = {}, .vertices = {}};
-    std::optional<Displacement> tool_;  // of the last toolOf()
-    std::shared_ptr<Neighbourhood> near_ = std::make_shared<Neighbourhood>();
-    bool sawAll_ = false;                       // near_ shows the mesh as it is, around the tool
+    std::optional<Displacement> displacement_;  // of the last displacementOf()
+    std::shared_ptr<Neighbourhood> neighbourhood_ = std::make_shared<Neighbourhood>();
+    bool sawAll_ = false;                       // neighbourhood_ shows the mesh as it is, around the tool
     std::optional<Imprint::Stand> held_;        // the obstacle of the last sweeps: only to save work
     std::vector<Vertex> moved_;                 // scratch
     mutable std::int32_t lastFound_ = kNobody;  // where the next question about a height is likely to be

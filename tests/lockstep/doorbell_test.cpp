@@ -55,9 +55,9 @@ TEST(Doorbell, WakesAnotherProcess) {
 TEST(Backoff, SleepsUntilTheBellRings) {
     using Kind = Backoff::Rest::Kind;
     std::atomic<std::uint32_t> rings = 0;
-    Backoff patience{Doorbell(rings)};
-    EXPECT_EQ(patience.nextRest(1000).kind, Kind::yield) << "a short wait";
-    const Backoff::Rest later = patience.nextRest(1000 + kMoment);
+    Backoff backoff{Doorbell(rings)};
+    EXPECT_EQ(backoff.nextRest(1000).kind, Kind::yield) << "a short wait";
+    const Backoff::Rest later = backoff.nextRest(1000 + kMoment);
     EXPECT_EQ(later.kind, Kind::sleepUntilRung);
     EXPECT_EQ(later.longest, 5'000'000) << "in case a message comes without a ring";
     Backoff asking;
@@ -70,27 +70,27 @@ TEST(Backoff, AsksForAMessageThatHasRungAndIsNotThere) {
     using Kind = Backoff::Rest::Kind;
     std::atomic<std::uint32_t> rings = 0;
     const Doorbell bell(rings);
-    Backoff patience{bell};
-    (void)patience.nextRest(0);
+    Backoff backoff{bell};
+    (void)backoff.nextRest(0);
     bell.ring();
-    patience.look();
-    EXPECT_EQ(patience.nextRest(kMoment), (Backoff::Rest{Kind::sleep, 125'000}));
-    patience.look();
-    EXPECT_EQ(patience.nextRest(2 * kMoment).kind, Kind::sleep) << "still not there";
-    patience.found();
-    EXPECT_EQ(patience.nextRest(3 * kMoment).kind, Kind::sleepUntilRung) << "and more to come";
+    backoff.look();
+    EXPECT_EQ(backoff.nextRest(kMoment), (Backoff::Rest{Kind::sleep, 125'000}));
+    backoff.look();
+    EXPECT_EQ(backoff.nextRest(2 * kMoment).kind, Kind::sleep) << "still not there";
+    backoff.found();
+    EXPECT_EQ(backoff.nextRest(3 * kMoment).kind, Kind::sleepUntilRung) << "and more to come";
 }
 
 // rest() itself: with a bell that has rung since the last look it must not sleep at all.
 TEST(Backoff, ReturnsAtOnceWhenTheBellRangBeforeItSlept) {
     std::atomic<std::uint32_t> rings = 0;
     const Doorbell bell(rings);
-    Backoff patience{bell};
-    patience.look();
+    Backoff backoff{bell};
+    backoff.look();
     bell.ring();
     EXPECT_TRUE(bell.sleep(0, kLong)) << "the number is another than the one that was heard";
-    patience.look();
-    EXPECT_NE(patience.nextRest(kLong).kind, Backoff::Rest::Kind::sleepUntilRung);
+    backoff.look();
+    EXPECT_NE(backoff.nextRest(kLong).kind, Backoff::Rest::Kind::sleepUntilRung);
 }
 
 }  // namespace

@@ -47,13 +47,13 @@ void forEachSubstep(const ProbePoint& from, const ProbePoint& to, const Visit& v
 }  // namespace
 
 Displacement::Displacement(const ToolShape& shape, const Heading& heading, const DetailRules& rules,
-                           std::shared_ptr<Neighbourhood> window)
+                           std::shared_ptr<Neighbourhood> neighbourhood)
     : shape_(shape),
       heading_(heading),
       rules_(rules),
       turned_(shape, heading),
       outline_(Outline::of(shape, heading)),
-      window_(std::move(window)) {}
+      neighbourhood_(std::move(neighbourhood)) {}
 
 Underside Displacement::underside(const ProbePoint& at) const {
     return [shape = turned_, at](const Place& place) { return shape.underside(at.z, offsetOf(place, at)); };
@@ -112,7 +112,7 @@ void Displacement::leave(VertexSand& layer, Imprint& imprint) {
         const ProbePoint at = imprint.stand->at;
         const Box box = reach(at);
         if (rules_.spacing > 0) {  // or nobody asks what lies there
-            window_->look(layer.triangles(), box);
+            neighbourhood_->look(layer.triangles(), box);
         }
         changeMesh(layer, imprint, {{{at, {0, 0}}}, box, false});
     }
@@ -120,7 +120,7 @@ void Displacement::leave(VertexSand& layer, Imprint& imprint) {
 }
 
 void Displacement::work(VertexSand& layer, Imprint& imprint, Rim rim, const Chunk& chunk, Work& done) {
-    window_->look(layer.triangles(), chunk.box);
+    neighbourhood_->look(layer.triangles(), chunk.box);
     const Imprint::Stand here{chunk.presses.back().at, shape_, heading_};
     const bool still = imprint.stand == here && std::all_of(chunk.presses.begin(), chunk.presses.end(),
                                                             [&](const Press& press) { return press.at == here.at; });
@@ -129,7 +129,7 @@ void Displacement::work(VertexSand& layer, Imprint& imprint, Rim rim, const Chun
             leave(layer, imprint);
             return;
         }
-        window_->follow(layer.triangles(), changeMesh(layer, imprint, chunk));
+        neighbourhood_->follow(layer.triangles(), changeMesh(layer, imprint, chunk));
     }
     for (const Press& press : chunk.presses) {
         this->press(layer, rim, press, done);
@@ -144,7 +144,7 @@ bool Displacement::reachesSand(const VertexSand& layer, const Chunk& chunk) cons
     constexpr std::int64_t kUnitsPerProbe = kUnitsPerCell / kProbePerCell;
     const auto underside = static_cast<double>((lowest - shape_.radius) * kUnitsPerProbe);
     const auto isHigher = [&](Vertex vertex) { return layer.heights()[static_cast<std::size_t>(vertex)] > underside; };
-    return std::any_of(window_->triangles().begin(), window_->triangles().end(), [&](std::int32_t slot) {
+    return std::any_of(neighbourhood_->triangles().begin(), neighbourhood_->triangles().end(), [&](std::int32_t slot) {
         const Triangle& triangle = layer.triangles().triangles[static_cast<std::size_t>(slot)];
         return !triangle.hole && std::any_of(triangle.corner.begin(), triangle.corner.end(), isHigher);
     });
@@ -163,8 +163,8 @@ std::vector<Vertex> Displacement::changeMesh(VertexSand& layer, Imprint& imprint
         imprint.takeOutOf(mesh);
         thin(mesh, outline);
         std::vector<Place> there = outline.points;
-        for (std::size_t i = 0; rules_.spacing > 0 && i < window_->vertices().size(); ++i) {
-            const Vertex vertex = window_->vertices()[i];
+        for (std::size_t i = 0; rules_.spacing > 0 && i < neighbourhood_->vertices().size(); ++i) {
+            const Vertex vertex = neighbourhood_->vertices()[i];
             if (mesh.triangles().alive(vertex)) {
                 there.push_back(mesh.triangles().places[index(vertex)]);
             }
@@ -204,7 +204,7 @@ Edges Displacement::edgesThatStay(const Triangles& mesh, const Imprint& imprint)
     }
     std::sort(ours.begin(), ours.end());
     Edges edges;
-    for (const std::int32_t slot : window_->triangles()) {
+    for (const std::int32_t slot : neighbourhood_->triangles()) {
         const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(slot)];
         for (std::size_t k = 0; k < 3; ++k) {
             const Vertex a = triangle.corner[(k + 1) % 3], b = triangle.corner[(k + 2) % 3];
@@ -229,7 +229,7 @@ void Displacement::thin(Mesh& mesh, const PlacedOutline& outline) const {
     }
     around = around.grownBy(distance);
     Link link;
-    for (const Vertex vertex : window_->vertices()) {
+    for (const Vertex vertex : neighbourhood_->vertices()) {
         const Place place = mesh.triangles().places[static_cast<std::size_t>(vertex)];
         if (!mesh.triangles().alive(vertex) || !around.holds(place)) {
             continue;

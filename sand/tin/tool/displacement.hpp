@@ -22,9 +22,9 @@ using Volume = Wide;  // [volume unit of Layer]
 class Displacement {
 public:
     /// Poses beyond kMaxProbe and shapes beyond kLargestToolRadius are refused by whoever decodes steps and rules.
-    /// With a window that others use too, between two calls.
+    /// With a neighbourhood that others use too, between two calls.
     Displacement(const ToolShape& shape, const Heading& heading, const DetailRules& rules,
-                 std::shared_ptr<Neighbourhood> window = std::make_shared<Neighbourhood>());
+                 std::shared_ptr<Neighbourhood> neighbourhood = std::make_shared<Neighbourhood>());
     [[nodiscard]] bool is(const ToolShape& shape, const Heading& heading) const {
         return shape_ == shape && heading_ == heading;
     }
@@ -95,7 +95,7 @@ private:
     DetailRules rules_;
     TurnedShape turned_;
     Outline outline_;
-    std::shared_ptr<Neighbourhood> window_;
+    std::shared_ptr<Neighbourhood> neighbourhood_;
     // Of one press.
     std::vector<Cut> cut_;
     Volume taken_ = 0;

@@ -26,7 +26,7 @@ bool Displacement::findCut(const VertexSand& layer, const ProbePoint& at) {
     const CellRect cells = turned_.cellsAround(at.x, at.y, 0);
     const Box box{cells.x0 * kProbePerCell, cells.y0 * kProbePerCell, cells.x1 * kProbePerCell,
                   cells.y1 * kProbePerCell};
-    for (const Vertex vertex : window_->vertices()) {
+    for (const Vertex vertex : neighbourhood_->vertices()) {
         const auto index = static_cast<std::size_t>(vertex);
         const Place place = layer.triangles().places[index];
         if (!box.holds(place)) {
@@ -53,7 +53,7 @@ bool Displacement::findCut(const VertexSand& layer, const ProbePoint& at) {
 void Displacement::findReceivers(const VertexSand& layer, Rim rim, const Press& press) {
     const auto find = [&](bool everywhere) {
         receivers_.clear();
-        for (const Vertex vertex : window_->vertices()) {
+        for (const Vertex vertex : neighbourhood_->vertices()) {
             const auto index = static_cast<std::size_t>(vertex);
             const Offset offset = offsetFrom(layer.triangles().places[index], press.at);
             if (!turned_.takes(offset) || turned_.covers(offset)) {
@@ -108,9 +108,9 @@ void Displacement::addNeighbours(const VertexSand& layer, const ProbePoint& at) 
     const auto isCovered = [&](Vertex vertex) {
         return turned_.covers(offsetFrom(layer.triangles().places[static_cast<std::size_t>(vertex)], at));
     };
-    window_->look(layer.triangles(), window_->box());  // it may have followed a change
+    neighbourhood_->look(layer.triangles(), neighbourhood_->box());  // it may have followed a change
     std::vector<Vertex> beside;
-    for (const std::int32_t slot : window_->triangles()) {
+    for (const std::int32_t slot : neighbourhood_->triangles()) {
         const Triangle& triangle = layer.triangles().triangles[static_cast<std::size_t>(slot)];
         const auto& corner = triangle.corner;
         if (!triangle.hole && std::any_of(corner.begin(), corner.end(), isCovered)) {

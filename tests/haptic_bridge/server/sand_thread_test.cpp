@@ -17,17 +17,17 @@ TEST(SandThread, WhatIsFeltDoesNotAgeWhileStepsAreWithheld) {
     const scene::Scene scene = scene::loadScene(folder.write("small.toml", kSmallScene));
     HapticTick hand(scene, openDevice("script:gis", HandSettings::parse({}), scene), HandSettings::Datum::surface);
     HandChannel channel;
-    SandThread sequencer(scene, Pace::realtime, hand, channel,
-                         {[](std::uint32_t) {}, [](std::uint32_t, NeedState) {},
-                          [](std::uint32_t, const std::string&) {}, [](std::uint32_t, const base::Bytes&) {}});
-    sequencer.start(1, {1, 0, sand::Replica(scene).stateHash()});
+    SandThread sandThread(scene, Pace::realtime, hand, channel,
+                          {[](std::uint32_t) {}, [](std::uint32_t, NeedState) {},
+                           [](std::uint32_t, const std::string&) {}, [](std::uint32_t, const base::Bytes&) {}});
+    sandThread.start(1, {1, 0, sand::Replica(scene).stateHash()});
     const auto withheld = [&](std::uint64_t steps) {
-        return eventually([&] { return sequencer.withheld() >= steps; });
+        return eventually([&] { return sandThread.withheld() >= steps; });
     };
     ASSERT_TRUE(withheld(2)) << "nothing is shown";
     ASSERT_TRUE(eventually([&] { return channel.surface.latest().step == SandThread::kWindow; }));
     const std::int64_t before = channel.surface.latest().timeNs;
-    ASSERT_TRUE(withheld(sequencer.withheld() + 3));
+    ASSERT_TRUE(withheld(sandThread.withheld() + 3));
     EXPECT_GT(channel.surface.latest().timeNs, before);
     EXPECT_EQ(channel.surface.latest().step, SandThread::kWindow);
 }

@@ -8,7 +8,7 @@
 #include "sand/tin/flow/erosion.hpp"
 #include "tests/support/tin_piles.hpp"
 
-namespace moving_sand {
+namespace active_mesh {
 namespace {
 
 using namespace tin_piles;
@@ -125,4 +125,4 @@ TEST(ActiveMesh, CountsInIntegersWhatDoublesWouldRound) {
 }
 
 }  // namespace
-}  // namespace moving_sand
+}  // namespace active_mesh

@@ -9,7 +9,7 @@
 #include "tests/sand/tin/mesh_checks.hpp"
 #include "tests/support/relaxing.hpp"
 
-namespace layers {
+namespace vertex_sand {
 namespace {
 
 using namespace mesh_checks;
@@ -53,9 +53,9 @@ void editAndWeigh(int edits, std::uint32_t seed) {
     }
 }
 
-TEST(Layer, KeepsItsVolumeThroughHundredThousandEdits) { editAndWeigh(samples::kSanitized ? 10'000 : 100'000, 2); }
+TEST(VertexSand, KeepsItsVolumeThroughHundredThousandEdits) { editAndWeigh(samples::kSanitized ? 10'000 : 100'000, 2); }
 
-TEST(Layer, StaysLevelBitByBit) {
+TEST(VertexSand, StaysLevelBitByBit) {
     std::mt19937 random(3);
     VertexSand layer = layerOf(1 << 17, 1 << 17, 40, random);
     for (const Vertex vertex : livingVertices(layer.mesh())) {
@@ -69,7 +69,7 @@ TEST(Layer, StaysLevelBitByBit) {
     }
 }
 
-TEST(Layer, KeepsAnInclinedPlaneWithinRounding) {
+TEST(VertexSand, KeepsAnInclinedPlaneWithinRounding) {
     std::mt19937 random(4);
     VertexSand layer = layerOf(3000, 2000, 40, random);
     const auto plane = [&layer](Vertex vertex) {
@@ -94,7 +94,7 @@ base::Bytes bytesOf(const VertexSand& layer) {
     return writer.take();
 }
 
-TEST(Layer, ReadsNoFurtherThanItsEnd) {
+TEST(VertexSand, ReadsNoFurtherThanItsEnd) {
     std::mt19937 random(6);
     VertexSand layer = layerOf(500, 400, 60, random);
     pile(layer, random, 1 << 20);
@@ -111,7 +111,7 @@ TEST(Layer, ReadsNoFurtherThanItsEnd) {
 }
 
 /// Every byte in turn cut off or changed: refused, or a layer that is a sound one.
-TEST(Layer, RefusesDamagedBytesOrReadsAnotherSoundLayer) {
+TEST(VertexSand, RefusesDamagedBytesOrReadsAnotherSoundLayer) {
     std::mt19937 random(7);
     VertexSand layer = layerOf(60, 50, 30, random);
     pile(layer, random, 1 << 20);
@@ -140,14 +140,14 @@ TEST(Layer, RefusesDamagedBytesOrReadsAnotherSoundLayer) {
     EXPECT_GT(refused, static_cast<int>(whole.size())) << "seed 7";
 }
 
-TEST(Layer, RefusesMoreSandThanItCanCount) {
+TEST(VertexSand, RefusesMoreSandThanItCanCount) {
     VertexSand layer(Mesh(1 << 18, 1 << 18));
     EXPECT_THROW(layer.setHeight(0, 1 << 30), std::overflow_error);
     layer.setHeight(0, 1 << 20);
     EXPECT_THROW(layer.add(0, std::int64_t{1} << 62), std::overflow_error);
 }
 
-TEST(Layer, IsAFunctionOfTheEditsAndNotOfTheSlots) {
+TEST(VertexSand, IsAFunctionOfTheEditsAndNotOfTheSlots) {
     std::mt19937 random(5);
     VertexSand layer = layerOf(500, 400, 60, random);
     pile(layer, random, 1 << 20);
@@ -163,4 +163,4 @@ TEST(Layer, IsAFunctionOfTheEditsAndNotOfTheSlots) {
 }
 
 }  // namespace
-}  // namespace layers
+}  // namespace vertex_sand
