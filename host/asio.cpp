@@ -1,3 +1,3 @@
 // SPDX-License-Identifier: Apache-2.0
-// Asio, compiled once for all that use it: it is most of what their units would compile.
+// Compiles Asio once. Units that use it would otherwise spend most of their compile time on it.
 #include <boost/asio/impl/src.hpp>

@@ -82,8 +82,8 @@ public:
     /// The last lines of --help.
     void footer(const std::string& text);
 
-    /// Prints --help if it is asked for, and returns whether it is. For programs that must answer it before they start
-    /// something slow; parse() answers it as well.
+    /// Prints the help text and returns true if the arguments contain --help or -h. For programs that start something
+    /// slow before parse(), which answers --help too.
     [[nodiscard]] bool answersHelp(int argc, char** argv) const;
     /// Reads the arguments. Returns the exit status with which the program has to end, after --help or after a line on
     /// stderr that says what is wrong; nullopt if the program can start.

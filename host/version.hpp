@@ -9,10 +9,10 @@
 
 namespace host {
 
-/// The release that this build is of, such as "0.2.0": the version in the topmost CMakeLists.txt.
+/// The release of this build, such as "0.2.0": the version in the topmost CMakeLists.txt.
 [[nodiscard]] std::string_view release();
 
-/// Numbers of the formats and rules that a program knows, such as {"journal", 7}.
+/// Numbers of the formats and rules that a program knows, such as {"journal", 6}.
 using KnownVersions = std::vector<std::pair<std::string_view, std::uint32_t>>;
 
 /// Formats version, build id and known versions of a program, for people or as one JSON object.

@@ -287,7 +287,7 @@ base::Bytes FrameBarrier::pass(int from, const std::vector<int>& to, const base:
     if (!sends) {
         got.resize(length);
     }
-    // MPI sends from what it will not change, and has to be given as if it might.
+    // One pointer serves both directions; a rank that sends only reads from it.
     std::uint8_t* const data = sends ? const_cast<std::uint8_t*>(bytes.data()) : got.data();
     for (std::uint64_t done = 0; done < length; done += kPiece) {
         move(data + done, std::min(kPiece, length - done), kPieceTag);

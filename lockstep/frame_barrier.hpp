@@ -40,8 +40,8 @@ enum class Verdict : std::uint8_t {
 ///
 /// Every rank sends its Arrival, state hash and all, to the master by itself; the master compares and tells the
 /// verdict. All of it goes point to point, and the master polls: inside a broadcast or an allreduce of MPI a rank that
-/// has stopped cannot be told from those that wait for it, and would take the master with it. All waiting is
-/// Backoff's, so that who waits leaves the core to who draws. Main thread only.
+/// has stopped cannot be told from those that wait for it, and would take the master with it. All waits use Backoff,
+/// so that a waiting rank leaves its core to ranks that draw. Main thread only.
 class FrameBarrier {
 public:
     /// Frame messages up to this size travel whole; longer ones send their rest behind [byte].

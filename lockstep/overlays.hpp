@@ -10,7 +10,8 @@
 
 namespace lockstep {
 
-/// What a wall shows beside the sand when it is asked to (docs/operator.md). ViewState::layers has a bit for each.
+/// What a wall can show beside the sand. Documents and commands call it a layer (docs/look.md). ViewState::layers has a
+/// bit for each.
 enum class Overlay : std::uint8_t {
     wireframe,  // the triangles' edges
     hillShade,  // light and dark by slope, as maps have it
@@ -20,7 +21,7 @@ enum class Overlay : std::uint8_t {
 
 inline constexpr std::array<std::string_view, 4> kOverlayNames{"wireframe", "hill-shade", "force", "statistics"};
 
-/// Layers that are shown, as one number; all off at first.
+/// The overlays that are shown, as a bit mask; all off at first.
 class Overlays {
 public:
     constexpr Overlays() = default;

@@ -21,7 +21,7 @@ std::vector<std::string> namesOf(const lockstep::Cluster& cluster, const walls::
 
 void requireMemory(const std::vector<lockstep::RankHost>& ranks, int columns, int rows, bool tin,
                    const std::string& file) {
-    // Of a TIN the master makes the heights that its vertices are chosen from; ranks that draw need as much.
+    // The master computes the heights that a TIN's vertices are chosen from; a rank that draws needs as much memory.
     const std::int64_t bytes =
         tin ? std::int64_t{sizeof(std::int32_t)} * columns * rows : sand::Replica::leastBytes(columns, rows);
     if (const auto lack = lockstep::lackOfMemory(ranks, bytes)) {
@@ -52,7 +52,7 @@ void requireMemoryOfJournal(const std::vector<lockstep::RankHost>& ranks, const 
     if (rules.tin == 0) {
         requireMemory(ranks, rules.columns, rules.rows, false, journal.string());
     } else {
-        // The journal holds no more of a TIN than its vertices: a small part of what a replica takes.
+        // A journal holds only a TIN's vertices, a small part of what a replica takes, so the scene may be decoded.
         requireMemory(ranks, sceneOf(reader), journal.string());
     }
 }
@@ -60,7 +60,7 @@ void requireMemoryOfJournal(const std::vector<lockstep::RankHost>& ranks, const 
 void requireFolder(const std::filesystem::path& out) {
     std::error_code none;
     if (std::filesystem::exists(out, none) && !std::filesystem::is_directory(out, none)) {
-        throw base::InputError(fmt::format("{}: is a file, and --out names a folder; choose another", out.string()));
+        throw base::InputError(fmt::format("{}: is not a folder, and --out must be one; choose another", out.string()));
     }
 }
 

@@ -19,14 +19,14 @@ namespace master {
 /// Throws base::InputError unless every host has memory for the replicas of its ranks, and for what those that draw a
 /// TIN keep of its nominal cells. `file` is the scene's.
 void requireMemory(const std::vector<lockstep::RankHost>& ranks, const scene::Scene& scene, const std::string& file);
-/// The same of a height field of this size, which need not be made for it. `tin`: a TIN is made of it, whose vertices
-/// are not known yet; every rank needs a height for each nominal cell.
+/// Checks the size of a height field before it is made. With `tin` it becomes a TIN whose vertices are not known yet;
+/// every rank then needs a height for each nominal cell.
 void requireMemory(const std::vector<lockstep::RankHost>& ranks, int columns, int rows, bool tin,
                    const std::string& file);
-/// The same of the sand in a journal, before it is made. Throws base::InputError for a journal that cannot be read.
+/// Checks the sand in a journal before it is made. Also throws base::InputError if the journal cannot be read.
 void requireMemoryOfJournal(const std::vector<lockstep::RankHost>& ranks, const std::filesystem::path& journal);
 
-/// Throws base::InputError where --out names something that is there and is no folder.
+/// Throws base::InputError if `out` exists and is not a folder.
 void requireFolder(const std::filesystem::path& out);
 
 /// Throws base::InputError for the first rank that cannot take part, in its own words; prints what the others cannot

@@ -47,7 +47,7 @@ Relaxed bySettle(const sand::HeightField& start, const sand::Rules& rules) {
     return result;
 }
 
-/// The end of a relaxation by the method of this name.
+/// Relaxes `start` to rest by the method of this name.
 Relaxed relax(const std::string& method, const sand::HeightField& start, const sand::Rules& rules) {
     if (method == "N4") {
         return byFourNeighbours(start, rules);

@@ -16,7 +16,7 @@ void fluxesBetween(const std::int32_t* __restrict from, const std::int32_t* __re
     }
 }
 
-/// Gives a row of cells what passed its faces. Returns 0 if nothing did.
+/// Applies the fluxes to a row of cells. Returns 0 if no sand flowed east or north from it.
 std::int32_t addUp(const std::int32_t* __restrict east, const std::int32_t* __restrict south,
                    const std::int32_t* __restrict north, int count, std::int32_t* __restrict heights) {
     std::int32_t moved = 0;
@@ -31,7 +31,7 @@ std::int32_t addUp(const std::int32_t* __restrict east, const std::int32_t* __re
 
 bool sweep(const IntegerN4Sweep& patch) {
     std::int32_t moved = 0;
-    // A row changes once the fluxes to the row north of it are known, which is still as it was then.
+    // A row changes only after the fluxes to the row north of it are known, while that row still has its old heights.
     for (int y = 0; y < patch.rows; ++y) {
         const std::ptrdiff_t row = y * patch.stride;
         std::int32_t* const heights = patch.heights + row;

@@ -53,14 +53,15 @@ public:
     IntegerN4(const IntegerN4&) = delete;
     IntegerN4& operator=(const IntegerN4&) = delete;
 
-    /// Runs at most `count` sweeps, fewer when nothing moves any more. The sweep that finds nothing to move counts.
+    /// Runs at most `count` sweeps, fewer when nothing moves any more. The last sweep, in which nothing moves, counts
+    /// too.
     void sweep(int count) {
         for (int i = 0; i < count && !atRest_; ++i) {
             atRest_ = !(v3_ ? v3::sweep(patch_) : baseline::sweep(patch_));
             ++sweepsDone_;
         }
     }
-    /// Adds what passed every face in the last sweep.
+    /// Adds the fluxes of the last sweep to `sum`.
     void addFluxes(sand::grid::NetFlux& sum) const {
         for (int y = 0; y < field_.rows(); ++y) {
             for (int x = 0; x < field_.columns(); ++x) {

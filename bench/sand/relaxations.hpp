@@ -29,11 +29,11 @@ inline constexpr double kTalus = 0.6745;  // 34 degrees, as the scenes have
 /// A way to bring sand to rest: ours, or one in common use.
 struct Method {
     std::string name;
-    bool integers;  // comes to rest by itself, where floats may creep for ever
+    bool integers;  // counts in integers, and so comes to rest; floats may creep for ever
     std::function<std::unique_ptr<Relaxation>(const sand::HeightField&, const sand::Rules&)> start;
 };
 
-/// Everything a pile can be relaxed with, integers first.
+/// Every method that can relax a pile, those in integers first.
 [[nodiscard]] std::vector<Method> allMethods();
 /// The ones whose name is in `names`, in that order. Throws std::logic_error for a name that no method has.
 [[nodiscard]] std::vector<Method> methods(const std::vector<std::string>& names);
@@ -50,7 +50,7 @@ std::int64_t sweepToRest(sand::HeightField& field, const sand::Rules& rules);
 /// "x86-64-v3" or "baseline": what the sweeps run with on this machine.
 [[nodiscard]] const char* codePath();
 
-inline constexpr int kMostSweeps = 1 << 22;      // no method in integers needs as many
+inline constexpr int kMostSweeps = 1 << 22;      // more than any method in integers needs
 inline constexpr float kFloatTolerance = 1e-6F;  // [cell]: a baseline stops when nothing moves further in a sweep
 
 }  // namespace bench

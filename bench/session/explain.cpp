@@ -91,7 +91,7 @@ void explainMemory(const scene::Scene& scene, Explanation& rows) {
 void explainRules(const scene::Scene& scene, Explanation& rows) {
     const sand::Rules& rules = scene.rules;
     const bool grid = scene.tin == nullptr;
-    rows.rule("flux over a TIN's edges", !grid, "only with [tin]: the scene's module is loaded");
+    rows.rule("flux over a TIN's edges", !grid, "only with [tin]");
     rows.rule("isotropic flux with inertia", grid && rules.scheme == sand::Scheme::isotropic, "scheme = g");
     rows.rule("layer limiter", scene.ground != nullptr, "only with bedrock or walls");
     rows.rule("non-square cells", rules.aspect != sand::kUnitsPerCell,

@@ -92,7 +92,7 @@ public:
     Client& operator=(const Client&) = delete;
 
     [[nodiscard]] LinkStatus link() const;
-    /// Makes the server the sequencer of `epoch` from its next step, stepNumber + 1, on. `state` is
+    /// Lets the server number the steps of `epoch`, from stepNumber + 1 on. `state` is
     /// sand::Replica::encodeState() at stepNumber, sent only when the server's replica is elsewhere, and not on the
     /// way of the steps in `recent`. Drops steps that were not drained. Without effect unless the link is offered.
     void grant(std::uint32_t epoch, std::uint64_t stepNumber, std::uint64_t stateHash, base::Bytes state,

@@ -27,12 +27,13 @@ struct TimingTests {
     std::uint32_t seed = 7;
 };
 
-/// The streaming thread: takes masters in, one at a time, and carries the sequencer's steps to them and to watchers.
+/// The streaming thread: accepts masters, one at a time, and sends the sand thread's steps to the master and to
+/// watchers.
 ///
 /// Everything runs on the thread that runs `io`. A master that leaves, breaks or sends garbage ends its own link and
-/// nothing else; the next one may come. Who has not proved what the server asks for costs little: kMaxGuests of them
-/// at once, of whom the oldest goes when another comes, kMaxGuestsOfOne of one address beyond this machine, and as
-/// often as GuestLimits lets them.
+/// nothing else; the next one may come. A guest is a connection before its welcome. There
+/// are at most kMaxGuests at once, and the oldest is closed when another comes; at most kMaxGuestsOfOne come from one
+/// address beyond this machine; GuestLimits bounds how often they come.
 class Listener {
 public:
     struct Sources {
@@ -49,7 +50,7 @@ public:
              std::uint32_t stepsPerSecond, Sources sources, TimingTests tests = {}, LinkSecurity security = {});
     ~Listener();
 
-    /// What the sequencer calls on its own thread; hands over to this one.
+    /// Callbacks for the sand thread. Each hands its call over to the streaming thread.
     [[nodiscard]] SandThread::Output output();
     /// Masters are taken in from now on.
     void serve(SandThread& sandThread);
@@ -87,7 +88,7 @@ private:
     GuestLimits limits_;
     RefusalLog refusals_;
     std::uint32_t sessions_ = 0;
-    std::list<std::shared_ptr<Peer>> guests_;  // who has not been welcomed yet, the oldest first
+    std::list<std::shared_ptr<Peer>> guests_;  // not welcomed yet, the oldest first
     std::shared_ptr<int> connections_ = std::make_shared<int>(0);
     bool shutting_ = false;
 };

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kLongestRelease = 32;  // [byte]
 
-/// Whether a release may be called that: the text stands in a message, and may come from anybody's file.
+/// Returns whether `text` can be the name of a release. It is printed in messages and may come from a hostile file.
 bool isReleaseName(std::string_view text) {
     return !text.empty() && text.size() <= kLongestRelease && std::all_of(text.begin(), text.end(), [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '-' ||
@@ -22,7 +22,7 @@ bool isReleaseName(std::string_view text) {
 }
 
 std::string refusalOf(const FileKind& kind, const FileOrigin& origin) {
-    // A build before a release bears that release's number, and need not write the formats of the release.
+    // A development build has the number of the next release, and may write other formats than that release.
     const std::string advice = origin.release == host::release()
                                    ? fmt::format("another build of {} wrote it, or it is damaged", origin.release)
                                    : fmt::format("use sandwall {}", origin.release);
@@ -42,17 +42,17 @@ void writeOrigin(const FileKind& kind, base::ByteWriter& writer) {
 
 FileOrigin readOrigin(const FileKind& kind, base::ByteReader& reader) {
     if (reader.get<std::uint32_t>() != kind.magic) {
-        throw ForeignFile(fmt::format("no {} of Sandwall", kind.name));
+        throw ForeignFile(fmt::format("not a Sandwall {} file", kind.name));
     }
     FileOrigin origin;
     origin.format = reader.get<std::uint32_t>();
     if (origin.format < kind.firstFormat) {
-        throw ForeignFile("written before release 0.2.0, which no release reads; run the session again");
+        throw ForeignFile("written before release 0.2.0; no release reads it; run the session again");
     }
     origin.algorithm = reader.get<std::uint32_t>();
     origin.release = reader.getText();
     if (!isReleaseName(origin.release)) {
-        throw base::FormatError("it names no release that wrote it");
+        throw base::FormatError("its origin names no release");
     }
     if (origin.format != kind.format || origin.algorithm != sand::kAlgorithmVersion) {
         throw ForeignFile(refusalOf(kind, origin));

@@ -10,8 +10,8 @@
 
 namespace master {
 
-/// Who wrote a file of a session, and how. Journals, checkpoints and saved sand begin with it, behind their magic
-/// number (docs/journal.md).
+/// Which release wrote a file, in which format and with which algorithm. In journals, checkpoints and saved sand it
+/// follows the magic number (docs/journal.md).
 struct FileOrigin {
     std::uint32_t format = 0;
     std::uint32_t algorithm = 0;  // sand::kAlgorithmVersion
@@ -22,20 +22,20 @@ struct FileOrigin {
 struct FileKind {
     std::string_view name;  // such as "journal"
     std::uint32_t magic = 0;
-    std::uint32_t format = 0;       // this release writes it, and reads no other
-    std::uint32_t firstFormat = 0;  // of release 0.2.0; a file of a lower one holds no origin
+    std::uint32_t format = 0;       // the one format that this release writes and reads
+    std::uint32_t firstFormat = 0;  // release 0.2.0's; files of lower formats have no origin
 };
 
-/// A file of another kind, or one that only another release can read. The line says which.
+/// Thrown for a file of another kind, and for one that only another release can read. The text says which.
 class ForeignFile : public base::FormatError {
 public:
     using base::FormatError::FormatError;
 };
 
-/// Magic number and origin of a file that this program writes.
+/// Writes the magic number and this program's origin.
 void writeOrigin(const FileKind& kind, base::ByteWriter& writer);
-/// Reads magic number and origin of a file that this program can read. Throws ForeignFile, or base::FormatError for an
-/// origin that is cut short or damaged, in words that follow the file's name.
+/// Reads the magic number and the origin. Throws ForeignFile if this program cannot read such a file, and another
+/// base::FormatError if the origin is cut short or damaged. The caller puts the file's name before the text.
 [[nodiscard]] FileOrigin readOrigin(const FileKind& kind, base::ByteReader& reader);
 
 }  // namespace master

@@ -170,7 +170,7 @@ base::Bytes encodeHeader(const JournalHeader& header, std::uint64_t& chain) {
 
 namespace {
 
-/// What stands behind the origin.
+/// Decodes what follows the origin.
 void decodeRest(JournalHeader& header, base::ByteReader& reader, std::span<const std::uint8_t> all,
                 std::uint64_t& chain) {
     header.part = reader.get<std::uint32_t>();

@@ -55,7 +55,7 @@ using JournalRecord =
 
 /// What a journal's file begins with.
 struct JournalHeader {
-    FileOrigin origin;          // of a header that was read; encodeHeader writes that of this program
+    FileOrigin origin;          // as read; encodeHeader() writes this program's instead
     std::uint64_t session = 0;  // a number that no other session has
     std::uint32_t part = 1;
     std::uint64_t continues = 0;  // checksum of the last record of the part before; 0 in the first
@@ -65,7 +65,7 @@ struct JournalHeader {
     std::optional<scene::Material> material;  // as the operator knows it; none in later parts
 };
 
-/// Of a journal whose header is cut off or damaged.
+/// Thrown for a journal whose header is cut off or damaged.
 class HeaderLost : public base::FormatError {
 public:
     using base::FormatError::FormatError;
@@ -73,7 +73,7 @@ public:
 
 /// With its checksum, which begins the chain of the records behind it.
 [[nodiscard]] base::Bytes encodeHeader(const JournalHeader& header, std::uint64_t& chain);
-/// Throws HeaderLost or ForeignFile, in words that follow a file's name. The scene is not looked into.
+/// Throws HeaderLost or ForeignFile; the caller puts the file's name before the text. Does not decode the scene.
 [[nodiscard]] JournalHeader decodeHeader(base::ByteReader& reader, std::uint64_t& chain);
 
 /// One whole record; `chain` is the checksum of the one before, and then its own.
@@ -83,8 +83,8 @@ public:
 /// Of type and payload of a record.
 [[nodiscard]] std::uint64_t recordChecksum(std::span<const std::uint8_t> body, std::uint64_t chain);
 
-/// Whether a whole record stands anywhere behind the first byte of `rest`, which begins with one that is not: then the
-/// file was damaged, and not only cut off. `chain` is the checksum before `rest`.
+/// Returns whether an intact record follows anywhere in `rest`, which begins with a broken one. If so, the file was
+/// damaged and not only cut off. `chain` is the checksum before `rest`.
 [[nodiscard]] bool holdsRecords(std::span<const std::uint8_t> rest, std::uint64_t chain);
 
 inline constexpr std::size_t kAroundPayload = sizeof(std::uint32_t) + 1 + sizeof(std::uint64_t);  // [byte]

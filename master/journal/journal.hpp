@@ -25,12 +25,12 @@ struct Journal {
     std::int64_t tornBytes = 0;     // at the end of the last part, behind the last whole record; left out
 };
 
-/// Throws base::InputError for a file that is missing, no journal, of a release with another format or algorithm, or
-/// damaged before its end, and for a journal of whose parts one is missing.
+/// Throws base::InputError if the file is missing, is not a journal, has another format or algorithm, or is damaged
+/// before its end, and if one of its parts is missing.
 [[nodiscard]] Journal readJournal(const std::filesystem::path& file);
-/// Of the header. Throws base::InputError.
+/// Decodes the scene in the header. Throws base::InputError.
 [[nodiscard]] scene::Scene sceneOf(const JournalReader& reader);
-/// The rules of that scene, read without its heights. Throws base::InputError.
+/// Decodes only the rules of that scene, not its heights. Throws base::InputError.
 [[nodiscard]] sand::Rules rulesOf(const JournalReader& reader);
 
 }  // namespace master

@@ -27,8 +27,8 @@ struct JournalPlace {
 /// Reads a session record by record, from part to part. Holds one record at a time. One thread.
 class JournalReader {
 public:
-    /// Throws base::InputError for a file that is missing, no journal, a later part, of a release with another format
-    /// or algorithm, or with a damaged header.
+    /// Throws base::InputError if the file is missing, is not a journal, is a later part, has another format or
+    /// algorithm, or has a damaged header.
     explicit JournalReader(std::filesystem::path journal);
 
     [[nodiscard]] const JournalHeader& header() const { return header_; }

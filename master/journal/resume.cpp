@@ -103,7 +103,7 @@ void requireScene(const JournalReader& reader, const std::string& file) {
                         "that one, or choose another --out",
                         file, reader.place().journal.string()));
     };
-    // One of another size is refused before its heights are made.
+    // A scene of another size is refused before its heights are made.
     const auto otherSize = [&, rules = rulesOf(reader)](int columns, int rows, bool tin) {
         if (columns != rules.columns || rows != rules.rows || tin != (rules.tin != 0)) {
             fail();

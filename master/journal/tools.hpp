@@ -19,8 +19,8 @@ void sayWhatIsMissing(const std::filesystem::path& journal, std::int64_t tornByt
 /// Every step as a row of a CSV file (docs/journal.md). Says on standard error what the journal lacks.
 void exportSteps(const std::filesystem::path& journal, const std::filesystem::path& file);
 
-/// Writes what is intact of a journal as a journal of its own, and says on standard output what is lost. Refuses a file
-/// that is there.
+/// Writes the intact part of a journal as a new journal, and prints on standard output what is lost. Refuses to
+/// overwrite a file.
 void recoverJournal(const std::filesystem::path& journal, const std::filesystem::path& file);
 
 }  // namespace master

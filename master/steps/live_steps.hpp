@@ -52,7 +52,7 @@ public:
     /// The server's replica holds other sand than the wall: it is let go, and starts again from the wall's state.
     void distrustServer();
 
-    /// A fault of the link on purpose: garbage, or a partition. It befalls the link when there is one.
+    /// Injects a fault into the link: garbage, or a partition. Waits until there is a link.
     void drill(const lockstep::Fault& fault) { drills_.push_back(fault); }
 
     /// Whether steps are still awaited from a server that has only just started.

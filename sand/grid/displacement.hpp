@@ -25,7 +25,8 @@ struct Obstacle {
     }
 };
 
-/// A tool in the sand: it takes out what lies above its underside and puts it down ahead (first paper, section 3).
+/// Moves a tool through the sand of a grid: takes out what lies above its underside and puts it down ahead (first
+/// paper, section 3).
 class Displacement {
 public:
     /// `v3`: with instructions of x86-64-v3, for the same results.

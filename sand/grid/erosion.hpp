@@ -29,7 +29,7 @@ enum class CodePath : std::uint8_t { automatic, baseline };
 ///
 /// The default law has inertia: with a the difference across a face, m the slope and t the threshold,
 /// q = M q_last + p (1 - t²/m²) a, cut to [0, k a]. The proofs need only the cut. Sand at rest starts to slide where
-/// plain G would, and the pile is G's to the third digit, in a tenth of the sweeps. M = n / (n + 25), at most 0.9, in
+/// plain G would. The pile is plain G's to the third digit, in a tenth of the sweeps. M = n / (n + 25), at most 0.9, in
 /// the n-th sweep since touch(): a pile so small that it rests early meets little inertia, and does not overshoot.
 ///
 /// Only blocks in which sand flows, and of their neighbours those beside whose border it does, are swept again: settled

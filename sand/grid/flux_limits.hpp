@@ -9,9 +9,8 @@
 
 namespace sand::grid {
 
-/// What holds the sand of one patch: a tool above it, the rock and the walls around it. Copies of a few numbers per
-/// cell, made for a patch that needs them and for the length of one sweep. All of them cover the patch's cells grown by
-/// one on every side, row by row.
+/// What limits the fluxes of one patch: the tool above it, rock and walls. Copies of a few numbers per cell, made only
+/// for a patch that needs them, for one sweep. Each covers the patch's cells and one more on every side, row by row.
 class FluxLimits {
 public:
     std::vector<std::int32_t> heights;  // [unit], walls raised above everything; only with a ground

@@ -29,7 +29,7 @@ public:
     [[nodiscard]] std::int32_t height(int column, int row) const { return cells_.row(row)[column]; }  // [unit]
     void setHeight(int column, int row, std::int32_t height) { cells_.row(row)[column] = height; }    // [unit]
 
-    /// As Grid's.
+    /// The first cell of a row; row -1 and row `rows` are ghost cells, as in CellArray.
     [[nodiscard]] const std::int32_t* row(int row) const { return cells_.row(row); }
     [[nodiscard]] std::int32_t* row(int row) { return cells_.row(row); }
     [[nodiscard]] std::ptrdiff_t stride() const { return cells_.stride(); }

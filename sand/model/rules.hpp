@@ -14,10 +14,10 @@ namespace sand {
 /// Changes with anything that changes what a step does to the sand; replicas of different versions refuse each other.
 inline constexpr std::uint32_t kAlgorithmVersion = 6;
 
-/// sand/grid/erosion.hpp states both laws. The documents call isotropic G, and plainIsotropic plain G.
+/// docs/sand.md states both laws. The documents call `isotropic` G and `plainIsotropic` plain G.
 ///
-/// The numbers enter digests, messages, journals and checkpoints: no scheme ever gets another one. 1 belonged to a
-/// scheme that is gone; decode() refuses it.
+/// The numbers enter digests, messages, journals and checkpoints, so a scheme keeps its number for good. Number 1
+/// belonged to a scheme that was removed; decode() refuses it.
 enum class Scheme : std::uint8_t { isotropic = 0, plainIsotropic = 2 };
 
 struct NamedScheme {

@@ -58,8 +58,9 @@ void encodeDetails(const Edit& edit, base::ByteWriter& writer);
 
 /// The only thing that changes sand: where the hand has been since the step before, and what an operator asked.
 ///
-/// `number` counts 1, 2, 3 … over a whole session; `epoch` names who numbered it (one sequencer per epoch). The path
-/// starts at the last point of the step before and may be empty (the hand rests); at most kMaxPathPoints.
+/// `number` counts 1, 2, 3 … over a whole session. In one `epoch` either the master or the haptic server numbers all
+/// steps. The path starts at the last point of the step before and may be empty (the hand rests); at most
+/// kMaxPathPoints.
 struct Step {
     std::uint32_t epoch = 0;
     std::uint64_t number = 0;

@@ -12,7 +12,7 @@ inline constexpr std::int32_t kLargestThreshold = 1 << 30;     // [unit]; differ
 inline constexpr std::int32_t kLargestToolRadius = 2048 << 8;  // [probe unit], 2048 cells
 inline constexpr std::int32_t kMostSweeps = 4096;              // per step
 
-/// A tool as rules name it. Encoded as its radius alone where it is a sphere that heads east, else as −1 − radius,
+/// The tool of the rules. A sphere that heads east is encoded as its radius alone; any other tool as −1 − radius,
 /// kind, half width and heading.
 struct ToolRules {
     ToolShape shape;

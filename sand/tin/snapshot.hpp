@@ -12,7 +12,7 @@
 
 namespace sand::tin {
 
-/// What of a TIN is state beside its layer.
+/// The state of a TIN beside its VertexSand.
 struct TinState {
     Imprint imprint;           // of the tool that stands in it
     Vertex nextToGo = 0;       // where coarsening goes on
@@ -37,7 +37,7 @@ public:
     [[nodiscard]] const TinState& state() const { return state_; }
 
 private:
-    base::Bytes plain_;  // the layer
+    base::Bytes plain_;  // the VertexSand, encoded
     std::shared_ptr<const Holes> holes_;
     TinState state_;
 };

@@ -18,7 +18,7 @@
 
 namespace sand::tin {
 
-/// Sand as a TIN: a layer, a tool that stands in it, and sand that slides.
+/// Sand as a TIN: its VertexSand, a tool that stands in it, and erosion.
 class TinSurface final : public Surface {
 public:
     TinSurface(const Rules& rules, std::shared_ptr<const TinStart> start);
@@ -67,7 +67,7 @@ public:
 
 private:
     [[nodiscard]] Displacement& displacementOf(const HeldTool& tool);
-    /// Tells hash, erosion and whoever draws what the layer has become.
+    /// Tells hash, erosion, undo and the painter which part of the mesh has changed.
     void meshChanged();
     /// So that hardly a step makes what is kept for every vertex move in memory.
     void reserve();

@@ -9,8 +9,8 @@
 
 namespace sand::tin {
 
-/// A hash of a layer that costs only what changed: the sum, modulo 2^64, of one number for every vertex, from its own
-/// number, its place and its volume, one for every constraint, and one for the state beside the layer.
+/// A hash of a TIN's sand that costs only what changed: the sum, modulo 2^64, of one number for every vertex, from its
+/// own number, its place and its volume, one for every constraint, and one for the TinState.
 ///
 /// A vertex belongs to the hash tile of its number; the last tile is the constraints' and the state's.
 class TileHash final : public HashTiles {
@@ -29,7 +29,7 @@ public:
     /// Hashes the next tile again from memory.
     void auditNext(const VertexSand& layer);
 
-    /// None: which vertices a tile holds says nothing of where they lie.
+    /// Always empty: the vertices of a tile can lie anywhere.
     [[nodiscard]] CellRect cellsOf(int) const override { return {}; }
     [[nodiscard]] static std::vector<std::int32_t> valuesOf(const VertexSand& layer, int tile);
 

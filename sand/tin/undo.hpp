@@ -12,13 +12,13 @@
 
 namespace sand::tin {
 
-/// A layer as it was when it was kept, for an undo: keeping it again costs what has changed since, and not the whole
-/// mesh, for every stroke of a hand begins with it. Bytes are made when somebody asks for them. Not thread-safe.
+/// The sand of a TIN before a stroke, for an undo. Every stroke begins with keep(), so keep() costs only what has
+/// changed since the last one. copy() makes the bytes. Not thread-safe.
 class Undo {
 public:
     /// Nothing is kept yet.
     explicit Undo(const VertexSand& layer) { replaced(layer); }
-    /// The layer is another one now; what is kept stays. Costs the whole.
+    /// The sand was replaced as a whole; what is kept stays. Costs the whole mesh.
     void replaced(const VertexSand& layer);
 
     void reserve(std::size_t vertices) {

@@ -8,12 +8,12 @@
 
 namespace scene {
 
-/// Looks at the size of a height field before its heights are made, and throws if there is no room for it. `tin`: a TIN
-/// is made of it, and these are its nominal cells.
+/// Receives the size of a height field before its heights are made, and throws if it does not fit the memory. With
+/// `tin`, a TIN is made of it and these are its nominal cells.
 using FieldCheck = std::function<void(int columns, int rows, bool tin)>;
 
 /// Reads a scene file. Throws base::InputError with file, line and key; a DEM's errors name the DEM's line.
-/// `check` is called once, unless the terrain is points, of which no field is made.
+/// Calls `check` once, but never for a terrain of points, which makes no field.
 [[nodiscard]] Scene loadScene(const std::filesystem::path& file, const FieldCheck& check = {});
 
 }  // namespace scene

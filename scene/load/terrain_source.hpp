@@ -28,8 +28,8 @@ struct TerrainSource {
 
 /// Reads the keys of one of sourceKinds() in [terrain], and of [field] for a function, which says how many cells there
 /// are. `kind` is its index. Throws base::InputError with file, line and key; what is wrong in another file names
-/// that. Loads GDAL or muParser where the kind needs them. Where [field] says how many cells there are, `check`, unless
-/// empty, is called before heights are computed.
+/// that. Loads GDAL or muParser where the kind needs them. Of a function, calls `check`, unless empty, before the
+/// heights are computed.
 [[nodiscard]] TerrainSource readSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind,
                                        const FieldCheck& check = {});
 

@@ -35,7 +35,7 @@ TEST_F(BadInput, OfTheMasterIsNamed) {
                   "--inject slow:rank=9,ms=30");
 }
 
-// "SWJL" and version 5: a journal of before release 0.2.0, which no program reads.
+// "SWJL" and format 5: a journal from before release 0.2.0, which no program reads.
 TEST_F(BadInput, AJournalThatNoReleaseReadsIsRefusedByTheMaster) {
     std::filesystem::create_directories(out());
     const std::string journal = write("out/session.journal", {'S', 'W', 'J', 'L', 5, 0, 0, 0, 1, 0, 0, 0});

@@ -79,16 +79,16 @@ TEST_F(WallStatistics, TravelOnlyWhileTheyAreShown) {
 struct ThreadTimes {
     double ran = 0;      // on a core
     double queued = 0;   // ready to run, while others had the cores
-    double counted = 0;  // since an instant that all threads share
+    double counted = 0;  // the clock of the measurement, the same for all threads
 
-    /// Between then and now, the part of the time outside the queue in which it ran: 1 for a thread that spins, however
-    /// many others want the cores.
+    /// The share of the time since `then`, without the time in the queue, in which the thread ran: 1 for a thread that
+    /// spins, however busy the machine is.
     [[nodiscard]] double busySince(const ThreadTimes& then) const {
         return (ran - then.ran) / (counted - then.counted - (queued - then.queued));
     }
 };
 
-/// By the threads' numbers.
+/// By thread number.
 std::map<std::string, ThreadTimes> threadTimes(const std::vector<pid_t>& processes) {
     std::map<std::string, ThreadTimes> times;
     for (const pid_t pid : processes) {
@@ -105,8 +105,8 @@ std::map<std::string, ThreadTimes> threadTimes(const std::vector<pid_t>& process
 }
 
 // Ranks that waited by spinning took whatever was idle: 84 % of a core on a machine whose cores others kept busy, and
-// all cores of one of its own. Time alone would say as much of the machine as of the wall: a thread that spins runs
-// whenever the machine lets it, and one that sleeps does not.
+// all cores of one of its own. Processor time alone would depend on how busy the machine is. A thread that spins runs
+// for all of the time that it does not queue for a core; a thread that sleeps, for little of it.
 TEST_F(WallStatistics, AStillWallLeavesTheCoresIdle) {
     const auto session = start(stillWall(2, 3, {"--frames", "100000", "--no-pictures"}));
     const auto reached = [&](int frame) {

@@ -87,7 +87,7 @@ TEST_F(StartUpFiles, AFileInPlaceOfTheFolderForResultsIsRefused) {
     EXPECT_EQ(refused(), "nothing");
     std::filesystem::remove(out);
     std::ofstream(out) << "text";
-    EXPECT_EQ(refused(), out.string() + ": is a file, and --out names a folder; choose another");
+    EXPECT_EQ(refused(), out.string() + ": is not a folder, and --out must be one; choose another");
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ std::uint8_t bitOf(const Triangles& mesh, TriangleSide side) {
     return static_cast<std::uint8_t>(1 << (side.corner - least + 3) % 3);
 }
 
-constexpr std::size_t kSweepsToForget = 5;  // of all sand: what it costs to forget some of it
+constexpr std::size_t kSweepsToForget = 5;  // of all active sand take as long as forgetting some of it
 
 }  // namespace
 

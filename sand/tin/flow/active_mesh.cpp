@@ -15,7 +15,7 @@ void note(std::vector<std::uint8_t>& together, std::size_t number, bool held) {
     together.back() = together.back() != 0 || held ? 1 : 0;
 }
 
-/// Keeps those values of each array, whose places are given in ascending order.
+/// Keeps the values at these places in each array. The places are ascending.
 template <class... Values>
 void keepMarked(const std::vector<std::int32_t>& kept, std::vector<Values>&... arrays) {
     const auto keep = [&](auto& values) {
@@ -27,7 +27,7 @@ void keepMarked(const std::vector<std::int32_t>& kept, std::vector<Values>&... a
     (keep(arrays), ...);
 }
 
-/// Numbers what is marked, and returns where it was.
+/// Replaces each mark by its new number, and returns the old place of each number.
 std::vector<std::int32_t> numberMarked(std::vector<std::int32_t>& marks) {
     std::vector<std::int32_t> kept(marks.size());
     std::int32_t count = 0;
@@ -282,7 +282,7 @@ ActiveMesh::Renumbering ActiveMesh::keep(const Marks& kept) {
             now.vertices[index(first_[i])] = now.vertices[index(second_[i])] = now.vertices[index(third_[i])] = 0;
         }
     }
-    // Slides are of the next sweep again; fluxes may go on in it.
+    // The next sweep computes sliding_ again, but fluxes_ may carry momentum into it.
     keepMarked(numberMarked(edges), from_, to_, left_, right_, leftWeights_, rightWeights_, fluxes_);
     keepMarked(numberMarked(now.facets), first_, second_, third_, squared_, mixed_, squaredAcross_, start_, bare_);
     sliding_.resize(first_.size());

@@ -13,7 +13,8 @@
 
 namespace sand::tin {
 
-/// Sand that sweeps move: vertices, facets and edges by numbers of their own, 0, 1, 2 …, side by side in memory.
+/// The part of a mesh that sweeps move: vertices, facets and edges with their own numbers, 0, 1, 2 …, side by side in
+/// memory.
 ///
 /// Volumes are whole numbers, and so are fluxes. As long as the largest star times the greatest height is below 2^51
 /// they and all their sums are exact as doubles, which processors move four at a time; beyond, they are 64-bit

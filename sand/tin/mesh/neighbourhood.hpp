@@ -37,8 +37,8 @@ struct Box {
 /// and read again, in a tenth of the time.
 void sortOnce(std::vector<std::int32_t>& numbers);
 
-/// What of a mesh lies around some place. Costs what lies there, and the way from where it was asked for last; the
-/// first time, the whole mesh.
+/// The vertices and triangles of a mesh in a box. Looking costs what lies there and the way from the last box; the
+/// first look costs the whole mesh.
 class Neighbourhood {
 public:
     void reserve(std::size_t vertices) { seen_.reserve(2 * vertices); }

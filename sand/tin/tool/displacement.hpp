@@ -15,14 +15,14 @@
 
 namespace sand::tin {
 
-using Volume = Wide;  // [volume unit of Layer]
+using Volume = Wide;  // [volume unit of VertexSand]
 
-/// A tool in the sand of a TIN (second paper): its outline's edges become constraints, its inside takes its shape and
-/// depth, and what lay above is pushed away. A function of layer, imprint and path. Not thread-safe.
+/// Moves a tool through the sand of a TIN (second paper): the outline's edges become constraints, the inside takes the
+/// tool's shape and depth, and the sand above is pushed away. A function of sand, imprint and path. Not thread-safe.
 class Displacement {
 public:
     /// Poses beyond kMaxProbe and shapes beyond kLargestToolRadius are refused by whoever decodes steps and rules.
-    /// With a neighbourhood that others use too, between two calls.
+    /// Others may use `neighbourhood` too, between two calls.
     Displacement(const ToolShape& shape, const Heading& heading, const DetailRules& rules,
                  std::shared_ptr<Neighbourhood> neighbourhood = std::make_shared<Neighbourhood>());
     [[nodiscard]] bool is(const ToolShape& shape, const Heading& heading) const {

@@ -12,7 +12,7 @@
 
 namespace sand::tin {
 
-/// What makes a layer, whatever has become of it before.
+/// Everything that a VertexSand can be made from, independent of its history.
 struct VertexSandParts {
     static constexpr Place kNowhere{-1, -1};  // where no such vertex lives
 
@@ -22,7 +22,7 @@ struct VertexSandParts {
     std::vector<std::pair<Vertex, Vertex>> constraints;  // as Mesh's
     std::shared_ptr<const Holes> holes = nullptr;        // of the start, and not among the bytes
 
-    /// Not compressed; equal layers give equal bytes.
+    /// Not compressed; equal sand gives equal bytes.
     void encode(base::ByteWriter& writer) const;
 };
 
@@ -82,8 +82,8 @@ public:
 
     [[nodiscard]] VertexSandParts parts() const;
     void encode(base::ByteWriter& writer) const { parts().encode(writer); }
-    /// Throws base::FormatError when the bytes are no layer, or none with these holes, which they do not tell. Reads
-    /// no further than its end.
+    /// Throws base::FormatError for bytes that encode() cannot have written, and for sand that does not fit these
+    /// holes, which are not among the bytes. Reads no further than its end.
     static VertexSand decode(base::ByteReader& reader, const std::shared_ptr<const Holes>& holes = nullptr);
 
 private:

@@ -47,7 +47,7 @@ public:
             }
             return std::nullopt;
         }
-        /// Returns when the client has gone.
+        /// Discards what the client sends, until it disconnects.
         void ignoreTheRest() const {
             std::array<std::uint8_t, 4096> chunk{};
             ssize_t count = 0;
@@ -91,7 +91,7 @@ private:
             setsockopt(guest.socket, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
             ++guests_;
             talk_(guest);
-            // To close while a ping is unread would reset the connection, and the client would not find its end.
+            // Closing with a ping unread would reset the connection, and the client would lose the last messages.
             shutdown(guest.socket, SHUT_WR);
             guest.ignoreTheRest();
             close(guest.socket);

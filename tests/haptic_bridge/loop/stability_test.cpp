@@ -157,7 +157,7 @@ TEST(GuardedLoop, FallsSilentWithItsSandAndWithItsDevice) {
     EXPECT_FALSE(session.sample().engaged) << "and the wall's tool hovers";
 }
 
-/// Steps of the sand as the sequencer makes them, 60 a second, between the ticks of a hand.
+/// Makes steps as the sand thread does, 60 a second, between the ticks of a hand.
 class MovingSand {
 public:
     MovingSand(const scene::Scene& scene, ArmSession& hand)

@@ -28,9 +28,9 @@ namespace {
 
 constexpr std::uint32_t kJournal = 0x4c4a5753, kCheckpoint = 0x50435753, kSand = 0x44535753;  // SWJL, SWCP, SWSD
 constexpr std::uint32_t kAlgorithm = sand::kAlgorithmVersion;
-constexpr const char* kTooOld = "written before release 0.2.0, which no release reads; run the session again";
+constexpr const char* kTooOld = "written before release 0.2.0; no release reads it; run the session again";
 
-/// Journals, checkpoints and saved sand, and what is said of those that this release does not read.
+/// Journals, checkpoints and saved sand, and the refusal of those that this release does not read.
 class OriginOfFiles : public test::FolderTest {
 protected:
     [[nodiscard]] std::string nameOf(std::uint32_t magic) const {
@@ -43,7 +43,7 @@ protected:
         std::ofstream(nameOf(magic), std::ios::binary)
             .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     }
-    /// A file that begins like this. Nothing of what follows may matter.
+    /// Writes a file that begins with this origin. The bytes after it must not matter.
     void begin(std::uint32_t magic, std::uint32_t format, std::uint32_t algorithm, const std::string& release) const {
         base::ByteWriter writer;
         for (const std::uint32_t number : {magic, format, algorithm}) {
@@ -53,7 +53,7 @@ protected:
         writer.putBytes(base::Bytes(100, 7));
         write(magic, writer.take());
     }
-    /// Writes a whole file as this release does, and gives its bytes.
+    /// Writes a whole file as this release does, and returns its bytes.
     [[nodiscard]] base::Bytes writeWhole(std::uint32_t magic) const {
         sand::Replica terrain(scene_);
         const std::uint64_t hash = terrain.stateHash();
@@ -67,7 +67,7 @@ protected:
         std::ifstream stream(nameOf(magic), std::ios::binary);
         return {std::istreambuf_iterator<char>(stream), {}};
     }
-    /// What is said of a file, without its name; empty when it is read.
+    /// The error message for a file, without its name; empty if the file is read.
     [[nodiscard]] std::string refusal(std::uint32_t magic) const {
         try {
             if (magic == kJournal) {
@@ -78,7 +78,7 @@ protected:
                 (void)master::readCheckpoint(nameOf(magic));
             }
         } catch (const base::FormatError& error) {
-            return error.what();  // a checkpoint's: its reader adds the name, and does without it
+            return error.what();  // of a checkpoint: the session adds the name, and goes on without it
         } catch (const base::InputError& error) {
             const std::string line = error.what(), name = nameOf(magic) + ": ", end = "; nothing was loaded";
             EXPECT_TRUE(line.starts_with(name)) << line;
@@ -151,11 +151,11 @@ TEST_F(OriginOfFiles, OfBeforeTheFirstReleaseIsReadByNone) {
 TEST_F(OriginOfFiles, ThatCannotBeReadIsNotQuoted) {
     for (const std::string& release : {std::string(), std::string("0.3\n0"), std::string(33, '1')}) {
         begin(kCheckpoint, 3, kAlgorithm, release);
-        EXPECT_EQ(refusal(kCheckpoint), "it names no release that wrote it");
+        EXPECT_EQ(refusal(kCheckpoint), "its origin names no release");
     }
     for (const Kind& kind : kinds_) {
         write(kind.magic, base::Bytes(50, 'x'));
-        EXPECT_EQ(refusal(kind.magic), fmt::format("no {} of Sandwall", kind.name));
+        EXPECT_EQ(refusal(kind.magic), fmt::format("not a Sandwall {} file", kind.name));
     }
 }
 

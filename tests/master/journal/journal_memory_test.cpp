@@ -28,7 +28,7 @@ std::string complaintOf(const std::function<void()>& check) {
 
 class JournalMemory : public test::FolderTest {
 protected:
-    /// Writes the header of a journal, with these bytes for a scene.
+    /// Writes a journal that is only a header, with these bytes as its scene.
     std::filesystem::path journalOf(const base::Bytes& scene) {
         master::JournalHeader header;
         header.session = 1;
@@ -44,7 +44,7 @@ protected:
     const std::filesystem::path journal_ = folder_ / "session.journal";
 };
 
-// The scene ends behind its rules: whoever looked for its heights would complain of that.
+// The scene in this journal ends after its rules, so that decoding its heights would fail.
 TEST_F(JournalMemory, IsRefusedBeforeItsHeightsAreMade) {
     sand::Rules rules;
     rules.columns = rules.rows = 16384;
