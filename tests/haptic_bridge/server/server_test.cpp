@@ -276,15 +276,18 @@ TEST_F(HapticServer, SendsTimingTestsAsLongAsAStepAndCountsEachLegOnce) {
     master.send(Hello{mine});
     master.send(Start{1, 0, sand::Replica(scene_).stateHash()});
     std::size_t step = 0;
-    int tests = 0;
-    while (tests < 3) {
+    unsigned tests = 0, compared = 0;  // the first may come before there is a step
+    while (tests < 3 || compared == 0) {
         const auto message = master.receive();
         ASSERT_TRUE(message) << server.errors();
         if (std::holds_alternative<StepMessage>(*message)) {
             step = encode(*message).size();
         } else if (const auto* test = std::get_if<TimingTest>(&*message)) {
-            EXPECT_EQ(encode(*test).size(), step) << "a probe message's length";
-            EXPECT_EQ(test->id, static_cast<std::uint32_t>(++tests));
+            if (step != 0) {
+                EXPECT_EQ(encode(*test).size(), step) << "a probe message's length";
+                ++compared;
+            }
+            EXPECT_EQ(test->id, ++tests);
             master.send(TimingEcho{test->id, Leg::received});
             master.send(TimingEcho{test->id, Leg::received});
             if (tests != 2) {
@@ -302,8 +305,8 @@ TEST_F(HapticServer, SendsTimingTestsAsLongAsAStepAndCountsEachLegOnce) {
         }
     }
     ASSERT_TRUE(report);
-    EXPECT_EQ(report->toMaster.count, 3U);
-    EXPECT_EQ(report->toWall.count, 2U);
+    EXPECT_EQ(report->toMaster.count, tests);
+    EXPECT_EQ(report->toWall.count, tests - 1);
 }
 
 /// What the server printed before it gave up, expected with exit status 2.
