@@ -71,6 +71,7 @@ void checkKind(const Options& options, bool toMesh) {
 /// The values of --scheme.
 std::vector<std::string> schemes() {
     std::vector<std::string> names;
+    names.reserve(sand::kSchemes.size() + 1);
     for (const sand::NamedScheme& known : sand::kSchemes) {
         names.emplace_back(known.name);
     }

@@ -169,7 +169,7 @@ TEST_F(OriginOfFiles, ForeignJournalsEndEveryQuestionWithOneLineAndStatusTwo) {
         begin(kJournal, old ? 5 : master::kJournalVersion, kAlgorithm + 1, "9.8.7");
         for (const std::string& question :
              {std::string(), std::string("--hash"), std::string("--verify"), "--export " + made, "--recover " + made}) {
-            const support::Ran ran = support::runProgram("sandwall-replay", file + " " + question);
+            const support::Ran ran = support::runProgram("sandwall-replay", fmt::format("{} {}", file, question));
             EXPECT_EQ(ran.status, 2) << question;
             EXPECT_EQ(ran.output, fmt::format("{}: {}\n", file, old ? kTooOld : another)) << question;
         }
