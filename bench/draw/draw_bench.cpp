@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one eye of one tile costs: the twelve tiles of a 3 × 4 wall, 1024 × 768 pixels each, over dunes of 512 × 512 or
+// The cost of one eye of one tile: the twelve tiles of a 3 × 4 wall, 1024 × 768 pixels each, over dunes of 512 × 512 or
 // 2048 × 2048 cells. Set LP_NUM_THREADS to choose llvmpipe's threads (0: draw in the calling thread).
 #include <benchmark/benchmark.h>
 
@@ -142,8 +142,8 @@ BENCHMARK(dig)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
-/// A tile of the wall with what is shown beside the sand. Argument 0: Overlays::bits().
-void layers(benchmark::State& state) {
+/// A tile of the wall with its overlays. Argument 0: Overlays::bits().
+void overlays(benchmark::State& state) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     const scene::Scene scene = sample::duneScene(512);
     render_node::ScenePainter view(scene, glm::dmat4(1));
@@ -157,7 +157,7 @@ void layers(benchmark::State& state) {
         target.finish();
     }
 }
-BENCHMARK(layers)->ArgName("bits")->DenseRange(0, 3)->Iterations(30)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(overlays)->ArgName("bits")->DenseRange(0, 3)->Iterations(30)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void readBack(benchmark::State& state) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a wall's frames cost while somebody digs, apart by what it is spent on: the sand's steps, taking over what they
-// changed, and drawing it, for all tiles together and for the one that has most to do. One process, a view of the sand
-// for each tile as each rank has its own. CPU time; LP_NUM_THREADS=0 keeps all of it in this thread.
+// The cost of a wall's frames during digging, in three parts: the sand's steps, taking over their changes, and drawing.
+// For all tiles together and for the busiest one. One process holds a view of the sand for each tile, as each rank does.
+// CPU time; LP_NUM_THREADS=0 keeps all of it in this thread.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -97,7 +97,7 @@ struct Measured {
     std::vector<double> viewMs, viewTriangles, viewChunks;                     // a view
 };
 
-/// What changed of the sand, for every tile to take over.
+/// The changes of the sand that every tile takes over.
 struct Damage {
     explicit Damage(sand::Replica& terrain) {
         if (terrain.tinView() != nullptr) {
@@ -207,7 +207,7 @@ int measure(const Options& options) {
 
 int main(int argc, char** argv) {
     Options options;
-    host::CommandLine line("What a wall's frames cost while somebody digs, in CPU time.", "redraw_bench");
+    host::CommandLine line("Measures the CPU time of a wall's frames during digging.", "redraw_bench");
     line.option("--wall", options.wall, "wall file").showDefault();
     line.option("--scene", options.scene, "scene file").showDefault();
     line.option("--frames", options.frames, "how many").range(1, 100000).showDefault();

@@ -106,7 +106,8 @@ std::map<std::string, ThreadTimes> threadTimes(const std::vector<pid_t>& process
 
 // Ranks that waited by spinning took whatever was idle: 84 % of a core on a machine whose cores others kept busy, and
 // all cores of one of its own. Processor time alone would depend on how busy the machine is. A thread that spins runs
-// for all of the time that it does not queue for a core; a thread that sleeps, for little of it.
+// for all of the time that it does not queue for a core; a thread that sleeps, for little of it. All threads together
+// took 14 to 20 % of a core, on an idle machine and on a busy one, and 45 to 66 % when waits only yielded.
 TEST_F(WallStatistics, AStillWallLeavesTheCoresIdle) {
     const auto session = start(stillWall(2, 3, {"--frames", "100000", "--no-pictures"}));
     const auto reached = [&](int frame) {
@@ -121,15 +122,15 @@ TEST_F(WallStatistics, AStillWallLeavesTheCoresIdle) {
     const auto after = threadTimes(processes);
     session->type("stop");
     EXPECT_EQ(session->wait(kLong), 0) << session->output();
-    double busiest = 0;
+    double share = 0;
     for (const auto& [thread, times] : after) {
         if (const auto then = before.find(thread); then != before.end()) {
-            busiest = std::max(busiest, times.busySince(then->second));
+            share += times.busySince(then->second);
         }
     }
-    std::printf("busiest thread of a still wall: runs for %.1f %% of the time that it could\n", 100 * busiest);
-    EXPECT_GT(busiest, 0) << "measured nothing";
-    EXPECT_LT(busiest, 0.5);
+    std::printf("seven processes of a still wall: %.1f %% of one core\n", 100 * share);
+    EXPECT_GT(share, 0) << "measured nothing";
+    EXPECT_LT(share, 0.4);
 }
 
 }  // namespace

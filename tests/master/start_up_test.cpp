@@ -5,27 +5,17 @@
 
 #include <filesystem>
 #include <fstream>
-#include <functional>
 
-#include "base/input_error.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/folder_test.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace {
 
 constexpr std::int64_t kGiB = std::int64_t{1} << 30;
 
-std::string refusalOf(const std::function<void()>& check) {
-    try {
-        check();
-    } catch (const base::InputError& error) {
-        return error.what();
-    }
-    return "nothing";
-}
-
 std::string refusal(const std::vector<lockstep::RankHost>& ranks, const scene::Scene& scene) {
-    return refusalOf([&] { master::requireMemory(ranks, scene, "s.toml"); });
+    return test::refusalOf([&] { master::requireMemory(ranks, scene, "s.toml"); });
 }
 
 scene::Scene sceneOf(int side) {
@@ -67,7 +57,7 @@ TEST(StartUp, RefusesATinWhoseNominalCellsDoNotFitTheMemoryOfThoseThatDraw) {
 
 TEST(StartUp, RefusesTheHeightsThatATinIsMadeOf) {
     const auto refusalOn = [](std::int64_t free) {
-        return refusalOf([free] {
+        return test::refusalOf([free] {
             master::requireMemory({{"a", free}, {"b", 8 * kGiB}}, 16384, 16384, true, "s.toml");
         });
     };
@@ -81,7 +71,7 @@ class StartUpFiles : public test::FolderTest {};
 
 TEST_F(StartUpFiles, AFileInPlaceOfTheFolderForResultsIsRefused) {
     const std::filesystem::path out = folder_ / "out";
-    const auto refused = [&] { return refusalOf([&] { master::requireFolder(out); }); };
+    const auto refused = [&] { return test::refusalOf([&] { master::requireFolder(out); }); };
     EXPECT_EQ(refused(), "nothing") << "it can be made";
     std::filesystem::create_directory(out);
     EXPECT_EQ(refused(), "nothing");

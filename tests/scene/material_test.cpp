@@ -9,20 +9,12 @@
 #include "sand/replica.hpp"
 #include "scene/load/scene_file.hpp"
 #include "tests/scene/scene_fixture.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
 
 using sand::Edit;
-
-std::string complaintOf(const auto& act) {
-    try {
-        act();
-    } catch (const base::InputError& error) {
-        return error.what();
-    }
-    return "nothing";
-}
 
 // One way from a scene file's numbers to integers: what an operator types gives the rules that a file would.
 TEST_F(SceneFile, AnOperatorsNumbersBecomeTheRulesOfAFileThatSaysThem) {
@@ -51,10 +43,10 @@ TEST_F(SceneFile, AnOperatorsNumbersBecomeTheRulesOfAFileThatSaysThem) {
 TEST_F(SceneFile, AnOperatorsNumbersAreRefusedWhereAFileWouldBe) {
     const scene::Scene scene = scene::loadScene(write("s.toml", kFlat + "wet_talus_deg = 40\n"));
     const auto number = [&](std::string_view word, double value) {
-        return complaintOf([&] { (void)scene::withNumber(scene.material, word, value, scene.grid()); });
+        return test::refusalOf([&] { (void)scene::withNumber(scene.material, word, value, scene.grid()); });
     };
     const auto tool = [&](double radius) {
-        return complaintOf([&] { (void)scene::withTool(scene.material, {.radius = radius}, scene.grid()); });
+        return test::refusalOf([&] { (void)scene::withTool(scene.material, {.radius = radius}, scene.grid()); });
     };
     EXPECT_EQ(number("talus", 90), "talus must be within [0, 90), got 90");
     EXPECT_EQ(number("talus", 41), "wet_talus_deg must be at least talus_deg = 41, got 40");
@@ -65,7 +57,7 @@ TEST_F(SceneFile, AnOperatorsNumbersAreRefusedWhereAFileWouldBe) {
     EXPECT_EQ(tool(0).find("a tool's radius must be at least 1.53e-05, got 0"), 0U) << tool(0);
     EXPECT_NE(tool(-1), "nothing");
     const auto changed = [&](const scene::ToolChange& change) {
-        return complaintOf([&] { (void)scene::withTool(scene.material, change, scene.grid()); });
+        return test::refusalOf([&] { (void)scene::withTool(scene.material, change, scene.grid()); });
     };
     EXPECT_EQ(changed({.kind = sand::ToolKind::footprint, .radius = 1.5}),
               "a footprint of radius 1.5 is 3 long, and the field 2");

@@ -3,6 +3,7 @@
 
 #include <sstream>
 
+#include "tests/support/refusal.hpp"
 #include "tests/tracking/tracking_samples.hpp"
 
 namespace {
@@ -16,7 +17,7 @@ HeadTrace parse(const std::string& text, const RoomMapping& mapping = {}) {
 }
 
 std::string refusal(const std::string& text, const RoomMapping& mapping = {}) {
-    return test::refusal([&] { (void)parse(text, mapping); });
+    return test::refusalOf([&] { (void)parse(text, mapping); });
 }
 
 TEST(HeadTrace, GoesStraightFromSampleToSample) {
@@ -111,9 +112,9 @@ TEST(HeadTrace, NamesWhatIsWrongWithTheColumns) {
     EXPECT_NE(refusal("time,x,y,z,right_x,right_y,right_z\n0,0,0,0,1,0,0\n", {{}, glm::dmat3(1.0), {0, 0.1, 0}})
                   .find("eyes= needs"),
               std::string::npos);
-    EXPECT_EQ(test::refusal([] { (void)HeadTrace::load("/nowhere/head.csv", {}); }),
+    EXPECT_EQ(test::refusalOf([] { (void)HeadTrace::load("/nowhere/head.csv", {}); }),
               "/nowhere/head.csv: the head's trace cannot be read; check the path");
-    EXPECT_NE(test::refusal([] { (void)HeadTrace::load("/", {}); }).find("cannot be read"), std::string::npos);
+    EXPECT_NE(test::refusalOf([] { (void)HeadTrace::load("/", {}); }).find("cannot be read"), std::string::npos);
 }
 
 }  // namespace

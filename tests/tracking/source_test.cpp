@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/source.hpp"
 
+#include "tests/support/refusal.hpp"
 #include "tests/tracking/tracking_samples.hpp"
 
 namespace {
@@ -11,7 +12,7 @@ Source parseSource(const std::string& text) { return Source::parse(text, "--trac
 
 /// The complaint about a text, which must be one line, begin with the option and quote the text.
 std::string complaint(const std::string& text) {
-    std::string line = test::refusal([&] { (void)parseSource(text); });
+    std::string line = test::refusalOf([&] { (void)parseSource(text); });
     EXPECT_EQ(line.find("--track: '" + text), 0U) << line;
     EXPECT_EQ(line.find('\n'), std::string::npos) << line;
     return line;

@@ -34,14 +34,4 @@ inline base::Bytes doubles(const std::vector<double>& values) {
     return writer.take();
 }
 
-/// What the refusal says; empty when there is none.
-inline std::string refusal(const std::function<void()>& act) {
-    try {
-        act();
-    } catch (const base::InputError& error) {
-        return error.what();
-    }
-    return "";
-}
-
 }  // namespace test

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <thread>
 
+#include "tests/support/refusal.hpp"
 #include "tests/tracking/tracking_samples.hpp"
 #include "tracking/dtrack.hpp"
 #include "tracking/opentrack.hpp"
@@ -73,7 +74,7 @@ TEST_F(UdpTrackerTest, CountsAndIgnoresWhatIsNoPacket) {
 }
 
 TEST_F(UdpTrackerTest, ListensBeyondThisMachineToOneAddressAlone) {
-    const std::string line = test::refusal([&] { open("opentrack:0.0.0.0:0"); });
+    const std::string line = test::refusalOf([&] { open("opentrack:0.0.0.0:0"); });
     EXPECT_NE(line.find("from="), std::string::npos) << line;
     open("opentrack:0.0.0.0:0 from=127.0.0.2 origin=0,0,0");
     constexpr std::uint64_t kMany = 5'000;  // far more than the kernel has room for: they take none
@@ -137,14 +138,14 @@ TEST_F(UdpTrackerTest, AFloodDoesNotHoldTheFrameUp) {
 TEST_F(UdpTrackerTest, SaysThatAPortIsTaken) {
     open("opentrack:0");
     const std::string source = "opentrack:" + std::to_string(tracker->port());
-    EXPECT_EQ(test::refusal([&] { open(source); }), source + ": port " + std::to_string(tracker->port()) +
-                                                        " is in use; stop the program that has it, or take another "
-                                                        "port");
+    EXPECT_EQ(test::refusalOf([&] { open(source); }), source + ": port " + std::to_string(tracker->port()) +
+                                                          " is in use; stop the program that has it, or take another "
+                                                          "port");
 }
 
 TEST_F(UdpTrackerTest, SaysThatAnAddressIsNotOurs) {
     // Reserved for documentation: no machine has it.
-    EXPECT_NE(test::refusal([&] {
+    EXPECT_NE(test::refusalOf([&] {
                   open("opentrack:192.0.2.1:4242 from=192.0.2.2");
               }).find("cannot listen on 192.0.2.1 port 4242"),
               std::string::npos);

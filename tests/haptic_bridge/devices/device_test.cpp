@@ -11,6 +11,7 @@
 #include "haptic_bridge/hand/hand_mapping.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/jittery_trace.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/seed.hpp"
 
 namespace {
@@ -28,20 +29,9 @@ TraceDevice deviceOf(const std::string& text, const std::vector<std::string>& ma
     return {traceOf(text, map), HandSettings::parse(map), kField, kField, kRadius};
 }
 
-/// The message of the InputError that `act` throws.
-template <class Act>
-std::string complaint(const Act& act) {
-    try {
-        act();
-    } catch (const base::InputError& error) {
-        return error.what();
-    }
-    return "(no error)";
-}
-
 TEST(Trace, NamesTheLineOfWhatItCannotRead) {
     const auto starts = [](const std::string& text, const std::string& start) {
-        const std::string message = complaint([&] { (void)traceOf(text); });
+        const std::string message = test::refusalOf([&] { (void)traceOf(text); });
         EXPECT_EQ(message.substr(0, start.size()), start) << message;
     };
     starts("", "hand.csv:1: the trace is empty");
@@ -118,14 +108,14 @@ TEST(TraceDevice, BridgesGapsByTime) {
 TEST(HandSettings, NamesTheOptionItCannotRead) {
     for (const char* wrong : {"scale", "scale=0", "scale=x", "axes=x,y", "axes=x,x,z", "axes=x,y,q", "time=h",
                               "columns=a,b,c", "columns=a,,c,d", "origin=1,2", "engage=maybe", "datum=sea", "tilt=3"}) {
-        const std::string message = complaint([&] { (void)HandSettings::parse({wrong}); });
+        const std::string message = test::refusalOf([&] { (void)HandSettings::parse({wrong}); });
         EXPECT_EQ(message.find(std::string("--map ") + wrong + ":"), 0U) << message;
     }
 }
 
 TEST(Strokes, NamesTheLineOfWhatItCannotRead) {
     const auto starts = [](const std::string& text, const std::string& start) {
-        const std::string message = complaint([&] { (void)Strokes::parse(text, "word"); });
+        const std::string message = test::refusalOf([&] { (void)Strokes::parse(text, "word"); });
         EXPECT_EQ(message.substr(0, start.size()), start) << message;
     };
     starts("", "word:1: no stroke");

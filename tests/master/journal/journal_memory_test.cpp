@@ -4,27 +4,17 @@
 
 #include <filesystem>
 #include <fstream>
-#include <functional>
 
-#include "base/input_error.hpp"
 #include "master/journal/format.hpp"
 #include "master/start_up.hpp"
 #include "scene/load/scene_file.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/folder_test.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace {
 
 constexpr std::int64_t kGibibyte = std::int64_t{1} << 30;
-
-std::string complaintOf(const std::function<void()>& check) {
-    try {
-        check();
-    } catch (const base::InputError& error) {
-        return error.what();
-    }
-    return "nothing";
-}
 
 class JournalMemory : public test::FolderTest {
 protected:
@@ -54,7 +44,7 @@ TEST_F(JournalMemory, IsRefusedBeforeItsHeightsAreMade) {
     rules.encode(writer);
     const std::filesystem::path journal = journalOf(writer.take());
     const auto refusalOn = [&](std::int64_t free) {
-        return complaintOf([&] { master::requireMemoryOfJournal({{"a", free}, {"a", free}}, journal); });
+        return test::refusalOf([&] { master::requireMemoryOfJournal({{"a", free}, {"a", free}}, journal); });
     };
     EXPECT_EQ(refusalOn(8 * kGibibyte), "nothing");
     EXPECT_EQ(refusalOn(4 * kGibibyte),
@@ -67,13 +57,13 @@ TEST_F(JournalMemory, OfATinIsRefused) {
     const std::filesystem::path file = folder_ / "s.toml";
     std::ofstream(file) << "[field]\ncolumns = 64\n[terrain]\n[material]\n[tool]\nradius = 0.1\n[tin]\n";
     const std::filesystem::path journal = journalOf(scene::loadScene(file).encode());
-    EXPECT_EQ(complaintOf([&] { master::requireMemoryOfJournal({{"a", kGibibyte}}, journal); }), "nothing");
-    const std::string refused = complaintOf([&] { master::requireMemoryOfJournal({{"a", 1000}}, journal); });
+    EXPECT_EQ(test::refusalOf([&] { master::requireMemoryOfJournal({{"a", kGibibyte}}, journal); }), "nothing");
+    const std::string refused = test::refusalOf([&] { master::requireMemoryOfJournal({{"a", 1000}}, journal); });
     EXPECT_TRUE(refused.starts_with(journal.string() + ": a TIN of ")) << refused;
 }
 
 TEST_F(JournalMemory, OfAMissingJournalIsRefused) {
-    EXPECT_EQ(complaintOf([&] {
+    EXPECT_EQ(test::refusalOf([&] {
                   master::requireMemoryOfJournal({{"a", kGibibyte}}, journal_);
               }),
               journal_.string() + ": cannot be read; check the path");
