@@ -20,6 +20,9 @@ class Table:
         """What the file's head says of "machine", "compiler", "command" …"""
         return next(note[len(name) + 2:] for note in self.notes if note.startswith(name + ": "))
 
+    def states(self, name):
+        return any(note.startswith(name + ": ") for note in self.notes)
+
     def where(self, **wanted):
         return [row for row in self.rows if all(row[key] == value for key, value in wanted.items())]
 

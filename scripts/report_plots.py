@@ -14,8 +14,8 @@ from report_data import Table
 
 HEAD = """# Report: what the sand costs, and how right it is
 
-Written by `{script}` on {date}, on {machine}, compiled by {compiler} with `{flags}`, code path {path}: never by hand.
-Times are CPU time of one thread unless a section says otherwise, medians with least and most in the tables; the machine
+Written by `{script}`, never by hand, from tables measured from {first} to {last}: {machines}. Compiled by {compiler} with
+`{flags}`, code path {path}. Times are CPU time of one thread unless a section says otherwise, medians with least and most in the tables; the machine
 is shared, so trust ratios within one table more than times. The tables are in [data](data), each with the command that
 made it, its seed and the definitions of its columns at its head.
 
@@ -30,6 +30,16 @@ use, in place or Jacobi, four or eight neighbours, the diagonal ones with or wit
 comparison alone (`bench/sand/integer_n4.cpp`, `bench/sand/baseline_schemes.cpp`): whole rows, vectorised, with the flags
 and instruction sets of our own sweeps.
 """
+
+
+def machines_of(tables):
+    """Which machine measured which tables: the usual one, and the others with the tables that are theirs."""
+    named = {}
+    for name, table in tables.items():
+        if table.states("machine"):
+            named.setdefault(table.fact("machine").partition(",")[0], []).append(name)
+    usual, *others = sorted(named, key=lambda machine: len(named[machine]), reverse=True)
+    return "; ".join([usual] + [f"{', '.join(named[other])} on {other}" for other in others])
 
 
 def main():
@@ -47,7 +57,8 @@ def main():
     if "error-at-rest" not in tables:  # the head is taken from it
         return 2
     some = tables["error-at-rest"]
-    text = [HEAD.format(script="scripts/report.sh", date=some.fact("date")[:10], machine=some.fact("machine"),
+    dates = sorted(table.fact("date")[:10] for table in tables.values() if table.states("date"))
+    text = [HEAD.format(script="scripts/report.sh", first=dates[0], last=dates[-1], machines=machines_of(tables),
                         compiler=some.fact("compiler"), flags=some.fact("flags").strip(), path=some.fact("code path"))]
     for section in SECTIONS:
         if missing.intersection(section.needs):
