@@ -14,7 +14,7 @@
 namespace sand {
 
 /// Of what encodeState() writes; a replica decodes this version alone.
-inline constexpr std::uint32_t kStateVersion = 5;
+inline constexpr std::uint32_t kStateVersion = 6;
 
 /// The whole state of a replica, for whoever compresses it on another thread.
 struct StateCopy {

@@ -28,12 +28,13 @@ void reportPerCell(benchmark::State& state, double cells) {
         benchmark::Counter(cells * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-void sweep(benchmark::State& state, sand::Scheme scheme, sand::grid::CodePath path) {
+void sweep(benchmark::State& state, sand::Scheme scheme, sand::grid::CodePath path, std::int32_t band = 0) {
     const int side = static_cast<int>(state.range(0));
     sand::HeightField field = roughField(side);
     sand::Rules rules;
     rules.columns = rules.rows = side;
-    rules.threshold = rules.startThreshold = 64;  // next to nothing rests
+    rules.threshold = 64;  // next to nothing rests
+    rules.startThreshold = rules.threshold + band;
     rules.scheme = scheme;
     sand::grid::Erosion erosion(field, rules, {.path = path});
     for (auto _ : state) {
@@ -43,6 +44,10 @@ void sweep(benchmark::State& state, sand::Scheme scheme, sand::grid::CodePath pa
     reportPerCell(state, static_cast<double>(side) * side);
 }
 BENCHMARK_CAPTURE(sweep, G, sand::Scheme::isotropic, sand::grid::CodePath::automatic)->Arg(512)->Arg(1024)->Arg(2048);
+BENCHMARK_CAPTURE(sweep, G_band, sand::Scheme::isotropic, sand::grid::CodePath::automatic, 1)
+    ->Arg(512)
+    ->Arg(1024)
+    ->Arg(2048);
 BENCHMARK_CAPTURE(sweep, G_plain, sand::Scheme::plainIsotropic, sand::grid::CodePath::automatic)->Arg(512);
 BENCHMARK_CAPTURE(sweep, G_baseline, sand::Scheme::isotropic, sand::grid::CodePath::baseline)->Arg(512);
 

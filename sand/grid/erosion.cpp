@@ -51,6 +51,7 @@ Erosion::Erosion(const HeightField& field, const Rules& rules, const Options& op
     const auto blocks = static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_);
     waiting_.assign(blocks, 0);
     movedNow_.assign(blocks, 0);
+    findSliding();
     wakeAll();
 }
 
@@ -58,7 +59,7 @@ const char* Erosion::codePath() const { return v3_ ? "x86-64-v3" : "baseline"; }
 
 std::size_t Erosion::bytes() const {
     return east_.bytes() + north_.bytes() + marked_.bytes() + moved_.bytes() + waiting_.size() + movedNow_.size() +
-           active_.capacity() * sizeof active_[0];
+           active_.capacity() * sizeof active_[0] + (sliding_ ? sliding_->bytes() : 0);
 }
 
 std::int64_t Erosion::sweep(HeightField& field, int sweeps, const Obstacle* obstacle) {
@@ -126,6 +127,8 @@ std::int64_t Erosion::sweepFluxes(const HeightField& field, const CellRect& bloc
         .momentum = momentum,
         .inertial = rules_.scheme == Scheme::isotropic,
         .openRim = rules_.rim == Rim::open,
+        .sliding = sliding_ ? sliding_->row(0) : nullptr,
+        .slidingStride = sliding_ ? sliding_->stride() : 0,
         .room = limits ? limits->room.data() : nullptr,
         .sand = grounded ? limits->sand.data() : nullptr};
     return v3_ ? v3::sweepFluxes(patch) : baseline::sweepFluxes(patch);
@@ -137,6 +140,8 @@ void Erosion::balance(HeightField& field, const CellRect& blocks) {
                              .east = east_.row(0),
                              .north = north_.row(0),
                              .fluxStride = east_.stride(),
+                             .sliding = sliding_ ? sliding_->row(0) : nullptr,
+                             .slidingStride = sliding_ ? sliding_->stride() : 0,
                              .cells = cellsOf(blocks),
                              .blockSize = blockSize_,
                              .moved = movedNow_.data() + blocks.y0 * across_ + blocks.x0,
@@ -190,10 +195,10 @@ void Erosion::refreshGhosts(HeightField& field, const CellRect& cells) const {
 
 Inertia Erosion::inertia() const {
     Inertia inertia(undisturbed_);
-    // With an age of zero the next sweep begins without momentum, whatever flowed before.
-    for (std::size_t i = 0; undisturbed_ > 0 && i < active_.size(); ++i) {
-        const int x = active_[i] % across_;
-        const int y = active_[i] / across_;
+    // Also at an age of zero, at which they have no momentum: a band asks where sand slid.
+    for (const int block : active_) {
+        const int x = block % across_;
+        const int y = block / across_;
         CellRect cells = cellsOf({x, y, x + 1, y + 1});
         cells.x0 -= x == 0 ? 1 : 0;  // what flows over the western rim
         cells.y0 -= y == 0 ? 1 : 0;
@@ -211,11 +216,35 @@ void Erosion::resume(const Inertia& inertia) {
     }
     inertia.putInto(east_, north_);
     undisturbed_ = inertia.undisturbed();
+    findSliding();
     wakeAll();
+}
+
+void Erosion::findSliding() {
+    if (rules_.startThreshold <= rules_.threshold) {
+        sliding_.reset();
+        return;
+    }
+    if (!sliding_) {
+        sliding_.emplace(east_.columns(), east_.rows());
+    }
+    const BalancePatch all{.heights = nullptr,
+                           .heightStride = 0,
+                           .east = east_.row(0),
+                           .north = north_.row(0),
+                           .fluxStride = east_.stride(),
+                           .sliding = sliding_->row(0),
+                           .slidingStride = sliding_->stride(),
+                           .cells = east_.bounds(),
+                           .blockSize = blockSize_,
+                           .moved = nullptr,
+                           .blocksAcross = across_};
+    v3_ ? v3::markSliding(all) : baseline::markSliding(all);
 }
 
 void Erosion::changeRules(const Rules& rules) {
     rules_ = rules;
+    findSliding();
     touch(east_.bounds());
 }
 
@@ -223,10 +252,10 @@ bool Erosion::amiss(const CellRect& cells) const {
     for (int y = cells.y0; y < cells.y1; ++y) {
         std::int32_t flows = 0;  // all of memory is asked, and nearly nowhere does anything
         for (int x = cells.x0; x < cells.x1; ++x) {
-            flows |= east_.row(y)[x] | north_.row(y)[x];
+            flows |= east_.row(y)[x] | north_.row(y)[x] | (sliding_ ? sliding_->row(y)[x] : 0);
         }
         for (int x = cells.x0; flows != 0 && x < cells.x1; ++x) {
-            if ((east_.row(y)[x] != 0 || north_.row(y)[x] != 0) &&
+            if ((east_.row(y)[x] != 0 || north_.row(y)[x] != 0 || (sliding_ && sliding_->row(y)[x] != 0)) &&
                 !std::binary_search(active_.begin(), active_.end(), y / blockSize_ * across_ + x / blockSize_)) {
                 return true;
             }

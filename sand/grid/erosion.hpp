@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/executor.hpp"
@@ -29,8 +30,10 @@ enum class CodePath : std::uint8_t { automatic, baseline };
 ///
 /// The default law has inertia: with a the difference across a face, m the slope and t the threshold,
 /// q = M q_last + p (1 - t²/m²) a, cut to [0, k a]. The proofs need only the cut. Sand at rest starts to slide where
-/// plain G would. The pile is plain G's to the third digit, in a tenth of the sweeps. M = n / (n + 25), at most 0.9, in
-/// the n-th sweep since touch(): a pile so small that it rests early meets little inertia, and does not overshoot.
+/// plain G would. With a band, a face up to the start threshold carries nothing unless sand slid in one of its two
+/// cells, which means that some flowed through a face of that cell in the last sweep: moving sand stops at t. The pile
+/// is plain G's to the third digit, in a tenth of the sweeps. M = n / (n + 25), at most 0.9, in the n-th sweep since
+/// touch(): a pile so small that it rests early meets little inertia, and does not overshoot.
 ///
 /// Only blocks in which sand flows, and of their neighbours those beside whose border it does, are swept again: settled
 /// sand costs nothing, and the result is that of full sweeps bit for bit. Not thread-safe; an executor may be handed in
@@ -90,6 +93,8 @@ private:
     [[nodiscard]] CellRect cellsOf(const CellRect& blocks) const;
     [[nodiscard]] CellRect blocksAround(const CellRect& cells) const;
     void refreshGhosts(HeightField& field, const CellRect& cells) const;
+    /// Finds anew in which cells sand slid, from the fluxes; only a band needs that.
+    void findSliding();
     /// The run of waiting blocks that begins with `block`, and the rows above it that wait in just the same run; they
     /// wait no longer. A wider run above is left whole: narrow patches cost more per cell.
     [[nodiscard]] CellRect takePatch(int block);
@@ -112,6 +117,7 @@ private:
     // Flux out of each cell to the east and to the north [unit] of the last sweep; column and row -1 hold what flows
     // over the western and southern rim. Zero wherever a block is not active.
     CellArray east_, north_;
+    std::optional<BasicCellArray<std::int8_t>> sliding_;  // with a band: in which cells sand slid in the last sweep
     std::int64_t sweepsDone_ = 0;
     int undisturbed_ = 0;                 // sweeps that moved sand since touch()
     std::vector<int> active_;             // ascending

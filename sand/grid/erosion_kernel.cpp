@@ -20,9 +20,12 @@ struct alignas(64) Row {
 
 /// Scheme G with inertia: what flowed in the last sweep goes on, pushed by the excess of the slope over the threshold
 /// and braked by its lack; never uphill, and never more than the share that keeps all proofs. Squares of slopes are
-/// compared: a root would cost a quarter of the sweep. Without a band sand that is not pushed is braked anyway.
-template <bool kBand>
+/// compared: a root would cost a quarter of the sweep. With a band, a face between two cells in which no sand slid
+/// carries nothing up to the start threshold; in the last sweep it carried nothing either.
+template <bool kWithBand>
 struct Inertial {
+    static constexpr bool kBand = kWithBand;
+
     Inertial(const AxisLaw& law, float momentumNow)
         : threshold(law.threshold * law.threshold),
           startThreshold(law.startThreshold * law.startThreshold),
@@ -34,36 +37,37 @@ struct Inertial {
     float threshold, startThreshold;  // [unit²]
     float limit, push, along, momentum;
 
-    std::int32_t operator()(std::int32_t difference, float alongSum, std::int32_t last) const {
+    /// `sliding`: of the two cells of the face, joined.
+    std::int32_t operator()(std::int32_t difference, float alongSum, std::int32_t last, std::int32_t sliding) const {
         const auto across = static_cast<float>(difference);
         const float mean = along * alongSum;
         // At least the smallest slope there is: 0 · (threshold / 0) would be no number.
         const float slope = std::max(across * across + mean * mean, 0.0625F);
-        float driven = push * (1.0F - threshold / slope);
-        if constexpr (kBand) {
-            // Below the start threshold nothing is pushed; what flows is braked.
-            driven = slope > startThreshold ? driven : std::min(driven, 0.0F);
-        }
+        const float driven = push * (1.0F - threshold / slope);
         const float most = limit * across;
         const float forth = std::max(most, 0.0F);
         const float back = std::min(most, 0.0F);
         // What goes on is cut by itself first: else a flux that has just turned would rest for a sweep, and a face at
         // which nothing flows could not be left alone.
         const float kept = std::min(std::max(momentum * static_cast<float>(last), back), forth);
-        return static_cast<std::int32_t>(std::min(std::max(kept + driven * across, back), forth));
+        const auto flux = static_cast<std::int32_t>(std::min(std::max(kept + driven * across, back), forth));
+        return kBand ? flux & (sliding | -static_cast<std::int32_t>(slope > startThreshold)) : flux;
     }
 };
 
 /// The law without inertia: slope across the face from its two cells, slope along it as the mean of four differences.
+template <bool kWithBand>
 struct Isotropic {
+    static constexpr bool kBand = kWithBand;
     AxisLaw axis;
 
-    std::int32_t operator()(std::int32_t difference, float along, std::int32_t) const {
+    std::int32_t operator()(std::int32_t difference, float along, std::int32_t, std::int32_t sliding) const {
         const auto across = static_cast<float>(difference);
         const float mean = axis.along * along;
         const float slope = std::sqrt(across * across + mean * mean);
-        const float share = slope > axis.startThreshold ? axis.limit * (1.0F - axis.threshold / slope) : 0.0F;
-        return static_cast<std::int32_t>(share * across);
+        const float share = slope > axis.threshold ? axis.limit * (1.0F - axis.threshold / slope) : 0.0F;
+        const auto flux = static_cast<std::int32_t>(share * across);
+        return kBand ? flux & (sliding | -static_cast<std::int32_t>(slope > axis.startThreshold)) : flux;
     }
 };
 
@@ -83,35 +87,54 @@ void sums(const std::int32_t* __restrict a, const std::int32_t* __restrict b, in
     }
 }
 
+/// In which cells of two parallel runs sand slides; read with a band only.
+struct SlidingPair {
+    const Sliding* behind;
+    const Sliding* ahead;
+};
+
+template <class Law>
+std::int32_t eitherOf(const Sliding* behind, const Sliding* ahead, int i) {
+    if constexpr (Law::kBand) {
+        return behind[i] | ahead[i];
+    }
+    return 0;
+}
+
 /// The fluxes between two parallel runs of cells, given the sum of the two differences along the faces of either cell.
 template <class Law>
 void fluxesBetween(const Law law, const std::int32_t* __restrict a, const std::int32_t* __restrict b,
-                   const float* __restrict alongA, const float* __restrict alongB, int count,
-                   std::int32_t* __restrict flux) {
+                   const float* __restrict alongA, const float* __restrict alongB, const SlidingPair& sliding,
+                   int count, std::int32_t* __restrict flux) {
+    const Sliding* __restrict behind = sliding.behind;
+    const Sliding* __restrict ahead = sliding.ahead;
     for (int i = 0; i < count; ++i) {
-        flux[i] = law(a[i] - b[i], alongA[i] + alongB[i], flux[i]);
+        flux[i] = law(a[i] - b[i], alongA[i] + alongB[i], flux[i], eitherOf<Law>(behind, ahead, i));
     }
 }
 
 /// The fluxes from a row of cells to their eastern neighbours; `south` and `north` are the rows beside it.
 template <class Law>
 void eastwards(const Law law, const std::int32_t* __restrict south, const std::int32_t* __restrict row,
-               const std::int32_t* __restrict north, int count, std::int32_t* __restrict flux) {
+               const std::int32_t* __restrict north, const Sliding* __restrict sliding, int count,
+               std::int32_t* __restrict flux) {
     for (int i = 0; i < count; ++i) {
         const auto here = static_cast<float>(north[i] - south[i]);
         const auto there = static_cast<float>(north[i + 1] - south[i + 1]);
-        flux[i] = law(row[i] - row[i + 1], here + there, flux[i]);
+        flux[i] = law(row[i] - row[i + 1], here + there, flux[i], eitherOf<Law>(sliding, sliding + 1, i));
     }
 }
 
 /// The fluxes from a row of cells to the row north of it.
 template <class Law>
-void northwards(const Law law, const std::int32_t* __restrict row, const std::int32_t* __restrict north, int count,
-                std::int32_t* __restrict flux) {
+void northwards(const Law law, const std::int32_t* __restrict row, const std::int32_t* __restrict north,
+                const SlidingPair& sliding, int count, std::int32_t* __restrict flux) {
+    const Sliding* __restrict behind = sliding.behind;
+    const Sliding* __restrict ahead = sliding.ahead;
     for (int i = 0; i < count; ++i) {
         const auto here = static_cast<float>(row[i + 1] - row[i - 1]);
         const auto there = static_cast<float>(north[i + 1] - north[i - 1]);
-        flux[i] = law(row[i] - north[i], here + there, flux[i]);
+        flux[i] = law(row[i] - north[i], here + there, flux[i], eitherOf<Law>(behind, ahead, i));
     }
 }
 
@@ -139,11 +162,11 @@ public:
         : patch_(patch), eastLaw_(east), northLaw_(north), width_(patch.cells.x1 - patch.cells.x0) {}
 
     std::int64_t run() {
-        if (patch_.cells.y0 == 0) {
-            rimNorth(-1);
-        }
         if constexpr (kSandAlong) {
             riseEast(patch_.cells.y0);
+        }
+        if (patch_.cells.y0 == 0) {
+            rimNorth(-1);
         }
         for (int y = patch_.cells.y0; y < patch_.cells.y1; ++y) {
             y == patch_.rows - 1 ? rimNorth(y) : northFluxes(y);
@@ -159,6 +182,10 @@ private:
     }
     [[nodiscard]] std::int32_t* east(int y) const { return patch_.east + y * patch_.fluxStride + patch_.cells.x0; }
     [[nodiscard]] std::int32_t* north(int y) const { return patch_.north + y * patch_.fluxStride + patch_.cells.x0; }
+    /// The cell `ahead` of the patch's first cell in row y; null without a band.
+    [[nodiscard]] const Sliding* sliding(int y, int ahead = 0) const {
+        return Law::kBand ? patch_.sliding + y * patch_.slidingStride + patch_.cells.x0 + ahead : nullptr;
+    }
     /// The patch's first cell in row y of `room` or `sand`.
     [[nodiscard]] const std::int32_t* held(const std::int32_t* numbers, int y) const {
         return numbers + (y - patch_.cells.y0 + 1) * (width_ + 2) + 1;
@@ -195,9 +222,10 @@ private:
         if constexpr (kSandAlong) {
             riseEast(y + 1);
             fluxesBetween(northLaw_, heights(y), heights(y + 1), riseEast_[static_cast<unsigned>(y) % 2].data(),
-                          riseEast_[static_cast<unsigned>(y + 1) % 2].data(), width_, north(y));
+                          riseEast_[static_cast<unsigned>(y + 1) % 2].data(), {sliding(y), sliding(y + 1)}, width_,
+                          north(y));
         } else {
-            northwards(northLaw_, heights(y), heights(y + 1), width_, north(y));
+            northwards(northLaw_, heights(y), heights(y + 1), {sliding(y), sliding(y + 1)}, width_, north(y));
         }
         hold(y, width_ + 2, north(y));
     }
@@ -210,18 +238,18 @@ private:
         const std::int32_t lastAtRim = flux[width_ - 1];
         if constexpr (kSandAlong) {
             riseNorth(y);
-            fluxesBetween(eastLaw_, heights(y), heights(y) + 1, riseNorth_.data(), riseNorth_.data() + 1, width_, flux);
+            fluxesBetween(eastLaw_, heights(y), heights(y) + 1, riseNorth_.data(), riseNorth_.data() + 1,
+                          {sliding(y), sliding(y, 1)}, width_, flux);
         } else {
-            eastwards(eastLaw_, heights(y - 1), heights(y), heights(y + 1), width_, flux);
+            eastwards(eastLaw_, heights(y - 1), heights(y), heights(y + 1), sliding(y), width_, flux);
         }
         hold(y, 1, flux);
         if (patch_.openRim && patch_.cells.x0 == 0) {
-            flux[-1] = -overRim(eastLaw_, y, 0, heights(y + 1)[0] - heights(y - 1)[0], -flux[-1]);
+            flux[-1] = -overRim(eastLaw_, y, 0, riseNorthOf(y, 0), -flux[-1]);
         }
         if (patch_.cells.x1 == patch_.columns) {
             const int last = width_ - 1;
-            flux[last] =
-                patch_.openRim ? overRim(eastLaw_, y, last, heights(y + 1)[last] - heights(y - 1)[last], lastAtRim) : 0;
+            flux[last] = patch_.openRim ? overRim(eastLaw_, y, last, riseNorthOf(y, last), lastAtRim) : 0;
         }
     }
 
@@ -232,15 +260,32 @@ private:
         const int inner = std::max(y, 0);
         std::int32_t* flux = north(y);
         for (int i = 0; i < width_; ++i) {
-            const std::int32_t along = heights(inner)[i + 1] - heights(inner)[i - 1];
+            const float along = riseEastOf(inner, i);
             flux[i] =
                 y < 0 ? -overRim(northLaw_, inner, i, along, -flux[i]) : overRim(northLaw_, inner, i, along, flux[i]);
         }
     }
 
-    /// Over an open rim sand falls to height 0 and never comes back.
-    std::int32_t overRim(const Law& law, int y, int i, std::int32_t along, std::int32_t last) {
-        std::int32_t flux = std::max(law(heights(y)[i], 2 * static_cast<float>(along), last), 0);
+    /// Of one cell, as riseEast() and riseNorth() find it for all cells of a row.
+    [[nodiscard]] float riseEastOf(int y, int i) const {
+        if constexpr (kSandAlong) {
+            return riseEast_[static_cast<unsigned>(y) % 2].values[static_cast<unsigned>(i + kKernelMargin)];
+        } else {
+            return static_cast<float>(heights(y)[i + 1] - heights(y)[i - 1]);
+        }
+    }
+    [[nodiscard]] float riseNorthOf(int y, int i) const {
+        if constexpr (kSandAlong) {
+            return riseNorth_[static_cast<unsigned>(i)];
+        } else {
+            return static_cast<float>(heights(y + 1)[i] - heights(y - 1)[i]);
+        }
+    }
+
+    /// Over an open rim sand falls to height 0 and never comes back. `rise`: along the rim, beside the cell.
+    std::int32_t overRim(const Law& law, int y, int i, float rise, std::int32_t last) {
+        const std::int32_t slides = Law::kBand ? sliding(y)[i] : 0;
+        std::int32_t flux = std::max(law(heights(y)[i], 2 * rise, last, slides), 0);
         if (patch_.sand != nullptr) {
             flux = std::min(flux, held(patch_.sand, y)[i] / 4);
         }
@@ -265,7 +310,11 @@ std::int64_t run(const FluxPatch& patch, const Law& east, const Law& north) {
 }
 
 template <bool kBand>
-std::int64_t runInertial(const FluxPatch& patch) {
+std::int64_t runWithBand(const FluxPatch& patch) {
+    if (!patch.inertial) {
+        using Law = Isotropic<kBand>;
+        return run(patch, Law{patch.eastLaw}, Law{patch.northLaw});
+    }
     using Law = Inertial<kBand>;
     return run(patch, Law(patch.eastLaw, patch.momentum), Law(patch.northLaw, patch.momentum));
 }
@@ -279,6 +328,19 @@ void addUp(const std::int32_t* __restrict east, const std::int32_t* __restrict s
         heights[i] += east[i - 1] - east[i] + south[i] - north[i];
         moved[i] |= (east[i] | north[i]) != 0 ? ofRow : 0;
     }
+}
+
+void markRow(const std::int32_t* __restrict east, const std::int32_t* __restrict south,
+             const std::int32_t* __restrict north, int count, Sliding* __restrict sliding) {
+    for (int i = 0; i < count; ++i) {
+        sliding[i] = (east[i - 1] | east[i] | south[i] | north[i]) != 0 ? -1 : 0;
+    }
+}
+
+void markRow(const BalancePatch& patch, int y) {
+    const std::ptrdiff_t flux = y * patch.fluxStride + patch.cells.x0;
+    markRow(patch.east + flux, patch.north + flux - patch.fluxStride, patch.north + flux,
+            patch.cells.x1 - patch.cells.x0, patch.sliding + y * patch.slidingStride + patch.cells.x0);
 }
 
 /// What is true of a row of a block, of rows [first, end), in which sand flows.
@@ -307,11 +369,13 @@ void reportMoved(const BalancePatch& patch, int blockRow, Row<std::int32_t>& mov
 }  // namespace
 
 std::int64_t sweepFluxes(const FluxPatch& patch) {
-    if (!patch.inertial) {
-        return run(patch, Isotropic{patch.eastLaw}, Isotropic{patch.northLaw});
+    return patch.sliding != nullptr ? runWithBand<true>(patch) : runWithBand<false>(patch);
+}
+
+void markSliding(const BalancePatch& patch) {
+    for (int y = patch.cells.y0; y < patch.cells.y1; ++y) {
+        markRow(patch, y);
     }
-    return patch.eastLaw.startThreshold > patch.eastLaw.threshold ? runInertial<true>(patch)
-                                                                  : runInertial<false>(patch);
 }
 
 void balance(const BalancePatch& patch) {
@@ -330,6 +394,9 @@ void balance(const BalancePatch& patch) {
             const std::ptrdiff_t flux = y * patch.fluxStride + patch.cells.x0;
             addUp(patch.east + flux, patch.north + flux - patch.fluxStride, patch.north + flux, width, ofRow,
                   patch.heights + y * patch.heightStride + patch.cells.x0, moved.data());
+            if (patch.sliding != nullptr) {
+                markRow(patch, y);
+            }
             if (patch.cells.x0 == 0) {
                 moved.data()[0] |= patch.east[flux - 1] != 0 ? ofRow : 0;
             }

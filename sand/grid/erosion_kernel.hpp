@@ -13,6 +13,10 @@ inline constexpr int kMaxBlock = 128;    // [cell], side of the largest block
 inline constexpr int kMaxPatch = 512;    // [cell], longest row a kernel takes at once
 inline constexpr int kKernelMargin = 8;  // [cell], how far beyond its cells a kernel may read heights
 
+/// Whether sand slid in a cell, which means that some flowed through one of its faces in the last sweep: a mask of
+/// ones, or 0.
+using Sliding = std::int8_t;
+
 /// The constants of the isotropic law for the faces across one axis (sand/grid/erosion.hpp states the law).
 struct AxisLaw {
     float threshold, startThreshold;  // [unit], difference between the two cells of a face
@@ -36,6 +40,8 @@ struct FluxPatch {
     float momentum;  // share of the last sweep's flux that goes on
     bool inertial;   // with inertia; else the plain law
     bool openRim;
+    const Sliding* sliding;        // at cell (0,0) of the field, with a ghost cell on every side; null without a band
+    std::ptrdiff_t slidingStride;  // [cell]
     // Over `cells` grown by one on every side, row by row; null where nothing holds the sand:
     const std::int32_t* room;  // what each cell may receive through a face [unit]
     const std::int32_t* sand;  // what lies in each cell [unit]: a face gives at most a quarter
@@ -57,6 +63,8 @@ struct BalancePatch {
     const std::int32_t* east;  // as in FluxPatch
     const std::int32_t* north;
     std::ptrdiff_t fluxStride;
+    Sliding* sliding;  // at cell (0,0) of the field, of these fluxes; written, null without a band
+    std::ptrdiff_t slidingStride;
     CellRect cells;
     int blockSize;        // [cell]
     std::uint8_t* moved;  // of the patch's first block: where in it sand flows, as bits of `flow`; written
@@ -64,14 +72,16 @@ struct BalancePatch {
 };
 
 // One source, compiled twice (sand/CMakeLists.txt): the same heights, bit for bit. sweepFluxes returns what leaves over
-// an open rim [unit · cell].
+// an open rim [unit · cell]; markSliding does that part of balance() alone.
 namespace baseline {
 std::int64_t sweepFluxes(const FluxPatch& patch);
 void balance(const BalancePatch& patch);
+void markSliding(const BalancePatch& patch);
 }  // namespace baseline
 namespace v3 {
 std::int64_t sweepFluxes(const FluxPatch& patch);
 void balance(const BalancePatch& patch);
+void markSliding(const BalancePatch& patch);
 }  // namespace v3
 
 }  // namespace sand::grid

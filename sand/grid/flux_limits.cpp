@@ -6,7 +6,8 @@
 namespace sand::grid {
 namespace {
 
-/// Heights as the slope law shall see them. Beyond the rim the ground goes on as it came, unless a wall is in the way.
+/// Heights as the slope law shall see them. Beyond the rim the ground goes on as it came, where a step counts at most
+/// the sand of its upper cell: behind a cliff it goes on level. A wall goes on as a wall.
 std::int32_t seenHeight(const HeightField& field, const Ground& ground, int x, int y) {
     const int edgeX = std::clamp(x, 0, field.columns() - 1);
     const int edgeY = std::clamp(y, 0, field.rows() - 1);
@@ -16,7 +17,9 @@ std::int32_t seenHeight(const HeightField& field, const Ground& ground, int x, i
     const int innerX = std::clamp(2 * edgeX - x, 0, field.columns() - 1);
     const int innerY = std::clamp(2 * edgeY - y, 0, field.rows() - 1);
     const std::int32_t edge = field.height(edgeX, edgeY);
-    return ground.isWall(innerX, innerY) ? edge : 2 * edge - field.height(innerX, innerY);
+    const std::int32_t inner = field.height(innerX, innerY);
+    const std::int32_t least = -ground.sand(innerX, innerY, inner), most = ground.sand(edgeX, edgeY, edge);
+    return ground.isWall(innerX, innerY) ? edge : edge + std::clamp(edge - inner, least, most);
 }
 
 /// The cells of a row that lie in the field, a loop without a branch: with rock, this is most of what a sweep costs.

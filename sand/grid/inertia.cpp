@@ -52,7 +52,8 @@ void Inertia::putInto(CellArray& east, CellArray& north) const {
 
 void Inertia::encode(int columns, int rows, base::ByteWriter& writer) const {
     writer.put(static_cast<std::int32_t>(undisturbed_));
-    if (undisturbed_ > 0) {
+    writer.put(static_cast<std::uint8_t>(pieces_.empty() ? 0 : 1));
+    if (!pieces_.empty()) {
         CellArray east(columns, rows);
         CellArray north(columns, rows);
         putInto(east, north);
@@ -67,7 +68,11 @@ Inertia Inertia::decode(base::ByteReader& reader, int columns, int rows) {
         throw base::FormatError("sand with an inertia of no age");
     }
     Inertia inertia(undisturbed);
-    if (undisturbed > 0) {
+    const auto flows = reader.get<std::uint8_t>();
+    if (flows > 1) {
+        throw base::FormatError("sand that neither flows nor rests");
+    }
+    if (flows == 1) {
         CellArray east(columns, rows);
         CellArray north(columns, rows);
         const CellRect all = withRim(columns, rows);

@@ -10,8 +10,9 @@
 
 namespace sand::grid {
 
-/// What the next sweeps depend on beside the heights: the fluxes of the last one, and for how long sand has slid
-/// undisturbed. Holds the cells in which sand flowed and no others: of sand at rest nothing.
+/// What the next sweeps depend on beside the heights: the fluxes of the last one, which also say in which cells sand
+/// slid, and for how long sand has slid undisturbed. Holds the cells in which sand flowed and no others: of sand at
+/// rest nothing.
 class Inertia {
 public:
     static constexpr int kMostCounted = 1000;  // [sweep]; the momentum is at its most long before

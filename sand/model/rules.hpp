@@ -12,7 +12,7 @@
 namespace sand {
 
 /// Changes with anything that changes what a step does to the sand; replicas of different versions refuse each other.
-inline constexpr std::uint32_t kAlgorithmVersion = 6;
+inline constexpr std::uint32_t kAlgorithmVersion = 7;
 
 /// docs/sand.md states both laws. The documents call `isotropic` G and `plainIsotropic` plain G.
 ///

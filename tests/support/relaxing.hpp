@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <string_view>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "sand/grid/erosion.hpp"
+#include "scene/material.hpp"
 
 /// Letting fields slide to rest, for tests of the solver.
 namespace samples {
@@ -36,18 +40,43 @@ inline constexpr auto kSchemes = [] {
     return schemes;
 }();
 
-inline std::string_view nameOf(sand::Scheme scheme) {
-    return std::ranges::find(sand::kSchemes, scheme, &sand::NamedScheme::scheme)->name;
+/// The band of scenes that name none.
+inline constexpr double kDefaultBand = scene::Material{}.band;
+
+/// A scheme and a band: what decides how sand slides. Converts from a scheme alone, without a band.
+struct Law {
+    sand::Scheme scheme = sand::Scheme::isotropic;
+    double band = 0;  // share of the threshold beyond which sand at rest starts to slide
+
+    Law() = default;
+    Law(sand::Scheme of, double width = 0) : scheme(of), band(width) {}  // NOLINT(google-explicit-constructor)
+    [[nodiscard]] bool inertial() const { return scheme == sand::Scheme::isotropic; }
+    friend auto operator<=>(const Law&, const Law&) = default;
+};
+
+/// Every scheme without a band and with the default one.
+inline std::vector<Law> laws() {
+    std::vector<Law> all;
+    for (const sand::Scheme scheme : kSchemes) {
+        all.insert(all.end(), {{scheme}, {scheme, kDefaultBand}});
+    }
+    return all;
 }
 
-/// Rules for a field alone: no band, closed rim, square cells; 45 degrees unless said.
-inline sand::Rules rulesFor(const sand::HeightField& field, sand::Scheme scheme = sand::Scheme::isotropic,
+inline std::string nameOf(const Law& law) {
+    const auto* const known = std::ranges::find(sand::kSchemes, law.scheme, &sand::NamedScheme::scheme);
+    return fmt::format("scheme {}, band {}", known->name, law.band);
+}
+
+/// Rules for a field alone: closed rim, square cells; 45 degrees and no band unless said.
+inline sand::Rules rulesFor(const sand::HeightField& field, const Law& law = {},
                             std::int32_t threshold = sand::kUnitsPerCell) {
     sand::Rules rules;
     rules.columns = field.columns();
     rules.rows = field.rows();
-    rules.threshold = rules.startThreshold = threshold;
-    rules.scheme = scheme;
+    rules.threshold = threshold;
+    rules.startThreshold = threshold + static_cast<std::int32_t>(law.band * threshold);
+    rules.scheme = law.scheme;
     return rules;
 }
 
@@ -72,7 +101,7 @@ inline std::int64_t relax(sand::HeightField& field, const sand::Rules& rules, in
     const Extremes before = extremesOf(field);
     sand::grid::Erosion erosion(field, rules);
     const std::int64_t outflow = erosion.sweep(field, most);
-    EXPECT_TRUE(erosion.settled()) << nameOf(rules.scheme) << " still moves after " << most << " sweeps";
+    EXPECT_TRUE(erosion.settled()) << nameOf(Law(rules.scheme)) << " still moves after " << most << " sweeps";
     EXPECT_EQ(field.volume() + outflow, volume);
     const Extremes after = extremesOf(field);
     EXPECT_GE(after.lowest, rules.rim == sand::Rim::open ? std::min(before.lowest, 0) : before.lowest);
@@ -115,7 +144,10 @@ inline double steepestExcess(const sand::HeightField& field, std::int32_t thresh
     return steepest - threshold;
 }
 
-/// How far above the threshold a face may be at rest [unit], since a flux below one is none.
-inline double restingExcess(std::int32_t threshold) { return std::cbrt(8.0 * threshold) + 4; }
+/// How far above the threshold a face may be at rest [unit]: a flux below one unit moves nothing, and sand that never
+/// slid rests up to the start threshold.
+inline double restingExcess(std::int32_t threshold, const Law& law = {}) {
+    return std::cbrt(8.0 * threshold) + 4 + law.band * threshold;
+}
 
 }  // namespace samples

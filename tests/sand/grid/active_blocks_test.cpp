@@ -11,9 +11,9 @@
 
 namespace {
 
+using samples::Law;
 using samples::nameOf;
 using sand::HeightField;
-using sand::Scheme;
 using sand::grid::CodePath;
 using sand::grid::Erosion;
 
@@ -43,13 +43,14 @@ HeightField nearCriticalPlane(int side, int block, std::mt19937& random) {
 TEST(ActiveBlocks, EqualFullSweepsOn3000NearCriticalPlanes) {
     constexpr int kRuns = samples::kSanitized ? 300 : 3000;
     constexpr std::array kBlocks{8, 16, 32, 64};
+    const std::vector<Law> all = samples::laws();
     std::mt19937 random(17);
     int moving = 0;
     for (int run = 0; run < kRuns; ++run) {
         const int block = kBlocks[static_cast<std::size_t>(run) % kBlocks.size()];
         const HeightField start = nearCriticalPlane(block + 35, block, random);
-        const Scheme scheme = run % 4 == 3 ? Scheme::plainIsotropic : Scheme::isotropic;
-        const sand::Rules rules = samples::rulesFor(start, scheme);
+        const Law law = all.at(static_cast<std::size_t>(run) / kBlocks.size() % all.size());
+        const sand::Rules rules = samples::rulesFor(start, law);
         HeightField field = start;
         HeightField full = start;
         Erosion erosion(field, rules, {.blockSize = block});
@@ -67,8 +68,8 @@ TEST(ActiveBlocks, BlockSizeInstructionSetAndThreadsChangeNothing) {
     const HeightField start = samples::randomField(131, 77, 1 << 20, random);
     host::WorkerPool team(3);
     const base::Executor executor = team.executor();
-    for (const Scheme scheme : samples::kSchemes) {
-        sand::Rules rules = samples::rulesFor(start, scheme);
+    for (const Law& law : samples::laws()) {
+        sand::Rules rules = samples::rulesFor(start, law);
         rules.rim = sand::Rim::open;
         HeightField expected = start;
         const std::int64_t outflow = Erosion(expected, rules, {.blockSize = 128}).sweep(expected, 100);
@@ -78,7 +79,7 @@ TEST(ActiveBlocks, BlockSizeInstructionSetAndThreadsChangeNothing) {
                     HeightField field = start;
                     Erosion erosion(field, rules, {.blockSize = block, .path = path, .executor = threads});
                     EXPECT_EQ(erosion.sweep(field, 100), outflow);
-                    EXPECT_TRUE(sameHeights(field, expected)) << nameOf(scheme) << ", blocks of " << block;
+                    EXPECT_TRUE(sameHeights(field, expected)) << nameOf(law) << ", blocks of " << block;
                 }
             }
         }

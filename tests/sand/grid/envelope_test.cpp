@@ -13,9 +13,9 @@
 
 namespace {
 
+using samples::Law;
 using samples::nameOf;
 using sand::HeightField;
-using sand::Scheme;
 
 /// How far a field at rest lies outside the envelopes of its start [threshold]: below every slope at the talus that
 /// rises from a cell of the start, or above every one that falls from it. Negative: inside by as much.
@@ -38,9 +38,9 @@ double outsideEnvelopes(const HeightField& start, const HeightField& rest) {
     return outside / sand::kUnitsPerCell;
 }
 
-double outsideAtRest(const HeightField& start, Scheme scheme) {
+double outsideAtRest(const HeightField& start, const Law& law) {
     HeightField rest = start;
-    samples::relax(rest, samples::rulesFor(rest, scheme));
+    samples::relax(rest, samples::rulesFor(rest, law));
     return outsideEnvelopes(start, rest);
 }
 
@@ -70,8 +70,8 @@ TEST(Envelope, HoldsExactlyOnACylinder) {
     const oracles::Cylinder cylinder(12, 7.2);
     const HeightField start =
         oracles::fieldOf(48, 48, oracles::around(24, 24, [&](double r) { return cylinder.start(r); }));
-    for (const Scheme scheme : samples::kSchemes) {
-        EXPECT_LE(outsideAtRest(start, scheme), 1.0 / sand::kUnitsPerCell) << nameOf(scheme);
+    for (const Law& law : samples::laws()) {
+        EXPECT_LE(outsideAtRest(start, law), 1.0 / sand::kUnitsPerCell) << nameOf(law);
     }
 }
 
@@ -81,28 +81,27 @@ TEST(Envelope, HoldsExactlyOnACylinder) {
 // 0.31.
 TEST(Envelope, HoldsOnRoughFieldsWithinAThreshold) {
     for (std::uint32_t seed = 1; seed <= 4U; ++seed) {
-        for (const Scheme scheme : samples::kSchemes) {
-            EXPECT_LE(outsideAtRest(roughField(48, 16, 0, seed), scheme), 0) << nameOf(scheme) << ", seed " << seed;
-            const double onNoise = scheme == Scheme::isotropic ? 0.9 : 0.25;
-            EXPECT_LE(outsideAtRest(roughField(48, 4, 0, seed), scheme), onNoise)
-                << nameOf(scheme) << ", seed " << seed;
+        for (const Law& law : samples::laws()) {
+            EXPECT_LE(outsideAtRest(roughField(48, 16, 0, seed), law), 0) << nameOf(law) << ", seed " << seed;
+            const double onNoise = law.inertial() ? 0.9 : 0.25;
+            EXPECT_LE(outsideAtRest(roughField(48, 4, 0, seed), law), onNoise) << nameOf(law) << ", seed " << seed;
             for (const int blur : {1, 4}) {
-                EXPECT_LE(outsideAtRest(roughField(48, 8, blur, seed), scheme), 0.35)
-                    << nameOf(scheme) << ", over " << blur << " cells, seed " << seed;
+                EXPECT_LE(outsideAtRest(roughField(48, 8, blur, seed), law), 0.35)
+                    << nameOf(law) << ", over " << blur << " cells, seed " << seed;
             }
         }
     }
 }
 
 TEST(Envelope, NoFaceRestsMuchAboveTheThreshold) {
-    for (const Scheme scheme : samples::kSchemes) {
+    for (const Law& law : samples::laws()) {
         for (const std::int32_t threshold : {4096, sand::kUnitsPerCell, 1 << 20}) {
             for (std::uint32_t seed = 1; seed <= 4; ++seed) {
                 std::mt19937 random(seed);
                 HeightField field = samples::randomField(61, 47, 1 << (20 + seed), random);
-                samples::relax(field, samples::rulesFor(field, scheme, threshold));
-                EXPECT_LE(samples::steepestExcess(field, threshold), samples::restingExcess(threshold))
-                    << nameOf(scheme) << ", threshold " << threshold << ", seed " << seed;
+                samples::relax(field, samples::rulesFor(field, law, threshold));
+                EXPECT_LE(samples::steepestExcess(field, threshold), samples::restingExcess(threshold, law))
+                    << nameOf(law) << ", threshold " << threshold << ", seed " << seed;
             }
         }
     }
@@ -118,16 +117,16 @@ TEST(Envelope, FourNeighboursRestTooSteep) {
 
 TEST(Envelope, NoNewExtremesInAnySweep) {
     std::mt19937 random(7);
-    for (const Scheme scheme : samples::kSchemes) {
+    for (const Law& law : samples::laws()) {
         HeightField field = samples::randomField(67, 45, 1 << 24, random);
         const std::int64_t volume = field.volume();
         samples::Extremes before = samples::extremesOf(field);
-        sand::grid::Erosion erosion(field, samples::rulesFor(field, scheme, 1000));
+        sand::grid::Erosion erosion(field, samples::rulesFor(field, law, 1000));
         for (int sweep = 0; sweep < 200; ++sweep) {
             erosion.sweep(field, 1);
             const samples::Extremes after = samples::extremesOf(field);
-            ASSERT_GE(after.lowest, before.lowest) << nameOf(scheme) << ", sweep " << sweep;
-            ASSERT_LE(after.highest, before.highest) << nameOf(scheme) << ", sweep " << sweep;
+            ASSERT_GE(after.lowest, before.lowest) << nameOf(law) << ", sweep " << sweep;
+            ASSERT_LE(after.highest, before.highest) << nameOf(law) << ", sweep " << sweep;
             ASSERT_EQ(field.volume(), volume);
             before = after;
         }

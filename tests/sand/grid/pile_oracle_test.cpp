@@ -16,9 +16,9 @@
 namespace {
 
 using oracles::Cylinder;
+using samples::Law;
 using samples::nameOf;
 using sand::HeightField;
-using sand::Scheme;
 
 struct Pile {
     HeightField field;
@@ -39,34 +39,38 @@ oracles::Distance distanceToRest(const HeightField& field, const Cylinder& cylin
         field, oracles::sampled(n, n, oracles::around(middle, middle, [&](double r) { return cylinder.rest(r); })));
 }
 
-Pile settledCylinder(int n, const Cylinder& cylinder, Scheme scheme) {
+Pile settledCylinder(int n, const Cylinder& cylinder, const Law& law) {
     HeightField field = cylinderOn(n, cylinder);
-    samples::relax(field, samples::rulesFor(field, scheme));
+    samples::relax(field, samples::rulesFor(field, law));
     return {field, distanceToRest(field, cylinder)};
 }
 
 /// Radius a quarter of the field, height 0.6 of the radius. Settled once, looked at by several tests of one
 /// process.
-const Pile& lowPile(int n, Scheme scheme) {
-    static std::map<std::pair<int, Scheme>, Pile> piles;
-    const auto found = piles.find({n, scheme});
+const Pile& lowPile(int n, const Law& law) {
+    static std::map<std::pair<int, Law>, Pile> piles;
+    const auto found = piles.find({n, law});
     return found != piles.end()
                ? found->second
-               : piles.emplace(std::pair{n, scheme}, settledCylinder(n, {0.25 * n, 0.15 * n}, scheme)).first->second;
+               : piles.emplace(std::pair{n, law}, settledCylinder(n, {0.25 * n, 0.15 * n}, law)).first->second;
 }
 
 // A prototype came within 0.22 %, 0.059 % and 0.023 % of the frustum at N = 64, 128 and 256.
 TEST(PileOracle, LowCylinderBecomesItsFrustum) {
-    for (const Scheme scheme : samples::kSchemes) {
-        EXPECT_LE(lowPile(64, scheme).distance.misplaced, 0.003) << nameOf(scheme);
-        EXPECT_LE(lowPile(128, scheme).distance.misplaced, 0.001) << nameOf(scheme);
-        EXPECT_LE(lowPile(256, scheme).distance.misplaced, 0.0004) << nameOf(scheme);
+    for (const Law& law : samples::laws()) {
+        EXPECT_LE(lowPile(64, law).distance.misplaced, 0.003) << nameOf(law);
+        EXPECT_LE(lowPile(128, law).distance.misplaced, 0.001) << nameOf(law);
+        EXPECT_LE(lowPile(256, law).distance.misplaced, 0.0004) << nameOf(law);
     }
 }
 
 // With inertia alone: without, it takes 25,000 sweeps.
 TEST(PileOracle, LowCylinderOn512CellsIsRightWithinOneIn5000) {
-    EXPECT_LE(lowPile(512, Scheme::isotropic).distance.misplaced, 0.0002);
+    for (const Law& law : samples::laws()) {
+        if (law.inertial()) {
+            EXPECT_LE(lowPile(512, law).distance.misplaced, 0.0002) << nameOf(law);
+        }
+    }
 }
 
 /// Where a slope ends, the kink is rounded over a cell or two. That misplaces a cross-section of some fixed size per
@@ -89,17 +93,17 @@ struct Shape {
 constexpr std::array kShapes{Shape{0.25, 0.1, 0.1}, Shape{0.25, 1.5, 0.25}, Shape{0.15, 3, 0.25}};
 
 TEST(PileOracle, FlatAndTallCylindersBecomeFrustumAndCone) {
-    for (const Scheme scheme : samples::kSchemes) {
+    for (const Law& law : samples::laws()) {
         for (const Shape& shape : kShapes) {
             double coarser = 1;
             for (const int n : {64, 128, 256}) {
-                if (n > (scheme == Scheme::isotropic ? 256 : 128)) {
+                if (n > (law.inertial() ? 256 : 128)) {
                     continue;  // seconds without inertia
                 }
                 const Cylinder cylinder(shape.radius * n, shape.ratio * shape.radius * n);
-                const double misplaced = settledCylinder(n, cylinder, scheme).distance.misplaced;
+                const double misplaced = settledCylinder(n, cylinder, law).distance.misplaced;
                 EXPECT_LE(misplaced, misplacedAtKinks(cylinder, shape.kink) + misplacedBySteepness())
-                    << nameOf(scheme) << ", height / radius " << shape.ratio << ", " << n << " cells";
+                    << nameOf(law) << ", height / radius " << shape.ratio << ", " << n << " cells";
                 EXPECT_LE(misplaced, 0.7 * coarser) << "does not converge: height / radius " << shape.ratio;
                 coarser = misplaced;
             }
@@ -108,7 +112,7 @@ TEST(PileOracle, FlatAndTallCylindersBecomeFrustumAndCone) {
 }
 
 TEST(PileOracle, APileIsRound) {
-    for (const Scheme scheme : samples::kSchemes) {
+    for (const Law& law : samples::laws()) {
         for (const auto& [n, allowed] : {std::pair{64, 0.0035}, {128, 0.0015}}) {
             const Cylinder cylinder(0.25 * n, 0.15 * n);
             for (const double height : {0.25, 0.5}) {  // clear of the kinks at top and foot
@@ -116,14 +120,14 @@ TEST(PileOracle, APileIsRound) {
                 double farthest = 0;
                 double sum = 0;
                 for (int degrees = 0; degrees < 360; ++degrees) {
-                    const double radius = oracles::radiusAt(lowPile(n, scheme).field, n / 2.0, n / 2.0, degrees,
-                                                            height * cylinder.apex());
+                    const double radius =
+                        oracles::radiusAt(lowPile(n, law).field, n / 2.0, n / 2.0, degrees, height * cylinder.apex());
                     nearest = std::min(nearest, radius);
                     farthest = std::max(farthest, radius);
                     sum += radius;
                 }
                 EXPECT_LE((farthest - nearest) / (sum / 360), allowed)
-                    << nameOf(scheme) << ", " << n << " cells, at " << height << " of the height";
+                    << nameOf(law) << ", " << n << " cells, at " << height << " of the height";
             }
         }
     }
@@ -146,14 +150,14 @@ TEST(PileOracle, FourNeighboursMakeAWrongPile) {
 
 /// Share misplaced of the same round pile on cells that are `aspect` times as long from south to north, in a square
 /// domain.
-double misplacedOnOblong(int columns, int rows, double aspect, Scheme scheme) {
+double misplacedOnOblong(int columns, int rows, double aspect, const Law& law) {
     const double side = std::min<double>(columns, rows * aspect);
     const Cylinder cylinder(0.25 * side, 0.15 * side);
     const auto stretched = [&](auto radial) {
         return [=](double x, double y) { return radial(std::hypot(x - columns / 2.0, (y - rows / 2.0) * aspect)); };
     };
     HeightField field = oracles::fieldOf(columns, rows, stretched([&](double r) { return cylinder.start(r); }));
-    sand::Rules rules = samples::rulesFor(field, scheme);
+    sand::Rules rules = samples::rulesFor(field, law);
     rules.aspect = static_cast<std::int32_t>(aspect * sand::kUnitsPerCell);
     samples::relax(field, rules);
     const auto expected = oracles::sampled(columns, rows, stretched([&](double r) { return cylinder.rest(r); }));
@@ -164,13 +168,13 @@ double misplacedOnOblong(int columns, int rows, double aspect, Scheme scheme) {
 // 0.140 % with inertia, 0.050 % and 0.148 % without; half a cell's shift of the pile changes that by up to 15 %. The
 // tolerance is the measurement and that.
 TEST(PileOracle, CellsNeedNotBeSquare) {
-    for (const Scheme scheme : samples::kSchemes) {
-        EXPECT_LE(misplacedOnOblong(256, 128, 2, scheme), 0.00058) << nameOf(scheme);
-        EXPECT_LE(misplacedOnOblong(256, 64, 4, scheme), 0.0016) << nameOf(scheme);
-        EXPECT_LE(misplacedOnOblong(128, 256, 0.5, scheme), 0.00058) << nameOf(scheme);
-        EXPECT_LE(misplacedOnOblong(64, 256, 0.25, scheme), 0.0016) << nameOf(scheme);
-        EXPECT_LE(misplacedOnOblong(128, 64, 2, scheme), 0.002) << nameOf(scheme) << ", half as fine";
-        EXPECT_LE(misplacedOnOblong(128, 32, 4, scheme), 0.005) << nameOf(scheme) << ", half as fine";
+    for (const Law& law : samples::laws()) {
+        EXPECT_LE(misplacedOnOblong(256, 128, 2, law), 0.00058) << nameOf(law);
+        EXPECT_LE(misplacedOnOblong(256, 64, 4, law), 0.0016) << nameOf(law);
+        EXPECT_LE(misplacedOnOblong(128, 256, 0.5, law), 0.00058) << nameOf(law);
+        EXPECT_LE(misplacedOnOblong(64, 256, 0.25, law), 0.0016) << nameOf(law);
+        EXPECT_LE(misplacedOnOblong(128, 64, 2, law), 0.002) << nameOf(law) << ", half as fine";
+        EXPECT_LE(misplacedOnOblong(128, 32, 4, law), 0.005) << nameOf(law) << ", half as fine";
     }
 }
 

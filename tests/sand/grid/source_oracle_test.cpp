@@ -11,9 +11,9 @@
 
 namespace {
 
+using samples::Law;
 using samples::nameOf;
 using sand::HeightField;
-using sand::Scheme;
 using sand::grid::Erosion;
 
 /// Adds `units` of sand to the square of cells within `reach` of (column, row), evenly and to the last unit.
@@ -33,14 +33,14 @@ struct Poured {
 };
 
 /// A cone poured in `portions` onto a spot of an eighth of the field's side, at rest after each of them.
-Poured pouredCone(int n, int portions, Scheme scheme) {
+Poured pouredCone(int n, int portions, const Law& law) {
     const double foot = 0.4 * n;
     const double volume = std::numbers::pi * foot * foot * foot / 3;
     const auto portion = static_cast<std::int64_t>(volume * sand::kUnitsPerCell / portions);
     const int middle = n / 2;
     const int reach = n / 16;
     HeightField field(n + 1, n + 1, 1.0);
-    Erosion erosion(field, samples::rulesFor(field, scheme));
+    Erosion erosion(field, samples::rulesFor(field, law));
     for (int i = 0; i < portions; ++i) {
         pour(field, middle, middle, reach, portion);
         erosion.touch({middle - reach, middle - reach, middle + reach + 1, middle + reach + 1});
@@ -66,17 +66,17 @@ double allowedForCone(double foot) {
 constexpr double kTowersOvershoot = 0.0008;
 
 TEST(SourceOracle, WhatIsPouredOnASpotIsACone) {
-    for (const Scheme scheme : samples::kSchemes) {
+    for (const Law& law : samples::laws()) {
         for (const int portions : {1, 10, 40}) {
             double coarser = 1;
             for (const int n : {32, 64, 128}) {
-                if (n > (scheme == Scheme::isotropic ? 128 : 64)) {
+                if (n > (law.inertial() ? 128 : 64)) {
                     continue;  // seconds without inertia
                 }
-                const Poured poured = pouredCone(n, portions, scheme);
-                const bool overshoots = portions == 1 && scheme == Scheme::isotropic;
+                const Poured poured = pouredCone(n, portions, law);
+                const bool overshoots = portions == 1 && law.inertial();
                 EXPECT_LE(poured.misplaced, allowedForCone(poured.foot) + (overshoots ? kTowersOvershoot : 0))
-                    << nameOf(scheme) << ", " << portions << " portions, " << n << " cells";
+                    << nameOf(law) << ", " << portions << " portions, " << n << " cells";
                 EXPECT_LE(poured.misplaced, 0.8 * coarser) << "does not converge: " << portions << " portions";
                 coarser = poured.misplaced;
             }
@@ -86,27 +86,27 @@ TEST(SourceOracle, WhatIsPouredOnASpotIsACone) {
 
 // A column of one cell is the steepest start there is: whoever lets inertia carry it away gets a plate, no cone.
 TEST(SourceOracle, ANeedleOfOneCellBecomesACone) {
-    for (const Scheme scheme : samples::kSchemes) {
+    for (const Law& law : samples::laws()) {
         for (const int height : {800, 2196}) {
             HeightField field(65, 65, 1.0);
             field.setHeight(32, 32, height * sand::kUnitsPerCell);
-            samples::relax(field, samples::rulesFor(field, scheme));
+            samples::relax(field, samples::rulesFor(field, law));
             const oracles::PouredCone cone(height);
             const auto expected =
                 oracles::sampled(65, 65, oracles::around(32.5, 32.5, [&](double r) { return cone.rest(r); }));
             EXPECT_LE(oracles::distance(field, expected).misplaced, allowedForCone(cone.foot()))
-                << nameOf(scheme) << ", " << height << " cells high";
+                << nameOf(law) << ", " << height << " cells high";
         }
     }
 }
 
 /// Share misplaced of what an open table keeps of a block of sand that was higher than it holds.
-double misplacedOnTable(int columns, int rows, Scheme scheme) {
+double misplacedOnTable(int columns, int rows, const Law& law) {
     HeightField field(columns, rows, 1.0);
     for (int y = 0; y < rows; ++y) {
         std::fill_n(field.row(y), columns, (rows / 2 + 8) * sand::kUnitsPerCell);
     }
-    sand::Rules rules = samples::rulesFor(field, scheme);
+    sand::Rules rules = samples::rulesFor(field, law);
     rules.rim = sand::Rim::open;
     samples::relax(field, rules);
     const oracles::OpenTable table(columns, rows);
@@ -126,19 +126,19 @@ double allowedOnTable(double columns, double rows) {
 }
 
 TEST(TableOracle, AnOpenTableKeepsWhatItsRimsHold) {
-    for (const Scheme scheme : samples::kSchemes) {
+    for (const Law& law : samples::laws()) {
         double coarser = 1;
         for (const int n : {32, 64, 128}) {
-            if (n > (scheme == Scheme::isotropic ? 128 : 64)) {
+            if (n > (law.inertial() ? 128 : 64)) {
                 continue;  // seconds without inertia
             }
-            const double misplaced = misplacedOnTable(n, n, scheme);
-            EXPECT_LE(misplaced, allowedOnTable(n, n)) << nameOf(scheme) << ", " << n << " cells";
+            const double misplaced = misplacedOnTable(n, n, law);
+            EXPECT_LE(misplaced, allowedOnTable(n, n)) << nameOf(law) << ", " << n << " cells";
             EXPECT_LE(misplaced, 0.5 * coarser) << "does not converge";
             coarser = misplaced;
         }
-        EXPECT_LE(misplacedOnTable(63, 41, scheme), allowedOnTable(63, 41)) << nameOf(scheme);
-        EXPECT_LE(misplacedOnTable(64, 128, scheme), allowedOnTable(64, 128)) << nameOf(scheme);
+        EXPECT_LE(misplacedOnTable(63, 41, law), allowedOnTable(63, 41)) << nameOf(law);
+        EXPECT_LE(misplacedOnTable(64, 128, law), allowedOnTable(64, 128)) << nameOf(law);
     }
 }
 

@@ -9,10 +9,10 @@
 
 namespace {
 
+using samples::Law;
 using samples::nameOf;
 using sand::HeightField;
 using sand::Rim;
-using sand::Scheme;
 using sand::grid::Erosion;
 
 /// One of the eight ways to lay a rectangle onto a grid: bit 0 mirrors east and west, bit 1 north and south, and bit 2
@@ -32,19 +32,19 @@ HeightField turned(const HeightField& field, unsigned way) {
 
 TEST(Symmetry, SlidingCommutesWithFlipsAndTransposition) {
     std::mt19937 random(11);
-    for (const Scheme scheme : samples::kSchemes) {
+    for (const Law& law : samples::laws()) {
         for (const Rim rim : {Rim::closed, Rim::open}) {
             const HeightField start = samples::randomField(50, 71, 1 << 22, random);
-            sand::Rules rules = samples::rulesFor(start, scheme);
+            sand::Rules rules = samples::rulesFor(start, law);
             rules.rim = rim;
             HeightField field = start;
             const std::int64_t outflow = Erosion(field, rules).sweep(field, 60);
             for (unsigned way = 1; way < 8; ++way) {
                 HeightField image = turned(start, way);
-                rules = samples::rulesFor(image, scheme);
+                rules = samples::rulesFor(image, law);
                 rules.rim = rim;
                 EXPECT_EQ(Erosion(image, rules).sweep(image, 60), outflow);
-                EXPECT_TRUE(sameHeights(turned(field, way), image)) << nameOf(scheme) << ", way " << way;
+                EXPECT_TRUE(sameHeights(turned(field, way), image)) << nameOf(law) << ", way " << way;
             }
         }
     }
@@ -62,17 +62,17 @@ TEST(Symmetry, NoTwoWaysAreTheSame) {
 
 TEST(Symmetry, ARestStateIsAFixedPoint) {
     std::mt19937 random(13);
-    for (const Scheme scheme : samples::kSchemes) {
+    for (const Law& law : samples::laws()) {
         for (const Rim rim : {Rim::closed, Rim::open}) {
             HeightField field = samples::randomField(67, 45, 1 << 21, random);
-            sand::Rules rules = samples::rulesFor(field, scheme);
+            sand::Rules rules = samples::rulesFor(field, law);
             rules.rim = rim;
             samples::relax(field, rules);
             const HeightField rest = field;
             Erosion again(field, rules);
             EXPECT_EQ(again.sweep(field, 10), 0);
-            EXPECT_EQ(again.sweepsDone(), 1) << "the one sweep that finds nothing to do; " << nameOf(scheme);
-            EXPECT_TRUE(sameHeights(field, rest)) << nameOf(scheme);
+            EXPECT_EQ(again.sweepsDone(), 1) << "the one sweep that finds nothing to do; " << nameOf(law);
+            EXPECT_TRUE(sameHeights(field, rest)) << nameOf(law);
         }
     }
 }

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+// The solver against sweeps by the letter of the law (tests/support/reference_sand.hpp), bit for bit.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <random>
+
+#include "sand/grid/dunes.hpp"
+#include "tests/support/reference_sand.hpp"
+#include "tests/support/relaxing.hpp"
+#include "tests/support/sand_samples.hpp"
+#include "tests/support/seed.hpp"
+
+namespace {
+
+using sand::grid::CodePath;
+using sand::grid::Erosion;
+
+constexpr std::array kBlocks{2, 8, 13, 32, 128};
+constexpr std::array kPaths{CodePath::automatic, CodePath::baseline};
+
+/// A world of any kind: a field, its laws, its ground and a tool, all drawn at random.
+class World {
+public:
+    explicit World(unsigned seed)
+        : random(seed), field(1 + below(45), 1 + below(45), 1.0), rules(samples::rulesFor(field)) {
+        chooseRules();
+        chooseHeights();
+        chooseGround();
+    }
+
+    int below(int end) { return static_cast<int>(random() % static_cast<unsigned>(end)); }
+
+    /// The tool at a place of its own, in one world of two.
+    std::optional<sand::grid::Obstacle> tool() {
+        if (below(2) == 0) {
+            return std::nullopt;
+        }
+        const sand::ToolShape shape{sand::ToolKind::sphere, (2 + below(8)) * sand::kProbePerCell, 0};
+        const sand::ProbePoint place{below(field.columns() + 1) * sand::kProbePerCell,
+                                     below(field.rows() + 1) * sand::kProbePerCell, below(12) * sand::kProbePerCell};
+        return sand::grid::Displacement(shape).obstacle(field, place);
+    }
+
+    [[nodiscard]] std::string text() const {
+        return fmt::format("{} x {} cells of aspect {}, {}, threshold {} to {}, rim {}, ground {}", rules.columns,
+                           rules.rows, rules.aspect, samples::nameOf(samples::Law(rules.scheme)), rules.threshold,
+                           rules.startThreshold, rules.rim == sand::Rim::open ? "open" : "closed", ground != nullptr);
+    }
+
+    std::mt19937 random;
+    sand::HeightField field;
+    sand::Rules rules;
+    std::unique_ptr<sand::Ground> ground;
+
+private:
+    void chooseRules() {
+        constexpr std::array kThresholds{0, 100, sand::kUnitsPerCell / 2, sand::kUnitsPerCell, 4 * sand::kUnitsPerCell};
+        constexpr std::array kAspects{1, 1, 1, 2, 7};  // over 2
+        rules.threshold = kThresholds.at(random() % kThresholds.size());
+        // The default of scenes, one unit, and bands that anyone would see.
+        const std::array bands{0, rules.threshold / 1000, 1, rules.threshold / 10, rules.threshold};
+        rules.startThreshold = rules.threshold + bands.at(random() % bands.size());
+        rules.scheme = samples::kSchemes.at(random() % samples::kSchemes.size());
+        rules.rim = random() % 2 == 0 ? sand::Rim::open : sand::Rim::closed;
+        rules.aspect =
+            random() % 2 == 0 ? sand::kUnitsPerCell : kAspects.at(random() % kAspects.size()) * sand::kUnitsPerCell / 2;
+    }
+
+    /// Noise, a slope near the talus with a few lumps, or dunes.
+    void chooseHeights() {
+        const int kind = below(3);
+        if (kind == 0) {
+            field = samples::randomField(field.columns(), field.rows(), 1 << (8 + below(20)), random);
+        } else if (kind == 1) {
+            const std::int32_t east = below(rules.threshold + 2), north = below(rules.threshold + 2);
+            for (int y = 0; y < field.rows(); ++y) {
+                for (int x = 0; x < field.columns(); ++x) {
+                    field.setHeight(x, y, east * x - north * y + below(16) + (below(30) == 0 ? below(200000) : 0));
+                }
+            }
+        } else {
+            sand::grid::makeDunes({.bed = 2, .height = 6, .length = 30, .seed = 5}, field);
+        }
+    }
+
+    /// Rock and walls, in two worlds of three.
+    void chooseGround() {
+        const int kind = below(3);
+        if (kind == 0) {
+            return;
+        }
+        ground = std::make_unique<sand::Ground>(field.columns(), field.rows());
+        for (int y = 0; y < field.rows(); ++y) {
+            for (int x = 0; x < field.columns(); ++x) {
+                if (below(kind == 1 ? 30 : 6) == 0) {
+                    ground->setWall(x, y);
+                } else if (kind == 2) {
+                    ground->setBedrock(x, y, field.height(x, y) - below(1 << below(20)));
+                }
+            }
+        }
+        rules.ground = ground->digest();
+    }
+};
+
+/// The solver and the reference in one world, with changes of the field, the tool and the rules in between.
+class Pair {
+public:
+    explicit Pair(unsigned seed)
+        : world_(seed),
+          options_{.blockSize = kBlocks.at(world_.random() % kBlocks.size()),
+                   .path = kPaths.at(world_.random() % kPaths.size()),
+                   .ground = world_.ground.get()},
+          field_(world_.field),
+          erosion_(field_, world_.rules, options_),
+          expected_(field_, world_.rules, world_.ground.get()) {}
+
+    [[nodiscard]] std::string text() const {
+        return fmt::format("{}; blocks of {}, {}", world_.text(), options_.blockSize, erosion_.codePath());
+    }
+
+    void sweep() {
+        const int sweeps = 1 + world_.below(24);
+        outflow_ += erosion_.sweep(field_, sweeps, expected_.tool);
+        expected_.sweep(sweeps);
+        ASSERT_TRUE(sameHeights(field_, expected_.field));
+        ASSERT_EQ(outflow_, expected_.outflow);
+        ASSERT_EQ(erosion_.undisturbed(), expected_.undisturbed);
+    }
+
+    void change() {
+        switch (world_.below(4)) {
+            case 0:
+                return lift();
+            case 1:
+                return moveTool();
+            case 2:
+                return changeRules();
+            default:
+                return saveAndResume();
+        }
+    }
+
+private:
+    /// Somebody lifts or lowers a few cells, never below their rock.
+    void lift() {
+        const int x = world_.below(field_.columns()), y = world_.below(field_.rows());
+        const sand::CellRect cells = sand::CellRect{x, y, x + 4, y + 3}.clippedTo(field_.bounds());
+        for (int row = cells.y0; row < cells.y1; ++row) {
+            for (int column = cells.x0; column < cells.x1; ++column) {
+                const std::int32_t height = field_.height(column, row) + world_.below(1 << 18) - (1 << 16);
+                const bool wall = options_.ground != nullptr && options_.ground->isWall(column, row);
+                const std::int32_t least =
+                    options_.ground != nullptr ? options_.ground->bedrock(column, row) : -sand::kMaxHeight;
+                field_.setHeight(column, row, wall ? field_.height(column, row) : std::max(height, least));
+                expected_.field.setHeight(column, row, field_.height(column, row));
+            }
+        }
+        touch(cells);
+    }
+
+    void moveTool() {
+        tool_ = world_.tool();
+        expected_.tool = tool_ ? &*tool_ : nullptr;
+        touch(field_.bounds());
+    }
+
+    void changeRules() {
+        sand::Rules& rules = expected_.rules;
+        rules.threshold = world_.below(2) == 0 ? rules.threshold : world_.below(2 * sand::kUnitsPerCell);
+        rules.startThreshold = rules.threshold + (world_.below(2) == 0 ? 0 : world_.below(sand::kUnitsPerCell));
+        erosion_.changeRules(rules);
+        expected_.undisturbed = 0;
+    }
+
+    void saveAndResume() {
+        base::ByteWriter writer;
+        erosion_.inertia().encode(field_.columns(), field_.rows(), writer);
+        base::ByteReader reader(writer.bytes());
+        erosion_ = Erosion(field_, expected_.rules, options_);
+        erosion_.resume(sand::grid::Inertia::decode(reader, field_.columns(), field_.rows()));
+    }
+
+    void touch(const sand::CellRect& cells) {
+        erosion_.touch(cells);
+        expected_.undisturbed = 0;
+    }
+
+    World world_;
+    Erosion::Options options_;
+    sand::HeightField field_;
+    Erosion erosion_;
+    reference::Sand expected_;
+    std::optional<sand::grid::Obstacle> tool_;
+    std::int64_t outflow_ = 0;
+};
+
+TEST(Reference, EqualsTheSolverInRandomWorlds) {
+    constexpr unsigned kWorlds = samples::kSlowBuild ? 60 : 600;
+    const unsigned first = test::randomSeed();
+    for (unsigned world = 0; world < kWorlds && !HasFatalFailure(); ++world) {
+        SCOPED_TRACE(test::again(first + world));
+        Pair pair(first + world);
+        for (int part = 0; part < 6 && !HasFatalFailure(); ++part) {
+            SCOPED_TRACE(fmt::format("{}, part {}", pair.text(), part));
+            pair.sweep();
+            pair.change();
+        }
+    }
+}
+
+}  // namespace
