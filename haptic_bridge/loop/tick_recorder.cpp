@@ -146,7 +146,8 @@ std::vector<base::Bytes> TickRecorder::takePieces() {
 
 void TickRecorder::flush() {
     const std::uint64_t wanted = added_.load(std::memory_order_acquire);
-    for (int i = 0; i < 300 && done_.load(std::memory_order_acquire) < wanted; ++i) {
+    const int longest = options_.wait ? 30'000 : 300;  // [ms]
+    for (int i = 0; i < longest && done_.load(std::memory_order_acquire) < wanted; ++i) {
         std::this_thread::sleep_for(1ms);
     }
 }

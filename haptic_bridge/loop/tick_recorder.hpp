@@ -41,7 +41,7 @@ public:
     // The streaming thread:
     /// What the master has not got yet.
     [[nodiscard]] std::vector<base::Bytes> takePieces();
-    /// Returns when all that was added before has become pieces, or after 0.3 s.
+    /// Returns when all that was added before has become pieces, or after 0.3 s; the fast pace waits up to 30 s.
     void flush();
 
 private:
