@@ -8,6 +8,7 @@
 #include <numeric>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 
 #include "sand/tin/refine/start_maker.hpp"
 #include "sand/tin/surface.hpp"
@@ -68,14 +69,21 @@ sand::tin::TinStart joined(const host::TomlTable& file, const host::TomlTable& t
 }
 
 /// Makes a TIN of the scene's height field.
-sand::tin::TinStart followed(const host::TomlTable& tin, const Scene& scene) {
+sand::tin::TinStart followed(const host::TomlTable& tin, Scene& scene) {
     const sand::HeightField& field = scene.terrain;
     const sand::tin::Settings settings = readTinSettings(tin, {field.columns(), field.rows(), field.cellSize()});
     tin.finish();
     try {
-        sand::tin::TinStart start = sand::tin::follow(field, scene.ground.get(), settings);
-        keepUsual(tin, start);
-        return start;
+        sand::tin::Followed made = sand::tin::follow(field, scene.ground.get(), settings);
+        if (made.maxError > settings.maxError) {
+            const double asked = tin.has("max_error") ? tin.number("max_error") : settings.maxError * field.unit();
+            scene.warnings.push_back(fmt::format(
+                "{} vertices are too few for max_error = {:.6g}: some cell lies {:.4g} above or below the TIN; raise "
+                "'vertices' or 'max_error' in [tin]",
+                made.start.places.size(), asked, made.maxError * field.unit()));
+        }
+        keepUsual(tin, made.start);
+        return std::move(made.start);
     } catch (const std::length_error& error) {
         tin.fail("vertices", error.what());
     }

@@ -168,7 +168,7 @@ void writeTin(Folder folder) {
     sand::Ground walls(6, 6);  // two that touch at a corner
     walls.setWall(2, 2);
     walls.setWall(3, 3);
-    sand::tin::follow(sand::HeightField(6, 6, 1), &walls, {.maxError = 1000}).encode(start);
+    sand::tin::follow(sand::HeightField(6, 6, 1), &walls, {.maxError = 1000}).start.encode(start);
     folder.add(start.take(), {2});
 }
 

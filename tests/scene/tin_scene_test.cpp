@@ -4,11 +4,18 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <fstream>
+#include <iterator>
+#include <tuple>
+#include <vector>
 
 #include "base/input_error.hpp"
 #include "sand/replica.hpp"
 #include "sand/tin/geometry/lattice.hpp"
+#include "scene/export/tin_raster.hpp"
 #include "scene/load/scene_file.hpp"
 #include "tests/support/folder_test.hpp"
 
@@ -77,6 +84,44 @@ TEST_F(TinScene, HasNoMoreVerticesThanTheFileAllows) {
             EXPECT_EQ(read.tin->settings.mostVertices, vertices);
         }
     }
+}
+
+/// The farthest that a start is from the field that the scene file has without its [tin] [unit].
+double errorOf(const scene::Scene& tin, const sand::HeightField& field) {
+    const sand::Replica replica(tin);
+    double worst = 0;
+    for (int row = 0; row < field.rows(); ++row) {
+        for (int column = 0; column < field.columns(); ++column) {
+            const double height =
+                replica.surface().height((column + 0.5) * sand::kProbePerCell, (row + 0.5) * sand::kProbePerCell);
+            worst = std::max(worst, std::abs(height - field.height(column, row)));
+        }
+    }
+    return worst;
+}
+
+TEST_F(TinScene, IsAsNearToItsTerrainAsMaxErrorAtEveryWidest) {
+    const std::string dunes = "[field]\ncolumns = 96\n[terrain]\nkind = \"dunes\"\n[material]\n[tool]\nradius = 0.1\n";
+    const sand::HeightField field = loaded(dunes).terrain;
+    for (const double maxError : {0.0, 0.0005, 0.004}) {
+        for (const char* widest : {"", "widest = 0\n", "widest = 0.03\n", "widest = 0.1\n", "widest = 1\n"}) {
+            const scene::Scene read = loaded(dunes + fmt::format("[tin]\nmax_error = {}\n{}", maxError, widest));
+            // max_error is a whole number of units, and what a quotient rounds is far less than another.
+            EXPECT_LE(errorOf(read, field), read.tin->settings.maxError + 1e-6) << maxError << ' ' << widest;
+            EXPECT_TRUE(read.warnings.empty());
+        }
+    }
+}
+
+TEST_F(TinScene, TheEllipsesAreAsNearToTheirTerrainAsTheyAsk) {
+    const std::filesystem::path file = std::filesystem::path(SANDWALL_SOURCE_DIR) / "scenes" / "ellipses.toml";
+    std::string text((std::istreambuf_iterator<char>(std::ifstream(file).rdbuf())), {});
+    const scene::Scene read = loaded(text);
+    ASSERT_NE(read.tin, nullptr);
+    const std::size_t tin = text.find("[tin]");
+    const scene::Scene plain = loaded(text.erase(tin, text.find("[material]") - tin));
+    ASSERT_EQ(plain.tin, nullptr);
+    EXPECT_LE(errorOf(read, plain.terrain), read.tin->settings.maxError + 1e-6);
 }
 
 TEST_F(TinScene, RefusesPointsThatLieNearerThanItsVerticesAllow) {

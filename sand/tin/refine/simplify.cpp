@@ -58,19 +58,18 @@ public:
         }
         return heap_.empty() ? Worst{} : heap_.top();
     }
-    void report(Simplified& result) const {
+    void report(Simplified& result) {
+        result.maxError = worst().error;
         if (errors_.empty()) {
             return;
         }
-        double largest = 0, sum = 0, count = 0;
+        double sum = 0, count = 0;
         for (std::size_t i = 0; i < errors_.size(); ++i) {
             if (!std::isnan(raster_.heights[i]) && !used_[i]) {
-                largest = std::max(largest, errors_[i]);
                 sum += errors_[i] * errors_[i];
             }
             count += std::isnan(raster_.heights[i]) ? 0 : 1;
         }
-        result.maxError = largest;
         result.rmsError = std::sqrt(sum / count);
     }
 
@@ -207,7 +206,7 @@ std::int64_t sampleAt(const Raster& raster, const Place& place) {
 }  // namespace
 
 Simplified simplify(std::int32_t width, std::int32_t depth, const Raster& raster, const SimplifyGoal& goal,
-                    const Border& border) {
+                    const Border& given) {
     check(width, depth, raster);
     if (goal.maxVertices < 4) {
         throw std::invalid_argument("a field has 4 corners");
@@ -224,12 +223,17 @@ Simplified simplify(std::int32_t width, std::int32_t depth, const Raster& raster
             errors.use(sample);
         }
     }
-    mesh.insert(border.places);
-    for (const auto& [a, b] : border.edges) {
+    mesh.insert(given.places);
+    for (const auto& [a, b] : given.edges) {
         mesh.constrain(a, b);
     }
-    result.places.insert(result.places.end(), border.places.begin(), border.places.end());
-    result.heights.insert(result.heights.end(), border.heights.begin(), border.heights.end());
+    for (const Place& place : given.places) {
+        if (const std::int64_t sample = sampleAt(raster, place); sample != kNone) {
+            errors.use(sample);
+        }
+    }
+    result.places.insert(result.places.end(), given.places.begin(), given.places.end());
+    result.heights.insert(result.heights.end(), given.heights.begin(), given.heights.end());
     static_cast<void>(mesh.takeChange());
     std::vector<std::int32_t> all(mesh.triangles().triangles.size());
     for (std::size_t slot = 0; slot < all.size(); ++slot) {

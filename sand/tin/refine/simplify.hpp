@@ -29,12 +29,12 @@ struct Raster {
 struct SimplifyGoal {
     double maxError = 0;  // [the raster's unit]
     int maxVertices = 1 << 22;
-    bool reports = true;  // the errors that are left; otherwise they are 0, and take no memory
+    bool reports = true;  // the root mean square of the errors that are left; otherwise it is 0, and takes no memory
 };
 
 /// Some of a raster's samples, whose triangulation is near to all of them.
 struct Simplified {
-    std::vector<Place> places;          // the field's corners, the border, then samples as they were chosen
+    std::vector<Place> places;          // the field's corners, those given, then samples as they were chosen
     std::vector<double> heights;        // [the raster's unit]
     double maxError = 0, rmsError = 0;  // vertical, over all samples with data [the raster's unit]
 };
@@ -47,9 +47,10 @@ struct Simplified {
 /// A function of raster and goal; IEEE sums, products and quotients only. Throws std::invalid_argument for a raster
 /// that does not lie in the field, has infinite heights or no data at all, and for fewer vertices than 4.
 ///
-/// `border`: points that are put in before, and edges that are constrained; they follow the corners.
+/// @param given  Points that are put in before, and edges that are constrained; they follow the corners. A point on a
+///               sample must have that sample's height.
 [[nodiscard]] Simplified simplify(std::int32_t width, std::int32_t depth, const Raster& raster,
-                                  const SimplifyGoal& goal, const Border& border = {});
+                                  const SimplifyGoal& goal, const Border& given = {});
 
 /// The vertical errors of the surface through these points, for comparison: as simplify() reports its own.
 [[nodiscard]] Simplified measured(std::int32_t width, std::int32_t depth, const Raster& raster,

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -39,27 +38,25 @@ std::size_t nearest(const std::vector<Place>& places, const Place& to) {
     return static_cast<std::size_t>(found - places.begin());
 }
 
-/// Middles of cells at settings.widest, where no vertex is: without them level ground is two triangles, and a furrow's
-/// bank hangs on the field's far corners by slivers, which sand slides over badly and light shows as rays.
-void addLattice(const HeightField& field, TinStart& start) {
-    const std::int32_t every = Lattice(start.settings.widest).every;
+/// Adds the middles of cells at settings.widest that lie on ground. Without them level ground is two triangles, and a
+/// furrow's bank hangs on the field's far corners by slivers, which sand slides over badly and light shows as rays.
+void addLattice(const HeightField& field, const Holes* holes, const Settings& settings, Border& given) {
+    const std::int32_t every = Lattice(settings.widest).every;
     if (every == 0) {
         return;
     }
-    const std::set<Place> there(start.places.begin(), start.places.end());
     for (int row = every / 2; row < field.rows(); row += every) {
         for (int column = every / 2; column < field.columns(); column += every) {
-            const Place place{column * kLatticePerCell + kLatticePerCell / 2,
-                              row * kLatticePerCell + kLatticePerCell / 2};
-            if (!there.contains(place) && (start.holes == nullptr || !start.holes->isHole(column, row))) {
-                start.places.push_back(place);
-                start.heights.push_back(field.height(column, row));
+            if (holes == nullptr || !holes->isHole(column, row)) {
+                given.places.push_back(
+                    {column * kLatticePerCell + kLatticePerCell / 2, row * kLatticePerCell + kLatticePerCell / 2});
+                given.heights.push_back(field.height(column, row));
             }
         }
     }
 }
 
-/// As near to the ground as maxError, or as so few vertices can be.
+/// Returns a border as near to the ground as maxError, or as near as so few vertices can be.
 Border borderWithin(std::size_t most, std::span<const double> heights, const Cells& cells, const Holes* holes,
                     double maxError) {
     Border border = borderOf(heights, cells, holes, maxError);
@@ -89,8 +86,9 @@ bool isLevel(const HeightField& field) {
     return true;
 }
 
-/// What the rim, the holes and the heights of a field need.
-void addChosen(const HeightField& field, const Ground* walls, TinStart& start) {
+/// Chooses what the rim, the holes and the heights of a field need, and what 'widest' asks for. Returns the largest
+/// error that is left [unit].
+double addChosen(const HeightField& field, const Ground* walls, TinStart& start) {
     std::vector<double> heights;
     heights.reserve(static_cast<std::size_t>(field.columns()) * static_cast<std::size_t>(field.rows()));
     for (int row = 0; row < field.rows(); ++row) {
@@ -106,17 +104,24 @@ void addChosen(const HeightField& field, const Ground* walls, TinStart& start) {
     raster.first = {kLatticePerCell / 2, kLatticePerCell / 2};  // the middles of cells
     const Cells cells = nominalCells(start.width, start.depth);
     start.holes = holesOf(heights, cells);
-    const double maxError = start.settings.maxError;
-    const auto room = static_cast<int>(start.settings.mostVertices -
-                                       Lattice(start.settings.widest).size(field.columns(), field.rows()));
-    const Border border = borderWithin(static_cast<std::size_t>(std::max(room - kCorners, 0)), heights, cells,
-                                       start.holes.get(), maxError);
-    const Simplified chosen = simplify(start.width, start.depth, raster, {maxError, room, false}, border);
-    start.constraints = border.edges;
+    const Settings& settings = start.settings;
+    const std::int64_t room = settings.mostVertices - Lattice(settings.widest).size(field.columns(), field.rows());
+    Border given = borderWithin(static_cast<std::size_t>(std::max<std::int64_t>(room - kCorners, 0)), heights, cells,
+                                start.holes.get(), settings.maxError);
+    // As the start will have them: what is measured is the surface that comes of it.
+    for (double& height : given.heights) {
+        height = nearestHeight(height);
+    }
+    // Before anything is chosen, because each point changes the triangles around it and with them the errors.
+    addLattice(field, start.holes.get(), settings, given);
+    const Simplified chosen = simplify(start.width, start.depth, raster,
+                                       {static_cast<double>(settings.maxError), settings.mostVertices, false}, given);
+    start.constraints = given.edges;
     start.places = chosen.places;
     for (const double height : chosen.heights) {
         start.heights.push_back(nearestHeight(height));
     }
+    return chosen.maxError;
 }
 
 }  // namespace
@@ -137,20 +142,22 @@ VertexSand layerOf(const TinStart& start) {
     return layer;
 }
 
-TinStart follow(const HeightField& field, const Ground* walls, const Settings& settings) {
-    TinStart start;
+Followed follow(const HeightField& field, const Ground* walls, const Settings& settings) {
+    Followed followed;
+    TinStart& start = followed.start;
     start.width = field.columns() * kLatticePerCell;
     start.depth = field.rows() * kLatticePerCell;
     start.settings = settings;
     if (walls == nullptr && isLevel(field)) {
-        start.places = {{0, 0}, {start.width, 0}, {start.width, start.depth}, {0, start.depth}};
+        Border given{{{0, 0}, {start.width, 0}, {start.width, start.depth}, {0, start.depth}}, {}, {}};
+        addLattice(field, nullptr, settings, given);
+        start.places = std::move(given.places);
         start.heights.assign(start.places.size(), field.height(0, 0));
     } else {
-        addChosen(field, walls, start);
+        followed.maxError = addChosen(field, walls, start);
     }
-    addLattice(field, start);
     start.meanHeight = meanHeight(start);
-    return start;
+    return followed;
 }
 
 TinStart join(const TinStart& given) {

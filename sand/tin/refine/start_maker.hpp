@@ -11,10 +11,19 @@ namespace sand::tin {
 /// The sand that a start describes.
 [[nodiscard]] VertexSand layerOf(const TinStart& start);
 
-/// The TIN with the fewest points that greedy insertion needs to come as near to every cell's middle, and to those of
-/// the rim, as settings.maxError, or that settings.mostVertices allows beside those at settings.widest. Walls, which
-/// may be null, are holes: throws std::length_error when what their outline needs is more.
-[[nodiscard]] TinStart follow(const HeightField& field, const Ground* walls, const Settings& settings);
+/// A start, and how far it is from the heights that it was made of.
+struct Followed {
+    TinStart start;
+    double maxError = 0;  // [unit], vertical, over the middles of all cells on ground
+};
+
+/// Makes the TIN of a field: the field's corners, its border, the middles of cells at settings.widest, and the points
+/// that greedy insertion adds to these.
+///
+/// It ends when the surface is as near to every cell's middle, and to those of the rim, as settings.maxError, or when
+/// there are settings.mostVertices. Walls, which may be null, are holes. Throws std::length_error when the border needs
+/// more vertices than there may be.
+[[nodiscard]] Followed follow(const HeightField& field, const Ground* walls, const Settings& settings);
 /// The TIN of given places and heights; the corners of the field are added where they are missing, as high as the
 /// nearest place. start.places need not begin with them, and constraints are by place.
 [[nodiscard]] TinStart join(const TinStart& start);

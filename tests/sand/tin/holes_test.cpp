@@ -57,7 +57,7 @@ TinStart startOf(int columns, int rows, const CellTest& isWall, const std::funct
         }
     }
     const Ground walls = wallsWhere(columns, rows, isWall);
-    return sand::tin::follow(field, &walls, {.widest = sand::kProbePerCell, .maxError = 0});
+    return sand::tin::follow(field, &walls, {.widest = sand::kProbePerCell, .maxError = 0}).start;
 }
 
 VertexSand layerAt(const TinStart& start) {
@@ -300,7 +300,7 @@ TEST(TinHoles, TheRimIsAsHighAsTheCellsAlongIt) {
         }
     }
     constexpr std::int32_t kError = 6000;
-    const VertexSand layer = layerAt(sand::tin::follow(field, nullptr, {.maxError = kError}));
+    const VertexSand layer = layerAt(sand::tin::follow(field, nullptr, {.maxError = kError}).start);
     for (int column = 0; column < 40; ++column) {
         EXPECT_NEAR(heightAt(layer, {column * 256 + 128, 0}), field.height(column, 0), kError);
         EXPECT_NEAR(heightAt(layer, {column * 256 + 128, 30 * 256}), field.height(column, 29), kError);
