@@ -40,7 +40,7 @@ TinSurface::TinSurface(const Rules& rules, std::shared_ptr<const TinStart> start
       threshold_(rules.threshold),
       startThreshold_(rules.startThreshold),
       layer_(layerOf(*start_)),
-      erosion_(layer_, threshold_, startThreshold_),
+      erosion_(layer_, threshold_, startThreshold_, rim_),
       hash_(layer_),
       beforeStroke_(layer_) {
     (void)layer_.takeChange();
@@ -55,7 +55,7 @@ TinSurface::TinSurface(const TinSurface& other)
       startThreshold_(other.startThreshold_),
       layer_(Snapshot(other.layer_, other.state_).layer()),
       state_(other.state_),
-      erosion_(layer_, threshold_, startThreshold_),
+      erosion_(layer_, threshold_, startThreshold_, rim_),
       hash_(layer_),
       beforeStroke_(layer_) {
     (void)layer_.takeChange();
@@ -168,6 +168,7 @@ void TinSurface::sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) {
         held_.reset();
         erosion_.sweep(layer_, sweeps, nullptr, moved_);
     }
+    state_.outflow += erosion_.takeOutflow();
     sandMoved(moved_);
 }
 
@@ -182,11 +183,12 @@ void TinSurface::settle() {
     if (erosion_.settled()) {
         return;
     }
-    const std::vector<Vertex> moved = tin::settle(layer_, threshold_, startThreshold_, kSweepsToRest).moved;
-    sandMoved(moved);
-    erosion_.wake(moved);
+    const Settled settled = tin::settle(layer_, threshold_, startThreshold_, kSweepsToRest, rim_);
+    sandMoved(settled.moved);
+    erosion_.wake(settled.moved);
     moved_.clear();
     erosion_.settle(layer_, 1, moved_);  // so that it sees that all is at rest
+    state_.outflow += settled.outflow + erosion_.takeOutflow();
     sandMoved(moved_);
 }
 
@@ -210,7 +212,7 @@ void TinSurface::replace(const SurfaceCopy& copy) {
     layer_ = sand.layer();
     (void)layer_.takeChange();
     state_ = sand.state();
-    erosion_ = Erosion(layer_, threshold_, startThreshold_);
+    erosion_ = Erosion(layer_, threshold_, startThreshold_, rim_);
     hash_ = TileHash(layer_);
     beforeStroke_.replaced(layer_);
     reserve();

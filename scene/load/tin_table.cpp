@@ -63,7 +63,14 @@ sand::tin::TinStart joined(const host::TomlTable& file, const host::TomlTable& t
     (void)tin.numberOr("cell", 1);  // has been read
     start.settings = readTinSettings(tin, {scene.rules.columns, scene.rules.rows, scene.terrain.cellSize()}, places);
     tin.finish();
-    start = sand::tin::join(start);
+    start = sand::tin::join(start, scene.rules.rim);
+    const std::size_t most = tin.has("vertices") ? static_cast<std::size_t>(start.settings.mostVertices)
+                                                 : std::size_t{sand::tin::kMostPlaces};
+    if (start.places.size() > most) {
+        tin.fail("vertices", fmt::format("the points are {} vertices, the open rim takes {} more, and {} are the most; "
+                                         "raise it, set a larger 'widest', or thin out the points",
+                                         places, start.places.size() - places, most));
+    }
     keepUsual(tin, start);
     return start;
 }
@@ -74,7 +81,7 @@ sand::tin::TinStart followed(const host::TomlTable& tin, Scene& scene) {
     const sand::tin::Settings settings = readTinSettings(tin, {field.columns(), field.rows(), field.cellSize()});
     tin.finish();
     try {
-        sand::tin::Followed made = sand::tin::follow(field, scene.ground.get(), settings);
+        sand::tin::Followed made = sand::tin::follow(field, scene.ground.get(), settings, scene.rules.rim);
         if (made.maxError > settings.maxError) {
             const double asked = tin.has("max_error") ? tin.number("max_error") : settings.maxError * field.unit();
             scene.warnings.push_back(fmt::format(

@@ -32,8 +32,8 @@ scene::Scene smallScene() {
 
 scene::Scene smallTin() {
     scene::Scene scene = smallScene();
-    auto start =
-        sand::tin::follow(scene.terrain, nullptr, {.spacing = 300, .maxError = 8000, .mostVertices = 2000}).start;
+    const sand::tin::Settings settings{.spacing = 300, .maxError = 8000, .mostVertices = 2000};
+    auto start = sand::tin::follow(scene.terrain, nullptr, settings, scene.rules.rim).start;
     scene.rules.tin = start.digest();
     scene.tin = std::make_shared<const sand::tin::TinStart>(std::move(start));
     scene.terrain = sand::HeightField(1, 1, scene.terrain.cellSize());

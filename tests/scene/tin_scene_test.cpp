@@ -124,6 +124,57 @@ TEST_F(TinScene, TheEllipsesAreAsNearToTheirTerrainAsTheyAsk) {
     EXPECT_LE(errorOf(read, plain.terrain), read.tin->settings.maxError + 1e-6);
 }
 
+TEST_F(TinScene, AnOpenRimHasVerticesNoFartherApartThanWidest) {
+    writeSurvey(20);
+    const std::string material = "[material]\n[tool]\nradius = 1\n";
+    struct Case {
+        std::string terrain;
+        std::int32_t widest;  // [probe unit]
+    };
+    for (const auto& [terrain, widest] :
+         {Case{"[field]\ncolumns = 64\n[terrain]\n[tin]\n", 16 * 256},
+          Case{"[field]\ncolumns = 64\nwidth = 64\n[terrain]\n[tin]\nwidest = 1\n", 256},
+          Case{"[field]\ncolumns = 64\nrows = 40\nwidth = 64\n[terrain]\nkind = \"dunes\"\n[tin]\nwidest = 5\n",
+               5 * 256},
+          Case{"[field]\ncolumns = 64\n[terrain]\nkind = \"dunes\"\n[tin]\nwidest = 0\n", 16 * 256},
+          Case{"[terrain]\nkind = \"points\"\nfile = \"p.csv\"\n[tin]\ncell = 0.1\nwidest = 0.3\n", 3 * 256}}) {
+        const scene::Scene open = loaded(fmt::format("rim = \"open\"\n{}{}", terrain, material));
+        const sand::tin::TinStart& start = *open.tin;
+        std::array<std::vector<std::int32_t>, 4> sides;
+        for (const sand::tin::Place& place : start.places) {
+            for (const auto& [side, on, along] :
+                 {std::tuple{0U, place.y == 0, place.x}, std::tuple{1U, place.x == start.width, place.y},
+                  std::tuple{2U, place.y == start.depth, place.x}, std::tuple{3U, place.x == 0, place.y}}) {
+                if (on) {
+                    sides.at(side).push_back(along);
+                }
+            }
+        }
+        for (std::vector<std::int32_t>& side : sides) {
+            std::sort(side.begin(), side.end());
+            EXPECT_EQ(std::adjacent_find(side.begin(), side.end()), side.end()) << "a place is there twice";
+            for (std::size_t i = 1; i < side.size(); ++i) {
+                EXPECT_LE(side[i] - side[i - 1], widest) << terrain;
+            }
+        }
+        const scene::Scene closed = loaded(terrain + material);
+        EXPECT_LT(closed.tin->places.size(), start.places.size()) << terrain;
+    }
+}
+
+TEST_F(TinScene, RefusesAnOpenRimThatTakesMoreThanItsVertices) {
+    writeSurvey(20);
+    const auto open = [&](const std::string& text) {
+        return refusal([&] { return loaded("rim = \"open\"\n" + text + "[material]\n[tool]\nradius = 1\n"); });
+    };
+    EXPECT_EQ(open("[field]\ncolumns = 64\nwidth = 64\n[terrain]\n[tin]\nvertices = 30\nwidest = 16\n"),
+              "s.toml:7: the open rim takes 16 vertices, and there is room for 10 beside corners and points at "
+              "'widest'; raise 'vertices'");
+    EXPECT_EQ(open("[terrain]\nkind = \"points\"\nfile = \"p.csv\"\n[tin]\ncell = 0.1\nvertices = 410\nwidest = 0.5\n"),
+              "s.toml:7: the points are 400 vertices, the open rim takes 76 more, and 410 are the most; raise it, set "
+              "a larger 'widest', or thin out the points");
+}
+
 TEST_F(TinScene, RefusesPointsThatLieNearerThanItsVerticesAllow) {
     EXPECT_EQ(
         refusal([&] { return scene(1024, "flat", "vertices = 100\nwidest = 0.002\n"); }),

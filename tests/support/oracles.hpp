@@ -78,19 +78,21 @@ private:
     double talus_, foot_;
 };
 
-/// O4: what stays on an open table that was piled as high as it holds: talus x distance to the nearest rim. Height 0
-/// is met half a cell beyond the field's edge, at the centres of the cells that are no longer there.
+/// O4: what stays on an open table that was piled as high as it holds: talus x distance to the nearest rim. On a grid
+/// height 0 is met half a cell beyond the field's edge, at the centres of the cells that are no longer there; on a TIN
+/// at the edge itself.
 class OpenTable {
 public:
-    OpenTable(double columns, double rows, double talus = 1) : columns_(columns), rows_(rows), talus_(talus) {}
+    OpenTable(double columns, double rows, double talus = 1, double beyond = 0.5 /* [cell] */)
+        : columns_(columns), rows_(rows), talus_(talus), beyond_(beyond) {}
 
     [[nodiscard]] double rest(double x, double y) const {
         const double toRim = std::min(std::min(x, columns_ - x), std::min(y, rows_ - y));
-        return talus_ * (toRim + 0.5);
+        return talus_ * (toRim + beyond_);
     }
 
 private:
-    double columns_, rows_, talus_;
+    double columns_, rows_, talus_, beyond_;
 };
 
 /// O5: a plane that rises along x from 0 by `slope` per cell in a closed box. Up to the talus nothing moves; above, it

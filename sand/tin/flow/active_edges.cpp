@@ -85,8 +85,8 @@ std::int32_t ActiveEdges::localOf(const VertexSand& layer, Vertex vertex) {
     std::int32_t& local = noteOf(vertex).local;
     if (local == kNobody) {
         const auto at = index(vertex);
-        local =
-            sand_.addVertex(layer.volumes()[at], layer.stars()[at], undersideAt(vertex, layer.triangles().places[at]));
+        local = sand_.addVertex(layer.volumes()[at], layer.stars()[at],
+                                undersideAt(vertex, layer.triangles().places[at]), spills(layer.triangles(), vertex));
         vertices_.push_back(vertex);
     }
     return local;
@@ -201,6 +201,9 @@ void ActiveEdges::wake(const VertexSand& layer, const Slopes& slopes, std::span<
             continue;
         }
         noteOf(vertex).woken = turn_;
+        if (layer.volumes()[index(vertex)] > 0 && spills(mesh, vertex)) {
+            watch(layer, slopes, vertex);  // level sand falls too
+        }
         aroundVertex(mesh, vertex, [&](std::int32_t slot, int) {
             std::uint32_t& examined = noteOfSlot(slot).examined;
             if (examined == turn_ || mesh.triangles[index(slot)].hole) {
@@ -240,6 +243,7 @@ bool ActiveEdges::sweep(const VertexSand& layer, const Slopes& slopes, Weights& 
         // One that came with an edge may slide too: nothing flowed around it, for an obstacle held it.
     } while (known < sand_.facetCount());
     const SweepResult result = sand_.move(held_ != nullptr, momentum);
+    outflow_ += result.outflow;
     if (result.spread || (band_ && result.moved && result.met)) {
         met_.clear();
         sand_.findUnwatched(met_);

@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/index_set.hpp"
+#include "sand/model/rules.hpp"
 #include "sand/tin/flow/active_mesh.hpp"
 #include "sand/tin/flow/weights.hpp"
 #include "sand/tin/volume/vertex_sand.hpp"
@@ -19,10 +21,13 @@ namespace sand::tin {
 /// A triangle slides as the heights of its corners have it, and sand flows over the edges of those that slide. Whoever
 /// watches the triangles around every vertex that flowed in the last sweep has all that can slide in the next; only
 /// when one does are its edges needed. Triangles and edges watched beside these find nothing to do. Hence it does not
-/// matter which they are, and they are forgotten only now and then. Not thread-safe.
+/// matter which they are, and they are forgotten only now and then. Over an open rim each sweep lets all fall that lies
+/// on the rim above height 0: sand comes there over edges that are watched, or wake() is told of it. Not thread-safe.
 class ActiveEdges {
 public:
     using Underside = std::function<std::int32_t(Place)>;
+
+    explicit ActiveEdges(Rim rim = Rim::closed) : rim_(rim) {}
 
     void reserve(std::size_t vertices) { makeRoom(vertices, 2 * vertices); }
     /// Vertices where an obstacle stood and now another one does, or none: sand may flow there again. Where it is as it
@@ -32,11 +37,13 @@ public:
     /// `band`: sand at rest starts to slide later than sliding sand stops.
     void begin(const VertexSand& layer, bool band, const Underside* held);
     /// Watches every triangle that may slide in the next sweep because of these vertices: those around them that are
-    /// steep enough. To be called right after begin().
+    /// steep enough, and all around one from which sand falls over an open rim. To be called right after begin().
     void wake(const VertexSand& layer, const Slopes& slopes, std::span<const Vertex> vertices);
     /// One sweep, which then watches all that it may have set in motion; false when nothing flowed. `momentum`: what of
     /// the last sweep's fluxes goes on, 0 to 1.
     bool sweep(const VertexSand& layer, const Slopes& slopes, Weights& weights, double momentum);
+    /// Returns the volume that has fallen over an open rim since the last call [volume unit].
+    [[nodiscard]] std::int64_t takeOutflow() { return std::exchange(outflow_, 0); }
     /// Gives the layer its sand, and adds who has another volume now to `moved`.
     void store(VertexSand& layer, std::vector<Vertex>& moved) const;
     /// Whether so much has been swept in vain since it was forgotten last that to forget it would have paid.
@@ -70,6 +77,9 @@ private:
     [[nodiscard]] std::int32_t facetAt(const VertexSand& layer, const Slopes& slopes, std::int32_t slot);
     [[nodiscard]] std::int32_t localOf(const VertexSand& layer, Vertex vertex);
     [[nodiscard]] double undersideAt(Vertex vertex, const Place& place);
+    [[nodiscard]] bool spills(const Triangles& mesh, Vertex vertex) const {
+        return rim_ == Rim::open && isOnRim(mesh, mesh.places[static_cast<std::size_t>(vertex)]);
+    }
     void keep(const ActiveMesh::Marks& kept);
 
     /// Of a vertex, and of a slot: all that is asked for at once, for where sand begins to move it is in no cache.
@@ -92,6 +102,7 @@ private:
     [[nodiscard]] VertexNote& noteOf(Vertex vertex) { return ofVertices_[static_cast<std::size_t>(vertex)]; }
     [[nodiscard]] SlotNote& noteOfSlot(std::int32_t slot) { return ofSlots_[static_cast<std::size_t>(slot)]; }
 
+    Rim rim_;
     ActiveMesh sand_;                  // by local numbers
     std::vector<Vertex> vertices_;     // of a local vertex
     std::vector<std::int32_t> slots_;  // of a local facet
@@ -103,6 +114,7 @@ private:
     std::uint32_t turn_ = 0;                             // of begin() and of wake()
     std::int64_t inVain_ = 0;      // vertices at rest, sweep by sweep, beside those that always are
     std::int64_t restAround_ = 0;  // of those: how many were left when edges were forgotten, since begin()
+    std::int64_t outflow_ = 0;     // since takeOutflow()
     bool band_ = false;
     const Underside* held_ = nullptr;
 };

@@ -57,9 +57,12 @@ void ActiveMesh::widen() {
                    [](double volume) { return static_cast<std::int64_t>(volume); });
 }
 
-std::int32_t ActiveMesh::addVertex(std::int64_t volume, std::int64_t star, double underside) {
+std::int32_t ActiveMesh::addVertex(std::int64_t volume, std::int64_t star, double underside, bool spills) {
     const auto number = static_cast<std::int32_t>(vertexCount());
     notice(volume, star);
+    if (spills) {
+        rim_.push_back(number);
+    }
     volumes_.push_back(static_cast<double>(volume));
     wide_.push_back(volume);
     stars_.push_back(static_cast<double>(star));
@@ -211,6 +214,8 @@ SweepResult ActiveMesh::move(bool held, double momentum) {
                          .fluxes = fluxes_.data(),
                          .stars = stars_.data(),
                          .unwatched = unwatched_.data(),
+                         .rimVertices = rim_.size(),
+                         .rim = rim_.data(),
                          .inflow = inflow_.data(),
                          .volumes = volumes_.data(),
                          .levels = levels_.data()};
@@ -230,6 +235,12 @@ SweepResult ActiveMesh::moveWide() {
         levels_[index(to_[i])].flow += std::abs(fluxes_[i]);
     }
     SweepResult result;
+    for (const std::int32_t vertex : rim_) {
+        const std::int64_t over = std::max<std::int64_t>(wide_[index(vertex)] + wideInflow_[index(vertex)], 0);
+        wideInflow_[index(vertex)] -= over;
+        levels_[index(vertex)].flow += static_cast<double>(over);
+        result.outflow += over;
+    }
     for (std::size_t i = 0; i < vertexCount(); ++i) {
         result.moved = result.moved || wideInflow_[i] != 0;
         result.spread = result.spread || (wideInflow_[i] != 0 && !isWatched(i));
@@ -295,6 +306,8 @@ ActiveMesh::Renumbering ActiveMesh::keep(const Marks& kept) {
     }
     renumber(left_, now.facets);
     renumber(right_, now.facets);
+    renumber(rim_, now.vertices);
+    std::erase(rim_, kNobody);
     heldKnown_ = false;
     return now;
 }

@@ -26,7 +26,8 @@ public:
     /// `wide` has integers from the start: for tests.
     explicit ActiveMesh(bool v3 = base::machineHasV3(), bool wide = false) : v3_(v3), alwaysWide_(wide) {}
 
-    std::int32_t addVertex(std::int64_t volume, std::int64_t star, double underside = kFree);
+    /// `spills`: it is on an open rim, and what lies above height 0 there falls over it in each sweep.
+    std::int32_t addVertex(std::int64_t volume, std::int64_t star, double underside = kFree, bool spills = false);
     /// Corners, ends and facets by their numbers here.
     std::int32_t addFacet(const Facet& facet);
     void addEdge(const Edge& edge);
@@ -92,6 +93,7 @@ private:
     std::vector<Level> levels_;                         // by vertex
     std::vector<double> inflow_;                        // two by vertex: scratch of a sweep
     std::vector<std::uint64_t> unwatched_;
+    std::vector<std::int32_t> rim_;  // vertices that spill
     std::vector<std::int64_t> wide_, wideInflow_;
     std::vector<std::int32_t> first_, second_, third_;  // by facet
     std::vector<double> squared_, mixed_, squaredAcross_, start_, sliding_;

@@ -10,6 +10,9 @@ namespace {
 // Of the squared change. At a third piles are no nearer to the right ones; at three times as much a cone on 65,000
 // vertices was a quarter further away.
 constexpr double kRelativeGap = 3e-4;
+// Sand that falls over an open rim never comes back. With the gap above, a table of 64 x 64 cells on a jittered mesh
+// had lost 0.15 % too much at rest. With this one it keeps what sweeps leave on it, and is at rest sooner.
+constexpr double kRelativeGapOpen = 3e-6;
 constexpr double kMostVolume = 4611686018427387904.0;  // 2^62
 constexpr double kIterationsPerSide = 64;              // of the root of the facets; the slowest start known needed 5
 
@@ -41,8 +44,12 @@ bool DualProjection::iterate(double momentum) {
         before = {now.east + momentum * (now.east - before.east), now.north + momentum * (now.north - before.north)};
         take(facets_[i], before);
     }
+    for (Spill& spill : spills_) {
+        spill.before = spill.now + momentum * (spill.now - spill.before);
+        taken_[index(spill.vertex)] += spill.before;
+    }
     setHeights();
-    double turn = 0;
+    double turn = spill();
     for (std::size_t i = 0; i < facets_.size(); ++i) {
         const Facet& facet = facets_[i];
         auto& [now, before] = pressures_[i];
@@ -60,9 +67,24 @@ bool DualProjection::iterate(double momentum) {
     return turn > 0;
 }
 
+double DualProjection::spill() {
+    double turn = 0;
+    for (Spill& spill : spills_) {
+        const double from = spill.before;
+        const double to = std::max(from + spill.step * heights_[index(spill.vertex)], 0.0);
+        turn += (from - to) * (to - spill.now) / spill.step;
+        spill.before = spill.now;
+        spill.now = to;
+    }
+    return turn;
+}
+
 DualProjection::Measures DualProjection::measure() {
     for (std::size_t i = 0; i < facets_.size(); ++i) {
         take(facets_[i], pressures_[i].now);
+    }
+    for (const Spill& spill : spills_) {
+        taken_[index(spill.vertex)] += spill.now;
     }
     setHeights();
     Measures measures;
@@ -74,12 +96,16 @@ DualProjection::Measures DualProjection::measure() {
         const Vector& now = pressures_[i].now;
         measures.gap += facets_[i].most * std::sqrt(now.times(now)) - now.times(facets_[i].slope(heights_));
     }
+    for (const Spill& spill : spills_) {
+        measures.gap -= spill.now * heights_[index(spill.vertex)];
+    }
     return measures;
 }
 
 int DualProjection::run() {
     double weight = 1;  // t of Beck and Teboulle
     double momentum = 0;
+    const double relativeGap = rim_ == Rim::open ? kRelativeGapOpen : kRelativeGap;
     bool wasClose = false;
     int iterations = 0;
     while (iterations < kIterationsPerSide * std::sqrt(static_cast<double>(facets_.size()))) {
@@ -91,7 +117,7 @@ int DualProjection::run() {
         weight = next;
         if (++iterations % kCheckEvery == 0) {
             const Measures measures = measure();
-            const bool isClose = std::abs(measures.gap) <= kRelativeGap * measures.moved;
+            const bool isClose = std::abs(measures.gap) <= relativeGap * measures.moved;
             if (isClose && wasClose) {
                 break;
             }
@@ -116,6 +142,12 @@ std::vector<std::pair<Vertex, std::int64_t>> DualProjection::gains() const {
         gains[index(facet.corner[0])] += Wide{rounded(first)} + rounded(second);
         gains[index(facet.corner[1])] -= rounded(first);
         gains[index(facet.corner[2])] -= rounded(second);
+    }
+    for (const Spill& spill : spills_) {
+        if (!(spill.now < kMostVolume)) {
+            return {};
+        }
+        gains[index(spill.vertex)] -= rounded(spill.now);
     }
     std::vector<std::pair<Vertex, std::int64_t>> result;
     for (std::size_t i = 0; i < gains.size(); ++i) {

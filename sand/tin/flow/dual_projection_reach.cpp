@@ -15,7 +15,8 @@ constexpr double kSlack = 1.0 / 16384;  // as of a grid's: fluxes are rounded, a
 
 }  // namespace
 
-DualProjection::DualProjection(const VertexSand& layer, double slope) : layer_(layer), slope_(slope) {
+DualProjection::DualProjection(const VertexSand& layer, double slope, Rim rim)
+    : layer_(layer), slope_(slope), rim_(rim) {
     const std::vector<Vertex> steep = steepCorners();
     if (!steep.empty()) {
         surround(steep);
@@ -120,6 +121,12 @@ void DualProjection::surround(const std::vector<Vertex>& corners) {
         pressures[index(slots_[i])] = pressures_[i];
     }
     countEdges(corners);
+    std::vector<double> fallen(spills_.empty() ? 0 : 2 * mesh.places.size());
+    for (const Spill& spill : spills_) {
+        const std::size_t vertex = index(vertices_[index(spill.vertex)]);
+        fallen[2 * vertex] = spill.now;
+        fallen[2 * vertex + 1] = spill.before;
+    }
     std::vector<std::int32_t> local(mesh.places.size(), kNobody);
     vertices_.clear();
     for (std::size_t vertex = 0; vertex < local.size(); ++vertex) {
@@ -143,7 +150,21 @@ void DualProjection::surround(const std::vector<Vertex>& corners) {
     }
     taken_.assign(vertices_.size(), 0);
     heights_ = start_;
+    findSpills(fallen);
     makeSteps();
+}
+
+/// Finds the vertices on an open rim. `fallen`: two by vertex of the layer, of the spills as they were; may be empty.
+void DualProjection::findSpills(const std::vector<double>& fallen) {
+    spills_.clear();
+    for (std::size_t i = 0; rim_ == Rim::open && i < vertices_.size(); ++i) {
+        const std::size_t vertex = index(vertices_[i]);
+        if (isOnRim(layer_.triangles(), layer_.triangles().places[vertex]) && layer_.stars()[vertex] > 0) {
+            spills_.push_back({.vertex = static_cast<std::int32_t>(i),
+                               .now = fallen.empty() ? 0 : fallen[2 * vertex],
+                               .before = fallen.empty() ? 0 : fallen[2 * vertex + 1]});
+        }
+    }
 }
 
 void DualProjection::makeSteps() {
@@ -162,6 +183,10 @@ void DualProjection::makeSteps() {
         for (const std::int32_t corner : facet.corner) {
             around[index(corner)] += weights[i];
         }
+    }
+    for (Spill& spill : spills_) {
+        spill.step = 0.5 * stars_[index(spill.vertex)];
+        around[index(spill.vertex)] *= 2;
     }
     for (std::size_t i = 0; i < facets_.size(); ++i) {
         double share = std::numeric_limits<double>::max();

@@ -18,7 +18,7 @@ Slopes slopesOf(std::int32_t threshold, std::int32_t startThreshold) {
     return {threshold / kCellSide, std::max(threshold, startThreshold) / kCellSide};
 }
 
-Erosion::Erosion(const VertexSand&, std::int32_t threshold, std::int32_t startThreshold) {
+Erosion::Erosion(const VertexSand&, std::int32_t threshold, std::int32_t startThreshold, Rim rim) : active_(rim) {
     changeThresholds(threshold, startThreshold);
 }
 

@@ -37,13 +37,21 @@ using Underside = ActiveEdges::Underside;
 /// In sweep() a part of the last sweep's flux goes on, which triangles flatter than g brake; each call begins without.
 /// It is cut to less than k_e (u_i − u_j) and never flows uphill, which is all that the proofs ask of Q.
 ///
+/// Beyond an open rim the ground lies at height 0, and a step that high has no talus: at the end of a sweep all that
+/// lies above 0 on a vertex of the rim falls over it, and none comes back. Sand at rest is then 0 on the rim, and
+/// nowhere higher than g times the distance to it.
+///
+/// - Volume is exact: what falls is counted, to the unit.
+/// - No new extremes: max(u, 0) → 0 is a height between u and that of the ground beyond.
+/// - It ends: V²/star of such a vertex falls to 0, and no other sand moves.
+///
 /// Sand at rest begins to slide beyond the start threshold; in the same call of sweep() it then slides, with all that
 /// it touches, until the threshold. The result of sweep() is a function of layer, rules and the number of sweeps: not
 /// of slots, active sets or threads, nor of what came before. Not thread-safe.
 class Erosion {
 public:
     /// `threshold` and `startThreshold` as Rules': height units per cell size, sliding and starting to. All may move.
-    Erosion(const VertexSand& layer, std::int32_t threshold, std::int32_t startThreshold);
+    Erosion(const VertexSand& layer, std::int32_t threshold, std::int32_t startThreshold, Rim rim = Rim::closed);
 
     /// As Mesh's.
     void reserve(std::size_t vertices);
@@ -62,6 +70,8 @@ public:
     /// The same without momentum nor obstacle, until nothing moves or there were so many: it takes longer to come to
     /// rest than many calls of sweep() do, and the pile is righter.
     int settle(VertexSand& layer, int most, std::vector<Vertex>& moved);
+    /// Returns the volume that has fallen over an open rim since the last call [volume unit]; the layer has lost it.
+    [[nodiscard]] std::int64_t takeOutflow() { return active_.takeOutflow(); }
     /// Whether nothing moves any more as things are.
     [[nodiscard]] bool settled() const;
     /// How many edges the next sweep looks at, woken ones apart.

@@ -111,36 +111,40 @@ void giveBack(VertexSand& layer, const std::vector<std::int64_t>& volumes) {
     }
 }
 
-/// Replaces the sand by its projection, or leaves it as it is where that is not possible; the number of iterations.
-int project(VertexSand& layer, double slope) {
-    const Extremes extremes = extremesOf(layer);
+/// Replaces the sand by its projection, or leaves it as it is where that is not possible.
+void project(VertexSand& layer, double slope, Rim rim, Settled& result) {
+    const Extremes extremes = extremesOf(layer);  // a rim from which sand falls is at 0 already
     const std::vector<std::int64_t> before = layer.volumes();
-    DualProjection projection(layer, slope);
+    DualProjection projection(layer, slope, rim);
     const int iterations = projection.run();
+    std::int64_t outflow = 0;
     for (const auto& [vertex, gain] : projection.gains()) {
         layer.add(vertex, gain);
+        outflow -= gain;
     }
     if (!keepWithin(layer, extremes)) {
         giveBack(layer, before);
-        return 0;
+        return;
     }
-    return iterations;
+    result.iterations = iterations;
+    result.outflow += outflow;
 }
 
 }  // namespace
 
-Settled settle(VertexSand& layer, std::int32_t threshold, std::int32_t startThreshold, int most) {
+Settled settle(VertexSand& layer, std::int32_t threshold, std::int32_t startThreshold, int most, Rim rim) {
     const std::vector<std::int64_t> before = layer.volumes();
     Settled result;
     std::vector<Vertex> moved;
-    Erosion erosion(layer, threshold, startThreshold);
+    Erosion erosion(layer, threshold, startThreshold, rim);
     result.sweeps = erosion.settle(layer, std::min(most, 1), moved);
     if (!erosion.settled() && most > 1) {
-        result.iterations = project(layer, slopesOf(threshold, threshold).slide);
+        project(layer, slopesOf(threshold, threshold).slide, rim, result);
         erosion.changeThresholds(threshold, threshold);
         result.sweeps += erosion.settle(layer, most - 1, moved);
     }
     result.atRest = erosion.settled();
+    result.outflow += erosion.takeOutflow();
     for (std::size_t i = 0; i < before.size(); ++i) {
         if (layer.volumes()[i] != before[i]) {
             result.moved.push_back(static_cast<Vertex>(i));

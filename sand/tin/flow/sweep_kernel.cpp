@@ -209,6 +209,20 @@ void sumUp(std::size_t edges, const std::int32_t* from, const std::int32_t* to, 
     }
 }
 
+/// Lets all that would lie above height 0 on an open rim fall over it, and returns how much that is. A vertex' fluxes
+/// and its volume are whole numbers whose sums are exact; what falls in all is counted in 64 bits.
+std::int64_t spill(std::size_t count, const std::int32_t* rim, const double* volumes, double* sums) {
+    std::int64_t outflow = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        double* const sum = sums + 2 * rim[i];
+        const double over = std::max(volumes[rim[i]] + sum[0], 0.0);
+        sum[0] -= over;
+        sum[1] += over;
+        outflow += static_cast<std::int64_t>(over);
+    }
+    return outflow;
+}
+
 /// A height is a quotient, rounded once.
 SweepResult settleUp(std::size_t count, const double* __restrict sums, const double* __restrict stars,
                      const std::uint64_t* __restrict unwatched, double* __restrict volumes, Level* __restrict levels) {
@@ -224,7 +238,7 @@ SweepResult settleUp(std::size_t count, const double* __restrict sums, const dou
         volumes[i] += inflow;
         levels[i] = {volumes[i] / stars[i], flow};
     }
-    return {moved != 0, beyond != 0, met != 0, resting};
+    return {moved != 0, beyond != 0, met != 0, resting, 0};
 }
 
 }  // namespace
@@ -251,7 +265,10 @@ void flowOverEdges(const SweepEdges& s) {
 SweepResult moveSand(const SweepSand& sand) {
     std::fill(sand.inflow, sand.inflow + 2 * sand.vertices, 0.0);
     sumUp(sand.edges, sand.from, sand.to, sand.fluxes, sand.inflow);
-    return settleUp(sand.vertices, sand.inflow, sand.stars, sand.unwatched, sand.volumes, sand.levels);
+    const std::int64_t outflow = spill(sand.rimVertices, sand.rim, sand.volumes, sand.inflow);
+    SweepResult result = settleUp(sand.vertices, sand.inflow, sand.stars, sand.unwatched, sand.volumes, sand.levels);
+    result.outflow = outflow;
+    return result;
 }
 
 }  // namespace sand::tin::SANDWALL_CODE_PATH

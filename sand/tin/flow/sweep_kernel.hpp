@@ -61,9 +61,11 @@ struct SweepSand {
     const double* fluxes;            // by edge
     const double* stars;             // by vertex [probe unit²]
     const std::uint64_t* unwatched;  // by vertex: all bits, or none
-    double* inflow;                  // two by vertex: what came less what went, and both together; written
-    double* volumes;                 // by vertex
-    Level* levels;                   // by vertex
+    std::size_t rimVertices;
+    const std::int32_t* rim;  // vertices on an open rim: what lies above height 0 there falls over it
+    double* inflow;           // two by vertex: what came less what went, and both together; written
+    double* volumes;          // by vertex
+    Level* levels;            // by vertex
 };
 
 /// What a corner counts as for the slope: sand that fills the room below an obstacle leans on it, and is no slope for
@@ -78,6 +80,7 @@ struct SweepResult {
     bool spread = false;       // that of one that is not watched did
     bool met = false;          // sand flowed at an edge of one that is not watched
     std::int64_t resting = 0;  // vertices at whose edges none flowed
+    std::int64_t outflow = 0;  // volume that fell over an open rim
 };
 
 // One source, compiled twice (sand/tin/CMakeLists.txt): the same numbers, bit for bit.

@@ -59,6 +59,11 @@ struct Triangles {
     }
 };
 
+/// Whether a place within the field lies on its rim.
+[[nodiscard]] constexpr bool isOnRim(const Triangles& mesh, const Place& place) {
+    return place.x == 0 || place.y == 0 || place.x == mesh.width || place.y == mesh.depth;
+}
+
 /// Where a place lies: in this triangle or on its edges.
 struct Located {
     std::int32_t triangle = kNobody;        // slot

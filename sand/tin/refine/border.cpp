@@ -16,8 +16,9 @@ std::int32_t wayBetween(const Place& a, const Place& b) { return std::abs(b.x - 
 
 class BorderMaker {
 public:
-    BorderMaker(std::span<const double> heights, const Cells& cells, const Holes* holes, double maxError)
-        : heights_(heights), cells_(cells), holes_(holes), maxError_(maxError) {
+    BorderMaker(std::span<const double> heights, const Cells& cells, const Holes* holes, double maxError,
+                std::int32_t longestOnRim)
+        : heights_(heights), cells_(cells), holes_(holes), maxError_(maxError), longestOnRim_(longestOnRim) {
         for (const Place& corner : corners()) {
             numbers_.emplace(corner, static_cast<Vertex>(numbers_.size()));
         }
@@ -173,7 +174,7 @@ private:
             // Between two of them all is ground, or nothing: in the middle of what may be but half a cell.
             const Place middle{a.x + (b.x - a.x) / 2, a.y + (b.y - a.y) / 2};
             if (!std::isnan(heightAt(middle))) {
-                add(a, b, 0);
+                add(a, b, longestOnRim_);
             }
         }
     }
@@ -182,6 +183,7 @@ private:
     const Cells& cells_;
     const Holes* holes_;
     double maxError_;
+    std::int32_t longestOnRim_;
     std::map<Place, Vertex> numbers_;  // of corners and border
     Border border_;
 };
@@ -204,8 +206,9 @@ std::shared_ptr<const Holes> holesOf(std::span<const double> heights, const Cell
     return runs.empty() ? nullptr : std::make_shared<const Holes>(cells, std::move(runs));
 }
 
-Border borderOf(std::span<const double> heights, const Cells& cells, const Holes* holes, double maxError) {
-    return BorderMaker(heights, cells, holes, maxError).take();
+Border borderOf(std::span<const double> heights, const Cells& cells, const Holes* holes, double maxError,
+                std::int32_t longestOnRim) {
+    return BorderMaker(heights, cells, holes, maxError, longestOnRim).take();
 }
 
 }  // namespace sand::tin

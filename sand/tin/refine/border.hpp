@@ -27,6 +27,9 @@ struct Border {
 /// greedily: until the cells beside it are no higher or lower than it by more than maxError, those of outlines until
 /// none is longer than four cells either. Without it the surface between the outermost samples and the rim, half a cell
 /// farther, hangs on the field's corners, and is a cliff. No rim where samples lie on it.
-[[nodiscard]] Border borderOf(std::span<const double> heights, const Cells& cells, const Holes* holes, double maxError);
+///
+/// @param longestOnRim  Rim edges are no longer than that, or a cell [probe unit]; 0: as long as maxError lets them.
+[[nodiscard]] Border borderOf(std::span<const double> heights, const Cells& cells, const Holes* holes, double maxError,
+                              std::int32_t longestOnRim = 0);
 
 }  // namespace sand::tin

@@ -89,6 +89,48 @@ int refine(Mesh& mesh, const DetailRules& rules, const Box& box, const std::func
     return static_cast<int>(places.size());
 }
 
+int refineRim(Mesh& mesh, const DetailRules& rules, const Box& box, const std::function<bool(const Place&)>& wanted,
+              std::span<const Place> there) {
+    const Triangles& field = mesh.triangles();
+    const Box inside = box.clippedTo(field);
+    if (rules.spacing <= 0 || inside.empty()) {
+        return 0;
+    }
+    std::vector<Place> places;
+    const int room = rules.maxVertices - mesh.vertexCount();
+    // The side y = `level`; with `turned`, x and y change places.
+    const auto addSide = [&](bool turned, std::int32_t level) {
+        const auto swapped = [turned](const Place& place) { return turned ? Place{place.y, place.x} : place; };
+        const Place from = swapped({inside.x0, inside.y0}), to = swapped({inside.x1, inside.y1});
+        const std::int64_t first = square(from.x, rules.spacing), last = square(to.x, rules.spacing);
+        if (level < from.y || level > to.y) {
+            return;
+        }
+        std::vector<bool> taken(static_cast<std::size_t>(last - first + 1));
+        for (const Place& place : there) {
+            const Place own = swapped(place);
+            const std::int64_t number = square(own.x, rules.spacing);
+            if (own.y == level && number >= first && number <= last) {
+                taken[static_cast<std::size_t>(number - first)] = true;
+            }
+        }
+        for (std::int64_t number = first; number <= last; ++number) {
+            const auto along = static_cast<std::int32_t>(number * rules.spacing + rules.spacing / 2);
+            const Place place = swapped({along, level});
+            if (!taken[static_cast<std::size_t>(number - first)] && static_cast<int>(places.size()) < room &&
+                place.x <= field.width && place.y <= field.depth && wanted(place)) {
+                places.push_back(place);
+            }
+        }
+    };
+    addSide(false, 0);
+    addSide(false, field.depth);
+    addSide(true, 0);
+    addSide(true, field.width);
+    mesh.insert(places);
+    return static_cast<int>(places.size());
+}
+
 void DetailRules::encode(base::ByteWriter& writer) const {
     writer.put(spacing);
     writer.put(maxError);

@@ -38,4 +38,10 @@ using Edges = std::vector<std::pair<Place, Place>>;
 int refine(Mesh& mesh, const DetailRules& rules, const Box& box, const std::function<bool(const Place&)>& wanted,
            std::span<const Place> there, const Edges& edges);
 
+/// Puts a vertex on the field's rim beside the middle of every square that reaches it within the box, where `wanted`
+/// wants one (told the place on the rim) and no part of the rim in that square holds any of `there`; until the mesh has
+/// maxVertices. Returns how many came. For an open rim, over which sand falls where vertices are.
+int refineRim(Mesh& mesh, const DetailRules& rules, const Box& box, const std::function<bool(const Place&)>& wanted,
+              std::span<const Place> there);
+
 }  // namespace sand::tin

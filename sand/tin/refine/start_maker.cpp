@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <stdexcept>
@@ -16,7 +18,8 @@ namespace sand::tin {
 namespace {
 
 constexpr int kCorners = 4;
-constexpr double kAnyError = 4.0 * kMaxHeight;  // [unit], more than two heights can differ
+constexpr std::int32_t kUsualWidest = 16 * kLatticePerCell;  // where nothing says how far apart points may lie
+constexpr double kAnyError = 4.0 * kMaxHeight;               // [unit], more than two heights can differ
 
 std::int32_t nearestHeight(double height) {
     return static_cast<std::int32_t>(
@@ -58,18 +61,20 @@ void addLattice(const HeightField& field, const Holes* holes, const Settings& se
 
 /// Returns a border as near to the ground as maxError, or as near as so few vertices can be.
 Border borderWithin(std::size_t most, std::span<const double> heights, const Cells& cells, const Holes* holes,
-                    double maxError) {
-    Border border = borderOf(heights, cells, holes, maxError);
+                    std::int32_t longestOnRim, double maxError) {
+    const auto within = [&](double error) { return borderOf(heights, cells, holes, error, longestOnRim); };
+    Border border = within(maxError);
     if (border.places.size() <= most) {
         return border;
     }
-    if (const Border least = borderOf(heights, cells, holes, kAnyError); least.places.size() > most) {
-        throw std::length_error("the outline of cells without data takes " + std::to_string(least.places.size()) +
-                                " vertices, and there is room for " + std::to_string(most) +
-                                " beside corners and points at 'widest'; raise 'vertices'");
+    if (const Border least = within(kAnyError); least.places.size() > most) {
+        const std::string what = holes == nullptr ? "the open rim" : "the outline of cells without data";
+        throw std::length_error(what + (holes != nullptr && longestOnRim > 0 ? " and the open rim take " : " takes ") +
+                                std::to_string(least.places.size()) + " vertices, and there is room for " +
+                                std::to_string(most) + " beside corners and points at 'widest'; raise 'vertices'");
     }
     for (double error = std::max(2 * maxError, 1.0); border.places.size() > most; error *= 2) {
-        border = borderOf(heights, cells, holes, error);
+        border = within(error);
     }
     return border;
 }
@@ -86,9 +91,18 @@ bool isLevel(const HeightField& field) {
     return true;
 }
 
+/// Returns how long edges along the rim may be [probe unit]; 0: as long as the heights let them.
+std::int32_t rimSpacing(const Settings& settings, Rim rim) {
+    if (rim == Rim::closed) {
+        return 0;
+    }
+    // Sand falls where the rim has vertices.
+    return settings.widest > 0 ? std::max(settings.widest, kLatticePerCell) : kUsualWidest;
+}
+
 /// Chooses what the rim, the holes and the heights of a field need, and what 'widest' asks for. Returns the largest
 /// error that is left [unit].
-double addChosen(const HeightField& field, const Ground* walls, TinStart& start) {
+double addChosen(const HeightField& field, const Ground* walls, Rim rim, TinStart& start) {
     std::vector<double> heights;
     heights.reserve(static_cast<std::size_t>(field.columns()) * static_cast<std::size_t>(field.rows()));
     for (int row = 0; row < field.rows(); ++row) {
@@ -107,7 +121,7 @@ double addChosen(const HeightField& field, const Ground* walls, TinStart& start)
     const Settings& settings = start.settings;
     const std::int64_t room = settings.mostVertices - Lattice(settings.widest).size(field.columns(), field.rows());
     Border given = borderWithin(static_cast<std::size_t>(std::max<std::int64_t>(room - kCorners, 0)), heights, cells,
-                                start.holes.get(), settings.maxError);
+                                start.holes.get(), rimSpacing(settings, rim), settings.maxError);
     // As the start will have them: what is measured is the surface that comes of it.
     for (double& height : given.heights) {
         height = nearestHeight(height);
@@ -122,6 +136,32 @@ double addChosen(const HeightField& field, const Ground* walls, TinStart& start)
         start.heights.push_back(nearestHeight(height));
     }
     return chosen.maxError;
+}
+
+/// Adds vertices to the sides of the field until no edge along them is longer than that, as high as the edge is there.
+void divideRim(std::int32_t longest, TinStart& start) {
+    const std::array<std::function<bool(const Place&)>, 4> sides{
+        [](const Place& place) { return place.y == 0; }, [&](const Place& place) { return place.x == start.width; },
+        [&](const Place& place) { return place.y == start.depth; }, [](const Place& place) { return place.x == 0; }};
+    for (const auto& isOnSide : sides) {
+        std::map<Place, std::int32_t> along;  // heights
+        for (std::size_t i = 0; i < start.places.size(); ++i) {
+            if (isOnSide(start.places[i])) {
+                along.emplace(start.places[i], start.heights[i]);
+            }
+        }
+        for (auto from = along.begin(), to = std::next(from); to != along.end(); from = to++) {
+            const std::int32_t x = to->first.x - from->first.x, y = to->first.y - from->first.y;  // one of them is 0
+            const std::int32_t parts = (x + y + longest - 1) / longest;
+            for (std::int32_t part = 1; part < parts; ++part) {
+                const double share = static_cast<double>(part) / parts;
+                const auto way = [share](std::int32_t whole) { return static_cast<std::int32_t>(share * whole); };
+                start.places.push_back({from->first.x + way(x), from->first.y + way(y)});
+                start.heights.push_back(nearestHeight(from->second + static_cast<double>(way(x + y)) / (x + y) *
+                                                                         (to->second - from->second)));
+            }
+        }
+    }
 }
 
 }  // namespace
@@ -142,25 +182,25 @@ VertexSand layerOf(const TinStart& start) {
     return layer;
 }
 
-Followed follow(const HeightField& field, const Ground* walls, const Settings& settings) {
+Followed follow(const HeightField& field, const Ground* walls, const Settings& settings, Rim rim) {
     Followed followed;
     TinStart& start = followed.start;
     start.width = field.columns() * kLatticePerCell;
     start.depth = field.rows() * kLatticePerCell;
     start.settings = settings;
-    if (walls == nullptr && isLevel(field)) {
+    if (walls == nullptr && rim == Rim::closed && isLevel(field)) {
         Border given{{{0, 0}, {start.width, 0}, {start.width, start.depth}, {0, start.depth}}, {}, {}};
         addLattice(field, nullptr, settings, given);
         start.places = std::move(given.places);
         start.heights.assign(start.places.size(), field.height(0, 0));
     } else {
-        followed.maxError = addChosen(field, walls, start);
+        followed.maxError = addChosen(field, walls, rim, start);
     }
     start.meanHeight = meanHeight(start);
     return followed;
 }
 
-TinStart join(const TinStart& given) {
+TinStart join(const TinStart& given, Rim rim) {
     TinStart start;
     start.width = given.width;
     start.depth = given.depth;
@@ -188,6 +228,9 @@ TinStart join(const TinStart& given) {
         if (ends.first != ends.second) {
             start.constraints.emplace_back(ends);
         }
+    }
+    if (const std::int32_t longest = rimSpacing(start.settings, rim); longest > 0) {
+        divideRim(longest, start);
     }
     start.meanHeight = meanHeight(start);
     return start;

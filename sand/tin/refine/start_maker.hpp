@@ -3,6 +3,7 @@
 
 #include "sand/model/ground.hpp"
 #include "sand/model/height_field.hpp"
+#include "sand/model/rules.hpp"
 #include "sand/tin/geometry/tin_start.hpp"
 #include "sand/tin/volume/vertex_sand.hpp"
 
@@ -21,12 +22,15 @@ struct Followed {
 /// that greedy insertion adds to these.
 ///
 /// It ends when the surface is as near to every cell's middle, and to those of the rim, as settings.maxError, or when
-/// there are settings.mostVertices. Walls, which may be null, are holes. Throws std::length_error when the border needs
-/// more vertices than there may be.
-[[nodiscard]] Followed follow(const HeightField& field, const Ground* walls, const Settings& settings);
+/// there are settings.mostVertices. An open rim has vertices at most settings.widest apart, or 16 cells where that is
+/// 0. Walls, which may be null, are holes. Throws std::length_error when the border needs more vertices than there may
+/// be.
+[[nodiscard]] Followed follow(const HeightField& field, const Ground* walls, const Settings& settings,
+                              Rim rim = Rim::closed);
 /// The TIN of given places and heights; the corners of the field are added where they are missing, as high as the
-/// nearest place. start.places need not begin with them, and constraints are by place.
-[[nodiscard]] TinStart join(const TinStart& start);
+/// nearest place. start.places need not begin with them, and constraints are by place. An open rim gets vertices as
+/// follow() has them, on the straight lines between those that are there.
+[[nodiscard]] TinStart join(const TinStart& start, Rim rim = Rim::closed);
 /// The TIN of a surface as it is now, for a scene that starts at rest.
 /// Heights are rounded to whole units; settings are those of the surface's own start.
 [[nodiscard]] TinStart startOf(const VertexSand& layer, const Settings& settings);

@@ -114,7 +114,7 @@ void Displacement::leave(VertexSand& layer, Imprint& imprint) {
         if (rules_.spacing > 0) {  // or nobody asks what lies there
             neighbourhood_->look(layer.triangles(), box);
         }
-        changeMesh(layer, imprint, {{{at, {0, 0}}}, box, false});
+        changeMesh(layer, imprint, Rim::closed, {{{at, {0, 0}}}, box, false});  // an open one keeps its vertices
     }
     imprint = {};
 }
@@ -129,7 +129,7 @@ void Displacement::work(VertexSand& layer, Imprint& imprint, Rim rim, const Chun
             leave(layer, imprint);
             return;
         }
-        neighbourhood_->follow(layer.triangles(), changeMesh(layer, imprint, chunk));
+        neighbourhood_->follow(layer.triangles(), changeMesh(layer, imprint, rim, chunk));
     }
     for (const Press& press : chunk.presses) {
         this->press(layer, rim, press, done);
@@ -150,7 +150,7 @@ bool Displacement::reachesSand(const VertexSand& layer, const Chunk& chunk) cons
     });
 }
 
-std::vector<Vertex> Displacement::changeMesh(VertexSand& layer, Imprint& imprint, const Chunk& chunk) const {
+std::vector<Vertex> Displacement::changeMesh(VertexSand& layer, Imprint& imprint, Rim rim, const Chunk& chunk) const {
     const ProbePoint at = chunk.presses.back().at;
     const Holes* holes = layer.mesh().holes().get();
     const PlacedOutline outline = chunk.last ? placed(outline_, at.x, at.y, layer.triangles(), holes) : PlacedOutline{};
@@ -177,6 +177,14 @@ std::vector<Vertex> Displacement::changeMesh(VertexSand& layer, Imprint& imprint
             return isNearTool(place, chunk.presses) && (holes == nullptr || !holes->holds(place));
         };
         refine(mesh, rules_, chunk.box, wanted, there, edges);
+        if (rim == Rim::open) {
+            const auto wantedOnRim = [&](const Place& place) {
+                // Holes::holds() takes every place that is not inside the field for a hole.
+                const Triangles& field = mesh.triangles();
+                return wanted({std::min(place.x, field.width - 1), std::min(place.y, field.depth - 1)});
+            };
+            refineRim(mesh, rules_, chunk.box, wantedOnRim, there);
+        }
     });
 }
 

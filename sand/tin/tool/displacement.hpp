@@ -37,11 +37,11 @@ public:
 
     /// Sweeps the tool along a path of one point or more, whose first is where it was, in sub-steps of at most a cell,
     /// without those that are neither a quarter of a cell farther nor deeper than the one before, nor the end; a path
-    /// of one point presses there. The mesh is refined along the way, the imprint of before taken out, and the outline
-    /// put in where the path ends. Sand above the underside goes to the vertices ahead, as a grid's does to its cells,
-    /// each by its share of the ground; where there are none, to all around, or else to the neighbours of those it came
-    /// from. Where nothing could take it, it stays. Beside an open rim the ground beyond takes its part, which flows
-    /// out.
+    /// of one point presses there. The mesh is refined along the way, an open rim too, the imprint of before taken out,
+    /// and the outline put in where the path ends. Sand above the underside goes to the vertices ahead, as a grid's
+    /// does to its cells, each by its share of the ground; where there are none, to all around, or else to the
+    /// neighbours of those it came from. Where nothing could take it, it stays. Beside an open rim the ground beyond
+    /// takes its part, which flows out.
     ///
     /// A tool held still changes nothing once it has pressed; a tool that does not reach the sand at all leaves it.
     Work drag(VertexSand& layer, Imprint& imprint, Rim rim, std::span<const ProbePoint> path);
@@ -77,7 +77,7 @@ private:
     void work(VertexSand& layer, Imprint& imprint, Rim rim, const Chunk& chunk, Work& work);
     [[nodiscard]] bool reachesSand(const VertexSand& layer, const Chunk& chunk) const;
     /// Returns what VertexSand::edit() does.
-    std::vector<Vertex> changeMesh(VertexSand& layer, Imprint& imprint, const Chunk& chunk) const;
+    std::vector<Vertex> changeMesh(VertexSand& layer, Imprint& imprint, Rim rim, const Chunk& chunk) const;
     void thin(Mesh& mesh, const PlacedOutline& outline) const;
     [[nodiscard]] Edges edgesThatStay(const Triangles& mesh, const Imprint& imprint) const;
     [[nodiscard]] bool isNearTool(const Place& place, const std::vector<Press>& presses) const;

@@ -36,8 +36,8 @@ Vertex anyOf(const VertexSand& layer, std::mt19937& random) {
 }
 
 /// Places are cut in, joined, taken out; sand falls; a tool stands in it in two steps of five; it slides. `anew`: every
-/// step by an erosion that knows nothing of the steps before.
-std::uint64_t hashOfSession(std::int32_t threshold, std::int32_t startThreshold, bool anew) {
+/// step by an erosion that knows nothing of the steps before. The outflow over an open rim is part of the hash.
+std::uint64_t hashOfSession(std::int32_t threshold, std::int32_t startThreshold, sand::Rim rim, bool anew) {
     std::mt19937 random(61);
     Mesh mesh(kSide, kSide);
     std::vector<Place> places(300);
@@ -46,7 +46,7 @@ std::uint64_t hashOfSession(std::int32_t threshold, std::int32_t startThreshold,
     }
     mesh.insert(places);
     VertexSand layer(std::move(mesh));
-    sand::tin::Erosion erosion(layer, threshold, startThreshold);
+    sand::tin::Erosion erosion(layer, threshold, startThreshold, rim);
     std::vector<Vertex> moved;
     std::uint64_t hash = 14695981039346656037U;
     for (int step = 0; step < 100; ++step) {
@@ -73,11 +73,14 @@ std::uint64_t hashOfSession(std::int32_t threshold, std::int32_t startThreshold,
             }
         }
         if (anew) {
-            erosion = sand::tin::Erosion(layer, threshold, startThreshold);
+            erosion = sand::tin::Erosion(layer, threshold, startThreshold, rim);
         }
         erosion.sweep(layer, 30, stands ? &held : nullptr, moved);
         base::ByteWriter writer;
         layer.encode(writer);
+        if (rim == sand::Rim::open) {
+            writer.put(erosion.takeOutflow());
+        }
         for (const std::uint8_t byte : writer.bytes()) {
             hash = (hash ^ byte) * 1099511628211U;
         }
@@ -88,8 +91,13 @@ std::uint64_t hashOfSession(std::int32_t threshold, std::int32_t startThreshold,
 // As those beside it: any compiler, level of optimisation and machine must print these.
 TEST(TinGolden, SessionHashesAreTheSameEverywhere) {
     for (const bool anew : samples::kSlowBuild ? std::vector{false} : std::vector{false, true}) {
-        EXPECT_EQ(fmt::format("{:016x}", hashOfSession(65536, 65536, anew)), "64481f3491733a44") << anew;
-        EXPECT_EQ(fmt::format("{:016x}", hashOfSession(40000, 50000, anew)), "4c0685e6ab24def0") << anew;
+        const auto session = [anew](std::int32_t threshold, std::int32_t startThreshold, sand::Rim rim) {
+            return fmt::format("{:016x}", hashOfSession(threshold, startThreshold, rim, anew));
+        };
+        EXPECT_EQ(session(65536, 65536, sand::Rim::closed), "64481f3491733a44") << anew;
+        EXPECT_EQ(session(40000, 50000, sand::Rim::closed), "4c0685e6ab24def0") << anew;
+        EXPECT_EQ(session(65536, 65536, sand::Rim::open), "060b8c1cb0650c23") << anew;
+        EXPECT_EQ(session(40000, 50000, sand::Rim::open), "ddaba7584761c04d") << anew;
     }
 }
 

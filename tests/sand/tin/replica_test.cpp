@@ -25,10 +25,11 @@ using sand::Step;
 /// A scene file as a person writes it: dunes of 64 x 64 nominal cells, as a TIN.
 class TinTerrain : public test::FolderTest {
 protected:
-    [[nodiscard]] scene::Scene scene(const std::string& tin = "max_error = 0.01\n",
-                                     const std::string& more = "") const {
+    [[nodiscard]] scene::Scene scene(const std::string& tin = "max_error = 0.01\n", const std::string& more = "",
+                                     const std::string& rim = "") const {
         const std::filesystem::path file = folder_ / "scene.toml";
-        std::ofstream(file) << "[field]\ncolumns = 64\nwidth = 2.0\n[terrain]\nkind = \"dunes\"\nheight = 0.3\n"
+        std::ofstream(file) << rim
+                            << "[field]\ncolumns = 64\nwidth = 2.0\n[terrain]\nkind = \"dunes\"\nheight = 0.3\n"
                                "dune_height = 0.15\ndune_length = 0.8\n"
                             << more << "[tin]\n"
                             << tin << "[material]\ntalus_deg = 34\nsettling_time = 0.1\n[tool]\nradius = 0.1\n";
@@ -69,6 +70,36 @@ TEST_F(TinTerrain, ASessionIsTheSameTwiceAndFromItsMiddle) {
     ASSERT_NE(start.tin, nullptr);
     ASSERT_LT(start.tin->places.size(), 64U * 64U / 2);
     tin_samples::expectSameSession(start, start, session(7, 120), 37);
+}
+
+TEST_F(TinTerrain, OverAnOpenRimASessionIsTheSameTwiceAndCountsWhatFalls) {
+    const scene::Scene start = scene("max_error = 0.01\n", "", "rim = \"open\"\n");
+    // Volume and outflow are what the volume was, after each step.
+    tin_samples::expectSameSession(start, scene::Scene::decode(start.encode()), session(7, 120), 37);
+    Replica terrain(start);
+    for (const Step& step : session(7, 120)) {
+        const std::int64_t before = terrain.outflow();
+        terrain.apply(step);
+        if (step.edit.kind == Edit::none) {
+            EXPECT_GE(terrain.outflow(), before) << "step " << step.number;
+        }
+    }
+    EXPECT_GT(terrain.outflow(), terrain.volume() / 100);
+    terrain.apply({.epoch = 1, .number = 121, .engaged = false, .path = {}, .edit = Edit::reset});
+    EXPECT_EQ(terrain.outflow(), 0);
+    EXPECT_EQ(terrain.copySand()->encode(), Replica(start).copySand()->encode());
+}
+
+TEST_F(TinTerrain, OverAnOpenRimSandFallsBeforeTheSessionWhereTheSceneSettles) {
+    const scene::Scene settled = scene("max_error = 0.01\n", "settle = true\n", "rim = \"open\"\n");
+    Replica terrain(settled);
+    EXPECT_EQ(terrain.outflow(), 0) << "a session counts what falls in it";
+    EXPECT_LT(terrain.volume(), Replica(scene("max_error = 0.01\n", "", "rim = \"open\"\n")).volume());
+    for (std::uint64_t number = 1; number <= 20; ++number) {
+        terrain.apply({.epoch = 1, .number = number, .engaged = false, .path = {}});
+    }
+    // Heights of a start are whole units: of what that raises, half a unit of height at most, some may fall.
+    EXPECT_LE(terrain.outflow(), std::int64_t{6} * 64 * 64 * 65536 / 2);
 }
 
 /// Level sand, points at random all over it, and a tool as wide as a quarter of it that is put here and there.
