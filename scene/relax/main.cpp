@@ -97,8 +97,7 @@ int main(int argc, char** argv) {
     if (host::answersVersion(argc, argv, "sandwall-relax", {{"algorithm", sand::kAlgorithmVersion}})) {
         return 0;
     }
-    host::CommandLine line("Lets the sand of a grid or a TIN slide until it lies nowhere steeper than its talus.",
-                           "sandwall-relax");
+    host::CommandLine line("Lets the sand of a grid or a TIN slide until it rests at its talus.", "sandwall-relax");
     Options options;
     line.option("IN", options.in,
                 "an ESRI ASCII grid of heights, a GeoTIFF or another raster; for a mesh also points, .csv or .xyz")

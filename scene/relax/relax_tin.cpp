@@ -47,7 +47,8 @@ Slid slide(TinSand& sand, const Options& options) {
 
 nlohmann::ordered_json reportOf(const TinSand& sand, const Options& options, const std::optional<Thinned>& thinned,
                                 std::int64_t volumeBefore, const Slid& slid, const Mesh& mesh) {
-    const Steepness steepness = steepnessOf(sand.layer, sand.threshold);
+    const double talus = std::tan(options.talus * std::numbers::pi / 180);
+    const Steepness steepness = steepnessOf(mesh, talus);
     nlohmann::ordered_json json;
     json["scheme"] = options.scheme;
     json["talus_deg"] = options.talus;
@@ -55,6 +56,7 @@ nlohmann::ordered_json reportOf(const TinSand& sand, const Options& options, con
     json["vertices"] = mesh.vertices.size();
     json["triangles"] = mesh.triangles.size();
     json["corners_added"] = sand.cornersAdded;
+    json["places_moved"] = sand.placesMoved;
     if (thinned) {
         json["max_error"] = thinned->maxError;
         json["rms_error"] = thinned->rmsError;
@@ -70,9 +72,8 @@ nlohmann::ordered_json reportOf(const TinSand& sand, const Options& options, con
     json["at_rest"] = slid.atRest;
     json["seconds"] = slid.seconds;
     // No number, and so null, for a level talus.
-    json["steepest_over_talus"] = steepness.steepest / sand.threshold;
-    json["steepest_deg"] = std::atan(steepness.steepest * sand.scale.unit / (sand.step * sand::tin::kLatticePerCell)) *
-                           180 / std::numbers::pi;
+    json["steepest_over_talus"] = steepness.steepest / talus;
+    json["steepest_deg"] = std::atan(steepness.steepest) * 180 / std::numbers::pi;
     json["too_steep_area"] = steepness.tooSteepArea;
     json["state_hash"] = fmt::format("{:016x}", sand::tin::TileHash(sand.layer).update({}));
     return json;

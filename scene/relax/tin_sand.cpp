@@ -10,6 +10,7 @@
 
 #include "base/input_error.hpp"
 #include "base/text.hpp"
+#include "scene/relax/slivers.hpp"
 
 namespace scene::relax {
 namespace {
@@ -17,7 +18,8 @@ namespace {
 using sand::tin::Place;
 using sand::tin::Vertex;
 
-constexpr double kStepsAcross = 524288;    // of the lattice, on the longer side of a cloud: 2^19
+constexpr double kStepsAcross = 524288;    // of the lattice, on the longer side of a cloud, about: 2^19
+constexpr double kFineSteps = 64;          // of what a lattice's step and its corner are multiples of
 constexpr double kLeastDeep = 64;          // [lattice step]
 constexpr double kMostTinVolume = 4.6e18;  // [volume unit], of all: below 2^62
 constexpr int kStepsPerCell = sand::tin::kLatticePerCell;
@@ -39,8 +41,7 @@ Extent extentOf(const Points& points) {
 }
 
 /// Where points lie on a lattice, from its south-west corner.
-struct Lattice {
-    double west = 0, south = 0, step = 1;
+struct Lattice : ExactLattice {
     std::int32_t width = 0, depth = 0;
 
     [[nodiscard]] Place placeOf(const std::array<double, 3>& point) const {
@@ -49,14 +50,32 @@ struct Lattice {
         };
         return {on(point[0] - west, width), on(point[1] - south, depth)};
     }
-    [[nodiscard]] std::array<double, 3> pointOf(const Place& place, double height) const {
-        return {west + place.x * step, south + place.y * step, height};
-    }
 };
+
+/// Returns a multiple of a power of two that is at least so long a step and at most 1/32 longer, and that power: with
+/// a corner that is a multiple of it, no place of the lattice is rounded.
+std::pair<double, double> exactStep(double least) {
+    int exponent = 0;
+    const double part = std::frexp(least, &exponent);
+    const double fine = std::ldexp(1 / kFineSteps, exponent);
+    return {std::ceil(part * kFineSteps) * fine, fine};
+}
+
+/// Returns the lattice of a cloud: its step is no finer than doubles tell such coordinates apart.
+Lattice latticeOf(const Extent& extent) {
+    const double longer = std::max(extent.side(0), extent.side(1));
+    double farthest = 0;
+    for (const std::size_t axis : {0U, 1U}) {
+        farthest = std::max({farthest, std::abs(extent.least.at(axis)), std::abs(extent.most.at(axis))});
+    }
+    const double told = std::nextafter(farthest, HUGE_VAL) - farthest;
+    const auto [step, fine] = exactStep(std::max(longer / kStepsAcross, kFineSteps * told));
+    return {{std::floor(extent.least[0] / fine) * fine, std::floor(extent.least[1] / fine) * fine, step}, 0, 0};
+}
 
 Lattice latticeOf(const Extent& extent, const std::string& file, std::optional<double> step) {
     const double longer = std::max(extent.side(0), extent.side(1)), shorter = std::min(extent.side(0), extent.side(1));
-    Lattice lattice{extent.least[0], extent.least[1], step.value_or(longer / kStepsAcross), 0, 0};
+    Lattice lattice = step ? Lattice{{extent.least[0], extent.least[1], *step}, 0, 0} : latticeOf(extent);
     if (!std::isnormal(lattice.step) || !std::isnormal(lattice.step * lattice.step)) {
         throw base::InputError(fmt::format("{}: it is {} long, which is no length of terrain", file, longer));
     }
@@ -64,8 +83,8 @@ Lattice latticeOf(const Extent& extent, const std::string& file, std::optional<d
         throw base::InputError(fmt::format("{}: all points lie in a strip {} long and {} wide; a TIN takes 1 : {}",
                                            file, longer, shorter, kStepsAcross / kLeastDeep));
     }
-    lattice.width = static_cast<std::int32_t>(std::floor(extent.side(0) / lattice.step + 0.5));
-    lattice.depth = static_cast<std::int32_t>(std::floor(extent.side(1) / lattice.step + 0.5));
+    lattice.width = static_cast<std::int32_t>(std::floor((extent.most[0] - lattice.west) / lattice.step + 0.5));
+    lattice.depth = static_cast<std::int32_t>(std::floor((extent.most[1] - lattice.south) / lattice.step + 0.5));
     return lattice;
 }
 
@@ -109,19 +128,20 @@ void setThresholds(const std::string& file, const TalusSettings& material, TinSa
 struct Joined {
     sand::tin::Mesh mesh;
     std::vector<std::array<double, 3>> points;  // by vertex
-    int cornersAdded = 0;
+    std::vector<Vertex> cornersAdded;
     std::size_t near = 0;   // points that lie where one before them does
     double nearHeight = 0;  // the largest difference in height between two such
 };
 
-Joined join(const Points& points, const Lattice& lattice, const Thinned* raster) {
+Joined join(const Points& points, const Extent& extent, const Lattice& lattice, const Thinned* raster) {
     std::vector<Place> places;
     places.reserve(points.size());
     for (const auto& point : points) {
         places.push_back(lattice.placeOf(point));
     }
     Joined joined{.mesh = sand::tin::Mesh(lattice.width, lattice.depth, raster == nullptr ? nullptr : raster->holes),
-                  .points = {}};
+                  .points = {},
+                  .cornersAdded = {}};
     const std::vector<Vertex> vertices = joined.mesh.insert(places);
     if (raster != nullptr) {
         for (const auto& [a, b] : raster->outline) {
@@ -150,8 +170,10 @@ Joined join(const Points& points, const Lattice& lattice, const Thinned* raster)
             };
             const auto nearest = std::min_element(
                 places.begin(), places.end(), [&](const Place& a, const Place& b) { return squared(a) < squared(b); });
-            joined.points[corner] = lattice.pointOf(at, points[static_cast<std::size_t>(nearest - places.begin())][2]);
-            ++joined.cornersAdded;
+            joined.points[corner] = {at.x == 0 ? extent.least[0] : extent.most[0],
+                                     at.y == 0 ? extent.least[1] : extent.most[1],
+                                     points[static_cast<std::size_t>(nearest - places.begin())][2]};
+            joined.cornersAdded.push_back(static_cast<Vertex>(corner));
         }
     }
     return joined;
@@ -166,15 +188,23 @@ TinSand sandOf(const Points& points, const std::string& file, const TalusSetting
     const Extent extent = extentOf(points);
     const Lattice lattice = latticeOf(extent, file, step);
     const HeightScale scale = scaleOf(extent, lattice, file);
-    Joined joined = join(points, lattice, raster);
+    Joined joined = join(points, extent, lattice, raster);
+    if (raster == nullptr) {
+        joined.mesh.takeGroundOut(sliversAtRim(joined.mesh.triangles()));
+    }
+    const int moved = keepCounterClockwise(joined.mesh.triangles(), lattice, joined.points);
     TinSand sand{.layer = sand::tin::VertexSand(std::move(joined.mesh)),
                  .step = lattice.step,
                  .scale = scale,
                  .points = std::move(joined.points),
                  .volumes = {},
                  .lowest = scale.toUnits(extent.least[2]),
-                 .cornersAdded = joined.cornersAdded,
+                 .cornersAdded = 0,
+                 .placesMoved = moved,
                  .warnings = {}};
+    for (const Vertex corner : joined.cornersAdded) {
+        sand.cornersAdded += sand.layer.stars()[static_cast<std::size_t>(corner)] > 0 ? 1 : 0;
+    }
     setThresholds(file, material, sand);
     for (std::size_t i = 0; i < sand.points.size(); ++i) {
         sand.layer.setHeight(static_cast<Vertex>(i), scale.toUnits(sand.points[i][2]));
@@ -228,26 +258,20 @@ Mesh TinSand::toMesh() const {
     return mesh;
 }
 
-Steepness steepnessOf(const sand::tin::VertexSand& layer, std::int32_t threshold) {
-    const sand::tin::Triangles& mesh = layer.triangles();
+Steepness steepnessOf(const Mesh& mesh, double talus) {
     Steepness result;
-    double steep = 0;  // [doubled area]
-    for (const sand::tin::Triangle& triangle : mesh.triangles) {
-        if (!triangle.isGround()) {
-            continue;
-        }
-        const auto corner = [&](std::size_t k) { return static_cast<std::size_t>(triangle.corner.at(k)); };
-        const Place &a = mesh.places[corner(0)], &b = mesh.places[corner(1)], &c = mesh.places[corner(2)];
-        const double rise = layer.heights()[corner(1)] - layer.heights()[corner(0)];
-        const double other = layer.heights()[corner(2)] - layer.heights()[corner(0)];
-        const auto area = static_cast<double>(doubledArea(a, b, c));
-        const double slope =
-            kStepsPerCell / area *
-            std::hypot(rise * (c.y - a.y) - other * (b.y - a.y), other * (b.x - a.x) - rise * (c.x - a.x));
+    double steep = 0, all = 0;  // [doubled area]
+    for (const auto& [first, second, third] : mesh.triangles) {
+        const auto &a = mesh.vertices[first], &b = mesh.vertices[second], &c = mesh.vertices[third];
+        const double eastOfB = b[0] - a[0], northOfB = b[1] - a[1], rise = b[2] - a[2];
+        const double eastOfC = c[0] - a[0], northOfC = c[1] - a[1], other = c[2] - a[2];
+        const double area = eastOfB * northOfC - northOfB * eastOfC;
+        const double slope = std::hypot(rise * northOfC - other * northOfB, other * eastOfB - rise * eastOfC) / area;
         result.steepest = std::max(result.steepest, slope);
-        steep += slope > 1.01 * threshold ? area : 0;
+        all += area;
+        steep += slope > 1.01 * talus ? area : 0;
     }
-    result.tooSteepArea = 3 * steep / static_cast<double>(layer.ground());
+    result.tooSteepArea = steep / all;
     return result;
 }
 

@@ -27,16 +27,18 @@ inline constexpr int kMostVertices = 1 << 22;
 
 /// Points or a raster as a TIN of sand, on a lattice of their own, and what its whole numbers stand for.
 ///
-/// The field is the rectangle around what was read; corners of it that are no point are as high as the nearest one.
+/// The field is the rectangle around what was read, but for slivers along its sides (slivers.hpp); corners of it that
+/// are no point are as high as the nearest one.
 struct TinSand {
     sand::tin::VertexSand layer;
     double step = 1;                                 // of the lattice [file's length unit]
     HeightScale scale;                               // of heights
-    std::vector<std::array<double, 3>> points;       // by vertex, as they were read [file's unit]
+    std::vector<std::array<double, 3>> points;       // by vertex, as they were read but for those moved [file's unit]
     std::vector<std::int64_t> volumes;               // by vertex, at the start
     std::int32_t threshold = 0, startThreshold = 0;  // [unit per 256 lattice steps], as Rules'
     std::int32_t lowest = 0;                         // at the start [unit]: what volumes are counted from
     int cornersAdded = 0;
+    int placesMoved = 0;                // by half a lattice step at most, to keep triangles counter-clockwise
     std::vector<std::string> warnings;  // one line each
 
     /// Over the lowest vertex there was [volume unit]; fits, by the choice of the unit.
@@ -61,16 +63,16 @@ struct Thinned {
 [[nodiscard]] Thinned thin(const EsriGrid& raster, const sand::tin::SimplifyGoal& goal);
 
 /// Throws base::InputError: more than kMostVertices, a strip too thin for the lattice, heights that do not fit, a
-/// talus of fewer than kLeastThreshold units. `file` is for messages; `step` of the lattice is 2^-19 of the longer side
-/// unless given.
+/// talus of fewer than kLeastThreshold units. `file` is for messages. The lattice of points has a step of 2^-19 of the
+/// longer side, rounded up by 1/32 at most.
 [[nodiscard]] TinSand toTin(const Points& points, const std::string& file, const TalusSettings& material);
 [[nodiscard]] TinSand toTin(const Thinned& thinned, const std::string& file, const TalusSettings& material);
 
-/// How steep the triangles of a TIN are.
+/// How steep the triangles of a mesh are.
 struct Steepness {
-    double steepest = 0;      // [unit per 256 lattice steps]
-    double tooSteepArea = 0;  // share of the ground that is steeper than the threshold by more than a percent
+    double steepest = 0;      // rise over run
+    double tooSteepArea = 0;  // share of the ground that is steeper than the talus by more than a percent
 };
-[[nodiscard]] Steepness steepnessOf(const sand::tin::VertexSand& layer, std::int32_t threshold);
+[[nodiscard]] Steepness steepnessOf(const Mesh& mesh, double talus /* rise over run */);
 
 }  // namespace scene::relax

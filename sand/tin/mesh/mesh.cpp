@@ -133,6 +133,10 @@ Mesh::Path Mesh::constrain(Vertex from, Vertex to) {
     return from == to ? Path{} : triangulation_->constrain(from, to);
 }
 
+void Mesh::takeGroundOut(std::span<const std::int32_t> slots) {
+    std::for_each(slots.begin(), slots.end(), [this](std::int32_t slot) { triangulation_->makeHole(slot); });
+}
+
 void Mesh::release(Vertex a, Vertex b) {
     requireAlive(a);
     requireAlive(b);

@@ -64,6 +64,9 @@ public:
     /// All constrained edges but the rim's, smaller vertex first, in order.
     [[nodiscard]] std::vector<std::pair<Vertex, Vertex>> constraints() const;
 
+    /// Takes the ground out of these triangles, which are told to be holes until the mesh changes there.
+    void takeGroundOut(std::span<const std::int32_t> slots);
+
     /// Slots whose triangles are not what they were when this was called last, dead ones among them, and the vertices
     /// that came, went, or have another star: each once, in ascending order.
     struct Change {

@@ -107,6 +107,11 @@ void Triangulation::put(std::int32_t slot, const std::array<Vertex, 3>& corners,
     last_ = slot;
 }
 
+void Triangulation::makeHole(std::int32_t slot) {
+    touch(slot);
+    triangle(slot).hole = true;
+}
+
 void Triangulation::setConstrained(const Side& side, bool constrained) {
     touch(side.slot);
     triangle(side.slot).constrained[side.opposite] = constrained;

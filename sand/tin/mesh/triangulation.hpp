@@ -61,6 +61,8 @@ public:
     /// Any vertex but a corner of the field.
     void remove(Vertex vertex);
     void release(Vertex a, Vertex b);
+    /// Tells a triangle to be a hole until it changes.
+    void makeHole(std::int32_t slot);
 
     /// What a straight way from one vertex to another meets first.
     struct Hit {
