@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
 #include "scene/import/esri_grid.hpp"
 #include "scene/import/importer.hpp"
 #include "tests/scene/import/import_fixture.hpp"
@@ -87,14 +89,22 @@ TEST_F(Import, ARelaxedGeoTiffKeepsItsPlaceItsMaskAndWhatDidNotMove) {
     EXPECT_NE(std::string(GDALGetProjectionRef(out)).find("32633"), std::string::npos);
     GDALRasterBandH band = GDALGetRasterBand(out, 1);
     EXPECT_STREQ(GDALGetRasterUnitType(band), "m");
+    int hasNoData = 0;
+    EXPECT_TRUE(std::isnan(GDALGetRasterNoDataValue(band, &hasNoData))) << "docs/relax.md: whatever the source's is";
+    EXPECT_NE(hasNoData, 0);
     std::array<double, 9> heights{};
     std::array<unsigned char, 9> known{};
     ASSERT_EQ(GDALRasterIO(band, GF_Read, 0, 0, 3, 3, heights.data(), 3, 3, GDT_Float64, 0, 0), CE_None);
     ASSERT_EQ(GDALRasterIO(GDALGetMaskBand(band), GF_Read, 0, 0, 3, 3, known.data(), 3, 3, GDT_Byte, 0, 0), CE_None);
     GDALClose(out);
     EXPECT_EQ(known, (std::array<unsigned char, 9>{255, 255, 255, 255, 0, 255, 255, 255, 255}));
+    EXPECT_TRUE(std::isnan(heights[4]));
     EXPECT_LT(heights[3], 7.5);
     EXPECT_EQ(heights[8], 0.7) << "to the last digit";
+    ASSERT_EQ(support::runProgram("sandwall-relax", path("t.tif") + " " + path("out.asc") + " --talus 34").status, 0);
+    const scene::EsriGrid text = scene::readEsriGrid(path("out.asc"));
+    EXPECT_EQ(text.noData, -9999) << "a text grid has the source's";
+    EXPECT_TRUE(text.isNoData(1, 1));
     EXPECT_EQ(support::runProgram("sandwall-relax", path("out.tif") + " " + path("again.tif") + " --talus 34").status,
               0);
 }
