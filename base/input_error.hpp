@@ -13,7 +13,7 @@ inline constexpr int kExitBadInput = 2;
 /// Something the user gave cannot be used: a file, an option, an address.
 ///
 /// what() is the one line a person reads, such as "walls/lab.toml:12: eye_separation must be positive, got -0.06".
-/// Caught once, in each program's main, which prints it and exits with kExitBadInput.
+/// Caught once, in each program's main, which prints it behind the program's name and exits with kExitBadInput.
 class InputError : public std::runtime_error {
 public:
     explicit InputError(const std::string& line) : std::runtime_error(oneLine(line)) {}

@@ -165,7 +165,7 @@ int runMain(CommandLine& line, int argc, char** argv, const std::function<int()>
     try {
         return run();
     } catch (const base::InputError& error) {
-        std::fprintf(stderr, "%s\n", error.what());
+        std::fprintf(stderr, "%s: %s\n", line.name().c_str(), error.what());
         return base::kExitBadInput;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "%s: failed: %s\n", line.name().c_str(), error.what());

@@ -101,7 +101,8 @@ private:
 /// Adds --sand-threads, for programs that hold a replica of the sand.
 void addSandThreads(CommandLine& line, int& threads);
 
-/// The frame of every program's main: parses, calls `run`, and prints one line on stderr for whatever goes wrong.
+/// The frame of every program's main: parses, calls `run`, and prints one line on stderr for whatever goes wrong. The
+/// line begins with the program's name.
 /// Returns run's value; kExitBadInput for unusable options and input; `failed` for errors of our own, which differs in
 /// programs in which 1 is an answer.
 int runMain(CommandLine& line, int argc, char** argv, const std::function<int()>& run, int failed = 1);

@@ -10,6 +10,7 @@
 
 #include "host/clock.hpp"
 #include "host/event.hpp"
+#include "host/print_line.hpp"
 #include "lockstep/cluster.hpp"
 
 namespace lockstep {
@@ -82,7 +83,7 @@ void Watchdog::look() {
                 const Wait wait = describe_();
                 const std::string line = fmt::format("{} for {:.1f} s; the limit is {:.0f} s, ending the job",
                                                      wait.text, seconds + later, limit);
-                fmt::print(stderr, "sandwall: {}\n", line);
+                host::printLine("{}", line);
                 emitWait(wait, seconds + later, limit, true);
                 std::fflush(stderr);
                 if (lastWords_) {
@@ -94,7 +95,7 @@ void Watchdog::look() {
         if (speaks && seconds > (startingUp_ ? kStartUpFirstWord : kFirstWord) && spokenOf != since) {
             spokenOf = since;
             const Wait wait = describe_();
-            fmt::print(stderr, "sandwall: {} for {:.1f} s\n", wait.text, seconds + later);
+            host::printLine("{} for {:.1f} s", wait.text, seconds + later);
             emitWait(wait, seconds + later, limit, false);
         }
     }

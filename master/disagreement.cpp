@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/event.hpp"
+#include "host/print_line.hpp"
 
 namespace master {
 namespace {
@@ -89,7 +90,7 @@ std::vector<std::string> describeDivergence(const DivergedFrame& diverged, const
 void tell(const std::vector<std::string>& lines, const std::filesystem::path& file) {
     std::ofstream kept(file, std::ios::app);
     for (const std::string& line : lines) {
-        fmt::print(stderr, "sandwall: {}\n", line);
+        host::printLine("{}", line);
         kept << line << '\n';
     }
 }

@@ -12,6 +12,7 @@
 #include <set>
 
 #include "host/event.hpp"
+#include "host/print_line.hpp"
 
 namespace master {
 namespace {
@@ -25,8 +26,8 @@ void keep(const std::string& text, const std::filesystem::path& file) {
                       write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size()) &&
                       fdatasync(descriptor) == 0;
     if (!kept) {
-        fmt::print(stderr, "sandwall: {}: cannot be written ({}); after a restart the drill happens again\n",
-                   file.string(), std::strerror(errno));
+        host::printLine("{}: cannot be written ({}); after a restart the drill happens again", file.string(),
+                        std::strerror(errno));
     }
     if (descriptor >= 0) {
         close(descriptor);
@@ -58,7 +59,7 @@ std::vector<lockstep::Fault> beginDrills(const std::vector<Drill>& drills, std::
             continue;
         }
         keep(drill.text, folder / kDone);
-        fmt::print(stderr, "sandwall: drill in frame {}: {}\n", frame, drill.text);
+        host::printLine("drill in frame {}: {}", frame, drill.text);
         host::emitEvent("drill", {{"frame", frame}, {"fault", drill.text}});
         if (drill.fault.rank == lockstep::Fault::kLink) {
             ofLink.push_back(drill.fault);

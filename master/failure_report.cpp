@@ -8,6 +8,7 @@
 
 #include "base/input_error.hpp"
 #include "host/event.hpp"
+#include "host/print_line.hpp"
 #include "host/whole_file.hpp"
 
 namespace master {
@@ -27,7 +28,7 @@ bool writeFailure(const FailureReport& failure, const std::filesystem::path& fol
         file.keepSynced();
         return true;
     } catch (const base::InputError& error) {
-        fmt::print(stderr, "sandwall: {}\n", error.what());
+        host::printLine("{}", error.what());
         return false;
     }
 }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/input_error.hpp"
+#include "host/print_line.hpp"
 #include "host/whole_file.hpp"
 
 namespace master {
@@ -61,7 +62,7 @@ IncidentFile::IncidentFile(const std::filesystem::path& folder, bool resumed) : 
     try {
         before_ = kept_ = incidentsOf(file_);
     } catch (const nlohmann::json::exception& error) {
-        fmt::print(stderr, "sandwall: {}: {}; the summary counts from here on\n", file_.string(), error.what());
+        host::printLine("{}: {}; the summary counts from here on", file_.string(), error.what());
     }
 }
 

@@ -11,6 +11,7 @@
 #include "host/build_id.hpp"
 #include "host/command_line.hpp"
 #include "host/event.hpp"
+#include "host/print_line.hpp"
 #include "host/version.hpp"
 #include "host/whole_file.hpp"
 #include "host/worker_pool.hpp"
@@ -59,23 +60,23 @@ void resume(const lockstep::Cluster& cluster, Options& options) {
     }
     std::optional<master::ResumedSession> resumed = master::readSession(journal, options.scene);
     if (!resumed) {
-        fmt::print(stderr, "sandwall: {}: nothing to resume; the session begins\n", journal.string());
+        host::printLine("{}: nothing to resume; the session begins", journal.string());
         return;
     }
     if (resumed->cutBytes > 0) {
-        fmt::print(stderr, "sandwall: {}: the last {} bytes are no whole record and are cut off\n", journal.string(),
-                   resumed->cutBytes);
+        host::printLine("{}: the last {} bytes are no whole record and are cut off", journal.string(),
+                        resumed->cutBytes);
     }
     host::emitEvent("resumed", {{"step", resumed->step},
                                 {"frame", resumed->frame},
                                 {"checkpoint_step", resumed->checkpointStep},
                                 {"replayed_steps", resumed->replayedSteps},
                                 {"cut_bytes", resumed->cutBytes}});
-    fmt::print(stderr, "sandwall: {}: goes on after step {}, frame {}: {} and {} steps behind it\n", journal.string(),
-               resumed->step, resumed->frame,
-               resumed->checkpointStep == 0 ? std::string("the scene")
-                                            : fmt::format("the checkpoint of step {}", resumed->checkpointStep),
-               resumed->replayedSteps);
+    host::printLine("{}: goes on after step {}, frame {}: {} and {} steps behind it", journal.string(), resumed->step,
+                    resumed->frame,
+                    resumed->checkpointStep == 0 ? std::string("the scene")
+                                                 : fmt::format("the checkpoint of step {}", resumed->checkpointStep),
+                    resumed->replayedSteps);
     options.session.resumed = std::make_shared<const master::ResumedSession>(std::move(*resumed));
 }
 
@@ -92,13 +93,13 @@ scene::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
     }
     if (options.replay.empty()) {
         if (options.scene.empty()) {
-            throw base::InputError("sandwall-master: name a --scene, or a journal to --replay");
+            throw base::InputError("name a --scene, or a journal to --replay");
         }
         scene::Scene scene = scene::loadScene(options.scene, [&](int columns, int rows, bool tin) {
             master::requireMemory(cluster.hosts(), columns, rows, tin, options.scene);
         });
         for (const std::string& warning : scene.warnings) {
-            fmt::print(stderr, "{}: warning: {}\n", options.scene, warning);
+            host::printLine("{}: warning: {}", options.scene, warning);
         }
         return scene;
     }
@@ -111,7 +112,7 @@ scene::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
     session.recording = std::make_shared<const master::Recording>(master::readJournal(options.replay), options.replay,
                                                                   options.framesPerSecond);
     if (!session.recording->shortcoming().empty()) {
-        fmt::print(stderr, "{}\n", session.recording->shortcoming());
+        host::printLine("{}", session.recording->shortcoming());
     }
     session.refreshHz = options.framesPerSecond;
     return session.recording->scene();
@@ -210,7 +211,7 @@ int runSession(const lockstep::Cluster& cluster, Options& options) {
     } catch (const std::exception& error) {
         // The ranks are in the middle of a frame and cannot be asked to leave.
         const bool input = dynamic_cast<const base::InputError*>(&error) != nullptr;
-        fmt::print(stderr, "sandwall-master: {}\n", error.what());
+        host::printLine("{}", error.what());
         cluster.abort(input ? base::kExitBadInput : 1);
     }
 }

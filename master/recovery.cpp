@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/event.hpp"
+#include "host/print_line.hpp"
 
 namespace master {
 namespace {
@@ -35,8 +36,8 @@ bool endsInsideALine(const std::filesystem::path& file) {
 void tellRecovery(const Recovery& recovery, const std::filesystem::path& folder) {
     const Failure& failure = recovery.failure;
     const double seconds = unixTime() - (failure.noticed > 0 ? failure.noticed : kStarted);
-    fmt::print(stderr, "sandwall: first frame {:.2f} s after {}: step {}, frame {}\n", seconds, failure.what,
-               recovery.step, recovery.frame);
+    host::printLine("first frame {:.2f} s after {}: step {}, frame {}", seconds, failure.what, recovery.step,
+                    recovery.frame);
     const ordered_json json{{"failure", failure.what},
                             {"failed_rank", failure.rank ? ordered_json(*failure.rank) : ordered_json()},
                             {"failed_how", failure.how},
@@ -54,7 +55,7 @@ void tellRecovery(const Recovery& recovery, const std::filesystem::path& folder)
     stream << (torn ? "\n" : "") << json.dump(-1, ' ', false, ordered_json::error_handler_t::replace) << '\n';
     stream.close();
     if (!stream) {
-        fmt::print(stderr, "sandwall: {}: cannot be written\n", fileIn(folder).string());
+        host::printLine("{}: cannot be written", fileIn(folder).string());
     }
 }
 

@@ -13,6 +13,7 @@
 #include "host/build_id.hpp"
 #include "host/clock.hpp"
 #include "host/event.hpp"
+#include "host/print_line.hpp"
 #include "lockstep/session_message.hpp"
 #include "master/start_up.hpp"
 #include "master/wall_pictures.hpp"
@@ -343,7 +344,7 @@ void Session::finish(bool agreed) {
     try {
         keepTicks();                        // the last come with the goodbye
     } catch (const DiskFailure& failure) {  // the ranks still have reports and pictures to send
-        fmt::print(stderr, "sandwall: {}\n", failure.what());
+        host::printLine("{}", failure.what());
     }
     const Incidents all = incidents();
     incidentFile_.keepLast(all);
@@ -395,7 +396,7 @@ int Session::run() {
     try {
         writeSummary(summary_, options_.out / "summary.json");
     } catch (const base::InputError& error) {  // the ranks still have pictures to send
-        fmt::print(stderr, "sandwall: {}\n", error.what());
+        host::printLine("{}", error.what());
         status = 1;
     }
     if (agreed && film_) {

@@ -10,6 +10,7 @@
 
 #include "base/input_error.hpp"
 #include "host/event.hpp"
+#include "host/print_line.hpp"
 #include "master/session.hpp"
 #include "master/wall_pictures.hpp"
 #include "walls/stereo_change.hpp"
@@ -93,7 +94,7 @@ void Session::refuse(const std::string& why, const Clients& clients) {
         if (client) {
             control_->answer(*client, refusal(why));
         } else {
-            fmt::print(stderr, "{}\n", why);
+            host::printLine("{}", why);
             host::emitEvent("command_refused", {{"error", why}});
         }
     }

@@ -8,6 +8,7 @@
 
 #include "base/input_error.hpp"
 #include "host/event.hpp"
+#include "host/print_line.hpp"
 #include "lockstep/healing.hpp"
 #include "master/disagreement.hpp"
 #include "master/journal/resume.hpp"
@@ -63,7 +64,7 @@ bool Session::reachAgreement(lockstep::Verdict verdict, lockstep::Arrival mine) 
         verdict = barrier_.meet(mine, nextFrame());
     }
     if (!strayLine_.empty()) {
-        fmt::print(stderr, "{}\n", std::exchange(strayLine_, {}));
+        host::printLine("{}", std::exchange(strayLine_, {}));
     }
     return true;
 }
@@ -127,7 +128,7 @@ std::unique_ptr<sand::Replica> Session::sandOfJournal() {
     try {
         sand = std::make_unique<sand::Replica>(restoreSand(journal, terrain_.stepNumber(), options_.sweeps).terrain);
     } catch (const std::exception& error) {  // the ranks wait for an answer, whatever it is
-        fmt::print(stderr, "sandwall: {}\n", error.what());
+        host::printLine("{}", error.what());
     }
     return sand;
 }
@@ -177,7 +178,7 @@ void Session::reportNonsense() {
     std::vector<int> odd;
     for (const lockstep::FrameBarrier::Nonsense& one : barrier_.nonsense()) {
         odd.push_back(one.rank);
-        fmt::print(stderr, "sandwall: {}; it is given up as broken, and the session ends\n", one.line);
+        host::printLine("{}; it is given up as broken, and the session ends", one.line);
     }
     rankStatistics_.addOdd(odd);
     (void)writeFailure(failureOf("broken", odd.front(), barrier_.nonsense().front().line), options_.out);

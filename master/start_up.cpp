@@ -5,6 +5,7 @@
 
 #include "base/input_error.hpp"
 #include "host/build_id.hpp"
+#include "host/print_line.hpp"
 #include "master/journal/journal.hpp"
 #include "sand/replica.hpp"
 
@@ -76,7 +77,7 @@ void requireReady(const std::vector<lockstep::Readiness>& ranks, const std::vect
     }
     for (std::size_t rank = 1; rank < ranks.size(); ++rank) {
         for (const std::string& line : ranks[rank].shortcomings) {
-            fmt::print(stderr, "sandwall: {}: {}\n", names[rank], line);
+            host::printLine("{}: {}", names[rank], line);
         }
     }
 }

@@ -6,12 +6,13 @@
 #include <algorithm>
 #include <glm/gtc/type_ptr.hpp>
 
+#include "host/print_line.hpp"
 #include "walls/projection.hpp"
 
 namespace master {
 
 ViewSource::ViewSource(const walls::Wall& wall, const scene::Scene& scene, const tracking::Source& source)
-    : viewer_(wall, source, [](const std::string& line) { fmt::print(stderr, "sandwall: {}\n", line); }) {
+    : viewer_(wall, source, [](const std::string& line) { host::printLine("{}", line); }) {
     const double cell = scene.terrain.cellSize();
     const glm::dmat4 toRoom = walls::stageToRoom(wall.stage, scene.rules.columns * cell, scene.rules.rows * cell,
                                                  scene.referenceHeight() * scene.terrain.unit());

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/input_error.hpp"
+#include "host/print_line.hpp"
 #include "lockstep/screenshots.hpp"
 #include "pictures/png_file.hpp"
 #include "pictures/stereo_packing.hpp"
@@ -112,9 +113,8 @@ void writeWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall
     const bool fits = fitsOnePicture(wall);
     if (!fits) {
         const walls::Canvas canvas = walls::wallCanvas(wall);
-        fmt::print(stderr,
-                   "sandwall: {} x {} pixels are too many for one picture of the wall; its tiles are written alone\n",
-                   canvas.width, canvas.height);
+        host::printLine("{} x {} pixels are too many for one picture of the wall; its tiles are written alone",
+                        canvas.width, canvas.height);
     }
     PictureFolder out(folder);
     std::size_t count = 0;

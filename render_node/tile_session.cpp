@@ -9,6 +9,7 @@
 
 #include "host/build_id.hpp"
 #include "host/clock.hpp"
+#include "host/print_line.hpp"
 #include "lockstep/clock_sync.hpp"
 #include "lockstep/divergence.hpp"
 #include "lockstep/frame_barrier.hpp"
@@ -228,7 +229,7 @@ int showTile(const lockstep::Cluster& cluster, Backend backend, const sand::grid
         session->run();
     } catch (const std::exception& error) {
         // The others are in the middle of a frame and cannot be asked to leave.
-        fmt::print(stderr, "sandwall: {} on {}: {}\n", session->name(), readiness.host, error.what());
+        host::printLine("{} on {}: {}", session->name(), readiness.host, error.what());
         cluster.abort(1);
     }
     return 0;

@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
             throw base::InputError("--trace is for --send");
         }
         if (options.send.empty() && options.listen.empty()) {
-            throw base::InputError("sandwall-track: give --send or --listen; try --help");
+            throw base::InputError("give --send or --listen; try --help");
         }
         return options.send.empty() ? listen(options) : send(options);
     });

@@ -148,7 +148,7 @@ int run(const std::string& address, const LinkOptions& options, std::uint64_t li
     const LinkSecurity security = options.forClient(Role::watch);
     asio::io_context io;
     Watcher watcher(io, security, lines);
-    watcher.connect(io, Address::parse(address, "sandwall-watch"));
+    watcher.connect(io, Address::parse(address, "server"));
     asio::signal_set signals(io, SIGINT, SIGTERM);
     signals.async_wait([&watcher](error_code error, int) {
         if (!error) {

@@ -12,6 +12,7 @@
 
 #include "base/input_error.hpp"
 #include "host/event.hpp"
+#include "host/print_line.hpp"
 #include "master/journal/checkpoint.hpp"
 #include "scene/scene.hpp"
 
@@ -83,7 +84,7 @@ void JournalKeeper::refused(const std::string& why) {
     if (options_.policy == JournalPolicy::required) {
         throw std::runtime_error(why);  // and no bad input: what the disk refuses now it may take in a moment
     }
-    fmt::print(stderr, "sandwall: {}, and the session goes on without a journal\n", why);
+    host::printLine("{}, and the session goes on without a journal", why);
     host::emitEvent("journal", {{"state", "failed"}, {"error", why}});
 }
 
@@ -96,8 +97,8 @@ void JournalKeeper::setAside(std::uint64_t step) {
             // That step will be another one: the checkpoint would pass for it. It is sand that the journal has lost.
             std::filesystem::rename(file, aside, error);
             ++checkpointsBeyond_;
-            fmt::print(stderr, "sandwall: {}: kept as {}: the journal ends before it, at step {}\n", file.string(),
-                       aside.filename().string(), step);
+            host::printLine("{}: kept as {}: the journal ends before it, at step {}", file.string(),
+                            aside.filename().string(), step);
         }
     }
     forgetHalves(journal_);
@@ -116,9 +117,8 @@ bool JournalKeeper::hasRoom(std::int64_t bytes, const JournalEnd& sand) {
         return true;  // what is then refused ends the journal
     }
     if (!standing_) {
-        fmt::print(stderr,
-                   "sandwall: no room for the journal ({}); the sand stands still after step {} until there is\n", why,
-                   sand.step);
+        host::printLine("no room for the journal ({}); the sand stands still after step {} until there is", why,
+                        sand.step);
         host::emitEvent("journal", {{"state", "no_room"}, {"step", sand.step}, {"error", why}});
         standing_ = true;
         stoodSince_ = now();
@@ -138,7 +138,7 @@ bool JournalKeeper::mayTake(std::int64_t bytes, const JournalEnd& sand) {
     const bool room = hasRoom(bytes, sand);
     if (room && standing_) {
         const double seconds = now() - stoodSince_;
-        fmt::print(stderr, "sandwall: there is room for the journal again; the sand goes on after {:.0f} s\n", seconds);
+        host::printLine("there is room for the journal again; the sand goes on after {:.0f} s", seconds);
         host::emitEvent("journal", {{"state", "room"}, {"seconds", seconds}});
         stoodSeconds_ += seconds;
         standing_ = false;
@@ -151,7 +151,7 @@ void JournalKeeper::giveUp(const std::string& why) {
     if (options_.policy == JournalPolicy::required) {
         throw DiskFailure(why);
     }
-    fmt::print(stderr, "sandwall: {}, and the session goes on without\n", why);
+    host::printLine("{}, and the session goes on without", why);
     host::emitEvent("journal", {{"state", "failed"}, {"error", why}});
 }
 
@@ -173,7 +173,7 @@ void JournalKeeper::keepTicks(const std::vector<base::Bytes>& pieces) {
     for (const base::Bytes& piece : pieces) {
         try {
             if (writer_ && !writer_->keep(JournalTicks{piece}) && !std::exchange(ticksLeftOut_, true)) {
-                fmt::print(stderr, "sandwall: no room for the tick track; ticks are left out until there is\n");
+                host::printLine("no room for the tick track; ticks are left out until there is");
             }
         } catch (const base::InputError& error) {
             giveUp(error.what());
@@ -188,7 +188,7 @@ void JournalKeeper::endCheckpoint(bool wait) {
     const std::string complaint = checkpoint_.get();
     checkpointsFailed_ += complaint.empty() ? 0 : 1;
     if (!complaint.empty() && complaint != complaint_) {  // once, however often
-        fmt::print(stderr, "sandwall: {}; there is no checkpoint, and the session goes on\n", complaint);
+        host::printLine("{}; there is no checkpoint, and the session goes on", complaint);
     }
     complaint_ = complaint;
 }
@@ -225,7 +225,7 @@ void JournalKeeper::finish(const JournalEnd& end) {
             writer_->finish(end.step, end.hash);
         }
     } catch (const base::InputError& error) {
-        fmt::print(stderr, "sandwall: {}; it holds every step, and no end\n", error.what());
+        host::printLine("{}; it holds every step, and no end", error.what());
     }
 }
 

@@ -12,6 +12,7 @@
 #include "base/input_error.hpp"
 #include "haptic_bridge/loop/tick_replay.hpp"
 #include "host/command_line.hpp"
+#include "host/print_line.hpp"
 #include "host/version.hpp"
 #include "host/whole_file.hpp"
 #include "master/journal/journal.hpp"
@@ -76,8 +77,8 @@ public:
             throw base::InputError(fmt::format("{}: cannot be written", options_.forces));
         }
         if (replay_.left() > 0) {
-            fmt::print(stderr, "{}: the last {} ticks felt steps that the session did not show, and were left out\n",
-                       options_.file, replay_.left());
+            host::printLine("{}: the last {} ticks felt steps that the session did not show, and were left out",
+                            options_.file, replay_.left());
         }
     }
 
@@ -97,8 +98,8 @@ int replay(const master::Journal& journal, std::uint64_t until, sand::Replica& t
             continue;
         }
         if (terrain.stateHash() != frame.hashBefore && differing++ == 0) {
-            fmt::print(stderr, "before frame {}, after step {}: the session had {:016x}, the replay has {:016x}\n",
-                       frame.frame, terrain.stepNumber(), frame.hashBefore, terrain.stateHash());
+            host::printLine("before frame {}, after step {}: the session had {:016x}, the replay has {:016x}",
+                            frame.frame, terrain.stepNumber(), frame.hashBefore, terrain.stateHash());
         }
         for (const sand::Step& step : frame.steps) {
             if (step.number <= until) {
@@ -185,8 +186,8 @@ int run(const Options& options) {
     }
     const bool whole = journal.end && journal.end->step == terrain.stepNumber();
     if (whole && journal.end->hash != terrain.stateHash()) {
-        fmt::print(stderr, "after step {}: the session had {:016x}, the replay has {:016x}\n", terrain.stepNumber(),
-                   journal.end->hash, terrain.stateHash());
+        host::printLine("after step {}: the session had {:016x}, the replay has {:016x}", terrain.stepNumber(),
+                        journal.end->hash, terrain.stateHash());
         ++differing;
     }
     if (options.hash) {

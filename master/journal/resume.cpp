@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/input_error.hpp"
+#include "host/print_line.hpp"
 #include "master/journal/checkpoint.hpp"
 #include "master/journal/journal.hpp"
 #include "scene/load/scene_file.hpp"
@@ -141,9 +142,9 @@ RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const sand
                 return restored;
             }
         } catch (const base::FormatError& error) {
-            fmt::print(stderr, "sandwall: {}: {}; it is left out\n", file.string(), error.what());
+            host::printLine("{}: {}; it is left out", file.string(), error.what());
         } catch (const OtherSand& error) {
-            fmt::print(stderr, "sandwall: {}: it is left out: {}\n", file.string(), error.what());
+            host::printLine("{}: it is left out: {}", file.string(), error.what());
         }
     }
     RestoredSand restored{start, 0, 0};

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "base/input_error.hpp"
+#include "host/print_line.hpp"
 #include "host/whole_file.hpp"
 #include "master/journal/journal.hpp"
 #include "scene/scene.hpp"
@@ -60,11 +61,10 @@ std::string pathText(const sand::Step& step, double unit) {
 
 void sayWhatIsMissing(const std::filesystem::path& journal, std::int64_t tornBytes, bool orderlyEnd) {
     if (tornBytes > 0) {
-        fmt::print(stderr, "{}: the last {} bytes are no whole record and were left out\n", journal.string(),
-                   tornBytes);
+        host::printLine("{}: the last {} bytes are no whole record and were left out", journal.string(), tornBytes);
     }
     if (!orderlyEnd) {
-        fmt::print(stderr, "{}: has no orderly end; the session was cut off\n", journal.string());
+        host::printLine("{}: has no orderly end; the session was cut off", journal.string());
     }
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/input_error.hpp"
+#include "host/print_line.hpp"
 #include "master/journal/checkpoint.hpp"
 #include "master/journal/journal.hpp"
 #include "master/journal/resume.hpp"
@@ -72,8 +73,8 @@ private:
             return;
         }
         if (differing_++ == 0) {
-            fmt::print(stderr, "after step {}: the session had {:016x}, the replay has {:016x}\n", said.step, said.hash,
-                       terrain_.stateHash());
+            host::printLine("after step {}: the session had {:016x}, the replay has {:016x}", said.step, said.hash,
+                            terrain_.stateHash());
         }
     }
     void compareCheckpoint() {

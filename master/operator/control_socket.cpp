@@ -15,6 +15,7 @@
 #include <cstring>
 #include <utility>
 
+#include "host/print_line.hpp"
 #include "master/operator/operator_command.hpp"
 
 namespace master {
@@ -48,8 +49,7 @@ static_assert(kLongestCommand == 1024, "said above");
 
 ControlSocket::ControlSocket(const std::filesystem::path& folder) : folder_(folder) {
     if (const std::string failure = open(); !failure.empty()) {
-        fmt::print(stderr, "sandwall: {}: {}; the session runs without sandwall ctl\n", (folder / kName).string(),
-                   failure);
+        host::printLine("{}: {}; the session runs without sandwall ctl", (folder / kName).string(), failure);
         return;
     }
     thread_ = std::thread([this] { serve(); });

@@ -11,6 +11,7 @@
 
 #include "host/clock.hpp"
 #include "host/event.hpp"
+#include "host/print_line.hpp"
 #include "lockstep/cluster.hpp"
 #include "scene/scene.hpp"
 
@@ -69,7 +70,7 @@ LiveSteps::LiveSteps(std::optional<haptic_bridge::Address> server, const scene::
 
 void LiveSteps::takeOver(const std::string& reason, const std::string& why) {
     if (!why.empty()) {
-        fmt::print(stderr, "haptic link: {}; the wall goes on without a hand\n", why);
+        host::printLine("haptic link: {}; the wall goes on without a hand", why);
     }
     source_ = Source::own;
     ++epoch_;
@@ -92,7 +93,7 @@ void LiveSteps::sayLink(const haptic_bridge::LinkStatus& status) {
         linkChanges_ = status.changes;
         host::emitEvent("link", {{"state", nameOf(status.link)}, {"epoch", epoch_}, {"server", server_->text()}});
         if (!status.message.empty()) {
-            fmt::print(stderr, "haptic link: {}\n", status.message);
+            host::printLine("haptic link: {}", status.message);
         }
     }
 }
@@ -142,7 +143,7 @@ void LiveSteps::followPositions(const haptic_bridge::LinkStatus& status, const s
     }
     positions_.add(client_->drainPositions(), monotonicNs());
     for (const std::string& line : positions_.troubles(client_->floods(), monotonicNs())) {
-        fmt::print(stderr, "{}\n", line);
+        host::printLine("{}", line);
     }
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "host/print_line.hpp"
 #include "host/whole_file.hpp"
 #include "host/worker_pool.hpp"
 #include "sand/grid/tile_hash.hpp"
@@ -43,8 +44,8 @@ public:
         for (const sand::CellRect& block : erosion.takeMoved()) {
             moving += static_cast<double>(block.x1 - block.x0) * (block.y1 - block.y0);
         }
-        fmt::print(stderr, "{:.0f} s: {} sweeps; in the last second sand moved in {:.3g} % of the grid\n",
-                   secondsSince(start_), erosion.sweepsDone(), 100 * moving / cells_);
+        host::printLine("{:.0f} s: {} sweeps; in the last second sand moved in {:.3g} % of the grid",
+                        secondsSince(start_), erosion.sweepsDone(), 100 * moving / cells_);
     }
 
 private:
@@ -130,7 +131,7 @@ void relaxGrid(const Options& options) {
         toSand(grid, bedrock ? &*bedrock : nullptr, {options.talus, options.band, schemeOf(options.scheme)});
     { const host::WholeFile canBeWritten(options.out); }  // hours later would be too late to find out
     for (const std::string& warning : sand.warnings) {
-        fmt::print(stderr, "warning: {}\n", warning);
+        host::printLine("warning: {}", warning);
     }
     const std::int64_t volumeBefore = sand.volume();
     const Timed timed = relaxTimed(sand, options);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "host/print_line.hpp"
 #include "host/whole_file.hpp"
 #include "sand/tin/flow/erosion.hpp"
 #include "sand/tin/flow/settle.hpp"
@@ -92,7 +93,7 @@ void relaxTin(const Options& options) {
         thinned ? toTin(*thinned, options.in, material) : toTin(readPoints(options.in), options.in, material);
     { const host::WholeFile canBeWritten(options.out); }  // hours later would be too late to find out
     for (const std::string& warning : sand.warnings) {
-        fmt::print(stderr, "warning: {}\n", warning);
+        host::printLine("warning: {}", warning);
     }
     const std::int64_t volumeBefore = sand.volume();
     const Slid slid = slide(sand, options);

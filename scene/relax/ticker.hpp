@@ -32,7 +32,7 @@ private:
         const Clock::time_point start = Clock::now();
         std::unique_lock lock(mutex_);
         while (!wake_.wait_for(lock, stop, kReportEvery, [] { return false; }) && !stop.stop_requested()) {
-            fmt::print(stderr, "{:.0f} s: {}\n", secondsSince(start), what_);
+            fmt::print(stderr, "sandwall-relax: {:.0f} s: {}\n", secondsSince(start), what_);
         }
     }
 

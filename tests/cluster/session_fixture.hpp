@@ -99,6 +99,7 @@ protected:
         const auto waits = static_cast<std::ptrdiff_t>(support::eventsIn(ended.output, "waiting").size());
         EXPECT_EQ(ended.status, 2) << ended.output;
         EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 1 + waits) << ended.output;
+        EXPECT_TRUE(message.starts_with("sandwall")) << "a line begins with its program's name: " << ended.output;
         EXPECT_NE(message.find(named), std::string::npos) << ended.output;
     }
     /// Waits until frames are shown.

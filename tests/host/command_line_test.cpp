@@ -138,7 +138,7 @@ TEST(RunMain, TellsBadInputFromFailures) {
     EXPECT_EQ(exitStatus([] { return 1; }), 1);
     EXPECT_EQ(exitStatus([]() -> int { throw base::InputError("a.txt:3: bad"); }), base::kExitBadInput);
     EXPECT_EQ(exitStatus([]() -> int { throw std::runtime_error("no room"); }), 7);
-    EXPECT_EQ(testing::internal::GetCapturedStderr(), "a.txt:3: bad\ntool: failed: no room\n");
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "tool: a.txt:3: bad\ntool: failed: no room\n");
 }
 
 }  // namespace

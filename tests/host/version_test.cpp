@@ -60,4 +60,32 @@ TEST(Version, IsAnsweredByEveryProgramOfTheBuild) {
     EXPECT_GE(asked, 2U);
 }
 
+// A session's lines come from several programs. One that ends for bad input says which of them it is.
+TEST(Refusals, BeginWithTheProgramsName) {
+    const std::vector<std::pair<std::string, std::string>> refused{
+        {"sandwall-haptic-server", "--scene /no/file.toml --device mouse"},
+        {"sandwall-replay", "/no/file.journal"},
+        {"sandwall-relax", "/no/file.asc out.asc --talus 30"},
+        {"sandwall-check", "/no/file.toml"},
+        {"sandwall-compare", "/no/a.png /no/b.png"},
+        {"sandwall-track", "--trace /no/file.csv"},
+        {"sandwall-track", ""},
+        {"sandwall-watch", ":7750"},
+        {"sandwall-render-node", "--probe 1 </dev/null"},
+        {"sandwall-bench", "explain /no/file.toml"}};
+    std::size_t asked = 0;
+    for (const auto& [program, arguments] : refused) {
+        if (!std::filesystem::exists(std::filesystem::path(SANDWALL_BIN_DIR) / program)) {
+            continue;  // a build of the sand alone has few programs
+        }
+        ++asked;
+        const support::Ran ran = support::runProgram(program, arguments);
+        EXPECT_EQ(ran.status, 2) << program << ": " << ran.output;
+        EXPECT_TRUE(ran.output.starts_with(program + ": ")) << ran.output;
+        EXPECT_EQ(ran.output.find(program, 1), std::string::npos) << "once: " << ran.output;
+        EXPECT_EQ(ran.output.find('\n'), ran.output.size() - 1) << ran.output;
+    }
+    EXPECT_GE(asked, 2U);
+}
+
 }  // namespace

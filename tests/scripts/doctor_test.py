@@ -186,11 +186,11 @@ class Refusals(LauncherTest):
     def test_bad_input_is_one_line(self):
         self.assertIn("no-file: cannot be read; check the path", self.refusal(str(self.folder / "no-file")))
         self.assertEqual(self.refusal(self.write("empty", "# nobody\n")),
-                         "empty: names no host; write one a line, as ssh knows it\n")
+                         "sandwall: empty: names no host; write one a line, as ssh knows it\n")
         self.assertEqual(self.refusal(self.write("hosts", "a\n-oX\n")),
-                         "hosts:2: '-oX' is no host name; write one as ssh knows it, such as node01\n")
-        self.script("sandwall-check", "#!/bin/sh\necho 'wall.toml:3: no' >&2; exit 2\n")
-        self.assertEqual(self.refusal(self.write("wall.toml", "")), "wall.toml:3: no\n")
+                         "sandwall: hosts:2: '-oX' is no host name; write one as ssh knows it, such as node01\n")
+        self.script("sandwall-check", "#!/bin/sh\necho 'sandwall-check: wall.toml:3: no' >&2; exit 2\n")
+        self.assertEqual(self.refusal(self.write("wall.toml", "")), "sandwall: wall.toml:3: no\n")
 
 
 if __name__ == "__main__":

@@ -70,7 +70,7 @@ class Film(LauncherTest):
         self.script("ffmpeg", "#!/bin/sh\necho half > film.mp4; echo first >&2; echo No space left >&2; exit 1\n")
         status, _, error = self.film()
         self.assertEqual((status, error),
-                         (2, "out %d/film.mp4: ffmpeg failed: No space left; the 3 pictures are whole\n"))
+                         (2, "sandwall: out %d/film.mp4: ffmpeg failed: No space left; the 3 pictures are whole\n"))
         self.assertFalse((self.folder / "out %d" / "film.mp4").exists())
 
     def test_a_replay_that_fails_becomes_no_film(self):
@@ -84,15 +84,15 @@ class Film(LauncherTest):
 
     def test_a_journal_that_is_missing_or_a_folder_is_refused(self):
         (self.folder / "s.journal").unlink()
-        refusal = (2, "", "s.journal: cannot be read; check the path\n")
+        refusal = (2, "", "sandwall: s.journal: cannot be read; check the path\n")
         self.assertEqual(self.film(), refusal)
         self.assertFalse((self.folder / "out %d").exists())
         (self.folder / "s.journal").mkdir()
         self.assertEqual(self.film(), refusal)
 
     def test_a_wall_that_does_not_pass_the_check_is_refused_in_its_words(self):
-        self.script("sandwall-check", "#!/bin/sh\necho 'wall.toml:3: no' >&2; exit 2\n")
-        self.assertEqual(self.film(), (2, "", "wall.toml:3: no\n"))
+        self.script("sandwall-check", "#!/bin/sh\necho 'sandwall-check: wall.toml:3: no' >&2; exit 2\n")
+        self.assertEqual(self.film(), (2, "", "sandwall: wall.toml:3: no\n"))
 
 
 if __name__ == "__main__":

@@ -81,4 +81,5 @@ class LauncherTest(unittest.TestCase):
         ended = self.start(hosts, *options)
         self.assertEqual((ended.returncode, ended.stdout), (2, ""), ended.stderr)
         self.assertEqual(ended.stderr.count("\n"), 1, ended.stderr)
+        self.assertRegex(ended.stderr, "^sandwall( run)?: ")
         return ended.stderr.replace(str(self.folder) + "/", "")

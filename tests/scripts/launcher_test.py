@@ -96,12 +96,12 @@ class PrintedCommands(LauncherTest):
 
 class Refusals(LauncherTest):
     def test_a_wall_that_does_not_pass_the_check_is_refused_in_its_words(self):
-        self.script("sandwall-check", "#!/bin/sh\necho 'wall.toml:3: no' >&2; exit 2\n")
-        self.assertEqual(self.refused(["-"]), "wall.toml:3: no\n")
+        self.script("sandwall-check", "#!/bin/sh\necho 'sandwall-check: wall.toml:3: no' >&2; exit 2\n")
+        self.assertEqual(self.refused(["-"]), "sandwall: wall.toml:3: no\n")
 
     def test_a_host_that_cannot_be_reached_is_named_with_its_rank(self):
-        self.assertEqual(self.refused(["-", "away1"]), "away1 (rank 2): cannot be reached: ssh: connect to host away1 "
-                         "port 22: No route to host; docs/hosts.md\n")
+        self.assertEqual(self.refused(["-", "away1"]), "sandwall: away1 (rank 2): cannot be reached: ssh: connect to host "
+                         "away1 port 22: No route to host; docs/hosts.md\n")
 
     def test_a_host_without_the_programs_is_named_with_its_rank(self):
         line = self.refused(["-", "-", "bare1"])
@@ -119,7 +119,7 @@ class Refusals(LauncherTest):
         self.assertIn("--network: 'eth0' is no network", self.refused(["node1"], "--print-command", "--network", "eth0"))
 
     def test_a_variable_without_a_value_is_refused(self):
-        self.assertEqual(self.refused(["-"], "--env", "XAUTHORITY"), "--env XAUTHORITY: write NAME=VALUE\n")
+        self.assertEqual(self.refused(["-"], "--env", "XAUTHORITY"), "sandwall: --env XAUTHORITY: write NAME=VALUE\n")
 
     def test_too_few_slots_are_refused(self):
         hosts = self.write("hosts", "node1\n")
@@ -159,8 +159,8 @@ class OneFolder(LauncherTest):
         log.write_text("of the first")
         second = self.start(["-"])
         self.assertEqual((second.returncode, second.stdout), (1, ""))
-        self.assertEqual(second.stderr, f"{self.folder / 'out'}: another session runs in this folder; stop that one "
-                         "first, or choose another --out\n")
+        self.assertEqual(second.stderr, f"sandwall: {self.folder / 'out'}: another session runs in this folder; stop that "
+                         "one first, or choose another --out\n")
         self.assertEqual(log.read_text(), "of the first")
         first.communicate("stop\n", timeout=60)
         self.script("mpirun", MPIRUN)

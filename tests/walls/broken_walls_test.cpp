@@ -64,7 +64,7 @@ TEST(BrokenWalls, AreRefusedByTheProgramInTheSameLine) {
     const std::filesystem::path file = brokenWalls() / "eye_misspelt.toml";
     const support::Ran ran = support::runProgram("sandwall-check", file.string());
     EXPECT_EQ(ran.status, 2);
-    EXPECT_EQ(ran.output, complaintAbout(file) + "\n");
+    EXPECT_EQ(ran.output, "sandwall-check: " + complaintAbout(file) + "\n");
 }
 
 TEST(BrokenWalls, BecomeWholeByOneEdit) {

@@ -171,7 +171,7 @@ TEST_F(OriginOfFiles, ForeignJournalsEndEveryQuestionWithOneLineAndStatusTwo) {
              {std::string(), std::string("--hash"), std::string("--verify"), "--export " + made, "--recover " + made}) {
             const support::Ran ran = support::runProgram("sandwall-replay", fmt::format("{} {}", file, question));
             EXPECT_EQ(ran.status, 2) << question;
-            EXPECT_EQ(ran.output, fmt::format("{}: {}\n", file, old ? kTooOld : another)) << question;
+            EXPECT_EQ(ran.output, fmt::format("sandwall-replay: {}: {}\n", file, old ? kTooOld : another)) << question;
         }
     }
     EXPECT_FALSE(std::filesystem::exists(made));

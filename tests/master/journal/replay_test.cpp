@@ -202,7 +202,8 @@ TEST_F(Replay, SaysThatItsAnswerCouldNotBeWritten) {
         const support::Ran ran = support::runCommand("{ " SANDWALL_BIN_DIR "/sandwall-replay " + journal() + " " +
                                                      question + " >/dev/full; }");
         EXPECT_EQ(ran.status, 2) << question;
-        EXPECT_EQ(ran.output, "standard output: cannot be written (No space left on device)\n") << question;
+        EXPECT_EQ(ran.output, "sandwall-replay: standard output: cannot be written (No space left on device)\n")
+            << question;
     }
 }
 

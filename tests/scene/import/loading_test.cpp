@@ -43,7 +43,7 @@ TEST_F(Import, TextInDegreesIsRelaxedIntoNothing) {
     for (const char* out : {"out.asc", "out.tif", "out.ply --max-error 0.1"}) {
         const support::Ran ran = support::runProgram("sandwall-relax", path("t.asc") + " " + path(out) + " --talus 30");
         EXPECT_EQ(ran.status, 2) << out;
-        EXPECT_EQ(ran.output, path("t.asc") +
+        EXPECT_EQ(ran.output, "sandwall-relax: " + path("t.asc") +
                                   ": its coordinates (WGS 84) are degrees, and sand wants lengths; make metres of "
                                   "them: gdalwarp -t_srs EPSG:32632 -r bilinear t.asc metres.tif\n");
     }
@@ -67,7 +67,8 @@ TEST_F(Import, RelaxedTextHasItsSystemBesideItAgain) {
     write("t.asc", text + "7\n");
     const support::Ran ran =
         support::runProgram("sandwall-relax", path("t.asc") + " " + path("out.asc") + " --talus 30");
-    EXPECT_EQ(ran.output, path("t.asc") + ":8: more values than ncols x nrows = 4\n") << "by its line, as without";
+    EXPECT_EQ(ran.output, "sandwall-relax: " + path("t.asc") + ":8: more values than ncols x nrows = 4\n")
+        << "by its line, as without";
 }
 
 TEST_F(Import, ARelaxedGeoTiffKeepsItsPlaceItsMaskAndWhatDidNotMove) {

@@ -179,7 +179,7 @@ TEST_F(Results, AMeshAsTextIsTheSameMesh) {
 TEST_F(Results, OutputsThatCannotBeAreRefusedFirst) {
     const support::Ran mesh = replay("--mesh " + path("m.stl"));
     EXPECT_EQ(mesh.status, 2);
-    EXPECT_EQ(mesh.output, path("m.stl") + ": a mesh is written as .ply or .obj\n");
+    EXPECT_EQ(mesh.output, "sandwall-replay: " + path("m.stl") + ": a mesh is written as .ply or .obj\n");
     EXPECT_EQ(replay("--heights " + path("none/h.tif")).status, 2);
 }
 

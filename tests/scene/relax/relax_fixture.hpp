@@ -51,6 +51,7 @@ protected:
         const support::Ran ran = run(arguments);
         EXPECT_EQ(ran.status, 2) << arguments << '\n' << ran.output;
         EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
+        EXPECT_TRUE(ran.output.starts_with("sandwall-relax: ")) << ran.output;
         EXPECT_NE(ran.output.find(words), std::string::npos) << "not '" << words << "' in: " << ran.output;
         EXPECT_FALSE(std::filesystem::exists(path(out))) << arguments;
     }

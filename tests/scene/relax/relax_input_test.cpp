@@ -85,9 +85,11 @@ TEST_F(RelaxInput, ATalusWithoutUnitsIsRefusedWithAWayOut) {
 TEST_F(RelaxInput, ACoarseTalusWarnsWithTheFigure) {
     const support::Ran coarse = run("in.asc out.asc --talus 3");
     EXPECT_EQ(coarse.status, 0);
-    EXPECT_EQ(coarse.output.find("warning: in.asc: a talus of 3 degrees is 3435 height units of 1.526e-05 from cell to "
-                                 "cell: slopes may come to rest 1 % too steep\n"),
-              0U)
+    EXPECT_EQ(
+        coarse.output.find(
+            "sandwall-relax: warning: in.asc: a talus of 3 degrees is 3435 height units of 1.526e-05 from cell to "
+            "cell: slopes may come to rest 1 % too steep\n"),
+        0U)
         << coarse.output;
     (void)relax("in.asc out.asc --talus 3.6");  // 4123 units: no second line
 }
