@@ -4,10 +4,14 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "base/input_error.hpp"
 #include "haptic_bridge/loop/tick_replay.hpp"
@@ -34,9 +38,19 @@ struct Options {
     std::string heights, difference, mesh, forces, steps, recovered;
     std::optional<std::uint64_t> until;
 
-    /// Nothing is asked for but the replay itself.
+    /// Returns whether nothing is asked of the replayed sand and of the hand.
     [[nodiscard]] bool plain() const {
         return !hash && !volumes && heights.empty() && difference.empty() && mesh.empty() && forces.empty();
+    }
+    /// Returns each file that is to be written, with the option that names it.
+    [[nodiscard]] std::vector<std::pair<std::string, std::string>> outputs() const {
+        std::vector<std::pair<std::string, std::string>> all{{"--export", steps},
+                                                             {"--heights", heights},
+                                                             {"--difference", difference},
+                                                             {"--mesh", mesh},
+                                                             {"--forces", forces}};
+        std::erase_if(all, [](const auto& output) { return output.second.empty(); });
+        return all;
     }
 };
 
@@ -111,8 +125,24 @@ int replay(const master::Journal& journal, std::uint64_t until, sand::Replica& t
     return differing;
 }
 
-/// Long before there is something to be written.
+/// Throws base::InputError if one file would be written over another, or over the journal.
+void requireDifferentFiles(const Options& options) {
+    std::map<std::filesystem::path, std::string> writers;
+    std::error_code none;
+    writers.emplace(std::filesystem::weakly_canonical(options.file, none), "FILE");
+    for (const auto& [option, file] : options.outputs()) {
+        const bool plain = !std::filesystem::exists(file, none) || std::filesystem::is_regular_file(file, none);
+        const auto [other, isNew] = writers.emplace(std::filesystem::weakly_canonical(file, none), option);
+        if (plain && !isNew) {
+            throw base::InputError(fmt::format("{} and {}: both name {}; choose another file for one of them",
+                                               other->second, option, file));
+        }
+    }
+}
+
+/// Checks all outputs before the replay, which may take hours.
 void checkOutputs(const Options& options) {
+    requireDifferentFiles(options);
     if (!options.mesh.empty()) {
         scene::checkMeshName(options.mesh);
     }
@@ -121,7 +151,7 @@ void checkOutputs(const Options& options) {
             scene::checkRasterName(file);
         }
     }
-    for (const std::string& file : {options.heights, options.difference, options.mesh}) {
+    for (const std::string& file : {options.steps, options.heights, options.difference, options.mesh}) {
         if (!file.empty()) {
             const host::WholeFile canBeWritten(file);
         }
@@ -166,24 +196,25 @@ int run(const Options& options) {
         master::recoverJournal(options.file, options.recovered);
         return 0;
     }
-    if (!options.steps.empty()) {
-        master::exportSteps(options.file, options.steps);
-        return 0;
-    }
     if (options.verify) {
         return master::verifyJournal(options.file);
     }
     checkOutputs(options);
+    if (!options.steps.empty()) {
+        master::exportSteps(options.file, options.steps, options.until);
+        if (options.plain()) {
+            return 0;  // read record by record, without any sand
+        }
+    }
     const master::Journal journal = master::readJournal(options.file);
-    master::sayWhatIsMissing(options.file, journal.tornBytes, journal.end.has_value());
+    if (options.steps.empty()) {  // the export has printed it
+        master::sayWhatIsMissing(options.file, journal.tornBytes, journal.end.has_value());
+    }
     sand::Replica terrain(journal.scene);
     Forces forces(journal, options);
     int differing = replay(journal, options.until.value_or(std::numeric_limits<std::uint64_t>::max()), terrain, forces);
     forces.finish();
-    if (options.until && terrain.stepNumber() < *options.until) {
-        throw base::InputError(
-            fmt::format("{}: ends at step {}, before --until {}", options.file, terrain.stepNumber(), *options.until));
-    }
+    master::requireStep(options.file, terrain.stepNumber(), options.until);
     const bool whole = journal.end && journal.end->step == terrain.stepNumber();
     if (whole && journal.end->hash != terrain.stateHash()) {
         host::printLine("after step {}: the session had {:016x}, the replay has {:016x}", terrain.stepNumber(),
@@ -213,6 +244,40 @@ std::string notNegative(const std::string& text) {
     return text.starts_with('-') ? "a step's number is 0 or more, got " + text : "";
 }
 
+/// Refuses an empty name, which would otherwise be read as no wish for a file.
+std::string notEmpty(const std::string& text) { return text.empty() ? "name a file" : ""; }
+
+/// Describes what may be asked of a journal. All that reads the replayed sand can be combined, also with --export.
+/// --verify and --recover read every record for themselves, so that --until and all else is refused beside them.
+void describe(host::CommandLine& line, Options& options) {
+    line.option("FILE", options.file, "session.journal of a session").required();
+    const std::vector<host::Option> combined{
+        line.flag("--hash", options.hash, "print the state hash after the last step"),
+        line.option("--heights", options.heights,
+                    "write the heights then, where the terrain came from: a .tif, or an ESRI ASCII grid")
+            .check(notEmpty),
+        line.option("--difference", options.difference, "the same of how much higher the sand is than at the start")
+            .check(notEmpty),
+        line.option("--mesh", options.mesh, "write the surface as triangles: a .ply or .obj").check(notEmpty),
+        line.flag("--volumes", options.volumes, "print what was cut and filled since the start, as one line of JSON"),
+        line.option("--forces", options.forces,
+                    "recompute what a hand felt at every tick, from a session recorded with --record, into this CSV "
+                    "file")
+            .check(notEmpty),
+        line.option("--until", options.until, "stop after this step").check(notNegative),
+        line.option("--export", options.steps, "write every step as a row of this CSV file").check(notEmpty)};
+    const host::Option verify =
+        line.flag("--verify", options.verify, "check records, parts, hashes and checkpoints; alone");
+    const host::Option recover = line.option("--recover", options.recovered,
+                                             "write what is intact of a damaged journal as a journal of its own; alone")
+                                     .check(notEmpty);
+    verify.excludes(recover);
+    for (const host::Option& other : combined) {
+        verify.excludes(other);
+        recover.excludes(other);
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -227,22 +292,7 @@ int main(int argc, char** argv) {
         "Exit status 0 alike, 1 different, 2 unusable.",
         "sandwall-replay");
     Options options;
-    line.option("FILE", options.file, "session.journal of a session").required();
-    line.flag("--hash", options.hash, "print the state hash after the last step");
-    line.option("--heights", options.heights,
-                "write the heights then, where the terrain came from: a .tif, or an ESRI ASCII grid");
-    line.option("--difference", options.difference, "the same of how much higher the sand is than at the start");
-    line.option("--mesh", options.mesh, "write the surface as triangles: a .ply or .obj");
-    line.flag("--volumes", options.volumes, "print what was cut and filled since the start, as one line of JSON");
-    line.option("--forces", options.forces,
-                "recompute what a hand felt at every tick, from a session recorded with --record, into this CSV file");
-    line.option("--until", options.until, "stop after this step").check(notNegative);
-    const host::Option verify = line.flag("--verify", options.verify, "check records, parts, hashes and checkpoints");
-    const host::Option steps = line.option("--export", options.steps, "write every step as a row of this CSV file");
-    const host::Option recover = line.option("--recover", options.recovered,
-                                             "write what is intact of a damaged journal as a journal of its own");
-    verify.excludes(steps).excludes(recover);
-    steps.excludes(recover);
+    describe(line, options);
     return host::runMain(
         line, argc, argv,
         [&] {

@@ -68,12 +68,20 @@ void sayWhatIsMissing(const std::filesystem::path& journal, std::int64_t tornByt
     }
 }
 
-void exportSteps(const std::filesystem::path& journal, const std::filesystem::path& file) {
+void requireStep(const std::filesystem::path& journal, std::uint64_t last, std::optional<std::uint64_t> until) {
+    if (until && last < *until) {
+        throw base::InputError(fmt::format("{}: ends at step {}, before --until {}", journal.string(), last, *until));
+    }
+}
+
+void exportSteps(const std::filesystem::path& journal, const std::filesystem::path& file,
+                 std::optional<std::uint64_t> until) {
     JournalReader reader(journal);
     ExportedTool tool(sceneOf(reader));
     host::WholeFile out(file);
     out.stream() << "epoch,number,frame,engaged,tool,radius,heading,path,edit\n";
     bool orderlyEnd = false;
+    std::uint64_t last = 0;
     while (const auto record = reader.next()) {
         orderlyEnd = std::holds_alternative<JournalEnd>(*record) ||
                      (orderlyEnd && !std::holds_alternative<JournalResumed>(*record));
@@ -82,6 +90,10 @@ void exportSteps(const std::filesystem::path& journal, const std::filesystem::pa
             continue;
         }
         for (const sand::Step& step : frame->steps) {
+            if (until && step.number > *until) {
+                break;
+            }
+            last = step.number;
             tool.begin(step);
             fmt::print(out.stream(), "{},{},{},{},{},{},{}\n", step.epoch, step.number, frame->frame,
                        step.engaged ? 1 : 0, tool.text(), pathText(step, tool.unit()),
@@ -89,6 +101,7 @@ void exportSteps(const std::filesystem::path& journal, const std::filesystem::pa
             tool.end(step);
         }
     }
+    requireStep(journal, last, until);
     out.keep();
     sayWhatIsMissing(journal, reader.tornBytes(), orderlyEnd);
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 
 namespace master {
 
@@ -16,8 +17,12 @@ namespace master {
 /// Says on standard error what a journal that is read to its end lacks, if anything.
 void sayWhatIsMissing(const std::filesystem::path& journal, std::int64_t tornBytes, bool orderlyEnd);
 
-/// Every step as a row of a CSV file (docs/journal.md). Says on standard error what the journal lacks.
-void exportSteps(const std::filesystem::path& journal, const std::filesystem::path& file);
+/// Writes every step up to `until` as a row of a CSV file (docs/journal.md). Prints on standard error what the journal
+/// lacks. Writes nothing if the journal ends before `until`, and throws.
+void exportSteps(const std::filesystem::path& journal, const std::filesystem::path& file,
+                 std::optional<std::uint64_t> until = {});
+/// Throws base::InputError if a journal whose last step is `last` ends before the step `until` that the user named.
+void requireStep(const std::filesystem::path& journal, std::uint64_t last, std::optional<std::uint64_t> until);
 
 /// Writes the intact part of a journal as a new journal, and prints on standard output what is lost. Refuses to
 /// overwrite a file.

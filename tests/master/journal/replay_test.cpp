@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -37,7 +39,23 @@ protected:
         writer.finish(terrain.stepNumber(), terrain.stateHash());
         return terrain;
     }
-    [[nodiscard]] std::string journal() const { return (folder_ / "s.journal").string(); }
+    [[nodiscard]] std::string journal() const { return path("s.journal"); }
+    [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
+    [[nodiscard]] std::string read(const std::string& name) const {
+        std::ifstream stream(folder_ / name, std::ios::binary);
+        return {std::istreambuf_iterator<char>(stream), {}};
+    }
+    [[nodiscard]] support::Ran replay(const std::string& options) const {
+        return support::runProgram("sandwall-replay", journal() + " " + options);
+    }
+    /// Expects status 2, one line that holds `words`, and no file but the journal.
+    void expectRefused(const std::string& options, const std::string& words) const {
+        const support::Ran ran = replay(options);
+        EXPECT_EQ(ran.status, 2) << options << ": " << ran.output;
+        EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << options << ": " << ran.output;
+        EXPECT_NE(ran.output.find(words), std::string::npos) << options << ": " << ran.output;
+        EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1) << options;
+    }
 };
 
 TEST_F(Replay, EndsInTheSessionsHash) {
@@ -252,6 +270,61 @@ TEST_F(Replay, RefusesARasterOfAnUnknownEnding) {
         EXPECT_FALSE(std::filesystem::exists(folder_ / "x.foo"));
         EXPECT_EQ(support::runProgram("sandwall-replay", journal() + option + "/dev/null").status, 0);
     }
+}
+
+TEST_F(Replay, DoesAllThatIsAskedOfOneJournal) {
+    record();
+    const support::Ran ran = replay("--until 10 --hash --mesh " + path("a.ply") + " --heights " + path("a.asc") +
+                                    " --difference " + path("d.asc") + " --export " + path("s.csv"));
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    EXPECT_EQ(ran.output, replay("--until 10 --hash").output);
+    for (const auto& [option, name, alone] :
+         {std::array{"--mesh", "a.ply", "b.ply"}, std::array{"--heights", "a.asc", "b.asc"},
+          std::array{"--difference", "d.asc", "e.asc"}, std::array{"--export", "s.csv", "t.csv"}}) {
+        ASSERT_EQ(replay(fmt::format("--until 10 {} {}", option, path(alone))).status, 0) << option;
+        EXPECT_FALSE(read(name).empty()) << option;
+        EXPECT_EQ(read(name), read(alone)) << option;
+    }
+}
+
+TEST_F(Replay, ExportsTheStepsUpToTheOneThatIsNamed) {
+    record();
+    ASSERT_EQ(replay("--export " + path("all.csv")).status, 0);
+    ASSERT_EQ(replay("--until 7 --export " + path("some.csv")).status, 0);
+    const std::string all = read("all.csv"), some = read("some.csv");
+    EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 41) << "titles and 40 steps";
+    EXPECT_EQ(std::count(some.begin(), some.end(), '\n'), 8) << "frames hold two steps: 7 is in the middle of one";
+    EXPECT_EQ(some, all.substr(0, some.size()));
+    const support::Ran ran = replay("--until 41 --export " + path("none.csv"));
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_NE(ran.output.find("ends at step 40, before --until 41"), std::string::npos) << ran.output;
+    EXPECT_FALSE(std::filesystem::exists(path("none.csv")));
+}
+
+TEST_F(Replay, RefusesWhatItWouldNotDoBesideAnother) {
+    record();
+    const std::string recover = "--recover " + path("new.journal");
+    for (const std::string& alone : {std::string("--verify"), recover}) {
+        for (const std::string& other :
+             {std::string("--hash"), std::string("--volumes"), std::string("--until 10"), "--mesh " + path("z.ply"),
+              "--heights " + path("z.asc"), "--difference " + path("z.asc"), "--forces " + path("z.csv"),
+              "--export " + path("z.csv"), alone == recover ? std::string("--verify") : recover}) {
+            expectRefused(alone + " " + other, "excludes");
+        }
+    }
+    for (const char* option : {"--mesh", "--heights", "--difference", "--forces", "--export", "--recover"}) {
+        expectRefused(std::string(option) + " ''", "name a file");
+    }
+}
+
+TEST_F(Replay, RefusesToWriteOneFileOverAnother) {
+    record();
+    expectRefused("--heights " + path("a.asc") + " --difference " + path("./a.asc"),
+                  "--heights and --difference: both name " + path("./a.asc"));
+    const std::string before = read("s.journal");
+    expectRefused("--export " + journal(), "FILE and --export: both name ");
+    EXPECT_EQ(read("s.journal"), before);
+    EXPECT_EQ(replay("--heights /dev/null --difference /dev/null").status, 0);
 }
 
 TEST_F(Replay, RefusesStepsBelowZero) {
