@@ -91,11 +91,12 @@ double TomlTable::number(std::string_view key, Range range) const {
     if (!value->is_number() || !number || !std::isfinite(*number)) {
         fail(key, fmt::format("{} must be a finite number", key));
     }
-    if (*number < range.lowest || *number > range.highest) {
+    if (*number < range.lowest || *number > range.highest || (range.highestIsOut && *number == range.highest)) {
         if (range.lowest == kPositive.lowest) {
             fail(key, fmt::format("{} must be positive, got {}", key, *number));
         }
-        fail(key, fmt::format("{} must be within [{}, {}], got {}", key, range.lowest, range.highest, *number));
+        fail(key, fmt::format("{} must be within [{}, {}{}, got {}", key, range.lowest, range.highest,
+                              range.highestIsOut ? ')' : ']', *number));
     }
     return *number;
 }
@@ -111,12 +112,13 @@ int TomlTable::integer(std::string_view key, int lowest, int highest) const {
     if (value == nullptr) {
         fail(key, fmt::format("[{}] needs a whole number '{}'", node_->name, key));
     }
-    if (!value->is_integer()) {
-        fail(key, fmt::format("{} must be a whole number", key));
-    }
     const std::int64_t number = value->value<std::int64_t>().value_or(0);
-    if (number < lowest || number > highest) {
-        fail(key, fmt::format("{} must be within [{}, {}], got {}", key, lowest, highest, number));
+    if (!value->is_integer() || number < lowest || number > highest) {
+        const std::optional<double> got = value->is_number() ? value->value<double>() : std::nullopt;
+        fail(key, fmt::format("{} must be a whole number within [{}, {}]{}", key, lowest, highest,
+                              value->is_integer() ? fmt::format(", got {}", number)
+                              : got               ? fmt::format(", got {}", *got)
+                                                  : ""));
     }
     return static_cast<int>(number);
 }

@@ -12,10 +12,11 @@
 
 namespace host {
 
-/// The closed range of numbers a key accepts; an error quotes it.
+/// The range of numbers that a key accepts. A message prints it: "within [0, 90)".
 struct Range {
     double lowest = -std::numeric_limits<double>::max();
     double highest = std::numeric_limits<double>::max();
+    bool highestIsOut = false;  // `highest` itself is refused
 };
 
 inline constexpr Range kPositive{std::numeric_limits<double>::min(), std::numeric_limits<double>::max()};

@@ -24,15 +24,11 @@ sand::Scheme schemeIn(const host::TomlTable& material) {
     return sand::kSchemes.at(static_cast<std::size_t>(material.choiceOr("scheme", names, 0))).scheme;
 }
 
-void readMaterial(const host::TomlTable& file, Scene& scene) {
-    const host::TomlTable table = file.requiredTable("material");
+/// Reads the keys of [material], which may be missing altogether: dry sand is the default.
+void readMaterialKeys(const host::TomlTable& table, Scene& scene) {
     for (const MaterialKey& key : materialKeys()) {
-        const double value = table.numberOr(key.key, key.lowest, {key.lowest, key.highest});
+        const double value = table.numberOr(key.key, key.lowest, {key.lowest, key.highest, key.highestIsOut});
         if (table.has(key.key)) {
-            if (key.highestIsOut && value == key.highest) {
-                table.fail(key.key, fmt::format("{} must be within [{}, {}), got {}", key.key, key.lowest, key.highest,
-                                                key.highest));
-            }
             key.set(scene.material, value);
         }
     }
@@ -44,13 +40,19 @@ void readMaterial(const host::TomlTable& file, Scene& scene) {
     if (const auto fault = faultOf(scene.material, scene.grid())) {
         table.fail(fault->key, fault->message);
     }
+    table.finish();
+}
+
+void readMaterial(const host::TomlTable& file, Scene& scene) {
+    if (const auto table = file.table("material")) {
+        readMaterialKeys(*table, scene);
+    }
     scene.rules.tune(tuningOf(scene.material, scene.grid()));
     if (scene.rules.threshold < kTooCoarse) {
         scene.warnings.push_back(fmt::format(
             "a talus of {} deg is {} height units per cell; below {} slopes rest more than a percent too steep",
             scene.material.talus(), scene.rules.threshold, kTooCoarse));
     }
-    table.finish();
 }
 
 std::vector<std::string_view> toolNames() {

@@ -68,9 +68,9 @@ TEST_F(ExtremeInput, GridsOfNoNumbersAreRefused) {
 
 TEST_F(ExtremeInput, SidesBeyondTheLargestAreRefused) {
     EXPECT_EQ(complaint("[field]\ncolumns = 16385\n[terrain]\n[material]\n"),
-              "s.toml:2: columns must be within [1, 16384], got 16385");
+              "s.toml:2: columns must be a whole number within [1, 16384], got 16385");
     EXPECT_EQ(complaint("[field]\ncolumns = 8\nrows = -3\n[terrain]\n[material]\n"),
-              "s.toml:3: rows must be within [1, 16384], got -3");
+              "s.toml:3: rows must be a whole number within [1, 16384], got -3");
     write("t.asc", "ncols 16385\nnrows 1\ncellsize 1\n0\n");
     EXPECT_EQ(complaint("[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n[material]\n"),
               "t.asc:1: ncols must be a whole number within [1, 16384], got 16385");

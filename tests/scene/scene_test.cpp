@@ -71,18 +71,37 @@ TEST_F(SceneFile, SweepsFollowTheSquareOfTheToolsCells) {
 
 TEST_F(SceneFile, ErrorsNameFileLineKeyAndRange) {
     EXPECT_EQ(complaint(kFlat + "talus_deg = 90\n"), "s.toml:4: talus_deg must be within [0, 90), got 90");
-    EXPECT_EQ(complaint(kFlat + "talus_deg = -1\n"), "s.toml:4: talus_deg must be within [0, 90], got -1");
+    EXPECT_EQ(complaint(kFlat + "talus_deg = -1\n"), "s.toml:4: talus_deg must be within [0, 90), got -1");
     EXPECT_EQ(complaint(kFlat + "talus_deg = nan\n"), "s.toml:4: talus_deg must be a finite number");
     EXPECT_EQ(complaint("[field]\ncolumns = 0\n[terrain]\n[material]\n"),
-              "s.toml:2: columns must be within [1, 16384], got 0");
+              "s.toml:2: columns must be a whole number within [1, 16384], got 0");
     EXPECT_EQ(complaint("[field]\nwidth = -2\n[terrain]\n[material]\n"), "s.toml:2: width must be positive, got -2");
     EXPECT_EQ(
         complaint(kFlat + "talus = 3\n"),
         "s.toml:4: unknown key 'talus'; known here: band, cohesion_length, humidity, scheme, settling_time, talus_deg, "
         "wet_talus_deg");
-    EXPECT_EQ(complaint("[terrain]\n[field]\n"), "s.toml:1: a table [material] is missing");
+    EXPECT_EQ(complaint("[field]\n[material]\n"), "s.toml:1: a table [terrain] is missing");
     EXPECT_NE(complaint("[terrain\n").find("s.toml:1: "), std::string::npos);
     EXPECT_EQ(complaint("[field]\n[terrain]\nheight = 1e9\n[material]\n").find("s.toml:3: a height of 1000000000"), 0U);
+}
+
+TEST_F(SceneFile, StepsPerSecondAreAWholeNumberWithinTheRangeThatTheMessageNames) {
+    const auto said = [&](const std::string& value) { return complaint("steps_per_second = " + value + "\n" + kFlat); };
+    const std::string range = "s.toml:1: steps_per_second must be a whole number within [1, 1000]";
+    for (const std::string value : {"0.5", "0", "-3", "1001", "59.94"}) {
+        EXPECT_EQ(said(value), range + ", got " + value);
+    }
+    EXPECT_EQ(said("\"sixty\""), range);
+    for (const std::string value : {"1", "1000"}) {
+        EXPECT_EQ(said(value), "accepted") << value;
+    }
+}
+
+TEST_F(SceneFile, WithoutAMaterialIsDrySand) {
+    const scene::Scene without = scene::loadScene(write("s.toml", "name = \"s\"\n[field]\n[terrain]\n"));
+    const scene::Scene empty = scene::loadScene(write("e.toml", "name = \"s\"\n" + kFlat));
+    EXPECT_EQ(without.encode(), empty.encode());
+    EXPECT_EQ(without.rules.scheme, sand::Scheme::isotropic);
 }
 
 TEST_F(SceneFile, UnknownSchemesAreRefusedWithTheKnownOnes) {

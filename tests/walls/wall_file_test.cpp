@@ -79,7 +79,7 @@ TEST(WallFile, NamesTheLineOfWhatIsWrong) {
         {"mode = \"passive\"", "mode = \"3d\"",
          "mode must be one of mono, left, right, passive, active, side_by_side, top_bottom, "
          "row_interlaced, checkerboard, anaglyph, anaglyph_half, anaglyph_dubois, got '3d'"},
-        {"rows = 2", "rows = 0", "rows must be within [1, 1024], got 0"},
+        {"rows = 2", "rows = 0", "rows must be a whole number within [1, 1024], got 0"},
         {"columns = 3", "columns = 1000", "2000 tiles; a wall has at most 1024"},
         {"tile_size = [1.0, 0.75]", "tile_size = [-1.0, 0.75]", "tile_size must be positive, got -1"},
         {"tile_size = [1.0, 0.75]", "tile_size = [1.0, nan]", "tile_size"},
