@@ -77,6 +77,14 @@ class PrintedCommands(LauncherTest):
                          "--listen 127.0.0.1:7750")
         self.assertIn(" --haptic 127.0.0.1:7750 ", job)
 
+    def test_what_a_hand_feels_is_for_the_server(self):
+        server, job = self.printed(["-"], "--device", "sim:touch,path=gis", "--guards", "literal", "--force", "off",
+                                   "--force-scale", "0").splitlines()
+        self.assertTrue(server.endswith(" --force off --force-scale 0.0 --guards literal"), server)
+        for option in ("--guards", "--force"):
+            self.assertNotIn(option, job)
+        self.assertNotIn("--guards", self.printed(["-"], "--device", "script:gis"))
+
     def test_ranks_that_share_a_host_share_its_cores(self):
         cores = len(os.sched_getaffinity(0))
         self.assertIn(f"LP_NUM_THREADS={cores} ", self.printed(["node1", "node2"]))
@@ -138,6 +146,15 @@ class Refusals(LauncherTest):
 
     def test_a_secret_without_a_link_is_refused(self):
         self.assertIn("--secret-file: there is no haptic link to secure", self.refused(["-"], "--secret-file", "none"))
+
+
+    def test_what_only_a_device_can_do_needs_one(self):
+        for option, value in (("--guards", "literal"), ("--force", "off"), ("--force-scale", "0"), ("--record", "t.csv"),
+                              ("--map", "scale=1")):
+            for hand in ((), ("--haptic", "127.0.0.1:7750")):
+                self.assertEqual(self.refused(["-"], option, value, *hand),
+                                 f"sandwall: {option}: there is no --device; give it to the haptic server itself\n")
+        self.assertIn("--guards: invalid choice: 'off'", self.refused(["-"], "--device", "mouse", "--guards", "off"))
 
 
 class OneFolder(LauncherTest):

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -55,6 +56,20 @@ TEST(Contour, LiesOnTheOutlineThatTheSandFeels) {
             }
         }
     }
+}
+
+// 32 points along the sides of a rectangle of 2 R x R, 6 R around, from the middle of its back on: 3/16 R apart. The
+// third lies at (-R, -3/8 R), and is the farthest; a corner is 1.118 R away.
+TEST(Contour, ARectanglesReachIsItsFarthestControlPoint) {
+    const double radius = 20 * kCell;
+    const Contour contour = contourOf(shapeOf(ToolKind::rectangle), {}, kCell);
+    double farthest = 0;
+    for (const Vec3& point : contour.points) {
+        farthest = std::max(farthest, std::hypot(point.x, point.y));
+    }
+    // Sums of 512 pieces of about a hundredth: their rounding is below 512 times that of a double near 1.
+    EXPECT_NEAR(contour.reach, farthest, 1e-12 * radius);
+    EXPECT_NEAR(contour.reach, std::hypot(1, 3.0 / 8) * radius, 1e-12 * radius);
 }
 
 TEST(Contour, RunsCounterClockwiseInEqualPieces) {
