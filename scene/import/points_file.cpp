@@ -21,6 +21,7 @@ namespace scene {
 namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8, as spreadsheets write it
+constexpr std::string_view kTransform = "gdaltransform -s_srs EPSG:4326 -t_srs EPSG:";
 constexpr double kFlat = 1e-9;  // width over length of a cloud that has no area: doubles tell little less
 
 std::vector<std::string_view> fieldsOf(std::string_view text) {
@@ -81,6 +82,15 @@ bool meansNumber(std::string_view field) {
 bool isLatitude(std::string_view name) { return holds(wordsOf(name), {"lat", "latitude"}); }
 bool isDegrees(std::string_view name) {
     return isLatitude(name) || holds(wordsOf(name), {"lon", "long", "lng", "longitude", "deg", "degree", "degrees"});
+}
+
+/// Whether a value is an angle as people write it: "47.1°", "47°06'30\"", "10.2E".
+bool isAngle(std::string_view field) {
+    if (field.find('\xB0') != std::string_view::npos || field.find("\xC2\xBA") != std::string_view::npos) {
+        return true;  // a degree sign in UTF-8 or Latin-1, or the ordinal sign that is often typed for it
+    }
+    const bool facing = !field.empty() && std::string_view("NSEW").find(field.back()) != std::string_view::npos;
+    return facing && numberOf(base::trimmed(field.substr(0, field.size() - 1)));
 }
 
 /// Points with the lines they stand in.
@@ -155,6 +165,13 @@ private:
         std::array<double, 3> point{};
         for (std::size_t i = 0; i < 3; ++i) {
             const std::optional<double> value = numberOf(fields[i]);
+            if (!value && isAngle(fields[i])) {
+                fail(line,
+                     fmt::format("its coordinates ('{}') are degrees, and sand wants lengths; write them as plain "
+                                 "decimals, longitude first, and make metres of them: {}CODE, CODE being that of their "
+                                 "UTM zone",
+                                 fields[i], kTransform));
+            }
             if (!value) {
                 fail(line, fmt::format("{} must be a finite number, got '{}'", "xyz"[i], fields[i]));
             }
@@ -176,8 +193,12 @@ private:
             }
         }
         if (fields.size() != 3) {
-            fail(line, fmt::format("three columns are wanted, x, y, z, and '{}' begins a title of {}", fields[0],
-                                   fields.size()));
+            const auto degrees = std::find_if(fields.begin(), fields.end(), isDegrees);
+            fail(line, fmt::format("three columns are wanted, x, y, z, and '{}' begins a title of {}{}", fields[0],
+                                   fields.size(),
+                                   degrees == fields.end() ? ""
+                                                           : fmt::format("; '{}' is in degrees, and sand wants lengths",
+                                                                         unquoted(*degrees))));
         }
         for (const std::string_view name : {fields[0], fields[1]}) {
             if (isDegrees(name) && !degrees_) {
@@ -189,9 +210,10 @@ private:
     [[noreturn]] void failForDegrees(const std::array<double, 3>& point) const {
         const std::size_t north = degrees_->latitudeFirst ? 0 : 1;
         fail(degrees_->line,
-             fmt::format("'{}' is in degrees, and sand wants lengths; make metres of lines of longitude, latitude and "
-                         "height: gdaltransform -s_srs EPSG:4326 -t_srs EPSG:{}",
-                         degrees_->name, metricSystemAt(point.at(1 - north), point.at(north))));
+             fmt::format(
+                 "its coordinates ('{}') are degrees, and sand wants lengths; make metres of lines of longitude, "
+                 "latitude and height: {}{}",
+                 degrees_->name, kTransform, metricSystemAt(point.at(1 - north), point.at(north))));
     }
     [[noreturn]] void fail(long line, const std::string& message) const {
         throw base::InputError(file_, line, message);

@@ -78,14 +78,36 @@ TEST_F(PointsFile, TitlesAreSkipped) {
 }
 
 TEST_F(PointsFile, DegreesAreRefusedWithTheCommandThatMakesMetres) {
-    const std::string hint =
-        " is in degrees, and sand wants lengths; make metres of lines of longitude, latitude and height: gdaltransform "
-        "-s_srs EPSG:4326 -t_srs EPSG:";
-    EXPECT_EQ(refused("lat,lon,h\n47.1,10.2,1200\n"), "p.csv:1: 'lat'" + hint + "32632");
-    EXPECT_EQ(refused("# ours\nLon;Lat;z\n-120.2;37;3\n"), "p.csv:2: 'Lon'" + hint + "32610");
-    EXPECT_EQ(refused("\"Longitude\",\"Latitude\",h\n-43,-22.5,3\n"), "p.csv:1: 'Longitude'" + hint + "32723");
-    EXPECT_EQ(refused("x [deg],y [deg],z\n10,-88,3\n"), "p.csv:1: 'x [deg]'" + hint + "3031");
+    const auto said = [](long line, const std::string& column, int epsg) {
+        return fmt::format(
+            "p.csv:{}: its coordinates ('{}') are degrees, and sand wants lengths; make metres of lines of longitude, "
+            "latitude and height: gdaltransform -s_srs EPSG:4326 -t_srs EPSG:{}",
+            line, column, epsg);
+    };
+    EXPECT_EQ(refused("lat,lon,h\n47.1,10.2,1200\n"), said(1, "lat", 32632));
+    EXPECT_EQ(refused("# ours\nLon;Lat;z\n-120.2;37;3\n"), said(2, "Lon", 32610));
+    EXPECT_EQ(refused("\"Longitude\",\"Latitude\",h\n-43,-22.5,3\n"), said(1, "Longitude", 32723));
+    EXPECT_EQ(refused("x [deg],y [deg],z\n10,-88,3\n"), said(1, "x [deg]", 3031));
     EXPECT_EQ(read("x,y,long term height\n1,0,1\n0,1,1\n2,2,3\n").size(), 3U);
+}
+
+TEST_F(PointsFile, DegreesAreNamedWhereverTheyStand) {
+    for (const std::string value : {"10.2\xC2\xB0", "10.2\xB0",
+                                    "10\xC2\xB0"
+                                    "12'06\"",
+                                    "10.2E", "10.2 W"}) {
+        for (const std::string& line : {value + ",47.1,1200\n", "0,0,1\n47.1," + value + ",1200\n"}) {
+            const std::string said = refused(line);
+            EXPECT_NE(said.find("its coordinates ('" + value + "') are degrees, and sand wants lengths"),
+                      std::string::npos)
+                << said;
+        }
+    }
+    EXPECT_EQ(refused("id,lon,lat,h\n1,10.2,47.1,1200\n"),
+              "p.csv:1: three columns are wanted, x, y, z, and 'id' begins a title of 4; 'lon' is in degrees, and sand "
+              "wants lengths");
+    EXPECT_EQ(refused("10.2m,47,3\n"), "p.csv:1: x must be a finite number, got '10.2m'");
+    EXPECT_EQ(refused("E,47,3\n"), "p.csv:1: x must be a finite number, got 'E'");
 }
 
 TEST_F(PointsFile, CloudsWithoutAnAreaAreNoTerrain) {
