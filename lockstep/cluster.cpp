@@ -12,6 +12,8 @@
 #include <fstream>
 #include <numeric>
 
+#include "host/memory.hpp"
+
 namespace lockstep {
 
 Cluster::Cluster(int* argc, char*** argv) {
@@ -35,7 +37,7 @@ Cluster::Cluster(int* argc, char*** argv) {
     bells_ = std::make_unique<HostBells>();
     base::ByteWriter here;
     here.putText(hostName());
-    here.put(freeMemory());
+    here.put(host::freeMemory());
     for (const base::Bytes& rank : gather(here.take())) {
         base::ByteReader reader(rank);
         RankHost& host = hosts_.emplace_back();

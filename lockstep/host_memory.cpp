@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <limits>
 #include <map>
 
@@ -13,36 +12,9 @@ namespace {
 
 constexpr std::int64_t kUnlimited = std::numeric_limits<std::int64_t>::max();
 
-/// A number alone in a file of the kernel's; nothing when there is none, or "max".
-std::optional<std::int64_t> numberIn(const char* file) {
-    std::ifstream stream(file);
-    std::int64_t number = 0;
-    return stream >> number ? std::optional(number) : std::nullopt;
-}
-
-std::int64_t available() {
-    std::ifstream stream("/proc/meminfo");
-    std::string key;
-    while (stream >> key) {
-        std::int64_t kilobytes = 0;
-        if (key == "MemAvailable:" && stream >> kilobytes) {
-            return kilobytes * 1024;
-        }
-        stream.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
-    }
-    return kUnlimited;
-}
-
 double gibibytes(std::int64_t bytes) { return static_cast<double>(bytes) / (1 << 30); }
 
 }  // namespace
-
-std::int64_t freeMemory() {
-    // A container has a limit of its own, which /proc/meminfo does not know.
-    const auto most = numberIn("/sys/fs/cgroup/memory.max");
-    const auto used = numberIn("/sys/fs/cgroup/memory.current");
-    return std::min(available(), most && used ? std::max<std::int64_t>(*most - *used, 0) : kUnlimited);
-}
 
 std::optional<std::string> lackOfMemory(const std::vector<RankHost>& ranks, std::int64_t bytesPerRank,
                                         std::int64_t bytesToDraw) {

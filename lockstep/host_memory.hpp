@@ -14,9 +14,6 @@ struct RankHost {
     std::int64_t freeBytes = 0;  // memory that may still be taken there, by all ranks together
 };
 
-/// Memory that programs on this machine, or in this control group, may still take [byte].
-[[nodiscard]] std::int64_t freeMemory();
-
 /// Why ranks that take `bytesPerRank` each, and all but the first, the master, `bytesToDraw` more, do not fit their
 /// hosts, for the host that lacks most; nothing when they do.
 [[nodiscard]] std::optional<std::string> lackOfMemory(const std::vector<RankHost>& ranks, std::int64_t bytesPerRank,

@@ -95,9 +95,12 @@ scene::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
         if (options.scene.empty()) {
             throw base::InputError("name a --scene, or a journal to --replay");
         }
-        scene::Scene scene = scene::loadScene(options.scene, [&](int columns, int rows, bool tin) {
-            master::requireMemory(cluster.hosts(), columns, rows, tin, options.scene);
-        });
+        const std::vector<lockstep::RankHost>& hosts = cluster.hosts();
+        const std::string& file = options.scene;
+        scene::Scene scene = scene::loadScene(
+            file, {.raster = [&](int columns, int rows) { master::requireMemoryOfRaster(hosts, columns, rows, file); },
+                   .field = [&](int columns, int rows,
+                                bool tin) { master::requireMemory(hosts, columns, rows, tin, file); }});
         for (const std::string& warning : scene.warnings) {
             host::printLine("{}: warning: {}", options.scene, warning);
         }

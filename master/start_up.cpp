@@ -8,6 +8,8 @@
 #include "host/print_line.hpp"
 #include "master/journal/journal.hpp"
 #include "sand/replica.hpp"
+#include "scene/import/raster_memory.hpp"
+#include "scene/load/memory.hpp"
 
 namespace master {
 
@@ -23,9 +25,7 @@ std::vector<std::string> namesOf(const lockstep::Cluster& cluster, const walls::
 void requireMemory(const std::vector<lockstep::RankHost>& ranks, int columns, int rows, bool tin,
                    const std::string& file) {
     // The master computes the heights that a TIN's vertices are chosen from; a rank that draws needs as much memory.
-    const std::int64_t bytes =
-        tin ? std::int64_t{sizeof(std::int32_t)} * columns * rows : sand::Replica::leastBytes(columns, rows);
-    if (const auto lack = lockstep::lackOfMemory(ranks, bytes)) {
+    if (const auto lack = lockstep::lackOfMemory(ranks, scene::bytesOfField(columns, rows, tin))) {
         throw base::InputError(fmt::format("{}: {} x {} {} need {}: fewer cells, or more hosts", file, columns, rows,
                                            tin ? "nominal cells of a TIN" : "cells", *lack));
     }
@@ -44,6 +44,15 @@ void requireMemory(const std::vector<lockstep::RankHost>& ranks, const scene::Sc
         throw base::InputError(
             fmt::format("{}: a TIN of {} vertices over {} x {} nominal cells needs {}: fewer of either, or more hosts",
                         file, scene.tin->places.size(), columns, rows, *lack));
+    }
+}
+
+void requireMemoryOfRaster(const std::vector<lockstep::RankHost>& ranks, int columns, int rows,
+                           const std::string& file) {
+    const std::vector<lockstep::RankHost> master(ranks.begin(), ranks.begin() + (ranks.empty() ? 0 : 1));
+    if (const auto lack = lockstep::lackOfMemory(master, scene::bytesToRead(columns, rows))) {
+        throw base::InputError(
+            fmt::format("{}: {} x {} pixels of a raster need {}: coarsen it", file, columns, rows, *lack));
     }
 }
 

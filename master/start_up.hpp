@@ -23,6 +23,9 @@ void requireMemory(const std::vector<lockstep::RankHost>& ranks, const scene::Sc
 /// every rank then needs a height for each nominal cell.
 void requireMemory(const std::vector<lockstep::RankHost>& ranks, int columns, int rows, bool tin,
                    const std::string& file);
+/// Checks the pixels of a raster file before they are read: the master alone holds them, and all of them.
+void requireMemoryOfRaster(const std::vector<lockstep::RankHost>& ranks, int columns, int rows,
+                           const std::string& file);
 /// Checks the sand in a journal before it is made. Also throws base::InputError if the journal cannot be read.
 void requireMemoryOfJournal(const std::vector<lockstep::RankHost>& ranks, const std::filesystem::path& journal);
 

@@ -23,9 +23,10 @@
 #include "host/clock.hpp"
 #include "host/command_line.hpp"
 #include "host/event.hpp"
+#include "host/memory.hpp"
 #include "host/version.hpp"
 #include "host/worker_pool.hpp"
-#include "scene/load/scene_file.hpp"
+#include "scene/load/memory.hpp"
 
 namespace {
 
@@ -163,7 +164,9 @@ std::function<std::vector<base::Bytes>(bool)> ticksOf(TickRecorder* recorder) {
 
 void serve(const Options& options) {
     const LinkSecurity security = options.link.forServer();
-    const scene::Scene scene = scene::loadScene(options.scene);
+    const std::int64_t free = host::freeMemoryOfProcess();
+    const scene::Scene scene = scene::loadScene(options.scene, scene::checksOfOneReplica(options.scene, free));
+    scene::requireReplica(scene, options.scene, free);
     for (const std::string& warning : scene.warnings) {
         print("warning: " + warning);
     }

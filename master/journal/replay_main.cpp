@@ -16,6 +16,7 @@
 #include "base/input_error.hpp"
 #include "haptic_bridge/loop/tick_replay.hpp"
 #include "host/command_line.hpp"
+#include "host/memory.hpp"
 #include "host/print_line.hpp"
 #include "host/version.hpp"
 #include "host/whole_file.hpp"
@@ -192,17 +193,22 @@ void writeOutputs(const sand::Replica& terrain, const scene::Scene& scene, const
 }
 
 int run(const Options& options) {
+    const std::int64_t free = host::freeMemoryOfProcess();
     if (!options.recovered.empty()) {
+        master::requireMemory(options.file, master::DecodedFor::scene, free);
         master::recoverJournal(options.file, options.recovered);
         return 0;
     }
     if (options.verify) {
+        master::requireMemory(options.file, master::DecodedFor::replica, free);
         return master::verifyJournal(options.file);
     }
     checkOutputs(options);
+    const bool onlyExports = !options.steps.empty() && options.plain();
+    master::requireMemory(options.file, onlyExports ? master::DecodedFor::scene : master::DecodedFor::replica, free);
     if (!options.steps.empty()) {
         master::exportSteps(options.file, options.steps, options.until);
-        if (options.plain()) {
+        if (onlyExports) {
             return 0;  // read record by record, without any sand
         }
     }

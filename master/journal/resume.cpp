@@ -8,10 +8,11 @@
 #include <utility>
 
 #include "base/input_error.hpp"
+#include "host/memory.hpp"
 #include "host/print_line.hpp"
 #include "master/journal/checkpoint.hpp"
 #include "master/journal/journal.hpp"
-#include "scene/load/scene_file.hpp"
+#include "scene/load/memory.hpp"
 
 namespace master {
 namespace {
@@ -104,13 +105,14 @@ void requireScene(const JournalReader& reader, const std::string& file) {
                         "that one, or choose another --out",
                         file, reader.place().journal.string()));
     };
+    const auto raster = scene::checksOfOneReplica(file, host::freeMemoryOfProcess()).raster;
     // A scene of another size is refused before its heights are made.
     const auto otherSize = [&, rules = rulesOf(reader)](int columns, int rows, bool tin) {
         if (columns != rules.columns || rows != rules.rows || tin != (rules.tin != 0)) {
             fail();
         }
     };
-    if (scene::loadScene(file, otherSize).encode() != reader.header().scene) {
+    if (scene::loadScene(file, {.raster = raster, .field = otherSize}).encode() != reader.header().scene) {
         fail();
     }
 }

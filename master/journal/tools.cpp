@@ -13,6 +13,8 @@
 #include "host/print_line.hpp"
 #include "host/whole_file.hpp"
 #include "master/journal/journal.hpp"
+#include "scene/import/raster_memory.hpp"
+#include "scene/load/memory.hpp"
 #include "scene/scene.hpp"
 
 namespace master {
@@ -58,6 +60,23 @@ std::string pathText(const sand::Step& step, double unit) {
 }
 
 }  // namespace
+
+void requireMemory(const std::filesystem::path& journal, DecodedFor use, std::int64_t freeBytes) {
+    const JournalReader reader(journal);
+    const sand::Rules rules = rulesOf(reader);
+    if (rules.tin != 0) {
+        // A journal holds only a TIN's vertices, a small part of what a replica takes, so the scene may be decoded.
+        if (use == DecodedFor::replica) {
+            scene::requireReplica(sceneOf(reader), journal.string(), freeBytes);
+        }
+    } else if (use == DecodedFor::replica) {
+        scene::requireReplica(rules.columns, rules.rows, journal.string(), freeBytes);
+    } else {
+        scene::requireBytes(std::int64_t{sizeof(std::int32_t)} * rules.columns * rules.rows, freeBytes,
+                            journal.string(), fmt::format("{} x {} heights", rules.columns, rules.rows),
+                            "take a machine with more memory");
+    }
+}
 
 void sayWhatIsMissing(const std::filesystem::path& journal, std::int64_t tornBytes, bool orderlyEnd) {
     if (tornBytes > 0) {

@@ -14,6 +14,12 @@ namespace master {
 /// when all agrees, and 1 when the sand or a checkpoint differs.
 [[nodiscard]] int verifyJournal(const std::filesystem::path& journal);
 
+/// Use of a decoded journal: its scene alone, or a replica that its steps are applied to.
+enum class DecodedFor : std::uint8_t { scene, replica };
+/// Checks, before any height is made, that this use fits into `freeBytes`. Throws base::InputError if it does not, or
+/// if the journal cannot be read.
+void requireMemory(const std::filesystem::path& journal, DecodedFor use, std::int64_t freeBytes);
+
 /// Says on standard error what a journal that is read to its end lacks, if anything.
 void sayWhatIsMissing(const std::filesystem::path& journal, std::int64_t tornBytes, bool orderlyEnd);
 

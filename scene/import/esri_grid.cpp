@@ -8,10 +8,13 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <istream>
 #include <iterator>
 #include <limits>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <utility>
 
 #include "base/input_error.hpp"
 #include "base/text.hpp"
@@ -21,25 +24,35 @@
 namespace scene {
 namespace {
 
-/// The words of a text, each with its line.
+constexpr std::size_t kPiece = 1 << 16;  // of a file [byte]
+
+/// The words of a text, each with its line. The text is read as its words are taken.
 class Words {
 public:
-    Words(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {}
+    Words(std::istream& stream, std::string file) : stream_(stream), file_(std::move(file)) {}
 
-    /// Empty at the end of the text.
+    /// Returns the next word, which is valid until the next call; an empty one at the end of the text.
     std::string_view next() {
-        for (; at_ < text_.size() && isSpace(text_[at_]); ++at_) {
-            line_ += text_[at_] == '\n' ? 1 : 0;
+        line_ += std::exchange(linesBefore_, 0);
+        while (at_ < text_.size() || readOn()) {
+            if (!isSpace(text_[at_])) {
+                break;
+            }
+            line_ += text_[at_++] == '\n' ? 1 : 0;
         }
-        const std::size_t start = at_;
-        for (; at_ < text_.size() && !isSpace(text_[at_]); ++at_) {
+        std::size_t length = 0;
+        while ((at_ + length < text_.size() || readOn()) && !isSpace(text_[at_ + length])) {
+            ++length;
         }
-        return std::string_view(text_).substr(start, at_ - start);
+        at_ += length;
+        return std::string_view(text_).substr(at_ - length, length);
     }
+    /// Returns the word that next() will return. line() stays.
     std::string_view peek() {
-        const auto [at, line] = std::pair(at_, line_);
+        const long line = line_;
         const std::string_view word = next();
-        at_ = at;
+        at_ -= word.size();
+        linesBefore_ = line_ - line;
         line_ = line;
         return word;
     }
@@ -62,10 +75,23 @@ public:
 private:
     static bool isSpace(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-    std::string text_;
+    /// Reads another piece behind what is not taken yet. Returns false at the end of the file.
+    bool readOn() {
+        text_.erase(0, at_);
+        at_ = 0;
+        const std::size_t size = text_.size();
+        text_.resize(size + kPiece);
+        stream_.read(text_.data() + size, static_cast<std::streamsize>(kPiece));
+        text_.resize(size + static_cast<std::size_t>(stream_.gcount()));
+        return text_.size() > size;
+    }
+
+    std::istream& stream_;
     std::string file_;
-    std::size_t at_ = 0;
-    long line_ = 1;
+    std::string text_;      // the piece at hand
+    std::size_t at_ = 0;    // in text_, behind the last word
+    long line_ = 1;         // of the last word
+    long linesBefore_ = 0;  // between that and a word that was peeked at
 };
 
 int sideOf(Words& words, const std::string& key) {
@@ -84,6 +110,24 @@ double sizeOf(Words& words, const std::string& key) {
         words.fail(fmt::format("{} must be positive, got {}", key, size));
     }
     return size;
+}
+
+std::ifstream opened(const std::filesystem::path& file) {
+    std::error_code ignored;
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream || std::filesystem::is_directory(file, ignored) ||
+        std::filesystem::is_character_file(file, ignored)) {  // devices may never end
+        throw base::InputError(fmt::format("{}: cannot be read; check the path", file.string()));
+    }
+    return stream;
+}
+
+/// How many heights a file can hold at most: each takes a digit and a blank. A lying header must not allocate
+/// gigabytes.
+std::size_t mostHeightsIn(const std::filesystem::path& file) {
+    std::error_code error;
+    const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+    return error ? std::size_t{1} << 20 : static_cast<std::size_t>(bytes / 2 + 1);
 }
 
 /// What stands for no data: any number, or the "nan" that GDAL writes.
@@ -151,19 +195,17 @@ double heightOf(Words& words, const EsriGrid& grid) {
 
 }  // namespace
 
-EsriGrid readEsriGrid(const std::filesystem::path& file) {
-    std::error_code ignored;
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream || std::filesystem::is_directory(file, ignored) ||
-        std::filesystem::is_character_file(file, ignored)) {  // devices may never end
-        throw base::InputError(fmt::format("{}: cannot be read; check the path", file.string()));
-    }
-    Words words({std::istreambuf_iterator<char>(stream), {}}, file.string());
+EsriGrid readEsriGrid(const std::filesystem::path& file, const RasterCheck& check) {
+    std::ifstream stream = opened(file);
+    Words words(stream, file.string());
     EsriGrid grid;
     grid.file = file.string();
     readHeader(words, grid);
+    if (check) {
+        check(grid.columns, grid.rows, !grid.noData);
+    }
     const std::size_t cells = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
-    grid.heights.reserve(std::min<std::size_t>(cells, 1 << 20));  // a lying header must not allocate gigabytes
+    grid.heights.reserve(std::min(cells, mostHeightsIn(file)));
     for (std::size_t i = 0; i < cells; ++i) {
         grid.heights.push_back(heightOf(words, grid));
         if (i % static_cast<std::size_t>(grid.columns) == 0) {
@@ -172,6 +214,9 @@ EsriGrid readEsriGrid(const std::filesystem::path& file) {
     }
     if (!words.next().empty()) {
         words.fail(fmt::format("more values than ncols x nrows = {}", cells));
+    }
+    if (stream.bad()) {
+        throw base::InputError(file.string() + ": cannot be read to its end; check the disk it lies on");
     }
     return grid;
 }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,9 +44,14 @@ struct EsriGrid {
     [[noreturn]] void fail(int column, int rowFromSouth, const std::string& message) const;
 };
 
-/// Throws base::InputError with file and line: a header that is not one, values missing, too many or not finite.
-/// Cells that are not square come as GDAL writes them, with dx and dy in place of cellsize.
-[[nodiscard]] EsriGrid readEsriGrid(const std::filesystem::path& file);
+/// Called with the size of a raster before its pixels are read; throws to refuse it. `complete` says that the header
+/// marks no number as no data, so that every pixel has a height.
+using RasterCheck = std::function<void(int columns, int rows, bool complete)>;
+
+/// Reads an ESRI ASCII grid piece by piece. `check` may be empty. Cells that are not square come as GDAL writes them,
+/// with dx and dy in place of cellsize. Throws base::InputError with file and line: a header that is not one, values
+/// missing, too many or not finite.
+[[nodiscard]] EsriGrid readEsriGrid(const std::filesystem::path& file, const RasterCheck& check = {});
 
 /// The smallest rectangle, from the south-west cell, that holds every cell with data; empty when there is none.
 [[nodiscard]] sand::CellRect cellsWithData(const EsriGrid& grid);

@@ -6,14 +6,16 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <fstream>
-#include <iterator>
+#include <istream>
 #include <map>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
 
-#include "base/byte_stream.hpp"
 #include "base/input_error.hpp"
 #include "base/text.hpp"
 #include "sand/model/height_field.hpp"
@@ -29,25 +31,31 @@ struct Entry {
     long line = 0;
 };
 
-/// The text header of a file.
+/// The text header of a file, and the zeros behind it.
 class Header {
 public:
-    Header(std::string_view bytes, std::string file) : file_(std::move(file)) {
-        if (bytes.substr(0, kMagic.size()) != kMagic) {
+    /// Leaves `stream` at the first number.
+    Header(std::istream& stream, std::string file) : file_(std::move(file)) {
+        std::string text(kMagic.size(), '\0');
+        stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+        if (!stream || text != kMagic) {
             throw base::InputError(file_, 1, "a Gwyddion Simple Field begins with 'Gwyddion Simple Field 1.0'");
         }
-        const std::size_t end = bytes.find('\0');
-        if (end == std::string_view::npos) {
+        std::getline(stream, text, '\0');
+        if (stream.eof() || !stream) {
             throw base::InputError(file_ + ": its header has no end: zeros must stand before the numbers");
         }
+        const std::size_t end = kMagic.size() + text.size();
         size_ = end / 4 * 4 + 4;
-        if (size_ > bytes.size() || bytes.substr(end, size_ - end) != std::string(size_ - end, '\0')) {
-            throw base::InputError(file_ + ": zeros up to a multiple of four bytes must stand before the numbers");
+        for (std::size_t at = end + 1; at < size_; ++at) {
+            if (stream.get() != '\0') {
+                throw base::InputError(file_ + ": zeros up to a multiple of four bytes must stand before the numbers");
+            }
         }
         long line = 1;
-        for (std::size_t at = kMagic.size(); at < end;) {
-            const std::size_t stop = std::min(bytes.find('\n', at), end);
-            add(bytes.substr(at, stop - at), ++line);
+        for (std::size_t at = 0; at < text.size();) {
+            const std::size_t stop = std::min(text.find('\n', at), text.size());
+            add(std::string_view(text).substr(at, stop - at), ++line);
             at = stop + 1;
         }
     }
@@ -112,20 +120,37 @@ private:
     std::size_t size_ = 0;
 };
 
-std::string bytesOf(const std::filesystem::path& file) {
-    std::error_code ignored;
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream || !std::filesystem::is_regular_file(file, ignored)) {  // devices may never end
-        throw base::InputError(fmt::format("{}: cannot be read; check the path", file.string()));
+/// Reads the numbers, a row at a time.
+void readHeights(std::istream& stream, EsriGrid& grid) {
+    const auto width = static_cast<std::size_t>(grid.columns);
+    grid.heights.reserve(width * static_cast<std::size_t>(grid.rows));
+    std::vector<float> row(width);
+    for (int fromNorth = 0; fromNorth < grid.rows; ++fromNorth) {
+        stream.read(reinterpret_cast<char*>(row.data()), static_cast<std::streamsize>(width * sizeof(float)));
+        if (!stream) {
+            throw base::InputError(grid.file + ": cannot be read to its end; check the disk it lies on");
+        }
+        const auto infinite = std::find_if(row.begin(), row.end(), [](float height) { return std::isinf(height); });
+        if (infinite != row.end()) {
+            throw base::InputError(
+                fmt::format("{}: the height of pixel {}, {} (from the north-west) is infinite; mask it in Gwyddion",
+                            grid.file, infinite - row.begin() + 1, fromNorth + 1));
+        }
+        grid.heights.insert(grid.heights.end(), row.begin(), row.end());
     }
-    return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 }  // namespace
 
-EsriGrid readGsf(const std::filesystem::path& file) {
-    const std::string bytes = bytesOf(file);
-    const Header header(bytes, file.string());
+EsriGrid readGsf(const std::filesystem::path& file, const RasterCheck& check) {
+    std::error_code failed;
+    std::ifstream stream(file, std::ios::binary);
+    const bool plain = std::filesystem::is_regular_file(file, failed);  // devices may never end
+    const std::uintmax_t bytes = plain ? std::filesystem::file_size(file, failed) : 0;
+    if (!stream || !plain || failed) {
+        throw base::InputError(fmt::format("{}: cannot be read; check the path", file.string()));
+    }
+    const Header header(stream, file.string());
     EsriGrid grid;
     grid.file = file.string();
     grid.columns = header.side("XRes");
@@ -139,24 +164,15 @@ EsriGrid readGsf(const std::filesystem::path& file) {
         grid.cellDepth = depth;
     }
     const std::size_t cells = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
-    const std::string_view numbers = std::string_view(bytes).substr(header.size());
-    if (numbers.size() != cells * sizeof(float)) {
+    const std::uintmax_t behind = bytes - std::min<std::uintmax_t>(bytes, header.size());
+    if (behind != cells * sizeof(float)) {
         throw base::InputError(fmt::format("{}: {} x {} pixels are {} bytes, and behind the header stand {}",
-                                           file.string(), grid.columns, grid.rows, cells * sizeof(float),
-                                           numbers.size()));
+                                           file.string(), grid.columns, grid.rows, cells * sizeof(float), behind));
     }
-    for (std::size_t i = 0; i < cells; ++i) {
-        float height = 0;
-        std::memcpy(&height, numbers.data() + i * sizeof height, sizeof height);
-        if (std::isinf(height)) {
-            const auto width = static_cast<std::size_t>(grid.columns);
-            throw base::InputError(
-                fmt::format("{}: the height of pixel {}, {} (from the north-west) is infinite; "
-                            "mask it in Gwyddion",
-                            file.string(), i % width + 1, i / width + 1));
-        }
-        grid.heights.push_back(height);
+    if (check) {
+        check(grid.columns, grid.rows, false);  // any number may be NaN
     }
+    readHeights(stream, grid);
     return grid;
 }
 

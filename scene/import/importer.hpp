@@ -27,17 +27,19 @@ public:
     Importer(const Importer&) = delete;
     Importer& operator=(const Importer&) = delete;
 
-    /// One band of heights with a place: a local file of a format that neither reaches for the network nor runs
+    /// Reads one band of heights with a place: a local file of a format that neither reaches for the network nor runs
     /// anything. Heights come in the unit of lengths; pixels are areas; what the file masks is not a number. Refuses
-    /// degrees, turned rasters, and those beyond kMostRasterBytes, which is found out before pixels are read.
-    [[nodiscard]] virtual EsriGrid readDem(const std::filesystem::path& file) const = 0;
+    /// degrees, turned rasters, and those beyond kMostRasterBytes. These, and `check` unless it is empty, are asked
+    /// before pixels are read.
+    [[nodiscard]] virtual EsriGrid readDem(const std::filesystem::path& file, const RasterCheck& check) const = 0;
 
     /// What readDem()'s lengths and heights are, without reading pixels: of a text grid what stands in the .prj file
     /// beside it. Refuses degrees.
     [[nodiscard]] virtual RasterUnits readUnits(const std::filesystem::path& file) const = 0;
 
-    /// One band of 8 or 16 bits, no place: heights are shares of the largest number, 0 to 1, and cells have side 1.
-    [[nodiscard]] virtual EsriGrid readImage(const std::filesystem::path& file) const = 0;
+    /// Reads one band of 8 or 16 bits without a place: heights are shares of the largest number, 0 to 1, and cells have
+    /// side 1. Calls `check` as readDem() does.
+    [[nodiscard]] virtual EsriGrid readImage(const std::filesystem::path& file, const RasterCheck& check) const = 0;
 
     /// At the middle of every cell. Refuses what is not finite, with x and y.
     [[nodiscard]] virtual EsriGrid evaluate(const Function& function) const = 0;
@@ -54,7 +56,7 @@ inline constexpr double kRasterBytesPerPixel = 16;
 inline constexpr double kMostRasterBytes = 4294967296.0;
 
 /// What the module defines, with C linkage: the one object, never deleted.
-inline constexpr const char* kImportSymbol = "sandwallImport2";
+inline constexpr const char* kImportSymbol = "sandwallImport3";
 using GetImporter = const Importer*();
 
 /// Loads sandwall-import.so from beside this program; the same object at every call. Nothing else maps GDAL or

@@ -43,19 +43,19 @@ void checkRasterName(const fs::path& file) {
     }
 }
 
-EsriGrid readRaster(const fs::path& file, bool withReference) {
+EsriGrid readRaster(const fs::path& file, bool withReference, const RasterCheck& check) {
     const std::string ending = base::endingOf(file);
     std::error_code none;
     const bool plain = fs::is_regular_file(file, none);
     if (plain && !ending.empty() && ending != ".asc" && ending != ".txt") {
-        return loadImporter(file.string()).readDem(file);
+        return loadImporter(file.string()).readDem(file, check);
     }
     if (!withReference || !plain || !hasPrj(file)) {
-        return readEsriGrid(file);
+        return readEsriGrid(file, check);
     }
     // Only the units are GDAL's: what is wrong in the text is still told by its line.
     const RasterUnits units = loadImporter(file.string()).readUnits(file);
-    EsriGrid grid = readEsriGrid(file);
+    EsriGrid grid = readEsriGrid(file, check);
     grid.units = units;
     grid.countHeightsInLengths();
     return grid;

@@ -16,8 +16,9 @@ void checkRasterName(const std::filesystem::path& file);
 
 /// Reads .asc, .txt, names without an ending and what is no plain file as an ESRI ASCII grid, all else as
 /// Importer::readDem() does. Text loads GDAL only where its reference system is wanted and a .prj file beside it has
-/// one: then it has units, and degrees are refused. Throws base::InputError.
-[[nodiscard]] EsriGrid readRaster(const std::filesystem::path& file, bool withReference = false);
+/// one: then it has units, and degrees are refused. `check` may be empty. Throws base::InputError.
+[[nodiscard]] EsriGrid readRaster(const std::filesystem::path& file, bool withReference = false,
+                                  const RasterCheck& check = {});
 
 /// Writes a GeoTIFF with units and reference system, heights in its own unit; or for any other name an ESRI ASCII grid,
 /// heights in the unit of lengths, and its reference system, where it has one, into a .prj file beside it. What stood

@@ -147,7 +147,7 @@ void readLook(const host::TomlTable& file, Scene& scene) {
 
 }  // namespace
 
-Scene loadScene(const std::filesystem::path& file, const FieldCheck& check) {
+Scene loadScene(const std::filesystem::path& file, const SizeChecks& checks) {
     const host::TomlTable toml = host::TomlTable::load(file);
     Scene scene;
     scene.name = toml.textOr("name", file.stem().string());
@@ -157,7 +157,7 @@ Scene loadScene(const std::filesystem::path& file, const FieldCheck& check) {
     }
     scene.rules.stepsPerSecond = toml.integerOr("steps_per_second", 60, 1, 1000);
     scene.rules.rim = static_cast<sand::Rim>(toml.choiceOr("rim", {"closed", "open"}, 0));
-    const bool settle = readTerrain(toml, scene, check);
+    const bool settle = readTerrain(toml, scene, checks);
     readTin(toml, scene);
     readTool(toml, scene);
     readMaterial(toml, scene);

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 #include "sand/grid/dunes.hpp"
 #include "scene/import/raster_file.hpp"
@@ -14,14 +16,14 @@
 namespace scene {
 namespace {
 
-sand::HeightField levelField(const host::TomlTable& file, const FieldCheck& check) {
+sand::HeightField levelField(const host::TomlTable& file, const SizeChecks& checks) {
     const host::TomlTable field = file.requiredTable("field");
     const int columns = field.integerOr("columns", 512, 1, sand::kMaxSide);
     const int rows = field.integerOr("rows", columns, 1, sand::kMaxSide);
     const double width = field.numberOr("width", 2.0, host::kPositive);  // the paper's (-1, 1)
     field.finish();
-    if (check) {
-        check(columns, rows, file.has("tin"));
+    if (checks.field) {
+        checks.field(columns, rows, file.has("tin"));
     }
     return {columns, rows, width / columns};
 }
@@ -43,24 +45,55 @@ sand::Ground& groundOf(std::shared_ptr<sand::Ground>& ground, const sand::Height
     return *ground;
 }
 
-/// Columns and rows of the field that the raster becomes.
-void checkCells(const host::TomlTable& terrain, const EsriGrid& raster) {
+void requireSquareCells(const host::TomlTable& terrain, const EsriGrid& raster) {
     if (raster.aspect() != 1) {
         const std::string advice =
             raster.lines.empty() ? fmt::format("; resample it: gdalwarp -tr {0} {0} -r bilinear", raster.cellSize) : "";
         terrain.fail("file", fmt::format("{} has cells of {} x {}; a scene's are square{}", raster.file,
                                          raster.cellSize, *raster.cellDepth, advice));
     }
-    if (raster.columns > sand::kMaxSide || raster.rows > sand::kMaxSide) {
-        terrain.fail("file", fmt::format("{} has {} x {} cells; a scene's are at most {} a side", raster.file,
-                                         raster.columns, raster.rows, sand::kMaxSide));
-    }
 }
+
+/// Asks, before heights are read or computed, whether the field that they become can be.
+class AskedBeforeHeights {
+public:
+    AskedBeforeHeights(const host::TomlTable& file, const host::TomlTable& terrain, const SizeChecks& checks)
+        : terrain_(terrain), checks_(checks), computed_(file.has("field")), tin_(file.has("tin")) {}
+
+    /// Called with the size of the source.
+    void operator()(int columns, int rows, bool complete) {
+        if (columns > sand::kMaxSide || rows > sand::kMaxSide) {
+            terrain_.fail("file", fmt::format("{} has {} x {} cells; a scene's are at most {} a side",
+                                              (terrain_.folder() / terrain_.text("file")).string(), columns, rows,
+                                              sand::kMaxSide));
+        }
+        if (checks_.raster && !computed_) {
+            checks_.raster(columns, rows);
+        }
+        // A grid of rock has the same cells, and then no edge without data is cut off.
+        if (complete || terrain_.has("bedrock")) {
+            askOfField(columns, rows);
+        }
+    }
+    /// Called with the size of the field, unless that has been known before.
+    void askOfField(int columns, int rows) {
+        if (checks_.field && !std::exchange(asked_, true)) {
+            checks_.field(columns, rows, tin_);
+        }
+    }
+
+private:
+    const host::TomlTable& terrain_;
+    const SizeChecks& checks_;
+    bool computed_, tin_;
+    bool asked_ = false;
+};
 
 /// Cells without data become walls, drawn as flats at the lowest height there is.
 sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind, Scene& scene,
-                             std::shared_ptr<sand::Ground>& ground, const FieldCheck& check) {
-    const TerrainSource source = readSource(file, terrain, kind, check);
+                             std::shared_ptr<sand::Ground>& ground, const SizeChecks& checks) {
+    AskedBeforeHeights asked(file, terrain, checks);
+    const TerrainSource source = readSource(file, terrain, kind, std::ref(asked));
     if (!source.points.empty()) {
         if (!file.has("tin")) {
             terrain.fail("kind",
@@ -69,14 +102,12 @@ sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable&
         }
         return layOutPoints(file, terrain, source.points, scene);
     }
-    checkCells(terrain, source.raster);
+    requireSquareCells(terrain, source.raster);
     // A grid of rock has the same cells, those at the edges too.
     const EsriGrid grid = terrain.has("bedrock") ? source.raster : withoutEmptyEdges(source.raster);
     scene.georeference = source.referenceAt(grid);
     const double datum = scene.georeference.datum;
-    if (check && !file.has("field")) {
-        check(grid.columns, grid.rows, file.has("tin"));
-    }
+    asked.askOfField(grid.columns, grid.rows);
     sand::HeightField field(grid.columns, grid.rows, grid.cellSize);
     std::int32_t lowest = sand::kMaxHeight;
     const auto forEachCell = [&](auto&& visit) {
@@ -104,8 +135,8 @@ sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable&
 }
 
 sand::HeightField madeUp(const host::TomlTable& file, const host::TomlTable& terrain, bool withDunes,
-                         const FieldCheck& check) {
-    sand::HeightField field = levelField(file, check);
+                         const SizeChecks& checks) {
+    sand::HeightField field = levelField(file, checks);
     const double bed = terrain.numberOr("height", 0);
     const std::int32_t units = heightUnits(terrain, "height", bed, field.unit());
     for (int row = 0; row < field.rows(); ++row) {
@@ -144,7 +175,7 @@ void layRock(const host::TomlTable& terrain, const std::string& key, const sand:
     }
 }
 
-void readBedrock(const host::TomlTable& terrain, const sand::HeightField& field,
+void readBedrock(const host::TomlTable& terrain, const sand::HeightField& field, const SizeChecks& checks,
                  std::shared_ptr<sand::Ground>& ground) {
     if (terrain.has("layer") && terrain.has("bedrock")) {
         terrain.fail("bedrock", "give 'layer' or 'bedrock', not both: either says where the rock lies");
@@ -155,7 +186,12 @@ void readBedrock(const host::TomlTable& terrain, const sand::HeightField& field,
                 [&](int column, int row) { return std::max(field.height(column, row) - layer, -sand::kMaxHeight); });
     }
     if (terrain.has("bedrock")) {
-        const EsriGrid rock = readRaster(terrain.folder() / terrain.text("bedrock"));
+        const auto check = [&](int columns, int rows, bool /*complete*/) {
+            if (checks.raster) {
+                checks.raster(columns, rows);
+            }
+        };
+        const EsriGrid rock = readRaster(terrain.folder() / terrain.text("bedrock"), false, check);
         if (rock.columns != field.columns() || rock.rows != field.rows()) {
             terrain.fail("bedrock",
                          fmt::format("the rock has {} x {} cells, the terrain {} x {}: they must be the same",
@@ -177,15 +213,15 @@ void readBedrock(const host::TomlTable& terrain, const sand::HeightField& field,
 
 }  // namespace
 
-bool readTerrain(const host::TomlTable& file, Scene& scene, const FieldCheck& check) {
+bool readTerrain(const host::TomlTable& file, Scene& scene, const SizeChecks& checks) {
     const host::TomlTable terrain = file.requiredTable("terrain");
     std::vector<std::string_view> kinds{"flat", "dunes"};
     kinds.insert(kinds.end(), sourceKinds().begin(), sourceKinds().end());
     const int kind = terrain.choiceOr("kind", kinds, 0);
     std::shared_ptr<sand::Ground> ground;
-    scene.terrain =
-        kind < 2 ? madeUp(file, terrain, kind == 1, check) : fromSource(file, terrain, kind - 2, scene, ground, check);
-    readBedrock(terrain, scene.terrain, ground);
+    scene.terrain = kind < 2 ? madeUp(file, terrain, kind == 1, checks)
+                             : fromSource(file, terrain, kind - 2, scene, ground, checks);
+    readBedrock(terrain, scene.terrain, checks, ground);
     const bool settle = terrain.flagOr("settle", false);
     terrain.finish();
     if (scene.tin == nullptr) {

@@ -9,8 +9,7 @@ namespace scene {
 
 /// Reads [field] and [terrain] of a scene file: heights, rock, walls, and what the rules say of them. Throws
 /// base::InputError with file, line and key; a DEM's errors name the DEM's line. Returns whether the sand shall come
-/// to rest before anybody touches it. `check`, unless empty, is called before the heights of a field are made, or of a
-/// function are computed.
-[[nodiscard]] bool readTerrain(const host::TomlTable& file, Scene& scene, const FieldCheck& check);
+/// to rest before anybody touches it.
+[[nodiscard]] bool readTerrain(const host::TomlTable& file, Scene& scene, const SizeChecks& checks);
 
 }  // namespace scene

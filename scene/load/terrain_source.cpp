@@ -25,16 +25,18 @@ const Importer& importerFor(const host::TomlTable& terrain) {
     }
 }
 
-EsriGrid readDem(const host::TomlTable& terrain) { return importerFor(terrain).readDem(fileOf(terrain)); }
+EsriGrid readDem(const host::TomlTable& terrain, const RasterCheck& check) {
+    return importerFor(terrain).readDem(fileOf(terrain), check);
+}
 
-EsriGrid readImage(const host::TomlTable& terrain) {
+EsriGrid readImage(const host::TomlTable& terrain, const RasterCheck& check) {
     const double low = terrain.numberOr("low", 0);
     const double high = terrain.number("high");
     if (!(high > low)) {
         terrain.fail("high", fmt::format("high must be above low = {}, got {}", low, high));
     }
     const double width = terrain.numberOr("width", 2.0, host::kPositive);
-    EsriGrid image = importerFor(terrain).readImage(fileOf(terrain));
+    EsriGrid image = importerFor(terrain).readImage(fileOf(terrain), check);
     image.cellSize = width / image.columns;
     for (double& height : image.heights) {
         height = low + height * (high - low);
@@ -52,7 +54,7 @@ std::pair<double, double> stretchOf(const host::TomlTable& terrain, const std::s
 }
 
 /// Rows follow from the columns, as cells are square; where they are given, they must fit.
-EsriGrid readFunction(const host::TomlTable& file, const host::TomlTable& terrain, const FieldCheck& check) {
+EsriGrid readFunction(const host::TomlTable& file, const host::TomlTable& terrain, const RasterCheck& check) {
     Function function;
     function.text = terrain.text("z");
     std::tie(function.west, function.east) = stretchOf(terrain, "x");
@@ -76,9 +78,7 @@ EsriGrid readFunction(const host::TomlTable& file, const host::TomlTable& terrai
                    fmt::format("{} columns of x make {} rows of y; leave rows out", function.columns, function.rows));
     }
     field.finish();
-    if (check) {
-        check(function.columns, function.rows, file.has("tin"));
-    }
+    check(function.columns, function.rows, true);
     const Importer& importer = importerFor(terrain);
     try {
         return importer.evaluate(function);
@@ -88,10 +88,10 @@ EsriGrid readFunction(const host::TomlTable& file, const host::TomlTable& terrai
 }
 
 /// A scan is nanometres high: its width becomes a few scene units, and its heights grow with it and on request more.
-TerrainSource readScan(const host::TomlTable& terrain) {
+TerrainSource readScan(const host::TomlTable& terrain, const RasterCheck& check) {
     const double width = terrain.numberOr("width", 2.0, host::kPositive);
     const double exaggeration = terrain.numberOr("exaggeration", 1, host::kPositive);
-    TerrainSource source{.raster = readGsf(fileOf(terrain))};
+    TerrainSource source{.raster = readGsf(fileOf(terrain), check)};
     EsriGrid& scan = source.raster;
     Georeference& reference = source.georeference;
     reference.lengthPerUnit = scan.cellSize * scan.columns / width;
@@ -117,20 +117,21 @@ TerrainSource readScan(const host::TomlTable& terrain) {
 
 enum Kind { kEsriAscii, kDem, kImage, kFunction, kGsf, kPoints };
 
-TerrainSource readKind(const host::TomlTable& file, const host::TomlTable& terrain, int kind, const FieldCheck& check) {
+TerrainSource readKind(const host::TomlTable& file, const host::TomlTable& terrain, int kind,
+                       const RasterCheck& check) {
     switch (kind) {
         case kDem:
-            return {.raster = readDem(terrain)};
+            return {.raster = readDem(terrain, check)};
         case kImage:
-            return {.raster = readImage(terrain)};
+            return {.raster = readImage(terrain, check)};
         case kFunction:
             return {.raster = readFunction(file, terrain, check)};
         case kGsf:
-            return readScan(terrain);
+            return readScan(terrain, check);
         case kPoints:
             return {.points = readPoints(fileOf(terrain))};
         default:
-            return {.raster = readEsriGrid(fileOf(terrain))};
+            return {.raster = readEsriGrid(fileOf(terrain), check)};
     }
 }
 
@@ -149,7 +150,7 @@ const std::vector<std::string_view>& sourceKinds() {
 }
 
 TerrainSource readSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind,
-                         const FieldCheck& check) {
+                         const RasterCheck& check) {
     if (kind != kFunction && file.has("field")) {
         file.fail("field", "[field] is for flat, dunes and functions; a file brings its own columns, rows and cells");
     }

@@ -27,10 +27,10 @@ struct TerrainSource {
 [[nodiscard]] const std::vector<std::string_view>& sourceKinds();
 
 /// Reads the keys of one of sourceKinds() in [terrain], and of [field] for a function, which says how many cells there
-/// are. `kind` is its index. Throws base::InputError with file, line and key; what is wrong in another file names
-/// that. Loads GDAL or muParser where the kind needs them. Of a function, calls `check`, unless empty, before the
-/// heights are computed.
+/// are. `kind` is its index. Calls `check` with the size of a raster, or of a function's field, before its heights are
+/// read or computed. Throws base::InputError with file, line and key; what is wrong in another file names that. Loads
+/// GDAL or muParser where the kind needs them.
 [[nodiscard]] TerrainSource readSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind,
-                                       const FieldCheck& check = {});
+                                       const RasterCheck& check);
 
 }  // namespace scene

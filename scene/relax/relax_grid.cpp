@@ -8,11 +8,13 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "host/memory.hpp"
 #include "host/print_line.hpp"
 #include "host/whole_file.hpp"
 #include "host/worker_pool.hpp"
 #include "sand/grid/tile_hash.hpp"
 #include "scene/import/raster_file.hpp"
+#include "scene/import/raster_memory.hpp"
 #include "scene/relax/options.hpp"
 #include "scene/relax/relaxation.hpp"
 #include "scene/relax/steepness.hpp"
@@ -122,10 +124,11 @@ ordered_json report(const GridSand& sand, const EsriGrid& grid, const Options& o
 }  // namespace
 
 void relaxGrid(const Options& options) {
-    const EsriGrid grid = readRaster(options.in, true);
+    const std::int64_t free = host::freeMemoryOfProcess();
+    const EsriGrid grid = readRaster(options.in, true, fitsMemory(options.in, free));
     std::optional<EsriGrid> bedrock;
     if (!options.bedrock.empty()) {
-        bedrock = readRaster(options.bedrock);
+        bedrock = readRaster(options.bedrock, false, fitsMemory(options.bedrock, free));
     }
     GridSand sand =
         toSand(grid, bedrock ? &*bedrock : nullptr, {options.talus, options.band, schemeOf(options.scheme)});

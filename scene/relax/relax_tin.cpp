@@ -7,12 +7,14 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "host/memory.hpp"
 #include "host/print_line.hpp"
 #include "host/whole_file.hpp"
 #include "sand/tin/flow/erosion.hpp"
 #include "sand/tin/flow/settle.hpp"
 #include "sand/tin/tile_hash.hpp"
 #include "scene/import/raster_file.hpp"
+#include "scene/import/raster_memory.hpp"
 #include "scene/relax/options.hpp"
 #include "scene/relax/ticker.hpp"
 #include "scene/relax/tin_sand.hpp"
@@ -86,8 +88,9 @@ void relaxTin(const Options& options) {
     const TalusSettings material{options.talus, options.band};
     std::optional<Thinned> thinned;
     if (!holdsPoints(options.in)) {
-        thinned = thin(withoutEmptyEdges(readRaster(options.in, true)),
-                       {options.maxError.value_or(0), options.vertices.value_or(kMostVertices)});
+        thinned =
+            thin(withoutEmptyEdges(readRaster(options.in, true, fitsMemory(options.in, host::freeMemoryOfProcess()))),
+                 {options.maxError.value_or(0), options.vertices.value_or(kMostVertices)});
     }
     TinSand sand =
         thinned ? toTin(*thinned, options.in, material) : toTin(readPoints(options.in), options.in, material);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lockstep/host_memory.hpp"
+#include "host/memory.hpp"
 #include "tests/cluster/session_fixture.hpp"
 
 namespace {
@@ -44,7 +44,7 @@ TEST_F(BadInput, AJournalThatNoReleaseReadsIsRefusedByTheMaster) {
 
 TEST_F(BadInput, AFieldThatDoesNotFitTheMemoryIsRefused) {
     // Three replicas of it are 12 GiB, and a machine that has that for a test is asked for more.
-    const std::int64_t free = lockstep::freeMemory();
+    const std::int64_t free = host::freeMemory();
     if (free > std::int64_t{48} << 30) {
         GTEST_SKIP() << "this machine has more memory than the largest field takes";
     }

@@ -73,7 +73,7 @@ TEST_F(Dem, AsATinOverOneAndFourRanksIsOneAndGoesHome) {
     EXPECT_NE(same.find(",1\n"), std::string::npos) << "the hand never touched the sand";
     EXPECT_TRUE(same == rows.substr(0, same.size())) << "forces are others when the journal is replayed";
 
-    const scene::EsriGrid before = importer.readDem(file), after = importer.readDem(home);
+    const scene::EsriGrid before = importer.readDem(file, {}), after = importer.readDem(home, {});
     EXPECT_EQ(after.units, before.units);
     EXPECT_EQ(after.westEdge, before.westEdge);
     EXPECT_EQ(after.southEdge, before.southEdge);

@@ -67,6 +67,19 @@ TEST(StartUp, RefusesTheHeightsThatATinIsMadeOf) {
               "are free: fewer cells, or more hosts");
 }
 
+// The master alone reads a raster, 16 bytes a pixel.
+TEST(StartUp, RefusesARasterWhosePixelsDoNotFitTheMastersHost) {
+    const auto refusalOn = [](std::int64_t free) {
+        return test::refusalOf([free] {
+            master::requireMemoryOfRaster({{"a", free}, {"a", free}, {"b", kGiB}}, 16384, 16384, "s.toml");
+        });
+    };
+    EXPECT_EQ(refusalOn(4 * kGiB), "nothing") << "the other ranks read nothing";
+    EXPECT_EQ(refusalOn(2 * kGiB),
+              "s.toml: 16384 x 16384 pixels of a raster need at least 4.0 GiB for the one rank on a, where 2.0 GiB are "
+              "free: coarsen it");
+}
+
 class StartUpFiles : public test::FolderTest {};
 
 TEST_F(StartUpFiles, AFileInPlaceOfTheFolderForResultsIsRefused) {

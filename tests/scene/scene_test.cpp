@@ -41,7 +41,8 @@ TEST_F(SceneFile, ItsSizeIsLookedAtBeforeItsHeightsAreMade) {
             isTin = tin;
             throw base::InputError(fmt::format("{} x {} are too many", columns, rows));
         };
-        EXPECT_THROW((void)scene::loadScene(write("s.toml", huge + kind), tooLarge), base::InputError) << kind;
+        EXPECT_THROW((void)scene::loadScene(write("s.toml", huge + kind), {.field = tooLarge}), base::InputError)
+            << kind;
         EXPECT_EQ(isTin, std::string(kind).ends_with("[tin]\n"));
     }
     EXPECT_LT(residentKilobytes() - before, 100'000);
@@ -52,9 +53,9 @@ TEST_F(SceneFile, ItsSizeIsLookedAtOnce) {
     const std::string raster = "[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n[material]\n[tool]\nradius = 1\n";
     for (const std::string& text : {kFlat, kFlat + "[tin]\n", raster, raster + "[tin]\n"}) {
         std::vector<std::array<int, 3>> asked;
-        (void)scene::loadScene(write("s.toml", text), [&](int columns, int rows, bool tin) {
-            asked.push_back({columns, rows, tin ? 1 : 0});
-        });
+        (void)scene::loadScene(write("s.toml", text), {.field = [&](int columns, int rows, bool tin) {
+                                   asked.push_back({columns, rows, tin ? 1 : 0});
+                               }});
         const bool flat = text.starts_with(kFlat);
         const std::array<int, 3> wanted{flat ? 512 : 3, flat ? 512 : 2, text.ends_with("[tin]\n") ? 1 : 0};
         EXPECT_EQ(asked, std::vector{wanted}) << text;

@@ -75,12 +75,19 @@ double whiteOf(const GdalRaster& raster) {
     }
 }
 
+void ask(const RasterCheck& check, const GdalRaster& raster) {
+    if (check) {
+        check(raster.columns(), raster.rows(), raster.complete());
+    }
+}
+
 class GdalImporter final : public Importer {
 public:
-    [[nodiscard]] EsriGrid readDem(const std::filesystem::path& file) const override {
+    [[nodiscard]] EsriGrid readDem(const std::filesystem::path& file, const RasterCheck& check) const override {
         const GdalRaster raster(file);
         EsriGrid grid = gridOf(raster);
         grid.units = unitsOf(raster);  // a raster in degrees is refused before it is read
+        ask(check, raster);
         grid.heights = raster.pixels();
         setPlace(raster, grid);
         int hasNoData = 0;
@@ -94,10 +101,11 @@ public:
     [[nodiscard]] RasterUnits readUnits(const std::filesystem::path& file) const override {
         return unitsOf(GdalRaster(file));
     }
-    [[nodiscard]] EsriGrid readImage(const std::filesystem::path& file) const override {
+    [[nodiscard]] EsriGrid readImage(const std::filesystem::path& file, const RasterCheck& check) const override {
         const GdalRaster raster(file);
         const double white = whiteOf(raster);
         EsriGrid grid = gridOf(raster);
+        ask(check, raster);
         grid.cellSize = 1;
         grid.heights = raster.pixels();
         for (double& height : grid.heights) {
@@ -129,7 +137,7 @@ public:
 }  // namespace
 }  // namespace scene
 
-extern "C" const scene::Importer* sandwallImport2() {
+extern "C" const scene::Importer* sandwallImport3() {
     static const scene::GdalImporter kImporter;
     return &kImporter;
 }

@@ -77,6 +77,11 @@ void GdalRaster::chooseBand() {
     }
 }
 
+bool GdalRaster::complete() const {
+    const bool whole = GDALDataTypeIsInteger(GDALGetRasterDataType(band_)) != 0;
+    return whole && (GDALGetMaskFlags(band_) & GMF_ALL_VALID) != 0;
+}
+
 std::vector<double> GdalRaster::pixels() const {
     std::vector<double> pixels(static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()));
     if (GDALRasterIO(band_, GF_Read, 0, 0, columns(), rows(), pixels.data(), columns(), rows(), GDT_Float64, 0, 0) !=

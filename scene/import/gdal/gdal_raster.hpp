@@ -21,6 +21,8 @@ public:
     [[nodiscard]] GDALRasterBandH band() const { return band_; }
     [[nodiscard]] const std::string& name() const { return name_; }
 
+    /// Returns whether no pixel can be without data: nothing masks any, and whole numbers are always numbers.
+    [[nodiscard]] bool complete() const;
     /// Rows as they lie in the file, scale and offset applied; not a number where the file says that nothing is known.
     [[nodiscard]] std::vector<double> pixels() const;
     [[noreturn]] void fail(const std::string& message) const;

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "master/journal/format.hpp"
+#include "master/journal/tools.hpp"
 #include "master/start_up.hpp"
 #include "scene/load/scene_file.hpp"
 #include "scene/scene.hpp"
@@ -31,18 +32,23 @@ protected:
         return journal_;
     }
 
+    /// The beginning of a scene of 16384 x 16384 cells.
+    static base::Bytes rulesOfAHugeField() {
+        sand::Rules rules;
+        rules.columns = rules.rows = 16384;
+        rules.stepsPerSecond = 60;
+        base::ByteWriter writer;
+        writer.putText("huge");
+        rules.encode(writer);
+        return writer.take();
+    }
+
     const std::filesystem::path journal_ = folder_ / "session.journal";
 };
 
 // The scene in this journal ends after its rules, so that decoding its heights would fail.
 TEST_F(JournalMemory, IsRefusedBeforeItsHeightsAreMade) {
-    sand::Rules rules;
-    rules.columns = rules.rows = 16384;
-    rules.stepsPerSecond = 60;
-    base::ByteWriter writer;
-    writer.putText("huge");
-    rules.encode(writer);
-    const std::filesystem::path journal = journalOf(writer.take());
+    const std::filesystem::path journal = journalOf(rulesOfAHugeField());
     const auto refusalOn = [&](std::int64_t free) {
         return test::refusalOf([&] { master::requireMemoryOfJournal({{"a", free}, {"a", free}}, journal); });
     };
@@ -53,6 +59,24 @@ TEST_F(JournalMemory, IsRefusedBeforeItsHeightsAreMade) {
                   "GiB are free: fewer cells, or more hosts");
 }
 
+// A replica takes 16 bytes a cell, the scene alone 4.
+TEST_F(JournalMemory, OfAReplayIsRefusedBeforeItsHeightsAreMade) {
+    const std::filesystem::path journal = journalOf(rulesOfAHugeField());
+    const auto refusalOn = [&](std::int64_t free, master::DecodedFor use) {
+        return test::refusalOf([&] { master::requireMemory(journal, use, free); });
+    };
+    EXPECT_EQ(refusalOn(4 * kGibibyte, master::DecodedFor::replica), "nothing");
+    EXPECT_EQ(refusalOn(2 * kGibibyte, master::DecodedFor::replica),
+              journal.string() +
+                  ": 16384 x 16384 cells need at least 4.0 GiB, and 2.0 GiB are free: fewer cells, or a machine with "
+                  "more memory");
+    EXPECT_EQ(refusalOn(kGibibyte, master::DecodedFor::scene), "nothing");
+    EXPECT_EQ(refusalOn(kGibibyte / 2, master::DecodedFor::scene),
+              journal.string() +
+                  ": 16384 x 16384 heights need at least 1.0 GiB, and 0.5 GiB are free: take a machine with more "
+                  "memory");
+}
+
 TEST_F(JournalMemory, OfATinIsRefused) {
     const std::filesystem::path file = folder_ / "s.toml";
     std::ofstream(file) << "[field]\ncolumns = 64\n[terrain]\n[material]\n[tool]\nradius = 0.1\n[tin]\n";
@@ -60,6 +84,9 @@ TEST_F(JournalMemory, OfATinIsRefused) {
     EXPECT_EQ(test::refusalOf([&] { master::requireMemoryOfJournal({{"a", kGibibyte}}, journal); }), "nothing");
     const std::string refused = test::refusalOf([&] { master::requireMemoryOfJournal({{"a", 1000}}, journal); });
     EXPECT_TRUE(refused.starts_with(journal.string() + ": a TIN of ")) << refused;
+    const std::string replayed =
+        test::refusalOf([&] { master::requireMemory(journal, master::DecodedFor::replica, 1000); });
+    EXPECT_TRUE(replayed.starts_with(journal.string() + ": a TIN's ")) << replayed;
 }
 
 TEST_F(JournalMemory, OfAMissingJournalIsRefused) {

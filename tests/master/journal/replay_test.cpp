@@ -8,8 +8,10 @@
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <utility>
 
 #include "master/journal/checkpoint.hpp"
+#include "master/journal/format.hpp"
 #include "master/journal/journal.hpp"
 #include "sand/replica.hpp"
 #include "scene/import/esri_grid.hpp"
@@ -325,6 +327,38 @@ TEST_F(Replay, RefusesToWriteOneFileOverAnother) {
     expectRefused("--export " + journal(), "FILE and --export: both name ");
     EXPECT_EQ(read("s.journal"), before);
     EXPECT_EQ(replay("--heights /dev/null --difference /dev/null").status, 0);
+}
+
+// The scene in this journal ends after its rules, so that decoding its heights would fail in another way. A replica of
+// 16384 x 16384 cells takes 4 GiB, and its heights alone 1 GiB, which is more than the limit of 1 GB.
+TEST_F(Replay, RefusesAFieldThatDoesNotFitItsMemoryBeforeItsHeightsAreMade) {
+    sand::Rules rules;
+    rules.columns = rules.rows = 16384;
+    rules.stepsPerSecond = 60;
+    base::ByteWriter scene;
+    scene.putText("huge");
+    rules.encode(scene);
+    master::JournalHeader header;
+    header.session = 1;
+    header.scene = scene.take();
+    header.material = scene::Material();
+    std::uint64_t chain = 0;
+    const base::Bytes bytes = master::encodeHeader(header, chain);
+    std::ofstream(journal(), std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    for (const auto& [question, gibibytes] :
+         {std::pair("", "4.0"), std::pair("--hash", "4.0"), std::pair("--verify", "4.0"),
+          std::pair("--export new", "1.0"), std::pair("--recover new", "1.0"),
+          std::pair("--export new --hash", "4.0")}) {
+        const support::Ran ran =
+            support::runCommand(fmt::format("ulimit -v 1000000; bin=$PWD; cd {} && $bin/{}/sandwall-replay {} {}",
+                                            folder_.string(), SANDWALL_BIN_DIR, journal(), question));
+        EXPECT_EQ(ran.status, 2) << question << ": " << ran.output;
+        EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
+        EXPECT_NE(ran.output.find(fmt::format(" need at least {} GiB, and ", gibibytes)), std::string::npos)
+            << question << ": " << ran.output;
+        EXPECT_FALSE(std::filesystem::exists(path("new"))) << question;
+    }
 }
 
 TEST_F(Replay, RefusesStepsBelowZero) {

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <sys/resource.h>
+
 #include <cmath>
 #include <limits>
 
 #include "scene/scene.hpp"
 #include "tests/scene/import/import_fixture.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace {
 
@@ -195,6 +199,47 @@ TEST_F(Import, FilesThatReferToOthersAreNotFollowed) {
           "</SourceFilename></SimpleSource></VRTRasterBand></VRTDataset>");
     const std::string line = refusal("[terrain]\nkind = \"dem\"\nfile = \"t.vrt\"\n");
     EXPECT_EQ(line.rfind("t.vrt: cannot be read as a raster: ", 0), 0U) << line;
+}
+
+long residentKilobytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss;
+}
+
+// 8192 x 8192 pixels take 512 MiB as doubles. The files are sparse.
+TEST_F(Import, ARastersSizeIsLookedAtBeforeItsPixelsAreRead) {
+    constexpr int kSide = 8192;
+    Raster huge{.columns = kSide, .rows = kSide, .heights = {}, .type = GDT_Byte, .options = {"SPARSE_OK=TRUE"}};
+    writeRaster("t.tif", huge);
+    huge.type = GDT_Float32;
+    writeRaster("f.tif", huge);
+    std::string scan = "Gwyddion Simple Field 1.0\nXRes = 8192\nYRes = 8192\n";
+    scan.append(4 - scan.size() % 4, '\0');
+    write("t.gsf", scan);
+    std::filesystem::resize_file(folder_ / "t.gsf", scan.size() + std::uintmax_t{4} * kSide * kSide);
+    const long before = residentKilobytes();
+    const auto refuse = [](int columns, int rows) {
+        throw base::InputError(fmt::format("{} x {} are too many", columns, rows));
+    };
+    for (const std::string terrain :
+         {"kind = \"dem\"\nfile = \"t.tif\"", "kind = \"dem\"\nfile = \"f.tif\"",
+          "kind = \"image\"\nhigh = 1\nfile = \"t.tif\"", "kind = \"gsf\"\nfile = \"t.gsf\""}) {
+        const std::string file = write("s.toml", text("[terrain]\n" + terrain + "\n"));
+        EXPECT_EQ(test::refusalOf([&] { (void)scene::loadScene(file, {.raster = refuse}); }),
+                  "8192 x 8192 are too many")
+            << terrain;
+    }
+    bool asked = false;
+    const std::string file = write("s.toml", text(kDem));
+    EXPECT_THROW((void)scene::loadScene(file, {.field =
+                                                   [&](int, int, bool) {
+                                                       asked = true;
+                                                       throw base::InputError("too many");
+                                                   }}),
+                 base::InputError);
+    EXPECT_TRUE(asked) << "whole numbers without a mask: the field is as large as the raster";
+    EXPECT_LT(residentKilobytes() - before, 100'000);
 }
 
 TEST_F(Import, HugeRastersAreRefusedBeforeTheyAreRead) {

@@ -26,9 +26,9 @@ TEST_F(Import, AFunctionsSizeIsLookedAtBeforeItIsEvaluated) {
     const auto tooLarge = [](int columns, int rows, bool) {
         throw std::length_error(std::to_string(columns) + " x " + std::to_string(rows));
     };
-    EXPECT_THROW((void)scene::loadScene(file, tooLarge), std::length_error);
+    EXPECT_THROW((void)scene::loadScene(file, {.field = tooLarge}), std::length_error);
     int asked = 0;
-    (void)scene::loadScene(write("s.toml", text(function("x"))), [&](int, int, bool) { ++asked; });
+    (void)scene::loadScene(write("s.toml", text(function("x"))), {.field = [&](int, int, bool) { ++asked; }});
     EXPECT_EQ(asked, 1);
 }
 

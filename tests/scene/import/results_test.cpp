@@ -65,7 +65,7 @@ protected:
 
 TEST_F(Results, HeightsGoBackWhereTheTerrainCameFrom) {
     ASSERT_EQ(replay("--heights " + path("h.tif")).status, 0);
-    const scene::EsriGrid grid = scene::loadImporter("test").readDem(path("h.tif"));
+    const scene::EsriGrid grid = scene::loadImporter("test").readDem(path("h.tif"), {});
     EXPECT_EQ(grid.westEdge, 500000);
     EXPECT_EQ(grid.southEdge, 4100000 - 2 * kRows);
     EXPECT_EQ(grid.cellSize, 2);
@@ -99,7 +99,7 @@ TEST_F(Results, TextHasItsSystemBesideIt) {
     }
     EXPECT_GT(most, 0) << "the session dug";
     EXPECT_NE(bytes("d.prj").find("UTM"), std::string::npos);
-    EXPECT_NE(scene::loadImporter("test").readDem(path("d.asc")).units.crs.find("UTM"), std::string::npos);
+    EXPECT_NE(scene::loadImporter("test").readDem(path("d.asc"), {}).units.crs.find("UTM"), std::string::npos);
 }
 
 TEST_F(Results, CutAndFillAreExact) {

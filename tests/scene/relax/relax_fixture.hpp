@@ -28,13 +28,13 @@ protected:
     void writeGrid(const std::string& name, int columns, int rows, const std::vector<double>& heights) const {
         scene::writeEsriGrid({columns, rows, 1, 0, 0, heights}, path(name));
     }
-    /// In the test's folder, so that files go by their names.
-    [[nodiscard]] support::Ran run(const std::string& arguments) const {
-        const std::filesystem::path before = std::filesystem::current_path();
+    /// In the test's folder, so that files go by their names. `before` are words of the shell.
+    [[nodiscard]] support::Ran run(const std::string& arguments, const std::string& before = "") const {
+        const std::filesystem::path root = std::filesystem::current_path();
         std::filesystem::current_path(folder_);
         support::Ran ran =
-            support::runCommand((before / SANDWALL_BIN_DIR / "sandwall-relax").string() + " " + arguments);
-        std::filesystem::current_path(before);
+            support::runCommand(before + (root / SANDWALL_BIN_DIR / "sandwall-relax").string() + " " + arguments);
+        std::filesystem::current_path(root);
         return ran;
     }
     /// Runs it to success, and returns its one line; on a slow machine lines of progress stand before it.

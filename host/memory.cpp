@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/memory.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <string>
+
+namespace host {
+namespace {
+
+constexpr std::int64_t kUnlimited = std::numeric_limits<std::int64_t>::max();
+
+/// Returns the number with which a file of the kernel's begins; nullopt if it begins with none, as with "max".
+std::optional<std::int64_t> numberIn(const char* file) {
+    std::ifstream stream(file);
+    std::int64_t number = 0;
+    return stream >> number ? std::optional(number) : std::nullopt;
+}
+
+std::int64_t available() {
+    std::ifstream stream("/proc/meminfo");
+    std::string key;
+    while (stream >> key) {
+        std::int64_t kilobytes = 0;
+        if (key == "MemAvailable:" && stream >> kilobytes) {
+            return kilobytes * 1024;
+        }
+        stream.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+    }
+    return kUnlimited;
+}
+
+}  // namespace
+
+std::int64_t freeMemory() {
+    // A container has a limit of its own, which /proc/meminfo does not know.
+    const auto most = numberIn("/sys/fs/cgroup/memory.max");
+    const auto used = numberIn("/sys/fs/cgroup/memory.current");
+    return std::min(available(), most && used ? std::max<std::int64_t>(*most - *used, 0) : kUnlimited);
+}
+
+std::int64_t freeMemoryOfProcess() {
+    rlimit limit{};
+    const auto pages = numberIn("/proc/self/statm");
+    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || !pages) {
+        return freeMemory();
+    }
+    const auto most = static_cast<std::int64_t>(std::min<rlim_t>(limit.rlim_cur, static_cast<rlim_t>(kUnlimited)));
+    return std::min(freeMemory(), std::max<std::int64_t>(most - *pages * sysconf(_SC_PAGESIZE), 0));
+}
+
+}  // namespace host

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/memory.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <fstream>
+
+namespace {
+
+TEST(Memory, ThisMachineHasSome) {
+    EXPECT_GT(host::freeMemory(), 1 << 20);
+    EXPECT_LT(host::freeMemory(), std::int64_t{1} << 50);
+}
+
+/// Returns what this process has mapped [byte].
+std::int64_t mapped() {
+    std::ifstream stream("/proc/self/statm");
+    std::int64_t pages = 0;
+    stream >> pages;
+    return pages * 4096;
+}
+
+// A limit that is a little above what is mapped leaves that little, however much the machine has.
+TEST(Memory, AProcessWithALimitHasWhatTheLimitLeaves) {
+    rlimit before{};
+    ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
+    const std::int64_t room = 32 << 20;
+    rlimit limit = before;
+    limit.rlim_cur = static_cast<rlim_t>(mapped() + room);
+    ASSERT_EQ(setrlimit(RLIMIT_AS, &limit), 0);
+    const std::int64_t left = host::freeMemoryOfProcess();
+    ASSERT_EQ(setrlimit(RLIMIT_AS, &before), 0);
+    EXPECT_LE(left, room);
+    EXPECT_GT(left, room / 2) << "a stream and its buffer may have been mapped between";
+    if (before.rlim_cur == RLIM_INFINITY) {
+        EXPECT_GT(host::freeMemoryOfProcess(), room) << "without a limit it is the machine's";
+    }
+}
+
+}  // namespace

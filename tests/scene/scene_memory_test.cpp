@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a scene needs is asked before it is made, with figures in place of this machine's memory.
+#include <fmt/format.h>
+
+#include <array>
+#include <vector>
+
+#include "scene/import/raster_memory.hpp"
+#include "scene/load/memory.hpp"
+#include "tests/scene/scene_fixture.hpp"
+#include "tests/support/refusal.hpp"
+
+namespace {
+
+constexpr std::int64_t kGigabyte = std::int64_t{1} << 30;
+
+class SceneMemory : public SceneFile {
+protected:
+    /// What loading refuses while `free` bytes are free; "nothing" if it loads.
+    std::string refusalOn(std::int64_t free, const std::string& text) {
+        const std::filesystem::path file = write("s.toml", text);
+        return test::refusalOf([&] { (void)scene::loadScene(file, scene::checksOfOneReplica("s.toml", free)); });
+    }
+    /// What is asked while a scene is loaded, in its order: "raster 3 x 2", "field 3 x 2", "TIN 3 x 2".
+    std::vector<std::string> asked(const std::string& text) {
+        std::vector<std::string> all;
+        (void)scene::loadScene(
+            write("s.toml", text),
+            {.raster = [&](int columns, int rows) { all.push_back(fmt::format("raster {} x {}", columns, rows)); },
+             .field =
+                 [&](int columns, int rows, bool tin) {
+                     all.push_back(fmt::format("{} {} x {}", tin ? "TIN" : "field", columns, rows));
+                 }});
+        return all;
+    }
+    static inline const std::string kRest = "[tool]\nradius = 1\n";
+};
+
+using Asked = std::vector<std::string>;
+
+TEST_F(SceneMemory, OfOneReplicaIsComparedWithWhatIsFree) {
+    const std::string field = "[field]\ncolumns = 4096\nrows = 4096\n[terrain]\n";
+    EXPECT_EQ(refusalOn(kGigabyte / 4, field), "nothing") << "16 bytes a cell";
+    EXPECT_EQ(refusalOn(kGigabyte / 4 - 1, field),
+              "s.toml: 4096 x 4096 cells need at least 0.2 GiB, and 0.2 GiB are free: fewer cells, or a machine with "
+              "more memory");
+    EXPECT_EQ(refusalOn(kGigabyte / 16 - 1, field + "[tin]\n"),
+              "s.toml: 4096 x 4096 nominal cells of a TIN need at least 0.1 GiB, and 0.1 GiB are free: fewer cells, or "
+              "a machine with more memory");
+}
+
+TEST_F(SceneMemory, OfATinIsThatOfItsVertices) {
+    scene::Scene scene;
+    sand::tin::TinStart start;
+    start.places.resize(1 << 20);
+    scene.tin = std::make_shared<const sand::tin::TinStart>(std::move(start));
+    const auto refusal = [&](std::int64_t free) {
+        return test::refusalOf([&] { scene::requireReplica(scene, "s.toml", free); });
+    };
+    EXPECT_EQ(refusal(kGigabyte), "nothing");
+    EXPECT_EQ(refusal(kGigabyte / 4),
+              "s.toml: a TIN's 1048576 vertices need at least 0.3 GiB, and 0.2 GiB are free: fewer vertices, or a "
+              "machine with more memory");
+}
+
+// Where a pixel should be stands a word, which would be refused if it were read.
+TEST_F(SceneMemory, OfARasterIsAskedBeforeItsPixelsAreRead) {
+    const std::string head = "ncols 4096\nnrows 4096\ncellsize 1\n";
+    const std::string text = "[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n" + kRest;
+    write("t.asc", head + "1 word\n");
+    EXPECT_EQ(refusalOn(kGigabyte / 4 - 1, text),
+              "s.toml: 4096 x 4096 pixels of a raster need at least 0.2 GiB, and 0.2 GiB are free: coarsen it, or take "
+              "a machine with more memory");
+    const std::string read = refusalOn(kGigabyte / 4, text);
+    EXPECT_NE(read.find("t.asc:4: a height must be a finite number, got 'word'"), std::string::npos) << read;
+}
+
+TEST_F(SceneMemory, OfTheFieldIsAskedBeforeThePixelsWhereTheHeaderMarksNoData) {
+    const std::string text = "[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n" + kRest;
+    const auto refused = [&](const std::string& grid, const std::string& more) {
+        write("t.asc", grid + "1 word\n");
+        return test::refusalOf([&] {
+            (void)scene::loadScene(write("s.toml", text + more), {.field = [](int columns, int rows, bool tin) {
+                                       throw base::InputError(fmt::format("{} x {} {}", columns, rows, tin));
+                                   }});
+        });
+    };
+    const std::string head = "ncols 4096\nnrows 4096\ncellsize 1\n";
+    EXPECT_EQ(refused(head, ""), "4096 x 4096 false");
+    EXPECT_EQ(refused(head, "[tin]\n"), "4096 x 4096 true");
+    const std::string masked = refused(head + "NODATA_value -1\n", "");
+    EXPECT_NE(masked.find("t.asc:5: a height must be"), std::string::npos)
+        << "edges without data may be cut off, and nobody knows yet how many: " << masked;
+}
+
+TEST_F(SceneMemory, IsAskedOnceOfEachRasterAndOfTheField) {
+    const std::string head = "ncols 3\nnrows 2\ncellsize 1\n", text = "[terrain]\nkind = \"esri_ascii\"\nfile = ";
+    write("t.asc", head + "1 1 1\n1 1 1\n");
+    write("cut.asc", head + "NODATA_value -1\n-1 1 1\n-1 1 1\n");
+    write("rock.asc", head + "0 0 0\n0 0 0\n");
+    EXPECT_EQ(asked("[field]\ncolumns = 8\n[terrain]\n"), Asked{"field 8 x 8"});
+    EXPECT_EQ(asked(text + "\"t.asc\"\n" + kRest), (Asked{"raster 3 x 2", "field 3 x 2"}));
+    EXPECT_EQ(asked(text + "\"t.asc\"\n" + kRest + "[tin]\n"), (Asked{"raster 3 x 2", "TIN 3 x 2"}));
+    EXPECT_EQ(asked(text + "\"cut.asc\"\n" + kRest), (Asked{"raster 3 x 2", "field 2 x 2"}));
+    EXPECT_EQ(asked(text + "\"cut.asc\"\nbedrock = \"rock.asc\"\n" + kRest),
+              (Asked{"raster 3 x 2", "field 3 x 2", "raster 3 x 2"}))
+        << "with rock the edges stay";
+}
+
+}  // namespace
