@@ -3,10 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "base/input_error.hpp"
+#include "scene/import/gdal/png_greys.hpp"
 #include "scene/import/importer.hpp"
 
 namespace scene {
@@ -82,12 +85,24 @@ bool GdalRaster::complete() const {
     return whole && (GDALGetMaskFlags(band_) & GMF_ALL_VALID) != 0;
 }
 
-std::vector<double> GdalRaster::pixels() const {
-    std::vector<double> pixels(static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()));
-    if (GDALRasterIO(band_, GF_Read, 0, 0, columns(), rows(), pixels.data(), columns(), rows(), GDT_Float64, 0, 0) !=
+bool GdalRaster::isPng() const {
+    return std::string_view(GDALGetDriverShortName(GDALGetDatasetDriver(dataset_.get()))) == "PNG";
+}
+
+std::vector<double> GdalRaster::numbers() const {
+    if (isPng()) {
+        return greysOfPng(name_, columns(), rows());
+    }
+    std::vector<double> numbers(static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()));
+    if (GDALRasterIO(band_, GF_Read, 0, 0, columns(), rows(), numbers.data(), columns(), rows(), GDT_Float64, 0, 0) !=
         CE_None) {
         failToRead();
     }
+    return numbers;
+}
+
+std::vector<double> GdalRaster::pixels() const {
+    std::vector<double> pixels = numbers();
     mask(pixels);
     const double scale = GDALGetRasterScale(band_, nullptr);
     const double offset = GDALGetRasterOffset(band_, nullptr);
@@ -105,7 +120,14 @@ std::vector<double> GdalRaster::pixels() const {
 }
 
 void GdalRaster::mask(std::vector<double>& pixels) const {
-    if ((GDALGetMaskFlags(band_) & GMF_ALL_VALID) != 0) {
+    const int flags = GDALGetMaskFlags(band_);
+    if ((flags & GMF_ALL_VALID) != 0) {
+        return;
+    }
+    if (isPng() && (flags & GMF_NODATA) != 0) {
+        // GDAL's mask would compare the grey that is transparent with its own numbers.
+        const double noData = GDALGetRasterNoDataValue(band_, nullptr);
+        std::replace(pixels.begin(), pixels.end(), noData, std::numeric_limits<double>::quiet_NaN());
         return;
     }
     GDALRasterBandH mask = GDALGetMaskBand(band_);

@@ -30,6 +30,9 @@ public:
 private:
     /// The one band beside a mask of opacity.
     void chooseBand();
+    [[nodiscard]] bool isPng() const;
+    /// Reads the numbers of the band as they stand in the file.
+    [[nodiscard]] std::vector<double> numbers() const;
     void mask(std::vector<double>& pixels) const;
     [[noreturn]] void failToRead() const;
 

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <png.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "scene/import/importer.hpp"
 #include "scene/scene.hpp"
 #include "tests/scene/import/import_fixture.hpp"
 
@@ -21,6 +27,92 @@ TEST_F(Import, APicturesWhiteIsTheHighestGround) {
     EXPECT_TRUE(sameHeights(load(kImage).terrain, eight.terrain)) << "of 16 bits";
     writeRaster("t.png", {.columns = 2, .rows = 1, .heights = {0, 65535}, .place = {}, .epsg = 0, .type = GDT_UInt16});
     EXPECT_TRUE(sameHeights(load(kImage).terrain, eight.terrain)) << "a TIFF, whatever its name";
+}
+
+/// Writes grey numbers of so many bits as a PNG, by libpng.
+void writeGreys(const std::string& file, int columns, int rows, int bits, bool interlaced,
+                const std::vector<int>& greys) {
+    std::FILE* const stream = std::fopen(file.c_str(), "wb");
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+    png_infop info = png_create_info_struct(png);
+    png_init_io(png, stream);
+    png_set_IHDR(png, info, static_cast<png_uint_32>(columns), static_cast<png_uint_32>(rows), bits,
+                 PNG_COLOR_TYPE_GRAY, interlaced ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_write_info(png, info);
+    png_set_packing(png);  // a byte for each number of less than 8 bits
+    const std::size_t size = bits == 16 ? 2 : 1, width = static_cast<std::size_t>(columns);
+    std::vector<png_byte> bytes;
+    for (const int grey : greys) {
+        if (size == 2) {
+            bytes.push_back(static_cast<png_byte>(grey >> 8));
+        }
+        bytes.push_back(static_cast<png_byte>(grey & 255));
+    }
+    std::vector<png_bytep> starts;
+    for (std::size_t row = 0; row < static_cast<std::size_t>(rows); ++row) {
+        starts.push_back(bytes.data() + row * width * size);
+    }
+    png_write_image(png, starts.data());
+    png_write_end(png, nullptr);
+    png_destroy_write_struct(&png, &info);
+    std::fclose(stream);
+}
+
+// GDAL 3.6.2 swaps the bytes of a picture that is both interlaced and of 16 bits: 258 is 0x0102, and came as 513.
+TEST_F(Import, APictureIsReadAlikeInterlacedOrNot) {
+    constexpr int kColumns = 11, kRows = 9;  // some pixels in each of the seven passes
+    for (const int bits : {1, 2, 4, 8, 16}) {
+        const int white = (1 << bits) - 1;
+        std::vector<int> greys;
+        for (int i = 0; i < kColumns * kRows; ++i) {
+            greys.push_back(i == 0 ? white : (i * 258 + i) % (white + 1));
+        }
+        for (const bool interlaced : {false, true}) {
+            writeGreys(path("t.png"), kColumns, kRows, bits, interlaced, greys);
+            const scene::EsriGrid grid = scene::loadImporter("test").readImage(path("t.png"), {});
+            ASSERT_EQ(grid.columns, kColumns);
+            ASSERT_EQ(grid.rows, kRows);
+            for (std::size_t i = 0; i < greys.size(); ++i) {
+                ASSERT_EQ(grid.heights[i], static_cast<double>(greys[i]) / white)
+                    << bits << " bits, interlaced " << interlaced << ", pixel " << i;
+            }
+        }
+    }
+}
+
+// A world file beside it makes a DEM of a picture: middle of the north-west pixel, and sizes.
+TEST_F(Import, ADemFromAnInterlacedPictureHasItsNumbers) {
+    writeGreys(path("t.png"), 2, 2, 16, true, {258, 1, 256, 513});
+    write("t.wld", "1000\n0\n0\n-1000\n500\n1500\n");
+    const scene::EsriGrid grid = scene::loadImporter("test").readDem(path("t.png"), {});
+    EXPECT_EQ(grid.heights, (std::vector<double>{258, 1, 256, 513}));
+    EXPECT_EQ(grid.cellSize, 1000);
+    EXPECT_EQ(grid.westEdge, 0);
+}
+
+// Beside the picture GDAL keeps which number has no data: it is the file's, not GDAL's own of it.
+TEST_F(Import, TheNumberWithoutDataIsTheFiles) {
+    writeGreys(path("t.png"), 2, 2, 16, true, {258, 513, 513, 7});
+    write("t.png.aux.xml",
+          "<PAMDataset><PAMRasterBand band=\"1\"><NoDataValue>513</NoDataValue></PAMRasterBand></PAMDataset>");
+    const scene::EsriGrid grid = scene::loadImporter("test").readImage(path("t.png"), {});
+    EXPECT_EQ(grid.heights[0], 258.0 / 65535);
+    EXPECT_TRUE(std::isnan(grid.heights[1]));
+    EXPECT_TRUE(std::isnan(grid.heights[2]));
+    EXPECT_EQ(grid.heights[3], 7.0 / 65535);
+}
+
+TEST_F(Import, APictureThatIsCutOffIsOneLine) {
+    std::vector<int> greys(64 * 64);
+    for (std::size_t i = 0; i < greys.size(); ++i) {
+        greys[i] = static_cast<int>(i * 2654435761U % 65536);
+    }
+    writeGreys(path("t.png"), 64, 64, 16, true, greys);
+    std::filesystem::resize_file(path("t.png"), std::filesystem::file_size(path("t.png")) / 2);
+    const std::string line = refusal(kImage);
+    EXPECT_TRUE(line.starts_with("t.png: ")) << line;
+    EXPECT_GT(line.size(), 20U) << line;
 }
 
 TEST_F(Import, PicturesThatAreNoHeightMapsSayWhy) {
