@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -20,6 +21,7 @@
 #include "base/text.hpp"
 #include "host/whole_file.hpp"
 #include "sand/model/height_field.hpp"
+#include "scene/import/no_data.hpp"
 
 namespace scene {
 namespace {
@@ -111,6 +113,10 @@ double sizeOf(Words& words, const std::string& key) {
     }
     return size;
 }
+
+/// The keys with which a header may begin.
+constexpr std::array<std::string_view, 10> kKeys{"ncols",     "nrows",     "cellsize",  "dx",        "dy",
+                                                 "xllcorner", "xllcenter", "yllcorner", "yllcenter", "nodata_value"};
 
 std::ifstream opened(const std::filesystem::path& file) {
     std::error_code ignored;
@@ -218,7 +224,23 @@ EsriGrid readEsriGrid(const std::filesystem::path& file, const RasterCheck& chec
     if (stream.bad()) {
         throw base::InputError(file.string() + ": cannot be read to its end; check the disk it lies on");
     }
+    grid.warnings = undeclaredNoData(grid, "if it does, add the line 'NODATA_value {0}' to the header");
     return grid;
+}
+
+bool holdsEsriGrid(const std::filesystem::path& file) {
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(file, none)) {
+        return false;
+    }
+    std::array<char, 256> first{};
+    std::ifstream stream(file, std::ios::binary);
+    stream.read(first.data(), first.size());
+    const std::string_view text(first.data(), static_cast<std::size_t>(stream.gcount()));
+    constexpr std::string_view kBlanks = " \t\r\n";
+    const std::string_view begun = text.substr(std::min(text.find_first_not_of(kBlanks), text.size()));
+    const std::string word = base::lowerCase(begun.substr(0, begun.find_first_of(kBlanks)));
+    return std::find(kKeys.begin(), kKeys.end(), word) != kKeys.end();
 }
 
 void EsriGrid::fail(int column, int rowFromSouth, const std::string& message) const {

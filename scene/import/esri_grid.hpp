@@ -17,14 +17,15 @@ namespace scene {
 /// formats say more of their units (scene/import/importer.hpp).
 struct EsriGrid {
     int columns = 0, rows = 0;
-    double cellSize = 0;                 // of a cell from west to east [file's length unit]
-    double westEdge = 0, southEdge = 0;  // of the south-west cell [file's length unit]
-    std::vector<double> heights;         // [file's height unit], row by row, north first; not a number: no data
-    std::optional<double> cellDepth{};   // of a cell from south to north, where it is not cellSize
-    std::optional<double> noData{};      // what stands for no data in the file
-    std::string file{};                  // where it was read from, for messages
-    std::vector<long> lines{};           // of the file, in which each row begins, north first; empty: no text
-    RasterUnits units{};                 // an ESRI ASCII grid says nothing of them
+    double cellSize = 0;                  // of a cell from west to east [file's length unit]
+    double westEdge = 0, southEdge = 0;   // of the south-west cell [file's length unit]
+    std::vector<double> heights;          // [file's height unit], row by row, north first; not a number: no data
+    std::optional<double> cellDepth{};    // of a cell from south to north, where it is not cellSize
+    std::optional<double> noData{};       // what stands for no data in the file
+    std::string file{};                   // where it was read from, for messages
+    std::vector<long> lines{};            // of the file, in which each row begins, north first; empty: no text
+    RasterUnits units{};                  // an ESRI ASCII grid says nothing of them
+    std::vector<std::string> warnings{};  // one line each, which name the file, for the program to print
 
     [[nodiscard]] double at(int column, int rowFromSouth) const { return heights[index(column, rowFromSouth)]; }
     [[nodiscard]] bool isNoData(int column, int rowFromSouth) const { return std::isnan(at(column, rowFromSouth)); }
@@ -52,6 +53,8 @@ using RasterCheck = std::function<void(int columns, int rows, bool complete)>;
 /// with dx and dy in place of cellsize. Throws base::InputError with file and line: a header that is not one, values
 /// missing, too many or not finite.
 [[nodiscard]] EsriGrid readEsriGrid(const std::filesystem::path& file, const RasterCheck& check = {});
+/// Returns whether a plain file is one by its first word, which is a key of the header.
+[[nodiscard]] bool holdsEsriGrid(const std::filesystem::path& file);
 
 /// The smallest rectangle, from the south-west cell, that holds every cell with data; empty when there is none.
 [[nodiscard]] sand::CellRect cellsWithData(const EsriGrid& grid);

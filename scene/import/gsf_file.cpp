@@ -19,6 +19,7 @@
 #include "base/input_error.hpp"
 #include "base/text.hpp"
 #include "sand/model/height_field.hpp"
+#include "scene/import/no_data.hpp"
 
 namespace scene {
 namespace {
@@ -173,6 +174,7 @@ EsriGrid readGsf(const std::filesystem::path& file, const RasterCheck& check) {
         check(grid.columns, grid.rows, false);  // any number may be NaN
     }
     readHeights(stream, grid);
+    grid.warnings = undeclaredNoData(grid, "if it does, mask these pixels in Gwyddion");
     return grid;
 }
 

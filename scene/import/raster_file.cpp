@@ -2,11 +2,13 @@
 #include "scene/import/raster_file.hpp"
 
 #include <string>
+#include <vector>
 
 #include "base/input_error.hpp"
 #include "base/text.hpp"
 #include "host/whole_file.hpp"
 #include "scene/import/importer.hpp"
+#include "scene/import/no_data.hpp"
 
 namespace scene {
 namespace {
@@ -47,14 +49,26 @@ EsriGrid readRaster(const fs::path& file, bool withReference, const RasterCheck&
     const std::string ending = base::endingOf(file);
     std::error_code none;
     const bool plain = fs::is_regular_file(file, none);
-    if (plain && !ending.empty() && ending != ".asc" && ending != ".txt") {
-        return loadImporter(file.string()).readDem(file, check);
+    if (plain && !ending.empty() && ending != ".asc" && ending != ".txt" && !holdsEsriGrid(file)) {
+        return readByGdal(file, loadImporter(file.string()), check);
     }
     if (!withReference || !plain || !hasPrj(file)) {
         return readEsriGrid(file, check);
     }
-    // Only the units are GDAL's: what is wrong in the text is still told by its line.
-    const RasterUnits units = loadImporter(file.string()).readUnits(file);
+    return readTextWithUnits(file, loadImporter(file.string()), check);
+}
+
+EsriGrid readByGdal(const fs::path& file, const Importer& importer, const RasterCheck& check) {
+    EsriGrid grid = importer.readDem(file, check);
+    const std::vector<std::string> warnings =
+        undeclaredNoData(grid, "if it does: gdal_edit.py -a_nodata {0} " + file.filename().string());
+    grid.warnings.insert(grid.warnings.end(), warnings.begin(), warnings.end());
+    return grid;
+}
+
+EsriGrid readTextWithUnits(const fs::path& file, const Importer& importer, const RasterCheck& check) {
+    // Only the units are GDAL's: it takes a word in place of a height for 0, and our reader names the line.
+    const RasterUnits units = importer.readUnits(file);
     EsriGrid grid = readEsriGrid(file, check);
     grid.units = units;
     grid.countHeightsInLengths();

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "sand/grid/dunes.hpp"
+#include "scene/import/no_data.hpp"
 #include "scene/import/raster_file.hpp"
 #include "scene/load/terrain_source.hpp"
 #include "scene/load/tin_table.hpp"
@@ -28,11 +29,12 @@ sand::HeightField levelField(const host::TomlTable& file, const SizeChecks& chec
     return {columns, rows, width / columns};
 }
 
-std::int32_t heightUnits(const host::TomlTable& terrain, const std::string& key, double height, double unit) {
+std::int32_t heightUnits(const host::TomlTable& terrain, const std::string& key, double height, double unit,
+                         const char* advice = "set 'datum'") {
     const double units = std::floor(height / unit + 0.5);
     if (!(std::abs(units) <= sand::kMaxHeight)) {
-        terrain.fail(key, fmt::format("a height of {} is beyond the range of ±{} (4096 cells); set 'datum'", height,
-                                      sand::kMaxHeight * unit));
+        terrain.fail(key, fmt::format("a height of {} is beyond the range of ±{} (4096 cells); {}", height,
+                                      sand::kMaxHeight * unit, advice));
     }
     return static_cast<std::int32_t>(units);
 }
@@ -94,6 +96,7 @@ sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable&
                              std::shared_ptr<sand::Ground>& ground, const SizeChecks& checks) {
     AskedBeforeHeights asked(file, terrain, checks);
     const TerrainSource source = readSource(file, terrain, kind, std::ref(asked));
+    scene.warnings.insert(scene.warnings.end(), source.warnings.begin(), source.warnings.end());
     if (!source.points.empty()) {
         if (!file.has("tin")) {
             terrain.fail("kind",
@@ -118,9 +121,12 @@ sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable&
         }
     };
     const std::string key = terrain.has("file") ? "file" : "z";
+    const auto adviceFor = [&](double height) {
+        return isUsualNoData(height) ? "declare it as no data, or set 'datum'" : "set 'datum'";
+    };
     forEachCell([&](int column, int row, double height) {
         if (!std::isnan(height)) {
-            const std::int32_t units = heightUnits(terrain, key, height - datum, field.unit());
+            const std::int32_t units = heightUnits(terrain, key, height - datum, field.unit(), adviceFor(height));
             field.setHeight(column, row, units);
             lowest = std::min(lowest, units);
         }
@@ -176,7 +182,7 @@ void layRock(const host::TomlTable& terrain, const std::string& key, const sand:
 }
 
 void readBedrock(const host::TomlTable& terrain, const sand::HeightField& field, const SizeChecks& checks,
-                 std::shared_ptr<sand::Ground>& ground) {
+                 std::shared_ptr<sand::Ground>& ground, std::vector<std::string>& warnings) {
     if (terrain.has("layer") && terrain.has("bedrock")) {
         terrain.fail("bedrock", "give 'layer' or 'bedrock', not both: either says where the rock lies");
     }
@@ -192,6 +198,7 @@ void readBedrock(const host::TomlTable& terrain, const sand::HeightField& field,
             }
         };
         const EsriGrid rock = readRaster(terrain.folder() / terrain.text("bedrock"), false, check);
+        warnings.insert(warnings.end(), rock.warnings.begin(), rock.warnings.end());
         if (rock.columns != field.columns() || rock.rows != field.rows()) {
             terrain.fail("bedrock",
                          fmt::format("the rock has {} x {} cells, the terrain {} x {}: they must be the same",
@@ -221,7 +228,7 @@ bool readTerrain(const host::TomlTable& file, Scene& scene, const SizeChecks& ch
     std::shared_ptr<sand::Ground> ground;
     scene.terrain = kind < 2 ? madeUp(file, terrain, kind == 1, checks)
                              : fromSource(file, terrain, kind - 2, scene, ground, checks);
-    readBedrock(terrain, scene.terrain, checks, ground);
+    readBedrock(terrain, scene.terrain, checks, ground, scene.warnings);
     const bool settle = terrain.flagOr("settle", false);
     terrain.finish();
     if (scene.tin == nullptr) {

@@ -11,6 +11,8 @@
 #include "sand/model/height_field.hpp"
 #include "scene/import/gsf_file.hpp"
 #include "scene/import/importer.hpp"
+#include "scene/import/no_data.hpp"
+#include "scene/import/raster_file.hpp"
 
 namespace scene {
 namespace {
@@ -26,7 +28,9 @@ const Importer& importerFor(const host::TomlTable& terrain) {
 }
 
 EsriGrid readDem(const host::TomlTable& terrain, const RasterCheck& check) {
-    return importerFor(terrain).readDem(fileOf(terrain), check);
+    const Importer& importer = importerFor(terrain);
+    const std::filesystem::path file = fileOf(terrain);
+    return holdsEsriGrid(file) ? readTextWithUnits(file, importer, check) : readByGdal(file, importer, check);
 }
 
 EsriGrid readImage(const host::TomlTable& terrain, const RasterCheck& check) {
@@ -156,6 +160,8 @@ TerrainSource readSource(const host::TomlTable& file, const host::TomlTable& ter
     }
     TerrainSource source = readKind(file, terrain, kind, check);
     source.georeference.units = source.raster.units;
+    source.warnings =
+        source.points.empty() ? source.raster.warnings : undeclaredNoData(source.points, fileOf(terrain).string());
     source.georeference.datum = terrain.numberOr("datum", 0);
     return source;
 }

@@ -2,6 +2,7 @@
 // Private to this folder.
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -15,9 +16,10 @@ namespace scene {
 
 /// Heights from outside, as a scene names them: on a raster, or at points.
 struct TerrainSource {
-    EsriGrid raster{};            // cells, corner and heights in scene units, the datum not yet taken off
-    Points points{};              // in scene units, likewise; empty where there is a raster
-    Georeference georeference{};  // but for the corner: referenceAt()
+    EsriGrid raster{};                    // cells, corner and heights in scene units, the datum not yet taken off
+    Points points{};                      // in scene units, likewise; empty where there is a raster
+    Georeference georeference{};          // but for the corner: referenceAt()
+    std::vector<std::string> warnings{};  // one line each
 
     /// The georeference of a field whose south-west corner is that of `part`, a part of the raster.
     [[nodiscard]] Georeference referenceAt(const EsriGrid& part) const;

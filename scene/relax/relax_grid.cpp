@@ -133,7 +133,12 @@ void relaxGrid(const Options& options) {
     GridSand sand =
         toSand(grid, bedrock ? &*bedrock : nullptr, {options.talus, options.band, schemeOf(options.scheme)});
     { const host::WholeFile canBeWritten(options.out); }  // hours later would be too late to find out
-    for (const std::string& warning : sand.warnings) {
+    std::vector<std::string> warnings = grid.warnings;
+    if (bedrock) {
+        warnings.insert(warnings.end(), bedrock->warnings.begin(), bedrock->warnings.end());
+    }
+    warnings.insert(warnings.end(), sand.warnings.begin(), sand.warnings.end());
+    for (const std::string& warning : warnings) {
         host::printLine("warning: {}", warning);
     }
     const std::int64_t volumeBefore = sand.volume();

@@ -13,6 +13,7 @@
 #include "sand/tin/flow/erosion.hpp"
 #include "sand/tin/flow/settle.hpp"
 #include "sand/tin/tile_hash.hpp"
+#include "scene/import/no_data.hpp"
 #include "scene/import/raster_file.hpp"
 #include "scene/import/raster_memory.hpp"
 #include "scene/relax/options.hpp"
@@ -87,15 +88,21 @@ nlohmann::ordered_json reportOf(const TinSand& sand, const Options& options, con
 void relaxTin(const Options& options) {
     const TalusSettings material{options.talus, options.band};
     std::optional<Thinned> thinned;
-    if (!holdsPoints(options.in)) {
-        thinned =
-            thin(withoutEmptyEdges(readRaster(options.in, true, fitsMemory(options.in, host::freeMemoryOfProcess()))),
-                 {options.maxError.value_or(0), options.vertices.value_or(kMostVertices)});
+    Points points;
+    std::vector<std::string> warnings;
+    if (holdsPoints(options.in)) {
+        points = readPoints(options.in);
+        warnings = undeclaredNoData(points, options.in);
+    } else {
+        const EsriGrid raster =
+            withoutEmptyEdges(readRaster(options.in, true, fitsMemory(options.in, host::freeMemoryOfProcess())));
+        warnings = raster.warnings;
+        thinned = thin(raster, {options.maxError.value_or(0), options.vertices.value_or(kMostVertices)});
     }
-    TinSand sand =
-        thinned ? toTin(*thinned, options.in, material) : toTin(readPoints(options.in), options.in, material);
+    TinSand sand = thinned ? toTin(*thinned, options.in, material) : toTin(points, options.in, material);
     { const host::WholeFile canBeWritten(options.out); }  // hours later would be too late to find out
-    for (const std::string& warning : sand.warnings) {
+    warnings.insert(warnings.end(), sand.warnings.begin(), sand.warnings.end());
+    for (const std::string& warning : warnings) {
         host::printLine("warning: {}", warning);
     }
     const std::int64_t volumeBefore = sand.volume();

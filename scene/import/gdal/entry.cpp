@@ -40,6 +40,14 @@ void setPlace(const GdalRaster& raster, EsriGrid& grid) {
     if (std::abs(std::abs(depth) - width) > kSquare * width) {
         grid.cellDepth = std::abs(depth);
     }
+    // Some programs write this where they know no place, and GDAL hands it out as one.
+    const bool atOrigin = west == 0 && (grid.southEdge == 0 || north == 0);
+    if (grid.units.crs.empty() && width == 1 && std::abs(depth) == 1 && atOrigin) {
+        grid.warnings.push_back(fmt::format(
+            "{}: has no coordinate system, and cells of 1 x 1 at (0, 0), as if it had no georeferencing; slopes are "
+            "wrong if its cells have another size: gdal_edit.py -a_ullr WEST NORTH EAST SOUTH {}",
+            grid.file, std::filesystem::path(grid.file).filename().string()));
+    }
     if (depth > 0) {  // the first row is the southernmost
         for (int row = 0; row < grid.rows / 2; ++row) {
             const auto columns = static_cast<std::ptrdiff_t>(grid.columns);

@@ -18,12 +18,14 @@ namespace {
 namespace fs = std::filesystem;
 
 // Formats that hold their numbers themselves. Left out is what fetches from a network, refers to other files (VRT and
-// its like can name servers, and programs in Python), or needs a database.
+// its like can name servers, and programs in Python), or needs a database. Left out as well are texts in which
+// GDAL 3.6.2 takes a word for the height 0: GRASSASCIIGrid, XYZ, ZMap and GXF. AAIGrid stays for the units beside an
+// ESRI ASCII grid, whose heights our own reader takes.
 constexpr const char* kDrivers[] = {
-    "GTiff",  "AAIGrid",  "GRASSASCIIGrid", "SRTMHGT",  "PNG",  "JPEG", "JP2OpenJPEG", "BMP",   "HFA",      "EHdr",
-    "ENVI",   "DTED",     "USGSDEM",        "SDTS",     "GSAG", "GSBG", "GS7BG",       "ERS",   "RST",      "SAGA",
-    "ZMap",   "PCRaster", "Terragen",       "Leveller", "BT",   "GXF",  "SIGDEM",      "RMF",   "NGSGEOID", "KRO",
-    "netCDF", "NITF",     "ROI_PAC",        "ILWIS",    "FIT",  "HF2",  "XYZ",         nullptr,
+    "GTiff",  "AAIGrid",  "SRTMHGT",  "PNG",      "JPEG", "JP2OpenJPEG", "BMP",   "HFA",      "EHdr",
+    "ENVI",   "DTED",     "USGSDEM",  "SDTS",     "GSAG", "GSBG",        "GS7BG", "ERS",      "RST",
+    "SAGA",   "PCRaster", "Terragen", "Leveller", "BT",   "SIGDEM",      "RMF",   "NGSGEOID", "KRO",
+    "netCDF", "NITF",     "ROI_PAC",  "ILWIS",    "FIT",  "HF2",         nullptr,
 };
 
 fs::path checked(const fs::path& file) {

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/import/no_data.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace scene {
+namespace {
+
+// ESRI's and GDAL's default, elevation tiles of 16 bits, and what some surveys use.
+constexpr std::array<double, 3> kUsual{-9999, -32768, -99999};
+
+/// A height that was divided by a unit and multiplied again is off by two roundings at most.
+bool isNumber(double height, double number) { return std::abs(height - number) <= 1e-15 * std::abs(number); }
+
+std::string warning(const std::string& file, std::ptrdiff_t count, const char* what, double number,
+                    const std::string& how) {
+    return fmt::format("{}: {} {}{} the height {}, which usually means no data and is taken for a height here; {}",
+                       file, count, what, count == 1 ? " has" : "s have", number,
+                       fmt::format(fmt::runtime(how), number));
+}
+
+}  // namespace
+
+bool isUsualNoData(double number) {
+    return std::any_of(kUsual.begin(), kUsual.end(), [&](double usual) { return isNumber(number, usual); });
+}
+
+std::vector<std::string> undeclaredNoData(const EsriGrid& grid, const std::string& how) {
+    std::vector<std::string> warnings;
+    for (const double number : kUsual) {
+        const auto count = std::count_if(grid.heights.begin(), grid.heights.end(), [&](double height) {
+            return isNumber(height * grid.units.heightsPerLength, number);
+        });
+        if (count > 0) {
+            warnings.push_back(warning(grid.file, count, "cell", number, how));
+        }
+    }
+    return warnings;
+}
+
+std::vector<std::string> undeclaredNoData(const Points& points, const std::string& file) {
+    std::vector<std::string> warnings;
+    for (const double number : kUsual) {
+        const auto count =
+            std::count_if(points.begin(), points.end(), [&](const auto& point) { return isNumber(point[2], number); });
+        if (count > 0) {
+            warnings.push_back(warning(file, count, "point", number, "leave such lines out if it does"));
+        }
+    }
+    return warnings;
+}
+
+}  // namespace scene

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/import/esri_grid.hpp"
+#include "scene/import/points_file.hpp"
+
+namespace scene {
+
+/// Returns whether many programs mean "no data" by this number, such as -9999.
+[[nodiscard]] bool isUsualNoData(double number);
+
+/// Returns a warning for each such number that a raster has as a height, because it does not declare it: the file, the
+/// number, how many cells, and `how` to declare it, in which {0} stands for the number.
+[[nodiscard]] std::vector<std::string> undeclaredNoData(const EsriGrid& grid, const std::string& how);
+/// Returns a warning for each such number among the heights of points from `file`.
+[[nodiscard]] std::vector<std::string> undeclaredNoData(const Points& points, const std::string& file);
+
+}  // namespace scene
