@@ -47,11 +47,12 @@ sand::Ground& groundOf(std::shared_ptr<sand::Ground>& ground, const sand::Height
     return *ground;
 }
 
-void requireSquareCells(const host::TomlTable& terrain, const EsriGrid& raster) {
+/// `kind` is that of the terrain: GDAL has no driver for Gwyddion's files.
+void requireSquareCells(const host::TomlTable& terrain, std::string_view kind, const EsriGrid& raster) {
     if (raster.aspect() != 1) {
-        const std::string advice =
-            raster.lines.empty() ? fmt::format("; resample it: gdalwarp -tr {0} {0} -r bilinear", raster.cellSize) : "";
-        terrain.fail("file", fmt::format("{} has cells of {} x {}; a scene's are square{}", raster.file,
+        const std::string advice = kind == "gsf" ? " in Gwyddion: Data Process > Basic Operations > Resample"
+                                                 : fmt::format(": gdalwarp -tr {0} {0} -r bilinear", raster.cellSize);
+        terrain.fail("file", fmt::format("{} has cells of {} x {}; a scene's are square; resample it{}", raster.file,
                                          raster.cellSize, *raster.cellDepth, advice));
     }
 }
@@ -105,7 +106,7 @@ sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable&
         }
         return layOutPoints(file, terrain, source.points, scene);
     }
-    requireSquareCells(terrain, source.raster);
+    requireSquareCells(terrain, sourceKinds().at(static_cast<std::size_t>(kind)), source.raster);
     // A grid of rock has the same cells, those at the edges too.
     const EsriGrid grid = terrain.has("bedrock") ? source.raster : withoutEmptyEdges(source.raster);
     scene.georeference = source.referenceAt(grid);

@@ -178,7 +178,8 @@ TEST_F(SceneFile, EsriGridErrorsNameTheGridsLine) {
     };
     EXPECT_EQ(complaintOf("ncols 2\nnrows 2\ncellsize 1\n1 2\n3\n"), "t.asc:6: the file ends where a height should be");
     EXPECT_EQ(complaintOf("ncols 1\nnrows 1\ndx 2\ndy 3\n1\n"),
-              "s.toml:3: " + (folder_ / "t.asc").string() + " has cells of 2 x 3; a scene's are square");
+              "s.toml:3: " + (folder_ / "t.asc").string() +
+                  " has cells of 2 x 3; a scene's are square; resample it: gdalwarp -tr 2 2 -r bilinear");
     EXPECT_EQ(complaintOf("nodata_value -1\nncols 1\nnrows 1\ncellsize 1\n-1\n"),
               "t.asc: every cell is a no-data cell; there is no terrain in it");
     EXPECT_EQ(complaintOf("depth 3\n"), "t.asc:1: 'depth' is no key of an ESRI ASCII grid");

@@ -79,7 +79,10 @@ TEST_F(Import, ScansThatAreNoneSayWhy) {
               "s.toml:3: t.gsf is too small or too large for heights to be scaled; its XReal is in metres");
     EXPECT_EQ(refusal(kScan + "exaggeration = 1e-302\nwidth = 1e-20\n"),
               "s.toml:3: t.gsf is too small or too large for heights to be scaled; its XReal is in metres");
-    EXPECT_EQ(refused(scan(kHeader + "YReal = 4e-07\n", four)).rfind("s.toml:3: t.gsf has cells of 1 x 2", 0), 0U);
+    EXPECT_EQ(refused(scan(kHeader + "YReal = 4e-07\n", four)),
+              "s.toml:3: t.gsf has cells of 1 x 2; a scene's are square; resample it in Gwyddion: Data Process > Basic "
+              "Operations > Resample")
+        << "no tool of GDAL's opens it";
 }
 
 }  // namespace
