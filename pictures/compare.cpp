@@ -67,6 +67,27 @@ Comparison compare(const Image& a, const Image& b, int limit) {
     return result;
 }
 
+std::array<double, kChannels> meanDifference(const Image& a, const Image& b, const Mask& where) {
+    if (a.width != b.width || a.height != b.height || where.size() != a.pixels()) {
+        throw std::invalid_argument(fmt::format("pictures of {}x{} and {}x{} pixels with a mask of {}", a.width,
+                                                a.height, b.width, b.height, where.size()));
+    }
+    std::array<std::int64_t, kChannels> sums{};
+    std::int64_t count = 0;
+    for (std::size_t pixel = 0; pixel < where.size(); ++pixel) {
+        for (std::size_t channel = 0; channel < kChannels && where[pixel] != 0; ++channel) {
+            const std::size_t at = pixel * kChannels + channel;
+            sums.at(channel) += int{b.rgb[at]} - int{a.rgb[at]};
+        }
+        count += where[pixel] != 0 ? 1 : 0;
+    }
+    std::array<double, kChannels> means{};
+    for (std::size_t channel = 0; channel < kChannels && count > 0; ++channel) {
+        means.at(channel) = static_cast<double>(sums.at(channel)) / static_cast<double>(count);
+    }
+    return means;
+}
+
 Image differenceImage(const Image& reference, const Comparison& comparison) {
     Image image = reference;
     for (std::size_t pixel = 0; pixel < image.pixels(); ++pixel) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -21,6 +22,10 @@ struct Comparison {
 
 /// Throws base::InputError when the sizes differ.
 [[nodiscard]] Comparison compare(const Image& a, const Image& b, int limit /* [level] */);
+
+/// Returns by how much `b` is brighter than `a` in each channel, as a mean over the pixels of `where` [level]; zeros if
+/// there are none. Throws std::invalid_argument when the sizes differ.
+[[nodiscard]] std::array<double, kChannels> meanDifference(const Image& a, const Image& b, const Mask& where);
 
 /// For a person: `reference` dimmed to a quarter, the bad pixels bright red.
 [[nodiscard]] Image differenceImage(const Image& reference, const Comparison& comparison);

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <random>
+#include <stdexcept>
 #include <string>
 
 #include "base/input_error.hpp"
@@ -53,6 +55,26 @@ TEST(Compare, FindsNoDifferenceBetweenAPictureAndItself) {
 
 TEST(Compare, RefusesPicturesOfDifferentSizes) {
     EXPECT_THROW((void)compare(Image(3, 4), Image(4, 3), 8), base::InputError);
+}
+
+TEST(Compare, TellsByHowMuchAPictureIsBrighterInTheMean) {
+    const Image a = square();
+    Image b = a;
+    Mask ground(a.pixels(), 1);  // all but the square's 100 pixels
+    for (int y = 10; y < 20; ++y) {
+        for (int x = 10; x < 20; ++x) {
+            ground[static_cast<std::size_t>(y * 30 + x)] = 0;
+            b.at(x, y)[1] = 250;
+        }
+    }
+    b.at(3, 4)[0] = 40 + 80;
+    b.at(5, 6)[2] = 40 - 40;
+    using Means = std::array<double, kChannels>;
+    EXPECT_EQ(meanDifference(a, b, ground), (Means{80.0 / 800, 0, -40.0 / 800}));
+    EXPECT_EQ(meanDifference(a, b, Mask(a.pixels(), 1)), (Means{80.0 / 900, 50.0 * 100 / 900, -40.0 / 900}));
+    EXPECT_EQ(meanDifference(a, b, Mask(a.pixels(), 0)), Means{});
+    EXPECT_THROW((void)meanDifference(a, Image(30, 29), ground), std::invalid_argument);
+    EXPECT_THROW((void)meanDifference(a, b, Mask(a.pixels() - 1, 1)), std::invalid_argument);
 }
 
 TEST(Silhouettes, AreTheEdgeOfTheSquareTwoPixelsToEitherSide) {

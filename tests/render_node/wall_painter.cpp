@@ -2,7 +2,12 @@
 #include "tests/render_node/wall_painter.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
 
+#include "pictures/stereo_packing.hpp"
 #include "scene/scene.hpp"
 
 namespace sample {
@@ -26,6 +31,44 @@ walls::Wall ofBuffers(walls::Wall wall) {
     return wall;
 }
 
+/// Where the line from the sun through the ball's centre meets the sand.
+glm::dvec3 shadowOf(const Ball& ball) {
+    const glm::dvec3 step = glm::normalize(ball.sun) * (0.1 * ball.radius);
+    glm::dvec3 place = ball.centre;
+    while (place.z > ball.groundAt(glm::dvec2(place))) {
+        place -= step;
+    }
+    return place;
+}
+
+/// White in the box around the ball and its shadow as one eye sees them through one tile, black elsewhere. A tile sees
+/// nothing of what begins behind the eye; a box that begins before it and ends behind it would be the whole tile.
+Image boxOf(const Ball& ball, const glm::dmat4& sceneToClip, glm::ivec2 pixels) {
+    // In radii: the ball dims sand up to 1.8 of them (docs/look.md). A shadow on level sand is an ellipse, longer by
+    // the sine of the sun's height: 1.48 radii to either side under this sun, and 0.2 of penumbra.
+    constexpr double kReach = 2;
+    glm::dvec2 low(std::numeric_limits<double>::max()), high(-low);
+    for (const glm::dvec3& centre : {ball.centre, shadowOf(ball)}) {
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::dvec3 side(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+            const glm::dvec4 clip = sceneToClip * glm::dvec4(centre + kReach * ball.radius * (2.0 * side - 1.0), 1);
+            if (clip.w > 0) {
+                const glm::dvec2 at = (glm::dvec2(clip.x, -clip.y) / clip.w + 1.0) / 2.0 * glm::dvec2(pixels);
+                low = glm::min(low, at);
+                high = glm::max(high, at);
+            }
+        }
+    }
+    Image box(pixels.x, pixels.y);
+    const glm::ivec2 from = glm::clamp(glm::floor(low), glm::dvec2(0), glm::dvec2(pixels));
+    const glm::ivec2 to = glm::clamp(glm::ceil(high), glm::dvec2(0), glm::dvec2(pixels));
+    for (int y = from.y; y < to.y && from.x < to.x; ++y) {
+        std::fill_n(box.at(from.x, y), static_cast<std::ptrdiff_t>(to.x - from.x) * pictures::kChannels,
+                    std::uint8_t{255});
+    }
+    return box;
+}
+
 }  // namespace
 
 std::vector<std::string> wallNames() {
@@ -34,6 +77,10 @@ std::vector<std::string> wallNames() {
         if (entry.path().extension() == ".toml") {
             names.push_back(entry.path().stem().string());
         }
+    }
+    if (names.empty()) {
+        throw std::runtime_error("no wall file in " + wallFolder().string() +
+                                 ": a test of all of them would test nothing");
     }
     std::sort(names.begin(), names.end());
     return names;
@@ -134,6 +181,43 @@ Image wallPicture(render_node::ScenePainter& sand, const walls::Wall& wall) {
         outputs.push_back(outputsOf(sand, wall, tile));
     }
     return wallOfOutputs(wall, outputs);
+}
+
+Ball ballOf(const DugScene& dug) {
+    const double cell = dug.scene.terrain.cellSize();
+    const sand::ProbePoint probe = dug.terrain.probe();
+    const std::vector<double>& sun = dug.scene.look.sunDirection;
+    const sand::HeightField* field = &dug.terrain.field();
+    return {glm::dvec3(probe.x, probe.y, probe.z) * (cell / sand::kProbePerCell),
+            dug.scene.rules.toolRadius * (cell / sand::kProbePerCell),
+            {sun[0], sun[1], sun[2]},
+            [field, cell](const glm::dvec2& place) {
+                const glm::ivec2 last(field->columns() - 1, field->rows() - 1);
+                const glm::ivec2 at = glm::clamp(glm::ivec2(glm::floor(place / cell)), glm::ivec2(0), last);
+                return field->height(at.x, at.y) * cell / sand::kUnitsPerCell;
+            }};
+}
+
+pictures::Mask partOfBall(const Ball& ball, const glm::dmat4& sceneToRoom, const walls::Wall& wall) {
+    std::vector<std::vector<Image>> outputs;
+    for (const walls::Tile& tile : wall.tiles) {
+        std::vector<Image> eyes;
+        for (const walls::Eye eye : walls::eyesOf(wall.stereo)) {
+            eyes.push_back(boxOf(ball, cameraOf(wall, tile.screen, eye).roomToClip * sceneToRoom, tile.pixels));
+        }
+        if (walls::packsEyes(wall.stereo)) {
+            eyes = {pictures::packStereo(wall.stereo, eyes[0], eyes[1])};
+        }
+        outputs.push_back(std::move(eyes));
+    }
+    const Image boxes = wallOfOutputs(wall, outputs);
+    pictures::Mask mask(boxes.pixels(), 0);
+    for (std::size_t i = 0; i < boxes.rgb.size(); ++i) {
+        if (boxes.rgb[i] != 0) {
+            mask[i / pictures::kChannels] = 1;
+        }
+    }
+    return mask;
 }
 
 Image patternOfWall(const walls::Wall& wall, lockstep::Pattern pattern, walls::Eye eye, std::uint64_t frame) {

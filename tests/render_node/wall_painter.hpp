@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "pictures/compare.hpp"
 #include "pictures/image.hpp"
 #include "render_node/overlay/test_pattern.hpp"
 #include "render_node/scene_painter.hpp"
@@ -39,7 +41,7 @@ private:
 
 inline std::filesystem::path wallFolder() { return std::filesystem::path(SANDWALL_SOURCE_DIR) / "walls/configs"; }
 
-/// The files of walls/configs, in the order of their names.
+/// The files of walls/configs, in the order of their names. Throws if there is none.
 [[nodiscard]] std::vector<std::string> wallNames();
 
 /// The same display with each side of a tile `by` times shorter in pixels, at least one.
@@ -69,6 +71,19 @@ inline std::filesystem::path wallFolder() { return std::filesystem::path(SANDWAL
 
 /// All that the wall shows of the sand.
 [[nodiscard]] Image wallPicture(render_node::ScenePainter& sand, const walls::Wall& wall);
+
+/// A ball over or in sand, in the scene's axes [scene unit].
+struct Ball {
+    glm::dvec3 centre;
+    double radius;
+    glm::dvec3 sun;                                     // the direction towards it
+    std::function<double(const glm::dvec2&)> groundAt;  // height of the sand at a place
+};
+[[nodiscard]] Ball ballOf(const DugScene& dug);
+
+/// Returns which pixels of a picture of all outputs (wallOfOutputs) may show the ball, its shadow, or sand that it
+/// dims: a box for every tile and eye, from the geometry alone.
+[[nodiscard]] pictures::Mask partOfBall(const Ball& ball, const glm::dmat4& sceneToRoom, const walls::Wall& wall);
 
 /// Every tile's pattern for one eye, put together.
 [[nodiscard]] Image patternOfWall(const walls::Wall& wall, lockstep::Pattern pattern, walls::Eye eye,

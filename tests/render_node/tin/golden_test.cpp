@@ -59,7 +59,15 @@ TEST_F(GoldenTin, GisIsWrittenAcrossTheWall) {
         sample::smallWall(walls::loadWall(sample::wallFolder() / "tiled_3x4.toml"), golden::kMostPixels);
     render_node::ScenePainter view(scene, *terrain.tinView(), sample::sceneToRoom(wall, scene));
     view.setTool(terrain.probe(), false);
-    golden::expect("golden_tin", "gis", sample::wallPicture(view, wall));
+    const double unit = terrain.cellSize() / kProbePerCell, ground = scene.referenceHeight() * scene.terrain.unit();
+    const sand::ProbePoint probe = terrain.probe();
+    const std::vector<double>& sun = scene.look.sunDirection;
+    const sample::Ball ball{glm::dvec3(probe.x, probe.y, probe.z) * unit,
+                            scene.rules.toolRadius * unit,
+                            {sun[0], sun[1], sun[2]},
+                            [ground](const glm::dvec2&) { return ground; }};
+    golden::expect(golden::folder("golden_tin"), "gis", sample::wallPicture(view, wall),
+                   sample::partOfBall(ball, sample::sceneToRoom(wall, scene), wall));
 }
 
 /// A stamp of half this length pressed into the sand, its length turned so far, and taken away again.
@@ -97,7 +105,7 @@ TEST_F(GoldenTin, ThreeEllipsesAreImprintedAndTheirBordersMarked) {
         view.draw(camera, target);
         pictures::blit(both, sample::pictureOf(target), wires ? target.width() : 0, 0);
     }
-    golden::expect("golden_tin", "ellipses", both);
+    golden::expect(golden::folder("golden_tin"), "ellipses", both);
 }
 
 }  // namespace
