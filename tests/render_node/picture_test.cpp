@@ -114,7 +114,6 @@ TEST_F(Picture, KeepsNoTraceOfTheOneBefore) {
 TEST_F(Picture, ShowsTheToolTrueToSize) {
     const scene::Scene scene = sample::flatScene(128, 128, 0.05);
     ScenePainter view(scene, glm::dmat4(1));
-    const Pixels without = sample::draw(view, above_, target_);
     view.setTool(sample::probeAt(scene, {1, 1, 0.5}), true);
     const Pixels with = sample::draw(view, above_, target_);
     int red = 0;
@@ -127,8 +126,44 @@ TEST_F(Picture, ShowsTheToolTrueToSize) {
     // Seen from 1 m with 400 pixels to a metre there: a disc of 20 pixels radius, tangents r/√(d² − r²).
     const double radius = 0.05 / std::sqrt(1 - 0.05 * 0.05) * 400;
     EXPECT_NEAR(red, 3.14159 * radius * radius, 0.12 * 3.14159 * radius * radius);
-    // Its shadow falls away from the sun, to the east and south of it.
-    EXPECT_FALSE(with == without);
+}
+
+/// The middle of what is darker in `with` than in `without`, weighted by how much darker it is [pixel]. The red pixels
+/// of the ball itself do not count.
+glm::dvec2 middleOfShadow(const Pixels& without, const Pixels& with) {
+    glm::dvec2 sum(0);
+    double weight = 0;
+    for (int y = 0; y < kHeight; ++y) {
+        for (int x = 0; x < kWidth; ++x) {
+            const glm::ivec3 seen = sample::pixel(with, kWidth, x, y);
+            const int darker = sample::pixel(without, kWidth, x, y).g - seen.g;
+            if (darker > 0 && seen.r < 2 * seen.g) {
+                sum += double(darker) * glm::dvec2(x + 0.5, y + 0.5);
+                weight += darker;
+            }
+        }
+    }
+    EXPECT_GT(weight, 10'000) << "no shadow";
+    return sum / weight;
+}
+
+TEST_F(Picture, ToolsShadowFallsAwayFromTheSun) {
+    constexpr double kHigh = 0.3, kPixel = 1.5 / kWidth;  // [m]: of the ball over the sand; what a pixel of sand spans
+    for (const glm::dvec3 sun : {glm::dvec3(-0.55, 0.35, 0.6), {0.5, 0.3, 0.8}, {0.1, -0.6, 0.8}, {-0.5, -0.4, 0.8}}) {
+        scene::Scene scene = sample::flatScene(128, 128, 0.05);
+        scene.look.sunDirection = {sun.x, sun.y, sun.z};
+        ScenePainter view(scene, glm::dmat4(1));
+        const Pixels without = sample::draw(view, above_, target_);
+        view.setTool(sample::probeAt(scene, {1, 1, kHigh}), true);
+        // The line from the sun through the ball's middle meets the level sand here; north is up in the picture.
+        const glm::dvec2 away = glm::dvec2(sun) * (-kHigh / sun.z / kPixel);
+        const glm::dvec2 expected(kWidth / 2.0 + away.x, kHeight / 2.0 - away.y);
+        const glm::dvec2 middle = middleOfShadow(without, sample::draw(view, above_, target_));
+        // The far half of the shadow is paler (docs/look.md): at half of its length, 21 pixels, by an eighth. That
+        // draws its middle nearer by a quarter of their product, 0.7 pixels.
+        EXPECT_LT(glm::distance(middle, expected), 1)
+            << middle.x << ", " << middle.y << " instead of " << expected.x << ", " << expected.y;
+    }
 }
 
 TEST_F(Picture, OfEveryFieldSizeIsDrawn) {
