@@ -45,6 +45,7 @@ TEST(Displays, PartTheEyesByTheFormula) {
 }
 
 TEST(Displays, ShowInMonoTheMiddleBetweenTheEyes) {
+    int compared = 0;
     for (const std::string& name : configNames()) {
         const Wall wall = config(name);
         const Wall mono = shownIn(wall, Stereo::mono);
@@ -56,12 +57,14 @@ TEST(Displays, ShowInMonoTheMiddleBetweenTheEyes) {
             const View left = viewFrom(wall, tile, Eye::left), right = viewFrom(wall, tile, Eye::right);
             const View middle = viewFrom(mono, mono.tiles[static_cast<std::size_t>(tile.rank - 1)], Eye::middle);
             if (std::abs(glm::dot(wall.viewer.right, tile.screen.normal())) < 1e-12) {
+                ++compared;
                 EXPECT_NEAR(middle.left, (left.left + right.left) / 2, 1e-12) << name << " " << tile.name;
                 EXPECT_NEAR(middle.right, (left.right + right.right) / 2, 1e-12) << name << " " << tile.name;
                 EXPECT_NEAR(middle.top, left.top, 1e-12) << name << " " << tile.name;
             }
         }
     }
+    EXPECT_EQ(compared, 12 + 2 + 12) << "the tiled wall, the CAVE's front and floor, and twelve walls of one screen";
 }
 
 TEST(Displays, LeadAStraightLineStraightAcrossABezel) {
@@ -69,6 +72,7 @@ TEST(Displays, LeadAStraightLineStraightAcrossABezel) {
     // line of the wall's plane, whatever the bezel hides.
     const Wall wall = config("tiled_3x4.toml");
     const glm::dvec3 from(-1.9, 0.5, 0.4), to(1.8, 2.3, -3.0);
+    int bezels = 0;
     for (const Eye eye : eyesOf(wall.stereo)) {
         for (const Tile& tile : wall.tiles) {
             for (const std::size_t next :
@@ -76,6 +80,7 @@ TEST(Displays, LeadAStraightLineStraightAcrossABezel) {
                 if (next >= wall.tiles.size() || (next == static_cast<std::size_t>(tile.rank) && tile.column == 4)) {
                     continue;
                 }
+                ++bezels;
                 const Tile& other = wall.tiles[next];
                 const auto shown = [&](const Tile& by, double along) {
                     return shownAt(by.screen, viewFrom(wall, by, eye), glm::mix(from, to, along));
@@ -90,6 +95,7 @@ TEST(Displays, LeadAStraightLineStraightAcrossABezel) {
             }
         }
     }
+    EXPECT_EQ(bezels, 2 * (3 * 3 + 2 * 4)) << "of two eyes";
 }
 
 TEST(Displays, OfTheCaveShareThePixelsOfTheirEdges) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -16,13 +17,17 @@ namespace walls {
 inline std::filesystem::path configFolder() { return std::filesystem::path(SANDWALL_SOURCE_DIR) / "walls/configs"; }
 inline Wall config(const std::string& name) { return loadWall(configFolder() / name); }
 
-/// Every sample of the project, by name.
+/// Every sample of the project, by name. Throws if there is none.
 inline std::vector<std::string> configNames() {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(configFolder())) {
         if (entry.path().extension() == ".toml") {
             names.push_back(entry.path().filename().string());
         }
+    }
+    if (names.empty()) {
+        throw std::runtime_error("no wall file in " + configFolder().string() +
+                                 ": a test of all of them would test nothing");
     }
     std::sort(names.begin(), names.end());
     return names;

@@ -90,6 +90,7 @@ TEST(ShownIn, GivesEveryTileTheOutputsOfTheMode) {
         const auto stereo = static_cast<Stereo>(mode);
         const Wall wall = shownIn(config("tiled_3x4.toml"), stereo);
         EXPECT_EQ(wall.stereo, stereo);
+        ASSERT_EQ(wall.tiles.size(), 12U);
         for (const Tile& tile : wall.tiles) {
             EXPECT_EQ(tile.outputs, outputsOf(stereo, tile.name)) << stereoName(stereo);
             EXPECT_EQ(tile.pixels, glm::ivec2(1024, 768));

@@ -51,6 +51,7 @@ TEST(WallPlace, PutsWindowsAtPixels) {
 
 TEST(WallPlace, OfAllMeansEveryTile) {
     const Wall wall = parseWall(wallWith("mono", "[[place]]\ntiles = \"all\"\nhost = \"one\"\n"), "lab.toml");
+    ASSERT_EQ(wall.tiles.size(), 5U);
     for (const Tile& tile : wall.tiles) {
         EXPECT_EQ(tile.place.host, "one") << tile.name;
     }

@@ -131,6 +131,7 @@ TEST_F(PatternOfAWall, CirclesCrossBezelsRound) {
 }
 
 TEST_F(PatternOfAWall, GridHasAWhiteRimOnEveryTile) {
+    ASSERT_EQ(wall_.tiles.size(), 12U);
     for (const walls::Tile& tile : wall_.tiles) {
         const Image image = draw(tile, Pattern::grid, Eye::right);
         for (int y = 0; y < image.height; ++y) {
@@ -163,6 +164,7 @@ TEST_F(PatternOfAWall, TellsEveryTileAndEyeApart) {
             seen.push_back(image);
         }
     }
+    EXPECT_EQ(seen.size(), 12U * 3);
 }
 
 TEST_F(PatternOfAWall, ShowsEachEyeItsOwnLetterInItsOwnColourAndHalf) {

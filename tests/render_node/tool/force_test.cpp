@@ -105,6 +105,7 @@ TEST_F(Arrow, LeavesTheSandAlone) {
 }
 
 TEST_F(Arrow, LiesWithinItsBox) {
+    int vertices = 0;
     for (const glm::vec3 to :
          {glm::vec3(0.1F, 0, 0.001F), {0, 0, 0.3F}, {-0.01F, 0.02F, 0.01F}, {0.05F, -0.2F, -0.1F}}) {
         const ForceArrow arrow{{1, 1, 0}, glm::vec3(1, 1, 0) + to, false};
@@ -113,8 +114,10 @@ TEST_F(Arrow, LiesWithinItsBox) {
             EXPECT_TRUE(glm::all(glm::lessThanEqual(box.low, glm::dvec3(vertex.position))));
             EXPECT_TRUE(glm::all(glm::greaterThanEqual(box.high, glm::dvec3(vertex.position))));
             EXPECT_NEAR(glm::length(vertex.normal), 1, 1e-5);
+            ++vertices;
         }
     }
+    EXPECT_GT(vertices, 4 * 3 * 8) << "a shaft and a head of several sides";
 }
 
 }  // namespace
