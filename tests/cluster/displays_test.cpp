@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pictures/compare.hpp"
 #include "pictures/png_file.hpp"
+#include "pictures/stereo_packing.hpp"
 #include "tests/cluster/session_fixture.hpp"
 #include "tests/support/x_screen.hpp"
 #include "tests/support/x_server.hpp"
@@ -14,9 +15,9 @@ protected:
         server_ = std::make_unique<support::XServer>(folder_, std::vector<std::string>{"640x480x24"});
         environment_ = {"DISPLAY=" + server_->display()};
     }
-    /// Two mono tiles side by side on the screen, each in its window.
-    std::string placedWall() {
-        std::string file = wall(1, 2, "mono");
+    /// Two tiles side by side on the screen, each in its window.
+    std::string placedWall(const std::string& stereo = "mono") {
+        std::string file = wall(1, 2, stereo);
         std::ofstream(file, std::ios::app) << "[[place]]\ntiles = [\"r1c1\"]\nwindows = [[10, 20]]\n"
                                               "[[place]]\ntiles = [\"r1c2\"]\nwindows = [[200, 20]]\n";
         return file;
@@ -31,8 +32,8 @@ protected:
     void expectNothingLeft(const std::vector<pid_t>& family) {
         EXPECT_TRUE(support::waitUntilGone(family, kLong).empty()) << "processes left running";
     }
-    [[nodiscard]] pictures::Image tile(const std::string& name) const {
-        return pictures::readPng(folder_ / "out" / ("tile_" + name + ".png"));
+    [[nodiscard]] pictures::Image tile(const std::string& name, const std::string& capture = "") const {
+        return pictures::readPng(folder_ / "out" / capture / ("tile_" + name + ".png"));
     }
     std::unique_ptr<support::XServer> server_;
 };
@@ -81,6 +82,42 @@ TEST_F(Displays, TilesAreSeenWhereTheWallFileSaysAndKeysAreObeyedInAnyWindow) {
     EXPECT_EQ(left.rgb, tile("r1c1_middle").rgb);
     EXPECT_EQ(right.rgb, tile("r1c2_middle").rgb);
     EXPECT_FALSE(left.rgb == right.rgb);
+}
+
+// Two outputs in one wall that each pack both eyes, and then every mode that outputs of their size can change to.
+TEST_F(Displays, TwoWindowsShowEachEyeItsPictureInEveryModeOfTheirSize) {
+    const auto session = start({"--wall", placedWall("anaglyph"), "--scene", scene(), "--out", out(), "--no-pictures"});
+    ASSERT_FALSE(session->waitForEvent("progress", [](const auto& event) { return event["frame"] > 1; }).is_null())
+        << session->output();
+    {
+        const support::XScreen screen(server_->display());
+        for (const std::string mode : {"anaglyph", "checkerboard", "anaglyph_dubois", "row_interlaced", "anaglyph_half",
+                                       "active", "left", "mono", "right"}) {
+            ask("stereo " + mode);
+            const std::string folder = ask("capture").value("folder", "");
+            const walls::Stereo stereo = walls::stereoNamed(mode);
+            std::vector<pictures::Image> first;  // of what each window shows
+            for (const auto& [name, x] : {std::pair<std::string, int>{"r1c1", 10}, {"r1c2", 200}}) {
+                std::vector<pictures::Image> shown;
+                for (const walls::Eye eye : walls::eyesOf(stereo)) {
+                    shown.push_back(tile(name + "_" + std::string(walls::eyeName(eye)), folder));
+                }
+                EXPECT_FALSE(shown.size() == 2 && shown[0].rgb == shown[1].rgb) << name << " in " << mode;
+                if (walls::packsEyes(stereo)) {
+                    shown = {pictures::packStereo(stereo, shown[0], shown[1])};
+                    EXPECT_EQ(tile(name + "_output", folder).rgb, shown[0].rgb) << name << " in " << mode;
+                }
+                for (const pictures::Image& picture : shown) {  // two where the eyes are shown in turn
+                    EXPECT_TRUE(screen.comesToShow(picture, x, 20)) << "the window of " << name << " in " << mode;
+                }
+                first.push_back(shown[0]);
+            }
+            EXPECT_FALSE(first[0].rgb == first[1].rgb) << "both tiles show the same in " << mode;
+        }
+    }
+    session->type("stop");
+    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    EXPECT_EQ(summary()["divergences"], 0);
 }
 
 TEST_F(Displays, ALostWindowIsNamedAndTheJobEnds) {

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: Apache-2.0
+// What each eye of a viewer sees: the outputs of every tile, as a rank paints them, taken apart as glasses do, beside
+// pictures that are drawn from where that eye is.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pictures/compare.hpp"
+#include "render_node/gl/gl_context.hpp"
+#include "render_node/gl/window_context.hpp"
+#include "render_node/tile_painter.hpp"
+#include "tests/render_node/wall_painter.hpp"
+#include "walls/stereo_change.hpp"
+
+namespace {
+
+using pictures::Image;
+using render_node::OutputPicture;
+using render_node::TilePainter;
+using walls::Eye;
+using walls::Stereo;
+
+constexpr glm::ivec2 kEyePixels(160, 120);
+constexpr double kEyesApart = 0.065;                   // [m]
+const glm::dvec3 kHeadAt(0.1, 1.5, 2.5);               // [m]
+constexpr double kScreenWide = 1, kScreenHigh = 0.75;  // [m], of each screen
+constexpr double kDeskHigh = 0.38, kDeskFront = 0.8;   // [m]
+
+/// Two tiles beside each other in the plane z = 0, and a desk before them.
+walls::Wall gridAndDesk(Stereo stereo) {
+    walls::Wall wall;
+    wall.viewer = {kHeadAt, kEyesApart, {1, 0, 0}};
+    wall.clip = {0.1, 20};
+    wall.stage = {{0, 1.1, 0}, 1.9, 40, 0};
+    wall.grid = walls::Grid{1, 2, {kScreenWide, kScreenHigh}, {0.0125, 0}, kEyePixels, {-1.00625, 0.7, 0}};
+    wall.tiles = walls::tilesOf(*wall.grid, wall.stereo);
+    walls::Tile desk;
+    desk.rank = 3;
+    desk.name = "desk";
+    desk.screen = {
+        {-0.5, kDeskHigh, kDeskFront}, {0.5, kDeskHigh, kDeskFront}, {-0.5, kDeskHigh, kDeskFront - kScreenHigh}};
+    desk.pixels = kEyePixels;
+    wall.tiles.push_back(desk);
+    return walls::shownIn(wall, stereo);
+}
+
+/// The camera of an eye that looks at tile 0, 1 or the desk: by hand, without walls::viewOf and walls::eyePosition.
+render_node::Camera cameraByHand(std::size_t tile, Eye eye) {
+    const double aside = eye == Eye::left ? -kEyesApart / 2 : eye == Eye::right ? kEyesApart / 2 : 0;
+    const glm::dvec3 at(kHeadAt.x + aside, kHeadAt.y, kHeadAt.z);
+    const double left = tile == 0 ? -1.00625 : tile == 1 ? 0.00625 : -0.5;
+    // A desk is seen from above: its top edge is the far one.
+    const double distance = tile == 2 ? at.y - kDeskHigh : at.z;
+    const double bottom = tile == 2 ? at.z - kDeskFront : 0.7 - at.y;
+    const double toNear = 0.1 / distance;
+    const glm::dmat4 projection = glm::frustum((left - at.x) * toNear, (left + kScreenWide - at.x) * toNear,
+                                               bottom * toNear, (bottom + kScreenHigh) * toNear, 0.1, 20.0);
+    const glm::dvec3 ahead = tile == 2 ? glm::dvec3(0, -1, 0) : glm::dvec3(0, 0, -1);
+    const glm::dvec3 up = tile == 2 ? glm::dvec3(0, 0, -1) : glm::dvec3(0, 1, 0);
+    return {projection * glm::lookAt(at, at + ahead, up), at};
+}
+
+/// ChannelLevels of channels as Image::rgb has them; -1 where an eye sees nothing of them.
+using ChannelLevels = std::vector<int>;
+
+double lightOf(int level) {
+    const double share = level / 255.0;
+    return share <= 0.04045 ? share / 12.92 : std::pow((share + 0.055) / 1.055, 2.4);
+}
+int levelOf(double light) {
+    const double share = std::clamp(light, 0.0, 1.0);
+    return static_cast<int>(
+        std::lround(255 * (share <= 0.0031308 ? 12.92 * share : 1.055 * std::pow(share, 1 / 2.4) - 0.055)));
+}
+
+/// The matrices of docs/stereo.md: what goes into red, green, blue, of the left eye's red, green, blue and the right's.
+constexpr std::array<std::array<double, 6>, 3> kDubois{
+    {{0.456100, 0.500484, 0.176381, -0.0434706, -0.0879388, -0.00155529},
+     {-0.0400822, -0.0378246, -0.0157589, 0.378476, 0.733640, -0.0184503},
+     {-0.0152161, -0.0205971, -0.00546856, -0.0721527, -0.112961, 1.22640}}};
+
+/// What a pixel of an anaglyph has to show in one channel for these pixels of the left and the right eye.
+int anaglyphLevel(Stereo stereo, std::size_t channel, const std::uint8_t* left, const std::uint8_t* right) {
+    if (stereo == Stereo::anaglyphDubois) {
+        double sum = 0;
+        for (std::size_t from = 0; from < 3; ++from) {
+            sum += kDubois.at(channel).at(from) * lightOf(left[from]);
+            sum += kDubois.at(channel).at(3 + from) * lightOf(right[from]);
+        }
+        return levelOf(sum);
+    }
+    if (channel == 0 && stereo == Stereo::anaglyphHalf) {
+        return levelOf(0.2126 * lightOf(left[0]) + 0.7152 * lightOf(left[1]) + 0.0722 * lightOf(left[2]));
+    }
+    return channel == 0 ? left[0] : right[channel];
+}
+
+bool isAnaglyph(Stereo stereo) { return stereo >= Stereo::anaglyphColour; }
+
+/// Whether an eye sees a pixel's channel through the glasses that a mode needs.
+bool passes(Stereo stereo, Eye eye, int x, int y, std::size_t channel) {
+    const bool left = eye == Eye::left;
+    return stereo == Stereo::rowInterlaced  ? (y % 2 == 0) == left
+           : stereo == Stereo::checkerboard ? ((x + y) % 2 == 0) == left
+           : isAnaglyph(stereo)             ? (channel == 0) == left
+                                            : true;
+}
+
+/// What an eye sees of an output through the glasses that the mode needs.
+ChannelLevels seenThroughGlasses(Stereo stereo, const OutputPicture& output, Eye eye) {
+    const bool right = eye == Eye::right;
+    Image image = sample::pictureOf(right && output.right != nullptr ? *output.right : *output.picture);
+    if (stereo == Stereo::sideBySide) {
+        image = pictures::crop(image, right ? kEyePixels.x : 0, 0, kEyePixels.x, kEyePixels.y);
+    } else if (stereo == Stereo::topBottom) {
+        image = pictures::crop(image, 0, right ? kEyePixels.y : 0, kEyePixels.x, kEyePixels.y);
+    }
+    ChannelLevels levels;
+    for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+        const auto pixel = static_cast<int>(i / 3);
+        levels.push_back(passes(stereo, eye, pixel % kEyePixels.x, pixel / kEyePixels.x, i % 3) ? image.rgb[i] : -1);
+    }
+    return levels;
+}
+
+/// What it should see there, if the two eyes see these pictures.
+ChannelLevels levelsWanted(Stereo stereo, Eye eye, const Image& left, const Image& right) {
+    ChannelLevels levels;
+    const Image& own = eye == Eye::right ? right : left;
+    for (std::size_t i = 0; i < own.rgb.size(); ++i) {
+        const std::size_t pixel = i - i % 3;
+        levels.push_back(isAnaglyph(stereo) ? anaglyphLevel(stereo, i % 3, &left.rgb[pixel], &right.rgb[pixel])
+                                            : int{own.rgb[i]});
+    }
+    return levels;
+}
+
+/// The share of what is seen that is other than wanted by more than 8 levels.
+double shareOfWrong(const ChannelLevels& seen, const ChannelLevels& expected) {
+    int count = 0, wrong = 0;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        count += seen[i] >= 0 ? 1 : 0;
+        wrong += seen[i] >= 0 && std::abs(seen[i] - expected.at(i)) > 8 ? 1 : 0;
+    }
+    EXPECT_GE(count, kEyePixels.x * kEyePixels.y) << "of three channels a third at least";
+    return static_cast<double>(wrong) / count;
+}
+
+// Shares of the levels that an eye sees. A frustum that is computed in another order is rounded otherwise, which may
+// turn a pixel at a silhouette; here it turned none. Of the other eye's picture 7 % and more are wrong, and of the left
+// eye's beside the one from the middle 2.6 %.
+constexpr double kFewWrong = 0.001, kManyWrong = 0.02;
+
+class Viewer : public testing::Test {
+protected:
+    Viewer() {
+        scene_.rules.toolRadius *= 2;
+        for (std::size_t tile = 0; tile < 3; ++tile) {
+            for (const Eye eye : {Eye::left, Eye::right, Eye::middle}) {
+                expected_.at(tile).push_back(drawn(tile, eye));
+            }
+        }
+    }
+    [[nodiscard]] sand::Replica dug(int steps = 4) const {
+        sand::Replica terrain(scene_);
+        for (int i = 0; i < steps; ++i) {
+            dig(terrain);
+        }
+        return terrain;
+    }
+    void dig(sand::Replica& terrain) const {
+        const double along = 0.05 * static_cast<double>(terrain.stepNumber());
+        terrain.apply({0, terrain.stepNumber() + 1, true, {sample::probeAt(scene_, {0.8 + along, 0.9, 0.06})}});
+    }
+    [[nodiscard]] glm::dmat4 sceneToRoom() const { return sample::sceneToRoom(gridAndDesk(Stereo::mono), scene_); }
+    [[nodiscard]] lockstep::ViewState view() const {
+        lockstep::ViewState state;
+        for (std::size_t i = 0; i < 3; ++i) {
+            state.head.at(i) = kHeadAt[static_cast<int>(i)];
+        }
+        state.eyeSeparation = kEyesApart;
+        for (int i = 0; i < 16; ++i) {
+            state.sceneToRoom.at(static_cast<std::size_t>(i)) = sceneToRoom()[i / 4][i % 4];
+        }
+        return state;
+    }
+    /// The sand as an eye sees it through a tile.
+    [[nodiscard]] Image drawn(std::size_t tile, Eye eye) const {
+        const sand::Replica terrain = dug();
+        render_node::ScenePainter painter(scene_, sceneToRoom());
+        painter.update(terrain.field(), terrain.field().bounds());
+        painter.setTool(terrain.probe(), true);
+        const render_node::EyeTarget target(kEyePixels.x, kEyePixels.y);
+        painter.draw(cameraByHand(tile, eye), target);
+        return sample::pictureOf(target);
+    }
+    /// Every eye sees its own picture on every output of the tile, and would not pass for the other.
+    void expectEachEyeItsPicture(Stereo stereo, std::size_t tile, const std::vector<OutputPicture>& outputs) {
+        const std::string what = "tile " + std::to_string(tile) + " in " + std::string(walls::stereoName(stereo));
+        const auto pictureFor = [&](Eye eye) { return expected_.at(tile).at(static_cast<std::size_t>(eye)); };
+        const bool both = walls::eyesOf(stereo).size() == 2;
+        ASSERT_FALSE(outputs.empty()) << what;
+        for (const Eye eye : {Eye::left, Eye::right}) {
+            // Where a wall shows one picture, both eyes of a viewer see that.
+            const Image left = pictureFor(both ? Eye::left : walls::eyesOf(stereo)[0]);
+            const Image right = both ? pictureFor(Eye::right) : left;
+            const Image other = stereo == Stereo::left ? pictureFor(Eye::right) : pictureFor(Eye::left);
+            for (std::size_t i = 0; i < outputs.size(); ++i) {
+                if (stereo == Stereo::passive && i != static_cast<std::size_t>(eye)) {
+                    continue;  // its glass stops the light of this projector
+                }
+                const ChannelLevels seen = seenThroughGlasses(stereo, outputs[i], eye);
+                EXPECT_LT(shareOfWrong(seen, levelsWanted(stereo, eye, left, right)), kFewWrong)
+                    << what << ", output " << i;
+                const ChannelLevels swapped =
+                    both ? levelsWanted(stereo, eye, right, left) : levelsWanted(stereo, eye, other, other);
+                EXPECT_GT(shareOfWrong(seen, swapped), kManyWrong) << what << ", output " << i << ": the other eye";
+                ++seen_;
+            }
+        }
+    }
+
+    std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    scene::Scene scene_ = sample::duneScene(128);
+    std::array<std::vector<Image>, 3> expected_;  // by tile, then in the order of walls::Eye
+    int seen_ = 0;                                // outputs that were compared, by each eye
+};
+
+// A grid and a screen of another plane in one wall, so that several outputs of a mode stand beside each other.
+TEST_F(Viewer, SeesWithEachEyeItsPictureOnEveryOutputInEveryMode) {
+    for (const std::string& name : walls::stereoNames()) {
+        const Stereo stereo = walls::stereoNamed(name);
+        const walls::Wall wall = gridAndDesk(stereo);
+        for (std::size_t tile = 0; tile < wall.tiles.size(); ++tile) {
+            TilePainter painter(wall, wall.tiles[tile], scene_, "host");
+            sand::Replica terrain = dug();
+            painter.paint(terrain, view(), 1);
+            ASSERT_EQ(painter.outputs().size(), stereo == Stereo::passive ? 2U : 1U) << name;
+            expectEachEyeItsPicture(stereo, tile, painter.outputs());
+        }
+    }
+    EXPECT_EQ(seen_, 12 * 3 * 2);
+}
+
+// One session that goes through the modes: an operator changes them, and what is open stays open.
+TEST_F(Viewer, SeesWithEachEyeItsPictureOnTwoOutputsThatChangeTheirMode) {
+    for (const Stereo begun : {Stereo::anaglyphColour, Stereo::passive}) {
+        const walls::Wall wall = gridAndDesk(begun);
+        const std::vector<Stereo> modes =
+            begun == Stereo::passive
+                ? std::vector{Stereo::left, Stereo::passive, Stereo::mono, Stereo::right, Stereo::passive}
+                : std::vector{Stereo::checkerboard, Stereo::anaglyphDubois, Stereo::mono,   Stereo::anaglyphColour,
+                              Stereo::right,        Stereo::rowInterlaced,  Stereo::active, Stereo::anaglyphHalf};
+        std::array<sand::Replica, 2> terrains{dug(), dug()};
+        std::vector<walls::Wall> shown(modes.size() + 1, wall);  // painters look at them
+        std::array<std::unique_ptr<TilePainter>, 2> painters;
+        for (std::size_t tile = 0; tile < painters.size(); ++tile) {
+            painters.at(tile) = std::make_unique<TilePainter>(shown[0], shown[0].tiles[tile], scene_, "host");
+            painters.at(tile)->paint(terrains.at(tile), view(), 1);
+            expectEachEyeItsPicture(begun, tile, painters.at(tile)->outputs());
+        }
+        for (std::size_t i = 0; i < modes.size(); ++i) {
+            shown[i + 1] = walls::shownOnItsOutputs(wall, modes[i]);
+            for (std::size_t tile = 0; tile < painters.size(); ++tile) {
+                painters.at(tile)->showAs(shown[i + 1], shown[i + 1].tiles[tile]);
+                painters.at(tile)->paint(terrains.at(tile), view(), i + 2);
+                expectEachEyeItsPicture(modes[i], tile, painters.at(tile)->outputs());
+            }
+        }
+    }
+    EXPECT_EQ(seen_, 2 * 2 * 9 + 2 * (3 * 2 + 3 * 4));
+}
+
+// Without quad buffers a rank draws one eye in a frame, and a window takes one eye from it: they must agree on which.
+TEST_F(Viewer, SeesOfEyesInTurnTheOneThatWasDrawnInThisFrame) {
+    const walls::Wall wall = gridAndDesk(Stereo::active);
+    TilePainter inTurn(wall, wall.tiles[0], scene_, "host"), both(wall, wall.tiles[0], scene_, "host");
+    sand::Replica first = dug(), second = dug();
+    std::vector<Image> shown;
+    for (std::uint64_t frame = 0; frame < 8; ++frame) {
+        dig(first);
+        dig(second);
+        inTurn.paint(first, view(), frame, true);
+        both.paint(second, view(), frame);
+        const auto copies = render_node::copiesOf(inTurn.outputs().at(0), false, frame);
+        ASSERT_EQ(copies.size(), 1U);
+        const OutputPicture eyes = both.outputs().at(0);
+        const Image own = sample::pictureOf(frame % 2 == 0 ? *eyes.picture : *eyes.right);
+        EXPECT_EQ(sample::pictureOf(*copies[0].picture), own) << "frame " << frame;
+        EXPECT_NE(own, sample::pictureOf(frame % 2 == 0 ? *eyes.right : *eyes.picture));
+        EXPECT_TRUE(shown.empty() || own != shown.back());
+        shown.push_back(own);
+    }
+}
+
+}  // namespace
