@@ -84,6 +84,7 @@ Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, co
                [this](int rank, const std::string& line) {
                    (void)writeFailure(failureOf("hung", rank, line), options_.out);
                }),
+      clock_(options_.refreshHz.value_or(wall.refreshHz)),
       views_(wall, scene, options_.tracker),
       viewProof_(wall.encode()),
       liveSteps_(options_.server, scene, options_.pace, options_.resumed ? options_.resumed->epoch : 0,
@@ -122,29 +123,24 @@ Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, co
     hash_ = terrain_.stateHash();
 }
 
-double Session::framePeriod() const { return 1 / options_.refreshHz.value_or(wall_.refreshHz); }
-
 double Session::sessionTime() const {
     // A fast session shows every frame what a recorded head did then, however long the frame takes.
-    return options_.pace == Pace::fast ? static_cast<double>(frame_) * framePeriod()
+    return options_.pace == Pace::fast ? clock_.timeOf(frame_)
            : lastSwap_ == 0            ? 0
                                        : static_cast<double>(monotonicNs() - firstSwap_) * 1e-9;
 }
 
 std::int64_t Session::nextFrame() const {
     const bool atOnce = options_.pace == Pace::fast && !paused_ && !standing_;
-    return atOnce ? 0 : frameStart_ + static_cast<std::int64_t>(1e9 * framePeriod());
+    return atOnce ? 0 : clock_.next();
 }
 
 void Session::waitForFrameTime() {
     if (options_.pace == Pace::fast && !paused_ && !standing_) {
         return;
     }
-    // From one grid of times, not from the last frame: the wall's clock must not drift with each late frame.
-    const std::int64_t now = monotonicNs();
-    frameStart_ = std::max(nextFrame(), now - static_cast<std::int64_t>(1e9 * framePeriod()));
-    if (frameStart_ > now) {
-        sleepNs(frameStart_ - now);
+    if (const std::int64_t early = clock_.begin(monotonicNs()); early > 0) {
+        sleepNs(early);
     }
 }
 
@@ -280,7 +276,7 @@ void Session::measureSwaps(std::int64_t now) {
     lastFrameMs_ = milliseconds(now - lastSwap_);
     if (frame_ - summary_.framesBefore > options_.settlingFrames + 1) {
         summary_.frameMs.add(lastFrameMs_);
-        const bool late = options_.pace == Pace::realtime && lastFrameMs_ > kLate * 1e3 * framePeriod();
+        const bool late = options_.pace == Pace::realtime && lastFrameMs_ > kLate * 1e3 * clock_.period();
         summary_.lateFrames += late ? 1 : 0;
     }
     const std::vector<std::uint32_t>& swaps = rankStatistics_.lastSwapsUs();

@@ -19,6 +19,7 @@
 #include "master/drills.hpp"
 #include "master/failure_report.hpp"
 #include "master/film.hpp"
+#include "master/frame_clock.hpp"
 #include "master/incidents.hpp"
 #include "master/journal/keeper.hpp"
 #include "master/journal/recording.hpp"
@@ -107,7 +108,6 @@ private:
     void answerEdits(const std::vector<haptic_bridge::TimedStep>& steps);
     void takeCapture();
     [[nodiscard]] std::string status() const;
-    [[nodiscard]] double framePeriod() const;  // [s]
     [[nodiscard]] double sessionTime() const;  // [s]
     [[nodiscard]] std::vector<haptic_bridge::TimedStep> awaitSteps();
     [[nodiscard]] bool showFrame();
@@ -154,6 +154,7 @@ private:
     sand::Replica terrain_;
     std::vector<std::string> names_;  // of ranks, as messages speak of them
     lockstep::FrameBarrier barrier_;
+    FrameClock clock_;
     ViewSource views_;
     lockstep::ViewProof viewProof_;
     std::optional<JournalKeeper> journal_;  // none for a recording, which has one
@@ -183,9 +184,9 @@ private:
     IncidentFile incidentFile_;
     double lastFrameMs_ = 0;
     std::uint64_t frame_ = 0;
-    std::uint64_t hash_ = 0;                                      // of the state the wall shows
-    std::int64_t firstSwap_ = 0, lastSwap_ = 0, frameStart_ = 0;  // [ns]
-    std::int64_t lastProgress_ = 0;                               // [ns]
+    std::uint64_t hash_ = 0;                     // of the state the wall shows
+    std::int64_t firstSwap_ = 0, lastSwap_ = 0;  // [ns]
+    std::int64_t lastProgress_ = 0;              // [ns]
     std::uint64_t lastProgressFrame_ = 0;
     double lastSkewUs_ = 0;
     bool stopping_ = false;

@@ -94,20 +94,23 @@ void GlContext::finishFrame() {
     }
 }
 
-std::unique_ptr<GlContext> makeContext(Backend backend, const walls::Wall& wall, const walls::Tile& tile) {
+PlatformRequest platformRequest(Backend backend, const walls::Wall& wall, const walls::Tile& tile) {
     PlatformRequest request;
     request.who = "rank " + std::to_string(tile.rank) + " (" + tile.name + ")";
     request.display = tile.place.display;
     request.device = tile.place.device;
     request.eyesInTurn = wall.stereo == walls::Stereo::active;
     request.refreshHz = wall.refreshHz;
-    const Backend chosen = backendFor(backend, tile);
-    if (chosen == Backend::glfw) {
+    if (backendFor(backend, tile) == Backend::glfw) {
         for (const walls::Output& output : tile.outputs) {
             request.windows.push_back({output, walls::outputPixels(wall.stereo, tile.pixels)});
         }
     }
-    return contextOf(chosen, request);
+    return request;
+}
+
+std::unique_ptr<GlContext> makeContext(Backend backend, const walls::Wall& wall, const walls::Tile& tile) {
+    return contextOf(backendFor(backend, tile), platformRequest(backend, wall, tile));
 }
 
 std::unique_ptr<GlContext> makeOffscreenContext(Backend backend) { return contextOf(backendFor(backend, {}), {}); }

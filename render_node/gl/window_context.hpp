@@ -25,6 +25,10 @@ struct Copy {
 /// wall and the right one in odd frames, so that all tiles show the same eye whatever each has missed.
 [[nodiscard]] std::vector<Copy> copiesOf(const OutputPicture& output, bool quadBuffers, std::uint64_t frame);
 
+/// Returns what a tile of the wall asks its backend for: windows where `backend` shows some, and with eyes in turn the
+/// wall's refresh rate for its monitors.
+[[nodiscard]] PlatformRequest platformRequest(Backend backend, const walls::Wall& wall, const walls::Tile& tile);
+
 /// Loads OpenGL's functions through the platform, whose context 0 must be current. Throws base::InputError.
 void loadFunctions(GlPlatform& platform);
 

@@ -49,6 +49,26 @@ TEST_F(HeadTracking, AHeadTurnedToItsSideSeesWithOneEyeAboveTheOther) {
     EXPECT_NE(firstTile("left"), tracked);
 }
 
+// With --pace fast a wall counts its time in frames, so that the time of its 30th frame shows the rate it runs at.
+TEST_F(HeadTracking, AWallOf120HertzShowsTheEyesInTurnInTheHeadsOwnTime) {
+    const std::string trace =
+        write("head.csv", "time,x,y,z\n0,0,1.6,3\n0.24,0.4,1.5,2.5\n0.26,0.4,1.5,2.5\n0.49,-0.4,1.7,2.8\n");
+    (void)wall(1, 1, "active");
+    const std::string text = read("wall.toml"), eye = "eye = [0.0, 1.6, 3.0]";
+    const auto seen = [&](const std::string& refresh, const std::string& track, const std::string& from) {
+        std::string other = refresh + text;
+        other.replace(other.find(eye), eye.size(), "eye = " + from);
+        show({"--track", track}, write("other.toml", other));
+        return firstTile("left") + firstTile("right");
+    };
+    // Frame 30 of 120 in a second is at 0.25 s, and of 60 at 0.5 s.
+    const std::string fast = seen("refresh = 120\n", "trace:" + trace, "[0.0, 1.6, 3.0]");
+    EXPECT_EQ(fast, seen("", "none", "[0.4, 1.5, 2.5]"));
+    const std::string usual = seen("", "trace:" + trace, "[0.0, 1.6, 3.0]");
+    EXPECT_EQ(usual, seen("", "none", "[-0.4, 1.7, 2.8]"));
+    EXPECT_NE(fast, usual);
+}
+
 TEST_F(HeadTracking, ATrackerThatFallsSilentIsReportedAndItsLastPoseHeld) {
     const std::string wallFile = wall(1, 1);
     const auto session = start({"--wall", wallFile, "--scene", scene(), "--track", "opentrack:0", "--out", out()});

@@ -3,13 +3,31 @@
 
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
+#include <X11/extensions/Xrandr.h>
 #include <X11/keysym.h>
 
 #include <chrono>
+#include <cmath>
+#include <span>
 #include <stdexcept>
+#include <string>
 #include <thread>
 
 namespace support {
+namespace {
+
+using Resources = std::unique_ptr<XRRScreenResources, void (*)(XRRScreenResources*)>;
+
+/// Outputs, modes and what drives the monitors, of one screen.
+Resources resourcesOf(_XDisplay* display, unsigned long root) {
+    Resources resources(XRRGetScreenResources(display, root), XRRFreeScreenResources);
+    if (resources == nullptr || resources->noutput != 1 || resources->ncrtc != 1) {
+        throw std::runtime_error("the X server has not one monitor");
+    }
+    return resources;
+}
+
+}  // namespace
 
 void XScreen::Close::operator()(_XDisplay* display) const { XCloseDisplay(display); }
 
@@ -50,6 +68,39 @@ bool XScreen::comesToShow(const pictures::Image& expected, int x, int y) const {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     return true;
+}
+
+void XScreen::addMode(double hertz) const {
+    const Resources resources = resourcesOf(display_.get(), root_);
+    std::string name = "test-" + std::to_string(std::lround(hertz));
+    XRRModeInfo mode{};
+    mode.width = static_cast<unsigned>(DisplayWidth(display_.get(), DefaultScreen(display_.get())));
+    mode.height = static_cast<unsigned>(DisplayHeight(display_.get(), DefaultScreen(display_.get())));
+    // A tenth and a twentieth more for the beam's way back, as an analogue monitor would need.
+    mode.hTotal = mode.width + mode.width / 10;
+    mode.hSyncStart = mode.width + 1;
+    mode.hSyncEnd = mode.hTotal - 1;
+    mode.vTotal = mode.height + mode.height / 20;
+    mode.vSyncStart = mode.height + 1;
+    mode.vSyncEnd = mode.vTotal - 1;
+    mode.dotClock = static_cast<unsigned long>(std::lround(hertz * mode.hTotal * mode.vTotal));
+    mode.name = name.data();
+    mode.nameLength = static_cast<unsigned>(name.size());
+    const RRMode created = XRRCreateMode(display_.get(), root_, &mode);
+    XRRAddOutputMode(display_.get(), resources->outputs[0], created);
+    XSync(display_.get(), False);
+}
+
+double XScreen::refreshRate() const {
+    const Resources resources = resourcesOf(display_.get(), root_);
+    const std::unique_ptr<XRRCrtcInfo, void (*)(XRRCrtcInfo*)> monitor(
+        XRRGetCrtcInfo(display_.get(), resources.get(), resources->crtcs[0]), XRRFreeCrtcInfo);
+    for (const XRRModeInfo& mode : std::span(resources->modes, static_cast<std::size_t>(resources->nmode))) {
+        if (monitor != nullptr && mode.id == monitor->mode && mode.hTotal != 0 && mode.vTotal != 0) {
+            return static_cast<double>(mode.dotClock) / mode.hTotal / mode.vTotal;
+        }
+    }
+    return 0;
 }
 
 std::vector<unsigned long> XScreen::windows() const {

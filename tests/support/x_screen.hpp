@@ -22,6 +22,11 @@ public:
     /// Whether that part becomes equal to the picture within a minute.
     [[nodiscard]] bool comesToShow(const pictures::Image& expected, int x, int y) const;
 
+    /// Gives the only monitor another mode, of the screen's size. It does not become the current one.
+    void addMode(double hertz) const;
+    /// Returns the refresh rate of the monitor's current mode [Hz]; 0 for one without a pixel clock.
+    [[nodiscard]] double refreshRate() const;
+
     /// The windows that can be seen, the lowest first.
     [[nodiscard]] std::vector<unsigned long> windows() const;
     void destroy(unsigned long window) const;

@@ -184,6 +184,22 @@ TEST(OutputPictures, FillBothQuadBuffersInEveryFrame) {
     }
 }
 
+TEST(PlatformRequest, AsksForTheWallsRefreshRateOfEveryScreenOfTheCave) {
+    const walls::Wall cave = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/flex_cave.toml");
+    ASSERT_EQ(cave.tiles.size(), 4U);
+    for (const walls::Tile& tile : cave.tiles) {
+        const render_node::PlatformRequest request =
+            render_node::platformRequest(render_node::Backend::glfw, cave, tile);
+        EXPECT_TRUE(request.eyesInTurn) << tile.name;
+        EXPECT_EQ(request.refreshHz, 120) << tile.name;
+        ASSERT_EQ(request.windows.size(), 1U) << tile.name;
+        EXPECT_EQ(request.windows[0].pixels, tile.pixels) << "one eye's size: the eyes are shown in turn";
+        EXPECT_TRUE(render_node::platformRequest(render_node::Backend::osmesa, cave, tile).windows.empty());
+    }
+    const walls::Wall mono = walls::shownIn(cave, walls::Stereo::mono);
+    EXPECT_FALSE(render_node::platformRequest(render_node::Backend::glfw, mono, mono.tiles[0]).eyesInTurn);
+}
+
 TEST(ScreenCover, CountsThePixelsThatNoMonitorShows) {
     const ScreenRect window{{100, 50}, {300, 150}};
     EXPECT_EQ(hiddenPixels(window, {}), 200 * 100);

@@ -25,6 +25,7 @@ struct Options {
     std::string gl = "glfw", pictures;
     int width = 320, height = 240, device = -1, cells = 200;
     bool active = false;
+    double refresh = 60;  // [Hz], of the wall
     std::string display;
     std::vector<std::string> places;  // "40,30" or the name of a monitor, one for each window
 };
@@ -103,6 +104,7 @@ void obey(const Options& options, render_node::GlContext& context,
 int show(const Options& options) {
     walls::Wall wall;
     wall.stereo = options.active ? walls::Stereo::active : walls::Stereo::mono;
+    wall.refreshHz = options.refresh;
     wall.tiles = {tileOf(options)};
     const auto context = render_node::makeContext(render_node::backendNamed(options.gl), wall, wall.tiles[0]);
     std::cout << "context " << context->name() << "\nrenderer " << context->renderer() << "\n";
@@ -149,5 +151,6 @@ int main(int argc, char** argv) {
     line.option("--pictures", options.pictures, "folder for left.png and right.png, with a slash");
     line.option("--at", options.places, "a window: x,y or a monitor");
     line.flag("--active", options.active);
+    line.option("--refresh", options.refresh, "frames per second of the wall");
     return host::runMain(line, argc, argv, [&] { return show(options); });
 }

@@ -99,6 +99,31 @@ TEST_F(Window, ShowsTheEyesInTurnByTheNumberOfTheFrame) {
     }
 }
 
+TEST_F(Window, OfEyesInTurnSetsItsMonitorToTheRefreshRateOfTheWall) {
+    const XScreen screen(server_->display());
+    for (const double hertz : {60.0, 90.0, 120.0}) {
+        screen.addMode(hertz);
+    }
+    for (const char* hertz : {"120", "90"}) {
+        const std::string output =
+            show({"screen"}, {"--active", "--refresh", hertz, "--width", "800", "--height", "600"});
+        EXPECT_NEAR(screen.refreshRate(), std::stod(hertz), 0.1);
+        const std::vector<std::string> lines = linesOf(output, "shortcoming");
+        ASSERT_EQ(lines.size(), 1U) << output;
+        EXPECT_TRUE(lines[0].starts_with("output out1: no quad buffers")) << lines[0];
+        probe_.reset();
+    }
+}
+
+TEST_F(Window, OfEyesInTurnNamesAMonitorThatIsTooSlow) {
+    const XScreen screen(server_->display());
+    screen.addMode(60);
+    const std::string output = show({"screen"}, {"--active", "--refresh", "120", "--width", "800", "--height", "600"});
+    const std::vector<std::string> lines = linesOf(output, "shortcoming");
+    ASSERT_EQ(lines.size(), 2U) << output;
+    EXPECT_EQ(lines[1], "output out1: monitor screen runs at 60 Hz instead of 120");
+}
+
 TEST_F(Window, SaysHowMuchOfItLiesOffTheScreen) {
     const std::string output = show({"700,30"});
     const std::vector<std::string> lines = linesOf(output, "shortcoming");
