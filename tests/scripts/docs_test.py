@@ -1,0 +1,163 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""That what the documents name exists: files, headings and tests.
+
+usage: docs_test.py
+"""
+
+import fnmatch
+import os
+import pathlib
+import re
+import subprocess
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PAPERS = "docs/papers.md"
+NOT_HERE = re.compile(r"(https?|mailto):")
+CODE = re.compile(r"`([^`\n]+)`")
+FENCE = re.compile(r"^ *(```|~~~).*?^ *\1[^\n]*$", re.MULTILINE | re.DOTALL)
+GTEST = re.compile(r"^(?:TEST|TEST_F|TEST_P)\(\s*(\w+)\s*,\s*(\w+)\s*\)", re.MULTILINE)
+TEST_NAME = re.compile(r"^[A-Z]\w+\.[A-Z]\w+$")
+# A file of the repository: a folder of its own first, and an ending that only sources, documents and settings have.
+SOURCE = re.compile(r"^(?:{folders})/[\w./-]+\.(?:cpp|hpp|glsl|py|sh|toml|md|strokes)$")
+
+
+def tracked(*patterns):
+    listed = subprocess.run(["git", "ls-files", "-z", *patterns], cwd=ROOT, capture_output=True, check=True, text=True)
+    return [name for name in listed.stdout.split("\0") if name]
+
+
+class Repository:
+    """The files, the tests by their file, and the headings by their document."""
+
+    def __init__(self, files, tests, documents):
+        self.files = set(files)
+        self.folders = {str(parent) for file in files for parent in pathlib.PurePosixPath(file).parents}
+        top = sorted({file.split("/")[0] for file in files if "/" in file})
+        self.source = re.compile(SOURCE.pattern.replace("{folders}", "|".join(map(re.escape, top))))
+        self.tests = tests
+        self.documents = documents
+
+    @classmethod
+    def of_the_project(cls):
+        files = tracked()
+        tests = {file: {".".join(found) for found in GTEST.findall((ROOT / file).read_text())}
+                 for file in files if re.match(r"tests/.*\.cpp$", file)}
+        return cls(files, tests, {file: (ROOT / file).read_text() for file in files if file.endswith(".md")})
+
+    def all_tests(self):
+        return set().union(*self.tests.values())
+
+
+def anchor(heading):
+    """As web pages of repositories make it from a heading."""
+    text = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading.lower())
+    return re.sub(r" ", "-", re.sub(r"[^\w\- ]", "", text)).strip("-")
+
+
+def anchors(text):
+    return {anchor(heading.strip()) for heading in re.findall(r"^#+ (.*)$", FENCE.sub("", text), re.MULTILINE)}
+
+
+def broken_links(repository, name):
+    """Links of one document to what is not there."""
+    text = FENCE.sub("", repository.documents[name])
+    for target in re.findall(r"\]\(([^()\s]+)\)", CODE.sub("", text)):
+        if NOT_HERE.match(target):
+            continue
+        path, _, heading = target.partition("#")
+        found = os.path.normpath(os.path.join(os.path.dirname(name), path)) if path else name
+        if found not in repository.files and found not in repository.folders:
+            yield f"{name}: links to {target}, which is no file of the project"
+        elif heading and heading not in anchors(repository.documents.get(found, "")):
+            yield f"{name}: links to {target}; that page has no such heading"
+
+
+def missing_sources(repository, name):
+    """Names of sources, scripts and settings that are none."""
+    for span in CODE.findall(repository.documents[name]):
+        if repository.source.match(span) and span not in repository.files:
+            yield f"{name}: names {span}, which is no file of the project"
+
+
+def missing_filters(repository, name):
+    """Filters of tests that would run nothing."""
+    for given in re.findall(r"--gtest_filter='?([\w.*?:/-]+)", repository.documents[name]):
+        # Of a test with parameters the instance stands before, and the parameter behind.
+        for pattern in given.split(":"):
+            if not any(fnmatch.fnmatchcase(test, pattern) or fnmatch.fnmatchcase(f"x/{test}/x", pattern)
+                       for test in repository.all_tests()):
+                yield f"{name}: the filter {pattern} runs no test"
+
+
+def missing_tests(repository, name):
+    """Rows of the table of the papers: a file of tests, and behind it tests of that file, until the next file."""
+    for row in repository.documents[name].splitlines():
+        file = None
+        for span in CODE.findall(row):
+            if re.match(r"tests/.*\.cpp$", span):
+                file = span
+            elif TEST_NAME.match(span):
+                if file is None:
+                    yield f"{name}: {span} stands behind no file of tests"
+                elif span not in repository.tests.get(file, set()):
+                    yield f"{name}: {file} has no test {span}"
+
+
+def faults(repository):
+    found = []
+    for name in repository.documents:
+        for look in (broken_links, missing_sources, missing_filters):
+            found += look(repository, name)
+    return found + list(missing_tests(repository, PAPERS))
+
+
+PROJECT = Repository.of_the_project()
+
+
+class Documents(unittest.TestCase):
+    maxDiff = None
+
+    def made_up(self, text, name="docs/page.md"):
+        return Repository(["docs/page.md", "docs/other.md", "docs/images/a.png", "sand/law.cpp", "tests/sand/law_test.cpp"],
+                          {"tests/sand/law_test.cpp": {"Law.Holds", "Law.IsOdd"}},
+                          {name: text, "docs/other.md": "# The law: how it holds\n```\n# no heading\n```\n"})
+
+    def test_name_only_what_exists(self):
+        self.assertEqual(faults(PROJECT), [])
+
+    def test_of_the_papers_name_many_tests(self):
+        named = [span for span in CODE.findall(PROJECT.documents[PAPERS]) if TEST_NAME.match(span)]
+        self.assertGreater(len(named), 100)
+
+    def test_every_page_is_in_the_list_of_the_readme(self):
+        pages = {name for name in PROJECT.documents if re.match(r"docs/[^/]+\.md$", name)}
+        linked = set(re.findall(r"\]\((docs/[^()#\s]+\.md)\)", PROJECT.documents["README.md"]))
+        self.assertEqual(pages - linked, set())
+
+    def test_a_link_to_nothing_is_named(self):
+        good = "[a](other.md) [b](images/a.png) [c](other.md#the-law-how-it-holds) [d](https://no.where/x) [e](../sand) [f](#page)\n# Page\n"
+        self.assertEqual(list(broken_links(self.made_up(good), "docs/page.md")), [])
+        for bad in ("[a](none.md)", "[a](other.md#the-law)", "[a](other.md#no-heading)", "[a](#other)", "[a](../images/a.png)"):
+            self.assertEqual(len(list(broken_links(self.made_up(bad), "docs/page.md"))), 1, bad)
+
+    def test_a_source_that_is_gone_is_named(self):
+        self.assertEqual(list(missing_sources(self.made_up("`sand/law.cpp` `out/demo/a.toml` `law.cpp`"), "docs/page.md")), [])
+        self.assertEqual(list(missing_sources(self.made_up("`sand/rule.cpp`"), "docs/page.md")),
+                         ["docs/page.md: names sand/rule.cpp, which is no file of the project"])
+
+    def test_a_filter_that_runs_nothing_is_named(self):
+        self.assertEqual(list(missing_filters(self.made_up("--gtest_filter='Law.*' --gtest_filter=Law.Holds:*Odd*"), "docs/page.md")), [])
+        self.assertEqual(len(list(missing_filters(self.made_up("--gtest_filter=Law.Hold --gtest_filter='Rule.*'"), "docs/page.md"))), 2)
+
+    def test_a_test_that_is_gone_is_named(self):
+        row = "| `sand/law.cpp` | `tests/sand/law_test.cpp` `Law.Holds`, `{}` |"
+        self.assertEqual(list(missing_tests(self.made_up(row.format("Law.IsOdd")), "docs/page.md")), [])
+        self.assertEqual(list(missing_tests(self.made_up(row.format("Law.IsEven")), "docs/page.md")),
+                         ["docs/page.md: tests/sand/law_test.cpp has no test Law.IsEven"])
+        self.assertEqual(len(list(missing_tests(self.made_up("| `Law.Holds` |"), "docs/page.md"))), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
