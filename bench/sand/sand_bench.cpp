@@ -63,11 +63,12 @@ void copy(benchmark::State& state) {
 }
 BENCHMARK(copy)->Name("memcpy")->Arg(512)->Arg(1024)->Arg(2048);
 
-scene::Scene level(double toolCells, int sweeps) {
+scene::Scene level(double toolCells, int sweeps, std::int32_t band = 0) {
     scene::Scene scene;
     scene.terrain = sand::HeightField(512, 512, 1.0);
     scene.rules.columns = scene.rules.rows = 512;
-    scene.rules.threshold = scene.rules.startThreshold = 44204;  // 34 degrees
+    scene.rules.threshold = 44204;  // 34 degrees
+    scene.rules.startThreshold = scene.rules.threshold + band;
     scene.rules.sweepsPerStep = sweeps;
     scene.rules.stepsPerSecond = 60;
     scene.rules.toolRadius = static_cast<std::int32_t>(toolCells * sand::kProbePerCell);
@@ -75,8 +76,8 @@ scene::Scene level(double toolCells, int sweeps) {
 }
 
 /// A step of digging in circles, 1.5 cells long, hash included.
-void dig(benchmark::State& state, double toolCells, int sweeps) {
-    sand::Replica terrain(level(toolCells, sweeps));
+void dig(benchmark::State& state, double toolCells, int sweeps, std::int32_t band = 0) {
+    sand::Replica terrain(level(toolCells, sweeps, band));
     for (auto _ : state) {
         const double angle = static_cast<double>(terrain.stepNumber()) * 1.5 / 120;
         const auto at = [](double cell) { return static_cast<std::int32_t>(cell * sand::kProbePerCell); };
@@ -89,6 +90,7 @@ void dig(benchmark::State& state, double toolCells, int sweeps) {
 }
 BENCHMARK_CAPTURE(dig, paper_tool, 2.56, 4)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(dig, tool_of_12_cells, 12.0, 24)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(dig, tool_of_12_cells_band, 12.0, 24, 44)->Unit(benchmark::kMillisecond);
 
 /// A hand touches down, far from where sand still moves, and leaves again: what keeping the sand for an undo costs.
 void touchDown(benchmark::State& state) {

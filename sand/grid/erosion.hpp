@@ -117,7 +117,7 @@ private:
     // Flux out of each cell to the east and to the north [unit] of the last sweep; column and row -1 hold what flows
     // over the western and southern rim. Zero wherever a block is not active.
     CellArray east_, north_;
-    std::optional<BasicCellArray<std::int8_t>> sliding_;  // with a band: in which cells sand slid in the last sweep
+    std::optional<CellArray> sliding_;  // with a band: in which cells sand slid in the last sweep
     std::int64_t sweepsDone_ = 0;
     int undisturbed_ = 0;                 // sweeps that moved sand since touch()
     std::vector<int> active_;             // ascending

@@ -330,6 +330,18 @@ void addUp(const std::int32_t* __restrict east, const std::int32_t* __restrict s
     }
 }
 
+/// The same with a band, for which it marks where sand slid.
+void addUpAndMark(const std::int32_t* __restrict east, const std::int32_t* __restrict south,
+                  const std::int32_t* __restrict north, int count, std::int32_t ofRow, std::int32_t* __restrict heights,
+                  std::int32_t* __restrict moved, Sliding* __restrict sliding) {
+    for (int i = 0; i < count; ++i) {
+        heights[i] += east[i - 1] - east[i] + south[i] - north[i];
+        const std::int32_t own = east[i] | north[i];
+        moved[i] |= own != 0 ? ofRow : 0;
+        sliding[i] = (own | east[i - 1] | south[i]) != 0 ? -1 : 0;
+    }
+}
+
 void markRow(const std::int32_t* __restrict east, const std::int32_t* __restrict south,
              const std::int32_t* __restrict north, int count, Sliding* __restrict sliding) {
     for (int i = 0; i < count; ++i) {
@@ -392,10 +404,15 @@ void balance(const BalancePatch& patch) {
         for (; y < end; ++y) {
             const std::int32_t ofRow = flowIn(y, first, end);
             const std::ptrdiff_t flux = y * patch.fluxStride + patch.cells.x0;
-            addUp(patch.east + flux, patch.north + flux - patch.fluxStride, patch.north + flux, width, ofRow,
-                  patch.heights + y * patch.heightStride + patch.cells.x0, moved.data());
+            const std::int32_t* const east = patch.east + flux;
+            const std::int32_t* const north = patch.north + flux;
+            const std::int32_t* const south = north - patch.fluxStride;
+            std::int32_t* const heights = patch.heights + y * patch.heightStride + patch.cells.x0;
             if (patch.sliding != nullptr) {
-                markRow(patch, y);
+                Sliding* const sliding = patch.sliding + y * patch.slidingStride + patch.cells.x0;
+                addUpAndMark(east, south, north, width, ofRow, heights, moved.data(), sliding);
+            } else {
+                addUp(east, south, north, width, ofRow, heights, moved.data());
             }
             if (patch.cells.x0 == 0) {
                 moved.data()[0] |= patch.east[flux - 1] != 0 ? ofRow : 0;

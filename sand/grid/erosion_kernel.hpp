@@ -14,8 +14,9 @@ inline constexpr int kMaxPatch = 512;    // [cell], longest row a kernel takes a
 inline constexpr int kKernelMargin = 8;  // [cell], how far beyond its cells a kernel may read heights
 
 /// Whether sand slid in a cell, which means that some flowed through one of its faces in the last sweep: a mask of
-/// ones, or 0.
-using Sliding = std::int8_t;
+/// ones, or 0. As wide as a height, because g++ compiles a loop with numbers of both widths for 32 cells at once, and
+/// patches are often 8 wide.
+using Sliding = std::int32_t;
 
 /// The constants of the isotropic law for the faces across one axis (sand/grid/erosion.hpp states the law).
 struct AxisLaw {

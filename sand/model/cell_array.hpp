@@ -21,13 +21,12 @@ struct CellRect {
     friend bool operator==(const CellRect&, const CellRect&) = default;
 };
 
-/// A number per cell, with ghost cells around: rows -1 and `rows`, columns -1 and `columns`.
+/// A 32-bit number per cell, with ghost cells around: rows -1 and `rows`, columns -1 and `columns`.
 ///
 /// Cell (0,0) is the south-west corner; columns run east, rows north. Starts as zeros. Not thread-safe.
-template <class Number>
-class BasicCellArray {
+class CellArray {
 public:
-    BasicCellArray(int columns, int rows)
+    CellArray(int columns, int rows)
         : columns_(columns),
           rows_(rows),
           cells_(static_cast<std::size_t>(stride()) * (static_cast<std::size_t>(rows) + 2)) {}
@@ -37,8 +36,8 @@ public:
     [[nodiscard]] CellRect bounds() const { return {0, 0, columns_, rows_}; }
 
     /// Cell 0 of a row in [-1, rows]; cells -1 and columns are ghosts.
-    [[nodiscard]] const Number* row(int row) const { return cells_.data() + offset(row); }
-    [[nodiscard]] Number* row(int row) { return cells_.data() + offset(row); }
+    [[nodiscard]] const std::int32_t* row(int row) const { return cells_.data() + offset(row); }
+    [[nodiscard]] std::int32_t* row(int row) { return cells_.data() + offset(row); }
 
     /// From a row to the next [cell]. Whoever reads a row by vectors may read kPadding cells beyond either end.
     [[nodiscard]] std::ptrdiff_t stride() const {
@@ -49,16 +48,13 @@ public:
 private:
     // A row: a vector of padding that ends in a ghost, the cells up to a whole vector, a vector that begins with a
     // ghost or holds the last of it.
-    static constexpr int kPadding = 16;  // [cell], one cache line of 32-bit numbers
+    static constexpr int kPadding = 16;  // [cell], one cache line
 
     [[nodiscard]] std::ptrdiff_t offset(int row) const { return (row + std::ptrdiff_t{1}) * stride() + kPadding; }
 
     int columns_;
     int rows_;
-    std::vector<Number> cells_;
+    std::vector<std::int32_t> cells_;
 };
-
-/// Heights, fluxes and volumes [unit].
-using CellArray = BasicCellArray<std::int32_t>;
 
 }  // namespace sand
