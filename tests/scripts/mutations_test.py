@@ -12,9 +12,9 @@ import unittest
 
 from docs_test import PROJECT, ROOT, tracked
 
-HEADER = re.compile(r"\A# (?P<what>[A-Z].*\.)\n# tests: (?P<program>\w+) (?P<filter>\S+)\n(?=diff --git )")
+HEADER = re.compile(r"\A# (?P<what>[A-Z].*\.)\n# tests: (?P<program>\w+) (?P<filter>\S+)\n(# programs: [\w -]+\n)?(?=diff --git |--- a/)")
 PROGRAMS = {name for file in tracked("tests/*CMakeLists.txt")
-            for name in re.findall(r"^sandwall_test\((\w+)", (ROOT / file).read_text(), re.MULTILINE)}
+            for name in re.findall(r"^ *sandwall_test\((\w+)", (ROOT / file).read_text(), re.MULTILINE)}
 
 
 def faults(name, text, tests, applies):
