@@ -24,7 +24,7 @@ git ls-files -z | xargs -0 cp --parents --preserve=timestamps --target-directory
 # Each file by itself, because a mutation changes one. Compiled in half the time that the release takes, and without
 # warnings, because a mutation may leave a name unused.
 cmake --preset release -S "$copy" -B "$copy/build/release" -DCMAKE_UNITY_BUILD=OFF \
-    -DCMAKE_CXX_FLAGS= -DCMAKE_CXX_FLAGS_RELEASE="-O1 -DNDEBUG" -DSANDWALL_BENCHMARKS=OFF >/dev/null
+    -DCMAKE_CXX_FLAGS= -DCMAKE_CXX_FLAGS_RELEASE="-O1 -DNDEBUG" >/dev/null
 mapfile -t targets < <(for patch in "$@"; do
     tests_of "$patch" | cut -d' ' -f1
     programs_of "$patch" | tr ' ' '\n'
