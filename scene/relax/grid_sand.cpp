@@ -74,15 +74,21 @@ HeightScale scaleFor(const EsriGrid& surface, const Extremes& extremes) {
     return scale;
 }
 
-/// By which share slopes may rest too steep: there every flux is rounded to nothing. The excess over a threshold
-/// τ is at most (8 τ)^(1/3) + 4 where a face levels a quarter of a difference; `limit` is that share here.
-double steepening(double threshold, double limit) { return (std::cbrt(2 * threshold / limit) + 1 / limit) / threshold; }
+/// Returns the share by which faces across one axis may rest too steep, because a flux below one unit is none.
+///
+/// Let a be the difference across a face, b the slope along it, t the threshold and t + x the slope, all in units of
+/// height. Near the threshold the flux is k a x / t, so that the face rests while a < t / (k x). The faces beside it,
+/// of which b is the mean, rest near t: x is about a² / (2 t). Together that is x³ < t / (2 k²). Where the slope runs
+/// across the face, a is t, and x < 1 / k.
+double steepening(double threshold, double k) { return (std::cbrt(threshold / (2 * k * k)) + 1 / k) / threshold; }
 
-/// Of the axis that is worse off. The fluxes' shares are those of sand/grid/erosion.cpp.
-double steepeningOfGrid(double threshold, double aspect) {
-    const double across = 0.4998 / (1 / (aspect * aspect) + 1);
-    const double along = 0.4998 / (aspect * aspect + 1);
-    return std::max(steepening(threshold, across), steepening(threshold * aspect, along));
+/// Of the axis that is worse off. k is twice the push of sand/grid/erosion.cpp, or without inertia its limit.
+double steepeningOfGrid(double threshold, double aspect, sand::Scheme scheme) {
+    const auto k = [scheme](double ratio) {
+        const double squared = ratio * ratio;
+        return scheme == sand::Scheme::isotropic ? 0.45 * std::min(1.0, 1 / squared) : 0.4998 / (squared + 1);
+    };
+    return std::max(steepening(threshold, k(1 / aspect)), steepening(threshold * aspect, k(aspect)));
 }
 
 void setTalus(const EsriGrid& surface, const Extremes& extremes, const TalusSettings& material, GridSand& sand) {
@@ -107,8 +113,8 @@ void setTalus(const EsriGrid& surface, const Extremes& extremes, const TalusSett
         throw base::InputError(
             fmt::format("{}, and {} is the least, but for 0 degrees{}", units, kLeastThreshold, span));
     }
-    const double tooSteep = level ? 0 : steepeningOfGrid(threshold, aspect);
-    if (tooSteep > steepeningOfGrid(kFineThreshold, 1)) {
+    const double tooSteep = level ? 0 : steepeningOfGrid(threshold, aspect, sand.rules.scheme);
+    if (tooSteep > steepeningOfGrid(kFineThreshold, 1, sand.rules.scheme)) {
         sand.warnings.push_back(
             fmt::format("{}: slopes may come to rest {:.2g} % too steep{}", units, 100 * tooSteep, span));
     }

@@ -101,7 +101,7 @@ TEST_F(RelaxInput, ACoarseTalusWarnsWithTheFigure) {
     EXPECT_EQ(
         coarse.output.find(
             "sandwall-relax: warning: in.asc: a talus of 3 degrees is 3435 height units of 1.526e-05 from cell to "
-            "cell: slopes may come to rest 1 % too steep\n"),
+            "cell: slopes may come to rest 0.66 % too steep\n"),
         0U)
         << coarse.output;
     (void)relax("in.asc out.asc --talus 3.6");  // 4123 units: no second line
