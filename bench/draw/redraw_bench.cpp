@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The cost of a wall's frames during digging, in three parts: the sand's steps, taking over their changes, and drawing.
-// For all tiles together and for the busiest one. One process holds a view of the sand for each tile, as each rank does.
-// CPU time; LP_NUM_THREADS=0 keeps all of it in this thread.
+// For all tiles together and for the busiest one. One process holds a view of the sand for each tile, as each rank
+// does. CPU time; LP_NUM_THREADS=0 keeps all of it in this thread.
 #include <fmt/format.h>
 
 #include <cmath>
