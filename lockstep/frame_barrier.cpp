@@ -8,7 +8,6 @@
 #include <chrono>
 #include <cstring>
 #include <numeric>
-#include <random>
 #include <thread>
 #include <utility>
 
@@ -18,8 +17,6 @@ namespace lockstep {
 namespace {
 
 enum Tag : int { kFrameTag = 10, kRestTag, kArrivalTag, kVerdictTag };
-constexpr int kArrivalBytes = static_cast<int>(sizeof(Arrival));
-constexpr int kCutShort = -1;  // the length of a message that was longer than there was room
 
 /// How the master ends a frame.
 struct Ending {
@@ -191,45 +188,36 @@ FrameMessage FrameBarrier::begin(const FrameMessage& fromMaster, std::size_t& by
     return FrameMessage::decode(message);
 }
 
-/// At the master: everyone's arrival, and who sent something else.
+/// Receives all arrivals at the master, and lists the ranks that sent something else.
 void FrameBarrier::receiveArrivals(std::uint64_t frame) {
-    using Letter = std::array<std::uint8_t, 256>;  // room for what is no arrival
-    std::vector<Letter> letters(ranks_.size());
+    std::vector<std::array<std::uint8_t, kArrivalRoom>> letters(ranks_.size());
     std::vector<MPI_Request> requests(ranks_.size(), MPI_REQUEST_NULL);
     std::vector<int> lengths(ranks_.size());
     for (std::size_t i = 0; i < ranks_.size(); ++i) {
-        MPI_Irecv(letters[i].data(), static_cast<int>(sizeof(Letter)), MPI_BYTE, ranks_[i], kArrivalTag,
+        MPI_Irecv(letters[i].data(), static_cast<int>(kArrivalRoom), MPI_BYTE, ranks_[i], kArrivalTag,
                   cluster_.arrivals(), &requests[i]);
     }
     await(requests, ranks_, backoffFor(ranks_), &lengths);
     nonsense_.clear();
     for (std::size_t i = 0; i < ranks_.size(); ++i) {
         Arrival& arrival = arrivals_[i + 1];
-        std::memcpy(&arrival, letters[i].data(), sizeof arrival);
-        if (lengths[i] == kArrivalBytes && arrival.frame == frame) {
-            continue;
+        try {
+            arrival = readArrival(letters[i], lengths[i], frame);
+        } catch (const base::FormatError& error) {
+            nonsense_.push_back({ranks_[i], fmt::format("frame {}: {} sent what is no arrival at that frame ({})",
+                                                        frame, names_[i + 1], error.what())});
+            arrival = {.frame = frame};
         }
-        nonsense_.push_back(
-            {ranks_[i],
-             fmt::format("frame {}: {} sent what is no arrival at that frame ({})", frame, names_[i + 1],
-                         lengths[i] == kCutShort       ? "far too long"
-                         : lengths[i] != kArrivalBytes ? fmt::format("{} bytes and not {}", lengths[i], kArrivalBytes)
-                                                       : fmt::format("of frame {}", arrival.frame))});
-        arrival = {.frame = frame};
     }
 }
 
 void FrameBarrier::sendArrival(const Arrival& mine) {
-    if (!std::exchange(garbles_, false)) {
-        MPI_Send(&mine, kArrivalBytes, MPI_BYTE, kMaster, kArrivalTag, cluster_.arrivals());
-        ring({&kMaster, 1});
-        return;
+    if (std::exchange(garbles_, false)) {
+        const base::Bytes noise = noiseForArrival(mine.frame);
+        MPI_Send(noise.data(), static_cast<int>(noise.size()), MPI_BYTE, kMaster, kArrivalTag, cluster_.arrivals());
+    } else {
+        MPI_Send(&mine, static_cast<int>(sizeof mine), MPI_BYTE, kMaster, kArrivalTag, cluster_.arrivals());
     }
-    constexpr std::array<std::size_t, 3> kLengths{sizeof(Arrival), 200, 4000};
-    std::minstd_rand noise(static_cast<unsigned>(mine.frame));
-    base::Bytes bytes(kLengths.at(mine.frame % kLengths.size()));
-    std::generate(bytes.begin(), bytes.end(), [&] { return static_cast<std::uint8_t>(noise() >> 8); });
-    MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, kMaster, kArrivalTag, cluster_.arrivals());
     ring({&kMaster, 1});
 }
 

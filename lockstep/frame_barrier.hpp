@@ -9,23 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "lockstep/arrival.hpp"
 #include "lockstep/backoff.hpp"
 #include "lockstep/cluster.hpp"
 #include "lockstep/frame_message.hpp"
 #include "lockstep/watchdog.hpp"
 
 namespace lockstep {
-
-/// What a rank says when it comes to the barrier. Times are in its own clock, corrected to the master's [ns].
-struct Arrival {
-    std::uint64_t frame = 0;
-    std::int64_t arrived = 0;
-    std::int64_t lastSwap = 0;  // when it swapped the frame before; 0 on the first
-    std::int64_t drawn = 0;     // how long it drew [ns]
-    std::uint64_t stateHash = 0;
-    std::uint64_t viewHash = 0;  // ViewProof::hash of what this frame was drawn by
-    char key = 0;                // pressed in a window of this rank since the frame before; 0 for none
-};
 
 /// What the master found when all had arrived.
 enum class Verdict : std::uint8_t {

@@ -50,7 +50,8 @@ TEST_F(Drill, ADeadRankEndsTheJobAndIsKeptFromDyingAgain) {
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out/failure.json")) << "nobody was given up";
 }
 
-// In frame 30 the noise has an arrival's length, in 31 another, and in 32 one for which there is no room.
+// In frame 30 the noise has an arrival's length, in 31 another, and in 32 one for which there is no room. Each of the
+// three is sent and refused in tests/lockstep/barrier_test.cpp.
 TEST_F(Drill, ARankThatSendsGarbageIsNamedAndGivenUp) {
     const auto session = drill(wall(1, 2, "mono"), "garbage:rank=2,frame=32");
     EXPECT_EQ(session->wait(kLong), 1) << session->output();

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lockstep/arrival.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <set>
+#include <string>
+
+namespace {
+
+using lockstep::Arrival;
+
+constexpr std::uint64_t kFrame = 30;
+constexpr int kLength = static_cast<int>(sizeof(Arrival));
+using Room = std::array<std::uint8_t, lockstep::kArrivalRoom>;
+
+/// The bytes of an arrival at this frame, as MPI leaves them in their room.
+Room letterOf(std::uint64_t frame) {
+    const Arrival arrival{frame, 1, 2, 3, 4, 5, 'q'};
+    Room room{};
+    std::memcpy(room.data(), &arrival, sizeof arrival);
+    return room;
+}
+
+/// Why such a message is no arrival at kFrame; "nothing" where it is one.
+std::string faultOf(const Room& room, int length) {
+    try {
+        (void)lockstep::readArrival(room, length, kFrame);
+    } catch (const base::FormatError& error) {
+        return error.what();
+    }
+    return "nothing";
+}
+
+TEST(Arrival, ComesBackAsItWent) {
+    const Arrival read = lockstep::readArrival(letterOf(kFrame), kLength, kFrame);
+    EXPECT_EQ(read.frame, kFrame);
+    EXPECT_EQ(read.arrived, 1);
+    EXPECT_EQ(read.lastSwap, 2);
+    EXPECT_EQ(read.drawn, 3);
+    EXPECT_EQ(read.stateHash, 4U);
+    EXPECT_EQ(read.viewHash, 5U);
+    EXPECT_EQ(read.key, 'q');
+}
+
+// The one before is a rank that lags behind, or what a rank has sent twice.
+TEST(Arrival, AtAnotherFrameIsNone) {
+    for (const std::uint64_t frame : {kFrame - 1, kFrame + 1, std::uint64_t{0}, ~std::uint64_t{0}}) {
+        EXPECT_EQ(faultOf(letterOf(frame), kLength), "of frame " + std::to_string(frame));
+    }
+}
+
+TEST(Arrival, OfAnotherLengthIsNoneThoughItsFrameIsRight) {
+    for (const int length : {0, 8, kLength - 1, kLength + 1, static_cast<int>(lockstep::kArrivalRoom)}) {
+        EXPECT_EQ(faultOf(letterOf(kFrame), length),
+                  std::to_string(length) + " bytes and not " + std::to_string(kLength));
+    }
+    EXPECT_EQ(faultOf(letterOf(kFrame), lockstep::kCutShort), "far too long");
+}
+
+// The drill's frames 30, 31 and 32 of tests/cluster/drills_test.cpp.
+TEST(Arrival, OfADrillIsNoiseOfThreeKindsByTurns) {
+    std::set<base::Bytes> all;
+    for (std::uint64_t frame = kFrame; frame < kFrame + 30; ++frame) {
+        const base::Bytes noise = lockstep::noiseForArrival(frame);
+        const std::array<std::size_t, 3> lengths{sizeof(Arrival), 200, 4000};
+        EXPECT_EQ(noise.size(), lengths.at(frame % 3)) << frame;
+        EXPECT_GT(std::set(noise.begin(), noise.end()).size(), 16U) << frame << " is noise";
+        Room room{};
+        std::copy_n(noise.begin(), std::min(noise.size(), room.size()), room.begin());
+        const bool fits = noise.size() <= room.size();
+        EXPECT_THROW(
+            (void)lockstep::readArrival(room, fits ? static_cast<int>(noise.size()) : lockstep::kCutShort, frame),
+            base::FormatError)
+            << frame;
+        all.insert(noise);
+    }
+    EXPECT_EQ(all.size(), 30U) << "every frame has its own";
+    EXPECT_LT(sizeof(Arrival), 200U);
+    EXPECT_LT(lockstep::kArrivalRoom, 4000U) << "there is no room for the longest";
+}
+
+}  // namespace
