@@ -32,6 +32,36 @@ TEST(FrameMessage, SurvivesItsEncoding) {
     EXPECT_EQ(lockstep::FrameMessage::decode(message.encode()), message);
 }
 
+// Every number is another one, so that none can stand in for its neighbour.
+TEST(FrameMessage, CarriesEveryFieldOfAView) {
+    lockstep::ViewState view{.head = {1, 2, 3},
+                             .right = {4, 5, 6},
+                             .eyeSeparation = 7,
+                             .sceneToRoom = {},
+                             .pattern = 8,
+                             .layers = lockstep::Overlays(9),
+                             .stereo = 10};
+    for (std::size_t i = 0; i < view.sceneToRoom.size(); ++i) {
+        view.sceneToRoom.at(i) = 11 + static_cast<double>(i);
+    }
+    base::ByteWriter writer;
+    view.encode(writer);
+    base::ByteReader reader(writer.bytes());
+    EXPECT_EQ(lockstep::ViewState::decode(reader), view);
+    EXPECT_TRUE(reader.atEnd());
+}
+
+TEST(FrameMessage, TellsAStopFromACapture) {
+    for (const bool stop : {false, true}) {
+        lockstep::FrameMessage message = digging();
+        message.stop = stop;
+        message.capture = !stop;
+        const lockstep::FrameMessage copy = lockstep::FrameMessage::decode(message.encode());
+        EXPECT_EQ(copy.stop, stop);
+        EXPECT_EQ(copy.capture, !stop);
+    }
+}
+
 lockstep::FrameMessage observed() {
     lockstep::FrameMessage message = digging();
     message.figures = {16.7, lockstep::Drag{5, 0.97, 30.1}, 99999, 1, 2, {0, 131, 20571, 4}};

@@ -41,6 +41,9 @@ TEST(ViewAgreement, EveryPartOfAViewCounts) {
     other = seen();
     other.layers.set(lockstep::Overlay::force, true);
     EXPECT_NE(proof.hash(other), hash);
+    other = seen();
+    other.stereo = 1;
+    EXPECT_NE(proof.hash(other), hash);
 }
 
 TEST(ViewAgreement, AnotherWallIsAnotherView) {

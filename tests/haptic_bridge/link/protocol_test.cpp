@@ -82,6 +82,37 @@ TEST(Protocol, BytesOnTheWireAreThoseOfTheDocument) {
     EXPECT_EQ(encode(Hello{{6, 1, 2, "a"}, Role::watch, true, true, nonce}), hello);
 }
 
+// Of 43 numbers that look alike each must stand where the document has it, or both ends would mistake them alike.
+TEST(Protocol, TheNumbersOfAReportStandInTheOrderOfTheDocument) {
+    Report report{.hapticPeriodUsP50 = 1,
+                  .hapticPeriodUsP99 = 2,
+                  .hapticPeriodUsMax = 3,
+                  .forceUsP50 = 4,
+                  .forceUsP99 = 5,
+                  .toWall = {6, 7, 8, 9, 20},
+                  .toMaster = {10, 11, 12, 13, 21},
+                  .stepBytesMean = 14,
+                  .steps = 15,
+                  .stepsWithheld = 16,
+                  .samplesDropped = 17,
+                  .ticks = 18,
+                  .ticksMissed = 19,
+                  .guards = {},
+                  .refused = {}};
+    std::iota(report.guards.begin(), report.guards.end(), std::uint64_t{22});
+    std::iota(report.refused.begin(), report.refused.end(), std::uint64_t{34});
+    const base::Bytes framed = encode(report);
+    base::ByteReader reader(withoutLength(framed).subspan(1));
+    for (int number = 1; number <= 14; ++number) {
+        EXPECT_EQ(reader.get<double>(), number);
+    }
+    for (std::uint64_t number = 15; number <= 43; ++number) {
+        EXPECT_EQ(reader.get<std::uint64_t>(), number);
+    }
+    EXPECT_TRUE(reader.atEnd());
+    EXPECT_EQ(decode(withoutLength(framed)), Message(report));
+}
+
 TEST(Protocol, RefusesEveryTruncationAndEveryTrailingByte) {
     for (const Message& message : oneOfEach()) {
         const base::Bytes framed = encode(message);
