@@ -247,11 +247,7 @@ bool Session::showFrame() {
     }
     liveSteps_.shown(terrain_.stepNumber(), swapped - (lastSwap_ == 0 ? swapped : lastSwap_));
     lastSwap_ = swapped;
-    if (!steps.empty() && liveSteps_.linked() && steps.back().step.epoch == liveSteps_.epoch() &&
-        steps.back().serverHash != hash_) {
-        ++summary_.serverDivergences;
-        liveSteps_.distrustServer();
-    }
+    summary_.serverDivergences += liveSteps_.proveServer(steps, hash_) ? 0 : 1;
     if (journal_) {
         journal_->shown(terrain_, frame_, liveSteps_.epoch(), hash_);
     }

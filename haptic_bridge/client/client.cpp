@@ -29,8 +29,9 @@ void LinkCounters::add(const LinkCounters& other) {
     }
 }
 
-Client::Client(Address address, Offer offer, LinkSecurity security)
-    : session_(std::make_unique<Session>(std::move(address), std::move(offer), std::move(security))) {}
+Client::Client(Address address, Offer offer, LinkSecurity security, LinkClock clock)
+    : session_(std::make_unique<Session>(std::move(address), std::move(offer), std::move(security), std::move(clock))) {
+}
 
 Client::~Client() = default;
 

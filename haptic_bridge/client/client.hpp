@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -69,6 +70,10 @@ struct LinkCounters {
     void add(const LinkCounters& other);
 };
 
+/// Returns a monotonic time [ns]. The link's timeouts use it. An empty function stands for the host's clock; a test
+/// passes its own.
+using LinkClock = std::function<std::int64_t()>;
+
 /// Faults of the link on purpose.
 enum class LinkDrill : std::uint8_t {
     garbage,  // the server is sent bytes that are no message
@@ -86,7 +91,7 @@ enum class LinkDrill : std::uint8_t {
 class Client {
 public:
     /// Without a secret in `security` only servers on this machine are spoken to.
-    Client(Address address, Offer offer, LinkSecurity security = {});
+    Client(Address address, Offer offer, LinkSecurity security = {}, LinkClock clock = {});
     ~Client();
     Client(const Client&) = delete;
     Client& operator=(const Client&) = delete;
@@ -125,6 +130,8 @@ public:
     /// Says goodbye, waits at most half a second for the server's last report, and ends the network thread.
     void stop();
 
+    /// Silence that ends a link. Pongs come four times a second.
+    static constexpr std::int64_t kSilenceNs = 10'000'000'000;
     static constexpr std::size_t kMaxQueued = 1024;      // [step]
     static constexpr std::size_t kMaxPositions = 16384;  // a second of a device that is read 16 times a millisecond
 

@@ -65,7 +65,7 @@ void Client::Session::connected(Connection::Socket socket) {
     peer_ = "haptic server " + address_.text();
     handshake_.reset();
     connection_->limit(kMaxGreeting);
-    heard_ = std::chrono::steady_clock::now();
+    heardNs_ = now_();
     silentUntil_ = {};
     pings_ = 0;
     {

@@ -17,14 +17,16 @@ using boost::system::error_code;
 
 namespace {
 
-constexpr std::chrono::milliseconds kSilence{10000};  // pongs come four times a second
 constexpr std::chrono::milliseconds kGoodbye{500};
 constexpr std::size_t kMaxTickPieces = 4096;  // half an hour of them; a session that keeps none takes none out
 
 }  // namespace
 
-Client::Session::Session(Address address, Offer offer, LinkSecurity security)
-    : address_(std::move(address)), offer_(std::move(offer)), security_(std::move(security)) {
+Client::Session::Session(Address address, Offer offer, LinkSecurity security, LinkClock clock)
+    : address_(std::move(address)),
+      offer_(std::move(offer)),
+      security_(std::move(security)),
+      now_(clock ? std::move(clock) : host::monotonicNs) {
     backOff_ = kFirstBackOff;
     tell(Link::connecting, "haptic server " + address_.text() + ": connecting");
     asio::post(io_, [this] { connect(); });
@@ -113,10 +115,10 @@ void Client::Session::watch() {
             const std::lock_guard lock(shelf.mutex);
             full = shelf.full;
         }
-        const auto now = std::chrono::steady_clock::now();
-        heard_ = full ? now : heard_;
-        if (now - heard_ > kSilence) {
-            connection_->close(fmt::format("silent for {} s", kSilence.count() / 1000));
+        const std::int64_t now = now_();
+        heardNs_ = full ? now : heardNs_;
+        if (now - heardNs_ > kSilenceNs) {
+            connection_->close(fmt::format("silent for {} s", kSilenceNs / 1'000'000'000));
             return;
         }
         watch();
@@ -179,7 +181,7 @@ void Client::Session::request(const EditRequest& request) {
 }
 
 void Client::Session::receive(Message&& message) {
-    heard_ = std::chrono::steady_clock::now();
+    heardNs_ = now_();
     {
         const std::lock_guard lock(shelf.mutex);
         shelf.counters.bytesIn = connection_->bytesIn();

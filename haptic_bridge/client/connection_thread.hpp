@@ -23,7 +23,7 @@ namespace haptic_bridge {
 /// callers. Members that end in an underscore and stand below `shelf` belong to the network thread.
 class Client::Session {
 public:
-    Session(Address address, Offer offer, LinkSecurity security);
+    Session(Address address, Offer offer, LinkSecurity security, LinkClock clock);
     ~Session() { stop(); }
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
@@ -90,6 +90,7 @@ private:
     const Address address_;
     const Offer offer_;
     const LinkSecurity security_;
+    const LinkClock now_;
     std::optional<MasterHandshake> handshake_;
     boost::asio::io_context io_;
     boost::asio::ip::tcp::resolver resolver_{io_};
@@ -104,7 +105,8 @@ private:
     std::uint64_t lastStep_ = 0;
     ClockOffset clock_;
     Milliseconds backOff_{};
-    std::chrono::steady_clock::time_point heard_, silentUntil_;
+    std::int64_t heardNs_ = 0;  // by now_
+    std::chrono::steady_clock::time_point silentUntil_;
     int pings_ = 0;
     bool everWelcomed_ = false, stopping_ = false;
     std::thread thread_;

@@ -19,11 +19,8 @@ namespace master {
 
 using haptic_bridge::Link;
 using haptic_bridge::TimedStep;
-using host::monotonicNs;
 
 namespace {
-
-double secondsSince(std::int64_t then) { return static_cast<double>(monotonicNs() - then) * 1e-9; }
 
 /// As the event `link` has it.
 const char* nameOf(Link link) {
@@ -51,22 +48,27 @@ const char* nameOf(Link link) {
 }  // namespace
 
 LiveSteps::LiveSteps(std::optional<haptic_bridge::Address> server, const scene::Scene& scene, Pace pace,
-                     std::uint32_t epoch, haptic_bridge::LinkSecurity security)
+                     std::uint32_t epoch, haptic_bridge::LinkSecurity security, haptic_bridge::LinkClock clock)
     : server_(std::move(server)),
       offer_{scene.rules.digest(), scene.name},
       security_(std::move(security)),
+      now_(clock ? std::move(clock) : host::monotonicNs),
       stepsPerSecond_(scene.rules.stepsPerSecond),
       pace_(pace),
       source_(server_ ? Source::starting : Source::own),
       epoch_(epoch),
-      waitingSinceNs_(monotonicNs()),
+      waitingSinceNs_(now_()),
       positions_(scene) {
     if (server_) {
-        client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_, security_);
+        connect();
     } else {
         takeOver();
     }
 }
+
+void LiveSteps::connect() { client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_, security_, now_); }
+
+double LiveSteps::secondsSince(std::int64_t then) const { return static_cast<double>(now_() - then) * 1e-9; }
 
 void LiveSteps::takeOver(const std::string& reason, const std::string& why) {
     if (!why.empty()) {
@@ -78,14 +80,14 @@ void LiveSteps::takeOver(const std::string& reason, const std::string& why) {
         host::emitEvent("without_hand", {{"reason", reason}, {"epoch", epoch_}});
     }
     ownStepsOwed_ = 0;
-    lastOwnNs_ = monotonicNs();
+    lastOwnNs_ = now_();
 }
 
 void LiveSteps::grant(const sand::Replica& terrain, std::uint64_t stateHash) {
     ++epoch_;
     client_->grant(epoch_, terrain.stepNumber(), stateHash, terrain.encodeState(), recent_);
     source_ = Source::granting;
-    waitingSinceNs_ = monotonicNs();
+    waitingSinceNs_ = now_();
 }
 
 void LiveSteps::sayLink(const haptic_bridge::LinkStatus& status) {
@@ -100,7 +102,7 @@ void LiveSteps::sayLink(const haptic_bridge::LinkStatus& status) {
 
 void LiveSteps::followLink(const sand::Replica& terrain, std::uint64_t stateHash) {
     if (!client_ && server_ && secondsSince(waitingSinceNs_) > kRetryWait) {
-        client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_, security_);
+        connect();
     }
     if (!client_) {
         return;
@@ -119,7 +121,7 @@ void LiveSteps::followLink(const sand::Replica& terrain, std::uint64_t stateHash
     } else if (source_ == Source::granting && status.link == Link::granting) {
         if (secondsSince(waitingSinceNs_) > kGrantWait) {
             leaveServer();  // for a while: each try stops the sand
-            waitingSinceNs_ = monotonicNs();
+            waitingSinceNs_ = now_();
             takeOver("server_does_not_begin", fmt::format("{} does not begin", server_->text()));
         }
     } else if (source_ == Source::starting) {
@@ -141,8 +143,8 @@ void LiveSteps::followPositions(const haptic_bridge::LinkStatus& status, const s
     if (!positions_.streaming()) {
         positions_.begin(terrain);
     }
-    positions_.add(client_->drainPositions(), monotonicNs());
-    for (const std::string& line : positions_.troubles(client_->floods(), monotonicNs())) {
+    positions_.add(client_->drainPositions(), now_());
+    for (const std::string& line : positions_.troubles(client_->floods(), now_())) {
         host::printLine("{}", line);
     }
 }
@@ -151,7 +153,7 @@ std::size_t LiveSteps::ownStepsDue() {
     if (pace_ == Pace::fast) {
         return 1;
     }
-    const std::int64_t now = monotonicNs();
+    const std::int64_t now = now_();
     ownStepsOwed_ += static_cast<double>(now - lastOwnNs_) * 1e-9 * stepsPerSecond_;
     lastOwnNs_ = now;
     const double due = std::floor(ownStepsOwed_);
@@ -258,10 +260,20 @@ void LiveSteps::leaveServer() {
     linkChanges_ = 0;
 }
 
+bool LiveSteps::proveServer(const std::vector<TimedStep>& steps, std::uint64_t stateHash) {
+    // The link may have been lost since, or the steps may be the master's own.
+    const bool fromServer = linked() && !steps.empty() && steps.back().step.epoch == epoch_;
+    if (!fromServer || steps.back().serverHash == stateHash) {
+        return true;
+    }
+    distrustServer();
+    return false;
+}
+
 void LiveSteps::distrustServer() {
     leaveServer();
-    recent_ = {};  // it holds what that server has said of the sand
-    client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_, security_);
+    recent_ = {};  // it holds that server's hashes
+    connect();
     takeOver("other_sand", "the server's sand differs from the wall's, it must start again from the wall's");
 }
 

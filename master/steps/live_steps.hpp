@@ -30,15 +30,20 @@ public:
     static constexpr double kGrantWait = 5;
     static constexpr double kRetryWait = 30;  // [s] until it is tried again
 
-    /// Epochs begin above `epoch`, the last of a session that goes on.
+    /// Epochs begin above `epoch`, the last of a session that goes on. Every timeout uses `clock`, also those of
+    /// the link.
     LiveSteps(std::optional<haptic_bridge::Address> server, const scene::Scene& scene, Pace pace,
-              std::uint32_t epoch = 0, haptic_bridge::LinkSecurity security = {});
+              std::uint32_t epoch = 0, haptic_bridge::LinkSecurity security = {}, haptic_bridge::LinkClock clock = {});
 
     /// At most `most` steps for the next frame, numbered on from the terrain's; none when nothing is due.
     [[nodiscard]] std::vector<haptic_bridge::TimedStep> next(const sand::Replica& terrain, std::uint64_t stateHash,
                                                              std::size_t most);
     /// The wall has swapped and shows the terrain at this step.
     void shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs);
+    /// Compares the wall's `stateHash` with the server's hash of the last of `steps`, which the wall shows now.
+    /// Disconnects a server whose sand differs; the server starts again from the wall's state. Returns whether the
+    /// hashes agree; true also if no linked server has numbered the steps.
+    [[nodiscard]] bool proveServer(const std::vector<haptic_bridge::TimedStep>& steps, std::uint64_t stateHash);
 
     /// An operator asks for an edit: it goes into a step that next() returns, whoever numbers it, after those asked for
     /// before.
@@ -48,9 +53,6 @@ public:
     void shareForce(double share);
     /// Pieces of the server's tick track that have come since this was asked last, for the journal.
     [[nodiscard]] std::vector<base::Bytes> ticks();
-
-    /// The server's replica holds other sand than the wall: it is let go, and starts again from the wall's state.
-    void distrustServer();
 
     /// Injects a fault into the link: garbage, or a partition. Waits until there is a link.
     void drill(const lockstep::Fault& fault) { drills_.push_back(fault); }
@@ -78,6 +80,9 @@ private:
     /// `reason` is the word for programs, `why` the words for people; both empty where nothing was lost.
     void takeOver(const std::string& reason = "", const std::string& why = "");
     void leaveServer();
+    void distrustServer();
+    void connect();
+    [[nodiscard]] double secondsSince(std::int64_t then) const;
     [[nodiscard]] std::size_t ownStepsDue();
     void followPositions(const haptic_bridge::LinkStatus& status, const sand::Replica& terrain);
     void passEdits(const std::vector<haptic_bridge::TimedStep>& steps);
@@ -87,6 +92,7 @@ private:
     std::optional<haptic_bridge::Address> server_;
     haptic_bridge::Offer offer_;
     haptic_bridge::LinkSecurity security_;
+    haptic_bridge::LinkClock now_;
     haptic_bridge::StepRing recent_;
     int stepsPerSecond_;
     Pace pace_;

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <functional>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "sand/replica.hpp"
+#include "scene/scene.hpp"
+#include "tests/haptic_bridge/client/fake_server.hpp"
+
+namespace test {
+
+/// A haptic server for tests. It holds sand, takes the numbering of steps over from a master, and numbers them inside
+/// the wall's window as the real server does. The test chooses the hash that it sends with each step.
+class SandServer {
+public:
+    /// Returns the hash to send with a step of link number `link`, from 1 on; `hash` is the right one.
+    using Say = std::function<std::uint64_t(int link, std::uint64_t step, std::uint64_t hash)>;
+    static std::uint64_t truth(int /*link*/, std::uint64_t /*step*/, std::uint64_t hash) { return hash; }
+
+    explicit SandServer(const scene::Scene& scene, Say say = truth)
+        : identity_{haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene.rules.digest(), scene.name},
+          stepsPerSecond_(static_cast<std::uint32_t>(scene.rules.stepsPerSecond)),
+          say_(std::move(say)),
+          sand_(scene),
+          server_([this](FakeServer::Guest& guest) { talk(guest); }) {}
+
+    [[nodiscard]] haptic_bridge::Address address() const { return server_.address(); }
+    [[nodiscard]] int links() const { return links_; }            // for which it was handed the numbering
+    [[nodiscard]] int states() const { return states_; }          // by all of the wall's sand
+    [[nodiscard]] int catchUps() const { return catchUps_; }      // by steps that it lacked
+    [[nodiscard]] std::uint64_t shown() const { return shown_; }  // the last step that the master says the wall shows
+    [[nodiscard]] int requests() const { return requests_; }      // edits that it was asked for
+    [[nodiscard]] int shares() const { return shares_; }          // of the force, that it was told
+    /// Whether it was ever asked for an edit while another was in no step yet.
+    [[nodiscard]] bool crowded() const { return crowded_; }
+    /// From its second link on it claims to be at this step, with the hash that it has said there.
+    void claimStep(std::uint64_t step) { claimed_ = step; }
+
+private:
+    static constexpr std::uint64_t kWindow = 8;  // [step], as docs/protocol.md has it
+
+    void talk(FakeServer::Guest& guest) {
+        if (!guest.await<haptic_bridge::Hello>()) {
+            return;
+        }
+        guest.send(haptic_bridge::Welcome{identity_, stepsPerSecond_});
+        const auto start = guest.await<haptic_bridge::Start>();
+        if (!start || !reach(guest, *start)) {
+            return;
+        }
+        const int link = ++links_;
+        std::uint64_t shown = start->stepNumber;
+        edit_.reset();
+        guest.send(haptic_bridge::Ready{});
+        while (true) {
+            while (sand_.stepNumber() < shown + kWindow) {
+                makeStep(guest, start->epoch, link);
+            }
+            const auto message = guest.next();
+            if (!message) {
+                return;
+            }
+            if (const auto* frame = std::get_if<haptic_bridge::Shown>(&*message)) {
+                shown = std::max(shown, frame->stepNumber);
+                shown_ = shown;
+            }
+            obey(guest, *message);
+        }
+    }
+
+    void obey(const FakeServer::Guest& guest, const haptic_bridge::Message& message) {
+        if (const auto* ping = std::get_if<haptic_bridge::Ping>(&message)) {
+            guest.send(haptic_bridge::Pong{ping->masterNs, 1});
+        } else if (const auto* request = std::get_if<haptic_bridge::EditRequest>(&message)) {
+            ++requests_;
+            crowded_ = crowded_ || edit_;
+            edit_ = request->edit;
+        } else if (std::holds_alternative<haptic_bridge::ForceShare>(message)) {
+            ++shares_;
+        }
+    }
+
+    [[nodiscard]] bool isAt(const haptic_bridge::Start& start) {
+        return sand_.stepNumber() == start.stepNumber && sand_.stateHash() == start.stateHash;
+    }
+
+    /// Comes to the sand that the master begins with.
+    bool reach(FakeServer::Guest& guest, const haptic_bridge::Start& start) {
+        if (isAt(start)) {
+            return true;
+        }
+        const std::uint64_t step = links_ > 0 ? claimed_.value_or(sand_.stepNumber()) : sand_.stepNumber();
+        guest.reader.expectState(true);
+        guest.send(haptic_bridge::NeedState{step, said_.contains(step) ? said_[step] : sand_.stateHash()});
+        while (const auto message = guest.next()) {
+            if (const auto* state = std::get_if<haptic_bridge::State>(&*message)) {
+                ++states_;
+                sand_.decodeState(state->bytes);
+                return isAt(start);
+            }
+            if (const auto* steps = std::get_if<haptic_bridge::CatchUp>(&*message); steps != nullptr && steps->last) {
+                ++catchUps_;
+                guest.send(haptic_bridge::NeedState{});  // all of it
+            }
+        }
+        return false;
+    }
+
+    void makeStep(const FakeServer::Guest& guest, std::uint32_t epoch, int link) {
+        haptic_bridge::StepMessage message;
+        message.serverTimeNs = 1;
+        message.step.epoch = epoch;
+        message.step.number = sand_.stepNumber() + 1;
+        if (edit_) {
+            message.step.edit = *std::exchange(edit_, std::nullopt);
+        }
+        sand_.apply(message.step);
+        message.stateHash = said_[message.step.number] = say_(link, message.step.number, sand_.stateHash());
+        guest.send(message);
+    }
+
+    const haptic_bridge::Identity identity_;
+    const std::uint32_t stepsPerSecond_;
+    const Say say_;
+    // The server thread's own.
+    sand::Replica sand_;
+    std::map<std::uint64_t, std::uint64_t> said_;  // hashes, by step
+    std::optional<sand::Edit> edit_;               // for the next step
+
+    std::atomic<int> links_{0}, states_{0}, catchUps_{0}, requests_{0}, shares_{0};
+    std::atomic<std::uint64_t> shown_{0};
+    std::atomic<bool> crowded_{false};
+    std::optional<std::uint64_t> claimed_;
+    FakeServer server_;  // the last member: its thread uses all others
+};
+
+}  // namespace test

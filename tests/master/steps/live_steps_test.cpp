@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+// The master's steps while its haptic server is wrong, silent or stopped. The timeouts use a clock that the test moves.
+#include "master/steps/live_steps.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "tests/haptic_bridge/client/sand_server.hpp"
+#include "tests/haptic_bridge/server/server_process.hpp"
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+using haptic_bridge::TimedStep;
+using test::eventually;
+using test::FakeServer;
+using test::SandServer;
+using namespace std::chrono_literals;
+
+constexpr std::int64_t kFrameNs = 16'666'667;
+constexpr std::chrono::milliseconds kLooks = 1200ms;  // in which a link looks at its clock twice
+
+/// A wall without ranks. It shows each step that it takes.
+class LiveStepsTest : public testing::Test {
+protected:
+    master::LiveSteps stepsFrom(const haptic_bridge::Address& server) {
+        return {server, scene_, master::Pace::fast, 0, {}, [this] { return nowNs_.load(); }};
+    }
+    void pass(double seconds) { nowNs_ += static_cast<std::int64_t>(seconds * 1e9); }
+    /// One frame, and the steps in it.
+    std::vector<TimedStep> show(master::LiveSteps& live, std::size_t most = 4) {
+        const std::vector<TimedStep> steps = live.next(wall_, wall_.stateHash(), most);
+        for (const TimedStep& timed : steps) {
+            wall_.apply(timed.step);
+            edits_ += timed.step.edit.any() ? 1 : 0;
+            lastEdit_ = timed.step.edit.any() ? timed.step.edit : lastEdit_;
+        }
+        live.shown(wall_.stepNumber(), kFrameNs);
+        differed_ += live.proveServer(steps, wall_.stateHash()) ? 0 : 1;
+        return steps;
+    }
+    template <class Done>
+    bool showUntil(master::LiveSteps& live, const Done& done) {
+        return eventually([&] {
+            show(live);
+            return done();
+        });
+    }
+    /// Whether the wall takes steps of its own.
+    bool numbersAlone(master::LiveSteps& live) {
+        const std::vector<TimedStep> steps = show(live);
+        return !live.linked() && steps.size() == 1 && steps[0].serverHash == 0 && steps[0].step.epoch == live.epoch();
+    }
+
+    const scene::Scene scene_ = samples::flatScene(32, 24);
+    sand::Replica wall_{scene_};
+    std::atomic<std::int64_t> nowNs_{1'000'000'000};
+    int differed_ = 0, edits_ = 0;
+    sand::Edit lastEdit_;
+};
+
+TEST_F(LiveStepsTest, AServerWhoseSandDiffersIsLetGoAndStartsAgainFromTheWalls) {
+    SandServer server(scene_, [](int link, std::uint64_t step, std::uint64_t hash) {
+        return link == 1 && step >= 20 ? hash ^ 1 : hash;
+    });
+    master::LiveSteps live = stepsFrom(server.address());
+    ASSERT_TRUE(showUntil(live, [&] { return wall_.stepNumber() >= 10; }));
+    EXPECT_TRUE(live.linked());
+    EXPECT_EQ(live.epoch(), 1U);
+    EXPECT_EQ(differed_, 0);
+    ASSERT_TRUE(showUntil(live, [&] { return differed_ > 0; }));
+    EXPECT_FALSE(live.linked());
+    EXPECT_EQ(live.epoch(), 2U) << "the master numbers";
+    const std::uint64_t then = wall_.stepNumber();
+    EXPECT_GE(then, 20U);
+    EXPECT_LT(then, 24U) << "in the frame that shows the first wrong step, of four at most";
+    ASSERT_TRUE(showUntil(live, [&] { return server.links() == 2 && server.shown() > then + 30; }));
+    EXPECT_TRUE(live.linked());
+    EXPECT_EQ(live.epoch(), 3U);
+    EXPECT_EQ(differed_, 1) << "it has the wall's sand now";
+    EXPECT_EQ(server.states(), 1) << "the wall's whole sand";
+    EXPECT_EQ(live.counters().reconnects, 1U);
+}
+
+// What a wrong server has said of the sand proves nothing when it comes back.
+TEST_F(LiveStepsTest, AServerWithAnotherHistoryGetsNoneOfItBack) {
+    SandServer server(scene_, [](int link, std::uint64_t step, std::uint64_t hash) {
+        return link == 1 && step >= 5 ? hash ^ step : hash;
+    });
+    server.claimStep(6);
+    master::LiveSteps live = stepsFrom(server.address());
+    // Steps 5 to 8 in one frame: of the last alone the wall knows its own hash.
+    ASSERT_TRUE(eventually([&] { return !show(live, 4).empty(); }));
+    while (wall_.stepNumber() < 4) {
+        show(live, 4 - wall_.stepNumber());
+    }
+    ASSERT_EQ(differed_, 0);
+    ASSERT_TRUE(eventually([&] { return live.counters().stepsIn >= 8; }));
+    ASSERT_EQ(show(live, 4).size(), 4U);
+    EXPECT_EQ(differed_, 1);
+    ASSERT_TRUE(showUntil(live, [&] { return server.links() == 2; }));
+    EXPECT_EQ(server.catchUps(), 0);
+    EXPECT_EQ(server.states(), 1);
+}
+
+TEST_F(LiveStepsTest, AServerThatTakesTheConnectionAndNeverGreetsIsWaitedForTenSeconds) {
+    std::atomic<int> greeted = 0;
+    FakeServer server([&](FakeServer::Guest& guest) {
+        greeted += guest.await<haptic_bridge::Hello>() ? 1 : 0;
+        guest.ignoreTheRest();
+    });
+    master::LiveSteps live = stepsFrom(server.address());
+    ASSERT_TRUE(eventually([&] { return greeted == 1; }));
+    pass(9.99);
+    EXPECT_TRUE(show(live).empty());
+    EXPECT_TRUE(live.starting());
+    pass(0.02);
+    show(live);
+    EXPECT_FALSE(live.starting());
+    EXPECT_EQ(live.epoch(), 1U);
+    EXPECT_TRUE(numbersAlone(live)) << "the wall goes on without a hand";
+    EXPECT_TRUE(showUntil(live, [&] { return greeted == 2; })) << "and tried again";
+    EXPECT_EQ(live.counters().links, 0U);
+}
+
+TEST_F(LiveStepsTest, AServerThatIsStoppedLosesItsLinkAfterTenSeconds) {
+    std::atomic<bool> silent = false;
+    FakeServer server(test::toTheFirst([&](FakeServer::Guest& guest) {
+        if (!guest.await<haptic_bridge::Hello>()) {
+            return;
+        }
+        guest.send(haptic_bridge::Welcome{
+            {haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), scene_.name}, 60});
+        if (!guest.await<haptic_bridge::Start>()) {
+            return;
+        }
+        guest.send(haptic_bridge::Ready{});
+        silent = true;
+        guest.ignoreTheRest();  // the kernel takes what comes for a stopped process
+    }));
+    master::LiveSteps live = stepsFrom(server.address());
+    ASSERT_TRUE(showUntil(live, [&] { return silent && live.linked(); }));
+    EXPECT_EQ(live.epoch(), 1U);
+    pass(9.99);
+    std::this_thread::sleep_for(kLooks);
+    EXPECT_TRUE(show(live).empty()) << "the sand waits for the hand";
+    EXPECT_TRUE(live.linked());
+    pass(0.02);
+    ASSERT_TRUE(showUntil(live, [&] { return !live.linked(); }));
+    EXPECT_EQ(live.epoch(), 2U);
+    EXPECT_TRUE(numbersAlone(live)) << "the wall goes on without a hand";
+    EXPECT_EQ(live.counters().links, 1U);
+}
+
+TEST_F(LiveStepsTest, AServerThatDoesNotBeginIsPassedOverAfterFiveSecondsAndAskedAgainAfterThirty) {
+    FakeServer server([&](FakeServer::Guest& guest) {
+        if (guest.await<haptic_bridge::Hello>()) {
+            guest.send(haptic_bridge::Welcome{
+                {haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), scene_.name}, 60});
+            guest.ignoreTheRest();
+        }
+    });
+    master::LiveSteps live = stepsFrom(server.address());
+    ASSERT_TRUE(showUntil(live, [&] { return live.epoch() == 1; })) << "it is handed the numbering";
+    pass(4.99);
+    EXPECT_TRUE(show(live).empty());
+    EXPECT_EQ(live.epoch(), 1U);
+    pass(0.02);
+    show(live);
+    EXPECT_EQ(live.epoch(), 2U);
+    EXPECT_TRUE(numbersAlone(live));
+    pass(29.98);
+    EXPECT_TRUE(numbersAlone(live));
+    std::this_thread::sleep_for(100ms);
+    EXPECT_EQ(server.guests(), 1);
+    pass(0.04);
+    EXPECT_TRUE(showUntil(live, [&] { return server.guests() == 2; }));
+}
+
+TEST_F(LiveStepsTest, EditsGoToTheServerOneByOneAndEachIntoOneStep) {
+    SandServer server(scene_);
+    master::LiveSteps live = stepsFrom(server.address());
+    ASSERT_TRUE(showUntil(live, [&] { return wall_.stepNumber() >= 5; }));
+    for (const sand::Edit::Kind kind : {sand::Edit::settle, sand::Edit::settle, sand::Edit::reset}) {
+        live.request(kind);
+    }
+    ASSERT_TRUE(showUntil(live, [&] { return edits_ == 3; }));
+    EXPECT_EQ(lastEdit_, sand::Edit(sand::Edit::reset)) << "in the order in which they were asked for";
+    const std::uint64_t then = wall_.stepNumber();
+    ASSERT_TRUE(showUntil(live, [&] { return wall_.stepNumber() > then + 20; }));
+    EXPECT_EQ(edits_, 3);
+    EXPECT_EQ(server.requests(), 3);
+    EXPECT_FALSE(server.crowded()) << "a server keeps one for its next step";
+    EXPECT_EQ(differed_, 0);
+}
+
+TEST_F(LiveStepsTest, AnEditThatALostServerTookAlongIsDoneByTheNextWhoNumbers) {
+    FakeServer server(test::toTheFirst([&](FakeServer::Guest& guest) {
+        if (!guest.await<haptic_bridge::Hello>()) {
+            return;
+        }
+        guest.send(haptic_bridge::Welcome{
+            {haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), scene_.name}, 60});
+        if (guest.await<haptic_bridge::Start>()) {
+            guest.send(haptic_bridge::Ready{});
+            (void)guest.await<haptic_bridge::EditRequest>();  // and leaves
+        }
+    }));
+    master::LiveSteps live = stepsFrom(server.address());
+    ASSERT_TRUE(showUntil(live, [&] { return live.linked(); }));
+    live.request(sand::Edit::settle);
+    ASSERT_TRUE(showUntil(live, [&] { return edits_ == 1; }));
+    EXPECT_FALSE(live.linked());
+    for (int frame = 0; frame < 20; ++frame) {
+        show(live);
+    }
+    EXPECT_EQ(edits_, 1);
+}
+
+TEST_F(LiveStepsTest, EveryServerIsToldTheShareOfItsForceOnce) {
+    SandServer server(scene_, [](int link, std::uint64_t step, std::uint64_t hash) {
+        return link == 1 && step >= 40 ? hash ^ 1 : hash;
+    });
+    master::LiveSteps live = stepsFrom(server.address());
+    ASSERT_TRUE(showUntil(live, [&] { return live.linked(); }));
+    EXPECT_EQ(server.shares(), 0) << "all of it is what a server begins with";
+    live.shareForce(0.5);
+    ASSERT_TRUE(showUntil(live, [&] { return wall_.stepNumber() >= 30; }));
+    EXPECT_EQ(server.shares(), 1);
+    ASSERT_TRUE(showUntil(live, [&] { return server.links() == 2 && server.shares() == 2; }));
+    const std::uint64_t then = wall_.stepNumber();
+    ASSERT_TRUE(showUntil(live, [&] { return server.shown() > then + 20; }));
+    EXPECT_EQ(server.shares(), 2);
+}
+
+}  // namespace
