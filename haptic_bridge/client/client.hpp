@@ -66,7 +66,7 @@ struct LinkCounters {
     std::uint64_t catchUps = 0;      // hand-overs by the steps that the server lacked
     std::uint64_t snapshots = 0;     // and by the whole sand
     RefusalCounts refusedHere{};     // by the server: it would not have this master, as kRefusalNames
-    RefusalCounts refused{};         // servers that this master would not have, as well
+    RefusalCounts refused{};         // servers that this master refused; `limit`: one that never greeted
     void add(const LinkCounters& other);
 };
 

@@ -104,10 +104,14 @@ void Client::Session::closed(const std::string& why) {
     retry();
 }
 
+void Client::Session::countRefusal(RefusalCode code) {
+    const std::lock_guard lock(shelf.mutex);
+    ++shelf.counters.refused[static_cast<std::size_t>(code) - 1];
+}
+
 void Client::Session::refuse(const std::string& why, Connection::Fault fault) {
     if (fault) {
-        const std::lock_guard lock(shelf.mutex);
-        ++shelf.counters.refused[static_cast<std::size_t>(*fault) - 1];
+        countRefusal(*fault);
     }
     tell(Link::refused, fmt::format("{}: {}", peer_, why));
     backOff_ = kLastBackOff;

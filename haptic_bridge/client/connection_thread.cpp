@@ -118,6 +118,9 @@ void Client::Session::watch() {
         const std::int64_t now = now_();
         heardNs_ = full ? now : heardNs_;
         if (now - heardNs_ > kSilenceNs) {
+            if (!up()) {  // it accepted the connection and never greeted
+                countRefusal(RefusalCode::limit);
+            }
             connection_->close(fmt::format("silent for {} s", kSilenceNs / 1'000'000'000));
             return;
         }

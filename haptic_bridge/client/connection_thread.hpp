@@ -72,6 +72,7 @@ private:
     void closed(const std::string& why);
     void greet();
     void refuse(const std::string& why, Connection::Fault fault);
+    void countRefusal(RefusalCode code);
     void prove(const Challenge& challenge);
     [[nodiscard]] bool up() { return link() >= Link::offered && link() <= Link::streaming; }
     void handOver(const NeedState& need);

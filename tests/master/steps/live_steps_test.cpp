@@ -53,6 +53,9 @@ protected:
         const std::vector<TimedStep> steps = show(live);
         return !live.linked() && steps.size() == 1 && steps[0].serverHash == 0 && steps[0].step.epoch == live.epoch();
     }
+    static std::uint64_t refusedForSilence(const master::LiveSteps& live) {
+        return live.counters().refused[static_cast<std::size_t>(haptic_bridge::RefusalCode::limit) - 1];
+    }
 
     const scene::Scene scene_ = samples::flatScene(32, 24);
     sand::Replica wall_{scene_};
@@ -116,11 +119,14 @@ TEST_F(LiveStepsTest, AServerThatTakesTheConnectionAndNeverGreetsIsWaitedForTenS
     pass(9.99);
     EXPECT_TRUE(show(live).empty());
     EXPECT_TRUE(live.starting());
+    std::this_thread::sleep_for(kLooks);
+    EXPECT_EQ(refusedForSilence(live), 0U);
     pass(0.02);
     show(live);
     EXPECT_FALSE(live.starting());
     EXPECT_EQ(live.epoch(), 1U);
     EXPECT_TRUE(numbersAlone(live)) << "the wall goes on without a hand";
+    EXPECT_TRUE(showUntil(live, [&] { return refusedForSilence(live) == 1; })) << "and it is counted";
     EXPECT_TRUE(showUntil(live, [&] { return greeted == 2; })) << "and tried again";
     EXPECT_EQ(live.counters().links, 0U);
 }
@@ -151,6 +157,7 @@ TEST_F(LiveStepsTest, AServerThatIsStoppedLosesItsLinkAfterTenSeconds) {
     ASSERT_TRUE(showUntil(live, [&] { return !live.linked(); }));
     EXPECT_EQ(live.epoch(), 2U);
     EXPECT_TRUE(numbersAlone(live)) << "the wall goes on without a hand";
+    EXPECT_EQ(refusedForSilence(live), 0U) << "it had greeted";
     EXPECT_EQ(live.counters().links, 1U);
 }
 
