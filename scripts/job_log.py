@@ -117,7 +117,8 @@ class JobLog:
         self.failure = None  # the content of the event `failure`
         self.frame = self.step = None  # shown last, as far as was said
         self.told = 0.0  # when, by the monotonic clock
-        self.hand = None  # when a hand was linked last
+        self.hand = None  # when a hand was linked last; before the first link, when the server was first missed
+        self.refused = False  # whether the last answer of the server was a refusal, its own or the master's
 
     def follow(self, ended=False):
         """Shows and reads what has been said since."""
@@ -139,10 +140,20 @@ class JobLog:
             self.told = time.monotonic()
             if event["hand"] in ("hand linked", "hand streams"):
                 self.hand = time.monotonic()
+                self.refused = False
+        elif name == "link" and event["state"] == "refused":
+            self.hand, self.refused = None, True  # it answers, so it does not hang; a restarted one would answer the same
+        elif name == "without_hand" and event["reason"] == "no_server":
+            self.miss_hand()
         elif name == "waiting" and event["ends_job"] and self.ending is None:
             self.ending = event
         elif name == "failure":
             self.failure = event["failure"]
+
+    def miss_hand(self):
+        """Begins to count the time that a server without a link has been silent."""
+        if self.hand is None and not self.refused:
+            self.hand = time.monotonic()
 
     def read(self, rank, line, stream):
         if not BACKTRACE.match(line):  # a deep one would leave no room for what was said before

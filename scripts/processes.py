@@ -61,13 +61,17 @@ class HapticServer:
         self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                         start_new_session=True, preexec_fn=die_with_parent)
 
+    def listens(self):
+        """Whether the server listens since it was started last."""
+        return self.port_file.exists()
+
     def address(self):
         """HOST:PORT, once it listens."""
         deadline = time.monotonic() + SERVER_START_SECONDS
         while time.monotonic() < deadline:
             if self.process.poll() is not None:
                 raise SystemExit(self.process.returncode if self.process.returncode > 0 else 1)  # it has said why
-            if self.port_file.exists():
+            if self.listens():
                 self.port = int(self.port_file.read_text())
                 return f"127.0.0.1:{self.port}"
             time.sleep(0.01)

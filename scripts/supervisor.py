@@ -20,7 +20,7 @@ from rank_hosts import BadInput
 BAD_INPUT = 2
 FAILED = 1
 FIRST_WAIT, LONGEST_WAIT = 1, 8  # seconds before the second restart in a row, and at most
-SERVER_HUNG_SECONDS = 10  # without a link to a server that had one, while the wall goes on
+SERVER_HUNG_SECONDS = 10  # without a link, while the wall goes on
 JOURNAL = "session.journal"
 
 
@@ -162,6 +162,7 @@ class Supervisor:
         self.server = self.job = None
         self.server_due = None  # when it is started again
         self.server_hung = False
+        self.server_loads = False  # it was restarted and does not listen yet
         self.gave_up = False
 
     def run(self):
@@ -242,6 +243,8 @@ class Supervisor:
             if time.monotonic() >= self.server_due:
                 self.server_due = None
                 self.server.start()
+                self.server_loads = True
+                self.job.log.hand, self.job.log.refused = None, False  # they are the old server's
         else:
             hung = "was hung" if self.server_hung else how_ended(status)
             failure = Failure(f"the haptic server {hung}", how="hung" if self.server_hung else ending_of(status))
@@ -254,10 +257,13 @@ class Supervisor:
                 self.job.stop()
 
     def end_hung_server(self):
-        """Kills one that runs and has lost its link for long: what has stopped inside it does not heal."""
+        """Kills a server that runs and has had no link for long, because it will not recover by itself."""
         log = self.job.log
+        if self.server_loads and self.server.listens():
+            self.server_loads = False
+            log.miss_hand()
         if log.hand is not None and time.monotonic() - log.hand > SERVER_HUNG_SECONDS and log.told > log.hand + SERVER_HUNG_SECONDS / 2:
-            log.hand = None  # a new one has not been linked yet
+            log.hand = None
             self.server_hung = True
             self.server.process.kill()
 

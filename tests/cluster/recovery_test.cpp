@@ -70,6 +70,32 @@ TEST_F(Recovery, KillsOfEveryProcessLoseNothing) {
     EXPECT_EQ(summary()["state_hash"], replayedHash());
 }
 
+// Ten seconds of silence end its link, and ten more its process.
+TEST_F(Recovery, AHapticServerThatHangsIsKilledAndStartedAgain) {
+    const auto session = start({"--wall", wall(1, 1, "mono"), "--scene", scene(), "--device", "script:gis", "--out",
+                                out(), "--no-pictures", "--restarts", "3"});
+    expectHand(*session);
+    expectSteps(*session, "link", 1);
+    strike(*session, "sandwall-haptic-server", SIGSTOP);
+    ASSERT_FALSE(session->waitForEvent("without_hand", {{"reason", "lost"}, {"epoch", 2}}).is_null())
+        << session->output();
+    EXPECT_EQ(session->events("restart").size(), 0U) << "the wall goes on first";
+    const int lost = ask("status")["step"];
+    awaitStatus([&](const nlohmann::json& now) { return now.value("step", 0) > lost + 30; });
+    EXPECT_EQ(ask("status")["linked"], false);
+    EXPECT_FALSE(session->waitForEvent("restart", {{"rank", nullptr}, {"how", "hung"}, {"count", 1}}).is_null())
+        << session->output();
+    EXPECT_FALSE(session->waitForEvent("link", {{"state", "linked"}, {"epoch", 3}}).is_null()) << session->output();
+    const int linked = ask("status")["step"];
+    awaitStatus([&](const nlohmann::json& now) { return now.value("step", 0) > linked + 30; });
+    session->signal(SIGINT);
+    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    EXPECT_EQ(summary()["haptic"]["reconnects"], 1);
+    EXPECT_EQ(summary()["divergences"], 0);
+    EXPECT_EQ(summary()["server_divergences"], 0);
+    EXPECT_EQ(summary()["state_hash"], replayedHash());
+}
+
 // The script that operators run for an hour checks itself; its status says whether anything was lost.
 TEST_F(Recovery, ARandomKillLosesNothing) {
     const Ended ended = script(

@@ -2,9 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """What scripts/sandwall run does when the haptic server dies."""
 
+import tempfile
 import unittest
+from unittest import mock
 
 from supervisor_fixture import Supervised
+
+import job_log
+import supervisor
 
 SERVER = """#!/bin/bash
 folder=$(dirname "$0")/..
@@ -54,6 +59,85 @@ read -r line; kill $!; echo "told: $line"; exit 0""")
         self.assertEqual((status, len(self.servers()), printed.splitlines()[-1]), (1, 3, "told: stop"), error)
         self.assertIn("sandwall: the session is given up", error)
         self.assertEqual(error.count("the haptic server died of SIGKILL; shown: frame 5, step 4"), 3, error)
+
+
+class HungServer(unittest.TestCase):
+    """A server that runs and is not linked, by a clock that the test moves."""
+
+    def setUp(self):
+        self.now = 1000.0
+        patched = mock.patch("time.monotonic", lambda: self.now)
+        patched.start()
+        self.addCleanup(patched.stop)
+        temporary = tempfile.TemporaryDirectory(prefix="sandwall-hung-")
+        self.addCleanup(temporary.cleanup)
+        self.log = job_log.JobLog(temporary.name, 1)
+        self.addCleanup(self.log.close)
+        self.server = mock.Mock(**{"process.poll.return_value": None, "listens.return_value": True})
+        self.watched = supervisor.Supervisor(temporary.name, None, None, None, None, mock.Mock(restarts=3, restart_window=60), mock.Mock())
+        self.watched.server, self.watched.job = self.server, mock.Mock(log=self.log)
+
+    def event(self, name, **fields):
+        self.log.read_event({"event": name, **fields})
+
+    def wall_goes_on(self, seconds, hand="no hand"):
+        """Progress every second, as the master says it, while the launcher looks; whether the server was killed."""
+        for _ in range(seconds):
+            self.now += 1
+            self.event("progress", frame=1, step=1, fps=60.0, skew_us=0.0, hand=hand)
+            self.watched.look_after_server()
+        return self.server.process.kill.called
+
+    def end(self):
+        """The killed process has gone, and is started again after the wait for it."""
+        self.server.process.kill.reset_mock()
+        self.server.process.poll.return_value = -9
+        self.watched.look_after_server()
+        self.assertTrue(self.watched.failures[-1].text.endswith("was hung"))
+        self.now = self.watched.server_due
+        self.watched.look_after_server()  # starts it
+        self.server.start.assert_called_once()
+        self.server.process.poll.return_value = None
+
+    def test_one_that_was_linked_is_killed_ten_seconds_after_its_link(self):
+        self.assertFalse(self.wall_goes_on(30, "hand linked"))
+        self.assertFalse(self.wall_goes_on(10))
+        self.assertTrue(self.wall_goes_on(1))
+
+    def test_one_that_never_answers_is_killed_ten_seconds_after_the_wall_has_gone_on(self):
+        self.assertFalse(self.wall_goes_on(60, "waiting for a hand"))
+        self.event("without_hand", reason="no_server", epoch=1)
+        self.assertFalse(self.wall_goes_on(10))
+        self.assertTrue(self.wall_goes_on(1))
+
+    def test_one_that_refuses_is_not_hung(self):
+        self.event("link", state="refused", epoch=0, server="x")
+        self.event("without_hand", reason="refused", epoch=1)
+        self.event("without_hand", reason="no_server", epoch=2)
+        self.assertFalse(self.wall_goes_on(60))
+
+    def test_while_the_wall_stands_nobody_is_hung(self):
+        self.wall_goes_on(5, "hand linked")
+        self.now += 60
+        self.watched.look_after_server()
+        self.assertFalse(self.server.process.kill.called)
+
+    def test_one_that_was_started_again_and_never_answers_is_killed_too(self):
+        self.wall_goes_on(5, "hand linked")
+        self.assertTrue(self.wall_goes_on(11))
+        self.server.listens.return_value = False
+        self.end()
+        self.assertFalse(self.wall_goes_on(120), "a large scene takes its time before the server listens")
+        self.server.listens.return_value = True
+        self.assertFalse(self.wall_goes_on(11))
+        self.assertTrue(self.wall_goes_on(1))
+
+    def test_one_that_was_started_again_and_refuses_is_left_alone(self):
+        self.wall_goes_on(5, "hand linked")
+        self.assertTrue(self.wall_goes_on(11))
+        self.end()
+        self.event("link", state="refused", epoch=2, server="x")
+        self.assertFalse(self.wall_goes_on(60))
 
 
 if __name__ == "__main__":
