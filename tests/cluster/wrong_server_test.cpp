@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sessions whose haptic server is part of the test, so that the test sees each message of the master.
+#include <filesystem>
+
+#include "master/journal/journal.hpp"
 #include "scene/load/scene_file.hpp"
 #include "tests/cluster/session_fixture.hpp"
 #include "tests/haptic_bridge/client/sand_server.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace {
 
@@ -37,6 +41,29 @@ TEST_F(WrongServer, WithOtherSandIsCountedAndStartsAgainFromTheWalls) {
     EXPECT_EQ(summary()["haptic"]["hand_overs"]["by_state"], 1);
     EXPECT_EQ(summary()["state_hash"], replayedHash());
     EXPECT_EQ(json("out/incidents.json")["server_divergences"], 1) << "a session that goes on counts from there";
+}
+
+// The master tells the server which step the wall shows. A step that is shown must be on disk.
+TEST_F(WrongServer, SeesNoStepShownThatADiskHasFailedToSync) {
+    constexpr std::size_t kFails = 40;  // calls of fdatasync before the one that fails; the first is the header's
+    environment_ = {"LD_PRELOAD=" + std::filesystem::absolute(support::pathOfProgram("sync-log.so")).string(),
+                    "SANDWALL_SYNC_LOG=" + (folder_ / "syncs").string(),
+                    "SANDWALL_SYNC_FAILS=" + std::to_string(kFails + 1)};
+    const test::SandServer server(scene::loadScene(scene()));
+    const auto session = startAt(server);
+    EXPECT_EQ(session->wait(kLong), 1) << session->output();
+    const nlohmann::json failure = json("out/failure.json");
+    EXPECT_TRUE(support::holds(failure, {{"what", "disk"}, {"rank", 0}, {"host", host()}, {"tile", ""}})) << failure;
+    EXPECT_FALSE(session->waitForEvent("failure", {{"failure", failure}}).is_null()) << session->output();
+    EXPECT_FALSE(std::filesystem::exists(out() + "/summary.json")) << "no orderly end";
+    const master::Journal journal = master::readJournal(out() + "/session.journal");
+    ASSERT_EQ(journal.frames.size(), kFails - 1) << "every frame before, and no more";
+    EXPECT_EQ(journal.tornBytes, 0);
+    EXPECT_GT(server.shown(), 0U);
+    EXPECT_LE(server.shown(), journal.frames.back().steps.back().number);
+    const std::string syncs = read("syncs");
+    EXPECT_EQ(std::count(syncs.begin(), syncs.end(), '\n'), static_cast<std::ptrdiff_t>(kFails + 1));
+    EXPECT_EQ(replayedHash().size(), 16U) << "what was shown can be replayed";
 }
 
 }  // namespace

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Keeps three frames in FOLDER/session.journal under a policy, as a session does. After each frame it appends a line to
+// the file that SANDWALL_SYNC_LOG names: the length of the journal, or that the disk has refused. Exit status 3 if the
+// disk refuses a required journal, 2 if the journal cannot be made.
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "base/input_error.hpp"
+#include "master/journal/keeper.hpp"
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+int keepFrames(const std::filesystem::path& folder, const std::string& policy) {
+    std::ofstream log(std::getenv("SANDWALL_SYNC_LOG"), std::ios::app);
+    const auto say = [&](const std::string& line) { log << line << std::endl; };
+    const scene::Scene scene = samples::flatScene(40, 30);
+    sand::Replica terrain(scene);
+    master::JournalKeeper keeper(folder, {.policy = master::parseJournalPolicy(policy), .checkpointSeconds = 0}, scene,
+                                 nullptr, "", "test");
+    say("made");
+    for (std::uint64_t frame = 1; frame <= 3; ++frame) {
+        const sand::Step step{1, frame, false, {}};
+        try {
+            keeper.keep({frame, terrain.stateHash(), {step}}, {});
+        } catch (const master::DiskFailure&) {
+            say("refused");
+            return 3;
+        }
+        say(fmt::format("kept {} {}", std::filesystem::file_size(folder / "session.journal"), keeper.state()));
+        terrain.apply(step);
+    }
+    return 0;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+    try {
+        return count == 3 ? keepFrames(words[1], words[2]) : 2;
+    } catch (const base::InputError& error) {
+        fmt::print(stderr, "{}\n", error.what());
+        return 2;
+    }
+}
