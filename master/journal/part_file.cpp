@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
 #include <stdexcept>
 #include <thread>
@@ -22,22 +21,17 @@ namespace master {
 namespace {
 
 constexpr std::int64_t kReservedPiece = 1 << 20;  // [byte]
-constexpr int kLockTries = 50;                    // a tenth of a second each: a master that was killed is gone by then
 
-/// Whether nobody else writes the file, from now on until it is closed. File systems without locks say yes.
-bool lock(int descriptor, int tries) {
-    while (flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-        if (--tries <= 0) {
-            return false;
+/// Locks the file until it is closed. Returns false if another process holds the lock, and true on file systems
+/// without locks.
+bool lock(int descriptor) { return flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK; }
+
+void lockOrThrow(int descriptor, const std::filesystem::path& path, const Pause& pause) {
+    for (std::chrono::milliseconds left = PartFile::kPatience; !lock(descriptor); left -= PartFile::kPause) {
+        if (left <= std::chrono::milliseconds(0)) {
+            throw std::runtime_error(fmt::format("{}: another session writes it; stop that one first", path.string()));
         }
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    }
-    return true;
-}
-
-void lockOrThrow(int descriptor, const std::filesystem::path& path) {
-    if (!lock(descriptor, kLockTries)) {
-        throw std::runtime_error(fmt::format("{}: another session writes it; stop that one first", path.string()));
+        pause(PartFile::kPause);
     }
 }
 
@@ -50,6 +44,8 @@ bool isAsSeen(int descriptor, const std::filesystem::path& path, std::int64_t se
 }
 
 }  // namespace
+
+void sleepFor(std::chrono::milliseconds length) { std::this_thread::sleep_for(length); }
 
 PartFile::PartFile(std::filesystem::path path, int descriptor, std::int64_t size)
     : path_(std::move(path)), descriptor_(descriptor), size_(size), reserved_(size) {}
@@ -67,7 +63,7 @@ PartFile PartFile::make(const std::filesystem::path& path, std::span<const std::
     if (file.descriptor_ < 0) {
         refuse();
     }
-    (void)lock(file.descriptor_, 1);  // a new file, which nobody else can have
+    (void)lock(file.descriptor_);  // a new file, which nobody else can have
     try {
         file.write(begin);
         if (plain && rename(beside.c_str(), path.c_str()) != 0) {
@@ -83,10 +79,10 @@ PartFile PartFile::make(const std::filesystem::path& path, std::span<const std::
     return file;
 }
 
-PartFile PartFile::open(const std::filesystem::path& path, std::int64_t size, std::int64_t seen) {
+PartFile PartFile::open(const std::filesystem::path& path, std::int64_t size, std::int64_t seen, const Pause& pause) {
     PartFile file(path, ::open(path.c_str(), O_WRONLY | O_CLOEXEC), size);
     if (file.descriptor_ >= 0) {
-        lockOrThrow(file.descriptor_, path);
+        lockOrThrow(file.descriptor_, path, pause);
         // What another session has written since it was read would be cut off without a word.
         if (!isAsSeen(file.descriptor_, path, seen)) {
             throw std::runtime_error(fmt::format("{}: has been written since it was read; start again", path.string()));
@@ -100,10 +96,10 @@ PartFile PartFile::open(const std::filesystem::path& path, std::int64_t size, st
     return file;
 }
 
-void PartFile::requireNoWriter(const std::filesystem::path& path) {
+void PartFile::requireNoWriter(const std::filesystem::path& path, const Pause& pause) {
     const PartFile file(path, ::open(path.c_str(), O_RDONLY | O_CLOEXEC), 0);
     if (file.descriptor_ >= 0) {
-        lockOrThrow(file.descriptor_, path);
+        lockOrThrow(file.descriptor_, path, pause);
     }
 }
 

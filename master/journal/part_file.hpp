@@ -2,11 +2,18 @@
 // Private to this folder.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 
 namespace master {
+
+/// Waits for the given time. A test passes a function that counts instead.
+using Pause = std::function<void(std::chrono::milliseconds)>;
+/// Sleeps for `length`.
+void sleepFor(std::chrono::milliseconds length);
 
 /// A file that grows by whole records. What throws, throws base::InputError, and leaves the file ending with the
 /// record before. One thread.
@@ -14,12 +21,15 @@ class PartFile {
 public:
     /// A file that begins with these bytes, on disk: it has its name when they are. Replaces what is there.
     static PartFile make(const std::filesystem::path& path, std::span<const std::uint8_t> begin);
-    /// Goes on at `size`; what stands behind is cut off. `seen` is how long the file was when it was read. Waits five
-    /// seconds for another process that writes the file. Throws std::runtime_error, for it may be otherwise in a
+    /// Goes on at `size`; what stands behind is cut off. `seen` is how long the file was when it was read. Waits
+    /// kPatience for another process that writes the file. Throws std::runtime_error, for it may be otherwise in a
     /// moment: when that one goes on, when the file is not what was read any more, and when the disk refuses.
-    static PartFile open(const std::filesystem::path& path, std::int64_t size, std::int64_t seen);
-    /// Throws std::runtime_error, as open() does, while another process writes the file.
-    static void requireNoWriter(const std::filesystem::path& path);
+    static PartFile open(const std::filesystem::path& path, std::int64_t size, std::int64_t seen,
+                         const Pause& pause = sleepFor);
+    /// Waits kPatience for another process that writes the file. Throws std::runtime_error if that process continues.
+    static void requireNoWriter(const std::filesystem::path& path, const Pause& pause = sleepFor);
+    /// A master that was killed has ended within kPatience. kPause is the time between two looks at the lock.
+    static constexpr std::chrono::milliseconds kPatience{5000}, kPause{100};
     PartFile(PartFile&& other) noexcept;
     PartFile& operator=(PartFile&& other) noexcept;
     PartFile(const PartFile&) = delete;

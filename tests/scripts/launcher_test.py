@@ -2,14 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """What scripts/sandwall starts, refuses and hands on."""
 
+import contextlib
 import os
 import pty
 import signal
 import subprocess
+import tempfile
 import time
 import unittest
+from unittest import mock
 
 from launcher_fixture import LauncherTest
+
+import session_folder
 
 MPIRUN = """#!/bin/sh
 echo "mpirun $*"
@@ -182,6 +187,45 @@ class OneFolder(LauncherTest):
         first.communicate("stop\n", timeout=60)
         self.script("mpirun", MPIRUN)
         self.assertEqual(self.start(["-"]).returncode, 0)
+
+
+class FolderInUse(unittest.TestCase):
+    """Two launchers that want one folder, by a clock that waits for nobody."""
+
+    def setUp(self):
+        self.folder = self.enterContext(tempfile.TemporaryDirectory(prefix="sandwall-folder-"))
+        self.now = 1000.0
+        self.release_at = float("inf")
+        self.first = self.enterContext(contextlib.ExitStack())
+        self.first.enter_context(session_folder.held(self.folder))
+        clock = mock.Mock(**{"monotonic.side_effect": lambda: self.now, "sleep.side_effect": self.sleep})
+        self.enterContext(mock.patch("session_folder.time", clock))
+
+    def sleep(self, seconds):
+        self.now += seconds
+        if self.now >= self.release_at:
+            self.first.close()
+
+    def enter(self):
+        """Seconds that the second one has waited until the folder was its own."""
+        began = self.now
+        with session_folder.held(self.folder):
+            return self.now - began
+
+    def test_a_second_launcher_goes_on_when_the_first_ends_within_five_seconds(self):
+        self.release_at = self.now + 4.9
+        waited = self.enter()
+        self.assertTrue(4.9 <= waited <= 5, waited)
+
+    def test_a_second_launcher_is_refused_after_five_seconds(self):
+        began = self.now
+        with self.assertRaises(session_folder.InUse):
+            self.enter()
+        self.assertTrue(5 <= self.now - began <= 5.1, self.now - began)
+
+    def test_nobody_waits_for_a_folder_that_is_free(self):
+        self.first.close()
+        self.assertEqual(self.enter(), 0)
 
 
 class Input(LauncherTest):

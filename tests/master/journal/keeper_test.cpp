@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -115,6 +116,26 @@ TEST_F(Keeper, SwitchedOffItLeavesNoJournalOfAnotherSessionInItsPlace) {
     begin({.policy = master::JournalPolicy::off});
     EXPECT_FALSE(std::filesystem::exists(journal()));
     EXPECT_EQ(master::readJournal(folder_ / "session.journal.previous").frames.size(), 1U);
+}
+
+// A session that begins anew moves nothing out of the way before the one that still runs there has ended.
+TEST_F(Keeper, ANewSessionWaitsForTheOneThatStillWritesItsJournal) {
+    begin({});
+    ASSERT_TRUE(showFrame());
+    std::optional<master::JournalKeeper> second;
+    std::atomic<bool> moved = true;
+    std::thread first([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the second has begun by now
+        moved = std::filesystem::exists(folder_ / "session.journal.previous");
+        keeper_->finish({terrain_.stepNumber(), terrain_.stateHash()});
+        keeper_.reset();
+    });
+    second.emplace(folder_, master::JournalOptions{}, scene_, nullptr, "", "test");
+    first.join();
+    EXPECT_FALSE(moved);
+    const master::Journal previous = master::readJournal(folder_ / "session.journal.previous");
+    EXPECT_TRUE(previous.end.has_value()) << "the first has ended in order";
+    EXPECT_EQ(previous.frames.size(), 1U);
 }
 
 TEST_F(Keeper, AFolderThatCannotBeWrittenToIsNamed) {

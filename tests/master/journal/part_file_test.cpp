@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/journal/part_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "base/byte_stream.hpp"
+#include "tests/support/folder_test.hpp"
+
+namespace {
+
+using master::PartFile;
+using namespace std::chrono_literals;
+
+/// Two sessions that want one file. The second counts its waits instead of waiting.
+class TwoWriters : public test::FolderTest {
+protected:
+    /// What the second session is told; "nothing" where it may go on. The first one ends when the second has waited
+    /// for `until`.
+    template <class Second>
+    std::string tell(const Second& second, std::chrono::milliseconds until) {
+        try {
+            second([this, until](std::chrono::milliseconds length) {
+                waited_ += length;
+                if (waited_ >= until) {
+                    first_.reset();
+                }
+            });
+        } catch (const std::runtime_error& error) {
+            return error.what();
+        }
+        return "nothing";
+    }
+    std::string open(std::chrono::milliseconds until) {
+        return tell([this](const master::Pause& pause) { (void)PartFile::open(file_, 3, 3, pause); }, until);
+    }
+    std::string begin(std::chrono::milliseconds until) {
+        return tell([this](const master::Pause& pause) { PartFile::requireNoWriter(file_, pause); }, until);
+    }
+
+    static constexpr std::chrono::milliseconds kNever = 24h;
+    const std::filesystem::path file_ = folder_ / "session.journal";
+    std::optional<PartFile> first_ = PartFile::make(file_, base::Bytes{1, 2, 3});
+    std::chrono::milliseconds waited_{0};
+};
+
+TEST_F(TwoWriters, TheSecondGoesOnWhenTheFirstEndsWithinFiveSeconds) {
+    EXPECT_EQ(open(4900ms), "nothing");
+    EXPECT_EQ(waited_, 4900ms);
+}
+
+TEST_F(TwoWriters, TheSecondIsRefusedAfterFiveSecondsAndHasTouchedNothing) {
+    EXPECT_EQ(open(kNever), file_.string() + ": another session writes it; stop that one first");
+    EXPECT_EQ(waited_, 5000ms);
+    first_->write(base::Bytes{4});
+    EXPECT_EQ(std::filesystem::file_size(file_), 4U);
+}
+
+TEST_F(TwoWriters, ASecondThatBeginsAnewWaitsAsLong) {
+    EXPECT_EQ(begin(4900ms), "nothing");
+    EXPECT_EQ(waited_, 4900ms);
+    first_ = PartFile::open(file_, 3, 3);
+    waited_ = 0ms;
+    EXPECT_EQ(begin(kNever), file_.string() + ": another session writes it; stop that one first");
+    EXPECT_EQ(waited_, 5000ms);
+}
+
+TEST_F(TwoWriters, NobodyWaitsForAFileThatNobodyWrites) {
+    first_.reset();
+    EXPECT_EQ(open(kNever), "nothing");
+    EXPECT_EQ(begin(kNever), "nothing");
+    std::filesystem::remove(file_);
+    EXPECT_EQ(begin(kNever), "nothing");
+    EXPECT_EQ(waited_, 0ms);
+}
+
+}  // namespace
