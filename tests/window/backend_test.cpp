@@ -145,7 +145,7 @@ TEST_F(Backends, EglTakesTheDeviceWithTheGivenNumber) {
 TEST_F(Backends, EglListsTheDevicesThereAreForOneThatIsNot) {
     start({"--gl", "egl", "--device", "99"});
     const std::string line = lastLine(2);
-    EXPECT_TRUE(line.starts_with("no EGL device 99; there are 0 (")) << line;
+    EXPECT_TRUE(line.starts_with("window_probe: no EGL device 99; there are 0 (")) << line;
 }
 
 TEST_F(Backends, EglWithoutADriverIsOneLine) {

@@ -151,26 +151,26 @@ TEST_F(Window, HandsOverTheKeysThatArePressed) {
 
 TEST_F(Window, NamesTheMonitorsThereAreForOneThatIsNot) {
     start(words({"DP-7"}));
-    EXPECT_EQ(lastLine(2),
-              "output out1: no monitor DP-7 on display " + server_->display() + "; there is screen (800 x 600)\n");
+    EXPECT_EQ(lastLine(2), "window_probe: output out1: no monitor DP-7 on display " + server_->display() +
+                               "; there is screen (800 x 600)\n");
 }
 
 TEST_F(Window, RefusesAMonitorOfAnotherSize) {
     start(words({"screen"}));
     EXPECT_EQ(lastLine(2),
-              "output out1: monitor screen shows 800 x 600 pixels and has no mode of 320 x 240; correct the pixels in "
-              "the wall file\n");
+              "window_probe: output out1: monitor screen shows 800 x 600 pixels and has no mode of 320 x 240; correct "
+              "the pixels in the wall file\n");
 }
 
 TEST_F(Window, NamesADisplayThatCannotBeOpened) {
     // Not that of a server that has ended: the next test's may have it by now. Numbers are given from 0 up.
     start({"--at", "0,0", "--display", ":9876"});
-    EXPECT_TRUE(lastLine(2).starts_with("--gl glfw: cannot open X display :9876; is its server running"));
+    EXPECT_TRUE(lastLine(2).starts_with("window_probe: --gl glfw: cannot open X display :9876; is its server running"));
 }
 
 TEST_F(Window, SaysWhenThereIsNoDisplayAtAll) {
     start({"--at", "0,0"});
-    EXPECT_TRUE(lastLine(2).starts_with("--gl glfw: no X display; set DISPLAY"));
+    EXPECT_TRUE(lastLine(2).starts_with("window_probe: --gl glfw: no X display; set DISPLAY"));
 }
 
 TEST_F(Window, EndsTheRankWhenItIsDestroyed) {
