@@ -7,6 +7,7 @@
 
 #include "bench/timing.hpp"
 #include "sand/force/force_model.hpp"
+#include "sand/tin/refine/start_maker.hpp"
 #include "sand/tin/volume/vertex_sand.hpp"
 
 namespace {
@@ -84,7 +85,7 @@ void forceTick(benchmark::State& state) {
 // As many ticks in every row: a percentile of fewer is another number. 20,000 are twenty seconds of the loop.
 BENCHMARK(forceTick)
     ->ArgNames({"law", "cells", "side"})
-    ->ArgsProduct({{0, 1}, {2, 10, 20}, {512, 4096}})
+    ->ArgsProduct({{0, 1}, {2, 10, 31, 63, 127}, {512, 4096}})
     ->Iterations(20000);
 
 /// range: law, radius [cell].
@@ -99,13 +100,37 @@ BENCHMARK(forceTickOfTin)->ArgNames({"law", "cells"})->ArgsProduct({{0, 1}, {2, 
 
 /// range: radius [cell].
 void surfacePatch(benchmark::State& state) {
-    const sand::HeightField field = ripples(512);
+    const sand::HeightField field = ripples(2048);
     for (auto step : state) {
-        sand::force::SurfacePatch patch(field, middle(512), static_cast<double>(state.range(0)) * kCell);
+        sand::force::SurfacePatch patch(field, middle(2048), static_cast<double>(state.range(0)) * kCell);
         benchmark::DoNotOptimize(patch);
     }
 }
-BENCHMARK(surfacePatch)->Arg(2)->Arg(10)->Arg(50);
+BENCHMARK(surfacePatch)->Arg(2)->Arg(10)->Arg(31)->Arg(63)->Arg(127);
+
+/// Of a TIN of more than Facets::kMost triangles around the tool: its heights. range: radius [cell].
+void surfacePatchOfFineTin(benchmark::State& state) {
+    constexpr int kSide = 520;
+    static const auto fine = std::make_shared<const sand::tin::TinStart>(
+        sand::tin::follow(ripples(kSide), nullptr,
+                          {.widest = sand::kProbePerCell, .maxError = 0, .mostVertices = 2 * kSide * kSide})
+            .start);
+    sand::Start start;
+    start.terrain = sand::HeightField(1, 1, kCell);
+    start.tin = fine;
+    start.rules.columns = start.rules.rows = kSide;
+    start.rules.threshold = start.rules.startThreshold = sand::kUnitsPerCell;
+    start.rules.sweepsPerStep = 1;
+    start.rules.stepsPerSecond = 60;
+    start.rules.toolRadius = static_cast<std::int32_t>(state.range(0)) * sand::kProbePerCell;
+    const sand::Replica replica(start);
+    sand::force::SurfacePatch patch;
+    for (auto step : state) {
+        patch.take(replica, middle(kSide));
+        benchmark::DoNotOptimize(patch);
+    }
+}
+BENCHMARK(surfacePatchOfFineTin)->Arg(10)->Arg(31);
 
 /// The same of a TIN, in the memory of the one before.
 void facets(benchmark::State& state) {

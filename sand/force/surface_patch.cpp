@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sand/tin/geometry/surface_view.hpp"
 
@@ -15,39 +16,49 @@ int reachOf(double toolRadius, double cell) {
     return static_cast<int>(std::ceil(std::max(4 * toolRadius / cell, 8.0)));
 }
 
+/// From a tool's outline to the middle of what it has cut [scene unit].
+double halfCut(const tin::SurfaceView& tin, double cell) { return 0.5 * tin.spacing * cell / kProbePerCell; }
+
 }  // namespace
 
 template <class HeightOf>
-void SurfacePatch::sample(int columns, int rows, double cell, ProbePoint centre, double toolRadius, HeightOf heightOf) {
-    const int reach = reachOf(toolRadius, cell);
-    const int stride = (2 * reach + 1 + kMaxSideNodes - 1) / kMaxSideNodes;
-    const int half = reach / stride;
-    const auto firstCell = [&](std::int32_t coordinate, int cells) {
-        const int middle = std::clamp(static_cast<int>(coordinate >> kProbeBits), 0, cells - 1);
-        return middle - half * stride;
+void SurfacePatch::sample(const Cells& cells, ProbePoint centre, double toolRadius, HeightOf heightOf) {
+    const int reach = reachOf(toolRadius, cells.size);
+    const auto within = [reach](std::int32_t coordinate, int count) {
+        const int middle = std::clamp(static_cast<int>(coordinate >> kProbeBits), 0, count - 1);
+        return std::pair{std::max(middle - reach, 0), std::min(middle + reach, count - 1)};
     };
-    const int x0 = firstCell(centre.x, columns);
-    const int y0 = firstCell(centre.y, rows);
-    columns_ = rows_ = 2 * half + 1;
-    spacing_ = stride * cell;
+    auto [west, east] = within(centre.x, cells.columns);
+    auto [south, north] = within(centre.y, cells.rows);
+    const int stride = std::max(east - west, north - south) / cells.most + 1;
+    west -= west % stride;
+    south -= south % stride;
+    columns_ = (east - west + stride - 1) / stride + 1;
+    rows_ = (north - south + stride - 1) / stride + 1;
+    spacing_ = stride * cells.size;
     cutBeyond_ = 0;
-    west_ = (x0 + 0.5) * cell;
-    south_ = (y0 + 0.5) * cell;
-    fieldWidth_ = columns * cell;
-    fieldHeight_ = rows * cell;
-    const double unit = cell / kUnitsPerCell;  // [scene unit]
+    west_ = (west + 0.5) * cells.size;
+    south_ = (south + 0.5) * cells.size;
+    fieldWidth_ = cells.columns * cells.size;
+    fieldHeight_ = cells.rows * cells.size;
+    const double unit = cells.size / kUnitsPerCell;  // [scene unit]
+    heights_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
     std::size_t node = 0;
     for (int j = 0; j < rows_; ++j) {
-        const int row = std::clamp(y0 + j * stride, 0, rows - 1);
+        const int row = std::min(south + j * stride, cells.rows - 1);
         for (int i = 0; i < columns_; ++i) {
-            const int column = std::clamp(x0 + i * stride, 0, columns - 1);
+            const int column = std::min(west + i * stride, cells.columns - 1);
             heights_[node++] = static_cast<float>(heightOf(column, row) * unit);
         }
     }
 }
 
 SurfacePatch::SurfacePatch(const HeightField& field, ProbePoint centre, double toolRadius) {
-    sample(field.columns(), field.rows(), field.cellSize(), centre, toolRadius,
+    takeCells(field, centre, toolRadius);
+}
+
+void SurfacePatch::takeCells(const HeightField& field, ProbePoint centre, double toolRadius) {
+    sample({field.columns(), field.rows(), field.cellSize(), kMostCells}, centre, toolRadius,
            [&](int column, int row) { return field.height(column, row); });
 }
 
@@ -61,23 +72,22 @@ bool SurfacePatch::takeFacets(const tin::SurfaceView& tin, double cellSize, Prob
         return false;
     }
     columns_ = rows_ = 0;
-    cutBeyond_ = 0.5 * tin.spacing * probe;
+    cutBeyond_ = halfCut(tin, cellSize);
     fieldWidth_ = tin.triangles.width * probe;
     fieldHeight_ = tin.triangles.depth * probe;
     return true;
 }
 
-void SurfacePatch::take(const Replica& terrain) {
+void SurfacePatch::take(const Replica& terrain, const ProbePoint& centre) {
     const double cell = terrain.cellSize(), radius = terrain.toolRadius();
     if (terrain.tinView() == nullptr) {
-        const HeightField& field = terrain.field();
-        sample(field.columns(), field.rows(), cell, terrain.probe(), radius,
-               [&](int column, int row) { return field.height(column, row); });
-    } else if (!takeFacets(*terrain.tinView(), cell, terrain.probe(), radius)) {
+        takeCells(terrain.field(), centre, radius);
+    } else if (const tin::SurfaceView& tin = *terrain.tinView(); !takeFacets(tin, cell, centre, radius)) {
         const Rules& rules = terrain.rules();
-        sample(rules.columns, rules.rows, cell, terrain.probe(), radius, [&](int column, int row) {
+        sample({rules.columns, rules.rows, cell, kMostHeights}, centre, radius, [&](int column, int row) {
             return terrain.surface().height((column + 0.5) * kProbePerCell, (row + 0.5) * kProbePerCell);
         });
+        cutBeyond_ = halfCut(tin, cell);
     }
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <vector>
 
 #include "sand/force/dual.hpp"
 #include "sand/force/facets.hpp"
@@ -14,22 +14,25 @@ namespace sand::force {
 
 /// A copy of the sand around the tool, small enough to be handed to a force thread after every step.
 ///
-/// It reaches four tool radii and at least eight cells from its centre, so that the hand may go on for a step; a
-/// large tool's patch takes every second or third cell. Of a TIN it takes the triangles (Facets), or, where these are
-/// more than Facets::kMost, its height at the nominal cells' middles. Heights are [scene unit], positions [scene unit]
-/// from the field's south-west corner. Many threads may read.
+/// It reaches four tool radii and at least eight cells from its centre, so that the hand may go on for a step, and no
+/// farther than the field. It takes every cell while a side has at most kMostCells of them, then every second, third
+/// and so on, counted from the field's corner, so that a hand that moves feels the same cells. Of a TIN it takes the
+/// triangles (Facets). Where these are more than Facets::kMost, it takes the height at the nominal cells' middles, of
+/// which a side has at most kMostHeights. Heights are [scene unit], positions [scene unit] from the field's south-west
+/// corner. Many threads may read.
 class SurfacePatch {
 public:
-    static constexpr int kMaxSideNodes = 96;
+    static constexpr int kMostCells = 1024;  // on a side of a height field's patch
+    static constexpr int kMostHeights = 96;  // on a side of a TIN's: a height costs a walk through its triangles
 
     SurfacePatch() = default;
     SurfacePatch(const HeightField& field, ProbePoint centre, double toolRadius /* [scene unit] */);
     /// The triangles of a TIN of such nominal cells; empty where these are too many.
     SurfacePatch(const tin::SurfaceView& tin, double cellSize, ProbePoint centre, double toolRadius);
     /// Around the tool.
-    explicit SurfacePatch(const Replica& terrain) { take(terrain); }
-    /// The same in place of what it was: in the memory that it has.
-    void take(const Replica& terrain);
+    explicit SurfacePatch(const Replica& terrain) { take(terrain, terrain.probe()); }
+    /// Replaces what it was by the sand around `centre`, for the replica's tool, in the memory that it has.
+    void take(const Replica& terrain, const ProbePoint& centre);
 
     /// Whether (x, y) lies over the field.
     [[nodiscard]] bool overField(double x, double y) const {
@@ -50,10 +53,17 @@ public:
     [[nodiscard]] const Facets& facets() const { return facets_; }
 
 private:
-    /// Of a field of so many cells of this size; `heightOf(column, row)` is [unit].
+    /// What is sampled: so many cells of this size, at most `most` of them on a side of the patch.
+    struct Cells {
+        int columns, rows;
+        double size;  // [scene unit]
+        int most;
+    };
+    /// `heightOf(column, row)` is [unit].
     template <class HeightOf>
-    void sample(int columns, int rows, double cell, ProbePoint centre, double toolRadius, HeightOf heightOf);
+    void sample(const Cells& cells, ProbePoint centre, double toolRadius, HeightOf heightOf);
 
+    void takeCells(const HeightField& field, ProbePoint centre, double toolRadius);
     bool takeFacets(const tin::SurfaceView& tin, double cellSize, ProbePoint centre, double toolRadius);
     [[nodiscard]] Dual sampledTangent(double x, double y) const;
 
@@ -63,7 +73,7 @@ private:
     double spacing_ = 1;
     double cutBeyond_ = 0;
     double fieldWidth_ = -1, fieldHeight_ = -1;
-    std::array<float, kMaxSideNodes * kMaxSideNodes> heights_;
+    std::vector<float> heights_;  // row by row from the south-west
 };
 
 }  // namespace sand::force
