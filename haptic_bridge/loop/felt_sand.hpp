@@ -7,10 +7,11 @@
 
 namespace haptic_bridge {
 
-/// What a hand feels of the sand after the terrain's last step, but for the time: one way to make it, for whoever makes
-/// steps and for whoever replays them.
-inline void takeSurface(const sand::Replica& terrain, FeltSand& surface) {
-    surface.patch.take(terrain, terrain.probe());
+/// Fills in what a hand at `around` feels of the sand after the terrain's last step, but for the time. The thread that
+/// makes steps and a replay both call this.
+inline void takeSurface(const sand::Replica& terrain, const sand::ProbePoint& around, FeltSand& surface) {
+    surface.patch.take(terrain, around);
+    surface.around = {around.x, around.y, 0};
     surface.tool = sand::force::contourOf(terrain.toolShape(), terrain.heading(), terrain.cellSize());
     surface.step = terrain.stepNumber();
 }

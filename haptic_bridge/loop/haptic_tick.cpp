@@ -54,6 +54,7 @@ HapticTick::HapticTick(const scene::Scene& scene, std::unique_ptr<Device> device
       velocity_(guards_.limits().resolution * guards_.limits().scale),
       words_(inWords(scene.force, guards_.limits(), law)) {
     restart();
+    tellWhere(last_);
 }
 
 void HapticTick::restart() {
@@ -65,14 +66,28 @@ void HapticTick::restart() {
 }
 
 void HapticTick::rest(double deviceTime) {
-    (void)device_->read(deviceTime);
+    if (const auto probe = mapping_.probe(device_->read(deviceTime))) {
+        tellWhere(*probe);
+    }
     device_->sendForce({});
+}
+
+void HapticTick::tellWhere(const sand::ProbePoint& at) {
+    const std::uint64_t x = static_cast<std::uint32_t>(at.x), y = static_cast<std::uint32_t>(at.y);
+    where_.store(x << 32U | y, std::memory_order_relaxed);
+}
+
+sand::ProbePoint HapticTick::where() const {
+    const std::uint64_t both = where_.load(std::memory_order_relaxed);
+    return {static_cast<std::int32_t>(static_cast<std::uint32_t>(both >> 32U)),
+            static_cast<std::int32_t>(static_cast<std::uint32_t>(both)), 0};
 }
 
 HandSample HapticTick::tick(double deviceTime, std::int64_t nowNs, const FeltSand& surface) {
     const Pose pose = device_->read(deviceTime);
     const auto probe = mapping_.probe(pose);
     last_ = probe.value_or(last_);
+    tellWhere(last_);
     const bool present = device_->reading().present;
     const HandSample sample{nowNs, last_, pose.engaged && probe.has_value() && present, mapping_.heading(pose)};
 

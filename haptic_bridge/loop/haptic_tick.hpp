@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,9 +20,10 @@
 
 namespace haptic_bridge {
 
-/// The sand around the tool after a step, for whoever computes forces.
+/// The sand around the hand after a step, for whoever computes forces.
 struct FeltSand {
     sand::force::SurfacePatch patch;
+    sand::ProbePoint around;    // of the patch: where the hand was when it was taken; the height does not count
     sand::force::Contour tool;  // which an operator may change
     std::uint64_t step = 0;     // number of the step that made it
     std::int64_t timeNs = 0;    // monotonic, of the step
@@ -43,7 +46,7 @@ public:
 
     /// `deviceTime` [s] is what the device is read at; now and surface.timeNs are on one clock.
     HandSample tick(double deviceTime, std::int64_t nowNs, const FeltSand& surface);
-    /// Nobody is linked: the device is read, so that its troubles are told, and gets no force.
+    /// Reads the device and sends no force, while nobody is linked: its troubles are told, and where() is known.
     void rest(double deviceTime);
     /// Forgets every tick before, as if it had just been made: what follows depends on the ticks of one link alone.
     void restart();
@@ -55,6 +58,8 @@ public:
     [[nodiscard]] const Guards& guards() const { return guards_; }
     [[nodiscard]] bool finished(double deviceTime) const { return device_->finished(deviceTime); }
     // Any thread:
+    /// Returns where the hand was read last, at height 0; before that the middle of the field.
+    [[nodiscard]] sand::ProbePoint where() const;
     [[nodiscard]] const LiveHistogram& forceCost() const { return forceCost_; }  // law and guards, of engaged ticks
     [[nodiscard]] const GuardCounts& guardCounts() const { return counts_; }     // [tick]
 
@@ -62,6 +67,7 @@ private:
     HapticTick(const scene::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum, Guards::Mode mode,
                const LawAtRadius& law);
     void fillTick(double deviceTime, const FeltSand& surface, const HandSample& sample);
+    void tellWhere(const sand::ProbePoint& at);
 
     const sand::ForceConstants constants_;
     sand::force::ForceModel model_;
@@ -72,6 +78,7 @@ private:
     VelocityWindow velocity_;     // [scene unit/s]
     std::vector<std::string> words_;
     sand::ProbePoint last_;
+    std::atomic<std::uint64_t> where_{0};  // x and y, 32 bits each: one value, so that no thread sees half of a place
     Tick tick_;
     LiveHistogram forceCost_;
     GuardCounts counts_;

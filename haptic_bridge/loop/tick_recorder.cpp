@@ -53,7 +53,9 @@ void TickRecorder::begin() {
 
 void TickRecorder::add(std::int64_t nowNs, const FeltSand& surface) {
     const Tick& tick = hand_.lastTick();
-    push({false, tick, {tick.time, device_.pose(), device_.reading(), nowNs, nowNs - surface.timeNs, surface.step}});
+    push({false,
+          tick,
+          {tick.time, device_.pose(), device_.reading(), nowNs, nowNs - surface.timeNs, surface.step, surface.around}});
 }
 
 void TickRecorder::push(const Entry& entry) {

@@ -44,8 +44,8 @@ void TickReplay::begin(const TrackPiece& piece) {
 }
 
 void TickReplay::tick(const TickInput& input, const sand::Replica& terrain, std::string& rows) {
-    if (surface_.patch.empty() || surface_.step != terrain.stepNumber()) {
-        takeSurface(terrain, surface_);
+    if (surface_.patch.empty() || surface_.step != terrain.stepNumber() || surface_.around != input.around) {
+        takeSurface(terrain, input.around, surface_);
     }
     surface_.timeNs = input.nowNs - input.surfaceAgeNs;
     player_->set(input);

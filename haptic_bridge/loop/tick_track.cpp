@@ -10,7 +10,7 @@ namespace {
 
 using sand::force::Vec3;
 
-enum Flag : std::uint8_t { kEngaged = 1, kFirst = 2, kSecond = 4, kPresent = 8 };
+enum Flag : std::uint8_t { kEngaged = 1, kFirst = 2, kSecond = 4, kPresent = 8, kElsewhere = 16 };
 
 std::uint8_t flagsOf(const TickInput& tick) {
     return static_cast<std::uint8_t>((tick.pose.engaged ? kEngaged : 0) | (tick.reading.first ? kFirst : 0) |
@@ -26,6 +26,14 @@ void putVec(const Vec3& v, base::ByteWriter& writer) {
 Vec3 getVec(base::ByteReader& reader) {
     const double x = reader.get<double>(), y = reader.get<double>();
     return {x, y, reader.get<double>()};
+}
+
+std::int32_t getProbe(base::ByteReader& reader) {
+    const std::int64_t value = reader.getSigned();
+    if (value < -sand::kMaxProbe || value > sand::kMaxProbe) {
+        throw base::FormatError(fmt::format("a tick that felt the sand at {}, which is beyond any field", value));
+    }
+    return static_cast<std::int32_t>(value);
 }
 
 /// The one list of an arm's numbers.
@@ -71,15 +79,22 @@ base::Bytes encode(const TrackPiece& piece) {
     }
     writer.putVarint(piece.ticks.size());
     std::int64_t beforeNs = 0;
+    sand::ProbePoint around;  // of the tick before
     for (const TickInput& tick : piece.ticks) {
+        const bool elsewhere = tick.around != around;
         writer.put(tick.time);
         putVec({tick.pose.x, tick.pose.y, tick.pose.z}, writer);
         putVec(tick.reading.place, writer);
-        writer.put(flagsOf(tick));
+        writer.put(static_cast<std::uint8_t>(flagsOf(tick) | (elsewhere ? kElsewhere : 0)));
         writer.putSigned(tick.nowNs - beforeNs);
         writer.putSigned(tick.surfaceAgeNs);
         writer.putVarint(tick.surfaceStep);
+        if (elsewhere) {
+            writer.putSigned(tick.around.x);
+            writer.putSigned(tick.around.y);
+        }
         beforeNs = tick.nowNs;
+        around = tick.around;
     }
     return writer.take();
 }
@@ -97,6 +112,7 @@ TrackPiece decodeTrackPiece(std::span<const std::uint8_t> bytes) {
             throw base::FormatError(fmt::format("{} ticks in a piece", count));
         }
         std::int64_t beforeNs = 0;
+        sand::ProbePoint around;
         for (std::uint64_t i = 0; i < count; ++i) {
             TickInput& tick = piece.ticks.emplace_back();
             tick.time = reader.get<double>();
@@ -110,6 +126,11 @@ TrackPiece decodeTrackPiece(std::span<const std::uint8_t> bytes) {
             tick.nowNs = beforeNs += reader.getSigned();
             tick.surfaceAgeNs = reader.getSigned();
             tick.surfaceStep = reader.getVarint();
+            if ((flags & kElsewhere) != 0) {
+                around.x = getProbe(reader);
+                around.y = getProbe(reader);
+            }
+            tick.around = around;
         }
     }
     if (!reader.atEnd()) {

@@ -21,6 +21,7 @@ struct TickInput {
     std::int64_t nowNs = 0;         // of the loop's clock
     std::int64_t surfaceAgeNs = 0;  // then
     std::uint64_t surfaceStep = 0;
+    sand::ProbePoint around;  // FeltSand's, at height 0
 };
 
 /// What a device was, from a link's start to its end.

@@ -177,6 +177,7 @@ void serve(const Options& options) {
     const auto datum =
         settings.datum.value_or(device->physics() ? HandSettings::Datum::level : HandSettings::Datum::surface);
     HapticTick hand(scene, std::move(device), datum, options.guards);
+    hand.rest(0);  // a master that links before the force loop's first tick feels the sand under the hand too
     HandChannel channel;
     std::unique_ptr<TickRecorder> recorder;
     if (!options.record.empty()) {

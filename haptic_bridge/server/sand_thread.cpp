@@ -154,6 +154,10 @@ void SandThread::begin() {
     liftFirst_ = terrain_.engaged();
     path_.restart(terrain_.probe(), false);
     clock_.start(host::monotonicNs());
+    if (pace_ == Pace::fast) {  // in real time the force loop reads a hand that rests
+        const auto rate = static_cast<std::uint64_t>(scene_.rules.stepsPerSecond);
+        hand_.rest(static_cast<double>(virtualSteps_ * 1000 / rate) * HapticTick::kTick);
+    }
     publishSurface();
     showSand();
     ++channel_.sitting;
@@ -219,13 +223,16 @@ void SandThread::makeStep() {
     clock_.advance(host::monotonicNs());
 }
 
+/// Around the hand, and not around the tool: before a link's first step the tool is where no hand has been, and later a
+/// hand may be ahead of its tool.
 void SandThread::publishSurface() {
+    const sand::ProbePoint around = hand_.where();
     if (pace_ == Pace::fast) {
-        takeSurface(terrain_, virtualSurface_);
+        takeSurface(terrain_, around, virtualSurface_);
         return;
     }
     FeltSand& next = channel_.surface.next();
-    takeSurface(terrain_, next);
+    takeSurface(terrain_, around, next);
     next.timeNs = host::monotonicNs();
     channel_.surface.publish();
 }

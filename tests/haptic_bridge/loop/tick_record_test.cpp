@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -38,7 +39,7 @@ protected:
         PathBuilder path(scene_.rules.stepsPerSecond);
         path.restart(terrain_.probe(), false);
         for (int i = 0; i < steps; ++i) {
-            takeSurface(terrain_, surface_);
+            takeSurface(terrain_, hand_->where(), surface_);
             for (int tick = 0; tick < 16; ++tick) {
                 ++ticks_;
                 const double turn = static_cast<double>(ticks_) * 0.004;
@@ -146,6 +147,7 @@ TEST_F(Recorded, AFileThatCannotBeMadeIsNamed) { EXPECT_THROW(open("/nowhere/tic
 TEST(TickTrack, RefusesBytesThatAreNone) {
     TrackPiece piece;
     piece.ticks.resize(3);
+    piece.ticks[1].around = {7, 8, 0};
     const base::Bytes whole = encode(piece);
     EXPECT_EQ(decodeTrackPiece(whole).ticks.size(), 3U);
     for (std::size_t length = 0; length < whole.size(); ++length) {
@@ -154,6 +156,24 @@ TEST(TickTrack, RefusesBytesThatAreNone) {
     base::Bytes longer = whole;
     longer.push_back(0);
     EXPECT_THROW((void)decodeTrackPiece(longer), base::FormatError);
+    piece.ticks[1].around = {0, sand::kMaxProbe, 0};
+    EXPECT_NO_THROW((void)decodeTrackPiece(encode(piece)));
+    piece.ticks[1].around = {0, sand::kMaxProbe + 1, 0};
+    EXPECT_THROW((void)decodeTrackPiece(encode(piece)), base::FormatError) << "beyond any field";
+}
+
+TEST(TickTrack, KeepsTheMiddleOfTheSurfaceOfEachTick) {
+    const std::array<sand::ProbePoint, 6> middles{{{0, 0, 0}, {300, -5, 0}, {300, -5, 0}, {300, 6, 0}, {0, 0, 0}, {}}};
+    TrackPiece piece;
+    piece.ticks.resize(middles.size());
+    for (std::size_t i = 0; i < middles.size(); ++i) {
+        piece.ticks[i].around = middles[i];
+    }
+    const TrackPiece read = decodeTrackPiece(encode(piece));
+    ASSERT_EQ(read.ticks.size(), middles.size());
+    for (std::size_t i = 0; i < middles.size(); ++i) {
+        EXPECT_EQ(read.ticks[i].around, middles[i]) << "tick " << i;
+    }
 }
 
 }  // namespace

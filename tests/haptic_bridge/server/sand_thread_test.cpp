@@ -1,14 +1,150 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "haptic_bridge/server/sand_thread.hpp"
 
+#include <mutex>
+
 #include "haptic_bridge/devices/open_device.hpp"
+#include "host/clock.hpp"
 #include "scene/load/scene_file.hpp"
 #include "tests/haptic_bridge/server/server_process.hpp"
+#include "tests/support/arm_on_sand.hpp"
 
 namespace {
 
 using namespace haptic_bridge;
 using namespace test;
+
+/// A hand that stands where the test says, half a radius deep in the sand as the session began.
+class StandingHand : public Device {
+public:
+    explicit StandingHand(const std::atomic<double>& east) : east_(east) {}
+    [[nodiscard]] Pose read(double) override { return {east_, 0, 0.5, true}; }
+    void sendForce(Vec3) override {}
+    [[nodiscard]] bool finished(double) const override { return false; }
+
+private:
+    const std::atomic<double>& east_;
+};
+
+/// A sand thread whose wall shows nothing, and what it has put out.
+class Server {
+public:
+    Server(const scene::Scene& scene, Pace pace, std::unique_ptr<Device> device)
+        : scene_(scene),
+          replica_(scene),
+          hand_(scene, std::move(device), HandSettings::Datum::surface, Guards::Mode::literal),
+          thread_(scene, pace, hand_, *channel_,
+                  {[](std::uint32_t) {}, [](std::uint32_t, NeedState) {}, [](std::uint32_t, const std::string&) {},
+                   [this](std::uint32_t, const base::Bytes& message) { take(message); }}) {}
+
+    /// A master links, whose sand is that of all steps so far.
+    void link() {
+        ++epoch_;
+        thread_.start(epoch_, {epoch_, replica_.stepNumber(), replica_.stateHash()});
+    }
+    [[nodiscard]] bool made(std::size_t steps) {
+        return eventually([&] { return ticks().size() >= steps; });
+    }
+    /// The last tick before each step that was made.
+    [[nodiscard]] std::vector<Tick> ticks() {
+        const std::lock_guard lock(mutex_);
+        return ticks_;
+    }
+    [[nodiscard]] SandThread& thread() { return thread_; }
+    [[nodiscard]] HandChannel& channel() { return *channel_; }
+    [[nodiscard]] HapticTick& hand() { return hand_; }
+
+private:
+    void take(const base::Bytes& message) {
+        constexpr std::size_t kLength = sizeof(std::uint32_t);
+        const std::lock_guard lock(mutex_);
+        replica_.apply(std::get<StepMessage>(decode(std::span(message).subspan(kLength))).step);
+        ticks_.push_back(hand_.lastTick());
+    }
+
+    const scene::Scene& scene_;
+    std::mutex mutex_;
+    std::vector<Tick> ticks_;
+    sand::Replica replica_;
+    std::uint32_t epoch_ = 0;
+    std::unique_ptr<HandChannel> channel_ = std::make_unique<HandChannel>();
+    HapticTick hand_;
+    SandThread thread_;
+};
+
+/// The first paper's field and tool, of 2.5 cells; west of x = -0.3 the sand stands 0.02 higher.
+scene::Scene terraced() {
+    scene::Scene scene = levelSand({}, 500);
+    for (int row = 0; row < 500; ++row) {
+        for (int column = 0; column < 175; ++column) {
+            scene.terrain.setHeight(column, row, 5 * sand::kUnitsPerCell);
+        }
+    }
+    return scene;
+}
+constexpr double kWest = -0.6, kEast = 0.2;  // in hand space: on the terrace, and far below it
+
+// At half a radius the paper's law gives 1000 (e^0.0025 - 1) = 2.503128 N, and heights are floats. On the sand around
+// cell (0, 0), which is as high as the terrace, it would be 1000 (e^0.0125 - 1) = 12.6 N.
+constexpr double kHalfRadius = 2.503128, kFloat = 1e-4;  // [N]
+
+TEST(SandThread, TheFirstSurfaceIsTheSandUnderTheHand) {
+    const scene::Scene scene = terraced();
+    std::atomic<double> east = kEast;
+    Server server(scene, Pace::fast, std::make_unique<StandingHand>(east));
+    server.link();
+    ASSERT_TRUE(server.made(1));
+    const Tick first = server.ticks().front();
+    EXPECT_EQ(first.surfaceStep, 0U) << "felt before there was a step";
+    EXPECT_NEAR(first.sent.z, kHalfRadius, kFloat);
+}
+
+// The tool was left in the sand where the hand was. The first step of the next link lifts it there.
+TEST(SandThread, TheFirstSurfaceOfTheNextLinkIsTheSandUnderTheHandThen) {
+    const scene::Scene scene = terraced();
+    std::atomic<double> east = kEast;
+    Server server(scene, Pace::fast, std::make_unique<StandingHand>(east));
+    server.link();
+    ASSERT_TRUE(server.made(8));
+    server.thread().release();
+    east = kWest;
+    server.link();
+    ASSERT_TRUE(server.made(10));
+    const Tick next = server.ticks()[9];
+    EXPECT_EQ(next.surfaceStep, 9U) << "the ninth step lifts the tool and holds no ticks";
+    EXPECT_NEAR(next.sent.z, kHalfRadius, kFloat);
+}
+
+TEST(SandThread, InRealTimeTheFirstSurfaceIsTheSandWhereTheHandRests) {
+    const scene::Scene scene = terraced();
+    std::atomic<double> east = kWest;
+    Server server(scene, Pace::realtime, std::make_unique<StandingHand>(east));
+    server.hand().rest(0);  // as the force loop does a thousand times a second while nobody is linked
+    server.link();
+    ASSERT_TRUE(eventually([&] { return !server.channel().surface.latest().patch.empty(); }));
+    const FeltSand& surface = server.channel().surface.latest();
+    EXPECT_NEAR(surface.patch.height(1 + kWest, 1), 0.02, 1e-6);
+    // 11 cells on either side of the hand and no more: the whole field would hold that place too.
+    EXPECT_EQ(surface.around, (sand::ProbePoint{100 * sand::kProbePerCell, 250 * sand::kProbePerCell, 0}));
+}
+
+// docs/protocol.md promises 8.
+TEST(SandThread, IsAtMostEightStepsAheadOfTheWall) {
+    const scene::Scene scene = terraced();
+    std::atomic<double> east = kEast;
+    Server server(scene, Pace::realtime, std::make_unique<StandingHand>(east));
+    server.link();
+    // A step that is withheld was due while the wall was a whole window behind.
+    const auto withheld = [&](std::uint64_t steps) {
+        return eventually([&] { return server.thread().withheld() >= steps; });
+    };
+    ASSERT_TRUE(withheld(2));
+    EXPECT_EQ(server.ticks().size(), 8U);
+    server.thread().shown({3, 16'666'667}, host::monotonicNs());
+    ASSERT_TRUE(server.made(11));
+    ASSERT_TRUE(withheld(server.thread().withheld() + 2));
+    EXPECT_EQ(server.ticks().size(), 11U);
+}
 
 // A wall that keeps the server waiting holds the sand still; what the hand feels of it is as it is, and not out of
 // date.
