@@ -13,7 +13,8 @@ namespace haptic_bridge {
 ///
 /// Sand gives back at most what a spring of its stiffness holds at the present force, so no credit is kept beyond
 /// that, however much work a hand has left in the sand; and the arm itself takes three quarters of what its damping
-/// does: a loop within its limits leaks half of that.
+/// does: a loop within its limits leaks half of that. A surplus is forgotten with a time constant of half a second,
+/// because the arm and the hand have taken by then what was not taken back.
 class PassivityObserver {
 public:
     explicit PassivityObserver(const ForceLimits& limits);

@@ -77,6 +77,17 @@ TEST(ControlPoints, OtherwiseGrowFromNothingIntoTheLiteralForce) {
     const SurfacePatch level = levelPatch();
     EXPECT_EQ(felt(level, placeAt(0), paper()).push.z, 0);
     EXPECT_EQ(felt(level, placeAt(-reach / 2), paper()).push.z, 0);
+    // t² (2 - t) of z_tol F_M = 0.01 N: 7/64, 3/8 and 45/64 of it. A slope of t (4 - 3 t) is 13/16, 5/4 and 21/16 of
+    // F_M per unit length. Places are doubles near 1: off by 2e-16, a slope's share of which is below 1e-12.
+    struct Row {
+        double part, newtons, rate;  // of z_tol; of F_M
+    };
+    for (const auto& [part, newtons, rate] :
+         {Row{0.25, 0.00109375, 0.8125}, Row{0.5, 0.00375, 1.25}, Row{0.75, 0.00703125, 1.3125}}) {
+        const Response here = felt(level, placeAt(part * reach), paper());
+        EXPECT_NEAR(here.push.z, newtons, 1e-12) << part;
+        EXPECT_NEAR(here.stiffness, rate * 10 / kUnit, 1e-9 * rate * 10 / kUnit) << part;
+    }
     double last = 0;
     for (int i = 1; i <= 200; ++i) {
         const double depth = reach * i / 100;
