@@ -27,9 +27,13 @@ TEST_F(HapticServer, WritesTheSameSandTwice) {
         ASSERT_TRUE(wall.follow(client, 240)) << client.link().message << "\n" << server.errors();
         EXPECT_EQ(wall.divergences, 0);
         EXPECT_EQ(wall.outOfOrder, 0);
-        EXPECT_GT(wall.engaged, 120) << "most of the word's four seconds is writing";
+        // G, I and S are drawn from 0 to 1.1994 s, 1.3365 to 1.8819 s and 2.1050 to 3.1616 s: 168.1 steps of 1/60 s. A
+        // step touches or hovers as a whole. Samples of a step in which the hand lands go into the next, so that the
+        // first step of I and of S is longer instead of one more: I's has 14 samples that waited and 16 of its own.
+        EXPECT_EQ(wall.strokes, 3);
+        EXPECT_EQ(wall.engaged, 167);
+        EXPECT_EQ(wall.longest, 30U);
         EXPECT_FALSE(wall.terrain.engaged()) << "the word must be complete within 240 steps";
-        EXPECT_LE(wall.longest, 34U) << "17 samples, and as many that waited for the end of a stroke";
         EXPECT_EQ(wall.terrain.field().volume() + wall.terrain.outflow(), scene_.terrain.volume());
         hashes.push_back(wall.terrain.stateHash());
         client.stop();
@@ -130,7 +134,7 @@ TEST_F(HapticServer, GetsFewerStepsThroughASlowWallAndLosesNone) {
     EXPECT_EQ(wall.divergences, 0);
     EXPECT_EQ(wall.outOfOrder, 0);
     EXPECT_GT(wall.longest, 17U) << "what was withheld comes as a longer path";
-    EXPECT_LE(wall.longest, sand::kMaxPathPoints);
+    EXPECT_LE(wall.longest, 64U) << "docs/protocol.md";
     client.stop();
     ASSERT_TRUE(client.report().has_value());
     EXPECT_GT(client.report()->stepsWithheld, 0U);

@@ -4,12 +4,15 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <random>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "sand/model/ground.hpp"
 #include "sand/tin/flow/settle.hpp"
@@ -83,6 +86,23 @@ void lump(VertexSand& layer, int column, int row, int cells) {
             layer.add(vertex, layer.stars()[static_cast<std::size_t>(vertex)] * 65536 * cells);
         }
     });
+}
+
+/// Where vertices stand on the border of the holes, in order.
+std::vector<std::pair<std::int32_t, std::int32_t>> placesOnOutline(const VertexSand& layer) {
+    std::vector<std::pair<std::int32_t, std::int32_t>> result;
+    forEachVertex(layer, [&](Vertex, const Place& place, double) {
+        const auto holds = [&place](const Holes::Part& part) {
+            const auto [west, east] = std::minmax(part.from.x, part.to.x);
+            const auto [south, north] = std::minmax(part.from.y, part.to.y);
+            return place.x >= west && place.x <= east && place.y >= south && place.y <= north;
+        };
+        if (std::ranges::any_of(layer.mesh().holes()->outline(), holds)) {
+            result.emplace_back(place.x, place.y);
+        }
+    });
+    std::ranges::sort(result);
+    return result;
 }
 
 TEST(TinHoles, AnOutlineRunsRoundTheCellsWithoutData) {
@@ -228,12 +248,16 @@ TEST(TinHoles, ToolsOfAllKindsLeaveSandAndOutline) {
     };
     VertexSand layer = layerAt(startOf(24, 24, isRing, levelAt));
     const Wide before = layer.volume(), ground = layer.ground();
+    const auto outline = placesOnOutline(layer);
+    ASSERT_GT(outline.size(), 100U);
     Imprint imprint;
+    double deepest = levelAt(0, 0), lowest = deepest;  // [unit], that a tool went, and that sand was
     for (int stroke = 0; stroke < 60; ++stroke) {
         sand::tin::DetailRules rules = fineRules();
         rules.keepsConstraints = stroke % 4 == 0;
         const auto kind = static_cast<sand::ToolKind>(stroke % sand::kToolKinds);
-        Displacement tool(shapeOf(kind, within(0.3, 4)), *sand::headingOf(within(0, 360), stroke % 2 == 0), rules);
+        const sand::ToolShape shape = shapeOf(kind, within(0.3, 4));
+        Displacement tool(shape, *sand::headingOf(within(0, 360), stroke % 2 == 0), rules);
         const ProbePoint from = probeAt(within(2, 22), within(2, 22), within(-1, 1));
         const std::array path{from, probeAt(within(2, 22), within(2, 22), within(-1, 1))};
         (void)tool.drag(layer, imprint, sand::Rim::closed, path);
@@ -242,11 +266,17 @@ TEST(TinHoles, ToolsOfAllKindsLeaveSandAndOutline) {
         sand::tin::settle(layer, kTalus, kTalus, 20);
         ASSERT_TRUE(layer.volume() == before && layer.ground() == ground) << "stroke " << stroke;
         ASSERT_TRUE(layer.mesh().hasOutline()) << "stroke " << stroke;
-        // Nobody is left on the outline who was not there at the start, or bent in by a constraint that stayed.
+        ASSERT_EQ(placesOnOutline(layer), outline) << "stroke " << stroke << ": a tool's vertices go with it";
+        // A tool digs down to its underside, and sand that slides makes no hole deeper than there was.
+        const std::int32_t underside = std::min(path[0].z, path[1].z) - shape.radius;  // [probe unit]
+        deepest = std::min(deepest, static_cast<double>(underside) * sand::kUnitsPerCell / sand::kProbePerCell);
         forEachVertex(layer, [&](Vertex vertex, const Place&, double height) {
-            ASSERT_TRUE(std::isfinite(height)) << "vertex " << vertex;
+            ASSERT_GE(height, deepest) << "stroke " << stroke << ", vertex " << vertex;
+            ASSERT_GT(layer.stars()[static_cast<std::size_t>(vertex)], 0) << "vertex " << vertex << " stands in a hole";
         });
+        forEachVertex(layer, [&](Vertex, const Place&, double height) { lowest = std::min(lowest, height); });
     }
+    EXPECT_LT(lowest, 0.9 * deepest) << "the strokes dug, or the bound says nothing";
     EXPECT_EQ(mesh_checks::whatIsWrong(layer.mesh()), "");
 }
 
