@@ -3,6 +3,7 @@
 #include "tests/cluster/session_fixture.hpp"
 #include "tests/support/run_program.hpp"
 
+// Pictures are compared by EXPECT_TRUE, because EXPECT_EQ would print them as text.
 namespace {
 
 class HeadTracking : public SessionTest {
@@ -34,7 +35,7 @@ TEST_F(HeadTracking, ATracedHeadSeesWhatAViewerSeesWhoStandsThere) {
     const std::string eye = "eye = [0.0, 1.6, 3.0]";
     text.replace(text.find(eye), eye.size(), "eye = [0.4, 1.5, 2.5]");
     show({}, write("moved.toml", text));
-    EXPECT_EQ(firstTile(), tracked);
+    EXPECT_TRUE(firstTile() == tracked);
 }
 
 TEST_F(HeadTracking, AHeadTurnedToItsSideSeesWithOneEyeAboveTheOther) {
@@ -45,8 +46,8 @@ TEST_F(HeadTracking, AHeadTurnedToItsSideSeesWithOneEyeAboveTheOther) {
     std::string text = read("wall.toml");
     text.replace(text.find("[stereo]"), 0, "right = [0.0, 1.0, 0.0]\n");
     show({}, write("rolled.toml", text));
-    EXPECT_EQ(firstTile("right"), tracked);
-    EXPECT_NE(firstTile("left"), tracked);
+    EXPECT_TRUE(firstTile("right") == tracked);
+    EXPECT_FALSE(firstTile("left") == tracked);
 }
 
 // With --pace fast a wall counts its time in frames, so that the time of its 30th frame shows the rate it runs at.
@@ -63,10 +64,10 @@ TEST_F(HeadTracking, AWallOf120HertzShowsTheEyesInTurnInTheHeadsOwnTime) {
     };
     // Frame 30 of 120 in a second is at 0.25 s, and of 60 at 0.5 s.
     const std::string fast = seen("refresh = 120\n", "trace:" + trace, "[0.0, 1.6, 3.0]");
-    EXPECT_EQ(fast, seen("", "none", "[0.4, 1.5, 2.5]"));
+    EXPECT_TRUE(fast == seen("", "none", "[0.4, 1.5, 2.5]"));
     const std::string usual = seen("", "trace:" + trace, "[0.0, 1.6, 3.0]");
-    EXPECT_EQ(usual, seen("", "none", "[-0.4, 1.7, 2.8]"));
-    EXPECT_NE(fast, usual);
+    EXPECT_TRUE(usual == seen("", "none", "[-0.4, 1.7, 2.8]"));
+    EXPECT_FALSE(fast == usual);
 }
 
 TEST_F(HeadTracking, ATrackerThatFallsSilentIsReportedAndItsLastPoseHeld) {
@@ -85,7 +86,7 @@ TEST_F(HeadTracking, ATrackerThatFallsSilentIsReportedAndItsLastPoseHeld) {
     EXPECT_GE(summary()["head_tracking"]["lost"], 1);
     const std::string held = firstTile();
     show({"--track", "none"}, wallFile);
-    EXPECT_NE(held, firstTile()) << "the last pose was not held";
+    EXPECT_FALSE(held == firstTile()) << "the last pose was not held";
 }
 
 }  // namespace
