@@ -52,7 +52,7 @@ struct World {
 /// Where the session in --out stopped, if there is one.
 void resume(const lockstep::Cluster& cluster, Options& options) {
     const std::filesystem::path journal = std::filesystem::path(options.out) / "session.journal";
-    if (options.session.journal.policy == master::JournalPolicy::off) {
+    if (options.session.record.journal.policy == master::JournalPolicy::off) {
         throw base::InputError("--resume: without a journal there is nothing to go on with; leave --journal off out");
     }
     if (std::error_code none; std::filesystem::exists(journal, none)) {
@@ -77,18 +77,18 @@ void resume(const lockstep::Cluster& cluster, Options& options) {
                     resumed->checkpointStep == 0 ? std::string("the scene")
                                                  : fmt::format("the checkpoint of step {}", resumed->checkpointStep),
                     resumed->replayedSteps);
-    options.session.resumed = std::make_shared<const master::ResumedSession>(std::move(*resumed));
+    options.session.record.resumed = std::make_shared<const master::ResumedSession>(std::move(*resumed));
 }
 
 /// The scene of the file named, or of the journal that is to be replayed or gone on with.
 scene::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
-    options.session.journal.policy = master::parseJournalPolicy(options.journal);
-    options.session.journal.partBytes = options.partMegabytes << 20;
+    options.session.record.journal.policy = master::parseJournalPolicy(options.journal);
+    options.session.record.journal.partBytes = options.partMegabytes << 20;
     if (options.resume) {
         resume(cluster, options);
-        if (options.session.resumed) {
+        if (options.session.record.resumed) {
             options.scene = options.scene.empty() ? options.out : options.scene;  // for complaints
-            return options.session.resumed->scene;
+            return options.session.record.resumed->scene;
         }
     }
     if (options.replay.empty()) {
@@ -154,29 +154,29 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
     options.session.pace = options.pace == "fast" || options.session.film ? master::Pace::fast : master::Pace::realtime;
     options.session.pictures = !options.noPictures;
     options.session.out = options.out;
-    options.session.pattern = lockstep::parsePattern(options.pattern);
-    options.session.layers.set(lockstep::Overlay::hillShade, world.scene.look.hillShade);
+    options.session.desk.pattern = lockstep::parsePattern(options.pattern);
+    options.session.desk.layers.set(lockstep::Overlay::hillShade, world.scene.look.hillShade);
     for (const std::string& layer : options.layers) {
-        options.session.layers.set(lockstep::parseOverlay(layer), true);
+        options.session.desk.layers.set(lockstep::parseOverlay(layer), true);
     }
     if (!options.track.empty()) {
-        options.session.tracker = tracking::Source::parse(options.track, "--track");
+        options.session.desk.tracker = tracking::Source::parse(options.track, "--track");
     } else if (!world.wall.tracking.empty()) {
-        options.session.tracker = tracking::Source::parse(world.wall.tracking, options.wall + ": source",
-                                                          std::filesystem::path(options.wall).parent_path());
+        options.session.desk.tracker = tracking::Source::parse(world.wall.tracking, options.wall + ": source",
+                                                               std::filesystem::path(options.wall).parent_path());
     }
     world.message = {world.scene.encode(),
                      world.wall.encode(),
                      options.session.frameTimeout,
                      {},
-                     options.session.resumed ? options.session.resumed->state : base::Bytes()};
+                     options.session.record.resumed ? options.session.record.resumed->state : base::Bytes()};
     const master::FaultTargets targets{world.wall.ranks(), world.scene.rules.columns, world.scene.rules.rows,
                                        options.session.server.has_value()};
     for (const std::string& text : options.injections) {
         options.session.drills.push_back({text, master::parseFault(text, targets)});
     }
-    options.session.drills =
-        master::withoutDone(std::move(options.session.drills), options.session.out, options.session.resumed != nullptr);
+    options.session.drills = master::withoutDone(std::move(options.session.drills), options.session.out,
+                                                 options.session.record.resumed != nullptr);
     for (const master::Drill& drill : options.session.drills) {
         world.message.faults.push_back(drill.fault);
     }
@@ -191,7 +191,7 @@ int runSession(const lockstep::Cluster& cluster, Options& options) {
         (void)lockstep::broadcastSession(cluster, world->message);
         sessionOpen = true;
         const auto ranks = lockstep::gatherReadiness(cluster, {lockstep::hostName(), host::buildId(), "", "", {}, 0});
-        master::requireReady(ranks, master::namesOf(cluster, world->wall));
+        master::requireReady(ranks, master::RankLabels::of(cluster, world->wall).names);
         for (const lockstep::Readiness& rank : ranks) {
             options.session.settlingFrames =
                 std::max<std::uint64_t>(options.session.settlingFrames, rank.framesToIgnore);
@@ -242,7 +242,7 @@ void describeOptions(host::CommandLine& line, Options& options) {
         .range(2.0, 3600.0);
     host::addSandThreads(line, options.sandThreads);
     line.flag("--no-pictures", options.noPictures, "write no pictures at the end");
-    line.flag("--control-stdin", session.readInput,
+    line.flag("--control-stdin", session.desk.readInput,
               "obeys lines on standard input (docs/operator.md); its end is a stop");
     line.option("--inject", options.injections, "a fault on purpose, such as slow:rank=5,ms=30 (docs/operator.md)");
 }
@@ -251,14 +251,14 @@ void describeResume(host::CommandLine& line, Options& options) {
     const host::Option resume =
         line.flag("--resume", options.resume, "go on with the session in --out, if there is one");
     resume.excludes(line.named("--replay"));
-    master::Failure& failure = options.session.failure;
+    master::Failure& failure = options.session.record.failure;
     line.option("--failed-at", failure.noticed, "Unix time at which the failure was noticed that made it stop")
         .notNegative()
         .needs(resume);
     line.option("--journal", options.journal,
                 "required: nothing is shown that is not on disk; best-effort: go on without; off (docs/journal.md)")
         .oneOf({"required", "best-effort", "off"});
-    line.option("--checkpoint", options.session.journal.checkpointSeconds,
+    line.option("--checkpoint", options.session.record.journal.checkpointSeconds,
                 "seconds from one checkpoint to the next, 0 for none")
         .range(0.0, 86400.0);
     line.option("--journal-part", options.partMegabytes, "MiB after which the journal goes on in another file")

@@ -13,15 +13,6 @@
 
 namespace master {
 
-std::vector<std::string> namesOf(const lockstep::Cluster& cluster, const walls::Wall& wall) {
-    std::vector<std::string> names{"the master"};
-    for (const walls::Tile& tile : wall.tiles) {
-        names.push_back(fmt::format("rank {} (tile {}) on {}", tile.rank, tile.name,
-                                    cluster.hosts()[static_cast<std::size_t>(tile.rank)].name));
-    }
-    return names;
-}
-
 void requireMemory(const std::vector<lockstep::RankHost>& ranks, int columns, int rows, bool tin,
                    const std::string& file) {
     // The master computes the heights that a TIN's vertices are chosen from; a rank that draws needs as much memory.

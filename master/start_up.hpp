@@ -8,13 +8,9 @@
 #include "lockstep/cluster.hpp"
 #include "lockstep/session_message.hpp"
 #include "scene/scene.hpp"
-#include "walls/wall.hpp"
 
 /// What the master asks before the first frame: that the job can hold the sand, and that every rank can take part.
 namespace master {
-
-/// How each rank is spoken of, by rank: "rank 5 (tile r2c1) on node3".
-[[nodiscard]] std::vector<std::string> namesOf(const lockstep::Cluster& cluster, const walls::Wall& wall);
 
 /// Throws base::InputError unless every host has memory for the replicas of its ranks, and for what those that draw a
 /// TIN keep of its nominal cells. `file` is the scene's.

@@ -238,7 +238,9 @@ void LiveSteps::shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs) {
     }
 }
 
-void LiveSteps::shareForce(double share) { share_ = share; }
+const char* LiveSteps::hand() const {
+    return linked() ? "hand linked" : streaming() ? "hand streams" : starting() ? "waiting for a hand" : "no hand";
+}
 
 std::vector<base::Bytes> LiveSteps::ticks() {
     std::vector<base::Bytes> pieces = std::exchange(ticks_, {});

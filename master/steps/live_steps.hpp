@@ -11,18 +11,17 @@
 #include "haptic_bridge/client/client.hpp"
 #include "lockstep/fault.hpp"
 #include "master/steps/position_source.hpp"
+#include "master/steps/step_source.hpp"
 #include "sand/replica.hpp"
 #include "scene/scene.hpp"
 
 namespace master {
 
-enum class Pace : std::uint8_t { realtime, fast };
-
 /// Gives every step its number, or leaves that to the haptic server: exactly one of them per epoch.
 ///
 /// While a server with sand of its own is linked it numbers; else the master does, with the tool where a server without
 /// sand says, or hovering, so that sand never freezes in mid-slide. Every change is a new epoch. Main thread only.
-class LiveSteps {
+class LiveSteps : public StepSource, public StepRequests {
 public:
     /// At the start a haptic server is waited for this long before the master numbers by itself [s].
     static constexpr double kStartWait = 10;
@@ -35,40 +34,32 @@ public:
     LiveSteps(std::optional<haptic_bridge::Address> server, const scene::Scene& scene, Pace pace,
               std::uint32_t epoch = 0, haptic_bridge::LinkSecurity security = {}, haptic_bridge::LinkClock clock = {});
 
-    /// At most `most` steps for the next frame, numbered on from the terrain's; none when nothing is due.
     [[nodiscard]] std::vector<haptic_bridge::TimedStep> next(const sand::Replica& terrain, std::uint64_t stateHash,
-                                                             std::size_t most);
-    /// The wall has swapped and shows the terrain at this step.
-    void shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs);
-    /// Compares the wall's `stateHash` with the server's hash of the last of `steps`, which the wall shows now.
-    /// Disconnects a server whose sand differs; the server starts again from the wall's state. Returns whether the
-    /// hashes agree; true also if no linked server has numbered the steps.
-    [[nodiscard]] bool proveServer(const std::vector<haptic_bridge::TimedStep>& steps, std::uint64_t stateHash);
+                                                             std::size_t most) override;
+    [[nodiscard]] std::size_t mostPerFrame() const override { return pace_ == Pace::fast ? 4 : 8; }
+    /// A fast session waits for a step before it shows a frame without.
+    [[nodiscard]] double patience() const override { return pace_ == Pace::fast ? 0.1 : 0; }
+    [[nodiscard]] StepRequests* requests() override { return this; }
+    void request(sand::Edit edit) override { edits_.push_back(std::move(edit)); }
+    void shareForce(double share) override { share_ = share; }
 
-    /// An operator asks for an edit: it goes into a step that next() returns, whoever numbers it, after those asked for
-    /// before.
-    void request(sand::Edit edit) { edits_.push_back(std::move(edit)); }
-
-    /// Of a server's forces, the hand feels this share from now on, 0 to 1; told to every server that is linked later.
-    void shareForce(double share);
-    /// Pieces of the server's tick track that have come since this was asked last, for the journal.
-    [[nodiscard]] std::vector<base::Bytes> ticks();
-
-    /// Injects a fault into the link: garbage, or a partition. Waits until there is a link.
-    void drill(const lockstep::Fault& fault) { drills_.push_back(fault); }
+    void shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs) override;
+    /// The server starts again from the wall's state. True also if no linked server has numbered the steps.
+    [[nodiscard]] bool proveServer(const std::vector<haptic_bridge::TimedStep>& steps,
+                                   std::uint64_t stateHash) override;
+    [[nodiscard]] std::vector<base::Bytes> ticks() override;
+    void drill(const lockstep::Fault& fault) override { drills_.push_back(fault); }
 
     /// Whether steps are still awaited from a server that has only just started.
     [[nodiscard]] bool starting() const { return source_ == Source::starting; }
-    [[nodiscard]] bool linked() const { return source_ == Source::server; }
-    /// Whether a server without sand says where the hand is.
-    [[nodiscard]] bool streaming() const { return source_ == Source::own && positions_.streaming(); }
-    [[nodiscard]] std::uint32_t epoch() const { return epoch_; }
-    /// How far the server's clock is ahead of ours [ns].
-    [[nodiscard]] std::int64_t clockOffsetNs() const { return client_ ? client_->clockOffsetNs() : 0; }
-    [[nodiscard]] std::optional<haptic_bridge::Report> report() const;
-    [[nodiscard]] haptic_bridge::LinkCounters counters() const;
-    /// Ends the link in an orderly way.
-    void stop();
+    [[nodiscard]] bool linked() const override { return source_ == Source::server; }
+    [[nodiscard]] bool streaming() const override { return source_ == Source::own && positions_.streaming(); }
+    [[nodiscard]] const char* hand() const override;
+    [[nodiscard]] std::uint32_t epoch() const override { return epoch_; }
+    [[nodiscard]] std::int64_t clockOffsetNs() const override { return client_ ? client_->clockOffsetNs() : 0; }
+    [[nodiscard]] std::optional<haptic_bridge::Report> report() const override;
+    [[nodiscard]] haptic_bridge::LinkCounters counters() const override;
+    void stop() override;
 
 private:
     enum class Source : std::uint8_t { starting, server, granting, own };

@@ -69,8 +69,37 @@ TEST(FrameClock, KeepsItsGridWhenAFrameIsLate) {
     EXPECT_EQ(clock.begin(now + 1'000'000), 9'000'000);
 }
 
+TEST(FrameClock, OfAFastSessionWaitsOnlyWhileNoStepsAreTaken) {
+    FrameClock clock(100, master::Pace::fast);
+    EXPECT_EQ(clock.begin(kSessionStart), 0);
+    EXPECT_EQ(clock.next(), 0) << "at once";
+    EXPECT_EQ(clock.begin(kSessionStart, true), 0) << "the first of a grid is due";
+    EXPECT_EQ(clock.next(true), kSessionStart);
+    EXPECT_EQ(clock.begin(kSessionStart + 1'000'000, true), 0);
+    EXPECT_EQ(clock.begin(kSessionStart + 2'000'000, true), 8'000'000);
+    EXPECT_EQ(clock.next(), 0) << "steps are taken again";
+    EXPECT_EQ(clock.begin(kSessionStart), 0);
+}
+
+TEST(FrameClock, KnowsItsSwaps) {
+    FrameClock clock(100);
+    EXPECT_EQ(clock.lastSwap(), 0);
+    EXPECT_EQ(clock.sinceSwap(kSessionStart), 0) << "there was none";
+    EXPECT_EQ(clock.timeOf(1, kSessionStart), 0);
+    const master::Swap first = clock.swapped(kSessionStart);
+    EXPECT_TRUE(first.first);
+    EXPECT_EQ(first.interval, 0);
+    const master::Swap second = clock.swapped(kSessionStart + 12'000'000);
+    EXPECT_FALSE(second.first);
+    EXPECT_EQ(second.interval, 12'000'000);
+    EXPECT_DOUBLE_EQ(second.milliseconds(), 12);
+    EXPECT_DOUBLE_EQ(clock.seconds(), 0.012);
+    EXPECT_DOUBLE_EQ(clock.sinceSwap(kSessionStart + 15'000'000), 0.003);
+    EXPECT_DOUBLE_EQ(clock.timeOf(2, kSessionStart + 15'000'000), 0.015) << "since the first swap";
+}
+
 TEST(FrameClock, CountsTheTimeOfAFastSessionInFrames) {
-    const FrameClock clock(120);
+    const FrameClock clock(120, master::Pace::fast);
     EXPECT_EQ(clock.timeOf(0), 0);
     EXPECT_DOUBLE_EQ(clock.timeOf(30), 0.25);
     EXPECT_DOUBLE_EQ(clock.period(), 1.0 / 120);

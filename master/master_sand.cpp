@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/master_sand.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lockstep/cluster.hpp"
+
+namespace master {
+namespace {
+
+constexpr double kAuditSeconds = 1.0;
+
+}  // namespace
+
+MasterSand::MasterSand(const sand::Start& start, const sand::grid::Erosion::Options& options,
+                       const std::vector<lockstep::Fault>& faults, std::span<const std::uint8_t> state,
+                       std::uint64_t edits)
+    : replica_(start, options), faults_(faults, lockstep::kMaster), edits_(edits) {
+    if (!state.empty()) {
+        replica_.decodeState(state);
+    }
+    rehash();
+}
+
+void MasterSand::apply(std::uint64_t frame, const std::vector<haptic_bridge::TimedStep>& steps,
+                       std::uint32_t auditTiles, StepSource& source) {
+    faults_.strike(frame, replica_);
+    source.reached(replica_);
+    for (const haptic_bridge::TimedStep& timed : steps) {
+        replica_.apply(timed.step);
+        edits_ += timed.step.edit.any() ? 1 : 0;
+        source.reached(replica_);
+    }
+    replica_.audit(static_cast<int>(auditTiles));
+    rehash();
+}
+
+std::uint32_t MasterSand::auditTiles(double sinceSwap) const {
+    const int tiles = replica_.hashTiles().tileCount();
+    const auto due = static_cast<int>(std::ceil(tiles * sinceSwap / kAuditSeconds));
+    return static_cast<std::uint32_t>(std::clamp(due, (tiles + 63) / 64, tiles));
+}
+
+}  // namespace master

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/measurements.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "host/event.hpp"
+
+namespace master {
+namespace {
+
+constexpr double kLate = 1.5;  // times its period that a late frame takes at least
+constexpr std::int64_t kSecondNs = 1'000'000'000;
+
+double milliseconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-6; }
+
+}  // namespace
+
+Measurements::Measurements(std::size_t ranks, std::uint64_t from, double period, Pace pace)
+    : from_(from), period_(period), pace_(pace), ranks_(ranks) {}
+
+void Measurements::add(const Frame& frame, const std::vector<haptic_bridge::TimedStep>& steps,
+                       const std::vector<lockstep::Arrival>& arrivals, std::int64_t clockOffset) {
+    broadcastBytes_.add(static_cast<double>(frame.bytes));
+    addSwaps(frame, arrivals);
+    addLatency(frame, steps, arrivals, clockOffset);
+}
+
+void Measurements::addSwaps(const Frame& frame, const std::vector<lockstep::Arrival>& arrivals) {
+    const bool counts = frame.number > from_ + 1;
+    // The ranks tell when they swapped the frame before this one; the first has nothing to tell.
+    ranks_.add(arrivals, !frame.swap.first && counts);
+    if (frame.swap.first) {
+        return;
+    }
+    lastFrameMs_ = frame.swap.milliseconds();
+    if (counts) {
+        frameMs_.add(lastFrameMs_);
+        lateFrames_ += pace_ == Pace::realtime && lastFrameMs_ > kLate * 1e3 * period_ ? 1 : 0;
+    }
+    const std::vector<std::uint32_t>& swaps = ranks_.lastSwapsUs();
+    if (!swaps.empty()) {
+        lastSkewUs_ = *std::max_element(swaps.begin(), swaps.end());
+        skewUs_.add(lastSkewUs_);
+    }
+}
+
+void Measurements::addLatency(const Frame& frame, const std::vector<haptic_bridge::TimedStep>& steps,
+                              const std::vector<lockstep::Arrival>& arrivals, std::int64_t clockOffset) {
+    std::int64_t drawn = frame.broadcast;
+    for (std::size_t rank = 1; rank < arrivals.size(); ++rank) {
+        drawn = std::max(drawn, arrivals[rank].arrived);
+    }
+    for (const haptic_bridge::TimedStep& timed : steps) {
+        if (timed.serverTimeNs == 0) {  // the master's own
+            continue;
+        }
+        const std::int64_t sent = timed.serverTimeNs - clockOffset;
+        latency_.toMaster.add(milliseconds(timed.receivedNs - sent));
+        latency_.queued.add(milliseconds(frame.broadcast - timed.receivedNs));
+        latency_.drawn.add(milliseconds(drawn - frame.broadcast));
+        latency_.swapped.add(milliseconds(frame.swap.at - drawn));
+        latency_.wholeWay.add(milliseconds(frame.swap.at - sent));
+    }
+}
+
+void Measurements::sayProgress(std::uint64_t frame, std::uint64_t step, const std::string& of, const char* hand,
+                               bool last, std::int64_t nowNs) {
+    if (!last && nowNs - lastProgress_ < kSecondNs) {
+        return;
+    }
+    const double seconds = static_cast<double>(nowNs - lastProgress_) * 1e-9;
+    fps_ = lastProgress_ == 0 ? 0 : static_cast<double>(frame - lastProgressFrame_) / seconds;
+    fmt::print("frame {}  step {}{}  {:.1f} fps  skew {:.0f} us  hashes agree  {}\n", frame, step, of, fps_,
+               lastSkewUs_, hand);
+    std::fflush(stdout);
+    host::emitEvent("progress",
+                    {{"frame", frame}, {"step", step}, {"fps", fps_}, {"skew_us", lastSkewUs_}, {"hand", hand}});
+    lastProgress_ = nowNs;
+    lastProgressFrame_ = frame;
+}
+
+lockstep::WallFigures Measurements::figures(const Incidents& incidents) const {
+    return {lastFrameMs_,          ranks_.recentDrag(), ranks_.frames(),
+            incidents.divergences, incidents.healed,    ranks_.lastSwapsUs()};
+}
+
+void Measurements::describe(nlohmann::json& status, const std::vector<std::string>& names) const {
+    status["fps"] = fps_;
+    status["slowest"] = slowestRank(ranks_.recentDrag(), names);
+}
+
+void Measurements::fill(Summary& summary) const {
+    summary.frameMs = frameMs_;
+    summary.lateFrames = lateFrames_;
+    summary.skewUs = skewUs_;
+    summary.broadcastBytes = broadcastBytes_;
+    summary.latency = latency_;
+    summary.rankStatistics = ranks_.ranks();
+    summary.drag = ranks_.drag();
+}
+
+}  // namespace master

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/operator/background_jobs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "base/input_error.hpp"
+
+namespace master {
+
+void BackgroundJobs::requireRoom() const {
+    if (jobs_.size() >= kMost) {
+        throw base::InputError(fmt::format("{} files are being written or read already; try again", jobs_.size()));
+    }
+}
+
+void BackgroundJobs::start(std::function<Result()> work, Clients clients, Kind kind) {
+    jobs_.push_back({std::async(std::launch::async, std::move(work)), std::move(clients), kind});
+}
+
+bool BackgroundJobs::capturing() const {
+    return std::any_of(jobs_.begin(), jobs_.end(), [](const Job& job) { return job.kind == Kind::capture; });
+}
+
+std::vector<BackgroundJobs::Done> BackgroundJobs::finished(bool wait) {
+    std::vector<Done> done;
+    std::vector<Job> left;
+    for (Job& job : jobs_) {
+        if (!wait && job.work.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+            left.push_back(std::move(job));
+            continue;
+        }
+        Done& ended = done.emplace_back();
+        ended.clients = std::move(job.clients);
+        try {
+            ended.result = job.work.get();
+        } catch (const std::exception& error) {  // whatever befell the thread, frames go on
+            ended.error = error.what();
+        }
+    }
+    jobs_ = std::move(left);
+    return done;
+}
+
+}  // namespace master

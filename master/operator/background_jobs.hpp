@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <future>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "master/operator/control_socket.hpp"
+#include "sand/model/step.hpp"
+
+namespace master {
+
+/// The clients that wait for one answer; nullopt stands for a command that was typed.
+using Clients = std::vector<std::optional<ControlSocket::Client>>;
+
+/// Work that no frame waits for, such as writing and reading files. Each job has a thread of its own; a later frame
+/// answers its clients. The main thread alone calls this class.
+class BackgroundJobs {
+public:
+    static constexpr std::size_t kMost = 4;  // at once, because each save holds a copy of the sand
+
+    /// The result of a job: a line of JSON, or an edit to be asked for.
+    struct Result {
+        std::string json;
+        sand::Edit edit;
+    };
+    /// A job that has ended, and why it failed, if it did.
+    struct Done {
+        Clients clients;
+        Result result;
+        std::string error;
+    };
+    enum class Kind { file, capture };
+
+    /// Throws base::InputError while kMost are under way.
+    void requireRoom() const;
+    void start(std::function<Result()> work, Clients clients, Kind kind = Kind::file);
+    /// Whether pictures are being written.
+    [[nodiscard]] bool capturing() const;
+    /// Returns the jobs that have ended since the last call; with `wait` all of them, when they have.
+    [[nodiscard]] std::vector<Done> finished(bool wait);
+
+private:
+    struct Job {
+        std::future<Result> work;
+        Clients clients;
+        Kind kind;
+    };
+    std::vector<Job> jobs_;
+};
+
+}  // namespace master

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/operator_desk.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "base/input_error.hpp"
+#include "host/event.hpp"
+#include "host/print_line.hpp"
+#include "walls/stereo_change.hpp"
+
+namespace master {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr char kQuitKey = 27;  // Escape, in any window
+
+std::string line(const Json& json) {
+    // A user may type bytes that are no UTF-8; they are replaced.
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// As an operator would type it.
+Json materialNow(const scene::Material& material) {
+    return {{"talus", material.dryTalus},    {"wet-talus", material.wetTalusNow()},
+            {"humidity", material.humidity}, {"cohesion", material.cohesionLength},
+            {"band", material.band},         {"settling-time", material.settlingSeconds}};
+}
+
+}  // namespace
+
+OperatorDesk::OperatorDesk(const scene::Scene& scene, const scene::Material& material, const walls::Wall& wall,
+                           std::filesystem::path out, const DeskOptions& options, Session session)
+    : wall_(wall),
+      shown_(wall),
+      place_(SandPlace::of(scene)),
+      grid_(scene.grid()),
+      material_(material),
+      out_(std::move(out)),
+      session_(std::move(session)),
+      views_(wall, scene, options.tracker),
+      input_(options.readInput),
+      captures_(out_) {
+    if (session_.requests != nullptr) {
+        control_.emplace(out_);
+    }
+    views_.show(options.pattern);
+    views_.show(options.layers);
+    if (const int port = views_.viewer().port(); port != 0) {
+        fmt::print("head tracking listens on port {}\n", port);
+        std::fflush(stdout);
+        host::emitEvent("head_tracking", {{"state", "listening"}, {"port", port}});
+    }
+}
+
+void OperatorDesk::obey(const std::vector<lockstep::Arrival>& arrivals) {
+    const std::vector<std::string> lines = input_.takeLines();
+    if (control_) {
+        for (const std::string& typed : lines) {
+            obeyLine(typed, std::nullopt);
+        }
+        for (const ControlSocket::Asked& asked : control_->take()) {
+            obeyLine(asked.line, asked.client);
+        }
+    }
+    finishJobs(false);
+    for (const lockstep::Arrival& arrival : arrivals) {
+        if (arrival.key == 't') {
+            views_.show(lockstep::nextPattern(views_.pattern()));
+        } else if (arrival.key == kQuitKey) {
+            input_.stop();
+        }
+    }
+}
+
+void OperatorDesk::obeyLine(const std::string& text, std::optional<Client> client) {
+    try {
+        if (carryOut(parseCommand(text), client) && client) {
+            control_->answer(*client, line({{"ok", true}}));
+        }
+    } catch (const base::InputError& error) {
+        refuse(error.what(), {client});
+    }
+}
+
+bool OperatorDesk::carryOut(const Command& command, std::optional<Client> client) {
+    switch (command.verb) {
+        case Verb::status:
+            answerClient(client, status());
+            return false;
+        case Verb::reset:
+            askEdit(sand::Edit::reset, client);
+            return false;
+        case Verb::undo:
+            askEdit(sand::Edit::undo, client);
+            return false;
+        case Verb::settle:
+            askEdit(sand::Edit::settle, client);
+            return false;
+        case Verb::tool:
+            askMaterial(scene::withTool(material_, command.tool, grid_), client);
+            return false;
+        case Verb::material:
+            askMaterial(scene::withNumber(material_, command.word, command.number, grid_), client);
+            return false;
+        case Verb::save:
+            save(command.word, client);
+            return false;
+        case Verb::load:
+            load(command.word, client);
+            return false;
+        case Verb::capture:
+            captures_.ask(client);
+            return false;
+        case Verb::pause:
+        case Verb::resume:
+            paused_ = command.verb == Verb::pause;
+            return true;
+        case Verb::pattern:
+            views_.show(command.pattern.value_or(lockstep::nextPattern(views_.pattern())));
+            return true;
+        case Verb::show:
+        case Verb::hide:
+            views_.show(command.layer, command.verb == Verb::show);
+            return true;
+        case Verb::eyeSeparation:
+            views_.separateEyes(command.number);
+            return true;
+        case Verb::force:
+            session_.requests->shareForce(command.number);
+            return true;
+        case Verb::stereo:
+            changeStereo(command.stereo);
+            return true;
+        case Verb::stop:
+            input_.stop();
+            return true;
+    }
+    return true;
+}
+
+void OperatorDesk::askEdit(sand::Edit edit, std::optional<Client> client,
+                           const std::optional<scene::Material>& material) {
+    if (edit.kind == sand::Edit::undo && !session_.sand.replica().canUndo()) {
+        throw base::InputError("there is no stroke to undo");
+    }
+    edits_.requireRoomFor(edit);
+    // Refused at once: otherwise the client would wait until somebody clears the disk, and the edit would come late.
+    if (!session_.room(edits_.sandBytes(edit))) {
+        tellWhoWaitsForRoom();
+        throw base::InputError(
+            "the sand stands still: no room for the journal on the disk; nothing was done, ask again when there is");
+    }
+    if (paused_ && client) {
+        control_->answer(*client, line({{"ok", true}, {"waits_for", "resume"}}));
+        client.reset();
+    }
+    session_.requests->request(edit);
+    edits_.add({std::move(edit), client, material});
+}
+
+/// Only a material that is in a step's queue becomes the one that the next is made from.
+void OperatorDesk::askMaterial(const scene::Material& material, std::optional<Client> client) {
+    askEdit(sand::Edit::tuned(scene::tuningOf(material, grid_)), client, material);
+    material_ = material;
+}
+
+void OperatorDesk::changeStereo(walls::Stereo stereo) {
+    shown_ = walls::shownOnItsOutputs(wall_, stereo);
+    views_.show(stereo);
+}
+
+void OperatorDesk::save(const std::string& name, std::optional<Client> client) {
+    jobs_.requireRoom();
+    // Copied here, which takes a fraction of a frame; compressed and written beside the frames.
+    auto copy = session_.sand.replica().copySand();
+    SavedSand saved{place_, session_.sand.replica().stepNumber(), session_.sand.hash(), {}};
+    jobs_.start(
+        [copy = std::move(copy), saved = std::move(saved), file = saveFile(out_, name)]() mutable {
+            saved.sand = copy->encode();
+            copy.reset();
+            writeSavedSand(file, saved);
+            return BackgroundJobs::Result{line({{"ok", true},
+                                                {"file", "saves/" + file.filename().string()},
+                                                {"bytes", saved.sand.size()},
+                                                {"step", saved.step},
+                                                {"state_hash", fmt::format("{:016x}", saved.stateHash)}}),
+                                          {}};
+        },
+        {client});
+}
+
+void OperatorDesk::load(const std::string& name, std::optional<Client> client) {
+    jobs_.requireRoom();
+    jobs_.start(
+        [file = saveFile(out_, name), place = place_, read = session_.sand.replica().sandReader()] {
+            return BackgroundJobs::Result{{}, sand::Edit::loaded(readSavedSand(file, place, read).sand)};
+        },
+        {client});
+}
+
+void OperatorDesk::finishJobs(bool wait) {
+    for (BackgroundJobs::Done& done : jobs_.finished(wait)) {
+        try {
+            if (!done.error.empty()) {
+                refuse(done.error, done.clients);
+            } else if (done.result.edit.any()) {
+                askEdit(std::move(done.result.edit), done.clients.front());
+            } else {
+                answerAll(done.clients, done.result.json);
+            }
+        } catch (const base::InputError& error) {
+            refuse(error.what(), done.clients);
+        }
+    }
+}
+
+void OperatorDesk::close() {
+    finishJobs(true);
+    control_.reset();
+}
+
+void OperatorDesk::tellWhoWaitsForRoom() {
+    for (const Client client : edits_.releaseClients()) {
+        control_->answer(client, line({{"ok", true}, {"waits_for", "room"}}));
+    }
+}
+
+void OperatorDesk::answer(const std::vector<haptic_bridge::TimedStep>& steps) {
+    for (const haptic_bridge::TimedStep& timed : steps) {
+        if (const auto client = edits_.shown(timed.step.edit)) {
+            control_->answer(*client, line({{"ok", true}, {"step", timed.step.number}}));
+        }
+    }
+}
+
+void OperatorDesk::takeCapture(std::uint64_t frame, const lockstep::Cluster& cluster, lockstep::Watchdog& watchdog) {
+    captures_.take(frame, session_.sand, shown_, cluster, watchdog, jobs_);
+}
+
+std::string OperatorDesk::status() const {
+    Json status = session_.status();
+    status["ok"] = true;
+    status["paused"] = paused_;
+    status["pattern"] = std::string(lockstep::patternName(views_.pattern()));
+    status["stereo"] = std::string(walls::stereoName(shown_.stereo));
+    status["eye_separation"] = views_.eyeSeparation();
+    status["material"] = materialNow(material_);
+    status["edits_waiting"] = edits_.size();
+    return line(status);
+}
+
+void OperatorDesk::answerClient(std::optional<Client> client, const std::string& json) {
+    if (client) {
+        control_->answer(*client, json);
+    } else {
+        fmt::print("{}\n", json);
+        std::fflush(stdout);
+    }
+}
+
+void OperatorDesk::answerAll(const Clients& clients, const std::string& json) {
+    for (const auto& client : clients) {
+        if (client) {
+            control_->answer(*client, json);
+        }
+    }
+}
+
+void OperatorDesk::refuse(const std::string& why, const Clients& clients) {
+    for (const auto& client : clients) {
+        if (client) {
+            control_->answer(*client, line({{"ok", false}, {"error", why}}));
+        } else {
+            host::printLine("{}", why);
+            host::emitEvent("command_refused", {{"error", why}});
+        }
+    }
+}
+
+}  // namespace master

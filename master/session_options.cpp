@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/session_options.hpp"
+
+#include <algorithm>
+
+#include "master/steps/live_steps.hpp"
+#include "master/steps/recorded_steps.hpp"
+
+namespace master {
+namespace {
+
+std::vector<lockstep::Fault> faultsOf(const std::vector<Drill>& drills) {
+    std::vector<lockstep::Fault> faults;
+    faults.reserve(drills.size());
+    for (const Drill& drill : drills) {
+        faults.push_back(drill.fault);
+    }
+    return faults;
+}
+
+}  // namespace
+
+SessionOptions completed(SessionOptions options) {
+    if (options.recording) {
+        options.record.keepsJournal = false;
+        options.steps = std::min(options.steps, options.recording->lastStep());
+    }
+    return options;
+}
+
+std::unique_ptr<StepSource> stepsOf(const SessionOptions& options, const scene::Scene& scene) {
+    if (options.recording) {
+        return std::make_unique<RecordedSteps>(options.recording, options.steps);
+    }
+    const ResumedSession* resumed = options.record.resumed.get();
+    return std::make_unique<LiveSteps>(options.server, scene, options.pace, resumed != nullptr ? resumed->epoch : 0,
+                                       options.security);
+}
+
+MasterSand sandOf(const SessionOptions& options, const scene::Scene& scene) {
+    const ResumedSession* resumed = options.record.resumed.get();
+    return resumed == nullptr
+               ? MasterSand(scene, options.sweeps, faultsOf(options.drills))
+               : MasterSand(scene, options.sweeps, faultsOf(options.drills), resumed->state, resumed->edits);
+}
+
+}  // namespace master

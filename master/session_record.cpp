@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/session_record.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "host/build_id.hpp"
+#include "host/print_line.hpp"
+#include "master/film.hpp"
+
+namespace master {
+namespace {
+
+constexpr std::int64_t kFrameBytes = 1 << 16;  // more than the steps of a frame, but for sand that is loaded
+
+/// Removes the results of an earlier session: they must not pass for this one's, whatever becomes of this one.
+void forgetOldResults(const std::filesystem::path& folder, bool resumed) {
+    std::error_code none;  // usually there is nothing
+    if (!resumed) {
+        std::filesystem::remove(folder / "divergence.txt", none);
+        forgetRecoveries(folder);
+    }
+    for (const char* name :
+         {"summary.json", "failure.json", "wall.png", "wall_left.png", "wall_right.png", "wall_anaglyph.png"}) {
+        std::filesystem::remove(folder / name, none);
+    }
+    std::vector<std::filesystem::path> tiles;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
+        const std::string name = entry.path().filename().string();
+        if (name.starts_with("tile_") && name.ends_with(".png")) {
+            tiles.push_back(entry.path());
+        }
+    }
+    for (const std::filesystem::path& tile : tiles) {
+        std::filesystem::remove(tile, none);
+    }
+    Film::forget(folder);
+}
+
+JournalEnd endOf(const MasterSand& sand) { return {sand.replica().stepNumber(), sand.hash()}; }
+
+}  // namespace
+
+SessionRecord::SessionRecord(std::filesystem::path out, RecordOptions options, const scene::Scene& scene,
+                             RankLabels labels)
+    : out_(std::move(out)),
+      options_(std::move(options)),
+      labels_(std::move(labels)),
+      incidents_(out_, options_.resumed != nullptr) {
+    if (options_.keepsJournal) {
+        journal_.emplace(out_, options_.journal, scene, options_.resumed.get(), options_.failure.what, host::buildId());
+    }
+    forgetOldResults(out_, options_.resumed != nullptr);
+    if (!options_.resumed) {
+        incidents_.forget();
+    }
+}
+
+bool SessionRecord::hasRoom(std::int64_t bytes, const MasterSand& sand) {
+    full_ = journal_ && !journal_->mayTake(kFrameBytes + bytes, endOf(sand));
+    return !full_;
+}
+
+void SessionRecord::keep(const JournalFrame& frame, const std::vector<scene::Material>& materials) {
+    if (!journal_) {
+        return;
+    }
+    try {
+        journal_->keep(frame, materials);
+    } catch (const DiskFailure& failure) {
+        endForDisk(failure);
+    }
+}
+
+void SessionRecord::keepTicks(const std::vector<base::Bytes>& pieces) {
+    if (!journal_) {
+        return;
+    }
+    try {
+        journal_->keepTicks(pieces);
+    } catch (const DiskFailure& failure) {
+        endForDisk(failure);
+    }
+}
+
+void SessionRecord::endForDisk(const DiskFailure& failure) const {
+    const std::string line = fmt::format(
+        "{}, which is not shown: the session ends (--journal best-effort would go on without)", failure.what());
+    (void)writeFailure(labels_.failure("disk", lockstep::kMaster, line), out_);
+    throw DiskFailure(line);
+}
+
+void SessionRecord::shown(const Swap& swap, std::uint64_t frame, const MasterSand& sand, std::uint32_t epoch) {
+    if (swap.first && options_.resumed) {
+        tellRecovery(frame, sand);
+    }
+    if (journal_) {
+        journal_->shown(sand.replica(), frame, epoch, sand.hash());
+    }
+}
+
+void SessionRecord::tellRecovery(std::uint64_t frame, const MasterSand& sand) const {
+    const ResumedSession& resumed = *options_.resumed;
+    master::tellRecovery({options_.failure, sand.replica().stepNumber(), frame, sand.hash(), resumed.checkpointStep,
+                          resumed.replayedSteps, resumed.cutBytes},
+                         out_);
+}
+
+void SessionRecord::finish(const MasterSand& sand, bool agreed) {
+    if (journal_ && agreed) {
+        journal_->finish(endOf(sand));
+    }
+}
+
+std::filesystem::path SessionRecord::journalFile() const {
+    // A journal in the folder of a session that writes none is another session's, or ends too early.
+    return journal_ && journal_->written() ? out_ / "session.journal" : std::filesystem::path();
+}
+
+std::unique_ptr<sand::Replica> SessionRecord::sandOfJournal(const MasterSand& sand,
+                                                            const sand::grid::Erosion::Options& sweeps) const {
+    const std::filesystem::path file = journalFile();
+    if (file.empty()) {
+        return nullptr;
+    }
+    try {
+        return std::make_unique<sand::Replica>(restoreSand(file, sand.replica().stepNumber(), sweeps).terrain);
+    } catch (const std::exception& error) {  // the ranks wait for an answer, whatever it is
+        host::printLine("{}", error.what());
+        return nullptr;
+    }
+}
+
+void SessionRecord::describe(nlohmann::json& status) const {
+    status["journal"] = journal_ && journal_->written();
+    status["journal_policy"] = std::string(journalPolicyName(options_.journal.policy));
+    status["journal_state"] = std::string(journal_ ? journal_->state() : "off");
+}
+
+Summary::Journal SessionRecord::summary() const {
+    Summary::Journal told;
+    told.stands = before().stands;
+    if (!journal_) {
+        return told;
+    }
+    told.policy = journalPolicyName(journal_->policy());
+    told.state = journal_->state();
+    told.parts = journal_->parts();
+    told.checkpointsFailed = journal_->checkpointsFailed();
+    told.checkpointsBeyond = journal_->checkpointsBeyond();
+    told.stands += journal_->stands();
+    told.stoodSeconds = journal_->stoodSeconds();
+    for (const double ms : journal_->copyMs()) {
+        told.checkpointMs.add(ms);
+    }
+    return told;
+}
+
+}  // namespace master

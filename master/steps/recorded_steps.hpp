@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "master/journal/recording.hpp"
+#include "master/steps/step_source.hpp"
+
+namespace master {
+
+/// The steps of a recording, and the comparison of the sand with the hashes that it holds. One thread.
+class RecordedSteps : public StepSource {
+public:
+    /// Ends after step `last`.
+    RecordedSteps(std::shared_ptr<const Recording> recording, std::uint64_t last);
+
+    /// The recording says which steps each frame shows: `most` does not count.
+    [[nodiscard]] std::vector<haptic_bridge::TimedStep> next(const sand::Replica& sand, std::uint64_t hash,
+                                                             std::size_t most) override;
+    [[nodiscard]] std::size_t mostPerFrame() const override { return static_cast<std::size_t>(-1); }
+    void reached(sand::Replica& sand) override;
+    void healed(sand::Replica& sand) override;
+    [[nodiscard]] bool strayed() const override { return strayed_; }
+    [[nodiscard]] std::string takeStrayLine() override;
+    [[nodiscard]] const char* hand() const override { return "recorded"; }
+
+private:
+    std::shared_ptr<const Recording> recording_;
+    std::uint64_t last_;
+    std::uint64_t frame_ = 0;
+    bool strayed_ = false;
+    std::string line_;  // not said yet: it may be the master's own memory that strayed
+};
+
+}  // namespace master

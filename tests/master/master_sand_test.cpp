@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/master_sand.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+using haptic_bridge::TimedStep;
+using lockstep::Fault;
+
+/// Notes the states that it is told of.
+class Notes : public master::StepSource {
+public:
+    std::vector<TimedStep> next(const sand::Replica& /* sand */, std::uint64_t /* hash */,
+                                std::size_t /* most */) override {
+        return {};
+    }
+    [[nodiscard]] std::size_t mostPerFrame() const override { return 0; }
+    [[nodiscard]] const char* hand() const override { return ""; }
+    void reached(sand::Replica& sand) override { reachedSteps.push_back(sand.stepNumber()); }
+
+    std::vector<std::uint64_t> reachedSteps;
+};
+
+const scene::Scene& sceneOfTest() {
+    static const scene::Scene scene = samples::flatScene(128, 96);
+    return scene;
+}
+
+std::vector<TimedStep> stepsFrom(std::uint64_t first, std::size_t count, std::mt19937& random) {
+    std::vector<TimedStep> steps(count);
+    for (TimedStep& timed : steps) {
+        timed.step = samples::randomStep(first++, sceneOfTest().rules, random);
+    }
+    return steps;
+}
+
+TEST(MasterSand, AppliesTheStepsOfAFrameAndTellsOfEachState) {
+    std::mt19937 random(3);
+    master::MasterSand sand(sceneOfTest(), {}, {});
+    sand::Replica plain(sceneOfTest());
+    EXPECT_EQ(sand.hash(), plain.stateHash());
+    Notes notes;
+    std::vector<TimedStep> steps = stepsFrom(1, 3, random);
+    steps[1].step.edit = sand::Edit::settle;
+    sand.apply(1, steps, 4, notes);
+    for (const TimedStep& timed : steps) {
+        plain.apply(timed.step);
+    }
+    EXPECT_EQ(sand.hash(), plain.stateHash());
+    EXPECT_EQ(notes.reachedSteps, (std::vector<std::uint64_t>{0, 1, 2, 3}));
+    EXPECT_EQ(sand.edits(), 1U);
+}
+
+// A drill flips a bit of the master's own sand in its frame, and only there; its hash shows it once its tile is read.
+TEST(MasterSand, InjectsTheFaultsOfTheMasterAlone) {
+    const Fault mine{.kind = Fault::Kind::diverge, .rank = 0, .frame = 2, .column = 5, .row = 5, .bit = 3};
+    Fault others = mine;
+    others.rank = 1;
+    others.frame = 1;
+    master::MasterSand sand(sceneOfTest(), {}, {mine, others});
+    const std::uint64_t right = sand.hash();
+    const auto all = static_cast<std::uint32_t>(sand.replica().hashTiles().tileCount());
+    Notes notes;
+    sand.apply(1, {}, all, notes);
+    EXPECT_EQ(sand.hash(), right) << "another rank's";
+    sand.apply(2, {}, all, notes);
+    EXPECT_NE(sand.hash(), right);
+}
+
+TEST(MasterSand, GoesOnFromTheStateOfASessionThatStopped) {
+    std::mt19937 random(5);
+    Notes notes;
+    master::MasterSand before(sceneOfTest(), {}, {});
+    before.apply(1, stepsFrom(1, 6, random), 0, notes);
+    const master::MasterSand after(sceneOfTest(), {}, {}, before.replica().encodeState(), 4);
+    EXPECT_EQ(after.hash(), before.hash());
+    EXPECT_EQ(after.replica().stepNumber(), 6U);
+    EXPECT_EQ(after.edits(), 4U);
+}
+
+// All of memory has its turn in a second whatever the frame rate, and no frame leaves it out or reads it twice.
+TEST(MasterSand, ReadsAllOfItsMemoryAgainInASecond) {
+    const master::MasterSand sand(sceneOfTest(), {}, {});
+    const auto tiles = static_cast<std::uint32_t>(sand.replica().hashTiles().tileCount());
+    ASSERT_GT(tiles, 2U);
+    for (const int rate : {1, 10, 30, 60}) {
+        EXPECT_GE(sand.auditTiles(1.0 / rate) * static_cast<std::uint32_t>(rate), tiles) << rate << " frames a second";
+    }
+    EXPECT_GE(sand.auditTiles(0), 1U) << "the first frame";
+    EXPECT_EQ(sand.auditTiles(100), tiles);
+}
+
+}  // namespace

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/measurements.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace {
+
+using haptic_bridge::TimedStep;
+using lockstep::Arrival;
+using master::Measurements;
+
+constexpr std::int64_t kMs = 1'000'000;  // [ns]
+
+/// Shows frames of a wall of two ranks every `interval` [ns], from frame 1.
+class Wall {
+public:
+    explicit Wall(Measurements& measurements) : measurements_(measurements) {}
+
+    void show(std::int64_t interval, const std::vector<TimedStep>& steps = {}, std::int64_t clockOffset = 0) {
+        now_ += interval;
+        ++frame_;
+        std::vector<Arrival> arrivals(3);
+        for (std::size_t rank = 0; rank < 3; ++rank) {
+            arrivals[rank].frame = frame_;
+            arrivals[rank].arrived = now_ - 3 * kMs;
+            arrivals[rank].lastSwap = lastSwap_ == 0 ? 0 : lastSwap_ + static_cast<std::int64_t>(rank) * 100'000;
+        }
+        measurements_.add({frame_, 80, now_ - 5 * kMs, clock_.swapped(now_)}, steps, arrivals, clockOffset);
+        lastSwap_ = now_;
+    }
+    [[nodiscard]] std::int64_t now() const { return now_; }
+    [[nodiscard]] master::Summary summary() const {
+        master::Summary summary;
+        measurements_.fill(summary);
+        return summary;
+    }
+
+private:
+    Measurements& measurements_;
+    master::FrameClock clock_{100};
+    std::uint64_t frame_ = 0;
+    std::int64_t now_ = 50'000 * kMs, lastSwap_ = 0;
+};
+
+TEST(Measurements, CountFramesFromSwapToSwapAndThoseThatAreLate) {
+    Measurements measurements(3, 0, 0.01, master::Pace::realtime);
+    Wall wall(measurements);
+    for (const int ms : {1000, 10, 10, 14, 16, 10}) {  // the first has no frame before it; 16 is more than 1.5 · 10
+        wall.show(ms * kMs);
+    }
+    const master::Summary summary = wall.summary();
+    EXPECT_EQ(summary.frameMs.count(), 5U);
+    EXPECT_NEAR(summary.frameMs.mean(), 12, 1e-9);
+    EXPECT_EQ(summary.lateFrames, 1U);
+    EXPECT_EQ(summary.broadcastBytes.count(), 6U);
+    EXPECT_EQ(summary.broadcastBytes.mean(), 80);
+    EXPECT_NEAR(summary.skewUs.largest(), 100, 1e-9) << "rank 2 swaps 0.1 ms after rank 1";
+    EXPECT_EQ(measurements.ranks().frames(), 6U);
+}
+
+TEST(Measurements, LeaveOutTheFramesBeforeTheyCount) {
+    Measurements measurements(3, 3, 0.01, master::Pace::realtime);
+    Wall wall(measurements);
+    for (int frame = 1; frame <= 6; ++frame) {
+        wall.show(frame <= 4 ? 400 * kMs : 10 * kMs);
+    }
+    EXPECT_EQ(wall.summary().frameMs.count(), 2U) << "frames 5 and 6: 4 is the first that counts, and has none before";
+    EXPECT_NEAR(wall.summary().frameMs.largest(), 10, 1e-9);
+    EXPECT_EQ(wall.summary().lateFrames, 0U);
+}
+
+TEST(Measurements, OfAFastSessionKnowNoLateFrame) {
+    Measurements measurements(3, 0, 0.01, master::Pace::fast);
+    Wall wall(measurements);
+    wall.show(10 * kMs);
+    wall.show(500 * kMs);
+    EXPECT_EQ(wall.summary().lateFrames, 0U);
+}
+
+// A step that the server read 12 ms before the swap by the master's clock: its own is 7 s ahead.
+TEST(Measurements, FollowAStepFromTheHandToTheWall) {
+    constexpr std::int64_t kAhead = 7'000 * kMs;
+    Measurements measurements(3, 0, 0.01, master::Pace::realtime);
+    Wall wall(measurements);
+    wall.show(10 * kMs);
+    std::vector<TimedStep> steps(2);
+    const std::int64_t swap = wall.now() + 20 * kMs;
+    steps[0].serverTimeNs = swap - 12 * kMs + kAhead;
+    steps[0].receivedNs = swap - 11 * kMs;
+    wall.show(20 * kMs, steps, kAhead);  // the second step is the master's own
+    const master::Latency latency = wall.summary().latency;
+    ASSERT_EQ(latency.wholeWay.count(), 1U);
+    EXPECT_NEAR(latency.toMaster.mean(), 1, 1e-9);
+    EXPECT_NEAR(latency.queued.mean(), 6, 1e-9) << "broadcast 5 ms before the swap";
+    EXPECT_NEAR(latency.drawn.mean(), 2, 1e-9) << "all ranks have come 3 ms before it";
+    EXPECT_NEAR(latency.swapped.mean(), 3, 1e-9);
+    EXPECT_NEAR(latency.wholeWay.mean(), 12, 1e-9);
+}
+
+TEST(Measurements, SayHowManyFramesASecondHas) {
+    Measurements measurements(3, 0, 0.01, master::Pace::realtime);
+    constexpr std::int64_t kStart = 1'000'000 * kMs;
+    measurements.sayProgress(1, 1, "", "no hand", false, kStart);
+    measurements.sayProgress(31, 31, "", "no hand", false, kStart + 500 * kMs);
+    nlohmann::json status;
+    measurements.describe(status, {});
+    EXPECT_EQ(status["fps"], 0) << "less than a second has passed";
+    measurements.sayProgress(91, 91, "", "no hand", false, kStart + 1500 * kMs);
+    measurements.describe(status, {});
+    EXPECT_NEAR(status["fps"].get<double>(), 60, 1e-9);
+    EXPECT_EQ(status["slowest"], nullptr);
+}
+
+TEST(Measurements, TellTheWallWhatItsRanksCannotKnow) {
+    Measurements measurements(3, 0, 0.01, master::Pace::realtime);
+    Wall wall(measurements);
+    wall.show(10 * kMs);
+    wall.show(11 * kMs);
+    master::Incidents incidents;
+    incidents.divergences = 4;
+    incidents.healed = 3;
+    const lockstep::WallFigures figures = measurements.figures(incidents);
+    EXPECT_NEAR(figures.frameMs, 11, 1e-9);
+    EXPECT_EQ(figures.agreed, 2U);
+    EXPECT_EQ(figures.divergences, 4U);
+    EXPECT_EQ(figures.healed, 3U);
+    EXPECT_EQ(figures.swaps, (std::vector<std::uint32_t>{0, 100}));
+}
+
+}  // namespace

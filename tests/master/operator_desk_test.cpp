@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+// Commands to the desk through its control socket, without a wall.
+#include "master/operator_desk.hpp"
+
+#include <gtest/gtest.h>
+
+#include <future>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/control_client.hpp"
+#include "tests/support/folder_test.hpp"
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+using haptic_bridge::TimedStep;
+using nlohmann::json;
+
+/// Notes the requests.
+class Requests : public master::StepRequests {
+public:
+    void request(sand::Edit edit) override { edits.push_back(std::move(edit)); }
+    void shareForce(double share) override { shares.push_back(share); }
+
+    std::vector<sand::Edit> edits;
+    std::vector<double> shares;
+};
+
+/// A source that has nothing to say.
+class NoSteps : public master::StepSource {
+public:
+    std::vector<TimedStep> next(const sand::Replica& /* sand */, std::uint64_t /* hash */,
+                                std::size_t /* most */) override {
+        return {};
+    }
+    [[nodiscard]] std::size_t mostPerFrame() const override { return 0; }
+    [[nodiscard]] const char* hand() const override { return ""; }
+};
+
+class Desk : public test::FolderTest {
+protected:
+    void SetUp() override { open(&requests_); }
+    void open(master::StepRequests* requests) {
+        desk_.reset();
+        desk_.emplace(scene_, scene_.material, wall_, folder_, master::DeskOptions{},
+                      master::OperatorDesk::Session{sand_, requests,
+                                                    [this](std::int64_t bytes) {
+                                                        asked_ = bytes;
+                                                        return room_;
+                                                    },
+                                                    [] {
+                                                        return json{{"frame", 42}};
+                                                    }});
+    }
+    /// Sends a line and lets the desk obey until it has been taken.
+    std::future<json> send(const std::string& line) {
+        return std::async(std::launch::async, [this, line] { return support::askSession(folder_, line); });
+    }
+    json await(std::future<json>& answer) {
+        while (answer.wait_for(std::chrono::milliseconds(1)) != std::future_status::ready) {
+            desk_->obey({});  // the test's own time-out is the limit
+        }
+        return answer.get();
+    }
+    json ask(const std::string& line) {
+        std::future<json> answer = send(line);
+        return await(answer);
+    }
+    void obeyUntil(const std::function<bool()>& done) {
+        while (!done()) {
+            desk_->obey({});
+        }
+    }
+    /// Shows a step with this edit.
+    void show(const sand::Edit& edit) {
+        std::vector<TimedStep> steps(1);
+        steps[0].step.number = sand_.replica().stepNumber() + 1;
+        steps[0].step.edit = edit;
+        sand_.apply(1, steps, 0, source_);
+        desk_->answer(steps);
+    }
+
+    const scene::Scene scene_ = samples::flatScene(32, 24);
+    const walls::Wall wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/anaglyph_half.toml");
+    master::MasterSand sand_{scene_, {}, {}};
+    NoSteps source_;
+    Requests requests_;
+    bool room_ = true;
+    std::int64_t asked_ = -1;
+    std::optional<master::OperatorDesk> desk_;
+};
+
+TEST_F(Desk, AnswersAnEditOnceItsStepIsShown) {
+    std::future<json> answer = send("reset");
+    obeyUntil([&] { return !requests_.edits.empty(); });
+    EXPECT_EQ(requests_.edits[0].kind, sand::Edit::reset);
+    EXPECT_EQ(desk_->edits().size(), 1U);
+    EXPECT_EQ(answer.wait_for(std::chrono::milliseconds(20)), std::future_status::timeout) << "not shown yet";
+    show(sand::Edit::reset);
+    EXPECT_EQ(await(answer), (json{{"ok", true}, {"step", 1}}));
+    EXPECT_EQ(desk_->edits().size(), 0U);
+}
+
+TEST_F(Desk, SaysThatAnEditOfAPausedSessionWaits) {
+    EXPECT_EQ(ask("pause"), (json{{"ok", true}}));
+    EXPECT_TRUE(desk_->paused());
+    EXPECT_EQ(ask("settle"), (json{{"ok", true}, {"waits_for", "resume"}}));
+    EXPECT_EQ(desk_->edits().size(), 1U);
+    EXPECT_EQ(ask("resume"), (json{{"ok", true}}));
+    EXPECT_FALSE(desk_->paused());
+}
+
+// On a full disk a new edit is refused, and the client of an earlier edit is told that it waits.
+TEST_F(Desk, RefusesEditsForWhichTheDiskHasNoRoom) {
+    std::future<json> before = send("reset");
+    obeyUntil([&] { return !requests_.edits.empty(); });
+    room_ = false;
+    const json refused = ask("settle");
+    EXPECT_EQ(refused["ok"], false);
+    EXPECT_EQ(await(before), (json{{"ok", true}, {"waits_for", "room"}}));
+    EXPECT_EQ(requests_.edits.size(), 1U);
+    EXPECT_EQ(desk_->edits().size(), 1U) << "the server may have it already";
+    show(sand::Edit::reset);
+    EXPECT_EQ(desk_->edits().size(), 0U);
+}
+
+TEST_F(Desk, RefusesWhatCannotBeDone) {
+    for (const char* line : {"undo", "no such verb", "material talus 200", "load nothing"}) {
+        const json answer = ask(line);
+        EXPECT_EQ(answer["ok"], false) << line;
+        EXPECT_FALSE(answer["error"].get<std::string>().empty()) << line;
+    }
+    EXPECT_TRUE(requests_.edits.empty());
+}
+
+TEST_F(Desk, RemembersTheMaterialThatWasAskedFor) {
+    std::future<json> answer = send("material talus 30");
+    obeyUntil([&] { return !requests_.edits.empty(); });
+    ASSERT_EQ(requests_.edits[0].kind, sand::Edit::tune);
+    sand::Step step;
+    step.edit = requests_.edits[0];
+    ASSERT_EQ(desk_->edits().materialsOf({step}).size(), 1U) << "for the journal";
+    show(requests_.edits[0]);
+    EXPECT_EQ(await(answer)["ok"], true);
+    const json status = ask("status");
+    EXPECT_EQ(status["material"]["talus"], 30);
+    EXPECT_EQ(status["frame"], 42) << "what the session knows";
+    EXPECT_EQ(status["edits_waiting"], 0);
+}
+
+TEST_F(Desk, SavesTheSandAndLoadsItAgain) {
+    EXPECT_EQ(ask("save one")["file"], "saves/one.sand");
+    std::future<json> answer = send("load one");
+    obeyUntil([&] { return !requests_.edits.empty(); });
+    ASSERT_EQ(requests_.edits[0].kind, sand::Edit::load);
+    EXPECT_EQ(asked_, static_cast<std::int64_t>(requests_.edits[0].sand->size())) << "room for the whole sand";
+    show(requests_.edits[0]);
+    EXPECT_EQ(await(answer)["ok"], true);
+}
+
+TEST_F(Desk, ChangesTheViewAndTheForce) {
+    EXPECT_EQ(ask("pattern grid")["ok"], true);
+    EXPECT_EQ(desk_->views().pattern(), lockstep::Pattern::grid);
+    desk_->obey({{.key = 't'}});
+    EXPECT_EQ(desk_->views().pattern(), lockstep::nextPattern(lockstep::Pattern::grid)) << "a key in a window";
+    EXPECT_EQ(ask("show hill-shade")["ok"], true);
+    EXPECT_TRUE(desk_->views().layers().shows(lockstep::Overlay::hillShade));
+    EXPECT_EQ(ask("hide hill-shade")["ok"], true);
+    EXPECT_FALSE(desk_->views().layers().shows(lockstep::Overlay::hillShade));
+    EXPECT_EQ(ask("stereo anaglyph")["ok"], true);
+    EXPECT_EQ(desk_->shownWall().stereo, walls::Stereo::anaglyphColour);
+    EXPECT_EQ(ask("force scale 0.25")["ok"], true);
+    EXPECT_EQ(requests_.shares, std::vector<double>{0.25});
+}
+
+TEST_F(Desk, WantsACaptureOfTheNextFrame) {
+    EXPECT_FALSE(desk_->wantsCapture());
+    std::future<json> answer = send("capture");
+    obeyUntil([&] { return desk_->wantsCapture(); });
+    desk_->close();  // nobody takes it: the connection ends
+    EXPECT_TRUE(answer.get().is_discarded());
+}
+
+TEST_F(Desk, EndsTheSessionByCommandOrByEscape) {
+    EXPECT_FALSE(desk_->stopAsked());
+    EXPECT_EQ(ask("stop")["ok"], true);
+    EXPECT_TRUE(desk_->stopAsked());
+    open(nullptr);
+    EXPECT_FALSE(desk_->stopAsked());
+    desk_->obey({{.key = 27}});
+    EXPECT_TRUE(desk_->stopAsked());
+}
+
+TEST_F(Desk, OfAReplayHasNoControlSocket) {
+    open(nullptr);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "control"));
+}
+
+}  // namespace

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/session_record.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "master/journal/journal.hpp"
+#include "tests/support/folder_test.hpp"
+#include "tests/support/sand_samples.hpp"
+#include "tests/support/small_disk.hpp"
+
+namespace {
+
+using haptic_bridge::TimedStep;
+
+class NoSource : public master::StepSource {
+public:
+    std::vector<TimedStep> next(const sand::Replica& /* sand */, std::uint64_t /* hash */,
+                                std::size_t /* most */) override {
+        return {};
+    }
+    [[nodiscard]] std::size_t mostPerFrame() const override { return 0; }
+    [[nodiscard]] const char* hand() const override { return ""; }
+};
+
+class Record : public test::FolderTest {
+protected:
+    master::SessionRecord open(master::RecordOptions options = {}) {
+        return {folder_, std::move(options), scene_, {{"the master"}, {"h0"}, {""}}};
+    }
+    void show(master::SessionRecord& record) {
+        std::mt19937 random(static_cast<unsigned>(frame_));
+        std::vector<TimedStep> steps(1);
+        steps[0].step = samples::randomStep(sand_.replica().stepNumber() + 1, scene_.rules, random);
+        record.keep({++frame_, sand_.hash(), {steps[0].step}}, {});
+        sand_.apply(frame_, steps, 0, source_);
+        record.shown(clock_.swapped(static_cast<std::int64_t>(frame_) * 16'000'000), frame_, sand_, 1);
+    }
+    [[nodiscard]] bool has(const char* name) const { return std::filesystem::exists(folder_ / name); }
+
+    const scene::Scene scene_ = samples::flatScene(32, 24);
+    master::MasterSand sand_{scene_, {}, {}};
+    master::FrameClock clock_{60};
+    NoSource source_;
+    std::uint64_t frame_ = 0;
+};
+
+TEST_F(Record, HoldsEveryStepAndTheSandOfEach) {
+    master::SessionRecord record = open();
+    EXPECT_TRUE(record.hasRoom(0, sand_));
+    EXPECT_FALSE(record.full());
+    EXPECT_EQ(record.journalFile(), folder_ / "session.journal");
+    for (int i = 0; i < 5; ++i) {
+        show(record);
+    }
+    const std::unique_ptr<sand::Replica> sand = record.sandOfJournal(sand_, {});
+    ASSERT_NE(sand, nullptr);
+    EXPECT_EQ(sand->stateHash(), sand_.hash());
+    record.finish(sand_, true);
+    const master::Journal journal = master::readJournal(folder_ / "session.journal");
+    EXPECT_EQ(journal.frames.size(), 5U);
+    ASSERT_TRUE(journal.end.has_value());
+    EXPECT_EQ(journal.end->hash, sand_.hash());
+    nlohmann::json status;
+    record.describe(status);
+    EXPECT_EQ(status,
+              (nlohmann::json{{"journal", true}, {"journal_policy", "required"}, {"journal_state", "written"}}));
+    EXPECT_EQ(record.summary().parts, 1U);
+}
+
+TEST_F(Record, LeavesTheJournalOfASessionThatDifferedWithoutAnEnd) {
+    master::SessionRecord record = open();
+    show(record);
+    record.finish(sand_, false);
+    EXPECT_FALSE(master::readJournal(folder_ / "session.journal").end.has_value());
+}
+
+TEST_F(Record, OfAReplayWritesNoJournal) {
+    master::RecordOptions options;
+    options.keepsJournal = false;
+    master::SessionRecord record = open(options);
+    EXPECT_TRUE(record.hasRoom(std::int64_t{1} << 60, sand_));
+    show(record);
+    record.finish(sand_, true);
+    EXPECT_FALSE(has("session.journal"));
+    EXPECT_EQ(record.journalFile(), std::filesystem::path());
+    EXPECT_EQ(record.sandOfJournal(sand_, {}), nullptr);
+    EXPECT_EQ(record.summary().state, "off");
+}
+
+TEST_F(Record, TakesNoStepsForWhichTheDiskHasNoRoom) {
+    const int status = support::onSmallDisk(folder_, "size=4m", [this] {
+        master::SessionRecord record = open();
+        show(record);
+        EXPECT_TRUE(record.hasRoom(1 << 20, sand_));
+        EXPECT_FALSE(record.hasRoom(8 << 20, sand_)) << "for sand that is larger than the disk";
+        EXPECT_TRUE(record.full());
+        EXPECT_EQ(record.stands(), 1U);
+        nlohmann::json told;
+        record.describe(told);
+        EXPECT_EQ(told["journal_state"], "no_room");
+        EXPECT_EQ(record.summary().stands, 1U);
+    });
+    if (status == 77) {
+        GTEST_SKIP() << "this machine lets nobody mount a disk";
+    }
+    EXPECT_EQ(status, 0);
+}
+
+TEST_F(Record, RemovesTheResultsOfAnEarlierSessionUnlessItGoesOn) {
+    const auto leave = [&] {
+        for (const char* name : {"summary.json", "failure.json", "tile_r1c1_left.png", "wall.png", "divergence.txt",
+                                 "recoveries.jsonl", "notes.txt"}) {
+            std::ofstream(folder_ / name) << "old";
+        }
+    };
+    leave();
+    {
+        master::SessionRecord record = open();
+        show(record);
+        record.finish(sand_, true);
+    }
+    for (const char* gone :
+         {"summary.json", "failure.json", "tile_r1c1_left.png", "wall.png", "divergence.txt", "recoveries.jsonl"}) {
+        EXPECT_FALSE(has(gone)) << gone;
+    }
+    EXPECT_TRUE(has("notes.txt")) << "somebody's own";
+    leave();
+    master::RecordOptions options;
+    options.resumed =
+        std::make_shared<const master::ResumedSession>(*master::readSession(folder_ / "session.journal", ""));
+    master::SessionRecord record = open(options);
+    EXPECT_FALSE(has("summary.json"));
+    EXPECT_FALSE(has("failure.json"));
+    EXPECT_TRUE(has("divergence.txt")) << "it is the same session's";
+    EXPECT_TRUE(has("recoveries.jsonl"));
+}
+
+}  // namespace

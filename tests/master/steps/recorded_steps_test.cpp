@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/steps/recorded_steps.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+using haptic_bridge::TimedStep;
+
+/// Records a session of `steps` steps at 60 a second, a frame for each, with the sand's own hashes.
+master::Journal sessionWithHashes(std::uint64_t steps) {
+    master::Journal journal;
+    journal.scene = samples::flatScene(24, 24);
+    sand::Replica sand(journal.scene);
+    std::mt19937 random(7);
+    for (std::uint64_t number = 1; number <= steps; ++number) {
+        const sand::Step step = samples::randomStep(number, journal.scene.rules, random);
+        journal.frames.push_back({number, sand.stateHash(), {step}});
+        sand.apply(step);
+    }
+    journal.end = {steps, sand.stateHash()};
+    return journal;
+}
+
+std::shared_ptr<const master::Recording> recordingOf(master::Journal journal, int framesPerSecond = 60) {
+    return std::make_shared<const master::Recording>(std::move(journal), "FILE", framesPerSecond);
+}
+
+/// Shows a frame of the recording on a wall without ranks. Returns how many steps were in it.
+std::size_t showFrame(master::RecordedSteps& steps, sand::Replica& sand) {
+    const std::vector<TimedStep> next = steps.next(sand, sand.stateHash(), steps.mostPerFrame());
+    steps.reached(sand);
+    for (const TimedStep& timed : next) {
+        sand.apply(timed.step);
+        steps.reached(sand);
+    }
+    return next.size();
+}
+
+TEST(RecordedSteps, ShowEachFrameTheStepsOfItsTimeAndEndWhereAsked) {
+    const auto recording = recordingOf(sessionWithHashes(20), 30);
+    master::RecordedSteps steps(recording, 7);
+    sand::Replica sand(recording->scene());
+    for (const std::size_t wanted : {2U, 2U, 2U, 1U, 0U}) {
+        EXPECT_EQ(showFrame(steps, sand), wanted);
+    }
+    EXPECT_EQ(sand.stepNumber(), 7U);
+    EXPECT_FALSE(steps.strayed());
+    EXPECT_EQ(steps.requests(), nullptr) << "nobody changes what has been";
+    EXPECT_STREQ(steps.hand(), "recorded");
+}
+
+TEST(RecordedSteps, SayOnceWhenTheSandDiffersFromTheRecordings) {
+    master::Journal journal = sessionWithHashes(10);
+    journal.frames[4].hashBefore ^= 1;  // after step 4
+    const auto recording = recordingOf(std::move(journal));
+    master::RecordedSteps steps(recording, 10);
+    sand::Replica sand(recording->scene());
+    for (int frame = 0; frame < 3; ++frame) {
+        showFrame(steps, sand);
+    }
+    EXPECT_FALSE(steps.strayed());
+    showFrame(steps, sand);
+    EXPECT_TRUE(steps.strayed());
+    EXPECT_TRUE(steps.takeStrayLine().starts_with("after step 4: the session had "));
+    EXPECT_EQ(steps.takeStrayLine(), "");
+    showFrame(steps, sand);
+    EXPECT_EQ(steps.takeStrayLine(), "") << "only the first difference is news";
+}
+
+// Healing replaces the master's sand by that of the other ranks: then it was not the recording that strayed.
+TEST(RecordedSteps, CompareAgainWhenTheMasterWasHealed) {
+    const auto recording = recordingOf(sessionWithHashes(10));
+    master::RecordedSteps steps(recording, 10);
+    sand::Replica sand(recording->scene());
+    showFrame(steps, sand);
+    showFrame(steps, sand);
+    sand::Replica right = sand;
+    sand.corrupt(3, 3, 9);
+    sand.audit(sand.hashTiles().tileCount());
+    steps.reached(sand);
+    ASSERT_TRUE(steps.strayed());
+    steps.healed(sand);
+    EXPECT_TRUE(steps.strayed()) << "the sand is still another one";
+    steps.healed(right);
+    EXPECT_FALSE(steps.strayed());
+    EXPECT_EQ(steps.takeStrayLine(), "");
+}
+
+/// Has a step ready at the third call.
+class LateSteps : public master::StepSource {
+public:
+    explicit LateSteps(double patience) : patience_(patience) {}
+    std::vector<TimedStep> next(const sand::Replica& /* sand */, std::uint64_t /* hash */,
+                                std::size_t /* most */) override {
+        return std::vector<TimedStep>(++calls == 3 ? 1 : 0);
+    }
+    [[nodiscard]] std::size_t mostPerFrame() const override { return 1; }
+    [[nodiscard]] double patience() const override { return patience_; }
+    [[nodiscard]] const char* hand() const override { return ""; }
+
+    int calls = 0;
+
+private:
+    double patience_;
+};
+
+TEST(AwaitSteps, AsksAgainOnlyWhileItsSourceIsPatientAndNobodyStops) {
+    const sand::Replica sand(samples::flatScene(8, 8));
+    const auto await = [&](LateSteps& source, std::size_t most, bool stop) {
+        return master::awaitSteps(source, sand, 0, most, [&] { return stop; }).size();
+    };
+    LateSteps patient(60);
+    EXPECT_EQ(await(patient, 1, false), 1U);
+    EXPECT_EQ(patient.calls, 3);
+    LateSteps impatient(0);
+    EXPECT_EQ(await(impatient, 1, false), 0U);
+    EXPECT_EQ(impatient.calls, 1);
+    LateSteps stopped(60);
+    EXPECT_EQ(await(stopped, 1, true), 0U);
+    EXPECT_EQ(stopped.calls, 1);
+    LateSteps held(60);
+    EXPECT_EQ(await(held, 0, false), 0U) << "no step is taken, and none is waited for";
+    EXPECT_EQ(held.calls, 1) << "but the link is looked after";
+}
+
+}  // namespace
