@@ -8,6 +8,7 @@
 
 #include "base/input_error.hpp"
 #include "host/command_line.hpp"
+#include "host/print_line.hpp"
 #include "host/version.hpp"
 #include "tracking/head_trace.hpp"
 #include "tracking/packet_sender.hpp"
@@ -47,13 +48,13 @@ int send(const Options& options) {
         sender.send(trace ? trace->at(time) : sway(time));
         return true;
     });
-    fmt::print(stderr, "sandwall-track: {} packets sent\n", sender.sent());
+    host::printLine("{} packets sent", sender.sent());
     return 0;
 }
 
 int listen(const Options& options) {
     const Source source = Source::parse(options.listen, "--listen");
-    const auto say = [](const std::string& line) { fmt::print(stderr, "sandwall-track: {}\n", line); };
+    const auto say = [](const std::string& line) { host::printLine("{}", line); };
     const auto tracker = openTracker(source, glm::dvec3(0), say);
     if (!tracker) {
         throw base::InputError("--listen: there is nothing to listen to in 'none'");
@@ -71,8 +72,8 @@ int listen(const Options& options) {
         return std::fflush(stdout) == 0;
     });
     const Counters counters = tracker->counters();
-    fmt::print(stderr, "sandwall-track: {} packets, {} refused, {} old, {} without the head, {} times lost\n",
-               counters.packets, counters.refused, counters.old, counters.absent, counters.timesLost);
+    host::printLine("{} packets, {} refused, {} old, {} without the head, {} times lost", counters.packets,
+                    counters.refused, counters.old, counters.absent, counters.timesLost);
     return 0;
 }
 
