@@ -25,7 +25,7 @@ int main() {
         replica.apply(step);
     }
     const double unit = kCell / sand::kUnitsPerCell;
-    const sand::HeightField& pile = replica.field();
+    const sand::HeightField& pile = std::get<sand::GridData>(replica.surface().data()).field;
     const bool exact = replica.volume() == start.terrain.volume();
     std::printf("%" PRIu64 " steps, %.3f high, volume %s, hash %016" PRIx64 "\n", step.number,
                 pile.height(kSide / 2, kSide / 2) * unit, exact ? "exact" : "lost", replica.stateHash());

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render_node/scene_painter.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 
-#include "render_node/tin/mesh.hpp"
+#include "render_node/surface_factory.hpp"
 
 namespace render_node {
 namespace {
@@ -24,15 +23,9 @@ float encoded(float linear) {
 }  // namespace
 
 ScenePainter::ScenePainter(const scene::Scene& scene, const glm::dmat4& sceneToRoom)
-    : ScenePainter(scene, sceneToRoom,
-                   std::make_unique<SandMesh>(scene.terrain, glm::normalize(toVector(scene.look.sunDirection))),
-                   nullptr) {}
+    : ScenePainter(scene, sand::GridData{scene.terrain}, sceneToRoom) {}
 
-ScenePainter::ScenePainter(const scene::Scene& scene, const sand::tin::SurfaceView& tin, const glm::dmat4& sceneToRoom)
-    : ScenePainter(scene, sceneToRoom, nullptr, std::make_unique<TinMesh>(tin, scene.terrain.cellSize())) {}
-
-ScenePainter::ScenePainter(const scene::Scene& scene, const glm::dmat4& sceneToRoom, std::unique_ptr<SandMesh> grid,
-                           std::unique_ptr<TinMesh> tin)
+ScenePainter::ScenePainter(const scene::Scene& scene, const sand::SurfaceData& start, const glm::dmat4& sceneToRoom)
     : sceneToRoom_(sceneToRoom),
       look_(scene.look),
       sun_(glm::normalize(toVector(scene.look.sunDirection))),
@@ -41,46 +34,29 @@ ScenePainter::ScenePainter(const scene::Scene& scene, const glm::dmat4& sceneToR
       toolRadius_(static_cast<float>(scene.toolRadius())),
       toolShape_(scene.rules.toolShape()),
       toolHeading_(scene.rules.toolHeading),
-      grid_(std::move(grid)),
-      tin_(std::move(tin)),
+      surface_(makeDrawnSurface(start, scene.terrain.cellSize(), sun_)),
       sunlit_(shaders(), "sunlit.glsl", "ball.glsl"),
       woodProgram_("solid.vert.glsl", "wood.frag.glsl"),
       toolProgram_("solid.vert.glsl", "tool.frag.glsl"),
       grain_(glm::vec2(sun_)),
-      box_(surface().rim(), surface().heightsEver().lowest, double{cellSize_}, scene.rules.rim) {
+      box_(surface_->rim(), surface_->heightsEver().lowest, double{cellSize_}, scene.rules.rim) {
     startCounting();
 }
 
 void ScenePainter::startCounting() {
     counts_ = {};
-    counts_.chunksOfField = surface().chunks();
+    counts_.chunksOfField = surface_->chunks();
 }
 
-ScenePainter::ScenePainter(ScenePainter&&) noexcept = default;
-ScenePainter::~ScenePainter() = default;
-
-void ScenePainter::update(const sand::HeightField& field, sand::CellRect damage) {
-    const sand::CellRect cells = damage.clippedTo(field.bounds());
-    grid_->update(field, cells);
-    if (grid_->surface().touchesRim(cells)) {
-        box_.update(grid_->rim());
-    }
-}
-
-void ScenePainter::update(const sand::tin::SurfaceView& tin, const sand::TinChange& damage,
+void ScenePainter::update(const sand::SurfaceData& data, const sand::SurfaceChange& change,
                           std::span<const Camera> cameras) {
-    const auto sees = [&](const Box& box) {
-        return cameras.empty() || std::any_of(cameras.begin(), cameras.end(), [&](const Camera& camera) {
-                   return inFrustum(box, camera.roomToClip * sceneToRoom_);
-               });
-    };
-    if (tin_->update(tin, damage, sees)) {
-        box_.update(tin_->rim());
+    std::vector<glm::dmat4> sceneToClips;
+    for (const Camera& camera : cameras) {
+        sceneToClips.push_back(camera.roomToClip * sceneToRoom_);
     }
-}
-
-DrawnSurface& ScenePainter::surface() const {
-    return grid_ ? static_cast<DrawnSurface&>(*grid_) : static_cast<DrawnSurface&>(*tin_);
+    if (surface_->update(data, change, sceneToClips)) {
+        box_.update(surface_->rim());
+    }
 }
 
 SurfaceShaders ScenePainter::shaders() const {
@@ -140,7 +116,7 @@ void ScenePainter::prepareTool(const GlProgram& program) const {
 
 void ScenePainter::prepareSurface(const GlProgram& program, const Camera& camera) const {
     prepare(program, camera);
-    surface().prepare(program);
+    surface_->prepare(program);
 }
 
 Box ScenePainter::bodyOf(const EyeMemory::Tool& tool) {
@@ -250,7 +226,7 @@ void ScenePainter::drawSand(const Camera& camera, const glm::dmat4& sceneToPart,
             near = near || within;
         };
     }
-    const DrawnSurface::Drawn drawn = surface().draw(sceneToPart, culling_, rule, choose);
+    const DrawnSurface::Drawn drawn = surface_->draw(sceneToPart, culling_, rule, choose);
     (near ? programs.near : programs.far).drawn();
     counts_.chunks += drawn.chunks;
     counts_.coarseChunks += drawn.coarseChunks;
@@ -271,8 +247,8 @@ void ScenePainter::drawWires(const Camera& camera, const glm::dmat4& sceneToPart
     glPolygonOffset(-1, -1);  // a driver may compute depths a little differently behind a geometry shader
     glEnable(GL_BLEND);
     glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);  // a window may show through its alpha
-    surface().draw(sceneToPart, culling_, rule, {});
-    surface().drawMarks(sceneToPart, culling_, [&](const GlProgram& program) { prepareSurface(program, camera); });
+    surface_->draw(sceneToPart, culling_, rule, {});
+    surface_->drawMarks(sceneToPart, culling_, [&](const GlProgram& program) { prepareSurface(program, camera); });
     glDisable(GL_BLEND);
     glDisable(GL_POLYGON_OFFSET_FILL);
     glDepthFunc(GL_LESS);

@@ -13,7 +13,6 @@
 #include "render_node/gl/eye_target.hpp"
 #include "render_node/gl/gl_program.hpp"
 #include "render_node/gl/grain_texture.hpp"
-#include "render_node/grid/mesh.hpp"
 #include "render_node/sand_box.hpp"
 #include "render_node/surface/drawn_surface.hpp"
 #include "render_node/surface/pixel_rect.hpp"
@@ -22,13 +21,10 @@
 #include "render_node/tool/mesh.hpp"
 #include "render_node/tool/reach.hpp"
 #include "sand/model/step.hpp"
-#include "sand/model/tin_change.hpp"
-#include "sand/tin/geometry/surface_view.hpp"
+#include "sand/model/surface_data.hpp"
 #include "scene/scene.hpp"
 
 namespace render_node {
-
-class TinMesh;
 
 /// One eye of one tile.
 struct Camera {
@@ -91,22 +87,18 @@ struct SandPrograms {
 /// camera sees are ever built, sent to GL and drawn. Needs its context current; one thread.
 class ScenePainter {
 public:
-    /// Takes heights, tool radius and look from the scene. Throws std::runtime_error when a shader does not compile.
+    /// Takes tool radius and look from the scene, and the sand from `start`: that of a replica that has made no step.
+    /// Throws std::runtime_error when a shader does not compile.
+    ScenePainter(const scene::Scene& scene, const sand::SurfaceData& start, const glm::dmat4& sceneToRoom);
+    /// Takes the sand from the scene, which must be a height field.
     ScenePainter(const scene::Scene& scene, const glm::dmat4& sceneToRoom);
-    /// The same for a scene whose terrain is a TIN, as the session starts; of scene.terrain the cell size alone counts.
-    ScenePainter(const scene::Scene& scene, const sand::tin::SurfaceView& tin, const glm::dmat4& sceneToRoom);
-
-    ScenePainter(ScenePainter&&) noexcept;
-    ~ScenePainter();
 
     /// Where the scene stands from now on.
     void setSceneToRoom(const glm::dmat4& sceneToRoom) { sceneToRoom_ = sceneToRoom; }
-    /// Takes over the heights of `damage`, which may be empty or reach beyond the field. `field` must have the size
-    /// of the scene's; it is copied, not kept.
-    void update(const sand::HeightField& field, sand::CellRect damage);
-    /// The same of a TIN. With cameras, the only ones that will draw before the next update: what none of them can see
-    /// is put off until one can.
-    void update(const sand::tin::SurfaceView& tin, const sand::TinChange& damage, std::span<const Camera> cameras = {});
+    /// Takes over what changed of the sand, which is copied. It must be of the kind and size of that at the start. With
+    /// cameras, the only ones that will draw before the next update: what none of them can see may be put off until
+    /// one can.
+    void update(const sand::SurfaceData& data, const sand::SurfaceChange& change, std::span<const Camera> cameras = {});
     /// Where the tool's centre is. No tool is drawn before the first call.
     void setTool(sand::ProbePoint centre, bool engaged);
     /// The same for another tool than the scene's or that of before, or one that was turned.
@@ -129,7 +121,9 @@ public:
     /// Of what was drawn last.
     [[nodiscard]] const DrawCounts& counts() const { return counts_; }
     /// Bytes this view has asked of GL for geometry so far.
-    [[nodiscard]] std::size_t geometryBytes() const { return surface().bytes(); }
+    [[nodiscard]] std::size_t geometryBytes() const { return surface_->bytes(); }
+    /// Heights that updates have read so far, or vertices and triangles of a TIN: for measurements.
+    [[nodiscard]] std::int64_t placesRead() const { return surface_->placesRead(); }
     /// Draws every chunk, seen or not: for measurements of what culling gains.
     void setCulling(bool culling) { culling_ = culling; }
     /// How far the level of detail may shift the picture of any sand, in place of the scene's look.detail [pixel]. Who
@@ -137,9 +131,6 @@ public:
     void setDetail(double bound) { look_.detail = bound; }
 
 private:
-    ScenePainter(const scene::Scene& scene, const glm::dmat4& sceneToRoom, std::unique_ptr<SandMesh> grid,
-                 std::unique_ptr<TinMesh> tin);
-    [[nodiscard]] DrawnSurface& surface() const;
     [[nodiscard]] SurfaceShaders shaders() const;
     void prepare(const GlProgram& program, const Camera& camera) const;
     void prepareTool(const GlProgram& program) const;
@@ -175,8 +166,7 @@ private:
     bool culling_ = true;
     DrawCounts counts_;
 
-    std::unique_ptr<SandMesh> grid_;  // one of the two, whatever the terrain is made of
-    std::unique_ptr<TinMesh> tin_;
+    std::unique_ptr<DrawnSurface> surface_;
     SandPrograms sunlit_;
     std::optional<SandPrograms> hillShaded_;                     // since the layer was first drawn, as those below
     std::optional<SandPrograms> stampSunlit_, stampHillShaded_;  // since a tool was, that is no ball

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "render_node/scene_painter.hpp"
-#include "render_node/tin/mesh.hpp"
 
 namespace render_node {
 namespace {
@@ -23,7 +22,7 @@ ToolReach ScenePainter::reachOf(const EyeMemory::Tool& tool) const {
 /// What a tool changes, as convex hulls: the sand that it dims, its shadow, and itself.
 std::vector<std::vector<glm::dvec3>> ScenePainter::hullsOf(const EyeMemory::Tool& tool) const {
     const ToolReach reach = reachOf(tool);
-    const HeightRange sand = surface().heightsEver();
+    const HeightRange sand = surface_->heightsEver();
     const double highest = std::max(double{sand.highest}, box_.highest());
     // Down to the lowest sand there has been, unless it comes out again beyond the rim: nothing stops it in the
     // shaders.
@@ -51,7 +50,7 @@ std::vector<PixelRect> ScenePainter::changedPixels(const Camera& camera, glm::iv
     const bool toolMoved = memory.tool != tool_;
     if (!memory.drawn || memory.roomToClip != camera.roomToClip || memory.eye != camera.eye ||
         memory.sceneToRoom != sceneToRoom_ || memory.layers != overlays_) {
-        memory.levels = surface().levelsWithin(sceneToClip, rule);
+        memory.levels = surface_->levelsWithin(sceneToClip, rule);
         return {whole};
     }
     std::vector<PixelRect> changed{memory.covered};
@@ -71,7 +70,7 @@ std::vector<PixelRect> ScenePainter::changedPixels(const Camera& camera, glm::iv
             add(cornersOf(boxOf(*force_, toolRadius_)));
         }
     }
-    for (const Box& box : surface().changesSince(memory.sand, memory.levels, rule)) {
+    for (const Box& box : surface_->changesSince(memory.sand, memory.levels, rule)) {
         add(cornersOf(box_.withSides(box)));
     }
     changed = fewCovering(std::move(changed), kMostPasses, kPass);
@@ -93,7 +92,7 @@ PixelRect ScenePainter::drawIfChanged(const Camera& camera, const EyeTarget& tar
               camera.roomToClip,
               sceneToRoom_,
               camera.eye,
-              surface().revision(),
+              surface_->revision(),
               std::move(memory.levels),
               tool_,
               force_,

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <glm/gtc/type_ptr.hpp>
 
-#include "sand/tin/geometry/surface_view.hpp"
 #include "scene/scene.hpp"
 #include "walls/projection.hpp"
 
@@ -26,12 +25,12 @@ void ViewCounts::add(std::int64_t drawn, const EyeTarget& target) {
 }
 
 TilePainter::TilePainter(const walls::Wall& wall, const walls::Tile& tile, const scene::Scene& scene, std::string host,
-                         const sand::tin::SurfaceView* tin)
+                         const sand::SurfaceData& start)
     : wall_(&wall),
       tile_(&tile),
       host_(std::move(host)),
       forceConstants_(scene.force),
-      scenePainter_(tin != nullptr ? ScenePainter(scene, *tin, glm::dmat4(1)) : ScenePainter(scene, glm::dmat4(1))),
+      scenePainter_(scene, start, glm::dmat4(1)),
       composer_(wall.stereo, tile) {
     makeTargets();
 }
@@ -66,11 +65,7 @@ void TilePainter::paint(sand::Replica& terrain, const lockstep::ViewState& view,
     scenePainter_.setLayers(view.layers);
     scenePainter_.setSceneToRoom(glm::make_mat4(view.sceneToRoom.data()));
     const std::vector<Camera> cameras = camerasOf(view);
-    if (const sand::tin::SurfaceView* tin = terrain.tinView()) {
-        scenePainter_.update(*tin, terrain.takeTinDamage(), cameras);
-    } else {
-        scenePainter_.update(terrain.field(), terrain.takeDamage());
-    }
+    scenePainter_.update(terrain.surface().data(), terrain.takeChange(), cameras);
     if (terrain.probe() != sand::ProbePoint{}) {  // a hand has been somewhere
         scenePainter_.setTool(terrain.probe(), terrain.engaged(), terrain.toolShape(), terrain.heading());
     }

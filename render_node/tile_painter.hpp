@@ -35,10 +35,10 @@ struct ViewCounts {
 /// thread.
 class TilePainter {
 public:
-    /// `wall` and `tile` must outlive it; test patterns show the host. Where the scene's terrain is a TIN, `tin` is
-    /// that as the scene starts. Throws std::runtime_error when a shader does not compile or a size is refused.
+    /// `wall` and `tile` must outlive it; test patterns show the host. `start` is the sand of a replica of the scene
+    /// that has made no step. Throws std::runtime_error when a shader does not compile or a size is refused.
     TilePainter(const walls::Wall& wall, const walls::Tile& tile, const scene::Scene& scene, std::string host,
-                const sand::tin::SurfaceView* tin = nullptr);
+                const sand::SurfaceData& start);
 
     /// From now on as another stereo mode of the same wall, on the same outputs. `wall` and `tile` must outlive it.
     void showAs(const walls::Wall& wall, const walls::Tile& tile);

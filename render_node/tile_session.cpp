@@ -50,7 +50,7 @@ public:
         const scene::Scene scene = scene::Scene::decode(message.scene);
         terrain_.emplace(scene, sweeps);
         painter_.emplace(shown_, shown_.tiles.at(static_cast<std::size_t>(cluster.rank() - 1)), scene,
-                         lockstep::hostName(), terrain_->tinView());
+                         lockstep::hostName(), terrain_->surface().data());
         if (!message.state.empty()) {  // behind the painter: the box that it draws follows from the scene's start
             terrain_->decodeState(message.state);
         }

@@ -41,14 +41,6 @@ Replica::Replica(const Replica& other)
 
 Replica& Replica::operator=(const Replica& other) { return *this = Replica(other); }
 
-const grid::GridSurface& Replica::grid() const {
-    const auto* grid = dynamic_cast<const grid::GridSurface*>(surface_.get());
-    if (grid == nullptr) {
-        throw std::logic_error("Replica: a TIN has no height field");
-    }
-    return *grid;
-}
-
 std::int64_t Replica::leastBytes(const Start& start) {
     if (start.tin != nullptr) {
         // Of 66 thousand to a million vertices 329 to 401 were measured, by the layout of the mesh.

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "sand/grid/surface.hpp"
+#include "sand/grid/erosion.hpp"
 #include "sand/model/step.hpp"
 #include "sand/model/surface.hpp"
 #include "sand/start.hpp"
@@ -51,12 +51,14 @@ public:
     [[nodiscard]] const Rules& rules() const { return rules_; }  // now: an operator may have tuned the scene's
     [[nodiscard]] const Surface& surface() const { return *surface_; }
     [[nodiscard]] double cellSize() const { return cellSize_; }  // [scene unit], a TIN's nominal one
-    /// Of a height field; a TIN has none of the three: std::logic_error.
-    [[nodiscard]] const HeightField& field() const { return grid().field(); }
-    [[nodiscard]] const Ground* ground() const { return grid().ground(); }  // null without rock and walls
-    [[nodiscard]] const grid::Erosion& erosion() const { return grid().erosion(); }
+    /// Of a height field; throws std::bad_variant_access for a TIN.
+    [[nodiscard]] const HeightField& field() const { return std::get<GridData>(surface_->data()).field; }
     /// Null unless the terrain is a TIN.
-    [[nodiscard]] const tin::SurfaceView* tinView() const { return surface_->tinView(); }
+    [[nodiscard]] const tin::SurfaceView* tinView() const {
+        const SurfaceData data = surface_->data();
+        const auto* tin = std::get_if<TinData>(&data);
+        return tin == nullptr ? nullptr : &tin->view;
+    }
     [[nodiscard]] std::uint64_t stepNumber() const { return stepNumber_; }
     /// Lost over an open rim, and all there is [unit · cell; of a TIN: unit · probe unit² / 6].
     [[nodiscard]] std::int64_t outflow() const { return surface_->outflow(); }
@@ -83,10 +85,8 @@ public:
     [[nodiscard]] const HashTiles& hashTiles() const { return surface_->hashTiles(); }
     [[nodiscard]] std::vector<std::int32_t> valuesOf(int tile) const { return surface_->valuesOf(tile); }
 
-    /// The cells that changed since this was called last: one rectangle around them, empty when nothing did.
-    [[nodiscard]] CellRect takeDamage() { return surface_->takeDamage(); }
-    /// The same of a TIN.
-    [[nodiscard]] TinChange takeTinDamage() { return surface_->takeTinDamage(); }
+    /// Returns what changed of surface() since the last call, and everything at the first one.
+    [[nodiscard]] SurfaceChange takeChange() { return surface_->takeChange(); }
 
     /// What a replica of a scene takes at the very least, with the scene it starts from [byte].
     [[nodiscard]] static std::int64_t leastBytes(const Start& start);
@@ -107,7 +107,6 @@ public:
     void corrupt(int column, int row, int bit = 0) { surface_->corrupt(column, row, bit); }
 
 private:
-    [[nodiscard]] const grid::GridSurface& grid() const;
     [[nodiscard]] HeldTool tool() const { return {rules_.toolShape(), heading_}; }
     void tune(const Tuning& tuning);
     void press();

@@ -20,6 +20,8 @@ struct Start {
     [[nodiscard]] double toolRadius() const {  // [scene unit]
         return rules.toolRadius * terrain.cellSize() / kProbePerCell;
     }
+    /// Begins as this TIN, in place of whatever it began as; keeps the cell size.
+    void beginAs(tin::TinStart start);
     /// The mean height [unit]: devices hover and dig relative to it.
     [[nodiscard]] std::int32_t referenceHeight() const;
 };

@@ -13,4 +13,7 @@ namespace sand {
 /// their ground is that of `start`.
 [[nodiscard]] std::unique_ptr<Surface> makeSurface(const Start& start, const grid::Erosion::Options& options = {});
 
+/// Has `start` begin with the sand as it is on `surface`, which was made from it.
+void startFrom(const Surface& surface, Start& start);
+
 }  // namespace sand

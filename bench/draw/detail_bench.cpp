@@ -27,7 +27,7 @@ scene::Scene dunesOf(int side, std::uint32_t seed) {
     sand::grid::makeDunes({.height = 0.012, .length = 0.08, .seed = seed}, scene.terrain);  // crests in every chunk
     sand::Replica terrain(scene);
     sample::drag(terrain, scene, {0.6, 0.7, 0.0}, {1.1, 1.0, 0.0});
-    scene.terrain = terrain.field();
+    scene.terrain = std::get<sand::GridData>(terrain.surface().data()).field;
     return scene;
 }
 

@@ -94,7 +94,7 @@ void updateDamage(benchmark::State& state) {
     render_node::ScenePainter view(scene, glm::dmat4(1));
     const int side = static_cast<int>(state.range(0));
     for (auto _ : state) {
-        view.update(scene.terrain, {200, 200, 200 + side, 200 + side});
+        view.update(sand::GridData{scene.terrain}, sample::changeOf({200, 200, 200 + side, 200 + side}));
         view.draw(sample::camera({1, 1, 2}, {1, 1, 0}), target);
         target.finish();
     }
@@ -126,7 +126,7 @@ void dig(benchmark::State& state) {
         terrain.apply({0, terrain.stepNumber() + 1, true, {sample::probeAt(scene, {place, place, 0.01})}});
         state.ResumeTiming();
         memory.drawn = state.range(0) != 0;
-        view.update(terrain.field(), terrain.takeDamage());
+        view.update(terrain.surface().data(), terrain.takeChange());
         view.setTool(terrain.probe(), terrain.engaged());
         pixels += static_cast<double>(view.drawIfChanged(camera, target, memory).area()) / (1024 * 768);
         target.finish();

@@ -6,7 +6,9 @@
 
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -15,7 +17,6 @@
 #include "render_node/gl/gl_context.hpp"
 #include "render_node/scene_painter.hpp"
 #include "sand/replica.hpp"
-#include "sand/tin/geometry/surface_view.hpp"
 #include "scene/load/scene_file.hpp"
 #include "walls/projection.hpp"
 #include "walls/wall.hpp"
@@ -43,16 +44,14 @@ struct Tile {
 };
 
 std::vector<std::unique_ptr<Tile>> tilesOf(const walls::Wall& wall, const scene::Scene& scene,
-                                           const sand::tin::SurfaceView* tin) {
+                                           const sand::SurfaceData& start) {
     const sand::HeightField& field = scene.terrain;
     const double cell = field.cellSize();
     const glm::dmat4 sceneToRoom = walls::stageToRoom(wall.stage, scene.rules.columns * cell, scene.rules.rows * cell,
                                                       scene.referenceHeight() * field.unit());
     std::vector<std::unique_ptr<Tile>> tiles;
     for (const walls::Tile& tile : wall.tiles) {
-        tiles.push_back(std::make_unique<Tile>(Tile{tin != nullptr ? render_node::ScenePainter(scene, *tin, sceneToRoom)
-                                                                   : render_node::ScenePainter(scene, sceneToRoom),
-                                                    {}}));
+        tiles.push_back(std::make_unique<Tile>(Tile{render_node::ScenePainter(scene, start, sceneToRoom), {}}));
         for (const walls::Eye eye : walls::eyesOf(wall.stereo)) {
             const walls::View seen = walls::viewOf(wall, tile, eye);
             tiles.back()->eyes.push_back(std::make_unique<Tile::Eye>(
@@ -94,42 +93,30 @@ void dig(sand::Replica& terrain, std::int32_t level, int steps) {
 struct Measured {
     std::vector<double> stepMs, updateMs, drawMs, busiestMs, busiestUpdateMs;  // a frame
     std::vector<double> views, shares;                                         // a frame
+    std::vector<double> placesRead;                                            // a frame and tile
     std::vector<double> viewMs, viewTriangles, viewChunks;                     // a view
 };
 
-/// The changes of the sand that every tile takes over.
-struct Damage {
-    explicit Damage(sand::Replica& terrain) {
-        if (terrain.tinView() != nullptr) {
-            triangles = terrain.takeTinDamage();
-        } else {
-            cells = terrain.takeDamage();
-        }
-    }
-    sand::CellRect cells;
-    sand::TinChange triangles;
-};
-
-void takeOver(Tile& tile, const sand::Replica& terrain, const Damage& damage) {
+void takeOver(Tile& tile, const sand::Replica& terrain, const sand::SurfaceChange& change) {
     render_node::ScenePainter& view = tile.view;
-    if (const sand::tin::SurfaceView* tin = terrain.tinView()) {
-        std::vector<render_node::Camera> cameras;
-        for (const auto& eye : tile.eyes) {
-            cameras.push_back(eye->camera);
-        }
-        view.update(*tin, damage.triangles, cameras);
-    } else {
-        view.update(terrain.field(), damage.cells);
+    std::vector<render_node::Camera> cameras;
+    for (const auto& eye : tile.eyes) {
+        cameras.push_back(eye->camera);
     }
+    view.update(terrain.surface().data(), change, cameras);
     view.setTool(terrain.probe(), terrain.engaged(), terrain.toolShape(), terrain.heading());
 }
 
 /// Takes over what changed and draws it, tile by tile.
 void show(const std::vector<std::unique_ptr<Tile>>& tiles, sand::Replica& terrain, Measured& measured) {
-    const Damage damage(terrain);
-    double update = 0, draw = 0, busiest = 0, busiestUpdate = 0, drawn = 0, pixels = 0, all = 0;
+    sand::SurfaceChange change;
+    const double listed = bench::secondsOf([&] { change = terrain.takeChange(); });  // once in each rank
+    double update = listed * static_cast<double>(tiles.size());
+    double read = 0, draw = 0, busiest = 0, busiestUpdate = 0, drawn = 0, pixels = 0, all = 0;
     for (const auto& tile : tiles) {
-        const double taken = bench::secondsOf([&] { takeOver(*tile, terrain, damage); });
+        const std::int64_t readBefore = tile->view.placesRead();
+        const double taken = bench::secondsOf([&] { takeOver(*tile, terrain, change); });
+        read += static_cast<double>(tile->view.placesRead() - readBefore);
         double both = 0;
         for (const auto& eye : tile->eyes) {
             render_node::PixelRect changed;
@@ -149,12 +136,13 @@ void show(const std::vector<std::unique_ptr<Tile>>& tiles, sand::Replica& terrai
         }
         update += taken;
         draw += both;
-        if (taken + both > busiest) {
-            busiest = taken + both;
-            busiestUpdate = taken;
+        if (listed + taken + both > busiest) {
+            busiest = listed + taken + both;
+            busiestUpdate = listed + taken;
         }
     }
     measured.updateMs.push_back(1e3 * update);
+    measured.placesRead.push_back(read / static_cast<double>(tiles.size()));
     measured.drawMs.push_back(1e3 * draw);
     measured.busiestMs.push_back(1e3 * busiest);
     measured.busiestUpdateMs.push_back(1e3 * busiestUpdate);
@@ -167,7 +155,7 @@ int measure(const Options& options) {
     const scene::Scene scene = scene::loadScene(options.scene);
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     sand::Replica terrain(scene);
-    const std::vector<std::unique_ptr<Tile>> tiles = tilesOf(wall, scene, terrain.tinView());
+    const std::vector<std::unique_ptr<Tile>> tiles = tilesOf(wall, scene, terrain.surface().data());
     const std::int32_t level = scene.referenceHeight();
     Measured measured;
     constexpr int kWarmUp = 30;  // [frame]: shaders, buffers, the first bank
@@ -180,8 +168,15 @@ int measure(const Options& options) {
         show(tiles, terrain, measured);
     }
     if (options.json) {
-        fmt::print("{{\"step_ms\": {}, \"busiest_tile_ms\": {}}}\n", bench::quantile(measured.stepMs, 0.5),
-                   bench::quantile(measured.busiestMs, 0.5));
+        const auto median = [](const std::vector<double>& values) { return bench::quantile(values, 0.5); };
+        const auto mean = [](const std::vector<double>& values) {
+            return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+        };
+        const nlohmann::ordered_json json{
+            {"step_ms", median(measured.stepMs)},       {"busiest_tile_ms", median(measured.busiestMs)},
+            {"update_ms", median(measured.updateMs)},   {"draw_ms", median(measured.drawMs)},
+            {"places_read", mean(measured.placesRead)}, {"pixels_percent", mean(measured.shares)}};
+        fmt::print("{}\n", json.dump());
         return 0;
     }
     const auto row = [](const char* what, const std::vector<double>& values) {
@@ -192,6 +187,7 @@ int measure(const Options& options) {
     fmt::print("{:48} {:>8} {:>8}\n", "", "p50", "p99");
     row("steps of one replica [ms/frame]", measured.stepMs);
     row("taking over what changed, all tiles [ms/frame]", measured.updateMs);
+    row("what a tile reads for that [1/frame]", measured.placesRead);
     row("drawing, all tiles [ms/frame]", measured.drawMs);
     row("the busiest tile, both eyes [ms/frame]", measured.busiestMs);
     row("what of it is taking over [ms/frame]", measured.busiestUpdateMs);
@@ -212,6 +208,6 @@ int main(int argc, char** argv) {
     line.option("--scene", options.scene, "scene file").showDefault();
     line.option("--frames", options.frames, "how many").range(1, 100000).showDefault();
     line.option("--rate", options.rate, "frames a second of the wall").range(1, 1000).showDefault();
-    line.flag("--json", options.json, "print medians per frame as an object: step_ms, busiest_tile_ms");
+    line.flag("--json", options.json, "print medians per frame as an object: step_ms, busiest_tile_ms, update_ms, …");
     return host::runMain(line, argc, argv, [&] { return measure(options); });
 }

@@ -51,8 +51,7 @@ public:
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         program_.use();
         program_.set("uSceneToClip", glm::mat4(sceneToClip));
-        program_.set("uCell", mesh_.surface().cellSize());
-        program_.set("uCells", glm::vec2(mesh_.surface().columns(), mesh_.surface().rows()));
+        mesh_.prepare(program_);
         mesh_.draw(sceneToClip, true, {sceneToClip, {target.width(), target.height()}, 0}, {});
     }
 

@@ -111,6 +111,7 @@ struct Drag {
 private:
     void run(const sand::ForceConstants& constants, int side) {
         sand::Replica terrain(sceneOf(side));
+        const sand::HeightField& field = std::get<sand::GridData>(terrain.surface().data()).field;
         const auto tool = sand::force::Contour::sphere(kRadius);
         sand::force::SurfacePatch patch;
         Vec3 last;
@@ -118,7 +119,7 @@ private:
             const Vec3 place = handAt(1e-3 * tick, side);
             terrain.apply({1, terrain.stepNumber() + 1, true, {probeAt(place)}});
             patchSeconds.push_back(
-                secondsOf([&] { patch = sand::force::SurfacePatch(terrain.field(), terrain.probe(), kRadius); }));
+                secondsOf([&] { patch = sand::force::SurfacePatch(field, terrain.probe(), kRadius); }));
             const Vec3 truth = respond(constants, patch, tool, place).push;
             for (Follower& follower : followers) {
                 follower.tick(tick, patch, tool, place, truth);

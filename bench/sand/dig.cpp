@@ -68,7 +68,8 @@ double behind(const sand::HeightField& field, const sand::HeightField& rest) { r
 
 Lag lagOf(sand::Replica& terrain, const Stroke& stroke) {
     Lag lag;
-    const sand::HeightField end = terrain.field();
+    const sand::HeightField& field = std::get<sand::GridData>(terrain.surface().data()).field;
+    const sand::HeightField end = field;
     const sand::grid::Obstacle tool = sand::grid::Displacement(terrain.toolShape()).obstacle(end, terrain.probe());
     sand::HeightField held = end;
     sand::grid::Erosion(held, terrain.rules()).sweep(held, kMostSweeps, &tool);
@@ -84,7 +85,7 @@ Lag lagOf(sand::Replica& terrain, const Stroke& stroke) {
             }
         }
     }
-    for (; lag.stepsAfter < kMostAfter && behind(terrain.field(), lifted) > 0.01; ++lag.stepsAfter) {
+    for (; lag.stepsAfter < kMostAfter && behind(field, lifted) > 0.01; ++lag.stepsAfter) {
         terrain.apply({1, terrain.stepNumber() + 1, false, {}});
     }
     return lag;

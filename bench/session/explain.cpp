@@ -8,6 +8,7 @@
 #include "bench/curves.hpp"
 #include "bench/sand/relaxations.hpp"
 #include "bench/timing.hpp"
+#include "sand/grid/tile_hash.hpp"
 #include "sand/replica.hpp"
 #include "sand/tin/geometry/surface_view.hpp"
 #include "scene/load/scene_file.hpp"
@@ -59,7 +60,7 @@ private:
 
 void explainTinMemory(const scene::Scene& scene, Explanation& rows) {
     const sand::Replica terrain(scene);
-    const sand::tin::Triangles& mesh = terrain.tinView()->triangles;
+    const sand::tin::Triangles& mesh = std::get<sand::TinData>(terrain.surface().data()).view.triangles;
     const std::size_t perVertex = sizeof(sand::tin::Place) + 2 * sizeof(std::int32_t) + 4 * sizeof(std::int64_t);
     rows.memory("vertices", mesh.places.size() * perVertex,
                 fmt::format("{} of them: place, volume, share of the ground, height, hash", mesh.places.size()));

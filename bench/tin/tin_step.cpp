@@ -90,13 +90,13 @@ void measureWhole(const scene::Scene& scene, const std::vector<Action>& actions,
     sand::Replica terrain(scene);
     terrain.apply({1, 1, false, {}});  // everything moves at first
     static_cast<void>(terrain.stateHash());
-    static_cast<void>(terrain.takeTinDamage());
+    static_cast<void>(terrain.takeChange());
     for (Action action : actions) {
         ++action.step.number;
         times[{action.kind, "step"}].push_back(secondsOf([&] {
             terrain.apply(action.step);
             static_cast<void>(terrain.stateHash());
-            static_cast<void>(terrain.takeTinDamage());
+            static_cast<void>(terrain.takeChange());
         }));
     }
 }
@@ -130,7 +130,7 @@ void measureParts(const scene::Scene& scene, const std::vector<Action>& actions,
         touched = step.engaged;
         part("sweeps", [&] { surface.sweep(kSweepsPerStep, touched ? &tool : nullptr, at); });
         part("hash", [&] { static_cast<void>(surface.hash()); });
-        part("damage", [&] { static_cast<void>(surface.takeTinDamage()); });
+        part("change", [&] { static_cast<void>(surface.takeChange()); });
     }
 }
 

@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <utility>
 
 namespace render_node {
 namespace {
 
 constexpr int kChunk = 16;                      // [quad], the shortest side but for small fields
 constexpr int kGroup = 8;                       // [chunk], the side of a group
-constexpr int kMostChanges = 36;                // of one update
+constexpr int kMostParts = 36;                  // of one update
 constexpr int kSmallestPart = 32;               // [cell], the side of one
 constexpr std::size_t kManyBytes = 16UL << 20;  // of vertices: then those not drawn lately are dropped
 constexpr std::uint64_t kLately = 120;          // [draw]: a second or two
@@ -23,6 +24,31 @@ int chunksFor(int quads, int coarsest) {
 }
 int sideFor(int quads, int coarsest) {
     return coarsest > 0 ? shortestSide(coarsest) : (quads + chunksFor(quads, 0) - 1) / chunksFor(quads, 0);
+}
+
+/// Rectangles around all that was overwritten, one for each square of a lattice over it that holds some.
+std::vector<sand::CellRect> fewAround(std::span<const SandSurface::Overwritten> overwritten) {
+    sand::CellRect all;
+    for (const auto& [cells, before] : overwritten) {
+        all = all.joinedWith(cells);
+    }
+    // It begins where a block does, so that no block reaches over two squares.
+    all.x0 -= all.x0 % SandSurface::kBlock;
+    all.y0 -= all.y0 % SandSurface::kBlock;
+    // Small parts follow the sand closely, few parts are soon looked through.
+    int side = kSmallestPart;
+    const auto partsOf = [&side](int first, int end) { return (end - first + side - 1) / side; };
+    while (partsOf(all.x0, all.x1) * partsOf(all.y0, all.y1) > kMostParts) {
+        side *= 2;
+    }
+    const int across = partsOf(all.x0, all.x1), down = partsOf(all.y0, all.y1);
+    std::vector<sand::CellRect> parts(static_cast<std::size_t>(across) * static_cast<std::size_t>(down));
+    for (const auto& [cells, before] : overwritten) {
+        const int part = (cells.y0 - all.y0) / side * across + (cells.x0 - all.x0) / side;
+        parts[static_cast<std::size_t>(part)] = parts[static_cast<std::size_t>(part)].joinedWith(cells);
+    }
+    std::erase_if(parts, [](const sand::CellRect& part) { return part.empty(); });
+    return parts;
 }
 
 }  // namespace
@@ -49,7 +75,7 @@ void SandMesh::makeChunks() {
         for (int x = 0; x < across_; ++x) {
             Chunk& made = chunks_.emplace_back();
             made.vertices = {x * quadsAcross_, y * quadsDown_, (x + 1) * quadsAcross_ + 1, (y + 1) * quadsDown_ + 1};
-            made.heights = surface_.heights(made.vertices);
+            made.heights = heightsUnder(made.vertices);
         }
     }
 }
@@ -61,7 +87,7 @@ void SandMesh::makeGroups() {
             group.chunks = {x, y, std::min(x + kGroup, across_), std::min(y + kGroup, down_)};
             group.vertices = {x * quadsAcross_, y * quadsDown_, group.chunks.x1 * quadsAcross_ + 1,
                               group.chunks.y1 * quadsDown_ + 1};
-            group.heights = surface_.heights(group.vertices);
+            group.heights = heightsUnder(group.vertices);
             groups_.push_back(group);
         }
     }
@@ -79,39 +105,42 @@ sand::CellRect SandMesh::verticesOver(const sand::CellRect& cells) const {
             end(reached.y1, surface_.rows(), down_ * quadsDown_ + 1)};
 }
 
-std::vector<SandMesh::Change> SandMesh::changesOf(const sand::HeightField& field, const sand::CellRect& cells) const {
-    // Small parts follow the sand closely, few parts are soon looked through.
-    int side = kSmallestPart;
-    while ((cells.x1 - cells.x0 + side - 1) / side * ((cells.y1 - cells.y0 + side - 1) / side) > kMostChanges) {
-        side *= 2;
-    }
-    std::vector<Change> changes;
-    for (int y = cells.y0; y < cells.y1; y += side) {
-        for (int x = cells.x0; x < cells.x1; x += side) {
-            const sand::CellRect changed =
-                surface_.differing(field, sand::CellRect{x, y, x + side, y + side}.clippedTo(cells));
-            if (!changed.empty()) {
-                const sand::CellRect vertices = verticesOver(changed);
-                changes.push_back({vertices, surface_.heights(vertices.grownBy(longestStride()))});
-            }
+HeightRange SandMesh::heightsAround(const sand::CellRect& vertices,
+                                    std::span<const SandSurface::Overwritten> overwritten) const {
+    const sand::CellRect cells = surface_.cellsUnder(vertices.grownBy(longestStride()));
+    HeightRange heights = surface_.heights(cells);
+    for (const auto& [changed, before] : overwritten) {
+        if (!changed.clippedTo(cells).empty()) {
+            heights = around(heights, before);
         }
     }
-    return changes;
+    return heights;
 }
 
-void SandMesh::update(const sand::HeightField& field, const sand::CellRect& cells) {
-    const std::vector<Change> changes = changesOf(field, cells);
-    if (changes.empty()) {
-        return;
+bool SandMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& change, std::span<const glm::dmat4>) {
+    const sand::HeightField& field = std::get<sand::GridData>(data).field;
+    std::vector<SandSurface::Overwritten> overwritten;
+    if (change.whole) {
+        surface_.takeOver(field, field.bounds(), overwritten);
+    } else {
+        for (const sand::CellRect& cells : std::get<sand::CellChange>(change.parts).cells) {
+            surface_.takeOver(field, cells, overwritten);
+        }
     }
-    surface_.update(field, cells);
+    if (overwritten.empty()) {
+        return false;
+    }
     ++revision_;
-    for (const Change& change : changes) {
-        const HeightRange heights = around(change.before, surface_.heights(change.vertices.grownBy(longestStride())));
-        damage_.add(revision_, {change.vertices, heights});
+    bool rim = false;
+    for (const sand::CellRect& cells : fewAround(overwritten)) {
+        const sand::CellRect vertices = verticesOver(cells);
+        const HeightRange heights = heightsAround(vertices, overwritten);
+        damage_.add(revision_, {vertices, heights});
         ever_ = around(ever_, heights);
-        markChanged(chunksAround(change.vertices), change.vertices);
+        markChanged(chunksAround(vertices), vertices);
+        rim |= surface_.touchesRim(cells);
     }
+    return rim;
 }
 
 sand::CellRect SandMesh::chunksAround(const sand::CellRect& vertices) const {
@@ -125,12 +154,15 @@ void SandMesh::markChanged(const sand::CellRect& chunks, const sand::CellRect& v
     for (int y = chunks.y0; y < chunks.y1; ++y) {
         for (int x = chunks.x0; x < chunks.x1; ++x) {
             Chunk& changed = chunk(x, y);
-            changed.revision = revision_;
-            changed.measured = false;
-            changed.heights = surface_.heights(changed.vertices);
             for (ChunkGeometry& geometry : changed.geometries) {
                 geometry.markStale(vertices);
             }
+            if (changed.revision == revision_) {
+                continue;  // by another part of this update
+            }
+            changed.revision = revision_;
+            changed.measured = false;
+            changed.heights = heightsUnder(changed.vertices);
             Group& group =
                 groups_[static_cast<std::size_t>(y / kGroup * ((across_ + kGroup - 1) / kGroup) + x / kGroup)];
             group.revision = revision_;
@@ -266,7 +298,7 @@ void SandMesh::updateLevels(DrawnLevels& levels, std::uint64_t revision, const L
                     drawn = static_cast<std::int8_t>(levelOf(x, y, rule));
                     // The outermost triangles of its neighbours follow its edges.
                     const sand::CellRect& vertices = chunk(x, y).vertices;
-                    const HeightRange heights = surface_.heights(vertices.grownBy(longestStride()));
+                    const HeightRange heights = heightsUnder(vertices.grownBy(longestStride()));
                     changed.push_back(boxAround(vertices, heights, strideAround(vertices, levels)));
                 }
             }

@@ -38,9 +38,8 @@ public:
     /// `sun` points towards it and has length 1.
     SandMesh(const sand::HeightField& field, const glm::vec3& sun);
 
-    /// Takes over the heights of these cells, which must lie within the field.
-    void update(const sand::HeightField& field, const sand::CellRect& cells);
-
+    [[nodiscard]] bool update(const sand::SurfaceData& data, const sand::SurfaceChange& change,
+                              std::span<const glm::dmat4> cameras) override;
     void prepare(const GlProgram& program) const override;
     Drawn draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
                const std::function<void(const Box&)>& before) override;
@@ -52,8 +51,7 @@ public:
     [[nodiscard]] SandRim rim() const override { return surface_.rim(); }
     [[nodiscard]] int chunks() const override { return static_cast<int>(chunks_.size()); }
     [[nodiscard]] std::size_t bytes() const override { return bytes_; }
-
-    [[nodiscard]] const SandSurface& surface() const { return surface_; }
+    [[nodiscard]] std::int64_t placesRead() const override { return surface_.placesRead(); }
 
 private:
     struct Chunk {
@@ -78,14 +76,14 @@ private:
         int count;
         std::vector<TriangleBlock> blocks;  // of level 0
     };
-    /// Part of an update.
-    struct Change {
-        sand::CellRect vertices;  // that may look different
-        HeightRange before;       // of all triangles that reach there
-    };
     void makeChunks();
     void makeGroups();
-    [[nodiscard]] std::vector<Change> changesOf(const sand::HeightField& field, const sand::CellRect& cells) const;
+    [[nodiscard]] HeightRange heightsUnder(const sand::CellRect& vertices) const {
+        return surface_.heights(surface_.cellsUnder(vertices));
+    }
+    /// Of all triangles that reach these vertices, now and before their heights were overwritten.
+    [[nodiscard]] HeightRange heightsAround(const sand::CellRect& vertices,
+                                            std::span<const SandSurface::Overwritten> overwritten) const;
     [[nodiscard]] sand::CellRect verticesOver(const sand::CellRect& cells) const;
     [[nodiscard]] sand::CellRect chunksAround(const sand::CellRect& vertices) const;
     void markChanged(const sand::CellRect& chunks, const sand::CellRect& vertices);

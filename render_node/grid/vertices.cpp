@@ -4,80 +4,172 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "render_node/gl/grain_texture.hpp"
 
 namespace render_node {
+namespace {
+
+constexpr int kLanes = SandSurface::kBlock;
+constexpr float kFar = std::numeric_limits<float>::infinity();
+
+}  // namespace
+
+/// The lowest and the highest of many heights, by lanes, which become vectors.
+class SandSurface::RangeByLanes {
+public:
+    RangeByLanes() {
+        lowest_.fill(kFar);
+        highest_.fill(-kFar);
+    }
+    void add(std::size_t lane, float height) { add(lane, height, height); }
+    void add(std::size_t lane, float low, float high) {
+        lowest_[lane] = low < lowest_[lane] ? low : lowest_[lane];
+        highest_[lane] = high > highest_[lane] ? high : highest_[lane];
+    }
+    [[nodiscard]] HeightRange range() const {
+        return {*std::ranges::min_element(lowest_), *std::ranges::max_element(highest_)};
+    }
+
+private:
+    std::array<float, kLanes> lowest_{}, highest_{};
+};
+
+/// Compares, converts and copies the heights of a block, row by row.
+class SandSurface::BlockWalk {
+public:
+    /// `cells` heights from the west, at most kLanes.
+    template <class Count>
+    void takeRow(const std::int32_t* from, float* drawn, Count cells, double unit, int row) {
+        std::uint32_t differs = 0;
+        for (std::size_t lane = 0; lane < cells; ++lane) {
+            const float now = static_cast<float>(from[lane] * unit);
+            const float before = drawn[lane];
+            const std::uint32_t other = now != before ? 1 : 0;
+            differs |= other;
+            columns_[lane] |= other;
+            before_.add(lane, other != 0 ? before : kFar, other != 0 ? before : -kFar);
+            now_.add(lane, now);
+            drawn[lane] = now;
+        }
+        if (differs != 0) {
+            rows_ = {rows_.first < 0 ? row : rows_.first, row + 1};
+        }
+    }
+    [[nodiscard]] bool differs() const { return rows_.first >= 0; }
+    [[nodiscard]] HeightRange now() const { return now_.range(); }
+    /// Of a block that begins in this column.
+    [[nodiscard]] Overwritten overwritten(int column) const {
+        const auto other = [](std::uint32_t lane) { return lane != 0; };
+        const auto first = std::ranges::find_if(columns_, other) - columns_.begin();
+        const auto end = std::find_if(columns_.rbegin(), columns_.rend(), other).base() - columns_.begin();
+        return {{column + static_cast<int>(first), rows_.first, column + static_cast<int>(end), rows_.second},
+                before_.range()};
+    }
+
+private:
+    std::array<std::uint32_t, kLanes> columns_{};  // whether a height of this column differed
+    std::pair<int, int> rows_{-1, -1};             // first and end of those with one
+    RangeByLanes before_, now_;
+};
 
 SandSurface::SandSurface(const sand::HeightField& field)
     : columns_(field.columns()),
       rows_(field.rows()),
       cellSize_(static_cast<float>(field.cellSize())),
-      heights_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {
-    update(field, field.bounds());
+      blocksAcross_(blocksFor(columns_)),
+      heights_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)),
+      ranges_(static_cast<std::size_t>(blocksAcross_) * static_cast<std::size_t>(blocksFor(rows_))) {
+    std::vector<Overwritten> all;
+    takeOver(field, field.bounds(), all);
 }
 
-void SandSurface::update(const sand::HeightField& field, const sand::CellRect& cells) {
-    const double unit = field.unit();
-    for (int row = cells.y0; row < cells.y1; ++row) {
-        const std::int32_t* from = field.row(row);
-        float* to = heights_.data() + static_cast<std::ptrdiff_t>(row) * columns_;
-        for (int column = cells.x0; column < cells.x1; ++column) {
-            to[column] = static_cast<float>(from[column] * unit);
+std::size_t SandSurface::blockAt(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(blocksAcross_) + static_cast<std::size_t>(x);
+}
+
+void SandSurface::takeOver(const sand::HeightField& field, const sand::CellRect& cells,
+                           std::vector<Overwritten>& overwritten) {
+    for (int y = cells.y0 / kBlock; y * kBlock < cells.y1; ++y) {
+        for (int x = cells.x0 / kBlock; x * kBlock < cells.x1; ++x) {
+            takeOverBlock(field, x, y, overwritten);
         }
     }
 }
 
-sand::CellRect SandSurface::differing(const sand::HeightField& field, const sand::CellRect& cells) const {
+void SandSurface::takeOverBlock(const sand::HeightField& field, int blockX, int blockY,
+                                std::vector<Overwritten>& overwritten) {
+    const sand::CellRect cells =
+        sand::CellRect{blockX * kBlock, blockY * kBlock, (blockX + 1) * kBlock, (blockY + 1) * kBlock}.clippedTo(
+            field.bounds());
     const double unit = field.unit();
-    sand::CellRect found{cells.x1, cells.y1, cells.x0, cells.y0};
+    BlockWalk walk;
     for (int row = cells.y0; row < cells.y1; ++row) {
-        const std::int32_t* now = field.row(row);
-        const float* drawn = heights_.data() + static_cast<std::ptrdiff_t>(row) * columns_;
-        const auto same = [&](int column) { return drawn[column] == static_cast<float>(now[column] * unit); };
-        int first = cells.x0;
-        while (first < cells.x1 && same(first)) {
-            ++first;
+        float* drawn = &heights_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+                                 static_cast<std::size_t>(cells.x0)];
+        if (cells.x1 - cells.x0 == kLanes) {  // a number that the compiler knows: vectors
+            walk.takeRow(field.row(row) + cells.x0, drawn, std::integral_constant<std::size_t, kLanes>(), unit, row);
+        } else {
+            walk.takeRow(field.row(row) + cells.x0, drawn, static_cast<std::size_t>(cells.x1 - cells.x0), unit, row);
         }
-        if (first == cells.x1) {
-            continue;
-        }
-        int end = cells.x1;
-        while (same(end - 1)) {
-            --end;
-        }
-        found = {std::min(found.x0, first), std::min(found.y0, row), std::max(found.x1, end), row + 1};
     }
-    return found.empty() ? sand::CellRect{} : found;
+    placesRead_ += std::int64_t{cells.x1 - cells.x0} * (cells.y1 - cells.y0);
+    if (walk.differs()) {
+        ranges_[blockAt(blockX, blockY)] = walk.now();
+        overwritten.push_back(walk.overwritten(cells.x0));
+    }
 }
 
-HeightRange SandSurface::heights(const sand::CellRect& vertices) const {
-    const int west = std::clamp(vertices.x0 - 1, 0, columns_ - 1);
-    const int east = std::clamp(vertices.x1 - 2, 0, columns_ - 1);
-    const int south = std::clamp(vertices.y0 - 1, 0, rows_ - 1);
-    const int north = std::clamp(vertices.y1 - 2, 0, rows_ - 1);
-    // By lanes, which become vectors: every change asks for the heights around it.
-    constexpr int kLanes = 8;
-    std::array<float, kLanes> lowest{}, highest{};
-    lowest.fill(height(west, south));
-    highest = lowest;
-    const auto add = [&](std::size_t lane, float height) {
-        lowest[lane] = height < lowest[lane] ? height : lowest[lane];
-        highest[lane] = height > highest[lane] ? height : highest[lane];
-    };
-    for (int row = south; row <= north; ++row) {
+sand::CellRect SandSurface::cellsUnder(const sand::CellRect& vertices) const {
+    return {std::clamp(vertices.x0 - 1, 0, columns_ - 1), std::clamp(vertices.y0 - 1, 0, rows_ - 1),
+            std::clamp(vertices.x1 - 2, 0, columns_ - 1) + 1, std::clamp(vertices.y1 - 2, 0, rows_ - 1) + 1};
+}
+
+HeightRange SandSurface::heights(const sand::CellRect& cells) const {
+    const auto endBlock = [](int end, int all) { return end == all ? blocksFor(end) : end / kBlock; };
+    const sand::CellRect blocks{blocksFor(cells.x0), blocksFor(cells.y0), endBlock(cells.x1, columns_),
+                                endBlock(cells.y1, rows_)};
+    RangeByLanes around;
+    if (blocks.empty()) {
+        add(cells, around);
+        return around.range();
+    }
+    // Blocks that lie within by their ranges, and what is left on the four sides cell by cell.
+    const sand::CellRect within =
+        sand::CellRect{blocks.x0 * kBlock, blocks.y0 * kBlock, blocks.x1 * kBlock, blocks.y1 * kBlock}.clippedTo(cells);
+    add({cells.x0, cells.y0, cells.x1, within.y0}, around);
+    add({cells.x0, within.y1, cells.x1, cells.y1}, around);
+    add({cells.x0, within.y0, within.x0, within.y1}, around);
+    add({within.x1, within.y0, cells.x1, within.y1}, around);
+    HeightRange found = around.range();
+    for (int y = blocks.y0; y < blocks.y1; ++y) {
+        for (int x = blocks.x0; x < blocks.x1; ++x) {
+            found = render_node::around(found, ranges_[blockAt(x, y)]);
+        }
+    }
+    placesRead_ += std::int64_t{blocks.x1 - blocks.x0} * (blocks.y1 - blocks.y0);
+    return found;
+}
+
+void SandSurface::add(const sand::CellRect& cells, RangeByLanes& range) const {
+    if (cells.empty()) {
+        return;
+    }
+    for (int row = cells.y0; row < cells.y1; ++row) {
         const float* heights = heights_.data() + static_cast<std::ptrdiff_t>(row) * columns_;
-        int column = west;
-        for (; column + kLanes <= east + 1; column += kLanes) {
+        int column = cells.x0;
+        for (; column + kLanes <= cells.x1; column += kLanes) {
             for (std::size_t lane = 0; lane < kLanes; ++lane) {
-                add(lane, heights[static_cast<std::size_t>(column) + lane]);
+                range.add(lane, heights[static_cast<std::size_t>(column) + lane]);
             }
         }
-        for (; column <= east; ++column) {
-            add(0, heights[column]);
+        for (; column < cells.x1; ++column) {
+            range.add(0, heights[column]);
         }
     }
-    return {*std::ranges::min_element(lowest), *std::ranges::max_element(highest)};
+    placesRead_ += std::int64_t{cells.x1 - cells.x0} * (cells.y1 - cells.y0);
 }
 
 float SandSurface::height(int column, int row) const {

@@ -31,21 +31,31 @@ class SandSurface {
 public:
     /// A vertex depends on cells up to this far from its own [cell].
     static constexpr int kReach = kSkyDistances.back();
+    static constexpr int kBlock = 8;  // [cell], as those of the changes that sand lists, and a vector of AVX2
 
     explicit SandSurface(const sand::HeightField& field);
 
-    /// The smallest rectangle around those of these cells whose height is not drawn yet.
-    [[nodiscard]] sand::CellRect differing(const sand::HeightField& field, const sand::CellRect& cells) const;
-    /// Takes over the heights of these cells, which must lie within the field.
-    void update(const sand::HeightField& field, const sand::CellRect& cells);
+    /// Cells of one block that differed from what was drawn: the smallest rectangle around them, and the heights they
+    /// had.
+    struct Overwritten {
+        sand::CellRect cells;
+        HeightRange before;
+    };
+    /// Takes over the heights of these cells, which must lie within the field, and of the rest of their blocks. Reads
+    /// each once. Appends what differed to `overwritten`.
+    void takeOver(const sand::HeightField& field, const sand::CellRect& cells, std::vector<Overwritten>& overwritten);
 
     [[nodiscard]] int columns() const { return columns_; }      // [cell]
     [[nodiscard]] int rows() const { return rows_; }            // [cell]
     [[nodiscard]] float cellSize() const { return cellSize_; }  // [scene unit]
     /// Height over the nearest cell of the field [scene unit].
     [[nodiscard]] float height(int column, int row) const;
-    /// The lowest and the highest vertex of a rectangle of the vertex grid that may reach beyond it [scene unit].
-    [[nodiscard]] HeightRange heights(const sand::CellRect& vertices) const;
+    /// The cells under a rectangle of the vertex grid that may reach beyond it; beyond the field, those at its edge.
+    [[nodiscard]] sand::CellRect cellsUnder(const sand::CellRect& vertices) const;
+    /// The lowest and the highest of these cells, which must lie within the field and be some [scene unit].
+    [[nodiscard]] HeightRange heights(const sand::CellRect& cells) const;
+    /// Heights that takeOver() and heights() have read, a block's range as one.
+    [[nodiscard]] std::int64_t placesRead() const { return placesRead_; }
     /// East (from a vertex column) or north (from a vertex row) of the field's corner [scene unit].
     [[nodiscard]] float east(int vertexColumn) const { return along(vertexColumn, columns_); }
     [[nodiscard]] float north(int vertexRow) const { return along(vertexRow, rows_); }
@@ -67,12 +77,21 @@ public:
     [[nodiscard]] float mottling(int vertexColumn, int vertexRow) const;
 
 private:
+    void takeOverBlock(const sand::HeightField& field, int blockX, int blockY, std::vector<Overwritten>& overwritten);
+    class RangeByLanes;
+    class BlockWalk;
+    void add(const sand::CellRect& cells, RangeByLanes& range) const;
+    [[nodiscard]] static int blocksFor(int cells) { return (cells + kBlock - 1) / kBlock; }
+    [[nodiscard]] std::size_t blockAt(int x, int y) const;
     [[nodiscard]] float along(int vertex, int cells) const;
     [[nodiscard]] SandVertex vertexUnder(float open, int column, int row) const;
 
     int columns_, rows_;
     float cellSize_;
-    std::vector<float> heights_;  // [scene unit], row by row
+    int blocksAcross_;
+    std::vector<float> heights_;       // [scene unit], row by row
+    std::vector<HeightRange> ranges_;  // of each block, row by row: few heights tell how high a large part is
+    mutable std::int64_t placesRead_ = 0;
 };
 
 }  // namespace render_node

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "render_node/gl/gl_program.hpp"
@@ -12,6 +13,7 @@
 #include "render_node/surface/height_range.hpp"
 #include "render_node/surface/level_rule.hpp"
 #include "render_node/surface/sand_rim.hpp"
+#include "sand/model/surface_data.hpp"
 
 namespace render_node {
 
@@ -33,6 +35,13 @@ public:
     DrawnSurface(const DrawnSurface&) = delete;
     DrawnSurface& operator=(const DrawnSurface&) = delete;
     virtual ~DrawnSurface() = default;
+
+    /// Takes over what changed of the sand, which must be of the kind and size that this surface was made of; copies
+    /// it. `cameras` (each from the scene to clip coordinates) are the only ones that draw before the next update: what
+    /// none of them sees may be put off until one does. Without any, all of it counts as seen.
+    /// @return Whether rim() is another.
+    [[nodiscard]] virtual bool update(const sand::SurfaceData& data, const sand::SurfaceChange& change,
+                                      std::span<const glm::dmat4> cameras) = 0;
 
     /// Sets the uniforms that are the surface's own. The program must be in use.
     virtual void prepare(const GlProgram& program) const = 0;
@@ -63,6 +72,8 @@ public:
     [[nodiscard]] virtual int chunks() const = 0;
     /// Bytes of vertices and indices in GL.
     [[nodiscard]] virtual std::size_t bytes() const = 0;
+    /// Heights that updates have read so far, or vertices and triangles of a TIN: for measurements.
+    [[nodiscard]] virtual std::int64_t placesRead() const = 0;
 };
 
 }  // namespace render_node

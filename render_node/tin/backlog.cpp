@@ -15,12 +15,16 @@ void TinBacklog::add(const sand::TinChange& damage, const Box& box) {
     }
 }
 
-bool TinBacklog::isSeen(const std::function<bool(const Box&)>& sees) const {
-    return std::any_of(boxes_.begin(), boxes_.end(), sees);
+bool TinBacklog::isSeen(std::span<const glm::dmat4> cameras) const {
+    return std::ranges::any_of(boxes_, [cameras](const Box& box) {
+        return cameras.empty() || std::ranges::any_of(cameras, [&box](const glm::dmat4& sceneToClip) {
+                   return inFrustum(box, sceneToClip);
+               });
+    });
 }
 
 sand::TinChange TinBacklog::take() {
-    sand::TinChange all{.whole = false, .triangles = triangles_.all(), .vertices = vertices_.all()};
+    sand::TinChange all{.triangles = triangles_.all(), .vertices = vertices_.all()};
     std::sort(all.triangles.begin(), all.triangles.end());
     std::sort(all.vertices.begin(), all.vertices.end());
     clear();

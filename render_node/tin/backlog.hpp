@@ -2,12 +2,13 @@
 // Private to this folder.
 #pragma once
 
-#include <functional>
+#include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "base/index_set.hpp"
 #include "render_node/surface/frustum.hpp"
-#include "sand/model/tin_change.hpp"
+#include "sand/model/surface_data.hpp"
 #include "sand/tin/geometry/surface_view.hpp"
 
 namespace render_node {
@@ -18,7 +19,9 @@ class TinBacklog {
 public:
     /// All of it lies within the box.
     void add(const sand::TinChange& damage, const Box& box);
-    [[nodiscard]] bool isSeen(const std::function<bool(const Box&)>& sees) const;
+    /// Whether one of these cameras (each from the scene to clip coordinates) sees some of it; without any, whether
+    /// there is some.
+    [[nodiscard]] bool isSeen(std::span<const glm::dmat4> cameras) const;
     /// Everything that was added since this was called last; holds until then what has long been put right again, too.
     [[nodiscard]] sand::TinChange take();
     void clear();

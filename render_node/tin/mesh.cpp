@@ -85,22 +85,30 @@ TinMesh::TinMesh(const SurfaceView& tin, double cellSize)
     sendAllVertices();
 }
 
-bool TinMesh::update(const SurfaceView& tin, const TinChange& damage, const std::function<bool(const Box&)>& sees) {
-    if (damage.whole) {
+bool TinMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& change,
+                     std::span<const glm::dmat4> cameras) {
+    const SurfaceView& tin = std::get<sand::TinData>(data).view;
+    if (change.whole) {
         backlog_.clear();
-        return takeOver(tin, damage);
+        placesRead_ += static_cast<std::int64_t>(tin.triangles.triangles.size() + tin.heights.size());
+        return takeOver(surface_.replaceWhole(tin));
     }
+    const auto& parts = std::get<TinChange>(change.parts);
     bool rimToo = false;  // which is drawn with what stands around the sand, seen from everywhere
-    if (!damage.triangles.empty() || !damage.vertices.empty()) {
-        const std::optional<Box> reach = surface_.reachOf(tin, damage);
+    if (!parts.triangles.empty() || !parts.vertices.empty()) {
+        const std::optional<Box> reach = surface_.reachOf(tin, parts);
         rimToo = !reach;
-        backlog_.add(damage, reach.value_or(Box{}));
+        backlog_.add(parts, reach.value_or(Box{}));
     }
-    return (rimToo || backlog_.isSeen(sees)) && takeOver(tin, backlog_.take());
+    if (!rimToo && !backlog_.isSeen(cameras)) {
+        return false;
+    }
+    const TinChange all = backlog_.take();
+    placesRead_ += static_cast<std::int64_t>(all.triangles.size() + all.vertices.size());
+    return takeOver(surface_.update(tin, all));
 }
 
-bool TinMesh::takeOver(const SurfaceView& tin, const TinChange& damage) {
-    const TinSurface::Change change = surface_.update(tin, damage);
+bool TinMesh::takeOver(const TinSurface::Change& change) {
     if (change.boxes.empty() && change.vertices.empty()) {
         return false;
     }

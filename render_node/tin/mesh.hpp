@@ -9,7 +9,7 @@
 #include "render_node/surface/drawn_surface.hpp"
 #include "render_node/tin/backlog.hpp"
 #include "render_node/tin/vertices.hpp"
-#include "sand/model/tin_change.hpp"
+#include "sand/model/surface_data.hpp"
 
 namespace render_node {
 
@@ -21,11 +21,9 @@ class TinMesh final : public DrawnSurface {
 public:
     TinMesh(const sand::tin::SurfaceView& tin, double cellSize /* [scene unit] */);
 
-    /// Takes over what is damaged; says whether the rim is another. What lies in no box that `sees` accepts is put off
-    /// until it does.
-    [[nodiscard]] bool update(const sand::tin::SurfaceView& tin, const sand::TinChange& damage,
-                              const std::function<bool(const Box&)>& sees);
-
+    /// What no camera sees is put off.
+    [[nodiscard]] bool update(const sand::SurfaceData& data, const sand::SurfaceChange& change,
+                              std::span<const glm::dmat4> cameras) override;
     void prepare(const GlProgram& program) const override;
     Drawn draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
                const std::function<void(const Box&)>& before) override;
@@ -39,6 +37,7 @@ public:
     [[nodiscard]] SandRim rim() const override { return surface_.rim(); }
     [[nodiscard]] int chunks() const override { return static_cast<int>(buffers_.size()); }
     [[nodiscard]] std::size_t bytes() const override { return bytes_; }
+    [[nodiscard]] std::int64_t placesRead() const override { return placesRead_; }
 
 private:
     /// Of a chunk, since a camera has seen it.
@@ -50,7 +49,7 @@ private:
     };
     template <class Visit>  // void(std::size_t chunk)
     void visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit& visit);
-    [[nodiscard]] bool takeOver(const sand::tin::SurfaceView& tin, const sand::TinChange& damage);
+    [[nodiscard]] bool takeOver(const TinSurface::Change& change);
     void sendAllVertices();
     void sendVertices(std::span<const sand::tin::Vertex> changed);
     void sendTriangles(std::size_t chunk);
@@ -66,6 +65,7 @@ private:
     std::vector<Buffers> buffers_;          // by chunk
     std::optional<GlProgram> markProgram_;  // since marks were first drawn
     std::size_t bytes_ = 0;
+    std::int64_t placesRead_ = 0;
     std::uint64_t revision_ = 0;
     DamageHistory<Box> damage_;
     TrianglePace pace_;

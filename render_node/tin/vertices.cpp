@@ -80,18 +80,20 @@ void TinSurface::grow(const Triangles& mesh) {
     inChunk_.resize(triangles_.size());
 }
 
+TinSurface::Change TinSurface::replaceWhole(const SurfaceView& tin) {
+    TinSurface anew(tin, cellSize_, chunkSide_);
+    anew.ever_ = around(ever_, anew.ever_);
+    *this = std::move(anew);
+    Change change;
+    change.whole = change.rim = true;
+    change.boxes.push_back(
+        {glm::dvec3(-cellSize_, -cellSize_, ever_.lowest - cellSize_),
+         glm::dvec3((width_ + kCell) * probe_, (depth_ + kCell) * probe_, double{ever_.highest} + cellSize_)});
+    return change;
+}
+
 TinSurface::Change TinSurface::update(const SurfaceView& tin, const sand::TinChange& damage) {
     Change change;
-    if (damage.whole) {
-        TinSurface anew(tin, cellSize_, chunkSide_);
-        anew.ever_ = around(ever_, anew.ever_);
-        *this = std::move(anew);
-        change.whole = change.rim = true;
-        change.boxes.push_back(
-            {glm::dvec3(-cellSize_, -cellSize_, ever_.lowest - cellSize_),
-             glm::dvec3((width_ + kCell) * probe_, (depth_ + kCell) * probe_, double{ever_.highest} + cellSize_)});
-        return change;
-    }
     const Triangles& mesh = tin.triangles;
     grow(mesh);
     std::vector<std::int32_t> replaced;

@@ -17,7 +17,7 @@
 #include "render_node/surface/sand_rim.hpp"
 #include "render_node/tin/relief.hpp"
 #include "render_node/tin/vertex_squares.hpp"
-#include "sand/model/tin_change.hpp"
+#include "sand/model/surface_data.hpp"
 #include "sand/tin/geometry/surface_view.hpp"
 
 namespace render_node {
@@ -79,6 +79,8 @@ public:
         std::vector<Box> boxes;                   // around what looks different, before and after
     };
     [[nodiscard]] Change update(const sand::tin::SurfaceView& tin, const sand::TinChange& damage);
+    /// As an update of everything.
+    [[nodiscard]] Change replaceWhole(const sand::tin::SurfaceView& tin);
     /// The boxes of all damages since the last update together bound what an update with all of them may change, before
     /// and after; nothing where it may be the rim. From what this surface is now and what the TIN is.
     [[nodiscard]] std::optional<Box> reachOf(const sand::tin::SurfaceView& tin, const sand::TinChange& damage);

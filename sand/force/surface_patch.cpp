@@ -80,9 +80,10 @@ bool SurfacePatch::takeFacets(const tin::SurfaceView& tin, double cellSize, Prob
 
 void SurfacePatch::take(const Replica& terrain, const ProbePoint& centre) {
     const double cell = terrain.cellSize(), radius = terrain.toolRadius();
-    if (terrain.tinView() == nullptr) {
-        takeCells(terrain.field(), centre, radius);
-    } else if (const tin::SurfaceView& tin = *terrain.tinView(); !takeFacets(tin, cell, centre, radius)) {
+    const SurfaceData data = terrain.surface().data();
+    if (const auto* grid = std::get_if<GridData>(&data)) {
+        takeCells(grid->field, centre, radius);
+    } else if (const tin::SurfaceView& tin = std::get<TinData>(data).view; !takeFacets(tin, cell, centre, radius)) {
         const Rules& rules = terrain.rules();
         sample({rules.columns, rules.rows, cell, kMostHeights}, centre, radius, [&](int column, int row) {
             return terrain.surface().height((column + 0.5) * kProbePerCell, (row + 0.5) * kProbePerCell);

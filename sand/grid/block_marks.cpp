@@ -15,4 +15,18 @@ void BlockMarks::add(const CellRect& blocks) {
     }
 }
 
+std::vector<CellRect> BlockMarks::takeRuns() {
+    std::vector<CellRect> runs;
+    takeAll([&](int block) {
+        const int x = block % across_;
+        const int y = block / across_;
+        if (!runs.empty() && runs.back().y0 == y && runs.back().x1 == x) {
+            ++runs.back().x1;
+        } else {
+            runs.push_back({x, y, x + 1, y + 1});
+        }
+    });
+    return runs;
+}
+
 }  // namespace sand::grid

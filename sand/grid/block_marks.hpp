@@ -30,6 +30,8 @@ public:
         }
         around_ = {};
     }
+    /// Returns its blocks as runs, each within one row, row by row from the south-west, and leaves the set empty.
+    [[nodiscard]] std::vector<CellRect> takeRuns();
     [[nodiscard]] std::size_t bytes() const { return marks_.size(); }
 
 private:

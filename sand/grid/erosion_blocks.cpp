@@ -137,18 +137,9 @@ void Erosion::markBeside(const std::uint8_t* flowed, int side, const CellRect& r
 }
 
 std::vector<CellRect> Erosion::takeMoved() {
-    std::vector<CellRect> blocks;
-    moved_.takeAll([&](int block) {
-        const int x = block % across_;
-        const int y = block / across_;
-        if (!blocks.empty() && blocks.back().y0 == y && blocks.back().x1 == x) {
-            ++blocks.back().x1;
-        } else {
-            blocks.push_back({x, y, x + 1, y + 1});
-        }
-    });
-    std::ranges::transform(blocks, blocks.begin(), [this](const CellRect& run) { return cellsOf(run); });
-    return blocks;
+    std::vector<CellRect> runs = moved_.takeRuns();
+    std::ranges::transform(runs, runs.begin(), [this](const CellRect& run) { return cellsOf(run); });
+    return runs;
 }
 
 }  // namespace sand::grid

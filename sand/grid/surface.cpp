@@ -12,6 +12,10 @@ namespace {
 
 constexpr int kSweepsToRest = 1 << 20;  // more than any field that is worth waiting for
 
+constexpr int kBlock = Erosion::kDefaultBlock;  // [cell], of the changes that takeChange() returns
+
+int blocksFor(int cells) { return (cells + kBlock - 1) / kBlock; }
+
 Erosion::Options withGround(Erosion::Options options, const Ground* ground) {
     options.ground = ground;
     return options;
@@ -25,19 +29,44 @@ GridSurface::GridSurface(const Rules& rules, const HeightField& field, std::shar
       ground_(std::move(ground)),
       field_(field),
       erosion_(field_, rules_, withGround(options, ground_.get())),
-      hash_(field_),
-      damage_(field_.bounds()) {
+      hash_(field_) {
     base::ByteWriter writer;
     encodeCells(field_.cells(), field_.bounds(), writer);
     start_ = std::make_shared<const base::Bytes>(writer.take());
 }
 
+std::unique_ptr<Surface> GridSurface::clone() const {
+    auto copy = std::make_unique<GridSurface>(*this);
+    copy->changed_.reset();  // whoever draws the copy has seen nothing of it
+    return copy;
+}
+
 void GridSurface::touch(const CellRect& cells) {
-    if (!cells.empty()) {
-        hash_.touch(cells);
-        beforeStroke_.touch(cells);
-        damage_ = damage_.joinedWith(cells);
+    if (cells.empty()) {
+        return;
     }
+    hash_.touch(cells);
+    beforeStroke_.touch(cells);
+    if (changed_) {
+        changed_->add({cells.x0 / kBlock, cells.y0 / kBlock, blocksFor(cells.x1), blocksFor(cells.y1)});
+    }
+}
+
+void GridSurface::touchAll() {
+    changed_.reset();
+    touch(field_.bounds());
+}
+
+SurfaceChange GridSurface::takeChange() {
+    if (!changed_) {
+        changed_.emplace(blocksFor(field_.columns()), blocksFor(field_.rows()));
+        return {};
+    }
+    CellChange change{changed_->takeRuns()};
+    for (CellRect& run : change.cells) {
+        run = CellRect{run.x0 * kBlock, run.y0 * kBlock, run.x1 * kBlock, run.y1 * kBlock}.clippedTo(field_.bounds());
+    }
+    return {.whole = false, .parts = std::move(change)};
 }
 
 void GridSurface::drag(const HeldTool& tool, std::span<const ProbePoint> path) {
@@ -76,7 +105,7 @@ void GridSurface::settle() {
     }
     outflow_ += sand::grid::settle(field_, rules_).outflow;
     erosion_.touch(field_.bounds());
-    touch(field_.bounds());
+    touchAll();
 }
 
 void GridSurface::reset() {
@@ -84,7 +113,7 @@ void GridSurface::reset() {
     decodeCells(reader, field_.bounds(), kMaxHeight, field_.cells());
     erosion_.resume({});
     outflow_ = 0;
-    touch(field_.bounds());
+    touchAll();
 }
 
 std::shared_ptr<const SurfaceCopy> GridSurface::kept() const {
@@ -115,7 +144,7 @@ void GridSurface::replace(const SurfaceCopy& copy) {
     field_ = sand.field;
     erosion_.resume(sand.inertia);
     outflow_ = sand.outflow;
-    touch(field_.bounds());
+    touchAll();
 }
 
 void GridSurface::audit(int tiles) {

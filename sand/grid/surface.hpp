@@ -2,7 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
+#include "sand/grid/block_marks.hpp"
 #include "sand/grid/displacement.hpp"
 #include "sand/grid/erosion.hpp"
 #include "sand/grid/snapshot.hpp"
@@ -17,10 +19,8 @@ public:
     /// `options` say how the sand is swept, not what comes of it; their ground is the scene's own.
     GridSurface(const Rules& rules, const HeightField& field, std::shared_ptr<const Ground> ground,
                 const Erosion::Options& options);
-    [[nodiscard]] std::unique_ptr<Surface> clone() const override { return std::make_unique<GridSurface>(*this); }
+    [[nodiscard]] std::unique_ptr<Surface> clone() const override;
 
-    [[nodiscard]] const HeightField& field() const { return field_; }
-    [[nodiscard]] const Ground* ground() const { return ground_.get(); }
     [[nodiscard]] const Erosion& erosion() const { return erosion_; }
 
     void drag(const HeldTool& tool, std::span<const ProbePoint> path) override;
@@ -53,10 +53,12 @@ public:
     void corrupt(int column, int row, int bit) override;
 
     [[nodiscard]] double height(double x, double y) const override;
-    [[nodiscard]] CellRect takeDamage() override { return std::exchange(damage_, CellRect{}); }
+    [[nodiscard]] SurfaceData data() const override { return GridData{field_, ground_.get()}; }
+    [[nodiscard]] SurfaceChange takeChange() override;
 
 private:
     void touch(const CellRect& cells);
+    void touchAll();
 
     Rules rules_;
     std::shared_ptr<const Ground> ground_;
@@ -66,7 +68,7 @@ private:
     std::int64_t outflow_ = 0;
     std::shared_ptr<const base::Bytes> start_;  // the scene's heights, compressed; copies of a replica share them
     Undo beforeStroke_;                         // the last one
-    CellRect damage_;
+    std::optional<BlockMarks> changed_;         // since takeChange(); nullopt: everything may have
 };
 
 }  // namespace sand::grid

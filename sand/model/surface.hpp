@@ -11,12 +11,8 @@
 #include "sand/model/cell_array.hpp"
 #include "sand/model/rules.hpp"
 #include "sand/model/step.hpp"
-#include "sand/model/tin_change.hpp"
+#include "sand/model/surface_data.hpp"
 #include "sand/model/tool_shape.hpp"
-
-namespace sand::tin {
-struct SurfaceView;
-}
 
 namespace sand {
 
@@ -106,11 +102,11 @@ public:
     /// The surface there [unit]; the nearest place of the field beyond it.
     [[nodiscard]] virtual double height(double x, double y /* [probe unit] */) const = 0;
 
-    /// The cells that changed since this was called last: one rectangle around them, empty when nothing did.
-    [[nodiscard]] virtual CellRect takeDamage() = 0;
-    /// Null unless it is a TIN, and what changed of it since this was called last.
-    [[nodiscard]] virtual const tin::SurfaceView* tinView() const { return nullptr; }
-    [[nodiscard]] virtual TinChange takeTinDamage() { return {}; }
+    /// The sand as it is. Refers to this surface; read it again after a change.
+    [[nodiscard]] virtual SurfaceData data() const = 0;
+    /// Returns what changed since the last call, and everything at the first one. Until then the surface records no
+    /// changes: a replica that nobody draws holds no lists.
+    [[nodiscard]] virtual SurfaceChange takeChange() = 0;
 };
 
 }  // namespace sand

@@ -98,9 +98,9 @@ void TinSurface::meshChanged() {
     if (detail_.removals > 0) {
         coarsening_.touch(layer_.triangles(), change);
     }
-    if (!damage_.whole) {
-        addTo(damage_.triangles, change.triangles);
-        addTo(damage_.vertices, change.vertices);
+    if (changed_) {
+        addTo(changed_->triangles, change.triangles);
+        addTo(changed_->vertices, change.vertices);
     }
 }
 
@@ -128,8 +128,8 @@ void TinSurface::sandMoved(const std::vector<Vertex>& vertices) {
     }
     hash_.touch(layer_, vertices);
     beforeStroke_.touch(vertices);
-    if (!damage_.whole) {
-        addTo(damage_.vertices, vertices);
+    if (changed_) {
+        addTo(changed_->vertices, vertices);
     }
 }
 
@@ -219,7 +219,7 @@ void TinSurface::replace(const SurfaceCopy& copy) {
     held_.reset();
     sawAll_ = false;
     coarsening_.forget();
-    damage_ = {.whole = true, .triangles = {}, .vertices = {}};
+    changed_.reset();
     lastFound_ = kNobody;
 }
 
@@ -256,10 +256,14 @@ double TinSurface::height(double x, double y) const {
     return sum / weights;
 }
 
-TinChange TinSurface::takeTinDamage() {
-    sortOnce(damage_.triangles);
-    sortOnce(damage_.vertices);
-    return std::exchange(damage_, {});
+SurfaceChange TinSurface::takeChange() {
+    if (!changed_) {
+        changed_.emplace();
+        return {};
+    }
+    sortOnce(changed_->triangles);
+    sortOnce(changed_->vertices);
+    return {.whole = false, .parts = std::exchange(*changed_, {})};
 }
 
 }  // namespace sand::tin

@@ -61,9 +61,8 @@ public:
     void corrupt(int column, int row, int bit) override;
 
     [[nodiscard]] double height(double x, double y) const override;
-    [[nodiscard]] CellRect takeDamage() override { return {}; }
-    [[nodiscard]] const SurfaceView* tinView() const override { return &view_; }
-    [[nodiscard]] TinChange takeTinDamage() override;
+    [[nodiscard]] SurfaceData data() const override { return TinData{view_}; }
+    [[nodiscard]] SurfaceChange takeChange() override;
 
 private:
     [[nodiscard]] Displacement& displacementOf(const HeldTool& tool);
@@ -85,7 +84,7 @@ private:
     TileHash hash_;
     SurfaceView view_{layer_.triangles(), layer_.heights(), detail_.spacing};
     Undo beforeStroke_;
-    TinChange damage_{.whole = true, .triangles = {}, .vertices = {}};
+    std::optional<TinChange> changed_;          // since takeChange(); nullopt: everything may have
     std::optional<Displacement> displacement_;  // of the last displacementOf()
     std::shared_ptr<Neighbourhood> neighbourhood_ = std::make_shared<Neighbourhood>();
     bool sawAll_ = false;                       // neighbourhood_ shows the mesh as it is, around the tool

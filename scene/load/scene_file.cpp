@@ -8,6 +8,7 @@
 #include "base/input_error.hpp"
 #include "host/toml_table.hpp"
 #include "sand/replica.hpp"
+#include "sand/surface_factory.hpp"
 #include "scene/load/terrain.hpp"
 #include "scene/load/tin_settings.hpp"
 #include "scene/load/tin_table.hpp"
@@ -168,7 +169,7 @@ Scene loadScene(const std::filesystem::path& file, const SizeChecks& checks) {
     if (settle) {
         sand::Replica terrain(scene);
         terrain.apply({.epoch = 1, .number = 1, .engaged = false, .path = {}, .edit = sand::Edit::settle});
-        startFrom(terrain, scene);
+        sand::startFrom(terrain.surface(), scene);
     }
     return scene;
 }

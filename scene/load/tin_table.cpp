@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "sand/tin/refine/start_maker.hpp"
-#include "sand/tin/surface.hpp"
 #include "scene/load/tin_settings.hpp"
 
 namespace scene {
@@ -94,12 +93,6 @@ sand::tin::TinStart followed(const host::TomlTable& tin, Scene& scene) {
     } catch (const std::length_error& error) {
         tin.fail("vertices", error.what());
     }
-}
-
-void setTin(sand::tin::TinStart start, Scene& scene) {
-    scene.tin = std::make_shared<const sand::tin::TinStart>(std::move(start));
-    scene.rules.tin = scene.tin->digest();
-    scene.terrain = sand::HeightField(1, 1, scene.terrain.cellSize());
 }
 
 /// Returns the largest distance of a point from the datum [unit], which may be beyond what a height can be.
@@ -196,7 +189,7 @@ void readTin(const host::TomlTable& file, Scene& scene) {
         file.fail("tin", "a TIN has no rock; leave out [tin], or 'layer' and 'bedrock'");
     }
     if (scene.tin != nullptr) {
-        setTin(joined(file, *tin, scene), scene);
+        scene.beginAs(joined(file, *tin, scene));
         return;
     }
     const sand::HeightField& field = scene.terrain;
@@ -210,16 +203,7 @@ void readTin(const host::TomlTable& file, Scene& scene) {
     sand::tin::TinStart start = followed(*tin, scene);
     scene.ground = nullptr;  // its walls are the TIN's own
     scene.rules.ground = 0;
-    setTin(std::move(start), scene);
-}
-
-void startFrom(const sand::Replica& terrain, Scene& scene) {
-    if (scene.tin != nullptr) {
-        const auto& surface = dynamic_cast<const sand::tin::TinSurface&>(terrain.surface());
-        setTin(sand::tin::startOf(surface.layer(), surface.start().settings), scene);
-    } else {
-        scene.terrain = terrain.field();
-    }
+    scene.beginAs(std::move(start));
 }
 
 }  // namespace scene

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "host/toml_table.hpp"
-#include "sand/replica.hpp"
 #include "scene/import/points_file.hpp"
 #include "scene/scene.hpp"
 
@@ -18,8 +17,5 @@ namespace scene {
 /// Reads [tin] of a scene file: the scene's height field becomes a TIN. Does nothing without that table. Throws
 /// base::InputError with file, line and key.
 void readTin(const host::TomlTable& file, Scene& scene);
-
-/// The scene starts with the sand as it is there.
-void startFrom(const sand::Replica& terrain, Scene& scene);
 
 }  // namespace scene

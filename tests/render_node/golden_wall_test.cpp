@@ -51,7 +51,7 @@ protected:
         view.setTool(dug_.terrain.probe(), false);
         pictures.hovering = sample::wallPicture(view, wall);
         render_node::ScenePainter bare(dug_.scene, sample::sceneToRoom(wall, dug_.scene));
-        bare.update(dug_.terrain.field(), dug_.terrain.field().bounds());
+        bare.update(dug_.terrain.surface().data(), {});
         pictures.without = sample::wallPicture(bare, wall);
         return pictures;
     }

@@ -48,7 +48,7 @@ TEST(StereoChange, OfATileShowsWhatATileOfThatModeShows) {
     view.eyeSeparation = 0.3;
     sand::Replica terrain(scene);
     walls::Wall shown = wall;
-    render_node::TilePainter painter(shown, shown.tiles[0], scene, "host");
+    render_node::TilePainter painter(shown, shown.tiles[0], scene, "host", sand::GridData{scene.terrain});
     std::uint64_t frame = 0;
     painter.paint(terrain, view, ++frame);
     for (const Stereo stereo : {Stereo::mono, Stereo::anaglyphDubois, Stereo::right, Stereo::checkerboard, Stereo::left,
@@ -56,7 +56,7 @@ TEST(StereoChange, OfATileShowsWhatATileOfThatModeShows) {
         shown = walls::shownOnItsOutputs(wall, stereo);
         painter.showAs(shown, shown.tiles[0]);
         painter.paint(terrain, view, ++frame);
-        render_node::TilePainter fresh(shown, shown.tiles[0], scene, "host");
+        render_node::TilePainter fresh(shown, shown.tiles[0], scene, "host", sand::GridData{scene.terrain});
         sand::Replica same(scene);
         fresh.paint(same, view, 1);
         EXPECT_EQ(picturesOf(painter), picturesOf(fresh)) << walls::stereoName(stereo);
@@ -84,7 +84,7 @@ TEST(FrameBuffers, HoldTheEyesOfAModeAndWhatItComposesOfThem) {
                                               {"anaglyph_dubois", 2 * kEye + kColour}};
     for (const std::string& name : walls::stereoNames()) {
         const walls::Wall shown = walls::shownIn(wall, walls::stereoNamed(name));
-        const render_node::TilePainter painter(shown, shown.tiles[0], scene, "host");
+        const render_node::TilePainter painter(shown, shown.tiles[0], scene, "host", sand::GridData{scene.terrain});
         EXPECT_EQ(painter.frameBufferBytes(), perPixel.at(name) * kPixels) << name;
     }
 }

@@ -185,7 +185,7 @@ TEST_F(TiledWall, LeavesOutTilesThatCannotHaveChangedAndMissesNone) {
             sample::drag(terrain, scene_, from, from + glm::dvec3(0.1, 0.15, 0));
             lazy.setTool(terrain.probe(), frame % 2 == 0);
         }
-        lazy.update(terrain.field(), terrain.takeDamage());
+        lazy.update(terrain.surface().data(), terrain.takeChange());
         const EyeTarget fresh(kTileWidth, kTileHeight);
         for (int tile = 0; tile < kAcross * kDown; ++tile) {
             if (frame == 0) {

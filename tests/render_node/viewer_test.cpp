@@ -194,7 +194,7 @@ protected:
     [[nodiscard]] Image drawn(std::size_t tile, Eye eye) const {
         const sand::Replica terrain = dug();
         render_node::ScenePainter painter(scene_, sceneToRoom());
-        painter.update(terrain.field(), terrain.field().bounds());
+        painter.update(terrain.surface().data(), {});
         painter.setTool(terrain.probe(), true);
         const render_node::EyeTarget target(kEyePixels.x, kEyePixels.y);
         painter.draw(cameraByHand(tile, eye), target);
@@ -238,7 +238,7 @@ TEST_F(Viewer, SeesWithEachEyeItsPictureOnEveryOutputInEveryMode) {
         const Stereo stereo = walls::stereoNamed(name);
         const walls::Wall wall = gridAndDesk(stereo);
         for (std::size_t tile = 0; tile < wall.tiles.size(); ++tile) {
-            TilePainter painter(wall, wall.tiles[tile], scene_, "host");
+            TilePainter painter(wall, wall.tiles[tile], scene_, "host", sand::GridData{scene_.terrain});
             sand::Replica terrain = dug();
             painter.paint(terrain, view(), 1);
             ASSERT_EQ(painter.outputs().size(), stereo == Stereo::passive ? 2U : 1U) << name;
@@ -261,7 +261,8 @@ TEST_F(Viewer, SeesWithEachEyeItsPictureOnTwoOutputsThatChangeTheirMode) {
         std::vector<walls::Wall> shown(modes.size() + 1, wall);  // painters look at them
         std::array<std::unique_ptr<TilePainter>, 2> painters;
         for (std::size_t tile = 0; tile < painters.size(); ++tile) {
-            painters.at(tile) = std::make_unique<TilePainter>(shown[0], shown[0].tiles[tile], scene_, "host");
+            painters.at(tile) = std::make_unique<TilePainter>(shown[0], shown[0].tiles[tile], scene_, "host",
+                                                              sand::GridData{scene_.terrain});
             painters.at(tile)->paint(terrains.at(tile), view(), 1);
             expectEachEyeItsPicture(begun, tile, painters.at(tile)->outputs());
         }
@@ -280,7 +281,8 @@ TEST_F(Viewer, SeesWithEachEyeItsPictureOnTwoOutputsThatChangeTheirMode) {
 // Without quad buffers a rank draws one eye in a frame, and a window takes one eye from it: they must agree on which.
 TEST_F(Viewer, SeesOfEyesInTurnTheOneThatWasDrawnInThisFrame) {
     const walls::Wall wall = gridAndDesk(Stereo::active);
-    TilePainter inTurn(wall, wall.tiles[0], scene_, "host"), both(wall, wall.tiles[0], scene_, "host");
+    TilePainter inTurn(wall, wall.tiles[0], scene_, "host", sand::GridData{scene_.terrain}),
+        both(wall, wall.tiles[0], scene_, "host", sand::GridData{scene_.terrain});
     sand::Replica first = dug(), second = dug();
     std::vector<Image> shown;
     for (std::uint64_t frame = 0; frame < 8; ++frame) {

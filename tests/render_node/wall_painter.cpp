@@ -9,6 +9,7 @@
 
 #include "pictures/stereo_packing.hpp"
 #include "scene/scene.hpp"
+#include "tests/support/sand_of.hpp"
 
 namespace sample {
 namespace {
@@ -124,7 +125,7 @@ glm::dmat4 sceneToRoom(const walls::Wall& wall, const scene::Scene& scene) {
 
 render_node::ScenePainter makeView(const DugScene& dug, const walls::Wall& wall) {
     render_node::ScenePainter view(dug.scene, sceneToRoom(wall, dug.scene));
-    view.update(dug.terrain.field(), dug.terrain.field().bounds());
+    view.update(dug.terrain.surface().data(), {});
     view.setTool(dug.terrain.probe(), true);
     return view;
 }
@@ -187,7 +188,7 @@ Ball ballOf(const DugScene& dug) {
     const double cell = dug.scene.terrain.cellSize();
     const sand::ProbePoint probe = dug.terrain.probe();
     const std::vector<double>& sun = dug.scene.look.sunDirection;
-    const sand::HeightField* field = &dug.terrain.field();
+    const sand::HeightField* field = &samples::fieldOf(dug.terrain);
     return {glm::dvec3(probe.x, probe.y, probe.z) * (cell / sand::kProbePerCell),
             dug.scene.rules.toolRadius * (cell / sand::kProbePerCell),
             {sun[0], sun[1], sun[2]},

@@ -9,6 +9,7 @@
 #include "sand/replica.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/relaxing.hpp"
+#include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -42,7 +43,7 @@ TEST(ExtremeTool, OutsideTheFieldItTouchesNothing) {
               ProbePoint{-sand::kMaxProbe, sand::kMaxProbe, -sand::kMaxProbe}}) {
             terrain.apply({1, ++number, false, {point}});
             terrain.apply({1, ++number, true, {point}});
-            EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain)) << "at " << point.x << ", " << point.y;
+            EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain)) << "at " << point.x << ", " << point.y;
             terrain.apply({1, ++number, false, {}});
         }
         EXPECT_EQ(terrain.outflow(), 0);
@@ -58,10 +59,11 @@ TEST(ExtremeTool, AtACornerAndOnTheRimsItLosesNothing) {
                 Replica terrain(scene);
                 for (std::uint64_t i = 1; i <= 200; ++i) {
                     terrain.apply({1, i, i < 100, i == 1 ? std::vector{point} : std::vector<ProbePoint>{}});
-                    ASSERT_EQ(terrain.field().volume() + terrain.outflow(), 0)
+                    ASSERT_EQ(samples::fieldOf(terrain).volume() + terrain.outflow(), 0)
                         << "radius " << radius << " at " << point.x << ", " << point.y << " in step " << i;
                 }
-                EXPECT_EQ(terrain.outflow() == 0, rim == Rim::closed || sameHeights(terrain.field(), scene.terrain));
+                EXPECT_EQ(terrain.outflow() == 0,
+                          rim == Rim::closed || sameHeights(samples::fieldOf(terrain), scene.terrain));
             }
         }
     }
@@ -71,18 +73,18 @@ TEST(ExtremeTool, LargerThanTheFieldItHasNowhereToPutTheSand) {
     const scene::Scene scene = sceneWith(2048, Rim::closed);
     Replica terrain(scene);
     terrain.apply({1, 1, true, {probeAt(22, 16, 2000)}});
-    EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain)) << "it passes through the sand";
+    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain)) << "it passes through the sand";
     Replica open(sceneWith(2048, Rim::open));
     open.apply({1, 1, true, {probeAt(22, 16, 2000)}});
     EXPECT_GT(open.outflow(), 0) << "over an open rim it clears the table";
-    EXPECT_EQ(open.field().volume() + open.outflow(), 0);
+    EXPECT_EQ(samples::fieldOf(open).volume() + open.outflow(), 0);
 }
 
 TEST(ExtremeTool, OfNoRadiusItDigsNothing) {
     const scene::Scene scene = sceneWith(0, Rim::closed);
     Replica terrain(scene);
     terrain.apply({1, 1, true, {probeAt(5.5, 5.5, -3), probeAt(40, 30, -3)}});
-    EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain));
+    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain));
 }
 
 TEST(ExtremeTool, ThePapersOf256HundredthsDigsAFurrow) {
@@ -90,9 +92,9 @@ TEST(ExtremeTool, ThePapersOf256HundredthsDigsAFurrow) {
     for (std::uint64_t i = 1; i <= 30; ++i) {
         terrain.apply({1, i, true, {probeAt(8 + static_cast<double>(i), 16.5, 1)}});
     }
-    EXPECT_LT(terrain.field().height(20, 16), -sand::kUnitsPerCell / 2);
-    EXPECT_GT(samples::extremesOf(terrain.field()).highest, sand::kUnitsPerCell / 4);
-    EXPECT_EQ(terrain.field().volume(), 0);
+    EXPECT_LT(samples::fieldOf(terrain).height(20, 16), -sand::kUnitsPerCell / 2);
+    EXPECT_GT(samples::extremesOf(samples::fieldOf(terrain)).highest, sand::kUnitsPerCell / 4);
+    EXPECT_EQ(samples::fieldOf(terrain).volume(), 0);
 }
 
 TEST(ExtremeTool, TeleportingItPloughsAllTheWay) {
@@ -101,12 +103,12 @@ TEST(ExtremeTool, TeleportingItPloughsAllTheWay) {
         terrain.apply({1, 1, true, {probeAt(4, 16.5, 1)}});
         terrain.apply({1, 2, true, {probeAt(40, 16.5, 1)}});
         for (const int column : {10, 20, 30}) {
-            EXPECT_LT(terrain.field().height(column, 16), 0) << "no furrow at column " << column;
+            EXPECT_LT(samples::fieldOf(terrain).height(column, 16), 0) << "no furrow at column " << column;
         }
         // From one end of the world to the other, and back.
         terrain.apply({1, 3, true, {{sand::kMaxProbe, sand::kMaxProbe, 0}, {-sand::kMaxProbe, -sand::kMaxProbe, 0}}});
         terrain.apply({1, 4, true, {{sand::kMaxProbe, 16 * kProbePerCell, -sand::kMaxProbe}}});
-        EXPECT_EQ(terrain.field().volume() + terrain.outflow(), 0);
+        EXPECT_EQ(samples::fieldOf(terrain).volume() + terrain.outflow(), 0);
     }
 }
 
@@ -120,7 +122,7 @@ TEST(ExtremeTool, HeldStillItLetsTheSweepsStop) {
                 terrain.apply({1, ++number, true, {}});
             }
             ASSERT_TRUE(terrain.settled()) << "a ball held still must not pump sand for ever";
-            const std::int64_t sweeps = terrain.erosion().sweepsDone();
+            const std::int64_t sweeps = samples::erosionOf(terrain).sweepsDone();
             (void)terrain.stateHash();
             const auto tiles = terrain.hashTiles().tileHashes();
             for (int i = 0; i < 100; ++i) {
@@ -128,7 +130,7 @@ TEST(ExtremeTool, HeldStillItLetsTheSweepsStop) {
                 (void)terrain.stateHash();
                 ASSERT_EQ(terrain.hashTiles().tileHashes(), tiles) << "step " << number;
             }
-            EXPECT_EQ(terrain.erosion().sweepsDone(), sweeps);
+            EXPECT_EQ(samples::erosionOf(terrain).sweepsDone(), sweeps);
         }
     }
 }
@@ -146,10 +148,10 @@ TEST(ExtremeTool, DiggingToBedrockStopsThere) {
     Replica terrain(scene);
     for (std::uint64_t i = 1; i <= 60; ++i) {
         terrain.apply({1, i, true, {probeAt(10 + 0.4 * static_cast<double>(i), 16.5, 2)}});
-        ASSERT_GE(samples::extremesOf(terrain.field()).lowest, -2 * sand::kUnitsPerCell) << "step " << i;
-        ASSERT_EQ(terrain.field().volume(), 0);
+        ASSERT_GE(samples::extremesOf(samples::fieldOf(terrain)).lowest, -2 * sand::kUnitsPerCell) << "step " << i;
+        ASSERT_EQ(samples::fieldOf(terrain).volume(), 0);
     }
-    EXPECT_EQ(terrain.field().height(34, 16), -2 * sand::kUnitsPerCell) << "bare rock under the tool";
+    EXPECT_EQ(samples::fieldOf(terrain).height(34, 16), -2 * sand::kUnitsPerCell) << "bare rock under the tool";
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "host/worker_pool.hpp"
 #include "sand/replica.hpp"
 #include "scene/scene.hpp"
+#include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -54,12 +55,12 @@ TEST(Undo, RestoresTheHeightsOfBeforeTheLastStroke) {
     Replica terrain(scene);
     Hand hand(terrain);
     hand.stroke(20);
-    const sand::HeightField first = terrain.field();
+    const sand::HeightField first = samples::fieldOf(terrain);
     hand.stroke(40);
-    ASSERT_FALSE(sameHeights(terrain.field(), first)) << "a stroke that changed nothing shows nothing";
+    ASSERT_FALSE(sameHeights(samples::fieldOf(terrain), first)) << "a stroke that changed nothing shows nothing";
     hand.hover(Edit::undo);
-    EXPECT_TRUE(sameHeights(terrain.field(), first));
-    EXPECT_FALSE(sameHeights(terrain.field(), scene.terrain)) << "only the last stroke";
+    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), first));
+    EXPECT_FALSE(sameHeights(samples::fieldOf(terrain), scene.terrain)) << "only the last stroke";
 }
 
 // But for step number and tool the whole state is what it was, so that what follows is what would have followed.
@@ -73,13 +74,13 @@ TEST(Undo, GoesOnAsIfTheStrokeHadNotBeen) {
     hand.stroke(32);
     hand.hover(Edit::undo);
     ASSERT_FALSE(terrain.settled());
-    EXPECT_TRUE(sameHeights(terrain.field(), other.field()));
+    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), samples::fieldOf(other)));
     EXPECT_EQ(terrain.outflow(), other.outflow());
     Hand untouched(other);
     for (int i = 0; i < 30; ++i) {
         hand.hover();
         untouched.hover();
-        ASSERT_TRUE(sameHeights(terrain.field(), other.field())) << i << " steps later";
+        ASSERT_TRUE(sameHeights(samples::fieldOf(terrain), samples::fieldOf(other))) << i << " steps later";
         ASSERT_EQ(terrain.outflow(), other.outflow());
     }
     EXPECT_GT(other.outflow(), 0) << "a rim that nothing falls over shows nothing";
@@ -121,13 +122,13 @@ TEST(Undo, TakesBackWhatSettledSince) {
     Replica terrain(slidingScene());
     Hand hand(terrain);
     hand.hover();
-    const sand::HeightField before = terrain.field();
+    const sand::HeightField before = samples::fieldOf(terrain);
     hand.dig(32, 32);
     hand.lift();
     hand.hover(Edit::settle);
     ASSERT_TRUE(terrain.settled());
     hand.hover(Edit::undo);
-    EXPECT_TRUE(sameHeights(terrain.field(), before));
+    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), before));
 }
 
 // The operator is quicker than the hand: its stroke then begins where the undo left the sand.
@@ -137,12 +138,12 @@ TEST(Undo, InMidStrokeLetsTheStrokeBeginAnew) {
     Hand hand(terrain);
     hand.dig(20, 32);
     hand.dig(24, 32, Edit::undo);
-    EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain));
+    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain));
     hand.dig(28, 32);
     hand.lift();
-    ASSERT_FALSE(sameHeights(terrain.field(), scene.terrain));
+    ASSERT_FALSE(sameHeights(samples::fieldOf(terrain), scene.terrain));
     hand.hover(Edit::undo);
-    EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain));
+    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain));
 }
 
 TEST(Reset, RestoresTheSceneAndForgetsTheStroke) {
@@ -152,7 +153,7 @@ TEST(Reset, RestoresTheSceneAndForgetsTheStroke) {
     hand.stroke(20);
     ASSERT_NE(terrain.outflow(), 0);
     hand.hover(Edit::reset);
-    EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain));
+    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain));
     EXPECT_EQ(terrain.outflow(), 0);
     EXPECT_FALSE(terrain.canUndo());
     Replica fresh(scene);
@@ -160,7 +161,7 @@ TEST(Reset, RestoresTheSceneAndForgetsTheStroke) {
     for (int i = 0; i < 30; ++i) {
         hand.hover();
         untouched.hover();
-        ASSERT_TRUE(sameHeights(terrain.field(), fresh.field())) << i << " steps later";
+        ASSERT_TRUE(sameHeights(samples::fieldOf(terrain), samples::fieldOf(fresh))) << i << " steps later";
     }
 }
 
@@ -175,13 +176,13 @@ TEST(Load, PutsBackHeightsOutflowAndInertiaAndForgetsTheStroke) {
     const Edit load = Edit::loaded(terrain.copySand()->encode());
     hand.stroke(32);
     hand.hover(load);
-    EXPECT_TRUE(sameHeights(terrain.field(), other.field()));
+    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), samples::fieldOf(other)));
     EXPECT_FALSE(terrain.canUndo());
     Hand untouched(other);
     for (int i = 0; i < 30; ++i) {
         hand.hover();
         untouched.hover();
-        ASSERT_TRUE(sameHeights(terrain.field(), other.field())) << i << " steps later";
+        ASSERT_TRUE(sameHeights(samples::fieldOf(terrain), samples::fieldOf(other))) << i << " steps later";
         ASSERT_EQ(terrain.outflow(), other.outflow());
     }
 }
@@ -212,7 +213,7 @@ TEST(Undo, KeepsWhatTheOperatorHasChosen) {
     EXPECT_EQ(terrain.rules().tuning(), tuning);
     hand.hover(Edit::reset);
     EXPECT_EQ(terrain.rules().tuning(), tuning);
-    EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain));
+    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain));
 }
 
 /// Random strokes with now and then an edit of every kind.
@@ -238,15 +239,18 @@ TEST(Edits, VolumeIsExactAndTheHashIsTheWholeFields) {
         scene.terrain = samples::randomField(45, 33, 1 << 18, random);
         Replica terrain(scene);
         for (std::uint64_t i = 1; i <= 200; ++i) {
-            const sand::HeightField before = terrain.field();
-            (void)terrain.takeDamage();
+            const sand::HeightField before = samples::fieldOf(terrain);
+            (void)terrain.takeChange();
             terrain.apply(editedStep(i, scene.rules, random));
-            ASSERT_EQ(terrain.field().volume() + terrain.outflow(), scene.terrain.volume()) << "step " << i;
-            const sand::CellRect damage = terrain.takeDamage();
+            ASSERT_EQ(samples::fieldOf(terrain).volume() + terrain.outflow(), scene.terrain.volume()) << "step " << i;
+            const std::vector<sand::CellRect> changed = samples::takeCells(terrain);
             for (int y = 0; y < 33; ++y) {
                 for (int x = 0; x < 45; ++x) {
-                    const bool inside = x >= damage.x0 && x < damage.x1 && y >= damage.y0 && y < damage.y1;
-                    ASSERT_TRUE(inside || before.height(x, y) == terrain.field().height(x, y)) << x << ", " << y;
+                    const bool listed = std::ranges::any_of(changed, [x, y](const sand::CellRect& cells) {
+                        return x >= cells.x0 && x < cells.x1 && y >= cells.y0 && y < cells.y1;
+                    });
+                    ASSERT_TRUE(listed || before.height(x, y) == samples::fieldOf(terrain).height(x, y))
+                        << x << ", " << y;
                 }
             }
             const std::uint64_t incremental = terrain.stateHash();

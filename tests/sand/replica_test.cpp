@@ -6,6 +6,7 @@
 #include <random>
 
 #include "scene/scene.hpp"
+#include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -34,7 +35,7 @@ Replica dragged(const scene::Scene& scene, ProbePoint from, ProbePoint to, int s
 
 TEST(Replica, AStrokeLeavesAFurrowWithBanks) {
     const Replica terrain = dragged(samples::flatScene(96, 64), at(20, 32, 2), at(70, 32, 2), 60);
-    const auto& field = terrain.field();
+    const auto& field = samples::fieldOf(terrain);
     EXPECT_LT(field.height(45, 32), -sand::kUnitsPerCell) << "the furrow";
     EXPECT_GT(field.height(45, 37), sand::kUnitsPerCell) << "the northern bank";
     EXPECT_GT(field.height(45, 26), sand::kUnitsPerCell) << "the southern bank";
@@ -50,9 +51,9 @@ TEST(Replica, AHeldToolComesToRest) {
         terrain.apply({1, ++number, true, {}});
     }
     ASSERT_TRUE(terrain.settled()) << "a ball held still must not pump sand for ever";
-    const sand::HeightField rest = terrain.field();
+    const sand::HeightField rest = samples::fieldOf(terrain);
     terrain.apply({1, ++number, true, {}});
-    EXPECT_TRUE(sameHeights(terrain.field(), rest));
+    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), rest));
     const sand::grid::Obstacle ball = sand::grid::Displacement(scene.rules.toolShape()).obstacle(rest, terrain.probe());
     std::size_t next = 0;
     for (int y = ball.cells.y0; y < ball.cells.y1; ++y) {
@@ -71,11 +72,11 @@ TEST(Replica, SandFallsWhenTheToolLeaves) {
     while (!terrain.settled()) {
         terrain.apply({1, ++number, true, {}});
     }
-    const std::int32_t held = terrain.field().height(32, 32);
+    const std::int32_t held = samples::fieldOf(terrain).height(32, 32);
     for (int i = 0; i < 200; ++i) {
         terrain.apply({1, ++number, false, {at(32, 32, 20)}});
     }
-    EXPECT_GT(terrain.field().height(32, 32), held);
+    EXPECT_GT(samples::fieldOf(terrain).height(32, 32), held);
 }
 
 TEST(Replica, VolumeIsExactWhateverTheHandDoes) {
@@ -87,7 +88,7 @@ TEST(Replica, VolumeIsExactWhateverTheHandDoes) {
         Replica terrain(scene);
         for (std::uint64_t i = 1; i <= 500; ++i) {
             terrain.apply(samples::randomStep(i, scene.rules, random));
-            ASSERT_EQ(terrain.field().volume() + terrain.outflow(), scene.terrain.volume()) << "step " << i;
+            ASSERT_EQ(samples::fieldOf(terrain).volume() + terrain.outflow(), scene.terrain.volume()) << "step " << i;
         }
     }
 }
@@ -96,14 +97,14 @@ TEST(Replica, AToolLargerThanTheFieldLosesNothing) {
     const scene::Scene scene = samples::flatScene(5, 4, 40);
     Replica terrain(scene);
     terrain.apply({1, 1, true, {at(2, 2, 0)}});
-    EXPECT_EQ(terrain.field().volume(), 0);
+    EXPECT_EQ(samples::fieldOf(terrain).volume(), 0);
 }
 
 TEST(Replica, HoveringLeavesTheSandAlone) {
     const scene::Scene scene = samples::flatScene(32, 32);
     Replica terrain(scene);
     terrain.apply({1, 1, false, {at(16, 16, -3), at(20, 16, -3)}});
-    EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain));
+    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain));
     EXPECT_TRUE(terrain.settled());
 }
 
@@ -187,8 +188,9 @@ TEST(Replica, SettlesAtOnceWhenAsked) {
         Replica terrain(scene);
         terrain.apply({1, 1, false, {}, sand::Edit::settle});
         EXPECT_TRUE(terrain.settled());
-        EXPECT_EQ(terrain.field().volume(), scene.terrain.volume());
-        EXPECT_LT(terrain.field().height(32, 32), scene.terrain.height(32, 32)) << "a cone, lower than its cylinder";
+        EXPECT_EQ(samples::fieldOf(terrain).volume(), scene.terrain.volume());
+        EXPECT_LT(samples::fieldOf(terrain).height(32, 32), scene.terrain.height(32, 32))
+            << "a cone, lower than its cylinder";
         const std::uint64_t incremental = terrain.stateHash();
         terrain.audit(terrain.hashTiles().tileCount());
         EXPECT_EQ(terrain.stateHash(), incremental);
@@ -221,22 +223,47 @@ TEST(Replica, AFlippedBitShowsInTheRightTile) {
     }
 }
 
-TEST(Replica, DamageCoversEveryChangedCell) {
+TEST(Replica, ChangesHoldEveryChangedCellAndEachCellOnce) {
     const scene::Scene scene = samples::flatScene(100, 70);
     std::mt19937 random(37);
     Replica terrain(scene);
-    (void)terrain.takeDamage();
+    (void)terrain.takeChange();
     for (std::uint64_t i = 1; i <= 100; ++i) {
-        const sand::HeightField before = terrain.field();
+        const sand::HeightField before = samples::fieldOf(terrain);
         terrain.apply(samples::randomStep(i, scene.rules, random));
-        const sand::CellRect damage = terrain.takeDamage();
+        std::vector<int> listed(100 * 70);
+        for (const sand::CellRect& cells : samples::takeCells(terrain)) {
+            ASSERT_EQ(cells, cells.clippedTo(before.bounds()));
+            for (int y = cells.y0; y < cells.y1; ++y) {
+                for (int x = cells.x0; x < cells.x1; ++x) {
+                    ASSERT_EQ(listed[static_cast<std::size_t>(y * 100 + x)]++, 0) << x << ", " << y;
+                }
+            }
+        }
         for (int y = 0; y < 70; ++y) {
             for (int x = 0; x < 100; ++x) {
-                const bool inside = x >= damage.x0 && x < damage.x1 && y >= damage.y0 && y < damage.y1;
-                ASSERT_TRUE(inside || before.height(x, y) == terrain.field().height(x, y)) << x << ", " << y;
+                ASSERT_TRUE(listed[static_cast<std::size_t>(y * 100 + x)] == 1 ||
+                            before.height(x, y) == samples::fieldOf(terrain).height(x, y))
+                    << x << ", " << y;
             }
         }
     }
+}
+
+TEST(Replica, EverythingMayHaveChangedUntilSomebodyAsks) {
+    const scene::Scene scene = samples::flatScene(40, 24);
+    std::mt19937 random(41);
+    Replica terrain(scene);
+    std::uint64_t number = 0;
+    terrain.apply(samples::randomStep(++number, scene.rules, random));
+    EXPECT_TRUE(terrain.takeChange().whole);
+    sand::SurfaceChange change = terrain.takeChange();
+    EXPECT_FALSE(change.whole);
+    EXPECT_TRUE(std::get<sand::CellChange>(change.parts).cells.empty());
+    EXPECT_TRUE(Replica(terrain).takeChange().whole) << "nobody has seen the copy";
+    terrain.apply({1, ++number, false, {}, sand::Edit::reset});
+    EXPECT_TRUE(terrain.takeChange().whole);
+    EXPECT_FALSE(terrain.takeChange().whole);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "scene/load/scene_file.hpp"
 #include "tests/scene/scene_fixture.hpp"
 #include "tests/support/refusal.hpp"
+#include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -76,17 +77,17 @@ TEST(Tuning, AFlatterTalusWakesSandAtRest) {
     while (!terrain.settled()) {
         terrain.apply({1, terrain.stepNumber() + 1, false, {}, Edit::none});
     }
-    const sand::HeightField rest = terrain.field();
+    const sand::HeightField rest = samples::fieldOf(terrain);
     const std::uint64_t hash = terrain.stateHash();
     sand::Tuning tuning = scene.rules.tuning();
     terrain.apply({1, terrain.stepNumber() + 1, false, {}, Edit::tuned(tuning)});
-    EXPECT_TRUE(sameHeights(terrain.field(), rest)) << "the same material moves nothing";
+    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), rest)) << "the same material moves nothing";
     tuning.threshold /= 2;
     tuning.startThreshold /= 2;
     terrain.apply({1, terrain.stepNumber() + 1, false, {}, Edit::tuned(tuning)});
     EXPECT_FALSE(terrain.settled());
-    EXPECT_FALSE(sameHeights(terrain.field(), rest));
-    EXPECT_EQ(terrain.field().volume(), rest.volume());
+    EXPECT_FALSE(sameHeights(samples::fieldOf(terrain), rest));
+    EXPECT_EQ(samples::fieldOf(terrain).volume(), rest.volume());
     EXPECT_NE(terrain.stateHash(), hash);
 }
 
@@ -99,7 +100,7 @@ TEST(Tuning, IsPartOfTheHashAndOfTheState) {
     sand::Replica tuned(scene);
     plain.apply({1, 1, false, {}, Edit::none});
     tuned.apply({1, 1, false, {}, Edit::tuned(tuning)});
-    ASSERT_TRUE(sameHeights(plain.field(), tuned.field()));
+    ASSERT_TRUE(sameHeights(samples::fieldOf(plain), samples::fieldOf(tuned)));
     EXPECT_NE(plain.stateHash(), tuned.stateHash());
     sand::Replica joined(scene);
     joined.decodeState(tuned.encodeState());
@@ -118,7 +119,7 @@ TEST(Tuning, AToolThatGrowsInTheSandPresses) {
     sand::Tuning tuning = scene.rules.tuning();
     tuning.toolRadius = 8 * sand::kProbePerCell;
     terrain.apply({1, 2, true, {}, Edit::tuned(tuning)});
-    EXPECT_LE(terrain.field().height(32, 32), -5 * sand::kUnitsPerCell);
+    EXPECT_LE(samples::fieldOf(terrain).height(32, 32), -5 * sand::kUnitsPerCell);
 }
 
 }  // namespace

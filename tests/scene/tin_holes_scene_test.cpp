@@ -14,6 +14,7 @@
 #include "sand/replica.hpp"
 #include "sand/tin/geometry/surface_view.hpp"
 #include "scene/export/raster.hpp"
+#include "scene/export/results.hpp"
 #include "scene/export/tin_raster.hpp"
 #include "scene/load/scene_file.hpp"
 #include "tests/sand/tin/same_session.hpp"
@@ -95,7 +96,7 @@ TEST_F(TinHoleScene, HolesComeBackWithoutData) {
             EXPECT_EQ(change.isNoData(column, row), isGap(column, row)) << column << ", " << row;
         }
     }
-    const scene::Mesh mesh = scene::meshOf(*terrain.tinView(), start);
+    const scene::Mesh mesh = scene::meshOf(terrain, start);
     EXPECT_GT(mesh.triangles.size(), 10U);
     for (const auto& triangle : mesh.triangles) {
         const auto& a = mesh.vertices[triangle[0]];

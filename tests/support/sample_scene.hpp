@@ -36,6 +36,11 @@ inline scene::Scene duneScene(int columns) {
     return scene;
 }
 
+/// What a replica says when these cells have changed.
+inline sand::SurfaceChange changeOf(const sand::CellRect& cells) {
+    return {.whole = false, .parts = sand::CellChange{{cells}}};
+}
+
 inline sand::ProbePoint probeAt(const scene::Scene& scene, const glm::dvec3& place) {
     const glm::dvec3 units = place / scene.terrain.cellSize() * double{sand::kProbePerCell};
     return {static_cast<std::int32_t>(units.x), static_cast<std::int32_t>(units.y), static_cast<std::int32_t>(units.z)};

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "sand/model/tin_change.hpp"
+#include "sand/model/surface_data.hpp"
 #include "sand/tin/geometry/surface_view.hpp"
 #include "tests/support/sample_scene.hpp"
 
@@ -50,13 +50,14 @@ public:
     [[nodiscard]] sand::tin::SurfaceView view() const { return {mesh_, heights_}; }
     [[nodiscard]] const sand::tin::Triangles& mesh() const { return mesh_; }
     [[nodiscard]] double height(Vertex vertex) const { return heights_[static_cast<std::size_t>(vertex)]; }
-    sand::TinChange takeDamage() {
+    sand::TinChange takeParts() {
         for (auto* list : {&damage_.triangles, &damage_.vertices}) {
             std::sort(list->begin(), list->end());
             list->erase(std::unique(list->begin(), list->end()), list->end());
         }
         return std::exchange(damage_, {});
     }
+    sand::SurfaceChange takeChange() { return {.whole = false, .parts = takeParts()}; }
 
     void setHeight(Vertex vertex, double height /* [unit] */) {
         heights_[static_cast<std::size_t>(vertex)] = height;

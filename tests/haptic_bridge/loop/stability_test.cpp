@@ -10,6 +10,7 @@
 #include "scene/scene.hpp"
 #include "tests/support/arm_loop.hpp"
 #include "tests/support/arm_on_sand.hpp"
+#include "tests/support/sand_of.hpp"
 #include "tests/support/seed.hpp"
 
 namespace {
@@ -186,7 +187,7 @@ private:
     static constexpr int kStepsPerSecond = 60;
 
     void publish() {
-        hand_.surface().patch = {terrain_.field(), terrain_.probe(), scene_.toolRadius()};
+        hand_.surface().patch = {samples::fieldOf(terrain_), terrain_.probe(), scene_.toolRadius()};
         hand_.surface().step = terrain_.stepNumber();
         stepTime_ = hand_.time();
         fresh_ = true;

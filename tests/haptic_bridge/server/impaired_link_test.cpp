@@ -10,6 +10,7 @@
 #include "host/clock.hpp"
 #include "scene/load/scene_file.hpp"
 #include "tests/haptic_bridge/server/server_process.hpp"
+#include "tests/support/sand_of.hpp"
 
 namespace {
 
@@ -181,7 +182,7 @@ TEST_F(HandOverABadLink, TheSandIsTheSameAndAResetEndsNothing) {
     EXPECT_EQ(wall.divergences, 0);
     EXPECT_EQ(wall.outOfOrder, 0);
     EXPECT_GT(wall.engaged, engaged) << "the hand goes on";
-    EXPECT_EQ(wall.terrain.field().volume() + wall.terrain.outflow(), scene_.terrain.volume());
+    EXPECT_EQ(samples::fieldOf(wall.terrain).volume() + wall.terrain.outflow(), scene_.terrain.volume());
 }
 
 }  // namespace

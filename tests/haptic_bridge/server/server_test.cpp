@@ -4,6 +4,7 @@
 #include "scene/load/scene_file.hpp"
 #include "tests/haptic_bridge/link/raw_peer.hpp"
 #include "tests/haptic_bridge/server/server_process.hpp"
+#include "tests/support/sand_of.hpp"
 
 namespace {
 
@@ -34,7 +35,7 @@ TEST_F(HapticServer, WritesTheSameSandTwice) {
         EXPECT_EQ(wall.engaged, 167);
         EXPECT_EQ(wall.longest, 30U);
         EXPECT_FALSE(wall.terrain.engaged()) << "the word must be complete within 240 steps";
-        EXPECT_EQ(wall.terrain.field().volume() + wall.terrain.outflow(), scene_.terrain.volume());
+        EXPECT_EQ(samples::fieldOf(wall.terrain).volume() + wall.terrain.outflow(), scene_.terrain.volume());
         hashes.push_back(wall.terrain.stateHash());
         client.stop();
         ASSERT_TRUE(client.report().has_value());
@@ -61,8 +62,8 @@ TEST_F(HapticServer, WritesWithARecordedHand) {
     EXPECT_EQ(wall.strokes, 3) << "G, I and S";
     EXPECT_FALSE(wall.terrain.engaged()) << "a recording that is over hovers";
     // The I stands in the middle of the field, and the sand between I and S is untouched.
-    EXPECT_LT(wall.terrain.field().height(64, 64), scene_.terrain.height(64, 64));
-    EXPECT_EQ(wall.terrain.field().height(78, 48), scene_.terrain.height(78, 48));
+    EXPECT_LT(samples::fieldOf(wall.terrain).height(64, 64), scene_.terrain.height(64, 64));
+    EXPECT_EQ(samples::fieldOf(wall.terrain).height(78, 48), scene_.terrain.height(78, 48));
 }
 
 // A hand that turns its tool says so when it turns, and not of a ball, for which it makes no difference.

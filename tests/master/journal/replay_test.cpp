@@ -18,6 +18,7 @@
 #include "scene/load/scene_file.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/run_program.hpp"
+#include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -74,7 +75,7 @@ TEST_F(Replay, WritesTheHeights) {
     const scene::EsriGrid grid = scene::readEsriGrid(file);
     for (int y = 0; y < 30; ++y) {
         for (int x = 0; x < 40; ++x) {
-            ASSERT_NEAR(grid.at(x, y), terrain.field().height(x, y) * terrain.field().unit(), 1e-6);
+            ASSERT_NEAR(grid.at(x, y), samples::fieldOf(terrain).height(x, y) * samples::fieldOf(terrain).unit(), 1e-6);
         }
     }
 }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "scene/scene.hpp"
+#include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -51,8 +52,8 @@ TEST_F(Positions, MoveTheSandWhereTheHandIs) {
         add(0.02 * i, 0, 0);
     }
     EXPECT_EQ(step().path.size(), 16U);
-    EXPECT_LT(terrain_.field().height(36, 32), 0);
-    EXPECT_EQ(terrain_.field().height(10, 10), 0);
+    EXPECT_LT(samples::fieldOf(terrain_).height(36, 32), 0);
+    EXPECT_EQ(samples::fieldOf(terrain_).height(10, 10), 0);
     EXPECT_EQ(told(), "");
 }
 
@@ -91,8 +92,8 @@ TEST_F(Positions, AJumpCutsNoFurrow) {
     add(0.9, 0.01, 0);
     const sand::Step after = step();
     EXPECT_TRUE(after.engaged);
-    EXPECT_EQ(terrain_.field().height(32, 32), 0) << "nothing in between was touched";
-    EXPECT_LT(terrain_.field().height(60, 32), 0);
+    EXPECT_EQ(samples::fieldOf(terrain_).height(32, 32), 0) << "nothing in between was touched";
+    EXPECT_LT(samples::fieldOf(terrain_).height(60, 32), 0);
     EXPECT_NE(told().find("jumps, 1 times"), std::string::npos);
 }
 
@@ -118,7 +119,7 @@ TEST_F(Positions, AToolLeftInTheSandIsLiftedFirst) {
     add(0.5, 0, 0);
     EXPECT_FALSE(step().engaged);
     EXPECT_TRUE(step().engaged);
-    EXPECT_EQ(terrain_.field().height(32, 32), 0);
+    EXPECT_EQ(samples::fieldOf(terrain_).height(32, 32), 0);
 }
 
 }  // namespace

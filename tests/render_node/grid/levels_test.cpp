@@ -209,7 +209,7 @@ protected:
 TEST_F(LargeField, ShowsNoHoleAtAnyBound) {
     sample::drag(terrain_, scene_, {0.6, 0.1, 0.005}, {0.9, 0.16, 0.0});
     ScenePainter view(scene_, glm::dmat4(1));
-    view.update(terrain_.field(), terrain_.field().bounds());
+    view.update(terrain_.surface().data(), {});
     const EyeTarget target(320, 240);
     for (const glm::dvec3& eye :
          {glm::dvec3(0.75, 0.12, 0.2), glm::dvec3(0.75, 0.03, 0.09), glm::dvec3(0.9, 0.2, 0.15)}) {
@@ -262,7 +262,7 @@ TEST_F(LargeField, DrawnInPartsIsEqualToTheWhole) {
     for (int i = 0; i < 30; ++i) {
         const glm::dvec3 hand(0.5 + 0.012 * i, 0.06 + 0.004 * i, i < 22 ? 0.004 : 0.03);
         terrain_.apply({0, terrain_.stepNumber() + 1, i < 22, {sample::probeAt(scene_, hand)}});
-        view.update(terrain_.field(), terrain_.takeDamage());
+        view.update(terrain_.surface().data(), terrain_.takeChange());
         view.setTool(terrain_.probe(), terrain_.engaged());
         head += i % 9 == 8 ? glm::dvec3(0.02, -0.01, 0.01) : glm::dvec3(0);
         for (std::size_t eye = 0; eye < kEyes; ++eye) {
@@ -280,7 +280,7 @@ TEST_F(LargeField, DrawnInPartsIsEqualToTheWhole) {
     EXPECT_GT(fewest, 0);
     EXPECT_LT(fewest + 4, most) << "no chunk has become finer";
     ScenePainter fresh(scene_, glm::dmat4(1));
-    fresh.update(terrain_.field(), terrain_.field().bounds());
+    fresh.update(terrain_.surface().data(), {});
     fresh.setTool(terrain_.probe(), terrain_.engaged());
     const auto camera = sample::camera(head, head + glm::dvec3(0, 0.25, -0.35));
     EXPECT_TRUE(sample::draw(fresh, camera, whole) == targets[0].read());

@@ -118,7 +118,7 @@ protected:
                                       const glm::dmat4& sceneToRoom, const Shown& shown,
                                       const render_node::Camera& camera, const Twice& twice) {
         ScenePainter fresh(scene, sceneToRoom);
-        fresh.update(terrain.field(), terrain.field().bounds());
+        fresh.update(terrain.surface().data(), {});
         fresh.setTool(terrain.probe(), terrain.engaged());
         fresh.setLayers(shown.layers);
         fresh.setForce(shown.force);
@@ -146,7 +146,7 @@ protected:
         render_node::ToolForce force(scene.force);
         for (int i = 0; i < kSteps; ++i) {
             terrain.apply(stepOf(scene, i));
-            view.update(terrain.field(), terrain.takeDamage());
+            view.update(terrain.surface().data(), terrain.takeChange());
             view.setTool(terrain.probe(), terrain.engaged());
             Shown shown{layersAt(i), force.arrow(terrain)};
             shown.force = shown.layers.shows(Overlay::force) ? shown.force : std::nullopt;
@@ -245,6 +245,22 @@ int slack(const PixelRect& drawn, const PixelRect& changed, const EyeTarget& tar
     return least;
 }
 
+// Both corners of the field change: the rectangle around them is all of it.
+TEST_F(Redraw, ReadsOnlyWhatIsListedAndWhatLiesAroundIt) {
+    scene::Scene scene = sample::flatScene(512, 512);
+    ScenePainter view(scene, glm::dmat4(1));
+    for (const int corner : {100, 400}) {
+        scene.terrain.setHeight(corner, corner, sand::kUnitsPerCell);
+    }
+    const std::int64_t before = view.placesRead();
+    view.update(sand::GridData{scene.terrain},
+                {.whole = false, .parts = sand::CellChange{{{96, 96, 104, 104}, {400, 400, 408, 408}}}});
+    // For each of two blocks of 64 cells: what lies around it as far as light (10 cells) and a triangle of level 2 (4
+    // cells) reach, 29 × 29 cells, and the heights of nine chunks of 17 × 17 cells at most.
+    EXPECT_LT(view.placesRead() - before, 2 * (64 + 29 * 29 + 9 * 17 * 17));
+    EXPECT_GE(view.placesRead() - before, 2 * 64);
+}
+
 // A session's changes fade out before the edge of what may change. Posts on level sand hide the sky as far away as
 // sand can, so that a rectangle that is two pixels too small on any side is found out.
 TEST_F(Redraw, ReachesAsFarAsAPostHidesTheSkyAndNotMuchFurther) {
@@ -259,7 +275,7 @@ TEST_F(Redraw, ReachesAsFarAsAPostHidesTheSkyAndNotMuchFurther) {
     for (int i = 0; i < 24; ++i) {
         const int column = 30 + (i * 37) % 68, row = 40 + (i * 23) % 48;
         scene.terrain.setHeight(column, row, 5 * sand::kUnitsPerCell);
-        view.update(scene.terrain, {column - 7, row - 3, column + 5, row + 9});
+        view.update(sand::GridData{scene.terrain}, sample::changeOf({column - 7, row - 3, column + 5, row + 9}));
         const PixelRect drawn = view.drawIfChanged(above, inParts, memory);
         const Pixels now = sample::draw(view, above, whole);
         ASSERT_TRUE(inParts.read() == now) << "post " << i;
@@ -339,7 +355,7 @@ TEST_F(Redraw, FollowsToolsOfEveryShapeAsTheyTurnAndAreSwitched) {
             step.edit = sand::Edit::tuned(tuning);
         }
         terrain.apply(step);
-        view.update(terrain.field(), terrain.takeDamage());
+        view.update(terrain.surface().data(), terrain.takeChange());
         view.setTool(terrain.probe(), terrain.engaged(), terrain.toolShape(), terrain.heading());
         const PixelRect drawn = view.drawIfChanged(slanted, inParts, memory);
         (drawn.empty() ? tally.skipped : drawn.area() < 200 * 150 ? tally.inPart : tally.whole) += 1;
@@ -358,7 +374,7 @@ TEST_F(Redraw, OfRestingSandDrawsNothing) {
     render_node::EyeMemory memory;
     for (int i = 0; i < 5; ++i) {
         terrain.apply({0, terrain.stepNumber() + 1, false, {}});
-        view.update(terrain.field(), terrain.takeDamage());
+        view.update(terrain.surface().data(), terrain.takeChange());
         view.setTool(terrain.probe(), terrain.engaged());
         EXPECT_EQ(view.drawIfChanged(above, target, memory).empty(), i > 0) << "frame " << i;
     }

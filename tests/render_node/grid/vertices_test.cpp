@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <numeric>
 #include <random>
+#include <vector>
 
 #include "render_node/gl/grain_texture.hpp"
 #include "render_node/grid/levels.hpp"
@@ -73,6 +75,101 @@ TEST(SandSurface, ACellChangesNoVertexBeyondItsReach) {
             }
         }
     }
+}
+
+/// Some cells of a field, and other heights for a part of them.
+sand::CellRect spoil(sand::HeightField& field, std::mt19937& random) {
+    const auto below = [&random](int end) { return static_cast<int>(random() % static_cast<unsigned>(end)); };
+    const int west = below(field.columns()), south = below(field.rows());
+    const sand::CellRect cells{west, south, west + 1 + below(field.columns() - west),
+                               south + 1 + below(field.rows() - south)};
+    for (int row = cells.y0; row < cells.y1; ++row) {
+        for (int column = cells.x0; column < cells.x1; ++column) {
+            if (below(8) == 0) {
+                field.setHeight(column, row, below(1 << 18) - (1 << 17));
+            }
+        }
+    }
+    return cells;
+}
+
+// Sides that 8 does not divide: the blocks at two edges are cut off.
+TEST(SandSurface, TakesOverHeightsAndSaysExactlyWhatItOverwrote) {
+    std::mt19937 random(20240612);
+    sand::HeightField field(45, 29, 1);
+    SandSurface surface(field);
+    for (int round = 0; round < 200; ++round) {
+        const SandSurface before(surface);
+        const sand::CellRect cells = spoil(field, random);
+        std::vector<SandSurface::Overwritten> overwritten;
+        surface.takeOver(field, cells, overwritten);
+        std::vector<SandSurface::Overwritten> nothing;
+        surface.takeOver(field, field.bounds(), nothing);
+        ASSERT_TRUE(nothing.empty()) << "round " << round << ": more has changed than was listed";
+        std::vector<int> seen(45 * 29);
+        for (const auto& [changed, range] : overwritten) {
+            ASSERT_TRUE(changed.x0 / 8 == (changed.x1 - 1) / 8 && changed.y0 / 8 == (changed.y1 - 1) / 8);
+            float lowest = 1e9F, highest = -1e9F;
+            sand::CellRect exact{45, 29, 0, 0};
+            for (int row = changed.y0; row < changed.y1; ++row) {
+                for (int column = changed.x0; column < changed.x1; ++column) {
+                    seen[static_cast<std::size_t>(row * 45 + column)] = 1;
+                    if (const float was = before.height(column, row); was != surface.height(column, row)) {
+                        lowest = std::min(lowest, was);
+                        highest = std::max(highest, was);
+                        exact = {std::min(exact.x0, column), std::min(exact.y0, row), std::max(exact.x1, column + 1),
+                                 std::max(exact.y1, row + 1)};
+                    }
+                }
+            }
+            ASSERT_EQ(changed, exact) << "round " << round;
+            ASSERT_EQ(range.lowest, lowest);
+            ASSERT_EQ(range.highest, highest);
+        }
+        for (int i = 0; i < 45 * 29; ++i) {
+            const int column = i % 45, row = i / 45;
+            ASSERT_EQ(surface.height(column, row), static_cast<float>(field.height(column, row) * field.unit()));
+            ASSERT_TRUE(seen[static_cast<std::size_t>(i)] == 1 ||
+                        before.height(column, row) == surface.height(column, row))
+                << "round " << round << ": " << column << ", " << row;
+        }
+    }
+}
+
+TEST(SandSurface, HeightsOfAPartAreThoseOfItsCells) {
+    std::mt19937 random(20240613);
+    sand::HeightField field(45, 29, 1);
+    SandSurface surface(field);
+    for (int round = 0; round < 300; ++round) {
+        std::vector<SandSurface::Overwritten> overwritten;
+        surface.takeOver(field, spoil(field, random), overwritten);
+        sand::HeightField any(45, 29, 1);
+        const sand::CellRect cells = spoil(any, random);
+        float lowest = 1e9F, highest = -1e9F;
+        for (int row = cells.y0; row < cells.y1; ++row) {
+            for (int column = cells.x0; column < cells.x1; ++column) {
+                lowest = std::min(lowest, surface.height(column, row));
+                highest = std::max(highest, surface.height(column, row));
+            }
+        }
+        const render_node::HeightRange found = surface.heights(cells);
+        ASSERT_EQ(found.lowest, lowest) << "round " << round;
+        ASSERT_EQ(found.highest, highest) << "round " << round;
+    }
+}
+
+// A row of 32 blocks, and a field of as many rows.
+TEST(SandSurface, ReadsEachListedCellOnceAndLargePartsByTheirBlocks) {
+    sand::HeightField field(256, 256, 1);
+    SandSurface surface(field);
+    std::int64_t before = surface.placesRead();
+    std::vector<SandSurface::Overwritten> overwritten;
+    surface.takeOver(field, {40, 80, 104, 88}, overwritten);
+    EXPECT_EQ(surface.placesRead() - before, 64 * 8);
+    before = surface.placesRead();
+    (void)surface.heights({39, 79, 105, 89});
+    // 8 blocks, and a ring one cell wide around 64 × 8 cells.
+    EXPECT_EQ(surface.placesRead() - before, 8 + 2 * (66 + 8));
 }
 
 TEST(Grain, IsAsBrightOnAverageAsSmoothSand) {

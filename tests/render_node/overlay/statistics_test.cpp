@@ -70,8 +70,8 @@ protected:
         wall_.stereo = stereo;
         const walls::Tile& tile = wall_.tiles.at(kTile);
         covered_ = overlayLayout(tile.pixels).pixels(tile.pixels);
-        shown_ = std::make_unique<TilePainter>(wall_, tile, scene_, "node6");
-        never_ = std::make_unique<TilePainter>(wall_, tile, scene_, "node6");
+        shown_ = std::make_unique<TilePainter>(wall_, tile, scene_, "node6", sand::GridData{scene_.terrain});
+        never_ = std::make_unique<TilePainter>(wall_, tile, scene_, "node6", sand::GridData{scene_.terrain});
     }
     /// A frame of digging, or of rest.
     void paintBoth(bool statistics, bool dig, bool oneEye = false) {

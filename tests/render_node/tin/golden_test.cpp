@@ -57,7 +57,7 @@ TEST_F(GoldenTin, GisIsWrittenAcrossTheWall) {
     step(terrain, false, {}, sand::Edit::settle);
     const walls::Wall wall =
         sample::smallWall(walls::loadWall(sample::wallFolder() / "tiled_3x4.toml"), golden::kMostPixels);
-    render_node::ScenePainter view(scene, *terrain.tinView(), sample::sceneToRoom(wall, scene));
+    render_node::ScenePainter view(scene, terrain.surface().data(), sample::sceneToRoom(wall, scene));
     view.setTool(terrain.probe(), false);
     const double unit = terrain.cellSize() / kProbePerCell, ground = scene.referenceHeight() * scene.terrain.unit();
     const sand::ProbePoint probe = terrain.probe();
@@ -96,7 +96,7 @@ TEST_F(GoldenTin, ThreeEllipsesAreImprintedAndTheirBordersMarked) {
     step(terrain, false, {}, sand::Edit::settle);
     const render_node::Camera camera = sample::camera({1, 0.2, 1.9}, {1, 0.95, 0.2});
     const render_node::EyeTarget target(240, 180);
-    render_node::ScenePainter view(scene, *terrain.tinView(), glm::dmat4(1));
+    render_node::ScenePainter view(scene, terrain.surface().data(), glm::dmat4(1));
     Image both(2 * target.width(), target.height());
     for (const bool wires : {false, true}) {
         lockstep::Overlays layers;

@@ -77,7 +77,7 @@ TEST_F(TinLook, OfAGridsSurfaceIsThatOfTheGrid) {
     scene::Scene scene = sample::duneScene(128);
     scene.look.detail = 0;
     const Tin tin(scene.terrain);
-    ScenePainter grid(scene, glm::dmat4(1)), view(scene, tin.view(), glm::dmat4(1));
+    ScenePainter grid(scene, glm::dmat4(1)), view(scene, sand::TinData{tin.view()}, glm::dmat4(1));
     for (const bool map : {false, true}) {
         for (ScenePainter* one : {&grid, &view}) {
             one->setTool(sample::probeAt(scene, {0.8, 0.7, 0.1}), false);
@@ -101,7 +101,7 @@ TEST_F(TinLook, IsFlatOrSmoothAsTheSceneSays) {
     const Tin tin(scene.terrain);
     const auto shades = [&](bool flat) {
         scene.look.flatShading = flat;
-        ScenePainter view(scene, tin.view(), glm::dmat4(1));
+        ScenePainter view(scene, sand::TinData{tin.view()}, glm::dmat4(1));
         view.setLayers(layersOf({Overlay::hillShade}));
         const Pixels seen = sample::draw(view, above_, target_);
         std::set<int> found;
@@ -136,8 +136,9 @@ TEST_F(TinLook, LeavesHolesOpenWhicheverSlotsTheirTrianglesHave) {
     other.cut(isHole);
     std::mt19937 random(5);
     other.shuffle(random);
-    ScenePainter whole(scene, Tin(scene.terrain).view(), glm::dmat4(1));
-    ScenePainter view(scene, tin.view(), glm::dmat4(1)), again(scene, other.view(), glm::dmat4(1));
+    ScenePainter whole(scene, sand::TinData{Tin(scene.terrain).view()}, glm::dmat4(1));
+    ScenePainter view(scene, sand::TinData{tin.view()}, glm::dmat4(1)),
+        again(scene, sand::TinData{other.view()}, glm::dmat4(1));
     for (ScenePainter* one : {&whole, &view, &again}) {
         one->setLayers(layersOf({Overlay::hillShade}));
     }
@@ -165,7 +166,7 @@ TEST_F(TinLook, MarksConstraintsInTheWireframeAlone) {
         }
         return most;
     };
-    ScenePainter view(scene, tin.view(), glm::dmat4(1));
+    ScenePainter view(scene, sand::TinData{tin.view()}, glm::dmat4(1));
     const Pixels without = sample::draw(view, above_, target_);
     view.setLayers(layersOf({Overlay::wireframe}));
     const Pixels wires = sample::draw(view, above_, target_);
@@ -183,7 +184,7 @@ TEST_F(TinLook, MarksConstraintsInTheWireframeAlone) {
                 }
             }
         }
-        view.update(tin.view(), tin.takeDamage());
+        view.update(sand::TinData{tin.view()}, tin.takeChange());
     };
     constrain(true);
     EXPECT_GT(reddest(sample::draw(view, above_, target_)), 60);
@@ -208,7 +209,7 @@ TEST_F(TinLook, LeavesItsShadersOutWhereNothingAsksForThem) {
         }
     }
     const CompiledShaders compiled;
-    ScenePainter view(scene, tin.view(), glm::dmat4(1));
+    ScenePainter view(scene, sand::TinData{tin.view()}, glm::dmat4(1));
     (void)sample::draw(view, above_, target_);
     EXPECT_FALSE(CompiledShaders::with("mark.frag.glsl"));
     view.setLayers(layersOf({Overlay::wireframe}));

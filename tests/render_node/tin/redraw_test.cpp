@@ -73,7 +73,7 @@ protected:
         scene.look.flatShading = flat;
         Tin tin(scene.terrain);
         const Tin start = tin;
-        ScenePainter view(scene, tin.view(), glm::dmat4(1));
+        ScenePainter view(scene, sand::TinData{tin.view()}, glm::dmat4(1));
         const EyeTarget inParts(kRedrawWidth, kRedrawHeight), whole(kRedrawWidth, kRedrawHeight);
         render_node::EyeMemory memory;
         std::vector<Tin::Vertex> added;
@@ -82,7 +82,7 @@ protected:
             for (auto edits = random() % 3; edits > 0; --edits) {
                 edit(tin, random, added);
             }
-            view.update(tin.view(), tin.takeDamage());
+            view.update(sand::TinData{tin.view()}, tin.takeChange());
             if (i % 5 == 2) {
                 view.setTool(sample::probeAt(scene, {0.03 * i, 0.9, 0.1 + 0.005 * i}), i % 2 == 0);
             }
@@ -93,10 +93,10 @@ protected:
             severalParts += view.counts().pixels < drawn.area() ? 1 : 0;
             ASSERT_TRUE(inParts.read() == sample::draw(view, camera, whole)) << "seed " << seed << ", step " << i;
             if (i % 20 == 19) {  // a replica that starts here, its triangles in other slots, begun at other corners
-                ScenePainter fresh(scene, start.view(), glm::dmat4(1));
+                ScenePainter fresh(scene, sand::TinData{start.view()}, glm::dmat4(1));
                 Tin other = tin;
                 other.shuffle(random);
-                fresh.update(other.view(), {.whole = true, .triangles = {}, .vertices = {}});
+                fresh.update(sand::TinData{other.view()}, {});
                 fresh.setTool(sample::probeAt(scene, {0.03 * (i - 2), 0.9, 0.1 + 0.005 * (i - 2)}), (i - 2) % 2 == 0);
                 fresh.setLayers(i / 10 % 3 == 1 ? layers : lockstep::Overlays{});
                 ASSERT_TRUE(inParts.read() == sample::draw(fresh, camera, whole)) << "seed " << seed << ", step " << i;
@@ -135,8 +135,8 @@ TEST_F(TinRedraw, OfAnIslandThatRisesAsAWholeIsEqualToTheWhole) {
     const scene::Scene scene = sample::flatScene(kCells, kCells);
     Tin tin(scene.terrain);
     tin.cut([&](double x, double y) { return fromMiddle(x, y) > 6 && fromMiddle(x, y) < 24; });
-    (void)tin.takeDamage();
-    ScenePainter view(scene, tin.view(), glm::dmat4(1));
+    (void)tin.takeChange();
+    ScenePainter view(scene, sand::TinData{tin.view()}, glm::dmat4(1));
     const EyeTarget inParts(kRedrawWidth, kRedrawHeight), whole(kRedrawWidth, kRedrawHeight);
     render_node::EyeMemory memory;
     view.drawIfChanged(slanted_, inParts, memory);
@@ -146,7 +146,7 @@ TEST_F(TinRedraw, OfAnIslandThatRisesAsAWholeIsEqualToTheWhole) {
             tin.setHeight(static_cast<Tin::Vertex>(i), 8 * kUnit);
         }
     }
-    view.update(tin.view(), tin.takeDamage());
+    view.update(sand::TinData{tin.view()}, tin.takeChange());
     const PixelRect drawn = view.drawIfChanged(slanted_, inParts, memory);
     EXPECT_LT(drawn.area(), kRedrawWidth * kRedrawHeight / 2);
     EXPECT_TRUE(inParts.read() == sample::draw(view, slanted_, whole));
@@ -188,7 +188,8 @@ TEST_F(TinRedraw, WithWhatIsUnseenPutOffIsEqualToTheWhole) {
         std::mt19937 random(seed);
         const scene::Scene scene = sample::duneScene(kCells);
         Tin tin(scene.terrain);
-        ScenePainter prompt(scene, tin.view(), glm::dmat4(1)), late(scene, tin.view(), glm::dmat4(1));
+        ScenePainter prompt(scene, sand::TinData{tin.view()}, glm::dmat4(1)),
+            late(scene, sand::TinData{tin.view()}, glm::dmat4(1));
         const EyeTarget promptly(kRedrawWidth, kRedrawHeight), lately(kRedrawWidth, kRedrawHeight);
         render_node::EyeMemory ofPrompt, ofLate;
         std::vector<Tin::Vertex> added;
@@ -199,9 +200,9 @@ TEST_F(TinRedraw, WithWhatIsUnseenPutOffIsEqualToTheWhole) {
             const int stay = i / 15;
             const glm::dvec3 place(0.2 + 0.16 * (stay * 3 % 10), 0.2 + 0.16 * (stay * 7 % 10), 0);
             const render_node::Camera near = sample::camera(place + glm::dvec3(0, -0.1, 0.35), place);
-            const sand::TinChange damage = tin.takeDamage();
-            prompt.update(tin.view(), damage);
-            late.update(tin.view(), damage, {&near, 1});
+            const sand::SurfaceChange change = tin.takeChange();
+            prompt.update(sand::TinData{tin.view()}, change);
+            late.update(sand::TinData{tin.view()}, change, {&near, 1});
             prompt.drawIfChanged(near, promptly, ofPrompt);
             late.drawIfChanged(near, lately, ofLate);
             ASSERT_TRUE(lately.read() == promptly.read()) << "seed " << seed << ", step " << i;
@@ -212,13 +213,13 @@ TEST_F(TinRedraw, WithWhatIsUnseenPutOffIsEqualToTheWhole) {
 TEST_F(TinRedraw, SendsWhatChangedAndNothingElse) {
     scene::Scene scene = sample::flatScene(kCells, kCells);
     Tin tin(scene.terrain);
-    ScenePainter view(scene, tin.view(), glm::dmat4(1));
+    ScenePainter view(scene, sand::TinData{tin.view()}, glm::dmat4(1));
     const EyeTarget target(kRedrawWidth, kRedrawHeight);
     render_node::EyeMemory memory;
     view.drawIfChanged(above_, target, memory);
     const SentBytes sent;
     const auto draw = [&] {
-        view.update(tin.view(), tin.takeDamage());
+        view.update(sand::TinData{tin.view()}, tin.takeChange());
         const PixelRect drawn = view.drawIfChanged(above_, target, memory);
         return std::pair(SentBytes::take(), drawn.area());
     };
@@ -237,7 +238,7 @@ TEST_F(TinRedraw, SendsWhatChangedAndNothingElse) {
 
     const render_node::Camera elsewhere = sample::camera({1.8, 1.7, 0.3}, {1.8, 1.8, 0});
     tin.setHeight(vertex, 2 * kUnit);
-    view.update(tin.view(), tin.takeDamage(), {&elsewhere, 1});
+    view.update(sand::TinData{tin.view()}, tin.takeChange(), {&elsewhere, 1});
     EXPECT_EQ(SentBytes::take(), 0) << "nobody sees it";
     EXPECT_GT(draw().first, 0) << "somebody does";
 

@@ -40,7 +40,7 @@ TEST(TinSurface, KeepsChunksAndPartsInTheOrderOfTheTinAlone) {
         const auto corners = tin.mesh().triangles[static_cast<std::size_t>(slot)].corner;
         within.emplace_back(tin.split(slot, 65536.0 * static_cast<double>(random() % 4)), corners);
     }
-    (void)tin.takeDamage();
+    (void)tin.takeParts();
     TinSurface surface(tin.view(), cell);
     for (int round = 0; round < 4; ++round) {
         for (const auto& [vertex, corners] : within) {  // nearer to one corner than to the others
@@ -53,7 +53,7 @@ TEST(TinSurface, KeepsChunksAndPartsInTheOrderOfTheTinAlone) {
             }
             tin.move(vertex, {sum.x / 10, sum.y / 10});
         }
-        (void)surface.update(tin.view(), tin.takeDamage());
+        (void)surface.update(tin.view(), tin.takeParts());
         TinSurface fresh(tin.view(), cell);
         for (std::size_t i = 0; i < surface.chunks().size(); ++i) {
             ASSERT_EQ(orderOf(surface, surface.chunks()[i]), orderOf(fresh, fresh.chunks()[i])) << "round " << round;
@@ -86,12 +86,12 @@ TEST(TinSurface, BesideAHoleOnlyWhatIsNearIsDrawnAnew) {
     Tin tin(scene.terrain);
     const double middle = 32 * sand::kProbePerCell, half = 2 * sand::kProbePerCell;
     tin.cut([&](double x, double y) { return std::abs(x - middle) < half && std::abs(y - middle) < half; });
-    (void)tin.takeDamage();
+    (void)tin.takeParts();
     TinSurface surface(tin.view(), cell);
     const Tin::Vertex beside = 32 * 66 + 30;  // in rows of 66
     const auto place = tin.mesh().places[beside];
     tin.setHeight(beside, tin.height(beside) + 1e6);
-    const TinSurface::Change change = surface.update(tin.view(), tin.takeDamage());
+    const TinSurface::Change change = surface.update(tin.view(), tin.takeParts());
     const glm::dvec2 at = glm::dvec2(place.x, place.y) * (cell / sand::kProbePerCell);
     const double reach = 14 * cell;  // the light's, and a triangle's side
     EXPECT_FALSE(change.boxes.empty());

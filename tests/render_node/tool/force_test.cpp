@@ -9,6 +9,7 @@
 #include "sand/model/ground.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/sample_scene.hpp"
+#include "tests/support/sand_of.hpp"
 
 namespace {
 
@@ -130,7 +131,7 @@ TEST_F(Arrow, LeavesTheSandAlone) {
         }
         EXPECT_TRUE(force.arrow(felt));
         EXPECT_EQ(felt.stateHash(), untouched.stateHash());
-        EXPECT_NE(felt.field().height(125, 125), 0) << "the tool digs";
+        EXPECT_NE(samples::fieldOf(felt).height(125, 125), 0) << "the tool digs";
     }
     EXPECT_NE(felt.stateHash(), level);
 }

@@ -8,6 +8,7 @@
 
 #include "sand/force/law.hpp"
 #include "tests/sand/force/force_samples.hpp"
+#include "tests/support/sand_of.hpp"
 
 namespace {
 
@@ -40,7 +41,7 @@ Felt dragged(const ForceConstants& constants, double depth, double speed) {
         if (update) {
             terrain.apply(next);
             next = {1, next.number + 1, true, {}};
-            patch = SurfacePatch(terrain.field(), terrain.probe(), kRadius);
+            patch = SurfacePatch(samples::fieldOf(terrain), terrain.probe(), kRadius);
         }
         const Response here = model.at(patch, terrain.stepNumber(), tool, place, tick * kTick);
         const Vec3 velocity{moving > 0 ? speed * kRadius : 0, moving > 0 ? speed * kRadius / 3 : 0, 0};

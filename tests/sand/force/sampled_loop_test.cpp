@@ -9,6 +9,7 @@
 #include "sand/force/law.hpp"
 #include "tests/sand/force/force_samples.hpp"
 #include "tests/support/point_mass.hpp"
+#include "tests/support/sand_of.hpp"
 
 namespace {
 
@@ -69,7 +70,7 @@ Session pulledAndReleased(const sand::ForceConstants& constants) {
     sand::Replica terrain(levelScene());
     ForceModel model(constants);
     const Contour tool = Contour::sphere(kRadius);
-    SurfacePatch patch(terrain.field(), probeAt(placeAt(0)), kRadius);
+    SurfacePatch patch(samples::fieldOf(terrain), probeAt(placeAt(0)), kRadius);
     PointMass mass;
     const Vec3 start = placeAt(0, -5 * kRadius);
     Session session;
@@ -83,7 +84,7 @@ Session pulledAndReleased(const sand::ForceConstants& constants) {
         if (tick * 60 / 1000 != (tick - 1) * 60 / 1000 || tick == 0) {
             terrain.apply(next);
             next = {1, next.number + 1, true, {}};
-            patch = SurfacePatch(terrain.field(), terrain.probe(), kRadius);
+            patch = SurfacePatch(samples::fieldOf(terrain), terrain.probe(), kRadius);
         }
         const Response felt = model.at(patch, terrain.stepNumber(), tool, place, tick * kTick);
         const Vec3 sand = lawfulForce(felt, (1 / (60 * kMetres)) * mass.velocity);
@@ -108,8 +109,8 @@ Session pulledAndReleased(const sand::ForceConstants& constants) {
     }
     for (int row = 0; row < kSide; ++row) {
         for (int column = 0; column < kSide; ++column) {
-            session.sandMoved =
-                std::max(session.sandMoved, std::abs(terrain.field().height(column, row)) * terrain.field().unit());
+            session.sandMoved = std::max(session.sandMoved, std::abs(samples::fieldOf(terrain).height(column, row)) *
+                                                                samples::fieldOf(terrain).unit());
         }
     }
     return session;

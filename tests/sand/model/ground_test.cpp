@@ -7,6 +7,7 @@
 #include <random>
 
 #include "scene/scene.hpp"
+#include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -41,13 +42,13 @@ TEST(Ground, RockAndWallsOutlastAnyHand) {
         std::mt19937 random(5);
         for (std::uint64_t i = 1; i <= 300; ++i) {
             terrain.apply(samples::randomStep(i, scene.rules, random));
-            ASSERT_EQ(terrain.field().volume() + terrain.outflow(), scene.terrain.volume()) << "step " << i;
+            ASSERT_EQ(samples::fieldOf(terrain).volume() + terrain.outflow(), scene.terrain.volume()) << "step " << i;
             for (int y = 0; y < 47; ++y) {
                 for (int x = 0; x < 61; ++x) {
-                    ASSERT_GE(scene.ground->sand(x, y, terrain.field().height(x, y)), 0)
+                    ASSERT_GE(scene.ground->sand(x, y, samples::fieldOf(terrain).height(x, y)), 0)
                         << "a layer thinner than nothing at " << x << ", " << y << " in step " << i << " of seed 5";
                     ASSERT_TRUE(!scene.ground->isWall(x, y) ||
-                                terrain.field().height(x, y) == scene.terrain.height(x, y));
+                                samples::fieldOf(terrain).height(x, y) == scene.terrain.height(x, y));
                 }
             }
         }

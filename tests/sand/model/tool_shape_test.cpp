@@ -14,6 +14,7 @@
 #include "sand/model/tuning.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/relaxing.hpp"
+#include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -150,7 +151,7 @@ sand::HeightField dug(const scene::Scene& scene, const std::vector<ProbePoint>& 
         }
         terrain.apply(step);
     }
-    return terrain.field();
+    return samples::fieldOf(terrain);
 }
 
 // A quarter of a turn is an exchange and a mirroring. Round tools are left out: their last odd units go by rows, as
@@ -260,7 +261,7 @@ TEST(ToolShape, EveryOneKeepsTheVolumeWhereverItIs) {
                     step.path = {{probes(x), probes(y), probes(radius)},
                                  {probes(x + 5), probes(y - 3), probes(radius)}};
                     terrain.apply(step);
-                    ASSERT_EQ(terrain.field().volume() + terrain.outflow(), before)
+                    ASSERT_EQ(samples::fieldOf(terrain).volume() + terrain.outflow(), before)
                         << sand::toolName(kind) << " of " << radius << " at " << x << ", " << y;
                 }
             }
@@ -274,7 +275,7 @@ TEST(ToolShape, OfNoRadiusItDigsNothing) {
         scene.rules.toolKind = kind;
         sand::Replica terrain(scene);
         terrain.apply({1, 1, true, {{probes(5.5), probes(5.5), probes(-3)}, {probes(40), probes(30), probes(-3)}}});
-        EXPECT_TRUE(sameHeights(terrain.field(), scene.terrain)) << sand::toolName(kind);
+        EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain)) << sand::toolName(kind);
     }
 }
 
@@ -287,7 +288,7 @@ TEST(ToolShape, SwitchedTurnedAndDraggedAtRandomItKeepsTheVolumeAndTheStatesOfCo
         for (std::uint64_t i = 1; i <= 600; ++i) {
             const sand::Step step = samples::wildStep(i, scene.rules, random);
             terrain.apply(step);
-            ASSERT_EQ(terrain.field().volume() + terrain.outflow(), before) << "step " << i;
+            ASSERT_EQ(samples::fieldOf(terrain).volume() + terrain.outflow(), before) << "step " << i;
             if (i == 300) {
                 copy.decodeState(terrain.encodeState());
             } else if (i > 300) {
@@ -310,10 +311,10 @@ TEST(ToolShape, TurnedOnTheSpotItMakesRoomAndHeldStillItComesToRest) {
         turn.heading = heading(90);
         terrain.apply(turn);
         const sand::grid::Obstacle under =
-            Displacement(terrain.toolShape(), terrain.heading()).obstacle(terrain.field(), terrain.probe());
+            Displacement(terrain.toolShape(), terrain.heading()).obstacle(samples::fieldOf(terrain), terrain.probe());
         for (int row = under.cells.y0; row < under.cells.y1; ++row) {
             for (int column = under.cells.x0; column < under.cells.x1; ++column) {
-                ASSERT_LE(terrain.field().height(column, row), under.row(row)[column - under.cells.x0])
+                ASSERT_LE(samples::fieldOf(terrain).height(column, row), under.row(row)[column - under.cells.x0])
                     << sand::toolName(kind);
             }
         }
@@ -321,7 +322,7 @@ TEST(ToolShape, TurnedOnTheSpotItMakesRoomAndHeldStillItComesToRest) {
             terrain.apply({1, terrain.stepNumber() + 1, true, {}});
         }
         EXPECT_TRUE(terrain.settled()) << sand::toolName(kind);
-        EXPECT_EQ(terrain.field().volume(), 0);
+        EXPECT_EQ(samples::fieldOf(terrain).volume(), 0);
     }
 }
 

@@ -11,6 +11,7 @@
 #include "host/worker_pool.hpp"
 #include "sand/grid/dunes.hpp"
 #include "scene/scene.hpp"
+#include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -45,7 +46,7 @@ int run(const Options& options) {
                           {.blockSize = options.block,
                            .path = options.baseline ? sand::grid::CodePath::baseline : sand::grid::CodePath::automatic,
                            .executor = options.threads > 1 ? &executor : nullptr});
-    const std::int64_t volume = terrain.field().volume();
+    const std::int64_t volume = samples::fieldOf(terrain).volume();
     std::mt19937 random(options.seed);
     std::uint64_t all = 0;
     const auto begin = std::chrono::steady_clock::now();
@@ -57,13 +58,14 @@ int run(const Options& options) {
             fmt::print(stderr, "soak: {} edits in {:.0f} s, hash of all steps {:016x}\n", edit, seconds.count(), all);
         }
     }
-    if (terrain.field().volume() + terrain.outflow() != volume) {
-        fmt::print(stderr, "soak: the volume was {} and is {}\n", volume, terrain.field().volume() + terrain.outflow());
+    if (samples::fieldOf(terrain).volume() + terrain.outflow() != volume) {
+        fmt::print(stderr, "soak: the volume was {} and is {}\n", volume,
+                   samples::fieldOf(terrain).volume() + terrain.outflow());
         return 1;
     }
     fmt::print("{:016x}\n", all);
     fmt::print(stderr, "soak: {} x {} cells, {} threads, blocks of {}, {} sweeps: peak of {:.3g} GiB\n",
-               options.columns, options.rows, options.threads, options.block, terrain.erosion().sweepsDone(),
+               options.columns, options.rows, options.threads, options.block, samples::erosionOf(terrain).sweepsDone(),
                peakGibibytes());
     return 0;
 }

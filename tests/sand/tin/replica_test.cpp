@@ -14,6 +14,7 @@
 #include "scene/load/scene_file.hpp"
 #include "tests/sand/tin/same_session.hpp"
 #include "tests/support/folder_test.hpp"
+#include "tests/support/sand_of.hpp"
 #include "tests/support/tin_piles.hpp"
 
 namespace {
@@ -38,7 +39,7 @@ protected:
 };
 
 int verticesOf(const Replica& terrain) {
-    const auto& alive = terrain.tinView()->triangles.triangleAt;
+    const auto& alive = samples::tinOf(terrain).triangles.triangleAt;
     return static_cast<int>(std::count_if(alive.begin(), alive.end(), [](std::int32_t at) { return at >= 0; }));
 }
 
@@ -300,12 +301,14 @@ TEST_F(TinTerrain, ComesToRestAndThenCostsNoChange) {
         terrain.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {}});
     }
     ASSERT_TRUE(terrain.settled()) << "a tool held still must not pump sand for ever";
-    (void)terrain.takeTinDamage();
+    (void)terrain.takeChange();
     const auto held = terrain.copySand()->encode();
     terrain.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {}});
     EXPECT_EQ(terrain.copySand()->encode(), held);
-    const sand::TinChange damage = terrain.takeTinDamage();
-    EXPECT_TRUE(damage.triangles.empty() && damage.vertices.empty() && !damage.whole);
+    const sand::SurfaceChange change = terrain.takeChange();
+    EXPECT_FALSE(change.whole);
+    const auto& parts = std::get<sand::TinChange>(change.parts);
+    EXPECT_TRUE(parts.triangles.empty() && parts.vertices.empty());
 }
 
 TEST_F(TinTerrain, AFlippedBitShowsInTheNextAudit) {
@@ -317,11 +320,11 @@ TEST_F(TinTerrain, AFlippedBitShowsInTheNextAudit) {
     EXPECT_NE(terrain.stateHash(), right);
 }
 
-TEST_F(TinTerrain, DamageNamesAllThatChanged) {
+TEST_F(TinTerrain, ChangesNameAllThatChanged) {
     Replica terrain(scene());
-    ASSERT_TRUE(terrain.takeTinDamage().whole);
-    auto triangles = terrain.tinView()->triangles;
-    auto heights = terrain.tinView()->heights;
+    ASSERT_TRUE(terrain.takeChange().whole);
+    auto triangles = samples::tinOf(terrain).triangles;
+    auto heights = samples::tinOf(terrain).heights;
     for (const Step& step : session(11, 40)) {
         if (step.edit.any()) {
             continue;
@@ -329,29 +332,28 @@ TEST_F(TinTerrain, DamageNamesAllThatChanged) {
         Step next = step;
         next.number = terrain.stepNumber() + 1;
         terrain.apply(next);
-        const sand::TinChange damage = terrain.takeTinDamage();
-        ASSERT_FALSE(damage.whole);
-        const sand::tin::Triangles& now = terrain.tinView()->triangles;
+        const sand::SurfaceChange change = terrain.takeChange();
+        ASSERT_FALSE(change.whole);
+        const auto& [changedTriangles, changedVertices] = std::get<sand::TinChange>(change.parts);
+        const sand::tin::Triangles& now = samples::tinOf(terrain).triangles;
         for (std::size_t slot = 0; slot < now.triangles.size(); ++slot) {
             const bool same = slot < triangles.triangles.size() &&
                               triangles.triangles[slot].corner == now.triangles[slot].corner &&
                               triangles.triangles[slot].constrained == now.triangles[slot].constrained;
-            ASSERT_TRUE(same || std::binary_search(damage.triangles.begin(), damage.triangles.end(),
-                                                   static_cast<std::int32_t>(slot)))
+            ASSERT_TRUE(same || std::ranges::binary_search(changedTriangles, static_cast<std::int32_t>(slot)))
                 << "step " << next.number << ", slot " << slot;
         }
         for (std::size_t vertex = 0; vertex < now.triangleAt.size(); ++vertex) {
             const bool alive = now.alive(static_cast<sand::tin::Vertex>(vertex));
             const bool same = vertex < heights.size() &&
                               alive == triangles.alive(static_cast<sand::tin::Vertex>(vertex)) &&
-                              (!alive || (heights[vertex] == terrain.tinView()->heights[vertex] &&
+                              (!alive || (heights[vertex] == samples::tinOf(terrain).heights[vertex] &&
                                           triangles.places[vertex] == now.places[vertex]));
-            ASSERT_TRUE(same || std::binary_search(damage.vertices.begin(), damage.vertices.end(),
-                                                   static_cast<sand::tin::Vertex>(vertex)))
+            ASSERT_TRUE(same || std::ranges::binary_search(changedVertices, static_cast<std::int32_t>(vertex)))
                 << "step " << next.number << ", vertex " << vertex;
         }
         triangles = now;
-        heights = terrain.tinView()->heights;
+        heights = samples::tinOf(terrain).heights;
     }
 }
 

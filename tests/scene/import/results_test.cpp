@@ -15,6 +15,7 @@
 #include "scene/import/importer.hpp"
 #include "scene/load/scene_file.hpp"
 #include "tests/scene/import/import_fixture.hpp"
+#include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -56,7 +57,8 @@ protected:
     }
     /// [scene unit], by how much the sand of a cell has risen.
     [[nodiscard]] double risen(int column, int row) const {
-        return (terrain_.field().height(column, row) - scene_.terrain.height(column, row)) * scene_.terrain.unit();
+        return (samples::fieldOf(terrain_).height(column, row) - scene_.terrain.height(column, row)) *
+               scene_.terrain.unit();
     }
 
     scene::Scene scene_;
@@ -77,8 +79,8 @@ TEST_F(Results, HeightsGoBackWhereTheTerrainCameFrom) {
                 EXPECT_TRUE(grid.isNoData(column, row));
                 continue;
             }
-            ASSERT_NEAR(grid.at(column, row), 100 + terrain_.field().height(column, row) * terrain_.field().unit(),
-                        1e-6);
+            ASSERT_NEAR(grid.at(column, row),
+                        100 + samples::fieldOf(terrain_).height(column, row) * samples::fieldOf(terrain_).unit(), 1e-6);
         }
     }
 }
@@ -110,7 +112,7 @@ TEST_F(Results, CutAndFillAreExact) {
     std::int64_t fill = 0;
     for (int row = 0; row < kRows; ++row) {
         for (int column = 0; column < kColumns; ++column) {
-            const auto change = terrain_.field().height(column, row) - scene_.terrain.height(column, row);
+            const auto change = samples::fieldOf(terrain_).height(column, row) - scene_.terrain.height(column, row);
             cut += std::max(-change, 0);
             fill += std::max(change, 0);
         }
@@ -135,7 +137,7 @@ TEST_F(Results, AMeshHasTheSurfaceOfTheCellsWithData) {
         vertices, triangles);
     ASSERT_EQ(ply.substr(0, header.size()), header);
     ASSERT_EQ(ply.size(), header.size() + vertices * 24 + triangles * 13);
-    const scene::Mesh mesh = scene::meshOf(terrain_.field(), scene_);
+    const scene::Mesh mesh = scene::meshOf(samples::fieldOf(terrain_), scene_);
     std::vector<std::array<double, 3>> written(vertices);
     std::memcpy(written.data(), ply.data() + header.size(), vertices * 24);
     EXPECT_EQ(written, mesh.vertices);
@@ -158,7 +160,7 @@ TEST_F(Results, AMeshHasTheSurfaceOfTheCellsWithData) {
 
 TEST_F(Results, AMeshAsTextIsTheSameMesh) {
     ASSERT_EQ(replay("--mesh " + path("m.obj")).status, 0);
-    const scene::Mesh mesh = scene::meshOf(terrain_.field(), scene_);
+    const scene::Mesh mesh = scene::meshOf(samples::fieldOf(terrain_), scene_);
     std::istringstream stream(bytes("m.obj"));
     for (const auto& vertex : mesh.vertices) {
         std::string letter;

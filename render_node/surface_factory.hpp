@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "render_node/surface/drawn_surface.hpp"
+
+namespace render_node {
+
+/// The surface of this sand in GL. `sun` points towards it and has length 1. Needs its context current.
+[[nodiscard]] std::unique_ptr<DrawnSurface> makeDrawnSurface(const sand::SurfaceData& data,
+                                                             double cellSize /* [scene unit] */, const glm::vec3& sun);
+
+}  // namespace render_node
