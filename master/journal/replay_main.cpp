@@ -23,9 +23,8 @@
 #include "master/journal/journal.hpp"
 #include "master/journal/tools.hpp"
 #include "sand/replica.hpp"
-#include "sand/tin/geometry/surface_view.hpp"
 #include "scene/export/raster.hpp"
-#include "scene/export/tin_raster.hpp"
+#include "scene/export/results.hpp"
 #include "scene/import/raster_file.hpp"
 #include "scene/scene.hpp"
 
@@ -180,15 +179,13 @@ void writeRasters(const sand::HeightField& field, const scene::Scene& scene, con
 }
 
 void writeOutputs(const sand::Replica& terrain, const scene::Scene& scene, const Options& options) {
-    const sand::tin::SurfaceView* tin = terrain.tinView();
     if (!options.mesh.empty()) {
-        scene::writeMesh(tin != nullptr ? scene::meshOf(*tin, scene) : scene::meshOf(terrain.field(), scene),
-                         options.mesh);
+        scene::writeMesh(scene::meshOf(terrain, scene), options.mesh);
     }
-    if (tin == nullptr) {
-        writeRasters(terrain.field(), scene, options);
-    } else if (!options.heights.empty() || !options.difference.empty() || options.volumes) {
-        writeRasters(scene::sampled(terrain, scene.tin->holes.get()), scene::sampledScene(scene), options);
+    if (!options.heights.empty() || !options.difference.empty() || options.volumes) {
+        scene::withCells(terrain, scene, [&](const sand::HeightField& field, const scene::Scene& began) {
+            writeRasters(field, began, options);
+        });
     }
 }
 
