@@ -51,14 +51,6 @@ public:
     [[nodiscard]] const Rules& rules() const { return rules_; }  // now: an operator may have tuned the scene's
     [[nodiscard]] const Surface& surface() const { return *surface_; }
     [[nodiscard]] double cellSize() const { return cellSize_; }  // [scene unit], a TIN's nominal one
-    /// Of a height field; throws std::bad_variant_access for a TIN.
-    [[nodiscard]] const HeightField& field() const { return std::get<GridData>(surface_->data()).field; }
-    /// Null unless the terrain is a TIN.
-    [[nodiscard]] const tin::SurfaceView* tinView() const {
-        const SurfaceData data = surface_->data();
-        const auto* tin = std::get_if<TinData>(&data);
-        return tin == nullptr ? nullptr : &tin->view;
-    }
     [[nodiscard]] std::uint64_t stepNumber() const { return stepNumber_; }
     /// Lost over an open rim, and all there is [unit · cell; of a TIN: unit · probe unit² / 6].
     [[nodiscard]] std::int64_t outflow() const { return surface_->outflow(); }
