@@ -26,6 +26,7 @@ struct TinData {
 };
 
 /// The sand itself, as drawing, forces and exports read it: the one type that tells a height field from a TIN.
+/// tests/scripts/kinds_of_sand_test.py counts the places that ask which of the two it is.
 using SurfaceData = std::variant<GridData, TinData>;
 
 /// Runs of blocks in which cells changed: disjoint, row by row from the south-west. Blocks are 8 × 8 cells.
