@@ -14,8 +14,8 @@
 #include <random>
 #include <thread>
 
+#include "base/live_histogram.hpp"
 #include "haptic_bridge/client/client.hpp"
-#include "haptic_bridge/link/live_histogram.hpp"
 #include "host/clock.hpp"
 #include "host/command_line.hpp"
 #include "host/event.hpp"
@@ -23,8 +23,8 @@
 
 namespace {
 
+using base::LiveHistogram;
 using boost::asio::ip::tcp;
-using haptic_bridge::LiveHistogram;
 
 constexpr std::chrono::microseconds kFrame{16'667};
 constexpr double kMeanPause = 0.005;  // [s] between echoes: both ends sleep, as they do in a session

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/byte_stream.hpp"
-#include "haptic_bridge/link/guard_counts.hpp"
+#include "haptic_bridge/hand/guard_counts.hpp"
 #include "sand/model/step.hpp"
 #include "scene/scene.hpp"
 

@@ -21,8 +21,8 @@ public:
     ForceLoop& operator=(const ForceLoop&) = delete;
 
     // Any thread:
-    [[nodiscard]] const LiveHistogram& period() const { return period_; }
-    [[nodiscard]] const LiveHistogram& computing() const { return computing_; }                     // of a whole tick
+    [[nodiscard]] const base::LiveHistogram& period() const { return period_; }
+    [[nodiscard]] const base::LiveHistogram& computing() const { return computing_; }               // of a whole tick
     [[nodiscard]] std::uint64_t missed() const { return missed_.load(std::memory_order_relaxed); }  // [tick]
     /// Why the loop has no real-time priority; empty where it has.
     [[nodiscard]] const std::string& priorityRefused() const { return priorityRefused_; }
@@ -34,7 +34,7 @@ private:
 
     HapticTick& hand_;
     HandChannel& channel_;
-    LiveHistogram period_, computing_;
+    base::LiveHistogram period_, computing_;
     std::atomic<std::uint64_t> missed_{0};
     std::string priorityRefused_;
     std::atomic<bool> stopping_{false};

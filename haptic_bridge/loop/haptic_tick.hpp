@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "base/live_histogram.hpp"
 #include "base/triple_buffer.hpp"
 #include "haptic_bridge/hand/device.hpp"
 #include "haptic_bridge/hand/hand_mapping.hpp"
 #include "haptic_bridge/hand/path_builder.hpp"
-#include "haptic_bridge/link/live_histogram.hpp"
 #include "haptic_bridge/loop/guards/guards.hpp"
 #include "haptic_bridge/loop/guards/velocity_window.hpp"
 #include "haptic_bridge/loop/tick.hpp"
@@ -60,8 +60,10 @@ public:
     // Any thread:
     /// Returns where the hand was read last, at height 0; before that the middle of the field.
     [[nodiscard]] sand::ProbePoint where() const;
-    [[nodiscard]] const LiveHistogram& forceCost() const { return forceCost_; }  // law and guards, of engaged ticks
-    [[nodiscard]] const GuardCounts& guardCounts() const { return counts_; }     // [tick]
+    [[nodiscard]] const base::LiveHistogram& forceCost() const {
+        return forceCost_;
+    }                                                                         // law and guards, of engaged ticks
+    [[nodiscard]] const GuardCounts& guardCounts() const { return counts_; }  // [tick]
 
 private:
     HapticTick(const scene::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum, Guards::Mode mode,
@@ -80,7 +82,7 @@ private:
     sand::ProbePoint last_;
     std::atomic<std::uint64_t> where_{0};  // x and y, 32 bits each: one value, so that no thread sees half of a place
     Tick tick_;
-    LiveHistogram forceCost_;
+    base::LiveHistogram forceCost_;
     GuardCounts counts_;
 };
 

@@ -11,7 +11,6 @@
 #include <fstream>
 
 #include "base/input_error.hpp"
-#include "haptic_bridge/client/client.hpp"
 #include "haptic_bridge/devices/driver.hpp"
 #include "haptic_bridge/devices/open_device.hpp"
 #include "haptic_bridge/hand/device_troubles.hpp"

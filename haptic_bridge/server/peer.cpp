@@ -34,7 +34,7 @@ std::shared_ptr<Connection> counted(std::unique_ptr<Connection> connection, cons
             }};
 }
 
-HalfRoundTrip told(const LiveHistogram& halves) {
+HalfRoundTrip told(const base::LiveHistogram& halves) {
     return {halves.meanNs() * 1e-6, halves.stddevNs() * 1e-6, halves.percentileNs(0.50) * 1e-6,
             halves.percentileNs(0.99) * 1e-6, halves.count()};
 }

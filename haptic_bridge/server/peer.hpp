@@ -69,7 +69,7 @@ private:
         bool received = false;
     };
     std::map<std::uint32_t, TestOut> testsOut_;  // by id
-    LiveHistogram toWall_, toMaster_;            // half of the round trips
+    base::LiveHistogram toWall_, toMaster_;      // half of the round trips
     std::minstd_rand random_;
 };
 

@@ -10,7 +10,7 @@
 namespace haptic_bridge {
 
 void writeTimings(const std::string& file,
-                  const std::vector<std::pair<std::string, const LiveHistogram*>>& histograms) {
+                  const std::vector<std::pair<std::string, const base::LiveHistogram*>>& histograms) {
     std::ofstream stream(file);
     stream << "what,from_us,count\n";
     for (const auto& [what, histogram] : histograms) {

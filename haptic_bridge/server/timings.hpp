@@ -6,12 +6,13 @@
 #include <utility>
 #include <vector>
 
-#include "haptic_bridge/link/live_histogram.hpp"
+#include "base/live_histogram.hpp"
 
 namespace haptic_bridge {
 
 /// Writes named histograms as CSV: what, the shortest duration of a bucket [us], how often. Empty buckets are left out.
 /// Throws base::InputError when the file cannot be written.
-void writeTimings(const std::string& file, const std::vector<std::pair<std::string, const LiveHistogram*>>& histograms);
+void writeTimings(const std::string& file,
+                  const std::vector<std::pair<std::string, const base::LiveHistogram*>>& histograms);
 
 }  // namespace haptic_bridge

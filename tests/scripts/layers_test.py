@@ -31,6 +31,17 @@ def including(path, name):
     return {path: PROJECT.sources[path] + f'\n#include "{name}"\n'}
 
 
+def linked(name):
+    """All that a target links, PRIVATE links of its libraries included."""
+    found, waiting = set(), [name]
+    while waiting:
+        target = PROJECT.targets.get(waiting.pop(), {"link_libraries": []})
+        more = set(target["link_libraries"]) - found
+        found |= more
+        waiting += more
+    return found
+
+
 class Layers(unittest.TestCase):
     def test_no_file_includes_what_its_folder_may_not(self):
         self.assertEqual(layers.faults(PROJECT), [])
@@ -63,6 +74,13 @@ class Layers(unittest.TestCase):
     def test_a_source_of_no_library_is_named(self):
         self.assertEqual(changed({"dust/grain.cpp": ""}),
                          ["dust/grain.cpp: no library of the project holds it; add it to a CMakeLists.txt"])
+
+    def test_the_force_loop_and_a_replay_of_it_link_no_network(self):
+        network = {"haptic_link", "haptic_client", "haptic_server"}  # asio also lends host/ its pool of threads
+        for name in ("haptic_loop", "sandwall-replay"):
+            self.assertIn("haptic_hand", linked(name))
+            self.assertEqual(linked(name) & network, set(), name)
+        self.assertIn("haptic_link", linked("haptic_server"))
 
     def test_the_drawing_is_of_these_arrows(self):
         drawn = layers.fingerprint(PROJECT) in (ROOT / "docs" / "layers.svg").read_text()

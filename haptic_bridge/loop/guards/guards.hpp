@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "haptic_bridge/link/guard_counts.hpp"
+#include "haptic_bridge/hand/guard_counts.hpp"
 #include "haptic_bridge/loop/guards/force_limits.hpp"
 #include "haptic_bridge/loop/guards/passivity.hpp"
 #include "haptic_bridge/loop/guards/slew.hpp"

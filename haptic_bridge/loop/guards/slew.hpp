@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "haptic_bridge/link/guard_counts.hpp"
+#include "haptic_bridge/hand/guard_counts.hpp"
 #include "sand/force/vec3.hpp"
 
 namespace haptic_bridge {

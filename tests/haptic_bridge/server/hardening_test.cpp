@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// That the flags of cmake/Hardening.cmake reach what is built.
+// What binaries say of themselves: that the flags of cmake/Hardening.cmake reach them, and who can open a socket.
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cstdio>
 #include <filesystem>
 #include <set>
+#include <sstream>
 #include <string>
 
 namespace {
@@ -51,6 +52,26 @@ TEST(Hardening, EveryProgramAndModuleHasIt) {
 #ifdef SANDWALL_RELEASE
     EXPECT_TRUE(holds(symbols, "_chk@")) << "fortified calls";
 #endif
+}
+
+/// Of the calls that a program needs to speak over a network, those that a binary asks the C library for.
+std::set<std::string> networkCallsOf(const std::string& program) {
+    std::set<std::string> calls;
+    std::istringstream symbols(outputOf("readelf --dyn-syms -W " SANDWALL_BIN_DIR "/" + program));
+    for (std::string line; std::getline(symbols, line);) {
+        for (const char* call : {"socket", "connect", "bind", "listen", "accept", "accept4", "getaddrinfo"}) {
+            if (holds(line, " UND " + std::string(call) + "@")) {
+                calls.insert(call);
+            }
+        }
+    }
+    return calls;
+}
+
+// It runs the force loop of a haptic server, on ticks from a journal.
+TEST(Hardening, ReplayOpensNoSocket) {
+    EXPECT_EQ(networkCallsOf("sandwall-replay"), std::set<std::string>{});
+    EXPECT_TRUE(networkCallsOf("sandwall-haptic-server").contains("listen")) << "the look finds calls where they are";
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace haptic_bridge {
+namespace base {
 
 /// Durations as one thread measures them, while others read: 128 buckets an octave, so percentiles are within 1 %.
 ///
@@ -83,4 +83,4 @@ private:
     std::atomic<double> sum_{0}, squares_{0};
 };
 
-}  // namespace haptic_bridge
+}  // namespace base
