@@ -157,7 +157,7 @@ void FrameBarrier::receiveFromMaster(void* data, std::size_t bytes, int tag) {
     await({&request, 1}, {&kMaster, 1}, backoffFor({&kMaster, 1}));
 }
 
-FrameMessage FrameBarrier::begin(const FrameMessage& fromMaster, std::size_t& bytes) {
+FrameMessage FrameBarrier::begin(FrameMessage fromMaster, std::size_t& bytes) {
     const Watched watched(*watchdog_);
     std::array<std::uint8_t, kOneMessage> packet{};
     constexpr std::size_t kRoom = kOneMessage - sizeof(std::uint32_t);
@@ -174,15 +174,16 @@ FrameMessage FrameBarrier::begin(const FrameMessage& fromMaster, std::size_t& by
         if (length > kRoom) {  // a long catch-up
             sendToAll(message.data() + kRoom, length - kRoom, kRestTag);
         }
-    } else {
-        std::this_thread::sleep_until(std::chrono::steady_clock::time_point(std::chrono::nanoseconds(quietUntil_)));
-        receiveFromMaster(packet.data(), packet.size(), kFrameTag);
-        std::memcpy(&length, packet.data(), sizeof length);
-        message.resize(length);
-        std::copy_n(packet.begin() + sizeof length, std::min<std::size_t>(length, kRoom), message.begin());
-        if (length > kRoom) {
-            receiveFromMaster(message.data() + kRoom, length - kRoom, kRestTag);
-        }
+        bytes = length;
+        return fromMaster;
+    }
+    std::this_thread::sleep_until(std::chrono::steady_clock::time_point(std::chrono::nanoseconds(quietUntil_)));
+    receiveFromMaster(packet.data(), packet.size(), kFrameTag);
+    std::memcpy(&length, packet.data(), sizeof length);
+    message.resize(length);
+    std::copy_n(packet.begin() + sizeof length, std::min<std::size_t>(length, kRoom), message.begin());
+    if (length > kRoom) {
+        receiveFromMaster(message.data() + kRoom, length - kRoom, kRestTag);
     }
     bytes = length;
     return FrameMessage::decode(message);

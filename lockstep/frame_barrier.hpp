@@ -47,7 +47,7 @@ public:
     ~FrameBarrier();
 
     /// Collective: begins a frame. The master gives the message; everyone gets it. Sets `bytes` to its length.
-    [[nodiscard]] FrameMessage begin(const FrameMessage& fromMaster, std::size_t& bytes);
+    [[nodiscard]] FrameMessage begin(FrameMessage fromMaster, std::size_t& bytes);
 
     /// Collective: comes to the barrier of the frame; returns when all have, with whether all hashes are equal. The
     /// master says when it will begin the next frame at the earliest [ns of its clock]: the ranks sleep until then.

@@ -140,12 +140,16 @@ Trace Trace::parse(std::istream& text, const std::string& name, const HandSettin
     return trace;
 }
 
-TraceDevice::TraceDevice(Trace trace, const HandSettings& settings, double fieldWidth, double fieldHeight,
+TraceDevice::TraceDevice(const Trace& trace, const HandSettings& settings, double fieldWidth, double fieldHeight,
                          double toolRadius)
-    : trace_(std::move(trace)), settings_(settings) {
+    : settings_(settings) {
     std::vector<double> east, north, up;
-    for (const Trace::Sample& sample : trace_.samples) {
-        const sand::force::Vec3 place = turned(sample.place);
+    for (const Trace::Sample& sample : trace.samples) {
+        const auto along = [&](const HandSettings::Axis& axis) {
+            return axis.sign * sample.place[static_cast<std::size_t>(axis.column)];
+        };
+        const sand::force::Vec3 place{along(settings.axes[0]), along(settings.axes[1]), along(settings.axes[2])};
+        knots_.push_back({sample.time, place});
         east.push_back(place.x);
         north.push_back(place.y);
         up.push_back(place.z);
@@ -164,24 +168,15 @@ TraceDevice::TraceDevice(Trace trace, const HandSettings& settings, double field
     vertical_ = scale * settings.verticalScale / std::max(toolRadius, 1e-12);
 }
 
-sand::force::Vec3 TraceDevice::turned(const std::array<double, 3>& place) const {
-    const auto along = [&](const HandSettings::Axis& axis) {
-        return axis.sign * place[static_cast<std::size_t>(axis.column)];
-    };
-    return {along(settings_.axes[0]), along(settings_.axes[1]), along(settings_.axes[2])};
-}
-
 Pose TraceDevice::read(double time) {
-    const auto& samples = trace_.samples;
-    while (next_ + 1 < samples.size() && samples[next_].time < time) {
+    while (next_ + 1 < knots_.size() && knots_[next_].time < time) {
         ++next_;
     }
-    const Trace::Sample& from = samples[next_ - 1];
-    const Trace::Sample& to = samples[next_];
+    const Knot& from = knots_[next_ - 1];
+    const Knot& to = knots_[next_];
     const double span = to.time - from.time;
     const double share = span > 0 ? std::clamp((time - from.time) / span, 0.0, 1.0) : 1.0;
-    const sand::force::Vec3 before = turned(from.place), after = turned(to.place);
-    const sand::force::Vec3 place = before + share * (after - before) - origin_;
+    const sand::force::Vec3 place = from.place + share * (to.place - from.place) - origin_;
     Pose pose{place.x * horizontal_, place.y * horizontal_, 1 - settings_.depth.value_or(0.5) + place.z * vertical_,
               false};
     const double underside = pose.z - 1;  // [tool radius] over the surface

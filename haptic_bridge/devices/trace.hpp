@@ -30,15 +30,18 @@ class TraceDevice : public Device {
 public:
     /// The field's extent and the tool's radius are in scene units; the median and the bounding box of the trace are
     /// taken once, here.
-    TraceDevice(Trace trace, const HandSettings& settings, double fieldWidth, double fieldHeight, double toolRadius);
+    TraceDevice(const Trace& trace, const HandSettings& settings, double fieldWidth, double fieldHeight,
+                double toolRadius);
     [[nodiscard]] Pose read(double time) override;
     void sendForce(sand::force::Vec3) override {}
-    [[nodiscard]] bool finished(double time) const override { return time > trace_.samples.back().time; }
+    [[nodiscard]] bool finished(double time) const override { return time > knots_.back().time; }
 
 private:
-    [[nodiscard]] sand::force::Vec3 turned(const std::array<double, 3>& place) const;
-
-    Trace trace_;
+    struct Knot {
+        double time;              // [s]
+        sand::force::Vec3 place;  // [unit of the trace], east, north, up
+    };
+    std::vector<Knot> knots_;
     HandSettings settings_;
     sand::force::Vec3 origin_;              // [unit of the trace], east, north, up
     double horizontal_ = 1, vertical_ = 1;  // hand space per unit of the trace

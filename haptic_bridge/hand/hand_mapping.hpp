@@ -14,6 +14,7 @@ class HandMapping {
 public:
     HandMapping(const scene::Scene& scene, HandSettings::Datum datum);
 
+    [[nodiscard]] HandSettings::Datum datum() const { return datum_; }
     /// Poses beyond reach are clamped to sand::kMaxProbe. A pose that holds no number gives nothing.
     [[nodiscard]] std::optional<sand::ProbePoint> probe(const Pose& pose) const;
     /// Nothing for a hand that does not turn the tool, or turns it by what is no number.

@@ -5,15 +5,14 @@
 
 namespace haptic_bridge {
 
-std::vector<sand::ProbePoint> thinned(const std::vector<sand::ProbePoint>& path, std::size_t most) {
+void thin(std::vector<sand::ProbePoint>& path, std::size_t most) {
     if (path.size() <= most) {
-        return path;
+        return;
     }
-    std::vector<sand::ProbePoint> result;
     for (std::size_t i = 0; i < most; ++i) {
-        result.push_back(path[i * (path.size() - 1) / (most - 1)]);
+        path[i] = path[i * (path.size() - 1) / (most - 1)];  // from further on, or from there
     }
-    return result;
+    path.resize(most);
 }
 
 void PathBuilder::add(const HandSample& sample) {
@@ -60,7 +59,8 @@ std::int64_t PathBuilder::take(sand::Step& step) {
         return 0;
     }
     letGoIfFarAhead();
-    std::vector<sand::ProbePoint> path;
+    std::vector<sand::ProbePoint>& path = step.path;
+    path.clear();
     std::int64_t readNs = 0;
     const std::int64_t until = waiting_.front().timeNs + mostNs_;
     const bool changed = waiting_.front().engaged != engaged_;
@@ -77,8 +77,9 @@ std::int64_t PathBuilder::take(sand::Step& step) {
         }
     }
     step.engaged = engaged_;
-    step.path = thinned(path, sand::kMaxPathPoints);
-    dropped_ += path.size() - step.path.size();
+    const std::size_t all = path.size();
+    thin(path, sand::kMaxPathPoints);
+    dropped_ += all - path.size();
     return readNs;
 }
 

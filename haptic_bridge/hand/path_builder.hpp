@@ -59,7 +59,7 @@ private:
     std::uint64_t dropped_ = 0;
 };
 
-/// At most `most` (≥ 2) of the points: first, last, and evenly chosen ones between.
-[[nodiscard]] std::vector<sand::ProbePoint> thinned(const std::vector<sand::ProbePoint>& path, std::size_t most);
+/// Keeps at most `most` (≥ 2) of the points: first, last, and evenly chosen ones between.
+void thin(std::vector<sand::ProbePoint>& path, std::size_t most);
 
 }  // namespace haptic_bridge

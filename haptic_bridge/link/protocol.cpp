@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <type_traits>
 
 namespace haptic_bridge {
@@ -334,12 +335,15 @@ Message decodeType(std::uint8_t type, base::ByteReader& reader) {
 std::string_view nameOf(Role role) { return role == Role::move ? "move" : "watch"; }
 
 base::Bytes encode(const Message& message) {
-    base::ByteWriter payload;
-    payload.put(static_cast<std::uint8_t>(message.index() + 1));
-    std::visit([&payload](const auto& kind) { put(kind, payload); }, message);
-    base::ByteWriter framed;
-    framed.putBlock(payload.bytes());
-    return framed.take();
+    std::uint32_t length = 0;
+    base::ByteWriter writer;
+    writer.put(length);  // known at the end: a message may hold hundreds of megabytes, which are written once
+    writer.put(static_cast<std::uint8_t>(message.index() + 1));
+    std::visit([&writer](const auto& kind) { put(kind, writer); }, message);
+    base::Bytes framed = writer.take();
+    length = static_cast<std::uint32_t>(framed.size() - sizeof length);
+    std::memcpy(framed.data(), &length, sizeof length);
+    return framed;
 }
 
 Message decode(std::span<const std::uint8_t> typeAndPayload) {

@@ -66,9 +66,8 @@ void ForceLoop::run() {
             sitting = latest;
             channel_.beginSitting(hand_);
         }
-        const FeltSand& surface = channel_.surface.latest();
-        const HandSample sample = hand_.tick(handTime, now, surface);
-        channel_.keep(now, surface);
+        const HandSample sample = hand_.tick(handTime, now, channel_.surface.latest());
+        channel_.keepTick();
         if (!channel_.samples.push(sample)) {
             channel_.overflow.fetch_add(1, std::memory_order_relaxed);
         }

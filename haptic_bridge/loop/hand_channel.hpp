@@ -27,9 +27,9 @@ struct HandChannel {
             recorder->begin();
         }
     }
-    void keep(std::int64_t nowNs, const FeltSand& felt) const {
+    void keepTick() const {
         if (recorder != nullptr) {
-            recorder->add(nowNs, felt);
+            recorder->add();
         }
     }
 };

@@ -54,7 +54,7 @@ HapticTick::HapticTick(const scene::Scene& scene, std::unique_ptr<Device> device
       velocity_(guards_.limits().resolution * guards_.limits().scale),
       words_(inWords(scene.force, guards_.limits(), law)) {
     restart();
-    tellWhere(last_);
+    tellWhere(tick_.sample);
 }
 
 void HapticTick::restart() {
@@ -62,7 +62,7 @@ void HapticTick::restart() {
     guards_.forget();
     armVelocity_.restart();
     velocity_.restart();
-    last_ = mapping_.probe(Pose{}).value_or(sand::ProbePoint{});
+    tick_.sample = mapping_.probe(Pose{}).value_or(sand::ProbePoint{});
 }
 
 void HapticTick::rest(double deviceTime) {
@@ -85,20 +85,21 @@ sand::ProbePoint HapticTick::where() const {
 
 HandSample HapticTick::tick(double deviceTime, std::int64_t nowNs, const FeltSand& surface) {
     const Pose pose = device_->read(deviceTime);
+    input_ = {deviceTime, pose, device_->reading(), nowNs, nowNs - surface.timeNs, surface.step, surface.around};
+    const bool present = input_.reading.present;
     const auto probe = mapping_.probe(pose);
-    last_ = probe.value_or(last_);
-    tellWhere(last_);
-    const bool present = device_->reading().present;
-    const HandSample sample{nowNs, last_, pose.engaged && probe.has_value() && present, mapping_.heading(pose)};
+    tick_.sample = probe.value_or(tick_.sample);
+    tellWhere(tick_.sample);
+    const HandSample sample{nowNs, tick_.sample, pose.engaged && probe.has_value() && present, mapping_.heading(pose)};
 
     const std::int64_t begin = host::monotonicNs();
-    fillTick(deviceTime, surface, sample);
+    fillTick(sample.engaged);
     const double perMetre = guards_.limits().scale;
     // On the device's clock, which a recording of ticks keeps, so that a replay finds the same.
     Guards::Reading reading{deviceTime,
                             present,
                             sample.engaged,
-                            static_cast<double>(nowNs - surface.timeNs) * 1e-9,
+                            static_cast<double>(input_.surfaceAgeNs) * 1e-9,
                             (1 / perMetre) * tick_.place,
                             (1 / perMetre) * tick_.velocity,
                             {}};
@@ -121,15 +122,15 @@ HandSample HapticTick::tick(double deviceTime, std::int64_t nowNs, const FeltSan
     return sample;
 }
 
-void HapticTick::fillTick(double deviceTime, const FeltSand& surface, const HandSample& sample) {
-    tick_.time = deviceTime;
-    tick_.armPlace = device_->reading().place;
-    tick_.armVelocity = armVelocity_.add(deviceTime, tick_.armPlace);
-    tick_.place = mapping_.place(last_);
-    tick_.velocity = velocity_.add(deviceTime, tick_.place);
-    tick_.surfaceStep = surface.step;
-    tick_.sample = sample.at;
-    tick_.engaged = sample.engaged;
+/// What follows from input_ and from where the hand is.
+void HapticTick::fillTick(bool engaged) {
+    tick_.time = input_.time;
+    tick_.armPlace = input_.reading.place;
+    tick_.armVelocity = armVelocity_.add(input_.time, tick_.armPlace);
+    tick_.place = mapping_.place(tick_.sample);
+    tick_.velocity = velocity_.add(input_.time, tick_.place);
+    tick_.surfaceStep = input_.surfaceStep;
+    tick_.engaged = engaged;
 }
 
 }  // namespace haptic_bridge

@@ -51,8 +51,11 @@ public:
     /// Forgets every tick before, as if it had just been made: what follows depends on the ticks of one link alone.
     void restart();
 
-    /// All of the tick before: for the thread that ticks.
+    /// All of the tick before, and what it was computed from: for the thread that ticks.
     [[nodiscard]] const Tick& lastTick() const { return tick_; }
+    [[nodiscard]] const TickInput& lastInput() const { return input_; }
+    [[nodiscard]] const Device& device() const { return *device_; }
+    [[nodiscard]] HandSettings::Datum datum() const { return mapping_.datum(); }
     /// What was limited, and why: lines for a person.
     [[nodiscard]] const std::vector<std::string>& limitsInWords() const { return words_; }
     [[nodiscard]] const Guards& guards() const { return guards_; }
@@ -68,7 +71,7 @@ public:
 private:
     HapticTick(const scene::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum, Guards::Mode mode,
                const LawAtRadius& law);
-    void fillTick(double deviceTime, const FeltSand& surface, const HandSample& sample);
+    void fillTick(bool engaged);
     void tellWhere(const sand::ProbePoint& at);
 
     const sand::ForceConstants constants_;
@@ -79,8 +82,8 @@ private:
     VelocityWindow armVelocity_;  // [m/s], of the device's axes
     VelocityWindow velocity_;     // [scene unit/s]
     std::vector<std::string> words_;
-    sand::ProbePoint last_;
     std::atomic<std::uint64_t> where_{0};  // x and y, 32 bits each: one value, so that no thread sees half of a place
+    TickInput input_;
     Tick tick_;
     base::LiveHistogram forceCost_;
     GuardCounts counts_;

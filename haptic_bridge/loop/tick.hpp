@@ -3,10 +3,22 @@
 
 #include <cstdint>
 
+#include "haptic_bridge/hand/device.hpp"
 #include "sand/force/vec3.hpp"
 #include "sand/model/step.hpp"
 
 namespace haptic_bridge {
+
+/// What a hand was told at one tick: with the steps of a session, all that its forces follow from.
+struct TickInput {
+    double time = 0;  // [s], of the device
+    Pose pose;
+    ArmReading reading;
+    std::int64_t nowNs = 0;         // of the loop's clock
+    std::int64_t surfaceAgeNs = 0;  // then
+    std::uint64_t surfaceStep = 0;
+    sand::ProbePoint around;  // FeltSand's, at height 0
+};
 
 /// One tick of the force loop, whole: what --record writes, and what a replay must find again bit for bit.
 struct Tick {

@@ -22,12 +22,8 @@ constexpr std::size_t kMostPieces = 4096;  // a master that takes none is not th
 
 }  // namespace
 
-TickRecorder::TickRecorder(Options options, const HapticTick& hand, const NotedDevice& device,
-                           HandSettings::Datum datum)
-    : options_(std::move(options)),
-      hand_(hand),
-      device_(device),
-      header_(device.header(datum, hand.guards().mode() == Guards::Mode::literal)) {
+TickRecorder::TickRecorder(Options options, const HapticTick& hand)
+    : options_(std::move(options)), hand_(hand), header_(headerOf(hand)) {
     descriptor_ = open(options_.file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     if (descriptor_ < 0) {
         throw base::InputError(fmt::format("--record {}: cannot be made ({}); give a file in a folder that is there",
@@ -51,12 +47,7 @@ void TickRecorder::begin() {
     push(entry);
 }
 
-void TickRecorder::add(std::int64_t nowNs, const FeltSand& surface) {
-    const Tick& tick = hand_.lastTick();
-    push({false,
-          tick,
-          {tick.time, device_.pose(), device_.reading(), nowNs, nowNs - surface.timeNs, surface.step, surface.around}});
-}
+void TickRecorder::add() { push({false, hand_.lastTick(), hand_.lastInput()}); }
 
 void TickRecorder::push(const Entry& entry) {
     bool there = queue_.push(entry);

@@ -26,8 +26,8 @@ public:
         bool wait = false;                            // the fast pace
         std::function<void(const std::string&)> log;  // one line for a person; on the recorder's thread
     };
-    /// Throws base::InputError when the file cannot be made. `device` is the one that `hand` reads; both outlive this.
-    TickRecorder(Options options, const HapticTick& hand, const NotedDevice& device, HandSettings::Datum datum);
+    /// Throws base::InputError when the file cannot be made. `hand` outlives this.
+    TickRecorder(Options options, const HapticTick& hand);
     ~TickRecorder();
     TickRecorder(const TickRecorder&) = delete;
     TickRecorder& operator=(const TickRecorder&) = delete;
@@ -36,7 +36,7 @@ public:
     /// A link begins: the hand has forgotten what was before.
     void begin();
     /// The hand has ticked.
-    void add(std::int64_t nowNs, const FeltSand& surface);
+    void add();
 
     // The streaming thread:
     /// What the master has not got yet.
@@ -59,7 +59,6 @@ private:
 
     Options options_;
     const HapticTick& hand_;
-    const NotedDevice& device_;
     const TrackHeader header_;
     boost::lockfree::spsc_queue<Entry, boost::lockfree::capacity<8192>> queue_;
     std::atomic<std::uint64_t> added_{0}, done_{0}, lost_{0};

@@ -69,6 +69,18 @@ TrackHeader getHeader(base::ByteReader& reader) {
 
 }  // namespace
 
+TrackHeader headerOf(const HapticTick& hand) {
+    TrackHeader header;
+    if (const ArmPhysics* physics = hand.device().physics()) {
+        header.body = true;
+        header.physics = *physics;
+    }
+    header.scale = hand.device().scale();
+    header.datum = hand.datum();
+    header.literal = hand.guards().mode() == Guards::Mode::literal;
+    return header;
+}
+
 base::Bytes encode(const TrackPiece& piece) {
     base::ByteWriter writer;
     writer.put(piece.sitting);
@@ -137,11 +149,6 @@ TrackPiece decodeTrackPiece(std::span<const std::uint8_t> bytes) {
         throw base::FormatError("a piece of a tick track with bytes too many");
     }
     return piece;
-}
-
-TrackHeader NotedDevice::header(HandSettings::Datum datum, bool literal) const {
-    const ArmPhysics* physics = device_->physics();
-    return {physics != nullptr, physics != nullptr ? *physics : ArmPhysics{}, device_->scale(), datum, literal};
 }
 
 std::string tickTitles() {

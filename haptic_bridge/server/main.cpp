@@ -170,18 +170,18 @@ void serve(const Options& options) {
         print("warning: " + warning);
     }
     const HandSettings settings = HandSettings::parse(options.map);
-    auto device = std::make_unique<NotedDevice>(openDevice(options.device, settings, scene));
-    NotedDevice& noted = *device;
-    noted.shareForce(options.force ? options.forceScale : 0);
+    std::unique_ptr<Device> opened = openDevice(options.device, settings, scene);
+    Device& device = *opened;  // the hand's, in a moment
+    device.shareForce(options.force ? options.forceScale : 0);
     const auto datum =
-        settings.datum.value_or(device->physics() ? HandSettings::Datum::level : HandSettings::Datum::surface);
-    HapticTick hand(scene, std::move(device), datum, options.guards);
+        settings.datum.value_or(device.physics() ? HandSettings::Datum::level : HandSettings::Datum::surface);
+    HapticTick hand(scene, std::move(opened), datum, options.guards);
     hand.rest(0);  // a master that links before the force loop's first tick feels the sand under the hand too
     HandChannel channel;
     std::unique_ptr<TickRecorder> recorder;
     if (!options.record.empty()) {
         recorder = std::make_unique<TickRecorder>(
-            TickRecorder::Options{options.record, options.pace == Pace::fast, print}, hand, noted, datum);
+            TickRecorder::Options{options.record, options.pace == Pace::fast, print}, hand);
         channel.recorder = recorder.get();
     }
 
@@ -192,19 +192,19 @@ void serve(const Options& options) {
     std::function<Report()> measure;
     Listener listener(io, std::move(acceptor), identity, static_cast<std::uint32_t>(scene.rules.stepsPerSecond),
                       {[&measure] { return measure(); }, print, ticksOf(recorder.get()),
-                       [&noted](double share) { noted.shareForce(share); }},
+                       [&device](double share) { device.shareForce(share); }},
                       options.tests, security);
     // The sand and force threads end before the link they report to.
     const host::WorkerPool pool(options.sandThreads);
     SandThread sandThread(scene, options.pace, hand, channel, listener.output(), {.executor = pool.lend()},
-                          noted.watcher());
+                          device.watcher());
     const auto loop = options.pace == Pace::realtime ? std::make_unique<ForceLoop>(hand, channel) : nullptr;
     measure = [&] { return measured(hand, loop.get(), sandThread); };
     if (loop != nullptr && !loop->priorityRefused().empty()) {
         print("no real-time priority for the force loop: " + loop->priorityRefused());
     }
 
-    DeviceWatch watch(io, options.device, noted);
+    DeviceWatch watch(io, options.device, device);
     asio::signal_set signals(io, SIGINT, SIGTERM);
     signals.async_wait([&listener](error_code error, int) {
         if (!error) {

@@ -186,7 +186,7 @@ void SandThread::gatherVirtual() {
         const auto now = static_cast<std::int64_t>(millisecond) * kMillisecond;
         virtualSurface_.timeNs = now;
         path_.add(hand_.tick(static_cast<double>(millisecond) * HapticTick::kTick, now, virtualSurface_));
-        channel_.keep(now, virtualSurface_);
+        channel_.keepTick();
     }
 }
 
@@ -217,7 +217,7 @@ void SandThread::makeStep() {
     message.step.edit = std::exchange(edit_, {});
     terrain_.apply(message.step);
     message.stateHash = terrain_.stateHash();
-    output_.step(session_, encode(message));
+    output_.step(session_, encode(std::move(message)));
     publishSurface();
     showSand();
     clock_.advance(host::monotonicNs());

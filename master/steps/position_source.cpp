@@ -33,14 +33,13 @@ void PositionSource::add(const std::vector<haptic_bridge::TimedPosition>& positi
     for (const haptic_bridge::TimedPosition& timed : positions) {
         const haptic_bridge::Position& position = timed.position;
         // Heights count in tool radii: a hand may well fall by many of them between two positions.
-        const bool good = check_->accept(static_cast<double>(position.timeNs) * 1e-9, {position.x, position.y, 0}) &&
-                          mapping_.probe({position.x, position.y, position.z}).has_value();
-        if (good) {
-            last_ = *mapping_.probe({position.x, position.y, position.z});
-        } else if (!std::isfinite(position.z)) {
+        const bool good = check_->accept(static_cast<double>(position.timeNs) * 1e-9, {position.x, position.y, 0});
+        const auto probe = good ? mapping_.probe({position.x, position.y, position.z}) : std::nullopt;
+        if (!probe && !std::isfinite(position.z)) {
             counts_.count(Trouble::noNumber);
         }
-        path_.add({timed.receivedNs, last_, good && position.engaged});
+        last_ = probe.value_or(last_);
+        path_.add({timed.receivedNs, last_, probe.has_value() && position.engaged});
     }
 }
 

@@ -24,13 +24,11 @@ using namespace haptic_bridge;
 class Recorded : public testing::Test {
 protected:
     void open(const std::string& file) {
-        auto device = std::make_unique<NotedDevice>(
-            std::make_unique<MappedDevice>(std::make_unique<test::FakeArm>(state_), HandSettings{}, scene_));
-        noted_ = device.get();
-        hand_ = std::make_unique<HapticTick>(scene_, std::move(device), HandSettings::Datum::level);
+        hand_ = std::make_unique<HapticTick>(
+            scene_, std::make_unique<MappedDevice>(std::make_unique<test::FakeArm>(state_), HandSettings{}, scene_),
+            HandSettings::Datum::level);
         recorder_ = std::make_unique<TickRecorder>(
-            TickRecorder::Options{file, true, [this](const std::string& line) { told_.push_back(line); }}, *hand_,
-            *noted_, HandSettings::Datum::level);
+            TickRecorder::Options{file, true, [this](const std::string& line) { told_.push_back(line); }}, *hand_);
     }
     /// A link begins: steps of 16 ticks, an arm that draws, lifts, is away for a while and sends no numbers once.
     void sit(int steps) {
@@ -51,7 +49,7 @@ protected:
                 const std::int64_t now = 1'000'003 * ticks_;
                 surface_.timeNs = now - 16'000 * (ticks_ % 7);
                 path.add(hand_->tick(1e-3 * static_cast<double>(ticks_), now, surface_));
-                recorder_->add(now, surface_);
+                recorder_->add();
                 engaged_ += hand_->lastTick().engaged ? 1 : 0;
             }
             sand::Step& step = steps_.emplace_back();
@@ -79,7 +77,6 @@ protected:
     const test::Folder folder_{};
     const scene::Scene scene_ = samples::flatScene(60, 60);
     test::FakeArm::State state_;
-    NotedDevice* noted_ = nullptr;
     std::unique_ptr<HapticTick> hand_;
     std::unique_ptr<TickRecorder> recorder_;
     sand::Replica terrain_{scene_};
