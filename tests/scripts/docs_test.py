@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""That what the documents name exists: files, headings and tests.
+"""That what the documents name exists: files, headings, functions and tests.
 
 usage: docs_test.py
 """
@@ -29,14 +29,15 @@ def tracked(*patterns):
 
 
 class Repository:
-    """The files, the tests by their file, and the headings by their document."""
+    """The files, the tests by their file, the headings by their document, and `read` for the text of a source."""
 
-    def __init__(self, files, tests, documents):
+    def __init__(self, files, tests, documents, read=lambda file: (ROOT / file).read_text()):
         self.files = set(files)
         self.folders = {str(parent) for file in files for parent in pathlib.PurePosixPath(file).parents}
         top = sorted({file.split("/")[0] for file in files if "/" in file})
         self.source = re.compile(SOURCE.pattern.replace("{folders}", "|".join(map(re.escape, top))))
         self.tests = tests
+        self.read = read
         self.documents = documents
 
     @classmethod
@@ -74,6 +75,33 @@ def broken_links(repository, name):
             yield f"{name}: links to {target}; that page has no such heading"
 
 
+def defines(text, function):
+    """Whether a C++ source holds this function's body. A declaration ends with a semicolon instead."""
+    for found in re.finditer(rf"^(?![\s/#]).*?(?<![\w:]){re.escape(function)}\(", text, re.MULTILINE):
+        depth, at = 1, found.end()
+        while depth > 0 and at < len(text):
+            depth += {"(": 1, ")": -1}.get(text[at], 0)
+            at += 1
+        if re.match(r"[^;{]*\{", text[at:]):
+            return True
+    return False
+
+
+def linked_functions(repository, name):
+    """(function, file) of links such as [`HapticTick::tick`](../haptic_bridge/loop/haptic_tick.cpp)."""
+    for function, path in re.findall(r"\[`([\w:]+)`\]\(([^()\s]+\.[ch]pp)\)", FENCE.sub("", repository.documents[name])):
+        yield function, os.path.normpath(os.path.join(os.path.dirname(name), path))
+
+
+def missing_functions(repository, name):
+    """Links with the name of a function to a source that does not define it."""
+    for function, file in linked_functions(repository, name):
+        if file not in repository.files:
+            yield f"{name}: links {function} to {file}, which is no file of the project"
+        elif not defines(repository.read(file), function):
+            yield f"{name}: links {function} to {file}, which does not define it"
+
+
 def missing_sources(repository, name):
     """Names of sources, scripts and settings that are none."""
     for span in CODE.findall(repository.documents[name]):
@@ -108,11 +136,21 @@ def missing_tests(repository, name):
 def faults(repository):
     found = []
     for name in repository.documents:
-        for look in (broken_links, missing_sources, missing_filters):
+        for look in (broken_links, missing_functions, missing_sources, missing_filters):
             found += look(repository, name)
     return found + list(missing_tests(repository, PAPERS))
 
 
+LAW = """// named() is only named here
+int declared(int number);
+Law::Law(int odd) : odd_{odd} {}
+bool Law::holds(
+    const std::function<int()>& of) const {
+    return called(of) != 0;
+}
+template <class Number>
+bool odd(Number number) { return number % 2 != 0; }
+"""
 PROJECT = Repository.of_the_project()
 
 
@@ -122,7 +160,8 @@ class Documents(unittest.TestCase):
     def made_up(self, text, name="docs/page.md"):
         return Repository(["docs/page.md", "docs/other.md", "docs/images/a.png", "sand/law.cpp", "tests/sand/law_test.cpp"],
                           {"tests/sand/law_test.cpp": {"Law.Holds", "Law.IsOdd"}},
-                          {name: text, "docs/other.md": "# The law: how it holds\n```\n# no heading\n```\n"})
+                          {name: text, "docs/other.md": "# The law: how it holds\n```\n# no heading\n```\n"},
+                          {"sand/law.cpp": LAW}.get)
 
     def test_name_only_what_exists(self):
         self.assertEqual(faults(PROJECT), [])
@@ -146,6 +185,20 @@ class Documents(unittest.TestCase):
         self.assertEqual(list(missing_sources(self.made_up("`sand/law.cpp` `out/demo/a.toml` `law.cpp`"), "docs/page.md")), [])
         self.assertEqual(list(missing_sources(self.made_up("`sand/rule.cpp`"), "docs/page.md")),
                          ["docs/page.md: names sand/rule.cpp, which is no file of the project"])
+
+    def test_the_tour_follows_a_touch_through_twelve_files(self):
+        files = [file for _, file in linked_functions(PROJECT, "docs/tour.md")]
+        self.assertEqual(len(set(files)), 12)
+
+    def test_a_function_that_is_gone_is_named(self):
+        link = "[`{}`](../sand/law.cpp)"
+        for good in ("Law::holds", "Law::Law", "odd"):
+            self.assertEqual(list(missing_functions(self.made_up(link.format(good)), "docs/page.md")), [], good)
+        for bad in ("Law::isOdd", "Law", "declared", "called", "holds", "named"):
+            self.assertEqual(list(missing_functions(self.made_up(link.format(bad)), "docs/page.md")),
+                             [f"docs/page.md: links {bad} to sand/law.cpp, which does not define it"])
+        self.assertEqual(list(missing_functions(self.made_up("[`f`](../sand/rule.cpp)"), "docs/page.md")),
+                         ["docs/page.md: links f to sand/rule.cpp, which is no file of the project"])
 
     def test_a_filter_that_runs_nothing_is_named(self):
         self.assertEqual(list(missing_filters(self.made_up("--gtest_filter='Law.*' --gtest_filter=Law.Holds:*Odd*"), "docs/page.md")), [])
