@@ -77,4 +77,17 @@ std::optional<std::string> RefusalLog::add(RefusalCode code, const std::string& 
     return more == 0 ? line : fmt::format("{} (and {} more of that kind since it was said last)", line, more);
 }
 
+void Gate::refused(RefusalCode code, const boost::asio::ip::address& address, const std::string& line,
+                   std::int64_t nowNs) {
+    if (code != RefusalCode::limit && code != RefusalCode::busy) {
+        limits_.refused(address, nowNs);
+    }
+    if (line.empty()) {
+        refusals_.count(code);
+    } else if (const auto text =
+                   refusals_.add(code, guestOf(address).to_string(), address.to_string() + ": " + line, nowNs)) {
+        log_(*text);
+    }
+}
+
 }  // namespace haptic_bridge

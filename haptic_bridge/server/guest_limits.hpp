@@ -3,7 +3,9 @@
 
 #include <boost/asio/ip/address.hpp>
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "haptic_bridge/link/protocol.hpp"
@@ -56,6 +58,24 @@ private:
     };
     RefusalCounts counts_{};
     std::map<std::pair<std::string, RefusalCode>, Said> said_;
+};
+
+/// Lets guests in as often as GuestLimits allows, and remembers who was refused and why. `log` gets lines for a person.
+class Gate {
+public:
+    explicit Gate(std::function<void(const std::string&)> log) : log_(std::move(log)) {}
+    [[nodiscard]] bool mayCome(const boost::asio::ip::address& address, std::int64_t nowNs) {
+        return limits_.mayCome(address, nowNs);
+    }
+    /// Counts a refusal, and logs `line` unless it is empty. Who did something wrong may come less often.
+    void refused(RefusalCode code, const boost::asio::ip::address& address, const std::string& line,
+                 std::int64_t nowNs);
+    [[nodiscard]] const RefusalCounts& counts() const { return refusals_.counts(); }
+
+private:
+    std::function<void(const std::string&)> log_;
+    GuestLimits limits_;
+    RefusalLog refusals_;
 };
 
 }  // namespace haptic_bridge

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "haptic_bridge/server/listener.hpp"
 
-#include <algorithm>
 #include <boost/asio/post.hpp>
 #include <utility>
 
-#include "haptic_bridge/link/link_options.hpp"
 #include "haptic_bridge/server/peer.hpp"
 #include "host/clock.hpp"
 
@@ -14,29 +12,21 @@ namespace haptic_bridge {
 namespace asio = boost::asio;
 using boost::system::error_code;
 
-Listener::Listener(asio::io_context& io, asio::ip::tcp::acceptor acceptor, Identity identity,
-                   std::uint32_t stepsPerSecond, Sources sources, TimingTests tests, LinkSecurity security)
-    : io_(io),
+Listener::Listener(Service service, asio::ip::tcp::acceptor acceptor)
+    : service_(std::move(service)),
       acceptor_(std::move(acceptor)),
-      pause_(io),
-      identity_(std::move(identity)),
-      stepsPerSecond_(stepsPerSecond),
-      sources_(std::move(sources)),
-      tests_(tests),
-      security_(std::move(security)) {}
+      pause_(service_.io),
+      gate_(std::make_unique<Gate>(service_.log)),
+      roster_(std::make_unique<Roster<Peer>>()) {}
 
 Listener::~Listener() = default;
-
-std::shared_ptr<Peer> Listener::linked(std::uint32_t session) const {
-    return current_ && current_->session() == session ? current_ : nullptr;
-}
 
 SandThread::Output Listener::output() {
     // What comes for a session that has ended meanwhile is for nobody.
     const auto hand = [this](std::uint32_t session, auto act) {
-        asio::post(io_, [this, session, act = std::move(act)]() mutable {
-            if (const auto peer = linked(session)) {
-                act(*peer);
+        asio::post(service_.io, [this, session, act = std::move(act)]() mutable {
+            if (const auto master = roster_->master(); master && master->session() == session) {
+                act(*master);
             }
         });
     };
@@ -52,7 +42,7 @@ SandThread::Output Listener::output() {
 }
 
 void Listener::serve(SandThread& sandThread) {
-    sandThread_ = &sandThread;
+    service_.sandThread = &sandThread;
     accept();
 }
 
@@ -73,7 +63,7 @@ void Listener::accept() {
         try {
             admit(std::move(socket));
         } catch (const std::exception& failure) {  // no memory for TLS, say
-            sources_.log(std::string("a guest cannot be answered: ") + failure.what());
+            service_.log(std::string("a guest cannot be answered: ") + failure.what());
         }
         accept();
     });
@@ -85,44 +75,17 @@ void Listener::admit(Connection::Socket socket) {
     if (gone) {
         return;
     }
-    if (!limits_.mayCome(address, host::monotonicNs())) {
-        refused(RefusalCode::limit, address, "comes too often, and is not answered for a while");
-        return;
-    }
-    if (tooManyOf(address) || *connections_ >= kMaxConnections) {
-        refused(RefusalCode::limit, address, "is one of too many that have not greeted, and is not answered");
-        return;
-    }
-    if (guests_.size() >= kMaxGuests) {
-        // Not the newcomer: sixteen who say nothing would keep out the master. A greeting takes milliseconds.
-        guests_.front()->makeRoom();
-    }
-    guests_.push_back(std::make_shared<Peer>(*this, std::move(socket)));
-    std::shared_ptr(guests_.back())->start();
-}
-
-bool Listener::tooManyOf(const asio::ip::address& address) const {
-    const auto same = std::count_if(guests_.begin(), guests_.end(), [guest = guestOf(address)](const auto& one) {
-        return guestOf(one->address()) == guest;
-    });
-    return same >= kMaxGuestsOfOne && !isLoopback(address);
-}
-
-void Listener::refused(RefusalCode code, const asio::ip::address& address, const std::string& line) {
     const std::int64_t now = host::monotonicNs();
-    if (code != RefusalCode::limit && code != RefusalCode::busy) {
-        limits_.refused(address, now);
+    if (!gate_->mayCome(address, now)) {
+        gate_->refused(RefusalCode::limit, address, "comes too often, and is not answered for a while", now);
+    } else if (!roster_->hasRoomFor(address)) {
+        gate_->refused(RefusalCode::limit, address, "is one of too many that have not greeted, and is not answered",
+                       now);
+    } else {
+        const auto guest = std::make_shared<Peer>(service_, *gate_, *roster_, std::move(socket));
+        roster_->add(guest);
+        guest->start();
     }
-    if (line.empty()) {
-        refusals_.count(code);
-    } else if (const auto text =
-                   refusals_.add(code, guestOf(address).to_string(), address.to_string() + ": " + line, now)) {
-        sources_.log(*text);
-    }
-}
-
-void Listener::guestWent(const Peer& guest) {
-    std::erase_if(guests_, [&](const auto& one) { return one.get() == &guest; });
 }
 
 void Listener::shut(const std::string& reason) {
@@ -130,22 +93,22 @@ void Listener::shut(const std::string& reason) {
     error_code ignored;
     acceptor_.close(ignored);
     std::weak_ptr<Connection> last;
-    for (const auto& guest : std::list(guests_)) {
+    for (const auto& guest : roster_->guests()) {
         guest->makeRoom();
     }
-    for (const auto& watcher : std::set(watchers_)) {
+    for (const auto& watcher : roster_->watchers()) {
         watcher->sayGoodbye(reason);
     }
-    if (current_) {
-        last = current_->connection();
-        current_->sayGoodbye(reason);
+    if (const auto master = roster_->master()) {
+        last = master->connection();
+        master->sayGoodbye(reason);
     }
     stopWhenGone(last, 60);
 }
 
 void Listener::stopWhenGone(const std::weak_ptr<Connection>& last, int polls) {
     if (last.expired() || polls == 0) {
-        io_.stop();
+        service_.io.stop();
         return;
     }
     pause_.expires_after(std::chrono::milliseconds(10));

@@ -2,13 +2,10 @@
 #include <fmt/format.h>
 #include <signal.h>
 #include <sys/prctl.h>
-#include <unistd.h>
 
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 
 #include "base/input_error.hpp"
 #include "haptic_bridge/devices/driver.hpp"
@@ -17,6 +14,7 @@
 #include "haptic_bridge/link/link_options.hpp"
 #include "haptic_bridge/loop/force_loop.hpp"
 #include "haptic_bridge/loop/tick_recorder.hpp"
+#include "haptic_bridge/server/listen_at.hpp"
 #include "haptic_bridge/server/listener.hpp"
 #include "haptic_bridge/server/timings.hpp"
 #include "host/clock.hpp"
@@ -50,57 +48,6 @@ struct Options {
 void print(const std::string& line) {
     std::fprintf(stderr, "sandwall-haptic-server: %s\n", line.c_str());
     std::fflush(stderr);
-}
-
-asio::ip::tcp::acceptor listenAt(asio::io_context& io, const std::string& text, bool secret) {
-    const Address address = Address::parse(text, "--listen");
-    error_code error;
-    const auto host = asio::ip::make_address(address.host == "localhost" ? "127.0.0.1" : address.host, error);
-    if (error) {
-        throw base::InputError("--listen: '" + address.host +
-                               "' is no IP address; write one such as 127.0.0.1, or "
-                               "0.0.0.0 for every network");
-    }
-    if (!secret && !isLoopback(host)) {
-        throw base::InputError("--listen " + text +
-                               ": others can reach that address, so a --secret-file is needed (docs/security.md); "
-                               "127.0.0.1 needs none");
-    }
-    const asio::ip::tcp::endpoint endpoint(host, address.port);
-    asio::ip::tcp::acceptor acceptor(io);
-    acceptor.open(endpoint.protocol());
-    acceptor.set_option(asio::socket_base::reuse_address(true));
-    acceptor.bind(endpoint, error);
-    if (!error) {
-        acceptor.listen(asio::socket_base::max_listen_connections, error);
-    }
-    if (error == asio::error::address_in_use) {
-        throw base::InputError("--listen " + textOf(endpoint) +
-                               ": the port is in use; stop the program that has it, "
-                               "or give another port (0 takes any free one)");
-    }
-    if (error) {
-        throw base::InputError("--listen " + textOf(endpoint) + ": " + error.message());
-    }
-    return acceptor;
-}
-
-/// Written beside, then renamed: a reader sees no port, or the whole of it.
-void writePortFile(const std::string& file, std::uint16_t port) {
-    if (file.empty()) {
-        return;
-    }
-    const std::string beside = file + "." + std::to_string(getpid());
-    std::ofstream stream(beside);
-    stream << port << '\n';
-    stream.close();
-    std::error_code error;
-    if (stream) {
-        std::filesystem::rename(beside, file, error);
-    }
-    if (!stream || error) {
-        throw base::InputError("--port-file " + file + ": cannot be written");
-    }
 }
 
 Report measured(const HapticTick& hand, const ForceLoop* loop, const SandThread& sandThread) {
@@ -161,14 +108,60 @@ std::function<std::vector<base::Bytes>(bool)> ticksOf(TickRecorder* recorder) {
     };
 }
 
-void serve(const Options& options) {
-    const LinkSecurity security = options.link.forServer();
+scene::Scene openScene(const std::string& file) {
     const std::int64_t free = host::freeMemoryOfProcess();
-    const scene::Scene scene = scene::loadScene(options.scene, scene::checksOfOneReplica(options.scene, free));
-    scene::requireReplica(scene, options.scene, free);
+    scene::Scene scene = scene::loadScene(file, scene::checksOfOneReplica(file, free));
+    scene::requireReplica(scene, file, free);
     for (const std::string& warning : scene.warnings) {
         print("warning: " + warning);
     }
+    return scene;
+}
+
+std::unique_ptr<TickRecorder> recorderOf(const Options& options, const HapticTick& hand) {
+    if (options.record.empty()) {
+        return nullptr;
+    }
+    return std::make_unique<TickRecorder>(TickRecorder::Options{options.record, options.pace == Pace::fast, print},
+                                          hand);
+}
+
+void announce(const Options& options, const HapticTick& hand, const asio::ip::tcp::endpoint& endpoint) {
+    writePortFile(options.portFile, endpoint.port());
+    for (const std::string& line : hand.limitsInWords()) {
+        print(line);
+    }
+    if (options.guards == Guards::Mode::literal) {
+        print("warning: --guards literal sends the law without any limit; for simulated arms only");
+    }
+    fmt::print("listening on {}\n", textOf(endpoint));
+    std::fflush(stdout);
+    host::emitEvent("listening", {{"address", textOf(endpoint)}});
+}
+
+void runLinks(asio::io_context& io) {
+    while (!io.stopped()) {
+        try {
+            io.run();
+        } catch (const std::exception& error) {  // of one link, whose silence then ends it
+            print(std::string("a link failed: ") + error.what());
+        }
+    }
+}
+
+void tellAtTheEnd(const Options& options, const HapticTick& hand, const ForceLoop* loop) {
+    if (loop != nullptr) {
+        print(loop->summary());
+    }
+    print(hand.guardCounts().inWords());
+    if (!options.timings.empty() && loop != nullptr) {
+        writeTimings(options.timings, {{"period", &loop->period()}, {"force", &hand.forceCost()}});
+    }
+}
+
+void serve(const Options& options) {
+    const LinkSecurity security = options.link.forServer();
+    const scene::Scene scene = openScene(options.scene);
     const HandSettings settings = HandSettings::parse(options.map);
     std::unique_ptr<Device> opened = openDevice(options.device, settings, scene);
     Device& device = *opened;  // the hand's, in a moment
@@ -177,23 +170,24 @@ void serve(const Options& options) {
         settings.datum.value_or(device.physics() ? HandSettings::Datum::level : HandSettings::Datum::surface);
     HapticTick hand(scene, std::move(opened), datum, options.guards);
     hand.rest(0);  // a master that links before the force loop's first tick feels the sand under the hand too
+    const std::unique_ptr<TickRecorder> recorder = recorderOf(options, hand);
     HandChannel channel;
-    std::unique_ptr<TickRecorder> recorder;
-    if (!options.record.empty()) {
-        recorder = std::make_unique<TickRecorder>(
-            TickRecorder::Options{options.record, options.pace == Pace::fast, print}, hand);
-        channel.recorder = recorder.get();
-    }
+    channel.recorder = recorder.get();
 
     asio::io_context io;
     asio::ip::tcp::acceptor acceptor = listenAt(io, options.listen, security.proves());
     const auto endpoint = acceptor.local_endpoint();
-    const Identity identity{kProtocolVersion, sand::kAlgorithmVersion, scene.rules.digest(), scene.name};
     std::function<Report()> measure;
-    Listener listener(io, std::move(acceptor), identity, static_cast<std::uint32_t>(scene.rules.stepsPerSecond),
-                      {[&measure] { return measure(); }, print, ticksOf(recorder.get()),
-                       [&device](double share) { device.shareForce(share); }},
-                      options.tests, security);
+    Service service{.io = io};
+    service.identity = {kProtocolVersion, sand::kAlgorithmVersion, scene.rules.digest(), scene.name};
+    service.stepsPerSecond = static_cast<std::uint32_t>(scene.rules.stepsPerSecond);
+    service.report = [&measure] { return measure(); };
+    service.log = print;
+    service.ticks = ticksOf(recorder.get());
+    service.shareForce = [&device](double share) { device.shareForce(share); };
+    service.tests = options.tests;
+    service.security = security;
+    Listener listener(std::move(service), std::move(acceptor));
     // The sand and force threads end before the link they report to.
     const host::WorkerPool pool(options.sandThreads);
     SandThread sandThread(scene, options.pace, hand, channel, listener.output(), {.executor = pool.lend()},
@@ -212,30 +206,9 @@ void serve(const Options& options) {
         }
     });
     listener.serve(sandThread);
-    writePortFile(options.portFile, endpoint.port());
-    for (const std::string& line : hand.limitsInWords()) {
-        print(line);
-    }
-    if (options.guards == Guards::Mode::literal) {
-        print("warning: --guards literal sends the law without any limit; for simulated arms only");
-    }
-    fmt::print("listening on {}\n", textOf(endpoint));
-    std::fflush(stdout);
-    host::emitEvent("listening", {{"address", textOf(endpoint)}});
-    while (!io.stopped()) {
-        try {
-            io.run();
-        } catch (const std::exception& error) {  // of one link, whose silence then ends it
-            print(std::string("a link failed: ") + error.what());
-        }
-    }
-    if (loop != nullptr) {
-        print(loop->summary());
-    }
-    print(hand.guardCounts().inWords());
-    if (!options.timings.empty() && loop) {
-        writeTimings(options.timings, {{"period", &loop->period()}, {"force", &hand.forceCost()}});
-    }
+    announce(options, hand, endpoint);
+    runLinks(io);
+    tellAtTheEnd(options, hand, loop.get());
 }
 
 void describe(host::CommandLine& line, Options& options) {

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <utility>
@@ -20,43 +19,29 @@ namespace {
 
 constexpr std::int64_t kGreetingNs = 3'000'000'000;  // a guest must greet within
 constexpr std::int64_t kSilenceNs = 10'000'000'000;  // a master pings four times a second
-constexpr std::size_t kMaxTestsOut = 64;
 constexpr std::uint64_t kMaxGuestBytes = 16 * 1024;  // a greeting takes some hundred, TLS some hundred more
 constexpr double kWatcherRate = 50;                  // [1/s]; it has nothing to say but four pings
 constexpr std::size_t kWatcherUnsent = 256 * 1024;   // [byte]; about half a minute of steps
 
-/// One more of `count` for so long as it lives.
-std::shared_ptr<Connection> counted(std::unique_ptr<Connection> connection, const std::shared_ptr<int>& count) {
-    ++*count;
-    return {connection.release(), [count](Connection* gone) {
-                delete gone;
-                --*count;
-            }};
-}
-
-HalfRoundTrip told(const base::LiveHistogram& halves) {
-    return {halves.meanNs() * 1e-6, halves.stddevNs() * 1e-6, halves.percentileNs(0.50) * 1e-6,
-            halves.percentileNs(0.99) * 1e-6, halves.count()};
-}
-
 }  // namespace
 
-Peer::Peer(Listener& listener, Connection::Socket socket)
-    : listener_(listener),
-      connection_(counted(std::make_unique<Connection>(
-                              std::move(socket), listener.security_.tls ? listener.security_.tls->open() : nullptr),
-                          listener.connections_)),
-      reportTimer_(listener.io_),
-      testTimer_(listener.io_),
-      watchTimer_(listener.io_),
-      handshake_(listener.security_),
-      random_(listener.tests_.seed) {}
+Peer::Peer(const Service& service, Gate& gate, Roster<Peer>& roster, Connection::Socket socket)
+    : service_(service),
+      gate_(gate),
+      roster_(roster),
+      connection_(roster.counted(std::make_unique<Connection>(
+          std::move(socket), service.security.tls ? service.security.tls->open() : nullptr))),
+      reportTimer_(service.io),
+      testTimer_(service.io),
+      watchTimer_(service.io),
+      handshake_(service.security),
+      roundTrips_(service.tests) {}
 
 void Peer::start() {
     heardNs_ = host::monotonicNs();
     connection_->limit(kMaxGreeting);
     connection_->setMaxIn(kMaxGuestBytes);
-    if (*listener_.connections_ > Listener::kMaxConnections / 2) {
+    if (roster_.connections() > kMaxConnections / 2) {
         connection_->setLinger(milliseconds(0));  // no place is kept for who is refused
     }
     connection_->start(
@@ -72,8 +57,7 @@ void Peer::makeRoom() {
 }
 
 void Peer::log(const std::string& what) const {
-    listener_.sources_.log(
-        fmt::format("{} {}: {}", role_ == Role::move ? "master" : "watcher", connection_->peer(), what));
+    service_.log(fmt::format("{} {}: {}", role_ == Role::move ? "master" : "watcher", connection_->peer(), what));
 }
 
 void Peer::watch() {
@@ -99,60 +83,22 @@ void Peer::receive(Message&& message) {
         return;
     }
     heardNs_ = phase_ <= Phase::proving ? heardNs_ : host::monotonicNs();
-    if (phase_ == Phase::greeting) {
-        const auto* hello = std::get_if<Hello>(&message);
-        hello != nullptr ? greet(*hello) : outOfTurn();
-    } else if (phase_ == Phase::proving) {
-        const auto* proof = std::get_if<Proof>(&message);
-        proof != nullptr ? judge(*proof) : outOfTurn();
-    } else if (const auto* ping = std::get_if<Ping>(&message)) {
-        connection_->send(Pong{ping->masterNs, host::monotonicNs()});
-    } else if (std::holds_alternative<Bye>(message)) {
-        sayGoodbye(role_ == Role::move ? "the master has said goodbye" : "the watcher has said goodbye");
-    } else if (phase_ == Phase::watching) {
+    const bool passes = std::holds_alternative<Ping>(message) || std::holds_alternative<Bye>(message);
+    if (phase_ == Phase::watching && !passes) {
         refuse({RefusalCode::role, "who watches only listens; that takes the secret of role move"});
-    } else {
-        receiveLinked(std::move(message));
+        return;
     }
+    std::visit([this](auto& kind) { take(kind); }, message);
 }
 
-void Peer::receiveLinked(Message&& message) {
-    if (const auto* start = std::get_if<Start>(&message); start != nullptr && phase_ == Phase::waiting) {
-        phase_ = Phase::granting;
-        epoch_ = start->epoch;
-        firstStep_ = start->stepNumber + 1;
-        listener_.sandThread_->start(session_, *start);
-    } else if (auto* state = std::get_if<State>(&message); state != nullptr && phase_ == Phase::granting) {
-        listener_.sandThread_->state(std::move(state->bytes));
-    } else if (auto* catchUp = std::get_if<CatchUp>(&message);
-               catchUp != nullptr && phase_ == Phase::granting && catchUpsLeft_ > 0) {
-        catchUpsLeft_ = catchUp->last ? 0 : catchUpsLeft_ - 1;
-        listener_.sandThread_->catchUp(std::move(*catchUp));
-    } else if (const auto* shown = std::get_if<Shown>(&message); shown != nullptr && phase_ == Phase::linked) {
-        if (shown->stepNumber + 1 > firstStep_ + steps_) {
-            connection_->close(fmt::format("it claims to show step {}, which was not sent", shown->stepNumber),
-                               RefusalCode::garbage);
-            return;
-        }
-        listener_.sandThread_->shown(*shown, host::monotonicNs());
-    } else if (const auto* echo = std::get_if<TimingEcho>(&message); echo != nullptr && phase_ == Phase::linked) {
-        echoed(*echo);
-    } else if (auto* request = std::get_if<EditRequest>(&message); request != nullptr && phase_ == Phase::linked) {
-        connection_->expectLoads(request->edit.kind != sand::Edit::load);  // one at a time: until it is in a step
-        listener_.sandThread_->edit(std::move(*request));
-    } else if (const auto* force = std::get_if<ForceShare>(&message); force != nullptr && phase_ == Phase::linked) {
-        if (listener_.sources_.shareForce) {
-            listener_.sources_.shareForce(force->share);
-        }
-    } else {
+void Peer::take(const Hello& hello) {
+    if (phase_ != Phase::greeting) {
         outOfTurn();
+        return;
     }
-}
-
-void Peer::greet(const Hello& hello) {
     // A watcher has no sand that could differ.
     const bool versionAlone = hello.role == Role::watch && hello.master.protocol == kProtocolVersion;
-    if (const auto refusal = versionAlone ? std::nullopt : refusalFor(listener_.identity_, hello.master)) {
+    if (const auto refusal = versionAlone ? std::nullopt : refusalFor(service_.identity, hello.master)) {
         refuse(*refusal);
         return;
     }
@@ -162,7 +108,7 @@ void Peer::greet(const Hello& hello) {
     }
     role_ = hello.role;
     scene_ = hello.master.sceneName;
-    if (const auto challenge = handshake_.challenge(hello, listener_.identity_, connection_->binding())) {
+    if (const auto challenge = handshake_.challenge(hello, service_.identity, connection_->binding())) {
         phase_ = Phase::proving;
         connection_->send(*challenge);
     } else {
@@ -170,44 +116,112 @@ void Peer::greet(const Hello& hello) {
     }
 }
 
-void Peer::judge(const Proof& proof) {
-    if (!handshake_.accepts(proof)) {
+void Peer::take(const Proof& proof) {
+    if (phase_ != Phase::proving) {
+        outOfTurn();
+    } else if (!handshake_.accepts(proof)) {
         refuse({RefusalCode::secret,
                 fmt::format("the secret of role {} is another here; give both sides the same --secret-file",
                             nameOf(role_))});
+    } else {
+        welcome();
+    }
+}
+
+void Peer::take(const Ping& ping) {
+    phase_ <= Phase::proving ? outOfTurn() : connection_->send(Pong{ping.masterNs, host::monotonicNs()});
+}
+
+void Peer::take(const Bye&) {
+    if (phase_ <= Phase::proving) {
+        outOfTurn();
+    } else {
+        sayGoodbye(role_ == Role::move ? "the master has said goodbye" : "the watcher has said goodbye");
+    }
+}
+
+void Peer::take(const Start& start) {
+    if (phase_ != Phase::waiting) {
+        outOfTurn();
         return;
     }
-    welcome();
+    phase_ = Phase::granting;
+    grant_.epoch = start.epoch;
+    grant_.firstStep = start.stepNumber + 1;
+    service_.sandThread->start(session_, start);
+}
+
+void Peer::take(State& state) {
+    phase_ != Phase::granting ? outOfTurn() : service_.sandThread->state(std::move(state.bytes));
+}
+
+void Peer::take(CatchUp& catchUp) {
+    if (phase_ != Phase::granting || grant_.catchUpsLeft == 0) {
+        outOfTurn();
+        return;
+    }
+    grant_.catchUpsLeft = catchUp.last ? 0 : grant_.catchUpsLeft - 1;
+    service_.sandThread->catchUp(std::move(catchUp));
+}
+
+void Peer::take(const Shown& shown) {
+    if (phase_ != Phase::linked) {
+        outOfTurn();
+    } else if (shown.stepNumber + 1 > grant_.firstStep + sent_.steps) {
+        connection_->close(fmt::format("it claims to show step {}, which was not sent", shown.stepNumber),
+                           RefusalCode::garbage);
+    } else {
+        service_.sandThread->shown(shown, host::monotonicNs());
+    }
+}
+
+void Peer::take(const TimingEcho& echo) {
+    phase_ != Phase::linked ? outOfTurn() : roundTrips_.echoed(echo, host::monotonicNs());
+}
+
+void Peer::take(EditRequest& request) {
+    if (phase_ != Phase::linked) {
+        outOfTurn();
+        return;
+    }
+    connection_->expectLoads(request.edit.kind != sand::Edit::load);  // one at a time: until it is in a step
+    service_.sandThread->edit(std::move(request));
+}
+
+void Peer::take(const ForceShare& force) {
+    if (phase_ != Phase::linked) {
+        outOfTurn();
+    } else if (service_.shareForce) {
+        service_.shareForce(force.share);
+    }
 }
 
 /// Only now is it told who else is here: before, nobody knows who asks.
 void Peer::welcome() {
-    if (role_ == Role::move && listener_.current_) {
+    if (role_ == Role::move && roster_.master()) {
         refuse({RefusalCode::busy, fmt::format("busy: the master at {} is linked; one wall at a time",
-                                               listener_.current_->connection_->peer())});
+                                               roster_.master()->connection_->peer())});
         return;
     }
-    if (role_ == Role::watch && listener_.watchers_.size() >= Listener::kMaxWatchers) {
-        refuse({RefusalCode::busy, fmt::format("busy: {} watch already", Listener::kMaxWatchers)});
+    if (role_ == Role::watch && roster_.watchersAreFull()) {
+        refuse({RefusalCode::busy, fmt::format("busy: {} watch already", kMaxWatchers)});
         return;
     }
-    listener_.guestWent(*this);
     connection_->setMaxIn(std::numeric_limits<std::uint64_t>::max());
     connection_->setLinger(Connection::kLinger);
     if (role_ == Role::move) {
         phase_ = Phase::waiting;
-        session_ = ++listener_.sessions_;
-        listener_.current_ = shared_from_this();
+        session_ = roster_.promoteToMaster(shared_from_this());
         connection_->limit(kMaxMessage);
     } else {
         phase_ = Phase::watching;
-        listener_.watchers_.insert(shared_from_this());
+        roster_.promoteToWatcher(shared_from_this());
         connection_->setRate(kWatcherRate);
         connection_->setMaxUnsent(kWatcherUnsent);
     }
-    connection_->send(Welcome{listener_.identity_, listener_.stepsPerSecond_, role_, handshake_.mac()});
+    connection_->send(Welcome{service_.identity, service_.stepsPerSecond, role_, handshake_.mac()});
     if (role_ == Role::move) {
-        log(fmt::format("welcome, scene '{}'{}{}", scene_, listener_.security_.proves() ? ", secret proved" : "",
+        log(fmt::format("welcome, scene '{}'{}{}", scene_, service_.security.proves() ? ", secret proved" : "",
                         connection_->overTls() ? ", TLS 1.3" : ""));
     }
     tickReport();
@@ -226,38 +240,38 @@ void Peer::ready() {
     phase_ = Phase::linked;
     connection_->expectState(false);
     connection_->expectLoads(true);
-    log(fmt::format("linked, epoch {} from step {}", epoch_, firstStep_));
+    log(fmt::format("linked, epoch {} from step {}", grant_.epoch, grant_.firstStep));
     connection_->send(Ready{});
-    tickTimingTest(listener_.tests_.after);
+    tickTimingTest(service_.tests.after);
 }
 
 void Peer::needState(const NeedState& need) {
     connection_->expectState(true);
     // By steps at the first time alone; then it is the whole sand.
-    catchUpsLeft_ = std::exchange(askedForSteps_, true) ? 0 : StepRing::kSteps / kMaxCatchUp;
+    grant_.catchUpsLeft = std::exchange(grant_.askedForSteps, true) ? 0 : StepRing::kSteps / kMaxCatchUp;
     connection_->send(need);
 }
 
 void Peer::unusable(const std::string& why) { refuse({RefusalCode::state, why}); }
 
 void Peer::sendTicks(bool all) {
-    if (!listener_.sources_.ticks) {
+    if (!service_.ticks) {
         return;
     }
-    for (base::Bytes& piece : listener_.sources_.ticks(all)) {
+    for (base::Bytes& piece : service_.ticks(all)) {
         connection_->send(TickPiece{std::move(piece)});
     }
 }
 
 void Peer::step(base::Bytes message) {
     sendTicks(false);
-    ++steps_;
+    ++sent_.steps;
     if (message.size() <= kMaxMessage) {  // not one with sand that is loaded: timing tests are as long as the last
-        stepBytes_ += message.size();
-        lastStepBytes_ = message.size();
+        sent_.bytes += message.size();
+        sent_.lastBytes = message.size();
     }
     connection_->expectLoads(true);
-    for (const auto& watcher : std::set(listener_.watchers_)) {  // a copy: who does not read leaves
+    for (const auto& watcher : roster_.watchers()) {
         watcher->watchStep(message);
     }
     connection_->sendBytes(std::move(message));
@@ -270,37 +284,14 @@ void Peer::watchStep(const base::Bytes& message) {
 }
 
 void Peer::tickTimingTest(double pause) {
-    // Poisson arrivals see time averages: no phase of a frame is met more often than it lasts.
-    std::exponential_distribution<double> wait(listener_.tests_.perSecond);  // [s]
-    testTimer_.expires_after(std::chrono::nanoseconds(static_cast<std::int64_t>((pause + wait(random_)) * 1e9)));
+    const double wait = pause + roundTrips_.pause();
+    testTimer_.expires_after(std::chrono::nanoseconds(static_cast<std::int64_t>(wait * 1e9)));
     testTimer_.async_wait([self = shared_from_this()](error_code error) {
-        if (error || self->phase_ != Phase::linked) {
-            return;
+        if (!error && self->phase_ == Phase::linked) {
+            self->connection_->send(self->roundTrips_.next(self->sent_.lastBytes, host::monotonicNs()));
+            self->tickTimingTest();
         }
-        TimingTest test{++self->lastTest_, 0};
-        const std::size_t bare = encode(test).size();
-        test.padding = static_cast<std::uint32_t>(self->lastStepBytes_ > bare ? self->lastStepBytes_ - bare : 0);
-        self->testsOut_[test.id].sentNs = host::monotonicNs();
-        if (self->testsOut_.size() > kMaxTestsOut) {
-            self->testsOut_.erase(self->testsOut_.begin());
-        }
-        self->connection_->send(test);
-        self->tickTimingTest();
     });
-}
-
-void Peer::echoed(const TimingEcho& echo) {
-    const auto test = testsOut_.find(echo.id);
-    if (test == testsOut_.end()) {
-        return;
-    }
-    const std::int64_t half = (host::monotonicNs() - test->second.sentNs) / 2;
-    if (echo.leg == Leg::shown) {
-        toWall_.add(half);
-        testsOut_.erase(test);
-    } else if (!std::exchange(test->second.received, true)) {
-        toMaster_.add(half);
-    }
 }
 
 void Peer::tickReport() {
@@ -314,12 +305,11 @@ void Peer::tickReport() {
 }
 
 Report Peer::report() const {
-    Report report = listener_.sources_.report();
-    report.toWall = told(toWall_);
-    report.toMaster = told(toMaster_);
-    report.stepBytesMean = steps_ == 0 ? 0 : static_cast<double>(stepBytes_) / static_cast<double>(steps_);
-    report.steps = steps_;
-    report.refused = listener_.refused();
+    Report report = service_.report();
+    roundTrips_.fill(report);
+    report.stepBytesMean = sent_.steps == 0 ? 0 : static_cast<double>(sent_.bytes) / static_cast<double>(sent_.steps);
+    report.steps = sent_.steps;
+    report.refused = gate_.counts();
     return report;
 }
 
@@ -350,19 +340,14 @@ void Peer::end(const std::string& why, Connection::Fault fault) {
     }
     if (fault) {
         const std::string who = guest ? "a guest: " : "a watcher: ";
-        listener_.refused(*fault, connection_->address(), master ? "" : who + why);
-    }
-    if (guest) {
-        listener_.guestWent(*this);
+        gate_.refused(*fault, connection_->address(), master ? "" : who + why, host::monotonicNs());
     }
     phase_ = Phase::over;
     reportTimer_.cancel();
     testTimer_.cancel();
     watchTimer_.cancel();
-    listener_.watchers_.erase(kept);
-    if (listener_.current_.get() == this) {
-        listener_.current_ = nullptr;
-        listener_.sandThread_->release();
+    if (roster_.remove(kept)) {
+        service_.sandThread->release();
     }
 }
 

@@ -2,17 +2,20 @@
 // Private to this folder.
 #pragma once
 
-#include <map>
-#include <random>
+#include <boost/asio/steady_timer.hpp>
+#include <memory>
+#include <string>
 
-#include "haptic_bridge/server/listener.hpp"
+#include "haptic_bridge/link/connection.hpp"
+#include "haptic_bridge/server/roster.hpp"
+#include "haptic_bridge/server/service.hpp"
 
 namespace haptic_bridge {
 
 /// The server's end of one connection, from the greeting to the goodbye. On the streaming thread alone.
 class Peer : public std::enable_shared_from_this<Peer> {
 public:
-    Peer(Listener& listener, Connection::Socket socket);
+    Peer(const Service& service, Gate& gate, Roster<Peer>& roster, Connection::Socket socket);
     void start();
 
     void ready();
@@ -32,12 +35,23 @@ private:
     enum class Phase { greeting, proving, waiting, granting, linked, watching, over };
 
     void receive(Message&& message);
-    void receiveLinked(Message&& message);
-    void greet(const Hello& hello);
-    void judge(const Proof& proof);
+    void take(const Hello& hello);
+    void take(const Proof& proof);
+    void take(const Ping& ping);
+    void take(const Bye& bye);
+    void take(const Start& start);
+    void take(State& state);
+    void take(CatchUp& catchUp);
+    void take(const Shown& shown);
+    void take(const TimingEcho& echo);
+    void take(EditRequest& request);
+    void take(const ForceShare& force);
+    template <class Other>
+    void take(const Other&) {
+        outOfTurn();
+    }
     void welcome();
     void watchStep(const base::Bytes& message);
-    void echoed(const TimingEcho& echo);
     void refuse(const Refusal& refusal);
     void outOfTurn();
     void end(const std::string& why, Connection::Fault fault = std::nullopt);
@@ -48,7 +62,9 @@ private:
     void log(const std::string& what) const;
     [[nodiscard]] Report report() const;
 
-    Listener& listener_;
+    const Service& service_;
+    Gate& gate_;
+    Roster<Peer>& roster_;
     std::shared_ptr<Connection> connection_;
     boost::asio::steady_timer reportTimer_, testTimer_, watchTimer_;
     ServerHandshake handshake_;
@@ -56,21 +72,18 @@ private:
     std::string scene_;
     Phase phase_ = Phase::greeting;
     std::uint32_t session_ = 0;
-    std::uint32_t epoch_ = 0;
-    std::uint64_t firstStep_ = 0;
-    std::size_t catchUpsLeft_ = 0;  // that may still come
-    bool askedForSteps_ = false;
+    struct Grant {
+        std::uint32_t epoch = 0;
+        std::uint64_t firstStep = 0;
+        std::size_t catchUpsLeft = 0;  // that may still come
+        bool askedForSteps = false;
+    } grant_;
+    struct Sent {
+        std::uint64_t steps = 0, bytes = 0;
+        std::size_t lastBytes = 0;
+    } sent_;  // of steps
+    RoundTrips roundTrips_;
     std::int64_t heardNs_ = 0;
-    std::uint64_t steps_ = 0, stepBytes_ = 0;
-    std::size_t lastStepBytes_ = 0;
-    std::uint32_t lastTest_ = 0;
-    struct TestOut {
-        std::int64_t sentNs = 0;
-        bool received = false;
-    };
-    std::map<std::uint32_t, TestOut> testsOut_;  // by id
-    base::LiveHistogram toWall_, toMaster_;      // half of the round trips
-    std::minstd_rand random_;
 };
 
 }  // namespace haptic_bridge

@@ -71,6 +71,20 @@ TEST(GuestLimits, TakeANetworkOfIpv6ForOneGuest) {
     EXPECT_EQ(came, 16);
 }
 
+TEST(Gate, HoldsBackWhoDoesWrongAndNotWhoComesTooOften) {
+    std::vector<std::string> lines;
+    Gate gate([&lines](const std::string& line) { lines.push_back(line); });
+    const auto busy = boost::asio::ip::make_address("192.0.2.1"), wrong = boost::asio::ip::make_address("192.0.2.2");
+    for (int i = 0; i < 40; ++i) {
+        gate.refused(RefusalCode::busy, busy, "a master is linked", 1);
+        gate.refused(RefusalCode::garbage, wrong, "", 1);
+    }
+    EXPECT_TRUE(gate.mayCome(busy, 1));
+    EXPECT_FALSE(gate.mayCome(wrong, 1));
+    EXPECT_EQ(lines, std::vector<std::string>{"192.0.2.1: a master is linked"}) << "once, and none that is empty";
+    EXPECT_EQ(gate.counts()[static_cast<std::size_t>(RefusalCode::garbage) - 1], 40U);
+}
+
 TEST(RefusalLog, SaysItOnceAndCountsTheRest) {
     RefusalLog log;
     EXPECT_EQ(log.add(RefusalCode::secret, "a", "line", 0), "line");

@@ -161,11 +161,11 @@ TEST(SandThread, WhatIsFeltDoesNotAgeWhileStepsAreWithheld) {
         return eventually([&] { return sandThread.withheld() >= steps; });
     };
     ASSERT_TRUE(withheld(2)) << "nothing is shown";
-    ASSERT_TRUE(eventually([&] { return channel.surface.latest().step == SandThread::kWindow; }));
+    ASSERT_TRUE(eventually([&] { return channel.surface.latest().step == StepMaker::kWindow; }));
     const std::int64_t before = channel.surface.latest().timeNs;
     ASSERT_TRUE(withheld(sandThread.withheld() + 3));
     EXPECT_GT(channel.surface.latest().timeNs, before);
-    EXPECT_EQ(channel.surface.latest().step, SandThread::kWindow);
+    EXPECT_EQ(channel.surface.latest().step, StepMaker::kWindow);
 }
 
 }  // namespace

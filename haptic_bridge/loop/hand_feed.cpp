@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/loop/hand_feed.hpp"
+
+#include "haptic_bridge/loop/felt_sand.hpp"
+#include "host/clock.hpp"
+
+namespace haptic_bridge {
+
+void ChannelFeed::begin(const sand::Replica& terrain) {
+    publish(terrain);
+    ++channel_.sitting;
+    channel_.moving = true;
+}
+
+void ChannelFeed::collect(PathBuilder* path) {
+    channel_.samples.consume_all([path](const HandSample& sample) {
+        if (path != nullptr) {
+            path->add(sample);
+        }
+    });
+}
+
+/// Around the hand, and not around the tool: before a link's first step the tool is where no hand has been, and later a
+/// hand may be ahead of its tool.
+void ChannelFeed::publish(const sand::Replica& terrain) {
+    FeltSand& next = channel_.surface.next();
+    takeSurface(terrain, hand_.where(), next);
+    next.timeNs = host::monotonicNs();
+    channel_.surface.publish();
+}
+
+void VirtualFeed::begin(const sand::Replica& terrain) {
+    // In real time the force loop reads a hand that rests; here nobody has read it since the link before.
+    hand_.rest(static_cast<double>(steps_ * 1000 / stepsPerSecond_) * HapticTick::kTick);
+    publish(terrain);
+    channel_.beginSitting(hand_);
+}
+
+void VirtualFeed::tickForStep(PathBuilder& path) {
+    constexpr std::int64_t kMillisecond = 1'000'000;  // [ns]
+    const std::uint64_t first = steps_ * 1000 / stepsPerSecond_ + 1, last = (steps_ + 1) * 1000 / stepsPerSecond_;
+    ++steps_;
+    for (std::uint64_t millisecond = first; millisecond <= last; ++millisecond) {
+        // The sand was last computed one step ago; under a virtual clock it is never stale.
+        const auto now = static_cast<std::int64_t>(millisecond) * kMillisecond;
+        surface_.timeNs = now;
+        path.add(hand_.tick(static_cast<double>(millisecond) * HapticTick::kTick, now, surface_));
+        channel_.keepTick();
+    }
+}
+
+void VirtualFeed::publish(const sand::Replica& terrain) { takeSurface(terrain, hand_.where(), surface_); }
+
+}  // namespace haptic_bridge

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/server/step_maker.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace haptic_bridge {
+
+StepMaker::StepMaker(const scene::Scene& scene, HandFeed& hand, Output output,
+                     const sand::grid::Erosion::Options& sweeps, Clock clock)
+    : hand_(hand),
+      output_(std::move(output)),
+      terrain_(scene, sweeps),
+      path_(scene.rules.stepsPerSecond),
+      now_(std::move(clock)),
+      clock_(scene.rules.stepsPerSecond) {}
+
+bool StepMaker::asGranted() {
+    return terrain_.stepNumber() == start_.stepNumber && terrain_.stateHash() == start_.stateHash;
+}
+
+void StepMaker::start(std::uint32_t session, const Start& start) {
+    session_ = session;
+    start_ = start;
+    if (asGranted()) {
+        begin();
+    } else {
+        phase_ = Phase::awaitingState;
+        output_.needState(session_, {terrain_.stepNumber(), terrain_.stateHash()});
+    }
+}
+
+void StepMaker::state(const base::Bytes& bytes) {
+    if (phase_ != Phase::awaitingState) {
+        return;
+    }
+    phase_ = Phase::idle;
+    try {
+        terrain_.decodeState(bytes);
+    } catch (const base::FormatError& error) {
+        output_.unusable(session_, std::string("the state sent is none of this scene: ") + error.what());
+        return;
+    }
+    if (!asGranted()) {
+        output_.unusable(session_, "the state sent does not have the hash that was announced");
+        return;
+    }
+    begin();
+}
+
+void StepMaker::catchUp(const CatchUp& steps) {
+    if (phase_ != Phase::awaitingState) {
+        return;
+    }
+    bool fits = true;
+    for (const sand::Step& step : steps.steps) {
+        fits = fits && step.number == terrain_.stepNumber() + 1 && step.number <= start_.stepNumber;
+        if (fits) {
+            terrain_.apply(step);
+        }
+    }
+    if (fits && !steps.last) {
+        return;
+    }
+    if (fits && asGranted()) {
+        begin();
+    } else {
+        output_.needState(session_, {});  // the whole sand, whatever is here
+    }
+}
+
+void StepMaker::shown(const Shown& frame, std::int64_t nowNs) {
+    if (!running()) {
+        return;
+    }
+    // Never backwards, and never ahead of what was sent, whatever a master claims.
+    shown_ = std::max(shown_, std::min(frame.stepNumber, terrain_.stepNumber()));
+    clock_.frameShown(nowNs, frame.frameIntervalNs);
+}
+
+void StepMaker::release() {
+    phase_ = Phase::idle;
+    hand_.end();
+    path_.dropWaiting();
+}
+
+void StepMaker::begin() {
+    phase_ = Phase::running;
+    edit_ = {};
+    shown_ = start_.stepNumber;
+    // Whoever numbered before may have left the tool in the sand elsewhere: no furrow from there to here.
+    liftFirst_ = terrain_.engaged();
+    path_.restart(terrain_.probe(), false);
+    clock_.start(now_());
+    hand_.begin(terrain_);
+    output_.ready(session_);
+}
+
+void StepMaker::collect() {
+    hand_.collect(running() ? &path_ : nullptr);
+    dropped_ = path_.dropped() + hand_.overflow();
+}
+
+/// Returns when the last sample of the step was read [ns, the host's]; 0 if the step has none, or another clock.
+std::int64_t StepMaker::fill(sand::Step& step) {
+    if (std::exchange(liftFirst_, false)) {
+        return 0;
+    }
+    hand_.tickForStep(path_);
+    const std::int64_t readNs = path_.take(step);
+    if (sand::isRound(terrain_.toolShape().kind) || step.heading == terrain_.heading()) {
+        step.heading.reset();  // nothing that the sand would notice
+    }
+    return hand_.onHostClock() ? readNs : 0;
+}
+
+void StepMaker::makeStep() {
+    if (blocked()) {  // in real time only: the fast pace waits instead
+        ++withheld_;
+        hand_.publish(terrain_);  // the same sand, but not a stale one: a hand goes on to feel a wall that waits
+        clock_.advance(now_());
+        return;
+    }
+    StepMessage message;
+    message.step.epoch = start_.epoch;
+    message.step.number = terrain_.stepNumber() + 1;
+    message.serverTimeNs = now_();
+    if (const std::int64_t readNs = fill(message.step); readNs != 0) {
+        message.serverTimeNs = readNs;
+    }
+    message.step.edit = std::exchange(edit_, {});
+    terrain_.apply(message.step);
+    message.stateHash = terrain_.stateHash();
+    output_.step(session_, encode(std::move(message)));
+    hand_.publish(terrain_);
+    clock_.advance(now_());
+}
+
+}  // namespace haptic_bridge

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/loop/hand_feed.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+using namespace haptic_bridge;
+
+/// A hand that stands in the middle, and remembers when it was read.
+class ClockedHand : public Device {
+public:
+    explicit ClockedHand(std::vector<double>& times) : times_(times) {}
+    [[nodiscard]] Pose read(double time) override {
+        times_.push_back(time);
+        return {0, 0, 0.5, true};
+    }
+    void sendForce(sand::force::Vec3) override {}
+    [[nodiscard]] bool finished(double) const override { return false; }
+
+private:
+    std::vector<double>& times_;
+};
+
+class FeedTest : public testing::Test {
+protected:
+    [[nodiscard]] std::vector<sand::ProbePoint> pathOf(PathBuilder& path) const {
+        sand::Step step;
+        (void)path.take(step);
+        return step.path;
+    }
+    const scene::Scene scene_ = samples::flatScene(60, 60);
+    const sand::Replica sand_{scene_};
+    std::vector<double> times_;
+    HapticTick hand_{scene_, std::make_unique<ClockedHand>(times_), HandSettings::Datum::surface};
+    std::unique_ptr<HandChannel> channel_ = std::make_unique<HandChannel>();
+    PathBuilder path_{60};
+};
+
+// 1000/60 ms: steps of 16, 17 and 17 ticks, and none is left out or read twice.
+TEST_F(FeedTest, AVirtualClockGivesEachStepItsMilliseconds) {
+    VirtualFeed feed(hand_, *channel_, 60);
+    feed.begin(sand_);
+    ASSERT_EQ(times_, std::vector<double>{0}) << "read once where it rests";
+    std::vector<std::size_t> ticks;
+    for (int step = 0; step < 6; ++step) {
+        const std::size_t before = times_.size();
+        feed.tickForStep(path_);
+        ticks.push_back(times_.size() - before);
+        feed.publish(sand_);
+    }
+    EXPECT_EQ(ticks, (std::vector<std::size_t>{16, 17, 17, 16, 17, 17}));
+    for (std::size_t i = 1; i < times_.size(); ++i) {
+        EXPECT_NEAR(times_[i], 0.001 * static_cast<double>(i), 1e-12);
+    }
+    feed.begin(sand_);
+    EXPECT_NEAR(times_.back(), 0.1, 1e-12) << "the clock goes on with the next link";
+    EXPECT_FALSE(feed.onHostClock());
+}
+
+TEST_F(FeedTest, AVirtualHandFeelsTheSandThatWasPublishedLast) {
+    VirtualFeed feed(hand_, *channel_, 60);
+    feed.begin(sand_);
+    feed.tickForStep(path_);
+    EXPECT_EQ(hand_.lastTick().surfaceStep, 0U);
+    sand::Replica later(scene_);
+    sand::Step step;
+    step.number = 1;
+    later.apply(step);
+    feed.publish(later);
+    feed.tickForStep(path_);
+    EXPECT_EQ(hand_.lastTick().surfaceStep, 1U);
+    EXPECT_EQ(hand_.lastTick().surfaceAge, 0) << "never stale";
+}
+
+TEST_F(FeedTest, AChannelCarriesSamplesOneWayAndSandTheOther) {
+    ChannelFeed feed(hand_, *channel_);
+    const std::uint32_t before = channel_->sitting;
+    feed.begin(sand_);
+    EXPECT_TRUE(channel_->moving);
+    EXPECT_EQ(channel_->sitting, before + 1);
+    EXPECT_EQ(channel_->surface.latest().step, 0U);
+    EXPECT_FALSE(channel_->surface.latest().patch.empty());
+    (void)channel_->samples.push({1, {1, 2, 3}, true});
+    feed.collect(nullptr);
+    (void)channel_->samples.push({2, {4, 5, 6}, true});
+    feed.collect(&path_);
+    EXPECT_EQ(pathOf(path_), (std::vector<sand::ProbePoint>{{4, 5, 6}})) << "what nobody wanted is gone";
+    feed.end();
+    EXPECT_FALSE(channel_->moving);
+    channel_->overflow = 3;
+    EXPECT_EQ(feed.overflow(), 3U);
+    EXPECT_TRUE(times_.empty()) << "the force thread's alone";
+}
+
+}  // namespace

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/server/step_maker.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+using namespace haptic_bridge;
+
+/// A hand whose next samples the test gives.
+class GivenHand : public HandFeed {
+public:
+    void begin(const sand::Replica&) override { began = true; }
+    void end() override { ended = true; }
+    void collect(PathBuilder* path) override {
+        for (const HandSample& sample : std::exchange(samples, {})) {
+            if (path != nullptr) {
+                path->add(sample);
+            }
+        }
+    }
+    void tickForStep(PathBuilder&) override {}
+    void publish(const sand::Replica& terrain) override { felt.push_back(terrain.stepNumber()); }
+    [[nodiscard]] bool onHostClock() const override { return true; }
+
+    std::vector<HandSample> samples;
+    std::vector<std::uint64_t> felt;  // number of the step, at every publish
+    bool began = false, ended = false;
+};
+
+/// A server without thread, clock and link, and what it has put out.
+class StepMakerTest : public testing::Test {
+protected:
+    [[nodiscard]] static Start grantOf(sand::Replica sand, std::uint32_t epoch = 1) {
+        return {epoch, sand.stepNumber(), sand.stateHash()};
+    }
+    void step(std::size_t count = 1) {
+        for (std::size_t i = 0; i < count; ++i) {
+            maker_.collect();
+            maker_.makeStep();
+            now_ += 16'666'667;
+        }
+    }
+    [[nodiscard]] static sand::Step engagedStep(std::uint64_t number) {
+        sand::Step step;
+        step.epoch = 1;
+        step.number = number;
+        step.engaged = true;
+        step.path = {{30 * 256 + static_cast<std::int32_t>(number) * 64, 30 * 256, 0}};
+        return step;
+    }
+
+    const scene::Scene scene_ = samples::flatScene(60, 60);
+    std::int64_t now_ = 1'000'000'000;
+    GivenHand hand_;
+    std::vector<std::uint32_t> ready_;
+    std::vector<NeedState> needs_;
+    std::vector<std::string> unusable_;
+    std::vector<StepMessage> steps_;
+    StepMaker maker_{scene_,
+                     hand_,
+                     {[this](std::uint32_t session) { ready_.push_back(session); },
+                      [this](std::uint32_t, NeedState need) { needs_.push_back(need); },
+                      [this](std::uint32_t, std::string why) { unusable_.push_back(std::move(why)); },
+                      [this](std::uint32_t, const base::Bytes& message) {
+                          constexpr std::size_t kLength = sizeof(std::uint32_t);
+                          steps_.push_back(std::get<StepMessage>(decode(std::span(message).subspan(kLength))));
+                      }},
+                     {},
+                     [this] { return now_; }};
+};
+
+TEST_F(StepMakerTest, BeginsAtOnceOnTheSameSand) {
+    EXPECT_FALSE(maker_.running());
+    maker_.start(5, grantOf(sand::Replica(scene_), 3));
+    EXPECT_EQ(ready_, std::vector<std::uint32_t>{5});
+    EXPECT_TRUE(hand_.began);
+    hand_.samples = {{now_ - 7, {30 * 256, 30 * 256, 0}, true}};
+    step();
+    ASSERT_EQ(steps_.size(), 1U);
+    EXPECT_EQ(steps_[0].step.epoch, 3U);
+    EXPECT_EQ(steps_[0].step.number, 1U);
+    EXPECT_TRUE(steps_[0].step.engaged);
+    EXPECT_EQ(steps_[0].serverTimeNs, now_ - 16'666'667 - 7) << "when the last sample was read";
+    sand::Replica master(scene_);
+    master.apply(steps_[0].step);
+    EXPECT_EQ(steps_[0].stateHash, master.stateHash());
+    EXPECT_EQ(hand_.felt, std::vector<std::uint64_t>{1});
+}
+
+TEST_F(StepMakerTest, AsksForTheSandThatItLacksAndJudgesIt) {
+    sand::Replica master(scene_);
+    master.apply(engagedStep(1));
+    maker_.start(1, grantOf(master));
+    ASSERT_EQ(needs_, (std::vector<NeedState>{{0, sand::Replica(scene_).stateHash()}}));
+    maker_.state({1, 2, 3});
+    ASSERT_EQ(unusable_.size(), 1U) << "no state";
+    maker_.start(2, grantOf(master));
+    maker_.state(sand::Replica(scene_).encodeState());
+    EXPECT_EQ(unusable_.size(), 2U) << "a state, and another one";
+    maker_.state(master.encodeState());
+    EXPECT_TRUE(ready_.empty()) << "nobody asked for it";
+    maker_.start(3, grantOf(master));
+    maker_.state(master.encodeState());
+    EXPECT_EQ(ready_, std::vector<std::uint32_t>{3});
+    EXPECT_EQ(sand::Replica(maker_.sand()).stateHash(), master.stateHash());
+}
+
+TEST_F(StepMakerTest, CatchesUpByTheStepsThatItLacks) {
+    sand::Replica master(scene_);
+    std::vector<sand::Step> missed;
+    for (std::uint64_t number = 1; number <= 4; ++number) {
+        missed.push_back(engagedStep(number));
+        master.apply(missed.back());
+    }
+    maker_.start(1, grantOf(master));
+    maker_.catchUp({false, {missed[0], missed[1]}});
+    maker_.catchUp({true, {missed[3]}});
+    ASSERT_EQ(needs_.size(), 2U) << "a step is missing: all of the sand is asked for";
+    EXPECT_EQ(needs_[1], NeedState{});
+    maker_.start(2, grantOf(master));
+    maker_.catchUp({true, {missed[2], missed[3]}});
+    EXPECT_EQ(ready_, std::vector<std::uint32_t>{2});
+}
+
+TEST_F(StepMakerTest, IsAWindowAheadOfTheWallAndKeepsTheHandsSandFresh) {
+    maker_.start(1, grantOf(sand::Replica(scene_)));
+    step(StepMaker::kWindow + 3);
+    EXPECT_EQ(steps_.size(), StepMaker::kWindow);
+    EXPECT_EQ(maker_.withheld(), 3U);
+    EXPECT_EQ(hand_.felt.size(), StepMaker::kWindow + 3) << "a hand goes on to feel a wall that waits";
+    maker_.shown({100, 16'666'667}, now_);
+    step(StepMaker::kWindow + 1);
+    EXPECT_EQ(steps_.size(), 2 * StepMaker::kWindow) << "a wall cannot show more than was sent";
+    maker_.shown({3, 16'666'667}, now_);
+    step();
+    EXPECT_EQ(steps_.size(), 2 * StepMaker::kWindow) << "or go back";
+}
+
+TEST_F(StepMakerTest, PutsAnEditIntoOneStepAndForgetsItWithItsMaster) {
+    maker_.start(1, grantOf(sand::Replica(scene_)));
+    maker_.edit({sand::Edit(sand::Edit::settle)});
+    step(2);
+    EXPECT_EQ(steps_[0].step.edit.kind, sand::Edit::settle);
+    EXPECT_FALSE(steps_[1].step.edit.any());
+    maker_.edit({sand::Edit(sand::Edit::reset)});
+    maker_.release();
+    EXPECT_TRUE(hand_.ended);
+    maker_.start(2, grantOf(maker_.sand(), 2));
+    step();
+    EXPECT_FALSE(steps_[2].step.edit.any());
+}
+
+TEST_F(StepMakerTest, LiftsAToolThatTheMasterBeforeLeftInTheSand) {
+    maker_.start(1, grantOf(sand::Replica(scene_)));
+    hand_.samples = {{now_, {30 * 256, 30 * 256, 0}, true}};
+    step();
+    ASSERT_TRUE(maker_.sand().engaged());
+    maker_.release();
+    hand_.samples = {{now_, {20 * 256, 20 * 256, 0}, true}};
+    maker_.collect();  // nobody is linked: dropped
+    maker_.start(2, grantOf(maker_.sand(), 2));
+    hand_.samples = {{now_, {40 * 256, 40 * 256, 0}, true}};
+    step(2);
+    EXPECT_FALSE(steps_[1].step.engaged);
+    EXPECT_TRUE(steps_[1].step.path.empty()) << "no furrow from there to here";
+    EXPECT_TRUE(steps_[2].step.engaged);
+    EXPECT_EQ(steps_[2].step.path, (std::vector<sand::ProbePoint>{{40 * 256, 40 * 256, 0}}));
+}
+
+}  // namespace
