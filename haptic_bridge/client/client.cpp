@@ -35,10 +35,7 @@ Client::Client(Address address, Offer offer, LinkSecurity security, LinkClock cl
 
 Client::~Client() = default;
 
-LinkStatus Client::link() const {
-    const std::lock_guard lock(session_->shelf.mutex);
-    return session_->shelf.status;
-}
+LinkStatus Client::link() const { return session_->shelf.status(); }
 
 void Client::grant(std::uint32_t epoch, std::uint64_t stepNumber, std::uint64_t stateHash, base::Bytes state,
                    StepRing recent) {
@@ -55,37 +52,19 @@ void Client::request(const sand::Edit& edit) { session_->request({edit}); }
 
 void Client::shareForce(double share) { session_->shareForce(share); }
 
-std::vector<base::Bytes> Client::drainTicks() {
-    const std::lock_guard lock(session_->shelf.mutex);
-    return std::exchange(session_->shelf.ticks, {});
-}
+std::vector<base::Bytes> Client::drainTicks() { return session_->shelf.drainTicks(); }
 
 std::vector<TimedPosition> Client::drainPositions() { return session_->drainPositions(); }
 
-std::uint64_t Client::floods() const {
-    const std::lock_guard lock(session_->shelf.mutex);
-    return session_->shelf.floods;
-}
+std::uint64_t Client::floods() const { return session_->shelf.floods(); }
 
-std::int64_t Client::clockOffsetNs() const {
-    const std::lock_guard lock(session_->shelf.mutex);
-    return session_->shelf.clockOffsetNs;
-}
+std::int64_t Client::clockOffsetNs() const { return session_->shelf.clockOffsetNs(); }
 
-std::optional<Report> Client::report() const {
-    const std::lock_guard lock(session_->shelf.mutex);
-    return session_->shelf.report;
-}
+std::optional<Report> Client::report() const { return session_->shelf.report(); }
 
-LinkCounters Client::counters() const {
-    const std::lock_guard lock(session_->shelf.mutex);
-    return session_->shelf.counters;
-}
+LinkCounters Client::counters() const { return session_->shelf.counters(); }
 
-std::uint32_t Client::stepsPerSecond() const {
-    const std::lock_guard lock(session_->shelf.mutex);
-    return session_->shelf.stepsPerSecond;
-}
+std::uint32_t Client::stepsPerSecond() const { return session_->shelf.stepsPerSecond(); }
 
 void Client::drill(LinkDrill drill, std::chrono::milliseconds length) { session_->drill(drill, length); }
 
@@ -93,9 +72,9 @@ void Client::stop() { session_->stop(); }
 
 // The link with a server that has no sand and streams where its hand is.
 
-void Client::Session::greet(const PositionGreeting& greeting) {
-    if (up()) {
-        connection_->close("it sent a message out of turn", RefusalCode::garbage);
+void Client::Session::take(Link link, const PositionGreeting& greeting) {
+    if (isUp(link)) {
+        outOfTurn();
         return;
     }
     if (greeting.protocol != kProtocolVersion) {
@@ -109,38 +88,28 @@ void Client::Session::greet(const PositionGreeting& greeting) {
         refuse("refused: " + handshake_->because().text, handshake_->because().code);
         return;
     }
-    {
-        const std::lock_guard lock(shelf.mutex);
-        ++shelf.counters.links;
-        shelf.counters.reconnects += everWelcomed_ ? 1 : 0;
-        shelf.positions.clear();
-    }
-    everWelcomed_ = true;
+    countLink();
+    shelf.dropPositions();
     backOff_ = kFirstBackOff;
-    tell(Link::streaming,
-         fmt::format("{}: connected, '{}' streams positions; the master numbers the steps", peer_, greeting.name));
+    shelf.tell(Link::streaming, fmt::format("{}: connected, '{}' streams positions; the master numbers the steps",
+                                            peer_, greeting.name));
 }
 
-void Client::Session::accept(const Position& position) {
-    bool full = false;
-    {
-        const std::lock_guard lock(shelf.mutex);
-        shelf.positions.push_back({position, host::monotonicNs()});
-        full = shelf.positions.size() >= kMaxPositions && !shelf.full;
-        shelf.full = shelf.full || full;
-        shelf.floods += full ? 1 : 0;
-    }
-    if (full) {
+void Client::Session::take(Link link, const Position& position) {
+    if (link != Link::streaming) {
+        outOfTurn();
+    } else if (shelf.add(TimedPosition{position, host::monotonicNs()})) {
         connection_->pause();
     }
 }
 
 std::vector<TimedPosition> Client::Session::drainPositions() {
-    const std::lock_guard lock(shelf.mutex);
-    if (shelf.full) {
+    bool resume = false;
+    std::vector<TimedPosition> positions = shelf.drainPositions(resume);
+    if (resume) {
         resumeReading();
     }
-    return std::exchange(shelf.positions, {});
+    return positions;
 }
 
 // Faults of the link on purpose.

@@ -68,11 +68,7 @@ void Client::Session::connected(Connection::Socket socket) {
     heardNs_ = now_();
     silentUntil_ = {};
     pings_ = 0;
-    {
-        const std::lock_guard lock(shelf.mutex);
-        shelf.tests.clear();
-        shelf.testsInFrame.clear();
-    }
+    shelf.dropTests();
     watch();
     connection_->start({[this](Message&& message) { receive(std::move(message)); },
                         [this](const std::string& why, Connection::Fault fault) {
@@ -82,21 +78,19 @@ void Client::Session::connected(Connection::Socket socket) {
 }
 
 void Client::Session::failed(const std::string& why) {
-    tell(everWelcomed_ ? Link::lost : Link::connecting,
-         fmt::format("haptic server {} does not answer ({}); trying again", address_.text(), why));
+    shelf.tell(everWelcomed_ ? Link::lost : Link::connecting,
+               fmt::format("haptic server {} does not answer ({}); trying again", address_.text(), why));
     retry();
 }
 
 void Client::Session::closed(const std::string& why) {
-    const Link before = link();
-    const bool wasUp =
-        before == Link::offered || before == Link::granting || before == Link::linked || before == Link::streaming;
+    const Link before = shelf.link();
     if (stopping_) {
         io_.stop();
         return;
     }
-    if (wasUp) {
-        tell(Link::lost, fmt::format("{}: link lost, {}; trying again", peer_, why));
+    if (isUp(before)) {
+        shelf.tell(Link::lost, fmt::format("{}: link lost, {}; trying again", peer_, why));
     } else if (before != Link::refused) {
         failed(why);
         return;
@@ -105,15 +99,14 @@ void Client::Session::closed(const std::string& why) {
 }
 
 void Client::Session::countRefusal(RefusalCode code) {
-    const std::lock_guard lock(shelf.mutex);
-    ++shelf.counters.refused[static_cast<std::size_t>(code) - 1];
+    shelf.count([code](LinkCounters& counters) { ++counters.refused[static_cast<std::size_t>(code) - 1]; });
 }
 
 void Client::Session::refuse(const std::string& why, Connection::Fault fault) {
     if (fault) {
         countRefusal(*fault);
     }
-    tell(Link::refused, fmt::format("{}: {}", peer_, why));
+    shelf.tell(Link::refused, fmt::format("{}: {}", peer_, why));
     backOff_ = kLastBackOff;
     if (stopping_) {
         io_.stop();

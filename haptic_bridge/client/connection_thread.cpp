@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <boost/asio/post.hpp>
 #include <utility>
 
@@ -18,7 +17,15 @@ using boost::system::error_code;
 namespace {
 
 constexpr std::chrono::milliseconds kGoodbye{500};
-constexpr std::size_t kMaxTickPieces = 4096;  // half an hour of them; a session that keeps none takes none out
+
+/// Whether a message may come from a server that no steps are expected of.
+bool greets(const Message& message, Link link) {
+    if (std::holds_alternative<Challenge>(message) || std::holds_alternative<Welcome>(message)) {
+        return link < Link::offered || link > Link::streaming;
+    }
+    return std::holds_alternative<PositionGreeting>(message) ||
+           (std::holds_alternative<Position>(message) && link == Link::streaming);
+}
 
 }  // namespace
 
@@ -28,7 +35,7 @@ Client::Session::Session(Address address, Offer offer, LinkSecurity security, Li
       security_(std::move(security)),
       now_(clock ? std::move(clock) : host::monotonicNs) {
     backOff_ = kFirstBackOff;
-    tell(Link::connecting, "haptic server " + address_.text() + ": connecting");
+    shelf.tell(Link::connecting, "haptic server " + address_.text() + ": connecting");
     asio::post(io_, [this] { connect(); });
     thread_ = std::thread([this] { run(); });
 }
@@ -70,19 +77,7 @@ void Client::Session::stop() {
         goodbyeTimer_.async_wait([this](error_code) { io_.stop(); });
     });
     thread_.join();
-    tell(Link::stopped, "haptic server " + address_.text() + ": link closed");
-}
-
-void Client::Session::tell(Link link, const std::string& message) {
-    const std::lock_guard lock(shelf.mutex);
-    if (shelf.status.changes == 0 || shelf.status.link != link || shelf.status.message != message) {
-        shelf.status = {link, message, shelf.status.changes + 1};
-    }
-}
-
-Link Client::Session::link() {
-    const std::lock_guard lock(shelf.mutex);
-    return shelf.status.link;
+    shelf.tell(Link::stopped, "haptic server " + address_.text() + ": link closed");
 }
 
 void Client::Session::greet() {
@@ -96,27 +91,14 @@ void Client::Session::greet() {
     connection_->send(handshake_->hello());
 }
 
-void Client::Session::prove(const Challenge& challenge) {
-    if (const auto proof = handshake_->answer(challenge)) {
-        connection_->send(*proof);
-    } else {
-        refuse("refused: " + handshake_->because().text, handshake_->because().code);
-    }
-}
-
 void Client::Session::watch() {
     watchTimer_.expires_after(Milliseconds(500));
     watchTimer_.async_wait([this](error_code error) {
         if (error || !connection_) {
             return;
         }
-        bool full = false;
-        {
-            const std::lock_guard lock(shelf.mutex);
-            full = shelf.full;
-        }
         const std::int64_t now = now_();
-        heardNs_ = full ? now : heardNs_;
+        heardNs_ = shelf.full() ? now : heardNs_;
         if (now - heardNs_ > kSilenceNs) {
             if (!up()) {  // it accepted the connection and never greeted
                 countRefusal(RefusalCode::limit);
@@ -143,32 +125,22 @@ void Client::Session::ping() {
 }
 
 void Client::Session::grant(Start start, base::Bytes state, StepRing recent) {
-    {
-        const std::lock_guard lock(shelf.mutex);
-        if (shelf.status.link != Link::offered) {
-            return;
-        }
-        // Now, and not when the network thread comes to it: who polls again meanwhile must not see an offer.
-        shelf.status.link = Link::granting;
-        shelf.steps.clear();
+    if (!shelf.beginGranting()) {
+        return;
     }
-    asio::post(io_, [this, start, state = std::move(state), recent = std::move(recent)]() mutable {
-        if (link() != Link::granting || !connection_) {
+    asio::post(io_, [this, start, grant = Grant(start, std::move(state), std::move(recent))]() mutable {
+        if (shelf.link() != Link::granting || !connection_) {
             return;
         }
-        granted_ = start;
-        lastStep_ = start.stepNumber;
-        state_ = std::move(state);
-        recent_ = std::move(recent);
-        handOvers_ = 0;
-        tell(Link::granting, fmt::format("{}: handing over at step {}", peer_, start.stepNumber));
+        grant_ = std::move(grant);
+        shelf.tell(Link::granting, fmt::format("{}: handing over at step {}", peer_, start.stepNumber));
         connection_->send(start);
     });
 }
 
 void Client::Session::shareForce(double share) {
     asio::post(io_, [this, share] {
-        if (connection_ && link() == Link::linked) {
+        if (connection_ && shelf.link() == Link::linked) {
             connection_->send(ForceShare{share});
         }
     });
@@ -176,7 +148,7 @@ void Client::Session::shareForce(double share) {
 
 void Client::Session::request(const EditRequest& request) {
     asio::post(io_, [this, request] {
-        if (connection_ && link() == Link::linked) {
+        if (connection_ && shelf.link() == Link::linked) {
             connection_->expectLoads(request.edit.kind == sand::Edit::load);  // it comes back in a step
             connection_->send(request);
         }
@@ -185,82 +157,47 @@ void Client::Session::request(const EditRequest& request) {
 
 void Client::Session::receive(Message&& message) {
     heardNs_ = now_();
-    {
-        const std::lock_guard lock(shelf.mutex);
-        shelf.counters.bytesIn = connection_->bytesIn();
-        shelf.counters.bytesOut = connection_->bytesOut();
-    }
-    if (const auto* refusal = std::get_if<Refusal>(&message)) {
-        {
-            const std::lock_guard lock(shelf.mutex);
-            ++shelf.counters.refusedHere[static_cast<std::size_t>(refusal->code) - 1];
-        }
-        refuse("refuses: " + refusal->text, std::nullopt);
-    } else if (const auto* bye = std::get_if<Bye>(&message)) {
-        connection_->close("it says goodbye: " + bye->reason);
-    } else if (!handshake_) {
-        connection_->close("it sent a message out of turn", RefusalCode::garbage);
-    } else if (const auto* challenge = std::get_if<Challenge>(&message); challenge != nullptr && !up()) {
-        prove(*challenge);
-    } else if (const auto* greeting = std::get_if<Welcome>(&message); greeting != nullptr && !up()) {
-        welcome(*greeting);
-    } else if (const auto* positions = std::get_if<PositionGreeting>(&message)) {
-        greet(*positions);
-    } else if (const auto* position = std::get_if<Position>(&message); position && link() == Link::streaming) {
-        accept(*position);
-    } else if (link() < Link::offered || link() > Link::linked) {
-        connection_->close("it did not greet", RefusalCode::garbage);
-    } else if (const auto* pong = std::get_if<Pong>(&message)) {
-        clock_.add(pong->masterNs, pong->serverNs, host::monotonicNs());
-        const std::lock_guard lock(shelf.mutex);
-        shelf.clockOffsetNs = clock_.offsetNs();
-    } else if (const auto* report = std::get_if<Report>(&message)) {
-        const std::lock_guard lock(shelf.mutex);
-        shelf.report = *report;
-    } else if (const auto* test = std::get_if<TimingTest>(&message)) {
-        accept(*test);
-    } else if (auto* step = std::get_if<StepMessage>(&message)) {
-        accept(std::move(*step));
-    } else if (auto* piece = std::get_if<TickPiece>(&message)) {
-        const std::lock_guard lock(shelf.mutex);
-        if (shelf.ticks.size() < kMaxTickPieces) {
-            shelf.ticks.push_back(std::move(piece->bytes));
-        }
-    } else if (const auto* need = std::get_if<NeedState>(&message);
-               need != nullptr && link() == Link::granting && handOvers_ < 2) {
-        handOver(*need);
-    } else if (std::holds_alternative<Ready>(message) && link() == Link::granting) {
-        state_ = {};
-        recent_ = {};
-        backOff_ = kFirstBackOff;
-        tell(Link::linked,
-             fmt::format("{}: linked, epoch {} from step {}", peer_, granted_.epoch, granted_.stepNumber + 1));
-    } else {
-        connection_->close("it sent a message out of turn", RefusalCode::garbage);
-    }
-}
-
-/// By the steps that the server lacks, where those are known; by all of the sand else, or when it asks again.
-void Client::Session::handOver(const NeedState& need) {
-    const auto steps = handOvers_++ == 0 ? recent_.since(need, granted_.stepNumber) : std::nullopt;
-    {
-        const std::lock_guard lock(shelf.mutex);
-        ++(steps ? shelf.counters.catchUps : shelf.counters.snapshots);
-    }
-    if (!steps) {
-        handOvers_ = 2;
-        connection_->send(State{std::exchange(state_, {})});
+    shelf.count([this](LinkCounters& counters) {
+        counters.bytesIn = connection_->bytesIn();
+        counters.bytesOut = connection_->bytesOut();
+    });
+    const bool ends = std::holds_alternative<Refusal>(message) || std::holds_alternative<Bye>(message);
+    if (!handshake_ && !ends) {
+        outOfTurn();
         return;
     }
-    const auto connection = connection_;  // sending may close it
-    for (std::size_t begin = 0; begin < steps->size(); begin += kMaxCatchUp) {
-        const std::size_t end = std::min(begin + kMaxCatchUp, steps->size());
-        const auto at = [&](std::size_t i) { return steps->begin() + static_cast<std::ptrdiff_t>(i); };
-        connection->send(CatchUp{end == steps->size(), {at(begin), at(end)}});
+    const Link link = shelf.link();
+    const bool welcomed = link >= Link::offered && link <= Link::linked;
+    if (!ends && !welcomed && !greets(message, link)) {
+        connection_->close("it did not greet", RefusalCode::garbage);
+        return;
+    }
+    std::visit([this, link](auto& kind) { take(link, kind); }, message);
+}
+
+void Client::Session::take(Link, const Refusal& refusal) {
+    shelf.count(
+        [code = refusal.code](LinkCounters& counters) { ++counters.refusedHere[static_cast<std::size_t>(code) - 1]; });
+    refuse("refuses: " + refusal.text, std::nullopt);
+}
+
+void Client::Session::take(Link, const Bye& bye) { connection_->close("it says goodbye: " + bye.reason); }
+
+void Client::Session::take(Link link, const Challenge& challenge) {
+    if (isUp(link)) {
+        outOfTurn();
+    } else if (const auto proof = handshake_->answer(challenge)) {
+        connection_->send(*proof);
+    } else {
+        refuse("refused: " + handshake_->because().text, handshake_->because().code);
     }
 }
 
-void Client::Session::welcome(const Welcome& greeting) {
+void Client::Session::take(Link link, const Welcome& greeting) {
+    if (isUp(link)) {
+        outOfTurn();
+        return;
+    }
     const Identity mine{kProtocolVersion, sand::kAlgorithmVersion, offer_.rulesDigest, offer_.sceneName};
     // The server judged as well; a server that does not is no reason to show sand that differs from what is felt.
     if (const auto refusal = refusalFor(greeting.server, mine)) {
@@ -272,16 +209,51 @@ void Client::Session::welcome(const Welcome& greeting) {
         return;
     }
     connection_->limit(kMaxMessage);
-    {
-        const std::lock_guard lock(shelf.mutex);
-        ++shelf.counters.links;
-        shelf.counters.reconnects += everWelcomed_ ? 1 : 0;
-        shelf.stepsPerSecond = greeting.stepsPerSecond;
-    }
-    everWelcomed_ = true;
+    countLink();
+    shelf.setStepsPerSecond(greeting.stepsPerSecond);
     clock_ = ClockOffset();
-    tell(Link::offered, fmt::format("{}: connected, {} steps per second", peer_, greeting.stepsPerSecond));
+    shelf.tell(Link::offered, fmt::format("{}: connected, {} steps per second", peer_, greeting.stepsPerSecond));
     ping();
+}
+
+void Client::Session::countLink() {
+    shelf.count([again = std::exchange(everWelcomed_, true)](LinkCounters& counters) {
+        ++counters.links;
+        counters.reconnects += again ? 1 : 0;
+    });
+}
+
+void Client::Session::take(Link, const Pong& pong) {
+    clock_.add(pong.masterNs, pong.serverNs, host::monotonicNs());
+    shelf.setClockOffset(clock_.offsetNs());
+}
+
+void Client::Session::take(Link, const Report& report) { shelf.keep(report); }
+
+void Client::Session::take(Link link, const NeedState& need) {
+    if (link != Link::granting || !grant_.mayHandOver()) {
+        outOfTurn();
+        return;
+    }
+    const std::vector<Message> answer = grant_.handOver(need);
+    const bool whole = std::holds_alternative<State>(answer.front());
+    shelf.count([whole](LinkCounters& counters) { ++(whole ? counters.snapshots : counters.catchUps); });
+    const auto connection = connection_;  // sending may close it
+    for (const Message& message : answer) {
+        connection->send(message);
+    }
+}
+
+void Client::Session::take(Link link, const Ready&) {
+    if (link != Link::granting) {
+        outOfTurn();
+        return;
+    }
+    grant_.begun();
+    backOff_ = kFirstBackOff;
+    const Start& start = grant_.start();
+    shelf.tell(Link::linked,
+               fmt::format("{}: linked, epoch {} from step {}", peer_, start.epoch, start.stepNumber + 1));
 }
 
 }  // namespace haptic_bridge

@@ -6,21 +6,20 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
-#include <deque>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "haptic_bridge/client/client.hpp"
 #include "haptic_bridge/client/clock_offset.hpp"
+#include "haptic_bridge/client/grant.hpp"
+#include "haptic_bridge/client/shelf.hpp"
 #include "haptic_bridge/link/connection.hpp"
 
 namespace haptic_bridge {
 
-/// What lies behind Client: a network thread that runs the whole conversation, and a locked shelf between it and the
-/// callers. Members that end in an underscore and stand below `shelf` belong to the network thread.
+/// What lies behind Client: a network thread that runs the whole conversation, and a shelf between it and the callers.
 class Client::Session {
 public:
     Session(Address address, Offer offer, LinkSecurity security, LinkClock clock);
@@ -28,6 +27,7 @@ public:
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
+    // Any thread:
     void grant(Start start, base::Bytes state, StepRing recent);
     std::vector<TimedStep> drain(std::size_t most);
     void shown(const Shown& frame);
@@ -37,34 +37,13 @@ public:
     std::vector<TimedPosition> drainPositions();
     void stop();
 
-    /// What callers see, under its mutex.
-    struct Shelf {
-        std::mutex mutex;
-        LinkStatus status;
-        std::deque<TimedStep> steps;
-        struct Test {
-            std::uint32_t id = 0;
-            std::uint64_t after = 0;  // number of the step before it
-        };
-        std::deque<Test> tests;                   // that wait for a frame, as steps do
-        std::vector<std::uint32_t> testsInFrame;  // to be echoed after the next swap
-        std::vector<base::Bytes> ticks;
-        std::vector<TimedPosition> positions;
-        std::uint64_t floods = 0;
-        std::optional<Report> report;
-        LinkCounters counters;
-        std::int64_t clockOffsetNs = 0;
-        std::uint32_t stepsPerSecond = 0;
-        bool full = false;  // reading is paused until somebody drains
-    } shelf;
+    Shelf shelf;
 
 private:
     using Timer = boost::asio::steady_timer;
     using Milliseconds = std::chrono::milliseconds;
     static constexpr Milliseconds kFirstBackOff{100}, kLastBackOff{2000};
 
-    void tell(Link link, const std::string& message);
-    [[nodiscard]] Link link();
     void run();
     void connect();
     void connected(Connection::Socket socket);
@@ -73,20 +52,35 @@ private:
     void greet();
     void refuse(const std::string& why, Connection::Fault fault);
     void countRefusal(RefusalCode code);
-    void prove(const Challenge& challenge);
-    [[nodiscard]] bool up() { return link() >= Link::offered && link() <= Link::streaming; }
-    void handOver(const NeedState& need);
+    void countLink();
     void retry();
     void watch();
     void ping();
-    void receive(Message&& message);
-    void welcome(const Welcome& welcome);
-    void accept(StepMessage&& message);
-    void accept(const TimingTest& test);
-    void greet(const PositionGreeting& greeting);
-    void accept(const Position& position);
+    [[nodiscard]] bool up() const { return isUp(shelf.link()); }
+    [[nodiscard]] static bool isUp(Link link) { return link >= Link::offered && link <= Link::streaming; }
     void resumeReading();
     [[nodiscard]] bool silent() const;  // on purpose
+
+    void receive(Message&& message);
+    void outOfTurn() { connection_->close("it sent a message out of turn", RefusalCode::garbage); }
+    // Messages of a server, by the state of the link when they came.
+    void take(Link link, const Refusal& refusal);
+    void take(Link link, const Bye& bye);
+    void take(Link link, const Challenge& challenge);
+    void take(Link link, const Welcome& welcome);
+    void take(Link link, const Pong& pong);
+    void take(Link link, const Report& report);
+    void take(Link link, const TimingTest& test);
+    void take(Link link, StepMessage& message);
+    void take(Link link, TickPiece& piece);
+    void take(Link link, const NeedState& need);
+    void take(Link link, const Ready& ready);
+    void take(Link link, const PositionGreeting& greeting);
+    void take(Link link, const Position& position);
+    template <class Other>
+    void take(Link, const Other&) {
+        outOfTurn();
+    }
 
     const Address address_;
     const Offer offer_;
@@ -99,11 +93,7 @@ private:
     Timer goodbyeTimer_{io_};  // nothing else's: a handler that is due already must not put off the end
     std::shared_ptr<Connection> connection_;
     std::string peer_;
-    Start granted_;
-    base::Bytes state_;
-    StepRing recent_;
-    int handOvers_ = 0;  // answers to NeedState since the grant
-    std::uint64_t lastStep_ = 0;
+    Grant grant_;
     ClockOffset clock_;
     Milliseconds backOff_{};
     std::int64_t heardNs_ = 0;  // by now_

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/client/grant.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace haptic_bridge {
+
+std::vector<Message> Grant::handOver(const NeedState& need) {
+    std::vector<Message> answer;
+    auto steps = handOvers_++ == 0 ? recent_.since(need, start_.stepNumber) : std::nullopt;
+    if (!steps) {
+        handOvers_ = 2;
+        answer.emplace_back(State{std::exchange(state_, {})});
+        return answer;
+    }
+    for (std::size_t begin = 0; begin < steps->size(); begin += kMaxCatchUp) {
+        const std::size_t end = std::min(begin + kMaxCatchUp, steps->size());
+        const auto at = [&](std::size_t i) {
+            return std::make_move_iterator(steps->begin() + static_cast<std::ptrdiff_t>(i));
+        };
+        answer.emplace_back(CatchUp{end == steps->size(), {at(begin), at(end)}});
+    }
+    return answer;
+}
+
+Grant::Arrival Grant::arrived(const sand::Step& step) {
+    if (step.epoch != start_.epoch) {
+        return Arrival::foreign;
+    }
+    if (step.number <= lastStep_) {
+        return Arrival::stale;
+    }
+    if (step.number != lastStep_ + 1) {
+        return Arrival::afterGap;
+    }
+    lastStep_ = step.number;
+    return Arrival::next;
+}
+
+Shown Grant::bounded(const Shown& frame) const {
+    return {std::clamp(frame.stepNumber, start_.stepNumber, lastStep_), frame.frameIntervalNs};
+}
+
+}  // namespace haptic_bridge

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/client/shelf.hpp"
+
+#include <gtest/gtest.h>
+
+#include "haptic_bridge/client/grant.hpp"
+
+namespace {
+
+using namespace haptic_bridge;
+
+TimedStep timed(std::uint64_t number) {
+    TimedStep step;
+    step.step.number = number;
+    return step;
+}
+
+std::vector<std::uint64_t> numbersOf(const std::vector<TimedStep>& steps) {
+    std::vector<std::uint64_t> numbers;
+    for (const TimedStep& step : steps) {
+        numbers.push_back(step.step.number);
+    }
+    return numbers;
+}
+
+TEST(Shelf, HandsStepsOverInOrderAndAtMostAsManyAsWanted) {
+    Shelf shelf;
+    for (std::uint64_t number = 1; number <= 5; ++number) {
+        EXPECT_FALSE(shelf.add(timed(number)));
+    }
+    bool resume = true;
+    EXPECT_EQ(numbersOf(shelf.drain(3, resume)), (std::vector<std::uint64_t>{1, 2, 3}));
+    EXPECT_FALSE(resume) << "it was never full";
+    EXPECT_EQ(numbersOf(shelf.drain(9, resume)), (std::vector<std::uint64_t>{4, 5}));
+    EXPECT_EQ(shelf.counters().stepsIn, 5U);
+}
+
+TEST(Shelf, AFullShelfHoldsTheServerBackUntilSomebodyDrains) {
+    Shelf shelf;
+    for (std::uint64_t number = 1; number < Client::kMaxQueued; ++number) {
+        ASSERT_FALSE(shelf.add(timed(number)));
+    }
+    EXPECT_TRUE(shelf.add(timed(Client::kMaxQueued)));
+    EXPECT_TRUE(shelf.full());
+    bool resume = true;
+    (void)shelf.drain(0, resume);
+    EXPECT_FALSE(resume) << "nothing was taken";
+    (void)shelf.drain(1, resume);
+    EXPECT_TRUE(resume);
+    EXPECT_FALSE(shelf.full());
+}
+
+// Like a step, a test that comes while a frame is drawn is in the next.
+TEST(Shelf, ATestIsInTheFrameThatTakesTheStepsBeforeIt) {
+    Shelf shelf;
+    (void)shelf.add(timed(1));
+    shelf.addTest(10, 1);
+    (void)shelf.add(timed(2));
+    shelf.addTest(20, 2);
+    EXPECT_TRUE(shelf.takeTestsInFrame().empty());
+    bool resume = false;
+    (void)shelf.drain(1, resume);
+    EXPECT_EQ(shelf.takeTestsInFrame(), std::vector<std::uint32_t>{10});
+    (void)shelf.drain(1, resume);
+    EXPECT_EQ(shelf.takeTestsInFrame(), std::vector<std::uint32_t>{20});
+    EXPECT_TRUE(shelf.takeTestsInFrame().empty()) << "once";
+}
+
+TEST(Shelf, AnOfferIsTakenOnceAndDropsStepsOfTheLinkBefore) {
+    Shelf shelf;
+    shelf.tell(Link::connecting, "a");
+    EXPECT_FALSE(shelf.beginGranting());
+    shelf.tell(Link::offered, "b");
+    (void)shelf.add(timed(1));
+    EXPECT_TRUE(shelf.beginGranting());
+    EXPECT_EQ(shelf.link(), Link::granting);
+    EXPECT_FALSE(shelf.beginGranting()) << "who polls again sees no offer";
+    bool resume = false;
+    EXPECT_TRUE(shelf.drain(9, resume).empty());
+}
+
+TEST(Shelf, AStatusThatSaysTheSameIsNoChange) {
+    Shelf shelf;
+    shelf.tell(Link::connecting, "nobody");
+    const std::uint64_t changes = shelf.status().changes;
+    shelf.tell(Link::connecting, "nobody");
+    EXPECT_EQ(shelf.status().changes, changes);
+    shelf.tell(Link::connecting, "somebody");
+    EXPECT_EQ(shelf.status().changes, changes + 1);
+}
+
+TEST(Shelf, CountsAFloodOfPositionsOnceUntilTheyAreTaken) {
+    Shelf shelf;
+    for (std::size_t i = 1; i < Client::kMaxPositions; ++i) {
+        ASSERT_FALSE(shelf.add(TimedPosition{}));
+    }
+    EXPECT_TRUE(shelf.add(TimedPosition{}));
+    EXPECT_FALSE(shelf.add(TimedPosition{})) << "what was on its way already";
+    EXPECT_EQ(shelf.floods(), 1U);
+    bool resume = false;
+    EXPECT_EQ(shelf.drainPositions(resume).size(), Client::kMaxPositions + 1);
+    EXPECT_TRUE(resume);
+}
+
+sand::Step numbered(std::uint64_t number, std::uint32_t epoch = 1) {
+    sand::Step step;
+    step.epoch = epoch;
+    step.number = number;
+    return step;
+}
+
+TEST(Grant, JudgesStepsByEpochAndNumber) {
+    Grant grant({3, 10, 0}, {}, {});
+    EXPECT_EQ(grant.arrived(numbered(11, 2)), Grant::Arrival::foreign);
+    EXPECT_EQ(grant.arrived(numbered(10, 3)), Grant::Arrival::stale);
+    EXPECT_EQ(grant.arrived(numbered(12, 3)), Grant::Arrival::afterGap);
+    EXPECT_EQ(grant.arrived(numbered(11, 3)), Grant::Arrival::next);
+    EXPECT_EQ(grant.arrived(numbered(11, 3)), Grant::Arrival::stale) << "doubled";
+    EXPECT_EQ(grant.lastStep(), 11U);
+    EXPECT_EQ(grant.bounded({9, 1}).stepNumber, 10U) << "drawn before the hand-over";
+    EXPECT_EQ(grant.bounded({15, 1}).stepNumber, 11U) << "the master's own steps since";
+}
+
+TEST(Grant, HandsOverTheStepsThatAreLackedOnceAndThenTheSand) {
+    StepRing ring;
+    ring.reached(0, 77);
+    for (std::uint64_t number = 1; number <= kMaxCatchUp + 3; ++number) {
+        ring.add(numbered(number));
+    }
+    Grant grant({2, kMaxCatchUp + 3, 0}, {1, 2, 3}, ring);
+    const auto steps = grant.handOver({0, 77});
+    ASSERT_EQ(steps.size(), 2U);
+    EXPECT_FALSE(std::get<CatchUp>(steps[0]).last);
+    EXPECT_EQ(std::get<CatchUp>(steps[0]).steps.size(), kMaxCatchUp);
+    EXPECT_TRUE(std::get<CatchUp>(steps[1]).last);
+    EXPECT_EQ(std::get<CatchUp>(steps[1]).steps.back().number, kMaxCatchUp + 3);
+    ASSERT_TRUE(grant.mayHandOver());
+    const auto sand = grant.handOver({0, 77});
+    ASSERT_EQ(sand.size(), 1U) << "the same steps would not help again";
+    EXPECT_EQ(std::get<State>(sand[0]).bytes, (base::Bytes{1, 2, 3}));
+    EXPECT_FALSE(grant.mayHandOver());
+}
+
+TEST(Grant, HandsOverTheSandWhenTheStepsAreNotKnown) {
+    Grant grant({2, 10, 0}, {9}, {});
+    EXPECT_EQ(std::get<State>(grant.handOver({3, 1}).front()).bytes, base::Bytes{9});
+    EXPECT_FALSE(grant.mayHandOver());
+}
+
+}  // namespace
