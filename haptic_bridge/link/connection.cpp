@@ -7,11 +7,12 @@
 #include <sstream>
 #include <utility>
 
+#include "host/clock.hpp"
+
 namespace haptic_bridge {
 
 namespace asio = boost::asio;
 using boost::system::error_code;
-using Clock = std::chrono::steady_clock;
 
 namespace {
 
@@ -33,7 +34,7 @@ Connection::Connection(Socket socket, std::unique_ptr<TlsSession> tls)
       tls_(std::move(tls)),
       linger_(socket_.get_executor()),
       throttle_(socket_.get_executor()),
-      counted_(Clock::now()) {
+      rate_(kMaxRate, host::monotonicNs()) {
     error_code ignored;
     // A step must not wait for the acknowledgement of the one before.
     socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
@@ -90,9 +91,16 @@ void Connection::take(std::size_t count) {
     }
     if (!tls_) {
         reader_.feed(bytes);
-        deliver();
+    } else if (const auto plain = unseal(bytes)) {
+        reader_.feed(*plain);
+    } else {
         return;
     }
+    deliver();
+}
+
+/// Returns what TLS has carried, and answers it; nothing when that has closed the connection.
+std::optional<base::Bytes> Connection::unseal(ByteSpan bytes) {
     base::Bytes plain, reply;
     std::string trouble;
     bool first = false;
@@ -112,17 +120,16 @@ void Connection::take(std::size_t count) {
     }
     if (!trouble.empty()) {
         close("TLS failed: " + trouble, RefusalCode::tls);
-        return;
+        return std::nullopt;
     }
     if (first && open_ && handlers_.ready) {
         const auto ready = handlers_.ready;
         ready();
     }
-    if (told_ && plain.size() < count) {  // records that never become a message cost time, too
-        allowed_ -= static_cast<double>(count - plain.size()) / kRecordBytes;
+    if (told_ && plain.size() < bytes.size()) {  // records that never become a message cost time, too
+        rate_.use(static_cast<double>(bytes.size() - plain.size()) / kRecordBytes);
     }
-    reader_.feed(plain);
-    deliver();
+    return plain;
 }
 
 /// Whether the first byte tells that one side speaks TLS and the other does not; this end then says so and closes.
@@ -159,12 +166,7 @@ void Connection::refuse(RefusalCode code, const std::string& answer, const std::
 
 /// Counts the message that comes next; false when it must wait.
 bool Connection::mayDeliver() {
-    if (allowed_ < 1) {
-        const Clock::time_point now = Clock::now();
-        allowed_ = std::min(rate_, allowed_ + std::chrono::duration<double>(now - counted_).count() * rate_);
-        counted_ = now;
-    }
-    if (allowed_ >= 1) {
+    if (rate_.allows(host::monotonicNs)) {
         return true;
     }
     ++throttles_;
@@ -190,7 +192,7 @@ void Connection::deliver() {
             if (!message) {
                 return;
             }
-            allowed_ -= 1;
+            rate_.use(1);
             if (handlers_.message) {
                 // A copy: the handler may close the connection, which releases the handlers.
                 const auto handle = handlers_.message;
@@ -233,20 +235,15 @@ void Connection::sendBytes(base::Bytes bytes) {
 }
 
 void Connection::push(base::Bytes bytes, bool isLong) {
-    longUnsent_ += isLong ? 1 : 0;
-    unsentBytes_ += isLong ? 0 : bytes.size();
-    if (unsentBytes_ > maxUnsent_ || longUnsent_ > 1) {
+    if (!outbox_.push(std::move(bytes), isLong)) {
         close("it does not read what is sent to it", RefusalCode::limit);
-        return;
-    }
-    unsent_.push_back({std::move(bytes), isLong});
-    if (unsent_.size() == 1) {
+    } else if (outbox_.size() == 1) {
         write();
     }
 }
 
 void Connection::write() {
-    asio::async_write(socket_, asio::buffer(unsent_.front().bytes),
+    asio::async_write(socket_, asio::buffer(outbox_.front()),
                       [self = shared_from_this()](error_code error, std::size_t count) {
                           if (!self->open_) {
                               return;
@@ -256,11 +253,8 @@ void Connection::write() {
                               return;
                           }
                           self->bytesOut_ += count;
-                          const bool isLong = self->unsent_.front().isLong;
-                          self->longUnsent_ -= isLong ? 1 : 0;
-                          self->unsentBytes_ -= isLong ? 0 : count;
-                          self->unsent_.pop_front();
-                          if (!self->unsent_.empty()) {
+                          self->outbox_.pop();
+                          if (!self->outbox_.empty()) {
                               self->write();
                           } else if (self->finishing_) {
                               self->endSending();
@@ -276,7 +270,7 @@ void Connection::finish() {
     handlers_ = {};
     linger_.expires_after(lingers_);
     linger_.async_wait([self = shared_from_this()](error_code) { self->shut(); });
-    if (unsent_.empty()) {
+    if (outbox_.empty()) {
         endSending();
     }
     throttling_ = false;

@@ -6,7 +6,6 @@
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -14,7 +13,9 @@
 #include <string>
 
 #include "haptic_bridge/link/message_reader.hpp"
+#include "haptic_bridge/link/outbox.hpp"
 #include "haptic_bridge/link/protocol.hpp"
+#include "haptic_bridge/link/rate_limit.hpp"
 #include "haptic_bridge/link/security.hpp"
 
 namespace haptic_bridge {
@@ -51,9 +52,9 @@ public:
     /// Ordinary messages may be so long from now on [byte].
     void limit(std::size_t most) { reader_.limit(most); }
     /// [byte]; kMaxUnsent at first.
-    void setMaxUnsent(std::size_t most) { maxUnsent_ = most; }
+    void setMaxUnsent(std::size_t most) { outbox_.setMost(most); }
     /// Messages a second that are read at most, and as many at once; kMaxRate at first.
-    void setRate(double perSecond) { rate_ = allowed_ = perSecond; }
+    void setRate(double perSecond) { rate_.setRate(perSecond); }
     /// [byte] that may come in all, without bound at first: who sends more is cut off.
     void setMaxIn(std::uint64_t most) { maxIn_ = most; }
     /// How long finish() waits for the other side at most; half a second at first.
@@ -80,13 +81,9 @@ public:
     static constexpr std::chrono::milliseconds kLinger{500};
 
 private:
-    struct Unsent {
-        base::Bytes bytes;
-        bool isLong = false;
-    };
-
     void read();
     void take(std::size_t count);
+    [[nodiscard]] std::optional<base::Bytes> unseal(ByteSpan bytes);
     [[nodiscard]] bool speaksOtherwise(ByteSpan first);
     void refuse(RefusalCode code, const std::string& answer, const std::string& why);
     void deliver();
@@ -104,14 +101,11 @@ private:
     Handlers handlers_;
     MessageReader reader_;
     std::array<std::uint8_t, 64 * 1024> chunk_{};
-    std::deque<Unsent> unsent_;
-    std::size_t unsentBytes_ = 0, maxUnsent_ = kMaxUnsent;  // of ordinary messages
-    int longUnsent_ = 0;
+    Outbox outbox_{kMaxUnsent};
     std::uint64_t maxIn_ = std::numeric_limits<std::uint64_t>::max();  // [byte]
     std::chrono::milliseconds lingers_ = kLinger;
     std::uint64_t bytesIn_ = 0, bytesOut_ = 0, throttles_ = 0;
-    double rate_ = kMaxRate, allowed_ = kMaxRate;  // [1/s], [message] that may come now
-    std::chrono::steady_clock::time_point counted_;
+    RateLimit rate_;
     std::string peer_;
     boost::asio::ip::address address_;
     bool paused_ = false, throttling_ = false, reading_ = false, finishing_ = false, open_ = true;
