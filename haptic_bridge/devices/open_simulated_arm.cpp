@@ -63,54 +63,67 @@ SimulatedArm::Path pathAlong(const Strokes& strokes, const StrokeSpace& space) {
     };
 }
 
-}  // namespace
-
-std::unique_ptr<SimulatedArm> openSimulatedArm(const std::string& text, const StrokeSpace& space) {
-    Spec spec{text, std::string_view(text).starts_with("sim:") ? std::size_t{4} : std::size_t{0}};
-    const std::string_view name = spec.next();
-    auto physics = armPreset(name);
-    if (!physics) {
-        spec.fail(fmt::format("'{}' is none of touch, falcon, omega.3, delta.3", name));
-    }
+/// What the keys of a spec change.
+struct Settings {
+    ArmPhysics physics;
     Grip grip = kUsualGrip;
-    SimulatedArm::Path path;
-    double delay = physics->delayTicks;
+    double delay = 0;  // [tick]
+};
+
+/// Sets the number with this name. Returns false if no number has that name.
+bool setNumber(Settings& settings, const Spec& spec, std::string_view name, std::string_view value) {
     struct Key {
         std::string_view name;
         double& number;
         double lowest, highest;
     };
-    const std::array<Key, 9> keys{{{"grip", grip.stiffness, 0, 1e5},
-                                   {"grip_damping", grip.damping, 0, 1e3},
-                                   {"delay", delay, 0, 10},
-                                   {"damping", physics->damping, 0, 1e3},
-                                   {"mass", physics->mass, 1e-3, 1e2},
-                                   {"friction", physics->friction, 0, 1e2},
-                                   {"resolution", physics->resolution, 0, 1e-2},
-                                   {"max_force", physics->maxForce, 0, 1e3},
-                                   {"stiffness", physics->maxStiffness, 0, 1e6}}};
+    const std::array<Key, 9> keys{{{"grip", settings.grip.stiffness, 0, 1e5},
+                                   {"grip_damping", settings.grip.damping, 0, 1e3},
+                                   {"delay", settings.delay, 0, 10},
+                                   {"damping", settings.physics.damping, 0, 1e3},
+                                   {"mass", settings.physics.mass, 1e-3, 1e2},
+                                   {"friction", settings.physics.friction, 0, 1e2},
+                                   {"resolution", settings.physics.resolution, 0, 1e-2},
+                                   {"max_force", settings.physics.maxForce, 0, 1e3},
+                                   {"stiffness", settings.physics.maxStiffness, 0, 1e6}}};
+    const auto key = std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.name == name; });
+    if (key == keys.end()) {
+        return false;
+    }
+    key->number = spec.number(name, value, key->lowest, key->highest);
+    return true;
+}
+
+}  // namespace
+
+std::unique_ptr<SimulatedArm> openSimulatedArm(const std::string& text, const StrokeSpace& space) {
+    Spec spec{text, std::string_view(text).starts_with("sim:") ? std::size_t{4} : std::size_t{0}};
+    const std::string_view preset = spec.next();
+    const auto physics = armPreset(preset);
+    if (!physics) {
+        spec.fail(fmt::format("'{}' is none of touch, falcon, omega.3, delta.3", preset));
+    }
+    Settings settings{.physics = *physics, .delay = static_cast<double>(physics->delayTicks)};
+    SimulatedArm::Path path;
     while (spec.more()) {
         const std::string_view word = spec.next();
         const auto equals = word.find('=');
+        const std::string_view name = word.substr(0, equals);
         const std::string_view value = equals == std::string_view::npos ? "" : word.substr(equals + 1);
-        const auto key =
-            std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.name == word.substr(0, equals); });
-        if (word.substr(0, equals) == "path") {
+        if (name == "path") {
             path = pathAlong(readStrokes(spec, std::string(value)), space);
-        } else if (key != keys.end()) {
-            key->number = spec.number(key->name, value, key->lowest, key->highest);
-        } else {
+        } else if (!setNumber(settings, spec, name, value)) {
             spec.fail(
                 fmt::format("'{}' is none of path, grip, grip_damping, delay, damping, mass, friction, "
                             "resolution, max_force, stiffness",
-                            word.substr(0, equals)));
+                            name));
         }
     }
-    if (delay != std::floor(delay)) {
-        spec.fail(fmt::format("delay counts whole ticks, got {}", delay));
+    if (settings.delay != std::floor(settings.delay)) {
+        spec.fail(fmt::format("delay counts whole ticks, got {}", settings.delay));
     }
-    physics->delayTicks = static_cast<int>(delay);
-    return std::make_unique<SimulatedArm>(*physics, grip, std::move(path));
+    settings.physics.delayTicks = static_cast<int>(settings.delay);
+    return std::make_unique<SimulatedArm>(settings.physics, settings.grip, std::move(path));
 }
 
 }  // namespace haptic_bridge

@@ -31,7 +31,8 @@ void ChannelFeed::publish(const sand::Replica& terrain) {
 
 void VirtualFeed::begin(const sand::Replica& terrain) {
     // In real time the force loop reads a hand that rests; here nobody has read it since the link before.
-    hand_.rest(static_cast<double>(steps_ * 1000 / stepsPerSecond_) * HapticTick::kTick);
+    const std::uint64_t millisecond = steps_ * 1000 / stepsPerSecond_;
+    hand_.rest(static_cast<double>(millisecond) * HapticTick::kTick);
     publish(terrain);
     channel_.beginSitting(hand_);
 }

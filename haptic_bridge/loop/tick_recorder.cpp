@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "haptic_bridge/loop/tick_recorder.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <chrono>
-#include <cstring>
 #include <utility>
-
-#include "base/input_error.hpp"
 
 namespace haptic_bridge {
 namespace {
@@ -23,22 +17,13 @@ constexpr std::size_t kMostPieces = 4096;  // a master that takes none is not th
 }  // namespace
 
 TickRecorder::TickRecorder(Options options, const HapticTick& hand)
-    : options_(std::move(options)), hand_(hand), header_(headerOf(hand)) {
-    descriptor_ = open(options_.file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-    if (descriptor_ < 0) {
-        throw base::InputError(fmt::format("--record {}: cannot be made ({}); give a file in a folder that is there",
-                                           options_.file, std::strerror(errno)));
-    }
-    rows_ = tickTitles();
+    : options_(std::move(options)), hand_(hand), header_(headerOf(hand)), file_(options_.file, options_.log) {
     thread_ = std::thread([this] { run(); });
 }
 
 TickRecorder::~TickRecorder() {
     stopping_ = true;
     thread_.join();
-    if (descriptor_ >= 0) {
-        close(descriptor_);
-    }
 }
 
 void TickRecorder::begin() {
@@ -68,7 +53,7 @@ void TickRecorder::run() {
             ++taken;
         });
         endPiece();
-        writeRows();
+        file_.write();
         done_.fetch_add(taken, std::memory_order_release);
         if (const std::uint64_t lost = lost_; lost != toldLost_ && (toldLost_ == 0 || last)) {
             options_.log(
@@ -90,7 +75,7 @@ void TickRecorder::take(const Entry& entry) {
         pieces_.push_back(encode(header));
         return;
     }
-    appendRow(entry.tick, rows_);
+    file_.add(entry.tick);
     piece_.ticks.push_back(entry.input);
     if (piece_.ticks.size() == kMostTicksInPiece) {
         endPiece();
@@ -107,29 +92,6 @@ void TickRecorder::endPiece() {
     if (pieces_.size() < kMostPieces) {
         pieces_.push_back(std::move(bytes));
     }
-}
-
-void TickRecorder::writeRows() {
-    std::size_t done = 0;
-    while (descriptor_ >= 0 && done < rows_.size()) {
-        const ssize_t count = write(descriptor_, rows_.data() + done, rows_.size() - done);
-        if (count < 0 && errno != EINTR) {
-            giveUp(errno);
-            break;
-        }
-        done += count > 0 ? static_cast<std::size_t>(count) : 0;
-    }
-    size_ += static_cast<std::int64_t>(rows_.size());
-    rows_.clear();
-}
-
-void TickRecorder::giveUp(int error) {
-    // What did get there may be half a row: the file then ends with the last whole one.
-    [[maybe_unused]] const int cut = ftruncate(descriptor_, size_);
-    close(descriptor_);
-    descriptor_ = -1;
-    options_.log(fmt::format("--record {}: cannot be written ({}); it ends here, and the session goes on",
-                             options_.file, std::strerror(error)));
 }
 
 std::vector<base::Bytes> TickRecorder::takePieces() {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "haptic_bridge/loop/haptic_tick.hpp"
+#include "haptic_bridge/loop/tick_file.hpp"
 #include "haptic_bridge/loop/tick_track.hpp"
 
 namespace haptic_bridge {
@@ -54,8 +55,6 @@ private:
     void run();
     void take(const Entry& entry);
     void endPiece();
-    void writeRows();
-    void giveUp(int error);
 
     Options options_;
     const HapticTick& hand_;
@@ -68,9 +67,7 @@ private:
     std::vector<base::Bytes> pieces_;
 
     // The recorder's thread.
-    int descriptor_ = -1;
-    std::int64_t size_ = 0;  // [byte], whole rows on disk
-    std::string rows_;
+    TickFile file_;
     TrackPiece piece_;
     std::uint64_t toldLost_ = 0;
     std::thread thread_;

@@ -126,6 +126,16 @@ std::unique_ptr<TickRecorder> recorderOf(const Options& options, const HapticTic
                                           hand);
 }
 
+Service serviceOf(const Options& options, const scene::Scene& scene, asio::io_context& io, Device& device) {
+    Service service{.io = io};
+    service.identity = {kProtocolVersion, sand::kAlgorithmVersion, scene.rules.digest(), scene.name};
+    service.stepsPerSecond = static_cast<std::uint32_t>(scene.rules.stepsPerSecond);
+    service.log = print;
+    service.shareForce = [&device](double share) { device.shareForce(share); };
+    service.tests = options.tests;
+    return service;
+}
+
 void announce(const Options& options, const HapticTick& hand, const asio::ip::tcp::endpoint& endpoint) {
     writePortFile(options.portFile, endpoint.port());
     for (const std::string& line : hand.limitsInWords()) {
@@ -178,14 +188,9 @@ void serve(const Options& options) {
     asio::ip::tcp::acceptor acceptor = listenAt(io, options.listen, security.proves());
     const auto endpoint = acceptor.local_endpoint();
     std::function<Report()> measure;
-    Service service{.io = io};
-    service.identity = {kProtocolVersion, sand::kAlgorithmVersion, scene.rules.digest(), scene.name};
-    service.stepsPerSecond = static_cast<std::uint32_t>(scene.rules.stepsPerSecond);
+    Service service = serviceOf(options, scene, io, device);
     service.report = [&measure] { return measure(); };
-    service.log = print;
     service.ticks = ticksOf(recorder.get());
-    service.shareForce = [&device](double share) { device.shareForce(share); };
-    service.tests = options.tests;
     service.security = security;
     Listener listener(std::move(service), std::move(acceptor));
     // The sand and force threads end before the link they report to.

@@ -47,28 +47,33 @@ Guards::Forces Guards::tick(const Reading& reading) {
     }
 
     passivity_.observe(reading.place, span);
+    forces.sent = limited(reading, forces.acted);
+    passivity_.sent(forces.sent);
+    return forces;
+}
+
+/// What may be sent of the law's force at a tick without faults. Adds a bit to `acted` for each guard that acts.
+Vec3 Guards::limited(const Reading& reading, std::uint32_t& acted) {
     Vec3 force;
     if (reading.engaged) {
-        force = limitedForce(reading.felt, reading.velocity, limits_, forces.acted);
+        force = limitedForce(reading.felt, reading.velocity, limits_, acted);
     }
-    force = slew_.follow(force, forces.acted);
+    force = slew_.follow(force, acted);
     // Damping may hold a push back, not turn it into a pull; and it comes no faster than a force may.
     const double pushed = std::max(dot(force, reading.felt.normal), 0.0);
-    const Vec3 damping = pushed > 0 ? passivity_.control(reading.velocity, forces.acted) : Vec3{};
+    const Vec3 damping = pushed > 0 ? passivity_.control(reading.velocity, acted) : Vec3{};
     damping_ = shortened(damping_ + shortened(damping - damping_, limits_.slew / 2), pushed);
-    forces.acted |= norm(damping_) > 0 ? bit(Guard::passivity) : 0;
+    acted |= norm(damping_) > 0 ? bit(Guard::passivity) : 0;
     force = force + damping_;
     const double size = norm(force);
-    forces.acted |= size > limits_.maxForce ? bit(Guard::clamp) : 0;
+    acted |= size > limits_.maxForce ? bit(Guard::clamp) : 0;
     force = shortened(force, limits_.maxForce);
     const double share = std::min((reading.time - rampFrom_) / ForceLimits::kRamp, 1.0);
     if (share < 1 && size > 0) {
-        forces.acted |= bit(Guard::ramp);
+        acted |= bit(Guard::ramp);
         force = share * force;
     }
-    passivity_.sent(force);
-    forces.sent = force;
-    return forces;
+    return force;
 }
 
 /// What makes a tick one in which nothing may be sent.

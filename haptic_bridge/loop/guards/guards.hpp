@@ -42,6 +42,7 @@ public:
 
 private:
     [[nodiscard]] std::uint32_t faults(const Reading& reading, double span, sand::force::Vec3 lawful) const;
+    [[nodiscard]] sand::force::Vec3 limited(const Reading& reading, std::uint32_t& acted);
     void restart(double time);
 
     ForceLimits limits_;

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/loop/tick_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "base/input_error.hpp"
+#include "haptic_bridge/loop/tick_track.hpp"
+
+namespace haptic_bridge {
+
+TickFile::TickFile(std::string file, std::function<void(const std::string&)> log)
+    : file_(std::move(file)),
+      log_(std::move(log)),
+      descriptor_(open(file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)),
+      rows_(tickTitles()) {
+    if (descriptor_ < 0) {
+        throw base::InputError(fmt::format("--record {}: cannot be made ({}); give a file in a folder that is there",
+                                           file_, std::strerror(errno)));
+    }
+}
+
+TickFile::~TickFile() {
+    if (descriptor_ >= 0) {
+        close(descriptor_);
+    }
+}
+
+void TickFile::add(const Tick& tick) { appendRow(tick, rows_); }
+
+void TickFile::write() {
+    std::size_t done = 0;
+    while (descriptor_ >= 0 && done < rows_.size()) {
+        const ssize_t count = ::write(descriptor_, rows_.data() + done, rows_.size() - done);
+        if (count < 0 && errno != EINTR) {
+            giveUp(errno);
+            break;
+        }
+        done += count > 0 ? static_cast<std::size_t>(count) : 0;
+    }
+    size_ += static_cast<std::int64_t>(rows_.size());
+    rows_.clear();
+}
+
+void TickFile::giveUp(int error) {
+    // What did get there may be half a row: the file then ends with the last whole one.
+    [[maybe_unused]] const int cut = ftruncate(descriptor_, size_);
+    close(descriptor_);
+    descriptor_ = -1;
+    log_(fmt::format("--record {}: cannot be written ({}); it ends here, and the session goes on", file_,
+                     std::strerror(error)));
+}
+
+}  // namespace haptic_bridge
