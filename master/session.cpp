@@ -113,10 +113,10 @@ bool Session::showFrame(bool& more) {
     desk_.obey(barrier_.arrivals());
     record_.keepTicks(steps_->ticks());  // before room is asked for, because ticks need it, too
     const Steps steps = takeSteps();
-    const lockstep::FrameMessage composed = compose(steps);
+    lockstep::FrameMessage composed = compose(steps);
     startDrills();
     std::size_t bytes = 0;
-    const lockstep::FrameMessage frame = barrier_.begin(composed, bytes);
+    const lockstep::FrameMessage frame = barrier_.begin(std::move(composed), bytes);
     const std::int64_t broadcast = monotonicNs();
     keep(frame);
     sand_.apply(frame.frame, steps, frame.auditTiles, *steps_);
