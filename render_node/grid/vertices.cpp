@@ -13,7 +13,8 @@ namespace render_node {
 namespace {
 
 constexpr int kLanes = SandSurface::kBlock;
-constexpr float kFar = std::numeric_limits<float>::infinity();
+constexpr float kFarAbove = std::numeric_limits<float>::infinity();
+constexpr float kFarBelow = -std::numeric_limits<float>::infinity();
 
 }  // namespace
 
@@ -21,8 +22,8 @@ constexpr float kFar = std::numeric_limits<float>::infinity();
 class SandSurface::RangeByLanes {
 public:
     RangeByLanes() {
-        lowest_.fill(kFar);
-        highest_.fill(-kFar);
+        lowest_.fill(kFarAbove);
+        highest_.fill(kFarBelow);
     }
     void add(std::size_t lane, float height) { add(lane, height, height); }
     void add(std::size_t lane, float low, float high) {
@@ -50,7 +51,11 @@ public:
             const std::uint32_t other = now != before ? 1 : 0;
             differs |= other;
             columns_[lane] |= other;
-            before_.add(lane, other != 0 ? before : kFar, other != 0 ? before : -kFar);
+            float lowest = kFarAbove, highest = kFarBelow;
+            if (other != 0) {
+                lowest = highest = before;
+            }
+            before_.add(lane, lowest, highest);
             now_.add(lane, now);
             drawn[lane] = now;
         }
