@@ -3,6 +3,7 @@
 // not: behind the compression lies what a flipped bit would never reach.
 #include <zstd.h>
 
+#include "sand/grid/snapshot.hpp"
 #include "sand/replica.hpp"
 #include "scene/scene.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
