@@ -261,6 +261,22 @@ TEST_F(Redraw, ReadsOnlyWhatIsListedAndWhatLiesAroundIt) {
     EXPECT_GE(view.placesRead() - before, 2 * 64);
 }
 
+// Seen from the side, a post of 30 cells stands in front of sand far behind it.
+TEST_F(Redraw, ErasesAPostThatIsGone) {
+    scene::Scene scene = sample::flatScene(128, 128);
+    scene.terrain.setHeight(64, 30, 30 * sand::kUnitsPerCell);
+    ScenePainter view(scene, glm::dmat4(1));
+    const render_node::Camera beside = sample::camera({1, -1.2, 0.7}, {1, 1, 0});
+    const EyeTarget inParts(200, 150), whole(200, 150);
+    render_node::EyeMemory memory;
+    view.drawIfChanged(beside, inParts, memory);
+    scene.terrain.setHeight(64, 30, 0);
+    view.update(sand::GridData{scene.terrain}, sample::changeOf({64, 24, 72, 32}));
+    const PixelRect drawn = view.drawIfChanged(beside, inParts, memory);
+    EXPECT_LT(drawn.area(), 200 * 150);
+    EXPECT_TRUE(inParts.read() == sample::draw(view, beside, whole));
+}
+
 // A session's changes fade out before the edge of what may change. Posts on level sand hide the sky as far away as
 // sand can, so that a rectangle that is two pixels too small on any side is found out.
 TEST_F(Redraw, ReachesAsFarAsAPostHidesTheSkyAndNotMuchFurther) {
