@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "master/steps/recorded_steps.hpp"
+#include "tests/master/no_steps.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/sand_samples.hpp"
 
@@ -108,14 +109,8 @@ private:
 };
 
 /// Remembers that the master's own sand was healed.
-class HealedSteps : public master::StepSource {
+class HealedSteps : public test::NoSteps {
 public:
-    std::vector<haptic_bridge::TimedStep> next(const sand::Replica& /* sand */, std::uint64_t /* hash */,
-                                               std::size_t /* most */) override {
-        return {};
-    }
-    [[nodiscard]] std::size_t mostPerFrame() const override { return 0; }
-    [[nodiscard]] const char* hand() const override { return ""; }
     void healed(sand::Replica& /* sand */) override { ++healings; }
 
     int healings = 0;

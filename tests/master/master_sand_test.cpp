@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "tests/master/no_steps.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -13,14 +14,8 @@ using haptic_bridge::TimedStep;
 using lockstep::Fault;
 
 /// Notes the states that it is told of.
-class Notes : public master::StepSource {
+class Notes : public test::NoSteps {
 public:
-    std::vector<TimedStep> next(const sand::Replica& /* sand */, std::uint64_t /* hash */,
-                                std::size_t /* most */) override {
-        return {};
-    }
-    [[nodiscard]] std::size_t mostPerFrame() const override { return 0; }
-    [[nodiscard]] const char* hand() const override { return ""; }
     void reached(sand::Replica& sand) override { reachedSteps.push_back(sand.stepNumber()); }
 
     std::vector<std::uint64_t> reachedSteps;

@@ -7,6 +7,7 @@
 #include <future>
 #include <nlohmann/json.hpp>
 
+#include "tests/master/no_steps.hpp"
 #include "tests/support/control_client.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/sand_samples.hpp"
@@ -24,17 +25,6 @@ public:
 
     std::vector<sand::Edit> edits;
     std::vector<double> shares;
-};
-
-/// A source that has nothing to say.
-class NoSteps : public master::StepSource {
-public:
-    std::vector<TimedStep> next(const sand::Replica& /* sand */, std::uint64_t /* hash */,
-                                std::size_t /* most */) override {
-        return {};
-    }
-    [[nodiscard]] std::size_t mostPerFrame() const override { return 0; }
-    [[nodiscard]] const char* hand() const override { return ""; }
 };
 
 class Desk : public test::FolderTest {
@@ -83,7 +73,7 @@ protected:
     const scene::Scene scene_ = samples::flatScene(32, 24);
     const walls::Wall wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/anaglyph_half.toml");
     master::MasterSand sand_{scene_, {}, {}};
-    NoSteps source_;
+    test::NoSteps source_;
     Requests requests_;
     bool room_ = true;
     std::int64_t asked_ = -1;

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "master/journal/journal.hpp"
+#include "tests/master/no_steps.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/sand_samples.hpp"
 #include "tests/support/small_disk.hpp"
@@ -15,16 +16,6 @@
 namespace {
 
 using haptic_bridge::TimedStep;
-
-class NoSource : public master::StepSource {
-public:
-    std::vector<TimedStep> next(const sand::Replica& /* sand */, std::uint64_t /* hash */,
-                                std::size_t /* most */) override {
-        return {};
-    }
-    [[nodiscard]] std::size_t mostPerFrame() const override { return 0; }
-    [[nodiscard]] const char* hand() const override { return ""; }
-};
 
 class Record : public test::FolderTest {
 protected:
@@ -44,7 +35,7 @@ protected:
     const scene::Scene scene_ = samples::flatScene(32, 24);
     master::MasterSand sand_{scene_, {}, {}};
     master::FrameClock clock_{60};
-    NoSource source_;
+    test::NoSteps source_;
     std::uint64_t frame_ = 0;
 };
 

@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "tests/master/no_steps.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -92,16 +93,14 @@ TEST(RecordedSteps, CompareAgainWhenTheMasterWasHealed) {
 }
 
 /// Has a step ready at the third call.
-class LateSteps : public master::StepSource {
+class LateSteps : public test::NoSteps {
 public:
     explicit LateSteps(double patience) : patience_(patience) {}
     std::vector<TimedStep> next(const sand::Replica& /* sand */, std::uint64_t /* hash */,
                                 std::size_t /* most */) override {
         return std::vector<TimedStep>(++calls == 3 ? 1 : 0);
     }
-    [[nodiscard]] std::size_t mostPerFrame() const override { return 1; }
     [[nodiscard]] double patience() const override { return patience_; }
-    [[nodiscard]] const char* hand() const override { return ""; }
 
     int calls = 0;
 
