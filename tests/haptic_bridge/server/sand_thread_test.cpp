@@ -82,6 +82,14 @@ scene::Scene terraced() {
     }
     return scene;
 }
+/// That sand, a hand over it, and a server that is not linked yet.
+struct Terrace {
+    Terrace(Pace pace, double place) : east(place), server(scene, pace, std::make_unique<StandingHand>(east)) {}
+
+    const scene::Scene scene = terraced();
+    std::atomic<double> east;  // of the hand
+    Server server;
+};
 constexpr double kWest = -0.6, kEast = 0.2;  // in hand space: on the terrace, and far below it
 
 // At half a radius the paper's law gives 1000 (e^0.0025 - 1) = 2.503128 N, and heights are floats. On the sand around
@@ -89,9 +97,8 @@ constexpr double kWest = -0.6, kEast = 0.2;  // in hand space: on the terrace, a
 constexpr double kHalfRadius = 2.503128, kFloat = 1e-4;  // [N]
 
 TEST(SandThread, TheFirstSurfaceIsTheSandUnderTheHand) {
-    const scene::Scene scene = terraced();
-    std::atomic<double> east = kEast;
-    Server server(scene, Pace::fast, std::make_unique<StandingHand>(east));
+    Terrace terrace(Pace::fast, kEast);
+    Server& server = terrace.server;
     server.link();
     ASSERT_TRUE(server.made(1));
     const Tick first = server.ticks().front();
@@ -101,13 +108,12 @@ TEST(SandThread, TheFirstSurfaceIsTheSandUnderTheHand) {
 
 // The tool was left in the sand where the hand was. The first step of the next link lifts it there.
 TEST(SandThread, TheFirstSurfaceOfTheNextLinkIsTheSandUnderTheHandThen) {
-    const scene::Scene scene = terraced();
-    std::atomic<double> east = kEast;
-    Server server(scene, Pace::fast, std::make_unique<StandingHand>(east));
+    Terrace terrace(Pace::fast, kEast);
+    Server& server = terrace.server;
     server.link();
     ASSERT_TRUE(server.made(8));
     server.thread().release();
-    east = kWest;
+    terrace.east = kWest;
     server.link();
     ASSERT_TRUE(server.made(10));
     const Tick next = server.ticks()[9];
@@ -116,9 +122,8 @@ TEST(SandThread, TheFirstSurfaceOfTheNextLinkIsTheSandUnderTheHandThen) {
 }
 
 TEST(SandThread, InRealTimeTheFirstSurfaceIsTheSandWhereTheHandRests) {
-    const scene::Scene scene = terraced();
-    std::atomic<double> east = kWest;
-    Server server(scene, Pace::realtime, std::make_unique<StandingHand>(east));
+    Terrace terrace(Pace::realtime, kWest);
+    Server& server = terrace.server;
     server.hand().rest(0);  // as the force loop does a thousand times a second while nobody is linked
     server.link();
     ASSERT_TRUE(eventually([&] { return !server.channel().surface.latest().patch.empty(); }));
@@ -130,9 +135,8 @@ TEST(SandThread, InRealTimeTheFirstSurfaceIsTheSandWhereTheHandRests) {
 
 // docs/protocol.md promises 8.
 TEST(SandThread, IsAtMostEightStepsAheadOfTheWall) {
-    const scene::Scene scene = terraced();
-    std::atomic<double> east = kEast;
-    Server server(scene, Pace::realtime, std::make_unique<StandingHand>(east));
+    Terrace terrace(Pace::realtime, kEast);
+    Server& server = terrace.server;
     server.link();
     // A step that is withheld was due while the wall was a whole window behind.
     const auto withheld = [&](std::uint64_t steps) {
