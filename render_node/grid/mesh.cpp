@@ -4,15 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <utility>
+
+#include "render_node/grid/changed_parts.hpp"
 
 namespace render_node {
 namespace {
 
 constexpr int kChunk = 16;                      // [quad], the shortest side but for small fields
 constexpr int kGroup = 8;                       // [chunk], the side of a group
-constexpr int kMostParts = 36;                  // of one update
-constexpr int kSmallestPart = 32;               // [cell], the side of one
 constexpr std::size_t kManyBytes = 16UL << 20;  // of vertices: then those not drawn lately are dropped
 constexpr std::uint64_t kLately = 120;          // [draw]: a second or two
 
@@ -24,31 +23,6 @@ int chunksFor(int quads, int coarsest) {
 }
 int sideFor(int quads, int coarsest) {
     return coarsest > 0 ? shortestSide(coarsest) : (quads + chunksFor(quads, 0) - 1) / chunksFor(quads, 0);
-}
-
-/// Rectangles around all that was overwritten, one for each square of a lattice over it that holds some.
-std::vector<sand::CellRect> fewAround(std::span<const SandSurface::Overwritten> overwritten) {
-    sand::CellRect all;
-    for (const auto& [cells, before] : overwritten) {
-        all = all.joinedWith(cells);
-    }
-    // It begins where a block does, so that no block reaches over two squares.
-    all.x0 -= all.x0 % SandSurface::kBlock;
-    all.y0 -= all.y0 % SandSurface::kBlock;
-    // Small parts follow the sand closely, few parts are soon looked through.
-    int side = kSmallestPart;
-    const auto partsOf = [&side](int first, int end) { return (end - first + side - 1) / side; };
-    while (partsOf(all.x0, all.x1) * partsOf(all.y0, all.y1) > kMostParts) {
-        side *= 2;
-    }
-    const int across = partsOf(all.x0, all.x1), down = partsOf(all.y0, all.y1);
-    std::vector<sand::CellRect> parts(static_cast<std::size_t>(across) * static_cast<std::size_t>(down));
-    for (const auto& [cells, before] : overwritten) {
-        const int part = (cells.y0 - all.y0) / side * across + (cells.x0 - all.x0) / side;
-        parts[static_cast<std::size_t>(part)] = parts[static_cast<std::size_t>(part)].joinedWith(cells);
-    }
-    std::erase_if(parts, [](const sand::CellRect& part) { return part.empty(); });
-    return parts;
 }
 
 }  // namespace
@@ -132,7 +106,7 @@ bool SandMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& 
     }
     ++revision_;
     bool rim = false;
-    for (const sand::CellRect& cells : fewAround(overwritten)) {
+    for (const sand::CellRect& cells : changedParts(overwritten)) {
         const sand::CellRect vertices = verticesOver(cells);
         const HeightRange heights = heightsAround(vertices, overwritten);
         damage_.add(revision_, {vertices, heights});

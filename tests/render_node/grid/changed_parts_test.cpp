@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/grid/changed_parts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "tests/support/seed.hpp"
+
+namespace {
+
+using render_node::SandSurface;
+
+constexpr int kBlock = SandSurface::kBlock;
+
+/// Overwritten cells in `count` blocks of a field of `side` cells, each within its block.
+std::vector<SandSurface::Overwritten> someIn(int side, int count, std::mt19937& random) {
+    const auto below = [&random](int end) { return static_cast<int>(random() % static_cast<unsigned>(end)); };
+    std::vector<SandSurface::Overwritten> result;
+    for (int i = 0; i < count; ++i) {
+        const int x = below(side / kBlock) * kBlock, y = below(side / kBlock) * kBlock;
+        const int left = below(kBlock), low = below(kBlock);
+        result.push_back(
+            {{x + left, y + low, x + left + 1 + below(kBlock - left), y + low + 1 + below(kBlock - low)}, {}});
+    }
+    return result;
+}
+
+TEST(ChangedParts, AreFewAndDisjointAndHoldAll) {
+    const unsigned seed = test::randomSeed();
+    SCOPED_TRACE(test::again(seed));
+    std::mt19937 random(seed);
+    for (const int side : {32, 256, 2048}) {
+        for (const int count : {1, 3, 40, 900}) {
+            const std::vector<SandSurface::Overwritten> overwritten = someIn(side, count, random);
+            const std::vector<sand::CellRect> parts = render_node::changedParts(overwritten);
+            ASSERT_GE(parts.size(), 1U);
+            ASSERT_LE(parts.size(), static_cast<std::size_t>(render_node::kMostChangedParts));
+            for (const auto& [cells, before] : overwritten) {
+                const auto holds = [&rect = cells](const sand::CellRect& part) {
+                    return part.joinedWith(rect) == part;
+                };
+                ASSERT_EQ(std::count_if(parts.begin(), parts.end(), holds), 1);
+            }
+            for (std::size_t i = 0; i < parts.size(); ++i) {
+                for (std::size_t j = 0; j < i; ++j) {
+                    ASSERT_TRUE(parts[i].clippedTo(parts[j]).empty());
+                }
+            }
+        }
+    }
+}
+
+// Two places far apart do not become one rectangle, however far.
+TEST(ChangedParts, KeepPlacesFarApart) {
+    const std::vector<SandSurface::Overwritten> overwritten{{{3, 3, 5, 5}, {}}, {{2040, 2041, 2048, 2048}, {}}};
+    const std::vector<sand::CellRect> parts = render_node::changedParts(overwritten);
+    ASSERT_EQ(parts.size(), 2U);
+    EXPECT_EQ(parts[0], overwritten[0].cells);
+    EXPECT_EQ(parts[1], overwritten[1].cells);
+}
+
+}  // namespace
