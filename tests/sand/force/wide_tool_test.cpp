@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <memory>
 #include <numbers>
+#include <vector>
 
 #include "sand/force/law.hpp"
 #include "sand/tin/refine/start_maker.hpp"
@@ -26,8 +27,10 @@ struct Bowl {
     sand::HeightField field;
 
     Bowl(int cells, double aside) : radius(cells), middle(5 * cells + aside), field(10 * cells, 10 * cells, kCell) {
-        for (int row = 0; row < field.rows(); ++row) {
-            for (int column = 0; column < field.columns(); ++column) {
+        // Farther than 1.5 R from its middle the sand is level, at height 0.
+        const auto first = [cells](double from) { return static_cast<int>(from - 1.5 * cells); };
+        for (int row = first(5 * cells); row < first(8 * cells); ++row) {
+            for (int column = first(middle); column < first(middle + 3 * cells); ++column) {
                 const double r = std::hypot(column + 0.5 - middle, row + 0.5 - 5 * radius);
                 const double height = r < radius ? -std::sqrt(radius * radius - r * r)
                                                  : std::max(0.0, 0.3 * radius - 0.67 * (r - radius));
@@ -93,7 +96,7 @@ sand::Replica finelyMeshed(const Bowl& bowl) {
     return sand::Replica(start);
 }
 
-/// How far the second paper's push is off, as a share, at the worst of several places between cells.
+/// Returns the relative error of the second paper's push, at the worst of several places between cells.
 double worstOfPoints(int cells) {
     double worst = 0;
     for (const double aside : kAsides) {
@@ -124,47 +127,63 @@ TEST(WideTool, TheRingFeelsEveryCell) {
     }
 }
 
-// Points 2 and 3 cells apart. The bowl's wall is 0.4 R high, and where in it a control point reads is left to chance:
-// the error of a mean of 32 such does not shrink with the radius.
+/// Spheres of these radii, and the error of the push that docs/forces.md states for them.
+struct Stated {
+    std::vector<int> cells;
+    double error;
+};
+
+// Sampled on every second to seventh cell. The bowl's wall is 0.4 R high, and where in it a control point reads is left
+// to chance: the error of a mean of 32 such does not shrink with the radius. The radii are the worst of 200 from 128 to
+// 1024 that were tried, beside others.
 TEST(WideTool, OverAHundredAndTwentySevenCellsItIsFeltWithinTheBound) {
-    double worst = 0;
-    for (const int cells : {128, 180, 255, 256}) {
-        const double here = worstOfPoints(cells);
-        std::printf("a sphere of %d cells: %.2f %% off\n", cells, 100 * here);
-        worst = std::max(worst, here);
+    for (const auto& [radii, error] : {Stated{{128, 180, 193, 255, 256}, 0.07}, Stated{{258, 400, 512, 768}, 0.10}}) {
+        double worst = 0;
+        for (const int cells : radii) {
+            const double here = worstOfPoints(cells);
+            std::printf("a sphere of %d cells: %.2f %% off\n", cells, 100 * here);
+            worst = std::max(worst, here);
+        }
+        EXPECT_LT(worst, error);
+        EXPECT_GT(worst, 0.8 * error) << "the document must not state more than it has to";
     }
-    EXPECT_LT(worst, 0.07) << "docs/forces.md";
-    EXPECT_GT(worst, 1e-4) << "then docs/forces.md need not say so";
 }
 
 // On a TIN the outline is the foot of the cut, and control points lie half of a cell outside of it.
-TEST(WideTool, OnAFineTinItIsFeltWithinTheBound) {
+double worstOnFineTin(int cells) {
     double worst = 0;
-    for (const int cells : {6, 11, 31}) {
-        double here = 0;
-        for (const double aside : kAsides) {
-            const Bowl bowl(cells, aside);
-            const sand::Replica terrain = finelyMeshed(bowl);
-            const sand::ForceConstants constants = constantsOf(sand::ForceLaw::controlPoints);
-            SurfacePatch patch;
-            patch.take(terrain, probeAt(bowl.place()));
-            ASSERT_TRUE(patch.facets().empty());
-            double sum = 0;
-            for (int i = 0; i < 32; ++i) {
-                const double angle = 2 * std::numbers::pi * i / 32, reach = cells + 0.5;
-                const double x = bowl.middle + reach * std::cos(angle), y = 5 * cells + reach * std::sin(angle);
-                sum += kCell * (terrain.surface().height(sand::kProbePerCell * x, sand::kProbePerCell * y) /
-                                    sand::kUnitsPerCell +
-                                cells);
-            }
-            const double exact = constants.maxForce / 32 * sum / constants.unitLength;
-            const double felt = respond(constants, patch, bowl.tool(), bowl.place()).push.z;
-            here = std::max(here, std::abs(felt - exact) / exact);
+    for (const double aside : kAsides) {
+        const Bowl bowl(cells, aside);
+        const sand::Replica terrain = finelyMeshed(bowl);
+        const sand::ForceConstants constants = constantsOf(sand::ForceLaw::controlPoints);
+        SurfacePatch patch;
+        patch.take(terrain, probeAt(bowl.place()));
+        EXPECT_TRUE(patch.facets().empty());
+        double sum = 0;
+        for (int i = 0; i < 32; ++i) {
+            const double angle = 2 * std::numbers::pi * i / 32, reach = cells + 0.5;
+            const double x = bowl.middle + reach * std::cos(angle), y = 5 * cells + reach * std::sin(angle);
+            sum += kCell *
+                   (terrain.surface().height(sand::kProbePerCell * x, sand::kProbePerCell * y) / sand::kUnitsPerCell +
+                    cells);
         }
-        std::printf("a sphere of %d cells on a fine TIN: %.2f %% off\n", cells, 100 * here);
-        worst = std::max(worst, here);
+        const double exact = constants.maxForce / 32 * sum / constants.unitLength;
+        const double felt = respond(constants, patch, bowl.tool(), bowl.place()).push.z;
+        worst = std::max(worst, std::abs(felt - exact) / exact);
     }
-    EXPECT_LT(worst, 0.10) << "docs/forces.md";
+    return worst;
+}
+
+// 96 heights on a side are R/12 apart, whatever the radius: the wall is as wide as that.
+TEST(WideTool, OnAFineTinItIsFeltWithinTheBound) {
+    for (const auto& [radii, error] :
+         {Stated{{6, 8, 11}, 0.01}, Stated{{12, 31}, 0.10}, Stated{{26, 36}, 0.14}, Stated{{41}, 0.20}}) {
+        for (const int cells : radii) {
+            const double here = worstOnFineTin(cells);
+            std::printf("a sphere of %d cells on a fine TIN: %.2f %% off\n", cells, 100 * here);
+            EXPECT_LT(here, error) << cells << " cells";
+        }
+    }
 }
 
 }  // namespace
