@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one tick of the force loop costs, and what one step costs to hand it the sand.
+// Cost of one tick of the force loop, and of the copy of the sand that it gets after each step.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -30,7 +30,7 @@ sand::HeightField ripples(int side) {
 
 sand::ProbePoint middle(int side) { return {side / 2 * sand::kProbePerCell, side / 2 * sand::kProbePerCell, 0}; }
 
-/// The same on a TIN with a vertex in the middle of every cell, beside one another as far as the tool reaches.
+/// Ticks on a TIN with a vertex in the middle of every cell, as far as the tool reaches.
 sand::tin::VertexSand tinRipples(int side) {
     sand::tin::Mesh mesh(side * sand::kProbePerCell, side * sand::kProbePerCell);
     std::vector<sand::tin::Place> places;
@@ -108,7 +108,7 @@ void surfacePatch(benchmark::State& state) {
 }
 BENCHMARK(surfacePatch)->Arg(2)->Arg(10)->Arg(31)->Arg(63)->Arg(127);
 
-/// Of a TIN of more than Facets::kMost triangles around the tool: its heights. range: radius [cell].
+/// Samples the heights of a TIN, which has more than Facets::kMost triangles around the tool. range: radius [cell].
 void surfacePatchOfFineTin(benchmark::State& state) {
     constexpr int kSide = 520;
     static const auto fine = std::make_shared<const sand::tin::TinStart>(
@@ -132,7 +132,7 @@ void surfacePatchOfFineTin(benchmark::State& state) {
 }
 BENCHMARK(surfacePatchOfFineTin)->Arg(10)->Arg(31);
 
-/// The same of a TIN, in the memory of the one before.
+/// Copies the triangles of a TIN into the memory of the copy before.
 void facets(benchmark::State& state) {
     const sand::tin::VertexSand layer = tinRipples(kTinSide);
     sand::force::Facets facets;

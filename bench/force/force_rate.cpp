@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What lies between two surfaces: error of the force, by how often the sand is seen, beside what it costs.
+// Error of the force between two surfaces, by the rate at which the sand is seen, beside its cost.
 #include <array>
 #include <cmath>
 #include <numbers>

@@ -55,7 +55,7 @@ std::uint64_t digStroke(sand::Replica& terrain, const Stroke& stroke, std::vecto
     return hash;
 }
 
-/// How far the sand is behind at the end of a stroke.
+/// Returns how far the sand is behind at the end of a stroke.
 struct Lag {
     double held = 0, lifted = 0;  // share of the displaced sand that still has to move
     double bank = 0;              // [cell]

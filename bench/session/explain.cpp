@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one scene loads and runs, what it leaves out, and what each part costs on this machine.
+// Lists what one scene loads and runs, and what it leaves out, with the cost of each part on this machine.
 #include <fstream>
 #include <map>
 #include <random>
@@ -116,8 +116,8 @@ std::vector<double> timeSteps(sand::Replica& terrain, const std::vector<sand::St
     return seconds;
 }
 
-/// The scene's sand under noise of the scene's own tool's height, at least a cell, and no more than a TIN's volumes
-/// can hold: next to nothing rests.
+/// Adds noise to the scene's sand, so that nearly all of it moves. The noise is as high as the scene's tool, and at
+/// least a cell, but no higher than a TIN's volumes can hold.
 scene::Scene stirred(const scene::Scene& scene, std::uint32_t seed) {
     std::mt19937 random(seed);
     scene::Scene result = scene;

@@ -19,7 +19,8 @@
 
 namespace haptic_bridge {
 
-/// What lies behind Client: a network thread that runs the whole conversation, and a shelf between it and the callers.
+/// Implementation of Client: a network thread runs the whole conversation, and puts what it learns on a shelf for the
+/// callers.
 class Client::Session {
 public:
     Session(Address address, Offer offer, LinkSecurity security, LinkClock clock);

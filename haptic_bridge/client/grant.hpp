@@ -22,8 +22,8 @@ public:
     [[nodiscard]] std::uint64_t lastStep() const { return lastStep_; }
     /// The server asks for sand, at most twice.
     [[nodiscard]] bool mayHandOver() const { return handOvers_ < 2; }
-    /// What brings the server's sand to the start: CatchUps with the steps that it lacks, where those are known. Else,
-    /// or when it asks again, the State.
+    /// Returns the messages that bring the server's sand to the start: CatchUps with the steps that it lacks. Returns
+    /// the State if these steps are not known, or if the server asks again.
     [[nodiscard]] std::vector<Message> handOver(const NeedState& need);
     /// The server has begun: the sand for it is released.
     void begun() {
@@ -34,8 +34,8 @@ public:
     enum class Arrival { next, stale, foreign, afterGap };
     /// Judges a step of the server by epoch and number. The next one counts as the last from now on.
     [[nodiscard]] Arrival arrived(const sand::Step& step);
-    /// What the wall shows, as the server may be told. A frame drawn before the first step says nothing about its
-    /// steps.
+    /// Limits `frame` to what the server may be told: a frame that was drawn before the first step says nothing about
+    /// the steps.
     [[nodiscard]] Shown bounded(const Shown& frame) const;
 
 private:

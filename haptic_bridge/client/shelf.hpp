@@ -12,7 +12,7 @@
 
 namespace haptic_bridge {
 
-/// What the network thread leaves for the callers of Client. Every member may be called from any thread.
+/// Hands over what the network thread receives to the callers of Client. Any thread may call every member.
 ///
 /// `full` is true from when too much lies here until somebody drains: the network thread then reads nothing more.
 class Shelf {
@@ -21,7 +21,7 @@ public:
     [[nodiscard]] LinkStatus status() const;
     [[nodiscard]] Link link() const { return status().link; }
     /// From offered to granting, at once: a caller that polls again must not see an offer. Drops the steps that were
-    /// not drained. Returns false, and does nothing, unless the link is offered.
+    /// not drained. Returns whether the link was offered; otherwise changes nothing.
     [[nodiscard]] bool beginGranting();
 
     /// Returns whether the shelf is full now.

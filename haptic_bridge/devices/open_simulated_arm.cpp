@@ -63,7 +63,7 @@ SimulatedArm::Path pathAlong(const Strokes& strokes, const StrokeSpace& space) {
     };
 }
 
-/// What the keys of a spec change.
+/// Settings that the keys of a spec change.
 struct Settings {
     ArmPhysics physics;
     Grip grip = kUsualGrip;

@@ -99,7 +99,7 @@ void Connection::take(std::size_t count) {
     deliver();
 }
 
-/// Returns what TLS has carried, and answers it; nothing when that has closed the connection.
+/// Returns the bytes that TLS has carried, and answers TLS. Returns nullopt if that has closed the connection.
 std::optional<base::Bytes> Connection::unseal(ByteSpan bytes) {
     base::Bytes plain, reply;
     std::string trouble;

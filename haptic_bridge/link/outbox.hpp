@@ -8,7 +8,7 @@
 
 namespace haptic_bridge {
 
-/// What waits to be sent over one connection, oldest first, and whether that is too much. A value.
+/// Queue of the bytes to be sent over one connection, oldest first. Knows when they are too many.
 class Outbox {
 public:
     explicit Outbox(std::size_t most) : most_(most) {}

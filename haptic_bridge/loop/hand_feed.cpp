@@ -30,7 +30,7 @@ void ChannelFeed::publish(const sand::Replica& terrain) {
 }
 
 void VirtualFeed::begin(const sand::Replica& terrain) {
-    // In real time the force loop reads a hand that rests; here nobody has read it since the link before.
+    // In real time the force loop reads a hand that rests. In the fast pace no thread does, so it is read here.
     const std::uint64_t millisecond = steps_ * 1000 / stepsPerSecond_;
     hand_.rest(static_cast<double>(millisecond) * HapticTick::kTick);
     publish(terrain);

@@ -6,7 +6,7 @@
 
 namespace haptic_bridge {
 
-/// What the thread that makes steps has to do with the hand: it takes samples, and gives back the sand to feel.
+/// Link between the hand and the thread that makes steps: gives samples to it, and takes the sand to feel from it.
 ///
 /// Used by that one thread.
 class HandFeed {

@@ -122,7 +122,7 @@ HandSample HapticTick::tick(double deviceTime, std::int64_t nowNs, const FeltSan
     return sample;
 }
 
-/// What follows from input_ and from where the hand is.
+/// Fills in the part of the tick that follows from input_ and from the place of the hand.
 void HapticTick::fillTick(bool engaged) {
     tick_.time = input_.time;
     tick_.armPlace = input_.reading.place;

@@ -20,7 +20,7 @@
 
 namespace haptic_bridge {
 
-/// The sand around the hand after a step, for whoever computes forces.
+/// Sand around the hand after a step, from which forces are computed.
 struct FeltSand {
     sand::force::SurfacePatch patch;
     sand::ProbePoint around;    // of the patch: where the hand was when it was taken; the height does not count
@@ -46,7 +46,8 @@ public:
 
     /// `deviceTime` [s] is what the device is read at; now and surface.timeNs are on one clock.
     HandSample tick(double deviceTime, std::int64_t nowNs, const FeltSand& surface);
-    /// Reads the device and sends no force, while nobody is linked: its troubles are told, and where() is known.
+    /// Reads the device and sends zero force. Called while no master is linked, so that troubles are reported and
+    /// where() is known.
     void rest(double deviceTime);
     /// Forgets every tick before, as if it had just been made: what follows depends on the ticks of one link alone.
     void restart();

@@ -9,7 +9,7 @@
 
 namespace haptic_bridge {
 
-/// What a hand was told at one tick: with the steps of a session, all that its forces follow from.
+/// Input of a hand at one tick. Together with the steps of a session it determines the forces.
 struct TickInput {
     double time = 0;  // [s], of the device
     Pose pose;

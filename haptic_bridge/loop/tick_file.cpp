@@ -48,7 +48,7 @@ void TickFile::write() {
 }
 
 void TickFile::giveUp(int error) {
-    // What did get there may be half a row: the file then ends with the last whole one.
+    // The disk may have taken half a row. Cut, so that the file ends with a whole one.
     [[maybe_unused]] const int cut = ftruncate(descriptor_, size_);
     close(descriptor_);
     descriptor_ = -1;

@@ -67,7 +67,7 @@ public:
     [[nodiscard]] bool mayCome(const boost::asio::ip::address& address, std::int64_t nowNs) {
         return limits_.mayCome(address, nowNs);
     }
-    /// Counts a refusal, and logs `line` unless it is empty. Who did something wrong may come less often.
+    /// Counts a refusal, and logs `line` unless it is empty. A guest that was refused may come less often.
     void refused(RefusalCode code, const boost::asio::ip::address& address, const std::string& line,
                  std::int64_t nowNs);
     [[nodiscard]] const RefusalCounts& counts() const { return refusals_.counts(); }

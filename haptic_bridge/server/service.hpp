@@ -13,7 +13,7 @@
 
 namespace haptic_bridge {
 
-/// What a server offers to everybody who connects. All of it is used on the thread that runs `io`.
+/// Settings and callbacks of a server that all connections share. All of it is used on the thread that runs `io`.
 struct Service {
     boost::asio::io_context& io;
     Identity identity = {};

@@ -73,7 +73,7 @@ void StepMaker::shown(const Shown& frame, std::int64_t nowNs) {
     if (!running()) {
         return;
     }
-    // Never backwards, and never ahead of what was sent, whatever a master claims.
+    // A master may claim anything: the number never falls, and never passes the last step that was sent.
     shown_ = std::max(shown_, std::min(frame.stepNumber, terrain_.stepNumber()));
     clock_.frameShown(nowNs, frame.frameIntervalNs);
 }
@@ -88,7 +88,8 @@ void StepMaker::begin() {
     phase_ = Phase::running;
     edit_ = {};
     shown_ = start_.stepNumber;
-    // Whoever numbered before may have left the tool in the sand elsewhere: no furrow from there to here.
+    // The tool may have been left in the sand elsewhere, by whichever process numbered before. Lifting it avoids a
+    // furrow from there to the hand.
     liftFirst_ = terrain_.engaged();
     path_.restart(terrain_.probe(), false);
     clock_.start(now_());

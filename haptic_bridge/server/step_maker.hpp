@@ -19,7 +19,7 @@ namespace haptic_bridge {
 /// Has no thread of its own, and is used by one.
 class StepMaker {
 public:
-    // What a wall that cannot keep up has queued is how late it shows the hand: 32 steps made a second of it.
+    // A wall that cannot keep up shows the hand late, by the steps in its queue. With 32 steps that was a second.
     static constexpr std::uint64_t kWindow = 8;  // [step] that may be ahead of the wall
 
     /// What a master gets; `session` is the one given to start().
@@ -43,7 +43,7 @@ public:
     void edit(EditRequest request) { edit_ = std::move(request.edit); }
     void release();
 
-    /// Takes what the hand has done since, also while nobody is linked.
+    /// Takes the samples of the hand since the last call, also while no master is linked.
     void collect();
     /// Makes the next step. Withholds it if the wall is a whole window behind. Call it while running().
     void makeStep();

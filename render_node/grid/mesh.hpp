@@ -81,7 +81,8 @@ private:
     [[nodiscard]] HeightRange heightsUnder(const sand::CellRect& vertices) const {
         return surface_.heights(surface_.cellsUnder(vertices));
     }
-    /// Of all triangles that reach these vertices, now and before their heights were overwritten.
+    /// Returns the range of heights of all triangles that reach these vertices, now and before the heights were
+    /// overwritten.
     [[nodiscard]] HeightRange heightsAround(const sand::CellRect& vertices,
                                             std::span<const SandSurface::Overwritten> overwritten) const;
     [[nodiscard]] sand::CellRect verticesOver(const sand::CellRect& cells) const;

@@ -65,7 +65,7 @@ public:
     }
     [[nodiscard]] bool differs() const { return rows_.first >= 0; }
     [[nodiscard]] HeightRange now() const { return now_.range(); }
-    /// Of a block that begins in this column.
+    /// Returns the cells that differed in a block that begins in this column.
     [[nodiscard]] Overwritten overwritten(int column) const {
         const auto other = [](std::uint32_t lane) { return lane != 0; };
         const auto first = std::ranges::find_if(columns_, other) - columns_.begin();

@@ -21,7 +21,7 @@ class TinMesh final : public DrawnSurface {
 public:
     TinMesh(const sand::tin::SurfaceView& tin, double cellSize /* [scene unit] */);
 
-    /// What no camera sees is put off.
+    /// Puts off changes that no camera sees.
     [[nodiscard]] bool update(const sand::SurfaceData& data, const sand::SurfaceChange& change,
                               std::span<const glm::dmat4> cameras) override;
     void prepare(const GlProgram& program) const override;

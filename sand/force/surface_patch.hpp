@@ -31,7 +31,7 @@ public:
     SurfacePatch(const tin::SurfaceView& tin, double cellSize, ProbePoint centre, double toolRadius);
     /// Around the tool.
     explicit SurfacePatch(const Replica& terrain) { take(terrain, terrain.probe()); }
-    /// Replaces what it was by the sand around `centre`, for the replica's tool, in the memory that it has.
+    /// Takes the sand around `centre` that the replica's tool can reach. Reuses the memory of the patch.
     void take(const Replica& terrain, const ProbePoint& centre);
 
     /// Whether (x, y) lies over the field.

@@ -104,8 +104,8 @@ public:
 
     /// The sand as it is. Refers to this surface; read it again after a change.
     [[nodiscard]] virtual SurfaceData data() const = 0;
-    /// Returns what changed since the last call, and everything at the first one. Until then the surface records no
-    /// changes: a replica that nobody draws holds no lists.
+    /// Returns the change since the last call; the first call returns a whole change. The surface records changes only
+    /// from then on, so that a replica that is not drawn holds no lists.
     [[nodiscard]] virtual SurfaceChange takeChange() = 0;
 };
 

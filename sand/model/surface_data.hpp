@@ -39,7 +39,7 @@ struct TinChange {
     std::vector<std::int32_t> vertices;   // that came, went, rose or sank, ascending
 };
 
-/// What of a surface differs from when it was asked for last.
+/// Difference of a surface from the last Surface::takeChange().
 struct SurfaceChange {
     bool whole = true;                          // everything may differ, whatever `parts` holds
     std::variant<CellChange, TinChange> parts;  // of the same kind as the surface's data

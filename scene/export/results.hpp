@@ -9,8 +9,8 @@
 
 namespace scene {
 
-/// Calls `write` with the sand of a replica by cells, and with the scene that it began as, for rasters and earthwork.
-/// Of a TIN both are sampled at the middles of its nominal cells; holes are walls of that scene's ground.
+/// Calls `write` with the sand of a replica by cells, and with the scene that it began as: for rasters and earthwork.
+/// Samples both at the middles of nominal cells if the sand is a TIN; holes are then walls of that scene's ground.
 void withCells(const sand::Replica& terrain, const Scene& scene,
                const std::function<void(const sand::HeightField&, const Scene&)>& write);
 

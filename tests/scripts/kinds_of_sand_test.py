@@ -17,7 +17,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 # Programs and libraries. Tests, examples and benchmarks know what their sand is made of.
 FOLDERS = ("base", "haptic_bridge", "host", "lockstep", "master", "pictures", "render_node", "sand", "scene", "tracking", "walls")
 
-# Where the two are told apart.
+# The four places that may ask for the kind.
 PLACES = {
     "sand/surface_factory.cpp": "makes the sand that a replica starts with, and a start of sand",
     "render_node/surface_factory.cpp": "makes what draws it",
@@ -67,7 +67,7 @@ def sources():
 
 
 def questions(path, text):
-    """What a file asks of sand, as it is written there."""
+    """Returns the expressions in a file that ask for the kind of sand."""
     own = next((kind for folder, kind in KINDS.items() if path.startswith(folder)), None)
     found = [match.group(0) for match in ALTERNATIVE.finditer(text)
              if own is None or "if" in match.group(0) or "holds" in match.group(0)

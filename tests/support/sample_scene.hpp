@@ -36,7 +36,7 @@ inline scene::Scene duneScene(int columns) {
     return scene;
 }
 
-/// What a replica says when these cells have changed.
+/// Returns the change of a replica in which these cells changed.
 inline sand::SurfaceChange changeOf(const sand::CellRect& cells) {
     return {.whole = false, .parts = sand::CellChange{{cells}}};
 }

@@ -52,7 +52,8 @@ Guards::Forces Guards::tick(const Reading& reading) {
     return forces;
 }
 
-/// What may be sent of the law's force at a tick without faults. Adds a bit to `acted` for each guard that acts.
+/// Returns the part of the law's force that may be sent, at a tick without faults. Adds a bit to `acted` for each guard
+/// that acts.
 Vec3 Guards::limited(const Reading& reading, std::uint32_t& acted) {
     Vec3 force;
     if (reading.engaged) {

@@ -60,7 +60,7 @@ TEST(GuardFigures, OfASoftLawAreItsOwn) {
     EXPECT_NEAR(limits.slew, 0.125, 1e-9);
 }
 
-/// A Touch that nothing limits but what a test sets: m = 0.045 kg.
+/// A Touch of m = 0.045 kg without limits; a test sets its own.
 ForceLimits freeTouch() {
     ForceLimits limits = figuresOf(touchPreset());
     limits.gain = 1;
@@ -106,8 +106,8 @@ TEST(GuardFigures, FrictionIsAtMostWhatTheArmBearsAndTheSandHolds) {
     EXPECT_EQ(acted, bit(Guard::damping) | bit(Guard::friction));
 }
 
-// Friction leans with the surface. Where the normal is (-0.6, 0, 0.8), of 0.02 m/s straight down (-0.0096, 0, -0.0072)
-// is along it: (0, 0, -0.02) + 0.016 (-0.6, 0, 0.8). Against that go 4.090909 N·s/m.
+// Friction leans with the surface. The normal is (-0.6, 0, 0.8), and the hand moves straight down by 0.02 m/s. The part
+// along the surface is (0, 0, -0.02) + 0.016 (-0.6, 0, 0.8) = (-0.0096, 0, -0.0072). 4.090909 N·s/m act against it.
 TEST(GuardFigures, FrictionRunsAlongASlope) {
     std::uint32_t acted = 0;
     const Response felt{{-0.6, 0, 0.8}, {-0.6, 0, 0.8}, dragOf(5), 0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What binaries say of themselves: that the flags of cmake/Hardening.cmake reach them, and who can open a socket.
+// Binaries as readelf sees them: the flags of cmake/Hardening.cmake reach them, and few can open a socket.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -54,7 +54,7 @@ TEST(Hardening, EveryProgramAndModuleHasIt) {
 #endif
 }
 
-/// Of the calls that a program needs to speak over a network, those that a binary asks the C library for.
+/// Returns the socket calls that a binary imports from the C library.
 std::set<std::string> networkCallsOf(const std::string& program) {
     std::set<std::string> calls;
     std::istringstream symbols(outputOf("readelf --dyn-syms -W " SANDWALL_BIN_DIR "/" + program));

@@ -88,7 +88,7 @@ void lump(VertexSand& layer, int column, int row, int cells) {
     });
 }
 
-/// Where vertices stand on the border of the holes, in order.
+/// Returns the places of the vertices on the border of the holes, sorted.
 std::vector<std::pair<std::int32_t, std::int32_t>> placesOnOutline(const VertexSand& layer) {
     std::vector<std::pair<std::int32_t, std::int32_t>> result;
     forEachVertex(layer, [&](Vertex, const Place& place, double) {
