@@ -22,7 +22,7 @@ public:
     // A wall that cannot keep up shows the hand late, by the steps in its queue. With 32 steps that was a second.
     static constexpr std::uint64_t kWindow = 8;  // [step] that may be ahead of the wall
 
-    /// What a master gets; `session` is the one given to start().
+    /// Callbacks that send to a master; `session` is the one given to start().
     struct Output {
         std::function<void(std::uint32_t session)> ready;
         std::function<void(std::uint32_t session, NeedState need)> needState;

@@ -57,7 +57,8 @@ TEST(Undo, RestoresTheHeightsOfBeforeTheLastStroke) {
     hand.stroke(20);
     const sand::HeightField first = samples::fieldOf(terrain);
     hand.stroke(40);
-    ASSERT_FALSE(sameHeights(samples::fieldOf(terrain), first)) << "a stroke that changed nothing shows nothing";
+    ASSERT_FALSE(sameHeights(samples::fieldOf(terrain), first))
+        << "the second stroke must move sand, or the test proves nothing";
     hand.hover(Edit::undo);
     EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), first));
     EXPECT_FALSE(sameHeights(samples::fieldOf(terrain), scene.terrain)) << "only the last stroke";

@@ -260,7 +260,7 @@ TEST(Replica, EverythingMayHaveChangedUntilSomebodyAsks) {
     sand::SurfaceChange change = terrain.takeChange();
     EXPECT_FALSE(change.whole);
     EXPECT_TRUE(std::get<sand::CellChange>(change.parts).cells.empty());
-    EXPECT_TRUE(Replica(terrain).takeChange().whole) << "nobody has seen the copy";
+    EXPECT_TRUE(Replica(terrain).takeChange().whole) << "the copy has not been drawn";
     terrain.apply({1, ++number, false, {}, sand::Edit::reset});
     EXPECT_TRUE(terrain.takeChange().whole);
     EXPECT_FALSE(terrain.takeChange().whole);

@@ -74,7 +74,7 @@ TEST(Shelf, AnOfferIsTakenOnceAndDropsStepsOfTheLinkBefore) {
     (void)shelf.add(timed(1));
     EXPECT_TRUE(shelf.beginGranting());
     EXPECT_EQ(shelf.link(), Link::granting);
-    EXPECT_FALSE(shelf.beginGranting()) << "who polls again sees no offer";
+    EXPECT_FALSE(shelf.beginGranting()) << "a caller that polls again sees no offer";
     bool resume = false;
     EXPECT_TRUE(shelf.drain(9, resume).empty());
 }

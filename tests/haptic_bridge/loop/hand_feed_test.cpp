@@ -90,7 +90,7 @@ TEST_F(FeedTest, AChannelCarriesSamplesOneWayAndSandTheOther) {
     feed.collect(nullptr);
     (void)channel_->samples.push({2, {4, 5, 6}, true});
     feed.collect(&path_);
-    EXPECT_EQ(pathOf(path_), (std::vector<sand::ProbePoint>{{4, 5, 6}})) << "what nobody wanted is gone";
+    EXPECT_EQ(pathOf(path_), (std::vector<sand::ProbePoint>{{4, 5, 6}})) << "dropped samples do not come later";
     feed.end();
     EXPECT_FALSE(channel_->moving);
     channel_->overflow = 3;

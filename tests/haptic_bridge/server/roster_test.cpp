@@ -56,7 +56,8 @@ TEST(Roster, OneAddressHasFourGuests) {
     EXPECT_FALSE(roster.hasRoomFor(boost::asio::ip::make_address("192.0.2.1")));
     EXPECT_TRUE(roster.hasRoomFor(boost::asio::ip::make_address("192.0.2.2")));
     (void)roster.promoteToMaster(guests[0]);
-    EXPECT_TRUE(roster.hasRoomFor(boost::asio::ip::make_address("192.0.2.1"))) << "who is welcomed is no guest";
+    EXPECT_TRUE(roster.hasRoomFor(boost::asio::ip::make_address("192.0.2.1")))
+        << "a welcomed peer does not count as a guest";
 }
 
 TEST(Roster, HasOneMasterAtATimeAndNumbersTheirSessions) {

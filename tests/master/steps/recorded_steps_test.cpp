@@ -51,7 +51,7 @@ TEST(RecordedSteps, ShowEachFrameTheStepsOfItsTimeAndEndWhereAsked) {
     }
     EXPECT_EQ(sand.stepNumber(), 7U);
     EXPECT_FALSE(steps.strayed());
-    EXPECT_EQ(steps.requests(), nullptr) << "nobody changes what has been";
+    EXPECT_EQ(steps.requests(), nullptr) << "a recording cannot be changed";
     EXPECT_STREQ(steps.hand(), "recorded");
 }
 
@@ -123,7 +123,7 @@ TEST(AwaitSteps, AsksAgainOnlyWhileItsSourceIsPatientAndNobodyStops) {
     EXPECT_EQ(await(stopped, 1, true), 0U);
     EXPECT_EQ(stopped.calls, 1);
     LateSteps held(60);
-    EXPECT_EQ(await(held, 0, false), 0U) << "no step is taken, and none is waited for";
+    EXPECT_EQ(await(held, 0, false), 0U) << "held sand takes no step and does not wait";
     EXPECT_EQ(held.calls, 1) << "but the link is looked after";
 }
 

@@ -78,7 +78,7 @@ TEST(ControlPoints, OtherwiseGrowFromNothingIntoTheLiteralForce) {
     EXPECT_EQ(felt(level, placeAt(0), paper()).push.z, 0);
     EXPECT_EQ(felt(level, placeAt(-reach / 2), paper()).push.z, 0);
     // t² (2 - t) of z_tol F_M = 0.01 N: 7/64, 3/8 and 45/64 of it. A slope of t (4 - 3 t) is 13/16, 5/4 and 21/16 of
-    // F_M per unit length. Places are doubles near 1: off by 2e-16, a slope's share of which is below 1e-12.
+    // F_M per unit length. Places are doubles near 1: off by 2e-16, which changes a force by less than 1e-12.
     struct Row {
         double part, newtons, rate;  // of z_tol; of F_M
     };

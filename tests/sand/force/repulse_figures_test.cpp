@@ -147,7 +147,7 @@ TEST(RepulseOnPaper, WeighsTheRingByItsArea) {
 }
 
 // Heights of 0.1 x³/R² + 0.2 y, in radii. Least squares over the ring make of x³ the slope Σx⁴/Σx², which is
-// (3/8) 7 R⁴ / (1/2) 2.5 R² = 2.1; six circles of equal area make it 2.094. The mean is 0, and so is the depth.
+// (3/8) 7 R⁴ / (1/2) 2.5 R² = 2.1; six circles of equal area make it 2.094. The mean and the depth are 0.
 TEST(RepulseOnPaper, TakesItsNormalFromThePlaneThroughTheRing) {
     const SurfacePatch bent = ringPatch([](double x, double y) { return kRadius * (0.1 * x * x * x + 0.2 * y); });
     const Contact contact = ringOf(bent);

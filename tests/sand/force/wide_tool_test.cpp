@@ -52,7 +52,8 @@ struct Bowl {
                ((1 - v) * ((1 - u) * field.height(i, j) + u * field.height(i + 1, j)) +
                 v * ((1 - u) * field.height(i, j + 1) + u * field.height(i + 1, j + 1)));
     }
-    /// The second paper's push upwards: F_M / N Σ dh of 32 points, all of which the sand stands far above.
+    /// The second paper's push upwards: F_M / N Σ dh of 32 points. The sand stands far above all of
+    /// them.
     [[nodiscard]] double pointsByCells(const sand::ForceConstants& constants) const {
         double sum = 0;
         for (int i = 0; i < 32; ++i) {
