@@ -13,26 +13,27 @@
 
 namespace sand {
 
-/// Of what encodeState() writes; a replica decodes this version alone.
+/// Version of the bytes that Replica::encodeState() writes. Replica::decodeState() refuses every other version.
 inline constexpr std::uint32_t kStateVersion = 6;
 
-/// The whole state of a replica, for whoever compresses it on another thread.
+/// Copy of a replica's whole state. Another thread can compress it while the replica applies further steps.
 struct StateCopy {
-    base::Bytes head;                                 // all but the sand
-    std::shared_ptr<const SurfaceCopy> beforeStroke;  // null when there is nothing to undo
+    base::Bytes head;                                 // step number, pose, heading and tuned rules, encoded
+    std::shared_ptr<const SurfaceCopy> beforeStroke;  // sand that an undo restores; null if there is none
     std::shared_ptr<const SurfaceCopy> sand;
 
-    /// What Replica::decodeState takes (compressed).
+    /// Returns the state as compressed bytes for Replica::decodeState().
     [[nodiscard]] base::Bytes encode() const;
 };
 
-/// A replica: the sand, and the one function that changes it.
+/// One program's copy of the sand, and apply(), the function through which each step changes it.
 ///
-/// Two replicas that start from one scene and apply the same steps are equal bit for bit, whatever the compiler, the
-/// number of threads or the size of the blocks. Not thread-safe.
+/// Replicas that begin with the same Start and apply the same steps are equal bit for bit. Compiler, number of threads
+/// and block size make no difference. Not thread-safe.
 class Replica {
 public:
-    /// `options` say how the sand of a height field is swept, not what comes of it; their ground is that of `start`.
+    /// Creates the sand of `start`. `options` choose how a height field is swept; they never change the result, and a
+    /// TIN ignores them. The replica replaces `options.ground` by the ground of `start`.
     explicit Replica(const Start& start, const grid::Erosion::Options& options = {});
     Replica(const Replica& other);
     Replica& operator=(const Replica& other);
@@ -40,69 +41,78 @@ public:
     Replica& operator=(Replica&&) noexcept = default;
     ~Replica() = default;
 
-    /// The tool displaces sand along the step's path, what an operator asked is done, then Rules::sweepsPerStep sweeps
-    /// let the sand slide. Steps must come in order: throws std::logic_error when step.number is not stepNumber() + 1.
+    /// Applies the next step. The tool displaces sand along the step's path, then the step's edit is done, then the
+    /// sand slides for Rules::sweepsPerStep sweeps. Throws std::logic_error if step.number is not stepNumber() + 1.
     ///
-    /// A reset, a load, and an undo that has a stroke to undo, put back heights, outflow and the sand's inertia, and
-    /// that step does not sweep: it ends with the sand exactly as it was. Step number, tool and material go on. A load
-    /// of bytes that are no sand of this field changes nothing.
+    /// A reset, a load, and an undo while canUndo() restore the sand with its outflow and inertia. Such a step runs no
+    /// sweeps, so that it ends with exactly the restored sand. Step number, tool and material keep their values.
+    /// A load is ignored if its bytes are not sand for this field; an undo is ignored if canUndo() is false. The step
+    /// then runs its sweeps.
     void apply(const Step& step);
 
-    [[nodiscard]] const Rules& rules() const { return rules_; }  // now: an operator may have tuned the scene's
+    [[nodiscard]] const Rules& rules() const { return rules_; }  // the scene's, with the operator's tuning
     [[nodiscard]] const Surface& surface() const { return *surface_; }
-    [[nodiscard]] double cellSize() const { return cellSize_; }  // [scene unit], a TIN's nominal one
+    [[nodiscard]] double cellSize() const { return cellSize_; }  // [scene unit], nominal for a TIN
     [[nodiscard]] std::uint64_t stepNumber() const { return stepNumber_; }
-    /// Lost over an open rim, and all there is [unit · cell; of a TIN: unit · probe unit² / 6].
+    /// Returns the volume that left the field over an open rim [unit · cell; for a TIN: unit · probe unit² / 6].
     [[nodiscard]] std::int64_t outflow() const { return surface_->outflow(); }
+    /// Returns the exact volume of all sand [unit · cell; for a TIN: unit · probe unit² / 6].
     [[nodiscard]] std::int64_t volume() const { return surface_->volume(); }
-    [[nodiscard]] ProbePoint probe() const { return probe_; }  // where the tool is
+    [[nodiscard]] ProbePoint probe() const { return probe_; }  // the tool's centre [probe unit]
     [[nodiscard]] double toolRadius() const {                  // [scene unit]
         return rules_.toolRadius * cellSize_ / kProbePerCell;
     }
     [[nodiscard]] ToolShape toolShape() const { return rules_.toolShape(); }
-    [[nodiscard]] Heading heading() const { return heading_; }  // of the tool, as rules or a hand turned it last
-    [[nodiscard]] bool engaged() const { return engaged_; }
-    /// Whether an undo would change anything. A stroke is the steps in which the tool touches, from the first after one
-    /// in which it hovered; only the last is kept, until an undo, a reset or a load.
+    [[nodiscard]] Heading heading() const { return heading_; }  // the tool's, from rules or hand
+    [[nodiscard]] bool engaged() const { return engaged_; }     // whether the tool touches the sand
+    /// Returns whether an undo can restore sand. The replica keeps the sand from before the last stroke, which begins
+    /// with the first step in which the tool touches the sand. After an undo, a reset or a load the replica keeps no
+    /// sand. If the tool is still engaged, it keeps the restored sand instead, because a stroke begins there.
     [[nodiscard]] bool canUndo() const { return surface_->hasKept(); }
-    /// Whether no block of sand moves any more: the next sweeps cost nothing.
+    /// Returns whether all sand is at rest. The next sweeps then visit no block of a height field and no edge of a TIN.
     [[nodiscard]] bool settled() const { return surface_->settled(); }
 
-    /// Hash of everything a later step depends on: heights, tool pose, step number, outflow, and tool
-    /// and material where they are not the scene's. Of the sand's inertia only
-    /// its age: a wrong flux shows in the heights of the next step, and a wrong undo in those after it.
+    /// Returns the state hash. It covers the sand, outflow, pose, heading, step number, whether the tool is engaged,
+    /// and the rules that an operator has tuned. It covers the age of the inertia but not its fluxes, because a wrong
+    /// flux shows in the heights after the next step. It does not cover the sand that is kept for an undo, because
+    /// wrong sand shows after the undo.
     [[nodiscard]] std::uint64_t stateHash();
-    /// Hashes the next `tiles` hash tiles again from memory, changed or not, so that silent corruption shows.
+    /// Hashes the next `tiles` hash tiles again from memory, whether or not they have changed. Corrupted memory then
+    /// changes stateHash().
     void audit(int tiles) { surface_->audit(tiles); }
+    /// Returns the hashes of all hash tiles. stateHash() brings them up to date.
     [[nodiscard]] const HashTiles& hashTiles() const { return surface_->hashTiles(); }
+    /// Returns the numbers in hash tile `tile`. Comparing those of two replicas shows where the replicas differ.
     [[nodiscard]] std::vector<std::int32_t> valuesOf(int tile) const { return surface_->valuesOf(tile); }
 
-    /// Returns what changed of surface() since the last call, and everything at the first one.
+    /// Returns the change of surface() since the last call. The first call returns a whole change.
     [[nodiscard]] SurfaceChange takeChange() { return surface_->takeChange(); }
 
-    /// What a replica of a scene takes at the very least, with the scene it starts from [byte].
+    /// Returns a lower bound of the memory for a replica and for the Start that it begins with [byte].
     [[nodiscard]] static std::int64_t leastBytes(const Start& start);
-    /// The same of a height field of this size.
+    /// Returns the lower bound for a height field of `columns` × `rows` cells [byte].
     [[nodiscard]] static std::int64_t leastBytes(int columns, int rows);
 
-    /// The sand now, for whoever compresses it on another thread.
+    /// Returns a copy of the current sand. Another thread can compress it with SurfaceCopy::encode().
     [[nodiscard]] std::shared_ptr<const SurfaceCopy> copySand() const { return surface_->copy(); }
+    /// Returns the function that decodes sand for this field. It stays valid after the replica is gone.
     [[nodiscard]] SurfaceReader sandReader() const { return surface_->reader(); }
     [[nodiscard]] StateCopy copyState() const;
-    /// The whole state, for a replica that must start from here (compressed).
+    /// Returns the whole state as compressed bytes, from which another replica can continue.
     [[nodiscard]] base::Bytes encodeState() const { return copyState().encode(); }
-    /// Throws base::FormatError when the bytes are no state of this scene; the replica is then unchanged.
+    /// Replaces the whole state by what encodeState() wrote. Throws base::FormatError if the bytes are not a state of
+    /// kStateVersion for this field; the replica is then unchanged.
     void decodeState(std::span<const std::uint8_t> bytes);
 
-    /// Flips one bit of one cell's height behind the hash's back, the lowest being 0: a fault for tests and drills of
-    /// the lockstep proof.
+    /// Flips bit `bit` (0 is the lowest) of one cell's height, or of the volume of a TIN's vertex in that cell's
+    /// triangle. The hash is not updated. Tests and drills inject this fault to prove that a divergence is found.
     void corrupt(int column, int row, int bit = 0) { surface_->corrupt(column, row, bit); }
 
 private:
     [[nodiscard]] HeldTool tool() const { return {rules_.toolShape(), heading_}; }
     void tune(const Tuning& tuning);
     void press();
-    /// Does reset, undo or load; false when there was nothing to do.
+    /// Does a reset, an undo or a load. Returns false if the edit restores no sand.
     bool putBack(const Edit& edit);
 
     Rules rules_, startRules_;

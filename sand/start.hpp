@@ -10,19 +10,19 @@
 
 namespace sand {
 
-/// What a replica starts with. Equal starts and equal steps make equal sand.
+/// Rules, sand and ground that a replica begins with. Equal starts and equal steps make equal sand.
 struct Start {
     Rules rules;
-    HeightField terrain{1, 1, 1.0};            // of a TIN one cell, for its nominal size
+    HeightField terrain{1, 1, 1.0};            // for a TIN one cell, which gives the nominal cell size
     std::shared_ptr<const tin::TinStart> tin;  // null for a height field
-    std::shared_ptr<const Ground> ground;      // null without rock and walls
+    std::shared_ptr<const Ground> ground;      // null without rock and wall cells
 
     [[nodiscard]] double toolRadius() const {  // [scene unit]
         return rules.toolRadius * terrain.cellSize() / kProbePerCell;
     }
-    /// Begins as this TIN, in place of whatever it began as; keeps the cell size.
+    /// Replaces the sand by the TIN `start` and its digest. The cell size stays as it is.
     void beginAs(tin::TinStart start);
-    /// The mean height [unit]: devices hover and dig relative to it.
+    /// Returns the mean height, rounded towards 0 [unit]. Devices hover and dig relative to it.
     [[nodiscard]] std::int32_t referenceHeight() const;
 };
 

@@ -13,30 +13,36 @@
 
 namespace sand::force {
 
-/// The law of a scene between two surfaces: asked at 1 kHz, while the sand changes at 60 Hz. Used by one thread; asks
-/// for no memory after it was made.
+/// The force law of a scene, called at 1 kHz while the sand changes at 60 Hz.
 ///
-/// Between::local carries the last surface's tangent on (LocalModel); hold repeats the force that the last surface gave
-/// when it came; interpolate is the second paper's equation 9 (Interpolation).
+/// ForceConstants::between selects what the model returns between two surfaces:
+/// - Between::local follows the tangent of the last surface at the tool (LocalModel).
+/// - Between::hold repeats the response that the law gave when the last surface arrived.
+/// - Between::interpolate applies equation 9 of the second paper (Interpolation).
+///
+/// Threads: use it from one thread. It allocates no memory after construction.
 class ForceModel {
 public:
     explicit ForceModel(const ForceConstants& constants) : constants_(constants) {}
 
-    /// `step` is the one that made the surface: another one replaces what is known of it. `time` [s] never runs
-    /// backwards; after kForget without a question, nothing is carried over from before.
+    /// Returns the response of the sand to `tool` with its centre at `place`.
+    ///
+    /// `step` is the number of the step that made `surface`; another number means another surface. `time` [s] must
+    /// never decrease. If the last call was more than kForget ago, the result does not depend on earlier calls. Returns
+    /// a response without a force, and forgets earlier calls, if `surface` is empty or `tool` has no reach.
     [[nodiscard]] Response at(const SurfacePatch& surface, std::uint64_t step, const Contour& tool,
                               Vec3 place /* [scene unit] */, double time);
 
-    static constexpr double kForget = 0.05;  // [s]
+    static constexpr double kForget = 0.05;  // longest time between two calls that belong together [s]
 
 private:
     ForceConstants constants_;
     LocalModel local_;
     Interpolation interpolation_;
-    Response held_;
-    bool known_ = false;  // of the last surface
-    std::uint64_t step_ = 0;
-    double time_ = 0;  // [s], of the last question
+    Response held_;           // the law's response when the last surface arrived
+    bool known_ = false;      // whether step_ and time_ are those of a last call
+    std::uint64_t step_ = 0;  // of the last call
+    double time_ = 0;         // of the last call [s]
 };
 
 }  // namespace sand::force

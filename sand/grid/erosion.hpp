@@ -18,116 +18,149 @@ namespace sand::grid {
 
 struct FluxPatch;
 
-/// Instruction set the sweeps run with. Both give the same heights; automatic takes the fastest the machine has.
+/// Instruction set of the sweeps. The heights are the same with each; `automatic` takes the fastest that the CPU has.
 enum class CodePath : std::uint8_t { automatic, baseline };
 
-/// Thermal erosion: sand slides wherever it lies steeper than the talus, until nothing moves.
+/// Thermal erosion: sand slides wherever it is steeper than the talus, until all sand is at rest.
 ///
-/// A Jacobi sweep in face form: every flux is computed from the old heights, rounded once per face, subtracted on one
-/// side and added on the other, so that volume is exact. No flux is more than the share k of the difference it levels,
-/// and the shares of a cell's four faces add up to less than one: no cell passes its neighbours, and the sum of squares
-/// falls by at least one in every sweep that moves anything, so that it ends.
+/// A sweep is a Jacobi iteration over the faces between cells. It computes all fluxes from the heights before the sweep
+/// and rounds each flux once. It subtracts a flux from one cell and adds it to the other, so that volume is exact. A
+/// flux is at most the share k of the height difference across its face. The shares of a cell's four faces add up to
+/// less than 1. Two properties follow from this:
+/// - The next height of a cell lies between the lowest and the highest of the cell and its neighbours.
+/// - The sum of all squared heights falls by at least 1 in every sweep that moves sand, so that sliding ends.
 ///
-/// The default law has inertia: with a the difference across a face, m the slope and t the threshold,
-/// q = M q_last + p (1 - t²/m²) a, cut to [0, k a]. The proofs need only the cut. Sand at rest starts to slide where
-/// plain G would. With a band, a face up to the start threshold carries nothing unless sand slid in one of its two
-/// cells, which means that some flowed through a face of that cell in the last sweep: moving sand stops at t. The pile
-/// is plain G's to the third digit, in a tenth of the sweeps. M = n / (n + 25), at most 0.9, in the n-th sweep since
-/// touch(): a pile so small that it rests early meets little inertia, and does not overshoot.
+/// The default law has inertia: q = M q_last + p (1 - t²/m²) a, cut to [0, k a]. Here a is the difference across the
+/// face, m the slope, t the threshold, and q_last the face's flux in the last sweep. The two properties need only the
+/// cut. Sand at rest starts to slide where plain G lets it slide. The resulting pile equals that of plain G to three
+/// digits, after a tenth of the sweeps. docs/sand.md has p, k and the measurements.
 ///
-/// Only blocks in which sand flows, and of their neighbours those beside whose border it does, are swept again: settled
-/// sand costs nothing, and the result is that of full sweeps bit for bit. Not thread-safe; an executor may be handed in
-/// and never changes a result.
+/// M = n / (n + 25), at most 0.9, where n counts the sweeps that moved sand since touch(). A small pile rests after few
+/// sweeps. It therefore has little inertia and does not overshoot. In sweep i (from 0) of one call of sweep(), M is at
+/// least i / (i + d), at most 0.9. d is a third of the sweeps of that call, within [3, 25], because few sweeps end
+/// before anything overshoots.
+///
+/// With a band (start threshold above t), sand slides in a cell if some flowed through a face of the cell in the last
+/// sweep. A face no steeper than the start threshold carries a flux only if sand slides in one of its two cells. Moving
+/// sand therefore stops at t.
+///
+/// A sweep visits only blocks in which sand flows, and those neighbours next to whose border it flows. Settled sand
+/// costs nothing, and the result equals that of full sweeps bit for bit.
+///
+/// Threads: not thread-safe. An executor may share out the work of a sweep; it never changes a result.
 class Erosion {
 public:
-    static constexpr int kDefaultBlock = 8;  // [cell], a vector of AVX2: larger ones visit more sand at rest
+    /// Default side of a block [cell]: one AVX2 vector. Larger blocks would visit more sand at rest.
+    static constexpr int kDefaultBlock = 8;
 
+    /// Choices of how to sweep. None of them changes the heights, except `ground`.
     struct Options {
-        int blockSize = kDefaultBlock;  // [cell], in [2, kMaxBlock]
+        int blockSize = kDefaultBlock;  // side of a block [cell], clamped to [2, kMaxBlock]
         CodePath path = CodePath::automatic;
-        const Ground* ground = nullptr;            // must outlive the erosion; null: sand without end
-        const base::Executor* executor = nullptr;  // must outlive the erosion; null: the caller's thread does all
-        bool skipSettled = true;                   // false visits every block in every sweep: for comparison
+        /// Rock and wall cells, which must outlive the Erosion. Null: sand of unlimited depth without walls.
+        const Ground* ground = nullptr;
+        /// Threads for the sweeps, which must outlive the Erosion. Null: the calling thread does all work.
+        const base::Executor* executor = nullptr;
+        /// Whether to skip blocks at rest. False visits every block in every sweep, for comparison.
+        bool skipSettled = true;
     };
 
-    /// Everything may move at first.
+    /// Prepares the sweeps of `field`. The first sweep visits every block.
     Erosion(const HeightField& field, const Rules& rules, const Options& options);
     Erosion(const HeightField& field, const Rules& rules) : Erosion(field, rules, Options{}) {}
 
-    /// Somebody else changed these cells of the field: they and their neighbours may move again.
+    /// Wakes the blocks of `cells` and their neighbours, and resets the age of the inertia. Call it after other code
+    /// has changed heights in `cells`, or has removed an obstacle from them.
     void touch(const CellRect& cells);
 
-    /// Runs at most `sweeps` sweeps over `field`, fewer when nothing moves any more, and returns the volume that fell
-    /// over an open rim [unit · cell]. No flux raises a cell above the underside of `obstacle`.
+    /// Runs `sweeps` sweeps over `field`; stops earlier if all sand is at rest.
+    ///
+    /// No flux raises a cell above the underside of `obstacle`, which is null without a tool. Returns the volume that
+    /// fell over an open rim [unit · cell].
     std::int64_t sweep(HeightField& field, int sweeps, const Obstacle* obstacle = nullptr);
 
-    /// Adds what passed every face in the last sweep.
+    /// Adds the flux of each face in the last sweep to `sum`.
     void addFluxes(NetFlux& sum) const;
 
-    /// Whether the next sweep would visit no block at all.
+    /// Returns whether all sand is at rest: the next sweep would visit no block.
     [[nodiscard]] bool settled() const { return active_.empty() && marked_.empty(); }
-    /// Sweeps that moved sand since touch(), as far as they matter: the age of the inertia.
+    /// Returns the age of the inertia: the number of sweeps that moved sand since touch(), at most
+    /// Inertia::kMostCounted [sweep].
     [[nodiscard]] int undisturbed() const { return undisturbed_; }
-    /// What the next sweeps depend on beside the heights.
+    /// Returns everything except heights and rules that later sweeps depend on: the last fluxes and their age.
     [[nodiscard]] Inertia inertia() const;
-    /// Goes on from there. Nothing is awake or asleep in an inertia: every block is visited once, and one at rest does
-    /// not change.
+    /// Replaces fluxes and age by those of `inertia`. Wakes every block, because an Inertia does not record which
+    /// blocks were at rest. A visit changes no block at rest.
     void resume(const Inertia& inertia);
-    /// From now on; everything may move again.
+    /// Replaces the rules, wakes every block, and resets the age of the inertia.
     void changeRules(const Rules& rules);
-    /// How many sweeps have been run since the start.
+    /// Returns the number of sweeps since construction.
     [[nodiscard]] std::int64_t sweepsDone() const { return sweepsDone_; }
-    /// Whether sand flows in a block of these cells that is not visited any more: memory went bad where nothing moves.
+    /// Returns whether a cell of `cells` has a flux other than 0 although its block is at rest. Only corrupted memory
+    /// can cause that. With a band, also checks the marks of sliding cells.
     [[nodiscard]] bool amiss(const CellRect& cells) const;
-    /// Everything may move again: the tool has left, or the rules have changed.
+    /// Makes the next sweep visit every block. Does not reset the age of the inertia.
     void wakeAll();
-    /// Blocks in which sweep() changed a cell since this was called last, side by side ones as one.
+    /// Returns rectangles that contain all cells changed by sweep() since the last call [cell]. Each is a run of blocks
+    /// within one row of blocks. They are disjoint and ordered row by row from the south-west.
     [[nodiscard]] std::vector<CellRect> takeMoved();
 
-    /// "x86-64-v3" or "baseline".
+    /// Returns the instruction set in use: "x86-64-v3" or "baseline".
     [[nodiscard]] const char* codePath() const;
-    /// Of everything it keeps between sweeps [byte].
+    /// Returns the memory that is kept between sweeps [byte].
     [[nodiscard]] std::size_t bytes() const;
 
 private:
     [[nodiscard]] CellRect cellsOf(const CellRect& blocks) const;
+    /// Returns the blocks of `cells` and one more on each side [block].
     [[nodiscard]] CellRect blocksAround(const CellRect& cells) const;
+    /// Writes the ghost cells next to `cells` so that the field's slope continues across the rim.
     void refreshGhosts(HeightField& field, const CellRect& cells) const;
-    /// Finds anew in which cells sand slid, from the fluxes; only a band needs that.
+    /// Derives `sliding_` from the fluxes. Without a band, removes it.
     void findSliding();
-    /// The run of waiting blocks that begins with `block`, and the rows above it that wait in just the same run; they
-    /// wait no longer. A wider run above is left whole: narrow patches cost more per cell.
+    /// Returns a patch: the run of waiting blocks that begins with `block`, and the same run in the rows above while it
+    /// waits there too. These blocks then wait no longer. Stops below a wider run, because splitting it would make
+    /// narrow patches, which cost more per cell.
     [[nodiscard]] CellRect takePatch(int block);
+    /// Divides the active blocks into patches for this sweep, and writes their ghost cells.
     void collectPatches(HeightField& field);
+    /// Computes the fluxes of one patch. Returns its outflow [unit · cell].
     [[nodiscard]] std::int64_t sweepFluxes(const HeightField& field, const CellRect& blocks, float momentum,
                                            const Obstacle* obstacle);
+    /// Applies the fluxes of one patch to its heights, and records where sand flowed.
     void balance(HeightField& field, const CellRect& blocks);
+    /// Calls `task` with the index of each patch, in parallel if there is an executor.
     void forEachPatch(const std::function<void(int)>& task) const;
+    /// Marks the blocks that the next sweep must visit because sand flowed in this patch.
     void markAroundMoved(const CellRect& blocks);
-    /// Marks, in a row of blocks, those that lie beside flow at this side of a block; `flowed` by column.
+    /// Marks the blocks of `row` that are next to flow. `flowed` is a row of blocks with their bits of `flow`. A block
+    /// is marked if the block of `flowed` in the same column has the bit `side`. It is also marked if the next block to
+    /// the west or east has the bit `side` and the bit of the border between these columns.
     void markBeside(const std::uint8_t* flowed, int side, const CellRect& row);
+    /// Makes the marked blocks the active ones.
     void collectMarked();
+    /// Adds the marked blocks to the active ones.
     void wakeTouched();
 
     Rules rules_;
     Options options_;
     int blockSize_;
-    int across_, down_;  // blocks
+    int across_, down_;  // size of the field [block]
     bool v3_;
-    // Flux out of each cell to the east and to the north [unit] of the last sweep; column and row -1 hold what flows
-    // over the western and southern rim. Zero wherever a block is not active.
+    // Fluxes of the last sweep from each cell to the east and to the north [unit]. Column -1 and row -1 are the fluxes
+    // across the western and the southern rim. All fluxes of a block that is not active are 0.
     CellArray east_, north_;
-    std::optional<CellArray> sliding_;  // with a band: in which cells sand slid in the last sweep
+    std::optional<CellArray> sliding_;  // cells in which sand slid in the last sweep; nullopt without a band
     std::int64_t sweepsDone_ = 0;
-    int undisturbed_ = 0;                 // sweeps that moved sand since touch()
-    std::vector<int> active_;             // ascending
-    std::vector<CellRect> patches_;       // of this sweep [block]
-    std::vector<std::int64_t> outflows_;  // of each patch
-    BlockMarks marked_;                   // belong to the next active set
-    BlockMarks moved_;                    // changed since takeMoved()
+    int undisturbed_ = 0;                 // age of the inertia [sweep]
+    std::vector<int> active_;             // blocks that the next sweep visits, in ascending order
+    std::vector<CellRect> patches_;       // rectangles of active blocks in this sweep [block]
+    std::vector<std::int64_t> outflows_;  // outflow of each patch [unit · cell]
+    BlockMarks marked_;                   // blocks for the next active set
+    BlockMarks moved_;                    // blocks changed since takeMoved()
     // One number per block:
-    std::vector<std::uint8_t> waiting_;   // is active and not yet in a patch of this sweep
-    std::vector<std::uint8_t> movedNow_;  // where sand flowed in the sweep that visited it last, as bits of `flow`
+    std::vector<std::uint8_t> waiting_;   // 1 if the block is active and not yet in a patch of this sweep
+    std::vector<std::uint8_t> movedNow_;  // bits of `flow`: where sand flowed in the block's last visit
 };
 
 }  // namespace sand::grid

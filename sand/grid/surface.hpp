@@ -13,10 +13,11 @@
 
 namespace sand::grid {
 
-/// Sand as a height field, over rock and between walls where the scene has them.
+/// Sand as a height field, with the scene's rock and wall cells. Surface describes the functions.
 class GridSurface final : public Surface {
 public:
-    /// `options` say how the sand is swept, not what comes of it; their ground is the scene's own.
+    /// `options` choose how the sand is swept; they never change the result. `ground` replaces `options.ground`, and is
+    /// null without rock and wall cells.
     GridSurface(const Rules& rules, const HeightField& field, std::shared_ptr<const Ground> ground,
                 const Erosion::Options& options);
     [[nodiscard]] std::unique_ptr<Surface> clone() const override;
@@ -42,7 +43,7 @@ public:
     void replace(const SurfaceCopy& copy) override;
 
     [[nodiscard]] std::int64_t outflow() const override { return outflow_; }        // [unit · cell]
-    [[nodiscard]] std::int64_t volume() const override { return field_.volume(); }  // likewise
+    [[nodiscard]] std::int64_t volume() const override { return field_.volume(); }  // [unit · cell]
     [[nodiscard]] bool settled() const override { return erosion_.settled(); }
     [[nodiscard]] int age() const override { return erosion_.undisturbed(); }
 
@@ -57,7 +58,9 @@ public:
     [[nodiscard]] SurfaceChange takeChange() override;
 
 private:
+    /// Records a change of `cells` for hash, undo and takeChange().
     void touch(const CellRect& cells);
+    /// Records a change of the whole field.
     void touchAll();
 
     Rules rules_;
@@ -66,9 +69,9 @@ private:
     Erosion erosion_;
     TileHash hash_;
     std::int64_t outflow_ = 0;
-    std::shared_ptr<const base::Bytes> start_;  // the scene's heights, compressed; copies of a replica share them
-    Undo beforeStroke_;                         // the last one
-    std::optional<BlockMarks> changed_;         // since takeChange(); nullopt: everything may have
+    std::shared_ptr<const base::Bytes> start_;  // the scene's heights, compressed; clones share them
+    Undo beforeStroke_;                         // sand for an undo
+    std::optional<BlockMarks> changed_;         // blocks changed since takeChange(); nullopt: all
 };
 
 }  // namespace sand::grid

@@ -9,36 +9,37 @@
 
 namespace sand {
 
-/// Sand on a regular grid, the same on every rank.
+/// Sand on a regular grid with one height per cell, the same on every rank.
 ///
-/// Heights are fixed-point: one unit is cellSize / 2^16. Cell (0,0) is the south-west corner; columns run east, rows
-/// north. Cells are square unless Rules::aspect says otherwise. The ghost cells around belong to Erosion. Not
-/// thread-safe.
+/// Heights are fixed-point numbers: one unit is cellSize / 2^16. Cell (0,0) is the south-west corner; columns run east
+/// and rows run north. Cells are square unless Rules::aspect gives another ratio. A border of ghost cells, one cell
+/// wide, surrounds the field; Erosion writes it. Not thread-safe.
 class HeightField {
 public:
-    /// Level ground at height 0. Throws std::invalid_argument when a side is outside [1, kMaxSide] or cellSize is not
-    /// positive and finite; scenes are checked before, with file and line.
+    /// Creates level sand at height 0. Throws std::invalid_argument if a side is outside [1, kMaxSide] or `cellSize` is
+    /// not positive and finite. Scene files are checked earlier, by code that reports file and line.
     HeightField(int columns, int rows, double cellSize /* [scene unit] */);
 
     [[nodiscard]] int columns() const { return cells_.columns(); }
     [[nodiscard]] int rows() const { return cells_.rows(); }
-    [[nodiscard]] double cellSize() const { return cellSize_; }              // [scene unit], east to west
-    [[nodiscard]] double unit() const { return cellSize_ / kUnitsPerCell; }  // [scene unit], of one height unit
+    [[nodiscard]] double cellSize() const { return cellSize_; }              // [scene unit], from west to east
+    [[nodiscard]] double unit() const { return cellSize_ / kUnitsPerCell; }  // [scene unit], one height unit
     [[nodiscard]] CellRect bounds() const { return cells_.bounds(); }
 
     [[nodiscard]] std::int32_t height(int column, int row) const { return cells_.row(row)[column]; }  // [unit]
     void setHeight(int column, int row, std::int32_t height) { cells_.row(row)[column] = height; }    // [unit]
 
-    /// The first cell of a row; row -1 and row `rows` are ghost cells, as in CellArray.
+    /// Returns a pointer to cell 0 of `row`. Rows -1 and rows() consist of ghost cells, as do columns -1 and columns().
     [[nodiscard]] const std::int32_t* row(int row) const { return cells_.row(row); }
     [[nodiscard]] std::int32_t* row(int row) { return cells_.row(row); }
-    [[nodiscard]] std::ptrdiff_t stride() const { return cells_.stride(); }
+    [[nodiscard]] std::ptrdiff_t stride() const { return cells_.stride(); }  // [cell], from one row to the next
     [[nodiscard]] const CellArray& cells() const { return cells_; }
     [[nodiscard]] CellArray& cells() { return cells_; }
 
-    /// The sum of all heights [unit · cell], exact.
+    /// Returns the sum of all heights [unit · cell], which is exact.
     [[nodiscard]] std::int64_t volume() const;
 
+    /// Returns whether both fields have the same size and the same heights. Ignores cell size and ghost cells.
     friend bool sameHeights(const HeightField& a, const HeightField& b);
 
 private:

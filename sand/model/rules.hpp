@@ -11,50 +11,64 @@
 
 namespace sand {
 
-/// Changes with anything that changes what a step does to the sand; replicas of different versions refuse each other.
+/// Version of the algorithm. It increases with every change to what a step does to the sand. Programs of different
+/// versions refuse to run together.
 inline constexpr std::uint32_t kAlgorithmVersion = 7;
 
-/// docs/sand.md states both laws. The documents call `isotropic` G and `plainIsotropic` plain G.
+/// Law by which sand slides on a height field. The documents call `isotropic` G and `plainIsotropic` plain G;
+/// docs/sand.md states both laws.
 ///
-/// The numbers enter digests, messages, journals and checkpoints, so a scheme keeps its number for good. Number 1
-/// belonged to a scheme that was removed; decode() refuses it.
+/// A scheme keeps its number forever, because digests, messages, journals and checkpoints contain the number. Number 1
+/// belonged to a scheme that was removed; Rules::decode() refuses it.
 enum class Scheme : std::uint8_t { isotropic = 0, plainIsotropic = 2 };
 
+/// A scheme and its name in scene files and on command lines.
 struct NamedScheme {
     Scheme scheme;
     std::string_view name;
 };
-/// Every scheme, the default first, by its name in scene files and on command lines.
+/// All schemes, the default first.
 inline constexpr std::array<NamedScheme, 2> kSchemes{{{Scheme::isotropic, "g"}, {Scheme::plainIsotropic, "g_plain"}}};
 
-enum class Rim : std::uint8_t { closed, open };
+/// Border of the field.
+enum class Rim : std::uint8_t {
+    closed,  // keeps all sand on the field
+    open     // lets sand fall over it, as outflow
+};
 
-/// Every number the sand is computed from: derived once by whoever loads the scene, then broadcast, never recomputed.
+/// All numbers from which the sand is computed. The process that loads the scene derives them once and sends them to
+/// all other processes. These never derive them again, because the last digit of libm's results differs between hosts.
 struct Rules {
-    std::int32_t columns = 0, rows = 0;
-    std::int32_t aspect = kUnitsPerCell;  // length of a cell from south to north over that from west to east [2^-16]
-    std::int32_t threshold = 0;           // [unit], largest stable difference between neighbours: tan(talus) · cell
-    std::int32_t startThreshold = 0;  // [unit], ≥ threshold: sand at rest starts to slide beyond this (hysteresis)
+    std::int32_t columns = 0, rows = 0;  // [cell]
+    /// Side of a cell from south to north, divided by its side from west to east [2^-16].
+    std::int32_t aspect = kUnitsPerCell;
+    /// Largest stable height difference over one cell from west to east: tan(talus) · cell size [unit].
+    std::int32_t threshold = 0;
+    /// Height difference beyond which sand at rest starts to slide (hysteresis): at least `threshold` [unit].
+    std::int32_t startThreshold = 0;
     std::int32_t sweepsPerStep = 0;
     std::int32_t stepsPerSecond = 0;
     std::int32_t toolRadius = 0;  // [probe unit]
     ToolKind toolKind = ToolKind::sphere;
-    std::int32_t toolHalfWidth = 0;  // [probe unit], as in ToolShape
-    Heading toolHeading{};           // until a hand turns it
+    std::int32_t toolHalfWidth = 0;  // [probe unit], see ToolShape::halfWidth
+    Heading toolHeading{};           // the tool's heading until a hand turns it
     Scheme scheme = Scheme::isotropic;
     Rim rim = Rim::closed;
-    std::uint64_t ground = 0;  // Ground::digest(), 0 without rock and walls
-    std::uint64_t tin = 0;     // tin::TinStart::digest(), 0 for a height field; then columns and rows are nominal
+    std::uint64_t ground = 0;  // Ground::digest(); 0 without rock and wall cells
+    std::uint64_t tin = 0;     // tin::TinStart::digest(), which makes columns and rows nominal; 0 for a height field
 
     [[nodiscard]] ToolShape toolShape() const { return {toolKind, toolRadius, toolHalfWidth}; }
     [[nodiscard]] Tuning tuning() const {
         return {threshold, startThreshold, sweepsPerStep, toolRadius, toolKind, toolHalfWidth, toolHeading};
     }
+    /// Replaces the rules that an operator may change.
     void tune(const Tuning& tuning);
 
     void encode(base::ByteWriter& writer) const;
+    /// Reads what encode() wrote. Throws base::FormatError for an unknown scheme or numbers out of range.
     static Rules decode(base::ByteReader& reader);
-    /// What server and master compare: equal digests mean equal sand from equal steps.
+    /// Returns a hash of the encoded rules and kAlgorithmVersion. Server and master compare it: replicas with equal
+    /// digests and equal sand stay equal under equal steps.
     [[nodiscard]] std::uint64_t digest() const;
     friend bool operator==(const Rules&, const Rules&) = default;
 };

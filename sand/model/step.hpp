@@ -11,70 +11,76 @@
 
 namespace sand {
 
-inline constexpr std::size_t kMaxPathPoints = 64;
+inline constexpr std::size_t kMaxPathPoints = 64;  // [point] in one step
 
-/// A pose of the tool's centre, quantised before anybody uses it [probe unit = cellSize / 256].
+/// Position of the tool's centre in whole probe units [probe unit = cellSize / 256].
 ///
-/// x runs east from the south-west corner of the field, y north, z up from height 0.
+/// x runs east and y north from the south-west corner of the field; z runs up from height 0.
 struct ProbePoint {
     std::int32_t x = 0, y = 0, z = 0;
     friend bool operator==(const ProbePoint&, const ProbePoint&) = default;
 };
 
-/// The largest magnitude of a probe coordinate: any further out, and the tool is clamped by whoever quantises it.
-inline constexpr std::int32_t kMaxProbe = 1 << 24;  // [probe unit], four times the longest field
+/// Largest magnitude of a probe coordinate [probe unit], four times the longest field. The code that quantises a pose
+/// clamps it to this range.
+inline constexpr std::int32_t kMaxProbe = 1 << 24;
 
-inline constexpr std::size_t kMaxSandBytes = 192U << 20;  // [byte], compressed, of sand that is loaded
+/// Largest size of the compressed sand in a load [byte].
+inline constexpr std::size_t kMaxSandBytes = 192U << 20;
 
-/// What an operator may ask of the sand, with what it takes.
+/// An operator's change to the sand: the kind of the edit and its data.
 struct Edit {
     enum class Kind : std::uint8_t {
         none,
-        settle,  // let it come to rest at once
-        reset,   // as the scene began
-        undo,    // as it was before the last stroke began; nothing when there is none
-        tune,    // another tool, another material
-        load     // as it was saved
+        settle,  // lets the sand come to rest at once
+        reset,   // restores the sand that the scene began with
+        undo,    // restores the sand before the last stroke; ignored without a stroke
+        tune,    // changes tool and material
+        load     // replaces the sand by saved sand
     };
     using enum Kind;
 
     Kind kind = Kind::none;
-    Tuning tuning;                            // of Kind::tune
-    std::shared_ptr<const base::Bytes> sand;  // of Kind::load, Replica::encodeSand(); copies of a step share it
+    Tuning tuning;  // only for Kind::tune
+    /// Only for Kind::load: bytes from SurfaceCopy::encode(). Copies of a step share them.
+    std::shared_ptr<const base::Bytes> sand;
 
     Edit() = default;
-    Edit(Kind what) : kind(what) {}  // not explicit: most edits are nothing but their kind
+    Edit(Kind what) : kind(what) {}  // not explicit, because most edits have no data
     static Edit tuned(const Tuning& tuning);
     static Edit loaded(base::Bytes sand);
 
     [[nodiscard]] bool any() const { return kind != Kind::none; }
     friend bool operator==(const Edit& a, const Edit& b);
 };
-inline constexpr int kEdits = 6;
+inline constexpr int kEdits = 6;  // number of kinds
 
-/// What an edit takes, behind its kind. Throws base::FormatError, as decodeStep() does.
+/// Writes the data of an edit, without its kind.
 void encodeDetails(const Edit& edit, base::ByteWriter& writer);
+/// Reads the data of an edit of this `kind`. Throws base::FormatError for an invalid tuning, truncated bytes, or more
+/// than kMaxSandBytes of sand. Replica::apply() checks the sand itself, because only it knows the field.
 [[nodiscard]] Edit decodeDetails(Edit::Kind kind, base::ByteReader& reader);
 
-/// The only thing that changes sand: where the hand has been since the step before, and what an operator asked.
+/// The only thing that changes sand: the path of the hand since the step before, and an operator's edit.
 ///
 /// `number` counts 1, 2, 3 … over a whole session. In one `epoch` either the master or the haptic server numbers all
-/// steps. The path starts at the last point of the step before and may be empty (the hand rests); at most
-/// kMaxPathPoints.
+/// steps. `path` has at most kMaxPathPoints points. It continues from the last point of the step before, which it does
+/// not repeat; it is empty while the hand rests.
 struct Step {
     std::uint32_t epoch = 0;
     std::uint64_t number = 0;
-    bool engaged = false;  // the tool touches; otherwise it hovers and leaves the sand alone
+    bool engaged = false;  // whether the tool touches the sand; a hovering tool leaves the sand as it is
     std::vector<ProbePoint> path;
-    Edit edit = Edit::none;                         // done after the tool's displacement, before the sweeps
-    std::optional<Heading> heading = std::nullopt;  // of the tool from the path's first point on; none: as it was
+    Edit edit = Edit::none;                         // done after the tool's displacement and before the sweeps
+    std::optional<Heading> heading = std::nullopt;  // of the tool from this step on; nullopt: unchanged
     friend bool operator==(const Step&, const Step&) = default;
 };
 
-/// The one encoding of a step, on the wire, in the broadcast and in the journal: differences in short integers, about
-/// 60 bytes at 17 samples a step.
+/// Writes a step in the one format that link, broadcast and journal share. Points are differences in integers of
+/// variable length: about 60 bytes for a step of 17 samples.
 void encode(const Step& step, base::ByteWriter& writer);
-/// Throws base::FormatError for bytes that are no step, a path too long or a point beyond kMaxProbe.
+/// Reads a step that encode() wrote. Throws base::FormatError for invalid bytes, for more than kMaxPathPoints points,
+/// and for a coordinate beyond kMaxProbe.
 [[nodiscard]] Step decodeStep(base::ByteReader& reader);
 
 }  // namespace sand

@@ -16,19 +16,21 @@
 
 namespace sand {
 
-/// A tool as it is turned.
+/// A tool with its heading.
 struct HeldTool {
     ToolShape shape;
     Heading heading;
 };
 
-/// Hashes of the parts of a surface, whose sum is the surface's. Where a part lies is the same on every rank.
+/// Hashes of the hash tiles of a surface. Their sum, modulo 2^64, is the hash of the surface. Every rank divides its
+/// surface into the same hash tiles.
 class HashTiles {
 public:
     virtual ~HashTiles() = default;
     [[nodiscard]] int tileCount() const { return static_cast<int>(hashes_.size()); }
     [[nodiscard]] const std::vector<std::uint64_t>& tileHashes() const { return hashes_; }
-    /// The nominal cells around it; empty when it holds nothing.
+    /// Returns the cells of hash tile `tile`. Returns an empty rectangle for a TIN, whose hash tiles are sets of
+    /// vertices.
     [[nodiscard]] virtual CellRect cellsOf(int tile) const = 0;
 
 protected:
@@ -40,72 +42,92 @@ protected:
     std::vector<std::uint64_t> hashes_;
 };
 
-/// Sand without its rules and its tool: what is saved, loaded and put back. Read by any thread.
+/// Snapshot of the sand, without rules and tool, for saving, loading and undo. Any thread may read it.
 class SurfaceCopy {
 public:
     SurfaceCopy() = default;
     SurfaceCopy(const SurfaceCopy&) = default;
     SurfaceCopy& operator=(const SurfaceCopy&) = default;
     virtual ~SurfaceCopy() = default;
-    /// Compressed.
+    /// Returns the snapshot as compressed bytes for a SurfaceReader.
     [[nodiscard]] virtual base::Bytes encode() const = 0;
 };
 
-/// Throws base::FormatError for bytes that are no sand of the surface it is of, or go on behind it. May be called by
-/// any thread, as long as anybody likes.
+/// Function that decodes the bytes of SurfaceCopy::encode() for one surface. It throws base::FormatError if the bytes
+/// are not sand for that surface, or if further bytes follow. Any thread may call it, also after the surface is
+/// destroyed.
 using SurfaceReader = std::function<std::shared_ptr<const SurfaceCopy>(std::span<const std::uint8_t>)>;
 
-/// What lies in the box and can be dug: sand as a height field, or as a TIN. Replica alone changes it, by steps, and
-/// says what of it they depend on. Not thread-safe.
+/// The sand of one replica: a height field or a TIN. Only Replica changes it: with steps, or as a whole when it loads a
+/// state. Not thread-safe.
 class Surface {
 public:
     virtual ~Surface() = default;
+    /// Returns a copy of the sand and of all that later steps depend on.
     [[nodiscard]] virtual std::unique_ptr<Surface> clone() const = 0;
 
-    /// The tool goes along a path of two points or more, from the first, where it is; it presses where two are one.
+    /// Moves the tool along `path`, which begins where the tool is and has at least two points, and displaces the sand.
+    /// Two equal points press the sand without a direction.
     virtual void drag(const HeldTool& tool, std::span<const ProbePoint> path) = 0;
-    /// Sand that the tool held back there may flow again.
+    /// Wakes the sand that `tool` held back while its centre was at `at`.
     virtual void release(const HeldTool& tool, const ProbePoint& at) = 0;
-    /// The tool has left the sand.
+    /// Called after the tool has left the sand. A TIN then keeps the tool's outline in its mesh, or removes it,
+    /// as tin::Settings::keepConstraints says.
     virtual void leave(const HeldTool&) {}
-    /// Lets the sand slide; around `tool` when it is not null, which stands at `at`.
+    /// Lets the sand slide for at most `sweeps` sweeps. `tool` is an obstacle with its centre at `at`; null without
+    /// one.
     virtual void sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) = 0;
-    /// Everything may move from now on.
+    /// Replaces the rules and wakes all sand.
     virtual void changeRules(const Rules& rules) = 0;
+    /// Lets all sand come to rest at once.
     virtual void settle() = 0;
+    /// Restores the sand that the scene began with.
     virtual void reset() = 0;
 
-    /// Keeps the sand as it is, for an undo.
+    /// Keeps a snapshot of the current sand for an undo, in place of the one kept before.
     virtual void keep() = 0;
-    virtual void keep(const SurfaceCopy& copy) = 0;  // one that a SurfaceReader of this surface made
+    /// Keeps `copy` for an undo. `copy` must come from copy(), kept() or a SurfaceReader of this surface.
+    virtual void keep(const SurfaceCopy& copy) = 0;
+    /// Drops the snapshot that is kept for an undo.
     virtual void forget() = 0;
-    [[nodiscard]] virtual std::shared_ptr<const SurfaceCopy> kept() const = 0;  // null when nothing is
+    /// Returns the snapshot that is kept for an undo, or null if hasKept() is false.
+    [[nodiscard]] virtual std::shared_ptr<const SurfaceCopy> kept() const = 0;
     [[nodiscard]] virtual bool hasKept() const = 0;
+    /// Restores the kept snapshot, which stays kept. Requires hasKept().
     virtual void putBackKept() = 0;
 
     [[nodiscard]] virtual std::shared_ptr<const SurfaceCopy> copy() const = 0;
     [[nodiscard]] virtual SurfaceReader reader() const = 0;
-    virtual void replace(const SurfaceCopy& copy) = 0;  // likewise
+    /// Replaces the sand by `copy`, which must come from copy(), kept() or a SurfaceReader of this surface.
+    virtual void replace(const SurfaceCopy& copy) = 0;
 
-    [[nodiscard]] virtual std::int64_t outflow() const = 0;  // lost over an open rim, in the surface's own unit
-    [[nodiscard]] virtual std::int64_t volume() const = 0;   // of all sand, exact, in the same unit
+    /// Returns the volume that left the field over an open rim [unit · cell; for a TIN: unit · probe unit² / 6].
+    [[nodiscard]] virtual std::int64_t outflow() const = 0;
+    /// Returns the exact volume of all sand, in the unit of outflow().
+    [[nodiscard]] virtual std::int64_t volume() const = 0;
+    /// Returns whether all sand is at rest.
     [[nodiscard]] virtual bool settled() const = 0;
-    [[nodiscard]] virtual int age() const = 0;  // of the sand's inertia [sweep]; 0 without
+    /// Returns the age of the inertia that sand carries from step to step [sweep]; 0 for a TIN, which carries none.
+    [[nodiscard]] virtual int age() const = 0;
 
-    /// Hash of all sand, costing what changed.
+    /// Returns the hash of all sand. Hashes again only what has changed since the last call.
     [[nodiscard]] virtual std::uint64_t hash() = 0;
+    /// Hashes the next `tiles` hash tiles again from memory, whether or not they have changed.
     virtual void audit(int tiles) = 0;
     [[nodiscard]] virtual const HashTiles& hashTiles() const = 0;
-    [[nodiscard]] virtual std::vector<std::int32_t> valuesOf(int tile) const = 0;  // what is hashed, for a comparison
+    /// Returns the numbers in hash tile `tile`. Comparing those of two replicas shows where the replicas differ.
+    [[nodiscard]] virtual std::vector<std::int32_t> valuesOf(int tile) const = 0;
+    /// Flips a bit of the sand without updating the hash, as Replica::corrupt() describes.
     virtual void corrupt(int column, int row, int bit) = 0;
 
-    /// The surface there [unit]; the nearest place of the field beyond it.
+    /// Returns the height of the sand at (x, y) [unit]. A height field returns the height of the cell there; a TIN
+    /// interpolates within the triangle there. Outside the field, returns the height of the nearest place in it.
     [[nodiscard]] virtual double height(double x, double y /* [probe unit] */) const = 0;
 
-    /// The sand as it is. Refers to this surface; read it again after a change.
+    /// Returns references to the current sand. They belong to this surface; call data() again after each change.
     [[nodiscard]] virtual SurfaceData data() const = 0;
     /// Returns the change since the last call; the first call returns a whole change. The surface records changes only
-    /// from then on, so that a replica that is not drawn holds no lists.
+    /// after the first call, so that a replica that is not drawn holds no lists.
     [[nodiscard]] virtual SurfaceChange takeChange() = 0;
 };
 

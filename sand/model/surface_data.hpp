@@ -14,35 +14,42 @@ namespace tin {
 struct SurfaceView;
 }
 
-/// Sand as a height field.
+/// References to the sand of a height field.
 struct GridData {
     const HeightField& field;
-    const Ground* ground = nullptr;  // null without rock and walls
+    const Ground* ground = nullptr;  // null without rock and wall cells
 };
 
-/// Sand as a TIN.
+/// Reference to the sand of a TIN.
 struct TinData {
     const tin::SurfaceView& view;
 };
 
-/// The sand itself, as drawing, forces and exports read it: the one type that tells a height field from a TIN.
-/// tests/scripts/kinds_of_sand_test.py counts the places that ask which of the two it is.
+/// The sand as drawing, forces and exports read it: a height field or a TIN.
+///
+/// Only a few source files may ask which of the two it is; tests/scripts/kinds_of_sand_test.py lists them.
 using SurfaceData = std::variant<GridData, TinData>;
 
-/// Runs of blocks in which cells changed: disjoint, row by row from the south-west. Blocks are 8 × 8 cells.
+/// Change of a height field.
 struct CellChange {
+    /// Rectangles that contain all changed cells. Each is a run of blocks of 8 × 8 cells within one row of blocks, cut
+    /// off at the field's border. They are disjoint and ordered row by row from the south-west.
     std::vector<CellRect> cells;
 };
 
+/// Change of a TIN.
 struct TinChange {
-    std::vector<std::int32_t> triangles;  // slots whose corners or constraints changed, or that came or went, ascending
-    std::vector<std::int32_t> vertices;   // that came, went, rose or sank, ascending
+    /// Triangles that were added or removed, or whose corners or constraints changed: slots in ascending order.
+    std::vector<std::int32_t> triangles;
+    /// Vertices that were added or removed, or whose height changed, in ascending order.
+    std::vector<std::int32_t> vertices;
 };
 
-/// Difference of a surface from the last Surface::takeChange().
+/// Change of a surface since the previous call of Surface::takeChange().
 struct SurfaceChange {
-    bool whole = true;                          // everything may differ, whatever `parts` holds
-    std::variant<CellChange, TinChange> parts;  // of the same kind as the surface's data
+    bool whole = true;  // whether everything may have changed; `parts` then has no meaning
+    /// The changed parts: a CellChange of a height field, or a TinChange of a TIN.
+    std::variant<CellChange, TinChange> parts;
 };
 
 }  // namespace sand

@@ -17,63 +17,68 @@ namespace sand {
 
 enum class ToolKind : std::uint8_t {
     sphere,
-    circle,     // flat, as are the next two
-    rectangle,  //
-    ellipse,    //
+    circle,     // flat
+    rectangle,  // flat
+    ellipse,    // flat
     ellipsoid,
-    footprint  // of a bare right foot
+    footprint  // sole of a bare right foot
 };
-inline constexpr int kToolKinds = 6;
+inline constexpr int kToolKinds = 6;  // number of kinds
 
-/// As scene files and operators write it.
+/// Returns the name of `kind` in scene files and operator commands.
 [[nodiscard]] std::string_view toolName(ToolKind kind);
-/// Nothing for a name that no kind has.
+/// Returns the kind with this name, or nullopt if `name` is unknown.
 [[nodiscard]] std::optional<ToolKind> toolNamed(std::string_view name);
-/// Spheres and circles: neither width nor heading changes what they do.
+/// Returns whether the tool is a sphere or a circle. A round tool ignores width and heading.
 [[nodiscard]] constexpr bool isRound(ToolKind kind) { return kind == ToolKind::sphere || kind == ToolKind::circle; }
-/// Width over length, where nobody says another one.
+/// Returns the default ratio of width to length.
 [[nodiscard]] constexpr double usualWidth(ToolKind kind) {
     return isRound(kind) ? 1.0 : kind == ToolKind::footprint ? 0.4 : 0.5;
 }
 
-/// A tool but for where it is and which way it is turned. Its lowest point lies `radius` below its centre, whatever its
-/// kind: flat tools are stamps that somebody holds there.
+/// Kind and size of a tool, without its position and heading.
+///
+/// The lowest point of every tool is `radius` below its centre. A flat tool is a stamp whose underside is that far
+/// below its centre.
 struct ToolShape {
     ToolKind kind = ToolKind::sphere;
-    std::int32_t radius = 0;     // [probe unit], half of the length
-    std::int32_t halfWidth = 0;  // [probe unit], at most the radius; 0 for what is round
+    std::int32_t radius = 0;     // half of the length [probe unit]
+    std::int32_t halfWidth = 0;  // half of the width, at most the radius [probe unit]; 0 for a round tool
     friend bool operator==(const ToolShape&, const ToolShape&) = default;
 };
 
-/// Horizontal offset of a cell's centre from the tool's [probe unit].
+/// Horizontal offset of a cell's centre from the tool's centre [probe unit].
 struct Offset {
     std::int64_t x, y;
     [[nodiscard]] std::int64_t squared() const { return x * x + y * y; }
 };
 
-/// A part of the sole of a foot: an ellipse, and a bowl below it.
+/// Part of the sole of a foot: an ellipse with a bowl below it.
 struct SolePiece {
-    double along, across;          // of its middle [half length, half width of the tool]; across: to the left
-    double halfLength, halfWidth;  // likewise
-    double lift;                   // of the bowl's lowest point over the tool's [radius]
-    double bulge;                  // by which the bowl's rim is higher still [radius]
+    /// Position of the middle: along the heading [half length of the tool], and to the left [half width of the tool].
+    double along, across;
+    double halfLength, halfWidth;  // [half length of the tool], [half width of the tool]
+    double lift;                   // height of the bowl's lowest point over the tool's lowest point [radius]
+    double bulge;                  // height of the bowl's rim over the bowl's lowest point [radius]
 };
-/// Heel, outer side, ball and toes: our own drawing of a right foot, whose toes point along its heading.
+/// Returns heel, outer side, ball and toes of a right foot whose toes point along its heading. The foot is this
+/// project's own drawing.
 [[nodiscard]] std::span<const SolePiece> solePieces();
 
-/// A tool as it is turned now: which cells lie below it and beside it, and how high its underside is.
+/// A tool with its heading: the cells below it, the cells beside it, and the height of its underside.
 ///
-/// All arithmetic is on integers and on IEEE sums, products, quotients and roots: the same on every machine. A tool
-/// that is turned by a right angle, or mirrored, does exactly what it did, turned or mirrored.
+/// The arithmetic uses only integers and IEEE sums, products, quotients and square roots, so that every machine gets
+/// the same results. Turning a tool by a right angle turns its results exactly; mirroring it mirrors them exactly.
 class TurnedShape {
 public:
+    /// Underside of a place that is not below the tool.
     static constexpr std::int32_t kFree = std::numeric_limits<std::int32_t>::max();
 
-    /// `v3`: with instructions of x86-64-v3, for the same results.
+    /// `v3` selects code with the instructions of x86-64-v3. The results are the same without it.
     explicit TurnedShape(const ToolShape& shape, const Heading& heading = {}, bool v3 = base::machineHasV3());
 
-    /// Height of the underside over a place while the centre is at height `z` [probe unit]: [unit], or kFree beside the
-    /// tool.
+    /// Returns the height of the underside over a place [unit] while the tool's centre is at height `z` [probe unit].
+    /// Returns kFree if the place is not below the tool.
     [[nodiscard]] std::int32_t underside(std::int32_t z, const Offset& offset) const {
         if (!isRound(shape_.kind)) {
             return longUnderside(z, offset);
@@ -88,49 +93,56 @@ public:
         // IEEE square root of an exact integer: one right answer everywhere.
         return lowered(z, std::sqrt(static_cast<double>(height)));
     }
-    /// The same of cells side by side, a cell apart from `first` on, as many as there is room for.
+    /// Fills `row` with the undersides over cells of one row, from west to east. `first` is the first cell's offset.
     void undersides(std::int32_t z, const Offset& first, std::span<std::int32_t> row) const;
-    /// Whether a place is below the tool.
+    /// Returns whether a place is below the tool.
     [[nodiscard]] bool covers(const Offset& offset) const {
         return isRound(shape_.kind) ? offset.squared() < std::int64_t{shape_.radius} * shape_.radius
                                     : longUnderside(0, offset) != kFree;
     }
-    /// Whether a place beside the tool takes sand: within two cells of a sphere's outline, and of any other's within an
-    /// eighth of its width more, or large stamps would pile a wall around them; but not squeezed in between two toes.
+    /// Returns whether a place beside the tool takes sand, given that covers() is false there. A place takes sand
+    /// within two cells of a sphere's outline. Around other tools the distance is larger by an eighth of the tool's
+    /// width, because large stamps would otherwise pile up a wall around them. A place between two toes takes no sand.
     [[nodiscard]] bool takes(const Offset& offset) const {
         const std::int64_t outer = shape_.radius + ring_;
         return isRound(shape_.kind) ? offset.squared() <= outer * outer : longTakes(offset);
     }
-    /// How much of the sand that a drag pushes away goes to a place beside the tool: by the cosine of the outline's
-    /// normal to the drag. 0 or less for places that are not ahead.
+    /// Returns the weight with which a place beside the tool receives the sand that a drag along `ahead` pushes away.
+    /// It is proportional to the cosine of the angle between `ahead` and the outline's normal at the place. For a round
+    /// tool it also grows with the distance from the centre. It is 0 or less for places that are not ahead.
     [[nodiscard]] std::int64_t share(const Offset& offset, const Offset& ahead /* [probe unit] */) const {
-        // The drag is at most two cells and the ring at most 2^20 away: the product stays below 2^32.
+        // The product stays below 2^32: `ahead` is at most two cells long, and the ring is at most 2^20 away.
         return isRound(shape_.kind) ? offset.x * ahead.x + offset.y * ahead.y : longShare(offset, ahead);
     }
-    /// The order of places around a tool that has a heading, which turns with it. Round ones go by rows.
+    /// Returns whether place `a` comes before place `b` in an order that turns with the tool: from back to front, then
+    /// from right to left. Only for a tool with a heading; around a round tool, places are ordered by rows.
     [[nodiscard]] bool before(const Offset& a, const Offset& b) const;
     [[nodiscard]] bool hasHeading() const { return !isRound(shape_.kind); }
 
-    /// The cells that lie below a tool with its centre there, and so many around them; others may be among them.
+    /// Returns a rectangle that contains all cells within `margin` of a tool whose centre is at (x, y) [probe unit]. It
+    /// may contain further cells.
     [[nodiscard]] CellRect cellsAround(std::int64_t x, std::int64_t y, std::int64_t margin /* [probe unit] */) const;
-    /// The same with all that take sand.
+    /// Returns a rectangle that contains all cells that take sand while the tool's centre is at (x, y) [probe unit].
     [[nodiscard]] CellRect cellsThatTake(std::int64_t x, std::int64_t y) const {
-        // A corner that grows to both sides comes farther out by the root of two.
+        // Growing a rectangle by the ring on all sides moves its corners outwards by the ring times the root of two.
         return cellsAround(x, y, isRound(shape_.kind) ? ring_ : ring_ * 3 / 2);
     }
-    /// The same, and a cell more.
+    /// Returns a rectangle that contains all cells that the tool may change while its centre is at (x, y) [probe unit].
+    /// For a round tool, each side is at least one cell farther out than that of cellsThatTake(). For other tools, both
+    /// rectangles are equal.
     [[nodiscard]] CellRect cellsChanged(std::int64_t x, std::int64_t y) const {
         return cellsAround(x, y, ring_ * 3 / 2);
     }
 
 private:
-    static constexpr std::int64_t kRing = 2 * kProbePerCell;  // [probe unit]
+    static constexpr std::int64_t kRing = 2 * kProbePerCell;  // width of the ring around a sphere [probe unit]
     static constexpr std::int32_t kUnitsPerProbe = kUnitsPerCell / kProbePerCell;
 
-    /// A place in the tool's own axes: along its heading, and to its left.
+    /// Place in the tool's own axes: along the heading and to the left of it. A mirrored tool's axes are mirrored.
     struct Place {
         double along, across;  // [probe unit]
     };
+    /// Place in the tool's own axes, as exact integers.
     struct WholePlace {
         std::int64_t along, across;  // [probe unit / Heading::kLength]
     };
@@ -139,29 +151,32 @@ private:
         return {offset.x * heading_.x + offset.y * heading_.y, heading_.mirrored ? -across : across};
     }
     [[nodiscard]] Place placeOf(const Offset& offset) const {
-        const WholePlace whole = turnedBack(offset);  // below 2^53: exact
+        const WholePlace whole = turnedBack(offset);  // exact as doubles, because it stays below 2^53
         return {scale_ * static_cast<double>(whole.along), scale_ * static_cast<double>(whole.across)};
     }
+    /// Returns the height of a point that is `below` under height `z`, within ±kMaxHeight [unit].
     [[nodiscard]] static std::int32_t lowered(std::int32_t z, double below /* [probe unit] */) {
         const auto under = std::int64_t{z} * kUnitsPerProbe - static_cast<std::int64_t>(below * kUnitsPerProbe);
         return static_cast<std::int32_t>(std::clamp<std::int64_t>(under, -kMaxHeight, kMaxHeight));
     }
-    // The same of what is not round.
+    // underside(), takes() and share() for tools that are not round.
     [[nodiscard]] std::int32_t longUnderside(std::int32_t z, const Offset& offset) const;
     [[nodiscard]] bool longTakes(const Offset& offset) const;
     [[nodiscard]] std::int64_t longShare(const Offset& offset, const Offset& ahead) const;
+    /// Returns the normal of the outline beside `place`, with any length.
     [[nodiscard]] Place normalAt(const Place& place) const;
-    /// 1 on the outline of a part of the tool that was grown on all sides; less within.
+    /// Returns 1 on the outline of `piece` after growing it by `grown` [probe unit] on all sides, less inside, and more
+    /// outside.
     [[nodiscard]] double levelOf(const SolePiece& piece, const Place& place, double grown) const;
     [[nodiscard]] std::span<const SolePiece> pieces() const;
 
     ToolShape shape_;
     Heading heading_;
     bool v3_;
-    double length_, width_;      // half of them [probe unit]
-    std::int64_t ring_;          // how far from the outline it lays sand down [probe unit]
-    double scale_;               // one over the length of the heading
-    std::int64_t east_, north_;  // how far it reaches [probe unit]
+    double length_, width_;      // half length and half width [probe unit]
+    std::int64_t ring_;          // distance from the outline within which places take sand [probe unit]
+    double scale_;               // 1 / length of the heading vector
+    std::int64_t east_, north_;  // distance that the tool reaches from its centre [probe unit]
 };
 
 }  // namespace sand

@@ -18,9 +18,10 @@
 
 namespace sand::tin {
 
-/// Sand as a TIN: its VertexSand, a tool that stands in it, and erosion.
+/// Sand as a TIN: its VertexSand, the imprint of the tool, and erosion. Surface describes the functions.
 class TinSurface final : public Surface {
 public:
+    /// Triangulates `start`, which must not be null. Uses rim, threshold and start threshold of `rules`.
     TinSurface(const Rules& rules, std::shared_ptr<const TinStart> start);
     TinSurface(const TinSurface& other);
     TinSurface& operator=(const TinSurface&) = delete;
@@ -30,7 +31,7 @@ public:
     [[nodiscard]] const TinStart& start() const { return *start_; }
 
     void drag(const HeldTool& tool, std::span<const ProbePoint> path) override;
-    /// Erosion itself finds the sand that a tool holds back no more.
+    /// Does nothing, because Erosion itself finds the sand that the tool held back.
     void release(const HeldTool&, const ProbePoint&) override {}
     void leave(const HeldTool& tool) override;
     void sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) override;
@@ -66,11 +67,14 @@ public:
 
 private:
     [[nodiscard]] Displacement& displacementOf(const HeldTool& tool);
-    /// Tells hash, erosion, undo and the painter which part of the mesh has changed.
+    /// Passes the changes of the mesh to erosion, hash, undo, coarsening and takeChange().
     void meshChanged();
-    /// So that hardly a step makes what is kept for every vertex move in memory.
+    /// Reserves memory for further vertices, so that few steps have to move all vertices' data to a larger array.
     void reserve();
+    /// Wakes the vertices within `reach` whose sand fills the room below the tool, because sand beside them may lean on
+    /// the tool.
     void wakeFull(const Underside& under, const Box& reach);
+    /// Passes a change of the heights of `vertices` to hash, undo, coarsening and takeChange().
     void sandMoved(const std::vector<Vertex>& vertices);
 
     std::shared_ptr<const TinStart> start_;
@@ -84,13 +88,13 @@ private:
     TileHash hash_;
     SurfaceView view_{layer_.triangles(), layer_.heights(), detail_.spacing};
     Undo beforeStroke_;
-    std::optional<TinChange> changed_;          // since takeChange(); nullopt: everything may have
-    std::optional<Displacement> displacement_;  // of the last displacementOf()
+    std::optional<TinChange> changed_;          // since takeChange(); nullopt: everything
+    std::optional<Displacement> displacement_;  // for the tool of the last displacementOf()
     std::shared_ptr<Neighbourhood> neighbourhood_ = std::make_shared<Neighbourhood>();
-    bool sawAll_ = false;                       // neighbourhood_ shows the mesh as it is, around the tool
-    std::optional<Imprint::Stand> held_;        // the obstacle of the last sweeps: only to save work
-    std::vector<Vertex> moved_;                 // scratch
-    mutable std::int32_t lastFound_ = kNobody;  // where the next question about a height is likely to be
+    bool sawAll_ = false;                       // neighbourhood_ shows the current mesh around the tool
+    std::optional<Imprint::Stand> held_;        // obstacle of the last sweeps; saves work only
+    std::vector<Vertex> moved_;                 // scratch memory of sweep() and settle()
+    mutable std::int32_t lastFound_ = kNobody;  // triangle found last; the next search begins there
 };
 
 }  // namespace sand::tin
