@@ -45,8 +45,9 @@ public:
     /// sand slides for Rules::sweepsPerStep sweeps. Throws std::logic_error if step.number is not stepNumber() + 1.
     ///
     /// A reset, a load, and an undo while canUndo() restore the sand with its outflow and inertia. Such a step runs no
-    /// sweeps, so that it ends with exactly the restored sand. Step number, tool and material keep their values.
-    /// A load is ignored if its bytes are not sand for this field; an undo is ignored if canUndo() is false. The step
+    /// sweeps, so that it ends with exactly the restored sand. It does not restore step number, pose, tool or material.
+    ///
+    /// A load is ignored if its bytes are not sand for this field. An undo is ignored if canUndo() is false. The step
     /// then runs its sweeps.
     void apply(const Step& step);
 
@@ -65,11 +66,13 @@ public:
     [[nodiscard]] ToolShape toolShape() const { return rules_.toolShape(); }
     [[nodiscard]] Heading heading() const { return heading_; }  // the tool's, from rules or hand
     [[nodiscard]] bool engaged() const { return engaged_; }     // whether the tool touches the sand
-    /// Returns whether an undo can restore sand. The replica keeps the sand from before the last stroke, which begins
-    /// with the first step in which the tool touches the sand. After an undo, a reset or a load the replica keeps no
-    /// sand. If the tool is still engaged, it keeps the restored sand instead, because a stroke begins there.
+    /// Returns whether an undo can restore sand. The replica keeps the sand from before the last stroke. A stroke
+    /// begins with the first step in which the tool touches the sand after it hovered. After an undo, a reset or a
+    /// load, the replica keeps no sand. If the tool is still engaged, it keeps the restored sand, because a stroke
+    /// begins there.
     [[nodiscard]] bool canUndo() const { return surface_->hasKept(); }
-    /// Returns whether all sand is at rest. The next sweeps then visit no block of a height field and no edge of a TIN.
+    /// Returns whether sweeps have found all sand at rest. The next sweeps then visit no block of a height field and no
+    /// edge of a TIN. Returns false before the first sweep, even if the sand is at rest.
     [[nodiscard]] bool settled() const { return surface_->settled(); }
 
     /// Returns the state hash. It covers the sand, outflow, pose, heading, step number, whether the tool is engaged,
@@ -111,6 +114,7 @@ public:
 private:
     [[nodiscard]] HeldTool tool() const { return {rules_.toolShape(), heading_}; }
     void tune(const Tuning& tuning);
+    /// Displaces the sand below the tool at its current position.
     void press();
     /// Does a reset, an undo or a load. Returns false if the edit restores no sand.
     bool putBack(const Edit& edit);

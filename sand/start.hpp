@@ -20,9 +20,10 @@ struct Start {
     [[nodiscard]] double toolRadius() const {  // [scene unit]
         return rules.toolRadius * terrain.cellSize() / kProbePerCell;
     }
-    /// Replaces the sand by the TIN `start` and its digest. The cell size stays as it is.
+    /// Makes the TIN `start` the sand that a replica begins with. Sets `tin`, `terrain` and `rules.tin`; keeps the cell
+    /// size.
     void beginAs(tin::TinStart start);
-    /// Returns the mean height, rounded towards 0 [unit]. Devices hover and dig relative to it.
+    /// Returns the mean height of the sand as a whole number [unit]. Devices hover and dig relative to it.
     [[nodiscard]] std::int32_t referenceHeight() const;
 };
 

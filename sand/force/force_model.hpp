@@ -13,9 +13,10 @@
 
 namespace sand::force {
 
-/// The force law of a scene, called at 1 kHz while the sand changes at 60 Hz.
+/// The force law of a scene: computes at 1 kHz how the sand resists the tool, while the sand changes at 60 Hz.
 ///
-/// ForceConstants::between selects what the model returns between two surfaces:
+/// A surface is the sand around the tool after one step. ForceConstants::between selects what the model returns between
+/// two surfaces:
 /// - Between::local follows the tangent of the last surface at the tool (LocalModel).
 /// - Between::hold repeats the response that the law gave when the last surface arrived.
 /// - Between::interpolate applies equation 9 of the second paper (Interpolation).

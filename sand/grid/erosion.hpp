@@ -33,16 +33,16 @@ enum class CodePath : std::uint8_t { automatic, baseline };
 /// The default law has inertia: q = M q_last + p (1 - t²/m²) a, cut to [0, k a]. Here a is the difference across the
 /// face, m the slope, t the threshold, and q_last the face's flux in the last sweep. The two properties need only the
 /// cut. Sand at rest starts to slide where plain G lets it slide. The resulting pile equals that of plain G to three
-/// digits, after a tenth of the sweeps. docs/sand.md has p, k and the measurements.
+/// digits, after a tenth of the sweeps. docs/sand.md has the constants p and k, and the measurements.
 ///
 /// M = n / (n + 25), at most 0.9, where n counts the sweeps that moved sand since touch(). A small pile rests after few
-/// sweeps. It therefore has little inertia and does not overshoot. In sweep i (from 0) of one call of sweep(), M is at
-/// least i / (i + d), at most 0.9. d is a third of the sweeps of that call, within [3, 25], because few sweeps end
-/// before anything overshoots.
+/// sweeps. It therefore has little inertia and does not overshoot. M may grow faster within one call of sweep(),
+/// because a call of few sweeps ends before anything overshoots. In sweep i (from 0) of the call, M is at least i / (i
+/// + d), at most 0.9. Here d is a third of the sweeps that the caller allows, clamped to [3, 25].
 ///
 /// With a band (start threshold above t), sand slides in a cell if some flowed through a face of the cell in the last
 /// sweep. A face no steeper than the start threshold carries a flux only if sand slides in one of its two cells. Moving
-/// sand therefore stops at t.
+/// sand therefore stops at t, and sand at rest starts to slide only beyond the start threshold.
 ///
 /// A sweep visits only blocks in which sand flows, and those neighbours next to whose border it flows. Settled sand
 /// costs nothing, and the result equals that of full sweeps bit for bit.
@@ -82,7 +82,7 @@ public:
     /// Adds the flux of each face in the last sweep to `sum`.
     void addFluxes(NetFlux& sum) const;
 
-    /// Returns whether all sand is at rest: the next sweep would visit no block.
+    /// Returns whether sweeps have found all sand at rest, so that the next sweep would visit no block.
     [[nodiscard]] bool settled() const { return active_.empty() && marked_.empty(); }
     /// Returns the age of the inertia: the number of sweeps that moved sand since touch(), at most
     /// Inertia::kMostCounted [sweep].

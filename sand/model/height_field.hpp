@@ -23,7 +23,7 @@ public:
     [[nodiscard]] int columns() const { return cells_.columns(); }
     [[nodiscard]] int rows() const { return cells_.rows(); }
     [[nodiscard]] double cellSize() const { return cellSize_; }              // [scene unit], from west to east
-    [[nodiscard]] double unit() const { return cellSize_ / kUnitsPerCell; }  // [scene unit], one height unit
+    [[nodiscard]] double unit() const { return cellSize_ / kUnitsPerCell; }  // [scene unit], size of a height unit
     [[nodiscard]] CellRect bounds() const { return cells_.bounds(); }
 
     [[nodiscard]] std::int32_t height(int column, int row) const { return cells_.row(row)[column]; }  // [unit]

@@ -36,15 +36,17 @@ enum class Rim : std::uint8_t {
     open     // lets sand fall over it, as outflow
 };
 
-/// All numbers from which the sand is computed. The process that loads the scene derives them once and sends them to
-/// all other processes. These never derive them again, because the last digit of libm's results differs between hosts.
+/// The rules by which every replica computes its sand, as numbers. The process that loads the scene derives them once
+/// and sends them to all other processes. These never derive them again, because the last digit of libm's results
+/// differs between hosts.
 struct Rules {
     std::int32_t columns = 0, rows = 0;  // [cell]
     /// Side of a cell from south to north, divided by its side from west to east [2^-16].
     std::int32_t aspect = kUnitsPerCell;
     /// Largest stable height difference over one cell from west to east: tan(talus) · cell size [unit].
     std::int32_t threshold = 0;
-    /// Height difference beyond which sand at rest starts to slide (hysteresis): at least `threshold` [unit].
+    /// Height difference, over the same distance, beyond which sand at rest starts to slide [unit]. It is at least
+    /// `threshold`; a larger value gives hysteresis.
     std::int32_t startThreshold = 0;
     std::int32_t sweepsPerStep = 0;
     std::int32_t stepsPerSecond = 0;

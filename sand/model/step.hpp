@@ -11,7 +11,7 @@
 
 namespace sand {
 
-inline constexpr std::size_t kMaxPathPoints = 64;  // [point] in one step
+inline constexpr std::size_t kMaxPathPoints = 64;  // most points in one step
 
 /// Position of the tool's centre in whole probe units [probe unit = cellSize / 256].
 ///
@@ -34,7 +34,7 @@ struct Edit {
         none,
         settle,  // lets the sand come to rest at once
         reset,   // restores the sand that the scene began with
-        undo,    // restores the sand before the last stroke; ignored without a stroke
+        undo,    // restores the sand before the last stroke; ignored if no such sand is kept
         tune,    // changes tool and material
         load     // replaces the sand by saved sand
     };
@@ -64,8 +64,9 @@ void encodeDetails(const Edit& edit, base::ByteWriter& writer);
 /// The only thing that changes sand: the path of the hand since the step before, and an operator's edit.
 ///
 /// `number` counts 1, 2, 3 … over a whole session. In one `epoch` either the master or the haptic server numbers all
-/// steps. `path` has at most kMaxPathPoints points. It continues from the last point of the step before, which it does
-/// not repeat; it is empty while the hand rests.
+/// steps. `path` has at most kMaxPathPoints points, and is empty while the hand rests. The tool moves to its first
+/// point from the last point of the steps before. If the tool hovered before, it touches the sand only from the first
+/// point on.
 struct Step {
     std::uint32_t epoch = 0;
     std::uint64_t number = 0;
@@ -76,8 +77,8 @@ struct Step {
     friend bool operator==(const Step&, const Step&) = default;
 };
 
-/// Writes a step in the one format that link, broadcast and journal share. Points are differences in integers of
-/// variable length: about 60 bytes for a step of 17 samples.
+/// Writes a step in the one format that link, broadcast and journal share. A point is encoded as the difference
+/// from the point before, in integers of variable length: about 60 bytes for a step of 17 samples.
 void encode(const Step& step, base::ByteWriter& writer);
 /// Reads a step that encode() wrote. Throws base::FormatError for invalid bytes, for more than kMaxPathPoints points,
 /// and for a coordinate beyond kMaxProbe.

@@ -63,7 +63,8 @@ using SurfaceReader = std::function<std::shared_ptr<const SurfaceCopy>(std::span
 class Surface {
 public:
     virtual ~Surface() = default;
-    /// Returns a copy of the sand and of all that later steps depend on.
+    /// Returns a copy of the sand and of all that later steps depend on. The copy's first takeChange() returns a whole
+    /// change.
     [[nodiscard]] virtual std::unique_ptr<Surface> clone() const = 0;
 
     /// Moves the tool along `path`, which begins where the tool is and has at least two points, and displaces the sand.
@@ -81,7 +82,7 @@ public:
     virtual void changeRules(const Rules& rules) = 0;
     /// Lets all sand come to rest at once.
     virtual void settle() = 0;
-    /// Restores the sand that the scene began with.
+    /// Restores the sand that the scene began with, and sets the outflow to 0.
     virtual void reset() = 0;
 
     /// Keeps a snapshot of the current sand for an undo, in place of the one kept before.
@@ -96,7 +97,9 @@ public:
     /// Restores the kept snapshot, which stays kept. Requires hasKept().
     virtual void putBackKept() = 0;
 
+    /// Returns a snapshot of the current sand.
     [[nodiscard]] virtual std::shared_ptr<const SurfaceCopy> copy() const = 0;
+    /// Returns the function that decodes snapshots for this surface.
     [[nodiscard]] virtual SurfaceReader reader() const = 0;
     /// Replaces the sand by `copy`, which must come from copy(), kept() or a SurfaceReader of this surface.
     virtual void replace(const SurfaceCopy& copy) = 0;
@@ -105,7 +108,7 @@ public:
     [[nodiscard]] virtual std::int64_t outflow() const = 0;
     /// Returns the exact volume of all sand, in the unit of outflow().
     [[nodiscard]] virtual std::int64_t volume() const = 0;
-    /// Returns whether all sand is at rest.
+    /// Returns whether sweeps have found all sand at rest. Returns false before the first sweep.
     [[nodiscard]] virtual bool settled() const = 0;
     /// Returns the age of the inertia that sand carries from step to step [sweep]; 0 for a TIN, which carries none.
     [[nodiscard]] virtual int age() const = 0;
@@ -114,6 +117,7 @@ public:
     [[nodiscard]] virtual std::uint64_t hash() = 0;
     /// Hashes the next `tiles` hash tiles again from memory, whether or not they have changed.
     virtual void audit(int tiles) = 0;
+    /// Returns the hashes of all hash tiles. hash() brings them up to date.
     [[nodiscard]] virtual const HashTiles& hashTiles() const = 0;
     /// Returns the numbers in hash tile `tile`. Comparing those of two replicas shows where the replicas differ.
     [[nodiscard]] virtual std::vector<std::int32_t> valuesOf(int tile) const = 0;

@@ -41,7 +41,7 @@ struct CellChange {
 struct TinChange {
     /// Triangles that were added or removed, or whose corners or constraints changed: slots in ascending order.
     std::vector<std::int32_t> triangles;
-    /// Vertices that were added or removed, or whose height changed, in ascending order.
+    /// Vertices that were added or removed, or whose height may have changed, in ascending order.
     std::vector<std::int32_t> vertices;
 };
 

@@ -18,7 +18,7 @@
 
 namespace sand::tin {
 
-/// Sand as a TIN: its VertexSand, the imprint of the tool, and erosion. Surface describes the functions.
+/// Sand as a TIN: its VertexSand, the imprint of the tool, and erosion. Surface documents the overridden functions.
 class TinSurface final : public Surface {
 public:
     /// Triangulates `start`, which must not be null. Uses rim, threshold and start threshold of `rules`.
@@ -66,6 +66,7 @@ public:
     [[nodiscard]] SurfaceChange takeChange() override;
 
 private:
+    /// Returns the Displacement for `tool`, which is created again only if shape or heading differ from the last call.
     [[nodiscard]] Displacement& displacementOf(const HeldTool& tool);
     /// Passes the changes of the mesh to erosion, hash, undo, coarsening and takeChange().
     void meshChanged();
