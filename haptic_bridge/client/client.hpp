@@ -19,121 +19,138 @@
 
 namespace haptic_bridge {
 
-/// What the master compares with the server at the handshake.
+/// Scene of the master. The handshake compares it with the server's scene.
 struct Offer {
     std::uint64_t rulesDigest = 0;  // sand::Rules::digest()
     std::string sceneName;
 };
 
-/// Where the link stands. Only a linked server numbers steps; in every other state the master does.
+/// State of the link. The server numbers the steps only in the state `linked`; in all other states the master does.
+///
+/// In the states `connecting`, `refused` and `lost` the client tries to connect again, without end.
 enum class Link : std::uint8_t {
-    connecting,  // nobody answers yet; tried again for ever
-    refused,     // one side refused the other, see the message; tried again for ever
-    offered,     // the handshake fits: call grant()
+    connecting,  // no server has answered yet
+    refused,     // one side has refused the other; the message says why
+    offered,     // the handshake has succeeded: call grant()
     granting,    // grant() is under way
     linked,      // the server numbers the steps of the granted epoch
     streaming,   // the server has no sand and streams positions: the master numbers the steps
-    lost,        // was offered or more, and is gone; tried again for ever
-    stopped
+    lost,        // an earlier handshake had succeeded, and the connection has ended
+    stopped      // stop() was called
 };
 
+/// State of the link, with a line for the user.
 struct LinkStatus {
     Link link = Link::connecting;
-    std::string message;        // one line for a person: with whom, and why not
-    std::uint64_t changes = 0;  // grows whenever link or message changes: print the message then
+    std::string message;        // one line: the server's address, and the reason if the link is down
+    std::uint64_t changes = 0;  // grows when there is a new message to print
 };
 
+/// Step from the server, with its times.
 struct TimedStep {
     sand::Step step;
-    std::int64_t serverTimeNs = 0;  // server's clock, when the hand was read last
+    std::int64_t serverTimeNs = 0;  // of the StepMessage, on the server's clock
     std::uint64_t serverHash = 0;   // state hash of the server's replica after the step
-    std::int64_t receivedNs = 0;    // this host's monotonic clock
+    std::int64_t receivedNs = 0;    // on this host's monotonic clock
 };
 
-/// Where a hand was, from a server that streams positions.
+/// Position of the hand from a server that streams positions.
 struct TimedPosition {
     Position position;
-    std::int64_t receivedNs = 0;  // this host's monotonic clock
+    std::int64_t receivedNs = 0;  // on this host's monotonic clock
 };
 
+/// Counters of the link since the client was made.
 struct LinkCounters {
-    std::uint64_t links = 0;       // handshakes that fitted, of servers that stream positions, too
-    std::uint64_t reconnects = 0;  // handshakes after the first
-    std::uint64_t bytesIn = 0, bytesOut = 0;
-    std::uint64_t stepsIn = 0;       // accepted
-    std::uint64_t stepsStale = 0;    // late or doubled: recognised by number, left out
-    std::uint64_t stepsForeign = 0;  // of another epoch: left out
-    std::uint64_t catchUps = 0;      // hand-overs by the steps that the server lacked
-    std::uint64_t snapshots = 0;     // and by the whole sand
-    RefusalCounts refusedHere{};     // by the server: it would not have this master, as kRefusalNames
-    RefusalCounts refused{};         // servers that this master refused; `limit`: one that never greeted
+    std::uint64_t links = 0;                  // handshakes that succeeded, also with a server that streams positions
+    std::uint64_t reconnects = 0;             // of these, handshakes after the first
+    std::uint64_t bytesIn = 0, bytesOut = 0;  // of the latest connection
+    std::uint64_t stepsIn = 0;                // steps that were accepted
+    std::uint64_t stepsStale = 0;             // steps that came late or twice, recognised by number and left out
+    std::uint64_t stepsForeign = 0;           // steps of another epoch, left out
+    std::uint64_t catchUps = 0;               // NeedStates answered with the steps that the server lacked
+    std::uint64_t snapshots = 0;              // NeedStates answered with the whole sand
+    RefusalCounts refusedHere{};              // servers that refused this master, in the order of kRefusalNames
+    RefusalCounts refused{};                  // servers that this master refused; `limit`: a server that never greeted
+    /// Adds every counter of `other`.
     void add(const LinkCounters& other);
 };
 
-/// Returns a monotonic time [ns]. The link's timeouts use it. An empty function stands for the host's clock; a test
-/// passes its own.
+/// Returns a monotonic time [ns] for the link's timeouts. An empty function means the host's clock. Tests pass their
+/// own.
 using LinkClock = std::function<std::int64_t()>;
 
-/// Faults of the link on purpose.
+/// Faults that a drill injects into the link.
 enum class LinkDrill : std::uint8_t {
-    garbage,  // the server is sent bytes that are no message
-    silence   // nothing is read or sent for a while, as when a cable is pulled
+    garbage,  // the client sends random bytes instead of a message
+    silence   // the client neither reads nor sends for a while, as if a cable were pulled
 };
 
-/// The master's end of the link: connects by itself, for ever, and hands over steps in order.
+/// Master's end of the link. Connects to the haptic server, again and again if necessary, and gives out its steps.
 ///
-/// Has a network thread of its own. Every member may be called from any thread, returns at once and, whatever the
-/// network does, throws nothing; the link's troubles are told by link().
+/// Threads: the client has a network thread of its own. Any thread may call every member function. Only stop() and the
+/// destructor block. No failure of the network throws; link() reports it.
 ///
-/// Order of calls: poll link(); when it is offered, drain() what is left, then grant() with the replica's state; while
-/// it is linked, drain() and apply, and call shown() after every frame of the wall. When link() is anything else, the
-/// server numbers no steps: what it had sent is still there to drain(), and then the master numbers on, in a new epoch.
+/// Order of calls:
+/// 1. Poll link() until the link is `offered`.
+/// 2. Call drain() for the steps of the last epoch, then grant() with the replica's state.
+/// 3. While the link is `linked`, drain() the steps and apply them. Call shown() after every frame of the wall.
+/// 4. When the link is no longer `linked`, drain() the remaining steps. Then the master numbers the steps, in a new
+///    epoch.
 class Client {
 public:
-    /// Without a secret in `security` only servers on this machine are spoken to.
+    /// Starts to connect. If `security` has no secret, the client refuses a server on another machine.
     Client(Address address, Offer offer, LinkSecurity security = {}, LinkClock clock = {});
     ~Client();
     Client(const Client&) = delete;
     Client& operator=(const Client&) = delete;
 
     [[nodiscard]] LinkStatus link() const;
-    /// Lets the server number the steps of `epoch`, from stepNumber + 1 on. `state` is
-    /// sand::Replica::encodeState() at stepNumber, sent only when the server's replica is elsewhere, and not on the
-    /// way of the steps in `recent`. Drops steps that were not drained. Without effect unless the link is offered.
+    /// Lets the server number the steps of `epoch`, from `stepNumber` + 1 on. Drops steps that were not drained.
+    /// Ignored unless the link is `offered`.
+    ///
+    /// `stateHash` and `state` (sand::Replica::encodeState()) belong to step `stepNumber`. If the server's replica has
+    /// the sand after a step in `recent`, it gets only the steps that it lacks. Otherwise it gets `state`.
     void grant(std::uint32_t epoch, std::uint64_t stepNumber, std::uint64_t stateHash, base::Bytes state,
                StepRing recent = {});
-    /// At most `most` steps, in order and without gaps, of the granted epoch only. When the queue is full (kMaxQueued),
-    /// the network thread stops reading, and TCP holds the server back.
+    /// Returns at most `most` steps of the granted epoch, in order and without gaps. When kMaxQueued steps wait, the
+    /// network thread stops reading until this is called, and TCP holds the server back.
     [[nodiscard]] std::vector<TimedStep> drain(std::size_t most);
-    /// The wall has swapped, and shows this step. Lets the server go on, and answers the timing tests that came before
-    /// the frame's steps were drained: like a step, a test that comes while a frame is drawn is in the next.
+    /// Tells the server that the wall has swapped and shows step `stepNumber`. The server may then send further steps.
+    /// `frameIntervalNs` is the time since the swap before [ns].
+    ///
+    /// Also answers the timing tests that came before the frame's steps were drained. Like a step, a test that comes
+    /// while a frame is drawn belongs to the next frame.
     void shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs);
-    /// An operator asks: the server puts it into its next step. Without effect unless the server is linked.
+    /// Asks the server to put an operator's edit into its next step. Ignored unless the link is `linked`.
     void request(const sand::Edit& edit);
-    /// Of its forces, the hand feels this share from now on, 0 to 1. Without effect unless the server is linked.
+    /// Sets the share of the server's force that the hand feels from now on, 0 to 1. Ignored unless the link is
+    /// `linked`.
     void shareForce(double share);
-    /// Pieces of the server's tick track, for the journal; what is left when the link has ended, too.
+    /// Returns the pieces of the server's tick track since the last call. The journal keeps them. Pieces that came
+    /// before the link ended can still be drained. About half an hour of pieces can wait; later pieces are dropped.
     [[nodiscard]] std::vector<base::Bytes> drainTicks();
-    /// What a streaming server has sent, in order; when kMaxPositions wait, the network thread stops reading.
+    /// Returns the positions of a streaming server since the last call, in order. When kMaxPositions wait, the network
+    /// thread stops reading until this is called.
     [[nodiscard]] std::vector<TimedPosition> drainPositions();
-    /// How often that was so.
+    /// Returns how often the network thread stopped reading because kMaxPositions positions waited.
     [[nodiscard]] std::uint64_t floods() const;
-    /// Server's clock − this host's clock [ns]; 0 before the first exchange.
+    /// Returns server's clock − this host's clock [ns]; 0 before the first Pong.
     [[nodiscard]] std::int64_t clockOffsetNs() const;
-    /// The server's latest measurements; kept when the link is lost.
+    /// Returns the server's latest report, also after the link is lost; nullopt before the first report.
     [[nodiscard]] std::optional<Report> report() const;
     [[nodiscard]] LinkCounters counters() const;
-    /// From the server's scene, once offered; 0 before.
+    /// Returns the steps per second of the server's scene; 0 before the link was first `offered`.
     [[nodiscard]] std::uint32_t stepsPerSecond() const;
-    /// Does that to the connection there is, if there is one; `length` is of a silence.
+    /// Injects a fault into the connection. Ignored without a connection. `length` is for LinkDrill::silence.
     void drill(LinkDrill drill, std::chrono::milliseconds length);
     /// Says goodbye, waits at most half a second for the server's last report, and ends the network thread.
     void stop();
 
-    /// Silence that ends a link. Pongs come four times a second.
+    /// Silence of the server after which the client drops the link [ns]. Pongs come four times a second.
     static constexpr std::int64_t kSilenceNs = 10'000'000'000;
     static constexpr std::size_t kMaxQueued = 1024;      // [step]
-    static constexpr std::size_t kMaxPositions = 16384;  // a second of a device that is read 16 times a millisecond
+    static constexpr std::size_t kMaxPositions = 16384;  // [position], about 1 s of a device that is read 16 times a ms
 
 private:
     class Session;

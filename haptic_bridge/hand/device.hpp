@@ -8,14 +8,15 @@
 
 namespace haptic_bridge {
 
-/// Where a hand is, in hand space (docs/devices.md).
+/// Position of a hand in hand space (docs/devices.md), and how it holds the tool.
 ///
-/// x runs east and y north from the centre of the field; 1 is half of the field's shorter side. z is the height of the
-/// tool's centre over the sand's surface as the session began [tool radius]: 1 touches it, 0 is half sunk.
+/// x runs east and y runs north from the centre of the field [half of the field's shorter side]. z is the height of the
+/// tool's centre above the datum [tool radius]. At z = 1 the tool touches the datum; at z = 0 half of it is below. The
+/// datum comes from the sand's surface as the session began.
 struct Pose {
     double x = 0, y = 0, z = 2;
-    bool engaged = false;  // may touch the sand; otherwise the tool hovers
-    /// Which way the hand turns the tool [deg] from east, counter-clockwise; none: it stays as it is.
+    bool engaged = false;  // true: the tool may touch the sand; false: it hovers
+    /// Direction in which the hand turns the tool [deg], counter-clockwise from east. nullopt: it keeps its heading.
     std::optional<double> heading = std::nullopt;
     bool leftFoot = false;  // with a heading: the tool's left and right are exchanged
 };
@@ -23,7 +24,9 @@ struct Pose {
 class SandWatcher;
 class TroubleCounts;
 
-/// A haptic device, or what stands in for one. Used by one thread.
+/// Source of a hand: a haptic arm, a mouse, a stroke list or a recording.
+///
+/// One thread uses a device, except where a function allows any thread.
 class Device {
 public:
     Device() = default;
@@ -31,22 +34,26 @@ public:
     Device(const Device&) = delete;
     Device& operator=(const Device&) = delete;
 
-    /// Where the hand is at `time` [s] since the session began; times never run backwards.
+    /// Returns the hand's pose at `time` [s]. `time` counts only while a master is linked, and never decreases.
     [[nodiscard]] virtual Pose read(double time) = 0;
+    /// Sends a force to the device. A device without a body shows the force or ignores it.
     virtual void sendForce(sand::force::Vec3 force /* [N], east, north, up */) = 0;
-    /// The body that is pushed, and how far its tip goes; null for a recording, which feels nothing.
+    /// Returns the physics of the arm that forces push, such as its mass and reach. Returns null if the device has no
+    /// body, as a mouse or a recording.
     [[nodiscard]] virtual const ArmPhysics* physics() const { return nullptr; }
-    /// [scene unit/m] of a body's movement: the guards' limits hold for forces after this.
+    /// Returns how far the tool moves when the arm's tip moves one metre [scene unit/m]. The guards scale their limits
+    /// with it. If the vertical has a scale of its own, this is the larger of the two.
     [[nodiscard]] virtual double scale() const { return 1; }
-    /// Where a body was read last, in its own axes [m], and whether it answered; a recording has no such place.
+    /// Returns the last plausible reading of an arm, in the arm's own axes [m]. `present` is false if the latest read()
+    /// got no plausible reading. A device without a body returns the default.
     [[nodiscard]] virtual ArmReading reading() const { return {}; }
-    /// What the device has done wrong, any thread; null for what does nothing wrong.
+    /// Returns how often each kind of trouble has happened, or null if the device counts no troubles. Any thread.
     [[nodiscard]] virtual const TroubleCounts* troubles() const { return nullptr; }
-    /// Who wants to see the sand; null for most.
+    /// Returns the object that is shown the sand after every step, or null if the device does not show the sand.
     [[nodiscard]] virtual SandWatcher* watcher() { return nullptr; }
-    /// Any thread: of the force that is sent, this share, 0 to 1, reaches the body; a change is ramped.
+    /// Sets the share of each sent force that reaches the hand, 0 to 1. An arm changes to it in a ramp. Any thread.
     virtual void shareForce(double /* share */) {}
-    /// Whether a recording is over: from then on it hovers where it is.
+    /// Returns whether a recording has ended at `time` [s]. From then on it hovers where it ended.
     [[nodiscard]] virtual bool finished(double time) const = 0;
 };
 

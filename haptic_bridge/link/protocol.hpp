@@ -14,24 +14,24 @@
 #include "sand/model/step.hpp"
 #include "scene/scene.hpp"
 
-/// The link between a haptic server, which feels the sand, and the master of a wall, which shows it.
+/// Messages of the link between a haptic server, which owns the device, and the master of a wall.
 ///
-/// docs/protocol.md describes every byte. The master is the TCP client; the server owns the device.
+/// The master is the TCP client. docs/protocol.md describes every byte. All times are nanoseconds of a monotonic clock.
 namespace haptic_bridge {
 
-inline constexpr std::uint32_t kMagic = 0x42485753;  // "SWHB" as it stands on the wire
+inline constexpr std::uint32_t kMagic = 0x42485753;  // the bytes "SWHB" on the wire
 inline constexpr std::uint32_t kProtocolVersion = 6;
 inline constexpr std::uint16_t kDefaultPort = 7750;
-inline constexpr std::size_t kMaxMessage = 64 * 1024;  // [byte], type and payload
-inline constexpr std::size_t kMaxGreeting = 1024;      // [byte], of a message before the other side is known
-// [byte], of a State, and of an EditRequest or Step with sand that is loaded; and only when one is expected. A field of
-// 8192 cells a side compresses to about 150 MiB.
+inline constexpr std::size_t kMaxMessage = 64 * 1024;  // [byte], type and payload of an ordinary message
+inline constexpr std::size_t kMaxGreeting = 1024;      // [byte], type and payload of a message before the Welcome
+// [byte], type and payload of a message with sand: a State, or an EditRequest or Step that loads sand. Accepted only
+// when such a message is expected. A field of 8192 × 8192 cells compresses to about 150 MiB.
 inline constexpr std::size_t kMaxState = 256 * 1024 * 1024;
 static_assert(sand::kMaxSandBytes + kMaxMessage <= kMaxState, "a load fits, with the path of its step");
-inline constexpr std::size_t kMaxSceneName = 256;  // [byte]
-inline constexpr std::size_t kMaxCatchUp = 16;     // steps, of some 1.5 KiB at most each
+inline constexpr std::size_t kMaxSceneName = 256;  // [byte], also for the name of a device
+inline constexpr std::size_t kMaxCatchUp = 16;     // [step] in one CatchUp; a step takes at most about 1.5 KiB
 
-/// What both sides must have alike before a step may pass.
+/// Versions and scene of one side. Both sides must have the same before the server may send steps.
 struct Identity {
     std::uint32_t protocol = kProtocolVersion;
     std::uint32_t algorithm = sand::kAlgorithmVersion;
@@ -40,198 +40,224 @@ struct Identity {
     friend bool operator==(const Identity&, const Identity&) = default;
 };
 
+/// Reason why one side refuses the other.
 enum class RefusalCode : std::uint8_t {
-    garbage = 1,
-    protocol,
-    algorithm,
-    scene,
-    busy,
-    state,
-    secret,
-    role,
-    tls,
-    limit
+    garbage = 1,  // bytes that are not a message, or a message out of turn
+    protocol,     // another protocol version
+    algorithm,    // another algorithm version of the sand
+    scene,        // another scene, material or tool
+    busy,         // a master is linked already, or too many watchers
+    state,        // a State that does not fit
+    secret,       // a secret that is missing on one side, or different
+    role,         // the secret of another role, or a watcher that sends more than Ping and Bye
+    tls,          // TLS on one side only
+    limit         // too many or too frequent connections, too many bytes, or silence
 };
 inline constexpr std::array<std::string_view, 10> kRefusalNames{"garbage", "protocol", "algorithm", "scene", "busy",
                                                                 "state",   "secret",   "role",      "tls",   "limit"};
-/// How often each kind was refused, as kRefusalNames.
+/// Number of refusals with each code, in the order of kRefusalNames.
 using RefusalCounts = std::array<std::uint64_t, kRefusalNames.size()>;
 
-/// What somebody who connects may do; each has a secret of its own.
-enum class Role : std::uint8_t { move = 1, watch };  // move the probe and number steps, or be told of them
+/// Rights of a connection. Each role has a secret of its own.
+enum class Role : std::uint8_t {
+    move = 1,  // a master: lets the server number the steps, and may send edits
+    watch      // a watcher: receives the steps, and sends only Ping and Bye
+};
 [[nodiscard]] std::string_view nameOf(Role role);
 
-using Nonce = std::array<std::uint8_t, 32>;     // fresh random bytes for one connection
+using Nonce = std::array<std::uint8_t, 32>;     // random bytes, new for each connection
 using MacBytes = std::array<std::uint8_t, 32>;  // HMAC-SHA-256
 
-// Master to server.
+// Messages from the master to the server.
+
+/// First message of a master or a watcher.
 struct Hello {
     Identity master;
     Role role = Role::move;
-    bool proves = false;  // it has a secret of that role, and wants proof of the server's
-    bool tls = false;     // it speaks TLS, as it believes
-    Nonce nonce{};
+    bool proves = false;  // it has a secret of `role`, and the server must prove the same secret
+    bool tls = false;     // it uses TLS; the server refuses a Hello that arrives otherwise
+    Nonce nonce{};        // zeros without a secret
     friend bool operator==(const Hello&, const Hello&) = default;
 };
-/// The master hands over the numbering: the server's first step is stepNumber + 1 of `epoch`.
+/// Lets the server number the steps. The server's first step is stepNumber + 1 of `epoch`.
 struct Start {
     std::uint32_t epoch = 0;
     std::uint64_t stepNumber = 0;
     std::uint64_t stateHash = 0;  // sand::Replica::stateHash() at stepNumber
     friend bool operator==(const Start&, const Start&) = default;
 };
+/// The whole sand at Start's step. Answers a NeedState.
 struct State {
-    base::Bytes bytes;
+    base::Bytes bytes;  // of sand::Replica::encodeState()
     friend bool operator==(const State&, const State&) = default;
 };
-/// Sent after every frame of the wall.
+/// Tells the server which step the wall shows. Sent after every frame of the wall.
 struct Shown {
     std::uint64_t stepNumber = 0;      // the last step that the wall shows
-    std::int64_t frameIntervalNs = 0;  // since the frame before
+    std::int64_t frameIntervalNs = 0;  // from the swap of the frame before to the swap of this frame
     friend bool operator==(const Shown&, const Shown&) = default;
 };
-/// How far a timing test has come.
+/// Point at which the master answers a timing test.
 enum class Leg : std::uint8_t {
-    received = 1,  // the master has it
-    shown,         // the wall has swapped a frame that began after that
+    received = 1,  // the master has received the test
+    shown,         // the wall has swapped the first frame that began after the test was received
 };
+/// Answers a TimingTest, once for each Leg.
 struct TimingEcho {
-    std::uint32_t id = 0;
+    std::uint32_t id = 0;  // of the TimingTest
     Leg leg = Leg::received;
     friend bool operator==(const TimingEcho&, const TimingEcho&) = default;
 };
+/// Asks for the server's clock, four times a second. A server drops a master that is silent for 10 s.
 struct Ping {
-    std::int64_t masterNs = 0;
+    std::int64_t masterNs = 0;  // master's clock when it sends the Ping
     friend bool operator==(const Ping&, const Ping&) = default;
 };
-/// An operator of the wall asks: the server puts it into its next step.
+/// Asks for an operator's edit. The server puts it into its next step.
 struct EditRequest {
     sand::Edit edit;
     friend bool operator==(const EditRequest&, const EditRequest&) = default;
 };
-/// An operator of the wall asks: of its forces, the hand feels this share from now on.
+/// Sets the share of its forces that the hand feels from now on, as an operator asked.
 struct ForceShare {
     double share = 1;  // 0 to 1
     friend bool operator==(const ForceShare&, const ForceShare&) = default;
 };
 
-/// Answers a Challenge.
+/// Proves to the server that the master knows the secret. Answers a Challenge.
 struct Proof {
     MacBytes mac{};
     friend bool operator==(const Proof&, const Proof&) = default;
 };
-/// Steps that a server's replica lacks, after a NeedState that names one the master knows.
+/// Steps that the server's replica lacks up to Start's step. Answers a NeedState if the master still has all of them.
 struct CatchUp {
-    bool last = false;  // no more follow
+    bool last = false;  // the last CatchUp of this answer
     std::vector<sand::Step> steps;
     friend bool operator==(const CatchUp&, const CatchUp&) = default;
 };
 
-// Server to master.
-/// Answers a Hello that proves a secret.
+// Messages from the server to the master.
+
+/// Asks for proof of the secret. Answers a Hello whose `proves` is true.
 struct Challenge {
-    Identity server;  // of a server without sand its device's name alone
+    Identity server;  // a server without sand sends algorithm 0, digest 0 and the name of its device
     Nonce nonce{};
     friend bool operator==(const Challenge&, const Challenge&) = default;
 };
+/// Accepts the connection.
 struct Welcome {
     Identity server;
-    std::uint32_t stepsPerSecond = 0;
-    Role role = Role::move;  // that is granted
-    MacBytes mac{};          // the server's proof; zeros without a secret
+    std::uint32_t stepsPerSecond = 0;  // of the server's scene
+    Role role = Role::move;            // the role that the server grants
+    MacBytes mac{};                    // proves that the server knows the secret; zeros without a secret
     friend bool operator==(const Welcome&, const Welcome&) = default;
 };
+/// Refuses the connection. The server then closes it.
 struct Refusal {
     RefusalCode code = RefusalCode::garbage;
-    std::string text;
+    std::string text;  // one line for the user: the reason, and what to do
     friend bool operator==(const Refusal&, const Refusal&) = default;
 };
+/// Answers Start as soon as the server's replica has the same sand. Steps follow.
 struct Ready {
     friend bool operator==(const Ready&, const Ready&) = default;
 };
+/// Asks for the sand of Start, because the server's replica differs. The master answers with CatchUps or a State.
 struct NeedState {
-    std::uint64_t stepNumber = 0, stateHash = 0;  // where the server's replica is; a hash of 0: nowhere that helps
+    std::uint64_t stepNumber = 0, stateHash = 0;  // where the server's replica is; 0, 0 asks for a State
     friend bool operator==(const NeedState&, const NeedState&) = default;
 };
+/// One step of the sand. The master gets all steps; watchers get those that load no sand.
 struct StepMessage {
-    std::int64_t serverTimeNs = 0;  // server's monotonic clock when the last point of the path was read
+    std::int64_t serverTimeNs = 0;  // server's clock at the step's last hand sample, or when it made the step
     std::uint64_t stateHash = 0;    // of the server's replica after the step
     sand::Step step;
     friend bool operator==(const StepMessage&, const StepMessage&) = default;
 };
-/// As long on the wire as the step message before it, to be answered once for each Leg.
+/// Measures the round trip. The master answers it once for each Leg.
 struct TimingTest {
     std::uint32_t id = 0;
-    std::uint32_t padding = 0;  // [byte]
+    std::uint32_t padding = 0;  // [byte]; makes the test as long as the last step message without loaded sand
     friend bool operator==(const TimingTest&, const TimingTest&) = default;
 };
+/// Answers a Ping.
 struct Pong {
-    std::int64_t masterNs = 0;  // of the Ping
-    std::int64_t serverNs = 0;
+    std::int64_t masterNs = 0;  // copied from the Ping
+    std::int64_t serverNs = 0;  // server's clock when it answers
     friend bool operator==(const Pong&, const Pong&) = default;
 };
-/// Half of the way of timing tests there and back, of this link.
+/// Half of the round-trip time of this link's timing tests.
 struct HalfRoundTrip {
-    double msMean = 0, msStddev = 0, msP50 = 0, msP99 = 0;
-    std::uint64_t count = 0;
+    double msMean = 0, msStddev = 0, msP50 = 0, msP99 = 0;  // [ms]
+    std::uint64_t count = 0;                                // [test]
     friend bool operator==(const HalfRoundTrip&, const HalfRoundTrip&) = default;
 };
-/// What the server has measured since the link came up. A quantity not measured yet is 0.
+/// Measurements of the server, sent once a second. A value that has not been measured yet is 0.
+///
+/// Round trips, stepBytesMean and `steps` count since the link began. All other values count since the server started.
 struct Report {
-    double hapticPeriodUsP50 = 0, hapticPeriodUsP99 = 0, hapticPeriodUsMax = 0;  // 0 under --pace fast
-    double forceUsP50 = 0, forceUsP99 = 0;                                       // one force evaluation
-    HalfRoundTrip toWall, toMaster;                                              // answered when shown, when received
-    double stepBytesMean = 0;                     // step messages, length prefix included
-    std::uint64_t steps = 0;                      // sent
-    std::uint64_t stepsWithheld = 0;              // due, but the wall was a whole window behind
-    std::uint64_t samplesDropped = 0;             // hand samples that no step holds: thinned out, let go, or no room
+    double hapticPeriodUsP50 = 0, hapticPeriodUsP99 = 0, hapticPeriodUsMax = 0;  // [us]; 0 under --pace fast
+    double forceUsP50 = 0, forceUsP99 = 0;                                       // [us], of one force evaluation
+    HalfRoundTrip toWall, toMaster;                                              // of Leg::shown, of Leg::received
+    double stepBytesMean = 0;                     // [byte], of a step message with its length prefix
+    std::uint64_t steps = 0;                      // steps that were sent
+    std::uint64_t stepsWithheld = 0;              // steps that were due while the wall was a whole window behind
+    std::uint64_t samplesDropped = 0;             // hand samples in no step: thinned out, let go, or without room
     std::uint64_t ticks = 0;                      // of the force loop; 0 under --pace fast
-    std::uint64_t ticksMissed = 0;                // deadlines, each a tick
-    std::array<std::uint64_t, kGuards> guards{};  // ticks in which each guard acted, as kGuardNames
-    RefusalCounts refused{};                      // by the server since it started
+    std::uint64_t ticksMissed = 0;                // ticks whose deadline the force loop missed
+    std::array<std::uint64_t, kGuards> guards{};  // ticks in which each guard acted, in the order of kGuardNames
+    RefusalCounts refused{};                      // connections that the server refused
     friend bool operator==(const Report&, const Report&) = default;
 };
-/// A piece of the tick track, for the master's journal (tick_track.hpp).
+/// Piece of the tick track (haptic_bridge/loop/tick_track.hpp). The master writes it to its journal.
 struct TickPiece {
     base::Bytes bytes;
     friend bool operator==(const TickPiece&, const TickPiece&) = default;
 };
 
-// From a server that has no sand: it streams where the hand is, and the master numbers the steps.
-/// Instead of a Welcome, and without having read the Hello.
+// Messages from a server without sand. It streams positions of the hand, and the master numbers the steps.
+
+/// Takes the place of the Welcome. A server without a secret sends it at once, without reading the Hello.
 struct PositionGreeting {
     std::uint32_t protocol = kProtocolVersion;
-    std::string name;  // of the device, for a person
-    MacBytes mac{};    // the server's proof; zeros without a secret
+    std::string name;  // of the device, to be printed
+    MacBytes mac{};    // proves that the server knows the secret; zeros without a secret
     friend bool operator==(const PositionGreeting&, const PositionGreeting&) = default;
 };
-/// In hand space (docs/devices.md).
+/// Pose of the hand.
 struct Position {
-    std::int64_t timeNs = 0;  // of the server's clock; never runs backwards
-    double x = 0, y = 0, z = 0;
-    bool engaged = false;
+    std::int64_t timeNs = 0;     // server's clock; never runs backwards
+    double x = 0, y = 0, z = 0;  // in hand space, as those of Pose
+    bool engaged = false;        // the tool may touch the sand
     friend bool operator==(const Position&, const Position&) = default;
 };
 
-// Either way.
+// Messages of both sides.
+
+/// Ends the link in an orderly way.
 struct Bye {
-    std::string reason;
+    std::string reason;  // one line, to be printed
     friend bool operator==(const Bye&, const Bye&) = default;
 };
 
-/// In the order of their type bytes, which count from 1.
+/// One message of any type. The type byte on the wire is the type's place in this list, counted from 1.
 using Message = std::variant<Hello, Welcome, Refusal, Start, Ready, NeedState, State, StepMessage, TimingTest, Shown,
                              TimingEcho, Ping, Pong, Report, Bye, EditRequest, ForceShare, TickPiece, PositionGreeting,
                              Position, Challenge, Proof, CatchUp>;
 
-/// The message as it goes over the wire: length, type, payload.
+/// Returns the bytes of `message` on the wire: length, type, payload.
 [[nodiscard]] base::Bytes encode(const Message& message);
 
-/// Reads type and payload. Throws base::FormatError for anything that encode() does not write. Of a Hello or Welcome
-/// of another protocol version only that version is read.
+/// Returns the message that `typeAndPayload` holds. Throws base::FormatError if the type is unknown, if the payload is
+/// too short or too long, or if a value is out of bounds.
+///
+/// If a Hello, Challenge, Welcome or PositionGreeting has another protocol version, only that version is read.
+/// Accepts a Position whose numbers are not finite, so that the master can report the device. Replaces control
+/// characters in texts by '?', because these texts are printed.
 [[nodiscard]] Message decode(std::span<const std::uint8_t> typeAndPayload);
 
-/// Whether a server with one identity refuses a master with the other, and with which words.
+/// Returns the server's refusal of a master with another identity, with what the user should do; nullopt if both
+/// identities are equal.
 [[nodiscard]] std::optional<Refusal> refusalFor(const Identity& server, const Identity& master);
 
 }  // namespace haptic_bridge

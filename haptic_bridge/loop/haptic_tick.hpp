@@ -20,54 +20,60 @@
 
 namespace haptic_bridge {
 
-/// Sand around the hand after a step, from which forces are computed.
+/// Sand around the hand after one step. The forces are computed from it.
 struct FeltSand {
     sand::force::SurfacePatch patch;
-    sand::ProbePoint around;    // of the patch: where the hand was when it was taken; the height does not count
-    sand::force::Contour tool;  // which an operator may change
-    std::uint64_t step = 0;     // number of the step that made it
-    std::int64_t timeNs = 0;    // monotonic, of the step
+    sand::ProbePoint around;    // the hand's place when the patch was taken, at height 0
+    sand::force::Contour tool;  // outline of the tool, which an operator may change
+    std::uint64_t step = 0;     // number of the step after which the patch was taken
+    std::int64_t timeNs = 0;    // when the patch was published, on the clock of HapticTick::tick() [ns]
 };
 
-/// One tick of the force loop: read the device, quantise, ask the law, guard, send.
+/// One tick of the force loop: reads the device, quantises the pose, computes the law's force, guards it and sends it.
 ///
-/// A body's heights are metres, so they count from a level: over a surface that goes up and down with the hand, a
-/// force would not be the one that its path works against. A recording is guarded as a Touch that reaches over the
-/// whole field would be.
+/// An arm always uses the datum `level`. A datum that follows the surface would bend the arm's space, and a force would
+/// then do work on a closed path of the hand.
+/// A device without a body, such as a recording, gets the force limits of a Touch whose reach covers the whole field.
 ///
-/// Used by one thread: the force thread in real time, the sand's own under a virtual clock. A tick asks for no memory
-/// and waits for nobody.
+/// Threads: one thread ticks. In real time this is the force thread; under a virtual clock it is the sand thread. A
+/// tick allocates no memory and never blocks.
 class HapticTick {
 public:
     static constexpr double kTick = ForceLimits::kTick;  // [s]
 
+    /// `scene` must outlive this object. `datum` is for a device without a body.
     HapticTick(const scene::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum,
                Guards::Mode mode = Guards::Mode::on);
 
-    /// `deviceTime` [s] is what the device is read at; now and surface.timeNs are on one clock.
+    /// Runs one tick: reads the device at `deviceTime` [s], and sends it the force of `surface`. Returns the quantised
+    /// sample for the next step; it repeats the last place if the pose is not finite. `nowNs` is the time of this tick
+    /// [ns], on the same clock as surface.timeNs.
     HandSample tick(double deviceTime, std::int64_t nowNs, const FeltSand& surface);
-    /// Reads the device and sends zero force. Called while no master is linked, so that troubles are reported and
-    /// where() is known.
+    /// Reads the device at `deviceTime` [s] and sends zero force. Called while no master is linked, so that the device
+    /// still counts its troubles and where() follows the hand.
     void rest(double deviceTime);
-    /// Forgets every tick before, as if it had just been made: what follows depends on the ticks of one link alone.
+    /// Forgets all earlier ticks, except in the counters. Called when a link begins, so that its forces depend only on
+    /// its own ticks.
     void restart();
 
-    /// All of the tick before, and what it was computed from: for the thread that ticks.
+    /// Returns the last tick. Only for the thread that ticks.
     [[nodiscard]] const Tick& lastTick() const { return tick_; }
+    /// Returns the input of the last tick. Only for the thread that ticks.
     [[nodiscard]] const TickInput& lastInput() const { return input_; }
     [[nodiscard]] const Device& device() const { return *device_; }
     [[nodiscard]] HandSettings::Datum datum() const { return mapping_.datum(); }
-    /// What was limited, and why: lines for a person.
+    /// Returns lines for the operator: the limits of the device's forces, and the reason for each.
     [[nodiscard]] const std::vector<std::string>& limitsInWords() const { return words_; }
     [[nodiscard]] const Guards& guards() const { return guards_; }
     [[nodiscard]] bool finished(double deviceTime) const { return device_->finished(deviceTime); }
-    // Any thread:
-    /// Returns where the hand was read last, at height 0; before that the middle of the field.
+
+    /// Returns the place of the last reading, at height 0; before the first reading, the centre of the field. Any
+    /// thread.
     [[nodiscard]] sand::ProbePoint where() const;
-    [[nodiscard]] const base::LiveHistogram& forceCost() const {
-        return forceCost_;
-    }                                                                         // law and guards, of engaged ticks
-    [[nodiscard]] const GuardCounts& guardCounts() const { return counts_; }  // [tick]
+    /// Returns how long the law and the guards took in each engaged tick [ns]. Any thread.
+    [[nodiscard]] const base::LiveHistogram& forceCost() const { return forceCost_; }
+    /// Returns the number of ticks in which each guard acted. Any thread.
+    [[nodiscard]] const GuardCounts& guardCounts() const { return counts_; }
 
 private:
     HapticTick(const scene::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum, Guards::Mode mode,
@@ -80,10 +86,10 @@ private:
     std::unique_ptr<Device> device_;
     HandMapping mapping_;
     Guards guards_;
-    VelocityWindow armVelocity_;  // [m/s], of the device's axes
+    VelocityWindow armVelocity_;  // [m/s], along the arm's own axes
     VelocityWindow velocity_;     // [scene unit/s]
     std::vector<std::string> words_;
-    std::atomic<std::uint64_t> where_{0};  // x and y, 32 bits each: one value, so that no thread sees half of a place
+    std::atomic<std::uint64_t> where_{0};  // x and y, 32 bits each; one value, so that no thread reads half of a place
     TickInput input_;
     Tick tick_;
     base::LiveHistogram forceCost_;

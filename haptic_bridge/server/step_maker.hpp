@@ -14,48 +14,64 @@
 
 namespace haptic_bridge {
 
-/// Owns the server's replica, and numbers the steps from a master's Start to its end.
+/// Makes and numbers the steps of a haptic server, and owns the server's replica.
 ///
-/// Has no thread of its own, and is used by one.
+/// An epoch begins when a master sends Start and the replica has the same sand. It ends with release(). Until then
+/// each step takes the samples of the hand, changes the sand and goes to the master.
+///
+/// Threads: one thread calls it, except where a function allows any thread. It has no thread of its own.
 class StepMaker {
 public:
     // A wall that cannot keep up shows the hand late, by the steps in its queue. With 32 steps that was a second.
-    static constexpr std::uint64_t kWindow = 8;  // [step] that may be ahead of the wall
+    static constexpr std::uint64_t kWindow = 8;  // [step], by which the server may be ahead of the wall
 
-    /// Callbacks that send to a master; `session` is the one given to start().
+    /// Callbacks that send messages to a master. `session` is the number that start() got.
     struct Output {
-        std::function<void(std::uint32_t session)> ready;
-        std::function<void(std::uint32_t session, NeedState need)> needState;
-        std::function<void(std::uint32_t session, std::string why)> unusable;  // the state sent does not fit
-        std::function<void(std::uint32_t session, base::Bytes stepMessage)> step;
+        std::function<void(std::uint32_t session)> ready;                          // Ready
+        std::function<void(std::uint32_t session, NeedState need)> needState;      // NeedState
+        std::function<void(std::uint32_t session, std::string why)> unusable;      // a Refusal: the State does not fit
+        std::function<void(std::uint32_t session, base::Bytes stepMessage)> step;  // an encoded StepMessage
     };
 
     using Clock = std::function<std::int64_t()>;  // [ns], monotonic
 
+    /// `hand` must outlive this object. `sweeps` configures the erosion of the replica.
     StepMaker(const scene::Scene& scene, HandFeed& hand, Output output, const sand::grid::Erosion::Options& sweeps = {},
               Clock clock = host::monotonicNs);
 
-    /// A master hands over the numbering. Without the same sand here, it is asked for state() or catchUp().
+    /// Begins the master's epoch if the replica has the sand of `start`. Otherwise asks the master for that sand, and
+    /// waits for state() or catchUp().
     void start(std::uint32_t session, const Start& start);
+    /// Loads the sand of a State and begins the epoch. Reports `unusable` if this is not the sand of Start. Ignored
+    /// unless it was asked for.
     void state(const base::Bytes& bytes);
+    /// Applies the steps of a CatchUp. Begins the epoch after the last CatchUp, or asks for a State if the steps do not
+    /// lead to the sand of Start. Ignored unless it was asked for.
     void catchUp(const CatchUp& steps);
+    /// Notes which step the wall shows, and that it swapped at `nowNs` [ns].
     void shown(const Shown& frame, std::int64_t nowNs);
+    /// Puts an edit into the next step. Replaces an edit that still waits.
     void edit(EditRequest request) { edit_ = std::move(request.edit); }
+    /// Ends the epoch, because the master has left. The hand rests, and samples that still wait are dropped.
     void release();
 
-    /// Takes the samples of the hand since the last call, also while no master is linked.
+    /// Takes the samples of the hand since the last call. Drops them while no epoch runs.
     void collect();
-    /// Makes the next step. Withholds it if the wall is a whole window behind. Call it while running().
+    /// Makes the next step and sends it. Withholds it while blocked(); the hand then keeps feeling the same sand. Call
+    /// this only while running().
     void makeStep();
 
     [[nodiscard]] const sand::Replica& sand() const { return terrain_; }
+    /// Returns whether an epoch runs.
     [[nodiscard]] bool running() const { return phase_ == Phase::running; }
-    /// Whether the wall is a whole window behind.
+    /// Returns whether the wall is kWindow steps behind.
     [[nodiscard]] bool blocked() const { return terrain_.stepNumber() >= shown_ + kWindow; }
-    [[nodiscard]] std::int64_t due() const { return clock_.due(); }  // [ns], of the next step in real time
-    // Any thread:
-    [[nodiscard]] std::uint64_t withheld() const { return withheld_; }  // steps, over the program's life
-    [[nodiscard]] std::uint64_t dropped() const { return dropped_; }    // samples
+    /// Returns when the next step is due in real time [ns].
+    [[nodiscard]] std::int64_t due() const { return clock_.due(); }
+    /// Returns how many steps were withheld since the program started. Any thread.
+    [[nodiscard]] std::uint64_t withheld() const { return withheld_; }
+    /// Returns how many hand samples of running epochs were dropped since the program started. Any thread.
+    [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
 
 private:
     [[nodiscard]] bool asGranted();
@@ -71,9 +87,9 @@ private:
     std::uint32_t session_ = 0;
     Start start_;
     enum class Phase { idle, awaitingState, running } phase_ = Phase::idle;
-    sand::Edit edit_;  // for the next step
-    std::uint64_t shown_ = 0;
-    bool liftFirst_ = false;  // the first step of an epoch lifts a tool that was left in the sand
+    sand::Edit edit_;          // of the next step
+    std::uint64_t shown_ = 0;  // number of the step that the wall shows
+    bool liftFirst_ = false;   // the first step of an epoch lifts a tool that was left in the sand
     std::atomic<std::uint64_t> withheld_{0}, dropped_{0};
 };
 
