@@ -17,68 +17,80 @@
 
 namespace lockstep {
 
-/// What the master found when all had arrived.
+/// Result of the master's comparison when all ranks have arrived.
 enum class Verdict : std::uint8_t {
-    equal,
-    otherSand,  // state hashes differ: findDivergence() tells where
-    otherView,  // the sand is equal, but not what some rank sees it by
-    nonsense    // some rank has sent what is no arrival at this frame: FrameBarrier::nonsense()
+    equal,      // all hashes are equal
+    otherSand,  // state hashes differ; findDivergence() finds the ranks and the place
+    otherView,  // the sand is equal, but a rank drew another view or another wall
+    nonsense    // a rank sent bytes that are not an arrival at this frame; nonsense() names it
 };
 
-/// How a frame begins and ends on every rank: one message from the master to all, and the barrier before the swap,
-/// which is also the proof that all replicas are equal.
+/// Beginning and end of every frame, on every rank.
 ///
-/// Every rank sends its Arrival, state hash and all, to the master by itself; the master compares and tells the
-/// verdict. All of it goes point to point, and the master polls: inside a broadcast or an allreduce of MPI a rank that
-/// has stopped cannot be told from those that wait for it, and would take the master with it. All waits use Backoff,
-/// so that a waiting rank leaves its core to ranks that draw. Main thread only.
+/// A frame begins with one message from the master to all ranks. It ends at the barrier, before the swap. The barrier
+/// also proves that all replicas are equal: each rank sends its Arrival with its hashes, the master compares them, and
+/// every rank gets the verdict.
+///
+/// All messages are point-to-point, and the master polls for them. In a broadcast or an allreduce of MPI, the
+/// master could not tell a rank that has stopped from the ranks that wait for it, and would hang with them.
+///
+/// All waits use Backoff, so that a waiting rank leaves its core to the ranks that draw. Main thread only.
 class FrameBarrier {
 public:
-    /// Frame messages up to this size travel whole; longer ones send their rest behind [byte].
+    /// Size of the first MPI message of a frame, with the frame message's length in 4 bytes [byte]. The rest of a
+    /// longer frame message follows in a second one.
     static constexpr std::size_t kOneMessage = 1024;
 
-    /// Who is missing when a wait has run into its limit (-1: nobody in particular), and the line that was said of it.
+    /// Takes the first missing rank (-1 if no rank is missing) and the line that was printed when a wait reached its
+    /// limit.
     using LastWords = std::function<void(int rank, const std::string& line)>;
 
-    /// `names` is how each rank is spoken of, by rank; only the master needs it. A frame that takes longer than
-    /// `limitSeconds` ends the job, at the master after `lastWords`, which is called on the watchdog's thread. Ends the
-    /// cluster's own start-up watch.
+    /// `names` are the names of the ranks in messages, in order of rank; only the master needs them. A wait longer than
+    /// `limitSeconds` [s] ends the job; before the first barrier the limit is at least 120 s. The master first calls
+    /// `lastWords`, on the watchdog's thread. Ends the start-up watch of `cluster`.
     FrameBarrier(const Cluster& cluster, std::vector<std::string> names, double limitSeconds, LastWords lastWords = {});
     ~FrameBarrier();
 
-    /// Collective: begins a frame. The master gives the message; everyone gets it. Sets `bytes` to its length.
+    /// Begins a frame: sends the master's message to all ranks, and returns it on each rank. Sets `bytes` to its
+    /// encoded length [byte]. Collective; only the master's argument `fromMaster` counts.
     [[nodiscard]] FrameMessage begin(FrameMessage fromMaster, std::size_t& bytes);
 
-    /// Collective: comes to the barrier of the frame; returns when all have, with whether all hashes are equal. The
-    /// master says when it will begin the next frame at the earliest [ns of its clock]: the ranks sleep until then.
+    /// Waits at the barrier of the frame until all ranks have arrived, and returns the verdict on each rank.
+    /// Collective.
+    ///
+    /// @param nextFrame  Earliest time at which the next frame will begin, on the master's clock [ns]. Only the
+    /// master's
+    ///     argument counts. The other ranks sleep until then when they call begin().
     [[nodiscard]] Verdict meet(const Arrival& mine, std::int64_t nextFrame = 0);
 
-    /// At the master: what the ranks said at the last barrier, by rank; its own first.
+    /// Returns the arrivals at the last barrier in order of rank, the master's own first. Empty on other ranks.
     [[nodiscard]] const std::vector<Arrival>& arrivals() const { return arrivals_; }
 
-    /// At the master: who sent nonsense to the last barrier, a line each with the rank's name.
+    /// A rank that sent something else than an arrival.
     struct Nonsense {
         int rank = 0;
-        std::string line;
+        std::string line;  // with frame, the rank's name and what it sent, to be printed
     };
+    /// Returns the ranks that sent nonsense to the last barrier. Empty on other ranks than the master.
     [[nodiscard]] const std::vector<Nonsense>& nonsense() const { return nonsense_; }
-    /// For a drill: this rank comes to the next barrier with random bytes.
+    /// Drill: makes this rank send random bytes to the next barrier.
     void garble() { garbles_ = true; }
 
-    /// Collective among those concerned: the bytes of rank `from` to each of `to`, who get them; others get nothing
-    /// and may leave it out. Whom the master waits for is named, as at the barrier.
+    // If one of these three functions waits too long at the master, the watchdog names the missing ranks.
+    /// Sends the bytes of rank `from` to the ranks `to`. Returns them on the ranks `to`, and an empty list on all
+    /// others. Collective for `from` and `to`; other ranks need not call it.
     [[nodiscard]] base::Bytes pass(int from, const std::vector<int>& to, const base::Bytes& bytes);
-    /// Collective: everyone's bytes at the master, by rank; others get nothing. Named likewise.
+    /// Returns the bytes `mine` of all ranks at the master, in order of rank; an empty list on other ranks. Collective.
     [[nodiscard]] std::vector<base::Bytes> collect(const base::Bytes& mine);
-    /// Collective: the master's bytes to everyone. Named likewise.
+    /// Returns the master's argument `fromMaster` on all ranks. Collective.
     [[nodiscard]] base::Bytes tellAll(const base::Bytes& fromMaster);
 
     [[nodiscard]] const Cluster& cluster() const { return cluster_; }
-    /// What the master is at while it waits for no rank, such as "its journal"; text that lives on.
+    /// Sets what the watchdog names while the master waits for no rank, such as "its journal". `what` must stay valid.
     void busyWith(const char* what) { busyWith_ = what; }
-    static constexpr const char* kPictures = "pictures";
+    static constexpr const char* kPictures = "pictures";  // named unless busyWith() was called
 
-    /// Watches waits outside the frame loop too, such as for reports and pictures.
+    /// Returns the watchdog. It also watches waits outside this class, such as for reports and pictures.
     [[nodiscard]] Watchdog& watchdog() { return *watchdog_; }
 
 private:
@@ -97,16 +109,16 @@ private:
     std::vector<std::string> names_;
     std::vector<Arrival> arrivals_;
     std::vector<Nonsense> nonsense_;
-    std::vector<int> ranks_;                        // all but the master, at the master
-    std::unique_ptr<std::atomic<bool>[]> missing_;  // by rank; read by the watchdog's thread
+    std::vector<int> ranks_;                        // all render ranks; empty except at the master
+    std::unique_ptr<std::atomic<bool>[]> missing_;  // by rank, also read by the watchdog's thread
     std::atomic<const char*> busyWith_{kPictures};
     std::atomic<std::uint64_t> frame_{0};
     bool garbles_ = false;
-    std::int64_t quietUntil_ = 0;  // [ns], at a rank: no frame begins before
+    std::int64_t quietUntil_ = 0;  // [ns], at a render rank: the next frame does not begin before this
     std::unique_ptr<Watchdog> watchdog_;
 };
 
-/// For a scope the master is busy with something of its own that may hang; watched, and named as any wait.
+/// Scope in which the master does work of its own that may hang. The watchdog watches it, and names it as `what`.
 class Busy {
 public:
     Busy(FrameBarrier& barrier, const char* what) : barrier_(barrier), watched_(barrier.watchdog()) {

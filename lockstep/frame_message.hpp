@@ -13,36 +13,38 @@
 
 namespace lockstep {
 
-/// From where the wall is seen this frame; all of it in every frame, so that none ever shows an old eye, and part of
-/// what the ranks must agree on.
+/// View of the wall in one frame: the eyes, the place of the scene in the room, and what is shown.
+///
+/// Every frame message holds all of it, so that no rank draws with the eyes of an earlier frame. At the barrier the
+/// ranks prove that they drew the same view.
 struct ViewState {
-    std::array<double, 3> head{};          // [m] in the room, between the eyes
+    std::array<double, 3> head{};          // [m] in the room, the midpoint of the eyes
     std::array<double, 3> right{1, 0, 0};  // unit vector from the left eye to the right one
     double eyeSeparation = 0;              // [m]
-    // Column by column: scene units to metres in the room.
+    // Matrix from scene units to metres in the room, column by column.
     std::array<double, 16> sceneToRoom{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-    std::uint8_t pattern = 0;  // lockstep::Pattern shown instead of the sand
-    Overlays layers{};         // shown beside the sand
+    std::uint8_t pattern = 0;  // lockstep::Pattern that is shown instead of the sand; 0: the sand
+    Overlays layers{};         // overlays that are shown with the sand
     std::uint8_t stereo = 0;   // walls::Stereo, which an operator may change
 
     void encode(base::ByteWriter& writer) const;
-    /// Throws base::FormatError when cut short.
+    /// Throws base::FormatError if the bytes end too early.
     static ViewState decode(base::ByteReader& reader);
     friend bool operator==(const ViewState&, const ViewState&) = default;
 };
 
-/// All that a frame needs; sent by the master to every rank, once per frame.
+/// Message that begins a frame: the master sends it to every rank once per frame.
 struct FrameMessage {
     std::uint64_t frame = 0;
     ViewState view;
-    std::uint32_t auditTiles = 0;  // hash tiles every rank reads again from memory
-    bool capture = false;          // send the pictures of this frame to the master
-    bool stop = false;             // the last frame
-    std::vector<sand::Step> steps;
-    std::optional<WallFigures> figures;  // while Overlay::statistics is shown; what they say need not agree
+    std::uint32_t auditTiles = 0;        // number of hash tiles that each rank hashes again from memory
+    bool capture = false;                // each render rank sends its pictures of this frame to the master
+    bool stop = false;                   // this is the last frame
+    std::vector<sand::Step> steps;       // to be applied before the frame is drawn
+    std::optional<WallFigures> figures;  // only while Overlay::statistics is shown; the barrier does not compare them
 
     [[nodiscard]] base::Bytes encode() const;
-    /// Throws base::FormatError.
+    /// Throws base::FormatError if the bytes end too early or hold an invalid step.
     static FrameMessage decode(std::span<const std::uint8_t> bytes);
     friend bool operator==(const FrameMessage&, const FrameMessage&) = default;
 };
