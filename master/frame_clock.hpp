@@ -7,19 +7,21 @@
 
 namespace master {
 
-/// A swap of the wall.
+/// One swap of the wall.
 struct Swap {
     std::int64_t at = 0;        // [ns]
-    std::int64_t interval = 0;  // since the one before [ns]; 0 at the first
-    bool first = false;         // of this session
+    std::int64_t interval = 0;  // [ns], since the swap before; 0 at the first swap
+    bool first = false;         // the first swap of this process
 
     [[nodiscard]] double milliseconds() const { return static_cast<double>(interval) * 1e-6; }
 };
 
-/// Says when the frames of a wall begin: at its refresh rate, on a grid of times; or at once in a fast session. With
-/// eyes in turn a frame shows one eye, so that 120 Hz gives each eye 60 pictures a second.
+/// Times at which the frames of a wall begin.
 ///
-/// Reads no clock: the caller tells the time, so that tests need not wait. Used by one thread.
+/// Frames begin on a grid of times, at the wall's refresh rate. In a fast session each frame begins at once. With
+/// active stereo a frame may show one eye only: 120 Hz then gives each eye 60 pictures a second.
+///
+/// Reads no clock: the caller passes the time, so that tests need not wait. Used by one thread.
 class FrameClock {
 public:
     /// `refreshHz` is positive [frames per second].
@@ -27,22 +29,24 @@ public:
 
     [[nodiscard]] double period() const { return period_; }  // [s]
     [[nodiscard]] Pace pace() const { return pace_; }
-    /// Returns when the next frame begins at the earliest [ns]. A fast session waits only while it is `held`: while no
-    /// steps are taken.
+    /// Returns the earliest time at which the next frame begins [ns]; 0 means at once. A fast session waits only while
+    /// it is `held`, which means that it takes no steps.
     [[nodiscard]] std::int64_t next(bool held = false) const { return atOnce(held) ? 0 : start_ + periodNs(); }
-    /// Begins the next frame at the time `now` [ns]. Returns for how long to wait before [ns], 0 if it is due. A frame
-    /// that is late does not delay those after it; after more than a period they go by a new grid.
+    /// Begins the next frame. `now` is the present time [ns]. Returns how long the caller must wait before the frame
+    /// [ns]; 0 if the frame is due. A late frame does not delay later frames, unless it is late by more than a period:
+    /// then the grid starts again from it.
     [[nodiscard]] std::int64_t begin(std::int64_t now, bool held = false);
 
-    /// Tells that the wall has swapped at the time `now` [ns].
+    /// Notes that the wall swapped at the time `now` [ns], and returns this swap.
     Swap swapped(std::int64_t now);
-    /// Returns the time since the last swap [s]; 0 before the first.
+    /// Returns the time from the last swap to `now` [s]; 0 before the first swap.
     [[nodiscard]] double sinceSwap(std::int64_t now) const;
-    [[nodiscard]] std::int64_t lastSwap() const { return last_; }  // [ns]; 0 before the first
-    /// Returns the time from the first swap to the last [s].
+    [[nodiscard]] std::int64_t lastSwap() const { return last_; }  // [ns]; 0 before the first swap
+    /// Returns the time from the first swap to the last swap [s].
     [[nodiscard]] double seconds() const { return static_cast<double>(last_ - first_) * 1e-9; }
-    /// Returns the time of the session at which frame `frame` is seen [s]. A fast session shows each frame what a
-    /// recorded head did then, however long the frame takes.
+    /// Returns the session's time of frame `frame` [s]. A recorded head is shown as it was at this time. In real time
+    /// it is the time from the first swap to `now` [ns], and 0 before that swap. In a fast session it is counted in
+    /// frames, however long each frame takes.
     [[nodiscard]] double timeOf(std::uint64_t frame, std::int64_t now = 0) const;
 
 private:
@@ -51,8 +55,8 @@ private:
 
     double period_;  // [s]
     Pace pace_;
-    std::int64_t start_ = 0;             // [ns], of the frame before
-    std::int64_t first_ = 0, last_ = 0;  // [ns], swaps
+    std::int64_t start_ = 0;             // [ns], when the frame before began
+    std::int64_t first_ = 0, last_ = 0;  // [ns], first and last swap; 0 before the first
 };
 
 }  // namespace master

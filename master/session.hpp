@@ -27,32 +27,41 @@
 
 namespace master {
 
-/// The frame loop of the master: number, broadcast, journal, apply, agree, swap; 60 times a second if the wall can.
+/// Frame loop of the master.
+///
+/// In each frame the master takes the steps that are due, sends them to all ranks, writes them to the journal and
+/// applies them. It then waits until all ranks agree, so that the render ranks may swap. Frames follow the wall's
+/// refresh rate, usually 60 Hz. Main thread only.
 class Session {
 public:
+    /// `cluster`, `scene` and `wall` must outlive the session.
     Session(const lockstep::Cluster& cluster, const scene::Scene& scene, const walls::Wall& wall,
             SessionOptions options);
 
-    /// Runs to the end and writes journal, pictures and summary. Returns the exit status: 0, or 1 when replicas
-    /// differed, or a replica and the recording. Collective with renderTile() of the render ranks.
+    /// Runs all frames, and writes journal, pictures and summary. Collective with showTile() of the render ranks.
+    ///
+    /// Returns the exit status 0. Returns 1 if the ranks could not be made to agree, if the sand differed from the
+    /// recording, or if the summary could not be written. Throws DiskFailure if the disk refuses the journal under the
+    /// policy `required`, and base::InputError if a picture cannot be written.
     int run();
 
 private:
     using Steps = std::vector<haptic_bridge::TimedStep>;
 
-    /// Shows one frame. Returns whether all ranks agreed; `more` is whether another one follows.
+    /// Shows one frame. Returns whether all ranks agreed. Sets `more` to whether another frame follows.
     [[nodiscard]] bool showFrame(bool& more);
     void waitForFrame();
     [[nodiscard]] Steps takeSteps();
     [[nodiscard]] lockstep::FrameMessage compose(const Steps& steps);
     void startDrills();
     void keep(const lockstep::FrameMessage& frame);
+    /// Returns whether the session takes no steps, because it is paused or the disk is full.
     [[nodiscard]] bool held() const { return desk_.paused() || record_.full(); }
-    [[nodiscard]] Incidents incidents() const;  // since the session's beginning
+    [[nodiscard]] Incidents incidents() const;  // since the session began, across restarts
     [[nodiscard]] nlohmann::json status() const;
     void sayProgress(bool last);
     [[nodiscard]] Summary finish(bool agreed);
-    [[nodiscard]] Summary summary();  // collective: ranks report
+    [[nodiscard]] Summary summary();  // collective, because each rank sends a report
 
     const lockstep::Cluster& cluster_;
     const scene::Scene& scene_;
@@ -71,7 +80,7 @@ private:
     Measurements measure_;
     Agreement agreement_;
     std::optional<Film> film_;
-    std::uint64_t serverDivergences_ = 0;  // since this process began
+    std::uint64_t serverDivergences_ = 0;  // since this process started
 };
 
 }  // namespace master

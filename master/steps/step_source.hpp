@@ -13,74 +13,81 @@
 
 namespace master {
 
-/// realtime: at the wall's refresh rate. fast: as fast as it goes, in a time that is counted in frames.
-enum class Pace : std::uint8_t { realtime, fast };
+/// Pace of a session's frames.
+enum class Pace : std::uint8_t {
+    realtime,  // frames follow the wall's refresh rate
+    fast       // frames follow each other without a pause, and the session's time is counted in frames
+};
 
-/// Takes requests of an operator that change the next steps.
+/// Takes an operator's requests that change the next steps.
 class StepRequests {
 public:
     virtual ~StepRequests() = default;
-    /// Asks for an edit: it goes into a step that StepSource::next returns, after the edits that were asked for before.
+    /// Asks for an edit. It becomes part of a step that StepSource::next() returns, after all earlier edits.
     virtual void request(sand::Edit edit) = 0;
-    /// Lets the hand feel this share of a server's forces from now on, 0 to 1; later servers are told, too.
+    /// Sets the share of the server's forces that the hand feels from now on, 0 to 1. Servers that link later get it,
+    /// too.
     virtual void shareForce(double share) = 0;
 };
 
-/// Source of the steps of a session: LiveSteps or RecordedSteps. One thread.
+/// Source of a session's steps: LiveSteps from a hand, or RecordedSteps from a recording. Used by one thread.
 class StepSource {
 public:
     virtual ~StepSource() = default;
 
-    /// Returns the steps of the next frame, numbered on from those of `sand`, whose state hash is `hash`. Returns at
-    /// most `most` steps, or an empty list when nothing is due. Called once for each frame, and again only within
-    /// patience().
+    /// Returns the steps of the next frame, at most `most`; an empty list if no step is due. Their numbers continue
+    /// those of `sand`, whose state hash is `hash`. Called once per frame, and again only within patience().
     [[nodiscard]] virtual std::vector<haptic_bridge::TimedStep> next(const sand::Replica& sand, std::uint64_t hash,
                                                                      std::size_t most) = 0;
-    /// Steps that one frame takes at most; a long catch-up is spread over frames.
+    /// Returns how many steps one frame may take. A long catch-up is spread over several frames.
     [[nodiscard]] virtual std::size_t mostPerFrame() const = 0;
-    /// How long a frame should wait for a step before it is shown without one [s].
+    /// Returns how long a frame waits for a step before it is shown without one [s].
     [[nodiscard]] virtual double patience() const { return 0; }
-    /// Returns null if the steps cannot be changed.
+    /// Returns the object that takes an operator's requests, or null if the steps cannot be changed.
     [[nodiscard]] virtual StepRequests* requests() { return nullptr; }
 
-    /// Tells that the master's sand has come to a new state, which the source may know the hash of.
+    /// Called when the master's sand has reached a new state. A source that knows the hash of this state compares it.
     virtual void reached(sand::Replica& /* sand */) {}
-    /// Tells the same after the master's own sand was wrong and was healed: what reached() found before is void.
+    /// Called when the master's own sand was wrong and has been healed. Discards the result of reached(), and compares
+    /// again.
     virtual void healed(sand::Replica& /* sand */) {}
-    /// Returns whether the master's sand differs from what the source knows: the session ends.
+    /// Returns whether the master's sand differs from the hash that the source knows. The session then ends.
     [[nodiscard]] virtual bool strayed() const { return false; }
-    /// Returns the line that says how it strayed, once; empty before that.
+    /// Returns a line for the user that describes this difference, once; an empty text if there is no new one.
     [[nodiscard]] virtual std::string takeStrayLine() { return {}; }
 
-    /// Tells that the wall has swapped and shows the sand at this step.
+    /// Called when the wall has swapped and shows the sand after step `stepNumber`. `frameIntervalNs` is the time since
+    /// the swap before [ns].
     virtual void shown(std::uint64_t /* stepNumber */, std::int64_t /* frameIntervalNs */) {}
-    /// Compares the wall's `hash` with the haptic server's after the last of `steps`, which the wall shows now. Returns
-    /// false, and lets the server go, when its sand differs.
+    /// Compares the wall's state hash `hash` with the haptic server's hash after the last of `steps`. The wall shows
+    /// this step now. If the server's sand differs, ends the link with it and returns false.
     [[nodiscard]] virtual bool proveServer(const std::vector<haptic_bridge::TimedStep>& /* steps */,
                                            std::uint64_t /* hash */) {
         return true;
     }
-    /// Returns the pieces of the server's tick track that have come since the last call. The journal keeps them.
+    /// Returns the pieces of the server's tick track since the last call. They are written to the journal.
     [[nodiscard]] virtual std::vector<base::Bytes> ticks() { return {}; }
-    /// Injects a fault into the link: garbage, or a partition. Waits until there is a link.
+    /// Injects a fault into the link: garbage or a partition. Without a link, the fault is kept until there is one.
     virtual void drill(const lockstep::Fault& /* fault */) {}
 
-    /// Whether a haptic server numbers the steps, and whether one without sand says where the hand is.
+    /// Returns whether a haptic server numbers the steps.
     [[nodiscard]] virtual bool linked() const { return false; }
+    /// Returns whether a server without sand streams positions of the hand, and the master numbers the steps.
     [[nodiscard]] virtual bool streaming() const { return false; }
-    /// Returns in words where the hand is: a word of the event `progress`.
+    /// Returns the state of the hand, such as "hand linked", as the event `progress` reports it (docs/events.md).
     [[nodiscard]] virtual const char* hand() const = 0;
     [[nodiscard]] virtual std::uint32_t epoch() const { return 0; }
-    /// Returns the lead of the server's clock over the master's [ns].
+    /// Returns server's clock − master's clock [ns].
     [[nodiscard]] virtual std::int64_t clockOffsetNs() const { return 0; }
+    /// Returns the server's latest report; nullopt if no server has sent one.
     [[nodiscard]] virtual std::optional<haptic_bridge::Report> report() const { return std::nullopt; }
     [[nodiscard]] virtual haptic_bridge::LinkCounters counters() const { return {}; }
-    /// Ends the link in an orderly way.
+    /// Says goodbye to the server and ends the link.
     virtual void stop() {}
 };
 
-/// Returns next() of `source`. While that is empty, asks again for up to patience(), unless `most` is 0 or `stop` says
-/// so.
+/// Returns the next steps of `source`. While it has no step, asks again until source.patience() has passed or `stop`
+/// returns true. With `most` = 0 it asks only once.
 [[nodiscard]] std::vector<haptic_bridge::TimedStep> awaitSteps(StepSource& source, const sand::Replica& sand,
                                                                std::uint64_t hash, std::size_t most,
                                                                const std::function<bool()>& stop);
