@@ -21,51 +21,60 @@
 
 namespace render_node {
 
-/// What has been drawn of the eyes of a tile: a view is one eye in one frame.
+/// Counts of the views of a tile, and of their pixels. A view is the picture of one eye in one frame.
 struct ViewCounts {
-    std::int64_t skipped = 0, inPart = 0, whole = 0;
-    std::int64_t pixelsDrawn = 0, pixels = 0;  // in rectangles that were drawn; of all views
+    std::int64_t skipped = 0, inPart = 0, whole = 0;  // views that were not drawn, drawn in part, drawn whole
+    std::int64_t pixelsDrawn = 0, pixels = 0;         // pixels in the drawn rectangles, pixels of all views
 
+    /// Counts one view in `target`. `drawn` pixels of it were drawn.
     void add(std::int64_t drawn /* [pixel] */, const EyeTarget& target);
 };
 
-/// Draws one tile: an eye target for each eye that the wall shows, and what its outputs make of them.
+/// Painter of one tile: draws the picture of each eye that the wall shows, and makes the pictures of the outputs.
 ///
-/// Everything follows from the wall, the sand and the frame's view, so that tiles join. Needs its context current; one
-/// thread.
+/// All pixels follow from the wall, the sand and the frame's view alone, so that neighbouring tiles join. The GL
+/// context must be current. Used by one thread.
 class TilePainter {
 public:
-    /// `wall` and `tile` must outlive it; test patterns show the host. `start` is the sand of a replica of the scene
-    /// that has made no step. Throws std::runtime_error when a shader does not compile or a size is refused.
+    /// `wall` and `tile` must outlive the painter. `start` is the sand of `scene` before the first step. Test patterns
+    /// and statistics show `host`, the name of this machine. Throws std::runtime_error if a shader does not compile or
+    /// if the driver refuses the size of a picture.
     TilePainter(const walls::Wall& wall, const walls::Tile& tile, const scene::Scene& scene, std::string host,
                 const sand::SurfaceData& start);
 
-    /// From now on as another stereo mode of the same wall, on the same outputs. `wall` and `tile` must outlive it.
+    /// Changes the stereo mode: `wall` and `tile` are the same wall and tile in another mode, on the same outputs. They
+    /// must outlive the painter. Throws as the constructor does.
     void showAs(const walls::Wall& wall, const walls::Tile& tile);
 
-    /// Has the next paint() draw every eye whole: what was drawn of the sand cannot be trusted.
+    /// Makes the next paint() draw every eye whole. Called when the sand that was drawn may have been wrong.
     void drawAnew();
 
-    /// Brings every eye that differs up to date with `terrain` as `view` sees it, or with its test pattern, and puts
-    /// them together; with `oneEye` only that which the frame shows, the left one in even frames. `figures` are shown
-    /// over the sand where the view has Overlay::statistics. Does not wait for GL.
+    /// Draws the parts of each eye's picture that changed, and composes the outputs. Does not wait for GL. Throws
+    /// std::runtime_error if a shader of an overlay or a test pattern does not compile.
+    ///
+    /// @param terrain  Replica whose sand is drawn. Its list of changes is taken.
+    /// @param view     Eyes and overlays of this frame. If it has a test pattern, the pattern is drawn instead.
+    /// @param oneEye   With two eyes, draws only the eye of this frame: the left one in even frames.
+    /// @param figures  Figures that are shown over the sand if the view has Overlay::statistics.
     void paint(sand::Replica& terrain, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye = false,
                const TileFigures& figures = {});
-    /// What each output shows, in the order of tile.outputs; good until the next paint().
+    /// Returns the picture of each output, in the order of tile.outputs. Valid until the next paint().
     [[nodiscard]] std::vector<OutputPicture> outputs() const { return composer_.shown(targets_); }
 
-    /// Each eye's picture, in the order of walls::eyesOf, and behind them the output's where it is made of both.
+    /// Returns each eye's picture, in the order of walls::eyesOf(). If the output's picture is packed from both eyes,
+    /// it comes last.
     [[nodiscard]] std::vector<const EyeTarget*> pictures() const;
+    /// Returns the memory of all pictures on the graphics card [byte].
     [[nodiscard]] std::int64_t frameBufferBytes() const;
-    /// Of the sand, so far; test patterns and statistics do not count.
+    /// Returns the counts of the sand's views so far. Test patterns and statistics do not count.
     [[nodiscard]] const ViewCounts& viewCounts() const { return counts_; }
 
 private:
     struct EyeRange {
-        std::size_t from, end;  // of the eyes that are painted, as indices of targets_
+        std::size_t from, end;  // indices in targets_ of the first eye to paint, and after the last
     };
-    [[nodiscard]] std::vector<Camera> camerasOf(const lockstep::ViewState& view) const;  // by eye
-    // The pixels that have changed in some eye.
+    [[nodiscard]] std::vector<Camera> camerasOf(const lockstep::ViewState& view) const;  // one for each eye
+    // Both return the box around the pixels that changed in any eye.
     PixelRect paintSand(std::span<const Camera> cameras, EyeRange range);
     [[nodiscard]] PixelRect paintPattern(lockstep::Pattern pattern, std::uint64_t frame, EyeRange range);
     void uncover(EyeRange range);
@@ -78,14 +87,14 @@ private:
     std::string host_;
     sand::ForceConstants forceConstants_;
     ScenePainter scenePainter_;
-    std::optional<ToolForce> force_;  // while its layer is shown
+    std::optional<ToolForce> force_;  // only while Overlay::force is shown
     std::vector<EyeTarget> targets_;
-    std::vector<EyeMemory> memories_;  // what each target shows already
+    std::vector<EyeMemory> memories_;  // for each target, what it shows
     StereoComposer composer_;
-    std::optional<TestPatternView> patterns_;   // since one was asked for
-    std::vector<lockstep::Pattern> shown_;      // by each target
-    std::optional<StatisticsOverlay> overlay_;  // while it is shown
-    std::vector<PixelRect> covered_;            // of each target, by the overlay
+    std::optional<TestPatternView> patterns_;   // made when the first test pattern is shown
+    std::vector<lockstep::Pattern> shown_;      // for each target, the pattern that it shows
+    std::optional<StatisticsOverlay> overlay_;  // only while Overlay::statistics is shown
+    std::vector<PixelRect> covered_;            // for each target, the pixels under the statistics
     ViewCounts counts_;
 };
 

@@ -12,49 +12,51 @@
 
 #include "base/byte_stream.hpp"
 
-/// Where the display stands in the room and who looks at it, the same on every rank.
+/// Geometry of the display in the room, and of its viewer. It is the same on every rank.
 ///
-/// The room is right-handed and in metres: x to the viewer's right, y up, z from the wall towards the viewer; y = 0 is
-/// usually the floor. Everything here is plain data and pure functions: no GL, no MPI, safe from any thread.
+/// Room coordinates are right-handed and in metres. x runs to the viewer's right, y up, and z from the wall towards the
+/// viewer. y = 0 is usually the floor. This folder has plain data and pure functions, without GL and MPI. Any thread
+/// may call them.
 namespace walls {
 
 inline constexpr int kMaxTiles = 1024;
 inline constexpr int kMaxTileSide = 16384;  // [pixel]
 
 enum class Eye : std::uint8_t { left, right, middle };
-/// How a tile's pictures reach two eyes. All but passive have one output per tile.
+/// Stereo mode: how a tile's pictures reach the two eyes. All modes except `passive` have one output per tile.
 enum class Stereo : std::uint8_t {
-    mono,            // seen from the middle between the eyes
+    mono,            // one picture, seen from the midpoint of the eyes
     left,            // the left eye alone
     right,           // the right eye alone
-    passive,         // two outputs per tile, one for each eye, told apart by polarisers
-    active,          // the eyes in turn: quad buffers where the driver has them, else frame by frame
+    passive,         // two outputs per tile, one for each eye, separated by polarisers
+    active,          // both eyes in quad buffers; without quad buffers, one eye in each frame, in turn
     sideBySide,      // one buffer twice as wide, left eye on the left
     topBottom,       // one buffer twice as high, left eye above
-    rowInterlaced,   // even rows (from the top, from 0) show the left eye, odd rows the right one
-    checkerboard,    // pixels whose row + column is even (from the top left) show the left eye
+    rowInterlaced,   // even rows show the left eye, odd rows the right one; the top row is row 0
+    checkerboard,    // pixels whose row + column is even show the left eye; counted from the top left
     anaglyphColour,  // red from the left eye, green and blue from the right
-    anaglyphHalf,    // the same with the left eye's luminance as red
-    anaglyphDubois   // least-squares matrices of Dubois (2001) for red-cyan glasses
+    anaglyphHalf,    // red from the left eye's luminance, green and blue from the right
+    anaglyphDubois   // both eyes mixed by Dubois' least-squares matrices (2001) for red-cyan glasses
 };
 inline constexpr Stereo kLastStereo = Stereo::anaglyphDubois;
 
-/// "left", "right", "middle": as in the names of pictures.
+/// Returns "left", "right" or "middle", as in the file names of pictures.
 [[nodiscard]] std::string_view eyeName(Eye eye);
+/// Returns the mode's name in wall files and options, such as "side_by_side".
 [[nodiscard]] std::string_view stereoName(Stereo stereo);
-/// All of them, in the order of the enumeration: as wall files and options write them.
+/// Returns the names of all modes, in the order of Stereo.
 [[nodiscard]] const std::vector<std::string>& stereoNames();
-/// Throws base::InputError that lists them, for a name that is none of them.
+/// Returns the mode with this name. Throws base::InputError, which lists all names, if there is no such mode.
 [[nodiscard]] Stereo stereoNamed(const std::string& name);
-/// The eyes that are drawn, in the order they are drawn: the middle alone for mono, left or right alone where only one
-/// is shown, else left and right.
+/// Returns the eyes that a mode draws, in the order of drawing: the middle for `mono`, one eye for `left` and `right`,
+/// left and right for all other modes.
 [[nodiscard]] std::span<const Eye> eyesOf(Stereo stereo);
-/// Whether an output shows a picture that is made of both eyes' and is none of them.
+/// Returns whether each output shows one picture that is packed from both eyes' pictures.
 [[nodiscard]] bool packsEyes(Stereo stereo);
-/// Size of each output's buffer when one eye's picture has this size [pixel].
+/// Returns the size of each output's buffer [pixel] if one eye's picture has the size `eyePixels`.
 [[nodiscard]] glm::ivec2 outputPixels(Stereo stereo, glm::ivec2 eyePixels);
 
-/// The lit rectangle of a tile by three of its corners, as the viewer sees them [m].
+/// Lit rectangle of a tile in the room, given by three corners as the viewer sees them [m].
 struct Screen {
     glm::dvec3 lowerLeft{0}, lowerRight{1, 0, 0}, upperLeft{0, 1, 0};
 
@@ -70,36 +72,36 @@ struct Screen {
     friend bool operator==(const Screen&, const Screen&) = default;
 };
 
-/// One plug of the graphics card: a projector or monitor, and the eyes it shows.
+/// One projector or monitor of a tile, connected to one plug of the graphics card.
 struct Output {
-    std::string name;
-    std::vector<Eye> eyes;
-    std::string monitor;               // full screen on the monitor of this name, as xrandr lists it; empty: a window
-    std::optional<glm::ivec2> window;  // [pixel], where the window's top left corner goes; none: where the system likes
+    std::string name;                  // tile's name; for `passive` with "_left" or "_right"
+    std::vector<Eye> eyes;             // eyes that it shows
+    std::string monitor;               // monitor for a full screen, named as xrandr lists it; empty: a window
+    std::optional<glm::ivec2> window;  // [pixel], place of the window's top left corner; nullopt: the system chooses
     friend bool operator==(const Output&, const Output&) = default;
 };
 
-/// Which machine draws a tile, and with what; read from [[place]].
+/// Machine, X display and graphics card that draw a tile. Read from [[place]] of the wall file.
 struct Place {
-    std::string host;          // as mpirun knows it; empty: any
-    std::string display;       // X display, such as ":0.1"; empty: the DISPLAY of the rank
-    std::int32_t device = -1;  // EGL device by number; -1: the driver's choice
+    std::string host;          // name of the machine for mpirun; empty: any machine
+    std::string display;       // X display, such as ":0.1"; empty: the rank's DISPLAY
+    std::int32_t device = -1;  // number of the EGL device; -1: the driver chooses
     friend bool operator==(const Place&, const Place&) = default;
 };
 
-/// What one render rank draws.
+/// Part of the wall that one render rank draws.
 struct Tile {
     std::int32_t rank = 1;             // 1..n: the grid row by row from the top left, then the explicit screens
-    std::int32_t row = 0, column = 0;  // from 1 at the top left of the grid; 0 for an explicit screen
-    std::string name;                  // unique, fit for a file name: "r1c4", "floor"
+    std::int32_t row = 0, column = 0;  // in the grid, counted from 1 at the top left; 0 for an explicit screen
+    std::string name;                  // unique and fit for a file name, such as "r1c4" or "floor"
     Screen screen;
-    glm::ivec2 pixels{1, 1};  // width, height of one eye's picture
+    glm::ivec2 pixels{1, 1};  // [pixel], width and height of one eye's picture
     std::vector<Output> outputs;
     Place place;
     friend bool operator==(const Tile&, const Tile&) = default;
 };
 
-/// Who looks. The eyes lie half the separation to either side of `eye` along `right`.
+/// Eyes of the viewer. Each eye is half of the separation away from `eye`, along `right`.
 struct Viewer {
     glm::dvec3 eye{0};             // [m], the midpoint of the eyes
     double eyeSeparation = 0.065;  // [m]
@@ -107,71 +109,79 @@ struct Viewer {
     friend bool operator==(const Viewer&, const Viewer&) = default;
 };
 
-/// Planes parallel to each screen between which things are drawn, from the eye [m].
+/// Clipping planes, parallel to each screen. Only things between them are drawn.
 struct Clip {
-    double near = 0.1, far = 100;
+    double near = 0.1, far = 100;  // [m], distances from the eye
     friend bool operator==(const Clip&, const Clip&) = default;
 };
 
-/// Where the field of sand stands in the room; projection.hpp turns it into a matrix.
+/// Place of the field of sand in the room. projection.hpp makes a matrix of it.
 struct Stage {
-    glm::dvec3 centre{0};    // [m], of the field at its reference height
-    double width = 1;        // [m], of the field's longer side
-    double tiltDegrees = 0;  // about x: the north edge rises, the surface turns towards the viewer
-    double turnDegrees = 0;  // about the vertical, counter-clockwise seen from above, after the tilt
+    glm::dvec3 centre{0};    // [m], centre of the field at its reference height
+    double width = 1;        // [m], length of the field's longer side in the room
+    double tiltDegrees = 0;  // about x: the north edge rises, and the surface turns towards the viewer
+    double turnDegrees = 0;  // about the vertical after the tilt, counter-clockwise seen from above
     friend bool operator==(const Stage&, const Stage&) = default;
 };
 
-/// Equal tiles in rows and columns; the numbers the tiles were made from.
+/// Equal tiles in rows and columns. tilesOf() makes the tiles from these numbers.
 struct Grid {
     std::int32_t rows = 1, columns = 1;
-    glm::dvec2 tileSize{1};  // [m], the lit area
-    glm::dvec2 bezel{0};     // [m], between the lit areas of neighbours: horizontally, vertically; < 0: they overlap
-    glm::ivec2 tilePixels{1};
-    glm::dvec3 lowerLeft{0};                 // [m], corner of the whole grid
-    glm::dvec3 right{1, 0, 0}, up{0, 1, 0};  // unit vectors, perpendicular
+    glm::dvec2 tileSize{1};    // [m], width and height of a tile's lit area
+    glm::dvec2 bezel{0};       // [m], horizontal and vertical gap between neighbouring lit areas; < 0: they overlap
+    glm::ivec2 tilePixels{1};  // [pixel], of one eye's picture
+    glm::dvec3 lowerLeft{0};   // [m], lower left corner of the whole grid
+    glm::dvec3 right{1, 0, 0}, up{0, 1, 0};  // perpendicular unit vectors
     friend bool operator==(const Grid&, const Grid&) = default;
 };
 
-/// A display and its viewer. Tiles are in the order of ranks: tiles[rank - 1].
+/// A display and its viewer. The tile of a rank is tiles[rank - 1].
 struct Wall {
     std::string name;
     Viewer viewer;
     Stereo stereo = Stereo::mono;
-    double refreshHz = 60;  // frames per second; with eyes in turn each frame shows one of them
-    std::string tracking;   // where the head's pose comes from (docs/head_tracking.md); empty: the viewer stands still
+    double refreshHz = 60;  // frames per second; each frame shows one eye if the eyes are shown in turn
+    std::string tracking;   // source of the head's pose (docs/head_tracking.md); empty: the viewer does not move
     Clip clip;
     Stage stage;
-    std::optional<Grid> grid;  // tiles with a row came from it
+    std::optional<Grid> grid;  // grid of the tiles with a row; nullopt: all screens are explicit
     std::vector<Tile> tiles;
 
-    [[nodiscard]] int ranks() const { return static_cast<int>(tiles.size()); }  // render ranks, without the master
-    /// The wall as bytes: what the master broadcasts, so that no rank reads a file of its own.
+    /// Returns the number of render ranks. The master does not count.
+    [[nodiscard]] int ranks() const { return static_cast<int>(tiles.size()); }
+    /// Returns the wall as bytes. The master broadcasts them, so that no other rank reads a wall file.
     [[nodiscard]] base::Bytes encode() const;
-    /// Throws base::FormatError when the bytes are cut short, too long or hold what cannot be.
+    /// Returns the wall of encode(). Throws base::FormatError if the bytes are too few or too many, or if a value is
+    /// invalid.
     static Wall decode(std::span<const std::uint8_t> bytes);
     friend bool operator==(const Wall&, const Wall&) = default;
 };
 
-/// The outputs a tile of this name needs.
+/// Returns the outputs of a tile with this name.
 [[nodiscard]] std::vector<Output> outputsOf(Stereo stereo, const std::string& tileName);
-/// The tiles of a grid, row by row from the top left, ranks from 1.
+/// Returns the tiles of a grid, row by row from the top left. Their ranks count from 1.
 [[nodiscard]] std::vector<Tile> tilesOf(const Grid& grid, Stereo stereo);
 
-/// Whether the display stretches each eye's half of the frame to the whole screen, as 3D televisions do: eyes side by
-/// side or one above the other, with pixels closer to twice as wide as high, or twice as high, than to square.
+/// Returns whether the display stretches each eye's half of the frame to the whole screen, as 3D televisions do.
+///
+/// This is so if the eyes are side by side, and the tile's pixels are closer to twice as wide as high than to square.
+/// It is also so if the eyes are one above the other, and the pixels are closer to twice as high as wide.
 [[nodiscard]] bool isStretched(Stereo stereo, const Tile& tile);
 
-/// The same wall shown another way: eyes and outputs follow, monitors and windows are kept where they still fit. What
-/// was half a frame stretched becomes the whole frame, so that mono fills the screen of a 3D television.
+/// Returns the wall in another stereo mode. Eyes and outputs are those of the new mode. An output keeps its monitor or
+/// window if the new mode has such an output, too.
+///
+/// If the display stretched half of a frame, an eye's picture now takes the whole frame. So mono fills the screen of a
+/// 3D television.
 [[nodiscard]] Wall shownIn(Wall wall, Stereo stereo);
 
-/// Reads and checks a wall file (docs/wall_files.md). Throws base::InputError with file, line and what to do.
+/// Reads and checks a wall file (docs/wall_files.md). Throws base::InputError with the file, the line and what to do.
 [[nodiscard]] Wall loadWall(const std::filesystem::path& file);
-/// The same wall shown in another mode, which may need an eye that the file's own did not draw; an empty name means the
-/// file's own.
+/// Reads a wall file as loadWall() does, and returns the wall in the mode named `stereo`. An empty name means the
+/// file's own mode. Throws base::InputError also if the wall cannot be shown in that mode, such as with an eye behind a
+/// screen.
 [[nodiscard]] Wall loadWallAs(const std::filesystem::path& file, const std::string& stereo);
-/// The same from text; `name` stands for the file in messages.
+/// Reads and checks the text of a wall file. Messages name `name` as the file.
 [[nodiscard]] Wall parseWall(std::string_view text, const std::string& name);
 
 }  // namespace walls
