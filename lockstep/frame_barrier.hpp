@@ -31,8 +31,8 @@ enum class Verdict : std::uint8_t {
 /// also proves that all replicas are equal: each rank sends its Arrival with its hashes, the master compares them, and
 /// every rank gets the verdict.
 ///
-/// All messages are point-to-point, and the master polls for them. In a broadcast or an allreduce of MPI, the
-/// master could not tell a rank that has stopped from the ranks that wait for it, and would hang with them.
+/// All messages are point-to-point, and the master polls for them. Inside a broadcast or an allreduce of MPI, a rank
+/// that has stopped looks the same as the ranks that wait for it. The master would hang there, too.
 ///
 /// All waits use Backoff, so that a waiting rank leaves its core to the ranks that draw. Main thread only.
 class FrameBarrier {
@@ -41,8 +41,8 @@ public:
     /// longer frame message follows in a second one.
     static constexpr std::size_t kOneMessage = 1024;
 
-    /// Takes the first missing rank (-1 if no rank is missing) and the line that was printed when a wait reached its
-    /// limit.
+    /// Called when a wait has reached its limit. `rank` is the first missing rank, or -1 if no rank is missing. `line`
+    /// is the line that was printed.
     using LastWords = std::function<void(int rank, const std::string& line)>;
 
     /// `names` are the names of the ranks in messages, in order of rank; only the master needs them. A wait longer than
@@ -55,18 +55,16 @@ public:
     /// encoded length [byte]. Collective; only the master's argument `fromMaster` counts.
     [[nodiscard]] FrameMessage begin(FrameMessage fromMaster, std::size_t& bytes);
 
-    /// Waits at the barrier of the frame until all ranks have arrived, and returns the verdict on each rank.
-    /// Collective.
+    /// Waits at the barrier of the frame until all ranks have arrived. Returns the verdict on each rank. Collective.
     ///
-    /// @param nextFrame  Earliest time at which the next frame will begin, on the master's clock [ns]. Only the
-    /// master's
-    ///     argument counts. The other ranks sleep until then when they call begin().
+    /// `nextFrame` is the earliest time at which the next frame will begin [ns], on the master's clock. The other ranks
+    /// sleep until then when they call begin(). Only the master's argument counts.
     [[nodiscard]] Verdict meet(const Arrival& mine, std::int64_t nextFrame = 0);
 
     /// Returns the arrivals at the last barrier in order of rank, the master's own first. Empty on other ranks.
     [[nodiscard]] const std::vector<Arrival>& arrivals() const { return arrivals_; }
 
-    /// A rank that sent something else than an arrival.
+    /// A rank that sent something other than an arrival.
     struct Nonsense {
         int rank = 0;
         std::string line;  // with frame, the rank's name and what it sent, to be printed
@@ -76,7 +74,9 @@ public:
     /// Drill: makes this rank send random bytes to the next barrier.
     void garble() { garbles_ = true; }
 
-    // If one of these three functions waits too long at the master, the watchdog names the missing ranks.
+    // The master may wait in each of the next three functions. If it waits too long, the watchdog names the missing
+    // ranks.
+
     /// Sends the bytes of rank `from` to the ranks `to`. Returns them on the ranks `to`, and an empty list on all
     /// others. Collective for `from` and `to`; other ranks need not call it.
     [[nodiscard]] base::Bytes pass(int from, const std::vector<int>& to, const base::Bytes& bytes);
@@ -88,7 +88,7 @@ public:
     [[nodiscard]] const Cluster& cluster() const { return cluster_; }
     /// Sets what the watchdog names while the master waits for no rank, such as "its journal". `what` must stay valid.
     void busyWith(const char* what) { busyWith_ = what; }
-    static constexpr const char* kPictures = "pictures";  // named unless busyWith() was called
+    static constexpr const char* kPictures = "pictures";  // what the watchdog names at first
 
     /// Returns the watchdog. It also watches waits outside this class, such as for reports and pictures.
     [[nodiscard]] Watchdog& watchdog() { return *watchdog_; }

@@ -32,9 +32,9 @@ public:
     /// Returns the earliest time at which the next frame begins [ns]; 0 means at once. A fast session waits only while
     /// it is `held`, which means that it takes no steps.
     [[nodiscard]] std::int64_t next(bool held = false) const { return atOnce(held) ? 0 : start_ + periodNs(); }
-    /// Begins the next frame. `now` is the present time [ns]. Returns how long the caller must wait before the frame
-    /// [ns]; 0 if the frame is due. A late frame does not delay later frames, unless it is late by more than a period:
-    /// then the grid starts again from it.
+    /// Begins the next frame. `now` is the present time [ns]. Returns how long the caller must wait first [ns]; 0 if
+    /// the frame is due. A late frame does not delay later frames. If it is late by more than a period, a new grid
+    /// begins at `now`.
     [[nodiscard]] std::int64_t begin(std::int64_t now, bool held = false);
 
     /// Notes that the wall swapped at the time `now` [ns], and returns this swap.

@@ -40,9 +40,9 @@ public:
 
     /// Runs all frames, and writes journal, pictures and summary. Collective with showTile() of the render ranks.
     ///
-    /// Returns the exit status 0. Returns 1 if the ranks could not be made to agree, if the sand differed from the
-    /// recording, or if the summary could not be written. Throws DiskFailure if the disk refuses the journal under the
-    /// policy `required`, and base::InputError if a picture cannot be written.
+    /// Returns the exit status, which is 0 if all went well. It is 1 if the ranks could not be made to agree or if the
+    /// sand differed from the recording. It is also 1 if the summary could not be written. Throws DiskFailure if the
+    /// disk refuses the journal under the policy `required`, and base::InputError if a picture cannot be written.
     int run();
 
 private:

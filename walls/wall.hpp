@@ -19,9 +19,10 @@
 /// may call them.
 namespace walls {
 
-inline constexpr int kMaxTiles = 1024;
+inline constexpr int kMaxTiles = 1024;      // of one wall
 inline constexpr int kMaxTileSide = 16384;  // [pixel]
 
+/// Eye for which a picture is drawn. `middle` is the midpoint of both eyes.
 enum class Eye : std::uint8_t { left, right, middle };
 /// Stereo mode: how a tile's pictures reach the two eyes. All modes except `passive` have one output per tile.
 enum class Stereo : std::uint8_t {
@@ -168,11 +169,11 @@ struct Wall {
 /// It is also so if the eyes are one above the other, and the pixels are closer to twice as high as wide.
 [[nodiscard]] bool isStretched(Stereo stereo, const Tile& tile);
 
-/// Returns the wall in another stereo mode. Eyes and outputs are those of the new mode. An output keeps its monitor or
-/// window if the new mode has such an output, too.
+/// Returns the wall in another stereo mode. Eyes and outputs are those of the new mode. An output keeps its
+/// monitor or window if the new mode still has that output.
 ///
-/// If the display stretched half of a frame, an eye's picture now takes the whole frame. So mono fills the screen of a
-/// 3D television.
+/// If the display stretches the halves of a frame, the frame keeps its size, and the eyes' pictures get the size that
+/// fits it. So mono fills the screen of a 3D television.
 [[nodiscard]] Wall shownIn(Wall wall, Stereo stereo);
 
 /// Reads and checks a wall file (docs/wall_files.md). Throws base::InputError with the file, the line and what to do.
@@ -181,7 +182,7 @@ struct Wall {
 /// file's own mode. Throws base::InputError also if the wall cannot be shown in that mode, such as with an eye behind a
 /// screen.
 [[nodiscard]] Wall loadWallAs(const std::filesystem::path& file, const std::string& stereo);
-/// Reads and checks the text of a wall file. Messages name `name` as the file.
+/// Reads and checks the text of a wall file. Error messages give `name` as the name of the file.
 [[nodiscard]] Wall parseWall(std::string_view text, const std::string& name);
 
 }  // namespace walls

@@ -42,7 +42,7 @@ enum class Link : std::uint8_t {
 /// State of the link, with a line for the user.
 struct LinkStatus {
     Link link = Link::connecting;
-    std::string message;        // one line: the server's address, and the reason if the link is down
+    std::string message;        // one line with the server's address, and with the reason if the link is down
     std::uint64_t changes = 0;  // grows when there is a new message to print
 };
 
@@ -83,7 +83,7 @@ using LinkClock = std::function<std::int64_t()>;
 /// Faults that a drill injects into the link.
 enum class LinkDrill : std::uint8_t {
     garbage,  // the client sends random bytes instead of a message
-    silence   // the client neither reads nor sends for a while, as if a cable were pulled
+    silence   // the client neither reads nor sends for a given time, as if a cable were pulled
 };
 
 /// Master's end of the link. Connects to the haptic server, again and again if necessary, and gives out its steps.
@@ -97,6 +97,8 @@ enum class LinkDrill : std::uint8_t {
 /// 3. While the link is `linked`, drain() the steps and apply them. Call shown() after every frame of the wall.
 /// 4. When the link is no longer `linked`, drain() the remaining steps. Then the master numbers the steps, in a new
 ///    epoch.
+///
+/// In the state `streaming`, drainPositions() returns the positions of the hand, and the master numbers the steps.
 class Client {
 public:
     /// Starts to connect. If `security` has no secret, the client refuses a server on another machine.
@@ -149,8 +151,8 @@ public:
 
     /// Silence of the server after which the client drops the link [ns]. Pongs come four times a second.
     static constexpr std::int64_t kSilenceNs = 10'000'000'000;
-    static constexpr std::size_t kMaxQueued = 1024;      // [step]
-    static constexpr std::size_t kMaxPositions = 16384;  // [position], about 1 s of a device that is read 16 times a ms
+    static constexpr std::size_t kMaxQueued = 1024;      // [step] that may wait
+    static constexpr std::size_t kMaxPositions = 16384;  // [position] that may wait, 1 s of a device read at 16 kHz
 
 private:
     class Session;

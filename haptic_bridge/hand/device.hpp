@@ -12,11 +12,12 @@ namespace haptic_bridge {
 ///
 /// x runs east and y runs north from the centre of the field [half of the field's shorter side]. z is the height of the
 /// tool's centre above the datum [tool radius]. At z = 1 the tool touches the datum; at z = 0 half of it is below. The
-/// datum comes from the sand's surface as the session began.
+/// datum is the sand's surface below the hand, or the mean height of the surface, as the session began.
 struct Pose {
     double x = 0, y = 0, z = 2;
     bool engaged = false;  // true: the tool may touch the sand; false: it hovers
-    /// Direction in which the hand turns the tool [deg], counter-clockwise from east. nullopt: it keeps its heading.
+    /// Direction in which the hand turns the tool [deg], counter-clockwise from east. nullopt: the tool keeps its
+    /// heading.
     std::optional<double> heading = std::nullopt;
     bool leftFoot = false;  // with a heading: the tool's left and right are exchanged
 };
@@ -41,8 +42,8 @@ public:
     /// Returns the physics of the arm that forces push, such as its mass and reach. Returns null if the device has no
     /// body, as a mouse or a recording.
     [[nodiscard]] virtual const ArmPhysics* physics() const { return nullptr; }
-    /// Returns how far the tool moves when the arm's tip moves one metre [scene unit/m]. The guards scale their limits
-    /// with it. If the vertical has a scale of its own, this is the larger of the two.
+    /// Returns how far the tool moves when the tip of an arm moves one metre [scene unit/m]. If the vertical has a
+    /// scale of its own, this is the larger of the two. The guards use it to convert the law's stiffness to [N/m].
     [[nodiscard]] virtual double scale() const { return 1; }
     /// Returns the last plausible reading of an arm, in the arm's own axes [m]. `present` is false if the latest read()
     /// got no plausible reading. A device without a body returns the default.
@@ -53,7 +54,8 @@ public:
     [[nodiscard]] virtual SandWatcher* watcher() { return nullptr; }
     /// Sets the share of each sent force that reaches the hand, 0 to 1. An arm changes to it in a ramp. Any thread.
     virtual void shareForce(double /* share */) {}
-    /// Returns whether a recording has ended at `time` [s]. From then on it hovers where it ended.
+    /// Returns whether a recording has ended at `time` [s]. From then on it hovers where it ended. Other devices always
+    /// return false.
     [[nodiscard]] virtual bool finished(double time) const = 0;
 };
 

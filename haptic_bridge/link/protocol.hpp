@@ -16,7 +16,8 @@
 
 /// Messages of the link between a haptic server, which owns the device, and the master of a wall.
 ///
-/// The master is the TCP client. docs/protocol.md describes every byte. All times are nanoseconds of a monotonic clock.
+/// The master is the TCP client. docs/protocol.md describes every byte. All time stamps are in ns, on the monotonic
+/// clock of the side that is named.
 namespace haptic_bridge {
 
 inline constexpr std::uint32_t kMagic = 0x42485753;  // the bytes "SWHB" on the wire
@@ -75,7 +76,7 @@ struct Hello {
     Identity master;
     Role role = Role::move;
     bool proves = false;  // it has a secret of `role`, and the server must prove the same secret
-    bool tls = false;     // it uses TLS; the server refuses a Hello that arrives otherwise
+    bool tls = false;     // it believes that this link uses TLS; if it does not, the server refuses
     Nonce nonce{};        // zeros without a secret
     friend bool operator==(const Hello&, const Hello&) = default;
 };
@@ -164,7 +165,7 @@ struct Ready {
 };
 /// Asks for the sand of Start, because the server's replica differs. The master answers with CatchUps or a State.
 struct NeedState {
-    std::uint64_t stepNumber = 0, stateHash = 0;  // where the server's replica is; 0, 0 asks for a State
+    std::uint64_t stepNumber = 0, stateHash = 0;  // of the server's replica; 0 and 0 ask for a State
     friend bool operator==(const NeedState&, const NeedState&) = default;
 };
 /// One step of the sand. The master gets all steps; watchers get those that load no sand.
@@ -189,7 +190,7 @@ struct Pong {
 /// Half of the round-trip time of this link's timing tests.
 struct HalfRoundTrip {
     double msMean = 0, msStddev = 0, msP50 = 0, msP99 = 0;  // [ms]
-    std::uint64_t count = 0;                                // [test]
+    std::uint64_t count = 0;                                // timing tests that were answered
     friend bool operator==(const HalfRoundTrip&, const HalfRoundTrip&) = default;
 };
 /// Measurements of the server, sent once a second. A value that has not been measured yet is 0.
@@ -202,7 +203,7 @@ struct Report {
     double stepBytesMean = 0;                     // [byte], of a step message with its length prefix
     std::uint64_t steps = 0;                      // steps that were sent
     std::uint64_t stepsWithheld = 0;              // steps that were due while the wall was a whole window behind
-    std::uint64_t samplesDropped = 0;             // hand samples in no step: thinned out, let go, or without room
+    std::uint64_t samplesDropped = 0;             // hand samples in no step: thinned out, outdated, or queue full
     std::uint64_t ticks = 0;                      // of the force loop; 0 under --pace fast
     std::uint64_t ticksMissed = 0;                // ticks whose deadline the force loop missed
     std::array<std::uint64_t, kGuards> guards{};  // ticks in which each guard acted, in the order of kGuardNames
@@ -227,7 +228,7 @@ struct PositionGreeting {
 /// Pose of the hand.
 struct Position {
     std::int64_t timeNs = 0;     // server's clock; never runs backwards
-    double x = 0, y = 0, z = 0;  // in hand space, as those of Pose
+    double x = 0, y = 0, z = 0;  // in hand space, with the units of Pose
     bool engaged = false;        // the tool may touch the sand
     friend bool operator==(const Position&, const Position&) = default;
 };

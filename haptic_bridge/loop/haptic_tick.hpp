@@ -29,10 +29,12 @@ struct FeltSand {
     std::int64_t timeNs = 0;    // when the patch was published, on the clock of HapticTick::tick() [ns]
 };
 
-/// One tick of the force loop: reads the device, quantises the pose, computes the law's force, guards it and sends it.
+/// Runs the ticks of the force loop. A tick reads the device, quantises the pose, computes the law's force, guards it
+/// and sends it.
 ///
 /// An arm always uses the datum `level`. A datum that follows the surface would bend the arm's space, and a force would
 /// then do work on a closed path of the hand.
+///
 /// A device without a body, such as a recording, gets the force limits of a Touch whose reach covers the whole field.
 ///
 /// Threads: one thread ticks. In real time this is the force thread; under a virtual clock it is the sand thread. A
@@ -41,13 +43,16 @@ class HapticTick {
 public:
     static constexpr double kTick = ForceLimits::kTick;  // [s]
 
-    /// `scene` must outlive this object. `datum` is for a device without a body.
+    /// `scene` must outlive this object. `datum` counts only for a device without a body.
     HapticTick(const scene::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum,
                Guards::Mode mode = Guards::Mode::on);
 
-    /// Runs one tick: reads the device at `deviceTime` [s], and sends it the force of `surface`. Returns the quantised
-    /// sample for the next step; it repeats the last place if the pose is not finite. `nowNs` is the time of this tick
-    /// [ns], on the same clock as surface.timeNs.
+    /// Runs one tick. Returns the quantised sample of the hand, from which the next step is made. If the pose is not
+    /// finite or an arm does not answer, the sample hovers at the last place.
+    ///
+    /// @param deviceTime  Time at which the device is read [s], see Device::read().
+    /// @param nowNs       Time of this tick [ns], on the same clock as surface.timeNs.
+    /// @param surface     Sand that the hand feels in this tick.
     HandSample tick(double deviceTime, std::int64_t nowNs, const FeltSand& surface);
     /// Reads the device at `deviceTime` [s] and sends zero force. Called while no master is linked, so that the device
     /// still counts its troubles and where() follows the hand.

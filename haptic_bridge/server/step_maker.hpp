@@ -16,14 +16,14 @@ namespace haptic_bridge {
 
 /// Makes and numbers the steps of a haptic server, and owns the server's replica.
 ///
-/// An epoch begins when a master sends Start and the replica has the same sand. It ends with release(). Until then
-/// each step takes the samples of the hand, changes the sand and goes to the master.
+/// An epoch begins when a master sends Start and the replica has the same sand. It ends with release(). Until then,
+/// makeStep() puts the samples of the hand into a step, applies the step to the replica, and sends it to the master.
 ///
 /// Threads: one thread calls it, except where a function allows any thread. It has no thread of its own.
 class StepMaker {
 public:
     // A wall that cannot keep up shows the hand late, by the steps in its queue. With 32 steps that was a second.
-    static constexpr std::uint64_t kWindow = 8;  // [step], by which the server may be ahead of the wall
+    static constexpr std::uint64_t kWindow = 8;  // [step], largest lead of the server over the wall
 
     /// Callbacks that send messages to a master. `session` is the number that start() got.
     struct Output {
@@ -48,14 +48,16 @@ public:
     /// Applies the steps of a CatchUp. Begins the epoch after the last CatchUp, or asks for a State if the steps do not
     /// lead to the sand of Start. Ignored unless it was asked for.
     void catchUp(const CatchUp& steps);
-    /// Notes which step the wall shows, and that it swapped at `nowNs` [ns].
+    /// Takes a Shown that arrived at `nowNs` [ns]. The window moves to the step that the wall shows, and the step clock
+    /// follows the wall's frames.
     void shown(const Shown& frame, std::int64_t nowNs);
     /// Puts an edit into the next step. Replaces an edit that still waits.
     void edit(EditRequest request) { edit_ = std::move(request.edit); }
     /// Ends the epoch, because the master has left. The hand rests, and samples that still wait are dropped.
     void release();
 
-    /// Takes the samples of the hand since the last call. Drops them while no epoch runs.
+    /// Takes the samples of the hand since the last call. makeStep() puts them into a step. While no epoch
+    /// runs, they are dropped.
     void collect();
     /// Makes the next step and sends it. Withholds it while blocked(); the hand then keeps feeling the same sand. Call
     /// this only while running().

@@ -36,7 +36,8 @@ public:
     virtual ~StepSource() = default;
 
     /// Returns the steps of the next frame, at most `most`; an empty list if no step is due. Their numbers continue
-    /// those of `sand`, whose state hash is `hash`. Called once per frame, and again only within patience().
+    /// those of `sand`, whose state hash is `hash`. Called once per frame. If it returns no step, it may be called
+    /// again until patience() has passed.
     [[nodiscard]] virtual std::vector<haptic_bridge::TimedStep> next(const sand::Replica& sand, std::uint64_t hash,
                                                                      std::size_t most) = 0;
     /// Returns how many steps one frame may take. A long catch-up is spread over several frames.
@@ -46,7 +47,8 @@ public:
     /// Returns the object that takes an operator's requests, or null if the steps cannot be changed.
     [[nodiscard]] virtual StepRequests* requests() { return nullptr; }
 
-    /// Called when the master's sand has reached a new state. A source that knows the hash of this state compares it.
+    /// Called when the master's sand has reached a new state. A source that knows the hash of this state compares the
+    /// hashes.
     virtual void reached(sand::Replica& /* sand */) {}
     /// Called when the master's own sand was wrong and has been healed. Discards the result of reached(), and compares
     /// again.
@@ -60,7 +62,7 @@ public:
     /// the swap before [ns].
     virtual void shown(std::uint64_t /* stepNumber */, std::int64_t /* frameIntervalNs */) {}
     /// Compares the wall's state hash `hash` with the haptic server's hash after the last of `steps`. The wall shows
-    /// this step now. If the server's sand differs, ends the link with it and returns false.
+    /// this step now. If the server's sand differs, ends the link to this server and returns false.
     [[nodiscard]] virtual bool proveServer(const std::vector<haptic_bridge::TimedStep>& /* steps */,
                                            std::uint64_t /* hash */) {
         return true;
@@ -76,11 +78,13 @@ public:
     [[nodiscard]] virtual bool streaming() const { return false; }
     /// Returns the state of the hand, such as "hand linked", as the event `progress` reports it (docs/events.md).
     [[nodiscard]] virtual const char* hand() const = 0;
+    /// Returns the present epoch of live steps; 0 for a recording.
     [[nodiscard]] virtual std::uint32_t epoch() const { return 0; }
     /// Returns server's clock − master's clock [ns].
     [[nodiscard]] virtual std::int64_t clockOffsetNs() const { return 0; }
     /// Returns the server's latest report; nullopt if no server has sent one.
     [[nodiscard]] virtual std::optional<haptic_bridge::Report> report() const { return std::nullopt; }
+    /// Returns the counters of all links so far, added up.
     [[nodiscard]] virtual haptic_bridge::LinkCounters counters() const { return {}; }
     /// Says goodbye to the server and ends the link.
     virtual void stop() {}
