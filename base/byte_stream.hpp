@@ -16,15 +16,16 @@ namespace base {
 
 using Bytes = std::vector<std::uint8_t>;
 
-static_assert(std::endian::native == std::endian::little, "journal and wire are little-endian, and so is every host");
+static_assert(std::endian::native == std::endian::little,
+              "journal and link use little-endian numbers, so every host must too");
 
-/// Bytes that do not hold what they should: cut short, or a value that cannot be.
+/// Error of a decoder: the bytes end too early, or hold a value that is not allowed.
 class FormatError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
-/// Appends little-endian numbers to bytes: what the wire, the broadcast and the journal are made of.
+/// Appends little-endian numbers to bytes. Link, frame messages and journal consist of such bytes.
 class ByteWriter {
 public:
     template <class Number>
@@ -35,25 +36,25 @@ public:
         std::memcpy(bytes_.data() + end, &value, sizeof value);
     }
     void putBytes(std::span<const std::uint8_t> bytes) {
-        // resize and copy: g++ 12 takes the growth inside vector::insert for an overflow and warns.
+        // resize and copy, because g++ 12 warns of an overflow in vector::insert.
         const std::size_t end = bytes_.size();
         bytes_.resize(end + bytes.size());
         std::copy(bytes.begin(), bytes.end(), bytes_.begin() + static_cast<std::ptrdiff_t>(end));
     }
-    /// A length, then the bytes.
+    /// Appends the length, then the bytes.
     void putBlock(std::span<const std::uint8_t> bytes) {
         put(static_cast<std::uint32_t>(bytes.size()));
         putBytes(bytes);
     }
     void putText(std::string_view text) { putBlock({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}); }
-    /// Seven bits a byte, lowest first.
+    /// Appends a number with 7 bits in each byte, lowest bits first. Small numbers take few bytes.
     void putVarint(std::uint64_t value) {
         for (; value >= 0x80; value >>= 7) {
             bytes_.push_back(static_cast<std::uint8_t>(value | 0x80));
         }
         bytes_.push_back(static_cast<std::uint8_t>(value));
     }
-    /// Small magnitudes of either sign stay short.
+    /// Appends a signed number. Small magnitudes of either sign take few bytes.
     void putSigned(std::int64_t value) {
         putVarint((static_cast<std::uint64_t>(value) << 1) ^ static_cast<std::uint64_t>(value >> 63));
     }
@@ -65,7 +66,7 @@ private:
     Bytes bytes_;
 };
 
-/// Reads what ByteWriter wrote; throws FormatError rather than read past the end.
+/// Reads what ByteWriter wrote. Throws FormatError if the bytes end before a value does.
 class ByteReader {
 public:
     explicit ByteReader(std::span<const std::uint8_t> bytes) : rest_(bytes) {}

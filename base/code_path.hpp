@@ -3,9 +3,9 @@
 
 namespace base {
 
-/// Whether this machine runs what is compiled for x86-64-v3.
+/// Returns whether this CPU runs code that is compiled for x86-64-v3.
 inline bool machineHasV3() {
-    // clang 14 knows no "x86-64-v3" here; these three stand for it on every processor that was ever sold.
+    // clang 14 does not know "x86-64-v3" here. Every CPU that was sold with these three has all of x86-64-v3.
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
 }
 

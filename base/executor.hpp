@@ -5,8 +5,8 @@
 
 namespace base {
 
-/// Calls task(0) … task(count - 1) once each, in any order and on any threads, and returns when all have returned.
-/// Handed in by programs that have cores to spare; the sand is the same with any of them, or none.
+/// Function that calls task(0) … task(count - 1) once each, in any order and on any threads. It returns when all tasks
+/// have returned. Programs with spare cores pass one to the sand; the sand is the same with every executor.
 using Executor = std::function<void(int count, const std::function<void(int)>& task)>;
 
 }  // namespace base

@@ -8,7 +8,7 @@
 
 namespace base {
 
-/// Numbers from 0 on. To clear it costs nothing; it takes four bytes for every number up to the largest.
+/// Set of numbers from 0 up. clear() takes constant time. The set takes 4 bytes for every number up to the largest.
 class IndexSet {
 public:
     void clear() {
@@ -18,7 +18,7 @@ public:
         }
     }
     void reserve(std::size_t count) { turns_.resize(std::max(turns_.size(), count), 0); }
-    /// Whether it is new.
+    /// Adds a number. Returns whether it is new.
     bool insert(std::int32_t number) {
         const auto at = static_cast<std::size_t>(number);
         if (at >= turns_.size()) {
@@ -26,22 +26,22 @@ public:
         }
         return insertReserved(number);
     }
-    /// The same for a number below what was reserved.
+    /// Adds a number that is less than the reserved count. Returns whether it is new.
     bool insertReserved(std::int32_t number) {
         const auto at = static_cast<std::size_t>(number);
         const bool isNew = turns_[at] != turn_;
         turns_[at] = turn_;
         return isNew;
     }
-    /// Somebody will ask for it soon.
+    /// Loads the entry of a number into the cache, because a caller needs it soon.
     void fetchReserved(std::int32_t number) const { __builtin_prefetch(turns_.data() + number); }
 
 private:
-    std::vector<std::uint32_t> turns_;  // in which it was put in last
+    std::vector<std::uint32_t> turns_;  // turn in which each number was added last
     std::uint32_t turn_ = 1;
 };
 
-/// A set that can be walked through: its numbers in the order in which they came, each once.
+/// IndexSet that also lists its numbers, each once, in the order in which they were added.
 class IndexList {
 public:
     void clear() {

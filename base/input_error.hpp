@@ -7,13 +7,13 @@
 
 namespace base {
 
-/// Exit status of every program for input it cannot use; 1 is a failure while running, 0 success.
+/// Exit status of every program for input that it cannot use. Status 1 is a failure while running, 0 is success.
 inline constexpr int kExitBadInput = 2;
 
-/// Something the user gave cannot be used: a file, an option, an address.
+/// Error in something that the user gave: a file, an option, an address.
 ///
-/// what() is the one line a person reads, such as "walls/lab.toml:12: eye_separation must be positive, got -0.06".
-/// Caught once, in each program's main, which prints it behind the program's name and exits with kExitBadInput.
+/// what() is one line for the user, such as "walls/lab.toml:12: eye_separation must be positive, got -0.06".
+/// Each program's main catches it, prints it after the program's name, and exits with kExitBadInput.
 class InputError : public std::runtime_error {
 public:
     explicit InputError(const std::string& line) : std::runtime_error(oneLine(line)) {}
@@ -21,7 +21,7 @@ public:
         : InputError(file + ":" + std::to_string(lineNumber) + ": " + message) {}
 
 private:
-    /// What is quoted from the user may hold line feeds and worse.
+    /// Replaces control characters, because text that is quoted from the user may contain line feeds.
     static std::string oneLine(std::string text) {
         std::replace_if(
             text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');

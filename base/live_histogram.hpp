@@ -10,9 +10,9 @@
 
 namespace base {
 
-/// Durations as one thread measures them, while others read: 128 buckets an octave, so percentiles are within 1 %.
+/// Histogram of durations [ns] with 128 buckets per octave, so that percentiles are within 1 %.
 ///
-/// One writer, any number of readers; nobody waits. Negative durations count as 0.
+/// Threads: one thread adds, any number of threads read, and no call waits. Negative durations count as 0.
 class LiveHistogram {
 public:
     void add(std::int64_t ns) {
@@ -34,7 +34,7 @@ public:
             count() == 0 ? 0 : squares_.load(std::memory_order_relaxed) / static_cast<double>(count());
         return std::sqrt(std::max(0.0, square - mean * mean));
     }
-    /// The middle of the bucket that holds the share-th value; 0 when nothing was added.
+    /// Returns the middle of the bucket that holds the quantile `share` (0 to 1), or 0 if the histogram is empty.
     [[nodiscard]] double percentileNs(double share) const {
         const auto wanted = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(count())));
         std::uint64_t seen = 0;
@@ -47,7 +47,7 @@ public:
         return 0;
     }
 
-    /// Calls visit(lowest [ns], count) for every bucket that is not empty, from the shortest on.
+    /// Calls visit(lowest [ns], count) for every bucket that is not empty, shortest durations first.
     template <class Visit>
     void eachBucket(const Visit& visit) const {
         for (std::size_t i = 0; i < buckets_.size(); ++i) {

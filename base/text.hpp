@@ -14,7 +14,7 @@ namespace base {
 /// Returns `text` with A to Z as a to z in any locale. Other bytes stay.
 [[nodiscard]] std::string lowerCase(std::string_view text);
 
-/// Returns how the name of `file` ends, in small letters: ".tif" for "A.TIF". Empty without a dot.
+/// Returns the extension of `file` in small letters: ".tif" for "A.TIF". Returns an empty text if it has none.
 [[nodiscard]] std::string endingOf(const std::filesystem::path& file);
 
 /// Returns `text` without the spaces, tabs and carriage returns around it.
@@ -23,7 +23,7 @@ namespace base {
 /// Returns the trimmed parts of `text` between separators. An empty text is one empty part.
 [[nodiscard]] std::vector<std::string_view> split(std::string_view text, char separator);
 
-/// Returns the number that the whole of `word` spells, in any locale; nullopt if it spells none or an infinite one.
+/// Returns the number that the whole of `word` spells, in any locale. Returns nullopt if it spells no finite number.
 [[nodiscard]] std::optional<double> numberOf(std::string_view word);
 
 /// Returns the index of `name` in `names`. Throws InputError, "no WHAT 'name'; there are …", if it is not there.

@@ -7,15 +7,15 @@
 
 namespace base {
 
-/// Hands the latest value from one thread to one other: three buffers, so that neither ever waits.
+/// Passes the latest value from one thread to another. It has three buffers, so that neither thread waits.
 template <class Value>
 class TripleBuffer {
 public:
-    /// The writer's own buffer: fill it, then publish().
+    /// Returns the buffer of the writing thread. Fill it, then call publish().
     [[nodiscard]] Value& next() { return buffers_[writing_]; }
     void publish() { writing_ = middle_.exchange(writing_ | kFresh, std::memory_order_acq_rel) & kIndex; }
 
-    /// The reader's: the value published last, which stays as it is until the next call.
+    /// Returns the value that was published last, to the reading thread. It does not change before the next call.
     [[nodiscard]] const Value& latest() {
         if ((middle_.load(std::memory_order_relaxed) & kFresh) != 0) {
             reading_ = middle_.exchange(reading_, std::memory_order_acq_rel) & kIndex;

@@ -6,7 +6,7 @@
 
 namespace host {
 
-/// The host's monotonic clock [ns]: every time stamp of the link is one of these.
+/// Returns the time of the host's monotonic clock [ns]. Every time stamp of the link comes from it.
 [[nodiscard]] inline std::int64_t monotonicNs() {
     using namespace std::chrono;
     return duration_cast<nanoseconds>(steady_clock::now().time_since_epoch()).count();

@@ -76,7 +76,7 @@ Option Option::excludes(const Option& other) const {
 
 CommandLine::CommandLine(const std::string& what, const std::string& name)
     : owned_(std::make_unique<CLI::App>(what, name)), app_(owned_.get()) {
-    // For --help: host::answersVersion() has answered it already, before anything was started.
+    // Only for --help, because host::answersVersion() answers --version before the program starts anything.
     app_->add_flag_callback(
         "--version", [] {}, "print version and build, with --json as JSON, and end");
 }

@@ -17,26 +17,26 @@ class Option;
 
 namespace host {
 
-/// One option of a command line, to be described further: `line.option("--rate", rate, "…").range(1, 1000)`.
+/// One option of a command line, for further description: `line.option("--rate", rate, "…").range(1, 1000)`.
 /// Valid as long as its CommandLine.
 class Option {
 public:
     explicit Option(CLI::Option* option) : option_(option) {}
 
     Option required() const;
-    /// --help shows the value that the variable has now.
+    /// Makes --help show the value that the variable has at this call.
     Option showDefault() const;
-    /// Both ends are allowed. A value of another type, or outside, is refused.
+    /// Refuses a value of another type, or outside the range. Both ends are allowed.
     Option range(int lowest, int highest) const;
     Option range(double lowest, double highest) const;
     Option positive() const;
     Option notNegative() const;
     Option oneOf(const std::vector<std::string>& allowed) const;
-    /// `refusal` returns what is wrong with a value, or an empty text.
+    /// Refuses values for which `refusal` returns a message. It returns an empty text for a valid value.
     Option check(std::function<std::string(const std::string&)> refusal) const;
-    /// Each occurrence takes one value, where a vector would take all that follow.
+    /// Lets each occurrence take one value. Otherwise a vector takes all values that follow.
     Option oneValueEach() const;
-    /// A vector's values stand in one word, separated by commas.
+    /// Reads the values of a vector from one argument, separated by commas.
     Option commaSeparated() const;
     Option needs(const Option& other) const;
     Option excludes(const Option& other) const;
@@ -49,19 +49,19 @@ private:
 /// Not thread-safe.
 class CommandLine {
 public:
-    /// `what` the program does is the first line of --help.
+    /// `what` is the first line of --help and describes the program.
     CommandLine(const std::string& what, const std::string& name);
     ~CommandLine();
     CommandLine(CommandLine&&) noexcept;
     CommandLine& operator=(CommandLine&&) = delete;
 
-    /// `name` begins with "--", or is what --help calls the argument at this place. T: std::string, a path, int,
+    /// Adds an option if `name` begins with "--", otherwise an argument at this place. T: std::string, a path, int,
     /// std::uint16_t, std::uint32_t, std::uint64_t, std::int64_t, double; an optional of most of these; a vector of int
     /// or std::string. command_line.cpp lists them all.
     template <class T>
     Option option(const std::string& name, T& value, const std::string& help = "");
     Option flag(const std::string& name, bool& value, const std::string& help = "");
-    /// Sets `value` to that of the chosen name.
+    /// Adds an option that sets `value` to the value of the name that the user chooses.
     template <class T>
     Option choice(const std::string& name, T& value, const std::vector<std::pair<std::string, T>>& choices,
                   const std::string& help) {
@@ -70,16 +70,16 @@ public:
         return chosen(
             name, names, [&value, choices](std::size_t index) { value = choices[index].second; }, help);
     }
-    /// An option described before.
+    /// Returns an option that was added before.
     [[nodiscard]] Option named(const std::string& name) const;
 
-    /// A command such as `bench sweeps`, with options of its own; one of the commands must then be given.
+    /// Adds a command such as `bench sweeps`, with its own options. The user must then give one of the commands.
     CommandLine command(const std::string& name, const std::string& what);
-    /// Whether the user gave this command.
+    /// Returns whether the user gave this command.
     [[nodiscard]] bool given() const;
 
     [[nodiscard]] std::string name() const;
-    /// The last lines of --help.
+    /// Sets the last lines of --help.
     void footer(const std::string& text);
 
     /// Prints the help text and returns true if the arguments contain --help or -h. For programs that start something
@@ -101,10 +101,10 @@ private:
 /// Adds --sand-threads, for programs that hold a replica of the sand.
 void addSandThreads(CommandLine& line, int& threads);
 
-/// The frame of every program's main: parses, calls `run`, and prints one line on stderr for whatever goes wrong. The
-/// line begins with the program's name.
-/// Returns run's value; kExitBadInput for unusable options and input; `failed` for errors of our own, which differs in
-/// programs in which 1 is an answer.
+/// Frame of every program's main. Parses the options, calls `run`, and prints one line on stderr for an error. The line
+/// begins with the program's name.
+/// Returns the value of `run`, or kExitBadInput for options and input that cannot be used. Returns `failed` for every
+/// other error; programs that use 1 as an answer pass another number.
 int runMain(CommandLine& line, int argc, char** argv, const std::function<int()>& run, int failed = 1);
 
 }  // namespace host

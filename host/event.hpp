@@ -11,7 +11,7 @@
 
 namespace host {
 
-/// A value of an event: a JSON scalar, or JSON text that is taken as it is (`Json`).
+/// Value in an event: a JSON scalar, or JSON text that is copied as it is (`Json`).
 struct Json {
     std::string text;
 };
@@ -34,15 +34,15 @@ private:
 };
 using EventFields = std::vector<std::pair<std::string_view, EventValue>>;
 
-/// The line that emitEvent() writes, without its newline: `@sandwall {"event":"drill","frame":30}`.
+/// Returns the line that emitEvent() writes, without its newline: `@sandwall {"event":"drill","frame":30}`.
 ///
-/// Text that is not UTF-8 has its wrong bytes replaced. Throws std::invalid_argument when a Json value is not JSON.
+/// Replaces bytes that are not UTF-8. Throws std::invalid_argument if a Json value is not JSON.
 [[nodiscard]] std::string eventLine(std::string_view name, const EventFields& fields);
 
 /// Writes an event to standard error as one line, when the environment variable SANDWALL_EVENTS is 1.
 ///
-/// Messages are for people and may change their words; events are for programs and keep their names and fields
-/// (docs/events.md). One write(2) per line, so that lines of several threads do not mix. Any thread.
+/// Messages are for people, and their wording may change. Events are for programs, and keep their names and fields
+/// (docs/events.md). Each line is one write(2), so that lines of several threads do not mix. Threads: any.
 void emitEvent(std::string_view name, const EventFields& fields = {});
 
 }  // namespace host

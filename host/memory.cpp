@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t kUnlimited = std::numeric_limits<std::int64_t>::max();
 
-/// Returns the number with which a file of the kernel's begins; nullopt if it begins with none, as with "max".
+/// Returns the number at the start of a file of the kernel, or nullopt if it starts with a word such as "max".
 std::optional<std::int64_t> numberIn(const char* file) {
     std::ifstream stream(file);
     std::int64_t number = 0;
@@ -38,7 +38,7 @@ std::int64_t available() {
 }  // namespace
 
 std::int64_t freeMemory() {
-    // A container has a limit of its own, which /proc/meminfo does not know.
+    // /proc/meminfo does not show the limit of a container.
     const auto most = numberIn("/sys/fs/cgroup/memory.max");
     const auto used = numberIn("/sys/fs/cgroup/memory.current");
     return std::min(available(), most && used ? std::max<std::int64_t>(*most - *used, 0) : kUnlimited);

@@ -5,11 +5,11 @@
 
 namespace host {
 
-/// Returns the memory that programs on this machine, or in this control group, may still take [byte].
+/// Returns the memory that is still free on this machine, or in this control group [byte].
 [[nodiscard]] std::int64_t freeMemory();
 
-/// Returns the memory that this process alone may still take [byte]: freeMemory(), or less under a limit of its own
-/// (ulimit -v).
+/// Returns the memory that this process may still allocate [byte]. It is freeMemory(), or less if the process has a
+/// limit (ulimit -v).
 [[nodiscard]] std::int64_t freeMemoryOfProcess();
 
 }  // namespace host

@@ -25,7 +25,7 @@ fs::path findModule(const Module& module, const std::vector<fs::path>& folders) 
     throw base::InputError(module.askedBy + ": there is no " + module.file + " in " + places + "; " + module.ifMissing);
 }
 
-/// Refuses a module of another build: its interfaces and its numbers may differ.
+/// Throws for a module of another build, because its interfaces and its numbers may differ.
 void requireSameBuild(void* handle, const fs::path& file) {
     void* const found = dlsym(handle, "sandwallBuildId");
     const char* const build = found == nullptr ? "none" : reinterpret_cast<const char* (*)()>(found)();
@@ -55,7 +55,7 @@ void* loadModule(const Module& module, const std::vector<fs::path>& folders) {
     requireSameBuild(handle, file);
     void* const symbol = dlsym(handle, module.symbol.c_str());
     if (symbol == nullptr) {
-        throw base::InputError(file.string() + ": defines no " + module.symbol + "; " + module.ifNotLoaded);
+        throw base::InputError(file.string() + ": does not define " + module.symbol + "; " + module.ifNotLoaded);
     }
     return symbol;
 }

@@ -7,20 +7,20 @@
 
 namespace host {
 
-/// A loadable part of Sandwall, and what to tell the user if it is missing.
+/// Loadable part of Sandwall, and the messages for a user who lacks it.
 struct Module {
     std::string file;         // "sandwall-import.so"
-    std::string symbol;       // the function that it defines
-    std::string askedBy;      // the option or setting that needs it: messages begin with this
+    std::string symbol;       // function that the file defines
+    std::string askedBy;      // option or setting that needs it; messages begin with this
     std::string ifMissing;    // "build Sandwall with Debian's libgdal-dev"
     std::string ifNotLoaded;  // "install Debian's libgdal32"
 };
 
-/// Folders that hold modules: that of this program, then ../lib/sandwall beside it.
+/// Returns the folders that may hold modules: the folder of this program, then ../lib/sandwall next to it.
 [[nodiscard]] std::vector<std::filesystem::path> moduleFolders();
 
-/// Loads a module for good and returns the address of its symbol. Modules stay loaded, because libraries leave threads
-/// and thread-local memory behind.
+/// Loads a module and returns the address of its symbol. The module stays loaded until the process ends, because
+/// libraries leave threads and thread-local memory behind.
 ///
 /// Throws base::InputError if the module is in none of the folders, cannot be loaded, or is of another build.
 [[nodiscard]] void* loadModule(const Module& module,

@@ -13,7 +13,7 @@ namespace host {
 /// `sandwall-relax: warning: dem.asc: ...`. Any thread.
 template <class... T>
 void printLine(fmt::format_string<T...> format, T&&... arguments) {
-    // A session's lines come from several programs on several hosts: each must say which one wrote it.
+    // Several programs on several hosts print into one session's log, so each line names its program.
     fmt::print(stderr, "{}: {}\n", program_invocation_short_name, fmt::format(format, std::forward<T>(arguments)...));
 }
 

@@ -21,15 +21,15 @@ struct TomlTable::Document {
 struct TomlTable::Node {
     std::shared_ptr<Document> document;
     const toml::table* table = nullptr;
-    std::string name;                       // as in [name], empty for the root
-    mutable std::set<std::string> known{};  // keys somebody asked for
+    std::string name;                       // the name in [name]; empty for the root
+    mutable std::set<std::string> known{};  // keys that were read
 };
 
 namespace {
 
 long lineOf(const toml::node& node) { return static_cast<long>(node.source().begin.line); }
 
-/// Nothing unless the node is a list of exactly `count` finite numbers.
+/// Returns nullopt unless the node is a list of exactly `count` finite numbers.
 std::optional<std::vector<double>> numbersOf(const toml::node* value, std::size_t count) {
     const toml::array* array = value != nullptr ? value->as_array() : nullptr;
     if (array == nullptr || array->size() != count) {

@@ -12,23 +12,23 @@
 
 namespace host {
 
-/// The range of numbers that a key accepts. A message prints it: "within [0, 90)".
+/// Range of numbers that a key accepts. Messages print it: "within [0, 90)".
 struct Range {
     double lowest = -std::numeric_limits<double>::max();
     double highest = std::numeric_limits<double>::max();
-    bool highestIsOut = false;  // `highest` itself is refused
+    bool highestIsOut = false;  // whether `highest` itself is refused
 };
 
 inline constexpr Range kPositive{std::numeric_limits<double>::min(), std::numeric_limits<double>::max()};
 
-/// One table of a TOML file, read key by key, so that every complaint names file, line and key.
+/// One table of a TOML file. It is read key by key, so that each message names file, line and key.
 ///
-/// A reader takes the keys it knows and ends with finish(), which refuses the ones nobody asked for: a typing error
-/// must not become a silent default. Every member throws base::InputError. Copies share the same file.
+/// Read every known key, then call finish(), which refuses the keys that were not read. Otherwise a typing error would
+/// silently select a default. Every member throws base::InputError. Copies share the same file.
 class TomlTable {
 public:
     static TomlTable load(const std::filesystem::path& file);
-    /// `name` stands for the file in messages.
+    /// Parses a text. Messages print `name` as its file.
     static TomlTable parse(std::string_view text, const std::string& name);
 
     [[nodiscard]] bool has(std::string_view key) const;
@@ -39,32 +39,32 @@ public:
     [[nodiscard]] bool flagOr(std::string_view key, bool fallback) const;
     [[nodiscard]] std::string text(std::string_view key) const;
     [[nodiscard]] std::string textOr(std::string_view key, std::string_view fallback) const;
-    /// The index of the key's text among `choices`, `fallback` when the key is absent.
+    /// Returns the index of the key's text in `choices`, or `fallback` if the key is absent.
     [[nodiscard]] int choiceOr(std::string_view key, const std::vector<std::string_view>& choices, int fallback) const;
-    /// Exactly `count` finite numbers.
+    /// Returns a list of exactly `count` finite numbers.
     [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count) const;
     [[nodiscard]] std::vector<double> numbersOr(std::string_view key, std::vector<double> fallback) const;
     [[nodiscard]] std::vector<std::string> textsOr(std::string_view key, std::vector<std::string> fallback) const;
-    /// Any number of lists of exactly `count` finite numbers each.
+    /// Returns any number of lists, each of exactly `count` finite numbers.
     [[nodiscard]] std::vector<std::vector<double>> numberLists(std::string_view key, std::size_t count) const;
-    /// Whether the key is there and holds a text: for keys that take a text or a list.
+    /// Returns whether the key is present and holds a text. For keys that accept a text or a list.
     [[nodiscard]] bool isText(std::string_view key) const;
 
-    /// A sub-table; absent gives nothing.
+    /// Returns a sub-table, or nullopt if it is absent.
     [[nodiscard]] std::optional<TomlTable> table(std::string_view key) const;
-    /// A sub-table that must be there.
+    /// Returns a sub-table that must be present.
     [[nodiscard]] TomlTable requiredTable(std::string_view key) const;
-    /// The tables of [[key]], in the order of the file; absent gives none.
+    /// Returns the tables of [[key]] in the order of the file, or an empty list if the key is absent.
     [[nodiscard]] std::vector<TomlTable> tables(std::string_view key) const;
 
-    /// Throws for the first key, in the order of lines, that is not among these. Asked before anything is read, it
-    /// names the misspelt key where the reader would miss the right one.
+    /// Throws for the first key in the file that is not one of these. Call it before reading: the message then names
+    /// the misspelt key, where reading would report the correct key as missing.
     void only(std::initializer_list<std::string_view> keys) const;
-    /// Throws for the first key, in the order of lines, that nobody read.
+    /// Throws for the first key in the file that was not read.
     void finish() const;
-    /// Throws with file and the line of `key` (of the table itself when the key is absent).
+    /// Throws with the file and the line of `key`, or the line of the table if the key is absent.
     [[noreturn]] void fail(std::string_view key, const std::string& message) const;
-    /// The folder of the file, for paths inside it.
+    /// Returns the folder of the file, to which paths in the file are relative.
     [[nodiscard]] std::filesystem::path folder() const;
 
 private:

@@ -9,13 +9,13 @@
 
 namespace host {
 
-/// The release of this build, such as "0.2.0": the version in the topmost CMakeLists.txt.
+/// Returns the release of this build, such as "0.2.0", from the topmost CMakeLists.txt.
 [[nodiscard]] std::string_view release();
 
-/// Numbers of the formats and rules that a program knows, such as {"journal", 6}.
+/// Version numbers of formats and rules that a program knows, such as {"journal", 6}.
 using KnownVersions = std::vector<std::pair<std::string_view, std::uint32_t>>;
 
-/// Formats version, build id and known versions of a program, for people or as one JSON object.
+/// Returns version, build id and known versions of a program, for people or as one JSON object.
 [[nodiscard]] std::string versionText(std::string_view program, const KnownVersions& known, bool json);
 
 /// Prints versionText() if `--version` is among the arguments, as JSON if `--json` is too. Call it first in main, and

@@ -12,7 +12,7 @@ namespace host {
 WholeFile::WholeFile(const std::filesystem::path& path) : path_(path), target_(path) {
     std::error_code none;
     const bool there = std::filesystem::exists(path, none);
-    // Renaming would replace what may not be written to.
+    // Renaming would replace a file that must not be written to.
     if (there && (std::filesystem::is_directory(path, none) || ::access(path.c_str(), W_OK) != 0)) {
         fail();
     }
@@ -20,7 +20,7 @@ WholeFile::WholeFile(const std::filesystem::path& path) : path_(path), target_(p
         stream_.open(target_, std::ios::binary);
     } else {
         if (there) {
-            target_ = std::filesystem::canonical(path, none);  // a link stays a link
+            target_ = std::filesystem::canonical(path, none);  // keeps a link a link
         }
         beside_ = target_.string() + fmt::format(".{}.part", ::getpid());
         stream_.open(beside_, std::ios::binary | std::ios::trunc);

@@ -7,11 +7,11 @@
 
 namespace host {
 
-/// A file that is written whole or not at all: what stood at its path is replaced by keep() and not before.
+/// File that is written completely or not at all. keep() replaces the previous file at its path.
 ///
-/// The text goes into a file beside it, which is renamed at the end, and removed when keep() is not reached. A path
-/// that is no plain file, such as a pipe, is written to directly. Throws base::InputError in one line when the path
-/// cannot be written; making one and letting it go is a test of that which changes nothing.
+/// The text goes into a temporary file in the same folder. keep() renames it; without keep() the destructor removes it.
+/// A path that is not a plain file, such as a pipe, is written to directly. Throws base::InputError in one line if the
+/// path cannot be written. To test whether a path can be written, create a WholeFile and destroy it.
 class WholeFile {
 public:
     explicit WholeFile(const std::filesystem::path& path);
@@ -21,19 +21,19 @@ public:
 
     [[nodiscard]] std::ostream& stream() { return stream_; }
     void keep();
-    /// As keep(), and on the disk when it returns: also after a loss of power.
+    /// Does what keep() does, and returns when the file is on disk, where it survives a power loss.
     void keepSynced();
 
 private:
     [[noreturn]] void fail() const;
 
-    std::filesystem::path path_;    // as it was given
-    std::filesystem::path target_;  // behind links
-    std::filesystem::path beside_;  // empty where target_ is written to directly
+    std::filesystem::path path_;    // as the user gave it
+    std::filesystem::path target_;  // `path_` with links resolved
+    std::filesystem::path beside_;  // temporary file; empty if target_ is written to directly
     std::ofstream stream_;
 };
 
-/// Names that were given or taken in this file's folder are on the disk when it returns, where folders can be synced.
+/// Syncs the folder of `file`, so that created and removed names survive a power loss. Some file systems cannot do it.
 void syncFolderOf(const std::filesystem::path& file);
 
 }  // namespace host
