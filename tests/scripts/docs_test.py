@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""That what the documents name exists: files, headings, functions and tests.
+"""Checks that every file, heading, function and test that the documents name exists, and that an index lists every page.
 
 usage: docs_test.py
 """
@@ -19,7 +19,7 @@ CODE = re.compile(r"`([^`\n]+)`")
 FENCE = re.compile(r"^ *(```|~~~).*?^ *\1[^\n]*$", re.MULTILINE | re.DOTALL)
 GTEST = re.compile(r"^(?:TEST|TEST_F|TEST_P)\(\s*(\w+)\s*,\s*(\w+)\s*\)", re.MULTILINE)
 TEST_NAME = re.compile(r"^[A-Z]\w+\.[A-Z]\w+$")
-# A file of the repository: a folder of its own first, and an ending that only sources, documents and settings have.
+# A path of the repository: it begins with a top folder and has the suffix of a source, a document or a setting.
 SOURCE = re.compile(r"^(?:{folders})/[\w./-]+\.(?:cpp|hpp|glsl|py|sh|toml|md|strokes)$")
 
 
@@ -29,7 +29,7 @@ def tracked(*patterns):
 
 
 class Repository:
-    """The files, the tests by their file, the headings by their document, and `read` for the text of a source."""
+    """The files of a project, its tests by file, and the texts of its documents. `read` returns the text of a source."""
 
     def __init__(self, files, tests, documents, read=lambda file: (ROOT / file).read_text()):
         self.files = set(files)
@@ -52,7 +52,7 @@ class Repository:
 
 
 def anchor(heading):
-    """As web pages of repositories make it from a heading."""
+    """Returns the anchor that web pages of repositories make from a heading."""
     text = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading.lower())
     return re.sub(r" ", "-", re.sub(r"[^\w\- ]", "", text)).strip("-")
 
@@ -62,7 +62,7 @@ def anchors(text):
 
 
 def broken_links(repository, name):
-    """Links of one document to what is not there."""
+    """Yields a line for each link of a document to a file or a heading that does not exist."""
     text = FENCE.sub("", repository.documents[name])
     for target in re.findall(r"\]\(([^()\s]+)\)", CODE.sub("", text)):
         if NOT_HERE.match(target):
@@ -75,8 +75,33 @@ def broken_links(repository, name):
             yield f"{name}: links to {target}; that page has no such heading"
 
 
+def links(repository, name):
+    """Yields the file that each link of a document leads to."""
+    text = CODE.sub("", FENCE.sub("", repository.documents[name]))
+    for target in re.findall(r"\]\(([^()\s]+)\)", text):
+        path = target.partition("#")[0]
+        if path and not NOT_HERE.match(target):
+            yield os.path.normpath(os.path.join(os.path.dirname(name), path))
+
+
+def index_faults(repository):
+    """Yields a line for each page of docs/ that its index does not list exactly once.
+
+    The index of a folder is its README.md. It lists the pages of the folder, and the README.md of each folder in it.
+    """
+    for page in sorted(name for name in repository.documents if name.startswith("docs/") and name != "docs/README.md"):
+        folder = os.path.dirname(page)
+        index = f"{os.path.dirname(folder) if page.endswith('/README.md') else folder}/README.md"
+        if index not in repository.documents:
+            yield f"{page}: its folder has no README.md that lists it"
+            continue
+        times = list(links(repository, index)).count(page)
+        if times != 1:
+            yield f"{index}: lists {page} {times} times instead of once"
+
+
 def defines(text, function):
-    """Whether a C++ source holds this function's body. A declaration ends with a semicolon instead."""
+    """Returns whether a C++ source holds the body of this function. A declaration has a semicolon instead."""
     for found in re.finditer(rf"^(?![\s/#]).*?(?<![\w:]){re.escape(function)}\(", text, re.MULTILINE):
         depth, at = 1, found.end()
         while depth > 0 and at < len(text):
@@ -88,13 +113,13 @@ def defines(text, function):
 
 
 def linked_functions(repository, name):
-    """(function, file) of links such as [`HapticTick::tick`](../haptic_bridge/loop/haptic_tick.cpp)."""
+    """Yields (function, file) of links such as [`HapticTick::tick`](../haptic_bridge/loop/haptic_tick.cpp)."""
     for function, path in re.findall(r"\[`([\w:]+)`\]\(([^()\s]+\.[ch]pp)\)", FENCE.sub("", repository.documents[name])):
         yield function, os.path.normpath(os.path.join(os.path.dirname(name), path))
 
 
 def missing_functions(repository, name):
-    """Links with the name of a function to a source that does not define it."""
+    """Yields a line for each link that names a function and leads to a source that does not define it."""
     for function, file in linked_functions(repository, name):
         if file not in repository.files:
             yield f"{name}: links {function} to {file}, which is no file of the project"
@@ -103,16 +128,16 @@ def missing_functions(repository, name):
 
 
 def missing_sources(repository, name):
-    """Names of sources, scripts and settings that are none."""
+    """Yields a line for each source, script or setting that a document names and the project does not have."""
     for span in CODE.findall(repository.documents[name]):
         if repository.source.match(span) and span not in repository.files:
             yield f"{name}: names {span}, which is no file of the project"
 
 
 def missing_filters(repository, name):
-    """Filters of tests that would run nothing."""
+    """Yields a line for each filter that matches no test."""
     for given in re.findall(r"--gtest_filter='?([\w.*?:/-]+)", repository.documents[name]):
-        # Of a test with parameters the instance stands before, and the parameter behind.
+        # The full name of a test with parameters has an instance in front and a parameter at the end.
         for pattern in given.split(":"):
             if not any(fnmatch.fnmatchcase(test, pattern) or fnmatch.fnmatchcase(f"x/{test}/x", pattern)
                        for test in repository.all_tests()):
@@ -120,7 +145,7 @@ def missing_filters(repository, name):
 
 
 def missing_tests(repository, name):
-    """Rows of the table of the papers: a file of tests, and behind it tests of that file, until the next file."""
+    """Yields a line for each test that a row of papers.md names and its file does not have. A row names a file, then its tests."""
     for row in repository.documents[name].splitlines():
         file = None
         for span in CODE.findall(row):
@@ -128,7 +153,7 @@ def missing_tests(repository, name):
                 file = span
             elif TEST_NAME.match(span):
                 if file is None:
-                    yield f"{name}: {span} stands behind no file of tests"
+                    yield f"{name}: {span} follows no file of tests"
                 elif span not in repository.tests.get(file, set()):
                     yield f"{name}: {file} has no test {span}"
 
@@ -170,10 +195,23 @@ class Documents(unittest.TestCase):
         named = [span for span in CODE.findall(PROJECT.documents[PAPERS]) if TEST_NAME.match(span)]
         self.assertGreater(len(named), 100)
 
-    def test_every_page_is_in_the_list_of_the_readme(self):
-        pages = {name for name in PROJECT.documents if re.match(r"docs/[^/]+\.md$", name)}
-        linked = set(re.findall(r"\]\((docs/[^()#\s]+\.md)\)", PROJECT.documents["README.md"]))
-        self.assertEqual(pages - linked, set())
+    def test_every_page_is_in_the_index_of_its_folder_once(self):
+        self.assertIn("docs/README.md", PROJECT.documents)
+        self.assertEqual(list(index_faults(PROJECT)), [])
+
+    def test_a_page_that_no_index_lists_or_that_one_lists_twice_is_named(self):
+        def faults_of(**pages):
+            documents = {f"docs/{name.replace('__', '/')}.md": text for name, text in pages.items()}
+            return list(index_faults(Repository(documents, {}, documents)))
+
+        self.assertEqual(faults_of(README="[a](page.md) [b](more/README.md)", page="", more__README="[c](part.md#x)", more__part=""), [])
+        self.assertEqual(faults_of(README="# All", page=""), ["docs/README.md: lists docs/page.md 0 times instead of once"])
+        self.assertEqual(faults_of(README="[a](page.md) [b](page.md#x)", page=""),
+                         ["docs/README.md: lists docs/page.md 2 times instead of once"])
+        self.assertEqual(faults_of(README="[a](more/part.md)", more__README="[a](part.md)", more__part=""),
+                         ["docs/README.md: lists docs/more/README.md 0 times instead of once"])
+        self.assertEqual(faults_of(README="[a](more/part.md)", more__part=""),
+                         ["docs/more/part.md: its folder has no README.md that lists it"])
 
     def test_a_link_to_nothing_is_named(self):
         good = "[a](other.md) [b](images/a.png) [c](other.md#the-law-how-it-holds) [d](https://no.where/x) [e](../sand) [f](#page)\n# Page\n"
