@@ -23,12 +23,13 @@ int numberOf(std::int64_t at, int scale, std::int32_t first, std::int32_t spacin
     return static_cast<int>(downwards(at - std::int64_t{scale} * (first - spacing / 2), std::int64_t{scale} * spacing));
 }
 
-/// Whether the cells around a corner are a hole and ground by turns.
+/// Returns whether the four cells around a corner are hole and ground by turns.
 bool isPinched(bool northEast, bool northWest, bool southWest, bool southEast) {
     return northEast != northWest && northEast == southWest && northWest == southEast;
 }
 
-/// Walks along all lines between cells, with a bit for each: runs would be looked for again at every one.
+/// Finds the outline of holes. Walks along all lines between cells, with one bit per cell. With runs, each step would
+/// have to search for its run.
 class Outliner {
 public:
     explicit Outliner(const Holes& holes) : cells_(holes.cells()), bridge_(holes.bridge()) {
@@ -98,10 +99,10 @@ private:
         }
     }
 
-    /// The corners of its square that lie on ground.
+    /// Adds those corners of the square around the pinch that lie on ground.
     void addPinch(int column, int row) {
         const std::int32_t x = cells_.west(column), y = cells_.south(row);
-        const std::int32_t east = isHole(column, row) ? -bridge_ : bridge_;  // of the northern one
+        const std::int32_t east = isHole(column, row) ? -bridge_ : bridge_;  // of the northern corner
         for (const std::int32_t side : {1, -1}) {
             const Place corner{x + side * east, y + side * bridge_};
             parts_.push_back({{x, corner.y}, corner});
@@ -127,7 +128,7 @@ Holes::Holes(const Cells& cells, std::vector<Run> runs)
       runs_(std::move(runs)),
       bridge_(std::max(std::min(cells.spacing.x, cells.spacing.y) / kBridgesPerCell, 1)) {
     if (runs_.empty()) {
-        throw std::invalid_argument("holes that are none");
+        throw std::invalid_argument("holes without a run of cells");
     }
     firstRun_.assign(static_cast<std::size_t>(cells_.rows) + 1, 0);
     const Run* before = nullptr;
@@ -183,14 +184,16 @@ bool Holes::holds(std::int64_t x, std::int64_t y, int scale) const {
 }
 
 bool Holes::holds(const Place& a, const Place& b, const Place& c) const {
-    return holds(std::int64_t{a.x} + b.x + c.x, std::int64_t{a.y} + b.y + c.y, 3);  // the middle lies within it
+    return holds(std::int64_t{a.x} + b.x + c.x, std::int64_t{a.y} + b.y + c.y,
+                 3);  // the centroid lies within the triangle
 }
 
 bool Holes::borders(const Place& a, const Place& b) const {
     if ((a.x == b.x) == (a.y == b.y)) {
         return false;
     }
-    // Beside the middle: a fourth of a unit is less than from any line to a place that is not on it.
+    // Tests places beside the edge's middle. They are a quarter of a unit away. Every lattice place that is not on a
+    // line is farther from it.
     const std::int64_t x = 2 * (std::int64_t{a.x} + b.x), y = 2 * (std::int64_t{a.y} + b.y);
     const int across = a.x == b.x ? 1 : 0, along = 1 - across;
     return holds(x + across, y + along, 4) != holds(x - across, y - along, 4);

@@ -8,60 +8,72 @@
 
 namespace sand::tin {
 
-/// Samples of a raster in a TIN's field, each in the middle of a cell; what of a cell lies beyond the field is not.
+/// Raster in a TIN's field, with a sample in the middle of each cell. The part of a cell beyond the field is cut off.
 struct Cells {
     int columns = 0, rows = 0;
-    Place first{};                                    // of the sample in the south-west [probe unit]
-    Place spacing{kLatticePerCell, kLatticePerCell};  // of columns and of rows [probe unit]
-    std::int32_t width = 0, depth = 0;                // of the field [probe unit]
+    Place first{};                                    // south-west sample [probe unit]
+    Place spacing{kLatticePerCell, kLatticePerCell};  // distance of columns and of rows [probe unit]
+    std::int32_t width = 0, depth = 0;                // size of the field [probe unit]
     friend bool operator==(const Cells&, const Cells&) = default;
 
-    /// Where the cells of a column begin; of `columns`, where the last ends.
+    /// Returns the x where the cells of `column` begin [probe unit]. For `columns`, returns where the last column
+    /// ends.
     [[nodiscard]] std::int32_t west(int column) const;
+    /// Returns the y where the cells of `row` begin [probe unit]. For `rows`, returns where the last row ends.
     [[nodiscard]] std::int32_t south(int row) const;
-    /// Of the cell that holds x / scale; those on a border are the one beyond. May lie outside.
+    /// Returns the column of the cell at x / `scale` [probe unit]. A border between cells belongs to the cell east of
+    /// it. The column may lie outside the raster.
     [[nodiscard]] int columnOf(std::int64_t x, int scale = 1) const;
+    /// Returns the row of the cell at y / `scale` [probe unit]. A border between cells belongs to the cell north of
+    /// it. The row may lie outside the raster.
     [[nodiscard]] int rowOf(std::int64_t y, int scale = 1) const;
 };
 
-/// Cells without data: where a TIN has no ground, and sand neither enters nor leaves.
+/// Cells without data. A TIN has no ground there, and sand neither enters nor leaves.
 ///
-/// Where two such cells touch at nothing but a corner, a square of an eighth of a cell to each side of it has no ground
-/// either: a vertex there would belong to the ground on both sides, and sand passes through no corner on a grid. All
-/// borders run along the axes, so that a constraint on one stays on it though others cross it. Never changes; memory
-/// follows rows, runs and outline, and only terrain with holes has one. Read by any thread.
+/// Two such cells may touch only at a corner. Then the square of an eighth of a cell to each side of the corner has no
+/// ground either. Without the square, a vertex at the corner would belong to the ground on both sides. On a grid, sand
+/// passes through no corner.
+///
+/// All borders run along the axes. A constraint on a border therefore stays on it when other constraints cross it.
+///
+/// Never changes, so that any thread may read it. Its memory grows with the numbers of rows, runs and parts of the
+/// outline. Only terrain with holes has a Holes.
 class Holes {
 public:
-    /// Cells of a row, from `first` to before `end`.
+    /// Cells of one row, from column `first` to before column `end`.
     struct Run {
         std::int32_t row = 0, first = 0, end = 0;
         friend bool operator==(const Run&, const Run&) = default;
     };
-    /// Throws std::invalid_argument unless there are runs, each of a cell or more, in order, apart, and of the field.
+    /// Throws std::invalid_argument unless `runs` is a non-empty list in order of row and column. Each run must have a
+    /// cell or more and lie in the field. Two runs of one row must have a cell between them.
     Holes(const Cells& cells, std::vector<Run> runs);
 
     [[nodiscard]] const Cells& cells() const { return cells_; }
     [[nodiscard]] const std::vector<Run>& runs() const { return runs_; }
-    /// Whether a cell has no ground; those outside the field have none.
+    /// Returns whether a cell has no ground. Cells outside the field have no ground.
     [[nodiscard]] bool isHole(int column, int row) const;
-    /// Of a place on a border: whether that is in a hole is left to chance.
+    /// Returns whether a place lies in a hole. For a place on a border, the result is unspecified.
     [[nodiscard]] bool holds(const Place& place) const { return holds(place.x, place.y, 1); }
-    /// Whether a triangle has no ground; none may lie in a hole and beside it.
+    /// Returns whether a triangle has no ground. The triangle must lie wholly inside or wholly outside the holes.
     [[nodiscard]] bool holds(const Place& a, const Place& b, const Place& c) const;
-    /// Whether the edge between two places runs along the border of a hole, no end of which lies between them.
+    /// Returns whether the edge between two places runs along the border of a hole. No end of the border may lie
+    /// between the two places.
     [[nodiscard]] bool borders(const Place& a, const Place& b) const;
-    /// Whether any cell without ground reaches into a rectangle, its sides included.
+    /// Returns whether a cell without ground reaches into the rectangle, which includes its sides.
     [[nodiscard]] bool reachInto(const Place& southWest, const Place& northEast) const;
 
-    /// The border of all holes, without the field's rim, in straight parts as long as can be.
+    /// Straight part of a hole's border.
     struct Part {
         Place from, to;
     };
+    /// Returns the border of all holes except on the field's rim, in parts that are as long as possible.
     [[nodiscard]] const std::vector<Part>& outline() const { return outline_; }
 
-    /// Whether the corner south-west of a cell is one at which two cells without ground touch, and no more.
+    /// Returns whether two cells without ground touch only at the south-west corner of this cell.
     [[nodiscard]] bool isPinch(int column, int row) const;
-    /// Half the side of the square around such [probe unit].
+    /// Returns half the side of the square without ground around each such corner [probe unit].
     [[nodiscard]] std::int32_t bridge() const { return bridge_; }
 
 private:
@@ -69,7 +81,7 @@ private:
 
     Cells cells_;
     std::vector<Run> runs_;
-    std::vector<std::uint32_t> firstRun_;  // by row, and behind the last
+    std::vector<std::uint32_t> firstRun_;  // index of each row's first run, and the number of runs
     std::int32_t bridge_;
     std::vector<Part> outline_;
 };

@@ -7,12 +7,13 @@
 
 namespace sand::tin {
 
-/// Middles of cells at equal distances, where a start made of a raster has vertices whatever its heights are.
+/// Cell centres at equal distances. A start that is made from a raster has vertices there, whatever its heights are.
 struct Lattice {
     explicit constexpr Lattice(std::int32_t widest /* [probe unit] */) : every(widest / kLatticePerCell) {}
 
-    std::int32_t every;  // [cell], the first at half of it; 0: none
+    std::int32_t every;  // distance [cell]; the first centre is half of it from the rim; 0: no vertices
 
+    /// Returns the number of vertices on a field of `columns` × `rows` cells.
     [[nodiscard]] constexpr std::int64_t size(int columns, int rows) const {
         return every == 0 ? 0 : along(columns) * along(rows);
     }

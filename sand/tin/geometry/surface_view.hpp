@@ -7,12 +7,12 @@
 
 namespace sand::tin {
 
-/// A TIN as whoever draws or feels it sees it, holes without ground and all; nothing here needs the module that the TIN
-/// itself lives in.
+/// References to a TIN, as drawing and forces read it. The triangles include holes, which have no ground.
 struct SurfaceView {
     const Triangles& triangles;
-    const std::vector<double>& heights;      // by vertex [unit = cell size / 2^16]; anything where no vertex lives
-    std::int32_t spacing = kLatticePerCell;  // [probe unit], between the points that a tool puts into the sand
+    const std::vector<double>&
+        heights;  // by vertex [unit = cell size / 2^16]; meaningless for a number without a vertex
+    std::int32_t spacing = kLatticePerCell;  // distance of the points that a tool puts into the sand [probe unit]
 };
 
 }  // namespace sand::tin

@@ -28,7 +28,7 @@ std::size_t countOf(base::ByteReader& reader) {
     return count;
 }
 
-constexpr std::int32_t kKeeps = 1, kHasHoles = 2;  // bits behind the settings
+constexpr std::int32_t kKeeps = 1, kHasHoles = 2;  // bits after the settings
 
 void encodeHoles(const Holes& holes, base::ByteWriter& writer) {
     writer.put(static_cast<std::uint64_t>(holes.runs().size()));
@@ -83,7 +83,7 @@ Cells nominalCells(std::int32_t width, std::int32_t depth) {
 }
 
 double mostHeight(int columns, int rows) {
-    constexpr double kMostVolume = 4.6e18;  // 2^62 volume units, all of whose sums stay within 64 bits
+    constexpr double kMostVolume = 4.6e18;  // 2^62 volume units; all their sums fit in 64 bits
     return kMostVolume / (6.0 * columns * rows * kLatticePerCell * kLatticePerCell);
 }
 
@@ -132,7 +132,7 @@ TinStart TinStart::decode(base::ByteReader& reader) {
         const std::int32_t a = between(reader, 0, last);
         const std::int32_t b = between(reader, 0, last);
         if (a >= b) {
-            throw base::FormatError("a TIN with an edge of nobody");
+            throw base::FormatError("a TIN with a constraint that does not list its smaller vertex first");
         }
         start.constraints.emplace_back(a, b);
     }

@@ -12,41 +12,43 @@
 
 namespace sand::tin {
 
-/// A field's nominal cells, with a sample in the middle of each.
+/// Returns the nominal cells of a field, with a sample in the middle of each.
 [[nodiscard]] Cells nominalCells(std::int32_t width, std::int32_t depth /* [probe unit] */);
 
-/// Heights up to this have volumes that fit, wherever the vertices lie on so many nominal cells [unit].
+/// Returns the largest height whose volumes fit in a TIN of `columns` × `rows` nominal cells, wherever its vertices
+/// are [unit].
 [[nodiscard]] double mostHeight(int columns, int rows);
 
-inline constexpr std::uint32_t kMostPlaces = 1 << 24;  // of a start
+inline constexpr std::uint32_t kMostPlaces = 1 << 24;  // most vertices of a start
 
-/// How finely a TIN follows its terrain and its tools; part of what a scene computes with.
+/// How finely a TIN follows its terrain and its tools. The state of the sand depends on these settings.
 struct Settings {
-    std::int32_t spacing = kLatticePerCell;  // [probe unit], between the points a tool puts into the sand
-    std::int32_t widest = 0;                 // [probe unit], between points at the start; 0: as far as they like
-    std::int32_t maxError = 1 << 12;         // [unit], by which coarsening may move the surface
-    std::int32_t mostVertices = 1 << 18;     // the start has no more, and refinement stops there
-    bool keepConstraints = false;            // of a tool that has left
+    std::int32_t spacing = kLatticePerCell;  // distance of the points that a tool puts into the sand [probe unit]
+    std::int32_t widest = 0;                 // largest distance of points at the start [probe unit]; 0: no limit
+    std::int32_t maxError = 1 << 12;         // largest change of the surface by coarsening [unit]
+    std::int32_t mostVertices = 1 << 18;     // limit for the start; refinement stops there
+    bool keepConstraints = false;            // whether the constraints of a tool stay after it has left
     friend bool operator==(const Settings&, const Settings&) = default;
 };
 
-/// The TIN a session starts with: vertices, their heights, and edges that must be there. Its vertices stay; those that
-/// a tool has put between them may go again. Computed once by whoever loads
-/// the scene; every replica triangulates it alike.
+/// TIN that a session starts with: vertices, their heights, and edges that must be in the mesh. Its vertices stay.
+/// Vertices that a tool adds between them can be removed again. The program that loads the scene computes the start
+/// once. Every replica makes the same triangulation of it.
 struct TinStart {
-    std::int32_t width = 0, depth = 0;  // [probe unit]; the first four places are the corners, as Mesh's
-    std::vector<Place> places;
-    std::vector<std::int32_t> heights;                   // [unit], by place
-    std::vector<std::pair<Vertex, Vertex>> constraints;  // each with the smaller first
-    std::int32_t meanHeight = 0;                         // [unit], under the surface: where devices hover
-    std::shared_ptr<const Holes> holes;                  // nominal cells without data; null when all have some
+    std::int32_t width = 0, depth = 0;                   // size [probe unit]
+    std::vector<Place> places;                           // the first four are the corners, in the order of Mesh
+    std::vector<std::int32_t> heights;                   // by place [unit]
+    std::vector<std::pair<Vertex, Vertex>> constraints;  // each with the smaller vertex first
+    std::int32_t meanHeight = 0;                         // of the surface [unit]; devices hover above it
+    std::shared_ptr<const Holes> holes;                  // nominal cells without data; null if all cells have data
     Settings settings;
 
     void encode(base::ByteWriter& writer) const;
-    /// Throws base::FormatError for bytes that are none: places beside the field or twice, edges of nobody, holes out
-    /// of order or on cells that are not whole.
+    /// Throws base::FormatError if the bytes are not a TinStart. Examples are a place outside the field, two vertices
+    /// in one place, a constraint without two vertices, holes out of order, and holes in a field of cells that are not
+    /// whole.
     static TinStart decode(base::ByteReader& reader);
-    /// Equal digests mean equal sand from equal steps; never 0.
+    /// Returns a number that is never 0. Equal digests mean that equal steps lead to equal sand.
     [[nodiscard]] std::uint64_t digest() const;
 };
 

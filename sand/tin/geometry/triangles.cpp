@@ -22,10 +22,12 @@ Located weigh(const Triangles& mesh, std::int32_t slot, const Place& place) {
     return {slot, {doubledArea(b, c, place), doubledArea(c, a, place), doubledArea(a, b, place)}};
 }
 
-/// The slot with the smallest corners of those that share vertex `centre`.
+/// Returns the slot of the triangle around vertex `centre` whose sorted corners come first. `slot` is one of these
+/// triangles.
 std::int32_t firstAround(const Triangles& mesh, std::int32_t slot, Vertex centre) {
     std::int32_t first = slot;
-    for (const std::size_t turn : {std::size_t{1}, std::size_t{2}}) {  // one way round, and the other from the rim
+    for (const std::size_t turn :
+         {std::size_t{1}, std::size_t{2}}) {  // one way round, then from the first triangle the other way
         for (std::int32_t next = slot;;) {
             const Triangle& triangle = mesh.triangles[at(next)];
             const auto corner = static_cast<std::size_t>(
@@ -50,12 +52,14 @@ double squaredWay(const Place& a, const Place& b) {
     return x * x + y * y;
 }
 
-/// Where to begin: at `slot`, or at one of some vertices all over the mesh (Mücke, Saias and Zhu 1996) where it is far
-/// away. Of a walk almost every triangle is a miss of all caches; that many loads do not wait for one another.
+/// Returns the slot where a walk to `place` begins. That is `slot`, or, if `slot` is far away, a triangle at one of
+/// some vertices all over the mesh (Mücke, Saias and Zhu 1996). Almost every triangle of a walk misses all caches, and
+/// its load waits for the load before. The loads of the vertices do not wait for one another.
 std::int32_t nearer(const Triangles& mesh, std::int32_t slot, const Place& place) {
-    constexpr std::size_t kTried = 256;    // vertices
-    constexpr std::size_t kTogether = 64;  // vertices for one that is tried: few are walked through as fast
-    constexpr std::size_t kLeap = 40503;   // odd, and no multiple of a row that a scene's vertices may come in
+    constexpr std::size_t kTried = 256;  // most vertices that are tried
+    constexpr std::size_t kTogether =
+        64;  // one vertex in 64 is tried, because a walk through a few triangles is as fast
+    constexpr std::size_t kLeap = 40503;  // odd, and no multiple of a likely row length of a scene's vertices
     const std::size_t count = mesh.places.size(), tried = std::min(count / kTogether, kTried);
     double nearest = squaredWay(mesh.places[at(mesh.triangles[at(slot)].corner[0])], place);
     if (tried == 0 || nearest * static_cast<double>(tried) < 4 * static_cast<double>(mesh.width) * mesh.depth) {
@@ -77,8 +81,8 @@ Located locate(const Triangles& mesh, Place place, std::int32_t from) {
     place = {std::clamp(place.x, 0, mesh.width), std::clamp(place.y, 0, mesh.depth)};
     const bool known = from >= 0 && at(from) < mesh.triangles.size() && mesh.triangles[at(from)].alive();
     std::int32_t slot = nearer(mesh, known ? from : mesh.triangleAt[0], place);
-    // Always leaving by the first side beyond which the place lies could go round constraints for ever; chance cannot,
-    // and where the walk ends does not depend on its way.
+    // A walk could always leave by the first side beyond which the place lies, but it could then circle around
+    // constraints for ever. A random side avoids that. The end of the walk does not depend on its way.
     std::uint32_t chance = 1;
     Located here = weigh(mesh, slot, place);
     for (;;) {
