@@ -56,7 +56,7 @@ Mesh::Difference ChangeRecord::difference(const Triangles& mesh) const {
     }
     std::sort(before.begin(), before.end());
     std::sort(now.begin(), now.end());
-    // A triangle that only moved to another slot is no difference.
+    // A triangle that has only moved to another slot is in neither list.
     Mesh::Difference difference;
     std::set_difference(before.begin(), before.end(), now.begin(), now.end(), std::back_inserter(difference.went));
     std::set_difference(now.begin(), now.end(), before.begin(), before.end(), std::back_inserter(difference.came));

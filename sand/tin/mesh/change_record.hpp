@@ -8,10 +8,10 @@
 
 namespace sand::tin {
 
-/// What the triangles were before someone began to change them: each slot is kept when it is touched first.
+/// Record of triangles as they were before a series of changes. Each slot is recorded when it is first touched.
 class ChangeRecord {
 public:
-    /// To be called before a slot's corners or constraints change, or the place of a corner.
+    /// Call this before a slot's corners or constraints change, or the place of a corner.
     void touch(std::int32_t slot, const Triangles& mesh) {
         const auto at = static_cast<std::size_t>(slot);
         if (at >= touched_.size()) [[unlikely]] {
@@ -23,9 +23,9 @@ public:
         }
     }
     void reserve(std::size_t slots) { touched_.resize(std::max(touched_.size(), slots), 0); }
-    /// What differs now; the next record begins here.
-    /// `vertices`: whether anybody asks for those too.
+    /// Returns the changes in this record, and begins the next record. Lists vertices only if `vertices` is true.
     [[nodiscard]] Mesh::Change takeChange(const Triangles& mesh, bool vertices);
+    /// Returns the differences in this record, and begins the next record.
     [[nodiscard]] Mesh::Difference takeDifference(const Triangles& mesh);
 
 private:
@@ -39,13 +39,13 @@ private:
     [[nodiscard]] static bool alive(std::int32_t slot, const Triangles& mesh) {
         return mesh.triangles[static_cast<std::size_t>(slot)].alive();
     }
-    [[nodiscard]] static Slot slotNow(std::int32_t slot, const Triangles& mesh);  // alive
+    [[nodiscard]] static Slot slotNow(std::int32_t slot, const Triangles& mesh);  // for living triangles only
     [[nodiscard]] Mesh::Difference difference(const Triangles& mesh) const;
 
-    std::vector<std::uint32_t> touched_;  // by slot: the turn in which it was touched last
-    std::uint32_t turn_ = 1;
-    std::vector<Slot> before_;          // that were triangles
-    std::vector<std::int32_t> unused_;  // that were none
+    std::vector<std::uint32_t> touched_;  // by slot: record in which it was touched last
+    std::uint32_t turn_ = 1;              // number of this record
+    std::vector<Slot> before_;            // touched slots that had a triangle
+    std::vector<std::int32_t> unused_;    // touched slots that were empty
 };
 
 }  // namespace sand::tin

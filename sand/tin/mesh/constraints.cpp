@@ -9,12 +9,13 @@ namespace sand::tin {
 
 namespace {
 
-/// Whether `ahead` lies on the same side of `from` as `to`, all three being on one line.
+/// Returns whether `ahead` and `to` lie on the same side of `from`. The three places must be on one line.
 bool isAhead(const Place& from, const Place& to, const Place& ahead) {
     return std::int64_t{to.x - from.x} * (ahead.x - from.x) + std::int64_t{to.y - from.y} * (ahead.y - from.y) > 0;
 }
 
-/// The lattice place nearest to where p–q crosses c–d, which it does. It lies in the bounding boxes of both.
+/// Returns the lattice place nearest to the crossing of p–q and c–d, which must cross. It lies in the bounding boxes
+/// of both.
 Place nearestToCrossing(const Place& p, const Place& q, const Place& c, const Place& d) {
     const auto cross = [](std::int64_t ax, std::int64_t ay, std::int64_t bx, std::int64_t by) {
         return ax * by - ay * bx;
@@ -26,7 +27,7 @@ Place nearestToCrossing(const Place& p, const Place& q, const Place& c, const Pl
         whole = -whole;
     }
     const auto along = [&](std::int32_t from, std::int32_t to) {
-        // Halves go up, wherever the way comes from; up to 2^70.
+        // Halves round up, whatever the direction of the edge. The numbers reach 2^70.
         const Wide twice = static_cast<Wide>(2) * (to - from) * part + whole;
         const Wide divisor = static_cast<Wide>(2) * whole;
         const Wide down = twice >= 0 ? twice / divisor : -((-twice + divisor - 1) / divisor);
@@ -35,16 +36,19 @@ Place nearestToCrossing(const Place& p, const Place& q, const Place& c, const Pl
     return {along(p.x, q.x), along(p.y, q.y)};
 }
 
-/// Whether a way from p to q that bends to e bends by no more than a unit, and not back along any axis.
+/// Returns whether a line from p to q may bend to e. It then bends by at most a unit, and does not turn back along an
+/// axis.
 bool isBeside(const Place& p, const Place& q, const Place& e) {
     const bool between = std::min(p.x, q.x) <= e.x && e.x <= std::max(p.x, q.x) && std::min(p.y, q.y) <= e.y &&
                          e.y <= std::max(p.y, q.y);
     return between && std::abs(doubledArea(p, q, e)) <= std::max(std::abs(q.x - p.x), std::abs(q.y - p.y));
 }
 
-/// Where two edges that cross are to meet: at an end of one that is as good as on the other, else where they cross.
-/// Without those ends, edges that run almost along each other would cross again and again, ever nearer to where they
-/// part: one crossing in two rows of the lattice became 100,000.
+/// Returns the place at which two crossing edges shall meet. This is an end of one edge that is within a unit of the
+/// other, or else the lattice place nearest to the crossing.
+///
+/// Without the first rule, two almost parallel edges would cross again and again, ever nearer to the place where they
+/// part. One crossing within two rows of the lattice became 100,000 crossings.
 Place meetingPlace(const Place& p, const Place& q, const Place& c, const Place& d) {
     if (isBeside(p, q, c)) {
         return c;
@@ -66,7 +70,7 @@ Triangulation::Hit Triangulation::follow(Vertex from, Vertex to) const {
     const Place& start = place(from);
     const Place& end = place(to);
     Hit hit;
-    Side side;  // through which the way goes on
+    Side side;  // across which the line leaves the triangle
     around(from, [&](const Side& spoke) {
         const Vertex right = ends(spoke).second;
         const Vertex left = triangle(spoke.slot).corner[spoke.opposite];
@@ -94,7 +98,8 @@ Triangulation::Hit Triangulation::follow(Vertex from, Vertex to) const {
         if (where == 0) {
             hit.vertex = apex;
         }
-        // The way came in from the right of the side to its left; it leaves by the side whose ends it separates.
+        // The line entered with the side's one end on its right and the other on its left. It leaves across the side
+        // whose ends it separates.
         side = {there.slot, where > 0 ? next(there.opposite) : previous(there.opposite)};
     }
     return hit;
@@ -108,7 +113,7 @@ void Triangulation::carve(Vertex from, const Hit& hit) {
         crossing.pop_front();
         const Side side = findEdge(a, b);
         if (!isConvex(side)) {
-            crossing.emplace_back(a, b);  // others give way first (Sloan 1993)
+            crossing.emplace_back(a, b);  // other edges must be flipped first (Sloan 1993)
             continue;
         }
         const Vertex c = triangle(side.slot).corner[side.opposite];
@@ -142,8 +147,8 @@ Mesh::Path Triangulation::constrain(Vertex from, Vertex to) {
             path.before.push_back(ascending(through, b));
         }
     };
-    // What is wanted or constrained bends only within its bounding box, so that the two parts are together as long as
-    // it was, in steps along the axes. Each turn makes one of them in two, or takes one as it is: that comes to an end.
+    // The loop ends, because a wanted edge or a constraint bends only within its bounding box. Measured along the
+    // axes, its two parts together are as long as the edge was. Each turn splits one edge in two or accepts it.
     while (!wanted.empty()) {
         const auto [a, b] = wanted.back();
         wanted.pop_back();
@@ -162,7 +167,7 @@ Mesh::Path Triangulation::constrain(Vertex from, Vertex to) {
         const auto [c, d] = hit.edge;
         const Place crossing = meetingPlace(place(a), place(b), place(c), place(d));
         const Located where = find(crossing);
-        const VertexPair split = edgeAt(where);  // a constraint there is made of two as well
+        const VertexPair split = edgeAt(where);  // constraint at the crossing, which insertAt() splits
         const Vertex middle = insertAt(where, crossing, kNobody);
         bend(split.first, split.second, middle);
         wanted.emplace_back(a, b);
@@ -171,7 +176,7 @@ Mesh::Path Triangulation::constrain(Vertex from, Vertex to) {
             wanted.back() = {middle, b};
             wanted.emplace_back(a, middle);
         }
-        // Unless it is one of those made of two.
+        // Split c–d too, unless insertAt() has just done that.
         if (middle != c && middle != d && findEdge(c, d).slot != kNobody && isConstrained(findEdge(c, d))) {
             bend(c, d, middle);
             release(c, d);

@@ -57,7 +57,8 @@ Vertex Mesh::insert(Place place) {
 std::vector<Vertex> Mesh::insert(std::span<const Place> places) {
     std::for_each(places.begin(), places.end(), [this](const Place& place) { requireInside(place); });
     const auto [order, first] = spatialOrder(places);
-    // First who is there already, then numbers in the order given, then the mesh.
+    // First find the vertices that exist already, then give out numbers in the order of `places`, then change the
+    // mesh.
     std::vector<Vertex> numbers(places.size(), kNobody);
     for (const std::uint32_t index : order) {
         const Located located = triangulation_->find(places[index]);

@@ -14,86 +14,93 @@
 
 namespace sand::tin {
 
-/// A constrained Delaunay triangulation of a rectangle whose vertices come, move and go.
+/// A constrained Delaunay triangulation of a rectangle. Vertices and constraints can be added and removed.
 ///
-/// Edges are flipped until none has a vertex in the circle it should be free of (Lawson 1977), by integer predicates.
-/// Vertices 0 to 3 are the rectangle's corners, counter-clockwise from the south-west. Where four or more vertices lie
-/// on a circle, the diagonals go out from the one that is first in order of Place: the mesh is a function of vertices
-/// and constraints alone, whatever came before. Not thread-safe.
+/// Flips edges until the circle around every triangle is empty, as far as constraints allow (Lawson 1977). Integer
+/// predicates decide. Vertices 0 to 3 are the rectangle's corners, counter-clockwise from the south-west. If four or
+/// more vertices lie on a circle, the diagonals begin at the first of them in the order of Place. The mesh therefore
+/// depends only on vertices and constraints, not on their history. Not thread-safe.
 class Mesh {
 public:
-    /// Throws std::invalid_argument unless both sides are within [1, 2^22]. Triangles are told to be holes where
-    /// `holes`, which may be null, says so; that is of use once all of their outline is constrained, which is then
-    /// there for good: no release() nor remove() takes it out.
+    /// Throws std::invalid_argument unless both sides are within [1, 2^22] [probe unit]. `holes` may be null.
+    /// Triangles are marked as holes where `holes` has no ground. The marks are reliable only once the whole outline
+    /// of the holes is constrained. From then on, no release() or remove() takes the outline out.
     Mesh(std::int32_t width, std::int32_t depth, std::shared_ptr<const Holes> holes = nullptr);
     ~Mesh();
     Mesh(Mesh&&) noexcept;
     Mesh& operator=(Mesh&&) noexcept;
 
     [[nodiscard]] const Triangles& triangles() const;
-    [[nodiscard]] const std::shared_ptr<const Holes>& holes() const;  // null without
+    [[nodiscard]] const std::shared_ptr<const Holes>& holes() const;  // null if there are none
     [[nodiscard]] int vertexCount() const;
-    /// Whether the whole outline of the holes is there.
+    /// Returns whether the whole outline of the holes is constrained.
     [[nodiscard]] bool hasOutline() const;
 
-    /// The vertex there: a new one, or the one that was there already. Places outside the field: std::invalid_argument.
-    /// A place on a constrained edge splits it; both halves are constrained.
+    /// Returns the vertex at `place`, and adds one if the place is free. A vertex on a constrained edge splits the
+    /// edge; both halves are constrained. Throws std::invalid_argument if `place` lies outside the field.
     Vertex insert(Place place);
-    /// The same for many at once, faster: as if inserted one after the other (numbers are given in this order).
+    /// Returns the vertices at many places, as if they were inserted one after the other, but in less time. The
+    /// vertices get their numbers in the order of `places`.
     std::vector<Vertex> insert(std::span<const Place> places);
-    /// Room for as many vertices in all, so that none of them makes the whole mesh move in memory.
+    /// Reserves memory for `vertices` vertices in all, so that no insertion up to this number moves the mesh in
+    /// memory.
     void reserve(std::size_t vertices);
-    /// Takes a vertex out, with the constraints that end in it. A corner stays, and a vertex on the rim joins its two
-    /// rim edges again; so does one on a straight part of a hole's outline. Where that turns or ends it stays. False
-    /// when it stays.
+    /// Removes a vertex and the constraints that end in it. For a vertex on the rim, its two rim edges become one. For
+    /// a vertex on a straight part of a hole's outline, its two outline edges become one. The corners of the
+    /// field stay. A vertex at which an outline turns or ends stays too. Returns false if the vertex stays.
     bool remove(Vertex vertex);
-    /// A constraint: the vertices along it, both ends included, and which of its edges were constrained before, each
-    /// with the smaller vertex first.
+    /// A constraint: the vertices along it with both ends, and those of its edges that were constrained before. Each
+    /// edge lists its smaller vertex first.
     struct Path {
         std::vector<Vertex> vertices;
         std::vector<std::pair<Vertex, Vertex>> before;
     };
-    /// Makes every edge between these places constrained, with vertices where it crosses others: a crossing is put on
-    /// the nearest lattice place before, or on an end of either within a unit of the other, and both constraints bend
-    /// to it; so do others that they come to cross. Vertices on the way split it. Nothing when both are one.
+    /// Constrains the straight line between two vertices, and returns its path. Vertices on the line split the
+    /// constraint.
+    ///
+    /// At a crossing with another constraint, both get a common vertex. This is an end of one of them if that end is
+    /// within a unit of the other, or else the lattice place nearest to the crossing. Both constraints bend to this
+    /// vertex. Further constraints that they then cross bend in the same way. Returns an empty path if `from` equals
+    /// `to`.
     Path constrain(Vertex from, Vertex to);
-    /// The edge between two vertices is an ordinary one again; nothing when it is none, or lies on the rim or on a
-    /// hole's outline.
+    /// Makes the edge between two vertices an ordinary one again. Edges of the rim and of a hole's outline stay
+    /// constrained. Two vertices without a common edge change nothing.
     void release(Vertex a, Vertex b);
     [[nodiscard]] bool isConstrained(Vertex a, Vertex b) const;
-    /// All constrained edges but the rim's, smaller vertex first, in order.
+    /// Returns all constrained edges except those of the rim, in ascending order. Each lists its smaller vertex first.
     [[nodiscard]] std::vector<std::pair<Vertex, Vertex>> constraints() const;
 
-    /// Takes the ground out of these triangles, which are told to be holes until the mesh changes there.
+    /// Marks these triangles as holes. Each mark stays until the mesh changes there.
     void takeGroundOut(std::span<const std::int32_t> slots);
 
-    /// Slots whose triangles are not what they were when this was called last, dead ones among them, and the vertices
-    /// that came, went, or have another star: each once, in ascending order.
+    /// Slots whose triangles have changed since the last call, and vertices that came, went or have another star.
+    /// Slots that have become empty are among them. Each is listed once, in ascending order.
     struct Change {
         std::vector<std::int32_t> triangles;
         std::vector<Vertex> vertices;
     };
     [[nodiscard]] Change takeChange();
-    /// The same for who knows of the vertices; there are none in it.
+    /// Returns the same triangles as takeChange(), but no vertices, in less time.
     [[nodiscard]] Change takeChangeOfTriangles();
 
-    /// A triangle with the places its corners had: counter-clockwise from the smallest vertex.
+    /// A triangle with the places of its corners, counter-clockwise from its smallest vertex.
     struct Piece {
         std::array<Vertex, 3> corner{};
         std::array<Place, 3> place{};
-        // clang-tidy 14 complains of the 0 it finds in here itself. NOLINTNEXTLINE(modernize-use-nullptr)
+        // clang-tidy 14 reports the 0 in the generated code. NOLINTNEXTLINE(modernize-use-nullptr)
         friend auto operator<=>(const Piece&, const Piece&) = default;
     };
-    /// Triangles that were there when this was called last and are no more, and the other way round; by which slots is
-    /// no matter. In ascending order; both cover the same ground. Nothing is noted before the first call, which returns
-    /// nothing, and takeChange() knows nothing of it.
+    /// Triangles that went and triangles that came since the last call, whatever their slots are. Both lists are in
+    /// ascending order and cover the same ground. Recording begins with the first call, which returns an empty
+    /// Difference. takeChange() and takeDifference() do not affect each other.
     struct Difference {
         std::vector<Piece> went, came;
     };
     [[nodiscard]] Difference takeDifference();
 
-    /// Rebuilds a mesh from what makes it one, for replicas that start in the middle: vertices keep their numbers
-    /// (`places` by vertex, nothing where no such vertex lives). Throws std::invalid_argument when it is none.
+    /// Creates the mesh with these vertices and constraints, from which a restored replica can continue. `places` is
+    /// indexed by vertex; nullopt stands for a vertex that does not exist. Throws std::invalid_argument if places and
+    /// constraints do not make a mesh.
     static Mesh restore(std::int32_t width, std::int32_t depth, std::span<const std::optional<Place>> places,
                         std::span<const std::pair<Vertex, Vertex>> constraints,
                         std::shared_ptr<const Holes> holes = nullptr);

@@ -13,8 +13,9 @@ Box around(const std::array<Place, 3>& corners) {
     return {std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})};
 }
 
-constexpr std::size_t kRoom = 1024;    // slots, to begin with
-constexpr std::size_t kWordsEach = 4;  // a word read costs as much as a step of a sort
+constexpr std::size_t kRoom = 1024;  // initial size [slot]
+constexpr std::size_t kWordsEach =
+    4;  // words per number up to which bits are used: reading a word costs as much as a step of a sort
 
 bool overlap(const Box& a, const Box& b) { return a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 && b.y0 <= a.y1; }
 
@@ -46,9 +47,9 @@ void sortOnce(std::vector<std::int32_t>& numbers) {
     numbers.resize(count);
 }
 
-// Where a tool comes down nothing is in any cache, and each triangle tells where the next are.
+// When a tool first touches the sand, no data are in a cache. Each triangle has the addresses of the next ones.
 void Neighbourhood::fetchAhead(const Triangles& mesh, std::size_t next, std::size_t end) const {
-    constexpr std::size_t kFar = 16, kNear = 8;  // triangles, until they are looked at
+    constexpr std::size_t kFar = 16, kNear = 8;  // [triangle], distance ahead of the search
     if (next + kFar < end) {
         __builtin_prefetch(&mesh.triangles[static_cast<std::size_t>(found_[next + kFar])]);
     }
@@ -62,8 +63,8 @@ void Neighbourhood::fetchAhead(const Triangles& mesh, std::size_t next, std::siz
     }
 }
 
-// A box is convex: the triangles that reach into it hang together by their edges, and so does the search, which goes on
-// through every triangle whose own box overlaps it.
+// A box is convex, so that the triangles that reach into it are connected by their edges. The search continues through
+// every triangle whose bounding box overlaps the box.
 void Neighbourhood::look(const Triangles& mesh, const Box& wanted) {
     vertices_.clear();
     triangles_.clear();
@@ -78,7 +79,8 @@ void Neighbourhood::look(const Triangles& mesh, const Box& wanted) {
     last_ = locate(mesh, middle, known ? last_ : kNobody).triangle;
     seen_.reserve(mesh.triangles.size());
     seen_.insert(last_);
-    // What is new is written without asking, and counted: which of a triangle's it is nobody can foretell.
+    // Writes every candidate, and counts it only if it is new. A branch would be slower, because the CPU could not
+    // predict which of a triangle's neighbours are new.
     std::size_t end = 0, count = 0;
     const auto makeRoom = [](std::vector<std::int32_t>& all, std::size_t used) {
         if (all.size() < used + 3) {
@@ -100,7 +102,8 @@ void Neighbourhood::look(const Triangles& mesh, const Box& wanted) {
         makeRoom(found_, end);
         makeRoom(vertices_, count);
         for (std::size_t k = 0; k < 3; ++k) {
-            // One of its triangles is the vertex' own, and is found: it reaches into the box, as the vertex does.
+            // Counts each vertex once, at the triangle of mesh.triangleAt. If the box contains the vertex, that
+            // triangle reaches into the box, so that the search finds it.
             const bool own = mesh.triangleAt[static_cast<std::size_t>(triangle.corner[k])] == slot;
             vertices_[count] = triangle.corner[k];
             count += static_cast<std::size_t>(own) & static_cast<std::size_t>(box.holds(places[k]));

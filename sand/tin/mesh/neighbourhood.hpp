@@ -10,7 +10,7 @@
 
 namespace sand::tin {
 
-/// A rectangle on the lattice, its sides included [probe unit].
+/// Rectangle on the lattice, with its sides [probe unit].
 struct Box {
     std::int32_t x0 = 0, y0 = 0, x1 = -1, y1 = -1;
     [[nodiscard]] bool empty() const { return x0 > x1 || y0 > y1; }
@@ -20,7 +20,7 @@ struct Box {
     [[nodiscard]] Box clippedTo(const Triangles& field) const {
         return {std::max(x0, 0), std::max(y0, 0), std::min(x1, field.width), std::min(y1, field.depth)};
     }
-    /// The smallest around both; an empty one counts for nothing.
+    /// Returns the smallest box around both boxes. If one is empty, returns the other.
     [[nodiscard]] Box joinedWith(const Box& other) const {
         return empty()         ? other
                : other.empty() ? *this
@@ -33,25 +33,27 @@ struct Box {
     friend bool operator==(const Box&, const Box&) = default;
 };
 
-/// Sorts numbers from 0 on, each once. Those of one place in a mesh are often near each other: a bit for each is set
-/// and read again, in a tenth of the time.
+/// Sorts `numbers` in ascending order and removes duplicates. No number may be negative. Numbers from one place of a
+/// mesh are often close together. Then the function sets one bit per number and reads the bits, in a tenth of the time
+/// of a sort.
 void sortOnce(std::vector<std::int32_t>& numbers);
 
-/// The vertices and triangles of a mesh in a box. Looking costs what lies there and the way from the last box; the
-/// first look costs the whole mesh.
+/// The vertices and triangles of a mesh in a box. look() costs as much as the triangles in the box and on the way from
+/// the last box. The first call costs as much as the whole mesh.
 class Neighbourhood {
 public:
     void reserve(std::size_t vertices) { seen_.reserve(2 * vertices); }
-    /// Looks again. `box` is clipped to the field; an empty one shows nothing.
+    /// Finds the vertices and triangles in `box`, which is clipped to the field. An empty box contains none.
     void look(const Triangles& mesh, const Box& box);
-    /// The mesh has changed around these vertices, ascending, and nowhere else: vertices() are those of now, at a
-    /// fraction of what it costs to look again. triangles() are none from now on.
+    /// Updates vertices() after the mesh has changed around the vertices `changed` and nowhere else. `changed` must be
+    /// in ascending order. This costs a fraction of look(). triangles() is empty until the next look().
     void follow(const Triangles& mesh, const std::vector<Vertex>& changed);
 
     [[nodiscard]] const Box& box() const { return box_; }  // clipped to the field
-    /// Those that lie in the box, ascending.
+    /// Returns the vertices in the box, in ascending order.
     [[nodiscard]] const std::vector<Vertex>& vertices() const { return vertices_; }
-    /// Slots of all triangles that reach into the box, and of some that nearly do, in no order that means anything.
+    /// Returns the slots of all triangles that reach into the box, and of some close to it. Their order has no
+    /// meaning.
     [[nodiscard]] const std::vector<std::int32_t>& triangles() const { return triangles_; }
 
 private:
@@ -59,21 +61,22 @@ private:
 
     Box box_;
     std::vector<Vertex> vertices_, stay_, come_;
-    std::vector<std::int32_t> triangles_, found_;  // found_: as many as room is for
-    std::int32_t last_ = kNobody;                  // where to begin: only for speed
-    base::IndexSet seen_;                          // slots
+    std::vector<std::int32_t> triangles_, found_;  // found_ is longer than the list in it, to save resizing
+    std::int32_t last_ = kNobody;                  // where the next search begins; saves time only
+    base::IndexSet seen_;                          // slots that look() has found
 };
 
-/// The vertices around one that lies inside the field, counter-clockwise from the smallest number, and whether any of
-/// its edges is constrained.
+/// The neighbours of a vertex inside the field, counter-clockwise from the smallest number.
 struct Link {
     std::vector<Vertex> vertices;
-    bool constrained = false;
-    bool closed = true;  // false on the rim: `vertices` then says nothing
+    bool constrained = false;  // whether an edge of the vertex is constrained
+    bool closed = true;        // false for a vertex on the rim; `vertices` then has no meaning
 };
+/// Sets `link` to the neighbours of `vertex`.
 void findLink(const Triangles& mesh, Vertex vertex, Link& link);
 
-/// Whether a place is nearer to a segment than `distance` [probe unit]. Exact up to an IEEE product.
+/// Returns whether the distance of a place from a segment is less than `distance` [probe unit]. Exact except for the
+/// rounding of one product of doubles.
 [[nodiscard]] bool isNear(const Place& place, const Place& from, const Place& to, std::int32_t distance);
 
 }  // namespace sand::tin

@@ -9,10 +9,12 @@
 
 namespace sand::tin {
 
-/// Positive when `d` lies within the circle through a, b, c, which run counter-clockwise; zero on it. Exact.
+/// Returns 1 if `d` lies within the circle through a, b and c, 0 if it lies on the circle, and -1 if it lies outside.
+/// a, b and c must run counter-clockwise. Exact.
 ///
-/// Within a field of 2^22 probe units a side, minors and squares fit 2^46 and the whole fits 2^94: integers of 128 bits
-/// decide what doubles cannot.
+/// The sides of a field are at most 2^22 probe units. Minors and squares then stay within 2^46, and the whole within
+/// 2^94. 128-bit
+/// integers decide if doubles cannot.
 [[nodiscard]] inline int inCircle(const Place& a, const Place& b, const Place& c, const Place& d) {
     const std::int64_t ax = a.x - d.x, ay = a.y - d.y;
     const std::int64_t bx = b.x - d.x, by = b.y - d.y;
@@ -23,7 +25,7 @@ namespace sand::tin {
     const double v = static_cast<double>(b2) * static_cast<double>(ca);
     const double w = static_cast<double>(c2) * static_cast<double>(ab);
     const double sum = u + v + w;
-    // All factors are exact: three products and two sums round, each by 2^-53 of at most the sum of magnitudes.
+    // All factors are exact. Three products and two sums round, each by at most 2^-53 of the sum of magnitudes.
     const double error = (std::abs(u) + std::abs(v) + std::abs(w)) * 0x1p-50;
     if (sum > error) {
         return 1;
@@ -35,11 +37,11 @@ namespace sand::tin {
     return exact > 0 ? 1 : exact < 0 ? -1 : 0;
 }
 
-/// Whether the edge b–c between the triangles a, b, c and d, c, b has to give way to a–d.
+/// Returns whether the edge b–c between the triangles a, b, c and d, c, b must be flipped to a–d.
 ///
-/// Of four on a circle, the diagonal goes out from the first in order of Place. That is as if every vertex were lowered
-/// on the paraboloid a little, the first by far the most: no four are on a circle then, the mesh is unique, and flips
-/// reach it from any other.
+/// If all four lie on a circle, the diagonal begins at the first of them in the order of Place. This is as if every
+/// vertex were lowered a little on the paraboloid, the first one by far the most. Then no four vertices are on a
+/// circle, the mesh is unique, and flips lead to it from every other mesh.
 [[nodiscard]] inline bool mustFlip(const Place& a, const Place& b, const Place& c, const Place& d) {
     const int inside = inCircle(a, b, c, d);
     return inside > 0 || (inside == 0 && std::min(a, d) < std::min(b, c));

@@ -11,7 +11,8 @@ bool Triangulation::isConvex(const Side& side) const {
     return area(a, b, d) > 0 && area(a, d, c) > 0;
 }
 
-/// The vertex holds no constraint but the rim's any more. `star_` is its star, before and after.
+/// Releases all constraints that end in the vertex, except those on the rim. `star_` must be the vertex's star, and is
+/// its star afterwards.
 void Triangulation::releaseAll(Vertex vertex) {
     held_.clear();
     for (std::size_t i = 0; i < star_.slots.size(); ++i) {
@@ -28,10 +29,10 @@ void Triangulation::releaseAll(Vertex vertex) {
     }
 }
 
-/// Flips edges away from the vertex until merge() can take it out; the edges that come of it are added to `made_`.
-///
-/// The polygon around it has two ears that do not overlap. A flip cuts one off, unless the vertex lies in it or on its
-/// diagonal: one ear at most when more than three edges go out, but for four of which two make a straight line.
+/// Flips edges away from the vertex until merge() can remove it. Adds the edges that this creates to `made_`.
+/// The polygon around the vertex has two ears that do not overlap. A flip can cut off an ear unless the vertex lies in
+/// the ear or on its diagonal. With more than three edges at the vertex, that is so for at most one ear. The exception
+/// is a vertex with four edges, two of them in a straight line.
 void Triangulation::reduce(Vertex vertex) {
     std::vector<Vertex>& others = star_.others;
     const std::size_t rim = star_.atRim() ? 1 : 0;
@@ -52,13 +53,14 @@ void Triangulation::reduce(Vertex vertex) {
     }
 }
 
-/// Takes out a vertex with three neighbours, or with four of which it lies between two; the edge between them is added
-/// to `made_`.
+/// Removes a vertex that has three neighbours. Also removes one that has four and lies on the line between two of
+/// them; it then adds the edge between these two to `made_`.
 void Triangulation::merge(Vertex vertex) {
     findStar(vertex, star_);
     const std::vector<std::int32_t>& slots = star_.slots;
     const std::vector<Vertex>& o = star_.others;
-    // From o[i] to o[i + 1]; of three on the rim the third is what its rim edges join to.
+    // outside[i] lies beyond the edge from o[i] to o[i + 1]. A vertex on the rim may have three neighbours and two
+    // triangles. Then outside[2] lies beyond the rim edge that replaces the vertex's two rim edges.
     std::array<Outer, 4> outside{};
     outside.fill({kNobody, true});
     for (std::size_t i = 0; i < slots.size(); ++i) {

@@ -9,13 +9,13 @@
 namespace sand::tin {
 namespace {
 
-constexpr unsigned kBits = 23;  // of a coordinate
+constexpr unsigned kBits = 23;  // bits of a coordinate
 constexpr std::size_t kRounds = 16;
 
-/// How far along Hilbert's curve a place lies: another number for every place.
+/// Returns the position of a place along Hilbert's curve. Different places have different positions.
 std::uint64_t hilbert(const Place& place) {
-    // By how the curve lies in this square (as it is, swapped, turned about, both) and the quarter: the digit, and how
-    // the curve lies in the quarter.
+    // Both tables are indexed by the curve's orientation in this square and by the quarter. kDigit has the digit, and
+    // kWithin the orientation in that quarter. Orientations: unchanged, swapped, turned by half, swapped and turned.
     constexpr std::array<std::array<std::uint8_t, 4>, 4> kDigit{
         {{0, 1, 3, 2}, {0, 3, 1, 2}, {2, 3, 1, 0}, {2, 1, 3, 0}}};
     constexpr std::array<std::array<std::uint8_t, 4>, 4> kWithin{
@@ -32,8 +32,8 @@ std::uint64_t hilbert(const Place& place) {
     return along;
 }
 
-/// Half of all places belong to the last round, a quarter to the one before, and so on: by index, which is no pattern
-/// that the places themselves could have.
+/// Returns the round of a place. Half of all places belong to the last round, a quarter to the one before, and so on.
+/// The index alone decides, mixed so that the result follows no pattern in the places.
 std::size_t roundOf(std::uint32_t index) {
     std::uint32_t mixed = index * 2654435769U;
     mixed ^= mixed >> 15U;
@@ -49,7 +49,7 @@ SpatialOrder spatialOrder(std::span<const Place> places) {
     for (std::uint32_t index = 0; index < places.size(); ++index) {
         keys[index] = {hilbert(places[index]), index};
     }
-    std::sort(keys.begin(), keys.end());  // no ties: indices differ
+    std::sort(keys.begin(), keys.end());  // no ties, because the indices differ
     SpatialOrder result;
     result.first.resize(places.size());
     std::array<std::vector<std::uint32_t>, kRounds> rounds;

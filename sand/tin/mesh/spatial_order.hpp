@@ -8,14 +8,16 @@
 
 namespace sand::tin {
 
-/// Indices of places, for whoever inserts many at once.
+/// An order of places for inserting many vertices at once.
 struct SpatialOrder {
-    /// In an order in which a mesh takes them quickly: every next is near the one before, after a coarse sample of all
-    /// of them, so that no triangle is long for long (Amenta, Choi and Rote 2003). One index for each place.
+    /// One index for each place, in an order in which a mesh inserts them fast. A coarse sample of all places comes
+    /// first. After that, each place is near the one before, so that no triangle stays long (Amenta, Choi and Rote
+    /// 2003).
     std::vector<std::uint32_t> order;
-    /// By index: the first index of the same place.
+    /// By index: the first index of an equal place.
     std::vector<std::uint32_t> first;
 };
+/// Returns the order for `places`, which may contain equal places.
 [[nodiscard]] SpatialOrder spatialOrder(std::span<const Place> places);
 
 }  // namespace sand::tin

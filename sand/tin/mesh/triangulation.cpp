@@ -16,7 +16,7 @@ Triangulation::Triangulation(std::int32_t width, std::int32_t depth, std::shared
     mesh_.triangleAt = {0, 0, 0, 1};
     const std::int32_t south = newSlot();
     const std::int32_t north = newSlot();
-    // The four are on a circle: the diagonal goes out from the first.
+    // The four corners lie on a circle, so that the diagonal begins at the first one.
     triangle(north).corner = {0, 2, 3};
     put(south, {0, 1, 2}, {{{kNobody, true}, {north, false}, {kNobody, true}}});
     put(north, {0, 2, 3}, {{{kNobody, true}, {kNobody, true}, {south, false}}});
@@ -45,7 +45,7 @@ void Triangulation::reserveNumbers(std::size_t count) {
 }
 
 void Triangulation::reserve(std::size_t vertices) {
-    // Growing by halves at least, or many small batches would copy the whole each.
+    // Grows by at least half. Otherwise each of many small batches would copy the whole array.
     const auto grow = [](auto& all, std::size_t more) {
         if (all.capacity() - all.size() < more) {
             all.reserve(all.size() + std::max(more, all.size() / 2));
@@ -100,7 +100,8 @@ void Triangulation::put(std::int32_t slot, const std::array<Vertex, 3>& corners,
         mesh_.triangleAt[static_cast<std::size_t>(corners[i])] = slot;
         if (sides[i].neighbour != kNobody) {
             Triangle& there = triangle(sides[i].neighbour);
-            // Where it begins at our side's end: there it lies opposite the corner before.
+            // In the neighbour, the common side begins at the end of our side. It lies opposite the corner before that
+            // one.
             there.neighbour[previous(cornerOf(there, corners[previous(i)]))] = slot;
         }
     }
@@ -149,7 +150,7 @@ bool Triangulation::isWrong(const Side& side) const {
 Side Triangulation::findEdge(Vertex a, Vertex b) const {
     Side found;
     around(a, [&](const Side& side) {
-        // The side that goes out first ends in the next corner; the last of a rim's fan is the one before.
+        // `side` ends in the next corner. On the rim, the last edge of the fan ends in the corner before the vertex.
         const Triangle& here = triangle(side.slot);
         if (here.corner[previous(side.opposite)] == b) {
             found = side;
@@ -197,7 +198,7 @@ Vertex Triangulation::nextAlong(Vertex vertex, const Place& to) const {
 }
 
 void Triangulation::findStar(Vertex centre, Star& star) const {
-    // Back to the rim, if there is one, then round.
+    // First go back to the rim, if there is one, and then around the vertex.
     const std::int32_t start = mesh_.triangleAt[static_cast<std::size_t>(centre)];
     std::int32_t first = start;
     for (std::int32_t before = start; before != kNobody;) {
@@ -242,7 +243,7 @@ void Triangulation::flip(const Side& side) {
     const Outer bd = outer({t, next(there.opposite)});
     const Outer dc = outer({t, previous(there.opposite)});
     touch(t);
-    triangle(t).corner = {a, d, c};  // the first put() looks there for their common edge
+    triangle(t).corner = {a, d, c};  // the first put() looks in it for their common edge
     put(s, {a, b, d}, {{bd, {t, false}, ab}});
     put(t, {a, d, c}, {{dc, ca, {s, false}}});
 }

@@ -11,7 +11,7 @@
 
 namespace sand::tin {
 
-/// An edge as the side of one of its triangles that lies opposite the corner of this number.
+/// An edge as a side of one of its triangles: the side opposite the corner with index `opposite`.
 struct Side {
     std::int32_t slot = kNobody;
     std::size_t opposite = 0;
@@ -23,64 +23,67 @@ inline std::size_t cornerOf(const Triangle& triangle, Vertex vertex) {
     return triangle.corner[0] == vertex ? 0 : triangle.corner[1] == vertex ? 1 : 2;
 }
 
-/// The corner whose edges the place lies on both, of what locate() found; 3 when it is no vertex.
+/// Returns the corner of the found triangle at which the place lies. Returns 3 if the place is at no vertex.
 [[nodiscard]] std::size_t cornerAt(const Located& located);
 
 using VertexPair = std::pair<Vertex, Vertex>;
 
-/// The flips behind a Mesh. Between calls every edge that is no constraint is as mustFlip() wants it.
+/// The edge flips that Mesh is made of. Between calls, no unconstrained edge must be flipped according to mustFlip().
 class Triangulation {
 public:
     Triangulation(std::int32_t width, std::int32_t depth, std::shared_ptr<const Holes> holes);
 
     [[nodiscard]] const Triangles& mesh() const { return mesh_; }
     [[nodiscard]] const std::shared_ptr<const Holes>& holes() const { return holes_; }
-    /// Whether it is an edge of some hole's outline.
+    /// Returns whether a side is an edge of a hole's outline.
     [[nodiscard]] bool isOutline(const Side& side) const;
-    /// The vertices next to one along the outline of holes; the rim's edges are none.
+    /// Returns the neighbours of a vertex along the outline of holes. Edges of the rim do not count.
     [[nodiscard]] std::vector<Vertex> outlineFrom(Vertex vertex) const;
-    /// The other end of the constraint that goes out from a vertex straight to a place, or to a vertex before it;
-    /// kNobody when there is none.
+    /// Returns the other end of the constraint that leads from `vertex` straight towards `to` and ends at `to` or
+    /// before it. Returns kNobody if there is no such constraint.
     [[nodiscard]] Vertex nextAlong(Vertex vertex, const Place& to) const;
     [[nodiscard]] int vertexCount() const { return vertexCount_; }
 
-    /// The smallest number that no vertex has; it is taken, until giveBack().
+    /// Returns the smallest free number. It stays in use until giveBack().
     [[nodiscard]] Vertex takeNumber();
     void giveBack(Vertex number);
-    /// Numbers up to `count` exist from now on; none of them is free.
+    /// Creates all numbers below `count`, in use.
     void reserveNumbers(std::size_t count);
-    /// For as many more vertices.
+    /// Reserves memory for `vertices` further vertices.
     void reserve(std::size_t vertices);
-    /// The vertex at a place within the field; where there is none it gets this number, or else takes one.
+    /// Returns the vertex at a place within the field. A new vertex gets the number `number`, or a free one if that is
+    /// kNobody.
     Vertex insert(const Place& place, Vertex number = kNobody) { return insertAt(find(place), place, number); }
-    /// Where a place lies, found from where something was done last.
+    /// Returns the triangle that contains a place. The search begins where the last change was.
     [[nodiscard]] Located find(const Place& place) { return locate(mesh_, place, last_); }
-    /// The edge on which it lies, if no vertex is there; two times nobody when it lies on none.
+    /// Returns the ends of the edge on which the place lies. Returns kNobody twice if it lies on no edge or at a
+    /// vertex.
     [[nodiscard]] VertexPair edgeAt(const Located& located) const;
     Vertex insertAt(const Located& located, const Place& place, Vertex number);
-    /// Any vertex but a corner of the field.
+    /// Removes a vertex, which must not be a corner of the field.
     void remove(Vertex vertex);
     void release(Vertex a, Vertex b);
-    /// Tells a triangle to be a hole until it changes.
+    /// Marks a triangle as a hole until it changes.
     void makeHole(std::int32_t slot);
 
-    /// What a straight way from one vertex to another meets first.
+    /// The first vertex or constraint on the straight line from one vertex to another.
     struct Hit {
-        Vertex vertex = kNobody;         // it passes through this one, its end perhaps,
-        VertexPair edge{};               // or else crosses this constraint
-        std::vector<VertexPair> passed;  // edges it crosses before
+        Vertex vertex = kNobody;         // vertex on the line, possibly its end; kNobody if the line meets a constraint
+        VertexPair edge{};               // the constraint that the line crosses
+        std::vector<VertexPair> passed;  // edges that the line crosses before
     };
     [[nodiscard]] Hit follow(Vertex from, Vertex to) const;
-    /// Makes the edge that a way with this hit needs, constrained. The hit must be a vertex.
+    /// Makes the edge from `from` to `hit.vertex`, and constrains it. The hit must be a vertex.
     void carve(Vertex from, const Hit& hit);
     Mesh::Path constrain(Vertex from, Vertex to);
 
-    /// slot == kNobody when there is no such edge.
+    /// Returns the edge between two vertices. Its slot is kNobody if there is no such edge.
     [[nodiscard]] Side findEdge(Vertex a, Vertex b) const;
     [[nodiscard]] bool isConstrained(const Side& side) const { return triangle(side.slot).constrained[side.opposite]; }
     [[nodiscard]] bool onRim(const Side& side) const { return triangle(side.slot).neighbour[side.opposite] == kNobody; }
 
-    /// Of whoever asks for changes, and of whoever asks for differences.
+    /// For Mesh::takeChange() and Mesh::takeDifference(). `noteDifferences` is false before the first
+    /// takeDifference().
     ChangeRecord changes;
     ChangeRecord differences;
     bool noteDifferences = false;
@@ -94,12 +97,12 @@ private:
     [[nodiscard]] std::int64_t area(Vertex a, Vertex b, Vertex c) const {
         return doubledArea(place(a), place(b), place(c));
     }
-    /// Calls visit(side) for the side that goes out from `centre` first, counter-clockwise, of every triangle there,
-    /// until it returns true. On the rim too, in no certain order.
+    /// Calls visit(side) for every triangle around `centre`, until visit() returns true. `side` leads from `centre` to
+    /// the next corner counter-clockwise. On the rim, the order of the triangles is unspecified.
     template <class Visit>
     void around(Vertex centre, const Visit& visit) const;
-    /// The triangles around a vertex, counter-clockwise, and its neighbours, the first being the first slot's; on the
-    /// rim from rim to rim, with one neighbour more.
+    /// Triangles and neighbours of a vertex, counter-clockwise. others[i] is the corner of slots[i] after the vertex.
+    /// On the rim, they run from rim to rim, with one neighbour more than triangles.
     struct Star {
         std::vector<std::int32_t> slots;
         std::vector<Vertex> others;
@@ -119,7 +122,7 @@ private:
         bool constrained;
     };
     [[nodiscard]] Outer outer(const Side& side) const;
-    /// Sides opposite a, b and c, in this order. Neighbours that are alive learn of it.
+    /// Makes `slot` the triangle of `corners`, and links its neighbours to it. sides[i] is opposite corners[i].
     void put(std::int32_t slot, const std::array<Vertex, 3>& corners, const std::array<Outer, 3>& sides);
     void setConstrained(const Side& side, bool constrained);
 
@@ -133,17 +136,17 @@ private:
     void reduce(Vertex vertex);
     void merge(Vertex vertex);
 
-    std::shared_ptr<const Holes> holes_;  // null without
+    std::shared_ptr<const Holes> holes_;  // null if there are none
     Triangles mesh_;
     int vertexCount_ = 4;
     std::vector<std::int32_t> freeSlots_;
-    std::vector<Vertex> freeNumbers_;  // a heap, the smallest on top
-    // Kept for their memory.
+    std::vector<Vertex> freeNumbers_;  // heap with the smallest number on top
+    // Members that are kept only to reuse their memory:
     std::vector<std::int32_t> stack_;
-    std::vector<VertexPair> made_;  // of remove() and release(): edges that may be wrong
-    Star star_;                     // of remove(); after reduce() only its `others` are right
-    std::vector<Vertex> held_;      // of releaseAll()
-    std::int32_t last_ = 0;         // slot near which something happened last
+    std::vector<VertexPair> made_;  // in remove() and release(): edges that may have to be flipped
+    Star star_;                     // in remove(); after reduce(), only its `others` are right
+    std::vector<Vertex> held_;      // in releaseAll(): neighbours to which constraints lead
+    std::int32_t last_ = 0;         // slot near the last change
 };
 
 template <class Visit>
