@@ -22,19 +22,20 @@ Wide dividedDown(Wide value, Wide divisor) {
 
 std::int64_t areaOf(const Mesh::Piece& piece) { return doubledArea(piece.place[0], piece.place[1], piece.place[2]); }
 
-/// A vertex by number and place: a number may have been given to another within one change.
+/// A vertex by number and place. Within one change, a number may pass from one vertex to another.
 struct Key {
     Vertex vertex = kNobody;
     Place place;
-    // clang-tidy 14 complains of the 0 it finds in here itself. NOLINTNEXTLINE(modernize-use-nullptr)
+    // clang-tidy 14 reports the 0 in the generated code. NOLINTNEXTLINE(modernize-use-nullptr)
     friend auto operator<=>(const Key&, const Key&) = default;
 };
 
-/// Numbers keys as they come, each once: a vertex is a corner of six triangles before and of six now.
+/// Numbers keys in the order of their first appearance. A hash table is used because a vertex appears often: in about
+/// six triangles before the change and six after it.
 class Nodes {
 public:
     explicit Nodes(std::size_t most) : numbers_(std::bit_ceil(2 * most + 1), kNone) {}
-    /// `found`: by number; a new one is added.
+    /// Returns the number of `key`. `found` lists all keys by number; a new key is added to it.
     std::uint32_t numberOf(const Key& key, std::vector<Key>& found) {
         const std::size_t mask = numbers_.size() - 1;
         std::size_t at = (static_cast<std::uint32_t>(key.vertex) * std::size_t{0x9e3779b1}) & mask;
@@ -57,25 +58,25 @@ private:
 struct Node {
     Vertex vertex = kNobody;
     Place place;
-    std::uint32_t part = 0;  // the first node of what it hangs together with
+    std::uint32_t part = 0;  // first node of its piece
     bool before = false, now = false;
-    std::int64_t star = 0;  // of what is there now [probe unit²]
+    std::int64_t star = 0;  // in the current mesh [probe unit²]
     Wide volume = 0;
-    double height = 0;  // of the old surface
+    double height = 0;  // height of the previous surface there [unit]
 };
 
-/// What hangs together by vertices.
+/// A piece of the change: triangles that are connected through vertices.
 struct Part {
-    Wide missing = 0;       // volume that its vertices do not hold yet
-    std::int64_t area = 0;  // doubled [probe unit²]
+    Wide missing = 0;       // volume that its vertices do not have yet [volume unit]
+    std::int64_t area = 0;  // doubled area [probe unit²]
     Wide stars = 0;
     std::int64_t smallestStar = 0;
     double lowest = 0, highest = 0;
     bool empty = true;
 };
 
-/// Which of some triangles hold a place. Strips of the field from west to east, each with the triangles that reach into
-/// it: where a tool works thousands are looked through for hundreds of places.
+/// Finds the triangle that contains a place. The field is cut into strips from west to east. Each strip lists the
+/// triangles that reach into it. Around a tool, hundreds of places are looked up among thousands of triangles.
 class Strips {
 public:
     explicit Strips(const std::vector<Mesh::Piece>& pieces) : pieces_(pieces) {
@@ -95,7 +96,8 @@ public:
         }
     }
 
-    /// The first triangle in order that visit(piece) is true for, or null; only such are asked as may hold the place.
+    /// Returns the first triangle of the list for which visit(piece) is true, or null. Visits only triangles that may
+    /// contain the place.
     template <class Visit>
     [[nodiscard]] const Mesh::Piece* first(const Place& place, const Visit& visit) const {
         const std::size_t at = strip(place.x);
@@ -122,7 +124,7 @@ private:
 
     const std::vector<Mesh::Piece>& pieces_;
     std::int32_t west_, width_;
-    std::vector<std::vector<std::uint32_t>> strips_;  // of each, in order
+    std::vector<std::vector<std::uint32_t>> strips_;  // indices of the triangles in each strip, ascending
 };
 
 class Remapping {
@@ -194,7 +196,7 @@ private:
 
     std::uint32_t first(std::uint32_t node) {
         while (nodes_[node].part != node) {
-            nodes_[node].part = nodes_[nodes_[node].part].part;  // long ways are shorter the next time
+            nodes_[node].part = nodes_[nodes_[node].part].part;  // shortens the path for the next call
             node = nodes_[node].part;
         }
         return node;
@@ -212,7 +214,8 @@ private:
         }
         parts_.resize(nodes_.size());
         for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
-            nodes_[i].part = nodes_[nodes_[i].part].part;  // the first of those before it is known
+            nodes_[i].part =
+                nodes_[nodes_[i].part].part;  // the nodes before this one refer to their first node already
             if (!nodes_[i].before) {
                 continue;
             }
@@ -228,7 +231,8 @@ private:
         }
     }
 
-    /// The old surface there; of several triangles that share the place, in the first.
+    /// Returns the height of the previous surface at `place` [unit]. If several triangles share the place, the first
+    /// one counts.
     [[nodiscard]] double oldHeight(const Place& place) {
         if (!strips_) {
             strips_.emplace(difference_.went);
@@ -245,7 +249,7 @@ private:
                                 static_cast<double>(weight[2]) * (heights_[indexOf(piece->corner[2])] - lowest);
             return lowest + rise / static_cast<double>(weight[0] + weight[1] + weight[2]);
         }
-        return 0;  // not reached: what came covers the ground of what went
+        return 0;  // not reached, because both lists of triangles cover the same ground
     }
 
     void keepHeight(Node& node) {
@@ -302,8 +306,8 @@ private:
     const std::vector<std::int64_t>& volumes_;
     const std::vector<std::int64_t>& stars_;
     const std::vector<double>& heights_;
-    std::optional<Strips> strips_;  // of what went, once somebody asks
-    std::vector<Node> nodes_;       // in order of Key
+    std::optional<Strips> strips_;  // of the triangles that went; created when first needed
+    std::vector<Node> nodes_;       // in the order of Key
     std::vector<Corners> went_, came_;
     std::vector<Part> parts_;  // by their first node
 };

@@ -21,7 +21,8 @@ double quotient(std::int64_t volume, std::int64_t star) {
     if (volume > -kExact && volume < kExact) {
         return static_cast<double>(volume) / static_cast<double>(star);
     }
-    // A level surface stays level, though its volumes are more than a double holds.
+    // With whole part and remainder, a level surface stays level although its volumes exceed the exact integers of a
+    // double.
     const std::int64_t whole = volume / star;
     return static_cast<double>(whole) + static_cast<double>(volume % star) / static_cast<double>(star);
 }
@@ -59,7 +60,7 @@ Wide VertexSand::ground() const { return std::accumulate(stars_.begin(), stars_.
 
 Wide VertexSand::volume() const {
     Wide sum = 0;
-    for (const std::int64_t volume : volumes_) {  // none where no vertex lives
+    for (const std::int64_t volume : volumes_) {  // 0 for a number without a vertex
         sum += volume;
     }
     return sum;
@@ -162,7 +163,8 @@ void VertexSand::remap() {
 VertexSand::Remap VertexSand::takeLargestRemap() { return std::exchange(largest_, {}); }
 
 Mesh::Change VertexSand::takeChange() {
-    // Whoever changed since the last call was remapped, and is noted; not what lies in holes, nor a mesh just made.
+    // A remap adds every vertex that changes to `remapped_`. The exceptions are vertices in holes and those of a new
+    // mesh, so that the mesh must then list them.
     const bool knows = knowsChange_ && mesh_.holes() == nullptr;
     knowsChange_ = true;
     Mesh::Change change = knows ? mesh_.takeChangeOfTriangles() : mesh_.takeChange();

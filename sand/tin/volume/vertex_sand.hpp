@@ -12,78 +12,88 @@
 
 namespace sand::tin {
 
-/// Everything that a VertexSand can be made from, independent of its history.
+/// All data that make up a VertexSand. They do not depend on its history.
 struct VertexSandParts {
-    static constexpr Place kNowhere{-1, -1};  // where no such vertex lives
+    static constexpr Place kNowhere{-1, -1};  // place of a number without a vertex
 
-    std::int32_t width = 0, depth = 0;                   // of the field [probe unit]
+    std::int32_t width = 0, depth = 0;                   // size of the field [probe unit]
     std::vector<Place> places;                           // by vertex
-    std::vector<std::int64_t> volumes;                   // by vertex
-    std::vector<std::pair<Vertex, Vertex>> constraints;  // as Mesh's
-    std::shared_ptr<const Holes> holes = nullptr;        // of the start, and not among the bytes
+    std::vector<std::int64_t> volumes;                   // by vertex [volume unit]
+    std::vector<std::pair<Vertex, Vertex>> constraints;  // in the order of Mesh::constraints()
+    std::shared_ptr<const Holes> holes = nullptr;        // from the TinStart; not encoded
 
-    /// Not compressed; equal sand gives equal bytes.
+    /// Writes the data, not compressed. Equal sand gives equal bytes.
     void encode(base::ByteWriter& writer) const;
 };
 
-/// The sand of a TIN: a volume in every vertex, an exact integer, from which its height follows.
+/// The sand of a TIN: an exact integer volume in every vertex, from which its height follows.
 ///
-/// The surface is linear over each triangle. A vertex's share of the ground is a third of its triangles' area, so that
-/// the volumes' sum is the volume under the surface, exactly. One volume unit is a height unit (cell size / 2^16) on a
-/// sixth of a squared probe unit: height = volume / star, star being the sum of the doubled areas of the vertex's
-/// triangles [probe unit²]. |volume| of one vertex stays below 2^62, which heights of 2^28 reach over a star of 2^34;
-/// the whole is summed in 128 bits. Whatever would go beyond throws std::overflow_error, and the layer is then of no
-/// use. Triangles in a hole (holes.hpp) are no ground: they count for no star, and a vertex that has no others has
-/// neither star nor sand, and lies at 0. Not thread-safe.
+/// The surface is linear over each triangle. A third of a triangle's area belongs to each of its vertices. The sum of
+/// the volumes is therefore exactly the volume under the surface.
+///
+/// A vertex's star is the sum of the doubled areas of its triangles [probe unit²]. Its height is volume / star [unit].
+/// One volume unit is therefore one height unit (cell size / 2^16) on a sixth of a squared probe unit.
+///
+/// The |volume| of a vertex stays below 2^62. A height of 2^28 units over a star of 2^34 reaches that limit. Sums over
+/// all vertices use 128 bits. A change beyond the limit throws std::overflow_error; do not use the VertexSand after
+/// that.
+///
+/// Triangles in a hole (holes.hpp) are not ground, and count for no star. A vertex that has only such triangles has
+/// star 0, no sand and height 0. Not thread-safe.
 class VertexSand {
 public:
-    /// Throws std::invalid_argument where a hole's outline is not there.
+    /// Creates sand of height 0. Throws std::invalid_argument unless the mesh has the whole outline of its holes.
     explicit VertexSand(Mesh mesh);
 
     [[nodiscard]] const Mesh& mesh() const { return mesh_; }
     [[nodiscard]] const Triangles& triangles() const { return mesh_.triangles(); }
-    [[nodiscard]] const std::vector<std::int64_t>& volumes() const { return volumes_; }  // by vertex
+    [[nodiscard]] const std::vector<std::int64_t>& volumes() const { return volumes_; }  // by vertex [volume unit]
     [[nodiscard]] const std::vector<std::int64_t>& stars() const { return stars_; }      // by vertex [probe unit²]
-    /// By vertex [unit]: IEEE quotients of the two, the same on every machine, exact where they are integers.
+    /// By vertex [unit]: IEEE quotients volume / star, the same on every machine. Exact if they are integers.
     [[nodiscard]] const std::vector<double>& heights() const { return heights_; }
     [[nodiscard]] Wide volume() const;
-    [[nodiscard]] Wide ground() const;  // the sum of all stars: six times the area [probe unit²]
+    [[nodiscard]] Wide ground() const;  // sum of all stars [probe unit²]: six times the area
 
-    /// As Mesh's.
+    /// Reserves memory for `vertices` vertices in all.
     void reserve(std::size_t vertices);
-    /// Erosion and tools move sand between vertices with this; the height follows.
+    /// Adds `volume` to a living vertex; its height follows. Erosion and tools move sand between vertices with this.
     void add(Vertex vertex, std::int64_t volume);
-    void setHeight(Vertex vertex, std::int32_t height /* [unit] */);  // changes the volume of the whole
-    // Both are for living vertices only.
+    void setHeight(Vertex vertex, std::int32_t height /* [unit] */);  // of a living vertex; changes the total volume
 
-    /// As Mesh's, but that the sand is kept: the volume of the whole is exactly what it was. A new vertex lies on the
-    /// surface as it was. Where the mesh changes, all vertices of each piece of what changed rise or sink by one and
-    /// the same height, which is the volume between the old surface and the new one over their stars, and what integers
-    /// cannot share is dealt out a unit each by number. (A piece: triangles that hang together by vertices.)
+    /// These functions change the mesh as those of Mesh do, and keep the total volume exactly. A new vertex gets the
+    /// height of the previous surface there.
+    ///
+    /// The triangles that change form pieces, each connected through vertices. All vertices of a piece rise or sink by
+    /// the same height. It is the volume between the previous surface and the current one, divided by the sum of the
+    /// vertices' stars. A remainder that integers cannot share is given out one unit each, in the order of the
+    /// vertices' numbers.
     Vertex insert(Place place);
     bool remove(Vertex vertex);
     std::vector<Vertex> constrain(Vertex from, Vertex to);
     void release(Vertex a, Vertex b);
-    /// Several of these as one change: one remap over all that they touch when `edits` returns or throws. They leave
-    /// takeChange() and takeDifference() alone. Returns the vertices on ground that came, went, or have another star,
-    /// ascending.
+    /// Makes several changes of the mesh as one, with a single remap when `edits` returns or throws. `edits` must not
+    /// call takeChange() or takeDifference(). Returns the vertices on ground that came, went or have another star, in
+    /// ascending order.
     std::vector<Vertex> edit(const std::function<void(Mesh&)>& edits);
 
-    /// The most that a vertex was moved by a remap since this was called last, a new one from where the surface was,
-    /// and the bound stated for it [unit]: three times the area of the piece that changed, over the sum of its
-    /// vertices' stars, of the difference between the highest and the lowest of the piece before; two volume units over
-    /// the smallest star for what integers round, and 2^-20 for what quotients do.
+    /// The largest move of a vertex by a remap since the last call, and the bound for that move [unit]. The move of a
+    /// new vertex counts from the previous surface.
+    ///
+    /// The bound is (h − l) · 3 A / S + 2 / s + 2^-20. Here h and l are the highest and the lowest previous height of
+    /// the piece, and A is its doubled area. S is the sum of its vertices' stars, and s the smallest of them. The
+    /// second term covers the rounding of integers, and the third that of quotients.
     struct Remap {
         double moved = 0, bound = 0;
     };
     [[nodiscard]] Remap takeLargestRemap();
-    /// As Mesh's: for whoever erodes it. Vertices that only rose or sank by a remap are among them.
+    /// Returns the change as Mesh::takeChange() does, for erosion. It also lists the vertices that a remap has only
+    /// raised or lowered.
     [[nodiscard]] Mesh::Change takeChange();
 
     [[nodiscard]] VertexSandParts parts() const;
     void encode(base::ByteWriter& writer) const { parts().encode(writer); }
-    /// Throws base::FormatError for bytes that encode() cannot have written, and for sand that does not fit these
-    /// holes, which are not among the bytes. Reads no further than its end.
+    /// Reads what encode() wrote, and no further. Throws base::FormatError if encode() cannot have written the bytes,
+    /// or if the sand does not fit `holes`, which are not among the bytes.
     static VertexSand decode(base::ByteReader& reader, const std::shared_ptr<const Holes>& holes = nullptr);
 
 private:
@@ -94,8 +104,8 @@ private:
     std::vector<std::int64_t> volumes_, stars_;
     std::vector<double> heights_;
     Remap largest_;
-    std::vector<Vertex> remapped_;  // since takeChange() was called last
-    bool knowsChange_ = false;      // takeChange() was called
+    std::vector<Vertex> remapped_;  // since the last takeChange()
+    bool knowsChange_ = false;      // whether takeChange() was called
 };
 
 }  // namespace sand::tin

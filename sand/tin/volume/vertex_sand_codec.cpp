@@ -26,7 +26,7 @@ std::int32_t getCoordinate(std::uint64_t value) {
     return static_cast<std::int32_t>(value);
 }
 
-/// Every one of them takes a byte at least.
+/// Reads a number of entries. Throws if so many entries of at least `bytesEach` bytes do not fit in the rest.
 std::size_t getCount(base::ByteReader& reader, std::size_t bytesEach) {
     const std::uint64_t count = reader.getVarint();
     if (count > reader.rest().size() / bytesEach) {
@@ -43,7 +43,7 @@ std::vector<std::pair<Vertex, Vertex>> getConstraints(base::ByteReader& reader, 
         const std::uint64_t a = reader.getVarint();
         const std::uint64_t b = reader.getVarint();
         if (a >= b || b >= vertices) {
-            throw FormatError("a constraint between vertices that cannot be");
+            throw FormatError("a constraint with vertices out of order or out of range");
         }
         constraints.emplace_back(static_cast<Vertex>(a), static_cast<Vertex>(b));
         if (i > 0 && constraints[i] <= constraints[i - 1]) {
@@ -69,7 +69,7 @@ VertexSandParts VertexSand::parts() const {
 void VertexSandParts::encode(base::ByteWriter& writer) const {
     writer.put(width);
     writer.put(depth);
-    // Numbers beyond the last that lives say only what once was.
+    // Free numbers after the last living vertex depend on history only, so that they are left out.
     const std::size_t count = livingEnd(places);
     writer.putVarint(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -107,17 +107,17 @@ VertexSand VertexSand::decode(base::ByteReader& reader, const std::shared_ptr<co
     try {
         VertexSand layer(Mesh::restore(width, depth, places, constraints, holes));
         for (std::size_t i = 0; i < volumes.size(); ++i) {
-            // No height that an integer of 32 bits cannot say, or not by much.
+            // Refuses heights beyond ±2^32 units. All heights of 32-bit integers are within.
             const Wide most = static_cast<Wide>(layer.stars_[i]) << 32U;
             if (volumes[i] > most || volumes[i] < -most) {
-                throw FormatError("a vertex with more sand than can be");
+                throw FormatError("a vertex with too much sand");
             }
             if (places[i]) {
                 layer.add(static_cast<Vertex>(i), volumes[i]);
             }
         }
         if (layer.mesh_.constraints() != constraints) {
-            throw FormatError("constraints that are not those of the mesh");
+            throw FormatError("constraints that differ from those of the mesh");
         }
         return layer;
     } catch (const std::invalid_argument& wrong) {
