@@ -8,19 +8,22 @@
 namespace sand::tin {
 namespace {
 
-constexpr double kSurelyRests = 0.999;      // of a steepness of 1: kRest is above it, and roundings are far smaller
-constexpr std::size_t kOfVerticesRest = 6;  // around what flows a ring lies still: at least so much of a lump
-constexpr std::uint8_t kAllSides = 7;       // the bits of all
-constexpr std::size_t kAhead = 8;           // vertices, from what is fetched to what is woken
+constexpr double kSurelyRests = 0.999;  // share of a steepness of 1: less than this surely rests, because kRest is
+                                        // above 1 and roundings are far smaller
+constexpr std::size_t kOfVerticesRest =
+    6;                                 // one vertex in so many rests at least: a ring around flowing sand lies still
+constexpr std::uint8_t kAllSides = 7;  // bits of all three sides
+constexpr std::size_t kAhead = 8;      // distance from a prefetch to its use [vertex]
 constexpr std::int32_t kNoUnderside = std::numeric_limits<std::int32_t>::max();
 
-/// A bit for a side, its corner counted from the triangle's smallest vertex on: a slot may turn its corners unnoticed.
+/// Returns the bit of a side. Corners count from the triangle's smallest vertex, because a slot may rotate its corners
+/// without notice.
 std::uint8_t bitOf(const Triangles& mesh, TriangleSide side) {
     const int least = leastOf(mesh.triangles[index(side.triangle)].corner);
     return static_cast<std::uint8_t>(1 << (side.corner - least + 3) % 3);
 }
 
-constexpr std::size_t kSweepsToForget = 5;  // of all active sand take as long as forgetting some of it
+constexpr std::size_t kSweepsToForget = 5;  // of all active sand; they take as long as forgetting a part of it
 
 }  // namespace
 
@@ -64,7 +67,7 @@ void ActiveEdges::begin(const VertexSand& layer, bool band, const Underside* hel
     held_ = held;
     restAround_ = 0;
     makeRoom(layer.triangles().places.size(), layer.triangles().triangles.size());
-    if (++turn_ == 0) {  // after 2^32 of them
+    if (++turn_ == 0) {  // after 2^32 turns
         for (VertexNote& note : ofVertices_) {
             note.woken = note.undersideKnown = 0;
         }
@@ -148,7 +151,7 @@ void ActiveEdges::watchEdges(const VertexSand& layer, const Slopes& slopes, Weig
     }
 }
 
-// Where nothing has flowed before, a triangle slides from a slope on that is never below the one without slack.
+// A triangle at which no sand has flowed starts to slide at a slope that is never below the talus without slack.
 bool ActiveEdges::maySlide(const VertexSand& layer, const Slopes& slopes, std::int32_t slot) {
     const Triangles& mesh = layer.triangles();
     std::array<Place, 3> at;
@@ -157,7 +160,8 @@ bool ActiveEdges::maySlide(const VertexSand& layer, const Slopes& slopes, std::i
         const Vertex corner = mesh.triangles[index(slot)].corner[k];
         at[k] = mesh.places[index(corner)];
         was[k] = layer.heights()[index(corner)];
-        under[k] = undersideAt(corner, at[k]);  // noted, though the triangle may not slide: it may without the obstacle
+        under[k] = undersideAt(
+            corner, at[k]);  // recorded although the triangle may be at rest: without the obstacle it may slide
     }
     const double a = leaning(was[0], under[0], was[1], was[2]), b = leaning(was[1], under[1], was[2], was[0]);
     const double c = leaning(was[2], under[2], was[0], was[1]);
@@ -167,7 +171,7 @@ bool ActiveEdges::maySlide(const VertexSand& layer, const Slopes& slopes, std::i
     return !(gx * gx + gy * gy < kSurelyRests * steepest * steepest);
 }
 
-/// What is asked for first where a vertex is woken or watched, of itself and of a triangle beside it.
+/// Prefetches the first data that wake() or watch() needs: those of a vertex and of a triangle at it.
 void ActiveEdges::fetch(const Triangles& mesh, Vertex vertex) const {
     __builtin_prefetch(&ofVertices_[index(vertex)]);
     if (mesh.alive(vertex)) {
@@ -177,7 +181,7 @@ void ActiveEdges::fetch(const Triangles& mesh, Vertex vertex) const {
     }
 }
 
-/// And of those beside that triangle, once it is here.
+/// Prefetches the neighbours of the triangle that fetch() has loaded for a vertex.
 void ActiveEdges::fetchBeside(const Triangles& mesh, Vertex vertex) const {
     if (mesh.alive(vertex)) {
         for (const std::int32_t slot : mesh.triangles[index(mesh.triangleAt[index(vertex)])].neighbour) {
@@ -202,7 +206,7 @@ void ActiveEdges::wake(const VertexSand& layer, const Slopes& slopes, std::span<
         }
         noteOf(vertex).woken = turn_;
         if (layer.volumes()[index(vertex)] > 0 && spills(mesh, vertex)) {
-            watch(layer, slopes, vertex);  // level sand falls too
+            watch(layer, slopes, vertex);  // because level sand falls over the rim too
         }
         aroundVertex(mesh, vertex, [&](std::int32_t slot, int) {
             std::uint32_t& examined = noteOfSlot(slot).examined;
@@ -215,7 +219,7 @@ void ActiveEdges::wake(const VertexSand& layer, const Slopes& slopes, std::span<
             }
         });
     }
-    // Side by side, so that few of the others are swept as if they were held.
+    // Add the held triangles together, so that few of the others share a group with them and are swept as held.
     for (auto* slots : {&steepHeld_, &steep_}) {
         for (const std::int32_t slot : *slots) {
             static_cast<void>(facetAt(layer, slopes, slot));
@@ -230,8 +234,9 @@ bool ActiveEdges::isHeld(const Triangle& triangle) {
            });
 }
 
-// Beside an edge that nobody watches no triangle slides, and nothing flows over it that could go on. Where no volume
-// changes no height does, and none begins to; but with a band, sand that flows through moves what it touches.
+// No triangle slides beside an unwatched edge, and no flux over that edge could continue. If no volume changes around
+// a triangle, its heights stay, and it does not start to slide. With a band it may start, because sand that flows
+// through a vertex sets the sand that it touches in motion.
 bool ActiveEdges::sweep(const VertexSand& layer, const Slopes& slopes, Weights& weights, double momentum) {
     std::size_t known = 0;
     do {
@@ -240,7 +245,8 @@ bool ActiveEdges::sweep(const VertexSand& layer, const Slopes& slopes, Weights& 
             watchEdges(layer, slopes, weights, slots_[index(facet)]);
             sand_.setBare(index(facet), false);
         }
-        // One that came with an edge may slide too: nothing flowed around it, for an obstacle held it.
+        // A facet that was added with an edge may slide too. Under an obstacle, no sand may have flowed around it
+        // before.
     } while (known < sand_.facetCount());
     const SweepResult result = sand_.move(held_ != nullptr, momentum);
     outflow_ += result.outflow;

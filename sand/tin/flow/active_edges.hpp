@@ -18,11 +18,15 @@ namespace sand::tin {
 
 /// The edges over which sand may flow.
 ///
-/// A triangle slides as the heights of its corners have it, and sand flows over the edges of those that slide. Whoever
-/// watches the triangles around every vertex that flowed in the last sweep has all that can slide in the next; only
-/// when one does are its edges needed. Triangles and edges watched beside these find nothing to do. Hence it does not
-/// matter which they are, and they are forgotten only now and then. Over an open rim each sweep lets all fall that lies
-/// on the rim above height 0: sand comes there over edges that are watched, or wake() is told of it. Not thread-safe.
+/// The heights of its corners decide whether a triangle slides, and sand flows only over the edges of sliding
+/// triangles. After a sweep, all triangles around each vertex at which sand flowed are watched. Every triangle that
+/// can slide in the next sweep is among them. The edges of a triangle are added only once it slides.
+///
+/// Further triangles and edges never change a result, because no sand flows there. They are therefore forgotten only
+/// now and then.
+///
+/// On an open rim, each sweep lets all sand above height 0 fall over the rim. Sand comes there over watched edges; for
+/// any other sand on the rim, wake() is called. Not thread-safe.
 class ActiveEdges {
 public:
     using Underside = std::function<std::int32_t(Place)>;
@@ -30,28 +34,30 @@ public:
     explicit ActiveEdges(Rim rim = Rim::closed) : rim_(rim) {}
 
     void reserve(std::size_t vertices) { makeRoom(vertices, 2 * vertices); }
-    /// Vertices where an obstacle stood and now another one does, or none: sand may flow there again. Where it is as it
-    /// was, sand has come to rest under it.
+    /// Returns the vertices at which the underside of the obstacle has changed or is gone, because sand may flow there
+    /// again. Sand below an unchanged underside has come to rest.
     [[nodiscard]] std::vector<Vertex> takeReleased(const Underside* held);
-    /// Takes the layer's sand as it is now, for a run of sweeps under this obstacle, or none; nothing flows yet.
-    /// `band`: sand at rest starts to slide later than sliding sand stops.
+    /// Begins a run of sweeps with the layer's current sand and without momentum. `held` is the underside of an
+    /// obstacle, or null. `band` is true if sand at rest needs a steeper slope to start than sliding sand needs to
+    /// continue.
     void begin(const VertexSand& layer, bool band, const Underside* held);
-    /// Watches every triangle that may slide in the next sweep because of these vertices: those around them that are
-    /// steep enough, and all around one from which sand falls over an open rim. To be called right after begin().
+    /// Watches every triangle that may slide in the next sweep because of these vertices. Those are the triangles
+    /// around them that are steep enough, and all triangles around a vertex from which sand falls over an open rim.
+    /// Call it right after begin().
     void wake(const VertexSand& layer, const Slopes& slopes, std::span<const Vertex> vertices);
-    /// One sweep, which then watches all that it may have set in motion; false when nothing flowed. `momentum`: what of
-    /// the last sweep's fluxes goes on, 0 to 1.
+    /// Runs one sweep, and then watches all triangles that it may have set in motion. `momentum` is the share of the
+    /// last sweep's fluxes that continues, 0 to 1. Returns whether a volume changed.
     bool sweep(const VertexSand& layer, const Slopes& slopes, Weights& weights, double momentum);
     /// Returns the volume that has fallen over an open rim since the last call [volume unit].
     [[nodiscard]] std::int64_t takeOutflow() { return std::exchange(outflow_, 0); }
-    /// Gives the layer its sand, and adds who has another volume now to `moved`.
+    /// Writes the sand to the layer. Adds the vertices whose volume has changed to `moved`.
     void store(VertexSand& layer, std::vector<Vertex>& moved) const;
-    /// Whether so much has been swept in vain since it was forgotten last that to forget it would have paid.
+    /// Returns whether sweeps have visited so many vertices at rest that forgetting them would have cost less.
     [[nodiscard]] bool manyRest() const;
-    /// Forgets what the last sweep cannot have set in motion. The layer must have got its sand.
+    /// Forgets all triangles that the last sweep cannot have set in motion. Call store() first.
     void forgetResting();
-    /// The mesh is another here: forgets what is no more what it was. Returns the corners of triangles that went, some
-    /// of which may be gone.
+    /// Forgets what `change` of the mesh has made invalid. Returns the corners of the triangles that it forgets. Some
+    /// of these vertices may no longer exist.
     [[nodiscard]] std::vector<Vertex> meshChanged(const Mesh::Change& change);
     void clear();
 
@@ -59,7 +65,7 @@ public:
     [[nodiscard]] std::size_t size() const { return sand_.edgeCount(); }
 
 private:
-    /// Where an obstacle stands above sand that is, or was, watched.
+    /// A vertex that is or was watched below an obstacle.
     struct Held {
         Vertex vertex;
         Place place;
@@ -68,9 +74,9 @@ private:
 
     void fetch(const Triangles& mesh, Vertex vertex) const;
     void fetchBeside(const Triangles& mesh, Vertex vertex) const;
-    [[nodiscard]] bool isHeld(const Triangle& triangle);  // its corners' undersides are known
+    [[nodiscard]] bool isHeld(const Triangle& triangle);  // the undersides of its corners must be known
     [[nodiscard]] bool maySlide(const VertexSand& layer, const Slopes& slopes, std::int32_t slot);
-    /// All triangles around a vertex.
+    /// Watches all triangles around a vertex.
     void watch(const VertexSand& layer, const Slopes& slopes, Vertex vertex);
     void watchEdges(const VertexSand& layer, const Slopes& slopes, Weights& weights, std::int32_t slot);
     void makeRoom(std::size_t vertices, std::size_t slots);
@@ -82,20 +88,21 @@ private:
     }
     void keep(const ActiveMesh::Marks& kept);
 
-    /// Of a vertex, and of a slot: all that is asked for at once, for where sand begins to move it is in no cache.
+    /// All numbers that waking and watching need of a vertex or of a slot. They are in one struct because they are in
+    /// no cache where sand begins to move.
     struct VertexNote {
         std::int32_t local = kNobody;
-        std::uint32_t woken = 0;           // the turn in which wake() saw it last
-        std::uint32_t undersideKnown = 0;  // the turn of begin()
+        std::uint32_t woken = 0;           // turn in which wake() last examined it
+        std::uint32_t undersideKnown = 0;  // turn for which `underside` is known
         bool isHeldBack = false;
-        double underside = 0;  // then
+        double underside = 0;  // [unit]
     };
     struct SlotNote {
         std::int32_t facet = kNobody;
-        std::uint32_t examined = 0;  // the turn in which wake() saw it last
-        std::uint8_t watched = 0;    // a bit per side whose edge is watched
+        std::uint32_t examined = 0;  // turn in which wake() last examined it
+        std::uint8_t watched = 0;    // one bit per side whose edge is watched
     };
-    /// Of an edge, among `watched` of its two slots.
+    /// The bits of one edge in `watched` of its two slots.
     struct Bits {
         std::uint8_t left, right;
     };
@@ -103,17 +110,17 @@ private:
     [[nodiscard]] SlotNote& noteOfSlot(std::int32_t slot) { return ofSlots_[static_cast<std::size_t>(slot)]; }
 
     Rim rim_;
-    ActiveMesh sand_;                  // by local numbers
-    std::vector<Vertex> vertices_;     // of a local vertex
-    std::vector<std::int32_t> slots_;  // of a local facet
-    std::vector<Bits> bits_;           // of a local edge
+    ActiveMesh sand_;                  // with local numbers
+    std::vector<Vertex> vertices_;     // by local vertex
+    std::vector<std::int32_t> slots_;  // by local facet
+    std::vector<Bits> bits_;           // by local edge
     std::vector<VertexNote> ofVertices_;
     std::vector<SlotNote> ofSlots_;
     std::vector<Held> heldBack_;
     std::vector<std::int32_t> met_, steepHeld_, steep_;  // scratch
-    std::uint32_t turn_ = 0;                             // of begin() and of wake()
-    std::int64_t inVain_ = 0;      // vertices at rest, sweep by sweep, beside those that always are
-    std::int64_t restAround_ = 0;  // of those: how many were left when edges were forgotten, since begin()
+    std::uint32_t turn_ = 0;                             // number of begin() calls; marks what wake() has examined
+    std::int64_t inVain_ = 0;      // vertices at rest, summed over the sweeps, less those that always are at rest
+    std::int64_t restAround_ = 0;  // vertices at rest that the last forgetResting() since begin() left
     std::int64_t outflow_ = 0;     // since takeOutflow()
     bool band_ = false;
     const Underside* held_ = nullptr;

@@ -7,7 +7,8 @@
 namespace sand::tin {
 namespace {
 
-// Of stars times heights. A vertex's fluxes together are at most twice that, and below 2^53 doubles count exactly.
+// Limit for star times height. All fluxes of a vertex together are at most twice that. Doubles count exactly below
+// 2^53.
 constexpr double kExactSum = 0x1p51;
 
 void note(std::vector<std::uint8_t>& together, std::size_t number, bool held) {
@@ -15,7 +16,7 @@ void note(std::vector<std::uint8_t>& together, std::size_t number, bool held) {
     together.back() = together.back() != 0 || held ? 1 : 0;
 }
 
-/// Keeps the values at these places in each array. The places are ascending.
+/// Keeps the values at the indices `kept` of each array. `kept` must be ascending.
 template <class... Values>
 void keepMarked(const std::vector<std::int32_t>& kept, std::vector<Values>&... arrays) {
     const auto keep = [&](auto& values) {
@@ -27,7 +28,7 @@ void keepMarked(const std::vector<std::int32_t>& kept, std::vector<Values>&... a
     (keep(arrays), ...);
 }
 
-/// Replaces each mark by its new number, and returns the old place of each number.
+/// Replaces each mark by its new number. Returns the previous index of each number.
 std::vector<std::int32_t> numberMarked(std::vector<std::int32_t>& marks) {
     std::vector<std::int32_t> kept(marks.size());
     std::int32_t count = 0;
@@ -144,7 +145,7 @@ void ActiveMesh::place(std::size_t vertex, std::int64_t volume, std::int64_t sta
 }
 
 void ActiveMesh::findUnwatched(std::vector<std::int32_t>& found) const {
-    // Most often it is one or two of a thousand.
+    // Usually only one or two vertices of a thousand are found, so that the loop tests eight at once.
     constexpr std::size_t kAtOnce = 8;
     const auto isFound = [this](std::size_t i) { return static_cast<std::uint64_t>(flowed(i)) & unwatched_[i]; };
     for (std::size_t first = 0, count = vertexCount(); first < count; first += kAtOnce) {

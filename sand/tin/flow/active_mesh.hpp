@@ -13,23 +13,24 @@
 
 namespace sand::tin {
 
-/// The part of a mesh that sweeps move: vertices, facets and edges with their own numbers, 0, 1, 2 …, side by side in
-/// memory.
+/// The part of a mesh that sweeps change: vertices, facets and edges, each numbered from 0, in contiguous memory.
 ///
-/// Volumes are whole numbers, and so are fluxes. As long as the largest star times the greatest height is below 2^51
-/// they and all their sums are exact as doubles, which processors move four at a time; beyond, they are 64-bit
-/// integers, for the same result. Not thread-safe.
+/// Volumes and fluxes are whole numbers. While the largest star times the greatest height is below 2^51, they and all
+/// their sums are exact as doubles. Processors compute four doubles at a time. Beyond 2^51, they are 64-bit integers,
+/// with the same result. Not thread-safe.
 class ActiveMesh {
 public:
-    static constexpr double kFree = 0x1p40;  // [unit], an underside where there is no obstacle: above all sand
+    static constexpr double kFree = 0x1p40;  // underside without an obstacle, above all sand [unit]
 
-    /// `wide` has integers from the start: for tests.
+    /// With `wide`, uses integers from the start, for tests.
     explicit ActiveMesh(bool v3 = base::machineHasV3(), bool wide = false) : v3_(v3), alwaysWide_(wide) {}
 
-    /// `spills`: it is on an open rim, and what lies above height 0 there falls over it in each sweep.
+    /// Adds a vertex and returns its number. `spills`: whether it is on an open rim, where each sweep lets all sand
+    /// above height 0 fall.
     std::int32_t addVertex(std::int64_t volume, std::int64_t star, double underside = kFree, bool spills = false);
-    /// Corners, ends and facets by their numbers here.
+    /// Adds a facet and returns its number. Its corners are numbers of vertices here.
     std::int32_t addFacet(const Facet& facet);
+    /// Adds an edge. Its ends and facets are numbers of vertices and facets here.
     void addEdge(const Edge& edge);
 
     [[nodiscard]] std::size_t vertexCount() const { return stars_.size(); }
@@ -38,43 +39,49 @@ public:
     [[nodiscard]] std::int64_t volume(std::size_t vertex) const {
         return isWide_ ? wide_[vertex] : static_cast<std::int64_t>(volumes_[vertex]);
     }
-    [[nodiscard]] Facet facet(std::int32_t number) const;  // its corners
-    [[nodiscard]] Edge edge(std::size_t number) const;     // its ends and facets
+    [[nodiscard]] Facet facet(std::int32_t number) const;  // corners only
+    [[nodiscard]] Edge edge(std::size_t number) const;     // ends and facets only
 
-    /// Forgets what the last sweep moved: nothing goes on. Each vertex is to be placed before the next.
+    /// Sets all fluxes to 0, so that no momentum continues. Call place() for each vertex before the next sweep.
     void restart();
     void place(std::size_t vertex, std::int64_t volume, std::int64_t star, double underside);
-    /// Told of a vertex whose edges are all here, and of one that misses some (as all do at first).
+    /// Sets whether all facets around a vertex are here. A new vertex is not watched.
     void setWatched(std::size_t vertex, bool watched) { unwatched_[vertex] = watched ? 0 : ~std::uint64_t{0}; }
     [[nodiscard]] bool isWatched(std::size_t vertex) const { return unwatched_[vertex] == 0; }
 
-    /// Told of a facet whose edges are all here, and of one that misses some (as all do at first).
+    /// Sets whether a facet lacks some of its edges here. A new facet does.
     void setBare(std::size_t facet, bool bare) { bare_[facet] = bare ? ~std::uint64_t{0} : 0; }
 
-    /// The first half of a sweep: how strongly facets slide, from `first` on (those before it are known then). `held`:
-    /// undersides hold; `band`: facets at rest start to slide later than sliding ones stop. Those that slide though
-    /// they miss edges, over which sand may flow in move(); until the next call.
+    /// Does the first half of a sweep: computes how strongly facets slide, from facet `first` on. The facets before it
+    /// must be known. `held`: whether undersides limit the sand. `band`: whether a facet at rest needs a steeper slope
+    /// to start than a sliding one needs to continue.
+    ///
+    /// Returns the facets that slide but lack edges, over which sand may flow in move(). The span is valid until the
+    /// next call.
     [[nodiscard]] std::span<const std::int32_t> slide(bool held, bool band, std::size_t first = 0);
-    /// The second half: what flows over the edges, where `momentum` of the last sweep's fluxes goes on, 0 to 1.
+    /// Does the second half of a sweep: computes the fluxes over the edges and moves the sand. `momentum` is the share
+    /// of the last sweep's fluxes that continues, 0 to 1.
     SweepResult move(bool held, double momentum);
-    /// Whether sand flowed at one of a vertex's edges in the last sweep.
+    /// Returns whether sand flowed at one of the vertex's edges in the last sweep.
     [[nodiscard]] bool flowed(std::size_t vertex) const { return levels_[vertex].flow > 0; }
+    /// Returns the number of vertices at which no sand flowed in the last sweep.
     [[nodiscard]] std::int64_t restingCount() const;
-    /// A byte for each.
+    /// One mark per facet and per edge, 0 or 1.
     struct Marks {
         std::vector<std::uint8_t> facets, edges;
     };
-    /// Facets at which sand flowed, so that they may slide or brake in the next sweep, and the edges of those
-    /// that slid or over which sand flowed.
+    /// Marks the facets at which sand flowed, because they may slide or brake in the next sweep. Marks the edges over
+    /// which sand flowed, and the edges of facets that slid.
     [[nodiscard]] Marks whatMayFlow() const;
-    /// Adds the vertices whose edges are not all here though sand flowed at one.
+    /// Adds the unwatched vertices at which sand flowed to `found`.
     void findUnwatched(std::vector<std::int32_t>& found) const;
 
-    /// Where facets and vertices are after some went; kNobody: nobody needs it any more.
+    /// New numbers of vertices and facets after keep(); kNobody stands for a vertex or facet that is gone.
     struct Renumbering {
         std::vector<std::int32_t> vertices, facets;
     };
-    /// Keeps these facets and edges and what they need, in the order in which they are.
+    /// Keeps the marked facets and edges, with the facets and vertices that they need, in the same order. Returns
+    /// their new numbers.
     Renumbering keep(const Marks& kept);
 
 private:
@@ -91,18 +98,18 @@ private:
     double largestStar_ = 0, greatestHeight_ = 0;
     std::vector<double> volumes_, stars_, undersides_;  // by vertex
     std::vector<Level> levels_;                         // by vertex
-    std::vector<double> inflow_;                        // two by vertex: scratch of a sweep
+    std::vector<double> inflow_;                        // two per vertex; scratch memory of a sweep
     std::vector<std::uint64_t> unwatched_;
     std::vector<std::int32_t> rim_;  // vertices that spill
     std::vector<std::int64_t> wide_, wideInflow_;
     std::vector<std::int32_t> first_, second_, third_;  // by facet
     std::vector<double> squared_, mixed_, squaredAcross_, start_, sliding_;
     std::vector<std::uint64_t> bare_;
-    std::vector<std::int32_t> slidBare_;                  // of the last slide()
+    std::vector<std::int32_t> slidBare_;                  // result of slide()
     std::vector<std::int32_t> from_, to_, left_, right_;  // by edge
     std::vector<double> leftWeights_, rightWeights_, fluxes_;
-    std::vector<std::uint8_t> heldFacets_, heldEdges_;  // by kHeldTogether of them
-    bool heldKnown_ = true;                             // those are up to date
+    std::vector<std::uint8_t> heldFacets_, heldEdges_;  // one per kHeldTogether facets or edges
+    bool heldKnown_ = true;                             // whether heldFacets_ and heldEdges_ are up to date
 };
 
 }  // namespace sand::tin

@@ -7,14 +7,14 @@
 namespace sand::tin {
 namespace {
 
-// Of the squared change. At a third piles are no nearer to the right ones; at three times as much a cone on 65,000
-// vertices was a quarter further away.
+// Duality gap at the end, as a share of the squared change. With a third of it, piles are no nearer to the exact ones.
+// With three times as much, a cone on 65,000 vertices was a quarter further away.
 constexpr double kRelativeGap = 3e-4;
 // Sand that falls over an open rim never comes back. With the gap above, a table of 64 x 64 cells on a jittered mesh
-// had lost 0.15 % too much at rest. With this one it keeps what sweeps leave on it, and is at rest sooner.
+// had lost 0.15 % too much at rest. With this gap it keeps as much sand as with sweeps, and is at rest sooner.
 constexpr double kRelativeGapOpen = 3e-6;
 constexpr double kMostVolume = 4611686018427387904.0;  // 2^62
-constexpr double kIterationsPerSide = 64;              // of the root of the facets; the slowest start known needed 5
+constexpr double kIterationsPerSide = 64;  // per square root of the number of facets; the slowest known start needed 5
 
 }  // namespace
 
@@ -103,7 +103,7 @@ DualProjection::Measures DualProjection::measure() {
 }
 
 int DualProjection::run() {
-    double weight = 1;  // t of Beck and Teboulle
+    double weight = 1;  // t in Beck and Teboulle
     double momentum = 0;
     const double relativeGap = rim_ == Rim::open ? kRelativeGapOpen : kRelativeGap;
     bool wasClose = false;

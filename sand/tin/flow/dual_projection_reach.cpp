@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangles a projection computes, and what it needs of them.
+// Part of DualProjection: selects the triangles that it computes, and prepares them.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace sand::tin {
 namespace {
 
-constexpr double kSlack = 1.0 / 16384;  // as of a grid's: fluxes are rounded, and slopes with them
+constexpr double kSlack = 1.0 / 16384;  // as for a grid: fluxes are rounded, which changes slopes
 
 }  // namespace
 
@@ -154,7 +154,8 @@ void DualProjection::surround(const std::vector<Vertex>& corners) {
     makeSteps();
 }
 
-/// Finds the vertices on an open rim. `fallen`: two by vertex of the layer, of the spills as they were; may be empty.
+/// Finds the vertices on an open rim. `fallen` has two numbers per vertex of the layer, its spill's `now` and `before`
+/// until now. It may be empty.
 void DualProjection::findSpills(const std::vector<double>& fallen) {
     spills_.clear();
     for (std::size_t i = 0; rim_ == Rim::open && i < vertices_.size(); ++i) {
@@ -168,14 +169,16 @@ void DualProjection::findSpills(const std::vector<double>& fallen) {
 }
 
 void DualProjection::makeSteps() {
-    // Of a vertex at the edge some triangles are missing here: none of those that are there is under pressure.
+    // A vertex at the edge of the computed area lacks some of its triangles. Its computed triangles are not under
+    // pressure.
     std::vector<double> around(vertices_.size(), 0);
     std::vector<double> weights(facets_.size());
     for (std::size_t i = 0; i < facets_.size(); ++i) {
         Facet& facet = facets_[i];
         const Vector &first = facet.first, &second = facet.second;
         const double perArea = first.east * second.north - first.north * second.east;
-        // Of the two eigenvalues of GᵀG that are not 0 half the sum, and the root of the product's third: 1/area.
+        // GᵀG has two eigenvalues other than 0. `half` is half their sum. Their product is 3 perArea², where perArea
+        // is 1 / (doubled area).
         const double half = first.times(first) + second.times(second) + first.times(second);
         const double largest = half + std::sqrt(std::max(half * half - 3 * perArea * perArea, 0.0));
         weights[i] = std::sqrt(largest) / perArea;

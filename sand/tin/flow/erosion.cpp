@@ -62,7 +62,7 @@ int Erosion::run(VertexSand& layer, int sweeps, const Underside* held, std::vect
     watchWoken(layer);
     int done = 0;
     while (done < sweeps && !active_.empty()) {
-        // Every call begins without: what flowed before is no state.
+        // Every call begins without momentum, because earlier fluxes are not part of the state.
         const double goesOn = momentum ? momentumAfter<double>(done, dampingOf(sweeps)) : 0;
         const bool still = !active_.sweep(layer, slopes_, weights_, goesOn);
         ++done;

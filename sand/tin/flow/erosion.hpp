@@ -10,71 +10,80 @@
 
 namespace sand::tin {
 
-/// The highest that sand may lie over a place, for as long as a tool stands there [unit]; the largest number beside it.
+/// Function that returns the greatest height of sand at a place below a tool [unit]. Beside the tool, returns the
+/// largest number.
 using Underside = ActiveEdges::Underside;
 
-/// Of thresholds as Rules has them [unit per cell].
+/// Returns the slopes for thresholds as in Rules [unit per cell].
 [[nodiscard]] Slopes slopesOf(std::int32_t threshold, std::int32_t startThreshold);
 
-/// Sand that slides where it is steeper than its talus, on a TIN.
+/// Sand on a TIN that slides where it is steeper than its talus.
 ///
-/// One sweep moves, over every edge at once, Q = trunc((w_l c_l + w_r c_r)₊ (u_i − u_j)) volume units. Of the edge's
-/// two triangles c = .8 (m² − g²)/(m² + g²), m being the triangle's slope, where that is steeper than g, else nothing;
-/// w is half the cotangent of the angle opposite the edge, times a step of the edge's own, such that what flows is at
-/// most k_e per height and the sum of k_e over a vertex's edges at most .9996 of its star, at both ends (weights.hpp).
-/// Without momentum it is the descent of a convex energy, and it rests where no triangle is steeper than g; with one
-/// slope per edge, the mean of its triangles', sand crept along kinks for a million sweeps.
+/// One sweep moves Q = trunc((w_l c_l + w_r c_r)₊ (u_i − u_j)) volume units over every edge, over all edges at once.
+/// Here u_i and u_j are the heights of the edge's ends, and l and r are its two triangles. Let m be a triangle's slope
+/// and g that of the talus. Then c = .8 (m² − g²)/(m² + g²) if m > g, else c = 0. w is half the cotangent of the angle
+/// opposite the edge, times a step of the edge. The step is so small that at most k_e flows per height. At both ends,
+/// the sum of k_e over the vertex's edges is at most .9996 of its star (weights.hpp).
 ///
-/// - Volume is exact: Q is taken here and given there.
-/// - No new extremes: star_i u_i' = star_i u_i − Σ Q with |Q| ≤ k_e |u_i − u_j| and Σ k_e < star_i, so u_i' lies
-///   between the heights of i and its neighbours. An obstacle only makes Q smaller, to k_e (underside − u) at the most:
-///   for the same reason no vertex rises above it.
-/// - It ends: Σ V²/star falls in every sweep that moves anything. It changes by
-///   −2 Σ_e Q (u_i − u_j) + Σ_i (Σ Q)²/star_i, and (Σ Q)² ≤ Σ k_e Σ Q²/k_e ≤ .9996 star_i Σ Q²/k_e, which over both
-///   ends of an edge is less than 2 Q (u_i − u_j). With Σ c k_e bounded instead of Σ k_e, or one step for all, two
-///   vertices can swap for ever, or wait as long.
+/// Without momentum, sweeps descend a convex energy, and sand rests where no triangle is steeper than g. A law with
+/// one slope per edge, the mean of its triangles', let sand creep along kinks for a million sweeps.
 ///
-/// In sweep() a part of the last sweep's flux goes on, which triangles flatter than g brake; each call begins without.
-/// It is cut to less than k_e (u_i − u_j) and never flows uphill, which is all that the proofs ask of Q.
+/// - Volume is exact: Q is subtracted at one end and added at the other.
+/// - No new extremes: star_i u_i' = star_i u_i − Σ Q with |Q| ≤ k_e |u_i − u_j| and Σ k_e < star_i. Therefore u_i'
+///   lies between the heights of i and its neighbours. An obstacle only makes Q smaller, to at most k_e (underside −
+///   u). For the same reason, no vertex rises above the underside.
+/// - It ends: Σ V²/star falls in every sweep that moves sand. It changes by −2 Σ_e Q (u_i − u_j) + Σ_i (Σ Q)²/star_i.
+///   Here (Σ Q)² ≤ Σ k_e Σ Q²/k_e ≤ .9996 star_i Σ Q²/k_e. Over both ends of an edge, that is less than 2 Q (u_i −
+///   u_j). With a bound on Σ c k_e instead of Σ k_e, or with one step for all edges, two vertices can swap for ever,
+///   or wait as long.
 ///
-/// Beyond an open rim the ground lies at height 0, and a step that high has no talus: at the end of a sweep all that
-/// lies above 0 on a vertex of the rim falls over it, and none comes back. Sand at rest is then 0 on the rim, and
-/// nowhere higher than g times the distance to it.
+/// sweep() has momentum: a part of the last sweep's flux continues, and triangles flatter than g brake it. Each call
+/// begins without momentum. The flux is cut to less than k_e (u_i − u_j) and never flows uphill. The proofs require
+/// only these two properties of Q.
 ///
-/// - Volume is exact: what falls is counted, to the unit.
-/// - No new extremes: max(u, 0) → 0 is a height between u and that of the ground beyond.
+/// Beyond an open rim the ground is at height 0, and the step down to it has no talus. At the end of a sweep, all sand
+/// above 0 on a vertex of the rim falls over the rim. It never comes back. Sand at rest is then at most 0 high on the
+/// rim, and nowhere higher than g times the distance to the rim.
+///
+/// - Volume is exact: the volume that falls is counted to the unit.
+/// - No new extremes: the new height 0 lies between u and the ground beyond the rim.
 /// - It ends: V²/star of such a vertex falls to 0, and no other sand moves.
 ///
-/// Sand at rest begins to slide beyond the start threshold; in the same call of sweep() it then slides, with all that
-/// it touches, until the threshold. The result of sweep() is a function of layer, rules and the number of sweeps: not
-/// of slots, active sets or threads, nor of what came before. Not thread-safe.
+/// Sand at rest starts to slide beyond the start threshold. In the same call of sweep(), this sand and all sand that it
+/// touches then slide down to the threshold. The result of sweep() depends only on the layer, the rules, the obstacle
+/// and the number of sweeps. It does not depend on slots, active sets, threads or earlier calls. Not thread-safe.
 class Erosion {
 public:
-    /// `threshold` and `startThreshold` as Rules': height units per cell size, sliding and starting to. All may move.
+    /// `threshold` and `startThreshold` are those of Rules: the slopes at which sliding sand stops and sand at rest
+    /// starts [unit per cell]. The first sweep examines all sand.
     Erosion(const VertexSand& layer, std::int32_t threshold, std::int32_t startThreshold, Rim rim = Rim::closed);
 
-    /// As Mesh's.
+    /// Reserves memory for `vertices` vertices in all.
     void reserve(std::size_t vertices);
-    void changeThresholds(std::int32_t threshold, std::int32_t startThreshold);  // wakes everything
-    /// The layer's mesh or sand is another there now: its weights are made anew, and it may move.
+    void changeThresholds(std::int32_t threshold, std::int32_t startThreshold);  // examines all sand again
+    /// Call this after the layer's mesh or sand has changed. Weights there are computed again, and sand there may move.
     void changed(const VertexSand& layer, const Mesh::Change& change);
-    /// These may move again, mesh and sand being as they were.
+    /// Wakes these vertices: their sand may move again, although neither mesh nor sand has changed there.
     void wake(const std::vector<Vertex>& vertices);
 
-    /// While `held` is given no flux raises a vertex above it. Who puts it down, or moves it, wakes the vertices that
-    /// are higher than a unit below it: sand beside them may lean on it now. Vertices that moved are added to `moved`,
-    /// ascending, each once. Costs what moves: next to nothing once the sand lies still. Sand under an obstacle is
-    /// looked at again by the next call for which it is another one there, so that nobody need wake it when the tool
-    /// leaves.
+    /// Runs at most `sweeps` sweeps, fewer if all sand is at rest before. Returns their number.
+    ///
+    /// No flux raises a vertex above `held`, the underside of an obstacle, or null. A caller that places or moves the
+    /// obstacle must wake the vertices higher than a unit below it, because sand beside them may now lean on it. When
+    /// the tool leaves, no such call is needed: a call in which the underside at a vertex has changed examines the
+    /// sand there again.
+    ///
+    /// Adds the vertices that moved to `moved`, in ascending order, each once. The cost grows with the amount of moving
+    /// sand. It is negligible when all sand is at rest.
     int sweep(VertexSand& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved);
-    /// The same without momentum nor obstacle, until nothing moves or there were so many: it takes longer to come to
-    /// rest than many calls of sweep() do, and the pile is righter.
+    /// Runs at most `most` sweeps without momentum and without an obstacle, fewer if all sand is at rest before.
+    /// Returns their number. Sand needs more sweeps than with sweep(), but the pile is more accurate.
     int settle(VertexSand& layer, int most, std::vector<Vertex>& moved);
     /// Returns the volume that has fallen over an open rim since the last call [volume unit]; the layer has lost it.
     [[nodiscard]] std::int64_t takeOutflow() { return active_.takeOutflow(); }
-    /// Whether nothing moves any more as things are.
+    /// Returns whether sweeps have found all sand at rest and no vertex was woken since.
     [[nodiscard]] bool settled() const;
-    /// How many edges the next sweep looks at, woken ones apart.
+    /// Returns the number of edges that the next sweep visits, without those of woken vertices.
     [[nodiscard]] std::size_t activeEdges() const { return active_.size(); }
 
 private:

@@ -29,14 +29,15 @@ Extremes extremesOf(const VertexSand& layer) {
     return result;
 }
 
-/// The volume at which a vertex lies at an extreme, rounded to the inside: its quotient does not round out again.
+/// Returns the volume at which the vertex's height is `extreme`. Rounds it towards `inside`, so that the quotient
+/// volume / star does not round beyond the extreme.
 std::int64_t volumeAt(const VertexSand& layer, Vertex vertex, double extreme, double inside) {
     const double volume = extreme * static_cast<double>(layer.stars()[index(vertex)]);
     const double within = std::nextafter(volume, inside);
     return static_cast<std::int64_t>(inside < 0 ? std::floor(within) : std::ceil(within));
 }
 
-/// How far a vertex lies beyond the extremes: what it has too much, or too little, below 0 [volume unit].
+/// Returns the volume by which a vertex exceeds the extremes [volume unit]. It is negative if the vertex is too low.
 std::int64_t overOf(const VertexSand& layer, Vertex vertex, const Extremes& extremes) {
     const double height = layer.heights()[index(vertex)];
     const std::int64_t volume = layer.volumes()[index(vertex)];
@@ -60,8 +61,8 @@ std::vector<Vertex> besideOf(const VertexSand& layer, Vertex vertex) {
     return beside;
 }
 
-/// Shares `over` among the neighbours, first evenly among those that have room for it, then among those that have some
-/// left; what there is no room for evenly again: they will share it in turn.
+/// Gives the surplus `over` to the neighbours: first evenly, as far as they have room, then as much as each has room
+/// left. The rest is shared evenly without regard to room, and the neighbours share it in their turn.
 void share(VertexSand& layer, Vertex vertex, std::int64_t over, const Extremes& extremes) {
     const std::vector<Vertex> beside = besideOf(layer, vertex);
     layer.add(vertex, -over);
@@ -82,8 +83,8 @@ void share(VertexSand& layer, Vertex vertex, std::int64_t over, const Extremes& 
     }
 }
 
-/// What the last iteration left to do may push a vertex past the extremes: it then shares the surplus with its
-/// neighbours. False when after some rounds one is still beyond them.
+/// Lets vertices beyond the extremes share their surplus with their neighbours. The projection may end a little beyond
+/// the extremes, because it stops before it is exact. Returns false if a vertex is still beyond them after 64 rounds.
 bool keepWithin(VertexSand& layer, const Extremes& extremes) {
     constexpr int kRounds = 64;
     for (int round = 0; round < kRounds; ++round) {
@@ -111,9 +112,9 @@ void giveBack(VertexSand& layer, const std::vector<std::int64_t>& volumes) {
     }
 }
 
-/// Replaces the sand by its projection, or leaves it as it is where that is not possible.
+/// Replaces the sand by its projection. Leaves the sand unchanged if the projection does not stay within the extremes.
 void project(VertexSand& layer, double slope, Rim rim, Settled& result) {
-    const Extremes extremes = extremesOf(layer);  // a rim from which sand falls is at 0 already
+    const Extremes extremes = extremesOf(layer);  // rim vertices from which sand falls are at 0 already
     const std::vector<std::int64_t> before = layer.volumes();
     DualProjection projection(layer, slope, rim);
     const int iterations = projection.run();

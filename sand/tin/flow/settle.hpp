@@ -9,21 +9,24 @@
 
 namespace sand::tin {
 
+/// Result of settle().
 struct Settled {
     int iterations = 0;         // of the dual projection; 0: sweeps alone did the work
-    int sweeps = 0;             // that brought it to rest
-    bool atRest = false;        // false: it still moved after `most` sweeps
-    std::int64_t outflow = 0;   // that fell over an open rim [volume unit]; the layer has lost it
-    std::vector<Vertex> moved;  // whose volume is another now, ascending
+    int sweeps = 0;             // that brought the sand to rest
+    bool atRest = false;        // false: sand still moved after `most` sweeps
+    std::int64_t outflow = 0;   // volume that fell over an open rim [volume unit]; the layer has lost it
+    std::vector<Vertex> moved;  // vertices whose volume has changed, ascending
 };
 
-/// Lets the sand come to rest at once, as sand::settle does with a grid's: a projection (dual_projection.hpp), then
-/// sweeps of Erosion until nothing moves. Sand that nothing sets in motion stays as it is, if it is steeper than the
-/// threshold too; any other settles to the threshold.
+/// Lets all sand come to rest at once, as sand::settle does on a grid. Uses a projection (dual_projection.hpp), then
+/// sweeps of Erosion until all sand is at rest. If no sand moves at first, all sand stays, even where it is steeper
+/// than the threshold. Otherwise all sand settles to the threshold.
 ///
-/// Volume is exact, and no vertex ends higher than the highest or lower than the lowest was, the ground at height 0
-/// beyond an open rim included: where the projection would leave these, sweeps do all of it. It ends by itself; `most`
-/// bounds how long that takes, for meshes with stars of very different size.
+/// Volume is exact. No vertex ends higher than the highest or lower than the lowest was before. With an open rim, the
+/// ground at height 0 beyond it counts as well. If the projection would exceed these extremes, sweeps do all of the
+/// work.
+///
+/// The sweeps end by themselves. `most` limits their number on meshes whose stars differ much in size.
 Settled settle(VertexSand& layer, std::int32_t threshold, std::int32_t startThreshold, int most = 1'000'000,
                Rim rim = Rim::closed);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled once for every x86-64 and once for x86-64-v3, with -O3, as the sweeps of a grid are.
+// Compiled once for every x86-64 and once for x86-64-v3, with -O3, like the sweeps of a grid.
 #include "sand/tin/flow/sweep_kernel.hpp"
 
 #include <algorithm>
@@ -13,7 +13,8 @@ namespace {
 using Four [[gnu::vector_size(4 * sizeof(double))]] = double;
 using Two [[gnu::vector_size(2 * sizeof(double)), gnu::aligned(sizeof(double)), gnu::may_alias]] = double;
 
-/// What four facets, or one, have at one of their corners: read in pairs, which compilers do not find.
+/// Values at one corner of four facets, or of one facet. They are read in pairs, which compilers do not do by
+/// themselves.
 template <class Number>
 struct Corner {
     Number height, flow;
@@ -50,7 +51,8 @@ Number valuesFrom(const double* values) {
     return result;
 }
 
-/// leaning(), of vectors too. Not shared: of a function that both compilations have, a linker keeps either's.
+/// Does the same as leaning(), also for vectors. The two share no code: if both compilations had a common function, a
+/// linker would keep one of them for both.
 template <class Number>
 Number leaningOn(Number height, Number underside, Number one, Number other) {
     const Number beside = one < other ? one : other;
@@ -58,7 +60,7 @@ Number leaningOn(Number height, Number underside, Number one, Number other) {
     return height > underside - 1 ? leans : height;
 }
 
-using Bits [[gnu::vector_size(4 * sizeof(std::int64_t))]] = std::int64_t;  // as many as Four
+using Bits [[gnu::vector_size(4 * sizeof(std::int64_t))]] = std::int64_t;  // as many elements as Four
 
 bool isAny(std::int64_t bits) { return bits != 0; }
 bool isAny(const Bits& bits) {
@@ -66,7 +68,8 @@ bool isAny(const Bits& bits) {
     return (two[0] | two[1]) != 0;
 }
 
-/// Facets from i on: as many as Number has. Returns whether one slides that is bare.
+/// Computes the facets from `i` on, as many as Number has elements. Returns whether one of them slides and lacks
+/// edges.
 template <bool kHeld, bool kBand, class Number, class Mask>
 [[gnu::always_inline]] inline bool slide(const SweepFacets& s, std::size_t i) {
     const auto [a, aFlow] = cornerOf<Number>(s.levels, s.first + i);
@@ -95,10 +98,10 @@ template <bool kHeld, bool kBand, class Number, class Mask>
     return isAny(steepness > rest ? bare : Mask{});
 }
 
-/// Returns the end of what it found.
+/// Computes the facets from `begin` to before `end`. Returns the end of the list that begins at `found`.
 template <bool kHeld, bool kBand>
 std::int32_t* slideAll(const SweepFacets& sweep, std::size_t begin, std::size_t end, std::int32_t* found) {
-    const SweepFacets s = sweep;  // a copy that nobody else can write to stays in registers
+    const SweepFacets s = sweep;  // a local copy stays in registers, because no other code can write to it
     std::size_t i = begin;
     for (; i + 4 <= end; i += 4) {
         if (slide<kHeld, kBand, Four, Bits>(s, i)) [[unlikely]] {
@@ -116,11 +119,11 @@ std::int32_t* slideAll(const SweepFacets& sweep, std::size_t begin, std::size_t 
     return found;
 }
 
-/// An edge's triangles: weights, and how strongly they slide or brake.
+/// Weights of an edge's two triangles, and how strongly each slides or brakes.
 struct Beside {
     double left, right, leftSlides, rightSlides;
 
-    /// The most that may flow per height: what the proofs need.
+    /// Returns the largest flow per height that the proofs allow.
     [[nodiscard]] double bound() const { return std::max(left, 0.0) + std::max(right, 0.0); }
     [[nodiscard]] double push() const {
         return std::max(left * std::max(leftSlides, 0.0) + right * std::max(rightSlides, 0.0), 0.0);
@@ -130,8 +133,9 @@ struct Beside {
     }
 };
 
-/// Of the last sweep's flux a part goes on, unless the slope has turned. Triangles flatter than the talus brake what
-/// goes on, and never the push of the triangle beside them: sand would creep along kinks for ever.
+/// Returns the flux over an edge with momentum. A part of the last sweep's flux continues, unless the slope has
+/// turned. Triangles flatter than the talus brake that part. They never brake the push of the triangle beside them,
+/// because sand would then creep along kinks for ever.
 double withMomentum(const Beside& beside, double difference, double goesOn) {
     const double most = kMostOfBound * beside.bound() * difference;
     const double forth = std::max(most, 0.0), back = std::min(most, 0.0);
@@ -172,7 +176,8 @@ void flowAll(const SweepEdges& s, std::size_t begin, std::size_t end) {
         s.leftWeights + begin, s.rightWeights + begin, s.sliding, s.momentum, s.fluxes + begin);
 }
 
-/// Calls work(held, begin, end) for what lies below an obstacle and for what does not, each in as few parts as may be.
+/// Calls work(held, begin, end) for the groups below an obstacle and for the groups without one, in as few parts as
+/// possible.
 template <class Work>
 void inParts(std::size_t count, const std::uint8_t* held, const Work& work) {
     for (std::size_t begin = 0; begin < count;) {
@@ -187,7 +192,7 @@ void inParts(std::size_t count, const std::uint8_t* held, const Work& work) {
     }
 }
 
-// Added with one instruction, as an edge's flux and its size are: to know where sand flows costs next to nothing.
+// Adds an edge's flux and its size with one instruction, so that finding where sand flows costs almost nothing.
 void sumUp(std::size_t edges, const std::int32_t* from, const std::int32_t* to, const double* fluxes, double* sums) {
     auto* pairs = reinterpret_cast<Two*>(sums);
     const auto add = [&](std::size_t i) {
@@ -195,8 +200,8 @@ void sumUp(std::size_t edges, const std::int32_t* from, const std::int32_t* to, 
         pairs[from[i]] += Two{-flux, size};
         pairs[to[i]] += Two{flux, size};
     };
-    // Edges that follow each other share a vertex, whose sum would have to be there first: four far apart do not wait.
-    // Sums of whole numbers need no order.
+    // Successive edges share a vertex, and each addition to its sum must wait for the one before. Four edges far apart
+    // do not wait. The order does not matter, because the sums are of whole numbers.
     const std::size_t part = edges / 4;
     for (std::size_t i = 0; i < part; ++i) {
         add(i);
@@ -209,8 +214,8 @@ void sumUp(std::size_t edges, const std::int32_t* from, const std::int32_t* to, 
     }
 }
 
-/// Lets all that would lie above height 0 on an open rim fall over it, and returns how much that is. A vertex' fluxes
-/// and its volume are whole numbers whose sums are exact; what falls in all is counted in 64 bits.
+/// Lets all sand that would lie above height 0 on an open rim fall over it. Returns the volume that falls, counted in
+/// 64 bits. The fluxes and the volume of a vertex are whole numbers whose sums are exact.
 std::int64_t spill(std::size_t count, const std::int32_t* rim, const double* volumes, double* sums) {
     std::int64_t outflow = 0;
     for (std::size_t i = 0; i < count; ++i) {
@@ -223,14 +228,14 @@ std::int64_t spill(std::size_t count, const std::int32_t* rim, const double* vol
     return outflow;
 }
 
-/// A height is a quotient, rounded once.
+/// Adds the sums to the volumes, and computes the heights. A height is a quotient that is rounded once.
 SweepResult settleUp(std::size_t count, const double* __restrict sums, const double* __restrict stars,
                      const std::uint64_t* __restrict unwatched, double* __restrict volumes, Level* __restrict levels) {
     std::uint64_t moved = 0, beyond = 0, met = 0;
     std::int64_t resting = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const double inflow = sums[2 * i], flow = sums[2 * i + 1];
-        const auto bits = std::bit_cast<std::uint64_t>(inflow + 0.0);  // minus zero is none either
+        const auto bits = std::bit_cast<std::uint64_t>(inflow + 0.0);  // minus zero counts as 0
         moved |= bits;
         beyond |= bits & unwatched[i];
         met |= std::bit_cast<std::uint64_t>(flow) & unwatched[i];

@@ -7,85 +7,93 @@
 
 namespace sand::tin {
 
-// A triangle slides by c = kPush (s − 1)/(s + 1), s = m²/g²: near g as 1 − g/m does, without its root. Sweeps descend
-// the energy whose derivative is m c, and a descent neither overshoots nor swings while step times curvature is at most
-// 2: Σ k ≤ star allows 1, and m c bends by at most 1.25 kPush. With 1 − g²/m² and 0.9, of curvature 1.8, sand swings.
+// A triangle slides by c = kPush (s − 1)/(s + 1), where s = m²/g². Near g this behaves like 1 − g/m, but needs no
+// root. Sweeps descend the energy whose derivative is m c. A descent neither overshoots nor swings while step times
+// curvature is at most 2. Σ k ≤ star allows a step of 1, and the curvature of m c is at most 1.25 kPush. With 1 −
+// g²/m² and 0.9, the curvature is 1.8, and sand swings.
 inline constexpr double kPush = 0.8;
-// Of the bound, what flows with momentum at most: near it a chequerboard swings without damping. A grid's 0.46 of 0.5.
+// Largest share of the bound that flows with momentum. Nearer to the bound, a chequerboard of heights swings without
+// damping. On a grid, the share is 0.46 of 0.5.
 inline constexpr double kMostOfBound = 0.92;
-// Sand stays where its slope is steeper than g by less than a part in 1024: it would creep there for many thousand
-// sweeps, at heights that nobody tells apart. As much as the band that scenes have unless they say otherwise.
+// Steepness at which sand rests: its slope then exceeds g by less than a part in 1024. Without this margin sand would
+// creep for many thousand sweeps, with differences of height too small to see. The default band of scenes is as wide.
 inline constexpr double kRest = 1 + 1.0 / 512;
 
-/// What a sweep asks of a vertex for each facet at it: side by side, for one load.
+/// The numbers that a sweep needs of a vertex for each facet at it. They are adjacent, so that one load reads both.
 struct Level {
     double height = 0;  // [unit]
-    double flow = 0;    // what flowed at its edges in the sweep before, in and out
+    double flow = 0;    // sum of the sizes of the fluxes at its edges in the last sweep, in and out
 };
 
-// Facets, or edges, of which is known together whether an obstacle is over one.
+// Number of facets, or of edges, with a common flag for an obstacle over one of them.
 inline constexpr std::size_t kHeldTogether = 16;
 
-/// How strongly facets slide (weights.hpp), each kind of number in an array of its own; corners by their place in the
-/// arrays of vertices. Nothing overlaps.
+/// Arguments of slideFacets(), which computes how strongly facets slide (weights.hpp). Each kind of number has its own
+/// array. Corners are indices of the vertices' arrays. No arrays overlap.
 struct SweepFacets {
     std::size_t facets;
-    const Level* levels;                            // by vertex
-    const double* undersides;                       // by vertex [unit]
-    const std::uint8_t* held;                       // by kHeldTogether: an obstacle is over some; null without one
+    const Level* levels;       // by vertex
+    const double* undersides;  // by vertex [unit]
+    const std::uint8_t*
+        held;  // per kHeldTogether facets: 1 if an obstacle is over one of them; null without an obstacle
     const std::int32_t *first, *second, *third;     // by facet: its corners
-    const double *squared, *mixed, *squaredAcross;  // by facet: Facet's first, mixed, second
-    const double* start;  // by facet: the steepness from which on it slides where nothing flows; null: kRest as ever
-    const std::uint64_t* bare;  // by facet: all bits, or none
-    double* sliding;            // by facet: how strongly it slides, to kPush, or brakes, from -kPush; written
-    std::int32_t* slidBare;     // those that slide and are bare, in order; written
+    const double *squared, *mixed, *squaredAcross;  // by facet: first, mixed and second of Facet
+    const double* start;  // by facet: steepness at which it starts to slide if no sand flows there; null: always kRest
+    const std::uint64_t* bare;  // by facet: all bits set if it lacks edges, else 0
+    double* sliding;            // by facet, written: how strongly it slides, up to kPush, or brakes, down to -kPush
+    std::int32_t* slidBare;     // written: facets that slide and lack edges, in order
 };
 
-/// What flows over edges: ends and facets by their place in those arrays.
+/// Arguments of flowOverEdges(), which computes the fluxes. Ends and facets are indices of the vertices' and facets'
+/// arrays.
 struct SweepEdges {
     std::size_t edges;
-    const Level* levels;                           // by vertex
-    const double* undersides;                      // by vertex [unit]
-    const std::uint8_t* held;                      // by kHeldTogether: an obstacle is over some; null without one
-    const double* sliding;                         // by facet
+    const Level* levels;       // by vertex
+    const double* undersides;  // by vertex [unit]
+    const std::uint8_t*
+        held;               // per kHeldTogether edges: 1 if an obstacle is over one of them; null without an obstacle
+    const double* sliding;  // by facet
     const std::int32_t *from, *to, *left, *right;  // by edge: ends and facets
     const double *leftWeights, *rightWeights;      // by edge [probe unit²]
-    double momentum;                               // what of the last sweep's flux goes on, 0 to 1
-    double* fluxes;                                // by edge: volume from `from` to `to`, whole; read and written
+    double momentum;                               // share of the last sweep's flux that continues, 0 to 1
+    double* fluxes;  // by edge, read and written: flux from `from` to `to`, a whole number [volume unit]
 };
 
-/// What the fluxes make of the sand: volumes, whole numbers below 2^53 as all their sums are, and heights.
+/// Arguments of moveSand(), which applies the fluxes to volumes and heights. Volumes and all their sums are whole
+/// numbers below 2^53.
 struct SweepSand {
     std::size_t vertices, edges;
     const std::int32_t *from, *to;   // by edge
     const double* fluxes;            // by edge
     const double* stars;             // by vertex [probe unit²]
-    const std::uint64_t* unwatched;  // by vertex: all bits, or none
+    const std::uint64_t* unwatched;  // by vertex: all bits set if it is not watched, else 0
     std::size_t rimVertices;
-    const std::int32_t* rim;  // vertices on an open rim: what lies above height 0 there falls over it
-    double* inflow;           // two by vertex: what came less what went, and both together; written
+    const std::int32_t* rim;  // vertices on an open rim; all sand above height 0 there falls over it
+    double* inflow;           // two per vertex, written: sum of its fluxes, and sum of their sizes
     double* volumes;          // by vertex
     Level* levels;            // by vertex
 };
 
-/// What a corner counts as for the slope: sand that fills the room below an obstacle leans on it, and is no slope for
-/// the sand beside it, which would flow along it for ever.
+/// Returns the height of a corner that counts for its triangle's slope. Sand that fills the room below an obstacle
+/// leans on it. If both other corners are higher, such a corner counts as high as the lower of them. Otherwise the
+/// sand beside the obstacle would flow along it for ever.
 inline double leaning(double height, double underside, double one, double other) {
     const double beside = one < other ? one : other;
     return height > underside - 1 && beside > height ? beside : height;
 }
 
+/// Result of moveSand().
 struct SweepResult {
-    bool moved = false;        // some volume changed
-    bool spread = false;       // that of one that is not watched did
-    bool met = false;          // sand flowed at an edge of one that is not watched
-    std::int64_t resting = 0;  // vertices at whose edges none flowed
-    std::int64_t outflow = 0;  // volume that fell over an open rim
+    bool moved = false;        // a volume changed
+    bool spread = false;       // the volume of an unwatched vertex changed
+    bool met = false;          // sand flowed at an unwatched vertex
+    std::int64_t resting = 0;  // number of vertices at which no sand flowed
+    std::int64_t outflow = 0;  // volume that fell over an open rim [volume unit]
 };
 
-// One source, compiled twice (sand/tin/CMakeLists.txt): the same numbers, bit for bit.
+// One source, compiled twice (sand/CMakeLists.txt). Both compilations give the same numbers, bit for bit.
 namespace baseline {
-std::size_t slideFacets(const SweepFacets& sweep);  // returns how many slidBare are
+std::size_t slideFacets(const SweepFacets& sweep);  // returns the number of slidBare
 void flowOverEdges(const SweepEdges& sweep);
 SweepResult moveSand(const SweepSand& sand);
 }  // namespace baseline

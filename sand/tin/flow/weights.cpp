@@ -10,11 +10,11 @@
 namespace sand::tin {
 namespace {
 
-constexpr double kOne = 1048576;  // of the integer weights: 2^20
+constexpr double kOne = 1048576;  // 1 as an integer weight: 2^20
 constexpr double kMostWeight =
-    4;  // of half a cotangent: slivers' have no bounds, and a whole star would wait for one edge
-constexpr double kSafe = 0.9996;  // what of the bound is used: the rest is room for roundings
-constexpr double kGrain = 0.5;    // [unit], how exactly a height is told
+    4;  // limit for half a cotangent: a sliver's has no bound, and all edges of a vertex would wait for one edge
+constexpr double kSafe = 0.9996;  // share of the bound that is used; the rest is room for roundings
+constexpr double kGrain = 0.5;    // accuracy of a height [unit]
 
 const Triangle& triangleOf(const Triangles& mesh, std::int32_t slot) {
     return mesh.triangles[static_cast<std::size_t>(slot)];
@@ -25,7 +25,7 @@ std::int64_t dot(const Place& origin, const Place& a, const Place& b) {
     return std::int64_t{a.x - origin.x} * (b.x - origin.x) + std::int64_t{a.y - origin.y} * (b.y - origin.y);
 }
 
-/// A side's two ends, counter-clockwise, and the corner opposite.
+/// The corner opposite a side, and the side's two ends counter-clockwise.
 struct Corners {
     Vertex apex, begin, end;
 };
@@ -36,7 +36,7 @@ Corners cornersOf(const Triangles& mesh, TriangleSide side) {
     return {corner[k], corner[(k + 1) % 3], corner[(k + 2) % 3]};
 }
 
-/// Half the cotangent of the angle at `apex`.
+/// Returns half the cotangent of the angle at `apex`.
 double half(const Place& apex, const Place& begin, const Place& end, double doubledArea) {
     // Both are integers below 2^53, so that the quotient is rounded once.
     return 0.5 * static_cast<double>(dot(apex, begin, end)) / doubledArea;
@@ -81,7 +81,7 @@ const std::array<std::int32_t, 3>& Weights::halvesOf(const Triangles& mesh, std:
         const Place &a = placeOf(mesh, corner[0]), &b = placeOf(mesh, corner[1]), &c = placeOf(mesh, corner[2]);
         const auto area = static_cast<double>(doubledArea(a, b, c));
         const std::array<double, 3> of{half(a, b, c, area), half(b, c, a, area), half(c, a, b, area)};
-        // All three by one factor: each cut for itself, a sliver's sand would not run down the sliver's slope.
+        // All three get one factor. If each were cut by itself, a sliver's sand would not run down the sliver's slope.
         const double scale = kOne * std::min(kMostWeight / std::max({of[0], of[1], of[2], kMostWeight}), 1.0);
         halves.first = corner[0];
         std::transform(of.begin(), of.end(), halves.of.begin(),
@@ -106,7 +106,8 @@ double Weights::step(const Triangles& mesh, std::span<const std::int64_t> stars,
                 sum += std::max(halves[static_cast<std::size_t>((corner + end) % 3)], 0);
             }
         });
-        // Of a triangle's two angles beside this vertex one is acute; but so little that it counts as right?
+        // One of a triangle's two angles beside this vertex is acute. It may be so close to a right angle that its
+        // integer weight is 0.
         sum = std::max<std::int64_t>(sum, 1);
         steps_[v] = kSafe * static_cast<double>(stars[v]) / static_cast<double>(sum);
     }
@@ -135,7 +136,7 @@ double slackOf(const Place& a, const Place& b, const Place& c) {
     const auto length = [](const Place& from, const Place& to) {
         return std::sqrt(static_cast<double>(dot(from, to, to)));
     };
-    // A corner that is higher by one turns the slope by the length of the opposite side over the doubled area.
+    // A corner that is higher by 1 changes the slope by the length of the opposite side over the doubled area.
     return kGrain * (length(a, b) + length(a, c) + length(b, c)) / static_cast<double>(doubledArea(a, b, c));
 }
 
@@ -160,8 +161,8 @@ Facet facetOf(const Triangles& mesh, std::int32_t slot, const Slopes& slopes) {
     facet.mixed = -2 * product / scale / scale;
     facet.second = firstSquared / scale / scale;
     const double start = (slopes.start + slack) / (slopes.slide + slack);
-    // Not below kRest, however narrow the band is: sand that has come to rest would start again once its flow is
-    // forgotten, and who is forgotten when must not matter.
+    // Not below kRest, however narrow the band is. Otherwise sand at rest would start again once its flow is
+    // forgotten. The time of forgetting must not change a result.
     facet.start = std::max(start * start, kRest);
     return facet;
 }
