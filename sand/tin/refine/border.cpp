@@ -10,7 +10,7 @@
 namespace sand::tin {
 namespace {
 
-constexpr int kLongestEdge = 4;  // [cell], of an outline: sand beside it flows by small triangles
+constexpr int kLongestEdge = 4;  // longest edge of an outline [cell]: sand beside it needs small triangles to flow
 
 std::int32_t wayBetween(const Place& a, const Place& b) { return std::abs(b.x - a.x) + std::abs(b.y - a.y); }
 
@@ -58,7 +58,7 @@ private:
         return heights_[static_cast<std::size_t>(row) * static_cast<std::size_t>(cells_.columns) +
                         static_cast<std::size_t>(column)];
     }
-    /// Not a number where there is no ground beside it.
+    /// Returns the mean of the samples of the ground beside a place. Returns not a number if there is no ground.
     [[nodiscard]] double heightAt(const Place& place) const {
         const int east = cells_.columnOf(2 * std::int64_t{place.x} + 1, 2);
         const int west = cells_.columnOf(2 * std::int64_t{place.x} - 1, 2);
@@ -76,7 +76,8 @@ private:
         return sum / count;
     }
 
-    /// Both ends, the places beside the middles of cells between them, in order, and what of them is wanted.
+    /// Both ends of a straight part and the places beside the cell centres between them, in order. `wanted` marks
+    /// those that the border gets.
     struct Chain {
         std::vector<Place> places;
         std::vector<double> heights;
@@ -111,7 +112,7 @@ private:
         return chain;
     }
 
-    /// Wants the place that is farthest from the line between two that are, again and again.
+    /// Marks the place that is farthest from the line between two marked places, again and again.
     void thinOut(Chain& chain, std::int32_t longest) const {
         std::vector<std::pair<std::size_t, std::size_t>> open{{0, chain.places.size() - 1}};
         while (!open.empty()) {
@@ -138,7 +139,7 @@ private:
         }
     }
 
-    /// The vertices from one place to another, both of them included.
+    /// Adds the straight part between two places to the border. Returns the vertices along it, with both ends.
     std::vector<Vertex> add(const Place& from, const Place& to, std::int32_t longest) {
         Chain chain = chainOf(from, to);
         std::vector<Vertex> along;
@@ -160,7 +161,7 @@ private:
         return along;
     }
 
-    /// A side of the field, from one vertex that is there to the next.
+    /// Adds a side of the field, part by part from one existing vertex to the next.
     void addSide(const Place& from, const Place& to) {
         std::vector<Place> there;
         for (auto found = numbers_.lower_bound(from); found != numbers_.end() && found->first <= to; ++found) {
@@ -171,7 +172,8 @@ private:
         for (std::size_t i = 1; i < there.size(); ++i) {
             const Place& a = there[i - 1];
             const Place& b = there[i];
-            // Between two of them all is ground, or nothing: in the middle of what may be but half a cell.
+            // A part has either ground all along or no ground. Look at its middle, because it may be only half a cell
+            // long.
             const Place middle{a.x + (b.x - a.x) / 2, a.y + (b.y - a.y) / 2};
             if (!std::isnan(heightAt(middle))) {
                 add(a, b, longestOnRim_);

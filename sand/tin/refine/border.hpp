@@ -12,23 +12,29 @@
 
 namespace sand::tin {
 
-/// Cells whose samples are not a number as holes; null when all have data.
+/// Returns the cells whose samples are not a number as holes, or null if all cells have data.
 [[nodiscard]] std::shared_ptr<const Holes> holesOf(std::span<const double> heights, const Cells& cells);
 
-/// Where the ground of a raster ends: points on the field's rim and on the outline of holes, besides the field's four
-/// corners, and the edges between those on an outline.
+/// The border of a raster's ground: points on the field's rim and on the outline of holes, and the edges between the
+/// points of an outline. The field's four corners are not among the points.
 struct Border {
-    std::vector<Place> places;                     // no two alike, no corner of the field among them
+    std::vector<Place> places;                     // all different
     std::vector<double> heights;                   // [the raster's unit]
-    std::vector<std::pair<Vertex, Vertex>> edges;  // 0 to 3 are the corners, 4 the first place
+    std::vector<std::pair<Vertex, Vertex>> edges;  // vertices 0 to 3 are the corners, 4 is the first place
 };
 
-/// As high as the samples of the ground beside it, or their mean in a corner. Each straight part is made of few points,
-/// greedily: until the cells beside it are no higher or lower than it by more than maxError, those of outlines until
-/// none is longer than four cells either. Without it the surface between the outermost samples and the rim, half a cell
-/// farther, hangs on the field's corners, and is a cliff. No rim where samples lie on it.
+/// Returns the border of a raster's ground. A point is as high as the sample of the ground beside it, or as the mean
+/// of several samples at a corner.
 ///
-/// @param longestOnRim  Rim edges are no longer than that, or a cell [probe unit]; 0: as long as maxError lets them.
+/// Each straight part gets few points, chosen greedily. Points are added until no cell beside the part is more than
+/// `maxError` higher or lower than the part. On an outline, points are also added until no edge is longer than four
+/// cells.
+///
+/// The rim is half a cell beyond the outermost samples. Without the border, the surface between them would depend on
+/// the heights of the field's corners, and would be a cliff. If samples lie on the rim, the border has no points
+/// there.
+///
+/// @param longestOnRim  Longest edge on the rim, but at least a cell [probe unit]; 0: limited by `maxError` only.
 [[nodiscard]] Border borderOf(std::span<const double> heights, const Cells& cells, const Holes* holes, double maxError,
                               std::int32_t longestOnRim = 0);
 

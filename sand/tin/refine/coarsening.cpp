@@ -9,10 +9,11 @@ namespace sand::tin {
 namespace {
 
 constexpr int kLooksPerRemoval = 16;
-constexpr std::size_t kMostAround = 64;  // a vertex with more is looked at too dearly
+constexpr std::size_t kMostAround =
+    64;  // vertices with more neighbours stay, because examining them would cost too much
 
-/// How far a vertex or one around it lies from the plane that fits them best [unit]. Its own place is the origin: sums
-/// of products of small numbers.
+/// Returns the largest distance of a vertex and its neighbours from the plane that fits them best [unit]. The vertex
+/// is the origin, so that the sums are of products of small numbers.
 double farthestFromPlane(const VertexSand& layer, Vertex vertex, const Link& link) {
     const auto& places = layer.triangles().places;
     const Place origin = places[static_cast<std::size_t>(vertex)];
@@ -40,7 +41,7 @@ double farthestFromPlane(const VertexSand& layer, Vertex vertex, const Link& lin
         xz += point.x * point.z;
         yz += point.y * point.z;
     }
-    const double determinant = xx * yy - xy * xy;  // positive: they do not all lie on a line
+    const double determinant = xx * yy - xy * xy;  // positive, because the points do not all lie on a line
     const double a = (xz * yy - yz * xy) / determinant, b = (yz * xx - xz * xy) / determinant;
     double farthest = 0;
     for (const Point& point : points) {
@@ -49,16 +50,18 @@ double farthestFromPlane(const VertexSand& layer, Vertex vertex, const Link& lin
     return farthest;
 }
 
-/// Whether it went.
+/// Removes the vertex if rules and surface allow that. Returns whether it was removed.
 bool takeOut(VertexSand& layer, const DetailRules& rules, Vertex vertex, Link& link) {
     findLink(layer.triangles(), vertex, link);
-    // The triangles before and after span the same vertices, but for the one that goes: all lie within `far` of a
-    // plane, and so do both surfaces, which are 2 far apart at most. The remap moves them by the mean of that at most.
+    // The triangles before and after the removal have the same vertices except the removed one. All vertices lie
+    // within `far` of a plane, so that both surfaces do. They are therefore at most 2 `far` apart. The remap moves
+    // them by at most the mean of this distance.
     return !link.constrained && link.closed && link.vertices.size() <= kMostAround &&
            4 * farthestFromPlane(layer, vertex, link) <= rules.maxError && layer.remove(vertex);
 }
 
-/// Looks at those that `maySkip` does not name, and tells `looked` of each and whether it went, and of all around it.
+/// Examines the vertices for which `maySkip` is false. Calls `looked` with each vertex, whether it was removed, and
+/// its neighbours.
 template <class MaySkip, class Looked>
 int coarsenBut(VertexSand& layer, const DetailRules& rules, Vertex& next, const Box& keepOut, const MaySkip& maySkip,
                const Looked& looked) {
@@ -93,7 +96,7 @@ int coarsen(VertexSand& layer, const DetailRules& rules, Vertex& next, const Box
 int Coarsening::step(VertexSand& layer, const DetailRules& rules, Vertex& next, const Box& keepOut) {
     known_.resize(std::max(known_.size(), layer.triangles().triangleAt.size()), 0);
     const auto looked = [&](Vertex vertex, bool went, const std::vector<Vertex>& around) {
-        if (went) {  // and they rose or sank: whoever is next may be beside one of them
+        if (went) {  // the neighbours rose or sank, and the next vertex may be beside one of them
             touch(layer.triangles(), around);
             return;
         }
@@ -117,7 +120,7 @@ void Coarsening::lookAgain(const Triangle& triangle) {
 void Coarsening::touch(const Triangles& mesh, std::span<const Vertex> vertices) {
     known_.resize(std::max(known_.size(), mesh.triangleAt.size()), 0);
     for (const Vertex vertex : vertices) {
-        // One that is gone has triangles of its own again when it comes back.
+        // A vertex that is removed and comes back has only new triangles.
         if ((known_[index(vertex)] & kNoneInVain) == 0 && mesh.alive(vertex)) {
             aroundVertex(mesh, vertex, [&](std::int32_t slot, int) { lookAgain(mesh.triangles[index(slot)]); });
             known_[index(vertex)] |= kNoneInVain;

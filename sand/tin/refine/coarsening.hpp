@@ -11,36 +11,41 @@
 
 namespace sand::tin {
 
-/// Takes out vertices where the surface is flat again: those with no constraint and not on the rim, in order of number
-/// from `next` on, which goes round; at most rules.removals, of sixteen times as many that are looked at.
+/// Removes vertices where the surface is flat again. Examines vertex numbers in ascending order, cyclically from
+/// `next` on. Vertices with a constraint, on the rim or in `keepOut` stay; `keepOut` is the area in which the tool
+/// works. Removes at most rules.removals vertices, and examines at most sixteen times as many. Returns the number of
+/// removed vertices.
 ///
-/// One goes when all around it and itself lie so near to one plane that neither the other triangles nor the remap
-/// moves the surface anywhere by more than maxError. The sand stays, to the last unit; errors of removals one after
-/// the other add up. `keepOut`: where the tool works. Returns how many went.
+/// A vertex is removed if it and its neighbours are close to one plane. They must be so close that the other triangles
+/// and the remap move the surface nowhere by more than rules.maxError. The volume stays exact. The errors of
+/// successive removals add up.
 int coarsen(VertexSand& layer, const DetailRules& rules, Vertex& next, const Box& keepOut);
 
-/// The same, step by step, and nobody is looked at again around whom nothing has changed since it was in vain: most of
-/// what has been dug is too rough for good. What it knows is no state: without it a step does and leaves the same, as
-/// long as it is told of all that changes and, until it forgets, asked with one layer and one maxError. Not
-/// thread-safe.
+/// Does the work of coarsen() in steps, and skips a vertex whose removal has failed until something around it changes.
+/// Most sand that a tool has dug stays too rough for removals.
+///
+/// Its memory is not part of the state, because a step has the same result without it. This holds if touch() is called
+/// for every change, and if layer and maxError stay the same until forget(). Not thread-safe.
 class Coarsening {
 public:
-    /// As Mesh's.
+    /// Reserves memory for `vertices` vertices in all.
     void reserve(std::size_t vertices) { known_.reserve(vertices); }
-    /// These have another height.
+    /// Call this after the heights of `vertices` have changed.
     void touch(const Triangles& mesh, std::span<const Vertex> vertices);
-    /// The mesh is another there, and some heights too. What step() takes out it knows itself.
+    /// Call this after the mesh or heights have changed, also for the removals of step().
     void touch(const Triangles& mesh, const Mesh::Change& change);
     void forget() { known_.clear(); }
+    /// Does one step of coarsen(). Returns the number of removed vertices.
     int step(VertexSand& layer, const DetailRules& rules, Vertex& next, const Box& keepOut);
 
 private:
+    /// Makes step() examine the corners of a triangle again.
     void lookAgain(const Triangle& triangle);
 
-    // Bits by vertex; a vertex beyond its end has none. Where a vertex within the field has kNoneInVain, neither it nor
-    // any around it has kInVain. On the rim, where nobody can go, that may not hold; and it outlasts a vertex, for one
-    // that comes back has triangles that are all new.
-    static constexpr std::uint8_t kInVain = 1;  // it could not go, and nothing around has changed since
+    // Bits by vertex; a vertex beyond the end has none. If a vertex within the field has kNoneInVain, neither it nor a
+    // vertex around it has kInVain. On the rim this may be false, but no vertex is removed there. The bits outlast
+    // their vertex. This does no harm, because a vertex that comes back has only new triangles.
+    static constexpr std::uint8_t kInVain = 1;  // its removal has failed, and nothing around it has changed since
     static constexpr std::uint8_t kNoneInVain = 2;
     std::vector<std::uint8_t> known_;
 };

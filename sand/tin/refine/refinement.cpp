@@ -10,7 +10,7 @@ namespace {
 
 std::int64_t square(std::int32_t coordinate, std::int32_t spacing) { return coordinate / spacing; }
 
-/// The squares of a lattice that some box touches, and which of them hold something.
+/// The squares of a lattice that a box touches. Each is free or taken.
 class Squares {
 public:
     Squares(const Box& box, std::int32_t spacing)
@@ -27,7 +27,7 @@ public:
             taken_[static_cast<std::size_t>(row * columns_ + column)] = true;
         }
     }
-    /// Takes all squares whose middle is so near to an edge.
+    /// Takes all squares whose middle is nearer to the edge than `distance`.
     void takeBeside(const Place& from, const Place& to, std::int32_t distance) {
         const std::int32_t x0 = std::min(from.x, to.x) - distance, x1 = std::max(from.x, to.x) + distance;
         const std::int32_t y0 = std::min(from.y, to.y) - distance, y1 = std::max(from.y, to.y) + distance;
@@ -39,7 +39,7 @@ public:
             }
         }
     }
-    /// Calls `use` with the middle of every square that nothing took.
+    /// Calls `use` with the middle of each free square.
     template <class Use>
     void forEachFree(const Use& use) const {
         for (std::int64_t row = 0; row < rows_; ++row) {
@@ -98,7 +98,7 @@ int refineRim(Mesh& mesh, const DetailRules& rules, const Box& box, const std::f
     }
     std::vector<Place> places;
     const int room = rules.maxVertices - mesh.vertexCount();
-    // The side y = `level`; with `turned`, x and y change places.
+    // Adds one side of the field, y = `level`. With `turned`, x and y are swapped.
     const auto addSide = [&](bool turned, std::int32_t level) {
         const auto swapped = [turned](const Place& place) { return turned ? Place{place.y, place.x} : place; };
         const Place from = swapped({inside.x0, inside.y0}), to = swapped({inside.x1, inside.y1});
@@ -153,7 +153,7 @@ DetailRules DetailRules::decode(base::ByteReader& reader) {
                        rules.maxError <= kMaxHeight && rules.firstToGo >= 0 && rules.removals >= 0 &&
                        rules.removals <= 65536 && rules.maxVertices >= 4 && keeps <= 1;
     if (!sound) {
-        throw base::FormatError("rules of a TIN's detail that no scene gives");
+        throw base::FormatError("detail rules of a TIN out of range");
     }
     return rules;
 }

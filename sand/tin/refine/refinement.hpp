@@ -13,34 +13,39 @@
 
 namespace sand::tin {
 
-/// How fine a TIN is while the session runs; derived once by whoever loads the scene. All zeros: the mesh stays as it
-/// is, but for the tool's outline.
+/// How fine a TIN is while the session runs. The rules follow from the Settings of the TinStart. With all rules 0,
+/// only the tool's outline changes the mesh.
 struct DetailRules {
-    std::int32_t spacing = 0;            // [probe unit], of the lattice that is put where the tool works; 0: none
-    double maxError = 0;                 // [unit], by which one removal may change the surface; 0: nothing is removed
-    Vertex firstToGo = 0;                // vertices of smaller numbers stay
-    std::int32_t removals = 0;           // at most so many a step
-    std::int32_t maxVertices = 1 << 22;  // refinement and outlines stop here
-    bool keepsConstraints = false;       // of a tool that has left
+    std::int32_t spacing =
+        0;                 // of the lattice of vertices that is added where the tool works [probe unit]; 0: no lattice
+    double maxError = 0;   // largest change of the surface by one removal [unit]; 0: no removals
+    Vertex firstToGo = 0;  // vertices with smaller numbers stay
+    std::int32_t removals = 0;           // most removals per step
+    std::int32_t maxVertices = 1 << 22;  // limit for refinement and outlines
+    bool keepsConstraints = false;       // whether the constraints of a tool stay after it has left
 
     void encode(base::ByteWriter& writer) const;
-    /// Throws base::FormatError for rules that no scene gives.
+    /// Throws base::FormatError if a rule is out of range.
     static DetailRules decode(base::ByteReader& reader);
     friend bool operator==(const DetailRules&, const DetailRules&) = default;
 };
 
-/// Where new vertices would make slivers: near these edges.
+/// Edges near which new vertices would make slivers.
 using Edges = std::vector<std::pair<Place, Place>>;
 
-/// Puts a vertex into the middle of every square of the lattice that `wanted` wants one in (told the middle), that
-/// holds none of `there`, and whose middle is no nearer than a quarter of the spacing to an edge; square by square from
-/// the south-west, until the mesh has maxVertices. Returns how many came.
+/// Adds a vertex in the middle of each square of the lattice in `box` that fulfils three conditions. `wanted` must be
+/// true for the middle. The square must contain no place of `there`. The middle must be at least a quarter of the
+/// spacing away from all `edges`.
+///
+/// Goes from square to square, beginning in the south-west, until the mesh has rules.maxVertices. Returns the number
+/// of added vertices.
 int refine(Mesh& mesh, const DetailRules& rules, const Box& box, const std::function<bool(const Place&)>& wanted,
            std::span<const Place> there, const Edges& edges);
 
-/// Puts a vertex on the field's rim beside the middle of every square that reaches it within the box, where `wanted`
-/// wants one (told the place on the rim) and no part of the rim in that square holds any of `there`; until the mesh has
-/// maxVertices. Returns how many came. For an open rim, over which sand falls where vertices are.
+/// Adds a vertex on the field's rim beside the middle of each square that reaches the rim within `box`. `wanted` must
+/// be true for the place on the rim. The square's part of the rim must contain no place of `there`. Stops when the
+/// mesh has rules.maxVertices. Returns the number of added vertices. An open rim needs this, because sand falls over
+/// it only at vertices.
 int refineRim(Mesh& mesh, const DetailRules& rules, const Box& box, const std::function<bool(const Place&)>& wanted,
               std::span<const Place> there);
 

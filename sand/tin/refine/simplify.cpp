@@ -17,19 +17,19 @@ std::int64_t floorDivided(std::int64_t value, std::int64_t by /* positive */) {
 }
 std::int64_t ceilDivided(std::int64_t value, std::int64_t by) { return -floorDivided(-value, by); }
 
-/// The sample of a triangle that is farthest from it.
+/// The sample of a triangle that is farthest from the surface.
 struct Worst {
     double error = 0;
     std::int64_t sample = kNone;
     std::int32_t slot = kNobody;
-    std::uint32_t version = 0;  // of the slot: what it was asked of may be gone
-    /// For a heap with the largest error on top, of equals the first sample.
+    std::uint32_t version = 0;  // of the slot when the error was measured; a newer version makes it invalid
+    /// Orders a heap: the largest error is on top, and of equal errors the first sample.
     friend bool operator<(const Worst& a, const Worst& b) {
         return a.error != b.error ? a.error < b.error : a.sample > b.sample;
     }
 };
 
-/// The errors of all samples against the surface over a mesh, kept as it changes.
+/// The errors of all samples against the surface of a mesh. They are updated as the mesh changes.
 class Errors {
 public:
     Errors(const Raster& raster, const Mesh& mesh, const std::vector<double>& heights, bool reports = true)
@@ -39,7 +39,7 @@ public:
           errors_(reports ? raster.heights.size() : 0),
           used_(raster.heights.size()) {}
 
-    /// The sample is a vertex now: rounding may show it an error that no insertion takes away.
+    /// Marks a sample as a vertex, because rounding may show an error there that no insertion removes.
     void use(std::int64_t sample) { used_[static_cast<std::size_t>(sample)] = true; }
 
     void measure(std::span<const std::int32_t> slots) {
@@ -51,7 +51,7 @@ public:
             }
         }
     }
-    /// The worst of all that is no vertex yet; its sample is kNone when all are exact.
+    /// Returns the worst sample that is not a vertex. Its `sample` is kNone if all samples are exact.
     [[nodiscard]] Worst worst() {
         while (!heap_.empty() && heap_.top().version != versions_[static_cast<std::size_t>(heap_.top().slot)]) {
             heap_.pop();
@@ -74,7 +74,7 @@ public:
     }
 
 private:
-    /// Corners by number and not as the slot has them: the mesh alone decides how a height is rounded.
+    /// Corners from the smallest number on, not as in the slot. The rounding of heights then depends only on the mesh.
     struct Corners {
         std::array<Place, 3> places;
         std::array<double, 3> heights;
@@ -90,7 +90,7 @@ private:
         return corners;
     }
 
-    /// Looks at every sample that lies in the triangle or on its edges, row by row.
+    /// Measures every sample in the triangle or on its edges, row by row.
     void measure(std::int32_t slot) {
         const Corners corners = cornersOf(slot);
         const auto& p = corners.places;
@@ -107,14 +107,15 @@ private:
         }
     }
 
-    /// The columns of a row within the triangle: exact, since every edge is a half plane of integers.
+    /// Returns the columns of a row within the triangle. The result is exact, because every edge bounds a half plane
+    /// of integers.
     [[nodiscard]] std::pair<std::int64_t, std::int64_t> columnsOf(const Corners& corners, std::int64_t row) const {
         const std::int64_t y = raster_.first.y + row * raster_.spacing.y;
         std::int64_t first = 0, last = raster_.columns - 1;
         for (std::size_t k = 0; k < 3; ++k) {
             const Place &a = corners.places[k], &b = corners.places[(k + 1) % 3];
             const std::int64_t rise = std::int64_t{b.y} - a.y, run = std::int64_t{b.x} - a.x;
-            // x = a.x + run (y - a.y) / rise, as columns: one quotient.
+            // x = a.x + run (y - a.y) / rise, in columns, with one quotient.
             const std::int64_t way = (a.x - raster_.first.x) * rise + run * (y - a.y);
             if (rise > 0) {
                 last = std::min(last, floorDivided(way, rise * raster_.spacing.x));
@@ -133,7 +134,8 @@ private:
         const auto& p = corners.places;
         const std::int64_t start = row * raster_.columns + first;
         const Place place = raster_.placeOf(static_cast<std::size_t>(start));
-        // Doubled areas below 2^45, exact in a double: no gradient, which slivers would make huge.
+        // Doubled areas are below 2^45 and exact in a double. Gradients are not used, because those of slivers are
+        // huge.
         double w0 = static_cast<double>(doubledArea(place, p[1], p[2]));
         double w1 = static_cast<double>(doubledArea(p[0], place, p[2]));
         double w2 = static_cast<double>(doubledArea(p[0], p[1], place));
@@ -147,7 +149,7 @@ private:
             if (!errors_.empty()) {
                 errors_[index] = error;
             }
-            if (error > worst.error && !used_[index]) {  // never true of what has no data
+            if (error > worst.error && !used_[index]) {  // always false for a sample without data
                 worst.error = error;
                 worst.sample = sample;
             }
@@ -157,7 +159,7 @@ private:
     const Raster& raster_;
     const Triangles& mesh_;
     const std::vector<double>& heights_;
-    std::vector<double> errors_;  // by sample, as its triangle changed last; none when nobody asks
+    std::vector<double> errors_;  // by sample, from the last change of its triangle; empty if errors are not reported
     std::vector<bool> used_;
     std::vector<std::uint32_t> versions_;  // by slot
     std::priority_queue<Worst> heap_;
@@ -177,7 +179,7 @@ void check(std::int32_t width, std::int32_t depth, const Raster& raster) {
     }
 }
 
-/// Of the nearest sample with data, of equals the first.
+/// Returns the height of the nearest sample with data. Of equally near samples, the first counts.
 double nearestHeight(const Raster& raster, const Place& place) {
     std::int64_t nearest = std::numeric_limits<std::int64_t>::max();
     double height = 0;
@@ -195,7 +197,7 @@ double nearestHeight(const Raster& raster, const Place& place) {
     return height;
 }
 
-/// The sample at a place; kNone when there is none.
+/// Returns the sample at a place, or kNone.
 std::int64_t sampleAt(const Raster& raster, const Place& place) {
     const std::int64_t x = std::int64_t{place.x} - raster.first.x, y = std::int64_t{place.y} - raster.first.y;
     const bool on = x >= 0 && y >= 0 && x % raster.spacing.x == 0 && y % raster.spacing.y == 0 &&
@@ -209,7 +211,7 @@ Simplified simplify(std::int32_t width, std::int32_t depth, const Raster& raster
                     const Border& given) {
     check(width, depth, raster);
     if (goal.maxVertices < 4) {
-        throw std::invalid_argument("a field has 4 corners");
+        throw std::invalid_argument("fewer than 4 vertices: a field has 4 corners");
     }
     Mesh mesh(width, depth);
     Simplified result;

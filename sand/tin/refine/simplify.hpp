@@ -10,13 +10,13 @@
 
 namespace sand::tin {
 
-/// Heights on a lattice, in whatever unit: sample (column, row) lies at first + spacing · (column, row), which
-/// need not be alike both ways. Not a number: no data.
+/// Heights on a lattice, in any unit. Sample (column, row) lies at first + spacing · (column, row). The spacing of
+/// columns and that of rows may differ. A height that is not a number means no data.
 struct Raster {
     std::span<const double> heights;  // row by row from the south, columns from the west
     int columns = 0, rows = 0;
     Place first;
-    Place spacing{256, 256};  // [probe unit], of columns and of rows
+    Place spacing{256, 256};  // of columns and of rows [probe unit]
 
     [[nodiscard]] Place placeOf(std::size_t sample) const {
         const auto width = static_cast<std::size_t>(columns);
@@ -25,34 +25,36 @@ struct Raster {
     }
 };
 
-/// How far to go: until no sample is farther from the surface than maxError, or there are maxVertices.
+/// When to stop: if no sample is farther from the surface than maxError, or if there are maxVertices.
 struct SimplifyGoal {
     double maxError = 0;  // [the raster's unit]
     int maxVertices = 1 << 22;
-    bool reports = true;  // the root mean square of the errors that are left; otherwise it is 0, and takes no memory
+    bool reports = true;  // whether to compute rmsError, which takes 8 bytes per sample; otherwise it is 0
 };
 
-/// Some of a raster's samples, whose triangulation is near to all of them.
+/// A choice of a raster's samples whose triangulation is close to all samples.
 struct Simplified {
-    std::vector<Place> places;          // the field's corners, those given, then samples as they were chosen
-    std::vector<double> heights;        // [the raster's unit]
+    std::vector<Place> places;    // the field's corners, the given points, then samples in the order of their choice
+    std::vector<double> heights;  // [the raster's unit]
     double maxError = 0, rmsError = 0;  // vertical, over all samples with data [the raster's unit]
 };
 
-/// Greedy insertion (Garland and Heckbert 1995): the Delaunay triangulation of a field of this size starts from its
-/// corners, which take the height of the nearest sample with data; then the sample with the largest vertical error is
-/// put in, of equals the first in the raster, again and again. Samples without data are never put in and count for
-/// nothing: the surface spans them. Memory: a bit a sample, and 8 bytes where errors are reported.
+/// Chooses samples by greedy insertion (Garland and Heckbert 1995). The Delaunay triangulation of a `width` × `depth`
+/// field starts with its corners. They take the height of the nearest sample with data. Then the sample with the
+/// largest vertical error is inserted, again and again. Of equal errors, the first in the raster counts. Samples
+/// without data are never inserted and have no error; the surface spans them.
 ///
-/// A function of raster and goal; IEEE sums, products and quotients only. Throws std::invalid_argument for a raster
-/// that does not lie in the field, has infinite heights or no data at all, and for fewer vertices than 4.
+/// Memory: one bit per sample, and 8 bytes per sample if errors are reported.
 ///
-/// @param given  Points that are put in before, and edges that are constrained; they follow the corners. A point on a
-///               sample must have that sample's height.
+/// The result depends only on the arguments. It uses only IEEE operations. Throws std::invalid_argument if the raster
+/// does not lie in the field, has infinite heights or has no data, or if goal.maxVertices is less than 4.
+///
+/// @param given  Points that are inserted after the corners and before all samples, and edges that are constrained. A
+/// point at a sample must have the height of that sample.
 [[nodiscard]] Simplified simplify(std::int32_t width, std::int32_t depth, const Raster& raster,
                                   const SimplifyGoal& goal, const Border& given = {});
 
-/// The vertical errors of the surface through these points, for comparison: as simplify() reports its own.
+/// Returns the surface through these points with its vertical errors, as simplify() reports them, for comparison.
 [[nodiscard]] Simplified measured(std::int32_t width, std::int32_t depth, const Raster& raster,
                                   std::span<const Place> places, std::span<const double> heights);
 

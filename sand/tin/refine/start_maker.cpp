@@ -18,8 +18,8 @@ namespace sand::tin {
 namespace {
 
 constexpr int kCorners = 4;
-constexpr std::int32_t kUsualWidest = 16 * kLatticePerCell;  // where nothing says how far apart points may lie
-constexpr double kAnyError = 4.0 * kMaxHeight;               // [unit], more than two heights can differ
+constexpr std::int32_t kUsualWidest = 16 * kLatticePerCell;  // distance of points on an open rim if settings give none
+constexpr double kAnyError = 4.0 * kMaxHeight;               // more than any difference of two heights [unit]
 
 std::int32_t nearestHeight(double height) {
     return static_cast<std::int32_t>(
@@ -41,8 +41,9 @@ std::size_t nearest(const std::vector<Place>& places, const Place& to) {
     return static_cast<std::size_t>(found - places.begin());
 }
 
-/// Adds the middles of cells at settings.widest that lie on ground. Without them level ground is two triangles, and a
-/// furrow's bank hangs on the field's far corners by slivers, which sand slides over badly and light shows as rays.
+/// Adds the cell centres at distance settings.widest that lie on ground. Without them, level ground is two triangles.
+/// Slivers would then connect the bank of a furrow with the field's far corners. Sand slides badly over slivers, and
+/// light shows them as rays.
 void addLattice(const HeightField& field, const Holes* holes, const Settings& settings, Border& given) {
     const std::int32_t every = Lattice(settings.widest).every;
     if (every == 0) {
@@ -59,7 +60,8 @@ void addLattice(const HeightField& field, const Holes* holes, const Settings& se
     }
 }
 
-/// Returns a border as near to the ground as maxError, or as near as so few vertices can be.
+/// Returns a border with error `maxError`, or with a larger one if it would otherwise exceed `most` vertices. Throws
+/// std::length_error if every border exceeds them.
 Border borderWithin(std::size_t most, std::span<const double> heights, const Cells& cells, const Holes* holes,
                     std::int32_t longestOnRim, double maxError) {
     const auto within = [&](double error) { return borderOf(heights, cells, holes, error, longestOnRim); };
@@ -79,7 +81,8 @@ Border borderWithin(std::size_t most, std::span<const double> heights, const Cel
     return border;
 }
 
-/// A raster for greedy insertion takes twice the memory that the field does: level ground can do without.
+/// Returns whether all heights are equal. Level ground needs no raster for greedy insertion, which takes twice the
+/// memory of the field.
 bool isLevel(const HeightField& field) {
     for (int row = 0; row < field.rows(); ++row) {
         const std::int32_t* cells = field.row(row);
@@ -91,17 +94,17 @@ bool isLevel(const HeightField& field) {
     return true;
 }
 
-/// Returns how long edges along the rim may be [probe unit]; 0: as long as the heights let them.
+/// Returns the longest edge allowed on the rim [probe unit]; 0: limited by the heights only.
 std::int32_t rimSpacing(const Settings& settings, Rim rim) {
     if (rim == Rim::closed) {
         return 0;
     }
-    // Sand falls where the rim has vertices.
+    // Sand falls over the rim only at vertices.
     return settings.widest > 0 ? std::max(settings.widest, kLatticePerCell) : kUsualWidest;
 }
 
-/// Chooses what the rim, the holes and the heights of a field need, and what 'widest' asks for. Returns the largest
-/// error that is left [unit].
+/// Chooses the vertices that rim, holes, heights and settings.widest require, and adds them to `start`. Returns the
+/// largest remaining error [unit].
 double addChosen(const HeightField& field, const Ground* walls, Rim rim, TinStart& start) {
     std::vector<double> heights;
     heights.reserve(static_cast<std::size_t>(field.columns()) * static_cast<std::size_t>(field.rows()));
@@ -115,18 +118,18 @@ double addChosen(const HeightField& field, const Ground* walls, Rim rim, TinStar
     raster.heights = heights;
     raster.columns = field.columns();
     raster.rows = field.rows();
-    raster.first = {kLatticePerCell / 2, kLatticePerCell / 2};  // the middles of cells
+    raster.first = {kLatticePerCell / 2, kLatticePerCell / 2};  // the cell centres
     const Cells cells = nominalCells(start.width, start.depth);
     start.holes = holesOf(heights, cells);
     const Settings& settings = start.settings;
     const std::int64_t room = settings.mostVertices - Lattice(settings.widest).size(field.columns(), field.rows());
     Border given = borderWithin(static_cast<std::size_t>(std::max<std::int64_t>(room - kCorners, 0)), heights, cells,
                                 start.holes.get(), rimSpacing(settings, rim), settings.maxError);
-    // As the start will have them: what is measured is the surface that comes of it.
+    // Round as the start does, because the errors must be those of its surface.
     for (double& height : given.heights) {
         height = nearestHeight(height);
     }
-    // Before anything is chosen, because each point changes the triangles around it and with them the errors.
+    // Add them before anything is chosen, because each point changes the triangles around it and their errors.
     addLattice(field, start.holes.get(), settings, given);
     const Simplified chosen = simplify(start.width, start.depth, raster,
                                        {static_cast<double>(settings.maxError), settings.mostVertices, false}, given);
@@ -138,13 +141,14 @@ double addChosen(const HeightField& field, const Ground* walls, Rim rim, TinStar
     return chosen.maxError;
 }
 
-/// Adds vertices to the sides of the field until no edge along them is longer than that, as high as the edge is there.
+/// Adds vertices on the sides of the field until no edge along them is longer than `longest` [probe unit]. Each gets
+/// the height of the edge there.
 void divideRim(std::int32_t longest, TinStart& start) {
     const std::array<std::function<bool(const Place&)>, 4> sides{
         [](const Place& place) { return place.y == 0; }, [&](const Place& place) { return place.x == start.width; },
         [&](const Place& place) { return place.y == start.depth; }, [](const Place& place) { return place.x == 0; }};
     for (const auto& isOnSide : sides) {
-        std::map<Place, std::int32_t> along;  // heights
+        std::map<Place, std::int32_t> along;  // heights by place
         for (std::size_t i = 0; i < start.places.size(); ++i) {
             if (isOnSide(start.places[i])) {
                 along.emplace(start.places[i], start.heights[i]);
@@ -168,11 +172,11 @@ void divideRim(std::int32_t longest, TinStart& start) {
 
 VertexSand layerOf(const TinStart& start) {
     Mesh mesh(start.width, start.depth, start.holes);
-    mesh.insert(start.places);  // the corners are there, and are the first four
+    mesh.insert(start.places);  // the corners exist already, as the first four vertices
     for (const auto& [a, b] : start.constraints) {
         mesh.constrain(a, b);
     }
-    if (!mesh.hasOutline()) {  // as somebody sent it
+    if (!mesh.hasOutline()) {  // possible if the start was received
         throw base::FormatError("a TIN with holes that have no outline");
     }
     VertexSand layer(std::move(mesh));

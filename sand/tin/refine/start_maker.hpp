@@ -9,30 +9,30 @@
 
 namespace sand::tin {
 
-/// The sand that a start describes.
+/// Returns the sand that a start describes. Throws base::FormatError if the outline of its holes is incomplete.
 [[nodiscard]] VertexSand layerOf(const TinStart& start);
 
-/// A start, and how far it is from the heights that it was made of.
+/// A start, and its error against the heights that it was made from.
 struct Followed {
     TinStart start;
-    double maxError = 0;  // [unit], vertical, over the middles of all cells on ground
+    double maxError = 0;  // largest vertical error at the centres of cells on ground [unit]
 };
 
-/// Makes the TIN of a field: the field's corners, its border, the middles of cells at settings.widest, and the points
-/// that greedy insertion adds to these.
+/// Makes the TIN of a field. Its vertices are the field's corners, its border, the cell centres at distance
+/// settings.widest, and the points that greedy insertion adds to these.
 ///
-/// It ends when the surface is as near to every cell's middle, and to those of the rim, as settings.maxError, or when
-/// there are settings.mostVertices. An open rim has vertices at most settings.widest apart, or 16 cells where that is
-/// 0. Walls, which may be null, are holes. Throws std::length_error when the border needs more vertices than there may
-/// be.
+/// Stops when the surface is within settings.maxError of every cell's centre, and of the rim beside every centre. Also
+/// stops at settings.mostVertices. On an open rim, vertices are at most settings.widest apart, or 16 cells if that is
+/// 0. `walls` may be null; wall cells become holes. Throws std::length_error if the border needs more vertices than
+/// allowed.
 [[nodiscard]] Followed follow(const HeightField& field, const Ground* walls, const Settings& settings,
                               Rim rim = Rim::closed);
-/// The TIN of given places and heights; the corners of the field are added where they are missing, as high as the
-/// nearest place. start.places need not begin with them, and constraints are by place. An open rim gets vertices as
-/// follow() has them, on the straight lines between those that are there.
+/// Returns the TIN of the places and heights of `start`. Adds the missing corners of the field, each as high as the
+/// nearest place. start.places need not begin with the corners, and start.constraints refer to start.places. An open
+/// rim gets vertices as with follow(), on the straight lines between existing vertices.
 [[nodiscard]] TinStart join(const TinStart& start, Rim rim = Rim::closed);
-/// The TIN of a surface as it is now, for a scene that starts at rest.
-/// Heights are rounded to whole units; settings are those of the surface's own start.
+/// Returns the TIN of the current surface. A scene that starts at rest uses it. Rounds heights to whole units.
+/// `settings` are those of the start from which the surface began.
 [[nodiscard]] TinStart startOf(const VertexSand& layer, const Settings& settings);
 
 }  // namespace sand::tin
