@@ -7,10 +7,11 @@
 namespace sand::tin {
 namespace {
 
-constexpr std::size_t kMostPresses = 4096;         // of a chunk
-constexpr std::int32_t kWay = 16 * kProbePerCell;  // [probe unit], of a chunk's presses from one another, at the least
+constexpr std::size_t kMostPresses = 4096;  // of one chunk
+constexpr std::int32_t kWay =
+    16 * kProbePerCell;  // [probe unit]; a chunk ends when its box exceeds two reaches by this much
 
-/// [probe unit]: a hand that is sampled often moves less, and every press costs.
+/// Shortest way between two presses [probe unit]. A hand that is sampled often moves less, and every press costs time.
 constexpr std::int32_t kNoWay = kProbePerCell / 4;
 
 Offset offsetOf(const Place& place, const ProbePoint& at) {
@@ -27,14 +28,14 @@ Box boxOf(const Place& a, const Place& b) {
 
 bool overlaps(const Box& box, const Triangles& field) { return !box.clippedTo(field).empty(); }
 
-/// Calls visit(at, ahead) for the sub-steps from one point to the next, the first left out.
+/// Calls visit(at, ahead) for each sub-step from one point to the next, without the first point.
 template <class Visit>
 void forEachSubstep(const ProbePoint& from, const ProbePoint& to, const Visit& visit) {
     const std::int64_t dx = std::int64_t{to.x} - from.x, dy = std::int64_t{to.y} - from.y;
     const std::int64_t dz = std::int64_t{to.z} - from.z;
     const std::int64_t longest = std::max({std::abs(dx), std::abs(dy), std::abs(dz)});
     const std::int64_t steps = std::max<std::int64_t>((longest + kProbePerCell - 1) / kProbePerCell, 1);
-    // As a grid's tool: the direction of the whole way, in at most two cells.
+    // `ahead` is the direction of the whole way, at most two cells long, as for the tool of a grid.
     const std::int64_t scale = std::max<std::int64_t>(longest / kProbePerCell, 1);
     for (std::int64_t i = 1; i <= steps; ++i) {
         visit(ProbePoint{static_cast<std::int32_t>(from.x + dx * i / steps),
@@ -91,18 +92,18 @@ Displacement::Work Displacement::drag(VertexSand& layer, Imprint& imprint, Rim r
             }
         });
     }
-    if (waits) {  // where the path ends the tool always presses
+    if (waits) {  // the tool always presses at the end of the path
         add(pending);
     }
     if (!chunk.presses.empty()) {
         chunk.last = chunk.presses.back().at == path.back();
         work(layer, imprint, rim, chunk, done);
     }
-    if (imprint.stand && imprint.stand->at != path.back()) {  // it has gone on out of the field
+    if (imprint.stand && imprint.stand->at != path.back()) {  // the tool has moved out of the field
         leave(layer, imprint);
     }
     sortOnce(done.touched);
-    // A vertex that one change of the mesh has lost may have been touched before it.
+    // A touched vertex may have been removed by a later change of the mesh.
     std::erase_if(done.touched, [&](Vertex vertex) { return !layer.triangles().alive(vertex); });
     return done;
 }
@@ -111,10 +112,10 @@ void Displacement::leave(VertexSand& layer, Imprint& imprint) {
     if (imprint.stand && !rules_.keepsConstraints) {
         const ProbePoint at = imprint.stand->at;
         const Box box = reach(at);
-        if (rules_.spacing > 0) {  // or nobody asks what lies there
+        if (rules_.spacing > 0) {  // otherwise the neighbourhood is not used
             neighbourhood_->look(layer.triangles(), box);
         }
-        changeMesh(layer, imprint, Rim::closed, {{{at, {0, 0}}}, box, false});  // an open one keeps its vertices
+        changeMesh(layer, imprint, Rim::closed, {{{at, {0, 0}}}, box, false});  // an open rim keeps its vertices
     }
     imprint = {};
 }
@@ -155,7 +156,7 @@ std::vector<Vertex> Displacement::changeMesh(VertexSand& layer, Imprint& imprint
     const Holes* holes = layer.mesh().holes().get();
     const PlacedOutline outline = chunk.last ? placed(outline_, at.x, at.y, layer.triangles(), holes) : PlacedOutline{};
     Edges edges;
-    if (rules_.spacing > 0) {  // or nobody asks for them
+    if (rules_.spacing > 0) {  // otherwise the edges are not used
         edges = edgesThatStay(layer.triangles(), imprint);
         edges.insert(edges.end(), outline.edges.begin(), outline.edges.end());
     }
@@ -179,7 +180,7 @@ std::vector<Vertex> Displacement::changeMesh(VertexSand& layer, Imprint& imprint
         refine(mesh, rules_, chunk.box, wanted, there, edges);
         if (rim == Rim::open) {
             const auto wantedOnRim = [&](const Place& place) {
-                // Holes::holds() takes every place that is not inside the field for a hole.
+                // Holes::holds() returns true for every place that is not inside the field.
                 const Triangles& field = mesh.triangles();
                 return wanted({std::min(place.x, field.width - 1), std::min(place.y, field.depth - 1)});
             };
@@ -188,8 +189,8 @@ std::vector<Vertex> Displacement::changeMesh(VertexSand& layer, Imprint& imprint
     });
 }
 
-/// Whether the tool takes sand there, lays it down there, or does so a square farther: those that take sand should
-/// have small shares of the ground all alike.
+/// Returns whether the tool takes or lays down sand at a place or one square farther. All vertices that take sand
+/// should have equal and small shares of the ground.
 bool Displacement::isNearTool(const Place& place, const std::vector<Press>& presses) const {
     const std::int64_t step = rules_.spacing;
     for (const Press& press : presses) {
@@ -204,7 +205,7 @@ bool Displacement::isNearTool(const Place& place, const std::vector<Press>& pres
     return false;
 }
 
-/// Constraints of earlier imprints.
+/// Returns the constraints of earlier imprints.
 Edges Displacement::edgesThatStay(const Triangles& mesh, const Imprint& imprint) const {
     std::vector<std::pair<Vertex, Vertex>> ours;
     for (const auto& [a, b] : imprint.edges) {
@@ -225,7 +226,7 @@ Edges Displacement::edgesThatStay(const Triangles& mesh, const Imprint& imprint)
     return edges;
 }
 
-/// Takes out what would make slivers with the outline.
+/// Removes vertices that would make slivers with the outline.
 void Displacement::thin(Mesh& mesh, const PlacedOutline& outline) const {
     const std::int32_t distance = rules_.spacing / 4;
     if (outline.points.empty() || distance == 0) {

@@ -17,40 +17,48 @@ namespace sand::tin {
 
 using Volume = Wide;  // [volume unit of VertexSand]
 
-/// Moves a tool through the sand of a TIN (second paper): the outline's edges become constraints, the inside takes the
-/// tool's shape and depth, and the sand above is pushed away. A function of sand, imprint and path. Not thread-safe.
+/// Moves a tool through the sand of a TIN (second paper). The edges of its outline become constraints. The surface
+/// inside takes the tool's shape and depth, and the sand above is pushed away. The result depends only on sand,
+/// imprint and path. Not thread-safe.
 class Displacement {
 public:
-    /// Poses beyond kMaxProbe and shapes beyond kLargestToolRadius are refused by whoever decodes steps and rules.
-    /// Others may use `neighbourhood` too, between two calls.
+    /// Code that decodes steps and rules must refuse poses beyond kMaxProbe and shapes beyond kLargestToolRadius.
+    /// Other code may use `neighbourhood` between two calls.
     Displacement(const ToolShape& shape, const Heading& heading, const DetailRules& rules,
                  std::shared_ptr<Neighbourhood> neighbourhood = std::make_shared<Neighbourhood>());
     [[nodiscard]] bool is(const ToolShape& shape, const Heading& heading) const {
         return shape_ == shape && heading_ == heading;
     }
 
-    /// What a drag did besides changing the mesh, which the layer itself tells.
+    /// The effects of a drag on the sand. The layer itself records the changes of the mesh.
     struct Work {
-        std::vector<Vertex> touched;  // whose sand it took or raised, ascending, each once; all of them live
-        Volume outflow = 0;           // pushed over an open rim; the layer has lost it
+        std::vector<Vertex> touched;  // living vertices whose sand was taken or raised, ascending, each once
+        Volume outflow = 0;           // volume pushed over an open rim; the layer has lost it
     };
 
-    /// Sweeps the tool along a path of one point or more, whose first is where it was, in sub-steps of at most a cell,
-    /// without those that are neither a quarter of a cell farther nor deeper than the one before, nor the end; a path
-    /// of one point presses there. The mesh is refined along the way, an open rim too, the imprint of before taken out,
-    /// and the outline put in where the path ends. Sand above the underside goes to the vertices ahead, as a grid's
-    /// does to its cells, each by its share of the ground; where there are none, to all around, or else to the
-    /// neighbours of those it came from. Where nothing could take it, it stays. Beside an open rim the ground beyond
-    /// takes its part, which flows out.
+    /// Moves the tool along `path`, which begins where the tool is, and displaces the sand. A path of one point
+    /// presses there.
     ///
-    /// A tool held still changes nothing once it has pressed; a tool that does not reach the sand at all leaves it.
+    /// Moves in sub-steps of at most one cell. Skips a sub-step that is less than a quarter of a cell farther and less
+    /// than a quarter of a cell deeper than the one before, except the last. Refines the mesh along the path, on an
+    /// open rim too. Removes the previous imprint, and puts the outline in at the end of the path.
+    ///
+    /// Sand above the underside goes to the vertices ahead, each by its share of the ground, as on a grid to the cells
+    /// ahead. If no vertex is ahead, the sand goes to all vertices around. If the mesh is too coarse for that, it goes
+    /// to the neighbours of the vertices from which it came. If no vertex can take the sand, it stays. Beside an open
+    /// rim, the ground beyond takes its share, which flows out.
+    ///
+    /// A tool that is held still changes nothing after its press. If the tool does not reach the sand at all, it
+    /// leaves the sand as with leave().
     Work drag(VertexSand& layer, Imprint& imprint, Rim rim, std::span<const ProbePoint> path);
-    /// The tool is lifted: its outline stays, with its constraints, or is taken out, as the rules say.
+    /// Ends the imprint, because the tool is lifted. The rules decide whether the outline stays with its constraints
+    /// or is removed.
     void leave(VertexSand& layer, Imprint& imprint);
 
-    /// For sand that flows while the tool stands there.
+    /// Returns the underside of the tool at `at`, for sand that flows while the tool is there.
     [[nodiscard]] Underside underside(const ProbePoint& at) const;
-    /// Where it takes sand out or lays it down [probe unit], and a little more; may reach out of the field.
+    /// Returns the area in which the tool at `at` takes sand out or lays it down, and a little more [probe unit]. It
+    /// may reach beyond the field.
     [[nodiscard]] Box reach(const ProbePoint& at) const;
 
 private:
@@ -58,11 +66,11 @@ private:
         ProbePoint at;
         Offset ahead;
     };
-    /// Presses near each other: one change of the mesh is for all of them.
+    /// Presses near each other, for which the mesh is changed only once.
     struct Chunk {
         std::vector<Press> presses;
-        Box box;  // that they reach
-        bool last = false;
+        Box box;            // area that the presses reach
+        bool last = false;  // whether the path ends in this chunk
     };
     struct Cut {
         Vertex vertex;
@@ -76,7 +84,7 @@ private:
 
     void work(VertexSand& layer, Imprint& imprint, Rim rim, const Chunk& chunk, Work& work);
     [[nodiscard]] bool reachesSand(const VertexSand& layer, const Chunk& chunk) const;
-    /// Returns what VertexSand::edit() does.
+    /// Returns the vertices that VertexSand::edit() returns.
     std::vector<Vertex> changeMesh(VertexSand& layer, Imprint& imprint, Rim rim, const Chunk& chunk) const;
     void thin(Mesh& mesh, const PlacedOutline& outline) const;
     [[nodiscard]] Edges edgesThatStay(const Triangles& mesh, const Imprint& imprint) const;
@@ -96,7 +104,7 @@ private:
     TurnedShape turned_;
     Outline outline_;
     std::shared_ptr<Neighbourhood> neighbourhood_;
-    // Of one press.
+    // Scratch memory of one press:
     std::vector<Cut> cut_;
     Volume taken_ = 0;
     std::vector<Receiver> receivers_;

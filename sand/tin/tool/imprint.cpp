@@ -19,7 +19,7 @@ void encodePoint(const ProbePoint& point, base::ByteWriter& writer) {
     writer.put(point.z);
 }
 
-/// Of what takes so many bytes each.
+/// Reads a number of entries. Throws if so many entries of at least `bytesEach` bytes do not fit in the rest.
 std::uint64_t decodeCount(base::ByteReader& reader, std::size_t bytesEach) {
     const std::uint64_t count = reader.getVarint();
     if (count > reader.rest().size() / bytesEach) {
@@ -43,12 +43,13 @@ Imprint::Stand decodeStand(base::ByteReader& reader) {
                       std::max({stand.at.x, stand.at.y, stand.at.z}) <= kMaxProbe;
     if (kind >= kToolKinds || !near || stand.shape.radius < 0 || stand.shape.radius > kLargestToolRadius ||
         stand.shape.halfWidth < 0 || stand.shape.halfWidth > stand.shape.radius) {
-        throw base::FormatError("an imprint of a tool that no scene gives");
+        throw base::FormatError("an imprint with a tool out of range");
     }
     return stand;
 }
 
-/// The other ends of the constraints at a vertex that lie on neither rim nor among `ours`, which are sorted.
+/// Returns the other ends of the constraints at a vertex, except those on the rim and those in `ours`, which must be
+/// sorted.
 std::vector<Vertex> othersAt(const Triangles& mesh, Vertex vertex, const std::vector<std::pair<Vertex, Vertex>>& ours) {
     std::vector<Vertex> others;
     aroundVertex(mesh, vertex, [&](std::int32_t slot, int corner) {
@@ -97,15 +98,15 @@ void Imprint::putInto(Mesh& mesh, const PlacedOutline& outline, int maxVertices)
 }
 
 void Imprint::takeOutOf(Mesh& mesh) {
-    // The smaller vertex is first, but in a state from outside.
+    // Only in a state from outside, the smaller vertex may be last.
     std::transform(edges.begin(), edges.end(), edges.begin(),
                    [](const auto& edge) { return std::pair<Vertex, Vertex>(std::minmax(edge.first, edge.second)); });
     std::sort(edges.begin(), edges.end());
     const auto isOurs = [&](Vertex vertex) {
         return std::any_of(points.begin(), points.end(), [&](const Point& point) { return point.vertex == vertex; });
     };
-    // Edges go with their ends, where those are ours; what a state from outside says of vertices that never were is
-    // nothing either.
+    // Edges whose ends are ours go with their ends. In a state from outside, an edge may name vertices that do not
+    // exist.
     const Triangles& there = mesh.triangles();
     for (const auto& [a, b] : edges) {
         if (!isOurs(a) && !isOurs(b) && there.alive(a) && there.alive(b)) {
@@ -116,7 +117,7 @@ void Imprint::takeOutOf(Mesh& mesh) {
         if (lives(there, point)) {
             const std::vector<Vertex> others = othersAt(there, point.vertex, edges);
             if (mesh.remove(point.vertex) && others.size() == 2) {
-                mesh.constrain(others[0], others[1]);  // an earlier outline's edge, in which the point stood
+                mesh.constrain(others[0], others[1]);  // the edge of an earlier outline on which the point was
             }
         }
     }

@@ -14,31 +14,33 @@
 
 namespace sand::tin {
 
-/// What the tool that stands in the sand has put into the mesh, until it moves on or leaves: state, as the layer is.
+/// The points and edges that the tool in the sand has added to the mesh, until it moves on or leaves. They are part of
+/// the state, like the layer.
 struct Imprint {
     struct Point {
         Vertex vertex;
-        Place place;  // a number may be another's by now
+        Place place;  // shows whether the number has passed to another vertex
         friend bool operator==(const Point&, const Point&) = default;
     };
-    /// Where the outline stands, of which tool.
+    /// Position of the outline, and the tool that it belongs to.
     struct Stand {
         ProbePoint at;
         ToolShape shape;
         Heading heading;
         friend bool operator==(const Stand&, const Stand&) = default;
     };
-    std::optional<Stand> stand;                    // nothing while no tool stands in the sand
-    std::vector<Point> points;                     // that were not there before
+    std::optional<Stand> stand;                    // nullopt if no tool is in the sand
+    std::vector<Point> points;                     // that were not vertices before
     std::vector<std::pair<Vertex, Vertex>> edges;  // that were not constrained before
 
-    /// Puts the outline in, unless the mesh would then have more than `maxVertices`.
+    /// Adds the outline to the mesh, unless the mesh would then have more than `maxVertices`.
     void putInto(Mesh& mesh, const PlacedOutline& outline, int maxVertices);
-    /// Takes out what it has put in. What another outline has bent to its edges stays.
+    /// Removes the points and edges that putInto() has added. Edges that another outline has bent to its own edges
+    /// stay.
     void takeOutOf(Mesh& mesh);
 
     void encode(base::ByteWriter& writer) const;
-    /// Throws base::FormatError for what no tool has put into a mesh.
+    /// Throws base::FormatError if the bytes are not an imprint.
     static Imprint decode(base::ByteReader& reader);
     friend bool operator==(const Imprint&, const Imprint&) = default;
 };

@@ -10,17 +10,19 @@
 namespace sand::tin {
 namespace {
 
-constexpr double kMargin = 2;         // [probe unit]: a point that is rounded stays below the tool
-constexpr double kShortest = 18;      // [probe unit], of an edge: a fourteenth of a cell
-constexpr std::int32_t kMerging = 2;  // [probe unit], between two roundings of one crossing
+constexpr double kMargin =
+    2;  // distance of points from the tool's edge [probe unit]: a rounded point stays below the tool
+constexpr double kShortest = 18;      // shortest edge [probe unit]: a fourteenth of a cell
+constexpr std::int32_t kMerging = 2;  // largest distance between two roundings of one crossing [probe unit]
 
-/// In the tool's own axes: along its heading, and to its left [probe unit].
+/// A place in the tool's own axes: along its heading, and to its left [probe unit].
 struct Own {
     double along, across;
 };
 using Polygon = std::vector<Own>;  // convex, counter-clockwise
 
-/// Cosines of multiples of an eleventh and a quarter degree in 2^-14, as headings have them: no machine computes one.
+/// Cosines of multiples of 11.25 degrees, in units of 2^-14 like headings. They are constants, so that no machine
+/// computes them in its own way.
 constexpr int kQuarter = 8;
 constexpr std::array<int, kQuarter + 1> kCosines{16384, 16069, 15137, 13623, 11585, 9102, 6270, 3196, 0};
 
@@ -32,9 +34,10 @@ Own unitVector(int k /* of 32 */) {
     return {turn[0] * c + turn[1] * s, turn[2] * c + turn[3] * s};
 }
 
-/// At most `most` points, a power of two from 8 to 32; none when the shortest edge would be too short even so.
+/// Returns the points of an ellipse, at most `most`. Their number is a power of two from 8 to 32. Returns an empty
+/// polygon if even with 8 points the shortest edge would be too short.
 Polygon ellipse(Own middle, double halfLength, double halfWidth, int most) {
-    constexpr double kChord = 0.196;  // of 32 on a circle of radius 1, and twice that of 16, nearly
+    constexpr double kChord = 0.196;  // of 32 points on a circle of radius 1; nearly twice as long with 16 points
     const double narrow = std::min(halfLength, halfWidth);
     int count = most;
     while (count >= 8 && narrow * kChord * 32 / count < kShortest) {
@@ -72,7 +75,8 @@ double cross(const Own& a, const Own& b, const Own& c) {
     return (b.along - a.along) * (c.across - a.across) - (b.across - a.across) * (c.along - a.along);
 }
 
-/// The part of a segment that lies within a convex polygon, as shares of it.
+/// Returns the part of a segment that lies within a convex polygon, as shares of the segment. Returns nullopt if no
+/// part does.
 std::optional<std::pair<double, double>> inside(const Own& from, const Own& to, const Polygon& polygon) {
     double enters = 0, leaves = 1;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -112,7 +116,7 @@ public:
             outline_.edges.emplace_back(a, b);
         }
     }
-    /// The edges of a polygon but for what lies within the others.
+    /// Adds the edges of polygon `which`, without the parts that lie within other polygons.
     void ring(const std::vector<Polygon>& all, std::size_t which) {
         const Polygon& ring = all[which];
         for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -130,7 +134,7 @@ private:
                 hidden.push_back(*part);
             }
         }
-        std::sort(hidden.begin(), hidden.end());  // equal ones are alike
+        std::sort(hidden.begin(), hidden.end());  // equal pairs are interchangeable
         const auto at = [&](double share) {
             return Own{from.along + share * (to.along - from.along), from.across + share * (to.across - from.across)};
         };
@@ -150,7 +154,8 @@ private:
 };
 
 void drawSole(Drawing& drawing, double length, double width) {
-    constexpr double kSmall = 0.2;  // [half length of the tool]: toes, which 8 points draw as well as 16 draw a heel
+    constexpr double kSmall =
+        0.2;  // [half length of the tool]: toes, for which 8 points are as accurate as 16 for a heel
     std::vector<Polygon> pieces;
     for (const SolePiece& piece : solePieces()) {
         pieces.push_back(ellipse({piece.along * length, piece.across * width}, piece.halfLength * length - kMargin,
@@ -160,14 +165,14 @@ void drawSole(Drawing& drawing, double length, double width) {
         drawing.ring(pieces, i);
     }
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-        if (!pieces[i].empty()) {  // the deepest place of its bowl
+        if (!pieces[i].empty()) {  // the deepest place of the piece's bowl
             drawing.point({solePieces()[i].along * length, solePieces()[i].across * width});
         }
     }
 }
 
-/// Rings at such shares of the radius that a sphere's underside between them is less than a fifteenth of it above the
-/// sphere.
+/// Adds rings of points at such shares of the radius that the surface between them is close to a sphere. It lies above
+/// the sphere by less than a fifteenth of the radius.
 void drawBowl(Drawing& drawing, double length, double width) {
     for (const auto& [share, count] : {std::pair{0.8, 16}, std::pair{0.45, 8}}) {
         for (const Own& own : ellipse({0, 0}, share * length, share * width, count)) {
@@ -199,7 +204,8 @@ std::int32_t scaled(std::int64_t way, std::int64_t numerator, std::int64_t denom
     return static_cast<std::int32_t>((product + half) / (2 * denominator));
 }
 
-/// The part of an edge that lies in the rectangle, with ends rounded to the lattice; nothing when there is none.
+/// Returns the part of an edge that lies in the rectangle, with its ends rounded to the lattice. Returns nullopt if no
+/// part does, or if the part lies along the rim.
 std::optional<std::pair<Place, Place>> clipped(Place a, Place b, std::int32_t width, std::int32_t depth) {
     for (int side = 0; side < 4; ++side) {
         const bool alongX = side < 2;

@@ -12,28 +12,29 @@
 
 namespace sand::tin {
 
-/// A tool as control points and edges between them (second paper), for a mesh to take in.
+/// A tool as control points and edges between them (second paper), for insertion into a mesh.
 ///
-/// Ellipses have 32 points, rectangles 8 a side, the sole of a foot the outline of its pieces' union; what is too small
-/// for that has fewer, and a tool of a tenth of a cell none. Inside lie rings of points where the underside is curved:
-/// they end no edge. Every point is below the tool as TurnedShape tells it: two probe units within the outline.
+/// An ellipse has 32 points, a rectangle has 8 per side, and a footprint has the outline of the union of its pieces. A
+/// smaller tool has fewer points, and a tool of a tenth of a cell has no points. If the underside is curved, rings of
+/// points without edges lie inside. Every point is below the tool as defined by TurnedShape, two probe units within
+/// the outline.
 struct Outline {
-    std::vector<Place> points;               // offsets from the tool's centre [probe unit], no two alike
-    std::vector<std::pair<int, int>> edges;  // of points, by index
+    std::vector<Place> points;               // offsets from the tool's centre [probe unit], all different
+    std::vector<std::pair<int, int>> edges;  // indices of points
 
-    /// A function of the two alone, in whole numbers and IEEE sums, products and quotients. A tool that is turned by a
-    /// right angle has its points turned.
+    /// Returns the outline of a tool. It depends only on the arguments, and uses only whole numbers and IEEE
+    /// operations. If the tool turns by a right angle, the points turn with it.
     static Outline of(const ToolShape& shape, const Heading& heading);
 };
 
-/// An outline where it stands: what lies in the field of it. An edge across the rim ends there. Points in a hole, and
-/// edges that come near one, are left out: no constraint crosses a hole's outline.
+/// The part of an outline that lies in the field, at a position of the tool. An edge across the rim ends at the rim.
+/// Points in a hole and edges close to a hole are left out, so that no constraint crosses a hole's outline.
 struct PlacedOutline {
-    std::vector<Place> points;                   // in the mesh's coordinates, no two alike
-    std::vector<std::pair<Place, Place>> edges;  // none along the rim
+    std::vector<Place> points;                   // in the mesh's coordinates, all different
+    std::vector<std::pair<Place, Place>> edges;  // no edge runs along the rim
 };
+/// Returns the outline of a tool whose centre is at (x, y) [probe unit].
 [[nodiscard]] PlacedOutline placed(const Outline& outline, std::int32_t x, std::int32_t y,
-                                   const Triangles& field /* its size is looked at, nothing else */,
-                                   const Holes* holes = nullptr);
+                                   const Triangles& field /* only its size is used */, const Holes* holes = nullptr);
 
 }  // namespace sand::tin

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One sub-step of a tool: what lies above its underside goes to those beside it.
+// One sub-step of a tool: sand above its underside goes to the vertices beside it.
 #include <algorithm>
 #include <cstdlib>
 
@@ -8,8 +8,9 @@
 namespace sand::tin {
 namespace {
 
-constexpr Volume kMostOfVertex = (Volume{1} << 62) - 1;  // of one vertex, either sign
-constexpr int kSquaresBeyond = 16;  // to a tool's radius: so finely the ground beyond an open rim is looked at
+constexpr Volume kMostOfVertex = (Volume{1} << 62) - 1;  // of one vertex, of either sign
+constexpr int kSquaresBeyond =
+    16;  // lattice squares per tool radius, with which the ground beyond an open rim is sampled
 
 Offset offsetFrom(const Place& place, const ProbePoint& at) {
     return {std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
@@ -19,7 +20,8 @@ Volume floorDivided(Volume value, Volume by) { return value / by - (value % by <
 
 }  // namespace
 
-/// What the tool takes out; false when that is nothing, or would leave the range of numbers.
+/// Finds the sand that the tool takes out. Returns false if there is no such sand, or if a number would leave its
+/// range.
 bool Displacement::findCut(const VertexSand& layer, const ProbePoint& at) {
     cut_.clear();
     taken_ = 0;
@@ -44,7 +46,7 @@ bool Displacement::findCut(const VertexSand& layer, const ProbePoint& at) {
         if (target < -kMostOfVertex) {
             return false;
         }
-        cut_.push_back({vertex, static_cast<std::int64_t>(volume - target)});  // both below 2^62
+        cut_.push_back({vertex, static_cast<std::int64_t>(volume - target)});  // both are below 2^62
         taken_ += cut_.back().taken;
     }
     return !cut_.empty();
@@ -69,15 +71,15 @@ void Displacement::findReceivers(const VertexSand& layer, Rim rim, const Press& 
         }
     };
     find(press.ahead.x == 0 && press.ahead.y == 0);
-    if (receivers_.empty()) {  // dragged against a closed rim: it escapes to the sides and behind
+    if (receivers_.empty()) {  // dragged against a closed rim: the sand escapes to the sides and behind
         find(true);
     }
-    if (receivers_.empty()) {  // nobody near enough: the mesh is coarse
+    if (receivers_.empty()) {  // no vertex is near enough, because the mesh is coarse
         addNeighbours(layer, press.at);
     }
 }
 
-/// The ground beyond the rim takes sand as if the field went on there, on a lattice.
+/// Adds the ground beyond the rim as receivers, as if the field continued there with vertices on a lattice.
 void Displacement::addBeyond(const VertexSand& layer, const Press& press, bool everywhere) {
     const Box box = reach(press.at);
     if (box.clippedTo(layer.triangles()) == box) {
@@ -85,8 +87,8 @@ void Displacement::addBeyond(const VertexSand& layer, const Press& press, bool e
     }
     const Box field{0, 0, layer.triangles().width, layer.triangles().depth};
     const std::int64_t step = std::max({rules_.spacing, shape_.radius / kSquaresBeyond, 1});
-    const double share = 6 * static_cast<double>(step * step);  // the star of a lattice's vertex
-    const auto first = [&](std::int32_t least) {                // the middles of squares, as refinement has them
+    const double share = 6 * static_cast<double>(step * step);  // star of a vertex of the lattice
+    const auto first = [&](std::int32_t least) {                // centres of squares, as in refine()
         return static_cast<std::int64_t>(floorDivided(least, step)) * step + step / 2;
     };
     for (std::int64_t y = first(box.y0); y <= box.y1; y += step) {
@@ -108,7 +110,8 @@ void Displacement::addNeighbours(const VertexSand& layer, const ProbePoint& at) 
     const auto isCovered = [&](Vertex vertex) {
         return turned_.covers(offsetFrom(layer.triangles().places[static_cast<std::size_t>(vertex)], at));
     };
-    neighbourhood_->look(layer.triangles(), neighbourhood_->box());  // it may have followed a change
+    neighbourhood_->look(layer.triangles(),
+                         neighbourhood_->box());  // its triangles() is empty if it has followed a change
     std::vector<Vertex> beside;
     for (const std::int32_t slot : neighbourhood_->triangles()) {
         const Triangle& triangle = layer.triangles().triangles[static_cast<std::size_t>(slot)];
@@ -124,8 +127,8 @@ void Displacement::addNeighbours(const VertexSand& layer, const ProbePoint& at) 
     }
 }
 
-/// What the weights' rounding and that of whole units leave over, of either sign, is dealt out alike, and the last
-/// units to those of the smallest numbers.
+/// Shares `taken_` out among the receivers by weight. Rounding leaves a rest of either sign. It is shared evenly, and
+/// its last units go to the receivers with the smallest numbers.
 void Displacement::shareOut() {
     double total = 0;
     for (const Receiver& receiver : receivers_) {
@@ -162,7 +165,7 @@ void Displacement::press(VertexSand& layer, Rim rim, const Press& press, Work& d
         return;
     }
     findReceivers(layer, rim, press);
-    if (receivers_.empty()) {  // the tool is larger than the field: there is nowhere to put the sand
+    if (receivers_.empty()) {  // the tool is larger than the field, so that there is no place for the sand
         return;
     }
     shareOut();
