@@ -9,7 +9,7 @@
 namespace sand::tin {
 namespace {
 
-constexpr std::uint64_t kMostPlain = std::uint64_t{1} << 30;  // [byte], of some thirty million vertices
+constexpr std::uint64_t kMostPlain = std::uint64_t{1} << 30;  // [byte], enough for about thirty million vertices
 
 }  // namespace
 
@@ -24,7 +24,7 @@ TinState TinState::decode(base::ByteReader& reader) {
     state.outflow = reader.get<std::int64_t>();
     state.nextToGo = reader.get<Vertex>();
     if (state.nextToGo < 0) {
-        throw base::FormatError("a TIN that was to be thinned out from nobody on");
+        throw base::FormatError("a TIN whose coarsening continues at a negative vertex");
     }
     state.imprint = Imprint::decode(reader);
     return state;
@@ -43,14 +43,14 @@ Snapshot::Snapshot(std::span<const std::uint8_t> packed, std::int32_t width, std
     state_ = TinState::decode(reader);
     const auto size = reader.get<std::uint64_t>();
     if (size > kMostPlain) {
-        throw base::FormatError("a TIN of too many bytes");
+        throw base::FormatError("a TIN of more than 2^30 bytes");
     }
     const auto rest = reader.rest();
     plain_.resize(size);
     if (ZSTD_decompress(plain_.data(), plain_.size(), rest.data(), rest.size()) != size) {
         throw base::FormatError("a TIN that does not unpack to its size");
     }
-    const VertexSand whole = layer();  // throws for bytes that are none
+    const VertexSand whole = layer();  // throws if the bytes are not a VertexSand
     if (whole.triangles().width != width || whole.triangles().depth != depth) {
         throw base::FormatError("a TIN of another field");
     }
@@ -74,7 +74,7 @@ VertexSand Snapshot::layer() const {
     base::ByteReader reader(plain_);
     VertexSand layer = VertexSand::decode(reader, holes_);
     if (!reader.atEnd()) {
-        throw base::FormatError("a TIN with more behind it");
+        throw base::FormatError("a TIN with further bytes after its end");
     }
     return layer;
 }

@@ -12,23 +12,23 @@
 
 namespace sand::tin {
 
-/// The state of a TIN beside its VertexSand.
+/// The state of a TIN that is not in its VertexSand.
 struct TinState {
-    Imprint imprint;           // of the tool that stands in it
-    Vertex nextToGo = 0;       // where coarsening goes on
-    std::int64_t outflow = 0;  // [volume unit] lost over an open rim
+    Imprint imprint;           // imprint of the tool in the sand
+    Vertex nextToGo = 0;       // vertex at which coarsening continues
+    std::int64_t outflow = 0;  // volume lost over an open rim [volume unit]
 
     void encode(base::ByteWriter& writer) const;
-    /// Throws base::FormatError.
+    /// Throws base::FormatError if the bytes are not a TinState.
     static TinState decode(base::ByteReader& reader);
 };
 
-/// The sand of a TIN as bytes: what is saved, loaded and put back.
+/// Snapshot of a TIN's sand as bytes, for saving, loading and undo.
 class Snapshot final : public SurfaceCopy {
 public:
     Snapshot(const VertexSandParts& layer, TinState state);
     Snapshot(const VertexSand& layer, TinState state) : Snapshot(layer.parts(), std::move(state)) {}
-    /// Throws base::FormatError for bytes that are no TIN of this size with these holes, or go on behind it.
+    /// Throws base::FormatError if `packed` is not a TIN of this size with these holes, or if further bytes follow.
     Snapshot(std::span<const std::uint8_t> packed, std::int32_t width, std::int32_t depth,
              std::shared_ptr<const Holes> holes = nullptr);
 

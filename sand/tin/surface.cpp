@@ -12,8 +12,8 @@ namespace sand::tin {
 namespace {
 
 constexpr int kRemovalsPerStep = 64;
-constexpr int kSweepsToRest = 1 << 20;       // more than any TIN that is worth waiting for
-constexpr std::size_t kMoreVertices = 4096;  // at least, than a session starts with
+constexpr int kSweepsToRest = 1 << 20;       // more than a user would wait for
+constexpr std::size_t kMoreVertices = 4096;  // least room for vertices beyond those of the start
 
 DetailRules detailOf(const TinStart& start) {
     const Settings& settings = start.settings;
@@ -104,7 +104,6 @@ void TinSurface::meshChanged() {
     }
 }
 
-/// Sand that fills the room below a tool: that beside it leans on the tool now.
 void TinSurface::wakeFull(const Underside& under, const Box& reach) {
     if (!sawAll_ || neighbourhood_->box().joinedWith(reach.clippedTo(layer_.triangles())) != neighbourhood_->box()) {
         neighbourhood_->look(layer_.triangles(), reach);
@@ -187,7 +186,7 @@ void TinSurface::settle() {
     sandMoved(settled.moved);
     erosion_.wake(settled.moved);
     moved_.clear();
-    erosion_.settle(layer_, 1, moved_);  // so that it sees that all is at rest
+    erosion_.settle(layer_, 1, moved_);  // so that erosion_ finds all sand at rest
     state_.outflow += settled.outflow + erosion_.takeOutflow();
     sandMoved(moved_);
 }

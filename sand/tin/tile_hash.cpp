@@ -9,7 +9,7 @@
 namespace sand::tin {
 namespace {
 
-/// The finaliser of MurmurHash3 over what was before and what comes: every bit of both reaches every bit of the result.
+/// Combines `before` and `value` with the finaliser of MurmurHash3. Every bit of both reaches every bit of the result.
 std::uint64_t mixed(std::uint64_t before, std::uint64_t value) {
     value ^= before * 0x9e3779b97f4a7c15ULL;
     value = (value ^ (value >> 33)) * 0xff51afd7ed558ccdULL;
@@ -51,7 +51,7 @@ void TileHash::touch(const VertexSand& layer, const std::vector<Vertex>& vertice
     }
 }
 
-/// A constraint is owned by the triangle in which it runs from its smaller vertex to the larger.
+/// A constraint belongs to the triangle in which it runs from its smaller vertex to the larger.
 std::uint64_t TileHash::constraintsOf(const VertexSand& layer, std::int32_t slot) {
     const Triangle& triangle = layer.triangles().triangles[static_cast<std::size_t>(slot)];
     std::uint64_t sum = 0;

@@ -9,10 +9,12 @@
 
 namespace sand::tin {
 
-/// A hash of a TIN's sand that costs only what changed: the sum, modulo 2^64, of one number for every vertex, from its
-/// own number, its place and its volume, one for every constraint, and one for the TinState.
+/// Hash of a TIN's sand. An update costs only as much as has changed. The hash is a sum modulo 2^64 of one number per
+/// vertex, one per constraint, and one for the TinState. A vertex's number depends on the vertex, its place and its
+/// volume.
+/// volume.
 ///
-/// A vertex belongs to the hash tile of its number; the last tile is the constraints' and the state's.
+/// The number of a vertex selects its hash tile. The last tile contains the constraints and the TinState.
 class TileHash final : public HashTiles {
 public:
     explicit TileHash(const VertexSand& layer);
@@ -21,21 +23,21 @@ public:
         byVertex_.reserve(vertices);
         bySlot_.reserve(2 * vertices);
     }
-    /// These vertices may have come, gone, or changed.
+    /// Hashes these vertices again, which may have come, gone or changed.
     void touch(const VertexSand& layer, const std::vector<Vertex>& vertices);
-    /// These triangles may have come, gone, or been constrained otherwise, by slot.
+    /// Hashes the constraints of these slots again. Their triangles may have come, gone, or changed their constraints.
     void touchTriangles(const VertexSand& layer, const std::vector<std::int32_t>& slots);
     [[nodiscard]] std::uint64_t update(const TinState& state);
     /// Hashes the next tile again from memory.
     void auditNext(const VertexSand& layer);
 
-    /// Always empty: the vertices of a tile can lie anywhere.
+    /// Returns an empty rectangle, because the vertices of a tile can lie anywhere.
     [[nodiscard]] CellRect cellsOf(int) const override { return {}; }
     [[nodiscard]] static std::vector<std::int32_t> valuesOf(const VertexSand& layer, int tile);
 
 private:
-    static constexpr int kTiles = 256;    // of vertices; one more is the constraints'
-    static constexpr int kTogether = 64;  // vertices with neighbouring numbers in a tile
+    static constexpr int kTiles = 256;    // of vertices; one more tile has the constraints and the TinState
+    static constexpr int kTogether = 64;  // vertices with consecutive numbers in a tile
 
     [[nodiscard]] static std::size_t tileOf(Vertex vertex) {
         return static_cast<std::size_t>(vertex / kTogether % kTiles);
@@ -48,7 +50,7 @@ private:
     void hashConstraints(const VertexSand& layer);
 
     std::vector<std::uint64_t> byVertex_;
-    std::vector<std::uint64_t> bySlot_;  // of the constraints that a triangle owns
+    std::vector<std::uint64_t> bySlot_;  // hash of the constraints that belong to each slot
     std::uint64_t constraints_ = 0;
     int nextAudited_ = 0;
 };

@@ -29,7 +29,7 @@ void Undo::followVertex(const VertexSand& layer, Vertex vertex) {
     parts_.volumes[at] = layer.volumes()[at];
 }
 
-/// A constraint is owned by the triangle in which it runs from its smaller vertex to the larger.
+/// A constraint belongs to the triangle in which it runs from its smaller vertex to the larger.
 void Undo::followTriangle(const VertexSand& layer, std::int32_t slot) {
     const Triangle& triangle = layer.triangles().triangles[static_cast<std::size_t>(slot)];
     std::vector<std::pair<Vertex, Vertex>> owned;

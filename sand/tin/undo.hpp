@@ -12,13 +12,13 @@
 
 namespace sand::tin {
 
-/// The sand of a TIN before a stroke, for an undo. Every stroke begins with keep(), so keep() costs only what has
-/// changed since the last one. copy() makes the bytes. Not thread-safe.
+/// Sand of a TIN that is kept from before a stroke. Every stroke calls keep(), so keep() costs only what has changed
+/// since the last call. copy() encodes the bytes. Not thread-safe.
 class Undo {
 public:
-    /// Nothing is kept yet.
+    /// Begins without kept sand.
     explicit Undo(const VertexSand& layer) { replaced(layer); }
-    /// The sand was replaced as a whole; what is kept stays. Costs the whole mesh.
+    /// Call this after the sand was replaced as a whole. Kept sand stays kept. The cost grows with the whole mesh.
     void replaced(const VertexSand& layer);
 
     void reserve(std::size_t vertices) {
@@ -27,8 +27,8 @@ public:
         vertices_.reserve(vertices);
         slots_.reserve(2 * vertices);
     }
-    /// These vertices may have come, gone, or have other sand, and these slots other triangles or constraints: since
-    /// it was kept or replaced last.
+    /// Call these for each change since the sand was last kept or replaced. The vertices may have come, gone or
+    /// changed their volumes. The slots may have other triangles or constraints.
     void touch(const std::vector<Vertex>& vertices) { vertices_.add(vertices); }
     void touchTriangles(const std::vector<std::int32_t>& slots) { slots_.add(slots); }
 
@@ -36,20 +36,20 @@ public:
     void keep(std::shared_ptr<const Snapshot> copy);
     void forget();
     [[nodiscard]] bool any() const { return any_; }
-    /// Null when nothing is kept. Costs the whole the first time.
+    /// Returns the kept sand, or null if any() is false. The first call after keep() encodes the whole TIN.
     [[nodiscard]] std::shared_ptr<const Snapshot> copy() const;
 
 private:
     void followVertex(const VertexSand& layer, Vertex vertex);
     void followTriangle(const VertexSand& layer, std::int32_t slot);
 
-    VertexSandParts parts_;  // but for the constraints
+    VertexSandParts parts_;  // without the constraints
     std::map<std::int32_t, std::vector<std::pair<Vertex, Vertex>>>
-        constraints_;                   // by the slot that owns them; few have any
-    base::IndexList vertices_, slots_;  // touched
+        constraints_;                   // by the slot that owns them; few slots own any
+    base::IndexList vertices_, slots_;  // touched since keep() or replaced()
     TinState state_;
     bool any_ = false;
-    mutable std::shared_ptr<const Snapshot> copy_;  // once somebody has asked, or what was given
+    mutable std::shared_ptr<const Snapshot> copy_;  // result of copy(), or the argument of keep()
 };
 
 }  // namespace sand::tin
