@@ -8,10 +8,10 @@
 namespace sand::tin {
 namespace {
 
-constexpr double kSurelyRests = 0.999;  // share of a steepness of 1: less than this surely rests, because kRest is
-                                        // above 1 and roundings are far smaller
-constexpr std::size_t kOfVerticesRest =
-    6;                                 // one vertex in so many rests at least: a ring around flowing sand lies still
+// A steepness below this surely rests, because kRest is above 1 and roundings are far smaller.
+constexpr double kSurelyRests = 0.999;
+// A ring around flowing sand lies still: at least one vertex in so many is at rest.
+constexpr std::size_t kOfVerticesRest = 6;
 constexpr std::uint8_t kAllSides = 7;  // bits of all three sides
 constexpr std::size_t kAhead = 8;      // distance from a prefetch to its use [vertex]
 constexpr std::int32_t kNoUnderside = std::numeric_limits<std::int32_t>::max();
@@ -160,8 +160,8 @@ bool ActiveEdges::maySlide(const VertexSand& layer, const Slopes& slopes, std::i
         const Vertex corner = mesh.triangles[index(slot)].corner[k];
         at[k] = mesh.places[index(corner)];
         was[k] = layer.heights()[index(corner)];
-        under[k] = undersideAt(
-            corner, at[k]);  // recorded although the triangle may be at rest: without the obstacle it may slide
+        // This records the underside although the triangle may be at rest: it may slide without the obstacle.
+        under[k] = undersideAt(corner, at[k]);
     }
     const double a = leaning(was[0], under[0], was[1], was[2]), b = leaning(was[1], under[1], was[2], was[0]);
     const double c = leaning(was[2], under[2], was[0], was[1]);

@@ -95,10 +95,9 @@ private:
     double spill();
     [[nodiscard]] Measures measure();
 
-    static constexpr int kCheckEvery = 16;  // [iteration]; each carries pressure at most one edge further
-    static constexpr int kMargin =
-        kCheckEvery + 1;                        // distance without pressure around the triangles under pressure [edge]
-    static constexpr int kReach = 2 * kMargin;  // distance that is computed around them [edge]
+    static constexpr int kCheckEvery = 16;           // [iteration]; each carries pressure at most one edge further
+    static constexpr int kMargin = kCheckEvery + 1;  // [edge], free of pressure around the triangles under pressure
+    static constexpr int kReach = 2 * kMargin;       // distance that is computed around them [edge]
     static constexpr std::uint8_t kFar = kReach + 1;
 
     const VertexSand& layer_;

@@ -32,10 +32,9 @@ inline constexpr std::size_t kHeldTogether = 16;
 /// array. Corners are indices of the vertices' arrays. No arrays overlap.
 struct SweepFacets {
     std::size_t facets;
-    const Level* levels;       // by vertex
-    const double* undersides;  // by vertex [unit]
-    const std::uint8_t*
-        held;  // per kHeldTogether facets: 1 if an obstacle is over one of them; null without an obstacle
+    const Level* levels;                            // by vertex
+    const double* undersides;                       // by vertex [unit]
+    const std::uint8_t* held;                       // per kHeldTogether: 1 if an obstacle is over any; null without one
     const std::int32_t *first, *second, *third;     // by facet: its corners
     const double *squared, *mixed, *squaredAcross;  // by facet: first, mixed and second of Facet
     const double* start;  // by facet: steepness at which it starts to slide if no sand flows there; null: always kRest
@@ -48,11 +47,10 @@ struct SweepFacets {
 /// arrays.
 struct SweepEdges {
     std::size_t edges;
-    const Level* levels;       // by vertex
-    const double* undersides;  // by vertex [unit]
-    const std::uint8_t*
-        held;               // per kHeldTogether edges: 1 if an obstacle is over one of them; null without an obstacle
-    const double* sliding;  // by facet
+    const Level* levels;                           // by vertex
+    const double* undersides;                      // by vertex [unit]
+    const std::uint8_t* held;                      // per kHeldTogether: 1 if an obstacle is over any; null without one
+    const double* sliding;                         // by facet
     const std::int32_t *from, *to, *left, *right;  // by edge: ends and facets
     const double *leftWeights, *rightWeights;      // by edge [probe unit²]
     double momentum;                               // share of the last sweep's flux that continues, 0 to 1

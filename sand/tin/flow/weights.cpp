@@ -11,8 +11,8 @@ namespace sand::tin {
 namespace {
 
 constexpr double kOne = 1048576;  // 1 as an integer weight: 2^20
-constexpr double kMostWeight =
-    4;  // limit for half a cotangent: a sliver's has no bound, and all edges of a vertex would wait for one edge
+// Limit for half a cotangent. A sliver's has no bound, and all edges of a vertex would wait for one edge.
+constexpr double kMostWeight = 4;
 constexpr double kSafe = 0.9996;  // share of the bound that is used; the rest is room for roundings
 constexpr double kGrain = 0.5;    // accuracy of a height [unit]
 

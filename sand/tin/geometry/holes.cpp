@@ -184,8 +184,8 @@ bool Holes::holds(std::int64_t x, std::int64_t y, int scale) const {
 }
 
 bool Holes::holds(const Place& a, const Place& b, const Place& c) const {
-    return holds(std::int64_t{a.x} + b.x + c.x, std::int64_t{a.y} + b.y + c.y,
-                 3);  // the centroid lies within the triangle
+    // The centroid lies within the triangle.
+    return holds(std::int64_t{a.x} + b.x + c.x, std::int64_t{a.y} + b.y + c.y, 3);
 }
 
 bool Holes::borders(const Place& a, const Place& b) const {

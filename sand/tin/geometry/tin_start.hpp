@@ -45,8 +45,8 @@ struct TinStart {
 
     void encode(base::ByteWriter& writer) const;
     /// Throws base::FormatError if the bytes are not a TinStart. Examples are a place outside the field, two vertices
-    /// in one place, a constraint without two vertices, holes out of order, and holes in a field of cells that are not
-    /// whole.
+    /// in one place, a constraint between vertices out of order, holes out of order, and holes in a field of cells that
+    /// are not whole.
     static TinStart decode(base::ByteReader& reader);
     /// Returns a number that is never 0. Equal digests mean that equal steps lead to equal sand.
     [[nodiscard]] std::uint64_t digest() const;

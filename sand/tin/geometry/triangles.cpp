@@ -26,8 +26,7 @@ Located weigh(const Triangles& mesh, std::int32_t slot, const Place& place) {
 /// triangles.
 std::int32_t firstAround(const Triangles& mesh, std::int32_t slot, Vertex centre) {
     std::int32_t first = slot;
-    for (const std::size_t turn :
-         {std::size_t{1}, std::size_t{2}}) {  // one way round, then from the first triangle the other way
+    for (const std::size_t turn : {std::size_t{1}, std::size_t{2}}) {  // one way, and the other way if it met the rim
         for (std::int32_t next = slot;;) {
             const Triangle& triangle = mesh.triangles[at(next)];
             const auto corner = static_cast<std::size_t>(
@@ -56,10 +55,9 @@ double squaredWay(const Place& a, const Place& b) {
 /// some vertices all over the mesh (Mücke, Saias and Zhu 1996). Almost every triangle of a walk misses all caches, and
 /// its load waits for the load before. The loads of the vertices do not wait for one another.
 std::int32_t nearer(const Triangles& mesh, std::int32_t slot, const Place& place) {
-    constexpr std::size_t kTried = 256;  // most vertices that are tried
-    constexpr std::size_t kTogether =
-        64;  // one vertex in 64 is tried, because a walk through a few triangles is as fast
-    constexpr std::size_t kLeap = 40503;  // odd, and no multiple of a likely row length of a scene's vertices
+    constexpr std::size_t kTried = 256;    // most vertices that are tried
+    constexpr std::size_t kTogether = 64;  // only one vertex in 64 is tried, because a short walk is as fast
+    constexpr std::size_t kLeap = 40503;   // odd, and no multiple of a likely row length of a scene's vertices
     const std::size_t count = mesh.places.size(), tried = std::min(count / kTogether, kTried);
     double nearest = squaredWay(mesh.places[at(mesh.triangles[at(slot)].corner[0])], place);
     if (tried == 0 || nearest * static_cast<double>(tried) < 4 * static_cast<double>(mesh.width) * mesh.depth) {

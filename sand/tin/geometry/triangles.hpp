@@ -50,11 +50,10 @@ struct Triangle {
 /// The places and the set of triangles depend only on the vertices and the constraints. The slots of triangles and the
 /// order of their corners depend on history, so that no state may depend on them.
 struct Triangles {
-    std::vector<Place> places;  // by vertex
-    std::vector<std::int32_t>
-        triangleAt;                     // by vertex: slot of one of its triangles; kNobody if the vertex does not exist
-    std::vector<Triangle> triangles;    // by slot
-    std::int32_t width = 0, depth = 0;  // size of the field, which begins at (0, 0) [probe unit]
+    std::vector<Place> places;             // by vertex
+    std::vector<std::int32_t> triangleAt;  // by vertex: slot of one of its triangles; kNobody if there is no vertex
+    std::vector<Triangle> triangles;       // by slot
+    std::int32_t width = 0, depth = 0;     // size of the field, which begins at (0, 0) [probe unit]
     [[nodiscard]] bool alive(Vertex vertex) const {
         return vertex >= 0 && vertex < static_cast<Vertex>(triangleAt.size()) &&
                triangleAt[static_cast<std::size_t>(vertex)] != kNobody;
@@ -68,9 +67,8 @@ struct Triangles {
 
 /// The triangle that contains a place, on its edges too.
 struct Located {
-    std::int32_t triangle = kNobody;  // slot
-    std::array<std::int64_t, 3>
-        weights{};  // doubled areas opposite the corners [probe unit²]; their sum is the triangle's
+    std::int32_t triangle = kNobody;        // slot
+    std::array<std::int64_t, 3> weights{};  // doubled areas opposite the corners [probe unit²]; sum: the triangle's
 };
 
 /// Returns the triangle that contains `place`, which is clamped to the field first. Walks there from the triangle

@@ -167,7 +167,7 @@ Mesh::Path Triangulation::constrain(Vertex from, Vertex to) {
         const auto [c, d] = hit.edge;
         const Place crossing = meetingPlace(place(a), place(b), place(c), place(d));
         const Located where = find(crossing);
-        const VertexPair split = edgeAt(where);  // constraint at the crossing, which insertAt() splits
+        const VertexPair split = edgeAt(where);  // edge at the crossing, which insertAt() splits too
         const Vertex middle = insertAt(where, crossing, kNobody);
         bend(split.first, split.second, middle);
         wanted.emplace_back(a, b);

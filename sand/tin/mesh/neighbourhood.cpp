@@ -14,8 +14,8 @@ Box around(const std::array<Place, 3>& corners) {
 }
 
 constexpr std::size_t kRoom = 1024;  // initial size [slot]
-constexpr std::size_t kWordsEach =
-    4;  // words per number up to which bits are used: reading a word costs as much as a step of a sort
+// Words per number up to which bits are used. Reading a word costs as much as a step of a sort.
+constexpr std::size_t kWordsEach = 4;
 
 bool overlap(const Box& a, const Box& b) { return a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 && b.y0 <= a.y1; }
 

@@ -28,7 +28,7 @@ inline std::size_t cornerOf(const Triangle& triangle, Vertex vertex) {
 
 using VertexPair = std::pair<Vertex, Vertex>;
 
-/// The edge flips that Mesh is made of. Between calls, no unconstrained edge must be flipped according to mustFlip().
+/// The edge flips that Mesh is made of. Between calls, mustFlip() is false for every unconstrained edge.
 class Triangulation {
 public:
     Triangulation(std::int32_t width, std::int32_t depth, std::shared_ptr<const Holes> holes);

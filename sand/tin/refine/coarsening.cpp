@@ -9,8 +9,7 @@ namespace sand::tin {
 namespace {
 
 constexpr int kLooksPerRemoval = 16;
-constexpr std::size_t kMostAround =
-    64;  // vertices with more neighbours stay, because examining them would cost too much
+constexpr std::size_t kMostAround = 64;  // vertices with more neighbours stay, because they cost too much
 
 /// Returns the largest distance of a vertex and its neighbours from the plane that fits them best [unit]. The vertex
 /// is the origin, so that the sums are of products of small numbers.

@@ -35,7 +35,7 @@ public:
     /// Call this after the mesh or heights have changed, also for the removals of step().
     void touch(const Triangles& mesh, const Mesh::Change& change);
     void forget() { known_.clear(); }
-    /// Does one step of coarsen(). Returns the number of removed vertices.
+    /// Does the work of one call of coarsen(). Returns the number of removed vertices.
     int step(VertexSand& layer, const DetailRules& rules, Vertex& next, const Box& keepOut);
 
 private:

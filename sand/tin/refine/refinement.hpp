@@ -16,10 +16,9 @@ namespace sand::tin {
 /// How fine a TIN is while the session runs. The rules follow from the Settings of the TinStart. With all rules 0,
 /// only the tool's outline changes the mesh.
 struct DetailRules {
-    std::int32_t spacing =
-        0;                 // of the lattice of vertices that is added where the tool works [probe unit]; 0: no lattice
-    double maxError = 0;   // largest change of the surface by one removal [unit]; 0: no removals
-    Vertex firstToGo = 0;  // vertices with smaller numbers stay
+    std::int32_t spacing = 0;            // lattice of vertices that is added at the tool [probe unit]; 0: no lattice
+    double maxError = 0;                 // largest change of the surface by one removal [unit]; 0: no removals
+    Vertex firstToGo = 0;                // vertices with smaller numbers stay
     std::int32_t removals = 0;           // most removals per step
     std::int32_t maxVertices = 1 << 22;  // limit for refinement and outlines
     bool keepsConstraints = false;       // whether the constraints of a tool stay after it has left

@@ -49,8 +49,8 @@ struct Simplified {
 /// The result depends only on the arguments. It uses only IEEE operations. Throws std::invalid_argument if the raster
 /// does not lie in the field, has infinite heights or has no data, or if goal.maxVertices is less than 4.
 ///
-/// @param given  Points that are inserted after the corners and before all samples, and edges that are constrained. A
-/// point at a sample must have the height of that sample.
+/// @param given  Points that are inserted after the corners and before all samples, and edges that are constrained.
+///               A point at a sample must have the height of that sample.
 [[nodiscard]] Simplified simplify(std::int32_t width, std::int32_t depth, const Raster& raster,
                                   const SimplifyGoal& goal, const Border& given = {});
 

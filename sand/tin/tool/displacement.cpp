@@ -8,8 +8,8 @@ namespace sand::tin {
 namespace {
 
 constexpr std::size_t kMostPresses = 4096;  // of one chunk
-constexpr std::int32_t kWay =
-    16 * kProbePerCell;  // [probe unit]; a chunk ends when its box exceeds two reaches by this much
+// A chunk ends when its box exceeds two reaches by this much [probe unit].
+constexpr std::int32_t kWay = 16 * kProbePerCell;
 
 /// Shortest way between two presses [probe unit]. A hand that is sampled often moves less, and every press costs time.
 constexpr std::int32_t kNoWay = kProbePerCell / 4;

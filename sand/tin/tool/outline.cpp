@@ -10,8 +10,7 @@
 namespace sand::tin {
 namespace {
 
-constexpr double kMargin =
-    2;  // distance of points from the tool's edge [probe unit]: a rounded point stays below the tool
+constexpr double kMargin = 2;         // distance from the tool's edge [probe unit]: a rounded point stays below it
 constexpr double kShortest = 18;      // shortest edge [probe unit]: a fourteenth of a cell
 constexpr std::int32_t kMerging = 2;  // largest distance between two roundings of one crossing [probe unit]
 
@@ -154,8 +153,7 @@ private:
 };
 
 void drawSole(Drawing& drawing, double length, double width) {
-    constexpr double kSmall =
-        0.2;  // [half length of the tool]: toes, for which 8 points are as accurate as 16 for a heel
+    constexpr double kSmall = 0.2;  // [half length of the tool]; toes: 8 points do as well as 16 for a heel
     std::vector<Polygon> pieces;
     for (const SolePiece& piece : solePieces()) {
         pieces.push_back(ellipse({piece.along * length, piece.across * width}, piece.halfLength * length - kMargin,

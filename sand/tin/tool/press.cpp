@@ -9,8 +9,7 @@ namespace sand::tin {
 namespace {
 
 constexpr Volume kMostOfVertex = (Volume{1} << 62) - 1;  // of one vertex, of either sign
-constexpr int kSquaresBeyond =
-    16;  // lattice squares per tool radius, with which the ground beyond an open rim is sampled
+constexpr int kSquaresBeyond = 16;  // lattice squares per tool radius, for the ground beyond an open rim
 
 Offset offsetFrom(const Place& place, const ProbePoint& at) {
     return {std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
@@ -110,8 +109,7 @@ void Displacement::addNeighbours(const VertexSand& layer, const ProbePoint& at) 
     const auto isCovered = [&](Vertex vertex) {
         return turned_.covers(offsetFrom(layer.triangles().places[static_cast<std::size_t>(vertex)], at));
     };
-    neighbourhood_->look(layer.triangles(),
-                         neighbourhood_->box());  // its triangles() is empty if it has followed a change
+    neighbourhood_->look(layer.triangles(), neighbourhood_->box());  // after follow() it has no triangles()
     std::vector<Vertex> beside;
     for (const std::int32_t slot : neighbourhood_->triangles()) {
         const Triangle& triangle = layer.triangles().triangles[static_cast<std::size_t>(slot)];

@@ -214,8 +214,7 @@ private:
         }
         parts_.resize(nodes_.size());
         for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
-            nodes_[i].part =
-                nodes_[nodes_[i].part].part;  // the nodes before this one refer to their first node already
+            nodes_[i].part = nodes_[nodes_[i].part].part;  // earlier nodes lead to their first node already
             if (!nodes_[i].before) {
                 continue;
             }
