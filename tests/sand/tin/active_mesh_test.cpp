@@ -16,7 +16,7 @@ using sand::tin::ActiveMesh;
 
 constexpr std::int32_t kTalus = 65536;  // [unit per cell], 45 degrees
 
-/// All of a layer, by its own numbers. `open`: sand falls over the rim.
+/// Adds the whole layer to `sand`, with the layer's own numbers. `open`: sand falls over the rim.
 ActiveMesh everythingOf(const VertexSand& layer, bool obstacle, bool open, ActiveMesh sand) {
     const sand::tin::Triangles& mesh = layer.triangles();
     const sand::tin::Slopes slopes = sand::tin::slopesOf(kTalus, kTalus * 5 / 4);
@@ -33,7 +33,7 @@ ActiveMesh everythingOf(const VertexSand& layer, bool obstacle, bool open, Activ
     for (std::int32_t slot = 0; slot < slots; ++slot) {
         for (int corner = 0; corner < 3; ++corner) {
             const sand::tin::TriangleSide side{slot, corner}, other = across(mesh, side);
-            if (other.triangle < slot) {  // nobody's too
+            if (other.triangle < slot) {  // smaller slots, and kNobody, so that each edge is added once
                 sand.addEdge(weights.edge(mesh, layer.stars(), side, other));
             }
         }
@@ -42,7 +42,7 @@ ActiveMesh everythingOf(const VertexSand& layer, bool obstacle, bool open, Activ
 }
 
 sand::tin::SweepResult sweep(ActiveMesh& sand, bool held, bool band, double momentum) {
-    static_cast<void>(sand.slide(held, band));  // its edges are all there
+    static_cast<void>(sand.slide(held, band));  // no facet lacks edges, so that the result is not needed
     return sand.move(held, momentum);
 }
 
@@ -60,7 +60,7 @@ void expectTheSameSand(const VertexSand& layer, bool held, bool band, bool open)
     ActiveMesh fast = everythingOf(layer, held, open, ActiveMesh(base::machineHasV3()));
     std::int64_t fell = 0;
     for (int done = 0; done < 200; ++done) {
-        const double momentum = done % 40 < 20 ? 0 : 0.9;  // both while much moves
+        const double momentum = done % 40 < 20 ? 0 : 0.9;  // with and without momentum while much sand moves
         const sand::tin::SweepResult result = sweep(doubles, held, band, momentum);
         for (ActiveMesh* other : {&integers, &fast}) {
             const sand::tin::SweepResult same = sweep(*other, held, band, momentum);
@@ -71,7 +71,7 @@ void expectTheSameSand(const VertexSand& layer, bool held, bool band, bool open)
         }
         fell += result.outflow;
     }
-    EXPECT_NE(volumesOf(doubles), layer.volumes()) << "nothing moved";
+    EXPECT_NE(volumesOf(doubles), layer.volumes()) << "no sand moved";
     EXPECT_EQ(fell > 0, open);
 }
 
@@ -81,15 +81,15 @@ TEST(ActiveMesh, DoublesAndIntegersAndEveryCodePathMoveTheSameSand) {
     for (const bool held : {false, true}) {
         for (const bool band : {false, true}) {
             for (const bool open : {false, true}) {
-                SCOPED_TRACE(testing::Message() << held << band << open);
+                SCOPED_TRACE(testing::Message() << "held " << held << ", band " << band << ", open " << open);
                 expectTheSameSand(layer, held, band, open);
             }
         }
     }
 }
 
-/// The fall of V²/star, as one sum over vertices: what is left of two would be their roundings. `heights`: before and
-/// after.
+/// Returns the fall of V²/star from the heights `before` to the heights `after`. It is one sum over the vertices,
+/// because the difference of two sums would be lost in their rounding.
 double fallOf(const VertexSand& layer, const std::vector<double>& before, const std::vector<double>& after) {
     double fall = 0;
     for (std::size_t i = 0; i < after.size(); ++i) {
@@ -140,7 +140,7 @@ TEST(ActiveMesh, MomentumKeepsVolumeAndExtremesAndLowersTheEnergyInEverySweep) {
     }
     for (const bool held : {false, true}) {
         for (const bool open : {false, true}) {
-            SCOPED_TRACE(testing::Message() << held << open);
+            SCOPED_TRACE(testing::Message() << "held " << held << ", open " << open);
             expectTheProofsToHold(layer, held, open);
         }
     }

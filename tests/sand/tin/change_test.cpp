@@ -13,7 +13,7 @@ using sand::tin::kNobody;
 using sand::tin::Located;
 using sand::tin::Triangle;
 
-/// All that a slot's triangle is, whichever corner comes first.
+/// All data of a slot's triangle, whichever corner is first in the slot.
 using Seen = std::vector<std::array<std::int32_t, 4>>;
 
 Seen seen(const Mesh& mesh, std::size_t slot) {
@@ -30,7 +30,7 @@ Seen seen(const Mesh& mesh, std::size_t slot) {
     return corners;
 }
 
-/// By vertex: its triangles.
+/// The triangles of each vertex.
 using Stars = std::map<Vertex, std::set<Seen>>;
 
 Stars starsOf(const Mesh& mesh) {
@@ -38,7 +38,7 @@ Stars starsOf(const Mesh& mesh) {
     for (std::size_t slot = 0; slot < mesh.triangles().triangles.size(); ++slot) {
         Seen here = seen(mesh, slot);
         for (auto& corner : here) {
-            corner[3] = 0;  // constraints are none of a star's business
+            corner[3] = 0;  // constraints are not part of a star
         }
         for (const auto& corner : here) {
             stars[corner[0]].insert(here);
@@ -50,7 +50,8 @@ Stars starsOf(const Mesh& mesh) {
 TEST(MeshChange, NamesExactlyWhatDiffers) {
     std::mt19937 random(1);
     Mesh mesh(40, 30);
-    EXPECT_EQ(mesh.takeChange().triangles, (std::vector<std::int32_t>{0, 1})) << "a new mesh is new";
+    EXPECT_EQ(mesh.takeChange().triangles, (std::vector<std::int32_t>{0, 1}))
+        << "all triangles of a new mesh have changed";
     EXPECT_TRUE(mesh.takeChange().vertices.empty());
     for (int i = 0; i < 2000; ++i) {
         std::vector<Seen> before;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The triangulation beside one that nobody here wrote: CGAL's, of the same places and constraints, by its own exact
-// predicates. Only of several on a circle may it have other diagonals; ours are canonical.
+// Compares the triangulation with that of CGAL, an independent program. CGAL gets the same places and constraints and
+// uses exact predicates of its own. Only for several places on a circle may its diagonals differ, because ours are
+// canonical.
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <fmt/format.h>
@@ -72,7 +73,8 @@ private:
         if (oracle_.is_edge(handles_.at(b), handles_.at(c), face, opposite)) {
             ++edges.shared;
             if (oracle_.is_constrained({face, opposite}) != triangle.constrained[i]) {
-                edges.wrong.push_back(fmt::format("constrained in one: ({}, {})-({}, {})", b.x, b.y, c.x, c.y));
+                edges.wrong.push_back(
+                    fmt::format("constrained in one mesh only: ({}, {})-({}, {})", b.x, b.y, c.x, c.y));
             }
             return;
         }
@@ -88,7 +90,7 @@ private:
                 return;
             }
         }
-        edges.wrong.push_back(fmt::format("no edge of CGAL's: ({}, {})-({}, {})", b.x, b.y, c.x, c.y));
+        edges.wrong.push_back(fmt::format("an edge that CGAL does not have: ({}, {})-({}, {})", b.x, b.y, c.x, c.y));
     }
 
     const sand::tin::Triangles& mesh_;
@@ -96,7 +98,7 @@ private:
     std::map<Place, Oracle::Vertex_handle> handles_;
 };
 
-/// Edits, and a comparison after every tenth.
+/// Makes random edits, and compares the meshes after every tenth.
 Edges editAndCompare(std::int32_t width, std::int32_t depth, int edits, int most, std::uint32_t seed) {
     std::mt19937 random(seed);
     Mesh mesh(width, depth);
@@ -125,7 +127,7 @@ TEST(DelaunayOracle, HasTheSameEdgesOnAFineLattice) {
 TEST(DelaunayOracle, HasTheSameEdgesButOfCirclesOnACoarseLattice) {
     const Edges edges = editAndCompare(60, 60, 2000, 300, 22);
     EXPECT_GT(edges.shared, 10000);
-    EXPECT_GT(edges.onCircles, 100) << "where it cannot be otherwise, nothing is shown";
+    EXPECT_GT(edges.onCircles, 100) << "too few places on circles to show anything";
 }
 
 }  // namespace

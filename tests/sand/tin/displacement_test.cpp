@@ -34,7 +34,7 @@ double lowest(const VertexSand& layer) {
     return result;
 }
 
-/// Every vertex below the tool is at its underside or lower.
+/// Expects that no vertex below the tool is above its underside.
 void expectClear(const VertexSand& layer, const Displacement& tool, const ProbePoint& at) {
     const auto underside = tool.underside(at);
     forEachVertex(layer, [&](Vertex vertex, const Place& place, double height) {
@@ -117,7 +117,7 @@ TEST(TinTool, ThreeEllipsesLeaveTheirDepthAndConstrainedOutlines) {
     }
 }
 
-/// [cell]
+/// Returns the total length of all constraints [cell].
 double lengthOfConstraints(const VertexSand& layer) {
     double length = 0;
     for (const auto& [a, b] : layer.mesh().constraints()) {
@@ -128,8 +128,8 @@ double lengthOfConstraints(const VertexSand& layer) {
     return length;
 }
 
-// The second stamp's points stand in the first one's edges, and its edges lie along them: what it puts in goes with it,
-// what was there does not.
+// The points of the second stamp lie on the edges of the first one, and its edges lie along them. Points and edges
+// that the second stamp adds must go with it. Those of the first stamp must stay.
 TEST(TinTool, DraggedAwayItLeavesTheEarlierOutlineItStoodOn) {
     VertexSand layer = levelLayer(60, 40, 256);
     DetailRules rules = fineRules();
@@ -204,7 +204,7 @@ TEST(TinTool, PushesSandAheadAndToTheSidesAndNotBehind) {
         behind += place.x < from.x ? above : 0;
     });
     EXPECT_GT(ahead, 20 * behind);
-    for (double x = 21; x < 35; x += 0.5) {  // the groove, as deep as the underside along its middle
+    for (double x = 21; x < 35; x += 0.5) {  // the groove is as deep as the underside along its middle
         EXPECT_NEAR(heightAt(layer, {static_cast<std::int32_t>(x * 256), 20 * 256}), -kCell, 0.25 * kCell) << x;
     }
 }
@@ -259,13 +259,13 @@ TEST(TinTool, AtACornerTheOpenRimSwallowsAndTheClosedOneKeeps) {
         const Displacement::Work done = press(layer, imprint, tool, at, rim);
         expectClear(layer, tool, at);
         EXPECT_TRUE(layer.volume() + done.outflow == before);
-        // What a quarter of the ring does not take, three quarters do.
+        // A quarter of the ring lies in the field, and three quarters lie beyond the rim.
         double kept = 0;
         forEachVertex(layer, [&](Vertex vertex, const Place&, double height) {
             kept += std::max(height, 0.0) * static_cast<double>(layer.stars()[static_cast<std::size_t>(vertex)]);
         });
         const double ratio = static_cast<double>(done.outflow) / kept;
-        if (rim == Rim::open) {  // the strip along the rim belongs to the field's corners, which take little
+        if (rim == Rim::open) {  // the strip along the rim belongs to the field's corners, which take little sand
             EXPECT_NEAR(ratio, 3, 1);
         } else {
             EXPECT_EQ(ratio, 0);
@@ -347,7 +347,7 @@ TEST(TinTool, ACoarseMeshWithoutDetailTakesTheImprint) {
     const auto before = layer.volume();
     const ProbePoint at = probeAt(20, 20, 4);
     const Displacement::Work done = press(layer, imprint, tool, at);
-    EXPECT_EQ(done.touched.size(), 36U);  // 32 control points, and the field's corners
+    EXPECT_EQ(done.touched.size(), 36U);  // 32 control points and the field's corners
     EXPECT_EQ(layer.mesh().constraints().size(), 32U);
     expectClear(layer, tool, at);
     EXPECT_TRUE(layer.volume() == before);
@@ -365,13 +365,13 @@ TEST(TinTool, RefusesADamagedImprint) {
         base::ByteReader reader(std::span<const std::uint8_t>(whole).first(length));
         EXPECT_THROW(Imprint::decode(reader), base::FormatError) << length;
     }
-    imprint.edges.assign(5000, {7, 9});  // of a large tool across many small ones' outlines
+    imprint.edges.assign(5000, {7, 9});  // as for a large tool across the outlines of many small ones
     base::ByteWriter many;
     imprint.encode(many);
     base::ByteReader manyReader(many.bytes());
     EXPECT_EQ(Imprint::decode(manyReader).edges.size(), 5000U);
     base::Bytes other = whole;
-    other[13] = 99;  // the kind of tool
+    other[13] = 99;  // the kind of the tool
     base::ByteReader reader(other);
     EXPECT_THROW(Imprint::decode(reader), base::FormatError);
 }

@@ -23,7 +23,7 @@ using sand::tin::Wide;
 constexpr std::int32_t kTalus = 65536;  // [unit per cell], 45 degrees
 constexpr std::array kKinds{Kind::regular, Kind::jittered, Kind::random};
 
-/// Lays a plane that rises by `slope` [unit per cell] in a direction on the layer.
+/// Sets the heights to a plane that rises by `slope` [unit per cell] in the direction `degrees`.
 void incline(VertexSand& layer, double slope, double degrees) {
     const double east = slope * std::cos(degrees * std::numbers::pi / 180) / kCell;
     const double north = slope * std::sin(degrees * std::numbers::pi / 180) / kCell;
@@ -47,7 +47,7 @@ TEST(TinErosion, ASlopeUpToTheTalusIsLeftAloneBitByBit) {
         incline(layer, 1.01 * kTalus, 30);
         std::vector<Vertex> moved;
         Erosion(layer, kTalus, kTalus).sweep(layer, 1, nullptr, moved);
-        EXPECT_FALSE(moved.empty()) << nameOf(kind) << ": one that is steeper moves";
+        EXPECT_FALSE(moved.empty()) << nameOf(kind) << ": a steeper slope moves";
     }
 }
 
@@ -68,7 +68,7 @@ TEST(TinErosion, EverySweepKeepsVolumeAndExtremesAndLowersTheEnergy) {
             ASSERT_LE(after.highest, before.highest) << "seed 11, sweep " << sweep;
             before = after;
             const double now = energyOf(layer);
-            // What falls may be less than a sum of doubles tells apart.
+            // The energy may fall by less than a sum of doubles resolves.
             ASSERT_LE(now, energy * (1 + 1e-13)) << "seed 11, sweep " << sweep;
             energy = now;
         }
@@ -76,8 +76,8 @@ TEST(TinErosion, EverySweepKeepsVolumeAndExtremesAndLowersTheEnergy) {
 }
 
 TEST(TinErosion, TwoVerticesDoNotSwapForEver) {
-    // A big star on either side of a small one, and the other way round: what one step for all makes of it takes for
-    // ever.
+    // Large stars lie on both sides of a small one, or small stars on both sides of a large one. With one step for all
+    // edges, the sand would take for ever to rest.
     for (const std::int32_t apart : {1, 16, 400, 1900}) {
         sand::tin::Mesh mesh(4000, 4000);
         const Vertex one = mesh.insert({2000, 2000});
@@ -101,7 +101,8 @@ TEST(TinErosion, SandAtRestIsAFixedPoint) {
         const base::Bytes rest = bytesOf(layer);
         EXPECT_EQ(sand::tin::settle(layer, kTalus, kTalus).sweeps, 1);
         EXPECT_EQ(bytesOf(layer), rest);
-        // At rest no triangle is steeper than the talus by more than sweeps tell apart: a part in 1024, and roundings.
+        // At rest, no triangle is steeper than the talus by more than a part in 1024, up to rounding. Sweeps do not
+        // move sand within this margin.
         sand::tin::settle(layer, kTalus + kTalus / 1000, kTalus + kTalus / 1000);
         EXPECT_EQ(bytesOf(layer), rest);
     }
@@ -112,7 +113,7 @@ TEST(TinErosion, ActiveEdgesGiveWhatAllEdgesGive) {
         std::int32_t threshold, start;
         Rim rim;
     };
-    // With a band so narrow that sand comes to rest within it, too.
+    // One band is so narrow that sand comes to rest within it.
     for (const auto& [threshold, start, rim] :
          {Case{kTalus, kTalus, Rim::closed}, Case{kTalus, kTalus * 5 / 4, Rim::closed},
           Case{kTalus, kTalus + kTalus / 2000, Rim::closed}, Case{kTalus, kTalus, Rim::open},
@@ -136,7 +137,7 @@ TEST(TinErosion, ActiveEdgesGiveWhatAllEdgesGive) {
         for (int step = 0; step < 60; ++step) {
             moved.clear();
             movedOfAll.clear();
-            const int sweeps = step % 10 == 9 ? 400 : 20;  // within 400 much is forgotten
+            const int sweeps = step % 10 == 9 ? 400 : 20;  // 400 sweeps forget many edges
             active.sweep(some, sweeps, nullptr, moved);
             Erosion fresh(all, threshold, start, rim);
             fresh.sweep(all, sweeps, nullptr, movedOfAll);
@@ -145,7 +146,7 @@ TEST(TinErosion, ActiveEdgesGiveWhatAllEdgesGive) {
             const std::int64_t outflow = active.takeOutflow();
             ASSERT_EQ(outflow, fresh.takeOutflow()) << "seed 7, step " << step;
             fell += outflow;
-            if (step % 20 == 10) {  // falls on sand that has gone to sleep
+            if (step % 20 == 10) {  // add a load to sand that is at rest
                 const auto top = static_cast<Vertex>(4 + random() % 500);
                 some.add(top, 1'000'000'000'000);
                 all.add(top, 1'000'000'000'000);
@@ -163,7 +164,7 @@ void restoreWhileTheMeshChanges(Rim rim) {
     std::mt19937 random(17);
     std::vector<Vertex> moved;
     for (int step = 0; step < 60; ++step) {
-        VertexSand other = restored(layer);  // its slots are others, and everything is awake
+        VertexSand other = restored(layer);  // its slots differ, and all its sand is awake
         Erosion fresh(other, kSlide, kStart, rim);
         std::mt19937 same = random;
         const auto edit = [](VertexSand& edited, std::mt19937& chances) {
@@ -173,7 +174,7 @@ void restoreWhileTheMeshChanges(Rim rim) {
         edit(other, same);
         erosion.changed(layer, layer.takeChange());
         fresh.changed(other, other.takeChange());
-        // A tool stands there, moves on, and is away for some steps.
+        // A tool is in the sand, moves on, and is away for some steps.
         const int moves = step / 4;
         const sand::tin::Underside held = [moves](Place place) {
             const bool under = std::hypot(place.x - 1000.0 - 20 * moves, place.y - 1000.0) < 600;
@@ -215,22 +216,22 @@ TEST(TinErosion, NoSandRisesAboveAToolThatStandsInIt) {
         }
         return highest;
     };
-    // What is higher from the start stays or sinks.
+    // Sand that is higher than the underside at the start stays or sinks.
     const double most = std::max<double>(highestUnder(), underside);
     Erosion erosion(layer, kTalus, kTalus);
     std::vector<Vertex> moved;
     erosion.sweep(layer, 100'000, &held, moved);
-    EXPECT_TRUE(erosion.settled()) << "sand is pumped for ever under a tool held still";
+    EXPECT_TRUE(erosion.settled()) << "a tool that is held still pumps sand for ever";
     EXPECT_LE(highestUnder(), most);
-    EXPECT_GT(highestUnder(), 0.9 * underside) << "nothing was held back";
+    EXPECT_GT(highestUnder(), 0.9 * underside) << "no sand was held back";
     moved.clear();
     erosion.sweep(layer, 64, &held, moved);
     EXPECT_TRUE(moved.empty());
-    erosion.sweep(layer, 100'000, nullptr, moved);  // nobody wakes anything
+    erosion.sweep(layer, 100'000, nullptr, moved);  // without wake(): erosion itself must find the sand
     EXPECT_GT(highestUnder(), 2 * most);
     const base::Bytes rest = bytesOf(layer);
     sand::tin::settle(layer, kTalus, kTalus);
-    EXPECT_EQ(bytesOf(layer), rest) << "not all that the tool had held back was looked at again";
+    EXPECT_EQ(bytesOf(layer), rest) << "some sand that the tool had held back was not examined again";
 }
 
 TEST(TinErosion, ABankStandsUntilTheStartThresholdAndThenSlidesUntilTheThreshold) {
@@ -241,12 +242,12 @@ TEST(TinErosion, ABankStandsUntilTheStartThresholdAndThenSlidesUntilTheThreshold
     layer.add(edge, 100LL * 6 * kCell * kCell * kTalus);
     sand::tin::settle(layer, kTalus, 2 * kTalus);
     const base::Bytes rest = bytesOf(layer);
-    EXPECT_EQ(sand::tin::settle(layer, kTalus, kTalus).sweeps, 1) << "it stopped half way";
+    EXPECT_EQ(sand::tin::settle(layer, kTalus, kTalus).sweeps, 1) << "the sand stopped above the threshold";
     EXPECT_EQ(bytesOf(layer), rest);
 }
 
-// The projection of settle() stops at the threshold by itself. Within a call, sweeps do so because they know where sand
-// flows; the share of 0.02 is what is still on its way after 1000 of them.
+// The projection of settle() stops at the threshold by itself. Sweeps stop there because they record where sand flows.
+// After 1000 sweeps some sand is still moving, so that the test allows a share of 0.02.
 TEST(TinErosion, SandThatSlidesInSweepsStopsAtTheThresholdWhateverTheBand) {
     for (const Kind kind : {Kind::regular, Kind::jittered}) {
         for (const double slope : {1.6, 3.0}) {
@@ -266,14 +267,14 @@ TEST(TinErosion, WithoutAnAngleSandLevels) {
     fill(layer, [](double x, double y) { return std::hypot(x - 4, y - 4) < 2 ? 3.0 : 0.0; });
     ASSERT_TRUE(sand::tin::settle(layer, 0, 0).atRest);
     const Extremes rest = extremesOf(layer);
-    EXPECT_LE(rest.highest - rest.lowest, 4 * 8) << "four units from cell to cell";
+    EXPECT_LE(rest.highest - rest.lowest, 4 * 8) << "more than four units from cell to cell";
 }
 
 TEST(TinErosion, AtAlmostARightAngleOnlySpikesMove) {
-    constexpr std::int32_t kSteep = 37'549'361;  // tan 89.9 degrees
+    constexpr std::int32_t kSteep = 37'549'361;  // tangent of 89.9 degrees
     VertexSand layer = layerOf(Kind::jittered, 16);
     incline(layer, 0.99 * kSteep, 40);
-    EXPECT_EQ(sand::tin::settle(layer, kSteep, kSteep).sweeps, 0) << "no triangle is worth a sweep";
+    EXPECT_EQ(sand::tin::settle(layer, kSteep, kSteep).sweeps, 0) << "no triangle is too steep";
     const Vertex spike = 100;
     layer.setHeight(spike, (1 << 30) - 1);
     const sand::tin::Settled settled = sand::tin::settle(layer, kSteep, kSteep);
@@ -281,7 +282,8 @@ TEST(TinErosion, AtAlmostARightAngleOnlySpikesMove) {
     EXPECT_GT(settled.sweeps, 1);
 }
 
-// 10^6 probe units of height over one of ground, on constraints: triangles of every badness stand in the walls.
+// 10^6 probe units of height over one probe unit of ground, on constraints. The walls have badly shaped triangles of
+// every kind.
 TEST(TinErosion, WallsAlmostUprightFallAndKeepTheirSand) {
     sand::tin::Mesh mesh(4096, 4096);
     const auto ring = [&mesh](std::int32_t inset) {
@@ -305,7 +307,7 @@ TEST(TinErosion, WallsAlmostUprightFallAndKeepTheirSand) {
     EXPECT_TRUE(layer.volume() == volume);
     EXPECT_LE(extremesOf(layer).highest, 256'000'000);
     EXPECT_GE(extremesOf(layer).lowest, 0);
-    EXPECT_LT(extremesOf(layer).highest, 200'000'000) << "it stands as it stood";
+    EXPECT_LT(extremesOf(layer).highest, 200'000'000) << "the walls have not fallen";
 }
 
 TEST(TinErosion, RestingEdgesAreLeftThoughStepsAreShortAndSomethingAlwaysMoves) {
@@ -330,7 +332,7 @@ TEST(TinErosion, RestingEdgesAreLeftThoughStepsAreShortAndSomethingAlwaysMoves) 
         ASSERT_FALSE(moved.empty()) << "step " << step << ", seed " << kSeed;
         atFirst = std::max(atFirst, erosion.activeEdges());
     }
-    EXPECT_GT(atFirst, 2 * all.size()) << "nearly all of the sand slid";
+    EXPECT_GT(atFirst, 2 * all.size()) << "only a part of the sand slid";
     EXPECT_LT(erosion.activeEdges(), atFirst / 4) << "seed " << kSeed;
 }
 

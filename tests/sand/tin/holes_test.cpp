@@ -51,7 +51,7 @@ Ground wallsWhere(int columns, int rows, const CellTest& isWall) {
     return ground;
 }
 
-/// A vertex in every cell's middle but in holes, at heights from a function [unit].
+/// Returns a start with a vertex in the middle of every cell outside holes. `heightOf` returns their heights [unit].
 TinStart startOf(int columns, int rows, const CellTest& isWall, const std::function<int(int, int)>& heightOf) {
     HeightField field(columns, rows, 1);
     for (int row = 0; row < rows; ++row) {
@@ -71,14 +71,14 @@ VertexSand layerAt(const TinStart& start) {
 
 int levelAt(int, int) { return 1000; }
 
-/// A ring, some of whose cells touch at their corners alone.
+/// Whether a cell is in a ring. Some cells of the ring touch only at their corners.
 bool isRing(int column, int row) {
     const double x = column - 11.5, y = row - 11.5;
     const double radius = std::sqrt(x * x + y * y);
     return radius > 6.8 && radius < 7.7;
 }
 
-/// Puts a lump of so many cells' height on the vertex nearest to the middle of a cell.
+/// Raises the vertex in the middle of a cell by `cells` times the side of a cell.
 void lump(VertexSand& layer, int column, int row, int cells) {
     const Place at{column * 256 + 128, row * 256 + 128};
     forEachVertex(layer, [&](Vertex vertex, const Place& place, double) {
@@ -122,7 +122,7 @@ TEST(TinHoles, AnOutlineRunsRoundTheCellsWithoutData) {
     }
     EXPECT_EQ(length, 8 * 256);
     EXPECT_THROW(Holes(cells, {}), std::invalid_argument);
-    EXPECT_THROW(Holes(cells, {{1, 1, 3}, {1, 3, 4}}), std::invalid_argument) << "one that is made of two";
+    EXPECT_THROW(Holes(cells, {{1, 1, 3}, {1, 3, 4}}), std::invalid_argument) << "one run that is written as two";
     EXPECT_THROW(Holes(cells, {{1, 1, 6}}), std::invalid_argument);
     EXPECT_THROW(Holes(cells, {{2, 1, 3}, {1, 1, 3}}), std::invalid_argument);
 }
@@ -134,7 +134,7 @@ TEST(TinHoles, CellsThatTouchAtACornerCloseIt) {
     EXPECT_FALSE(holes.holds(Place{470, 520}));
     const VertexSand layer = layerAt(startOf(
         4, 4, [](int c, int r) { return c == r && (c == 1 || c == 2); }, levelAt));
-    const std::int64_t lost = 2 * 32 * 32;  // of the square around the corner, beside both holes
+    const std::int64_t lost = 2 * 32 * 32;  // parts of the square around the corner that lie beside both holes
     EXPECT_TRUE(layer.ground() == Wide{6} * ((16 - 2) * 256 * 256 - lost)) << static_cast<double>(layer.ground()) / 6;
 }
 
@@ -159,14 +159,14 @@ TEST(TinHoles, APileFlowsRoundAHoleAndNotIn) {
     EXPECT_TRUE(layer.volume() == before);
     EXPECT_GT(heightAt(layer, {9 * 256 + 128, 10 * 256 + 128}),
               heightAt(layer, {13 * 256 + 128, 10 * 256 + 128}) + 3 * 65536)
-        << "the hole holds the sand back: an open field would have a slope of a cell per cell";
-    EXPECT_GT(heightAt(layer, {14 * 256, 15 * 256}), 1000) << "and it flows round";
+        << "the hole must hold the sand back: an open field would have a slope of one cell per cell";
+    EXPECT_GT(heightAt(layer, {14 * 256, 15 * 256}), 1000) << "the sand must flow around the hole";
     for (const auto& triangle : layer.triangles().triangles) {
         if (triangle.hole) {
             for (const Vertex corner : triangle.corner) {
                 const Place place = layer.triangles().places[static_cast<std::size_t>(corner)];
                 const bool inside = place.x > 10 * 256 && place.x < 13 * 256 && place.y > 6 * 256 && place.y < 14 * 256;
-                EXPECT_FALSE(inside) << "nobody stands in the hole";
+                EXPECT_FALSE(inside) << "a vertex lies in the hole";
             }
         }
     }
@@ -181,8 +181,8 @@ TEST(TinHoles, SandInARingCannotLeave) {
             pinches += layer.mesh().holes()->isPinch(column, row) ? 1 : 0;
         }
     }
-    ASSERT_GT(pinches, 3) << "the ring is to have corners through which sand could slip";
-    // No vertex has ground on both sides: neither the middle of the ring nor a corner between two of its cells.
+    ASSERT_GT(pinches, 3) << "the ring needs corners through which sand could slip";
+    // No vertex may have ground both inside and outside the ring. That includes the corners between two of its cells.
     forEachVertex(layer, [&](Vertex vertex, const Place&, double) {
         bool in = false, out = false;
         sand::tin::aroundVertex(layer.triangles(), vertex, [&](std::int32_t slot, int) {
@@ -212,8 +212,8 @@ TEST(TinHoles, SandInARingCannotLeave) {
     const Wide before = layer.volume();
     ASSERT_TRUE(sand::tin::settle(layer, kTalus, kTalus).atRest);
     EXPECT_TRUE(layer.volume() == before);
-    EXPECT_EQ(heightsOutside(), outside) << "nothing has come out";
-    EXPECT_GT(heightAt(layer, {6 * 256 + 128, 12 * 256}), 65536) << "and the sand stands against the ring";
+    EXPECT_EQ(heightsOutside(), outside) << "sand has left the ring";
+    EXPECT_GT(heightAt(layer, {6 * 256 + 128, 12 * 256}), 65536) << "the sand must lie against the ring";
 }
 
 TEST(TinHoles, VolumeAndOutlineHoldThroughTenThousandEdits) {
@@ -251,7 +251,8 @@ TEST(TinHoles, ToolsOfAllKindsLeaveSandAndOutline) {
     const auto outline = placesOnOutline(layer);
     ASSERT_GT(outline.size(), 100U);
     Imprint imprint;
-    double deepest = levelAt(0, 0), lowest = deepest;  // [unit], that a tool went, and that sand was
+    // Lowest underside of a tool so far, and lowest height of the sand [unit].
+    double deepest = levelAt(0, 0), lowest = deepest;
     for (int stroke = 0; stroke < 60; ++stroke) {
         sand::tin::DetailRules rules = fineRules();
         rules.keepsConstraints = stroke % 4 == 0;
@@ -266,17 +267,18 @@ TEST(TinHoles, ToolsOfAllKindsLeaveSandAndOutline) {
         sand::tin::settle(layer, kTalus, kTalus, 20);
         ASSERT_TRUE(layer.volume() == before && layer.ground() == ground) << "stroke " << stroke;
         ASSERT_TRUE(layer.mesh().hasOutline()) << "stroke " << stroke;
-        ASSERT_EQ(placesOnOutline(layer), outline) << "stroke " << stroke << ": a tool's vertices go with it";
-        // A tool digs down to its underside, and sand that slides makes no hole deeper than there was.
+        ASSERT_EQ(placesOnOutline(layer), outline)
+            << "stroke " << stroke << ": the tool has left vertices on the outline";
+        // A tool digs down to its underside. Sand that slides makes no hole deeper than the deepest one.
         const std::int32_t underside = std::min(path[0].z, path[1].z) - shape.radius;  // [probe unit]
         deepest = std::min(deepest, static_cast<double>(underside) * sand::kUnitsPerCell / sand::kProbePerCell);
         forEachVertex(layer, [&](Vertex vertex, const Place&, double height) {
             ASSERT_GE(height, deepest) << "stroke " << stroke << ", vertex " << vertex;
-            ASSERT_GT(layer.stars()[static_cast<std::size_t>(vertex)], 0) << "vertex " << vertex << " stands in a hole";
+            ASSERT_GT(layer.stars()[static_cast<std::size_t>(vertex)], 0) << "vertex " << vertex << " lies in a hole";
         });
         forEachVertex(layer, [&](Vertex, const Place&, double height) { lowest = std::min(lowest, height); });
     }
-    EXPECT_LT(lowest, 0.9 * deepest) << "the strokes dug, or the bound says nothing";
+    EXPECT_LT(lowest, 0.9 * deepest) << "the strokes did not dig, so that the bound shows nothing";
     EXPECT_EQ(mesh_checks::whatIsWrong(layer.mesh()), "");
 }
 
@@ -320,7 +322,8 @@ TEST(TinHoles, AStartTravelsWithItsHoles) {
     EXPECT_NE(level.digest(), start.digest());
 }
 
-// Half a cell from the outermost middles to the rim: without vertices there the ground hung on the field's corners.
+// The rim is half a cell beyond the outermost cell centres. Without vertices on the rim, the ground between them
+// depended on the heights of the field's corners.
 TEST(TinHoles, TheRimIsAsHighAsTheCellsAlongIt) {
     HeightField field(40, 30, 1);
     for (int row = 0; row < 30; ++row) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cases that are known to break triangulations, one by one.
+// Cases that are known to break triangulations, one by one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ using namespace mesh_checks;
 
 constexpr std::int32_t kWhole = 1 << 22;
 
-/// Places on a circle of radius 325 about `centre`, exactly: 325² = a² + b² in seven ways.
+/// Returns places exactly on a circle of radius 325 about `centre`: 325² = a² + b² in seven ways.
 std::vector<Place> onCircle(const Place& centre) {
     std::vector<Place> places;
     for (const auto& [a, b] :
@@ -55,7 +55,7 @@ TEST(MeshCases, GivesTheSmallestFreeNumber) {
     for (std::int32_t i = 1; i < 6; ++i) {
         EXPECT_EQ(mesh.insert(Place{i, i}), i + 3);
     }
-    EXPECT_EQ(mesh.insert(Place{3, 3}), 6) << "there already";
+    EXPECT_EQ(mesh.insert(Place{3, 3}), 6) << "the vertex exists already";
     for (const Vertex vertex : {7, 5, 6}) {
         EXPECT_TRUE(mesh.remove(vertex));
     }
@@ -97,7 +97,7 @@ TEST(MeshCases, FansCirclesOutFromTheFirstPlace) {
     const Place first{500 - 323, 500 - 36};
     const auto triangles = trianglesOf(mesh);
     const auto fan = std::count_if(triangles.begin(), triangles.end(), [&first](const PlaceTriangle& triangle) {
-        return triangle[0] == first;  // outside the circle a corner of the field comes before it
+        return triangle[0] == first;  // outside the circle, a corner of the field comes first
     });
     EXPECT_EQ(fan, 56 - 2);
 }
@@ -111,7 +111,7 @@ TEST(MeshCases, TakesOutVerticesOfDegreeThreeAndFiveHundred) {
     mesh.remove(inside);
     EXPECT_EQ(trianglesOf(mesh), before);
     mesh.remove(three);
-    // No vertex lies in a circle through the middle of a ring and two neighbours on it.
+    // A circle through the middle of a ring and two neighbours on the ring contains no other vertex.
     std::mt19937 random(2);
     const Vertex hub = mesh.insert(Place{1 << 19, 1 << 19});
     std::set<Place> ring;
@@ -143,7 +143,7 @@ TEST(MeshCases, JoinsTheRimAgain) {
     const Vertex b = mesh.insert(Place{60, 0});
     const Vertex c = mesh.insert(Place{100, 20});
     EXPECT_EQ(whatIsWrong(mesh), "");
-    EXPECT_TRUE(mesh.constraints().empty()) << "the rim's are not among them";
+    EXPECT_TRUE(mesh.constraints().empty()) << "constraints() does not list the rim";
     EXPECT_TRUE(mesh.isConstrained(a, b));
     mesh.release(a, b);
     EXPECT_TRUE(mesh.isConstrained(a, b)) << "the rim stays";
@@ -165,14 +165,15 @@ TEST(MeshCases, ConstrainsThroughVerticesOnTheWay) {
     EXPECT_EQ(path.vertices, (std::vector<Vertex>{from, first, second, to}));
     EXPECT_TRUE(path.before.empty());
     const auto back = mesh.constrain(to, first);
-    EXPECT_EQ(back.vertices, (std::vector<Vertex>{to, second, first})) << "it overlaps";
+    EXPECT_EQ(back.vertices, (std::vector<Vertex>{to, second, first}))
+        << "the second constraint overlaps the first one";
     EXPECT_EQ(back.before.size(), 2U);
     EXPECT_EQ(mesh.constraints().size(), 3U);
     const Vertex middle = mesh.insert(Place{70, 40});
     EXPECT_TRUE(mesh.isConstrained(second, middle) && mesh.isConstrained(middle, to));
     EXPECT_EQ(whatIsWrong(mesh), "");
     EXPECT_TRUE(mesh.remove(second));
-    EXPECT_EQ(mesh.constraints().size(), 2U) << "what ended in it is gone";
+    EXPECT_EQ(mesh.constraints().size(), 2U) << "the constraints that ended in the vertex are gone";
     EXPECT_EQ(whatIsWrong(mesh), "");
 }
 
@@ -223,7 +224,7 @@ TEST(MeshCases, LaysARingThroughAVertexAndOverARing) {
 
 TEST(MeshCases, KeepsSliversUpright) {
     Mesh mesh(kWhole, kWhole);
-    // Heights of one unit over a base of 2^22: 2.4e-7.
+    // Triangles of height 1 over a base of 2^22: the ratio is 2.4e-7.
     const Vertex left = mesh.insert(Place{0, 1});
     const Vertex right = mesh.insert(Place{kWhole, 1});
     mesh.constrain(left, right);
@@ -254,10 +255,12 @@ TEST(MeshCases, RestoresOnlyWhatIsAMesh) {
     EXPECT_THROW(Mesh::restore(9, 9, with({Place{3, 10}}), Pairs{}), std::invalid_argument) << "outside";
     EXPECT_THROW(Mesh::restore(9, 9, with({Place{3, 3}, Place{3, 3}}), Pairs{}), std::invalid_argument) << "two in one";
     EXPECT_THROW(Mesh::restore(9, 9, with({Place{9, 9}}), Pairs{}), std::invalid_argument) << "a corner again";
-    EXPECT_THROW(Mesh::restore(9, 9, with({std::nullopt}), Pairs{{0, 4}}), std::invalid_argument) << "nobody";
-    EXPECT_THROW(Mesh::restore(9, 9, corners, Pairs{{1, 1}}), std::invalid_argument) << "no length";
-    EXPECT_THROW(Mesh::restore(9, 9, corners, Pairs{{0, 2}, {1, 3}}), std::invalid_argument) << "they cross";
-    EXPECT_THROW(Mesh::restore(9, 9, with({Place{3, 3}}), Pairs{{0, 2}}), std::invalid_argument) << "through a vertex";
+    EXPECT_THROW(Mesh::restore(9, 9, with({std::nullopt}), Pairs{{0, 4}}), std::invalid_argument)
+        << "an end does not exist";
+    EXPECT_THROW(Mesh::restore(9, 9, corners, Pairs{{1, 1}}), std::invalid_argument) << "both ends are one vertex";
+    EXPECT_THROW(Mesh::restore(9, 9, corners, Pairs{{0, 2}, {1, 3}}), std::invalid_argument) << "the constraints cross";
+    EXPECT_THROW(Mesh::restore(9, 9, with({Place{3, 3}}), Pairs{{0, 2}}), std::invalid_argument)
+        << "the constraint passes through a vertex";
 }
 
 }  // namespace

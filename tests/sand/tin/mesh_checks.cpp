@@ -17,7 +17,7 @@ Wide area(const Place& a, const Place& b, const Place& c) {
     return static_cast<Wide>(b.x - a.x) * (c.y - a.y) - static_cast<Wide>(b.y - a.y) * (c.x - a.x);
 }
 
-/// The determinant itself, without any shortcut.
+/// Returns the determinant itself, without any shortcut.
 Wide inCircle(const Place& a, const Place& b, const Place& c, const Place& d) {
     const auto row = [&d](const Place& p) {
         const Wide x = p.x - d.x, y = p.y - d.y;
@@ -73,11 +73,11 @@ private:
             }
             const Triangle& triangle = mesh_.triangles.at(static_cast<std::size_t>(slot));
             if (std::count(triangle.corner.begin(), triangle.corner.end(), static_cast<Vertex>(i)) != 1) {
-                fail(fmt::format("vertex {} does not know its triangle", i));
+                fail(fmt::format("vertex {} is not a corner of its triangle", i));
             }
         }
         if (living != vertexCount_) {
-            fail(fmt::format("{} vertices, said to be {}", living, vertexCount_));
+            fail(fmt::format("{} vertices, but vertexCount() returns {}", living, vertexCount_));
         }
     }
 
@@ -108,7 +108,7 @@ private:
         if (other == kNobody) {
             ++rim_;
             if (!triangle.constrained[i]) {
-                fail("a rim edge that is no constraint at " + edgeName(from, to));
+                fail("a rim edge that is not constrained at " + edgeName(from, to));
             }
             return;
         }
@@ -137,7 +137,7 @@ private:
             fail("a vertex in the circle of " + edgeName(b, c));
         }
         if (inside == 0 && std::min({a, b, c, d}) != std::min(b, c)) {
-            fail("the wrong diagonal of four on a circle: " + edgeName(b, c));
+            fail("the wrong diagonal of four places on a circle: " + edgeName(b, c));
         }
     }
 

@@ -11,28 +11,30 @@
 
 #include "sand/tin/mesh/mesh.hpp"
 
-/// What a mesh must be, told apart from how it came to be so: nothing here is shared with what is tested.
+/// Checks of a mesh that do not depend on how it was made. They share no code with the mesh.
 namespace mesh_checks {
 
 using sand::tin::Mesh;
 using sand::tin::Place;
 using sand::tin::Triangles;
 using sand::tin::Vertex;
-using PlaceTriangle = std::array<Place, 3>;  // counter-clockwise from the smallest
+using PlaceTriangle = std::array<Place, 3>;  // counter-clockwise from the smallest place
 
-/// What is wrong with it first, or nothing: areas, neighbours, Euler's formula, the empty circle of every edge that is
-/// no constraint, and where circles are not empty the diagonal out from the first place. All in exact integers.
+/// Returns the first fault of a mesh, or an empty string. Checks areas, neighbours and Euler's formula. The circle of
+/// every unconstrained edge must be empty; if four places are on it, the diagonal must begin at the first place. All
+/// arithmetic is in exact integers.
 [[nodiscard]] std::string whatIsWrong(const Mesh& mesh);
 
 [[nodiscard]] std::set<PlaceTriangle> trianglesOf(const Mesh& mesh);
 [[nodiscard]] std::set<std::pair<Place, Place>> constraintsOf(const Mesh& mesh);
 [[nodiscard]] std::vector<std::optional<Place>> placesOf(const Mesh& mesh);
 [[nodiscard]] Mesh restored(const Mesh& mesh);
-/// The same vertices and constraints, come to by another way.
+/// Returns a mesh with the same vertices and constraints, inserted in a random order.
 [[nodiscard]] Mesh madeInAnotherOrder(const Mesh& mesh, std::mt19937& random);
 
 [[nodiscard]] std::vector<Vertex> livingVertices(const Mesh& mesh);
-/// Inserts, removes, constrains or releases something; what it did, for whoever must find out why.
-std::string editAtRandom(Mesh& mesh, std::mt19937& random, int most /* vertices, about */);
+/// Inserts, removes, constrains or releases a random vertex or edge. Returns a description of the edit, for failure
+/// messages.
+std::string editAtRandom(Mesh& mesh, std::mt19937& random, int most /* rough limit of vertices */);
 
 }  // namespace mesh_checks

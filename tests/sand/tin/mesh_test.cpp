@@ -18,7 +18,8 @@ std::mt19937 seeded(std::uint32_t seed) {
     return std::mt19937(seed);
 }
 
-/// Some thousand edits, each checked.
+/// Makes random edits and checks the mesh after each. Every tenth time, compares it with a restored mesh and with one
+/// made in another order.
 void editAndCheck(std::int32_t width, std::int32_t depth, int edits, int most, std::uint32_t seed) {
     std::mt19937 random = seeded(seed);
     Mesh mesh(width, depth);

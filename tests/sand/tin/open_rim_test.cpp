@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sand that falls over the open rim of a TIN: the proofs hold sweep by sweep, and every unit is counted.
-// open_table_test.cpp tests how much falls.
+// Sand that falls over the open rim of a TIN. The proofs hold for every sweep, and every unit is counted.
+// open_table_test.cpp tests how much sand falls.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ using tin_piles::layerOf;
 
 constexpr std::int32_t kTalus = 65536;  // [unit per cell], 45 degrees
 
-/// The highest vertex on the rim [unit].
+/// Returns the height of the highest vertex on the rim [unit].
 double highestOnRim(const VertexSand& layer) {
     double highest = std::numeric_limits<double>::lowest();
     for (const Vertex vertex : mesh_checks::livingVertices(layer.mesh())) {
@@ -41,7 +41,7 @@ double highestOnRim(const VertexSand& layer) {
     return highest;
 }
 
-/// Sweeps one by one until nothing moves.
+/// Runs single sweeps until all sand is at rest, and checks the proofs after each.
 void expectTheProofsToHold(VertexSand& layer, std::int32_t threshold, std::int32_t start, int most) {
     const Wide volume = layer.volume();
     Wide fallen = 0;
@@ -59,12 +59,12 @@ void expectTheProofsToHold(VertexSand& layer, std::int32_t threshold, std::int32
         ASSERT_TRUE(layer.volume() + fallen == volume) << "sweep " << sweep;
         ASSERT_LE(highestOnRim(layer), 0) << "sweep " << sweep;
         const Extremes after = extremesOf(layer);
-        // The ground beyond the rim lies at 0.
+        // The ground beyond the rim is at height 0.
         ASSERT_GE(after.lowest, std::min(before.lowest, 0.0)) << "sweep " << sweep;
         ASSERT_LE(after.highest, before.highest) << "sweep " << sweep;
         before = after;
         const double now = energyOf(layer);
-        // The energy may fall by less than a sum of doubles tells apart.
+        // The energy may fall by less than a sum of doubles resolves.
         ASSERT_LE(now, energy * (1 + 1e-13)) << "sweep " << sweep;
         energy = now;
     }
@@ -107,7 +107,7 @@ TEST(TinOpenRim, SettlingCountsWhatFalls) {
         EXPECT_LE(extremesOf(layer).highest, before.highest) << nameOf(kind);
         const base::Bytes rest = bytesOf(layer);
         const auto again = sand::tin::settle(layer, kTalus, kTalus, 1'000'000, Rim::open);
-        EXPECT_EQ(bytesOf(layer), rest) << nameOf(kind) << ": sand at rest is a fixed point";
+        EXPECT_EQ(bytesOf(layer), rest) << nameOf(kind) << ": sand at rest must not move";
         EXPECT_EQ(again.outflow, 0) << nameOf(kind);
     }
 }
@@ -119,27 +119,28 @@ TEST(TinOpenRim, NoSandComesInFromBeyond) {
     const auto settled = sand::tin::settle(layer, kTalus, kTalus, 1'000'000, Rim::open);
     EXPECT_EQ(settled.outflow, 0);
     EXPECT_EQ(bytesOf(layer), before);
-    // A heap in the pit falls over the rim no sooner than it fills the pit there.
+    // Sand from a heap in the pit may fall over the rim only after it has filled the pit there.
     tin_piles::fill(layer, [](double x, double y) { return std::hypot(x - 8, y - 8) < 3 ? 3.0 : -5.0; });
     EXPECT_EQ(sand::tin::settle(layer, kTalus, kTalus, 1'000'000, Rim::open).outflow, 0);
 }
 
 TEST(TinOpenRim, LevelSandThatLiesBelowEveryTalusFallsFromTheRim) {
     VertexSand layer = layerOf(Kind::jittered, 16);
-    // So low that from the rim to the next vertex, a quarter of a cell at the least, it is no slope.
+    // The sand is so low that it is flatter than the talus from the rim to the next vertex, at least a quarter of a
+    // cell away.
     tin_piles::fill(layer, [](double, double) { return 0.01; });
     Erosion erosion(layer, kTalus, kTalus, Rim::open);
     std::vector<Vertex> moved;
     erosion.sweep(layer, 100, nullptr, moved);
     EXPECT_TRUE(erosion.settled());
     EXPECT_EQ(highestOnRim(layer), 0);
-    EXPECT_EQ(moved.size(), 4U * 16) << "the vertices of the rim, and no other";
+    EXPECT_EQ(moved.size(), 4U * 16) << "only the vertices of the rim may move";
     EXPECT_GT(erosion.takeOutflow(), 0);
-    EXPECT_EQ(erosion.takeOutflow(), 0) << "it is told once";
+    EXPECT_EQ(erosion.takeOutflow(), 0) << "takeOutflow() returns each volume once";
 }
 
 TEST(TinOpenRim, ARingOfHolesKeepsItsSandFromTheRim) {
-    // A closed ring of cells without data: what lies in it never comes to the rim.
+    // A closed ring of cells without data. The sand inside never reaches the rim.
     sand::HeightField field(24, 24, 1);
     sand::Ground walls(24, 24);
     for (int row = 0; row < 24; ++row) {
@@ -173,7 +174,7 @@ TEST(TinOpenRim, AToolBesideItRefinesItWhereItIsOpen) {
         tin_samples::forEachVertex(layer, [&](Vertex, const sand::tin::Place& place, double) {
             beside += place.y == 0 && std::abs(place.x - 20 * 256) < 4 * 256 ? 1 : 0;
         });
-        EXPECT_EQ(beside >= 7, rim == Rim::open) << beside << ": one a cell";
+        EXPECT_EQ(beside >= 7, rim == Rim::open) << beside << " vertices; an open rim gets one per cell";
         tool.leave(layer, imprint);
         EXPECT_EQ(mesh_checks::whatIsWrong(layer.mesh()), "");
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The outflow over an open rim: an open table at rest (oracles.hpp, O4), and a grid's loss over the same steps.
+// Outflow over an open rim: an open table at rest (oracles.hpp, O4), and the loss of a grid over the same steps.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ using sand::Rim;
 
 constexpr std::int32_t kTalus = 65536;  // [unit per cell], 45 degrees
 
-/// A block of sand on n x n cells, higher than a table of that size holds.
+/// Returns a block of sand on n x n cells that is higher than a table of this size can hold.
 VertexSand loadedTable(Kind kind, int n) {
     VertexSand layer = layerOf(kind, n);
     fill(layer, [n](double, double) { return 0.5 * n + 8; });
@@ -36,8 +36,8 @@ double misplacedOf(const VertexSand& layer, int n) {
     return misplaced(layer, [table = tableOf(n)](double x, double y) { return table.rest(x, y); });
 }
 
-/// Returns the height that sand may have at rest over the height of the table. Triangles may be steeper by the slack of
-/// slackOf() (weights.hpp), and by a part in 1024 more (kRest, sweep_kernel.hpp).
+/// Returns by which factor sand at rest may be higher than the exact table. Triangles may be steeper than the talus by
+/// the slack of slackOf() (weights.hpp), and by a further part in 1024 (kRest, sweep_kernel.hpp).
 double steepestShare(const VertexSand& layer) {
     const sand::tin::Triangles& mesh = layer.triangles();
     double slack = 0;
@@ -69,11 +69,13 @@ struct Case {
 };
 constexpr std::array kSides{16, 32, 64};
 
-// The error is at the ridges, which rise from the corners at 45 degrees: 0.15 to 0.28 cells² of cross-section on
-// regular and jittered meshes, along 4 n/√2 of ridge over a volume of n³/6. It falls to a quarter with cells half as
-// wide. On random places slivers rest late and too steep. Measured: regular 1.30, 0.35 and 0.11 %, jittered 1.03, 0.29
-// and 0.10 %, random 1.74, 0.58 and 0.58 %. The bounds are these and a tenth; random has twice as much on 64 cells,
-// where sweeps alone leave 1.02 %.
+// The error is at the ridges, which rise from the corners at 45 degrees. On regular and jittered meshes it is 0.15 to
+// 0.28 cells² of cross-section, along 4 n/√2 of ridge over a volume of n³/6. It falls to a quarter with cells half as
+// wide. On random places, slivers come to rest late and too steep.
+//
+// Measured: regular 1.30, 0.35 and 0.11 %; jittered 1.03, 0.29 and 0.10 %; random 1.74, 0.58 and 0.58 %. The bounds
+// are a tenth above these figures. For random on 64 cells, the bound is twice the figure, because sweeps alone leave
+// 1.02 % there.
 constexpr std::array kCases{Case{Kind::regular, {0.0143, 0.0039, 0.00125}},
                             Case{Kind::jittered, {0.0114, 0.0032, 0.0011}},
                             Case{Kind::random, {0.0192, 0.0064, 0.0117}}};
@@ -111,12 +113,13 @@ TEST(TinOpenTable, SweepsComeToTheSameRest) {
         }
         EXPECT_TRUE(erosion.settled());
         expectNothingAboveTheTable(layer, n);
-        // Slopes rest steeper than the talus by a part in 1024 at most, and with them the whole table.
+        // Slopes at rest are steeper than the talus by at most a part in 1024. The whole table is higher by the same
+        // part.
         EXPECT_LE(misplacedOf(layer, n), most[1] + 1.0 / 1024) << nameOf(kind);
     }
 }
 
-/// Level sand with an open rim, as a grid; or as a TIN with vertices so many cells apart.
+/// Returns level sand on a grid, `height` cells high.
 scene::Scene levelScene(int side, double height /* [cell] */, double talusDegrees, Rim rim) {
     scene::Scene scene = samples::flatScene(side, side);
     for (int row = 0; row < side; ++row) {
@@ -128,6 +131,7 @@ scene::Scene levelScene(int side, double height /* [cell] */, double talusDegree
     return scene;
 }
 
+/// Returns the scene as a TIN with vertices `apart` cells apart.
 scene::Scene asTin(const scene::Scene& grid, int apart) {
     scene::Scene scene = grid;
     auto start =
@@ -138,7 +142,8 @@ scene::Scene asTin(const scene::Scene& grid, int apart) {
     return scene;
 }
 
-/// The share of the sand that has fallen over the rim after so many steps; volume and outflow are what the volume was.
+/// Returns the share of the sand that has fallen over the rim after `steps` steps. Checks that volume and outflow add
+/// up to the first volume.
 double lostAfter(const scene::Scene& scene, int steps) {
     sand::Replica replica(scene);
     const std::int64_t before = replica.volume();
@@ -149,11 +154,14 @@ double lostAfter(const scene::Scene& scene, int steps) {
     return static_cast<double>(replica.outflow()) / static_cast<double>(before);
 }
 
-// A sweep moves a share of a difference, and the loss grows with the root of that share or slower. With
-// s = (slope/talus)² the share is 0.8/4 (s - 1)/(s + 1) on the TIN and 0.225 (s - 1)/s on the grid. So the TIN moves
-// 8/9 s/(s + 1) of what the grid moves: nearly 8/9 where slopes are steep, and 4/9 or more everywhere. A grid meets
-// height 0 half a cell beyond its rim, and a TIN on it, where each vertex holds back a quarter of a cell at first: that
-// is 1/side of all the sand. At rest the TIN has lost the sand of half a cell more all around: 2/side of it.
+// A sweep moves a share of a height difference, and the loss grows with the root of that share or more slowly. Let s =
+// (slope/talus)². The share is 0.8/4 (s - 1)/(s + 1) on the TIN and 0.225 (s - 1)/s on the grid. The TIN therefore
+// moves 8/9 s/(s + 1) of the sand that the grid moves. That is nearly 8/9 on steep slopes, and at least 4/9
+// everywhere.
+//
+// A grid reaches height 0 half a cell beyond its rim. A TIN reaches it on the rim, where each vertex at first holds
+// back a quarter of a cell: 1/side of all sand. At rest, the TIN has lost the sand of half a cell more all around:
+// 2/side of all sand.
 TEST(TinOpenTable, LosesOverTheSameStepsWhatAGridLoses) {
     constexpr int kSide = 64;
     for (const auto& [degrees, slower] : {std::pair{1.0, 8.0 / 9}, {34.0, 4.0 / 9}}) {
@@ -168,8 +176,8 @@ TEST(TinOpenTable, LosesOverTheSameStepsWhatAGridLoses) {
     EXPECT_EQ(lostAfter(asTin(levelScene(kSide, 9.6, 1, Rim::closed), 1), 10), 0);
 }
 
-// Coarse meshes lose more, and sooner: a sweep moves sand by an edge, and a slope is as wide as a triangle at the
-// least. docs/tin.md has these figures.
+// Coarse meshes lose more sand, and earlier. A sweep moves sand over one edge, and a slope is at least as wide as a
+// triangle. docs/tin.md has these figures.
 TEST(TinOpenTable, CoarseMeshesLoseNoLessThanFineOnes) {
     for (const double degrees : {1.0, 34.0}) {
         const scene::Scene grid = levelScene(64, 9.6, degrees, Rim::open);

@@ -79,10 +79,10 @@ TEST(Outline, ASoleHasFivePartsWhoseOutlinesDoNotCross) {
     std::size_t rings = 0;
     for (const auto& [a, b] : outline.edges) {
         const int from = part[static_cast<std::size_t>(a)], to = part[static_cast<std::size_t>(b)];
-        rings += from == to ? 1 : 0;  // the edge that closes a ring
+        rings += from == to ? 1 : 0;  // this edge closes a ring
         std::replace(part.begin(), part.end(), from, to);
     }
-    EXPECT_EQ(rings, 5U);  // four toes, and all the rest of the sole with the small one
+    EXPECT_EQ(rings, 5U);  // four toes, and the rest of the sole together with the small toe
     for (const auto& [a, b] : outline.edges) {
         for (const auto& [c, d] : outline.edges) {
             const auto at = [&](int i) { return outline.points[static_cast<std::size_t>(i)]; };

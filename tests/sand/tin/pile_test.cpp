@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cylinders, walls of sand and sand that is poured, on meshes of every kind and turned (oracles.hpp).
+// Cylinders, walls of sand and poured sand, on meshes of every kind and turned (oracles.hpp).
 #include <gtest/gtest.h>
 
 #include <array>
@@ -21,7 +21,7 @@ using oracles::Cylinder;
 
 constexpr std::int32_t kTalus = 65536;  // [unit per cell], 45 degrees
 
-/// Settles, and expects that volume and extremes are kept.
+/// Settles the sand, and expects that volume and extremes are kept.
 void settleAll(VertexSand& layer) {
     const sand::tin::Wide volume = layer.volume();
     const Extremes before = extremesOf(layer);
@@ -32,7 +32,7 @@ void settleAll(VertexSand& layer) {
     EXPECT_LE(after.highest, before.highest);
 }
 
-/// A cylinder in the middle of n x n cells, at rest.
+/// Returns a cylinder in the middle of n x n cells, at rest.
 VertexSand settledCylinder(Kind kind, int n, double degrees, const Cylinder& cylinder) {
     VertexSand layer = layerOf(kind, n, degrees);
     fill(layer, oracles::around(n / 2.0, n / 2.0, [&](double r) { return cylinder.start(r); }));
@@ -47,12 +47,13 @@ double misplacedOf(const VertexSand& layer, int n, const Cylinder& cylinder) {
 struct Case {
     Kind kind;
     double degrees;
-    double low, lowFiner, tall;  // share misplaced on 64 x 64, on 128 x 128, and of the cone on 64 x 64
+    double low, lowFiner, tall;  // share misplaced on 64 x 64 and 128 x 128 cells, and by the cone on 64 x 64 cells
 };
 
-// Of random and jittered meshes of 4000 and 16,000 vertices 2.4 % and 1.0 %, 1.7 % and 0.36 % were asked. Measured:
-// random 0.70 and 0.27 %, the cone 1.57 %; jittered 0.50 and 0.131 %, 0.82 %; regular 0.49 and 0.155 %, but the cone
-// along the lattice 1.16 %, whose diagonals all run one way. The bounds are these and a tenth.
+// Required for meshes of 4000 and 16,000 vertices: 2.4 % and 1.0 % on random ones, 1.7 % and 0.36 % on jittered ones.
+// Measured: random 0.70 and 0.27 %, cone 1.57 %; jittered 0.50 and 0.131 %, cone 0.82 %; regular 0.49 and 0.155 %. The
+// cone along the lattice of a regular mesh has 1.16 %, because all diagonals run one way. The bounds are a tenth above
+// the measured figures.
 constexpr std::array kCases{
     Case{Kind::regular, 0, 0.0054, 0.00171, 0.0128},   Case{Kind::regular, 22.5, 0.0052, 0.00171, 0.0105},
     Case{Kind::regular, 45, 0.0053, 0.00171, 0.0128},  Case{Kind::jittered, 0, 0.0055, 0.00144, 0.0090},
@@ -78,8 +79,8 @@ TEST(TinPile, FinerMeshesAreNearerToTheFrustum) {
     }
 }
 
-// 0.36 % and 0.13 % were asked of jittered meshes of 16,000 and 65,000 vertices, of random ones of 16,000 1.0 %;
-// measured: 0.299, 0.117 and 0.625 %.
+// Required: 0.36 % and 0.13 % on jittered meshes of 16,000 and 65,000 vertices, and 1.0 % on random ones of 16,000.
+// Measured: 0.299, 0.117 and 0.625 %.
 TEST(TinPile, FinerMeshesAreNearerToTheCone) {
     struct Finer {
         Kind kind;
@@ -93,7 +94,7 @@ TEST(TinPile, FinerMeshesAreNearerToTheCone) {
     }
 }
 
-// Inertia is begun anew in every step: were it not, piles would be less right.
+// Inertia begins at zero in every step. If it continued across steps, piles would be less accurate.
 TEST(TinPile, InertiaWithinStepsLeavesPilesNearlyAsRight) {
     const Cylinder tall(9.6, 28.8);
     const auto atRest = [&](Kind kind, int sweepsOfAStep) {
@@ -119,8 +120,9 @@ TEST(TinPile, InertiaWithinStepsLeavesPilesNearlyAsRight) {
     }
 }
 
-// Where a slope begins or ends it is rounded: that misplaces some area of the cross-section at each of four kinks,
-// whatever the wall. Measured: 0.12 cell² on jittered meshes, 0.17 on regular and 0.42 on random ones.
+// A slope is rounded where it begins and where it ends. Each of the four kinks misplaces some area of the
+// cross-section, whatever the size of the wall. Measured: 0.12 cell² on jittered meshes, 0.17 on regular and 0.42 on
+// random ones.
 TEST(TinPile, AWallOfSandBecomesItsRampInAnyDirection) {
     for (const auto& [kind, kink] : {std::pair{Kind::regular, 0.19}, {Kind::jittered, 0.135}, {Kind::random, 0.46}}) {
         for (const double degrees : {0.0, 22.5, 45.0}) {
@@ -141,7 +143,7 @@ TEST(TinPile, AWallOfSandBecomesItsRampInAnyDirection) {
     }
 }
 
-// A tool far smaller than a cell pours on one vertex; steps of 64 sweeps between.
+// A tool far smaller than a cell pours sand on one vertex. 64 sweeps follow each portion.
 TEST(TinPile, PouredSandIsACone) {
     double coarser = 1;
     for (const int n : {32, 64}) {
@@ -169,7 +171,7 @@ TEST(TinPile, PouredSandIsACone) {
     EXPECT_LE(coarser, 0.0136);  // measured 1.23 %
 }
 
-/// Share of the sand between two surfaces, by heights at the middles of cells.
+/// Returns the share of the sand between two surfaces, from the heights at the cell centres.
 double between(const VertexSand& one, const VertexSand& other, int n) {
     double sum = 0, all = 0;
     std::int32_t here = sand::tin::kNobody, there = sand::tin::kNobody;
@@ -184,7 +186,7 @@ double between(const VertexSand& one, const VertexSand& other, int n) {
     return sum / all;
 }
 
-// A grid cannot do that by itself: its axes show.
+// On a grid this test would fail, because piles on a grid show its axes.
 TEST(TinPile, TurningTheMeshChangesThePileByLessThanItsError) {
     constexpr int kSide = 64;
     const Cylinder cylinder(0.25 * kSide, 0.15 * kSide);
@@ -215,7 +217,7 @@ TEST(TinPile, TheSamePileOnGridAndTinAgrees) {
             all += height;
         }
     }
-    EXPECT_LE(sum / all, 0.0051 + 0.003) << "the errors stated for either";
+    EXPECT_LE(sum / all, 0.0051 + 0.003) << "more than the sum of the errors of grid and TIN";
 }
 
 }  // namespace

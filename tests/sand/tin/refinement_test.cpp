@@ -37,7 +37,8 @@ int refineAll(VertexSand& layer, const DetailRules& rules, const Box& box) {
 TEST(TinDetail, AVertexComesIntoEverySquareOnce) {
     VertexSand layer(sand::tin::Mesh(20 * 256, 10 * 256));
     const DetailRules rules = rulesOf(256, 0, 0);
-    EXPECT_EQ(refineAll(layer, rules, {0, 0, 20 * 256, 10 * 256}), 200 - 1);  // the corner's square has one
+    // The square of a corner contains a vertex already.
+    EXPECT_EQ(refineAll(layer, rules, {0, 0, 20 * 256, 10 * 256}), 200 - 1);
     EXPECT_EQ(refineAll(layer, rules, {0, 0, 20 * 256, 10 * 256}), 0);
     EXPECT_EQ(refineAll(layer, rulesOf(512, 0, 0), {0, 0, 20 * 256, 10 * 256}), 0);
     EXPECT_GT(refineAll(layer, rulesOf(128, 0, 0), {0, 0, 20 * 256, 10 * 256}), 0);
@@ -138,7 +139,8 @@ TEST(TinDetail, NoRemovalMovesTheSurfaceByMoreThanItMay) {
     EXPECT_LT(removed, 60);
 }
 
-// Heights change here and there, vertices come and go, and constraints too: who remembers does as who looks again.
+// Heights, vertices and constraints change here and there. Coarsening with a memory must do the same as coarsening
+// without one.
 TEST(TinDetail, CoarseningThatRemembersLeavesWhatOneThatLooksAgainLeaves) {
     constexpr unsigned kSeed = 4;
     std::mt19937 random(kSeed);
@@ -154,7 +156,7 @@ TEST(TinDetail, CoarseningThatRemembersLeavesWhatOneThatLooksAgainLeaves) {
             change(*one);
         }
     };
-    // Rough in the west, where hardly one may go, and nearly level in the east.
+    // The west is rough, so that hardly a vertex may be removed there. The east is nearly level.
     const auto shake = [&](Vertex vertex) {
         const bool rough = layer.triangles().places[sand::tin::index(vertex)].x < 3000;
         const auto height = static_cast<std::int32_t>(random() % (rough ? 3000 : 100));

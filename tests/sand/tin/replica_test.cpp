@@ -23,7 +23,7 @@ using sand::Edit;
 using sand::Replica;
 using sand::Step;
 
-/// A scene file as a person writes it: dunes of 64 x 64 nominal cells, as a TIN.
+/// A scene file as a person writes it: dunes on 64 x 64 nominal cells, as a TIN.
 class TinTerrain : public test::FolderTest {
 protected:
     [[nodiscard]] scene::Scene scene(const std::string& tin = "max_error = 0.01\n", const std::string& more = "",
@@ -43,7 +43,7 @@ int verticesOf(const Replica& terrain) {
     return static_cast<int>(std::count_if(alive.begin(), alive.end(), [](std::int32_t at) { return at >= 0; }));
 }
 
-/// Strokes here and there, with everything a hand and an operator may do.
+/// Returns random strokes, with all edits that a hand and an operator can make.
 std::vector<Step> session(std::uint32_t seed, int steps) {
     std::mt19937 random(seed);
     const auto below = [&](std::uint32_t most) { return static_cast<std::int32_t>(random() % most); };
@@ -75,7 +75,7 @@ TEST_F(TinTerrain, ASessionIsTheSameTwiceAndFromItsMiddle) {
 
 TEST_F(TinTerrain, OverAnOpenRimASessionIsTheSameTwiceAndCountsWhatFalls) {
     const scene::Scene start = scene("max_error = 0.01\n", "", "rim = \"open\"\n");
-    // Volume and outflow are what the volume was, after each step.
+    // After each step, volume and outflow must add up to the first volume.
     tin_samples::expectSameSession(start, scene::Scene::decode(start.encode()), session(7, 120), 37);
     Replica terrain(start);
     for (const Step& step : session(7, 120)) {
@@ -94,16 +94,16 @@ TEST_F(TinTerrain, OverAnOpenRimASessionIsTheSameTwiceAndCountsWhatFalls) {
 TEST_F(TinTerrain, OverAnOpenRimSandFallsBeforeTheSessionWhereTheSceneSettles) {
     const scene::Scene settled = scene("max_error = 0.01\n", "settle = true\n", "rim = \"open\"\n");
     Replica terrain(settled);
-    EXPECT_EQ(terrain.outflow(), 0) << "a session counts what falls in it";
+    EXPECT_EQ(terrain.outflow(), 0) << "the outflow must not count sand that fell before the session";
     EXPECT_LT(terrain.volume(), Replica(scene("max_error = 0.01\n", "", "rim = \"open\"\n")).volume());
     for (std::uint64_t number = 1; number <= 20; ++number) {
         terrain.apply({.epoch = 1, .number = number, .engaged = false, .path = {}});
     }
-    // Heights of a start are whole units: of what that raises, half a unit of height at most, some may fall.
+    // The start rounds heights to whole units. The sand that this adds, half a unit of height at most, may fall.
     EXPECT_LE(terrain.outflow(), std::int64_t{6} * 64 * 64 * 65536 / 2);
 }
 
-/// Level sand, points at random all over it, and a tool as wide as a quarter of it that is put here and there.
+/// Returns level sand on random points. Its tool is a quarter as wide as the field and is pressed at random places.
 scene::Scene levelSand(int side, std::uint32_t seed) {
     sand::tin::TinStart start = tin_piles::levelStart(side, seed);
     start.settings.spacing = start.settings.maxError = 0;
@@ -119,8 +119,8 @@ scene::Scene levelSand(int side, std::uint32_t seed) {
     return scene;
 }
 
-// Triangles that slide, but whose sand the tool holds, are forgotten and come back beside others that begin to slide:
-// a replica that has just joined never forgot them.
+// Triangles that slide under a tool are forgotten, because the tool holds their sand. They are added again beside
+// triangles that start to slide. A replica that has just joined never forgot them.
 TEST(TinTerrainUnderATool, WhatWasForgottenSlidesAsSoonAsItIsAskedFor) {
     constexpr std::uint32_t kSeed = 1;
     const scene::Scene scene = levelSand(100, kSeed);
@@ -146,8 +146,8 @@ TEST(TinTerrainUnderATool, WhatWasForgottenSlidesAsSoonAsItIsAskedFor) {
     }
 }
 
-// docs/terrain.md has these figures. The sand's own volume is exact: what is not are samples of a surface that bends
-// between them, whose error falls with the square of their distance.
+// docs/terrain.md has these figures. The volume of the sand is exact. Samples are not, because the surface bends
+// between them. Their error falls with the square of their distance.
 TEST_F(TinTerrain, CutAndFillDifferByWhatSamplesMiss) {
     const Replica before(scene());
     Replica after(scene());
@@ -211,7 +211,7 @@ TEST_F(TinTerrain, WhatHasLookedInVainCoarsensAgainOnceSandHasSlid) {
     Replica terrain(scene());
     std::uint64_t number = 0;
     terrain.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {{8000, 8000, 2300}, {8600, 8000, 2300}}});
-    for (int vertices = 0; number < 4000;) {  // until no vertex that could go is left
+    for (int vertices = 0; number < 4000;) {  // until no vertex is left that could be removed
         const int before = vertices;
         for (int i = 0; i < 100; ++i) {
             terrain.apply({.epoch = 1, .number = ++number, .engaged = false, .path = {}});
@@ -223,7 +223,7 @@ TEST_F(TinTerrain, WhatHasLookedInVainCoarsensAgainOnceSandHasSlid) {
     }
     ASSERT_LT(number, 4000U);
     const int rested = verticesOf(terrain);
-    Replica joined(scene());  // whose coarsening has not looked yet
+    Replica joined(scene());  // its coarsening has not examined any vertex yet
     joined.decodeState(terrain.encodeState());
     sand::Tuning softer = terrain.rules().tuning();
     softer.threshold /= 4;
@@ -238,14 +238,15 @@ TEST_F(TinTerrain, WhatHasLookedInVainCoarsensAgainOnceSandHasSlid) {
         joined.apply(step);
         ASSERT_EQ(joined.stateHash(), terrain.stateHash()) << "step " << number;
     }
-    EXPECT_LT(verticesOf(terrain), rested) << "what has slid flat needs fewer";
+    EXPECT_LT(verticesOf(terrain), rested) << "flat sand needs fewer vertices";
 }
 
 TEST_F(TinTerrain, EveryStepIsAFunctionOfTheStateWhileAToolSettlesOnSlopes) {
     const scene::Scene start = scene();
     Replica terrain(start), fresh(start);
     for (std::uint64_t number = 1; number <= 160; ++number) {
-        // Held still for nine steps, in which the sand comes to rest, then put down a little elsewhere.
+        // The tool is held still for nine steps, in which the sand comes to rest. Then it is pressed a little farther
+        // on.
         const auto place = static_cast<std::int32_t>(number / 10);
         const Step step{.epoch = 1,
                         .number = number,
@@ -258,10 +259,11 @@ TEST_F(TinTerrain, EveryStepIsAFunctionOfTheStateWhileAToolSettlesOnSlopes) {
     }
 }
 
-// A flat tool comes down as deep as one vertex of a slope at rest lies, and takes nothing. That vertex holds sand up
-// now and counts as high as the sand beside it: where that lies beyond an obtuse angle, it makes the slope steeper.
+// A flat tool comes down exactly to the height of one vertex of a slope at rest, and takes no sand. This vertex now
+// leans on the tool and counts as high as the sand beside it. If that sand lies beyond an obtuse angle, the slope
+// becomes steeper.
 TEST_F(TinTerrain, SandSlidesThatLeansOnAToolWhichHasMovedNone) {
-    constexpr int kPoints = 60, kRise = 9;  // in 16: slopes of 0.56 under a talus of 0.67
+    constexpr int kPoints = 60, kRise = 9;  // kRise / 16: slopes of 0.56 under a talus of 0.67
     std::mt19937 random(3);
     std::ofstream survey(folder_ / "survey.csv");
     survey << "0 0 0\n16 0 9\n0 16 0\n16 16 9\n";
@@ -274,7 +276,7 @@ TEST_F(TinTerrain, SandSlidesThatLeansOnAToolWhichHasMovedNone) {
     survey.close();
     std::ofstream(folder_ / "slope.toml") << "[terrain]\nkind = \"points\"\nfile = \"survey.csv\"\n[tin]\ncell = 1\n"
                                              "max_error = 0\nvertices = "
-                                          << kPoints + 4  // and none for the tool's outline
+                                          << kPoints + 4  // so that the tool's outline gets no vertices
                                           << "\n[material]\ntalus_deg = 34\n[tool]\nshape = \"circle\"\nradius = 0.5\n";
     const scene::Scene scene = scene::loadScene(folder_ / "slope.toml");
     int slid = 0;
@@ -290,7 +292,7 @@ TEST_F(TinTerrain, SandSlidesThatLeansOnAToolWhichHasMovedNone) {
         ASSERT_EQ(fresh.stateHash(), terrain.stateHash()) << at.x << ", " << at.y;
         slid += terrain.settled() ? 0 : 1;
     }
-    EXPECT_GT(slid, 0) << "no angle was obtuse enough";
+    EXPECT_GT(slid, 0) << "no slope became steep enough to slide";
 }
 
 TEST_F(TinTerrain, ComesToRestAndThenCostsNoChange) {
@@ -300,7 +302,7 @@ TEST_F(TinTerrain, ComesToRestAndThenCostsNoChange) {
     while (number < 4000 && !terrain.settled()) {
         terrain.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {}});
     }
-    ASSERT_TRUE(terrain.settled()) << "a tool held still must not pump sand for ever";
+    ASSERT_TRUE(terrain.settled()) << "a tool that is held still must not pump sand for ever";
     (void)terrain.takeChange();
     const auto held = terrain.copySand()->encode();
     terrain.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {}});
@@ -315,7 +317,7 @@ TEST_F(TinTerrain, AFlippedBitShowsInTheNextAudit) {
     Replica terrain(scene());
     const std::uint64_t right = terrain.stateHash();
     terrain.corrupt(40, 13, 3);
-    EXPECT_EQ(terrain.stateHash(), right) << "behind the hash's back";
+    EXPECT_EQ(terrain.stateHash(), right) << "corrupt() must not update the hash";
     terrain.audit(terrain.hashTiles().tileCount());
     EXPECT_NE(terrain.stateHash(), right);
 }
@@ -365,7 +367,7 @@ TEST_F(TinTerrain, IsMadeOfTheSurveyPointsThemselves) {
     ASSERT_NE(read.tin, nullptr);
     EXPECT_EQ(read.rules.columns, 20);
     EXPECT_EQ(read.rules.rows, 10);
-    ASSERT_EQ(read.tin->places.size(), 5U) << "four points, three of which are corners, and the fourth corner";
+    ASSERT_EQ(read.tin->places.size(), 5U) << "three points at corners, one within the field, and the fourth corner";
     const Replica terrain(read);
     const auto height = [&](double x, double y) {
         return terrain.surface().height((x - 100) / 0.5 * 256, (y - 200) / 0.5 * 256) * 0.5 / 65536;
@@ -373,7 +375,7 @@ TEST_F(TinTerrain, IsMadeOfTheSurveyPointsThemselves) {
     EXPECT_DOUBLE_EQ(height(100, 200), 3);
     EXPECT_DOUBLE_EQ(height(110, 200), 5);
     EXPECT_DOUBLE_EQ(height(104, 203), 4);
-    EXPECT_DOUBLE_EQ(height(100, 205), 4) << "a corner that nobody measured is as high as the nearest point";
+    EXPECT_DOUBLE_EQ(height(100, 205), 4) << "a corner without a point is as high as the nearest point";
 }
 
 TEST_F(TinTerrain, SaysHowManySurveyPointsItDoesNotTellApart) {
@@ -383,7 +385,7 @@ TEST_F(TinTerrain, SaysHowManySurveyPointsItDoesNotTellApart) {
             << "[terrain]\nkind = \"points\"\nfile = \"survey.csv\"\n[tin]\ncell = " << cell
             << "\n[material]\ntalus_deg = 34\n[tool]\nradius = 10\n";
         const scene::Scene read = scene::loadScene(folder_ / "points.toml");
-        EXPECT_EQ(read.tin->places.size(), read.warnings.empty() ? 8U : 5U) << "and a corner";
+        EXPECT_EQ(read.tin->places.size(), read.warnings.empty() ? 8U : 5U) << "with the missing corner";
         return read.warnings;
     };
     EXPECT_EQ(warnings("5"),

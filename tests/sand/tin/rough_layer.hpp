@@ -9,7 +9,7 @@
 #include "tests/sand/tin/mesh_checks.hpp"
 #include "tests/support/tin_piles.hpp"
 
-/// Sand on the worst meshes, its bytes and its energy.
+/// Sand on meshes of bad shape, its bytes and its energy.
 namespace rough_layers {
 
 using sand::tin::Vertex;
@@ -31,7 +31,8 @@ inline std::int32_t heightWithin(std::int32_t range, std::mt19937& random) {
     return static_cast<std::int32_t>(random() % static_cast<std::uint32_t>(2 * range)) - range;
 }
 
-/// A mesh that edits have made, slivers, constraints and holes in its numbers included, under noise.
+/// Returns sand of random heights on a mesh that random edits have made. The mesh has slivers, constraints and free
+/// numbers.
 inline VertexSand roughLayer(std::int32_t side, int edits, std::int32_t range, std::uint32_t seed) {
     testing::Test::RecordProperty("seed", static_cast<int>(seed));
     std::mt19937 random(seed);
@@ -47,7 +48,7 @@ inline VertexSand roughLayer(std::int32_t side, int edits, std::int32_t range, s
     return layer;
 }
 
-/// Sum of V²/star: what falls in every sweep that moves anything.
+/// Returns the sum of V²/star, which falls in every sweep that moves sand.
 inline double energyOf(const VertexSand& layer) {
     double sum = 0;
     for (std::size_t i = 0; i < layer.volumes().size(); ++i) {

@@ -11,8 +11,8 @@
 
 namespace tin_samples {
 
-/// Plays a session on two scenes that must be alike, and on a replica that takes over the whole state at every step
-/// that `joins` divides: after each step all have the same sand, and none of it is lost.
+/// Plays a session on two equal scenes, and on a replica that loads the whole state at every step that `joins`
+/// divides. After each step, all replicas must have the same sand, and no sand may be lost.
 inline void expectSameSession(const scene::Scene& scene, const scene::Scene& alike,
                               const std::vector<sand::Step>& steps, std::uint64_t joins) {
     sand::Replica whole(scene), again(alike), joined(scene);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sand that comes to rest at once; how right its piles are, tin_pile_test.cpp tells.
+// Sand that comes to rest at once. pile_test.cpp tests the accuracy of its piles.
 #include "sand/tin/flow/settle.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using namespace tin_piles;
 
 constexpr std::int32_t kTalus = 65536;  // [unit per cell], 45 degrees
 
-/// Sand as rough as this [cell].
+/// Returns sand with random heights up to `roughness` [cell].
 VertexSand roughLayer(Kind kind, int n, double roughness, std::uint32_t seed) {
     VertexSand layer = layerOf(kind, n, 0, seed);
     std::mt19937 random(seed);
@@ -65,7 +65,7 @@ TEST(TinSettle, RoughSandKeepsItsVolumeAndExtremesAndNamesWhoMoved) {
     }
 }
 
-// Slots of triangles, and which corner is their first, are no state: a layer that was read again has others.
+// The slots of triangles and their first corners are not part of the state. A restored layer has different ones.
 TEST(TinSettle, DoesNotDependOnTheSlotsOfTriangles) {
     VertexSand layer = roughLayer(Kind::random, 32, 20, 11);
     for (Vertex vertex = 40; vertex < 400; vertex += 3) {
@@ -88,7 +88,8 @@ TEST(TinSettle, DoesNotDependOnTheSlotsOfTriangles) {
     EXPECT_EQ(layer.volumes(), again.volumes());
 }
 
-// 34 edges around what is too steep are computed at first; this tower's sand comes to lie twice as far away.
+// At first, the projection computes 34 edges around the steep triangles. The sand of this tower comes to rest twice as
+// far away.
 TEST(TinSettle, TheProjectionGrowsBeforeItsSand) {
     constexpr int kSide = 144;
     const oracles::Cylinder tower(8, 1200);
@@ -103,7 +104,7 @@ TEST(TinSettle, TheProjectionGrowsBeforeItsSand) {
               0.01);
 }
 
-// Only a few cells of many move: what lies beyond is not even looked at twice.
+// Only a few cells of many move. The sand beyond must not be examined twice.
 TEST(TinSettle, OnlyWhatLiesAroundMovesAndNothingElse) {
     VertexSand layer = layerOf(Kind::jittered, 96);
     fill(layer, oracles::around(20, 20, [](double r) { return r < 2 ? 4.0 : 0.0; }));

@@ -31,10 +31,11 @@ std::vector<double> dunes() {
     return heights;
 }
 
-/// Samples in the middles of cells.
+/// Returns a raster with samples at the cell centres.
 Raster rasterOf(const std::vector<double>& heights) { return {heights, kColumns, kRows, {128, 128}}; }
 
-/// Vertical errors of all samples with data, by point location and not by scanning triangles.
+/// Returns the vertical errors of all samples with data. Locates each sample, in contrast to simplify(), which scans
+/// triangles.
 std::vector<double> errorsOf(const Simplified& tin, const Raster& raster) {
     sand::tin::Mesh mesh(kWidth, kDepth);
     for (std::size_t i = 0; i < tin.places.size(); ++i) {
@@ -101,7 +102,7 @@ TEST(Simplify, APlaneNeedsNothingButTheCorners) {
             heights.push_back(0.5 * x - 0.25 * y + 1);
         }
     }
-    const Raster raster{heights, 9, 5, {0, 0}, {256, 512}};  // samples on the rim, rows twice as far apart
+    const Raster raster{heights, 9, 5, {0, 0}, {256, 512}};  // samples on the rim; rows twice as far apart
     const Simplified tin = simplify(8 * 256, 4 * 512, raster, {1e-12});
     EXPECT_EQ(tin.places.size(), 4U);
     EXPECT_LE(tin.maxError, 1e-12);
@@ -124,7 +125,7 @@ TEST(Simplify, SamplesWithoutDataCountForNothing) {
         EXPECT_TRUE(std::isfinite(tin.heights[i]));
         EXPECT_TRUE(i < 4 || !inHole(tin.places[i].x / 256, tin.places[i].y / 256));
     }
-    EXPECT_EQ(tin.heights[0], heights[4]);  // of the nearest sample with data, the first of two
+    EXPECT_EQ(tin.heights[0], heights[4]);  // the height of the nearest sample with data, of two the first
 }
 
 TEST(Simplify, NeedsFewerPointsThanARegularGrid) {

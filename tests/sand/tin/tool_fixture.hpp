@@ -14,7 +14,8 @@ using sand::tin::Place;
 using sand::tin::Vertex;
 using sand::tin::VertexSand;
 
-/// A field of so many cells with a vertex in the middle of every square of `spacing` [probe unit], level at height 0.
+/// Returns a level field of height 0 with `columns` × `rows` cells. A vertex is in the middle of every square of side
+/// `spacing` [probe unit].
 inline VertexSand levelLayer(int columns, int rows, std::int32_t spacing) {
     const std::int32_t width = columns * sand::kProbePerCell, depth = rows * sand::kProbePerCell;
     sand::tin::Mesh mesh(width, depth);
@@ -36,7 +37,8 @@ inline base::Bytes bytesOf(const VertexSand& layer) {
     return writer.take();
 }
 
-/// Height of the linear surface [unit]. `near`: a triangle to look from first, then the one that was found.
+/// Returns the height of the linear surface [unit]. The search begins at triangle `near`, and sets `near` to the
+/// triangle that it finds.
 inline double heightAt(const VertexSand& layer, const Place& place, std::int32_t& near) {
     const auto& mesh = layer.triangles();
     const auto found = sand::tin::locate(mesh, place, near);
@@ -60,7 +62,7 @@ inline sand::ProbePoint probeAt(double x, double y, double z /* [cell] */) {
     return {probe(x), probe(y), probe(z)};
 }
 
-/// A nominal cell between the vertices where a tool works.
+/// Returns rules with one nominal cell between the vertices where a tool works.
 inline sand::tin::DetailRules fineRules() {
     sand::tin::DetailRules rules;
     rules.spacing = sand::kProbePerCell;

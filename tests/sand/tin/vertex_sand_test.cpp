@@ -34,7 +34,7 @@ void pile(VertexSand& layer, std::mt19937& random, std::int32_t range) {
     }
 }
 
-/// Whether volume is exact and no vertex moved beyond the bound, over this many edits.
+/// Expects that over `edits` random edits the volume is exact and no vertex moves beyond the bound.
 void editAndWeigh(int edits, std::uint32_t seed) {
     testing::Test::RecordProperty("seed", static_cast<int>(seed));
     std::mt19937 random(seed);
@@ -82,7 +82,7 @@ TEST(VertexSand, KeepsAnInclinedPlaneWithinRounding) {
     for (int i = 0; i < 2000; ++i) {
         editAtRandom(layer, random, 60);
         for (const Vertex vertex : livingVertices(layer.mesh())) {
-            // Every remap may round a vertex by two volume units over its star, which is three at least.
+            // Each remap may round a vertex by two volume units over its star, which is at least three.
             ASSERT_NEAR(layer.heights()[static_cast<std::size_t>(vertex)], plane(vertex), 0.1) << "edit " << i;
         }
     }
@@ -110,7 +110,7 @@ TEST(VertexSand, ReadsNoFurtherThanItsEnd) {
     EXPECT_EQ(again.mesh().constraints(), layer.mesh().constraints());
 }
 
-/// Every byte in turn cut off or changed: refused, or a layer that is a sound one.
+/// Cuts the bytes after each byte, and changes each byte. Every result must be refused or be a valid layer.
 TEST(VertexSand, RefusesDamagedBytesOrReadsAnotherSoundLayer) {
     std::mt19937 random(7);
     VertexSand layer = layerOf(60, 50, 30, random);
