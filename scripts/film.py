@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes a film of the pictures that a replay has written."""
+"""Makes a film from the pictures that a replay has written."""
 
 import pathlib
 import shutil
@@ -7,19 +7,22 @@ import subprocess
 
 from rank_hosts import BadInput
 
-PATTERN = "frame_%06d.png"  # as the master names them
+PATTERN = "frame_%06d.png"  # the names that the master gives to the pictures
 FRAMES = "frame_[0-9]*.png"
 
 
 def encode(folder, frames_per_second):
-    """Puts FOLDER/film.mp4 beside the pictures where ffmpeg is installed, and says what there is."""
+    """Writes FOLDER/film.mp4 from the pictures in FOLDER if ffmpeg is installed, and prints what FOLDER holds.
+
+    Raises BadInput if ffmpeg fails; the pictures are then left as they are.
+    """
     folder = pathlib.Path(folder)
     frames = sum(1 for _ in folder.glob(FRAMES))
     if shutil.which("ffmpeg") is None:
         print(f"{frames} pictures in {folder}; for a film.mp4 of them: apt-get install ffmpeg, then film it again")
         return
-    # H.264 as every player takes it: half the colours, hence even sizes. In the folder itself, because a per cent sign
-    # in its path would be taken for a number.
+    # Every player reads H.264 with colours at half the resolution, which needs even sizes. ffmpeg runs in the folder,
+    # because a per cent sign in its path would be read as a number.
     command = ["ffmpeg", "-y", "-loglevel", "error", "-framerate", str(frames_per_second), "-i", PATTERN,
                "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p", "film.mp4"]
     made = subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace")
