@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Measures what README's table of figures shows, and prints the table. Takes about a minute.
+"""Measures the rows of the table "The demo" in docs/figures.md, and prints the table. Takes about a minute.
 
 usage: scripts/figures.py [SUMMARY.json]   (default: out/demo/summary.json, as scripts/demo.sh leaves it)
 """
