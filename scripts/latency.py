@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Measures latency as the first paper did, on this machine alone: half of the round trip of a test message.
+"""Measures latency as Dorjgotov et al. 2007 did, on this machine alone: half of the round trip of a test message.
 
-Runs whole sessions for the paper's three walls, directly and over a link that stands in for a wireless one, and prints a
-table in Markdown. What `sandwall-bench latency` runs; docs/latency.md tells how to read it.
+Runs whole sessions for that paper's three walls, directly and over a link that replaces a wireless one, and prints a table
+in Markdown. `sandwall-bench latency` runs this script; docs/latency.md explains the table.
 """
 
 import argparse
@@ -33,7 +33,7 @@ FLOOR_SECONDS = 3  # at most
 START_SECONDS = 120  # of a session, on a machine that is busy
 TESTS_PER_SECOND = 20
 REFRESH = 60  # Hz, on every wall
-# What stands in for a wireless network: a piece takes 3 to 9 ms, and one in fifty is lost and sent again.
+# Replaces a wireless network: a piece takes 3 to 9 ms, and one in fifty is lost and sent again.
 WIRELESS = {"delay": 3, "jitter": 6, "loss": 0.02, "stall": 40}
 BAD_INPUT = 2
 
@@ -232,12 +232,12 @@ def pm(mean, deviation, digits=1):
     return f"{mean:.{digits}f} ± {deviation:.{digits}f}"
 
 
-HEADER = ["wall, nodes in the paper", "link", "shows", "the paper", "wall has swapped", "master has it", "floor: message",
-          "floor: broadcast + barrier", "floor: half of all, medians", "frame", "tests"]
+HEADER = ["wall, nodes in the paper", "link", "shows", "Dorjgotov et al. 2007", "wall has swapped", "master has it", "floor: message",
+          "floor: broadcast + barrier", "floor: sum, medians", "frame", "tests"]
 
 
 def cells(row):
-    stands_for = {"direct": "direct (wired)", "impaired": "impaired (stands in for wireless)"}[row["link"]]
+    stands_for = {"direct": "direct (wired)", "impaired": "impaired (replaces wireless)"}[row["link"]]
     return [f"{row['wall']}, {row['nodes']}", stands_for, f"{row['load']}, {row['eye_pixels'].replace('x', ' × ')}",
             pm(row["paper_mean"], row["paper_stddev"]), pm(row["wall_mean"], row["wall_stddev"]),
             pm(row["master_mean"], row["master_stddev"], 2), pm(row["floor_message_mean"], row["floor_message_stddev"], 2),
@@ -254,13 +254,13 @@ def processor():
 
 def notes(args, before):
     cores = len(os.sched_getaffinity(0))
-    return [f"machine: {processor()}, {cores} cores that the haptic server, the master and all render ranks share; pictures by OSMesa on the "
+    return [f"machine: {processor()}, {cores} cores that the haptic server, the master and all render ranks share; OSMesa draws on the "
             f"same cores; load average {before:.1f} before and {os.getloadavg()[0]:.1f} after",
-            f"all in ms, mean ± standard deviation; {TESTS_PER_SECOND} test messages a second, at random (Poisson) times of seed {args.seed}, "
+            f"all figures in ms, mean ± standard deviation; {TESTS_PER_SECOND} test messages a second, at random (Poisson) times from seed {args.seed}, "
             f"for {args.seconds:g} s after {args.warm_up:g} s of warm-up; walls at {REFRESH} frames a second",
-            "impaired: every piece takes {delay} to {late} ms, {loss:.0%} of them {stall} ms more, with all behind them; seed ".format(
-                late=WIRELESS["delay"] + WIRELESS["jitter"], **WIRELESS) + f"{args.seed}; it stands in for a wireless network, and is none",
-            "digging: the paper's tool on 512² cells, both eyes; still: settled sand, one eye, so that hardly anything is drawn; pixels are an eye's"]
+            "impaired: every piece takes {delay} to {late} ms; {loss:.0%} of the pieces take {stall} ms more, and all pieces behind them wait; ".format(
+                late=WIRELESS["delay"] + WIRELESS["jitter"], **WIRELESS) + f"seed {args.seed}; this link replaces a wireless network, and is not one",
+            "digging: that paper's tool on 512² cells, both eyes; still: settled sand, one eye, so that hardly anything is drawn; pixels are those of one eye"]
 
 
 def write_csv(file, rows, said, command):

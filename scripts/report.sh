@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Measures the sand, draws the curves and writes docs/report: README.md, pictures, and the tables they come from.
+# Measures the sand, draws the curves and writes docs/report: README.md, pictures, and their tables.
 #
-#   scripts/report.sh           all of it: some 50 minutes on two quiet cores, and the curves of a TIN besides
+#   scripts/report.sh           everything: some 50 minutes on two quiet cores, plus the curves of a TIN
 #   scripts/report.sh --quick   smaller fields and fewer runs, less than five minutes
-#   scripts/report.sh --draw    the pictures and the text again, from the tables that are there
+#   scripts/report.sh --draw    only the pictures and the text, from the tables that exist
 set -euo pipefail
 cd "$(dirname "$0")/.."
 usage="usage: scripts/report.sh [--quick | --draw] [--out DIR]"
@@ -18,14 +18,14 @@ while [[ $# -gt 0 ]]; do
         *) echo "$usage" >&2; exit 2 ;;
     esac
 done
-# Debian's own interpreter: another python3 may stand before it in PATH, without Debian's matplotlib.
+# Debian's own interpreter, because another python3 may come first in PATH, without Debian's matplotlib.
 /usr/bin/python3 -c 'import matplotlib' 2>/dev/null ||
     { echo "report.sh: Debian's python3-matplotlib is missing; scripts/install_dependencies.sh --with-report installs it" >&2; exit 2; }
 data=$out/data
 mkdir -p "$data"
 jobs=$(nproc)
 
-# curve NAME FULL... -- QUICK...: runs one subcommand with the options of the chosen kind.
+# curve NAME FULL... -- QUICK...: runs the subcommand NAME with the options FULL, or QUICK under --quick.
 curve() {
     local name=$1 kind=full
     shift
@@ -38,7 +38,7 @@ curve() {
     "$bench" "$name" "${full[@]}" --out "$data/$name.csv" 2>"$out/progress.txt" || { cat "$out/progress.txt" >&2; exit 1; }
 }
 
-# Hashes by every build that is there; the full report makes those that are not.
+# Hashes of every build that exists. The full report first makes the builds that are missing.
 hash_table() {
     local presets=(release golden-clang-O3 golden-g++-O0 golden-g++-O2 golden-clang-O0)
     rm -f "$data"/hashes-*.csv
@@ -54,7 +54,7 @@ hash_table() {
     done
 }
 
-# Whole sessions over 1, 4 and 12 render ranks, and what one process makes of their journals.
+# Whole sessions over 1, 4 and 12 render ranks, and the hash that one process gets from their journals.
 rank_table() {
     echo "ranks,session_hash,replay_hash,divergences" >"$data/ranks.csv"
     local folder wall replay
@@ -77,7 +77,7 @@ PYTHON
     done
 }
 
-# From the hand to whole walls, directly and over an impaired link.
+# Latency from the hand to whole walls, directly and over an impaired link.
 latency_table() {
     echo "== latency"
     "$bench" latency --out "$data/latency.csv" >"$out/progress.txt" 2>&1 || { cat "$out/progress.txt" >&2; exit 1; }

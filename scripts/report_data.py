@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tables that sandwall-bench wrote, and the few numbers that the report's text takes from them."""
+"""Tables that sandwall-bench wrote, and functions that take the numbers of the report's text from them."""
 
 import csv
 import math
@@ -7,7 +7,7 @@ import pathlib
 
 
 class Table:
-    """Rows as dictionaries, numbers as numbers; and the comment lines above them."""
+    """A table of a CSV file: its rows as dictionaries, with numbers as numbers, and the comment lines above them."""
 
     def __init__(self, path):
         self.path = pathlib.Path(path)
@@ -17,10 +17,11 @@ class Table:
         self.rows = [{key: number(value) for key, value in row.items()} for row in rows]
 
     def fact(self, name):
-        """What the file's head says of "machine", "compiler", "command" …"""
+        """Returns the value of "machine", "compiler", "command" … in the file's head."""
         return next(note[len(name) + 2:] for note in self.notes if note.startswith(name + ": "))
 
     def states(self, name):
+        """Whether the file's head has a value of this name."""
         return any(note.startswith(name + ": ") for note in self.notes)
 
     def where(self, **wanted):
@@ -30,7 +31,7 @@ class Table:
         return [row[column] for row in self.where(**wanted)]
 
     def distinct(self, column, **wanted):
-        """In order of first appearance."""
+        """Returns the values of a column, each once, in the order of their first appearance."""
         return list(dict.fromkeys(self.values(column, **wanted)))
 
     def one(self, column, **wanted):
@@ -46,8 +47,10 @@ def number(text):
 
 
 def held(rows):
-    """Runs of one pile with each row's error replaced by the worst from there to its end: an error that a run only
-    passes through is none that it reaches, for nobody can know when to stop."""
+    """Returns runs of one pile in which each row's error is replaced by the worst error from there to the run's end.
+
+    An error that a run only passes through does not count as reached, because a user cannot know when to stop.
+    """
     worst = {}
     result = []
     for row in sorted(rows, key=lambda row: -row["sweeps"]):
@@ -58,7 +61,7 @@ def held(rows):
 
 
 def frontier(rows, cost, error):
-    """The samples that no other beats in both: least cost for a wanted error."""
+    """Returns the samples to which no other sample is better in both cost and error."""
     best = math.inf
     result = []
     for row in sorted(rows, key=lambda row: (row[cost], row[error])):
@@ -69,7 +72,7 @@ def frontier(rows, cost, error):
 
 
 def least_seconds(rows, error):
-    """Of all samples at most this wrong, the one that took least; None when no sample is as good."""
+    """Returns the least time of all samples with at most this error; None if no sample is as good."""
     good = [row["seconds_median"] for row in rows if row["misplaced"] <= error]
     return min(good) if good else None
 

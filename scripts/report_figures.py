@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The figures of docs/report, one function each: takes tables, returns a matplotlib figure."""
+"""The figures of docs/report. Each function takes a table and returns a matplotlib figure."""
 
 import matplotlib
 
@@ -9,7 +9,7 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from report_data import frontier, held
 
-# Okabe and Ito's colours, which the colour-blind tell apart; marker and line tell them apart in grey.
+# Okabe and Ito's colours, because colour-blind readers can distinguish them. Markers and lines differ in grey prints too.
 STYLES = {
     "G": dict(color="#0072B2", marker="o", linestyle="-"),
     "G plain": dict(color="#56B4E9", marker="s", linestyle="--"),
@@ -44,7 +44,7 @@ def label(axis, x, y, title="", logx=True, logy=True):
 
 
 def sizes_on(axis, sizes):
-    """Names the sizes themselves on a logarithmic axis."""
+    """Labels a logarithmic axis with these sizes."""
     axis.set_xticks(sizes)
     axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.xaxis.set_minor_formatter(NullFormatter())
@@ -56,7 +56,7 @@ def percents(axis):
 
 
 def legend_below(figure, axes, columns=4):
-    """One legend for all panels, of what any of them shows, under them."""
+    """Draws one legend for all panels below them, with each curve once."""
     entries = {}
     for axis in axes:
         for handle, name in zip(*axis.get_legend_handles_labels()):
@@ -178,7 +178,7 @@ def band(table):
                 scale = 100 if column == "misplaced" else 1
                 axis.plot([max(row["band"], 3e-5) for row in rows], [scale * row[column] for row in rows],
                           label=f"{method}, {pile} pile", **dict(STYLES[method], linestyle=line))
-        label(axis, "band, share of the talus (leftmost: none)", name, f"N = {table.distinct('N')[-1]}")
+        label(axis, "band, share of the talus (leftmost: no band)", name, f"N = {table.distinct('N')[-1]}")
         percents(axis)
     legend_below(figure, axes)
     return figure
@@ -304,8 +304,8 @@ def stability(table):
             axis.plot(b, [row["literal"] for row in rows], color="#D55E00", marker=marker, linestyle=line,
                       label=f"with encoder, friction and motor, measured, {ticks}")
             axis.plot(b, [row["guarded"] for row in rows], color="#0072B2", marker=marker, linestyle=line,
-                      label=f"guarded: K given to any law, {ticks}")
-        axis.axhline(6281, color="#009E73", linewidth=1, label="the first paper's constants")
+                      label=f"guarded: stiffness that any law gets, {ticks}")
+        axis.axhline(6281, color="#009E73", linewidth=1, label="constants of Dorjgotov et al. 2007")
         label(axis, "damping b [N s/m]", "stiffness [N/m]", name)
         axis.set_ylim(10, 1e5)
     legend_below(figure, axes, 3)
@@ -333,7 +333,7 @@ def force_rate(table):
     size = table.distinct("N")[0]
     for method, colour, marker in zip(table.distinct("method"), SERIES, MARKERS):
         for law, line in (("repulse", "-"), ("control points", "--")):
-            # An error of nothing, of a method that sees every tick's sand, has no place on a logarithmic axis.
+            # A method that sees every tick's sand has an error of 0, which a logarithmic axis cannot show.
             rows = [row for row in table.where(N=size, method=method, law=law) if row["share"] > 1e-9]
             for axis, x in zip(axes, ("rate", "us_median")):
                 axis.plot([row[x] for row in rows], [100 * row["share"] for row in rows], color=colour, marker=marker,

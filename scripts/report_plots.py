@@ -14,32 +14,45 @@ from report_data import Table
 
 HEAD = """# Report: what the sand costs, and how right it is
 
-Written by `{script}`, never by hand, from tables measured from {first} to {last}: {machines}. Compiled by {compiler} with
-`{flags}`, code path {path}. Times are CPU time of one thread unless a section says otherwise, medians with least and most in the tables; the machine
-is shared, so trust ratios within one table more than times. The tables are in [data](data), each with the command that
-made it, its seed and the definitions of its columns at its head.
+After reading this page you know the error and the run time of every scheme, and you can measure them again.
 
-**The piles.** A cylinder of sand on level ground in a box of N × N cells, talus 45°, without band unless said. The *low*
-one (height 0.6 of the radius, radius 0.3 N) becomes a frustum, the *tall* one (height twice the radius, radius 0.25 N)
-a cone; both are known in closed form. *Sand in the wrong place* is the sum of |height − analytic mean over the cell|
-over the pile's volume.
+    scripts/report.sh --quick   # measures smaller fields with fewer runs, in less than five minutes
+    scripts/report.sh           # measures everything: some 50 minutes on two quiet cores, plus the curves of a TIN
+    scripts/report.sh --draw    # only draws and writes, from the tables that exist
 
-**The methods.** *G*: the default, isotropic fluxes with inertia. *G plain*: the same without inertia. *settle*: the dual
-projection. *N4* is the four-neighbour rule in integers, and the four *float32* ones are the explicit talus rules in common
-use, in place or Jacobi, four or eight neighbours, the diagonal ones with or without a √2. These five are written for this
-comparison alone (`bench/sand/integer_n4.cpp`, `bench/sand/baseline_schemes.cpp`): whole rows, vectorised, with the flags
-and instruction sets of our own sweeps.
+`{script}` writes this page; do not edit it. The tables were measured from {first} to {last}, {machines}. The compiler was
+{compiler} with `{flags}`, the code path {path}. Times are CPU time of one thread, unless a section names another time. They
+are medians; the tables also have the least and the most. The machine is shared, so trust ratios within one table more than
+times. The tables are in [data](data). The head of each has the command that made it, its seed and the definitions of its
+columns.
+
+**The piles.** Each pile is a cylinder of sand on level ground in a box of N × N cells, with a talus of 45°. The band is 0
+unless a section gives another. The *low* cylinder has radius 0.3 N and a height of 0.6 radii, and becomes a frustum. The *tall*
+cylinder has radius 0.25 N and a height of two radii, and becomes a cone. Both results are known in closed form. *Sand in the
+wrong place* is the sum of |height − analytic mean over the cell|, divided by the pile's volume.
+
+**The methods.**
+- *G* is the default: isotropic fluxes with inertia.
+- *G plain* is G without inertia.
+- *settle* is the dual projection.
+- *N4* is the four-neighbour rule in integers.
+- The four *float32* methods are the explicit talus rules in common use; the sections call them the public rules. They work
+  in place or by Jacobi, with four or eight neighbours, the diagonal ones with or without a √2.
+
+N4 and the float32 methods were written for this comparison only (`bench/sand/integer_n4.cpp`,
+`bench/sand/baseline_schemes.cpp`): whole rows, vectorised, with the flags and instruction sets of our own sweeps.
 """
 
 
 def machines_of(tables):
-    """Which machine measured which tables: the usual one, and the others with the tables that are theirs."""
+    """Returns a phrase with the machine that measured most tables, and with each other machine and its tables."""
     named = {}
     for name, table in tables.items():
         if table.states("machine"):
             named.setdefault(table.fact("machine").partition(",")[0], []).append(name)
     usual, *others = sorted(named, key=lambda machine: len(named[machine]), reverse=True)
-    return "; ".join([usual] + [f"{', '.join(named[other])} on {other}" for other in others])
+    return "; ".join([f"most of them on {usual}" if others else f"on {usual}"] +
+                     [f"on {other}: {', '.join(named[other])}" for other in others])
 
 
 def main():
@@ -48,13 +61,13 @@ def main():
         return 2
     data, out = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
     tables = {path.stem: Table(path) for path in sorted(data.glob("*.csv"))}
-    # Tables of an older report lack the newest curves, and can be drawn all the same.
+    # The tables of an older report lack the newest curves. The other curves can still be drawn.
     missing = {name for section in SECTIONS for name in section.needs if name not in tables}
     for name in sorted(missing):
-        print(f"report_plots.py: {data} has no {name}.csv, and its section is left out; scripts/report.sh measures it",
+        print(f"report_plots.py: {data}/{name}.csv is missing, so its section is left out; scripts/report.sh measures it",
               file=sys.stderr)
 
-    if "error-at-rest" not in tables:  # the head is taken from it
+    if "error-at-rest" not in tables:  # the head of the page takes compiler and flags from it
         return 2
     some = tables["error-at-rest"]
     dates = sorted(table.fact("date")[:10] for table in tables.values() if table.states("date"))
@@ -68,7 +81,7 @@ def main():
         if section.figure:
             picture = f"{section.figure}.png"
             figure = getattr(figures, section.figure)(used[0])
-            # A palette keeps a picture below 100 kB, and no line is lost.
+            # Stronger compression, without loss.
             figure.savefig(out / picture, bbox_inches="tight", pil_kwargs={"optimize": True})
             figures.plt.close(figure)
             text.append(f"![{section.title}]({picture})\n")
