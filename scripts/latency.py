@@ -58,7 +58,7 @@ WALLS = [Wall("portable", "portable.toml", 1, {"wired": (16.2, 9.8), "wireless":
          Wall("FLEX", "flex_cave.toml", 4, {"wired": (9.7, 5.6), "wireless": (16.0, 12.3)}),
          Wall("tiled wall", "tiled_3x4.toml", 13, {"wired": (13.6, 9.8), "wireless": (16.2, 14.0)})]
 LOADS = [Load("digging", 2, True, True), Load("still", 16, False, False)]
-LINKS = {"direct": "wired", "impaired": "wireless"}  # and what they stand for
+LINKS = {"direct": "wired", "impaired": "wireless"}  # link here: link of the paper that it replaces
 
 
 class Failed(Exception):
@@ -96,7 +96,7 @@ class Helper:
 
 
 def impaired(address, seed):
-    """A link to `address` that stands in for a wireless one."""
+    """Starts a link to `address` that replaces a wireless one."""
     options = [word for key, value in WIRELESS.items() for word in ("--" + key, value)]
     return Helper(BIN / "sandwall-impaired-link", "--to", address, "--seed", seed, "--die-with-parent", *options)
 
@@ -142,7 +142,7 @@ def smaller(folder, wall, load):
 
 
 def die_with_parent():
-    """In the launcher, before it begins: it ends its ranks in order when this script dies, however that happens."""
+    """Runs in the launcher before it begins: it ends its ranks in order if this script ends for any reason."""
     PR_SET_PDEATHSIG = 1
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
 
@@ -256,11 +256,11 @@ def notes(args, before):
     cores = len(os.sched_getaffinity(0))
     return [f"machine: {processor()}, {cores} cores that the haptic server, the master and all render ranks share; OSMesa draws on the "
             f"same cores; load average {before:.1f} before and {os.getloadavg()[0]:.1f} after",
-            f"all figures in ms, mean ± standard deviation; {TESTS_PER_SECOND} test messages a second, at random (Poisson) times from seed {args.seed}, "
-            f"for {args.seconds:g} s after {args.warm_up:g} s of warm-up; walls at {REFRESH} frames a second",
-            "impaired: every piece takes {delay} to {late} ms; {loss:.0%} of the pieces take {stall} ms more, and all pieces behind them wait; ".format(
-                late=WIRELESS["delay"] + WIRELESS["jitter"], **WIRELESS) + f"seed {args.seed}; this link replaces a wireless network, and is not one",
-            "digging: that paper's tool on 512² cells, both eyes; still: settled sand, one eye, so that hardly anything is drawn; pixels are those of one eye"]
+            f"All figures are in ms, mean ± standard deviation. {TESTS_PER_SECOND} test messages a second were sent at random (Poisson) times "
+            f"from seed {args.seed}, for {args.seconds:g} s after {args.warm_up:g} s of warm-up. Walls ran at {REFRESH} frames a second.",
+            "Impaired link: every piece takes {delay} to {late} ms. {loss:.0%} of the pieces take {stall} ms more, and all pieces behind them wait. ".format(
+                late=WIRELESS["delay"] + WIRELESS["jitter"], **WIRELESS) + f"The seed is {args.seed}. This link replaces a wireless network, and is not one.",
+            "Digging: that paper's tool on 512² cells, both eyes. Still: settled sand, one eye, so that hardly anything is drawn. Pixels are those of one eye."]
 
 
 def write_csv(file, rows, said, command):
@@ -281,7 +281,7 @@ class Parser(argparse.ArgumentParser):
         names = text.split(",")
         for name in names:
             if name not in known:
-                self.error(f"{option}: '{name}' is none of {', '.join(known)}")
+                self.error(f"{option}: '{name}' is unknown; choose from {', '.join(known)}")
         return [value for name, value in known.items() if name in names]
 
 

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # Measures the sand, draws the curves and writes docs/report: README.md, pictures, and their tables.
 #
-#   scripts/report.sh           everything: some 50 minutes on two quiet cores, plus the curves of a TIN
-#   scripts/report.sh --quick   smaller fields and fewer runs, less than five minutes
-#   scripts/report.sh --draw    only the pictures and the text, from the tables that exist
+#   scripts/report.sh           Everything: some 50 minutes on two quiet cores, plus the curves of a TIN.
+#   scripts/report.sh --quick   Smaller fields and fewer runs, less than five minutes.
+#   scripts/report.sh --draw    Only the pictures and the text, from the tables that exist.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 usage="usage: scripts/report.sh [--quick | --draw] [--out DIR]"

@@ -72,7 +72,7 @@ def frontier(rows, cost, error):
 
 
 def least_seconds(rows, error):
-    """Returns the least time of all samples with at most this error; None if no sample is as good."""
+    """Returns the least time of all samples with at most this error, or None if all samples are worse."""
     good = [row["seconds_median"] for row in rows if row["misplaced"] <= error]
     return min(good) if good else None
 

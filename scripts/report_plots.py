@@ -28,8 +28,8 @@ columns.
 
 **The piles.** Each pile is a cylinder of sand on level ground in a box of N × N cells, with a talus of 45°. The band is 0
 unless a section gives another. The *low* cylinder has radius 0.3 N and a height of 0.6 radii, and becomes a frustum. The *tall*
-cylinder has radius 0.25 N and a height of two radii, and becomes a cone. Both results are known in closed form. *Sand in the
-wrong place* is the sum of |height − analytic mean over the cell|, divided by the pile's volume.
+cylinder has radius 0.25 N and a height of two radii, and becomes a cone. Both results are known in closed form. The error
+*sand in the wrong place* is the sum of |height − analytic mean over the cell|, divided by the pile's volume.
 
 **The methods.**
 - *G* is the default: isotropic fluxes with inertia.

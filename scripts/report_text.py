@@ -70,9 +70,9 @@ def envelope(tables):
                      f"reaches an error below {percent(reach)}.\n\n" + markdown(["error at most"] + methods, rows))
     return ("How long does a method need for a wanted error, at its best N and length of the run? A coarse pile that has come "
             "to rest competes with a fine one that has not. An error counts from the point where the run never exceeds it "
-            "again. Eight neighbours without weights pass by the right pile on their way to the wrong one (the dip in the "
-            "figure above), and a user cannot know when to stop. *never* means that the method does not reach this error, at "
-            "any N or time.\n\n" +
+            "again. Eight neighbours without weights pass by the right pile on their way to the wrong one: this is the dip in the "
+            "figure above. A user cannot know when to stop. The entry *never* means that the method does not reach this "
+            "error, at any N or time.\n\n" +
             (f"At one N, from {first[0]} on, G takes less time than every public rule at every error of these tables below "
              "4.4 %. N4 itself comes to rest above 4.4 %.\n\n" if first else "") + "\n\n".join(parts))
 
@@ -207,8 +207,8 @@ def mass_drift(tables):
         return max(abs(row["drift"]) for row in table.where(datum=datum) if row["method"] in PUBLIC)
 
     ours = max(abs(row["drift"]) for row in table.where(method="G"))
-    return (f"Rules in floats lose or create sand: up to {worst(0):.1e} of it with the ground at 0, and up to "
-            f"{worst(1000):.1e} with the ground at 1000 cells, as in a survey. The drift of G is {ours:g}, however long it "
+    return (f"Rules in floats lose or create sand: up to {worst(0):.1e} of it with the ground at 0. With the ground at 1000 cells, "
+            f"as in a survey, it is up to {worst(1000):.1e}. The drift of G is {ours:g}, however long it "
             "runs: the integer that leaves one cell is the integer that enters the next.")
 
 
@@ -224,9 +224,9 @@ def certificate(tables):
             f"and the true distance. On the low pile at N = {size}, settle has a bound of {percent(row('settle')['bound'])} "
             f"and a distance of {percent(row('settle')['truth'])}. Plain G has {percent(row('G plain')['bound'])} and "
             f"{percent(row('G plain')['truth'])}. N4 has {percent(row('N4')['bound'])} and {percent(row('N4')['truth'])}. "
-            "The bound is never below the distance. With cells of half the size the bound falls to about a quarter, if the "
-            f"sand rests in the right state: for G by a factor of {coarsest['bound'] / row('G')['bound']:.1f} from "
-            f"N = {coarsest['N']} to {size}. N4's bound cannot fall below its distance, which stays.")
+            "The bound is never below the distance. If the sand rests in the right state, cells of half the size reduce the "
+            f"bound to about a quarter. From N = {coarsest['N']} to {size}, G's bound falls by a factor of "
+            f"{coarsest['bound'] / row('G')['bound']:.1f}. N4's bound cannot fall below its distance, which stays.")
 
 
 def budget(tables):
@@ -282,8 +282,8 @@ def stability(tables):
             "of friction. Behind the guards an arm rests whatever stiffness a law requests (tried up to "
             f"{least:.3g} N/m). The reason is that the arm gets half of the stiffness that the theory allows, or half of what "
             "its maker allows.\n\nThe table has trials with the full constants of Dorjgotov et al. 2007, over damping, delay, "
-            "depth and speed. *guarded* is the law behind the guards, and *literal* the law as its paper has it. *unlimited* "
-            "is the least share of ticks in the sand in which only the lowered constants act. In these ticks the force differs "
+            "depth and speed. The columns *guarded* have the law behind the guards, and *literal* the law as its paper has it. "
+            "The column *unlimited* has the least share of ticks in the sand in which only the lowered constants act. In these ticks the force differs "
             "from the law by at most the *deviation*:\n\n" +
             markdown(["arm", "hand", "trials", "guarded: rest", "guarded: largest force", "deviation", "unlimited",
                       "literal: rest", "literal: largest force asked"], lines))
@@ -319,11 +319,11 @@ def force_rate(tables):
               f"{r['truth_jump']:.2g}", f"{r['us_median']:.2g}", f"{r['us_p99']:.2g}"]
              for r in table.rows if r["rate"] == rate]
     return ("The hand writes, presses and lifts. The force that it feels between two surfaces of the sand is compared with the "
-            "law, evaluated at every tick on that tick's sand. *jump* is the largest change of the force from a tick to the "
-            "next. *local* is the default.\n\n*local at once* has no recovery. It is the most exact, and leaps at every "
-            "surface. Recovery makes the arm stable: hold and eq. 9 bear 60 and 31 N/m where local bears 1000 "
+            "law, evaluated at every tick on that tick's sand. The *jump* is the largest change of the force from a tick to the "
+            "next. The method *local* is the default.\n\nThe method *local at once* has no recovery. It is the most exact, and "
+            "leaps at every surface. Recovery makes the arm stable: hold and eq. 9 bear 60 and 31 N/m where local bears 1000 "
             "([figures.md](../figures.md#the-stiffest-spring)). The law of control points loses most accuracy by it. Its "
-            "points are where the tool cuts a wall of one cell's thickness, and recovery turns the unrest of that wall into an "
+            "points are where the tool cuts a wall of one cell's thickness. Recovery turns the unrest of that wall into an "
             "error of one sign. If accuracy counts more than stiffness, a scene takes hold or eq. 9. "
             f"At {rate:g} surfaces per second:\n\n" +
             markdown(["law", "method", "RMS error [N]", "share", "most [N]", "jump [N]", "jump of truth [N]", "µs per tick",
@@ -344,7 +344,7 @@ def latency(tables):
     if "latency" not in tables:
         return "The quick report leaves this out. `sandwall-bench latency` measures it in about ten minutes."
     table = tables["latency"]
-    return ("The table has half of the round trip of a test message as long as a step's, sent at random times: until the wall "
+    return ("A test message as long as a step's is sent at random times. The table has half of its round trip: until the wall "
             "has swapped, and until the master has the message. [latency.md](../latency.md) explains the columns.\n\n" +
             markdown(LATENCY_HEADER, [latency_cells(row) for row in table.rows]) + "\n\n" +
             "\n".join(f"- {note}" for note in table.notes if not note.startswith(("command: ", "date: "))) +
@@ -382,7 +382,7 @@ SECTIONS = [
     Section("Error at rest against N", "error_at_rest", ["error-at-rest"], error_at_rest),
     Section("Sweeps to rest against N", "sweeps", ["sweeps"], sweeps),
     Section("Roundness", "anisotropy", ["anisotropy"], anisotropy),
-    Section("How a pile comes to rest", "decay", ["decay"], decay),
+    Section("Motion until rest", "decay", ["decay"], decay),
     Section("Height bits", "height_bits", ["height-bits"], height_bits),
     Section("The hysteresis band", "band", ["band"], band),
     Section("One edit", "edit", ["edit"], edit),

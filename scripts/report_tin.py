@@ -16,9 +16,9 @@ def tin_piles(tables):
             lines.append([pile, mesh, rows[0]["vertices"], percent(min(errors)), percent(max(errors)),
                           f"{min(iterations)} … {max(iterations)}", f"{min(sweeps)} … {max(sweeps)}", seconds(max(row["seconds"] for row in rows)),
                           "yes" if all(row["settled"] and row["exact"] for row in rows) else "**no**"])
-    return ("This section has the piles on a [TIN](../tin.md) of about one vertex per cell. There are three meshes: a square lattice "
-            "(regular), a lattice whose vertices are moved by up to a quarter of a cell (jittered), and independent places "
-            "(random). The first two are turned by 0, 9, 22.5 and 45 degrees. The low pile has radius 0.25 N and height "
+    return ("This section has the piles on a [TIN](../tin.md) of about one vertex per cell. The regular mesh is a square lattice. "
+            "The jittered mesh is a lattice whose vertices are moved by up to a quarter of a cell. The random mesh has "
+            "vertices at independent places. The first two are turned by 0, 9, 22.5 and 45 degrees. The low pile has radius 0.25 N and height "
             "0.15 N, the tall one 0.15 N and 0.45 N. The error is integrated over the triangles. Sand settles by iterations of "
             f"a projection, then by sweeps. At N = {size}, over all turns:\n\n" +
             markdown(["pile", "mesh", "vertices", "least error", "largest error", "iterations", "sweeps", "longest time",
