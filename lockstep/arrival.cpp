@@ -14,10 +14,10 @@ Arrival readArrival(std::span<const std::uint8_t, kArrivalRoom> room, int length
     static_assert(sizeof(Arrival) < kArrivalRoom);
     constexpr int kLength = static_cast<int>(sizeof(Arrival));
     if (length == kCutShort) {
-        throw base::FormatError("far too long");
+        throw base::FormatError(fmt::format("longer than {} bytes", kArrivalRoom));
     }
     if (length != kLength) {
-        throw base::FormatError(fmt::format("{} bytes and not {}", length, kLength));
+        throw base::FormatError(fmt::format("{} bytes instead of {}", length, kLength));
     }
     Arrival arrival;
     std::memcpy(&arrival, room.data(), sizeof arrival);

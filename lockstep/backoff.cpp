@@ -17,12 +17,12 @@
 namespace lockstep {
 namespace {
 
-constexpr std::int64_t kYielding = 50'000;   // [ns]: shorter than a sleep and the waking from it
+constexpr std::int64_t kYielding = 50'000;   // [ns], shorter than a sleep with its wake-up
 constexpr std::int64_t kLongest = 125'000;   // [ns]
-constexpr std::int64_t kShare = 8;           // of a wait, the sleep that may follow: one eighth
-constexpr std::int64_t kOnBell = 5'000'000;  // [ns], for the case that somebody sends and does not ring
+constexpr std::int64_t kShare = 8;           // a sleep lasts at most 1/8 of the wait so far
+constexpr std::int64_t kOnBell = 5'000'000;  // [ns], limit in case a sender does not ring
 
-/// sched_attr of the kernel, which the C library of Debian 12 does not have.
+/// The kernel's struct sched_attr, which the C library of Debian 12 does not declare.
 struct SliceOfTime {
     std::uint32_t size = sizeof(SliceOfTime);
     std::uint32_t policy = SCHED_OTHER;
@@ -65,7 +65,7 @@ void Backoff::rest() {
     const Rest next = nextRest(host::monotonicNs());
     switch (next.kind) {
         case Rest::Kind::yield:
-            sched_yield();  // a process that draws on this core goes first
+            sched_yield();  // lets a process that draws on this core run first
             break;
         case Rest::Kind::sleep:
             std::this_thread::sleep_for(std::chrono::nanoseconds(next.longest));
@@ -80,10 +80,11 @@ void wakePunctually() {
     constexpr unsigned long kSlack = 1000;  // [ns]
     prctl(PR_SET_TIMERSLACK, kSlack);
     if (sched_getscheduler(0) != SCHED_OTHER) {
-        return;  // somebody has chosen better
+        return;  // the user has chosen another scheduling policy
     }
-    // Since Linux 6.12 a thread with shorter slices goes before one with longer ones when it wakes; older ones ignore
-    // it. Twelve ranks beside compilers that kept two cores busy: swap skew p50 170 us with it, 3200 us without.
+    // Since Linux 6.12, a waking thread with a shorter slice runs before threads with longer slices. Older kernels
+    // ignore the slice. Measured with twelve ranks beside compilers that kept two cores busy: the p50 of the swap skew
+    // is 170 us with the short slice and 3200 us without it.
     SliceOfTime slice;
     slice.nice = getpriority(PRIO_PROCESS, 0);
     slice.runtime = 100'000;

@@ -8,45 +8,47 @@
 
 namespace lockstep {
 
-/// How one wait for a message is spent: MPI can only be asked whether it is there, and asking without rest would burn
-/// the core of whoever draws, or of a wall that stands still.
+/// Pauses of one wait for a message. MPI can only be polled for a message. Polling without a pause would take the core
+/// from a rank that draws, and would keep a core busy while the wall is still.
 ///
-/// At first it yields, so that a short wait ends as soon as it can; then it sleeps, always the same share of what the
-/// wait has taken so far, so that no wait is made longer by more than that share, nor by more than an eighth of a
-/// millisecond: swaps lie no further apart for it. Where a bell rings behind all that is waited for, it sleeps until
-/// then instead; what has rung and is not yet there is asked for as without a bell. One wait per object; any thread.
+/// In the first 50 µs a wait only yields the core, so that a short wait ends as soon as possible. After that it sleeps
+/// between two looks, each time for an eighth of the time waited so far, at most 0.125 ms. A sleep therefore makes a
+/// wait longer by at most an eighth, and delays a swap by at most 0.125 ms.
+///
+/// With a bell, the wait sleeps until the bell rings. If the bell has rung but the message is not there yet, the wait
+/// polls as it does without a bell. Use one object per wait, on any thread.
 class Backoff {
 public:
     explicit Backoff(const std::optional<Doorbell>& bell = std::nullopt);
-    /// Before each look.
+    /// Notes how often the bell has rung. Call it before each look for a message.
     void look();
-    /// The look found something, and there is more to come.
+    /// Call it when a look has found a message and more messages are awaited.
     void found();
-    /// The look found nothing.
+    /// Yields or sleeps. Call it when a look has found no message.
     void rest();
 
-    /// What rest() does at a time.
+    /// One pause of rest().
     struct Rest {
         enum class Kind : std::uint8_t { yield, sleep, sleepUntilRung };
         Kind kind = Kind::yield;
-        std::int64_t longest = 0;  // [ns]
+        std::int64_t longest = 0;  // [ns], of a sleep
         friend bool operator==(const Rest&, const Rest&) = default;
     };
-    /// The next rest of this wait, at `now` [ns]. The first call begins the wait.
+    /// Returns the next pause of this wait. `now` is the present time [ns]. The first call begins the wait.
     [[nodiscard]] Rest nextRest(std::int64_t now);
 
-    /// How long to sleep after having waited so long; 0: only yield. [ns]
+    /// Returns how long to sleep after a wait of `waited` [ns]; 0 means to yield only.
     [[nodiscard]] static std::int64_t sleepAfter(std::int64_t waited);
 
 private:
     std::optional<Doorbell> bell_;
-    std::uint32_t heard_ = 0;            // of the bell, before the last look
-    bool rang_ = false;                  // since something was found
-    std::optional<std::int64_t> since_;  // [ns], of the first rest
+    std::uint32_t heard_ = 0;            // count of the bell before the last look
+    bool rang_ = false;                  // whether the bell has rung since the last message was found
+    std::optional<std::int64_t> since_;  // [ns], time of the first pause
 };
 
-/// Has this thread wake when its sleep ends: Linux adds 50 µs to each sleep otherwise, and newer ones let whoever
-/// computes on the core finish some milliseconds before.
+/// Makes Linux wake the calling thread exactly when its sleep ends. Otherwise Linux adds 50 µs to each sleep, and newer
+/// kernels first let the thread that computes on this core run for some milliseconds.
 void wakePunctually();
 
 }  // namespace lockstep

@@ -7,10 +7,10 @@
 
 namespace lockstep {
 
-/// Collective: how far this rank's clock is ahead of the master's [ns], 0 at the master.
+/// Returns how far this rank's clock is ahead of the master's [ns]; 0 at the master. Collective.
 ///
-/// Cristian's method: of 32 round trips per rank the shortest counts, and is taken to be the same both ways. Its error
-/// is at most half of that round trip.
+/// Uses Cristian's method: takes the shortest of 32 round trips per rank and assumes that both ways took equally long.
+/// The error is at most half of that round trip.
 [[nodiscard]] std::int64_t clockAheadOfMaster(const Cluster& cluster);
 
 }  // namespace lockstep

@@ -56,7 +56,7 @@ Cluster::~Cluster() {
 
 void Cluster::mayTakeLong(bool may) const {
     startUp_->setPatient(may);
-    startUp_->arm();  // what has been waited for is over, or not this yet
+    startUp_->arm();  // a new wait begins here
 }
 
 void Cluster::startUpIsOver() const { startUp_->disarm(); }
@@ -66,7 +66,7 @@ base::Bytes Cluster::broadcast(const base::Bytes& fromMaster) const {
     MPI_Bcast(&size, 1, MPI_UINT64_T, kMaster, frames_);
     base::Bytes bytes = fromMaster;
     bytes.resize(size);
-    constexpr std::uint64_t kPiece = 1 << 30;  // MPI counts in int
+    constexpr std::uint64_t kPiece = 1 << 30;  // [byte], because MPI counts in int
     for (std::uint64_t done = 0; done < size; done += kPiece) {
         MPI_Bcast(bytes.data() + done, static_cast<int>(std::min(kPiece, size - done)), MPI_BYTE, kMaster, frames_);
     }
@@ -97,7 +97,7 @@ void Cluster::abort(int status) const {
 void dieWithParent() {
     const pid_t parent = getppid();
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    // It may have died before the call; then nobody will tell.
+    // If the parent ended before the call, the kernel sends no signal.
     if (getppid() != parent) {
         std::_Exit(1);
     }

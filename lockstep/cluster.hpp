@@ -18,10 +18,10 @@ namespace lockstep {
 
 inline constexpr int kMaster = 0;
 
-/// The job: MPI initialised for as long as this lives, and one communicator per purpose.
+/// The MPI job of a session. Initialises MPI, ends it in the destructor, and holds one communicator per purpose.
 ///
-/// Only the thread that made it may call MPI (MPI_THREAD_FUNNELED). A failing MPI call ends the job: Open MPI's own
-/// handler names it.
+/// Only the thread that made the object may call MPI (MPI_THREAD_FUNNELED). If an MPI call fails, Open MPI prints its
+/// name and ends the job.
 class Cluster {
 public:
     Cluster(int* argc, char*** argv);
@@ -34,28 +34,30 @@ public:
     [[nodiscard]] int renderRanks() const { return size_ - 1; }
     [[nodiscard]] bool isMaster() const { return rank_ == kMaster; }
 
-    /// At the master: where each rank runs and what was free there at the start, by rank. Others have none.
+    /// Returns the host of each rank and its free memory at the start, in order of rank. Empty on other ranks than the
+    /// master.
     [[nodiscard]] const std::vector<RankHost>& hosts() const { return hosts_; }
 
-    [[nodiscard]] MPI_Comm frames() const { return frames_; }      // broadcasts and the barrier
-    [[nodiscard]] MPI_Comm arrivals() const { return arrivals_; }  // who has come to the barrier
+    [[nodiscard]] MPI_Comm frames() const { return frames_; }      // broadcasts, frame messages and verdicts
+    [[nodiscard]] MPI_Comm arrivals() const { return arrivals_; }  // arrivals at the barrier
     [[nodiscard]] MPI_Comm pictures() const { return pictures_; }  // screenshots
 
-    /// To be rung behind every message that a rank of this host may wait for.
+    /// Returns the bells of this host's ranks. The sender of a message rings the receiver's bell after the message.
     [[nodiscard]] const HostBells& bells() const { return *bells_; }
 
-    /// Gives everyone the master's bytes; collective.
+    /// Returns the master's argument `fromMaster` on all ranks. Collective.
     [[nodiscard]] base::Bytes broadcast(const base::Bytes& fromMaster) const;
-    /// Collects everyone's bytes at the master, by rank; others get nothing. Collective.
+    /// Returns the bytes `mine` of all ranks at the master, in order of rank; an empty list on other ranks. Collective.
     [[nodiscard]] std::vector<base::Bytes> gather(const base::Bytes& mine) const;
 
-    /// Until it is taken back, the start may take an hour: the master replays a journal, and ranks wait for it.
+    /// Sets whether the start may take an hour, because the ranks wait while the master replays a journal.
     void mayTakeLong(bool may) const;
 
-    /// From the start on a watchdog limits every wait; the frame barrier brings its own and calls this.
+    /// Stops the watchdog that limits every wait during the start. FrameBarrier calls this, because it has a watchdog
+    /// of its own.
     void startUpIsOver() const;
 
-    /// Ends the whole job at once, for when a rank cannot be waited for.
+    /// Ends the whole job at once with the exit status `status`. Used when the ranks cannot be asked to end.
     [[noreturn]] void abort(int status) const;
 
 private:
@@ -69,12 +71,12 @@ private:
     MPI_Comm pictures_ = MPI_COMM_NULL;
 };
 
-/// Asks the kernel to kill this process when the one that started it (mpirun, its daemon, the launcher) dies: nothing
-/// may outlive the job, not even when mpirun is killed.
+/// Asks the kernel to kill this process when its parent process (mpirun, its daemon or the launcher) ends. No process
+/// then outlives the job, even if mpirun is killed.
 void dieWithParent();
 
 [[nodiscard]] std::string hostName();
-/// Resident memory of this process [byte].
+/// Returns the resident memory of this process [byte].
 [[nodiscard]] std::int64_t residentBytes();
 
 }  // namespace lockstep

@@ -36,7 +36,7 @@ std::vector<std::int32_t> heightsOf(const sand::Replica& terrain, int tile) {
     return tile >= 0 ? terrain.valuesOf(tile) : std::vector<std::int32_t>();
 }
 
-/// The heights of one tile of every rank, by rank, at the master.
+/// Returns the values in hash tile `tile` of all ranks at the master, in order of rank.
 std::vector<std::vector<std::int32_t>> collectHeights(FrameBarrier& barrier, const sand::Replica& terrain, int tile) {
     base::ByteWriter writer;
     for (const std::int32_t height : heightsOf(terrain, tile)) {
@@ -53,7 +53,7 @@ std::vector<std::vector<std::int32_t>> collectHeights(FrameBarrier& barrier, con
     return all;
 }
 
-/// At the master: what is right, and what its tiles hash to.
+/// Decides at the master which hash is right, and fills in `result`. Returns the hashes of the right sand.
 Account judge(const std::vector<Account>& accounts, const Arbiter& arbiter, Divergence& result) {
     const Vote vote = countVotes(accounts);
     result.rightHash = vote.hash;
@@ -67,7 +67,7 @@ Account judge(const std::vector<Account>& accounts, const Arbiter& arbiter, Dive
     if (result.agreeing == 0) {
         return accountOf(*result.journal);
     }
-    result.journal.reset();  // a rank has it
+    result.journal.reset();  // a rank holds the right sand
     const auto first = std::find_if(accounts.begin(), accounts.end(), right);
     result.source = static_cast<int>(first - accounts.begin());
     return *first;
@@ -87,7 +87,7 @@ Vote countVotes(const std::vector<Account>& accounts) {
             result.agreeing = count;
         }
     }
-    // Two that err alike may be more than any other: only more than half is a majority.
+    // Two ranks with the same error can outnumber every other hash, so only more than half of all ranks is a majority.
     result.tie = 2 * result.agreeing <= static_cast<int>(accounts.size());
     return result;
 }
@@ -109,7 +109,8 @@ std::optional<Divergence> findDivergence(FrameBarrier& barrier, sand::Replica& t
             }
         }
     }
-    // The cells of the first odd rank's tile, from everyone: how much differs says bit flip or bug.
+    // Collects the values of the first odd rank's tile from all ranks. One wrong value suggests a bit flip, many
+    // suggest a bug.
     base::ByteWriter writer;
     writer.put(result.odd.empty() ? -1 : result.odd.front().tile);
     const base::Bytes told = barrier.tellAll(writer.take());

@@ -13,47 +13,52 @@
 
 namespace lockstep {
 
-/// Who holds other sand than is right, and where.
+/// Result of comparing the sand of all ranks: the ranks whose sand is wrong, and the place.
 struct Divergence {
+    /// A rank whose sand is wrong.
     struct Odd {
         int rank = 0;
         std::uint64_t hash = 0;
-        int tile = -1;           // first differing hash tile; -1 when only pose, step or outflow differ
-        sand::CellRect cells;    // of that tile
-        int cellsDiffering = 0;  // in that tile; of the first odd rank, and others that differ in the same
+        int tile = -1;           // first hash tile that differs; -1 if only pose, step or outflow differ
+        sand::CellRect cells;    // cells of that tile
+        int cellsDiffering = 0;  // in that tile; counted for the first odd rank and for others with the same tile
     };
+    /// How the right sand was found.
     enum class Judge : std::uint8_t {
-        majority,  // more ranks have the right hash than any other
-        journal,   // none has a majority, and the journal says which is right
-        master     // none has, there is no journal, and the master's was taken
+        majority,  // more than half of all ranks have the right hash
+        journal,   // no majority; the journal gave the right sand
+        master     // no majority and no usable journal; the master's sand counts as right
     };
-    std::uint64_t rightHash = 0;
+    std::uint64_t rightHash = 0;  // state hash of the right sand
     Judge judge = Judge::majority;
-    int agreeing = 0;                        // ranks with that hash
-    int source = 0;                          // the first of them
-    std::unique_ptr<sand::Replica> journal;  // the right sand, where no rank has it
-    std::vector<Odd> odd;                    // by rank
+    int agreeing = 0;                        // number of ranks with the right hash
+    int source = 0;                          // first of these ranks
+    std::unique_ptr<sand::Replica> journal;  // the right sand, if no rank has it
+    std::vector<Odd> odd;                    // in order of rank
 };
 
-/// What each rank has: a replica's hash, and that of each of its hash tiles.
+/// Hashes of one rank's replica: the state hash and the hash of each hash tile.
 struct Account {
     std::uint64_t hash = 0;
     std::vector<std::uint64_t> tiles;
 };
 
-/// How the ranks' hashes divide.
+/// Result of counting how many ranks have each state hash.
 struct Vote {
-    std::uint64_t hash = 0;  // that most ranks have; on a tie one of these, the master's where it is among them
-    int agreeing = 0;        // ranks with it
-    bool tie = false;        // as many have another one
+    // The most frequent hash. If several are equally frequent, the master's if it is one of them.
+    std::uint64_t hash = 0;
+    int agreeing = 0;  // number of ranks with this hash
+    bool tie = false;  // at most half of all ranks have this hash, so that no hash has a majority
 };
-[[nodiscard]] Vote countVotes(const std::vector<Account>& accounts /* by rank, the master's first */);
+/// Counts how many ranks have each state hash.
+[[nodiscard]] Vote countVotes(const std::vector<Account>& accounts /* in order of rank, the master's first */);
 
-/// The right sand where no hash has a majority; nothing where nobody can tell.
+/// Function that computes the right sand when no hash has a majority. Returns null if it cannot.
 using Arbiter = std::function<std::unique_ptr<sand::Replica>()>;
 
-/// Collective, after a barrier whose hashes differed: finds the odd ranks, by hashes computed afresh from memory. The
-/// master, who alone gives an arbiter, gets the answer, others nothing.
+/// Finds the ranks whose sand is wrong. Call it after a barrier with the verdict Verdict::otherSand. Each rank first
+/// computes its hashes again from memory. Returns the result at the master and nullopt on other ranks. Only the
+/// master's argument `arbiter` counts. Collective.
 [[nodiscard]] std::optional<Divergence> findDivergence(FrameBarrier& barrier, sand::Replica& terrain,
                                                        const Arbiter& arbiter = {});
 

@@ -19,9 +19,10 @@ namespace lockstep {
 namespace {
 
 using Number = std::atomic<std::uint32_t>;
-static_assert(Number::is_always_lock_free && sizeof(Number) == sizeof(std::uint32_t), "a futex is such a number");
+static_assert(Number::is_always_lock_free && sizeof(Number) == sizeof(std::uint32_t),
+              "a futex is a lock-free number of 32 bits");
 
-/// A name that nobody can guess, the same on all ranks.
+/// Returns a random name, the same on all ranks. Other users cannot guess it.
 std::string agreeOnName() {
     std::random_device random;
     std::uint64_t number = std::uint64_t{random()} << 32 | random();
@@ -29,13 +30,15 @@ std::string agreeOnName() {
     return fmt::format("/sandwall-{:016x}", number);
 }
 
-/// Memory of this name, all zero where nobody has opened it before; null where there is no room.
+/// Opens shared memory with the name `name`. It is all zero if no process has opened it before. Returns null if there
+/// is no room.
 void* openMemory(const std::string& name, std::size_t bytes) {
     const int file = shm_open(name.c_str(), O_CREAT | O_RDWR, S_IRUSR | S_IWUSR);
     if (file < 0) {
         return nullptr;
     }
-    // Room is taken here: memory that is there by name alone ends who writes to it when all of it is used.
+    // Reserves the memory now. Without this, a process that writes to it is killed when the memory of the host is used
+    // up.
     const bool hasRoom = posix_fallocate(file, 0, static_cast<off_t>(bytes)) == 0;
     void* const memory = hasRoom ? mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0) : MAP_FAILED;
     close(file);
@@ -44,12 +47,12 @@ void* openMemory(const std::string& name, std::size_t bytes) {
 
 }  // namespace
 
-/// No two in one line of a cache.
+/// The numbers of one rank, in a cache line of their own.
 struct alignas(64) HostBells::Slot {
-    Number rings, here;  // here: 1 as soon as its rank has opened this memory
+    Number rings, here;  // here: 1 after its rank has opened this memory
 };
 
-// Not the private kind, which std::atomic's wait() is: that wakes nobody in another process.
+// Uses the shared kind of futex. The private kind, which std::atomic's wait() uses, wakes no thread of another process.
 void Doorbell::ring() const {
     rings_->fetch_add(1, std::memory_order_release);
     syscall(SYS_futex, rings_, FUTEX_WAKE, INT_MAX, nullptr, nullptr, 0);
@@ -70,10 +73,10 @@ HostBells::HostBells() {
     const std::string name = agreeOnName();
     slots_ = static_cast<Slot*>(openMemory(name, bells_.size() * sizeof(Slot)));
     if (slots_ != nullptr) {
-        new (slots_ + self) Slot{0, 1};  // zeros are a slot whose rank is not here
+        new (slots_ + self) Slot{0, 1};  // a slot of zeros belongs to a rank that is not here
     }
     MPI_Barrier(MPI_COMM_WORLD);
-    shm_unlink(name.c_str());  // by now all have it who can; it goes with the last of them
+    shm_unlink(name.c_str());  // all ranks of this host have opened it; the last one to close it frees it
     if (slots_ == nullptr) {
         return;
     }

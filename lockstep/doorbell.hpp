@@ -10,40 +10,42 @@
 
 namespace lockstep {
 
-/// Wakes whoever sleeps, in another process too: a number in memory that both have, which every ring counts up.
+/// A number in shared memory by which threads wake each other, also across processes. Each ring adds 1 to the number.
 ///
-/// Any number of processes and threads may ring and sleep. Nothing is lost: whoever has looked at the number before it
-/// looked for a message does not sleep when it rang in between. Of Linux: a futex.
+/// Any number of processes and threads may ring and sleep. No ring is lost if a thread first reads the number and then
+/// looks for a message: sleep() returns at once if the bell has rung in between. Uses a futex of Linux.
 class Doorbell {
 public:
-    /// `rings` must outlive it.
+    /// `rings` must outlive the doorbell.
     explicit Doorbell(std::atomic<std::uint32_t>& rings) : rings_(&rings) {}
 
     void ring() const;
     [[nodiscard]] std::uint32_t rings() const { return rings_->load(std::memory_order_acquire); }
-    /// Sleeps until `limit` [ns] has passed, or the number is another than `heard`; says whether it is. May wake early.
+    /// Sleeps until `limit` [ns] has passed or the number differs from `heard`. Returns whether it differs. May wake
+    /// early.
     bool sleep(std::uint32_t heard, std::int64_t limit) const;
 
 private:
     std::atomic<std::uint32_t>* rings_;
 };
 
-/// A bell for every rank of this host.
+/// Doorbells of the ranks on this host.
 ///
-/// MPI can only be asked whether a message is there, and a dozen ranks that ask on two cores take a fifth of both.
-/// Between ranks of one host whoever sends rings behind its message, and whoever waits sleeps until then. Ranks of
-/// other hosts have no bell here, nor has a rank that is alone on its host, nor any where there is no room in memory.
+/// MPI can only be polled for a message, and a dozen ranks that poll on two cores take a fifth of both cores. Between
+/// ranks of one host, the sender therefore rings after its message, and the receiver sleeps until the ring. A rank has
+/// no bell here if it runs on another host, if it is alone on its host, or if there is no room in memory.
 ///
-/// The memory is the system's and not an MPI window: Open MPI 4.1 dies of one where the ranks of a host talk over TCP.
+/// The bells are in the system's shared memory and not in an MPI window. Open MPI 4.1 crashes with a window if the
+/// ranks of a host communicate over TCP.
 class HostBells {
 public:
-    /// Collective.
+    /// Opens the shared memory of this host. Collective.
     HostBells();
     ~HostBells();
     HostBells(const HostBells&) = delete;
     HostBells& operator=(const HostBells&) = delete;
 
-    /// That of a rank of MPI_COMM_WORLD; nothing where it has none here.
+    /// Returns the bell of rank `rank` of MPI_COMM_WORLD; nullopt if the rank has no bell here.
     [[nodiscard]] std::optional<Doorbell> of(int rank) const { return bells_.at(static_cast<std::size_t>(rank)); }
 
 private:
@@ -51,7 +53,7 @@ private:
     void release();
 
     std::vector<std::optional<Doorbell>> bells_;  // by rank
-    Slot* slots_ = nullptr;                       // by rank, of this host
+    Slot* slots_ = nullptr;                       // by rank, in the shared memory of this host
 };
 
 }  // namespace lockstep

@@ -12,31 +12,31 @@
 
 namespace lockstep {
 
-/// A fault made on purpose, so that operators and tests can see what becomes of it (docs/operator.md).
+/// A fault that a drill injects on purpose. Operators and tests see how the session reacts (docs/operator.md).
 struct Fault {
     enum class Kind : std::uint8_t {
-        slow,       // takes longer to draw
-        diverge,    // one bit of its sand flips
-        die,        // of a signal
-        hang,       // never comes back
-        garbage,    // sends random bytes
-        partition,  // nothing is heard of it for a while
-        view,       // draws one frame from another place
-        shader      // finds that one of its shaders does not compile, before the first frame
+        slow,       // drawing takes longer
+        diverge,    // one bit of the rank's sand flips
+        die,        // the process gets a signal that ends it
+        hang,       // the process stops and never continues
+        garbage,    // random bytes are sent
+        partition,  // no bytes arrive for a while
+        view,       // one frame is drawn from another place
+        shader      // one shader does not compile, before the first frame
     };
-    static constexpr int kLink = -1;  // not a rank: the link to the haptic server
+    static constexpr int kLink = -1;  // instead of a rank: the link to the haptic server
 
     Kind kind = Kind::slow;
     int rank = kLink;
-    std::uint64_t frame = 1;  // at the beginning of which it strikes
-    // Of `slow` alone: in how many frames from then on.
+    std::uint64_t frame = 1;  // the fault strikes at the beginning of this frame
+    // Number of frames from `frame` on that are drawn slowly; only for `slow`.
     std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();
-    std::uint32_t milliseconds = 0;    // of `slow` and `partition`
-    int signal = 9;                    // of `die`
-    int column = 0, row = 0, bit = 0;  // of `diverge`: of the cell's height, 0 being the lowest
+    std::uint32_t milliseconds = 0;    // for `slow` and `partition`
+    int signal = 9;                    // for `die`
+    int column = 0, row = 0, bit = 0;  // for `diverge`: the cell, and the bit of its height; bit 0 is the lowest
 
     void encode(base::ByteWriter& writer) const;
-    /// Throws base::FormatError when cut short.
+    /// Throws base::FormatError if the bytes end too early.
     static Fault decode(base::ByteReader& reader);
     friend bool operator==(const Fault&, const Fault&) = default;
 };
@@ -44,20 +44,22 @@ struct Fault {
 inline constexpr std::array<std::string_view, 8> kFaultNames{"slow",    "diverge",   "die",  "hang",
                                                              "garbage", "partition", "view", "shader"};
 
-/// The faults that strike one rank, and how they do.
+/// The faults of one rank. Injects them when their frame comes.
 class FaultsOfRank {
 public:
     FaultsOfRank(const std::vector<Fault>& all, int rank);
 
-    /// When a frame begins: dies, never returns, or flips a bit of a cell behind the hash's back.
+    /// Injects the faults at the beginning of frame `frame`: ends the process, never returns, or flips a bit of a cell
+    /// without updating the hash.
     void strike(std::uint64_t frame, sand::Replica& terrain) const;
-    /// When it has been drawn: sleeps, which leaves the cores alone as a slow graphics card does.
+    /// Sleeps after frame `frame` has been drawn, if a fault makes it slow. A sleep leaves the cores free, as a slow
+    /// graphics card does.
     void delay(std::uint64_t frame) const;
-    /// Whether this rank comes to the frame's barrier with random bytes.
+    /// Returns whether this rank sends random bytes to the barrier of frame `frame`.
     [[nodiscard]] bool garbles(std::uint64_t frame) const;
-    /// Whether it draws this frame from elsewhere.
+    /// Returns whether this rank draws frame `frame` from another place.
     [[nodiscard]] bool movesView(std::uint64_t frame) const;
-    /// Whether a shader is to fail.
+    /// Returns whether one of this rank's shaders must fail to compile.
     [[nodiscard]] bool spoilsShader() const;
 
 private:

@@ -18,10 +18,10 @@ namespace {
 
 enum Tag : int { kFrameTag = 10, kRestTag, kArrivalTag, kVerdictTag };
 
-/// How the master ends a frame.
+/// Message with which the master ends a frame.
 struct Ending {
     Verdict verdict = Verdict::equal;
-    std::int64_t quiet = 0;  // for so long at least no frame will begin [ns]
+    std::int64_t quiet = 0;  // [ns], shortest time until the next frame begins
 };
 
 Watchdog::Role roleOf(const Cluster& cluster) {
@@ -31,7 +31,7 @@ Watchdog::Role roleOf(const Cluster& cluster) {
 }
 
 enum PassTag : int { kLengthTag = 20, kPieceTag };
-constexpr std::uint64_t kPiece = 1 << 30;  // [byte]: MPI counts in int
+constexpr std::uint64_t kPiece = 1 << 30;  // [byte], because MPI counts in int
 
 }  // namespace
 
@@ -44,7 +44,7 @@ FrameBarrier::FrameBarrier(const Cluster& cluster, std::vector<std::string> name
       missing_(std::make_unique<std::atomic<bool>[]>(arrivals_.size() + 1)) {
     std::iota(ranks_.begin(), ranks_.end(), 1);
     if (cluster.isMaster()) {
-        // An arrival that is too long must not end the master before it has said whose it is.
+        // MPI would end the job at an arrival that is too long, before the master has printed which rank sent it.
         MPI_Comm_set_errhandler(cluster.arrivals(), MPI_ERRORS_RETURN);
     }
     watchdog_ = std::make_unique<Watchdog>([this] { return describeWait(); }, limitSeconds, roleOf(cluster),
@@ -91,14 +91,14 @@ Wait FrameBarrier::describeWait() const {
     return wait;
 }
 
-/// For messages from these ranks, which ring if they can.
+/// Returns the pauses for a wait for messages from `ranks`. They use this rank's bell if all of `ranks` can ring it.
 Backoff FrameBarrier::backoffFor(std::span<const int> ranks) const {
     const HostBells& bells = cluster_.bells();
     const bool allRing = std::all_of(ranks.begin(), ranks.end(), [&](int rank) { return bells.of(rank).has_value(); });
     return Backoff(allRing ? bells.of(cluster_.rank()) : std::nullopt);
 }
 
-/// Behind messages to these ranks.
+/// Rings the bells of `ranks`, after messages to them.
 void FrameBarrier::ring(std::span<const int> ranks) const {
     for (const int rank : ranks) {
         if (const auto bell = cluster_.bells().of(rank)) {
@@ -107,7 +107,8 @@ void FrameBarrier::ring(std::span<const int> ranks) const {
     }
 }
 
-/// Until all requests are done. `ranks` are those at their other ends; `lengths` are what was received.
+/// Waits until all `requests` are done. `ranks` are the ranks at their other ends. `lengths` gets the length of each
+/// received message [byte], or kCutShort.
 void FrameBarrier::await(std::span<MPI_Request> requests, std::span<const int> ranks, Backoff backoff,
                          std::vector<int>* lengths) {
     const auto miss = [&](std::size_t which, bool missing) {
@@ -205,8 +206,8 @@ void FrameBarrier::receiveArrivals(std::uint64_t frame) {
         try {
             arrival = readArrival(letters[i], lengths[i], frame);
         } catch (const base::FormatError& error) {
-            nonsense_.push_back({ranks_[i], fmt::format("frame {}: {} sent what is no arrival at that frame ({})",
-                                                        frame, names_[i + 1], error.what())});
+            nonsense_.push_back({ranks_[i], fmt::format("frame {}: {} sent an invalid arrival ({})", frame,
+                                                        names_[i + 1], error.what())});
             arrival = {.frame = frame};
         }
     }

@@ -114,7 +114,7 @@ private:
     std::atomic<const char*> busyWith_{kPictures};
     std::atomic<std::uint64_t> frame_{0};
     bool garbles_ = false;
-    std::int64_t quietUntil_ = 0;  // [ns], at a render rank: the next frame does not begin before this
+    std::int64_t quietUntil_ = 0;  // [ns], at a render rank: earliest begin of the next frame
     std::unique_ptr<Watchdog> watchdog_;
 };
 

@@ -9,28 +9,31 @@
 
 namespace lockstep {
 
-/// What the master has decided to do about sand that differs.
+/// The master's decision about sand that differs.
 struct Remedy {
-    bool goOn = false;     // else the session ends here
-    int source = kMaster;  // whose state is right
-    std::vector<int> odd;  // who takes it
+    bool goOn = false;     // whether the session continues
+    int source = kMaster;  // rank whose state is right
+    std::vector<int> odd;  // ranks that take this state
 
     [[nodiscard]] base::Bytes encode() const;
-    /// Throws base::FormatError when cut short.
+    /// Throws base::FormatError if the bytes end too early.
     static Remedy decode(std::span<const std::uint8_t> bytes);
     friend bool operator==(const Remedy&, const Remedy&) = default;
 };
 
-/// What that was to one rank.
+/// Result of heal() for one rank.
 enum class Healing : std::uint8_t {
     ended,   // the session is over
-    spared,  // its sand was right
-    healed   // its sand is another one now, and all that was drawn of it is void
+    spared,  // the rank's sand was right
+    healed   // the rank's sand has been replaced; everything drawn of it must be drawn again
 };
 
-/// Collective, after findDivergence(): the whole state of the remedy's source goes to the odd ranks, point to point.
-/// Only the master gives a remedy. Everyone's hash is then computed afresh from memory; whether all agree is seen when
-/// they meet at the barrier of the same frame once more. Throws base::FormatError when a state is none.
+/// Sends the whole state of the remedy's source to the odd ranks, point to point. Then each rank computes its hash
+/// again from memory. Call it after findDivergence(). The ranks then meet again at the barrier of the same frame, which
+/// shows whether they agree now.
+///
+/// Only the master's argument `fromMaster` counts. Throws base::FormatError if the received bytes are not a state of
+/// this sand. Collective.
 [[nodiscard]] Healing heal(FrameBarrier& barrier, sand::Replica& terrain, const Remedy& fromMaster = {});
 
 }  // namespace lockstep

@@ -8,14 +8,14 @@
 
 namespace lockstep {
 
-/// Where a rank runs and what that machine has left.
+/// Host of one rank, with its free memory.
 struct RankHost {
     std::string name;
-    std::int64_t freeBytes = 0;  // memory that may still be taken there, by all ranks together
+    std::int64_t freeBytes = 0;  // free memory for all ranks of this host together
 };
 
-/// Why ranks that take `bytesPerRank` each, and all but the first, the master, `bytesToDraw` more, do not fit their
-/// hosts, for the host that lacks most; nothing when they do.
+/// Returns the text of a message about the host that lacks most memory; nullopt if all ranks fit their hosts. A render
+/// rank needs `bytesPerRank` + `bytesToDraw` [byte]. The master, which is the first of `ranks`, needs `bytesPerRank`.
 [[nodiscard]] std::optional<std::string> lackOfMemory(const std::vector<RankHost>& ranks, std::int64_t bytesPerRank,
                                                       std::int64_t bytesToDraw = 0);
 

@@ -10,18 +10,18 @@
 
 namespace lockstep {
 
-/// What a wall can show beside the sand. Documents and commands call it a layer (docs/look.md). ViewState::layers has a
-/// bit for each.
+/// Something that a wall can show with the sand. Documents and commands call it a layer (docs/look.md).
+/// ViewState::layers has a bit for each overlay.
 enum class Overlay : std::uint8_t {
     wireframe,  // the triangles' edges
-    hillShade,  // light and dark by slope, as maps have it
+    hillShade,  // light and dark by slope, as on maps
     force,      // the tool's force, as an arrow
-    statistics  // how the wall keeps up, on every tile
+    statistics  // frame times and agreement of the wall, on every tile
 };
 
 inline constexpr std::array<std::string_view, 4> kOverlayNames{"wireframe", "hill-shade", "force", "statistics"};
 
-/// The overlays that are shown, as a bit mask; all off at first.
+/// Bit mask of the overlays that are shown. All are off at first.
 class Overlays {
 public:
     constexpr Overlays() = default;
@@ -38,7 +38,8 @@ private:
     std::uint8_t bits_ = 0;
 };
 
-/// Throws base::InputError that lists the names.
+/// Returns the overlay with the name `name`. Throws base::InputError, which lists all names, if there is no such
+/// overlay.
 [[nodiscard]] inline Overlay parseOverlay(std::string_view name) {
     return static_cast<Overlay>(base::indexOf(name, kOverlayNames, "layer"));
 }

@@ -8,16 +8,17 @@ namespace lockstep {
 namespace {
 
 constexpr std::size_t kSamplesPerRank = 1 << 12;
-constexpr std::size_t kFewestFrames = 30;  // nobody is judged by less
+constexpr std::size_t kFewestFrames = 30;  // a rank is judged by at least this many
 constexpr double kLeastShare = 0.25;
-constexpr double kByFar = 2;  // times as often as the next
+constexpr double kByFar = 2;  // times as often as the next rank
 
-/// How often and how long one rank was waited for.
+/// How often and how long the wall waited for one rank.
 struct Waits {
     double count = 0, ms = 0;
 };
 
-/// The rank that stands out. On cores that ranks share somebody is always last, now this one, now that one.
+/// Returns the rank that stands out; nullopt if no rank stands out. On shared cores some rank is always last, but a
+/// different one in each frame.
 std::optional<Drag> standsOut(const std::vector<Waits>& waits, double frames) {
     Drag drag;
     double next = 0, most = 0;
@@ -37,7 +38,7 @@ std::optional<Drag> standsOut(const std::vector<Waits>& waits, double frames) {
 }  // namespace
 
 std::optional<LastToCome> lastToCome(std::span<const Arrival> arrivals) {
-    if (arrivals.size() < 3) {  // the master and one more: nobody to compare with
+    if (arrivals.size() < 3) {  // the master and one render rank, which has no other to be compared with
         return std::nullopt;
     }
     std::size_t last = 0;

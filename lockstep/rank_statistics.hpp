@@ -12,57 +12,61 @@
 
 namespace lockstep {
 
-/// Closer arrivals are a tie [ms]: waking a process takes up to that on a busy core, and must accuse nobody.
+/// Arrivals closer than this are a tie [ms]. On a busy core, waking a process takes up to 1 ms, and no rank is blamed
+/// for that.
 inline constexpr double kTieMs = 1;
 
-/// Who came last to one barrier, where that was no tie.
+/// The rank that came last to one barrier.
 struct LastToCome {
     int rank = 0;
-    double byMs = 0;  // so much after the one before [ms]: what the wall would have gained without
+    double byMs = 0;  // [ms] after the rank before it; the wall lost this time
 };
 
-/// The last of these arrivals, the master's among them. None where it came less than kTieMs after the one before, as
-/// all do on a still wall, or where there is nobody to come before it.
+/// Returns the rank that arrived last. `arrivals` are in order of rank, the master's first. Returns nullopt on a tie,
+/// which is usual on a still wall: the last rank came less than kTieMs after the rank before it. Also returns nullopt
+/// if there is only one render rank.
 [[nodiscard]] std::optional<LastToCome> lastToCome(std::span<const Arrival> arrivals);
 
-/// What the master learns of each rank from the barrier, frame by frame. Memory is bounded: some 100 KiB a rank.
+/// Statistics of each rank that the master collects at the barrier, frame by frame. Takes at most about 100 KiB per
+/// rank.
 class RankStatistics {
 public:
-    explicit RankStatistics(std::size_t ranks /* the master's among them */);
+    explicit RankStatistics(std::size_t ranks /* including the master */);
 
-    /// After a barrier. `arrivals` by rank, the master's first; their lastSwap is of the frame before, and left out
-    /// where `swapsCount` is not set or the frame before was none.
+    /// Adds the arrivals at one barrier, in order of rank, the master's first. Their lastSwap belongs to the frame
+    /// before. It is left out if `swapsCount` is false or if this is the first frame.
     void add(std::span<const Arrival> arrivals, bool swapsCount);
-    /// Ranks whose sand or view was another one, in a frame that ended the session.
+    /// Counts a frame that ended the session, because the sand or the view of `ranks` differed.
     void addOdd(std::span<const int> ranks);
-    /// Ranks whose sand was another one in the frame that add() is called for next, and was healed.
+    /// Notes that `ranks` differed and were healed in the frame that the next call of add() counts.
     void addHealed(std::span<const int> ranks);
 
     struct Rank {
         Rank();
         std::uint64_t agreed = 0, differed = 0;  // frames
-        std::uint64_t healed = 0;                // of those in which it differed
-        Statistics keptMs;                       // frames for which the wall waited, and how long [ms]
-        Statistics swapUs;                       // after the first swap of the frame [us]
+        std::uint64_t healed = 0;                // times that the rank was healed
+        Statistics keptMs;  // [ms] that the wall waited for this rank, for each frame in which it came last
+        Statistics swapUs;  // [us] after the first swap of the frame
     };
     [[nodiscard]] const std::vector<Rank>& ranks() const { return ranks_; }
     [[nodiscard]] std::uint64_t frames() const { return frames_; }
 
-    /// Swap times of the last frame but one, by rank from 1: after its first [us]; empty where nothing is known.
+    /// Returns the swap times of the frame before the last one, in order of rank from 1 [us after the first swap of
+    /// that frame]. Empty if they are unknown.
     [[nodiscard]] const std::vector<std::uint32_t>& lastSwapsUs() const { return lastSwapsUs_; }
 
-    /// Of the whole session.
+    /// Returns the rank that stands out in the whole session; nullopt if no rank stands out.
     [[nodiscard]] std::optional<Drag> drag() const;
-    /// Of the last kRecent frames or so.
+    /// Returns the rank that stands out in the last kRecent frames; nullopt if no rank stands out.
     [[nodiscard]] std::optional<Drag> recentDrag() const;
     static constexpr std::size_t kRecent = 120;
 
 private:
     std::vector<Rank> ranks_;
-    std::vector<int> healedNow_;  // in the frame that is to be added
+    std::vector<int> healedNow_;  // ranks that were healed in the frame that add() counts next
     std::uint64_t frames_ = 0;
     std::vector<std::uint32_t> lastSwapsUs_;
-    std::vector<LastToCome> recent_;  // a ring; byMs 0 for a tie
+    std::vector<LastToCome> recent_;  // ring buffer; byMs is 0 for a tie
 };
 
 }  // namespace lockstep

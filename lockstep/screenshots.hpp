@@ -9,19 +9,20 @@
 
 namespace lockstep {
 
-/// One eye's picture of one tile, or its output's: RGB, 8 bits a channel, rows from the top, no padding.
+/// Picture of one tile for one eye, or of its output: RGB, 8 bits per channel, rows from the top, no padding.
 struct TilePicture {
     int rank = 0;
-    int eye = 0;  // index among the eyes the tile draws; their number for the output that is made of them
+    // Index among the eyes that the tile draws. For the output picture, which is made of all eyes: their number.
+    int eye = 0;
     int width = 0, height = 0;
     std::vector<std::uint8_t> pixels;
 };
 
-/// At a render rank: hands one picture to the master, which must be receiving.
+/// Sends one picture from a render rank to the master, which must be in receivePictures().
 void sendPicture(const Cluster& cluster, const TilePicture& picture);
 
-/// At the master: receives `count` pictures in the order of ranks and eyes. One picture at a time is in memory here,
-/// however large the wall.
+/// Receives pictures at the master, in order of rank and eye, and passes each to `take`. `eyesByRank` is the number of
+/// pictures of each rank. Only one picture is in memory at a time, however large the wall is.
 void receivePictures(const Cluster& cluster, const std::vector<int>& eyesByRank,
                      const std::function<void(const TilePicture&)>& take);
 

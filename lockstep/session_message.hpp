@@ -14,56 +14,57 @@ namespace lockstep {
 
 class FrameBarrier;
 
-/// What every rank is told before the first frame. Ranks read no file: the scene and the wall come from the master.
+/// Message that every rank gets before the first frame. Render ranks read no file: the scene and the wall come from the
+/// master.
 struct SessionMessage {
     base::Bytes scene;            // scene::Scene::encode
     base::Bytes wall;             // walls::Wall::encode
-    double frameTimeout = 0;      // [s] without a sign of the master, after which a rank ends
-    std::vector<Fault> faults{};  // made on purpose
-    base::Bytes state{};          // sand::Replica::encodeState, where a session goes on; empty: as the scene begins
+    double frameTimeout = 0;      // [s] without a message from the master, after which a rank ends
+    std::vector<Fault> faults{};  // of the session's drills
+    base::Bytes state{};          // sand::Replica::encodeState() of a resumed session; empty for a new one
 
     [[nodiscard]] base::Bytes encode() const;
     static SessionMessage decode(std::span<const std::uint8_t> bytes);
 };
 
-/// Collective. The master opens the session, or refuses it to all with nothing; ranks get what it gave.
+/// Returns the master's argument `fromMaster` on all ranks. With nullopt the master refuses the session. Collective.
 [[nodiscard]] std::optional<SessionMessage> broadcastSession(const Cluster& cluster,
                                                              const std::optional<SessionMessage>& fromMaster);
 
-/// What a rank says before it takes part: who it is, and why it cannot, if it cannot.
+/// Message of a rank before the session: where it runs, and why it cannot take part, if it cannot.
 struct Readiness {
     std::string host;
     std::string buildId;
-    std::string error;     // empty when ready
-    std::string renderer;  // what draws
-    // What the wall file asks for and the rank's machine cannot do: for the operator.
+    std::string error;     // why the rank cannot take part; empty if it can
+    std::string renderer;  // name of the OpenGL renderer
+    // Requests of the wall file that the rank's machine cannot meet, as lines for the operator.
     std::vector<std::string> shortcomings;
-    // From the start: until a hardware barrier has settled, swap times say nothing.
+    // Number of first frames whose swap times do not count, because a hardware barrier has not settled yet.
     std::uint32_t framesToIgnore = 0;
 };
 
-/// Collective: everyone's readiness, by rank, at the master; others get nothing.
+/// Returns the readiness of all ranks at the master, in order of rank; an empty list on other ranks. Collective.
 [[nodiscard]] std::vector<Readiness> gatherReadiness(const Cluster& cluster, const Readiness& mine);
 
-/// Collective: whether the master says to go on.
+/// Returns the master's argument `master` on all ranks: whether the session begins. Collective.
 [[nodiscard]] bool agreeToGoOn(const Cluster& cluster, bool master);
 
-/// What a render rank has to report at the end.
+/// Report of a render rank at the end of a session.
 struct RankReport {
     std::string host;
     std::string renderer;
-    std::string swapLock;                          // whether graphics cards swap together in hardware
+    std::string swapLock;                          // whether and how graphics cards swap together in hardware
     double drawP50 = 0, drawP99 = 0, drawMax = 0;  // [ms] per frame, all eyes
     double waitP50 = 0, waitP99 = 0;               // [ms] at the barrier
     std::int64_t residentBytes = 0;
     std::int64_t frameBufferBytes = 0;
-    // Views, an eye in a frame each: not drawn at all, drawn in part, drawn whole.
+    // Numbers of views that were not drawn, drawn in part, and drawn whole. A view is one eye in one frame.
     std::int64_t viewsSkipped = 0, viewsInPart = 0, viewsWhole = 0;
-    double pixelShare = 0;  // of all views' pixels, drawn
+    double pixelShare = 0;  // share of all views' pixels that were drawn
 };
 
-/// Collective: the render ranks' reports, by rank from 1, at the master; others get nothing. The master gives any. Who
-/// is waited for is named.
+/// Returns the reports of the render ranks at the master, in order of rank from 1; an empty list on other ranks. The
+/// master's own argument is ignored. If a report is late, the watchdog names the rank. Collective.
 [[nodiscard]] std::vector<RankReport> gatherReports(FrameBarrier& barrier, const RankReport& mine);
 
 }  // namespace lockstep

@@ -6,11 +6,12 @@
 
 namespace lockstep {
 
-/// Figures of one kind, summed up as people quote them. Keeps a bounded, evenly thinned sample for the percentiles, so
-/// that a session of days needs no more memory than one of minutes; mean, deviation and extremes are of all figures.
+/// Mean, standard deviation, maximum and percentiles of a series of values. The percentiles come from a bounded, evenly
+/// thinned sample, so that a session of days needs no more memory than one of minutes. Mean, deviation and maximum are
+/// of all values.
 class Statistics {
 public:
-    /// `mostKept` figures are kept for the percentiles; it must be even.
+    /// Keeps at most `mostKept` values for the percentiles. `mostKept` must be even.
     explicit Statistics(std::size_t mostKept = 1 << 13) : mostKept_(mostKept) {}
 
     void add(double value);
@@ -19,16 +20,16 @@ public:
     [[nodiscard]] double mean() const { return mean_; }
     [[nodiscard]] double deviation() const;
     [[nodiscard]] double largest() const { return largest_; }
-    /// The value below which `share` in [0, 1] of the figures lie; 0 when there are none.
+    /// Returns the value below which the share `share` of all values lies, with `share` in [0, 1]; 0 without values.
     [[nodiscard]] double percentile(double share) const;
 
 private:
     std::size_t mostKept_;
     std::size_t count_ = 0;
     double mean_ = 0;
-    double squares_ = 0;  // of the differences from the mean (Welford)
+    double squares_ = 0;  // sum of the squared differences from the mean (Welford)
     double largest_ = 0;
-    std::size_t every_ = 1;  // one figure in so many is kept
+    std::size_t every_ = 1;  // one value in this many is kept
     std::vector<double> kept_;
 };
 

@@ -10,11 +10,11 @@
 
 namespace lockstep {
 
-/// What a wall shows instead of the sand while a person adjusts it (docs/test_patterns.md). ViewState::pattern carries
-/// the number. Plain values: whoever names a pattern needs no GL.
+/// Picture that a wall shows instead of the sand while a person adjusts it (docs/test_patterns.md). ViewState::pattern
+/// holds its number. This header needs no OpenGL.
 enum class Pattern : std::uint8_t {
     none,
-    grid,   // cross grid and circles in the plane of the wall, running on behind the bezels
+    grid,   // grid and circles in the plane of the wall; they continue behind the bezels
     tiles,  // rank, host, row, column and eye on each tile
     eyes,   // L in red for the left eye, R in cyan for the right
     flash,  // one of four colours, and the number of the frame
@@ -28,17 +28,19 @@ inline constexpr std::array<std::string_view, 6> kPatternNames{"none", "grid", "
     return kPatternNames.at(static_cast<std::size_t>(pattern));
 }
 
-/// Throws base::InputError that lists the names.
+/// Returns the pattern with the name `name`. Throws base::InputError, which lists all names, if there is no such
+/// pattern.
 [[nodiscard]] inline Pattern parsePattern(std::string_view name) {
     return static_cast<Pattern>(base::indexOf(name, kPatternNames, "test pattern"));
 }
 
-/// The one after it, as a key steps through them; none comes after the last.
+/// Returns the pattern after `pattern`, in the order in which a key steps through them. Returns Pattern::none after the
+/// last one.
 [[nodiscard]] constexpr Pattern nextPattern(Pattern pattern) {
     return pattern == kLastPattern ? Pattern::none : static_cast<Pattern>(static_cast<std::uint8_t>(pattern) + 1);
 }
 
-/// Whether two frames with the same pattern show different pictures.
+/// Returns whether two frames with the same pattern show different pictures.
 [[nodiscard]] constexpr bool changesEveryFrame(Pattern pattern) { return pattern == Pattern::flash; }
 
 }  // namespace lockstep

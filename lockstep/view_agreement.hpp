@@ -11,11 +11,11 @@
 
 namespace lockstep {
 
-/// What a rank shows its frame by: the display as it has decoded it, and the view of one frame. Ranks that differ in it
-/// would draw tiles that do not join, over sand that is equal.
+/// Hash over everything that a rank draws its frame by: the wall as the rank has decoded it, and the view of one frame.
+/// Ranks with different hashes draw tiles that do not join, even if their sand is equal.
 class ViewProof {
 public:
-    /// `wall` is Wall::encode() of the wall that this rank holds, not the bytes it was sent.
+    /// `wall` is Wall::encode() of the wall that this rank has decoded, not the bytes that it received.
     explicit ViewProof(std::span<const std::uint8_t> wall);
     [[nodiscard]] std::uint64_t hash(const ViewState& view) const;
 
@@ -23,8 +23,8 @@ private:
     std::uint64_t wall_;
 };
 
-/// At the master: a line for every rank that came to the barrier with another view than the master's. `names` are those
-/// of the barrier.
+/// Returns a line for each rank whose view at the barrier differs from the master's. `names` are the names of the ranks
+/// in messages, in order of rank. Used at the master.
 [[nodiscard]] std::vector<std::string> describeOtherViews(const std::vector<Arrival>& arrivals,
                                                           const std::vector<std::string>& names);
 

@@ -9,25 +9,25 @@
 
 namespace lockstep {
 
-/// A rank that keeps the wall waiting more often than any other, by far.
+/// A rank for which the wall waits far more often than for any other.
 struct Drag {
     int rank = 0;       // 0: the master
-    double share = 0;   // of frames
-    double keptMs = 0;  // mean in these [ms]
+    double share = 0;   // share of the frames in which the wall waited for it
+    double keptMs = 0;  // [ms], mean wait in these frames
     friend bool operator==(const Drag&, const Drag&) = default;
 };
 
-/// What a rank cannot know of the wall by itself, up to the frame before this one.
+/// Figures of the whole wall, which a render rank cannot measure. They cover all frames before the present one.
 struct WallFigures {
-    double frameMs = 0;                // from swap to swap; 0 when there is none yet
-    std::optional<Drag> slowest;       // of the last frames; none where no rank stands out
+    double frameMs = 0;                // [ms] from swap to swap; 0 before the second swap
+    std::optional<Drag> slowest;       // in the last frames; nullopt if no rank stands out
     std::uint64_t agreed = 0;          // frames in which all hashes were equal
-    std::uint64_t divergences = 0;     // frames in which they were not, at first
-    std::uint64_t healed = 0;          // times that a rank took the right sand from another
-    std::vector<std::uint32_t> swaps;  // by rank from 1: after the first swap of a frame [us]; empty when unknown
+    std::uint64_t divergences = 0;     // frames in which hashes differed at first
+    std::uint64_t healed = 0;          // times that a rank was healed
+    std::vector<std::uint32_t> swaps;  // [us] after a frame's first swap, by rank from 1; empty if unknown
 
     void encode(base::ByteWriter& writer) const;
-    /// Throws base::FormatError when cut short.
+    /// Throws base::FormatError if the bytes end too early.
     static WallFigures decode(base::ByteReader& reader);
     friend bool operator==(const WallFigures&, const WallFigures&) = default;
 };

@@ -16,13 +16,13 @@
 namespace lockstep {
 namespace {
 
-constexpr double kFirstWord = 1;  // [s]
+constexpr double kFirstWord = 1;  // [s], wait after which the missing ranks are printed
 constexpr double kStartUpFirstWord = 10;
 constexpr double kStartUpLimit = 120;
 constexpr double kPatientLimit = 3600;
 constexpr double kLongestLook = 0.5;
-constexpr double kRankAfterMaster = 3;  // so much later a rank does what the master would have done
-constexpr double kOthersAfterRank = 1;  // [s] that ranks which say nothing leave after the one that does
+constexpr double kRankAfterMaster = 3;  // [s] by which a render rank acts later than the master
+constexpr double kOthersAfterRank = 1;  // [s] by which the other render ranks end later than the first
 
 void emitWait(const Wait& wait, double seconds, double limit, bool endsJob) {
     host::emitEvent("waiting", {{"by", wait.by},
@@ -58,12 +58,12 @@ void Watchdog::disarm() { armedAt_ = 0; }
 
 void Watchdog::look() {
     std::unique_lock lock(mutex_);
-    std::int64_t spokenOf = 0;  // the wait that was already mentioned
-    std::int64_t watched = 0;   // the wait that `waited` is of
+    std::int64_t spokenOf = 0;  // begin of the wait that has been printed
+    std::int64_t watched = 0;   // begin of the wait that `waited` measures
     std::int64_t lastLook = host::monotonicNs();
     double waited = 0;  // [s]
     const double later = role_ == Role::master ? 0 : kRankAfterMaster;
-    // Whoever speaks must come to it: the first to leave takes all the others along.
+    // The rank that prints must end first, because the first process that ends takes all others with it.
     const double patience = role_ == Role::otherRank ? kOthersAfterRank : 0;
     const bool speaks = role_ != Role::otherRank;
     while (!stop_.wait_for(lock, std::chrono::milliseconds(100), [this] { return stopping_; })) {
@@ -73,7 +73,7 @@ void Watchdog::look() {
         if (since == 0) {
             continue;
         }
-        // A process that was stopped and goes on must not hold the lost time against the others.
+        // Time in which this process itself was stopped does not count as a wait for the others.
         waited = (since == watched ? waited : 0) + std::min(sinceLook, kLongestLook);
         watched = since;
         const double seconds = waited - later;

@@ -12,41 +12,44 @@
 
 namespace lockstep {
 
-/// What a process waits for: for a person, and for the event `waiting` (docs/events.md).
+/// Description of a wait. It is printed, and it is reported by the event `waiting` (docs/events.md).
 struct Wait {
     std::string text;  // "frame 30 waits for rank 2 (tile r1c2) on node02"
     int by = 0;        // rank of the waiting process
     std::uint64_t frame = 0;
-    std::vector<int> ranks;  // that have not arrived
-    std::string names;       // of these ranks, separated by commas; the master's own work if there are none
+    std::vector<int> ranks;  // ranks that have not arrived
+    std::string names;       // names of these ranks, separated by commas; the master's own work if the list is empty
 };
 
-/// Makes sure that no wait is silent and none is for ever.
+/// Thread that reports every long wait, and ends the job if a wait reaches its limit.
 ///
-/// A thread of its own looks on while the main thread is inside a call that may block. After a while it says who is
-/// waited for; after the limit it says so once more and ends this process, which makes mpirun end the job. Until
-/// startUpIsOver() it has more patience: shaders compile and sand settles before the first frame.
+/// The thread watches while the main thread is inside a call that may block. After 1 s it prints which ranks are
+/// missing. After the limit it prints them again and ends this process, so that mpirun ends the job. Until
+/// startUpIsOver() both times are longer, because shaders compile and sand settles before the first frame.
 ///
-/// The master is the first to speak and the first to end the job, because it alone knows who is missing; a rank waits
-/// longer, for the case that it is the master that has stopped.
+/// The master is the first to print and the first to end the job, because only the master knows which ranks are
+/// missing. Other ranks wait some seconds longer, in case the master itself has stopped.
 class Watchdog {
 public:
     enum class Role { master, firstRank, otherRank };
 
-    /// `describe` names what is waited for; it runs on the watchdog's thread and must only read atomics. Of the ranks
-    /// only the first speaks. `lastWords` runs there too, with the line that was said, before the process ends: it may
-    /// write to disk, and nothing that the main thread changes may be in it.
+    /// `describe` describes the present wait. It runs on the watchdog's thread and must only read atomics.
+    /// `limitSeconds` is the limit of a wait [s]. Only the master and the first render rank print.
+    ///
+    /// `lastWords` also runs on the watchdog's thread, before the process ends, with the line that was printed. It may
+    /// write to disk, but it must not read data that the main thread changes.
     Watchdog(std::function<Wait()> describe, double limitSeconds, Role role,
              std::function<void(const std::string&)> lastWords = {});
     ~Watchdog();
     Watchdog(const Watchdog&) = delete;
     Watchdog& operator=(const Watchdog&) = delete;
 
-    /// From now on until disarm(), time counts. A new arm() starts afresh.
+    /// Begins to measure a wait, which lasts until disarm(). Another arm() begins a new wait.
     void arm();
     void disarm();
     void startUpIsOver() { startingUp_ = false; }
-    /// Of a start that replays a journal: it speaks as ever, and has more patience still.
+    /// Sets whether the limit is an hour. A start that replays a journal needs this. The watchdog prints as usual
+    /// meanwhile.
     void setPatient(bool patient) { patient_ = patient; }
 
 private:
@@ -57,14 +60,14 @@ private:
     Role role_;
     std::function<void(const std::string&)> lastWords_;
     std::atomic<bool> startingUp_{true}, patient_{false};
-    std::atomic<std::int64_t> armedAt_{0};  // [ns], 0 when nobody waits
+    std::atomic<std::int64_t> armedAt_{0};  // [ns]; 0 while no wait is measured
     std::mutex mutex_;
     std::condition_variable stop_;
     bool stopping_ = false;
     std::thread thread_;
 };
 
-/// Arms a watchdog for the length of a scope.
+/// Scope in which a watchdog is armed.
 class Watched {
 public:
     explicit Watched(Watchdog& watchdog) : watchdog_(watchdog) { watchdog_.arm(); }

@@ -56,9 +56,9 @@ TEST(Arrival, AtAnotherFrameIsNone) {
 TEST(Arrival, OfAnotherLengthIsNoneThoughItsFrameIsRight) {
     for (const int length : {0, 8, kLength - 1, kLength + 1, static_cast<int>(lockstep::kArrivalRoom)}) {
         EXPECT_EQ(faultOf(letterOf(kFrame), length),
-                  std::to_string(length) + " bytes and not " + std::to_string(kLength));
+                  std::to_string(length) + " bytes instead of " + std::to_string(kLength));
     }
-    EXPECT_EQ(faultOf(letterOf(kFrame), lockstep::kCutShort), "far too long");
+    EXPECT_EQ(faultOf(letterOf(kFrame), lockstep::kCutShort), "longer than 256 bytes");
 }
 
 // The drill's frames 30, 31 and 32 of tests/cluster/drills_test.cpp.

@@ -48,8 +48,7 @@ TEST_F(Barrier, SeesAnotherViewAndOtherSandFirst) {
 
 // What a rank sends twice comes to the next frame as well.
 TEST_F(Barrier, RefusesAnArrivalAtAnotherFrame) {
-    expectFrame(6, "nonsense of rank 1 (frame 6: rank 1 sent what is no arrival at that frame (of frame 5))",
-                "0 102 103");
+    expectFrame(6, "nonsense of rank 1 (frame 6: rank 1 sent an invalid arrival (of frame 5))", "0 102 103");
 }
 
 TEST_F(Barrier, KnowsWhoseArrivalEachIsWhateverTheirOrder) { expectFrame(7, "equal"); }
@@ -57,14 +56,11 @@ TEST_F(Barrier, KnowsWhoseArrivalEachIsWhateverTheirOrder) { expectFrame(7, "equ
 // Frames 30, 31 and 32 of the drill: as long as an arrival, longer, and longer than there is room.
 TEST_F(Barrier, RefusesEachKindOfGarbageOfTheDrillAndGoesOn) {
     const std::string& first = said()["30:"];
-    EXPECT_TRUE(
-        first.starts_with("nonsense of rank 2 (frame 30: rank 2 sent what is no arrival at that frame (of frame "))
-        << first;
+    EXPECT_TRUE(first.starts_with("nonsense of rank 2 (frame 30: rank 2 sent an invalid arrival (of frame ")) << first;
     EXPECT_TRUE(first.ends_with("; arrivals 101 0 103")) << first;
-    expectFrame(31,
-                "nonsense of rank 2 (frame 31: rank 2 sent what is no arrival at that frame (200 bytes and not 56))",
+    expectFrame(31, "nonsense of rank 2 (frame 31: rank 2 sent an invalid arrival (200 bytes instead of 56))",
                 "101 0 103");
-    expectFrame(32, "nonsense of rank 2 (frame 32: rank 2 sent what is no arrival at that frame (far too long))",
+    expectFrame(32, "nonsense of rank 2 (frame 32: rank 2 sent an invalid arrival (longer than 256 bytes))",
                 "101 0 103");
     expectFrame(33, "equal");
 }

@@ -90,7 +90,7 @@ public:
     }
     [[nodiscard]] const std::vector<Arrival>& arrivals() const override { return arrivals_; }
     [[nodiscard]] const std::vector<lockstep::FrameBarrier::Nonsense>& nonsense() const override { return nonsense_; }
-    void talkNonsense() { nonsense_ = {{2, "frame 1: rank 2 sent what is no arrival"}}; }
+    void talkNonsense() { nonsense_ = {{2, "frame 1: rank 2 sent an invalid arrival"}}; }
 
     std::vector<sand::Replica> replicas{sand::Replica(sceneOfRanks()), sand::Replica(sceneOfRanks())};
     bool otherView = false;
