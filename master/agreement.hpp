@@ -16,30 +16,32 @@
 
 namespace master {
 
-/// Makes all ranks agree before a frame is shown. Decides which ranks are right when they differ, heals the others, and
-/// gives up a rank that is broken. One thread.
+/// Makes all ranks agree before a frame is shown. If ranks differ, decides which ranks are right, heals the others, and
+/// ends the session if a rank is broken. Used by one thread.
 class Agreement {
 public:
-    /// Gives the journal's first file, or an empty path without a journal; and the journal's sand after the last step,
-    /// or null.
+    /// Functions that return the journal's first file, or an empty path without a journal, and the journal's sand after
+    /// the last step, or null.
     struct Witness {
         std::function<std::filesystem::path()> journal;
         std::function<std::unique_ptr<sand::Replica>()> sand;
     };
 
-    /// `statistics` counts what each rank did; `out` gets divergence.txt and failure.json.
+    /// `statistics` counts the frames in which each rank agreed, differed or was healed. `out` gets divergence.txt and
+    /// failure.json.
     Agreement(Ranks& ranks, RankLabels labels, std::filesystem::path out, lockstep::RankStatistics& statistics,
               Witness witness);
 
-    /// A rank whose sand has to be healed more often is given up: a bit that flips is an accident, and memory that
-    /// needs help a third time is broken, and will go on being so.
+    /// A rank that needs to be healed more often counts as broken. One flipped bit is an accident, but memory that
+    /// needs to be healed a third time is broken and stays so.
     static constexpr std::uint64_t kMostHealings = 2;
 
-    /// Meets the ranks with `mine`, and heals sand that differs until all have the same. Returns false when the session
-    /// has to end; why has been told then. `next` is when the next frame begins at the earliest [ns].
+    /// Meets the ranks at the barrier with the arrival `mine`, and heals sand that differs until all ranks agree.
+    /// `next` is the earliest time at which the next frame begins [ns]. Returns false if the session must end. The
+    /// reason has then been printed.
     [[nodiscard]] bool reach(lockstep::Arrival mine, MasterSand& sand, StepSource& steps, std::int64_t next);
 
-    /// Frames on which ranks differed, and times that one was healed, since this process began.
+    /// Return the number of frames in which ranks differed, and how often a rank was healed, since this process began.
     [[nodiscard]] std::uint64_t divergences() const { return divergences_; }
     [[nodiscard]] std::uint64_t healed() const { return healed_; }
 

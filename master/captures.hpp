@@ -14,17 +14,18 @@
 
 namespace master {
 
-/// Pictures of a running session that somebody asks for: each goes into a folder of its own, OUT/capture_001 and so on.
-/// Main thread only.
+/// Pictures of a running session that a client asks for. Each capture gets a folder of its own: OUT/capture_001,
+/// OUT/capture_002 and so on. Main thread only.
 class Captures {
 public:
     explicit Captures(std::filesystem::path out) : out_(std::move(out)) {}
 
     void ask(std::optional<ControlSocket::Client> client) { clients_.push_back(client); }
-    /// Whether pictures of the next frame are wanted. One capture is written at a time.
+    /// Returns whether pictures of the next frame are wanted. Only one capture is written at a time.
     [[nodiscard]] bool wanted(const BackgroundJobs& jobs) const { return !clients_.empty() && !jobs.capturing(); }
-    /// Receives the pictures of `frame`, which the ranks are sending, and lets a job write them and answer: beside the
-    /// next frames, where memory holds them, else at once.
+    /// Receives the pictures of frame `frame`, which the ranks are sending, and starts a job that answers the clients.
+    /// If the pictures fit into memory, the job also writes them, while the next frames are shown. Otherwise this
+    /// function writes them at once.
     void take(std::uint64_t frame, const MasterSand& sand, const walls::Wall& wall, const lockstep::Cluster& cluster,
               lockstep::Watchdog& watchdog, BackgroundJobs& jobs);
 

@@ -10,24 +10,25 @@
 
 namespace master {
 
-/// A frame on which some rank held other sand, as the master saw it.
+/// A frame in which the sand of some ranks differed, as the master saw it.
 struct DivergedFrame {
     std::uint64_t frame = 0;
     std::uint64_t step = 0;
     const lockstep::Divergence& divergence;
 };
 
-/// Emits the event `divergence`. `ranks` counts the master; `journal` as below.
+/// Emits the event `divergence`. `ranks` is the number of ranks, including the master. `journal` is the journal's first
+/// file; it is empty if there is no journal to compute the right hash from.
 void emitDivergence(const DivergedFrame& diverged, int ranks, const std::filesystem::path& journal);
 
-/// Who differs and where, a line each, who says what is right where no hash has a majority, and how to compute that
-/// hash again from the journal; of that nothing where `journal` is empty. `names` are those of the ranks, the master's
-/// first.
+/// Returns a line for each rank that differs, with the place. Without a majority a line follows that names what decided
+/// which sand is right. The last line is the command that computes the right hash again from the journal; it is left
+/// out if `journal` is empty. `names` are the names of the ranks in messages, the master's first.
 [[nodiscard]] std::vector<std::string> describeDivergence(const DivergedFrame& diverged,
                                                           const std::vector<std::string>& names,
                                                           const std::filesystem::path& journal);
 
-/// Prints the lines on standard error, and adds them to a file.
+/// Prints `lines` on standard error, and appends them to `file`.
 void tell(const std::vector<std::string>& lines, const std::filesystem::path& file);
 
 }  // namespace master

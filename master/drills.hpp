@@ -10,21 +10,23 @@
 
 namespace master {
 
-/// A fault made on purpose, and how it was asked for.
+/// A fault that is injected on purpose, and the user's text for it.
 struct Drill {
     std::string text;
     lockstep::Fault fault;
 };
 
-/// What has happened of a session's drills stands in OUT/drills.done, a line each, on disk before the frame is sent in
-/// which it does: whoever dies of it must not die of it again when the session is taken up once more. Slow drawing
-/// alone is no event, and goes on.
+/// Returns the drills of `drills` that are still to happen. A session that is not resumed has all of them to come, and
+/// its file drills.done is removed.
 ///
-/// Those that are still to happen. Of a session that is not taken up, all: the file is then removed.
+/// Each drill is written as a line to `folder`/drills.done, on disk before its frame is sent, so that a resumed session
+/// does not repeat it. Slow drawing is not written, and also continues after a resume.
+///
 [[nodiscard]] std::vector<Drill> withoutDone(std::vector<Drill> drills, const std::filesystem::path& folder,
                                              bool resumed);
 
-/// Tells what happens in a frame that is about to be sent, and keeps it; returns what befalls the haptic link.
+/// Prints the drills of frame `frame`, which is about to be sent, and writes them to `folder`/drills.done. Returns the
+/// faults of the haptic link among them.
 [[nodiscard]] std::vector<lockstep::Fault> beginDrills(const std::vector<Drill>& drills, std::uint64_t frame,
                                                        const std::filesystem::path& folder);
 

@@ -6,16 +6,18 @@
 
 namespace master {
 
-/// Why a session has ended itself, for whoever starts it again: OUT/failure.json.
+/// Reason why a session has ended itself. The launcher reads it from OUT/failure.json before it starts the session
+/// again.
 struct FailureReport {
     std::string what;     // "broken", "hung" or "disk"
-    int rank = -1;        // 0: the master; -1: nobody in particular
-    std::string host;     // that it runs on
-    std::string tile;     // empty for the master
+    int rank = -1;        // 0: the master; -1: no single rank
+    std::string host;     // host that the rank runs on
+    std::string tile;     // name of the rank's tile; empty for the master
     std::string message;  // one line
 };
 
-/// Writes it whole or not at all; false, with a line on standard error, when it cannot. Any thread.
+/// Emits the event `failure`, and writes failure.json whole or not at all. If it cannot be written, prints a line on
+/// standard error and returns false. Any thread.
 bool writeFailure(const FailureReport& failure, const std::filesystem::path& folder);
 
 }  // namespace master

@@ -12,26 +12,27 @@
 
 namespace master {
 
-/// What a film shows of a wall that draws two eyes.
+/// Picture that a film shows of a wall that draws two eyes.
 enum class FilmEye : std::uint8_t { left, right, anaglyph };
-/// Throws base::InputError for any word but "left", "right" and "anaglyph".
+/// Returns the FilmEye with the name `name`. Throws base::InputError if it is not "left", "right" or "anaglyph".
 [[nodiscard]] FilmEye filmEyeNamed(const std::string& name);
 
-/// The pictures of a film of the whole wall: FOLDER/frame_000001.png and so on. One thread.
+/// Writes the pictures of a film of the whole wall: FOLDER/frame_000001.png and so on. Used by one thread.
 ///
-/// Every picture is put together from all tiles: the only eye's of a wall that draws one; both eyes' packed as the
-/// wall's stereo says, as if the wall were one tile; of a wall that keeps the eyes apart the left one.
+/// Each picture is put together from all tiles. On a wall that draws one eye, it is the picture of this eye. If the
+/// wall's stereo mode packs both eyes into one picture, the film packs them in the same way, as if the wall were one
+/// tile. On other walls with two eyes, the film shows the left eye.
 class Film {
 public:
-    /// `eye` is shown instead. Throws base::InputError when the wall does not draw two eyes for it or has too many
-    /// pixels for one picture. The wall must outlive the film.
+    /// With `eye` the film shows this eye instead. Throws base::InputError if `eye` is given and the wall draws only
+    /// one eye, or if the wall has too many pixels for one picture. The wall must outlive the film.
     Film(const walls::Wall& wall, std::optional<FilmEye> eye, std::filesystem::path folder);
 
-    /// Receives the pictures that all ranks are sending and writes one. Throws base::InputError when it cannot, after
-    /// all were received.
+    /// Receives the pictures that all ranks are sending, and writes the film's next picture. Throws base::InputError if
+    /// it cannot be written, after all pictures were received.
     void take(const lockstep::Cluster& cluster, lockstep::Watchdog& watchdog);
 
-    /// Removes what a film before has left in a folder.
+    /// Removes the files of an earlier film from `folder`.
     static void forget(const std::filesystem::path& folder);
 
 private:

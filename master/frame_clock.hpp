@@ -55,7 +55,7 @@ private:
 
     double period_;  // [s]
     Pace pace_;
-    std::int64_t start_ = 0;             // [ns], when the frame before began
+    std::int64_t start_ = 0;             // [ns], begin of the frame before
     std::int64_t first_ = 0, last_ = 0;  // [ns], first and last swap; 0 before the first
 };
 

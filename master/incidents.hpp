@@ -8,30 +8,31 @@
 
 namespace master {
 
-/// What was healed or refused in a session, all its tries together: a try that is killed writes no summary.
+/// Counts of the incidents of a session, including the time before its restarts. A process that is killed writes no
+/// summary, so these counts have a file of their own.
 struct Incidents {
-    std::uint64_t divergences = 0, healed = 0, serverDivergences = 0;  // as in Summary
-    std::uint64_t links = 0, reconnects = 0;                           // of the hand, as in LinkCounters
-    haptic_bridge::RefusalCounts refusedHere{}, refused{};             // likewise
-    std::uint64_t stands = 0;                                          // times that the sand stood for want of room
+    std::uint64_t divergences = 0, healed = 0, serverDivergences = 0;  // see Summary
+    std::uint64_t links = 0, reconnects = 0;                           // of the haptic link, see LinkCounters
+    haptic_bridge::RefusalCounts refusedHere{}, refused{};             // of the haptic link, see LinkCounters
+    std::uint64_t stands = 0;  // times that the sand was stopped because the disk was full
     friend bool operator==(const Incidents&, const Incidents&) = default;
 };
 
-/// FOLDER/incidents.json, which is rewritten whenever something was added, and read by the try that goes on.
+/// The file FOLDER/incidents.json. It is rewritten when the counts have changed, and read when the session is resumed.
 class IncidentFile {
 public:
-    /// Reads what the tries before have left, of a session that goes on; what cannot be read counts as nothing, and is
-    /// said.
+    /// Reads the counts from before the restart if the session is `resumed`. If the file cannot be read, prints a line
+    /// and starts at 0.
     IncidentFile(const std::filesystem::path& folder, bool resumed);
-    /// Another session's is none of this one's.
+    /// Removes the file, which belongs to an earlier session.
     void forget() const;
 
-    /// Of the tries before.
+    /// Returns the counts from before the last restart.
     [[nodiscard]] const Incidents& before() const { return before_; }
-    /// Writes them where they have changed, four times a second at most, and until it succeeds: a full disk is an
-    /// incident itself.
+    /// Writes the counts if they have changed, at most four times per second. If the disk is full, tries again in later
+    /// calls, because a full disk is itself an incident.
     void keep(const Incidents& sinceTheBeginning, std::int64_t nowNs);
-    /// The same at the end, at once.
+    /// Writes the counts at the end of the session, at once, if they have changed.
     void keepLast(const Incidents& sinceTheBeginning);
 
 private:

@@ -7,15 +7,15 @@
 
 namespace master {
 
-/// What a fault can strike.
+/// Ranks, cells and link that a fault can strike.
 struct FaultTargets {
-    int ranks = 0;              // that draw
-    int columns = 0, rows = 0;  // [cell], of the sand
-    bool link = false;          // whether there is a haptic server to be linked to
+    int ranks = 0;              // render ranks
+    int columns = 0, rows = 0;  // size of the sand [cell]
+    bool link = false;          // whether the session has a haptic server
 };
 
-/// Reads a fault made on purpose: KIND:KEY=NUMBER,KEY=NUMBER,… as --inject takes it (docs/operator.md). Throws
-/// base::InputError that says what can be written.
+/// Parses a fault as the option --inject takes it: KIND:KEY=NUMBER,KEY=NUMBER,… (docs/operator.md). Throws
+/// base::InputError, which describes the valid forms.
 [[nodiscard]] lockstep::Fault parseFault(const std::string& text, const FaultTargets& targets);
 
 }  // namespace master

@@ -15,34 +15,38 @@
 
 namespace master {
 
-/// Measures a session, frame by frame: for summary.json, `ctl status`, the statistics on the wall, and the line of
-/// progress. One thread.
+/// Measures a session, frame by frame, for summary.json, `ctl status`, the statistics on the wall, and the line of
+/// progress. Used by one thread.
 class Measurements {
 public:
-    /// `ranks` counts the master. Times count from the frame after `from` on.
-    Measurements(std::size_t ranks, std::uint64_t from, double period /* [s], of a frame */, Pace pace);
+    /// `ranks` is the number of ranks, including the master. Times count only after frame `from`. `period` is the time
+    /// between two frames at the wall's refresh rate.
+    Measurements(std::size_t ranks, std::uint64_t from, double period /* [s] */, Pace pace);
 
     /// A frame that all ranks have agreed on.
     struct Frame {
         std::uint64_t number = 0;
-        std::size_t bytes = 0;       // of its message
-        std::int64_t broadcast = 0;  // when the ranks had the message [ns]
+        std::size_t bytes = 0;       // [byte], length of the frame message
+        std::int64_t broadcast = 0;  // [ns], when the frame message had been sent
         Swap swap;
     };
-    /// `arrivals` are those at its barrier. `clockOffset` is how far the haptic server's clock is ahead [ns].
+    /// Adds a frame with its steps. `arrivals` are the arrivals at the frame's barrier. `clockOffset` is server's clock
+    /// − master's clock [ns].
     void add(const Frame& frame, const std::vector<haptic_bridge::TimedStep>& steps,
              const std::vector<lockstep::Arrival>& arrivals, std::int64_t clockOffset);
 
-    /// Prints the line of progress and emits the event, once a second, and when `last` is set.
+    /// Prints the line of progress and emits the event `progress`, at most once per second, and always if `last` is
+    /// true.
     void sayProgress(std::uint64_t frame, std::uint64_t step, const std::string& of, const char* hand, bool last,
                      std::int64_t nowNs);
 
     [[nodiscard]] lockstep::RankStatistics& ranks() { return ranks_; }
-    /// Returns what the statistics on the wall say, of frames before this one.
+    /// Returns the figures that the wall shows as statistics. They cover the frames before the present one.
     [[nodiscard]] lockstep::WallFigures figures(const Incidents& incidents) const;
-    /// Adds fps and slowest to what `ctl status` answers. `names` are those of the ranks.
+    /// Adds the fields fps and slowest to the answer `status` of `ctl status`. `names` are the names of the ranks in
+    /// messages.
     void describe(nlohmann::json& status, const std::vector<std::string>& names) const;
-    /// Fills in what was measured.
+    /// Fills in the measured fields of `summary`.
     void fill(Summary& summary) const;
 
 private:
@@ -58,7 +62,7 @@ private:
     Latency latency_;
     std::uint64_t lateFrames_ = 0;
     double lastFrameMs_ = 0, lastSkewUs_ = 0;
-    double fps_ = 0;                 // over the last second or so
+    double fps_ = 0;                 // over about the last second
     std::int64_t lastProgress_ = 0;  // [ns]
     std::uint64_t lastProgressFrame_ = 0;
 };

@@ -25,56 +25,58 @@
 namespace master {
 
 struct DeskOptions {
-    bool readInput = false;  // lines on standard input are obeyed, and its end ends the session
+    bool readInput = false;  // reads commands from standard input; its end stops the session
     lockstep::Pattern pattern = lockstep::Pattern::none;  // shown from the start
-    lockstep::Overlays layers;                            // as well
+    lockstep::Overlays layers;                            // shown from the start
     tracking::Source tracker;                             // where the head's pose comes from
 };
 
-/// Obeys what people ask of a running session, typed or through its control socket, and answers them; holds what they
-/// have changed: the views, the material, and whether sand stands still. Main thread only.
+/// Carries out and answers the commands that operators give a running session, on standard input or through its control
+/// socket. Holds what the commands have changed: the view, the material, and whether the session is paused. Main thread
+/// only.
 class OperatorDesk {
 public:
     /// The parts of a session that the desk uses.
     struct Session {
         const MasterSand& sand;
-        StepRequests* requests;                  // null for a replay: nobody commands that but to stop
+        StepRequests* requests;                  // null for a replay, whose only command is stop
         std::function<bool(std::int64_t)> room;  // whether the disk has room for so many bytes of loaded sand
-        std::function<nlohmann::json()> status;  // that `status` answers, but for what the desk knows
+        std::function<nlohmann::json()> status;  // answer of `status`, without the fields of the desk
     };
 
-    /// `material` is that of the scene, or of the session that goes on. The wall and what `session` refers to outlive
-    /// the desk. Throws base::InputError when the tracker cannot be had.
+    /// `material` is the material of the scene, or of the resumed session. The wall and the objects that `session`
+    /// refers to must outlive the desk. Throws base::InputError if the tracker cannot be opened.
     OperatorDesk(const scene::Scene& scene, const scene::Material& material, const walls::Wall& wall,
                  std::filesystem::path out, const DeskOptions& options, Session session);
 
-    /// Obeys all that has come since the last call, and the keys that were pressed in the ranks' windows. Answers what
-    /// threads have finished.
+    /// Carries out the commands since the last call, and the keys in `arrivals` that were pressed in the ranks'
+    /// windows. Answers the clients of jobs that have ended.
     void obey(const std::vector<lockstep::Arrival>& arrivals);
     [[nodiscard]] bool stopAsked() const { return input_.stopAsked(); }
     [[nodiscard]] bool paused() const { return paused_; }
     [[nodiscard]] const EditQueue& edits() const { return edits_; }
     [[nodiscard]] ViewSource& views() { return views_; }
-    /// The wall in the stereo mode that was chosen last.
+    /// Returns the wall in the stereo mode that was chosen last.
     [[nodiscard]] const walls::Wall& shownWall() const { return shown_; }
-    /// Whether pictures of the next frame are wanted.
+    /// Returns whether pictures of the next frame are wanted.
     [[nodiscard]] bool wantsCapture() const { return captures_.wanted(jobs_); }
 
-    /// Tells all who wait for an edit that it waits for room on the disk. A server may have their edits already, so
-    /// that they cannot be taken back: they are done when there is room.
+    /// Answers all clients that wait for an edit that the edit waits for room on the disk. The haptic server may
+    /// already have these edits, so they cannot be taken back. They are done when there is room.
     void tellWhoWaitsForRoom();
-    /// Answers those whose edits are in `steps`, which the wall shows now.
+    /// Answers the clients whose edits are in `steps`, which the wall shows now.
     void answer(const std::vector<haptic_bridge::TimedStep>& steps);
     /// Calls Captures::take. A later obey() answers the clients.
     void takeCapture(std::uint64_t frame, const lockstep::Cluster& cluster, lockstep::Watchdog& watchdog);
-    /// Waits for the threads, answers their clients, and removes the control socket.
+    /// Waits for the background jobs, answers their clients, and removes the control socket.
     void close();
 
 private:
     using Client = ControlSocket::Client;
 
     void obeyLine(const std::string& line, std::optional<Client> client);
-    /// Returns whether the command is done, so that its client is told.
+    /// Returns whether the command is done, so that its client gets the answer "ok". Otherwise the answer comes later
+    /// or has been sent.
     [[nodiscard]] bool carryOut(const Command& command, std::optional<Client> client);
     void askEdit(sand::Edit edit, std::optional<Client> client,
                  const std::optional<scene::Material>& material = std::nullopt);
@@ -92,12 +94,12 @@ private:
     walls::Wall shown_;
     const SandPlace place_;
     const scene::MaterialGrid grid_;
-    scene::Material material_;  // with all that was asked for
+    scene::Material material_;  // with all changes that operators have asked for
     const std::filesystem::path out_;
     const Session session_;
     ViewSource views_;
     OperatorInput input_;
-    std::optional<ControlSocket> control_;  // none for a replay
+    std::optional<ControlSocket> control_;  // nullopt for a replay
     EditQueue edits_;
     BackgroundJobs jobs_;
     Captures captures_;

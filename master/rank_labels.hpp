@@ -10,15 +10,15 @@
 
 namespace master {
 
-/// How messages, events and files speak of each rank, by rank, the master first.
+/// Names of the ranks in messages, events and files, in order of rank, the master first.
 struct RankLabels {
     std::vector<std::string> names;  // "rank 5 (tile r2c1) on node3"
-    std::vector<std::string> hosts;  // that it runs on
-    std::vector<std::string> tiles;  // empty for the master
+    std::vector<std::string> hosts;  // hosts that the ranks run on
+    std::vector<std::string> tiles;  // names of the tiles; empty for the master
 
     static RankLabels of(const lockstep::Cluster& cluster, const walls::Wall& wall);
 
-    /// Makes the report of a failure. `what` and `rank` are those of FailureReport; `line` is its message.
+    /// Returns the report of a failure. `what` and `rank` are as in FailureReport; `line` is its message.
     [[nodiscard]] FailureReport failure(const std::string& what, int rank, const std::string& line) const;
 };
 

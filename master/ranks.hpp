@@ -10,21 +10,21 @@
 
 namespace master {
 
-/// All ranks of a wall at the end of a frame, as the master meets them. Main thread only.
+/// All ranks of a wall at the end of a frame, seen from the master. Main thread only.
 class Ranks {
 public:
     virtual ~Ranks() = default;
-    /// These three are the functions of the same names in lockstep/, called at the master.
+    /// The next three functions do what the functions of the same names in lockstep/ do at the master.
     [[nodiscard]] virtual lockstep::Verdict meet(const lockstep::Arrival& mine, std::int64_t nextFrame) = 0;
     [[nodiscard]] virtual lockstep::Divergence findDivergence(sand::Replica& sand,
                                                               const lockstep::Arbiter& arbiter) = 0;
     [[nodiscard]] virtual lockstep::Healing heal(sand::Replica& sand, const lockstep::Remedy& remedy) = 0;
-    /// Both return what came to the last meet(); arrivals by rank, beginning with the master's own.
+    /// Both return what arrived at the last meet(). Arrivals are in order of rank, the master's own first.
     [[nodiscard]] virtual const std::vector<lockstep::Arrival>& arrivals() const = 0;
     [[nodiscard]] virtual const std::vector<lockstep::FrameBarrier::Nonsense>& nonsense() const = 0;
 };
 
-/// Those of an MPI job.
+/// The ranks of an MPI job.
 class BarrierRanks : public Ranks {
 public:
     explicit BarrierRanks(lockstep::FrameBarrier& barrier) : barrier_(barrier) {}

@@ -9,27 +9,27 @@
 
 namespace master {
 
-/// Why a session stopped before it was resumed, as its supervisor reports.
+/// Reason why a session stopped before it was resumed. The launcher passes it on the command line.
 struct Failure {
     std::string what = "the start";  // for people
-    std::optional<int> rank;         // that failed; nothing if it was no rank
+    std::optional<int> rank;         // rank that failed; nullopt if no rank failed
     std::string how;                 // for programs: "SIGKILL", "status 3", "hung", "broken" or "disk"
-    double noticed = 0;              // Unix time [s]; 0: when this process started
+    double noticed = 0;              // Unix time [s] at which the failure was noticed; 0: when this process started
 };
 
-/// A session that has shown a frame again.
+/// Return of a session to work: the first frame that it shows after a failure.
 struct Recovery {
     Failure failure;
-    std::uint64_t step = 0, frame = 0;  // the first that was shown
+    std::uint64_t step = 0, frame = 0;  // first step and frame that were shown
     std::uint64_t stateHash = 0;
     std::uint64_t checkpointStep = 0, replayedSteps = 0;
     std::int64_t cutBytes = 0;
 };
 
-/// Says so on standard error, with the seconds from the failure to now, and appends it to FOLDER/recoveries.jsonl. A
-/// file that cannot be written is said, and nothing else.
+/// Prints the recovery on standard error, with the time since the failure [s], emits the event `recovered`, and appends
+/// it to `folder`/recoveries.jsonl. If the file cannot be written, prints this and continues.
 void tellRecovery(const Recovery& recovery, const std::filesystem::path& folder);
-/// The lines of FOLDER/recoveries.jsonl, each an object.
+/// Returns the lines of `folder`/recoveries.jsonl. Each line is a JSON object.
 [[nodiscard]] std::vector<std::string> recoveriesOf(const std::filesystem::path& folder);
 void forgetRecoveries(const std::filesystem::path& folder);
 

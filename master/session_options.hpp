@@ -22,31 +22,31 @@ namespace master {
 
 inline constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
 
-/// How a session runs.
+/// Options of a session.
 struct SessionOptions {
     std::optional<haptic_bridge::Address> server;
-    haptic_bridge::LinkSecurity security;  // of the link with it
+    haptic_bridge::LinkSecurity security;  // of the link to the server
     Pace pace = Pace::realtime;
-    std::optional<double> refreshHz;   // frames per second; none: the wall file's
-    std::uint64_t steps = kNoLimit;    // ends when exactly this many have been shown
-    std::uint64_t frames = kNoLimit;   // ends after this many
-    std::uint64_t settlingFrames = 0;  // from the start, whose times do not count
-    double frameTimeout = 30;          // [s] that a frame may take before the job ends
+    std::optional<double> refreshHz;   // frames per second; nullopt: as in the wall file
+    std::uint64_t steps = kNoLimit;    // the session ends when exactly this many steps have been shown
+    std::uint64_t frames = kNoLimit;   // the session ends after this many frames
+    std::uint64_t settlingFrames = 0;  // number of first frames whose times do not count
+    double frameTimeout = 30;          // [s], time that a frame may take before the job ends
     bool pictures = true;
     std::filesystem::path out;
     DeskOptions desk;
     RecordOptions record;
-    sand::grid::Erosion::Options sweeps;         // how the master's own replica is swept
-    std::shared_ptr<const Recording> recording;  // steps come from there, and no journal is written
-    bool film = false;                           // every frame becomes a picture, and there are no others
+    sand::grid::Erosion::Options sweeps;         // of the master's own replica
+    std::shared_ptr<const Recording> recording;  // source of the steps of a replay, which writes no journal
+    bool film = false;                           // writes a picture of every frame, and no other pictures
     std::optional<FilmEye> filmEye;
-    std::vector<Drill> drills;  // still to happen
+    std::vector<Drill> drills;  // drills that are still to happen
 };
 
-/// Returns the options with all that a recording, if there is one, says of them.
+/// Returns `options` adapted to their recording, if there is one.
 [[nodiscard]] SessionOptions completed(SessionOptions options);
-/// Makes the parts of a session that its options choose: the steps of a hand or of a recording, and the sand of the
-/// scene or of the session that goes on.
+/// Create the parts of a session that its options choose: the steps of a hand or of a recording, and the sand of the
+/// scene or of the resumed session.
 [[nodiscard]] std::unique_ptr<StepSource> stepsOf(const SessionOptions& options, const scene::Scene& scene);
 [[nodiscard]] MasterSand sandOf(const SessionOptions& options, const scene::Scene& scene);
 

@@ -22,48 +22,52 @@
 namespace master {
 
 struct RecordOptions {
-    bool keepsJournal = true;  // a replay has one already
+    bool keepsJournal = true;  // false for a replay, which has a journal already
     JournalOptions journal;
-    std::shared_ptr<const ResumedSession> resumed;  // goes on where that one stopped
-    Failure failure;                                // that made it stop
+    std::shared_ptr<const ResumedSession> resumed;  // session that is resumed; null for a new one
+    Failure failure;                                // failure that stopped the resumed session
 };
 
-/// Keeps the files that a session writes while it runs: journal, checkpoints, incidents and recoveries. One thread.
+/// Writes the files of a running session: journal, checkpoints, incidents and recoveries. Used by one thread.
 class SessionRecord {
 public:
-    /// Removes what an earlier session has left in `out`, unless this one goes on with it. Throws as JournalKeeper.
+    /// Removes the results of an earlier session from `out`. A resumed session keeps its divergence.txt, recoveries and
+    /// incidents. Throws as the constructor of JournalKeeper does.
     SessionRecord(std::filesystem::path out, RecordOptions options, const scene::Scene& scene, RankLabels labels);
 
-    /// Returns whether the disk has room for the steps of a frame, and for `bytes` of sand that is loaded. Remembers
-    /// the answer for full().
+    /// Returns whether the disk has room for the steps of a frame and for `bytes` of sand that is loaded. Also sets
+    /// full().
     [[nodiscard]] bool hasRoom(std::int64_t bytes, const MasterSand& sand);
-    /// Whether no steps are taken, because the disk has no room.
+    /// Returns whether the session takes no steps because the disk has no room.
     [[nodiscard]] bool full() const { return full_; }
 
-    /// Returns when the steps of a frame are on disk. `materials` are those that their edits make the session's. Throws
-    /// DiskFailure when the disk refuses, if the policy is `required`; failure.json says so then.
+    /// Writes the steps of a frame, and returns when they are on disk. `materials` are the materials that the edits of
+    /// these steps set. If the disk refuses them and the policy is `required`, writes failure.json and throws
+    /// DiskFailure.
     void keep(const JournalFrame& frame, const std::vector<scene::Material>& materials);
-    /// Keeps pieces of the tick track: on disk with later steps. Throws as keep().
+    /// Writes pieces of the tick track. They are on disk together with later steps. Throws as keep() does.
     void keepTicks(const std::vector<base::Bytes>& pieces);
-    /// Tells that the wall shows this frame: reports a recovery, and begins a checkpoint when one is due.
+    /// Called when the wall shows frame `frame`. Reports a recovery at the first one, and begins a checkpoint when one
+    /// is due.
     void shown(const Swap& swap, std::uint64_t frame, const MasterSand& sand, std::uint32_t epoch);
-    /// Ends the journal in an orderly way, unless ranks still differ.
+    /// Writes the journal's orderly end if `agreed`, which means that the ranks agreed to the end.
     void finish(const MasterSand& sand, bool agreed);
 
-    /// Incidents of the session before it stopped and went on; and the file that gets all of them.
+    /// Returns the incidents from before the last restart. The next two functions write all incidents to their file.
     [[nodiscard]] const Incidents& before() const { return incidents_.before(); }
     void keepIncidents(const Incidents& all, std::int64_t nowNs) { incidents_.keep(all, nowNs); }
     void keepLastIncidents(const Incidents& all) { incidents_.keepLast(all); }
-    /// How often the sand stood for want of room, since this process began.
+    /// Returns how often the sand was stopped because the disk was full, since this process began.
     [[nodiscard]] std::uint64_t stands() const { return journal_ ? journal_->stands() : 0; }
 
-    /// Returns the first file of the journal; empty if the session writes none, or has given it up.
+    /// Returns the first file of the journal. Returns an empty path if the session writes no journal, or has given it
+    /// up.
     [[nodiscard]] std::filesystem::path journalFile() const;
-    /// Computes from the journal the sand after the last step of `sand`. Returns null without a readable journal.
+    /// Computes the sand after the last step of `sand` from the journal. Returns null without a readable journal.
     [[nodiscard]] std::unique_ptr<sand::Replica> sandOfJournal(const MasterSand& sand,
                                                                const sand::grid::Erosion::Options& sweeps) const;
 
-    /// Adds journal, journal_policy and journal_state to what `ctl status` answers.
+    /// Adds the fields journal, journal_policy and journal_state to the answer `status` of `ctl status`.
     void describe(nlohmann::json& status) const;
     [[nodiscard]] Summary::Journal summary() const;
 

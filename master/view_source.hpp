@@ -12,14 +12,14 @@
 
 namespace master {
 
-/// From where the wall is seen, frame by frame: the viewer of the wall file or a tracked head, where the sand stands,
-/// and the test pattern in its place.
+/// Source of each frame's view: the eyes of the wall file's viewer or of a tracked head, the place of the sand in the
+/// room, and the test pattern or overlays that are shown.
 class ViewSource {
 public:
-    /// Throws base::InputError when the tracker cannot be had.
+    /// Throws base::InputError if the tracker cannot be opened.
     ViewSource(const walls::Wall& wall, const scene::Scene& scene, const tracking::Source& source);
 
-    /// At this time of the session [s].
+    /// Returns the view at the session's time `seconds` [s].
     [[nodiscard]] lockstep::ViewState at(double seconds);
 
     void show(lockstep::Pattern pattern) { state_.pattern = static_cast<std::uint8_t>(pattern); }
@@ -28,9 +28,9 @@ public:
     void show(lockstep::Overlays layers) { state_.layers = layers; }
     void show(lockstep::Overlay layer, bool shown) { state_.layers.set(layer, shown); }
     [[nodiscard]] lockstep::Overlays layers() const { return state_.layers; }
-    /// As TrackedViewer's.
+    /// Calls TrackedViewer::separateEyes().
     void separateEyes(double metres) { viewer_.separateEyes(metres); }
-    [[nodiscard]] double eyeSeparation() const { return state_.eyeSeparation; }  // [m], of the last at()
+    [[nodiscard]] double eyeSeparation() const { return state_.eyeSeparation; }  // [m], in the last view of at()
     [[nodiscard]] const tracking::TrackedViewer& viewer() const { return viewer_; }
 
 private:

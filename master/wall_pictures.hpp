@@ -14,37 +14,39 @@
 
 namespace master {
 
-/// Whether one picture can hold the whole wall.
+/// Returns whether one picture can hold the whole wall.
 [[nodiscard]] bool fitsOnePicture(const walls::Wall& wall);
 
-/// Receives every tile's pictures and puts each eye's together to one of the whole wall, in the order of
-/// walls::eyesOf; to empty ones when they do not fit. `each`, where there is one, sees them one by one: the tile, the
-/// eye's name or "output", and the picture. The ranks must be sending; the watchdog limits the wait for each picture.
+/// Receives the pictures of all tiles. Returns one picture of the whole wall per eye, in the order of walls::eyesOf().
+/// These pictures are empty if fitsOnePicture() is false. If `each` is set, calls it for every received picture with
+/// the tile, the eye's name or "output", and the picture. The ranks must be sending. The watchdog limits the wait for
+/// each picture.
 [[nodiscard]] std::vector<pictures::Image> receiveWall(
     const lockstep::Cluster& cluster, const walls::Wall& wall, lockstep::Watchdog& watchdog,
     const std::function<void(const walls::Tile&, std::string_view, const pictures::Image&)>& each);
 
-/// Receives every tile's pictures and writes them as tile_NAME_EYE.png, and the wall put together from them:
-/// wall_left.png, wall_right.png and wall_anaglyph.png, or wall.png where it is mono. Progress goes to stdout.
-/// The ranks must be sending; the watchdog limits the wait for each picture. Throws base::InputError when a file
-/// cannot be written, after all were received.
+/// Receives the pictures of all tiles and writes them as tile_NAME_EYE.png. Also writes pictures of the whole wall:
+/// wall_left.png, wall_right.png and wall_anaglyph.png, or wall.png if the wall draws one eye. Prints progress on
+/// standard output. The ranks must be sending. The watchdog limits the wait for each picture. Throws base::InputError
+/// if a file cannot be written, after all pictures were received.
 void writeWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall, const std::filesystem::path& folder,
                        lockstep::Watchdog& watchdog);
 
-/// The same pictures, received and not yet written.
+/// The pictures of all tiles and of the whole wall, received and not yet written.
 struct HeldPictures {
     struct Tile {
         std::string file;
         pictures::Image image;
     };
     std::vector<Tile> tiles;
-    std::vector<pictures::Image> whole;  // by eye; empty ones where no picture holds the wall
+    std::vector<pictures::Image> whole;  // one per eye; empty if fitsOnePicture() is false
 };
-/// Whether they may be held: on a wall of more than that they are to be written one by one.
+/// Returns whether all pictures of the wall may be held in memory. The pictures of a larger wall are written one by
+/// one.
 [[nodiscard]] bool mayBeHeld(const walls::Wall& wall);
 [[nodiscard]] HeldPictures holdWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall,
                                             lockstep::Watchdog& watchdog);
-/// Any thread. Throws base::InputError when a file cannot be written, after all were tried.
+/// Writes the pictures. Throws base::InputError if a file cannot be written, after all files were tried. Any thread.
 void writeHeldPictures(const HeldPictures& held, const std::filesystem::path& folder);
 
 }  // namespace master

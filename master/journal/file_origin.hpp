@@ -10,8 +10,8 @@
 
 namespace master {
 
-/// Which release wrote a file, in which format and with which algorithm. In journals, checkpoints and saved sand it
-/// follows the magic number (docs/journal.md).
+/// Release that wrote a file, with its format and algorithm. In journals, checkpoints and saved sand it follows the
+/// magic number (docs/journal.md).
 struct FileOrigin {
     std::uint32_t format = 0;
     std::uint32_t algorithm = 0;  // sand::kAlgorithmVersion

@@ -15,7 +15,7 @@
 #include "scene/material.hpp"
 #include "scene/scene.hpp"
 
-/// The bytes of a journal: header and records (docs/journal.md). Nothing here touches a file.
+/// Encodes and decodes the header and the records of a journal (docs/journal.md). Does not access files.
 namespace master {
 
 inline constexpr std::uint32_t kJournalVersion = 6;
@@ -27,17 +27,17 @@ struct JournalFrame {
     std::vector<sand::Step> steps;
 };
 
-/// The sand after a step: what the last record of a whole session holds, and the first bytes of a later part.
+/// Hash of the sand after a step. The last record of a whole session and the header of a later part contain one.
 struct JournalEnd {
     std::uint64_t step = 0, hash = 0;
 };
 
-/// A session that had stopped goes on here.
+/// Marks the place where a session was resumed.
 struct JournalResumed {
-    std::uint64_t frame = 0;  // the last that the journal knew of
+    std::uint64_t frame = 0;  // last frame in the journal before
     JournalEnd sand;
-    std::int64_t cutBytes = 0;  // of a torn record, before this one
-    std::string failure;        // what had failed; empty when nobody said
+    std::int64_t cutBytes = 0;  // [byte], length of the torn record that was cut off before this one
+    std::string failure;        // what had failed; empty if unknown
 };
 
 /// A piece of the haptic server's tick track.
@@ -45,7 +45,7 @@ struct JournalTicks {
     base::Bytes piece;
 };
 
-/// The rest of the session is in the next part.
+/// Last record of a part. The session continues in the next part.
 struct JournalContinued {
     std::uint32_t part = 0;
 };
@@ -53,34 +53,38 @@ struct JournalContinued {
 using JournalRecord =
     std::variant<JournalFrame, JournalEnd, JournalTicks, JournalResumed, scene::Material, JournalContinued>;
 
-/// What a journal's file begins with.
+/// Header of a journal's file.
 struct JournalHeader {
-    FileOrigin origin;          // as read; encodeHeader() writes this program's instead
-    std::uint64_t session = 0;  // a number that no other session has
+    FileOrigin origin;          // only when read; encodeHeader() writes this program's origin
+    std::uint64_t session = 0;  // random number of the session
     std::uint32_t part = 1;
-    std::uint64_t continues = 0;  // checksum of the last record of the part before; 0 in the first
-    JournalEnd sand;              // before its first step
+    std::uint64_t continues = 0;  // checksum of the last record of the part before; 0 in the first part
+    JournalEnd sand;              // sand before the file's first step
     std::string buildId;
-    base::Bytes scene;                        // scene::Scene::encode; empty in later parts
-    std::optional<scene::Material> material;  // as the operator knows it; none in later parts
+    base::Bytes scene;                        // scene::Scene::encode(); empty in later parts
+    std::optional<scene::Material> material;  // with the operator's numbers; nullopt in later parts
 };
 
-/// Thrown for a journal whose header is cut off or damaged.
+/// Error for a journal whose header is cut off or damaged.
 class HeaderLost : public base::FormatError {
 public:
     using base::FormatError::FormatError;
 };
 
-/// With its checksum, which begins the chain of the records behind it.
+/// Returns the bytes of a header with its checksum. Sets `chain` to the checksum, with which the chain of the records
+/// begins.
 [[nodiscard]] base::Bytes encodeHeader(const JournalHeader& header, std::uint64_t& chain);
-/// Throws HeaderLost or ForeignFile; the caller puts the file's name before the text. Does not decode the scene.
+/// Reads a header and sets `chain` to its checksum. Does not decode the scene. Throws HeaderLost or ForeignFile. The
+/// caller puts the file's name before the text.
 [[nodiscard]] JournalHeader decodeHeader(base::ByteReader& reader, std::uint64_t& chain);
 
-/// One whole record; `chain` is the checksum of the one before, and then its own.
+/// Returns the bytes of a whole record. `chain` is the checksum of the record before, and is set to the checksum of
+/// this record.
 [[nodiscard]] base::Bytes encodeRecord(const JournalRecord& record, std::uint64_t& chain);
-/// Of type and payload, whose checksum was right. Throws base::FormatError.
+/// Decodes a record from its type and payload, `body`. The caller has verified the checksum. Throws base::FormatError
+/// if the payload is invalid.
 [[nodiscard]] JournalRecord decodeRecord(std::span<const std::uint8_t> body);
-/// Of type and payload of a record.
+/// Returns the checksum of a record with type and payload `body`. `chain` is the checksum of the record before.
 [[nodiscard]] std::uint64_t recordChecksum(std::span<const std::uint8_t> body, std::uint64_t chain);
 
 /// Returns whether an intact record follows anywhere in `rest`, which begins with a broken one. If so, the file was

@@ -14,23 +14,23 @@
 
 namespace master {
 
-/// A session read back, all of it: about 400 bytes a step and 65 a tick of the track.
+/// A whole session, read from its journal. Takes about 400 bytes per step and 65 bytes per tick of the tick track.
 struct Journal {
     scene::Scene scene;
     std::string buildId;
     std::vector<JournalFrame> frames;
-    std::vector<base::Bytes> ticks;  // pieces of the haptic server's tick track, when it recorded
+    std::vector<base::Bytes> ticks;  // pieces of the haptic server's tick track, if it recorded one
     std::vector<JournalResumed> resumes;
-    std::optional<JournalEnd> end;  // absent when the session was cut off
-    std::int64_t tornBytes = 0;     // at the end of the last part, behind the last whole record; left out
+    std::optional<JournalEnd> end;  // nullopt if the session was cut off
+    std::int64_t tornBytes = 0;     // [byte], behind the last whole record of the last part; ignored
 };
 
-/// Throws base::InputError if the file is missing, is not a journal, has another format or algorithm, or is damaged
-/// before its end, and if one of its parts is missing.
+/// Reads a whole journal. Throws base::InputError if the file is missing, is not a journal, has another format or
+/// algorithm, or is damaged before its end. Also throws if one of its parts is missing.
 [[nodiscard]] Journal readJournal(const std::filesystem::path& file);
-/// Decodes the scene in the header. Throws base::InputError.
+/// Decodes the scene in the header. Throws base::InputError if it is invalid.
 [[nodiscard]] scene::Scene sceneOf(const JournalReader& reader);
-/// Decodes only the rules of that scene, not its heights. Throws base::InputError.
+/// Decodes only the rules of the scene in the header, not its heights. Throws base::InputError if they are invalid.
 [[nodiscard]] sand::Rules rulesOf(const JournalReader& reader);
 
 }  // namespace master

@@ -17,13 +17,13 @@
 
 namespace master {
 
-/// What happens when the disk refuses.
+/// Reaction of a session when the disk refuses to write the journal.
 enum class JournalPolicy : std::uint8_t {
-    required,    // no step is shown that is not on disk
-    bestEffort,  // the session goes on without a journal
-    off          // there is none
+    required,    // the wall shows no step that is not on disk
+    bestEffort,  // the session continues without a journal
+    off          // the session has no journal
 };
-/// Throws base::InputError for other words than required, best-effort and off.
+/// Returns the policy with the name `word`. Throws base::InputError if it is not required, best-effort or off.
 [[nodiscard]] JournalPolicy parseJournalPolicy(const std::string& word);
 [[nodiscard]] std::string_view journalPolicyName(JournalPolicy policy);
 
@@ -33,48 +33,51 @@ struct JournalOptions {
     std::int64_t partBytes = kPartBytes;
 };
 
-/// The disk has refused steps of a session that may not go on without.
+/// Error when the disk has refused steps and the policy is JournalPolicy::required.
 class DiskFailure : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
-/// Keeps a session on disk: journal and checkpoints, under a policy. Says on standard error what the disk refuses.
-/// Main thread; checkpoints are compressed and written on another.
+/// Writes the journal and the checkpoints of a session under a policy. Prints on standard error when the disk refuses
+/// something. Main thread only. Another thread compresses and writes the checkpoints.
 class JournalKeeper {
 public:
-    /// Begins OUT/session.journal, or goes on with that of `resumed`. Throws base::InputError when it cannot be made,
-    /// std::runtime_error while another session writes it, and when it is not what was read any more.
+    /// Begins OUT/session.journal, or continues the journal of `resumed`. `failure` is what stopped the resumed
+    /// session. Throws base::InputError if the journal cannot be made. Throws std::runtime_error while another session
+    /// writes it, or if it has changed since it was read.
     JournalKeeper(const std::filesystem::path& out, const JournalOptions& options, const scene::Scene& scene,
                   const ResumedSession* resumed, const std::string& failure, std::string buildId);
     ~JournalKeeper();
     JournalKeeper(const JournalKeeper&) = delete;
     JournalKeeper& operator=(const JournalKeeper&) = delete;
 
-    /// Whether steps of at most so many bytes may be taken: where the policy is required and the disk has no room for
-    /// them, they may not. Asked before every frame; the disk is asked again about once a second. `now` is the sand
-    /// that the wall shows.
+    /// Returns whether the session may take steps of at most `bytes` bytes. It may not if the policy is required and
+    /// the disk has no room for them. Called before every frame. Tries a full disk again about once per second. `now`
+    /// is the sand that the wall shows.
     [[nodiscard]] bool mayTake(std::int64_t bytes, const JournalEnd& now);
-    /// Returns when the steps are on disk. Throws DiskFailure when the disk refuses them and the policy is required.
+    /// Writes the steps of a frame, and returns when they are on disk. `materials` are the materials that their edits
+    /// set. Throws DiskFailure if the disk refuses them and the policy is required.
     void keep(const JournalFrame& frame, const std::vector<scene::Material>& materials);
-    /// Pieces of the tick track: on disk with later steps. Throws as keep() does.
+    /// Writes pieces of the tick track. They are on disk together with later steps. Throws as keep() does.
     void keepTicks(const std::vector<base::Bytes>& pieces);
-    /// After every frame: begins a checkpoint when it is time to. All steps of the sand are in the journal.
+    /// Begins a checkpoint if one is due. Called after every frame, when all steps of `terrain` are in the journal.
     void shown(const sand::Replica& terrain, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash);
     void finish(const JournalEnd& end);
 
     [[nodiscard]] JournalPolicy policy() const { return options_.policy; }
-    /// written, no_room, failed or off.
+    /// Returns "written", "no_room", "failed" or "off".
     [[nodiscard]] std::string_view state() const;
     [[nodiscard]] bool written() const { return writer_.has_value(); }
     [[nodiscard]] std::uint32_t parts() const { return writer_ ? writer_->part() : 0; }
-    /// What checkpoints cost the frame loop [ms], each.
+    /// Returns how long each checkpoint delayed the frame loop [ms].
     [[nodiscard]] const std::vector<double>& copyMs() const { return copyMs_; }
     [[nodiscard]] std::uint64_t checkpointsFailed() const { return checkpointsFailed_; }
-    /// How often, and how long altogether, the sand stood because the disk was full.
+    /// Return how often, and for how long in total [s], the sand was stopped because the disk was full.
     [[nodiscard]] std::uint64_t stands() const { return stands_; }
     [[nodiscard]] double stoodSeconds() const;
-    /// That a session before has left behind the end of its journal, which has lost steps; set aside.
+    /// Returns how many checkpoints were set aside at a resume. They are of later steps than the end of the journal,
+    /// which has lost steps.
     [[nodiscard]] std::uint64_t checkpointsBeyond() const { return checkpointsBeyond_; }
 
 private:
@@ -89,15 +92,15 @@ private:
     std::filesystem::path journal_;
     std::string buildId_;
     std::uint64_t sceneDigest_;
-    std::optional<JournalWriter> writer_;  // none: off, or failed
-    bool standing_ = false;                // for want of room
+    std::optional<JournalWriter> writer_;  // nullopt if off or failed
+    bool standing_ = false;                // the sand is stopped because the disk is full
     double stoodSince_ = 0, lastTry_ = 0;  // [s]
     std::uint64_t stands_ = 0;
     double stoodSeconds_ = 0;
     double lastCheckpoint_ = 0;  // [s]
     std::uint64_t checkpointStep_ = 0;
-    std::future<std::string> checkpoint_;  // that is being written; its complaint
-    std::string complaint_;                // of the last one
+    std::future<std::string> checkpoint_;  // result of the one that is being written: its error message
+    std::string complaint_;                // error message of the last checkpoint
     std::uint64_t checkpointsFailed_ = 0, checkpointsBeyond_ = 0;
     bool ticksLeftOut_ = false;
     std::vector<double> copyMs_;

@@ -10,25 +10,29 @@
 
 namespace master {
 
-/// Waits for the given time. A test passes a function that counts instead.
+/// Function that waits for the given time. A test passes one that counts instead.
 using Pause = std::function<void(std::chrono::milliseconds)>;
 /// Sleeps for `length`.
 void sleepFor(std::chrono::milliseconds length);
 
-/// A file that grows by whole records. What throws, throws base::InputError, and leaves the file ending with the
-/// record before. One thread.
+/// A file that grows by whole records. If a function fails, it throws base::InputError unless it says otherwise, and
+/// the file ends with the record before. Used by one thread.
 class PartFile {
 public:
-    /// A file that begins with these bytes, on disk: it has its name when they are. Replaces what is there.
+    /// Makes a file that begins with the bytes `begin`. The file gets its name when these bytes are on disk. Replaces
+    /// an existing file.
     static PartFile make(const std::filesystem::path& path, std::span<const std::uint8_t> begin);
-    /// Goes on at `size`; what stands behind is cut off. `seen` is how long the file was when it was read. Waits
-    /// kPatience for another process that writes the file. Throws std::runtime_error, for it may be otherwise in a
-    /// moment: when that one goes on, when the file is not what was read any more, and when the disk refuses.
+    /// Opens a file in order to continue it at `size`, and cuts off the bytes behind it. `seen` is the file's length
+    /// when it was read [byte]. Waits kPatience for another process that writes the file.
+    ///
+    /// Throws std::runtime_error if the other process continues, if the file has changed since it was read, or if the
+    /// disk refuses. These errors are no base::InputError, because a later try may succeed.
     static PartFile open(const std::filesystem::path& path, std::int64_t size, std::int64_t seen,
                          const Pause& pause = sleepFor);
-    /// Waits kPatience for another process that writes the file. Throws std::runtime_error if that process continues.
+    /// Waits kPatience for another process that writes the file. Throws std::runtime_error if the other process
+    /// continues.
     static void requireNoWriter(const std::filesystem::path& path, const Pause& pause = sleepFor);
-    /// A master that was killed has ended within kPatience. kPause is the time between two looks at the lock.
+    /// A master that was killed has ended within kPatience. kPause is the time between two tries to lock the file.
     static constexpr std::chrono::milliseconds kPatience{5000}, kPause{100};
     PartFile(PartFile&& other) noexcept;
     PartFile& operator=(PartFile&& other) noexcept;
@@ -36,10 +40,10 @@ public:
     PartFile& operator=(const PartFile&) = delete;
     ~PartFile();
 
-    /// On disk when it returns.
+    /// Appends `bytes`, which are on disk when the function returns.
     void write(std::span<const std::uint8_t> bytes);
-    /// Whether the disk has room for so many bytes more, and keeps it: 0, or why not, as errno has it. EOPNOTSUPP where
-    /// the file system cannot.
+    /// Reserves room on the disk for `bytes` more bytes. Returns 0, or the errno of the failure; EOPNOTSUPP if the file
+    /// system cannot reserve room.
     [[nodiscard]] int reserve(std::int64_t bytes);
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
@@ -52,8 +56,8 @@ private:
 
     std::filesystem::path path_;
     int descriptor_;
-    std::int64_t size_;      // [byte], of what is on disk, whole
-    std::int64_t reserved_;  // [byte], that the disk has room for
+    std::int64_t size_;      // [byte], length of the whole records on disk
+    std::int64_t reserved_;  // [byte], length for which the disk has room
 };
 
 }  // namespace master

@@ -11,20 +11,20 @@
 
 namespace master {
 
-/// FILE, FILE.2, FILE.3 …
+/// Returns the name of a part: FILE, FILE.2, FILE.3 …
 [[nodiscard]] std::filesystem::path partOf(const std::filesystem::path& journal, std::uint32_t part);
 
-/// Behind a whole record: where a session can go on.
+/// Place behind a whole record, at which a session can continue.
 struct JournalPlace {
-    std::filesystem::path journal;  // its first part
+    std::filesystem::path journal;  // first part of the journal
     std::uint64_t session = 0;
     std::uint32_t part = 1;
     std::int64_t offset = 0;  // in that part [byte]
     std::uint64_t chain = 0;
-    std::int64_t seen = 0;  // how long that part was when it was read [byte]
+    std::int64_t seen = 0;  // length of that part when it was read [byte]
 };
 
-/// Reads a session record by record, from part to part. Holds one record at a time. One thread.
+/// Reads a session record by record, from part to part. Holds one record at a time. Used by one thread.
 class JournalReader {
 public:
     /// Throws base::InputError if the file is missing, is not a journal, is a later part, has another format or
@@ -32,19 +32,21 @@ public:
     explicit JournalReader(std::filesystem::path journal);
 
     [[nodiscard]] const JournalHeader& header() const { return header_; }
-    /// The next record; nothing behind the last whole one. Never JournalContinued: what follows comes from the next
-    /// part. Throws base::InputError, with the place, for a journal that is damaged before its end, and for one of
-    /// whose parts one is missing; what was given before is whole.
+    /// Returns the next record; nullopt behind the last whole one. At the end of a part it continues with the next part
+    /// and does not return the JournalContinued.
+    ///
+    /// Throws base::InputError with the place if the journal is damaged before its end, or if one of its parts is
+    /// missing. All records that it has returned before are intact.
     [[nodiscard]] std::optional<JournalRecord> next();
 
-    /// Behind the record that was given last.
+    /// Returns the place behind the record that next() has returned last.
     [[nodiscard]] const JournalPlace& place() const { return place_; }
-    /// At the end, behind the last whole record, once next() has given nothing.
+    /// Returns the number of bytes behind the last whole record. Valid after next() has returned nullopt.
     [[nodiscard]] std::int64_t tornBytes() const { return tornBytes_; }
     [[nodiscard]] std::uint32_t parts() const { return place_.part; }
-    /// Of all parts so far, headers and all.
+    /// Returns the length of all parts so far up to place(), with headers [byte].
     [[nodiscard]] std::int64_t wholeBytes() const { return earlierBytes_ + place_.offset; }
-    /// Of all parts that are there.
+    /// Returns the length of all parts that exist [byte].
     [[nodiscard]] std::int64_t allBytes() const;
 
 private:
@@ -53,13 +55,13 @@ private:
     [[nodiscard]] bool readRecord(base::Bytes& body);
     [[noreturn]] void fail(const std::string& why) const;
     void endHere(const std::string& why);
-    /// Whether there is a next part that holds anything.
+    /// Returns whether there is a next part of this session with a record.
     [[nodiscard]] bool goesOn() const;
 
     JournalHeader header_;
     JournalPlace place_;
     std::ifstream stream_;
-    std::int64_t size_ = 0;  // of the part [byte]
+    std::int64_t size_ = 0;  // [byte], length of the part
     std::int64_t earlierBytes_ = 0;
     std::int64_t tornBytes_ = 0;
     bool ended_ = false;

@@ -13,24 +13,23 @@
 
 namespace master {
 
-/// A session that has been, cut into frames of another rate: frame n shows every step up to
-/// floor(n * steps per second / frames per second), and the last one all that are left. Immutable: safe from any
-/// thread.
+/// A recorded session, cut into frames of another rate. Frame n shows all steps up to floor(n * steps per second /
+/// frames per second). The last frame shows all steps that are left. Immutable, so any thread may use it.
 class Recording {
 public:
-    /// Throws base::InputError, with `file` in it, when the journal holds no steps or one of them is missing.
+    /// Throws base::InputError, which names `file`, if the journal holds no steps or if a step is missing.
     Recording(Journal journal, std::string file, int framesPerSecond);
 
     [[nodiscard]] const scene::Scene& scene() const { return scene_; }
     [[nodiscard]] int framesPerSecond() const { return framesPerSecond_; }
     [[nodiscard]] std::uint64_t lastStep() const { return steps_.size(); }
     [[nodiscard]] std::uint64_t frames() const { return frames_; }
-    /// The steps that frame `frame`, from 1, shows and the one before did not.
+    /// Returns the steps that frame `frame` shows and the frame before did not. Frames count from 1.
     [[nodiscard]] std::span<const sand::Step> stepsOf(std::uint64_t frame) const;
-    /// The state hash that the session had after this step (0: at its start); it wrote one for every frame, and one at
-    /// its end.
+    /// Returns the session's state hash after step `step`; 0 is its start. Returns nullopt if the journal has no hash
+    /// for this step. It has one for every frame with steps, and one at its end.
     [[nodiscard]] std::optional<std::uint64_t> hashAfter(std::uint64_t step) const;
-    /// What the user should know, in one line; empty for a session that is whole.
+    /// Returns a line for the user about missing parts of the session; empty if the session is whole.
     [[nodiscard]] const std::string& shortcoming() const { return shortcoming_; }
 
 private:
@@ -39,7 +38,7 @@ private:
     scene::Scene scene_;
     int framesPerSecond_;
     std::vector<sand::Step> steps_;                  // number n at n - 1
-    std::map<std::uint64_t, std::uint64_t> hashes_;  // by the step they were written after
+    std::map<std::uint64_t, std::uint64_t> hashes_;  // by the step after which they were written
     std::uint64_t frames_;
     std::string shortcoming_;
 };

@@ -12,41 +12,41 @@
 
 namespace master {
 
-/// The sand of a session after one of its steps, as its journal has it.
+/// The sand of a session after one of its steps, computed from its journal.
 struct RestoredSand {
     sand::Replica terrain;
-    std::uint64_t checkpointStep = 0;  // the step of the checkpoint it was computed from; 0 for the scene itself
-    std::uint64_t replayedSteps = 0;   // from there
+    std::uint64_t checkpointStep = 0;  // step of the checkpoint that was used; 0 for the scene itself
+    std::uint64_t replayedSteps = 0;   // steps that were replayed after it
 };
 
-/// Computes the sand after `step` from the newest usable checkpoint at or before it and the journal's steps behind
-/// that. `journal` is the session's file (session.journal); checkpoints lie beside it. Throws base::InputError when
-/// the journal cannot be read, ends before `step`, or disagrees with the hashes it holds. Any thread.
+/// Computes the sand after step `step` from the newest usable checkpoint at or before it and the journal's later steps.
+/// `journal` is the session's file (session.journal), with the checkpoints beside it. Throws base::InputError if the
+/// journal cannot be read, ends before `step`, or if the sand differs from its hashes. Any thread.
 [[nodiscard]] RestoredSand restoreSand(const std::filesystem::path& journal, std::uint64_t step,
                                        const sand::grid::Erosion::Options& sweeps = {});
 
-/// The sand of a checkpoint, of the session with this header, whose sand began as `start`. Throws base::FormatError
-/// when it is another's, or damaged.
+/// Returns the sand of the checkpoint `file`. `header` is the header of the session's journal, and `start` the sand at
+/// its start. Throws base::FormatError if the checkpoint is damaged or belongs to another session.
 [[nodiscard]] sand::Replica sandOfCheckpoint(const std::filesystem::path& file, const JournalHeader& header,
                                              const sand::Replica& start);
 
-/// A session that stopped, and all that it takes to go on.
+/// A session that has stopped, with everything that is needed to continue it.
 struct ResumedSession {
     scene::Scene scene;
-    scene::Material material;  // with all that its operator had asked for
-    JournalPlace place;        // where its journal goes on
-    std::uint64_t frame = 0;   // the last in the journal
-    std::uint32_t epoch = 0;   // the last
+    scene::Material material;  // with the operator's changes
+    JournalPlace place;        // where its journal continues
+    std::uint64_t frame = 0;   // last frame in the journal
+    std::uint32_t epoch = 0;   // last epoch in the journal
     std::uint64_t edits = 0;
-    std::uint64_t step = 0, hash = 0;  // the sand
-    base::Bytes state;                 // as well, sand::Replica::encodeState
-    std::int64_t cutBytes = 0;         // behind the last whole record of the journal: left out
+    std::uint64_t step = 0, hash = 0;  // last step, and the state hash after it
+    base::Bytes state;                 // sand::Replica::encodeState() after this step
+    std::int64_t cutBytes = 0;         // [byte], behind the last whole record of the journal; ignored
     std::uint64_t checkpointStep = 0, replayedSteps = 0;
 };
 
-/// Reads the session that `journal` holds; changes nothing. Nothing when there is none. A `scene` file that is named
-/// must describe its scene. Throws base::InputError for a journal that cannot be gone on with, and says what can be
-/// done with it.
+/// Reads the session in `journal` without changing it. Returns nullopt if the file does not exist. If the file `scene`
+/// is named, it must describe the session's scene. Throws base::InputError if the session cannot be continued; the text
+/// says what can be done with the journal.
 [[nodiscard]] std::optional<ResumedSession> readSession(const std::filesystem::path& journal, const std::string& scene,
                                                         const sand::grid::Erosion::Options& sweeps = {});
 

@@ -12,32 +12,33 @@
 
 namespace master {
 
-/// The scene that saved sand belongs to: heights mean nothing in cells of another size or over other rock.
+/// The scene that saved sand belongs to. Heights have no meaning in cells of another size or over other rock.
 struct SandPlace {
     std::string scene;
     std::int32_t columns = 0, rows = 0, aspect = 0;
     double cellSize = 0;       // [scene unit]
-    std::uint64_t ground = 0;  // Rules::ground, or a TIN's
+    std::uint64_t ground = 0;  // Rules::ground of a height field, combined with Rules::tin
 
     static SandPlace of(const scene::Scene& scene);
 };
 
-/// Whether a file of saved sand may be called that: letters, digits, - and _, at most 64, so that no name leads out of
-/// the session's folder.
+/// Returns whether `name` is a valid name for saved sand: 1 to 64 letters, digits, - and _. Such a name cannot lead out
+/// of the session's folder.
 [[nodiscard]] bool isSaveName(std::string_view name);
-/// SESSION/saves/NAME.sand
+/// Returns SESSION/saves/NAME.sand.
 [[nodiscard]] std::filesystem::path saveFile(const std::filesystem::path& session, std::string_view name);
 
 struct SavedSand {
     SandPlace place;
-    std::uint64_t step = 0, stateHash = 0;  // of the session when it was saved
-    base::Bytes sand;                       // sand::SurfaceCopy::encode
+    std::uint64_t step = 0, stateHash = 0;  // of the session when the sand was saved
+    base::Bytes sand;                       // sand::SurfaceCopy::encode()
 };
 
-/// On disk when it returns, or what was there before still is (docs/operator.md has the format). Makes the folder.
-/// Throws base::InputError in one line.
+/// Writes saved sand, which is on disk when the function returns (format: docs/operator.md). Makes the folder. If it
+/// fails, throws base::InputError with one line, and an earlier file stays unchanged.
 void writeSavedSand(const std::filesystem::path& file, const SavedSand& saved);
-/// Only sand of that place, and whole as `read` sees it. Throws base::InputError in one line.
+/// Reads saved sand. Throws base::InputError with one line if the file cannot be read, if its sand belongs to another
+/// place than `place`, or if `read` cannot decode it.
 [[nodiscard]] SavedSand readSavedSand(const std::filesystem::path& file, const SandPlace& place,
                                       const sand::SurfaceReader& read);
 

@@ -15,47 +15,48 @@ namespace master {
 
 inline constexpr std::int64_t kPartBytes = 256 << 20;
 
-/// What a session before has left goes out of the way: its journal becomes FILE.previous, its parts FILE.previous.2 and
-/// so on. Throws base::InputError.
+/// Renames the journal of an earlier session to FILE.previous, and its parts to FILE.previous.2 and so on. Throws
+/// base::InputError if this fails.
 void keepPreviousJournal(const std::filesystem::path& journal);
 
-/// Writes a session to disk before the wall shows it (docs/journal.md). One thread.
+/// Writes the steps of a session to disk before the wall shows them (docs/journal.md). Used by one thread.
 ///
-/// What throws, throws base::InputError; the file then ends with the record before, and the writer is to be left
-/// alone.
+/// If a function fails, it throws base::InputError unless it says otherwise. The file then ends with the record before,
+/// and the writer must not be used again.
 class JournalWriter {
 public:
-    /// Makes the file, header and all, after keepPreviousJournal(). A part that has grown beyond `partBytes` is
-    /// followed by another.
+    /// Calls keepPreviousJournal() and makes the file with its header. When a part has grown beyond `partBytes` [byte],
+    /// another part follows.
     JournalWriter(const std::filesystem::path& file, const scene::Scene& scene, const std::string& buildId,
                   std::int64_t partBytes = kPartBytes);
-    /// Goes on behind a whole record; what stands there is cut off. Throws std::runtime_error as PartFile::open.
+    /// Continues a journal at `place`, and cuts off the bytes behind it. Throws std::runtime_error as PartFile::open()
+    /// does.
     JournalWriter(const JournalPlace& place, const std::string& buildId, std::int64_t partBytes = kPartBytes);
 
     enum class Room : std::uint8_t {
-        reserved,  // what is appended next cannot find the disk full
-        none,      // it can be tried again
-        unknown    // this file system reserves nothing
+        reserved,  // the next records find room on the disk
+        none,      // the disk is full; a later call may find room
+        unknown    // this file system cannot reserve room
     };
-    /// Asks the file system for room for so many bytes more, before anybody relies on it; begins a new part where it
-    /// is time to. `now` is the sand after the last step that was appended. `why` says what is in the way.
+    /// Reserves room on the disk for `bytes` more bytes. Begins a new part if one is due. `now` is the sand after the
+    /// last step that was appended. Sets `why` to the reason if there is no room.
     [[nodiscard]] Room makeRoom(std::int64_t bytes, const JournalEnd& now, std::string& why);
 
-    /// Returns when the steps are on disk.
+    /// Writes the steps of a frame, and returns when they are on disk.
     void append(const JournalFrame& frame);
-    /// Anything else: on disk with the next steps, or when there is much of it and room. False when so much waits for
-    /// room that this was left out.
+    /// Adds any other record. It is on disk together with the next steps, or earlier if many bytes wait and the disk
+    /// has room. Returns false if too many bytes of ticks wait for room, so that this piece of ticks was left out.
     bool keep(const JournalRecord& record);
     void sync() { writeWaiting(); }
-    /// The session goes on here, having stopped.
+    /// Writes that the session was resumed here.
     void resume(const JournalResumed& resumed);
-    /// The session ended here, on purpose.
+    /// Writes the orderly end of the session.
     void finish(std::uint64_t step, std::uint64_t hash);
 
-    /// A number that no other session has.
+    /// Returns the random number of the session.
     [[nodiscard]] std::uint64_t session() const { return session_; }
     [[nodiscard]] std::uint32_t part() const { return part_; }
-    /// What is written now.
+    /// Returns the part that is being written.
     [[nodiscard]] const std::filesystem::path& file() const { return file_.path(); }
 
 private:
@@ -63,14 +64,14 @@ private:
     void put(const JournalRecord& record);
     void writeWaiting();
 
-    std::filesystem::path journal_;  // its first part
+    std::filesystem::path journal_;  // first part of the journal
     std::string buildId_;
     std::int64_t partBytes_;
     std::uint64_t session_;
     std::uint32_t part_ = 1;
     std::uint64_t chain_ = 0;
     PartFile file_;
-    base::Bytes waiting_;  // whole records that are not on disk
+    base::Bytes waiting_;  // whole records that are not on disk yet
 };
 
 }  // namespace master

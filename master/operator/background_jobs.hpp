@@ -13,21 +13,21 @@
 
 namespace master {
 
-/// The clients that wait for one answer; nullopt stands for a command that was typed.
+/// Clients that wait for one answer. nullopt stands for a command from standard input.
 using Clients = std::vector<std::optional<ControlSocket::Client>>;
 
-/// Work that no frame waits for, such as writing and reading files. Each job has a thread of its own; a later frame
-/// answers its clients. The main thread alone calls this class.
+/// Work that no frame waits for, such as writing and reading files. Each job has a thread of its own. A later frame
+/// answers its clients. Only the main thread calls this class.
 class BackgroundJobs {
 public:
     static constexpr std::size_t kMost = 4;  // at once, because each save holds a copy of the sand
 
-    /// The result of a job: a line of JSON, or an edit to be asked for.
+    /// Result of a job: an answer as a line of JSON, or an edit to ask for.
     struct Result {
         std::string json;
         sand::Edit edit;
     };
-    /// A job that has ended, and why it failed, if it did.
+    /// A job that has ended. `error` is empty if it succeeded.
     struct Done {
         Clients clients;
         Result result;
@@ -35,12 +35,12 @@ public:
     };
     enum class Kind { file, capture };
 
-    /// Throws base::InputError while kMost are under way.
+    /// Throws base::InputError if kMost jobs are running.
     void requireRoom() const;
     void start(std::function<Result()> work, Clients clients, Kind kind = Kind::file);
-    /// Whether pictures are being written.
+    /// Returns whether pictures are being written.
     [[nodiscard]] bool capturing() const;
-    /// Returns the jobs that have ended since the last call; with `wait` all of them, when they have.
+    /// Returns the jobs that have ended since the last call. With `wait`, waits until all jobs have ended.
     [[nodiscard]] std::vector<Done> finished(bool wait);
 
 private:

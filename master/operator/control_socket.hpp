@@ -14,19 +14,19 @@
 
 namespace master {
 
-/// Whether somebody of user `peer` may command a session of user `owner`: nobody but the owner, root neither.
+/// Returns whether a client of user `peer` may command a session of user `owner`. Only the owner may; root may not.
 [[nodiscard]] constexpr bool mayCommand(uid_t peer, uid_t owner) { return peer == owner; }
 
-/// The socket `control` in a session's folder, for its owner alone: a line of a client in, a line of JSON out, and the
-/// connection ends.
+/// The socket `control` in a session's folder, which only the session's owner may use. A client sends one line and gets
+/// one line of JSON. Then the connection ends.
 ///
-/// A thread of its own queues lines and sends answers, and does nothing else: clients that are slow, many or talk too
-/// much are sent away, and none of them reaches the frame loop.
+/// A thread of its own queues the lines and sends the answers. It closes the connections of clients that are slow, too
+/// many or send too much. Such clients never delay the frame loop.
 class ControlSocket {
 public:
     static constexpr const char* kName = "control";
     static constexpr std::size_t kMostClients = 16;  // at once
-    static constexpr int kPatience = 5;              // [s] that a client may take to send its line, and to read
+    static constexpr int kPatience = 5;              // [s], time for a client to send its line, and to read the answer
 
     using Client = std::uint64_t;
     struct Asked {
@@ -34,23 +34,25 @@ public:
         std::string line;  // at most kLongestCommand bytes
     };
 
-    /// Replaces a socket that nobody listens at. A folder that can hold no socket is said on stderr, and so is a
-    /// session that runs there already: this one then goes on without a control socket.
+    /// Makes the socket in `folder`. Replaces a socket at which no process listens. Prints a line on standard error if
+    /// the folder cannot hold a socket, or if another session runs there. The session then continues without a control
+    /// socket.
     explicit ControlSocket(const std::filesystem::path& folder);
-    /// Who still waits for an answer finds the connection closed.
+    /// Closes the connections of clients that still wait for an answer.
     ~ControlSocket();
     ControlSocket(const ControlSocket&) = delete;
     ControlSocket& operator=(const ControlSocket&) = delete;
 
-    /// What was asked since this was called last.
+    /// Returns the lines that clients have sent since the last call.
     [[nodiscard]] std::vector<Asked> take();
-    /// Answers what a client asked, with a line of JSON without its line feed. A client that has gone is forgotten.
+    /// Sends the line `json` to a client as its answer. `json` has no line feed. Ignored if the client has closed its
+    /// connection.
     void answer(Client client, std::string json);
 
 private:
     struct Guest {
         int descriptor = -1;
-        std::chrono::steady_clock::time_point until;  // after which it is sent away, unless it waits for an answer
+        std::chrono::steady_clock::time_point until;  // the connection is closed then, unless it waits for an answer
         std::string in, out;
         bool waiting = false;  // its line has been taken
     };
@@ -60,7 +62,7 @@ private:
     void admit();
     void read(Client client, Guest& guest);
     void collectAnswers();
-    /// Sends what it can; false when the guest is done with.
+    /// Sends as much of the answer as possible. Returns false if all is sent or the connection is broken.
     [[nodiscard]] static bool write(Guest& guest);
     void sendAway(const std::vector<Client>& clients);
 

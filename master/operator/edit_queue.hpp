@@ -13,31 +13,34 @@
 
 namespace master {
 
-/// Edits of the sand that were asked for and are in no step yet, in that order. One thread.
+/// Edits of the sand that operators have asked for and that are not in a step yet, in the order of the requests. Used
+/// by one thread.
 class EditQueue {
 public:
     static constexpr std::size_t kMost = 16;
 
     struct Asked {
         sand::Edit edit;
-        std::optional<ControlSocket::Client> client;  // that gets the answer; nobody for a line that was typed
-        std::optional<scene::Material> material;      // that the edit makes the session's
+        std::optional<ControlSocket::Client>
+            client;                               // client that gets the answer; nullopt for a line from standard input
+        std::optional<scene::Material> material;  // the session's material after the edit; nullopt if unchanged
     };
 
-    /// Throws base::InputError while the queue is full, or if this is a load and another one waits: each holds the
-    /// whole sand.
+    /// Throws base::InputError if the queue is full. Also throws if `edit` is a load and another load waits, because
+    /// each load holds the whole sand.
     void requireRoomFor(const sand::Edit& edit) const;
     void add(Asked asked) { asked_.push_back(std::move(asked)); }
     [[nodiscard]] std::size_t size() const { return asked_.size(); }
-    /// Returns how much sand is loaded by the edits that wait [byte], and by `more`.
+    /// Returns the size of the sand that the waiting edits and `more` load [byte].
     [[nodiscard]] std::int64_t sandBytes(const sand::Edit& more = {}) const;
-    /// Returns the materials that the edits of these steps make the session's.
+    /// Returns the materials that the edits of `steps` set.
     [[nodiscard]] std::vector<scene::Material> materialsOf(const std::vector<sand::Step>& steps) const;
 
-    /// Removes the first edit if `edit` equals it, because a step with it is shown. Returns the client that waits for
-    /// the answer, if there is one.
+    /// Removes the first edit if it equals `edit`, because the wall shows a step with it. Returns the client that waits
+    /// for the answer; nullopt without one.
     [[nodiscard]] std::optional<ControlSocket::Client> shown(const sand::Edit& edit);
-    /// Returns the clients that wait, and forgets them: the caller answers them at once. Their edits stay.
+    /// Returns the clients that wait, and removes them from the queue, because the caller answers them at once. Their
+    /// edits stay.
     [[nodiscard]] std::vector<ControlSocket::Client> releaseClients();
 
 private:

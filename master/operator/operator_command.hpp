@@ -36,18 +36,19 @@ enum class Verb : std::uint8_t {
     stop
 };
 
-/// What somebody asks of a running session, typed or through its control socket (docs/operator.md).
+/// An operator's command to a running session, from standard input or through its control socket (docs/operator.md).
 struct Command {
     Verb verb = Verb::status;
-    std::optional<lockstep::Pattern> pattern;  // of Verb::pattern; none: the next one
-    lockstep::Overlay layer{};                 // of Verb::show and Verb::hide
-    double number = 0;                         // of Verb::eyeSeparation [m], Verb::material, Verb::force [share]
-    scene::ToolChange tool{};                  // of Verb::tool
-    std::string word;                          // of Verb::material, which number; of Verb::save and Verb::load
-    walls::Stereo stereo{};                    // of Verb::stereo
+    std::optional<lockstep::Pattern> pattern;  // for Verb::pattern; nullopt: the next pattern
+    lockstep::Overlay layer{};                 // for Verb::show and Verb::hide
+    double number = 0;                         // for Verb::eyeSeparation [m], Verb::material, Verb::force [share]
+    scene::ToolChange tool{};                  // for Verb::tool
+    std::string word;        // name of the number for Verb::material, of the file for Verb::save and Verb::load
+    walls::Stereo stereo{};  // for Verb::stereo
 };
 
-/// Throws base::InputError, with the verbs there are, for a line that is no command.
+/// Parses a command. Throws base::InputError if `line` is not a valid command; the text lists all verbs if the verb is
+/// unknown.
 [[nodiscard]] Command parseCommand(std::string_view line);
 
 }  // namespace master

@@ -9,14 +9,14 @@
 
 namespace master {
 
-/// What somebody types into a running session: commands (operator_command.hpp), a line each on standard input; its end
-/// (the launcher is gone) or SIGTERM mean stop.
+/// Standard input of a running session. Each line is a command (operator_command.hpp). The end of the input means that
+/// the launcher has ended; like SIGTERM it stops the session.
 ///
-/// mpirun hands its standard input to rank 0, so that the launcher can ask for an orderly end and need not send
-/// signals, which mpirun follows up with SIGKILL.
+/// mpirun passes its standard input to rank 0. The launcher can therefore ask for an orderly end without a signal.
+/// After a signal, mpirun would kill all ranks with SIGKILL.
 class OperatorInput {
 public:
-    /// Starts listening. `readInput` is off for sessions started by hand, where input may be closed.
+    /// Starts to listen. `readInput` is false for sessions that are started by hand, because their input may be closed.
     explicit OperatorInput(bool readInput);
     ~OperatorInput();
     OperatorInput(const OperatorInput&) = delete;
@@ -24,12 +24,12 @@ public:
 
     [[nodiscard]] bool stopAsked() const;
     void stop() { stop_ = true; }
-    /// The lines typed since this was called last; "stop" is not among them.
+    /// Returns the lines since the last call, without "stop".
     [[nodiscard]] std::vector<std::string> takeLines();
 
 private:
     void listen();
-    /// Keeps a line; false ends the listening.
+    /// Adds a line to the list. Returns false if the line is "stop", which ends the thread.
     bool keep(std::string line);
 
     std::atomic<bool> stop_{false};

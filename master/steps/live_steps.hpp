@@ -17,40 +17,42 @@
 
 namespace master {
 
-/// Gives every step its number, or leaves that to the haptic server: exactly one of them per epoch.
+/// The steps of a live session. In each epoch exactly one program numbers the steps: the haptic server or the master.
 ///
-/// While a server with sand of its own is linked it numbers; else the master does, with the tool where a server without
-/// sand says, or hovering, so that sand never freezes in mid-slide. Every change is a new epoch. Main thread only.
+/// While a server with sand is linked, the server numbers the steps. Otherwise the master does, so that sliding sand
+/// never stops. The tool of the master's steps is where a server without sand reports it, or it hovers. Each change
+/// begins a new epoch. Main thread only.
 class LiveSteps : public StepSource, public StepRequests {
 public:
-    /// At the start a haptic server is waited for this long before the master numbers by itself [s].
+    /// Time at the start for which the master waits for a haptic server before it numbers the steps itself [s].
     static constexpr double kStartWait = 10;
-    /// A server that has been handed the numbering and does not begin within this time is passed over [s].
+    /// Time within which a server must begin to number the steps when the master has asked it to [s].
     static constexpr double kGrantWait = 5;
-    static constexpr double kRetryWait = 30;  // [s] until it is tried again
+    static constexpr double kRetryWait = 30;  // [s] until the master asks such a server again
 
-    /// Epochs begin above `epoch`, the last of a session that goes on. Every timeout uses `clock`, also those of
-    /// the link.
+    /// `epoch` is the last epoch of a resumed session; new epochs have higher numbers. All timeouts use `clock`, also
+    /// those of the link.
     LiveSteps(std::optional<haptic_bridge::Address> server, const scene::Scene& scene, Pace pace,
               std::uint32_t epoch = 0, haptic_bridge::LinkSecurity security = {}, haptic_bridge::LinkClock clock = {});
 
     [[nodiscard]] std::vector<haptic_bridge::TimedStep> next(const sand::Replica& terrain, std::uint64_t stateHash,
                                                              std::size_t most) override;
     [[nodiscard]] std::size_t mostPerFrame() const override { return pace_ == Pace::fast ? 4 : 8; }
-    /// A fast session waits for a step before it shows a frame without.
+    /// Returns how long a frame waits for a step [s]. Only a fast session waits.
     [[nodiscard]] double patience() const override { return pace_ == Pace::fast ? 0.1 : 0; }
     [[nodiscard]] StepRequests* requests() override { return this; }
     void request(sand::Edit edit) override { edits_.push_back(std::move(edit)); }
     void shareForce(double share) override { share_ = share; }
 
     void shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs) override;
-    /// The server starts again from the wall's state. True also if no linked server has numbered the steps.
+    /// If the hashes differ, connects again, so that the server starts from the wall's state. Also returns true if no
+    /// linked server has numbered the steps.
     [[nodiscard]] bool proveServer(const std::vector<haptic_bridge::TimedStep>& steps,
                                    std::uint64_t stateHash) override;
     [[nodiscard]] std::vector<base::Bytes> ticks() override;
     void drill(const lockstep::Fault& fault) override { drills_.push_back(fault); }
 
-    /// Whether steps are still awaited from a server that has only just started.
+    /// Returns whether the session has just started and still waits for the server.
     [[nodiscard]] bool starting() const { return source_ == Source::starting; }
     [[nodiscard]] bool linked() const override { return source_ == Source::server; }
     [[nodiscard]] bool streaming() const override { return source_ == Source::own && positions_.streaming(); }
@@ -68,7 +70,8 @@ private:
     void startDrills();
     void sayLink(const haptic_bridge::LinkStatus& status);
     void grant(const sand::Replica& terrain, std::uint64_t stateHash);
-    /// `reason` is the word for programs, `why` the words for people; both empty where nothing was lost.
+    /// Lets the master number the steps in a new epoch. `reason` is a name for programs, `why` a text for the user;
+    /// both are empty if no link was lost.
     void takeOver(const std::string& reason = "", const std::string& why = "");
     void leaveServer();
     void distrustServer();
@@ -90,17 +93,17 @@ private:
     std::unique_ptr<haptic_bridge::Client> client_;
     Source source_;
     std::uint32_t epoch_;
-    std::uint64_t linkChanges_ = 0;  // of which the user has been told
-    std::int64_t waitingSinceNs_;    // for a server to answer, or to begin
+    std::uint64_t linkChanges_ = 0;  // the last change of the link that was printed
+    std::int64_t waitingSinceNs_;    // [ns], since when the master waits for the server
     haptic_bridge::LinkCounters earlierLinks_;
     std::optional<haptic_bridge::Report> earlierReport_;
-    std::deque<sand::Edit> edits_;  // asked for, and in no step yet
+    std::deque<sand::Edit> edits_;  // edits that are not in a step yet
     PositionSource positions_;
-    std::vector<base::Bytes> ticks_;       // of a server that was let go
-    std::vector<lockstep::Fault> drills_;  // that wait for a link
-    double share_ = 1;                     // of the force
-    double toldShare_ = 1;                 // that the server knows
-    std::uint32_t toldEpoch_ = 0;          // in which the server was asked for the first of them
+    std::vector<base::Bytes> ticks_;       // of a server whose link the master has ended
+    std::vector<lockstep::Fault> drills_;  // faults that wait for a link
+    double share_ = 1;                     // share of the force that operators have asked for
+    double toldShare_ = 1;                 // share that the server knows
+    std::uint32_t toldEpoch_ = 0;          // epoch in which the server was asked for the first of edits_; 0: not asked
     double ownStepsOwed_ = 0;
     std::int64_t lastOwnNs_ = 0;
 };

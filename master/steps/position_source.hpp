@@ -14,27 +14,28 @@
 
 namespace master {
 
-/// Makes the paths of the master's own steps from what a server without sand streams: where its hand is.
+/// Makes the paths of the master's own steps from the positions of the hand that a server without sand streams.
 ///
-/// A position that cannot be believed lifts the tool, and so does a server that has said nothing for kPatience. One
-/// thread; the scene outlives it.
+/// Lifts the tool if a position is implausible, or if the server has sent no position for kPatience. Used by one
+/// thread. The scene must outlive this object.
 class PositionSource {
 public:
     static constexpr double kPatience = 0.5;  // [s]
-    static constexpr double kFarthest =
-        0.5;  // [hand space], of a movement between two positions: a quarter of the field
+    // [hand space], longest plausible movement between two positions: a quarter of the field.
+    static constexpr double kFarthest = 0.5;
 
     explicit PositionSource(const scene::Scene& scene);
 
-    /// A server begins to stream; the tool is where the terrain has it.
+    /// Call it when a server begins to stream. The tool is then where `terrain` has it.
     void begin(const sand::Replica& terrain);
     void end() { streaming_ = false; }
     [[nodiscard]] bool streaming() const { return streaming_; }
 
     void add(const std::vector<haptic_bridge::TimedPosition>& positions, std::int64_t nowNs);
-    /// Fills in where the hand has been since the step before; a hovering tool while nobody streams.
+    /// Fills in the hand's path since the step before. If no server streams, the tool hovers.
     void fill(sand::Step& step);
-    /// What a person should read now, of positions that were wrong.
+    /// Returns messages about wrong positions that are to be printed now. `floods` is the number of floods on the link
+    /// so far.
     [[nodiscard]] std::vector<std::string> troubles(std::uint64_t floods, std::int64_t nowNs);
 
 private:

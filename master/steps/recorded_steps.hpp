@@ -11,13 +11,13 @@
 
 namespace master {
 
-/// The steps of a recording, and the comparison of the sand with the hashes that it holds. One thread.
+/// The steps of a recording. Compares the sand with the hashes in the recording. Used by one thread.
 class RecordedSteps : public StepSource {
 public:
-    /// Ends after step `last`.
+    /// Returns no steps after step `last`.
     RecordedSteps(std::shared_ptr<const Recording> recording, std::uint64_t last);
 
-    /// The recording says which steps each frame shows: `most` does not count.
+    /// Returns the steps that the recording has for the next frame. Ignores `most`.
     [[nodiscard]] std::vector<haptic_bridge::TimedStep> next(const sand::Replica& sand, std::uint64_t hash,
                                                              std::size_t most) override;
     [[nodiscard]] std::size_t mostPerFrame() const override { return static_cast<std::size_t>(-1); }
@@ -32,7 +32,7 @@ private:
     std::uint64_t last_;
     std::uint64_t frame_ = 0;
     bool strayed_ = false;
-    std::string line_;  // not said yet: it may be the master's own memory that strayed
+    std::string line_;  // not printed yet, because the master's own memory may be wrong and may be healed
 };
 
 }  // namespace master
