@@ -74,7 +74,7 @@ bool Agreement::healSand(std::uint64_t frame, MasterSand& sand, StepSource& step
     }
     tell(lines, out_ / "divergence.txt");
     if (!broken && divergence.journal) {
-        // No rank has it: it goes to the others from here.
+        // No rank has the right sand, so the master takes it from the journal and sends it to the others.
         sand.replica().decodeState(divergence.journal->encodeState());
         remedy.source = lockstep::kMaster;
         std::erase(remedy.odd, lockstep::kMaster);

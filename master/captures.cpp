@@ -14,13 +14,14 @@
 namespace master {
 namespace {
 
-/// Makes capture_001, or the first after it that is not there, so that pictures of an earlier session stay.
+/// Makes and returns the folder capture_001, or the first later one that does not exist. So the pictures of an earlier
+/// session stay.
 std::filesystem::path newFolder(const std::filesystem::path& out) {
     for (int number = 1;; ++number) {
         std::filesystem::path folder = out / fmt::format("capture_{:03}", number);
         std::error_code error;
         if (std::filesystem::create_directory(folder, error) || error) {
-            return folder;  // the first picture tells when it could not be made
+            return folder;  // if the folder could not be made, writing the first picture fails
         }
     }
 }

@@ -38,7 +38,7 @@ void keep(const std::string& text, const std::filesystem::path& file) {
 
 std::vector<Drill> withoutDone(std::vector<Drill> drills, const std::filesystem::path& folder, bool resumed) {
     if (!resumed) {
-        std::error_code none;  // usually there is nothing
+        std::error_code none;  // ignored, because the file usually does not exist
         std::filesystem::remove(folder / kDone, none);
         return drills;
     }

@@ -19,7 +19,7 @@ bool writeFailure(const FailureReport& failure, const std::filesystem::path& fol
                                       {"host", failure.host},
                                       {"tile", failure.tile},
                                       {"message", failure.message}};
-    // Also where OUT cannot be written: the launcher reads this one there.
+    // The event is emitted even if OUT cannot be written. The launcher then reads the event.
     host::emitEvent("failure",
                     {{"failure", host::Json{json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)}}});
     try {

@@ -16,9 +16,9 @@
 namespace master {
 namespace {
 
-constexpr std::size_t kDigits = 6;  // as the launcher tells the program that makes the film
+constexpr std::size_t kDigits = 6;  // the launcher passes the same number to the program that makes the film
 
-/// "frame_000001.png"
+/// Returns whether `name` is the name of a film's picture, such as "frame_000001.png".
 bool isFrame(const std::string& name) {
     const std::string_view before = "frame_";
     const std::string_view behind = ".png";
@@ -72,7 +72,7 @@ void Film::take(const lockstep::Cluster& cluster, lockstep::Watchdog& watchdog) 
 }
 
 void Film::forget(const std::filesystem::path& folder) {
-    std::error_code none;  // usually there is nothing
+    std::error_code none;  // ignored, because usually no such file exists
     std::vector<std::filesystem::path> old{folder / "film.mp4"};
     for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
         if (isFrame(entry.path().filename().string())) {

@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::int64_t kSeldomNs = 250'000'000;  // a flood must not become one of files
+constexpr std::int64_t kSeldomNs = 250'000'000;  // so that a flood of incidents does not become a flood of files
 
 ordered_json jsonOf(const Incidents& incidents) {
     ordered_json json{{"divergences", incidents.divergences},
@@ -92,7 +92,7 @@ void IncidentFile::write(const Incidents& incidents) {
         whole.keep();
         kept_ = incidents;
     } catch (const base::InputError&) {
-        // The journal's complaint about the same disk is enough.
+        // Prints nothing, because the journal prints that the same disk is full.
     }
 }
 

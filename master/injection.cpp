@@ -18,17 +18,18 @@
 namespace master {
 namespace {
 
-constexpr std::uint64_t kMostMilliseconds = 10'000;   // of slow drawing
+constexpr std::uint64_t kMostMilliseconds = 10'000;   // [ms], of slow drawing
 constexpr std::uint64_t kLongestPartition = 600'000;  // [ms]
 constexpr std::uint64_t kMostSignal = 31;
-constexpr std::array<std::uint64_t, 8> kHarmless{SIGCHLD, SIGCONT, SIGURG,  SIGWINCH,  // ignored
-                                                 SIGSTOP, SIGTSTP, SIGTTIN, SIGTTOU};  // hang is for that
-constexpr std::uint64_t kHighestBit = 27;                                              // heights are below 2^28
+constexpr std::array<std::uint64_t, 8> kHarmless{
+    SIGCHLD, SIGCONT, SIGURG,  SIGWINCH,   // a process ignores these
+    SIGSTOP, SIGTSTP, SIGTTIN, SIGTTOU};   // these stop a process, as hang does
+constexpr std::uint64_t kHighestBit = 27;  // heights are below 2^28
 constexpr std::uint64_t kMostFrames = std::numeric_limits<std::uint64_t>::max();
 
 using Kind = lockstep::Fault::Kind;
 
-/// How each kind is written, in the order of Kind.
+/// Form of each kind of fault, in the order of Kind.
 constexpr std::array<std::string_view, lockstep::kFaultNames.size()> kUsage{
     "slow:rank=R,ms=MS[,frame=FIRST][,frames=COUNT]",
     "diverge:rank=R,frame=F[,column=C,row=W,bit=B]",
@@ -39,7 +40,7 @@ constexpr std::array<std::string_view, lockstep::kFaultNames.size()> kUsage{
     "view:rank=R,frame=F",
     "shader:rank=R"};
 
-/// A number that a kind of fault takes.
+/// A number that a kind of fault takes, with its range and the variable for it.
 struct Key {
     std::string_view name;
     std::uint64_t least, most;
@@ -129,7 +130,7 @@ lockstep::Fault parseFault(const std::string& text, const FaultTargets& targets)
             break;
         case Kind::shader:
             keys = {{"rank", 1, ranks, &rank}};
-            fault.frame = 0;  // before the first
+            fault.frame = 0;  // before the first frame
             break;
         case Kind::garbage:
             keys = {{"rank", 1, ranks, &rank, false}, frame};

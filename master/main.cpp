@@ -29,7 +29,7 @@ struct Options {
     std::string scene, replay, wall, haptic = "none", pace = "realtime", out;
     int framesPerSecond = 30;  // of a replay
     std::string filmEye;
-    std::string stereo, track;  // as the wall file says when empty
+    std::string stereo, track;  // empty: as in the wall file
     std::string pattern = "none";
     std::vector<std::string> layers;
     std::vector<std::string> injections;
@@ -42,14 +42,14 @@ struct Options {
     int sandThreads = 1;
 };
 
-/// What everyone needs to know, from the files the user named.
+/// Contents of the files that the user named, and the message with them for all ranks.
 struct World {
     scene::Scene scene;
     walls::Wall wall;
     lockstep::SessionMessage message;
 };
 
-/// Where the session in --out stopped, if there is one.
+/// Finds the place where the session in --out stopped, if there is one.
 void resume(const lockstep::Cluster& cluster, Options& options) {
     const std::filesystem::path journal = std::filesystem::path(options.out) / "session.journal";
     if (options.session.record.journal.policy == master::JournalPolicy::off) {
@@ -80,14 +80,14 @@ void resume(const lockstep::Cluster& cluster, Options& options) {
     options.session.record.resumed = std::make_shared<const master::ResumedSession>(std::move(*resumed));
 }
 
-/// The scene of the file named, or of the journal that is to be replayed or gone on with.
+/// Returns the scene of --scene, of the journal that is replayed, or of the session that is resumed.
 scene::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
     options.session.record.journal.policy = master::parseJournalPolicy(options.journal);
     options.session.record.journal.partBytes = options.partMegabytes << 20;
     if (options.resume) {
         resume(cluster, options);
         if (options.session.record.resumed) {
-            options.scene = options.scene.empty() ? options.out : options.scene;  // for complaints
+            options.scene = options.scene.empty() ? options.out : options.scene;  // for error messages
             return options.session.record.resumed->scene;
         }
     }
@@ -122,7 +122,7 @@ scene::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
 }
 
 World loadWorld(const lockstep::Cluster& cluster, Options& options) {
-    cluster.mayTakeLong(true);  // until the ranks have been told of it
+    cluster.mayTakeLong(true);  // until broadcastSession()
     master::requireFolder(options.out);
     World world{loadScene(cluster, options), walls::loadWallAs(options.wall, options.stereo), {}};
     master::requireMemory(cluster.hosts(), world.scene, options.scene + options.replay);
@@ -134,7 +134,8 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
     }
     std::error_code error;
     if (std::filesystem::create_directories(options.out, error)) {
-        host::syncFolderOf(std::filesystem::absolute(options.out));  // or a loss of power takes all that is in it
+        host::syncFolderOf(
+            std::filesystem::absolute(options.out));  // otherwise a loss of power can remove the folder with its files
     }
     if (error) {
         throw base::InputError(
@@ -144,7 +145,7 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
         if (!options.filmEye.empty()) {
             options.session.filmEye = master::filmEyeNamed(options.filmEye);
         }
-        (void)master::Film(world.wall, options.session.filmEye, options.out);  // refuses before anything is drawn
+        (void)master::Film(world.wall, options.session.filmEye, options.out);  // throws before anything is drawn
     }
     if (options.haptic != "none") {
         options.session.server = haptic_bridge::Address::parse(options.haptic, "--haptic");
@@ -197,7 +198,7 @@ int runSession(const lockstep::Cluster& cluster, Options& options) {
                 std::max<std::uint64_t>(options.session.settlingFrames, rank.framesToIgnore);
         }
     } catch (...) {
-        // Whatever it is: the ranks wait for a word, and end quietly when it is no.
+        // After every error, the ranks still wait for an answer. They end quietly if it is no.
         if (sessionOpen) {
             (void)lockstep::agreeToGoOn(cluster, false);
         } else {
@@ -212,7 +213,7 @@ int runSession(const lockstep::Cluster& cluster, Options& options) {
         options.session.sweeps.executor = pool.lend();
         return master::Session(cluster, world->scene, world->wall, options.session).run();
     } catch (const std::exception& error) {
-        // The ranks are in the middle of a frame and cannot be asked to leave.
+        // The ranks are in the middle of a frame and cannot be asked to end.
         const bool input = dynamic_cast<const base::InputError*>(&error) != nullptr;
         host::printLine("{}", error.what());
         cluster.abort(input ? base::kExitBadInput : 1);
@@ -302,7 +303,7 @@ int main(int argc, char** argv) {
         return 0;
     }
     lockstep::dieWithParent();
-    // Open MPI starts before the options are checked: mpirun counts a process that ends without it as crashed.
+    // Open MPI starts before the options are checked, because mpirun counts a process that ends without it as crashed.
     lockstep::Cluster cluster(&argc, &argv);
     bool parsed = false;
     const int status = host::runMain(line, argc, argv, [&] {

@@ -12,7 +12,7 @@
 namespace master {
 namespace {
 
-constexpr double kLate = 1.5;  // times its period that a late frame takes at least
+constexpr double kLate = 1.5;  // a late frame takes more than this many periods
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 
 double milliseconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-6; }
@@ -31,7 +31,7 @@ void Measurements::add(const Frame& frame, const std::vector<haptic_bridge::Time
 
 void Measurements::addSwaps(const Frame& frame, const std::vector<lockstep::Arrival>& arrivals) {
     const bool counts = frame.number > from_ + 1;
-    // The ranks tell when they swapped the frame before this one; the first has nothing to tell.
+    // Arrivals contain the swap time of the frame before. The first frame has no frame before it.
     ranks_.add(arrivals, !frame.swap.first && counts);
     if (frame.swap.first) {
         return;
@@ -55,7 +55,7 @@ void Measurements::addLatency(const Frame& frame, const std::vector<haptic_bridg
         drawn = std::max(drawn, arrivals[rank].arrived);
     }
     for (const haptic_bridge::TimedStep& timed : steps) {
-        if (timed.serverTimeNs == 0) {  // the master's own
+        if (timed.serverTimeNs == 0) {  // the master made this step
             continue;
         }
         const std::int64_t sent = timed.serverTimeNs - clockOffset;

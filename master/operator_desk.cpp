@@ -20,11 +20,11 @@ using Json = nlohmann::json;
 constexpr char kQuitKey = 27;  // Escape, in any window
 
 std::string line(const Json& json) {
-    // A user may type bytes that are no UTF-8; they are replaced.
+    // A user may type bytes that are not UTF-8. They are replaced.
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// As an operator would type it.
+/// Returns the material in the units in which an operator types it.
 Json materialNow(const scene::Material& material) {
     return {{"talus", material.dryTalus},    {"wet-talus", material.wetTalusNow()},
             {"humidity", material.humidity}, {"cohesion", material.cohesionLength},
@@ -149,7 +149,7 @@ void OperatorDesk::askEdit(sand::Edit edit, std::optional<Client> client,
         throw base::InputError("there is no stroke to undo");
     }
     edits_.requireRoomFor(edit);
-    // Refused at once: otherwise the client would wait until somebody clears the disk, and the edit would come late.
+    // Refuses at once. Otherwise the client would wait until the disk has room, and the edit would come late.
     if (!session_.room(edits_.sandBytes(edit))) {
         tellWhoWaitsForRoom();
         throw base::InputError(
@@ -163,7 +163,7 @@ void OperatorDesk::askEdit(sand::Edit edit, std::optional<Client> client,
     edits_.add({std::move(edit), client, material});
 }
 
-/// Only a material that is in a step's queue becomes the one that the next is made from.
+/// Changes the material only if the edit was accepted. Later changes start from this material.
 void OperatorDesk::askMaterial(const scene::Material& material, std::optional<Client> client) {
     askEdit(sand::Edit::tuned(scene::tuningOf(material, grid_)), client, material);
     material_ = material;
@@ -176,7 +176,7 @@ void OperatorDesk::changeStereo(walls::Stereo stereo) {
 
 void OperatorDesk::save(const std::string& name, std::optional<Client> client) {
     jobs_.requireRoom();
-    // Copied here, which takes a fraction of a frame; compressed and written beside the frames.
+    // Copying takes a fraction of a frame. A thread compresses and writes the copy while frames continue.
     auto copy = session_.sand.replica().copySand();
     SavedSand saved{place_, session_.sand.replica().stepNumber(), session_.sand.hash(), {}};
     jobs_.start(

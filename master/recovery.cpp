@@ -50,7 +50,7 @@ void tellRecovery(const Recovery& recovery, const std::filesystem::path& folder)
                             {"cut_bytes", recovery.cutBytes}};
     host::emitEvent("recovered",
                     {{"recovery", host::Json{json.dump(-1, ' ', false, ordered_json::error_handler_t::replace)}}});
-    const bool torn = endsInsideALine(fileIn(folder));  // by a crash
+    const bool torn = endsInsideALine(fileIn(folder));  // a crash may have cut off the last line
     std::ofstream stream(fileIn(folder), std::ios::app);
     stream << (torn ? "\n" : "") << json.dump(-1, ' ', false, ordered_json::error_handler_t::replace) << '\n';
     stream.close();
@@ -63,7 +63,7 @@ std::vector<std::string> recoveriesOf(const std::filesystem::path& folder) {
     std::vector<std::string> lines;
     std::ifstream stream(fileIn(folder));
     for (std::string line; std::getline(stream, line);) {
-        if (ordered_json::accept(line)) {  // a crash may have torn one
+        if (ordered_json::accept(line)) {  // a crash may have cut off a line
             lines.push_back(line);
         }
     }

@@ -100,7 +100,7 @@ void Session::startDrills() {
     }
 }
 
-/// The ranks draw meanwhile; none of them swaps before the master has come to the barrier.
+/// The render ranks draw meanwhile. They swap only after the master has come to the barrier.
 void Session::keep(const lockstep::FrameMessage& frame) {
     if (!frame.steps.empty()) {
         const lockstep::Busy busy(barrier_, "the disk of its journal");
@@ -128,7 +128,7 @@ bool Session::showFrame(bool& more) {
     const Swap swap = clock_.swapped(monotonicNs());
     measure_.add({frame.frame, bytes, broadcast, swap}, steps, barrier_.arrivals(), steps_->clockOffsetNs());
     desk_.answer(steps);
-    if (frame.capture && !frame.stop && !film_) {  // a film takes its own
+    if (frame.capture && !frame.stop && !film_) {  // a film takes its own pictures
         desk_.takeCapture(frame.frame, cluster_, barrier_.watchdog());
     }
     steps_->shown(sand_.replica().stepNumber(), swap.interval);
@@ -186,7 +186,7 @@ Summary Session::finish(bool agreed) {
     const lockstep::Watched watched(barrier_.watchdog());
     steps_->stop();
     try {
-        record_.keepTicks(steps_->ticks());  // the last come with the goodbye
+        record_.keepTicks(steps_->ticks());  // the last ticks arrive at the end of the link
     } catch (const DiskFailure& failure) {   // the ranks still have reports and pictures to send
         host::printLine("{}", failure.what());
     }
@@ -210,7 +210,7 @@ Summary Session::summary() {
     summary.divergences = all.divergences;
     summary.healed = all.healed;
     summary.serverDivergences = all.serverDivergences;
-    // A resumed terrain has lost and won since.
+    // Computes the initial volume from the scene, because the sand of a resumed session may already have lost volume.
     summary.volumeInitial = scene_.tin != nullptr ? sand::Replica(scene_).volume() : scene_.terrain.volume();
     summary.volumeFinal = sand.volume();
     summary.volumeOutflow = sand.outflow();

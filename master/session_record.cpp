@@ -13,11 +13,11 @@
 namespace master {
 namespace {
 
-constexpr std::int64_t kFrameBytes = 1 << 16;  // more than the steps of a frame, but for sand that is loaded
+constexpr std::int64_t kFrameBytes = 1 << 16;  // [byte], more than the steps of a frame take, without loaded sand
 
-/// Removes the results of an earlier session: they must not pass for this one's, whatever becomes of this one.
+/// Removes the results of an earlier session, so that they are never taken for results of this one.
 void forgetOldResults(const std::filesystem::path& folder, bool resumed) {
-    std::error_code none;  // usually there is nothing
+    std::error_code none;  // ignored, because usually no such file exists
     if (!resumed) {
         std::filesystem::remove(folder / "divergence.txt", none);
         forgetRecoveries(folder);
@@ -115,7 +115,7 @@ void SessionRecord::finish(const MasterSand& sand, bool agreed) {
 }
 
 std::filesystem::path SessionRecord::journalFile() const {
-    // A journal in the folder of a session that writes none is another session's, or ends too early.
+    // If this session writes no journal, a journal in the folder belongs to another session or ends too early.
     return journal_ && journal_->written() ? out_ / "session.journal" : std::filesystem::path();
 }
 
@@ -127,7 +127,7 @@ std::unique_ptr<sand::Replica> SessionRecord::sandOfJournal(const MasterSand& sa
     }
     try {
         return std::make_unique<sand::Replica>(restoreSand(file, sand.replica().stepNumber(), sweeps).terrain);
-    } catch (const std::exception& error) {  // the ranks wait for an answer, whatever it is
+    } catch (const std::exception& error) {  // caught, because the ranks wait for an answer
         host::printLine("{}", error.what());
         return nullptr;
     }

@@ -15,7 +15,7 @@ namespace master {
 
 void requireMemory(const std::vector<lockstep::RankHost>& ranks, int columns, int rows, bool tin,
                    const std::string& file) {
-    // The master computes the heights that a TIN's vertices are chosen from; a rank that draws needs as much memory.
+    // The master computes the heights from which a TIN's vertices are chosen. A render rank needs as much memory.
     if (const auto lack = lockstep::lackOfMemory(ranks, scene::bytesOfField(columns, rows, tin))) {
         throw base::InputError(fmt::format("{}: {} x {} {} need {}: fewer cells, or more hosts", file, columns, rows,
                                            tin ? "nominal cells of a TIN" : "cells", *lack));
@@ -28,7 +28,7 @@ void requireMemory(const std::vector<lockstep::RankHost>& ranks, const scene::Sc
     }
     const int columns = scene.rules.columns;
     const int rows = scene.rules.rows;
-    // How much sky a place sees is looked up in a height for each nominal cell.
+    // A render rank keeps a height for each nominal cell. From these heights it computes how much sky each place sees.
     const std::int64_t toDraw = std::int64_t{sizeof(float)} * columns * rows;
     const auto lack = lockstep::lackOfMemory(ranks, sand::Replica::leastBytes(scene), toDraw);
     if (lack) {

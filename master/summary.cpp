@@ -135,7 +135,7 @@ ordered_json jsonOf(const Summary& summary) {
                                {"queued", distribution(summary.latency.queued)},
                                {"drawn", distribution(summary.latency.drawn)},
                                {"swapped", distribution(summary.latency.swapped)}};
-    // Without a haptic loop in real time there is no period to speak of.
+    // Only a force loop in real time has a meaningful period.
     const bool felt = summary.haptic && summary.haptic->hapticPeriodUsMax > 0;
     const haptic_bridge::Report report = summary.haptic.value_or(haptic_bridge::Report{});
     json["haptic_period_us"] = felt ? ordered_json{{"p50", report.hapticPeriodUsP50},
@@ -163,7 +163,7 @@ ordered_json jsonOf(const Summary& summary) {
     return json;
 }
 
-/// "5 times (secret)" or "5 times (secret 4, busy 1)"; empty for none.
+/// Returns "5 times (secret)" or "5 times (secret 4, busy 1)"; an empty text if all counts are 0.
 std::string timesOf(const haptic_bridge::RefusalCounts& counts) {
     std::uint64_t all = 0;
     for (const std::uint64_t count : counts) {
@@ -179,7 +179,7 @@ std::string timesOf(const haptic_bridge::RefusalCounts& counts) {
     return all == 0 ? "" : fmt::format("{} {} ({})", all, all == 1 ? "time" : "times", kinds);
 }
 
-/// Empty where nobody was refused.
+/// Returns the line about refused connections; an empty text if there were no refusals.
 std::string describeRefusals(const Summary& summary) {
     std::string text;
     const auto add = [&text](const char* what, const std::string& times) {
@@ -197,14 +197,14 @@ std::string describeRefusals(const Summary& summary) {
     return fmt::format("  haptics   {}: {}\n", summary.link.links == 0 ? "no hand all session" : "beside links", text);
 }
 
-/// Empty where no rank stands out.
+/// Returns the line about the slowest rank; an empty text if no rank stands out.
 std::string describeDrag(const Summary& summary) {
     if (!summary.drag) {
         return {};
     }
     const auto rank = static_cast<std::size_t>(summary.drag->rank);
     std::string drawing;
-    if (rank >= 1 && rank <= summary.ranksReports.size()) {  // not the master, which draws nothing
+    if (rank >= 1 && rank <= summary.ranksReports.size()) {  // a render rank, because the master does not draw
         lockstep::Statistics others;
         for (std::size_t i = 0; i < summary.ranksReports.size(); ++i) {
             if (i + 1 != rank) {

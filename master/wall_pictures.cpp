@@ -17,7 +17,7 @@
 namespace master {
 namespace {
 
-/// Writes pictures and remembers the first failure: the ranks must be heard out before it is told.
+/// Writes pictures and keeps the first error until all pictures of the ranks have been received.
 class PictureFolder {
 public:
     explicit PictureFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
@@ -40,7 +40,7 @@ private:
     std::optional<base::InputError> failure_;
 };
 
-/// Each eye's, and the output's where that is made of both.
+/// Returns the number of pictures per tile: one per eye, and the output picture if both eyes are packed into one.
 int picturesPerTile(const walls::Wall& wall) {
     return static_cast<int>(walls::eyesOf(wall.stereo).size()) + (walls::packsEyes(wall.stereo) ? 1 : 0);
 }
@@ -62,7 +62,7 @@ void writeWhole(const std::vector<pictures::Image>& whole, PictureFolder& out) {
     out.write("wall_anaglyph.png", pictures::packStereo(walls::Stereo::anaglyphColour, whole[0], whole[1]));
 }
 
-constexpr std::int64_t kMostHeld = 1 << 28;  // [byte], of tiles; the wall put together takes as much again
+constexpr std::int64_t kMostHeld = 1 << 28;  // [byte], of all tiles; the pictures of the whole wall take as much again
 
 }  // namespace
 
@@ -102,7 +102,7 @@ std::vector<pictures::Image> receiveWall(
         if (each) {
             each(wall.tiles[index], eye < eyes.size() ? walls::eyeName(eyes[eye]) : "output", image);
         }
-        watchdog.arm();  // each picture has its own time
+        watchdog.arm();  // the time limit counts for each picture
     });
     watchdog.disarm();
     return whole;

@@ -79,7 +79,7 @@ fs::path checkpointFile(const fs::path& journal, std::uint64_t step) {
 
 std::vector<std::uint64_t> checkpointsOf(const fs::path& journal) {
     std::vector<std::uint64_t> steps;
-    std::error_code none;  // usually there is such a folder, and it need not be
+    std::error_code none;  // ignored, because the folder need not exist
     for (const auto& entry : fs::directory_iterator(folderOf(journal), none)) {
         if (const auto step = stepOf(entry.path().filename().string())) {
             steps.push_back(*step);

@@ -15,7 +15,7 @@ constexpr FileKind kJournalKind{.name = "journal", .magic = kJournalMagic, .form
 enum Type : std::uint8_t { kFrame = 1, kEnd, kTicks, kResumed, kMaterial, kContinued };
 
 std::uint64_t chainedSum(std::span<const std::uint8_t> bytes, std::uint64_t seed) {
-    return XXH3_64bits_withSeed(bytes.data(), bytes.size(), seed);  // seed 0 is XXH3_64bits
+    return XXH3_64bits_withSeed(bytes.data(), bytes.size(), seed);  // with seed 0 the same as XXH3_64bits()
 }
 
 void put(const JournalEnd& end, base::ByteWriter& writer) {
@@ -83,7 +83,7 @@ JournalResumed getResumed(base::ByteReader& reader) {
     return resumed;
 }
 
-/// Type and payload.
+/// Writes type and payload of a record.
 struct Encode {
     base::ByteWriter writer{};
 
@@ -121,13 +121,13 @@ struct Encode {
     }
 };
 
-/// Whether what begins at `at` may be a record, or the beginning of one, or zeros, or the end. Cheap.
+/// Returns whether a record, a part of one, zeros or the end of the file may begin at `at`. Looks at one byte only.
 bool mayFollow(std::span<const std::uint8_t> rest, std::size_t at) {
     constexpr std::size_t kLength = sizeof(std::uint32_t);
     return rest.size() - at <= kLength || rest[at + kLength] <= kContinued;
 }
 
-/// Whether a whole record begins at `at`.
+/// Returns whether a whole record begins at `at`. `chain` is the checksum before it.
 bool recordAt(std::span<const std::uint8_t> rest, std::size_t at, std::uint64_t chain) {
     std::uint32_t length = 0;
     if (at > rest.size() || rest.size() - at < kAroundPayload) {
@@ -138,7 +138,7 @@ bool recordAt(std::span<const std::uint8_t> rest, std::size_t at, std::uint64_t 
     if (length > rest.size() - at - kAroundPayload || type < kFrame || type > kContinued) {
         return false;
     }
-    if (!mayFollow(rest, at + kAroundPayload + length)) {  // a checksum of all the rest at every byte takes minutes
+    if (!mayFollow(rest, at + kAroundPayload + length)) {  // without this, checksums at every byte take minutes
         return false;
     }
     const auto body = rest.subspan(at + sizeof length, std::size_t{length} + 1);
@@ -246,7 +246,7 @@ std::uint64_t recordChecksum(std::span<const std::uint8_t> body, std::uint64_t c
 
 bool holdsRecords(std::span<const std::uint8_t> rest, std::uint64_t chain) {
     if (rest.size() >= kAroundPayload) {
-        // Only the checksum of the record may be wrong: then the next one hangs on what it should be.
+        // If only this record's stored checksum is wrong, the next record continues from the right checksum.
         std::uint32_t length = 0;
         std::memcpy(&length, rest.data(), sizeof length);
         if (length <= rest.size() - kAroundPayload) {

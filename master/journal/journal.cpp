@@ -24,7 +24,7 @@ struct Gather {
     void operator()(const JournalContinued&) const {}
 };
 
-/// Returns what `decode` makes of the scene in the header; errors name the journal.
+/// Returns the result of `decode` for the scene in the header. Errors name the journal.
 template <class Decode>
 auto decoded(const JournalReader& reader, Decode decode) {
     try {

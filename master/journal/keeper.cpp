@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kPolicies{"required", "best-effort", "off"};
 constexpr double kRetrySeconds = 1;
-constexpr std::size_t kCheckpointsKept = 3;  // the newest may be damaged, and so may the one before
+constexpr std::size_t kCheckpointsKept = 3;  // the newest two may be damaged
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -47,12 +47,12 @@ JournalKeeper::JournalKeeper(const std::filesystem::path& out, const JournalOpti
       lastCheckpoint_(now()) {
     if (options_.policy == JournalPolicy::off) {
         requireNoWriter();
-        keepPreviousJournal(journal_);  // it would pass for this session's
+        keepPreviousJournal(journal_);  // otherwise it would be taken for this session's journal
         return;
     }
     if (resumed == nullptr) {
         requireNoWriter();
-        std::error_code none;  // of a session before
+        std::error_code none;  // ignored, because the folder need not exist
         std::filesystem::remove_all(checkpointFile(journal_, 0).parent_path(), none);
         writer_.emplace(journal_, scene, buildId_, options_.partBytes);
         return;
@@ -66,7 +66,8 @@ JournalKeeper::JournalKeeper(const std::filesystem::path& out, const JournalOpti
     }
     setAside(resumed->step);
     checkpointStep_ = resumed->checkpointStep;
-    lastCheckpoint_ -= options_.checkpointSeconds;  // at once: who is killed again and again must not replay ever more
+    lastCheckpoint_ -=
+        options_.checkpointSeconds;  // checkpoint at once: repeated crashes must not make each replay longer
 }
 
 JournalKeeper::~JournalKeeper() { endCheckpoint(true); }
@@ -82,7 +83,7 @@ void JournalKeeper::requireNoWriter() const {
 void JournalKeeper::refused(const std::string& why) {
     writer_.reset();
     if (options_.policy == JournalPolicy::required) {
-        throw std::runtime_error(why);  // and no bad input: what the disk refuses now it may take in a moment
+        throw std::runtime_error(why);  // not an InputError, because a later try may succeed
     }
     host::printLine("{}, and the session goes on without a journal", why);
     host::emitEvent("journal", {{"state", "failed"}, {"error", why}});
@@ -94,7 +95,8 @@ void JournalKeeper::setAside(std::uint64_t step) {
         const std::filesystem::path aside = file.string() + ".beyond";
         std::error_code error;
         if (later > step) {
-            // That step will be another one: the checkpoint would pass for it. It is sand that the journal has lost.
+            // The session will make this step again, differently, and the checkpoint would be taken for its sand. It is
+            // renamed and not removed, because the journal has lost this sand.
             std::filesystem::rename(file, aside, error);
             ++checkpointsBeyond_;
             host::printLine("{}: kept as {}: the journal ends before it, at step {}", file.string(),
@@ -114,7 +116,7 @@ bool JournalKeeper::hasRoom(std::int64_t bytes, const JournalEnd& sand) {
         return true;
     }
     if (options_.policy != JournalPolicy::required) {
-        return true;  // what is then refused ends the journal
+        return true;  // if the disk then refuses the steps, the journal ends
     }
     if (!standing_) {
         host::printLine("no room for the journal ({}); the sand stands still after step {} until there is", why,
@@ -187,7 +189,7 @@ void JournalKeeper::endCheckpoint(bool wait) {
     }
     const std::string complaint = checkpoint_.get();
     checkpointsFailed_ += complaint.empty() ? 0 : 1;
-    if (!complaint.empty() && complaint != complaint_) {  // once, however often
+    if (!complaint.empty() && complaint != complaint_) {  // printed once, even if it repeats
         host::printLine("{}; there is no checkpoint, and the session goes on", complaint);
     }
     complaint_ = complaint;

@@ -35,7 +35,8 @@ void lockOrThrow(int descriptor, const std::filesystem::path& path, const Pause&
     }
 }
 
-/// Whether the path still names the file that is open, and nobody has written it meanwhile.
+/// Returns whether `path` still names the open file, and the file's length is still `seen`, so that no process has
+/// written to it.
 bool isAsSeen(int descriptor, const std::filesystem::path& path, std::int64_t seen) {
     struct stat mine {};
     struct stat named {};
@@ -51,7 +52,8 @@ PartFile::PartFile(std::filesystem::path path, int descriptor, std::int64_t size
     : path_(std::move(path)), descriptor_(descriptor), size_(size), reserved_(size) {}
 
 PartFile PartFile::make(const std::filesystem::path& path, std::span<const std::uint8_t> begin) {
-    // Under another name until its beginning is whole: a file of that name is a journal, whenever a crash comes.
+    // The file has another name until its beginning is whole. So after a crash a file with the journal's name is always
+    // a journal.
     std::error_code none;
     const bool plain = !std::filesystem::exists(path, none) || std::filesystem::is_regular_file(path, none);
     const std::string beside = plain ? path.string() + ".part" : path.string();
@@ -63,7 +65,7 @@ PartFile PartFile::make(const std::filesystem::path& path, std::span<const std::
     if (file.descriptor_ < 0) {
         refuse();
     }
-    (void)lock(file.descriptor_);  // a new file, which nobody else can have
+    (void)lock(file.descriptor_);  // always succeeds, because the file is new
     try {
         file.write(begin);
         if (plain && rename(beside.c_str(), path.c_str()) != 0) {
@@ -83,7 +85,7 @@ PartFile PartFile::open(const std::filesystem::path& path, std::int64_t size, st
     PartFile file(path, ::open(path.c_str(), O_WRONLY | O_CLOEXEC), size);
     if (file.descriptor_ >= 0) {
         lockOrThrow(file.descriptor_, path, pause);
-        // What another session has written since it was read would be cut off without a word.
+        // Otherwise records that another session has written since then would be cut off silently.
         if (!isAsSeen(file.descriptor_, path, seen)) {
             throw std::runtime_error(fmt::format("{}: has been written since it was read; start again", path.string()));
         }
@@ -137,7 +139,7 @@ void PartFile::fail(const char* what) const {
 void PartFile::write(std::span<const std::uint8_t> bytes) {
     const auto failWhole = [this] {
         const int why = errno;
-        // What did get there is no record: the file then ends with the last whole one.
+        // Cuts off the incomplete record, so that the file ends with the last whole one.
         [[maybe_unused]] const int cut = ftruncate(descriptor_, size_);
         [[maybe_unused]] const off_t back = lseek(descriptor_, size_, SEEK_SET);
         reserved_ = size_;
@@ -161,7 +163,8 @@ int PartFile::reserve(std::int64_t bytes) {
     if (reserved_ - size_ >= bytes) {
         return 0;
     }
-    // The size of the file stays what was written: a reader sees no hole. A piece at a time, for it is a system call.
+    // The file's size stays the same, so that a reader sees no hole. Reserves a large piece at a time, because each is
+    // a system call.
     for (const std::int64_t piece : {std::max(bytes, kReservedPiece), bytes}) {
         if (fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, size_, piece) == 0) {
             reserved_ = size_ + piece;

@@ -22,9 +22,9 @@ std::span<std::uint8_t> readInto(std::ifstream& stream, base::Bytes& bytes, std:
     return bytes;
 }
 
-/// The header of a file, and how long it is. Throws base::FormatError.
+/// Reads the header of a file and sets `length` to its length [byte]. Throws base::FormatError.
 JournalHeader readHeader(std::ifstream& stream, std::int64_t size, std::uint64_t& chain, std::int64_t& length) {
-    // A header's length is known when it has been read: nearly all of it is the scene.
+    // The header's length is known only after the header has been read. Nearly all of it is the scene.
     for (std::int64_t piece = 1 << 16;; piece *= 8) {
         base::Bytes bytes;
         stream.seekg(0);
@@ -116,7 +116,7 @@ bool JournalReader::goesOn() const {
         std::uint64_t chain = 0;
         std::int64_t length = 0;
         const JournalHeader header = readHeader(next, size, chain, length);
-        // One that was made and not yet gone on with holds nothing.
+        // A part that was made but not continued has only a header.
         return header.session == header_.session && size > length;
     } catch (const base::FormatError&) {
         return false;
@@ -153,7 +153,8 @@ void JournalReader::endHere(const std::string& why) {
         base::Bytes rest;
         stream_.clear();
         stream_.seekg(place_.offset);
-        // A crash tears the last record. One that is followed by more was damaged on the disk, its length perhaps.
+        // A crash tears only the last record. If records follow, this one was damaged on the disk, perhaps in its
+        // length.
         if (holdsRecords(readInto(stream_, rest, left), place_.chain)) {
             fail(
                 fmt::format("damaged at byte {} of {}: {}; what stands before it is whole", place_.offset, size_, why));

@@ -52,7 +52,7 @@ Recording::Recording(Journal journal, std::string file, int framesPerSecond)
 }
 
 std::uint64_t Recording::stepsUntil(std::uint64_t frame) const {
-    // In whole numbers: a film of an hour must not lose a step to rounding.
+    // Computed in whole numbers, so that a film of an hour loses no step to rounding.
     return std::min(lastStep(), frame * static_cast<std::uint64_t>(scene_.rules.stepsPerSecond) /
                                     static_cast<std::uint64_t>(framesPerSecond_));
 }

@@ -38,11 +38,11 @@ struct Options {
     std::string heights, difference, mesh, forces, steps, recovered;
     std::optional<std::uint64_t> until;
 
-    /// Returns whether nothing is asked of the replayed sand and of the hand.
+    /// Returns whether no option asks for results of the replayed sand or of the hand.
     [[nodiscard]] bool plain() const {
         return !hash && !volumes && heights.empty() && difference.empty() && mesh.empty() && forces.empty();
     }
-    /// Returns each file that is to be written, with the option that names it.
+    /// Returns all files that are to be written, each with the option that names it.
     [[nodiscard]] std::vector<std::pair<std::string, std::string>> outputs() const {
         std::vector<std::pair<std::string, std::string>> all{{"--export", steps},
                                                              {"--heights", heights},
@@ -206,7 +206,7 @@ int run(const Options& options) {
     if (!options.steps.empty()) {
         master::exportSteps(options.file, options.steps, options.until);
         if (onlyExports) {
-            return 0;  // read record by record, without any sand
+            return 0;  // the export needs no sand
         }
     }
     const master::Journal journal = master::readJournal(options.file);
@@ -235,23 +235,23 @@ int run(const Options& options) {
     return differing == 0 ? 0 : 1;
 }
 
-/// What was printed to a full disk is no answer.
+/// Throws base::InputError if the output could not be printed, for example to a full disk.
 void requirePrinted() {
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
         throw base::InputError(fmt::format("standard output: cannot be written ({})", std::strerror(errno)));
     }
 }
 
-/// Refuses a negative number, which would otherwise be read as a huge one.
+/// Returns an error text for a negative number, which would otherwise be read as a huge one.
 std::string notNegative(const std::string& text) {
     return text.starts_with('-') ? "a step's number is 0 or more, got " + text : "";
 }
 
-/// Refuses an empty name, which would otherwise be read as no wish for a file.
+/// Returns an error text for an empty name, which would otherwise mean that no file is wanted.
 std::string notEmpty(const std::string& text) { return text.empty() ? "name a file" : ""; }
 
-/// Describes what may be asked of a journal. All that reads the replayed sand can be combined, also with --export.
-/// --verify and --recover read every record for themselves, so that --until and all else is refused beside them.
+/// Describes the options. All options that read the replayed sand can be combined, also with --export. --verify and
+/// --recover read every record themselves, so they exclude all other options.
 void describe(host::CommandLine& line, Options& options) {
     line.option("FILE", options.file, "session.journal of a session").required();
     const std::vector<host::Option> combined{

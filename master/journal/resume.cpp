@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The journal has another hash of the sand than the replay.
+/// Error when a hash in the journal differs from the hash of the replayed sand.
 class OtherSand : public base::InputError {
 public:
     using base::InputError::InputError;
@@ -33,7 +33,7 @@ void requireHash(sand::Replica& terrain, const JournalEnd& said, const fs::path&
     }
 }
 
-/// Applies the journal's steps up to `step` to sand that has some of them. Returns how many.
+/// Applies the journal's steps up to `step` that `terrain` does not have yet. Returns how many it has applied.
 std::uint64_t replayUntil(const fs::path& journal, std::uint64_t step, sand::Replica& terrain) {
     const std::uint64_t first = terrain.stepNumber();
     JournalReader reader(journal);
@@ -66,11 +66,11 @@ std::uint64_t replayUntil(const fs::path& journal, std::uint64_t step, sand::Rep
     return terrain.stepNumber() - first;
 }
 
-/// What a journal tells without any sand being computed.
+/// Collects from the records everything of a session that needs no sand.
 struct Walk {
     ResumedSession& session;
     const fs::path& journal;
-    std::optional<scene::Material> pending;  // of steps that follow: a crash may have torn them off
+    std::optional<scene::Material> pending;  // of the next steps, which a crash may have cut off
 
     void operator()(const JournalFrame& frame) {
         session.frame = std::max(session.frame, frame.frame);
@@ -106,7 +106,7 @@ void requireScene(const JournalReader& reader, const std::string& file) {
                         file, reader.place().journal.string()));
     };
     const auto raster = scene::checksOfOneReplica(file, host::freeMemoryOfProcess()).raster;
-    // A scene of another size is refused before its heights are made.
+    // Refuses a scene of another size before its heights are made.
     const auto otherSize = [&, rules = rulesOf(reader)](int columns, int rows, bool tin) {
         if (columns != rules.columns || rows != rules.rows || tin != (rules.tin != 0)) {
             fail();

@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::uint32_t kSavedMagic = 0x44535753;  // "SWSD"
 constexpr FileKind kSavedKind{.name = "saved sand", .magic = kSavedMagic, .format = 2, .firstFormat = 2};
-constexpr std::size_t kMostAround = 4096;  // [byte] that are not sand: the scene's name is the only long text
+constexpr std::size_t kMostAround = 4096;  // [byte], everything except the sand; the scene's name is the only long text
 
 std::uint64_t savedSum(std::span<const std::uint8_t> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
 
@@ -85,11 +85,11 @@ void requireSamePlace(const SandPlace& saved, const SandPlace& here) {
     }
 }
 
-/// A file that takes its name only when all of it is on the disk.
+/// A file that gets its name only when all of it is on disk.
 class Unnamed {
 public:
     explicit Unnamed(std::filesystem::path target) : target_(std::move(target)) {
-        // Two threads may be saving under one name: the later one stays.
+        // Two threads may save under the same name. The file of the later one stays.
         static std::atomic<unsigned> number{0};
         beside_ = fmt::format("{}.{}.part", target_.string(), ++number);
         descriptor_ = open(beside_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
@@ -177,7 +177,7 @@ SavedSand readSavedSand(const std::filesystem::path& file, const SandPlace& plac
         bytes.resize(static_cast<std::size_t>(stream.gcount()));
         SavedSand saved = decode(bytes);
         requireSamePlace(saved.place, place);
-        // Whole, before anybody is sent it: who applies a step cannot refuse it any more.
+        // Decodes all of the sand before it is sent to the ranks, because a rank that applies a step cannot refuse it.
         (void)read(saved.sand);
         return saved;
     } catch (const base::FormatError& failure) {

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::array<std::string_view, sand::kEdits> kEditNames{"", "settle", "reset", "undo", "tune", "load"};
 
-/// The tool as steps have made it.
+/// The tool, as the steps so far have changed it.
 class ExportedTool {
 public:
     explicit ExportedTool(const scene::Scene& scene)
@@ -30,9 +30,9 @@ public:
           heading_(scene.rules.toolHeading),
           unit_(scene.terrain.cellSize() / sand::kProbePerCell) {}
 
-    /// The tool with which the hand of this step moves.
+    /// Takes the heading with which the hand moves in `step`.
     void begin(const sand::Step& step) { heading_ = step.heading.value_or(heading_); }
-    /// As sand::Replica::tune has it: for the next step.
+    /// Applies the tuning of `step` to later steps, as sand::Replica does.
     void end(const sand::Step& step) {
         if (step.edit.kind == sand::Edit::tune) {
             heading_ = step.edit.tuning.toolHeading != rules_.toolHeading ? step.edit.tuning.toolHeading : heading_;
@@ -48,7 +48,7 @@ public:
 private:
     sand::Rules rules_;
     sand::Heading heading_;
-    double unit_;  // [scene unit] of a probe coordinate
+    double unit_;  // [scene unit], length of a probe unit
 };
 
 std::string pathText(const sand::Step& step, double unit) {

@@ -115,7 +115,7 @@ private:
     std::filesystem::path journal_;
     JournalReader reader_;
     sand::Replica start_, terrain_;
-    std::map<std::uint64_t, std::string> checkpoints_;  // what is found of each
+    std::map<std::uint64_t, std::string> checkpoints_;  // by step: the result for each
     std::uint64_t records_ = 0, ticks_ = 0, hashes_ = 0, differing_ = 0, badCheckpoints_ = 0, resumes_ = 0;
     std::uint64_t firstFrame_ = 0, lastFrame_ = 0;
     std::uint32_t lastEpoch_ = 0;

@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostWaiting = 1 << 20;  // [byte] of ticks, while no step is made
-constexpr std::size_t kMostHeld = 64 << 20;    // [byte] of ticks, while the disk is full: a quarter of an hour
+constexpr std::size_t kMostWaiting = 1 << 20;  // [byte], of ticks while no step is made
+constexpr std::size_t kMostHeld = 64 << 20;    // [byte], of ticks while the disk is full; a quarter of an hour of them
 
 std::uint64_t newSession() {
     std::random_device random;
@@ -38,7 +38,7 @@ PartFile makeFirst(const fs::path& file, const scene::Scene& scene, const std::s
 }  // namespace
 
 void keepPreviousJournal(const fs::path& journal) {
-    std::error_code none;  // usually there is no older one
+    std::error_code none;  // ignored, because there is usually no older journal
     if (!fs::is_regular_file(journal, none)) {
         return;
     }
@@ -72,13 +72,13 @@ JournalWriter::JournalWriter(const JournalPlace& place, const std::string& build
       part_(place.part),
       chain_(place.chain),
       file_(PartFile::open(partOf(place.journal, place.part), place.offset, place.seen)) {
-    std::error_code none;  // one that was made, and not yet gone on with
+    std::error_code none;  // the next part may exist without records, and may also be missing
     fs::remove(partOf(journal_, part_ + 1), none);
 }
 
 void JournalWriter::rotate(const JournalEnd& now) {
     writeWaiting();
-    // The next part is there, with the checksum that it hangs on, before this one says that it is.
+    // Makes the next part, with the checksum that it continues from, before this part names it.
     std::uint64_t chain = chain_;
     const base::Bytes continued = encodeRecord(JournalContinued{part_ + 1}, chain);
     JournalHeader header;

@@ -37,7 +37,7 @@ std::vector<BackgroundJobs::Done> BackgroundJobs::finished(bool wait) {
         ended.clients = std::move(job.clients);
         try {
             ended.result = job.work.get();
-        } catch (const std::exception& error) {  // whatever befell the thread, frames go on
+        } catch (const std::exception& error) {  // frames continue after every error of a job
             ended.error = error.what();
         }
     }

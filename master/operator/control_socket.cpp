@@ -23,7 +23,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// The socket by way of its folder's descriptor: a socket's own path holds 107 bytes, and folders may be deeper.
+/// Returns the socket's address by way of its folder's descriptor. A socket's path holds only 107 bytes, and the
+/// folder's path may be longer.
 sockaddr_un addressIn(int folder) {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
@@ -73,7 +74,7 @@ std::string ControlSocket::open() {
         unlinkat(folderDescriptor_, kName, 0);
     }
     const int made = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-    // Before it has a name: there must be no moment in which others may open it.
+    // Sets the rights before the socket has a name, so that other users can never open it.
     fchmod(made, S_IRUSR | S_IWUSR);
     if (made < 0 || bind(made, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
         std::string failure = because("cannot be made");
@@ -118,7 +119,7 @@ void ControlSocket::answer(Client client, std::string json) {
     const std::lock_guard lock(mutex_);
     answers_.push_back({client, std::move(json)});
     const char any = 0;
-    // A full pipe wakes the thread as well.
+    // If the pipe is full, the thread wakes up anyway.
     [[maybe_unused]] const ssize_t written = ::write(wake_[1], &any, 1);
 }
 
@@ -150,7 +151,7 @@ void ControlSocket::read(Client client, Guest& guest) {
     std::array<char, 512> piece{};
     const ssize_t count = recv(guest.descriptor, piece.data(), piece.size(), 0);
     if (count <= 0) {
-        guest.until = Clock::time_point::min();  // it ended without a line
+        guest.until = Clock::time_point::min();  // the client closed the connection before a whole line
         return;
     }
     guest.in.append(piece.data(), static_cast<std::size_t>(count));
@@ -196,7 +197,7 @@ void ControlSocket::sendAway(const std::vector<Client>& clients) {
 }
 
 void ControlSocket::serve() {
-    constexpr int kLook = 500;  // [ms] between looks for guests whose time is over
+    constexpr int kLook = 500;  // [ms], between two looks for clients whose time is over
     while (true) {
         std::vector<pollfd> watched{{wake_[0], POLLIN, 0}, {listener_, POLLIN, 0}};
         std::vector<Client> clients;
@@ -215,7 +216,7 @@ void ControlSocket::serve() {
             ending = ending_;
         }
         collectAnswers();
-        if (ending) {  // who asked for the end has been answered a moment ago
+        if (ending) {  // sends the last answers, such as to the client that asked for the end
             for (auto& [client, guest] : guests_) {
                 (void)(guest.out.empty() || write(guest));
             }

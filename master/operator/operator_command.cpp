@@ -18,7 +18,7 @@ namespace {
 
 struct VerbName {
     std::string_view name;
-    std::string_view argument;  // what stands behind it; empty: nothing does
+    std::string_view argument;  // form of the argument; empty without one
     Verb verb;
 };
 
@@ -50,7 +50,7 @@ std::string knownVerbs() {
     return known;
 }
 
-/// None for what is no number, or none at all.
+/// Returns the finite number that is the whole of `text`; nullopt for any other text.
 std::optional<double> numberIn(std::string_view text) {
     double number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -75,7 +75,7 @@ double parseNumber(std::string_view what, std::string_view text) {
     return *number;
 }
 
-/// SHAPE, or the radius alone, and KEY=VALUE, in any order.
+/// Parses the argument of "tool": a SHAPE, a radius alone, and KEY=VALUE, in any order.
 scene::ToolChange parseTool(std::string_view text) {
     scene::ToolChange change;
     while (!text.empty()) {
@@ -107,7 +107,7 @@ scene::ToolChange parseTool(std::string_view text) {
     return change;
 }
 
-/// Of the force, what the hand feels; "on" is all of it.
+/// Parses the share of the force that the hand feels. "on" is 1.
 double parseShare(std::string_view text) {
     if (text == "on" || text == "off") {
         return text == "on" ? 1 : 0;

@@ -15,7 +15,7 @@
 namespace master {
 namespace {
 
-constexpr std::size_t kMostLines = 64;  // between two frames; nobody types more
+constexpr std::size_t kMostLines = 64;  // between two frames; a person types fewer
 
 volatile std::sig_atomic_t signalled = 0;
 
@@ -28,7 +28,7 @@ OperatorInput::OperatorInput(bool readInput) {
     action.sa_handler = onSignal;
     sigaction(SIGTERM, &action, nullptr);
     sigaction(SIGINT, &action, nullptr);
-    // A file that may not grow is told by its write, as a full disk is.
+    // Without this signal, a write to a file at its size limit fails like a write to a full disk.
     action.sa_handler = SIG_IGN;
     sigaction(SIGXFSZ, &action, nullptr);
     if (readInput && pipe(wake_) == 0) {

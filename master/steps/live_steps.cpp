@@ -22,7 +22,7 @@ using haptic_bridge::TimedStep;
 
 namespace {
 
-/// As the event `link` has it.
+/// Returns the name of a state in the event `link`.
 const char* nameOf(Link link) {
     switch (link) {
         case Link::connecting:
@@ -120,7 +120,7 @@ void LiveSteps::followLink(const sand::Replica& terrain, std::uint64_t stateHash
         grant(terrain, stateHash);
     } else if (source_ == Source::granting && status.link == Link::granting) {
         if (secondsSince(waitingSinceNs_) > kGrantWait) {
-            leaveServer();  // for a while: each try stops the sand
+            leaveServer();  // for kRetryWait, because each try stops the sand
             waitingSinceNs_ = now_();
             takeOver("server_does_not_begin", fmt::format("{} does not begin", server_->text()));
         }
@@ -169,12 +169,13 @@ void LiveSteps::passEdits(const std::vector<TimedStep>& steps) {
         }
     }
     if (source_ != Source::server) {
-        toldShare_ = 1;  // as a server begins
+        toldShare_ = 1;  // a new server begins with the whole force
     } else if (toldShare_ != share_) {
         client_->shareForce(share_);
         toldShare_ = share_;
     }
-    // One at a time: the server keeps one for its next step. A link that was lost took along what it was asked for.
+    // Asks for one edit at a time, because the server keeps only one for its next step. If a link was lost with an
+    // edit, asks for it again in the next epoch.
     if (source_ == Source::server && !edits_.empty() && toldEpoch_ != epoch_) {
         client_->request(edits_.front());
         toldEpoch_ = epoch_;
@@ -191,7 +192,7 @@ std::vector<TimedStep> LiveSteps::next(const sand::Replica& terrain, std::uint64
         if (server_) {
             recent_.add(timed.step);
             if (source_ == Source::server) {
-                recent_.reached(timed.step.number, timed.serverHash);  // proved by the wall, or the server is let go
+                recent_.reached(timed.step.number, timed.serverHash);  // proveServer() compares this hash later
             }
         }
     }
@@ -210,7 +211,7 @@ std::vector<TimedStep> LiveSteps::stepsDue(const sand::Replica& terrain, std::ui
     const bool fromServer = source_ == Source::server;
     followLink(terrain, stateHash);
     if (fromServer && source_ == Source::own && client_) {
-        // What arrived between the first look and the loss counts too.
+        // Steps that arrived between the first look and the loss of the link count, too.
         steps = client_->drain(most);
         if (!steps.empty()) {
             source_ = Source::server;
@@ -219,7 +220,7 @@ std::vector<TimedStep> LiveSteps::stepsDue(const sand::Replica& terrain, std::ui
         }
     }
     if (source_ == Source::own) {
-        // A wall slower than the steps does not catch up on hovering: it would only fall further behind.
+        // A slow wall leaves out hovering steps that are too many, because to catch up would only delay it further.
         const std::size_t due = std::min(ownStepsDue(), most);
         for (std::size_t i = 0; i < due; ++i) {
             TimedStep& own = steps.emplace_back();
@@ -263,7 +264,7 @@ void LiveSteps::leaveServer() {
 }
 
 bool LiveSteps::proveServer(const std::vector<TimedStep>& steps, std::uint64_t stateHash) {
-    // The link may have been lost since, or the steps may be the master's own.
+    // Meanwhile the link may have been lost. The steps may also be the master's own.
     const bool fromServer = linked() && !steps.empty() && steps.back().step.epoch == epoch_;
     if (!fromServer || steps.back().serverHash == stateHash) {
         return true;
@@ -274,7 +275,7 @@ bool LiveSteps::proveServer(const std::vector<TimedStep>& steps, std::uint64_t s
 
 void LiveSteps::distrustServer() {
     leaveServer();
-    recent_ = {};  // it holds that server's hashes
+    recent_ = {};  // it holds hashes of this server
     connect();
     takeOver("other_sand", "the server's sand differs from the wall's, it must start again from the wall's");
 }

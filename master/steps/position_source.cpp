@@ -14,7 +14,8 @@ PositionSource::PositionSource(const scene::Scene& scene)
 
 void PositionSource::begin(const sand::Replica& terrain) {
     streaming_ = true;
-    // Whoever numbered before may have left the tool in the sand elsewhere: no furrow from there to here.
+    // The previous source of steps may have left the tool in the sand elsewhere. Lifting it first avoids a furrow from
+    // there.
     liftFirst_ = terrain.engaged();
     last_ = terrain.probe();
     path_.restart(last_, false);
@@ -32,7 +33,7 @@ void PositionSource::add(const std::vector<haptic_bridge::TimedPosition>& positi
     heardNs_ = nowNs;
     for (const haptic_bridge::TimedPosition& timed : positions) {
         const haptic_bridge::Position& position = timed.position;
-        // Heights count in tool radii: a hand may well fall by many of them between two positions.
+        // Checks only x and y. Heights count in tool radii, and a hand may fall by many radii between two positions.
         const bool good = check_->accept(static_cast<double>(position.timeNs) * 1e-9, {position.x, position.y, 0});
         const auto probe = good ? mapping_.probe({position.x, position.y, position.z}) : std::nullopt;
         if (!probe && !std::isfinite(position.z)) {
