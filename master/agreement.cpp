@@ -118,9 +118,9 @@ std::optional<int> Agreement::brokenAmong(const std::vector<int>& odd) const {
 
 std::string Agreement::giveUp(std::uint64_t frame, int rank, bool again) const {
     std::string line =
-        fmt::format("frame {}: {} {} and is given up as broken; the session ends, and its journal holds every step",
-                    frame, labels_.names[static_cast<std::size_t>(rank)],
-                    again ? "holds other sand still, after it was healed," : "needs to be healed a third time");
+        fmt::format("frame {}: {} {} and counts as broken; the session ends, and its journal holds every step", frame,
+                    labels_.names[static_cast<std::size_t>(rank)],
+                    again ? "still differs after it was healed" : "needs to be healed a third time");
     (void)writeFailure(labels_.failure("broken", rank, line), out_);
     return line;
 }
@@ -144,7 +144,7 @@ void Agreement::reportNonsense() {
     std::vector<int> odd;
     for (const lockstep::FrameBarrier::Nonsense& one : ranks_.nonsense()) {
         odd.push_back(one.rank);
-        host::printLine("{}; it is given up as broken, and the session ends", one.line);
+        host::printLine("{}; the rank counts as broken, and the session ends", one.line);
     }
     statistics_.addOdd(odd);
     (void)writeFailure(labels_.failure("broken", odd.front(), ranks_.nonsense().front().line), out_);

@@ -62,21 +62,21 @@ std::vector<std::string> describeDivergence(const DivergedFrame& diverged, const
     const lockstep::Divergence& divergence = diverged.divergence;
     const std::string when = fmt::format("frame {}, step {}", diverged.frame, diverged.step);
     if (divergence.odd.empty()) {
-        return {fmt::format("{}: hashes differed; computed afresh from memory, all are {:016x}", when,
+        return {fmt::format("{}: hashes differed; computed again from memory, all are {:016x}", when,
                             divergence.rightHash)};
     }
     std::vector<std::string> lines;
     for (const lockstep::Divergence::Odd& odd : divergence.odd) {
-        lines.push_back(fmt::format("{}: {} holds other sand than {} of {} ranks: {:016x} and not {:016x}, {}", when,
-                                    names[static_cast<std::size_t>(odd.rank)], divergence.agreeing, names.size(),
+        lines.push_back(fmt::format("{}: {} differs from {} of {} ranks: state hash {:016x} instead of {:016x}, {}",
+                                    when, names[static_cast<std::size_t>(odd.rank)], divergence.agreeing, names.size(),
                                     odd.hash, divergence.rightHash, placeOf(odd)));
     }
     if (divergence.judge != Judge::majority) {
         lines.push_back(
             divergence.judge == Judge::journal
-                ? fmt::format("{}: no hash has a majority; the journal says {:016x}", when, divergence.rightHash)
-                : fmt::format("{}: no hash has a majority, and no journal can tell; the master's was "
-                              "taken for right",
+                ? fmt::format("{}: no hash has a majority; by the journal {:016x} is right", when, divergence.rightHash)
+                : fmt::format("{}: no hash has a majority, and no journal can be read; the master's "
+                              "sand counts as right",
                               when));
     }
     if (journal.empty()) {

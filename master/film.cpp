@@ -39,7 +39,7 @@ FilmEye filmEyeNamed(const std::string& name) {
             return eye;
         }
     }
-    throw base::InputError(fmt::format("--eye: '{}' is none of left, right, anaglyph", name));
+    throw base::InputError(fmt::format("--eye must be left, right or anaglyph, got '{}'", name));
 }
 
 Film::Film(const walls::Wall& wall, std::optional<FilmEye> eye, std::filesystem::path folder)

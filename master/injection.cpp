@@ -143,9 +143,10 @@ lockstep::Fault parseFault(const std::string& text, const FaultTargets& targets)
                 kUsage.at(static_cast<std::size_t>(fault.kind)));
     fault.rank = keys.front().given ? static_cast<int>(rank) : lockstep::Fault::kLink;
     if (fault.rank == lockstep::Fault::kLink && !targets.link) {
-        throw base::InputError(fmt::format(
-            "--inject {}: without a rank it strikes the link to the haptic server, and there is none; name a rank",
-            text));
+        throw base::InputError(
+            fmt::format("--inject {}: without a rank the fault is for the link to a haptic server, but --haptic names "
+                        "no server; add rank=R",
+                        text));
     }
     if (std::find(kHarmless.begin(), kHarmless.end(), signal) != kHarmless.end()) {
         throw base::InputError(

@@ -53,7 +53,7 @@ struct World {
 void resume(const lockstep::Cluster& cluster, Options& options) {
     const std::filesystem::path journal = std::filesystem::path(options.out) / "session.journal";
     if (options.session.record.journal.policy == master::JournalPolicy::off) {
-        throw base::InputError("--resume: without a journal there is nothing to go on with; leave --journal off out");
+        throw base::InputError("--resume needs the journal of the session; leave out --journal off");
     }
     if (std::error_code none; std::filesystem::exists(journal, none)) {
         master::requireMemoryOfJournal(cluster.hosts(), journal);
@@ -64,7 +64,7 @@ void resume(const lockstep::Cluster& cluster, Options& options) {
         return;
     }
     if (resumed->cutBytes > 0) {
-        host::printLine("{}: the last {} bytes are no whole record and are cut off", journal.string(),
+        host::printLine("{}: the last {} bytes are an incomplete record and are cut off", journal.string(),
                         resumed->cutBytes);
     }
     host::emitEvent("resumed", {{"step", resumed->step},
@@ -72,8 +72,8 @@ void resume(const lockstep::Cluster& cluster, Options& options) {
                                 {"checkpoint_step", resumed->checkpointStep},
                                 {"replayed_steps", resumed->replayedSteps},
                                 {"cut_bytes", resumed->cutBytes}});
-    host::printLine("{}: goes on after step {}, frame {}: {} and {} steps behind it", journal.string(), resumed->step,
-                    resumed->frame,
+    host::printLine("{}: continues after step {}, frame {}, from {} and {} later steps", journal.string(),
+                    resumed->step, resumed->frame,
                     resumed->checkpointStep == 0 ? std::string("the scene")
                                                  : fmt::format("the checkpoint of step {}", resumed->checkpointStep),
                     resumed->replayedSteps);
@@ -227,45 +227,45 @@ void describeOptions(host::CommandLine& line, Options& options) {
     line.option("--out", options.out, "folder for journal, pictures and summary").required();
     line.option("--haptic", options.haptic, "HOST:PORT of the haptic server, or none").showDefault();
     options.link.addTo(line, false);
-    line.option("--pace", options.pace, "realtime: at the wall's refresh rate; fast: as fast as it goes")
+    line.option("--pace", options.pace, "realtime: at the wall's refresh rate; fast: as fast as possible")
         .oneOf({"realtime", "fast"});
     line.option("--refresh", session.refreshHz, "frames per second, instead of the wall file's").range(1.0, 1000.0);
-    line.option("--stereo", options.stereo, "how the wall shows two eyes, instead of as its file says");
+    line.option("--stereo", options.stereo, "how the wall shows two eyes, instead of the wall file's mode");
     line.option("--track", options.track,
-                "where the head's pose comes from, instead of what the wall file says (docs/head_tracking.md)");
+                "source of the head's pose, instead of the wall file's (docs/head_tracking.md)");
     line.option("--pattern", options.pattern, "test pattern shown from the start (docs/test_patterns.md)");
-    line.option("--show", options.layers, "shown beside the sand from the start (docs/operator.md)");
+    line.option("--show", options.layers, "layer to show with the sand from the start (docs/operator.md)");
     line.option("--steps", session.steps, "end when exactly this many steps have been shown").positive();
     line.option("--frames", session.frames, "end after this many frames").positive();
-    line.option("--warm-up", session.settlingFrames, "frames from the start whose times do not count")
+    line.option("--warm-up", session.settlingFrames, "number of first frames whose times do not count")
         .range(0, 1000000);
     line.option("--frame-timeout", session.frameTimeout, "seconds a frame may take before the job ends")
         .range(2.0, 3600.0);
     host::addSandThreads(line, options.sandThreads);
     line.flag("--no-pictures", options.noPictures, "write no pictures at the end");
     line.flag("--control-stdin", session.desk.readInput,
-              "obeys lines on standard input (docs/operator.md); its end is a stop");
-    line.option("--inject", options.injections, "a fault on purpose, such as slow:rank=5,ms=30 (docs/operator.md)");
+              "read commands from standard input (docs/operator.md); its end stops the session");
+    line.option("--inject", options.injections, "inject a fault, such as slow:rank=5,ms=30 (docs/operator.md)");
 }
 
 void describeResume(host::CommandLine& line, Options& options) {
-    const host::Option resume =
-        line.flag("--resume", options.resume, "go on with the session in --out, if there is one");
+    const host::Option resume = line.flag("--resume", options.resume, "continue the session in --out, if there is one");
     resume.excludes(line.named("--replay"));
     master::Failure& failure = options.session.record.failure;
-    line.option("--failed-at", failure.noticed, "Unix time at which the failure was noticed that made it stop")
+    line.option("--failed-at", failure.noticed, "Unix time at which the failure of the session was noticed")
         .notNegative()
         .needs(resume);
     line.option("--journal", options.journal,
-                "required: nothing is shown that is not on disk; best-effort: go on without; off (docs/journal.md)")
+                "required: show only steps that are on disk; best-effort: continue without a journal; off "
+                "(docs/journal.md)")
         .oneOf({"required", "best-effort", "off"});
     line.option("--checkpoint", options.session.record.journal.checkpointSeconds,
-                "seconds from one checkpoint to the next, 0 for none")
+                "seconds from one checkpoint to the next; 0: no checkpoints")
         .range(0.0, 86400.0);
-    line.option("--journal-part", options.partMegabytes, "MiB after which the journal goes on in another file")
+    line.option("--journal-part", options.partMegabytes, "MiB after which the journal continues in another file")
         .range(1, 1 << 20);
-    line.option("--failure", failure.what, "what had failed, for the record").needs(resume);
-    line.option("--failed-rank", failure.rank, "rank that had failed; none if it was no rank").needs(resume);
+    line.option("--failure", failure.what, "what failed; written to the journal and to recoveries.jsonl").needs(resume);
+    line.option("--failed-rank", failure.rank, "rank that failed; leave it out if no rank failed").needs(resume);
     line.option("--failed-how", failure.how, "how it failed: a signal's name, 'status N', hung, broken or disk")
         .needs(resume);
 }

@@ -153,7 +153,8 @@ void OperatorDesk::askEdit(sand::Edit edit, std::optional<Client> client,
     if (!session_.room(edits_.sandBytes(edit))) {
         tellWhoWaitsForRoom();
         throw base::InputError(
-            "the sand stands still: no room for the journal on the disk; nothing was done, ask again when there is");
+            "the disk has no room for the journal, so the sand is stopped; the edit was refused: free disk space and "
+            "try again");
     }
     if (paused_ && client) {
         control_->answer(*client, line({{"ok", true}, {"waits_for", "resume"}}));

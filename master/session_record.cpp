@@ -87,7 +87,7 @@ void SessionRecord::keepTicks(const std::vector<base::Bytes>& pieces) {
 
 void SessionRecord::endForDisk(const DiskFailure& failure) const {
     const std::string line = fmt::format(
-        "{}, which is not shown: the session ends (--journal best-effort would go on without)", failure.what());
+        "{}, which is not shown; the session ends (with --journal best-effort it would continue)", failure.what());
     (void)writeFailure(labels_.failure("disk", lockstep::kMaster, line), out_);
     throw DiskFailure(line);
 }

@@ -17,8 +17,8 @@ void requireMemory(const std::vector<lockstep::RankHost>& ranks, int columns, in
                    const std::string& file) {
     // The master computes the heights from which a TIN's vertices are chosen. A render rank needs as much memory.
     if (const auto lack = lockstep::lackOfMemory(ranks, scene::bytesOfField(columns, rows, tin))) {
-        throw base::InputError(fmt::format("{}: {} x {} {} need {}: fewer cells, or more hosts", file, columns, rows,
-                                           tin ? "nominal cells of a TIN" : "cells", *lack));
+        throw base::InputError(fmt::format("{}: {} x {} {} need {}; use fewer cells, or more hosts", file, columns,
+                                           rows, tin ? "nominal cells of a TIN" : "cells", *lack));
     }
 }
 
@@ -32,9 +32,9 @@ void requireMemory(const std::vector<lockstep::RankHost>& ranks, const scene::Sc
     const std::int64_t toDraw = std::int64_t{sizeof(float)} * columns * rows;
     const auto lack = lockstep::lackOfMemory(ranks, sand::Replica::leastBytes(scene), toDraw);
     if (lack) {
-        throw base::InputError(
-            fmt::format("{}: a TIN of {} vertices over {} x {} nominal cells needs {}: fewer of either, or more hosts",
-                        file, scene.tin->places.size(), columns, rows, *lack));
+        throw base::InputError(fmt::format(
+            "{}: a TIN of {} vertices over {} x {} nominal cells needs {}; use fewer of either, or more hosts", file,
+            scene.tin->places.size(), columns, rows, *lack));
     }
 }
 
@@ -43,7 +43,7 @@ void requireMemoryOfRaster(const std::vector<lockstep::RankHost>& ranks, int col
     const std::vector<lockstep::RankHost> master(ranks.begin(), ranks.begin() + (ranks.empty() ? 0 : 1));
     if (const auto lack = lockstep::lackOfMemory(master, scene::bytesToRead(columns, rows))) {
         throw base::InputError(
-            fmt::format("{}: {} x {} pixels of a raster need {}: coarsen it", file, columns, rows, *lack));
+            fmt::format("{}: {} x {} pixels of a raster need {}; coarsen it", file, columns, rows, *lack));
     }
 }
 
@@ -68,8 +68,9 @@ void requireFolder(const std::filesystem::path& out) {
 void requireReady(const std::vector<lockstep::Readiness>& ranks, const std::vector<std::string>& names) {
     for (std::size_t rank = 1; rank < ranks.size(); ++rank) {
         if (ranks[rank].buildId != host::buildId()) {
-            throw base::InputError(fmt::format("{}: is of build {}, the master of {}; install one build on every host",
-                                               names[rank], ranks[rank].buildId, host::buildId()));
+            throw base::InputError(
+                fmt::format("{}: is of build {}, but the master is of build {}; install the same build on every host",
+                            names[rank], ranks[rank].buildId, host::buildId()));
         }
         if (!ranks[rank].error.empty()) {
             throw base::InputError(fmt::format("{}: {}", names[rank], ranks[rank].error));

@@ -85,7 +85,7 @@ void JournalKeeper::refused(const std::string& why) {
     if (options_.policy == JournalPolicy::required) {
         throw std::runtime_error(why);  // not an InputError, because a later try may succeed
     }
-    host::printLine("{}, and the session goes on without a journal", why);
+    host::printLine("{}; the session continues without a journal", why);
     host::emitEvent("journal", {{"state", "failed"}, {"error", why}});
 }
 
@@ -119,8 +119,9 @@ bool JournalKeeper::hasRoom(std::int64_t bytes, const JournalEnd& sand) {
         return true;  // if the disk then refuses the steps, the journal ends
     }
     if (!standing_) {
-        host::printLine("no room for the journal ({}); the sand stands still after step {} until there is", why,
-                        sand.step);
+        host::printLine(
+            "the disk has no room for the journal ({}); the sand is stopped after step {} until there is room", why,
+            sand.step);
         host::emitEvent("journal", {{"state", "no_room"}, {"step", sand.step}, {"error", why}});
         standing_ = true;
         stoodSince_ = now();
@@ -140,7 +141,7 @@ bool JournalKeeper::mayTake(std::int64_t bytes, const JournalEnd& sand) {
     const bool room = hasRoom(bytes, sand);
     if (room && standing_) {
         const double seconds = now() - stoodSince_;
-        host::printLine("there is room for the journal again; the sand goes on after {:.0f} s", seconds);
+        host::printLine("the disk has room for the journal again; the sand continues after {:.0f} s", seconds);
         host::emitEvent("journal", {{"state", "room"}, {"seconds", seconds}});
         stoodSeconds_ += seconds;
         standing_ = false;
@@ -153,7 +154,7 @@ void JournalKeeper::giveUp(const std::string& why) {
     if (options_.policy == JournalPolicy::required) {
         throw DiskFailure(why);
     }
-    host::printLine("{}, and the session goes on without", why);
+    host::printLine("{}; the session continues without a journal", why);
     host::emitEvent("journal", {{"state", "failed"}, {"error", why}});
 }
 
@@ -175,7 +176,7 @@ void JournalKeeper::keepTicks(const std::vector<base::Bytes>& pieces) {
     for (const base::Bytes& piece : pieces) {
         try {
             if (writer_ && !writer_->keep(JournalTicks{piece}) && !std::exchange(ticksLeftOut_, true)) {
-                host::printLine("no room for the tick track; ticks are left out until there is");
+                host::printLine("the disk has no room for the tick track; ticks are left out until there is room");
             }
         } catch (const base::InputError& error) {
             giveUp(error.what());
@@ -190,7 +191,7 @@ void JournalKeeper::endCheckpoint(bool wait) {
     const std::string complaint = checkpoint_.get();
     checkpointsFailed_ += complaint.empty() ? 0 : 1;
     if (!complaint.empty() && complaint != complaint_) {  // printed once, even if it repeats
-        host::printLine("{}; there is no checkpoint, and the session goes on", complaint);
+        host::printLine("{}; no checkpoint was written, and the session continues", complaint);
     }
     complaint_ = complaint;
 }

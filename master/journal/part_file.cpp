@@ -29,7 +29,8 @@ bool lock(int descriptor) { return flock(descriptor, LOCK_EX | LOCK_NB) == 0 || 
 void lockOrThrow(int descriptor, const std::filesystem::path& path, const Pause& pause) {
     for (std::chrono::milliseconds left = PartFile::kPatience; !lock(descriptor); left -= PartFile::kPause) {
         if (left <= std::chrono::milliseconds(0)) {
-            throw std::runtime_error(fmt::format("{}: another session writes it; stop that one first", path.string()));
+            throw std::runtime_error(
+                fmt::format("{}: another session writes it; stop that session first", path.string()));
         }
         pause(PartFile::kPause);
     }
@@ -93,7 +94,7 @@ PartFile PartFile::open(const std::filesystem::path& path, std::int64_t size, st
     if (file.descriptor_ < 0 || ftruncate(file.descriptor_, size) != 0 ||
         lseek(file.descriptor_, size, SEEK_SET) != size || fdatasync(file.descriptor_) != 0) {
         throw std::runtime_error(
-            fmt::format("{}: the journal cannot be gone on with ({})", path.string(), std::strerror(errno)));
+            fmt::format("{}: the journal cannot be continued ({})", path.string(), std::strerror(errno)));
     }
     return file;
 }

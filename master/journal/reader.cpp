@@ -73,7 +73,7 @@ void JournalReader::open(std::uint32_t part) {
     stream_.seekg(0, std::ios::end);
     size_ = stream_.tellg();
     if (size_ < 0) {
-        throw base::InputError(fmt::format("{}: cannot be read; it is no plain file", file.string()));
+        throw base::InputError(fmt::format("{}: cannot be read; it is not a plain file", file.string()));
     }
     header_ = readHeader(stream_, size_, place_.chain, place_.offset);
     place_.session = header_.session;
@@ -87,18 +87,17 @@ void JournalReader::openNext(std::uint32_t part) {
     const fs::path file = partOf(place_.journal, part);
     std::error_code none;
     if (part != before.part + 1 || !fs::exists(file, none)) {
-        fail(fmt::format("goes on in {}, which is missing; what stands before it is whole", file.filename().string()));
+        fail(fmt::format("continues in {}, which is missing; everything before is intact", file.filename().string()));
     }
     try {
         open(part);
     } catch (const base::FormatError& error) {
-        throw base::InputError(
-            fmt::format("{}: {}; what stands in the part before is whole", file.string(), error.what()));
+        throw base::InputError(fmt::format("{}: {}; the part before is intact", file.string(), error.what()));
     }
     earlierBytes_ += before.offset;
     if (header_.session != before.session || header_.part != part || header_.continues != before.chain) {
-        throw base::InputError(fmt::format("{}: does not go on where {} ends; what stands there is whole",
-                                           file.string(), partOf(before.journal, before.part).filename().string()));
+        throw base::InputError(fmt::format("{}: does not continue {}; everything before is intact", file.string(),
+                                           partOf(before.journal, before.part).filename().string()));
     }
 }
 
@@ -156,13 +155,13 @@ void JournalReader::endHere(const std::string& why) {
         // A crash tears only the last record. If records follow, this one was damaged on the disk, perhaps in its
         // length.
         if (holdsRecords(readInto(stream_, rest, left), place_.chain)) {
-            fail(
-                fmt::format("damaged at byte {} of {}: {}; what stands before it is whole", place_.offset, size_, why));
+            fail(fmt::format("damaged at byte {} of {}: {}; everything before is intact", place_.offset, size_, why));
         }
     }
     if (goesOn()) {
-        fail(fmt::format("cut off at byte {}, and {} goes on behind what is missing; what stands before it is whole",
-                         place_.offset, partOf(place_.journal, place_.part + 1).filename().string()));
+        fail(fmt::format(
+            "cut off at byte {}, but {} continues the session after missing records; everything before is intact",
+            place_.offset, partOf(place_.journal, place_.part + 1).filename().string()));
     }
     tornBytes_ = left;
     ended_ = true;
@@ -172,14 +171,14 @@ std::optional<JournalRecord> JournalReader::next() {
     base::Bytes body;
     while (!ended_) {
         if (!readRecord(body)) {
-            endHere("a record that is not whole");
+            endHere("an incomplete record");
             break;
         }
         JournalRecord record;
         try {
             record = decodeRecord(body);
         } catch (const base::FormatError& error) {
-            fail(fmt::format("damaged at byte {} of {}: {}; what stands before it is whole", place_.offset, size_,
+            fail(fmt::format("damaged at byte {} of {}: {}; everything before is intact", place_.offset, size_,
                              error.what()));
         }
         place_.offset += static_cast<std::int64_t>(body.size() - 1 + kAroundPayload);

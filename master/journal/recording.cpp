@@ -13,7 +13,7 @@ namespace {
 
 std::string shortcomingOf(const Journal& journal, const std::string& file, std::uint64_t lastStep) {
     if (journal.tornBytes > 0) {
-        return fmt::format("{}: the last {} bytes are no whole record and were left out; it ends at step {}", file,
+        return fmt::format("{}: the last {} bytes are an incomplete record and were left out; it ends at step {}", file,
                            journal.tornBytes, lastStep);
     }
     if (!journal.end) {
@@ -37,7 +37,7 @@ Recording::Recording(Journal journal, std::string file, int framesPerSecond)
         }
     }
     if (steps_.empty()) {
-        throw base::InputError(fmt::format("{}: holds no step; there is nothing to show", file));
+        throw base::InputError(fmt::format("{}: the journal holds no steps, so it cannot be replayed", file));
     }
     if (journal.end) {
         if (journal.end->step != lastStep()) {

@@ -91,7 +91,7 @@ public:
             throw base::InputError(fmt::format("{}: cannot be written", options_.forces));
         }
         if (replay_.left() > 0) {
-            host::printLine("{}: the last {} ticks felt steps that the session did not show, and were left out",
+            host::printLine("{}: the last {} ticks belong to steps that the session did not show, and were left out",
                             options_.file, replay_.left());
         }
     }
@@ -256,10 +256,12 @@ void describe(host::CommandLine& line, Options& options) {
     line.option("FILE", options.file, "session.journal of a session").required();
     const std::vector<host::Option> combined{
         line.flag("--hash", options.hash, "print the state hash after the last step"),
-        line.option("--heights", options.heights,
-                    "write the heights then, where the terrain came from: a .tif, or an ESRI ASCII grid")
+        line.option(
+                "--heights", options.heights,
+                "write the heights after the last step, in the terrain's coordinates: a .tif, or an ESRI ASCII grid")
             .check(notEmpty),
-        line.option("--difference", options.difference, "the same of how much higher the sand is than at the start")
+        line.option("--difference", options.difference,
+                    "write how much higher the sand is than at the start, in the same formats")
             .check(notEmpty),
         line.option("--mesh", options.mesh, "write the surface as triangles: a .ply or .obj").check(notEmpty),
         line.flag("--volumes", options.volumes, "print what was cut and filled since the start, as one line of JSON"),
@@ -269,11 +271,12 @@ void describe(host::CommandLine& line, Options& options) {
             .check(notEmpty),
         line.option("--until", options.until, "stop after this step").check(notNegative),
         line.option("--export", options.steps, "write every step as a row of this CSV file").check(notEmpty)};
-    const host::Option verify =
-        line.flag("--verify", options.verify, "check records, parts, hashes and checkpoints; alone");
-    const host::Option recover = line.option("--recover", options.recovered,
-                                             "write what is intact of a damaged journal as a journal of its own; alone")
-                                     .check(notEmpty);
+    const host::Option verify = line.flag("--verify", options.verify,
+                                          "check records, parts, hashes and checkpoints; excludes all other options");
+    const host::Option recover =
+        line.option("--recover", options.recovered,
+                    "write the intact part of a damaged journal as a new journal; excludes all other options")
+            .check(notEmpty);
     verify.excludes(recover);
     for (const host::Option& other : combined) {
         verify.excludes(other);
@@ -292,7 +295,7 @@ int main(int argc, char** argv) {
     }
     host::CommandLine line(
         "Replays the journal of a session, bit for bit, and checks it against the session's own hashes.\n"
-        "Exit status 0 alike, 1 different, 2 unusable.",
+        "Exit status: 0 equal, 1 different, 2 unusable.",
         "sandwall-replay");
     Options options;
     describe(line, options);

@@ -101,8 +101,8 @@ void requireScene(const JournalReader& reader, const std::string& file) {
     }
     const auto fail = [&] {
         throw base::InputError(
-            fmt::format("{}: is not the scene of the session in {}; leave --scene out to go on with "
-                        "that one, or choose another --out",
+            fmt::format("{}: is not the scene of the session in {}; leave --scene out to continue "
+                        "that session, or choose another --out",
                         file, reader.place().journal.string()));
     };
     const auto raster = scene::checksOfOneReplica(file, host::freeMemoryOfProcess()).raster;
@@ -127,7 +127,7 @@ sand::Replica sandOfCheckpoint(const fs::path& file, const JournalHeader& header
     sand::Replica terrain = start;
     terrain.decodeState(checkpoint.state);
     if (terrain.stepNumber() != checkpoint.step || terrain.stateHash() != checkpoint.stateHash) {
-        throw base::FormatError("its sand is not what it says");
+        throw base::FormatError("its sand differs from its hash");
     }
     return terrain;
 }
@@ -171,9 +171,10 @@ std::optional<ResumedSession> readSession(const fs::path& journal, const std::st
             std::visit(walk, *record);
         }
     } catch (const base::InputError& error) {
-        throw base::InputError(fmt::format(
-            "{}; sandwall-replay {} --recover NEW/session.journal keeps that, and --out NEW goes on with it",
-            error.what(), journal.string()));
+        throw base::InputError(
+            fmt::format("{}; sandwall-replay {} --recover NEW/session.journal saves the intact part, and --out NEW "
+                        "--resume continues it",
+                        error.what(), journal.string()));
     }
     session.place = reader.place();
     session.cutBytes = reader.tornBytes();

@@ -85,7 +85,7 @@ private:
         try {
             sand::Replica sand = sandOfCheckpoint(checkpointFile(journal_, found->first), reader_.header(), start_);
             found->second =
-                sand.stateHash() == terrain_.stateHash() ? "the replay's sand" : "other sand than the replay's";
+                sand.stateHash() == terrain_.stateHash() ? "the replay's sand" : "differs from the replay's sand";
         } catch (const base::FormatError& error) {
             found->second = error.what();
         }
@@ -96,19 +96,19 @@ private:
         fmt::print("origin       sandwall {}, journal format {}, algorithm {}\n", origin.release, origin.format,
                    origin.algorithm);
         fmt::print("records      {} whole, {} bytes\n", records_, reader_.wholeBytes());
-        fmt::print("chain        whole: every checksum hangs on the one before\n");
+        fmt::print("chain        whole: every checksum continues from the one before\n");
         fmt::print("parts        {}\n", reader_.parts());
         fmt::print("tail         {}\n", reader_.tornBytes() == 0
                                             ? std::string("whole")
-                                            : fmt::format("{} bytes are no whole record", reader_.tornBytes()));
+                                            : fmt::format("{} bytes of an incomplete record", reader_.tornBytes()));
         fmt::print("steps        {} without a gap, in frames {} to {}, epochs to {}, {} pieces of ticks\n",
                    terrain_.stepNumber(), firstFrame_, lastFrame_, lastEpoch_, ticks_);
-        fmt::print("hashes       {} of {} as the replay has them\n", hashes_ - differing_, hashes_);
+        fmt::print("hashes       {} of {} equal to the replay's\n", hashes_ - differing_, hashes_);
         for (const auto& [step, found] : checkpoints_) {
             fmt::print("checkpoint   of step {}: {}\n", step, found.empty() ? "beyond the journal's end" : found);
         }
         fmt::print("resumed      {} times, {} bytes were cut off\n", resumes_, cutBytes_);
-        fmt::print("end          {}, at step {}, state hash {:016x}\n", end_ ? "in order" : "cut off",
+        fmt::print("end          {}, at step {}, state hash {:016x}\n", end_ ? "orderly" : "cut off",
                    terrain_.stepNumber(), terrain_.stateHash());
     }
 

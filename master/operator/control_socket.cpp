@@ -44,7 +44,7 @@ bool somebodyListensAt(const sockaddr_un& address) {
 const char* const kRefusal = R"({"error":"the session belongs to another user","ok":false})";
 const char* const kTooMany = R"({"error":"too many clients at once; try again","ok":false})";
 const char* const kTooLong = R"({"error":"a command of more than 1024 bytes","ok":false})";
-static_assert(kLongestCommand == 1024, "said above");
+static_assert(kLongestCommand == 1024, "kTooLong contains this number");
 
 }  // namespace
 

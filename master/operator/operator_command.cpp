@@ -191,7 +191,8 @@ Command parseCommand(std::string_view line) {
         parseArgument(argument, command);
         return command;
     }
-    throw base::InputError(fmt::format("'{}' is no command; these are: {}", line.substr(0, 80), knownVerbs()));
+    throw base::InputError(
+        fmt::format("'{}' is not a command; the commands are: {}", line.substr(0, 80), knownVerbs()));
 }
 
 }  // namespace master

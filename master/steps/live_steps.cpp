@@ -72,7 +72,7 @@ double LiveSteps::secondsSince(std::int64_t then) const { return static_cast<dou
 
 void LiveSteps::takeOver(const std::string& reason, const std::string& why) {
     if (!why.empty()) {
-        host::printLine("haptic link: {}; the wall goes on without a hand", why);
+        host::printLine("haptic link: {}; the wall continues without a hand", why);
     }
     source_ = Source::own;
     ++epoch_;
@@ -128,7 +128,7 @@ void LiveSteps::followLink(const sand::Replica& terrain, std::uint64_t stateHash
         if (status.link == Link::refused) {
             takeOver("refused", "refused");
         } else if (secondsSince(waitingSinceNs_) > kStartWait) {
-            takeOver("no_server", fmt::format("nobody at {} for {:.0f} s", server_->text(), kStartWait));
+            takeOver("no_server", fmt::format("no answer from {} for {:.0f} s", server_->text(), kStartWait));
         }
     } else if (source_ != Source::own) {
         takeOver("lost", "lost");

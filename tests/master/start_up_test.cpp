@@ -35,8 +35,8 @@ scene::Scene tinOf(int side, std::size_t vertices) {
 TEST(StartUp, RefusesAGridThatDoesNotFitTheMemory) {
     EXPECT_EQ(refusal({{"a", 8 * kGiB}, {"a", 8 * kGiB}}, sceneOf(16384)), "nothing");
     EXPECT_EQ(refusal({{"a", 8 * kGiB}, {"a", 8 * kGiB}, {"a", 8 * kGiB}}, sceneOf(16384)),
-              "s.toml: 16384 x 16384 cells need at least 12.0 GiB for the 3 ranks on a, where 8.0 GiB are free: fewer "
-              "cells, or more hosts");
+              "s.toml: 16384 x 16384 cells need at least 12.0 GiB for the 3 ranks on a, where 8.0 GiB are free; use "
+              "fewer cells, or more hosts");
 }
 
 TEST(StartUp, RefusesATinWhoseVerticesDoNotFitTheMemory) {
@@ -44,7 +44,7 @@ TEST(StartUp, RefusesATinWhoseVerticesDoNotFitTheMemory) {
     EXPECT_EQ(
         refusal({{"a", kGiB}, {"a", kGiB}}, tinOf(512, 1 << 22)),
         "s.toml: a TIN of 4194304 vertices over 512 x 512 nominal cells needs at least 2.5 GiB for the 2 ranks on "
-        "a, where 1.0 GiB are free: fewer of either, or more hosts");
+        "a, where 1.0 GiB are free; use fewer of either, or more hosts");
 }
 
 TEST(StartUp, RefusesATinWhoseNominalCellsDoNotFitTheMemoryOfThoseThatDraw) {
@@ -52,7 +52,7 @@ TEST(StartUp, RefusesATinWhoseNominalCellsDoNotFitTheMemoryOfThoseThatDraw) {
     EXPECT_EQ(
         refusal({{"a", kGiB}, {"b", 2 * kGiB}, {"b", 2 * kGiB}, {"b", 2 * kGiB}}, tinOf(16384, 4)),
         "s.toml: a TIN of 4 vertices over 16384 x 16384 nominal cells needs at least 3.0 GiB for the 3 ranks on b, "
-        "where 2.0 GiB are free: fewer of either, or more hosts");
+        "where 2.0 GiB are free; use fewer of either, or more hosts");
 }
 
 TEST(StartUp, RefusesTheHeightsThatATinIsMadeOf) {
@@ -64,7 +64,7 @@ TEST(StartUp, RefusesTheHeightsThatATinIsMadeOf) {
     EXPECT_EQ(refusalOn(kGiB), "nothing") << "the heights alone are 1 GiB";
     EXPECT_EQ(refusalOn(kGiB / 2),
               "s.toml: 16384 x 16384 nominal cells of a TIN need at least 1.0 GiB for the one rank on a, where 0.5 GiB "
-              "are free: fewer cells, or more hosts");
+              "are free; use fewer cells, or more hosts");
 }
 
 // The master alone reads a raster, 16 bytes a pixel.
@@ -77,7 +77,7 @@ TEST(StartUp, RefusesARasterWhosePixelsDoNotFitTheMastersHost) {
     EXPECT_EQ(refusalOn(4 * kGiB), "nothing") << "the other ranks read nothing";
     EXPECT_EQ(refusalOn(2 * kGiB),
               "s.toml: 16384 x 16384 pixels of a raster need at least 4.0 GiB for the one rank on a, where 2.0 GiB are "
-              "free: coarsen it");
+              "free; coarsen it");
 }
 
 class StartUpFiles : public test::FolderTest {};

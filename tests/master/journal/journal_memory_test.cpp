@@ -56,7 +56,7 @@ TEST_F(JournalMemory, IsRefusedBeforeItsHeightsAreMade) {
     EXPECT_EQ(refusalOn(4 * kGibibyte),
               journal.string() +
                   ": 16384 x 16384 cells need at least 8.0 GiB for the 2 ranks on a, where 4.0 "
-                  "GiB are free: fewer cells, or more hosts");
+                  "GiB are free; use fewer cells, or more hosts");
 }
 
 // A replica takes 16 bytes a cell, the scene alone 4.

@@ -230,17 +230,18 @@ TEST_F(Keeper, APartThatIsMissingOrOfAnotherSessionIsNamed) {
     };
     const std::filesystem::path second = master::partOf(journal(), 2), away = folder_ / "away";
     std::filesystem::rename(second, away);
-    EXPECT_NE(complaint().find("session.journal: goes on in session.journal.2, which is missing"), std::string::npos)
+    EXPECT_NE(complaint().find("session.journal: continues in session.journal.2, which is missing"), std::string::npos)
         << complaint();
     std::filesystem::copy(master::partOf(journal(), 3), second);
-    EXPECT_NE(complaint().find("session.journal.2: does not go on where session.journal ends"), std::string::npos)
+    EXPECT_NE(complaint().find("session.journal.2: does not continue session.journal"), std::string::npos)
         << complaint();
     std::filesystem::remove(second);
     std::filesystem::copy(away, second);
     EXPECT_EQ(complaint(), "none");
     // Without its end a part does not say that it goes on, and yet it does.
     std::filesystem::resize_file(second, std::filesystem::file_size(second) - 40);
-    EXPECT_NE(complaint().find("session.journal.3 goes on behind what is missing"), std::string::npos) << complaint();
+    EXPECT_NE(complaint().find("session.journal.3 continues the session after missing records"), std::string::npos)
+        << complaint();
     try {
         (void)master::readJournal(master::partOf(journal(), 3));
         ADD_FAILURE() << "a part alone was read";

@@ -55,7 +55,7 @@ TEST_F(TwoWriters, TheSecondGoesOnWhenTheFirstEndsWithinFiveSeconds) {
 }
 
 TEST_F(TwoWriters, TheSecondIsRefusedAfterFiveSecondsAndHasTouchedNothing) {
-    EXPECT_EQ(open(kNever), file_.string() + ": another session writes it; stop that one first");
+    EXPECT_EQ(open(kNever), file_.string() + ": another session writes it; stop that session first");
     EXPECT_EQ(waited_, 5000ms);
     first_->write(base::Bytes{4});
     EXPECT_EQ(std::filesystem::file_size(file_), 4U);
@@ -66,7 +66,7 @@ TEST_F(TwoWriters, ASecondThatBeginsAnewWaitsAsLong) {
     EXPECT_EQ(waited_, 4900ms);
     first_ = PartFile::open(file_, 3, 3);
     waited_ = 0ms;
-    EXPECT_EQ(begin(kNever), file_.string() + ": another session writes it; stop that one first");
+    EXPECT_EQ(begin(kNever), file_.string() + ": another session writes it; stop that session first");
     EXPECT_EQ(waited_, 5000ms);
 }
 

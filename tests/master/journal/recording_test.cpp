@@ -66,7 +66,7 @@ TEST(Recording, SaysWhereACutOffSessionEnds) {
               "FILE: has no orderly end, the session was cut off; it ends at step 9");
     journal.tornBytes = 5;
     EXPECT_EQ(master::Recording(journal, "FILE", 30).shortcoming(),
-              "FILE: the last 5 bytes are no whole record and were left out; it ends at step 9");
+              "FILE: the last 5 bytes are an incomplete record and were left out; it ends at step 9");
 }
 
 TEST(Recording, RefusesASessionWithAHole) {
@@ -82,7 +82,7 @@ TEST(Recording, RefusesASessionWithoutSteps) {
     master::Journal journal = sessionOf(3);
     journal.frames.clear();
     journal.end.reset();
-    EXPECT_EQ(refusal(journal), "FILE: holds no step; there is nothing to show");
+    EXPECT_EQ(refusal(journal), "FILE: the journal holds no steps, so it cannot be replayed");
 }
 
 }  // namespace

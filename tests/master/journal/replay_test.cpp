@@ -133,7 +133,7 @@ TEST_F(Replay, VerifiesAllThatAJournalSays) {
     for (const char* line :
          {"records      21 whole, ", "chain        whole", "parts        1\n", "tail         whole\n",
           "steps        40 without a gap, in frames 1 to 20, epochs to 1", "hashes       21 of 21 as the replay",
-          "checkpoint   of step 40: the replay's sand\n", "end          in order, at step 40"}) {
+          "checkpoint   of step 40: the replay's sand\n", "end          orderly, at step 40"}) {
         EXPECT_NE(good.output.find(line), std::string::npos) << line << "\n" << good.output;
     }
     // The same step, and other sand.
@@ -144,7 +144,7 @@ TEST_F(Replay, VerifiesAllThatAJournalSays) {
     keep(other);
     const support::Ran bad = support::runProgram("sandwall-replay", journal() + " --verify");
     EXPECT_EQ(bad.status, 1) << bad.output;
-    EXPECT_NE(bad.output.find("of step 40: other sand than the replay's"), std::string::npos) << bad.output;
+    EXPECT_NE(bad.output.find("of step 40: differs from the replay's sand"), std::string::npos) << bad.output;
     record(1);
     EXPECT_EQ(support::runProgram("sandwall-replay", journal() + " --verify").status, 1);
     std::filesystem::resize_file(journal(), 20);
@@ -238,7 +238,7 @@ TEST_F(Replay, SaysThatTheRowsEndWithATornRecord) {
     EXPECT_EQ(torn.output,
               support::runProgram("sandwall-replay", journal() + " --mesh " + (folder_ / "m.ply").string()).output)
         << "as a replay says it";
-    EXPECT_NE(torn.output.find("bytes are no whole record and were left out\n"), std::string::npos) << torn.output;
+    EXPECT_NE(torn.output.find("bytes are an incomplete record and were left out\n"), std::string::npos) << torn.output;
     EXPECT_NE(torn.output.find("has no orderly end"), std::string::npos) << torn.output;
 }
 

@@ -223,7 +223,7 @@ TEST_F(Resume, RefusesADamagedJournalAndSaysWhatCanBeKept) {
     spoil(journal(), static_cast<std::streamoff>(std::filesystem::file_size(journal()) / 2));
     const std::string why = refusal(journal());
     EXPECT_NE(why.find("damaged at byte"), std::string::npos) << why;
-    EXPECT_NE(why.find("what stands before it is whole; sandwall-replay"), std::string::npos) << why;
+    EXPECT_NE(why.find("everything before is intact; sandwall-replay"), std::string::npos) << why;
 }
 
 TEST_F(Resume, RefusesAnotherSceneThanTheSessions) {

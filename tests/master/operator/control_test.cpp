@@ -59,12 +59,12 @@ TEST(OperatorCommand, EveryVerbIsRead) {
 
 TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
     EXPECT_EQ(complaint("dance"),
-              "'dance' is no command; these are: status, pause, resume, reset, undo, settle, pattern NAME, "
+              "'dance' is not a command; the commands are: status, pause, resume, reset, undo, settle, pattern NAME, "
               "show LAYER, hide LAYER, eye-separation METRES, stereo MODE, tool [SHAPE] [KEY=VALUE], material KEY "
               "VALUE, save NAME, "
               "load NAME, "
               "capture, force on|off|scale SHARE, stop");
-    EXPECT_EQ(complaint("").substr(0, 16), "'' is no command");
+    EXPECT_EQ(complaint("").substr(0, 19), "'' is not a command");
     EXPECT_EQ(complaint("undo twice"), "undo takes no argument, got 'twice'");
     EXPECT_EQ(complaint("pattern"), "pattern needs NAME");
     EXPECT_EQ(complaint("material talus"), "material needs KEY VALUE");
