@@ -134,8 +134,8 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
     }
     std::error_code error;
     if (std::filesystem::create_directories(options.out, error)) {
-        host::syncFolderOf(
-            std::filesystem::absolute(options.out));  // otherwise a loss of power can remove the folder with its files
+        // Without this, a loss of power can remove the folder with its files.
+        host::syncFolderOf(std::filesystem::absolute(options.out));
     }
     if (error) {
         throw base::InputError(

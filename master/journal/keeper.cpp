@@ -66,8 +66,8 @@ JournalKeeper::JournalKeeper(const std::filesystem::path& out, const JournalOpti
     }
     setAside(resumed->step);
     checkpointStep_ = resumed->checkpointStep;
-    lastCheckpoint_ -=
-        options_.checkpointSeconds;  // checkpoint at once: repeated crashes must not make each replay longer
+    // Makes a checkpoint at once, because repeated crashes must not make each replay longer.
+    lastCheckpoint_ -= options_.checkpointSeconds;
 }
 
 JournalKeeper::~JournalKeeper() { endCheckpoint(true); }

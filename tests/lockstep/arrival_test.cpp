@@ -17,7 +17,7 @@ constexpr std::uint64_t kFrame = 30;
 constexpr int kLength = static_cast<int>(sizeof(Arrival));
 using Room = std::array<std::uint8_t, lockstep::kArrivalRoom>;
 
-/// The bytes of an arrival at this frame, as MPI leaves them in their room.
+/// Returns the bytes of an arrival at frame `frame`, as MPI writes them into the buffer.
 Room letterOf(std::uint64_t frame) {
     const Arrival arrival{frame, 1, 2, 3, 4, 5, 'q'};
     Room room{};
@@ -25,7 +25,7 @@ Room letterOf(std::uint64_t frame) {
     return room;
 }
 
-/// Why such a message is no arrival at kFrame; "nothing" where it is one.
+/// Returns the error for a message at the barrier of kFrame; "nothing" if it is an arrival.
 std::string faultOf(const Room& room, int length) {
     try {
         (void)lockstep::readArrival(room, length, kFrame);
@@ -46,7 +46,7 @@ TEST(Arrival, ComesBackAsItWent) {
     EXPECT_EQ(read.key, 'q');
 }
 
-// The one before is a rank that lags behind, or what a rank has sent twice.
+// An arrival of the frame before comes from a slow rank, or from a rank that has sent it twice.
 TEST(Arrival, AtAnotherFrameIsNone) {
     for (const std::uint64_t frame : {kFrame - 1, kFrame + 1, std::uint64_t{0}, ~std::uint64_t{0}}) {
         EXPECT_EQ(faultOf(letterOf(frame), kLength), "of frame " + std::to_string(frame));
@@ -61,7 +61,7 @@ TEST(Arrival, OfAnotherLengthIsNoneThoughItsFrameIsRight) {
     EXPECT_EQ(faultOf(letterOf(kFrame), lockstep::kCutShort), "longer than 256 bytes");
 }
 
-// The drill's frames 30, 31 and 32 of tests/cluster/drills_test.cpp.
+// Frames 30, 31 and 32 are those of the drill in tests/cluster/drills_test.cpp.
 TEST(Arrival, OfADrillIsNoiseOfThreeKindsByTurns) {
     std::set<base::Bytes> all;
     for (std::uint64_t frame = kFrame; frame < kFrame + 30; ++frame) {
@@ -78,9 +78,9 @@ TEST(Arrival, OfADrillIsNoiseOfThreeKindsByTurns) {
             << frame;
         all.insert(noise);
     }
-    EXPECT_EQ(all.size(), 30U) << "every frame has its own";
+    EXPECT_EQ(all.size(), 30U) << "each frame has other noise";
     EXPECT_LT(sizeof(Arrival), 200U);
-    EXPECT_LT(lockstep::kArrivalRoom, 4000U) << "there is no room for the longest";
+    EXPECT_LT(lockstep::kArrivalRoom, 4000U) << "the longest noise is longer than the buffer";
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ TEST(Backoff, MakesNoWaitMuchLonger) {
     }
 }
 
-// What it is for: a rank of a still wall looks some hundred times in a frame, not a hundred thousand.
+// With the pauses, a rank of a still wall looks some hundred times per frame and not a hundred thousand times.
 TEST(Backoff, LooksSeldomInALongWait) {
     int looks = 0;
     for (std::int64_t waited = 60'000; waited < 33'000'000; waited += Backoff::sleepAfter(waited)) {

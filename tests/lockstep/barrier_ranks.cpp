@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0
-// A master and three ranks meet at the barrier of some frames, in which one of them does what it must not. The master
-// prints a line for each: the verdict, who sent nonsense and what, and whose arrivals it holds.
+// SPDX-License-Identifier: Apache-2.0 A master and three render ranks meet at the barrier of some frames. In some
+// frames one of them does something wrong. The master prints a line for each frame: the verdict, the rank that sent
+// nonsense and its bytes, and the arrivals.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -18,10 +18,10 @@ namespace {
 using lockstep::Arrival;
 using lockstep::Verdict;
 
-constexpr double kLimit = 60;  // [s]: a rank that is missing ends the job
+constexpr double kLimit = 60;  // [s], limit after which a missing rank ends the job
 const std::vector<std::string> kNames{"the master", "rank 1", "rank 2", "rank 3"};
 
-/// FNV-1a, so that a rank can say which message it has got.
+/// Returns the FNV-1a hash of a message, which shows the message that a rank has received.
 std::uint64_t hashOf(const base::Bytes& bytes) {
     std::uint64_t hash = 0xcbf29ce484222325U;
     for (const std::uint8_t byte : bytes) {
@@ -30,7 +30,7 @@ std::uint64_t hashOf(const base::Bytes& bytes) {
     return hash;
 }
 
-/// A frame message of exactly so many bytes.
+/// Returns a frame message of exactly this many bytes.
 lockstep::FrameMessage messageOf(std::uint64_t frame, std::size_t bytes) {
     lockstep::FrameMessage message;
     message.frame = frame;
@@ -41,7 +41,7 @@ lockstep::FrameMessage messageOf(std::uint64_t frame, std::size_t bytes) {
     return message;
 }
 
-/// What one rank does in a frame, in place of the arrival of everybody else.
+/// Something wrong that one rank does in a frame, instead of its usual arrival.
 struct Deed {
     std::uint64_t frame = 0;
     int rank = 0;
@@ -63,13 +63,14 @@ class Rank {
 public:
     explicit Rank(const lockstep::Cluster& cluster) : cluster_(cluster), barrier_(cluster, kNames, kLimit) {}
 
-    /// What the frame comes to, at the master; others get an empty string.
+    /// Shows frame `frame` with a message of `bytes` bytes. Returns the master's line about it; an empty text on other
+    /// ranks.
     std::string meet(std::uint64_t frame, std::size_t bytes) {
         std::size_t got = 0;
         const bool master = cluster_.isMaster();
         const lockstep::FrameMessage message =
             barrier_.begin(master ? messageOf(frame, bytes) : lockstep::FrameMessage{}, got);
-        // Whoever got another message says other sand.
+        // The message's hash stands for the sand. A rank that has received another message therefore differs.
         Arrival mine{message.frame, 1, 2, 100 + cluster_.rank(), hashOf(message.encode()), 5, 'q'};
         for (const Deed& deed : kDeeds) {
             if (deed.frame == frame && deed.rank == cluster_.rank()) {
@@ -88,12 +89,12 @@ public:
         std::vector<std::int64_t> drawn;
         for (std::size_t rank = 1; rank < all.size(); ++rank) {
             drawn.push_back(barrier_.arrivals()[rank].drawn);
-            line += all[rank] == all[0] ? "" : fmt::format(", and rank {} was told another verdict", rank);
+            line += all[rank] == all[0] ? "" : fmt::format(", and rank {} got another verdict", rank);
         }
         return line + fmt::format("; arrivals {}", fmt::join(drawn, " "));
     }
 
-    /// Bytes that go to the master, from one rank to two, and to everybody.
+    /// Sends bytes to the master, from one rank to two, and to all ranks.
     std::string hand() {
         const auto rank = static_cast<std::uint8_t>(cluster_.rank());
         std::string line = "collected";
@@ -110,7 +111,7 @@ public:
         return line;
     }
 
-    /// Every number of a report, by rank.
+    /// Returns all numbers of the reports, in order of rank.
     std::string report() {
         const auto rank = cluster_.rank();
         const double base = 100 * rank;
@@ -153,7 +154,7 @@ private:
             case Deed::garbage:
                 barrier_.garble();
                 break;
-            case Deed::late:  // behind all others
+            case Deed::late:  // after all others
                 std::this_thread::sleep_for(std::chrono::milliseconds(200));
                 break;
         }
@@ -191,7 +192,7 @@ int main(int argc, char** argv) {
     for (std::uint64_t frame = 1; frame <= 8; ++frame) {
         say(cluster, rank.meet(frame, kShort));
     }
-    // Around the length that one message takes: the rest of a longer one travels behind it.
+    // Lengths around kOneMessage. The rest of a longer message follows in a second one.
     constexpr std::size_t kWhole = lockstep::FrameBarrier::kOneMessage - sizeof(std::uint32_t);
     std::uint64_t frame = 9;
     for (const std::size_t bytes : {kWhole - 1, kWhole, kWhole + 1, kWhole, 3 * kWhole, kShort}) {

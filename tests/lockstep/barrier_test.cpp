@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// The barrier between ranks that MPI has started, and what it makes of each thing that a rank may do wrong.
+// SPDX-License-Identifier: Apache-2.0 The barrier between ranks that MPI has started, and its verdict on each thing
+// that a rank may do wrong.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -10,7 +10,8 @@
 
 namespace {
 
-/// One run of barrier_ranks for all tests: what its master printed, by the word before the first blank.
+/// The lines that the master printed in one run of barrier_ranks, which serves all tests. The key is the text before
+/// the first blank.
 class Barrier : public testing::Test {
 protected:
     static void SetUpTestSuite() {
@@ -46,14 +47,14 @@ TEST_F(Barrier, SeesAnotherViewAndOtherSandFirst) {
     expectFrame(4, "other sand");
 }
 
-// What a rank sends twice comes to the next frame as well.
+// If a rank sends an arrival twice, the second one arrives at the next frame.
 TEST_F(Barrier, RefusesAnArrivalAtAnotherFrame) {
     expectFrame(6, "nonsense of rank 1 (frame 6: rank 1 sent an invalid arrival (of frame 5))", "0 102 103");
 }
 
 TEST_F(Barrier, KnowsWhoseArrivalEachIsWhateverTheirOrder) { expectFrame(7, "equal"); }
 
-// Frames 30, 31 and 32 of the drill: as long as an arrival, longer, and longer than there is room.
+// The drill's noise in frames 30, 31 and 32 is as long as an arrival, longer, and longer than the buffer.
 TEST_F(Barrier, RefusesEachKindOfGarbageOfTheDrillAndGoesOn) {
     const std::string& first = said()["30:"];
     EXPECT_TRUE(first.starts_with("nonsense of rank 2 (frame 30: rank 2 sent an invalid arrival (of frame ")) << first;

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// Every rank looks which of the others it can ring for, is rung for by the one before it, and rings for the next.
+// SPDX-License-Identifier: Apache-2.0 Each rank counts the bells that it has, sleeps until the rank before it rings,
+// and rings the bell of the next rank.
 #include <fmt/format.h>
 #include <mpi.h>
 
@@ -9,7 +9,7 @@
 
 namespace {
 
-constexpr std::int64_t kLong = 60'000'000'000;  // [ns]: who sleeps through has not been woken
+constexpr std::int64_t kLong = 60'000'000'000;  // [ns]; a rank that sleeps this long has not been woken
 
 }  // namespace
 
@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
         if (fewest == ranks) {
             const lockstep::Doorbell mine = *bells.of(self);
             const std::uint32_t heard = mine.rings();
-            MPI_Barrier(MPI_COMM_WORLD);  // nobody is rung for before it has looked
+            MPI_Barrier(MPI_COMM_WORLD);  // no bell rings before its rank has read the number
             bells.of((self + 1) % ranks)->ring();
             const int wokenHere = mine.sleep(heard, kLong) ? 1 : 0;
             MPI_Reduce(&wokenHere, &woken, 1, MPI_INT, MPI_SUM, 0, MPI_COMM_WORLD);

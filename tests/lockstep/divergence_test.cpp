@@ -23,13 +23,13 @@ TEST(Vote, GoesToTheMajorityAndTheMasterHasOne) {
 }
 
 TEST(Vote, IsATieWhereNoneHasMoreThanHalf) {
-    EXPECT_TRUE(voteOf({3, 3, 7, 8}).tie) << "two that err alike are no majority";
+    EXPECT_TRUE(voteOf({3, 3, 7, 8}).tie) << "two ranks with the same error are not a majority";
     EXPECT_FALSE(voteOf({3, 3, 7, 8, 3}).tie);
     EXPECT_TRUE(voteOf({7, 3}).tie);
-    EXPECT_EQ(voteOf({7, 3}).hash, 7U) << "the master's, for want of better";
+    EXPECT_EQ(voteOf({7, 3}).hash, 7U) << "without a majority the master's";
     EXPECT_TRUE(voteOf({9, 3, 3, 7, 7}).tie);
     EXPECT_TRUE(voteOf({1, 2, 3}).tie);
-    EXPECT_FALSE(voteOf({5, 5, 5}).tie) << "hashes that agree again when they are computed afresh";
+    EXPECT_FALSE(voteOf({5, 5, 5}).tie) << "hashes that agree when they are computed again";
 }
 
 TEST(Remedy, SurvivesItsEncoding) {

@@ -18,14 +18,14 @@ using lockstep::Backoff;
 using lockstep::Doorbell;
 
 constexpr std::int64_t kMoment = 20'000'000;    // [ns]
-constexpr std::int64_t kLong = 60'000'000'000;  // [ns]: a test that sleeps through has failed
+constexpr std::int64_t kLong = 60'000'000'000;  // [ns]; a test that sleeps this long has failed
 
 TEST(Doorbell, SleepsNoLongerThanItsLimit) {
     std::atomic<std::uint32_t> rings = 0;
     EXPECT_FALSE(Doorbell(rings).sleep(0, kMoment));
 }
 
-// Who looks for a message between reading the number and sleeping misses no ring.
+// A thread that reads the number, looks for a message and then sleeps misses no ring.
 TEST(Doorbell, DoesNotSleepWhenItHasRungMeanwhile) {
     std::atomic<std::uint32_t> rings = 0;
     const Doorbell bell(rings);
@@ -43,7 +43,7 @@ TEST(Doorbell, WakesAnotherProcess) {
     if (sleeper == 0) {
         _exit(bell.sleep(0, kLong) ? 0 : 1);
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // until it sleeps; if it does not yet, it need not
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // until it sleeps; an earlier ring also wakes it
     bell.ring();
     int status = -1;
     ASSERT_EQ(waitpid(sleeper, &status, 0), sleeper);
@@ -51,7 +51,7 @@ TEST(Doorbell, WakesAnotherProcess) {
     munmap(shared, 4096);
 }
 
-// By a clock of the test's own: what a wait does at each time does not depend on how busy the machine is.
+// Uses a clock of the test, so that the pauses do not depend on how busy the machine is.
 TEST(Backoff, SleepsUntilTheBellRings) {
     using Kind = Backoff::Rest::Kind;
     std::atomic<std::uint32_t> rings = 0;
@@ -65,7 +65,8 @@ TEST(Backoff, SleepsUntilTheBellRings) {
     EXPECT_EQ(asking.nextRest(1000 + kMoment), (Backoff::Rest{Kind::sleep, 125'000})) << "without a bell";
 }
 
-// A long message is announced before it is there: the wait asks for it, and does not sleep until a second ring.
+// The ring for a long message comes before the message is there. The wait then polls and does not sleep until a second
+// ring.
 TEST(Backoff, AsksForAMessageThatHasRungAndIsNotThere) {
     using Kind = Backoff::Rest::Kind;
     std::atomic<std::uint32_t> rings = 0;
@@ -76,19 +77,19 @@ TEST(Backoff, AsksForAMessageThatHasRungAndIsNotThere) {
     backoff.look();
     EXPECT_EQ(backoff.nextRest(kMoment), (Backoff::Rest{Kind::sleep, 125'000}));
     backoff.look();
-    EXPECT_EQ(backoff.nextRest(2 * kMoment).kind, Kind::sleep) << "still not there";
+    EXPECT_EQ(backoff.nextRest(2 * kMoment).kind, Kind::sleep) << "the message is not there yet";
     backoff.found();
-    EXPECT_EQ(backoff.nextRest(3 * kMoment).kind, Kind::sleepUntilRung) << "and more to come";
+    EXPECT_EQ(backoff.nextRest(3 * kMoment).kind, Kind::sleepUntilRung) << "more messages are awaited";
 }
 
-// rest() itself: with a bell that has rung since the last look it must not sleep at all.
+// If the bell has rung since the last look, rest() must not sleep at all.
 TEST(Backoff, ReturnsAtOnceWhenTheBellRangBeforeItSlept) {
     std::atomic<std::uint32_t> rings = 0;
     const Doorbell bell(rings);
     Backoff backoff{bell};
     backoff.look();
     bell.ring();
-    EXPECT_TRUE(bell.sleep(0, kLong)) << "the number is another than the one that was heard";
+    EXPECT_TRUE(bell.sleep(0, kLong)) << "the number differs from 0";
     backoff.look();
     EXPECT_NE(backoff.nextRest(kLong).kind, Backoff::Rest::Kind::sleepUntilRung);
 }

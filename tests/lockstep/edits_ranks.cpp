@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: Apache-2.0
-// Ten thousand edits on every rank, each sweeping in its own way; all compare the hash of every edit, of a hundred at a
-// time: meeting after each takes twelve ranks on few cores longer than the sand. With "tools" a thousand with tools of
-// every shape, with "tin" as many on a TIN.
+// SPDX-License-Identifier: Apache-2.0 Ten thousand edits on every rank. Each rank sweeps in another way, and all
+// compare the hashes after every edit. They compare a hundred hashes at a time, because on few cores a meeting of
+// twelve ranks after each edit takes longer than the sand. With "tools", a thousand edits with tools of every shape.
+// With "tin", a thousand edits on a TIN.
 #include <fmt/format.h>
 #include <mpi.h>
 
@@ -40,9 +40,10 @@ scene::Scene smallTin() {
     return scene;
 }
 
-/// The place among `hashes` of the first that ranks have different, or their number. Collective.
+/// Returns the index of the first of `hashes` that differs between ranks; the number of hashes if all are equal.
+/// Collective.
 std::size_t firstDifference(const std::vector<std::uint64_t>& hashes) {
-    // Equal where the largest hash and the largest complement belong to one.
+    // Hashes are equal if the largest hash and the largest complement belong to the same hash.
     std::vector<std::uint64_t> largest = hashes;
     for (const std::uint64_t hash : hashes) {
         largest.push_back(~hash);
@@ -56,7 +57,7 @@ std::size_t firstDifference(const std::vector<std::uint64_t>& hashes) {
     return place;
 }
 
-/// The first edit after which ranks differ, or 0; `all` takes in every hash.
+/// Returns the first edit after which ranks differ, or 0. `all` becomes a hash over all hashes.
 std::uint64_t editAll(int rank, std::string_view kind, std::uint64_t& all) {
     const auto way = static_cast<std::size_t>(rank);
     host::WorkerPool team(kThreads.at(way % kThreads.size()));

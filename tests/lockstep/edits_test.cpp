@@ -10,8 +10,8 @@ namespace {
 
 const std::string kOfSpheres = "104713705b65770e", kOfEveryTool = "07877fabb68c6f49", kOfTin = "6973a8d546ceeddc";
 
-/// The hash is that of one rank, which has nobody to differ from. Whoever changes the algorithm replaces it, as the
-/// golden hashes.
+/// `hash` is the hash of one rank, which cannot differ from another. A change of the algorithm replaces it, together
+/// with the golden hashes.
 void expectHash(std::initializer_list<int> numbersOfRanks, const std::string& arguments, const std::string& hash) {
     for (const int ranks : numbersOfRanks) {
         const support::Ran ran = support::runRanks(ranks, "edits_ranks", arguments);
@@ -20,8 +20,8 @@ void expectHash(std::initializer_list<int> numbersOfRanks, const std::string& ar
     }
 }
 
-// Rank r sweeps with 1, 2, 3 or 7 threads in blocks of 16, 32 or 64 cells on one of two code paths: twelve ranks have
-// every combination, and one, two and four show that the number of ranks is not part of the sand.
+// Rank r sweeps with 1, 2, 3 or 7 threads, in blocks of 16, 32 or 64 cells, on one of two code paths. Twelve ranks have
+// every combination. One, two and four ranks show that the sand does not depend on the number of ranks.
 TEST(Edits, TenThousandHashAlikeOnOneTwoFourAndTwelveRanks) { expectHash({1, 2, 4, 12}, "", kOfSpheres); }
 TEST(Edits, WithEveryToolHashAlikeOnFourRanks) { expectHash({4}, "tools", kOfEveryTool); }
 TEST(Edits, OfATinHashAlikeOnTwelveRanks) { expectHash({12}, "tin", kOfTin); }

@@ -32,7 +32,7 @@ TEST(FrameMessage, SurvivesItsEncoding) {
     EXPECT_EQ(lockstep::FrameMessage::decode(message.encode()), message);
 }
 
-// Every number is another one, so that none can stand in for its neighbour.
+// All numbers are different, so that the test finds two that are exchanged.
 TEST(FrameMessage, CarriesEveryFieldOfAView) {
     lockstep::ViewState view{.head = {1, 2, 3},
                              .right = {4, 5, 6},
@@ -75,7 +75,7 @@ TEST(FrameMessage, CarriesWhatTheWallKnowsOfItself) {
     EXPECT_EQ(lockstep::FrameMessage::decode(nobodySlow.encode()), nobodySlow);
 }
 
-// Two bytes for a layer bit and the number of figures would be two too many: a wall stands still most of the day.
+// A wall is still for most of the day, and its frame messages must be short. Absent figures take no byte of their own.
 TEST(FrameMessage, TakesNoByteForFiguresThatNobodyAskedFor) {
     lockstep::FrameMessage message = digging();
     const std::size_t unobserved = message.encode().size();

@@ -13,7 +13,7 @@ using lockstep::RankStatistics;
 
 constexpr int kRanks = 12;
 
-/// One frame of so many render ranks behind the master, which comes first; `ms` is when each comes.
+/// Returns the arrivals of one frame. The master comes first, then one render rank at each time of `ms` [ms].
 std::vector<Arrival> frameOf(const std::vector<double>& ms) {
     std::vector<Arrival> arrivals(1);
     for (const double at : ms) {
@@ -23,7 +23,8 @@ std::vector<Arrival> frameOf(const std::vector<double>& ms) {
     return arrivals;
 }
 
-/// A still wall whose ranks come within a part of a millisecond, one of them `late` by so many.
+/// Returns the arrivals at a still wall. All ranks come within 0.8 ms, except rank `slow`, which comes later by `late`
+/// [ms].
 std::vector<Arrival> stillFrame(std::mt19937& random, std::size_t slow, double late) {
     std::vector<double> ms;
     for (std::size_t rank = 1; rank <= kRanks; ++rank) {
@@ -59,7 +60,7 @@ TEST(RankStatistics, AccuseNobodyOnAStillWall) {
     EXPECT_FALSE(statistics.recentDrag().has_value());
 }
 
-// The same one every time: a slower core, or a longer way, is no reason to look for a fault.
+// One rank is last in every frame, but by less than kTieMs. A slower core or a longer way is not a fault.
 TEST(RankStatistics, TakeLessThanAMillisecondForATie) {
     RankStatistics statistics(4);
     for (int frame = 0; frame < 300; ++frame) {
@@ -70,7 +71,7 @@ TEST(RankStatistics, TakeLessThanAMillisecondForATie) {
     EXPECT_FALSE(statistics.recentDrag().has_value());
 }
 
-// Twelve ranks that draw on two cores: one of them is the last in every frame, and by much.
+// Twelve ranks draw on two cores. In each frame some rank is last by much.
 TEST(RankStatistics, AccuseNobodyWhomChanceMakesLast) {
     for (unsigned seed = 0; seed < 20; ++seed) {
         std::mt19937 random(seed);
@@ -131,7 +132,7 @@ TEST(RankStatistics, TellSwapTimesFromTheFirstOfTheirFrame) {
     RankStatistics statistics(4);
     std::vector<Arrival> arrivals = frameOf({1, 1, 1});
     statistics.add(arrivals, true);
-    EXPECT_TRUE(statistics.lastSwapsUs().empty()) << "nobody has swapped yet";
+    EXPECT_TRUE(statistics.lastSwapsUs().empty()) << "no rank has swapped yet";
     arrivals[1].lastSwap = 7'000'300'000;
     arrivals[2].lastSwap = 7'000'000'000;
     arrivals[3].lastSwap = 7'000'120'000;

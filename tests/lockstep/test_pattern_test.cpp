@@ -18,7 +18,7 @@ TEST(TestPattern, IsFoundByItsName) {
 TEST(TestPattern, ListsTheNamesWhenThereIsNoSuch) {
     try {
         (void)parsePattern("gird");
-        FAIL() << "it was found";
+        FAIL() << "the pattern was found";
     } catch (const base::InputError& error) {
         EXPECT_STREQ(error.what(), "no test pattern 'gird'; there are none, grid, tiles, eyes, flash, ramp");
     }

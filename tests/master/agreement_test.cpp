@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// The master among ranks that differ, without MPI: each rank is a replica in this process.
+// SPDX-License-Identifier: Apache-2.0 The master and ranks that differ, without MPI. Each rank is a replica in this
+// process.
 #include "master/agreement.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ const scene::Scene& sceneOfRanks() {
     return scene;
 }
 
-/// Two render ranks, whose sand a test may spoil.
+/// Two render ranks, whose sand a test may corrupt.
 class FakeRanks : public master::Ranks {
 public:
     explicit FakeRanks(master::MasterSand& sand) : sand_(sand) {}
@@ -108,7 +108,7 @@ private:
     std::vector<lockstep::FrameBarrier::Nonsense> nonsense_;
 };
 
-/// Remembers that the master's own sand was healed.
+/// Counts how often the master's own sand was healed.
 class HealedSteps : public test::NoSteps {
 public:
     void healed(sand::Replica& /* sand */) override { ++healings; }
@@ -118,7 +118,7 @@ public:
 
 class AgreementTest : public test::FolderTest {
 protected:
-    /// Spoils the sand of a rank; each `bit` in another way.
+    /// Flips bit `bit` in the sand of a rank.
     void spoil(int rank, int bit) {
         sand::Replica& sand = rank == 0 ? sand_.replica() : ranks_.replicas[static_cast<std::size_t>(rank) - 1];
         sand.corrupt(2, 2, bit);
@@ -173,7 +173,7 @@ TEST_F(AgreementTest, ARankThatDiffersTakesTheSandOfTheOthersAndMeetsThemAgain) 
     EXPECT_EQ(agreement_.healed(), 1U);
     EXPECT_EQ(statistics_.ranks()[2].healed, 1U);
     EXPECT_EQ(steps_.healings, 0) << "the master was right";
-    EXPECT_EQ(asked_, 0) << "a majority needs no journal";
+    EXPECT_EQ(asked_, 0) << "with a majority the journal is not used";
     EXPECT_NE(read("divergence.txt").find("rank 2"), std::string::npos);
 }
 

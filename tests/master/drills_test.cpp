@@ -29,7 +29,7 @@ protected:
 TEST_F(Drills, AreOnDiskBeforeTheirFrame) {
     EXPECT_TRUE(master::beginDrills(drills_, 4, folder_).empty());
     EXPECT_EQ(read("drills.done"), "");
-    EXPECT_TRUE(master::beginDrills(drills_, 5, folder_).empty()) << "a rank's is not the link's";
+    EXPECT_TRUE(master::beginDrills(drills_, 5, folder_).empty()) << "a rank's fault is not for the link";
     EXPECT_EQ(read("drills.done"), "die\n");
     EXPECT_EQ(master::beginDrills(drills_, 7, folder_), std::vector{drills_[2].fault});
     EXPECT_EQ(read("drills.done"), "die\ngarbage\n");
@@ -39,7 +39,7 @@ TEST_F(Drills, HappenOnceInASessionThatIsTakenUpAgain) {
     (void)master::beginDrills(drills_, 5, folder_);
     const std::vector<Drill> left = master::withoutDone(drills_, folder_, true);
     ASSERT_EQ(left.size(), 2U);
-    EXPECT_EQ(left[0].text, "slow") << "which is no event";
+    EXPECT_EQ(left[0].text, "slow") << "slow drawing continues after a resume";
     EXPECT_EQ(left[1].text, "garbage");
 }
 

@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: Apache-2.0
-// The beginnings of frames in a time that the test makes up, and a monitor made up beside them.
+// SPDX-License-Identifier: Apache-2.0 The begin of frames with a clock that the test moves, and a simulated monitor.
 #include "master/frame_clock.hpp"
 
 #include <gtest/gtest.h>
@@ -15,18 +14,17 @@ namespace {
 
 using master::FrameClock;
 
-constexpr std::int64_t kOneSecond = 1'000'000'000;  // [ns]
-constexpr std::int64_t kSessionStart =
-    77 * kOneSecond;  // [ns], when a session begins, of a clock that began long before
+constexpr std::int64_t kOneSecond = 1'000'000'000;       // [ns]
+constexpr std::int64_t kSessionStart = 77 * kOneSecond;  // [ns], begin of a session, on a clock that began long before
 
 double refreshOf(const char* wall) {
     return walls::loadWall(std::filesystem::path(SANDWALL_SOURCE_DIR "/walls/configs") / wall).refreshHz;
 }
 
-/// Frames by the eye that they show, left (0) and right (1).
+/// Number of frames that show each eye, left (0) and right (1).
 using ByEye = std::array<int, 2>;
 
-/// Counts the frames that begin within a second, each drawn within `draws` of it [ns].
+/// Counts the frames that begin within a second. Each takes `draws` [ns] to draw.
 ByEye framesOfASecond(FrameClock clock, std::int64_t draws) {
     ByEye frames{};
     std::int64_t now = kSessionStart;
@@ -40,12 +38,12 @@ ByEye framesOfASecond(FrameClock clock, std::int64_t draws) {
     }
 }
 
-// docs/stereo.md: `refresh` is the number of frames a second: 120 gives each eye 60 pictures.
+// As docs/stereo.md says, `refresh` is the number of frames per second. 120 gives each eye 60 pictures.
 TEST(FrameClock, At120HertzGivesEachEye60PicturesASecond) {
     for (const char* wall : {"flex_cave.toml", "fish_tank.toml"}) {
         ASSERT_EQ(refreshOf(wall), 120) << wall;
         for (const std::int64_t draws : {0, 3'000'000, 8'000'000}) {  // [ns], all less than 1/120 s
-            // The first frame is due at once, and so is the one at the end of the second, less a rounding.
+            // The first frame is due at once. One more frame may begin at the end of the second, because of rounding.
             const ByEye frames = framesOfASecond(FrameClock(refreshOf(wall)), draws);
             EXPECT_NEAR(frames[0], 60, 1) << wall << ", drawing takes " << draws << " ns";
             EXPECT_NEAR(frames[1], 60, 1) << wall << ", drawing takes " << draws << " ns";
@@ -61,10 +59,10 @@ TEST(FrameClock, KeepsItsGridWhenAFrameIsLate) {
     const std::int64_t first = clock.next();
     now = first + 4'000'000;  // late by less than a period
     EXPECT_EQ(clock.begin(now), 0);
-    EXPECT_EQ(clock.next(), first + 10'000'000) << "the one after it is not late";
-    now = first + 95'000'000;  // by more than nine
+    EXPECT_EQ(clock.next(), first + 10'000'000) << "the next frame is not late";
+    now = first + 95'000'000;  // late by more than nine periods
     EXPECT_EQ(clock.begin(now), 0);
-    EXPECT_EQ(clock.next(), now) << "what is lost is not made up for";
+    EXPECT_EQ(clock.next(), now) << "lost time is not made up for";
     EXPECT_EQ(clock.begin(now), 0);
     EXPECT_EQ(clock.begin(now + 1'000'000), 9'000'000);
 }
@@ -72,8 +70,8 @@ TEST(FrameClock, KeepsItsGridWhenAFrameIsLate) {
 TEST(FrameClock, OfAFastSessionWaitsOnlyWhileNoStepsAreTaken) {
     FrameClock clock(100, master::Pace::fast);
     EXPECT_EQ(clock.begin(kSessionStart), 0);
-    EXPECT_EQ(clock.next(), 0) << "at once";
-    EXPECT_EQ(clock.begin(kSessionStart, true), 0) << "the first of a grid is due";
+    EXPECT_EQ(clock.next(), 0) << "the next frame is due at once";
+    EXPECT_EQ(clock.begin(kSessionStart, true), 0) << "the first frame of a grid is due";
     EXPECT_EQ(clock.next(true), kSessionStart);
     EXPECT_EQ(clock.begin(kSessionStart + 1'000'000, true), 0);
     EXPECT_EQ(clock.begin(kSessionStart + 2'000'000, true), 8'000'000);
@@ -84,7 +82,7 @@ TEST(FrameClock, OfAFastSessionWaitsOnlyWhileNoStepsAreTaken) {
 TEST(FrameClock, KnowsItsSwaps) {
     FrameClock clock(100);
     EXPECT_EQ(clock.lastSwap(), 0);
-    EXPECT_EQ(clock.sinceSwap(kSessionStart), 0) << "there was none";
+    EXPECT_EQ(clock.sinceSwap(kSessionStart), 0) << "there was no swap";
     EXPECT_EQ(clock.timeOf(1, kSessionStart), 0);
     const master::Swap first = clock.swapped(kSessionStart);
     EXPECT_TRUE(first.first);
@@ -105,12 +103,13 @@ TEST(FrameClock, CountsTheTimeOfAFastSessionInFrames) {
     EXPECT_DOUBLE_EQ(clock.period(), 1.0 / 120);
 }
 
-/// A monitor that counts its retraces, and what it shows. GLX's functions are plain pointers, so it is a global.
+/// A monitor that counts its retraces and the frames that it shows. It is global, because GLX's functions are plain
+/// pointers.
 struct Monitor {
     double hertz = 120;
     std::int64_t now = kSessionStart;             // [ns]
     std::map<std::int64_t, std::uint64_t> shown;  // the frame that each retrace began to show
-    std::uint64_t frame = 0;                      // that is swapped now
+    std::uint64_t frame = 0;                      // frame that is being swapped
 
     [[nodiscard]] std::int64_t retraces() const {
         return static_cast<std::int64_t>(static_cast<double>(now) * 1e-9 * hertz);
@@ -125,7 +124,7 @@ int retracesOf(void* /* display */, render_node::GlxDrawable /* window */, std::
     return 1;
 }
 
-/// Waits, as the specification says, for the next retrace with the remainder.
+/// Waits for the next retrace with the remainder, as the specification of GLX_OML_sync_control says.
 std::int64_t swapAtRetrace(void* /* display */, render_node::GlxDrawable /* window */, std::int64_t /* target */,
                            std::int64_t divisor, std::int64_t remainder) {
     std::int64_t retrace = monitor.retraces() + 1;
@@ -149,7 +148,7 @@ render_node::GlxLoader loaderOfMonitor() {
             nullptr, 0};
 }
 
-/// Shows frames for a second of the monitor's time. Glasses change eyes with every retrace.
+/// Shows frames for a second of the monitor's time. The glasses change eyes at every retrace.
 ByEye shownInASecond(double wallHertz, std::int64_t draws /* [ns] */) {
     monitor = {};
     FrameClock clock(wallHertz);
@@ -167,14 +166,14 @@ ByEye shownInASecond(double wallHertz, std::int64_t draws /* [ns] */) {
     return shown;
 }
 
-// From the wall file to the retraces of a monitor that runs at the rate which the wall file names.
+// From the wall file to the retraces of a monitor that runs at the wall file's rate.
 TEST(FrameClock, LeadsEachEyeToEverySecondRetraceOfA120HertzMonitor) {
     for (const std::int64_t draws : {1'000'000, 6'000'000}) {
         const ByEye shown = shownInASecond(refreshOf("flex_cave.toml"), draws);
         EXPECT_NEAR(shown[0], 60, 1) << "drawing takes " << draws << " ns";
         EXPECT_NEAR(shown[1], 60, 1) << "drawing takes " << draws << " ns";
     }
-    EXPECT_NEAR(shownInASecond(60, 1'000'000)[0], 30, 1) << "a wall that asks for half";
+    EXPECT_NEAR(shownInASecond(60, 1'000'000)[0], 30, 1) << "a wall with half of the rate";
 }
 
 }  // namespace

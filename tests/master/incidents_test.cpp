@@ -29,7 +29,7 @@ TEST_F(IncidentFileTest, IsReadByTheTryThatGoesOnAndByNoSessionThatBeginsAnew) {
     EXPECT_EQ(master::IncidentFile(folder_, true).before(), some);
     const master::IncidentFile anew(folder_, false);
     EXPECT_EQ(anew.before(), master::Incidents{});
-    EXPECT_TRUE(written()) << "it may be a running session's, which this one is refused beside";
+    EXPECT_TRUE(written()) << "the file may belong to a running session, beside which this one is refused";
     anew.forget();
     EXPECT_FALSE(written());
 }
@@ -48,7 +48,7 @@ TEST_F(IncidentFileTest, IsWrittenWhenSomethingWasAddedAndNotForEveryFrame) {
 
 TEST_F(IncidentFileTest, IsWrittenWhenTheDiskLetsItAndAtTheEnd) {
     master::IncidentFile file(folder_, false);
-    std::filesystem::remove_all(folder_);  // as good as a full disk
+    std::filesystem::remove_all(folder_);  // acts like a full disk
     file.keep({.stands = 1}, kSecond);
     std::filesystem::create_directories(folder_);
     file.keep({.stands = 1}, 2 * kSecond);

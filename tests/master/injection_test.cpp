@@ -77,7 +77,7 @@ TEST(Injection, ThatCannotBeIsNamedInOneLine) {
                                      {"partition:frame=1", "ms is missing"}}) {
         try {
             (void)master::parseFault(text, kWall);
-            ADD_FAILURE() << text << " was taken";
+            ADD_FAILURE() << text << " was accepted";
         } catch (const base::InputError& error) {
             const std::string said = error.what();
             EXPECT_NE(said.find(part), std::string::npos) << said;
@@ -93,7 +93,7 @@ TEST(Injection, OfTheLinkNeedsALink) {
     for (const char* text : {"garbage:frame=9", "partition:ms=500,frame=9"}) {
         try {
             (void)master::parseFault(text, alone);
-            ADD_FAILURE() << text << " was taken";
+            ADD_FAILURE() << text << " was accepted";
         } catch (const base::InputError& error) {
             EXPECT_NE(std::string(error.what()).find("name a rank"), std::string::npos) << error.what();
         }

@@ -13,7 +13,7 @@ namespace {
 using haptic_bridge::TimedStep;
 using lockstep::Fault;
 
-/// Notes the states that it is told of.
+/// Notes the states for which reached() is called.
 class Notes : public test::NoSteps {
 public:
     void reached(sand::Replica& sand) override { reachedSteps.push_back(sand.stepNumber()); }
@@ -51,7 +51,7 @@ TEST(MasterSand, AppliesTheStepsOfAFrameAndTellsOfEachState) {
     EXPECT_EQ(sand.edits(), 1U);
 }
 
-// A drill flips a bit of the master's own sand in its frame, and only there; its hash shows it once its tile is read.
+// A drill flips a bit of the master's own sand in its frame only. The state hash changes when the tile is hashed again.
 TEST(MasterSand, InjectsTheFaultsOfTheMasterAlone) {
     const Fault mine{.kind = Fault::Kind::diverge, .rank = 0, .frame = 2, .column = 5, .row = 5, .bit = 3};
     Fault others = mine;
@@ -62,7 +62,7 @@ TEST(MasterSand, InjectsTheFaultsOfTheMasterAlone) {
     const auto all = static_cast<std::uint32_t>(sand.replica().hashTiles().tileCount());
     Notes notes;
     sand.apply(1, {}, all, notes);
-    EXPECT_EQ(sand.hash(), right) << "another rank's";
+    EXPECT_EQ(sand.hash(), right) << "the fault of another rank";
     sand.apply(2, {}, all, notes);
     EXPECT_NE(sand.hash(), right);
 }
@@ -78,7 +78,8 @@ TEST(MasterSand, GoesOnFromTheStateOfASessionThatStopped) {
     EXPECT_EQ(after.edits(), 4U);
 }
 
-// All of memory has its turn in a second whatever the frame rate, and no frame leaves it out or reads it twice.
+// All tiles are hashed again in a second at any frame rate. Every frame hashes some tiles, and none hashes a tile
+// twice.
 TEST(MasterSand, ReadsAllOfItsMemoryAgainInASecond) {
     const master::MasterSand sand(sceneOfTest(), {}, {});
     const auto tiles = static_cast<std::uint32_t>(sand.replica().hashTiles().tileCount());

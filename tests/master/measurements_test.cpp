@@ -47,7 +47,8 @@ private:
 TEST(Measurements, CountFramesFromSwapToSwapAndThoseThatAreLate) {
     Measurements measurements(3, 0, 0.01, master::Pace::realtime);
     Wall wall(measurements);
-    for (const int ms : {1000, 10, 10, 14, 16, 10}) {  // the first has no frame before it; 16 is more than 1.5 · 10
+    for (const int ms :
+         {1000, 10, 10, 14, 16, 10}) {  // the first frame has no frame before it; 16 is more than 1.5 · 10
         wall.show(ms * kMs);
     }
     const master::Summary summary = wall.summary();
@@ -79,7 +80,7 @@ TEST(Measurements, OfAFastSessionKnowNoLateFrame) {
     EXPECT_EQ(wall.summary().lateFrames, 0U);
 }
 
-// A step that the server read 12 ms before the swap by the master's clock: its own is 7 s ahead.
+// The server read this step 12 ms before the swap on the master's clock. The server's clock is 7 s ahead.
 TEST(Measurements, FollowAStepFromTheHandToTheWall) {
     constexpr std::int64_t kAhead = 7'000 * kMs;
     Measurements measurements(3, 0, 0.01, master::Pace::realtime);
@@ -89,7 +90,7 @@ TEST(Measurements, FollowAStepFromTheHandToTheWall) {
     const std::int64_t swap = wall.now() + 20 * kMs;
     steps[0].serverTimeNs = swap - 12 * kMs + kAhead;
     steps[0].receivedNs = swap - 11 * kMs;
-    wall.show(20 * kMs, steps, kAhead);  // the second step is the master's own
+    wall.show(20 * kMs, steps, kAhead);  // the master made the second step
     const master::Latency latency = wall.summary().latency;
     ASSERT_EQ(latency.wholeWay.count(), 1U);
     EXPECT_NEAR(latency.toMaster.mean(), 1, 1e-9);

@@ -17,7 +17,7 @@ namespace {
 using haptic_bridge::TimedStep;
 using nlohmann::json;
 
-/// Notes the requests.
+/// Records the requests of the desk.
 class Requests : public master::StepRequests {
 public:
     void request(sand::Edit edit) override { edits.push_back(std::move(edit)); }
@@ -42,13 +42,13 @@ protected:
                                                         return json{{"frame", 42}};
                                                     }});
     }
-    /// Sends a line and lets the desk obey until it has been taken.
+    /// Sends a line, and calls obey() until the desk has taken it.
     std::future<json> send(const std::string& line) {
         return std::async(std::launch::async, [this, line] { return support::askSession(folder_, line); });
     }
     json await(std::future<json>& answer) {
         while (answer.wait_for(std::chrono::milliseconds(1)) != std::future_status::ready) {
-            desk_->obey({});  // the test's own time-out is the limit
+            desk_->obey({});  // limited by the time-out of the test
         }
         return answer.get();
     }
@@ -61,7 +61,7 @@ protected:
             desk_->obey({});
         }
     }
-    /// Shows a step with this edit.
+    /// Shows a step with the edit `edit`.
     void show(const sand::Edit& edit) {
         std::vector<TimedStep> steps(1);
         steps[0].step.number = sand_.replica().stepNumber() + 1;
@@ -100,7 +100,7 @@ TEST_F(Desk, SaysThatAnEditOfAPausedSessionWaits) {
     EXPECT_FALSE(desk_->paused());
 }
 
-// On a full disk a new edit is refused, and the client of an earlier edit is told that it waits.
+// If the disk is full, a new edit is refused. The client of an earlier edit gets the answer that the edit waits.
 TEST_F(Desk, RefusesEditsForWhichTheDiskHasNoRoom) {
     std::future<json> before = send("reset");
     obeyUntil([&] { return !requests_.edits.empty(); });
@@ -167,7 +167,7 @@ TEST_F(Desk, WantsACaptureOfTheNextFrame) {
     EXPECT_FALSE(desk_->wantsCapture());
     std::future<json> answer = send("capture");
     obeyUntil([&] { return desk_->wantsCapture(); });
-    desk_->close();  // nobody takes it: the connection ends
+    desk_->close();  // no desk takes the line, and the connection ends
     EXPECT_TRUE(answer.get().is_discarded());
 }
 

@@ -96,7 +96,7 @@ TEST_F(Record, TakesNoStepsForWhichTheDiskHasNoRoom) {
         EXPECT_EQ(record.summary().stands, 1U);
     });
     if (status == 77) {
-        GTEST_SKIP() << "this machine lets nobody mount a disk";
+        GTEST_SKIP() << "a disk cannot be mounted on this machine";
     }
     EXPECT_EQ(status, 0);
 }
@@ -118,7 +118,7 @@ TEST_F(Record, RemovesTheResultsOfAnEarlierSessionUnlessItGoesOn) {
          {"summary.json", "failure.json", "tile_r1c1_left.png", "wall.png", "divergence.txt", "recoveries.jsonl"}) {
         EXPECT_FALSE(has(gone)) << gone;
     }
-    EXPECT_TRUE(has("notes.txt")) << "somebody's own";
+    EXPECT_TRUE(has("notes.txt")) << "a file of the user";
     leave();
     master::RecordOptions options;
     options.resumed =
@@ -126,7 +126,7 @@ TEST_F(Record, RemovesTheResultsOfAnEarlierSessionUnlessItGoesOn) {
     master::SessionRecord record = open(options);
     EXPECT_FALSE(has("summary.json"));
     EXPECT_FALSE(has("failure.json"));
-    EXPECT_TRUE(has("divergence.txt")) << "it is the same session's";
+    EXPECT_TRUE(has("divergence.txt")) << "it belongs to the same session";
     EXPECT_TRUE(has("recoveries.jsonl"));
 }
 

@@ -67,7 +67,7 @@ TEST(StartUp, RefusesTheHeightsThatATinIsMadeOf) {
               "are free; use fewer cells, or more hosts");
 }
 
-// The master alone reads a raster, 16 bytes a pixel.
+// Only the master reads a raster. It takes 16 bytes per pixel.
 TEST(StartUp, RefusesARasterWhosePixelsDoNotFitTheMastersHost) {
     const auto refusalOn = [](std::int64_t free) {
         return test::refusalOf([free] {

@@ -9,7 +9,7 @@
 
 namespace {
 
-/// Two hundred frames of a still wall of three tiles; rank 2 comes 30 ms late in 97 % of them.
+/// Returns the statistics of 200 frames of a still wall of three tiles. Rank 2 comes 30 ms late in 97 % of them.
 master::Summary draggedWall(bool dragged) {
     master::Summary summary;
     summary.scene = summary.wall = "test";
@@ -80,7 +80,7 @@ TEST(Summary, SaysThatAHandWasRefusedAndWhy) {
         EXPECT_NE(text.find("\n  haptics   " + line + "\n"), std::string::npos) << text;
     };
     master::Summary summary = draggedWall(false);
-    EXPECT_EQ(master::describe(summary).find("haptics"), std::string::npos) << "a wall that has none";
+    EXPECT_EQ(master::describe(summary).find("haptics"), std::string::npos) << "a wall without haptics";
     summary.link.refusedHere[index(haptic_bridge::RefusalCode::secret)] = 5;
     saysHaptics(summary, "no hand all session: refused 5 times (secret)");
     summary.link.refused[index(haptic_bridge::RefusalCode::tls)] = 1;
@@ -95,7 +95,7 @@ TEST(Summary, SaysThatAHandWasRefusedAndWhy) {
     summary = draggedWall(false);
     summary.link.links = 1;
     summary.haptic.emplace();
-    EXPECT_EQ(master::describe(summary).find("haptics"), std::string::npos) << "nobody was refused";
+    EXPECT_EQ(master::describe(summary).find("haptics"), std::string::npos) << "there were no refusals";
     summary.link.refusedHere[index(haptic_bridge::RefusalCode::busy)] = 1;
     summary.haptic->refused[index(haptic_bridge::RefusalCode::secret)] = 7;
     saysHaptics(summary, "beside links: refused 1 time (busy); the server refused guests 7 times (secret)");

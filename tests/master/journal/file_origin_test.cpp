@@ -30,7 +30,7 @@ constexpr std::uint32_t kJournal = 0x4c4a5753, kCheckpoint = 0x50435753, kSand =
 constexpr std::uint32_t kAlgorithm = sand::kAlgorithmVersion;
 constexpr const char* kTooOld = "written before release 0.2.0; no release reads it; run the session again";
 
-/// Journals, checkpoints and saved sand, and the refusal of those that this release does not read.
+/// Writes journals, checkpoints and saved sand, and returns the errors for files that this release does not read.
 class OriginOfFiles : public test::FolderTest {
 protected:
     [[nodiscard]] std::string nameOf(std::uint32_t magic) const {
@@ -67,7 +67,7 @@ protected:
         std::ifstream stream(nameOf(magic), std::ios::binary);
         return {std::istreambuf_iterator<char>(stream), {}};
     }
-    /// The error message for a file, without its name; empty if the file is read.
+    /// Returns the error message for a file, without its name; an empty text if the file can be read.
     [[nodiscard]] std::string refusal(std::uint32_t magic) const {
         try {
             if (magic == kJournal) {
@@ -78,7 +78,7 @@ protected:
                 (void)master::readCheckpoint(nameOf(magic));
             }
         } catch (const base::FormatError& error) {
-            return error.what();  // of a checkpoint: the session adds the name, and goes on without it
+            return error.what();  // of a checkpoint; the session adds the name and continues without this checkpoint
         } catch (const base::InputError& error) {
             const std::string line = error.what(), name = nameOf(magic) + ": ", end = "; nothing was loaded";
             EXPECT_TRUE(line.starts_with(name)) << line;

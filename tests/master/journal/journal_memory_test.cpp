@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: Apache-2.0
-// What the journal of a session needs is looked at before its sand is made.
+// SPDX-License-Identifier: Apache-2.0 The memory that a journal's sand needs is checked before the sand is made.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -19,7 +18,7 @@ constexpr std::int64_t kGibibyte = std::int64_t{1} << 30;
 
 class JournalMemory : public test::FolderTest {
 protected:
-    /// Writes a journal that is only a header, with these bytes as its scene.
+    /// Writes a journal that has only a header. `scene` becomes the scene in it.
     std::filesystem::path journalOf(const base::Bytes& scene) {
         master::JournalHeader header;
         header.session = 1;
@@ -32,7 +31,7 @@ protected:
         return journal_;
     }
 
-    /// The beginning of a scene of 16384 x 16384 cells.
+    /// Returns the first bytes of a scene of 16384 x 16384 cells.
     static base::Bytes rulesOfAHugeField() {
         sand::Rules rules;
         rules.columns = rules.rows = 16384;
@@ -59,7 +58,7 @@ TEST_F(JournalMemory, IsRefusedBeforeItsHeightsAreMade) {
                   "GiB are free; use fewer cells, or more hosts");
 }
 
-// A replica takes 16 bytes a cell, the scene alone 4.
+// A replica takes 16 bytes per cell, the scene alone 4.
 TEST_F(JournalMemory, OfAReplayIsRefusedBeforeItsHeightsAreMade) {
     const std::filesystem::path journal = journalOf(rulesOfAHugeField());
     const auto refusalOn = [&](std::int64_t free, master::DecodedFor use) {

@@ -20,7 +20,7 @@ namespace {
 
 class JournalFile : public test::FolderTest {
 protected:
-    /// Ten frames of a random hand, three steps each.
+    /// Records ten frames of a random hand, with three steps each.
     std::vector<master::JournalFrame> writeSession(bool finished) {
         const scene::Scene scene = samples::flatScene(20, 10);
         std::mt19937 random(47);
@@ -101,9 +101,9 @@ TEST_F(JournalFile, AFullDiskLeavesTheFramesBeforeWhole) {
     EXPECT_EQ(journal.tornBytes, 0);
 }
 
-// At every length that a file can have been cut to: refused within the header, else whole records and the rest counted.
+// Cuts the file at every length. A cut header is refused. Otherwise the whole records are read and the rest is counted.
 TEST_F(JournalFile, CutAnywhereItKeepsEveryRecordBeforeTheCut) {
-    std::vector<std::uintmax_t> ends;  // of the header, and of every frame
+    std::vector<std::uintmax_t> ends;  // ends of the header and of every frame
     const scene::Scene scene = samples::flatScene(20, 10);
     std::mt19937 random(48);
     std::vector<master::JournalFrame> frames;
@@ -129,7 +129,7 @@ TEST_F(JournalFile, CutAnywhereItKeepsEveryRecordBeforeTheCut) {
     }
 }
 
-/// Changes one bit of a file, and changes it back when it goes.
+/// Scope in which one bit of a file is flipped.
 class Flipped {
 public:
     Flipped(const std::filesystem::path& file, std::streamoff at, int bit) : file_(file), at_(at), bit_(bit) { flip(); }
@@ -150,11 +150,11 @@ private:
     int bit_;
 };
 
-// Whatever the byte is a part of: header, length, type, payload or checksum.
+// Flips one bit of each byte. The byte may belong to the header, or to a record's length, type, payload or checksum.
 TEST_F(JournalFile, RefusesAFlippedBitOfAnyByteBeforeItsLastRecord) {
     writeSession(true);
     const auto size = static_cast<std::streamoff>(std::filesystem::file_size(file_));
-    const std::streamoff last = size - 29;  // the end: length, type, step, hash, checksum
+    const std::streamoff last = size - 29;  // last record: length, type, step, hash, checksum
     for (std::streamoff at = 0; at < last; ++at) {
         const Flipped flipped(file_, at, static_cast<int>(at % 8));
         EXPECT_THROW((void)master::readJournal(file_), base::InputError) << "byte " << at << " of " << size;
@@ -169,7 +169,7 @@ TEST_F(JournalFile, RefusesAFlippedBitOfAnyByteBeforeItsLastRecord) {
     EXPECT_NO_THROW((void)master::readJournal(file_));
 }
 
-// One record of a session put into the place of another's: each is whole, and the chain is not.
+// Replaces a record by one of another session. Each record is whole, but the chain is broken.
 TEST_F(JournalFile, RefusesARecordThatWasLeftOut) {
     const scene::Scene scene = samples::flatScene(20, 10);
     std::vector<std::uintmax_t> ends;

@@ -32,7 +32,7 @@ protected:
     void begin(const master::JournalOptions& options, const master::ResumedSession* resumed = nullptr) {
         keeper_.emplace(folder_, options, scene_, resumed, "a test", "test");
     }
-    /// False when the keeper lets nobody take a step.
+    /// Shows a frame with a step. Returns false if the keeper does not allow a step.
     bool showFrame(const sand::Edit& edit = {}) {
         if (!keeper_->mayTake(1 << 16, {terrain_.stepNumber(), terrain_.stateHash()})) {
             return false;
@@ -60,7 +60,7 @@ protected:
     std::optional<master::JournalKeeper> keeper_;
 };
 
-/// No file of this process may be longer.
+/// Scope in which no file of this process may be longer than a limit.
 class FileLimit {
 public:
     explicit FileLimit(std::uintmax_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -118,14 +118,14 @@ TEST_F(Keeper, SwitchedOffItLeavesNoJournalOfAnotherSessionInItsPlace) {
     EXPECT_EQ(master::readJournal(folder_ / "session.journal.previous").frames.size(), 1U);
 }
 
-// A session that begins anew moves nothing out of the way before the one that still runs there has ended.
+// A new session renames no file before the session that still runs in the folder has ended.
 TEST_F(Keeper, ANewSessionWaitsForTheOneThatStillWritesItsJournal) {
     begin({});
     ASSERT_TRUE(showFrame());
     std::optional<master::JournalKeeper> second;
     std::atomic<bool> moved = true;
     std::thread first([&] {
-        std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the second has begun by now
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the second session has begun by now
         moved = std::filesystem::exists(folder_ / "session.journal.previous");
         keeper_->finish({terrain_.stepNumber(), terrain_.stateHash()});
         keeper_.reset();
@@ -134,7 +134,7 @@ TEST_F(Keeper, ANewSessionWaitsForTheOneThatStillWritesItsJournal) {
     first.join();
     EXPECT_FALSE(moved);
     const master::Journal previous = master::readJournal(folder_ / "session.journal.previous");
-    EXPECT_TRUE(previous.end.has_value()) << "the first has ended in order";
+    EXPECT_TRUE(previous.end.has_value()) << "the first session has an orderly end";
     EXPECT_EQ(previous.frames.size(), 1U);
 }
 
@@ -166,7 +166,7 @@ TEST_F(Keeper, KeepsTheNewestCheckpointsAndResumesFromThem) {
     expectWhole(30);
 }
 
-// Written by a session that went on, from steps that another one had then torn off.
+// The journal has lost the step of the newest checkpoint, as after a crash.
 TEST_F(Keeper, RemovesCheckpointsOfStepsThatItsJournalDoesNotHold) {
     begin({.checkpointSeconds = 1e-9});
     while (master::checkpointsOf(journal()).empty()) {
@@ -195,7 +195,7 @@ TEST_F(Keeper, GoesOnInAnotherPartAndIsReadAsOne) {
     EXPECT_TRUE(std::filesystem::exists(master::partOf(journal(), parts)));
     EXPECT_FALSE(std::filesystem::exists(master::partOf(journal(), parts + 1)));
     expectWhole(100);
-    // A session that goes on does so in the last part.
+    // A resumed session continues the last part.
     keeper_.reset();
     const auto resumed = master::readSession(journal(), "");
     ASSERT_TRUE(resumed.has_value());
@@ -206,7 +206,7 @@ TEST_F(Keeper, GoesOnInAnotherPartAndIsReadAsOne) {
     }
     EXPECT_GT(keeper_->parts(), parts + 1);
     expectWhole(200);
-    // A new one takes all of them out of the way.
+    // A new session renames all parts.
     keeper_.reset();
     terrain_ = sand::Replica(scene_);
     begin({});
@@ -238,29 +238,30 @@ TEST_F(Keeper, APartThatIsMissingOrOfAnotherSessionIsNamed) {
     std::filesystem::remove(second);
     std::filesystem::copy(away, second);
     EXPECT_EQ(complaint(), "none");
-    // Without its end a part does not say that it goes on, and yet it does.
+    // A part without its last record does not name the next part, but the next part exists.
     std::filesystem::resize_file(second, std::filesystem::file_size(second) - 40);
     EXPECT_NE(complaint().find("session.journal.3 continues the session after missing records"), std::string::npos)
         << complaint();
     try {
         (void)master::readJournal(master::partOf(journal(), 3));
-        ADD_FAILURE() << "a part alone was read";
+        ADD_FAILURE() << "a single part was read";
     } catch (const base::InputError& error) {
         EXPECT_NE(std::string(error.what()).find("is part 3 of a session; name its first part"), std::string::npos);
     }
 }
 
-// Killed between the making of a part and the word that there is one: it holds nothing, and is made again.
+// A session was killed after it made a part and before it named it. The part has no records, and is made again.
 TEST_F(Keeper, APartThatWasOnlyMadeIsNoHarm) {
     begin({.checkpointSeconds = 0, .partBytes = 2000});
     while (keeper_->parts() < 2) {
         ASSERT_TRUE(showFrame());
     }
     keeper_.reset();
-    const std::uint64_t steps = terrain_.stepNumber() - 1;  // the last is in the second part
-    std::filesystem::resize_file(journal(), std::filesystem::file_size(journal()) - 17);  // what says so
-    EXPECT_THROW((void)master::readJournal(journal()), base::InputError) << "a step stands in the second part";
-    // Its header alone.
+    const std::uint64_t steps = terrain_.stepNumber() - 1;  // the last step is in the second part
+    // Cuts off the record that names the second part.
+    std::filesystem::resize_file(journal(), std::filesystem::file_size(journal()) - 17);
+    EXPECT_THROW((void)master::readJournal(journal()), base::InputError) << "the second part holds a step";
+    // Cuts the second part to its header.
     std::uint64_t chain = 0;
     std::ifstream stream(master::partOf(journal(), 2), std::ios::binary);
     const base::Bytes bytes{std::istreambuf_iterator<char>(stream), {}};
@@ -282,20 +283,20 @@ TEST_F(Keeper, AFullDiskStopsTheSandUntilThereIsRoom) {
     const int status = support::onSmallDisk(folder_, "size=4m", [this] {
         begin({.checkpointSeconds = 0});
         ASSERT_TRUE(showFrame());
-        // What is reserved is used up first; nothing that was taken is refused.
+        // The session first uses the reserved room, and no accepted step is refused.
         support::fill(folder_ / "filler");
-        const sand::Edit large = sand::Edit::loaded(base::Bytes(60'000, 7));  // which is no sand and changes none
+        const sand::Edit large = sand::Edit::loaded(base::Bytes(60'000, 7));  // not sand, so the load is ignored
         int frames = 1;
         while (showFrame(large)) {
             ASSERT_LT(++frames, 1000);
         }
         EXPECT_GT(frames, 2);
         EXPECT_EQ(keeper_->state(), "no_room");
-        EXPECT_FALSE(showFrame()) << "and it stands";
+        EXPECT_FALSE(showFrame()) << "the sand is stopped";
         expectWhole(terrain_.stepNumber());
         const std::uint64_t stood = terrain_.stepNumber();
         std::filesystem::remove(folder_ / "filler");
-        while (!showFrame()) {  // asked about once a second
+        while (!showFrame()) {  // the keeper tries the disk about once per second
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }
         EXPECT_EQ(keeper_->state(), "written");
@@ -305,7 +306,7 @@ TEST_F(Keeper, AFullDiskStopsTheSandUntilThereIsRoom) {
         keeper_.reset();
     });
     if (status == 77) {
-        GTEST_SKIP() << "this machine lets nobody mount a small disk";
+        GTEST_SKIP() << "a small disk cannot be mounted on this machine";
     }
     EXPECT_EQ(status, 0);
 }
@@ -326,12 +327,13 @@ TEST_F(Keeper, AReadOnlyFolderIsNamed) {
         },
         MS_RDONLY);
     if (status == 77) {
-        GTEST_SKIP() << "this machine lets nobody mount a disk";
+        GTEST_SKIP() << "a disk cannot be mounted on this machine";
     }
     EXPECT_EQ(status, 0);
 }
 
-// The parent kills the child wherever it is. What append() has returned for is told through a pipe, and must be there.
+// The parent kills the child at any place. The child sends each step through a pipe when append() has returned. These
+// steps must be in the journal.
 TEST_F(Keeper, KilledInTheMiddleOfWritesNothingThatWasOnDiskIsLost) {
     const unsigned seed = test::randomSeed();
     SCOPED_TRACE(test::again(seed));
@@ -367,7 +369,8 @@ TEST_F(Keeper, KilledInTheMiddleOfWritesNothingThatWasOnDiskIsLost) {
         ASSERT_TRUE(resumed.has_value()) << "seed " << seed << ", kill " << kill;
         ASSERT_GE(resumed->step, steps) << "seed " << seed << ", kill " << kill;
         ASSERT_LE(resumed->step, steps + 1) << "seed " << seed << ", kill " << kill;
-        // From the checkpoints to the same sand as from the scene: restoreSand() compares the hashes on the way.
+        // The sand from the checkpoints must equal the sand from the scene. restoreSand() compares the hashes on the
+        // way.
         sand::Replica undisturbed(scene_);
         for (const master::JournalFrame& frame : master::readJournal(journal()).frames) {
             ASSERT_EQ(frame.hashBefore, undisturbed.stateHash());

@@ -17,11 +17,11 @@ namespace {
 using master::PartFile;
 using namespace std::chrono_literals;
 
-/// Two sessions that want one file. The second counts its waits instead of waiting.
+/// Two sessions that write the same file. The second one counts its waits instead of waiting.
 class TwoWriters : public test::FolderTest {
 protected:
-    /// What the second session is told; "nothing" where it may go on. The first one ends when the second has waited
-    /// for `until`.
+    /// Returns the error of the second session; "nothing" if it may continue. The first session ends when the second
+    /// one has waited for `until`.
     template <class Second>
     std::string tell(const Second& second, std::chrono::milliseconds until) {
         try {

@@ -8,7 +8,8 @@
 
 namespace {
 
-/// A session of `steps` steps at 60 a second in frames of three, which wrote 100 + step as its hash.
+/// Returns a session of `steps` steps, 60 per second, with three steps per frame. Its hash after each step is 100 +
+/// step.
 master::Journal sessionOf(std::uint64_t steps) {
     master::Journal journal;
     journal.scene = samples::flatScene(8, 8);

@@ -25,7 +25,7 @@ namespace {
 
 class Replay : public test::FolderTest {
 protected:
-    /// Records 40 steps in frames of two; `hashError` spoils the hash of frame 10.
+    /// Records 40 steps, two per frame. `hashError` changes the hash of frame 10.
     sand::Replica record(std::uint64_t hashError = 0) { return record(samples::flatScene(40, 30), hashError); }
     sand::Replica record(const scene::Scene& scene, std::uint64_t hashError) {
         sand::Replica terrain(scene);
@@ -51,7 +51,7 @@ protected:
     [[nodiscard]] support::Ran replay(const std::string& options) const {
         return support::runProgram("sandwall-replay", journal() + " " + options);
     }
-    /// Expects status 2, one line that holds `words`, and no file but the journal.
+    /// Expects exit status 2, one line that contains `words`, and only the journal in the folder.
     void expectRefused(const std::string& options, const std::string& words) const {
         const support::Ran ran = replay(options);
         EXPECT_EQ(ran.status, 2) << options << ": " << ran.output;
@@ -136,7 +136,7 @@ TEST_F(Replay, VerifiesAllThatAJournalSays) {
           "checkpoint   of step 40: the replay's sand\n", "end          orderly, at step 40"}) {
         EXPECT_NE(good.output.find(line), std::string::npos) << line << "\n" << good.output;
     }
-    // The same step, and other sand.
+    // The checkpoint has the same step and other sand.
     sand::Replica other(samples::flatScene(40, 30));
     for (std::uint64_t number = 1; number <= 40; ++number) {
         other.apply({.epoch = 1, .number = number, .engaged = false, .path = {}});
@@ -237,7 +237,7 @@ TEST_F(Replay, SaysThatTheRowsEndWithATornRecord) {
     EXPECT_EQ(torn.status, 0);
     EXPECT_EQ(torn.output,
               support::runProgram("sandwall-replay", journal() + " --mesh " + (folder_ / "m.ply").string()).output)
-        << "as a replay says it";
+        << "a replay prints the same line";
     EXPECT_NE(torn.output.find("bytes are an incomplete record and were left out\n"), std::string::npos) << torn.output;
     EXPECT_NE(torn.output.find("has no orderly end"), std::string::npos) << torn.output;
 }
@@ -331,7 +331,7 @@ TEST_F(Replay, RefusesToWriteOneFileOverAnother) {
 }
 
 // The scene in this journal ends after its rules, so that decoding its heights would fail in another way. A replica of
-// 16384 x 16384 cells takes 4 GiB, and its heights alone 1 GiB, which is more than the limit of 1 GB.
+// 16384 x 16384 cells takes 4 GiB, and its heights alone take 1 GiB. Both are more than the limit of 1 GB.
 TEST_F(Replay, RefusesAFieldThatDoesNotFitItsMemoryBeforeItsHeightsAreMade) {
     sand::Rules rules;
     rules.columns = rules.rows = 16384;

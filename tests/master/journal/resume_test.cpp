@@ -18,7 +18,7 @@
 
 namespace {
 
-/// A session of 40 steps, two a frame, with checkpoints after every tenth.
+/// Records a session of 40 steps, two per frame, with a checkpoint after every tenth step.
 class Resume : public test::FolderTest {
 protected:
     void SetUp() override {
@@ -49,7 +49,7 @@ protected:
         master::writeCheckpoint(journal(), checkpoint, 3);
     }
     [[nodiscard]] std::filesystem::path journal() const { return folder_ / "session.journal"; }
-    /// Its sand is that of an undisturbed replay of all steps.
+    /// Expects the same sand as after an undisturbed replay of all steps.
     void expectSand(std::uint64_t step, std::uint64_t checkpoint) const {
         master::RestoredSand restored = master::restoreSand(journal(), step);
         EXPECT_EQ(restored.terrain.stepNumber(), step);
@@ -77,11 +77,12 @@ protected:
     sand::Replica terrain_{scene_};
     std::mt19937 random_{59};
     std::uint64_t frame_ = 0;
-    std::vector<std::uint64_t> hashes_;  // after every step, from 0
+    std::vector<std::uint64_t> hashes_;  // state hashes after every step, from 0
 };
 
 TEST_F(Resume, FindsTheSandAfterAnyStepFromTheNewestCheckpointBefore) {
-    EXPECT_EQ(master::checkpointsOf(journal()), (std::vector<std::uint64_t>{40, 30, 20}));  // older ones are removed
+    EXPECT_EQ(master::checkpointsOf(journal()),
+              (std::vector<std::uint64_t>{40, 30, 20}));  // older checkpoints are removed
     for (std::uint64_t step = 0; step <= 40; ++step) {
         expectSand(step, step >= 20 ? step / 10 * 10 : 0);
     }
@@ -107,7 +108,7 @@ TEST_F(Resume, LeavesOutACheckpointThatIsDamagedAnywhere) {
     expectSand(40, 30);
 }
 
-// Whole, with a right checksum, of the right session: and yet not the sand that the journal comes to.
+// The checkpoint is whole, has the right checksum and belongs to the session. But its sand differs from the journal's.
 TEST_F(Resume, LeavesOutACheckpointOfOtherSand) {
     const std::uint64_t session = master::JournalReader(journal()).header().session;
     terrain_ = master::restoreSand(journal(), 39).terrain;
@@ -126,13 +127,14 @@ TEST_F(Resume, LeavesOutACheckpointOfAnotherSession) {
     { master::JournalWriter again(copy, scene_, "test"); }
     std::filesystem::copy(folder_ / "checkpoints", folder_ / "copy" / "checkpoints");
     EXPECT_EQ(master::restoreSand(copy, 0).checkpointStep, 0U);
-    // Of step 0: nothing but the session tells them apart.
+    // At step 0 both sessions have the same sand. Only the session's number is different.
     std::filesystem::rename(master::checkpointFile(copy, 40), master::checkpointFile(copy, 0));
     EXPECT_EQ(master::restoreSand(copy, 0).terrain.stepNumber(), 0U);
 }
 
 TEST_F(Resume, GoesOnWithTheNextStepInTheSameJournal) {
-    std::filesystem::resize_file(journal(), std::filesystem::file_size(journal()) - 5);  // tears the last frame
+    std::filesystem::resize_file(journal(),
+                                 std::filesystem::file_size(journal()) - 5);  // cuts off a part of the last frame
     const auto session = master::readSession(journal(), "");
     ASSERT_TRUE(session.has_value());
     EXPECT_EQ(session->step, 38U);
@@ -165,7 +167,7 @@ TEST_F(Resume, GoesOnWithTheNextStepInTheSameJournal) {
     EXPECT_EQ(journal.resumes[0].cutBytes, session->cutBytes);
     ASSERT_TRUE(journal.end.has_value());
     EXPECT_FALSE(std::filesystem::exists(this->journal().string() + ".previous"));
-    // From the beginning, past checkpoints: those of steps that were made twice must not be taken.
+    // Replays from the beginning. The checkpoints of steps that were made twice must not be used.
     std::filesystem::remove_all(folder_ / "checkpoints");
     expectSand(50, 0);
 }
@@ -238,7 +240,7 @@ TEST_F(Resume, RefusesAnotherSceneThanTheSessions) {
     EXPECT_EQ(refusal(other, file.string()), "not refused");
 }
 
-// Its heights would be 1 GiB.
+// The heights of this scene would take 1 GiB.
 TEST_F(Resume, RefusesASceneOfAnotherSizeBeforeItsHeightsAreMade) {
     const std::filesystem::path file = folder_ / "scene.toml";
     std::ofstream(file) << "[field]\ncolumns = 16384\nrows = 16384\n[terrain]\n[material]\n";
@@ -252,7 +254,7 @@ TEST_F(Resume, RefusesASceneOfAnotherSizeBeforeItsHeightsAreMade) {
     EXPECT_LT(residentKilobytes() - before, 100'000);
 }
 
-// Two that write one journal would each destroy what the other has shown.
+// Two sessions that write one journal would each destroy the steps of the other.
 TEST_F(Resume, RefusesASessionThatStillRuns) {
     const auto session = master::readSession(journal(), "");
     const master::JournalWriter running(session->place, "test");
@@ -266,7 +268,7 @@ TEST_F(Resume, RefusesASessionThatStillRuns) {
     EXPECT_EQ(std::filesystem::file_size(journal()), size);
 }
 
-// A session that ends while the next one starts up has shown more than was read.
+// A session that ends while the next one starts may have written more steps than the next one has read.
 TEST_F(Resume, CutsNothingThatWasWrittenSinceItWasRead) {
     const auto session = master::readSession(journal(), "");
     {
@@ -283,7 +285,7 @@ TEST_F(Resume, CutsNothingThatWasWrittenSinceItWasRead) {
     EXPECT_EQ(std::filesystem::file_size(journal()), size);
 }
 
-// The operator's material is written before the step that brings it in.
+// The operator's material is written before the step with its edit.
 TEST_F(Resume, KnowsNoMaterialWhoseStepWasTornOff) {
     const scene::Material before = master::readSession(journal(), "")->material;
     {

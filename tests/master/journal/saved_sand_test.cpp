@@ -44,7 +44,7 @@ protected:
 
 TEST_F(SavedSandFile, GivesBackWhatWasSavedAndLeavesNothingBeside) {
     const SavedSand saved = sand();
-    for (int i = 0; i < 2; ++i) {  // the second replaces the first
+    for (int i = 0; i < 2; ++i) {  // the second file replaces the first
         master::writeSavedSand(file_, saved);
     }
     const SavedSand read = master::readSavedSand(file_, SandPlace::of(scene_), sand::Replica(scene_).sandReader());

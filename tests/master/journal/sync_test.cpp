@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// On disk before shown: the journal's records are followed by fdatasync before the session goes on.
+// SPDX-License-Identifier: Apache-2.0 Steps are on disk before they are shown: fdatasync follows the journal's records
+// before the session continues.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -14,11 +14,11 @@
 
 namespace {
 
-/// A program that keeps three frames, with sync_log.cpp between it and the disk.
+/// Runs a program that writes three frames, with sync_log.cpp between it and the disk.
 class Synced : public test::FolderTest {
 protected:
-    /// Lines of the program and of sync_log, in the order of what they tell; the call `fails` fails. The first call is
-    /// the header's.
+    /// Returns the lines of the program and of sync_log in order of time. The call number `fails` of fdatasync fails;
+    /// call 1 is for the header.
     std::vector<std::string> keep(const std::string& policy, int fails = 0) {
         const std::string log = (folder_ / "log").string();
         ran_ = support::runCommand(

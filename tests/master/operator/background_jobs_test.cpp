@@ -23,7 +23,7 @@ TEST(BackgroundJobs, AnswerWhenTheyHaveEndedAndNotBefore) {
         {1});
     jobs.start([] { return BackgroundJobs::Result{"quick", sand::Edit::undo}; }, {2, {}});
     std::vector<BackgroundJobs::Done> done;
-    while (done.empty()) {  // the test's own time-out is the limit
+    while (done.empty()) {  // limited by the time-out of the test
         done = jobs.finished(false);
     }
     ASSERT_EQ(done.size(), 1U);

@@ -92,7 +92,7 @@ TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
     }
 }
 
-/// A session's folder, and what a client of its socket does.
+/// A session's folder with its control socket, and functions of a client.
 class Control : public test::FolderTest {
 protected:
     [[nodiscard]] static int connectTo(const std::filesystem::path& path) {
@@ -108,7 +108,7 @@ protected:
     }
     [[nodiscard]] int connectHere() const { return connectTo(folder_ / "control"); }
     static void say(int peer, const std::string& text) { (void)send(peer, text.data(), text.size(), MSG_NOSIGNAL); }
-    /// All it is told, until the connection ends.
+    /// Returns all bytes that the client receives until the connection ends.
     static std::string hear(int peer) {
         std::string text;
         char piece[256];
@@ -119,14 +119,14 @@ protected:
         return text;
     }
     static ControlSocket::Asked await(ControlSocket& control) {
-        while (true) {  // the test's own time-out is the limit
+        while (true) {  // limited by the time-out of the test
             if (const auto asked = control.take(); !asked.empty()) {
                 return asked.front();
             }
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
         }
     }
-    /// Says a line, lets it be answered by `answer`, and returns what came.
+    /// Sends a line, answers it with `answer`, and returns the bytes that the client received.
     [[nodiscard]] std::string ask(ControlSocket& control, const std::string& line, const std::string& answer) const {
         const int peer = connectHere();
         say(peer, line + "\n");
@@ -154,10 +154,10 @@ TEST_F(Control, IsItsOwnersAlone) {
     EXPECT_FALSE(master::mayCommand(0, 1000));
 }
 
-// Even where somebody has opened folder and socket to all.
+// Another user is refused even if folder and socket are open to all users.
 TEST_F(Control, RefusesAnotherUser) {
     if (geteuid() != 0) {
-        GTEST_SKIP() << "only root can be somebody else";
+        GTEST_SKIP() << "only root can become another user";
     }
     ControlSocket control(folder_);
     std::filesystem::permissions(folder_, std::filesystem::perms::all);

@@ -18,10 +18,10 @@ TEST(EditQueue, TellsWhoseEditIsShownInTheOrderOfAsking) {
     queue.add({Edit::settle, {}, {}});
     queue.add({Edit::reset, 8, {}});
     EXPECT_EQ(queue.shown({}), std::nullopt) << "a step without an edit";
-    EXPECT_EQ(queue.shown(Edit::settle), std::nullopt) << "the first has not been shown";
+    EXPECT_EQ(queue.shown(Edit::settle), std::nullopt) << "the first edit has not been shown";
     EXPECT_EQ(queue.size(), 3U);
     EXPECT_EQ(queue.shown(Edit::reset), 7U);
-    EXPECT_EQ(queue.shown(Edit::settle), std::nullopt) << "somebody typed it";
+    EXPECT_EQ(queue.shown(Edit::settle), std::nullopt) << "the edit came from standard input";
     EXPECT_EQ(queue.size(), 1U);
     EXPECT_EQ(queue.shown(Edit::reset), 8U);
     EXPECT_EQ(queue.size(), 0U);
@@ -30,7 +30,7 @@ TEST(EditQueue, TellsWhoseEditIsShownInTheOrderOfAsking) {
 TEST(EditQueue, HoldsOneLoadAndSixteenEdits) {
     EditQueue queue;
     queue.add({loadOf(100), {}, {}});
-    EXPECT_THROW(queue.requireRoomFor(loadOf(1)), base::InputError) << "each holds the whole sand";
+    EXPECT_THROW(queue.requireRoomFor(loadOf(1)), base::InputError) << "each load holds the whole sand";
     EXPECT_EQ(queue.sandBytes(), 100);
     EXPECT_EQ(queue.sandBytes(loadOf(20)), 120);
     while (queue.size() < EditQueue::kMost) {

@@ -20,7 +20,7 @@ using test::SandServer;
 using namespace std::chrono_literals;
 
 constexpr std::int64_t kFrameNs = 16'666'667;
-constexpr std::chrono::milliseconds kLooks = 1200ms;  // in which a link looks at its clock twice
+constexpr std::chrono::milliseconds kLooks = 1200ms;  // time in which a link looks at its clock twice
 
 /// A wall without ranks. It shows each step that it takes.
 class LiveStepsTest : public testing::Test {
@@ -29,7 +29,7 @@ protected:
         return {server, scene_, master::Pace::fast, 0, {}, [this] { return nowNs_.load(); }};
     }
     void pass(double seconds) { nowNs_ += static_cast<std::int64_t>(seconds * 1e9); }
-    /// One frame, and the steps in it.
+    /// Shows one frame, and returns its steps.
     std::vector<TimedStep> show(master::LiveSteps& live, std::size_t most = 4) {
         const std::vector<TimedStep> steps = live.next(wall_, wall_.stateHash(), most);
         for (const TimedStep& timed : steps) {
@@ -48,7 +48,7 @@ protected:
             return done();
         });
     }
-    /// Whether the wall takes steps of its own.
+    /// Returns whether the master numbers the steps.
     bool numbersAlone(master::LiveSteps& live) {
         const std::vector<TimedStep> steps = show(live);
         return !live.linked() && steps.size() == 1 && steps[0].serverHash == 0 && steps[0].step.epoch == live.epoch();
@@ -75,7 +75,7 @@ TEST_F(LiveStepsTest, AServerWhoseSandDiffersIsLetGoAndStartsAgainFromTheWalls) 
     EXPECT_EQ(differed_, 0);
     ASSERT_TRUE(showUntil(live, [&] { return differed_ > 0; }));
     EXPECT_FALSE(live.linked());
-    EXPECT_EQ(live.epoch(), 2U) << "the master numbers";
+    EXPECT_EQ(live.epoch(), 2U) << "the master numbers the steps";
     const std::uint64_t then = wall_.stepNumber();
     EXPECT_GE(then, 20U);
     EXPECT_LT(then, 24U) << "in the frame that shows the first wrong step, of four at most";
@@ -87,14 +87,14 @@ TEST_F(LiveStepsTest, AServerWhoseSandDiffersIsLetGoAndStartsAgainFromTheWalls) 
     EXPECT_EQ(live.counters().reconnects, 1U);
 }
 
-// What a wrong server has said of the sand proves nothing when it comes back.
+// When a wrong server comes back, its earlier hashes of the sand do not count.
 TEST_F(LiveStepsTest, AServerWithAnotherHistoryGetsNoneOfItBack) {
     SandServer server(scene_, [](int link, std::uint64_t step, std::uint64_t hash) {
         return link == 1 && step >= 5 ? hash ^ step : hash;
     });
     server.claimStep(6);
     master::LiveSteps live = stepsFrom(server.address());
-    // Steps 5 to 8 in one frame: of the last alone the wall knows its own hash.
+    // Steps 5 to 8 are in one frame. The wall knows its own hash only after the last of them.
     ASSERT_TRUE(eventually([&] { return !show(live, 4).empty(); }));
     while (wall_.stepNumber() < 4) {
         show(live, 4 - wall_.stepNumber());
@@ -125,9 +125,9 @@ TEST_F(LiveStepsTest, AServerThatTakesTheConnectionAndNeverGreetsIsWaitedForTenS
     show(live);
     EXPECT_FALSE(live.starting());
     EXPECT_EQ(live.epoch(), 1U);
-    EXPECT_TRUE(numbersAlone(live)) << "the wall goes on without a hand";
-    EXPECT_TRUE(showUntil(live, [&] { return refusedForSilence(live) == 1; })) << "and it is counted";
-    EXPECT_TRUE(showUntil(live, [&] { return greeted == 2; })) << "and tried again";
+    EXPECT_TRUE(numbersAlone(live)) << "the wall continues without a hand";
+    EXPECT_TRUE(showUntil(live, [&] { return refusedForSilence(live) == 1; })) << "the silence is counted";
+    EXPECT_TRUE(showUntil(live, [&] { return greeted == 2; })) << "the master tries the server again";
     EXPECT_EQ(live.counters().links, 0U);
 }
 
@@ -144,7 +144,7 @@ TEST_F(LiveStepsTest, AServerThatIsStoppedLosesItsLinkAfterTenSeconds) {
         }
         guest.send(haptic_bridge::Ready{});
         silent = true;
-        guest.ignoreTheRest();  // the kernel takes what comes for a stopped process
+        guest.ignoreTheRest();  // the kernel still accepts bytes for a stopped process
     }));
     master::LiveSteps live = stepsFrom(server.address());
     ASSERT_TRUE(showUntil(live, [&] { return silent && live.linked(); }));
@@ -156,8 +156,8 @@ TEST_F(LiveStepsTest, AServerThatIsStoppedLosesItsLinkAfterTenSeconds) {
     pass(0.02);
     ASSERT_TRUE(showUntil(live, [&] { return !live.linked(); }));
     EXPECT_EQ(live.epoch(), 2U);
-    EXPECT_TRUE(numbersAlone(live)) << "the wall goes on without a hand";
-    EXPECT_EQ(refusedForSilence(live), 0U) << "it had greeted";
+    EXPECT_TRUE(numbersAlone(live)) << "the wall continues without a hand";
+    EXPECT_EQ(refusedForSilence(live), 0U) << "the server had sent its Welcome";
     EXPECT_EQ(live.counters().links, 1U);
 }
 
@@ -170,7 +170,7 @@ TEST_F(LiveStepsTest, AServerThatDoesNotBeginIsPassedOverAfterFiveSecondsAndAske
         }
     });
     master::LiveSteps live = stepsFrom(server.address());
-    ASSERT_TRUE(showUntil(live, [&] { return live.epoch() == 1; })) << "it is handed the numbering";
+    ASSERT_TRUE(showUntil(live, [&] { return live.epoch() == 1; })) << "the server is asked to number the steps";
     pass(4.99);
     EXPECT_TRUE(show(live).empty());
     EXPECT_EQ(live.epoch(), 1U);
@@ -212,7 +212,7 @@ TEST_F(LiveStepsTest, AnEditThatALostServerTookAlongIsDoneByTheNextWhoNumbers) {
             {haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), scene_.name}, 60});
         if (guest.await<haptic_bridge::Start>()) {
             guest.send(haptic_bridge::Ready{});
-            (void)guest.await<haptic_bridge::EditRequest>();  // and leaves
+            (void)guest.await<haptic_bridge::EditRequest>();  // and then closes the link
         }
     }));
     master::LiveSteps live = stepsFrom(server.address());
@@ -232,7 +232,7 @@ TEST_F(LiveStepsTest, EveryServerIsToldTheShareOfItsForceOnce) {
     });
     master::LiveSteps live = stepsFrom(server.address());
     ASSERT_TRUE(showUntil(live, [&] { return live.linked(); }));
-    EXPECT_EQ(server.shares(), 0) << "all of it is what a server begins with";
+    EXPECT_EQ(server.shares(), 0) << "a server begins with the whole force";
     live.shareForce(0.5);
     ASSERT_TRUE(showUntil(live, [&] { return wall_.stepNumber() >= 30; }));
     EXPECT_EQ(server.shares(), 1);

@@ -16,7 +16,7 @@ using haptic_bridge::Position;
 constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-/// A server that streams, without its socket.
+/// A server that streams positions, without a socket.
 class Positions : public testing::Test {
 protected:
     void SetUp() override { source_.begin(terrain_); }
@@ -80,7 +80,7 @@ TEST_F(Positions, NonsenseLiftsTheToolAndIsTold) {
     EXPECT_EQ(told(),
               "haptic link: the server sends no numbers, 2 times so far; the hand is lifted and feels nothing\n");
     add(0, 0, 0);
-    EXPECT_TRUE(step().engaged) << "and goes on";
+    EXPECT_TRUE(step().engaged) << "the hand continues";
     EXPECT_EQ(told(), "");
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 using haptic_bridge::TimedStep;
 
-/// Records a session of `steps` steps at 60 a second, a frame for each, with the sand's own hashes.
+/// Records a session of `steps` steps, 60 per second, one per frame, with the hashes of its sand.
 master::Journal sessionWithHashes(std::uint64_t steps) {
     master::Journal journal;
     journal.scene = samples::flatScene(24, 24);
@@ -31,7 +31,7 @@ std::shared_ptr<const master::Recording> recordingOf(master::Journal journal, in
     return std::make_shared<const master::Recording>(std::move(journal), "FILE", framesPerSecond);
 }
 
-/// Shows a frame of the recording on a wall without ranks. Returns how many steps were in it.
+/// Shows a frame of the recording on a wall without ranks. Returns the number of its steps.
 std::size_t showFrame(master::RecordedSteps& steps, sand::Replica& sand) {
     const std::vector<TimedStep> next = steps.next(sand, sand.stateHash(), steps.mostPerFrame());
     steps.reached(sand);
@@ -70,10 +70,10 @@ TEST(RecordedSteps, SayOnceWhenTheSandDiffersFromTheRecordings) {
     EXPECT_TRUE(steps.takeStrayLine().starts_with("after step 4: the session had "));
     EXPECT_EQ(steps.takeStrayLine(), "");
     showFrame(steps, sand);
-    EXPECT_EQ(steps.takeStrayLine(), "") << "only the first difference is news";
+    EXPECT_EQ(steps.takeStrayLine(), "") << "only the first difference is printed";
 }
 
-// Healing replaces the master's sand by that of the other ranks: then it was not the recording that strayed.
+// Healing replaces the master's sand by the sand of the other ranks. Then the recording was right.
 TEST(RecordedSteps, CompareAgainWhenTheMasterWasHealed) {
     const auto recording = recordingOf(sessionWithHashes(10));
     master::RecordedSteps steps(recording, 10);
@@ -86,13 +86,13 @@ TEST(RecordedSteps, CompareAgainWhenTheMasterWasHealed) {
     steps.reached(sand);
     ASSERT_TRUE(steps.strayed());
     steps.healed(sand);
-    EXPECT_TRUE(steps.strayed()) << "the sand is still another one";
+    EXPECT_TRUE(steps.strayed()) << "the sand still differs";
     steps.healed(right);
     EXPECT_FALSE(steps.strayed());
     EXPECT_EQ(steps.takeStrayLine(), "");
 }
 
-/// Has a step ready at the third call.
+/// A source that has a step at the third call of next().
 class LateSteps : public test::NoSteps {
 public:
     explicit LateSteps(double patience) : patience_(patience) {}
@@ -124,7 +124,7 @@ TEST(AwaitSteps, AsksAgainOnlyWhileItsSourceIsPatientAndNobodyStops) {
     EXPECT_EQ(stopped.calls, 1);
     LateSteps held(60);
     EXPECT_EQ(await(held, 0, false), 0U) << "held sand takes no step and does not wait";
-    EXPECT_EQ(held.calls, 1) << "but the link is looked after";
+    EXPECT_EQ(held.calls, 1) << "the source is still called, because it serves the link";
 }
 
 }  // namespace
