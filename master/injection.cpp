@@ -21,9 +21,9 @@ namespace {
 constexpr std::uint64_t kMostMilliseconds = 10'000;   // [ms], of slow drawing
 constexpr std::uint64_t kLongestPartition = 600'000;  // [ms]
 constexpr std::uint64_t kMostSignal = 31;
-constexpr std::array<std::uint64_t, 8> kHarmless{
-    SIGCHLD, SIGCONT, SIGURG,  SIGWINCH,   // a process ignores these
-    SIGSTOP, SIGTSTP, SIGTTIN, SIGTTOU};   // these stop a process, as hang does
+// A process ignores the first four signals. The others only stop it, which hang does.
+constexpr std::array<std::uint64_t, 8> kHarmless{SIGCHLD, SIGCONT, SIGURG,  SIGWINCH,
+                                                 SIGSTOP, SIGTSTP, SIGTTIN, SIGTTOU};
 constexpr std::uint64_t kHighestBit = 27;  // heights are below 2^28
 constexpr std::uint64_t kMostFrames = std::numeric_limits<std::uint64_t>::max();
 

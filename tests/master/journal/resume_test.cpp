@@ -81,8 +81,7 @@ protected:
 };
 
 TEST_F(Resume, FindsTheSandAfterAnyStepFromTheNewestCheckpointBefore) {
-    EXPECT_EQ(master::checkpointsOf(journal()),
-              (std::vector<std::uint64_t>{40, 30, 20}));  // older checkpoints are removed
+    EXPECT_EQ(master::checkpointsOf(journal()), (std::vector<std::uint64_t>{40, 30, 20}));  // older: removed
     for (std::uint64_t step = 0; step <= 40; ++step) {
         expectSand(step, step >= 20 ? step / 10 * 10 : 0);
     }
@@ -133,8 +132,8 @@ TEST_F(Resume, LeavesOutACheckpointOfAnotherSession) {
 }
 
 TEST_F(Resume, GoesOnWithTheNextStepInTheSameJournal) {
-    std::filesystem::resize_file(journal(),
-                                 std::filesystem::file_size(journal()) - 5);  // cuts off a part of the last frame
+    // Cuts off a part of the last frame.
+    std::filesystem::resize_file(journal(), std::filesystem::file_size(journal()) - 5);
     const auto session = master::readSession(journal(), "");
     ASSERT_TRUE(session.has_value());
     EXPECT_EQ(session->step, 38U);
