@@ -8,29 +8,33 @@
 
 namespace haptic_bridge {
 
-/// What a maker's data sheet, or a measurement, says of a device: what its forces must be limited to (docs/forces.md).
+/// Physical properties of an arm, from its data sheet or from measurements. The limits of its forces follow from them
+/// (docs/forces.md).
 struct ArmPhysics {
     std::string name;
-    double mass = 0.05;                                             // [kg], apparent at the tip
-    double damping = 0.5;                                           // [N · s/m], of its own
-    double friction = 0;                                            // [N], Coulomb
+    double mass = 0.05;                                             // [kg], apparent mass at the tip
+    double damping = 0.5;                                           // [N · s/m], of the arm itself
+    double friction = 0;                                            // [N], Coulomb friction
     double resolution = 0;                                          // [m]
     double maxForce = 3.3;                                          // [N]
     double reach = 0.075;                                           // [m], from the middle of its workspace
-    double maxStiffness = std::numeric_limits<double>::infinity();  // [N/m], as its maker allows
-    int delayTicks = 0;                                             // [ms], from reading a place to acting on it
+    double maxStiffness = std::numeric_limits<double>::infinity();  // [N/m], largest that its maker allows; infinite if
+                                                                    // the maker states none
+    int delayTicks = 0;  // [tick of 1 ms], from reading a place until the force acts
 };
 
-/// Where an arm is, in its own axes.
+/// One reading of an arm, in the arm's own axes.
 struct ArmReading {
     sand::force::Vec3 place;  // [m], from the middle of its workspace
-    bool first = false;       // button: touch
-    bool second = false;      // button: clutch
+    bool first = false;       // button that touches the sand
+    bool second = false;      // button that works as a clutch
     bool present = true;      // false: the device does not answer, and gets no force
 };
 
-/// A device with a body: read and pushed at 1 kHz by one thread, in its own axes and in metres. What lies it over the
-/// sand is MappedDevice; what makes its forces safe are the guards. read() and push() neither wait nor allocate.
+/// A device with a body. One thread reads it and pushes it at 1 kHz, in metres along the arm's own axes.
+///
+/// MappedDevice maps the arm to the sand. The guards make its forces safe. read() and push() neither wait nor allocate
+/// memory.
 class Arm {
 public:
     Arm() = default;
@@ -39,9 +43,9 @@ public:
     Arm& operator=(const Arm&) = delete;
 
     [[nodiscard]] virtual const ArmPhysics& physics() const = 0;
-    /// `time` [s] since the session began; never runs backwards.
+    /// Returns the arm's current reading. `time` [s] counts from the start of the session and never decreases.
     [[nodiscard]] virtual ArmReading read(double time) = 0;
-    /// Held until the next call.
+    /// Pushes with `force`. The arm holds this force until the next call.
     virtual void push(sand::force::Vec3 force /* [N] */) = 0;
 };
 

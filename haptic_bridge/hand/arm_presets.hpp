@@ -11,11 +11,13 @@ namespace haptic_bridge {
 
 inline constexpr std::array<std::string_view, 4> kArmPresets{"touch", "falcon", "omega.3", "delta.3"};
 
-/// One of kArmPresets, as a tick of delay over USB leaves it; nothing for another name.
+/// Returns the physics of the preset `name`, with a delay of one tick over USB. Returns nullopt if `name` is not in
+/// kArmPresets.
 [[nodiscard]] std::optional<ArmPhysics> armPreset(std::string_view name);
 
-/// What a recording is felt with, which has no body: the first paper's kind of device.
+/// Returns the physics of a Touch, the kind of device of the first paper. Its limits also apply to a recording, which
+/// has no body.
 [[nodiscard]] ArmPhysics touchPreset();
-inline constexpr double kTouchField = 0.16;  // [m], the shorter side of a field that a Touch reaches over
+inline constexpr double kTouchField = 0.16;  // [m], shorter side of a field over which a Touch reaches
 
 }  // namespace haptic_bridge

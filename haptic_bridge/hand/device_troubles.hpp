@@ -11,11 +11,18 @@
 
 namespace haptic_bridge {
 
-/// What a device may do wrong. The hand is lifted and feels nothing meanwhile; the wall goes on.
-enum class Trouble : std::uint8_t { absent, noNumber, jump, backwards, flood };
+/// Kinds of trouble with a device. While the trouble lasts, the tool is lifted and the hand feels nothing. The wall
+/// continues.
+enum class Trouble : std::uint8_t {
+    absent,     // the device does not answer
+    noNumber,   // a time or a coordinate is not finite
+    jump,       // the hand moves farther than it can between two readings
+    backwards,  // a reading is older than the one before it
+    flood       // the device sends more than the master can take in
+};
 inline constexpr std::size_t kTroubles = 5;
 
-/// How often each has happened. Counted by one thread without waiting, read by any.
+/// Number of times that each trouble has happened. One thread counts without waiting; any thread may read.
 class TroubleCounts {
 public:
     void count(Trouble trouble) {
@@ -30,15 +37,17 @@ private:
     std::array<std::atomic<std::uint64_t>, kTroubles> counts_{};
 };
 
-/// Makes one line of a trouble however often it happens: when it begins, every kQuiet seconds while it lasts, and, of a
-/// device that did not answer, when it does again. One thread.
+/// Makes lines for the user out of the counts of troubles. Used by one thread.
+///
+/// A trouble gives a line when it first happens, and then at most one line every kQuiet seconds. A device that does not
+/// answer gives one line, and one more when it answers again.
 class TroubleTeller {
 public:
     static constexpr double kQuiet = 10;  // [s]
-    static constexpr double kOver = 1;    // [s] without another one, and a device answers again
+    static constexpr double kOver = 1;    // [s] since the last absent reading: the device answers again
 
     explicit TroubleTeller(std::string name) : name_(std::move(name)) {}
-    /// What a person should read now; `time` [s] on any clock that runs forward.
+    /// Returns the lines that the user should read now. `time` [s] comes from any clock that never runs backwards.
     [[nodiscard]] std::vector<std::string> lines(const TroubleCounts& counts, double time);
 
 private:
@@ -51,12 +60,14 @@ private:
     bool away_ = false;
 };
 
-/// Whether the next reading of a hand can be believed. What is not is counted, and is no reading.
+/// Decides whether the next reading of a hand is plausible. Counts each implausible reading as a trouble; the caller
+/// then ignores it.
 class ReadingCheck {
 public:
-    /// `farthest` is what a hand may move between two readings.
+    /// `farthest` is the largest distance that a hand may move between two readings, in the unit of places.
     ReadingCheck(double farthest, TroubleCounts& counts) : farthest_(farthest), counts_(counts) {}
-    /// A hand that jumped is believed from its next reading on, there: a device that was set anew goes on at once.
+    /// Returns whether the reading is plausible. After a jump, the next reading near the new place is plausible again.
+    /// A device that was put elsewhere therefore continues at once.
     [[nodiscard]] bool accept(double time /* [s] */, sand::force::Vec3 place);
 
 private:

@@ -9,20 +9,20 @@
 
 namespace haptic_bridge {
 
-/// What may change a force before it is sent, in the order of Tick::guards' bits, lowest first.
+/// Guards that may change a force before it is sent. Their order is that of the bits in Tick::guards, lowest first.
 enum class Guard : std::uint8_t {
-    notANumber,  // a place or force that is no number: nothing is sent
-    stiffness,   // the law is stiffer than the device bears
-    damping,     // friction grows faster with speed than the device bears
-    friction,    // friction is greater than what the sand can hold
+    notANumber,  // a place, velocity or force is not finite: no force is sent
+    stiffness,   // the law is stiffer than the device can bear
+    damping,     // friction grows faster with speed than the device can bear
+    friction,    // friction is greater than the sand can hold
     slew,        // the force grows faster than the stiffness and the fastest hand explain
-    passivity,   // the loop has given the hand more energy than it took: damped
-    clamp,       // more than the device's greatest force
-    ramp,        // within two seconds of a start or a gap
-    stale,       // the sand was last heard of too long ago: nothing is sent
-    missed,      // the loop has missed ticks: nothing is sent
-    lost,        // the device does not answer: nothing is sent
-    jumped       // the device claims to have moved faster than anything can: nothing is sent
+    passivity,   // the loop has given the hand more energy than it took: the force is damped
+    clamp,       // the force exceeds the device's greatest force
+    ramp,        // less than two seconds have passed since a start or a gap
+    stale,       // the latest sand is too old: no force is sent
+    missed,      // the loop has missed ticks: no force is sent
+    lost,        // the device does not answer: no force is sent
+    jumped       // the device seems to move faster than any arm can: no force is sent
 };
 inline constexpr std::size_t kGuards = 12;
 inline constexpr std::array<std::string_view, kGuards> kGuardNames{"not_a_number", "stiffness", "damping", "friction",
@@ -31,7 +31,7 @@ inline constexpr std::array<std::string_view, kGuards> kGuardNames{"not_a_number
 
 [[nodiscard]] constexpr std::uint32_t bit(Guard guard) { return 1U << static_cast<unsigned>(guard); }
 
-/// Ticks in which each guard acted. One writer, any number of readers; nobody waits.
+/// Number of ticks in which each guard acted. One thread writes, any thread may read; no thread waits.
 class GuardCounts {
 public:
     void add(std::uint32_t acted) {
@@ -48,7 +48,7 @@ public:
         }
         return result;
     }
-    /// "guards acted in ticks: stiffness 812, ramp 30", in one line.
+    /// Returns one line such as "guards acted in ticks: stiffness 812, ramp 30".
     [[nodiscard]] std::string inWords() const {
         std::string text;
         const auto counts = all();

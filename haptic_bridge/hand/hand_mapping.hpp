@@ -9,19 +9,21 @@
 
 namespace haptic_bridge {
 
-/// Puts a hand over the sand: hand space to quantised probe points. Reads the scene, which must outlive it.
+/// Mapping from hand space to quantised probe points over the sand. It keeps a reference to the scene, which must
+/// outlive it.
 class HandMapping {
 public:
     HandMapping(const scene::Scene& scene, HandSettings::Datum datum);
 
     [[nodiscard]] HandSettings::Datum datum() const { return datum_; }
-    /// Poses beyond reach are clamped to sand::kMaxProbe. A pose that holds no number gives nothing.
+    /// Returns the probe point of `pose`, clamped to sand::kMaxProbe. Returns nullopt if a coordinate is not finite.
     [[nodiscard]] std::optional<sand::ProbePoint> probe(const Pose& pose) const;
-    /// Nothing for a hand that does not turn the tool, or turns it by what is no number.
+    /// Returns the heading of `pose`. Returns nullopt if the hand does not turn the tool, or if the angle is not
+    /// finite.
     [[nodiscard]] static std::optional<sand::Heading> heading(const Pose& pose) {
         return pose.heading ? sand::headingOf(*pose.heading, pose.leftFoot) : std::nullopt;
     }
-    /// The tool's centre [scene unit], from the south-west corner and from height 0.
+    /// Returns the tool's centre at `at` [scene unit], measured from the south-west corner and from height 0.
     [[nodiscard]] sand::force::Vec3 place(sand::ProbePoint at) const;
 
 private:
@@ -29,10 +31,10 @@ private:
 
     const scene::Scene& scene_;
     HandSettings::Datum datum_;
-    double halfSide_;                           // [cell], of the shorter side
-    double radius_;                             // [cell]
-    double reference_;                          // [cell]
-    std::shared_ptr<const sand::Surface> tin_;  // as the scene starts; null unless the hand follows a TIN
+    double halfSide_;                           // [cell], half of the shorter side
+    double radius_;                             // [cell], of the tool
+    double reference_;                          // [cell], mean height of the surface at the start
+    std::shared_ptr<const sand::Surface> tin_;  // surface at the start; null unless the hand follows a TIN
 };
 
 }  // namespace haptic_bridge

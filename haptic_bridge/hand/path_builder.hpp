@@ -12,39 +12,42 @@ namespace haptic_bridge {
 
 /// One reading of the hand.
 struct HandSample {
-    std::int64_t timeNs = 0;  // monotonic
+    std::int64_t timeNs = 0;  // [ns], monotonic clock, or a virtual one
     sand::ProbePoint at;
     bool engaged = false;
-    std::optional<sand::Heading> heading = std::nullopt;  // none: the hand does not turn the tool
+    std::optional<sand::Heading> heading = std::nullopt;  // nullopt: the hand does not turn the tool
 };
 
-/// Gathers hand samples and cuts them into the paths of steps.
+/// Gathers hand samples and cuts them into the paths of steps. Not thread-safe.
 ///
-/// A step is engaged or not as a whole, so it takes the samples up to the next change between the two; what follows is
-/// left to the step after. Points where the hand rests are left out. A path too long for a step keeps its first and its
-/// last point and, between them, points at even distances in the order of time. Not thread-safe.
+/// A step is engaged or hovering as a whole. A path therefore ends where the samples change between the two, and the
+/// next step takes the rest. Points at which the hand rests are left out. A path that is too long for a step keeps its
+/// first and its last point, and points at even distances in between, in the order of time.
 ///
-/// Who is late catches up by steps that hold more than a step's time, but not much more: a path costs by its length,
-/// and one path of all that waits would make its wall later still. A hand that is too far ahead is let go: the tool is
-/// lifted, and put down where the hand is now.
+/// A server that is late catches up with steps that hold up to kMostPeriods periods of the hand. They hold no more
+/// because a path costs time by its length: one path of all waiting samples would make the wall later still. If the
+/// hand is too far ahead, the waiting samples are dropped: the tool is lifted, and put down where the hand is now.
 class PathBuilder {
 public:
-    static constexpr std::int64_t kMostPeriods = 4;                // of hand that a step holds
-    static constexpr std::int64_t kFarthestAhead = 1'000'000'000;  // [ns] that the hand is
+    static constexpr std::int64_t kMostPeriods = 4;  // [period of a step] of hand movement that a step may hold
+    static constexpr std::int64_t kFarthestAhead = 1'000'000'000;  // [ns], largest lead of the hand over the sand
 
-    /// Beyond this many waiting samples every second one is thinned out, so that a blocked link costs bounded memory.
+    /// Number of waiting samples above which every second one is dropped, so that a blocked link costs bounded memory.
     static constexpr std::size_t kMaxWaiting = 4096;
 
     explicit PathBuilder(int stepsPerSecond) : mostNs_(kMostPeriods * 1'000'000'000 / stepsPerSecond) {}
 
     void add(const HandSample& sample);
-    /// Fills engaged, path, and heading with the last that the hand gave. Returns when the last point was read [ns], 0
-    /// when no sample waited: the hand is then where it was, engaged as it was.
+    /// Fills `step.engaged`, `step.path` and the hand's last heading from waiting samples. Returns the time at which
+    /// the last sample was read [ns]. Returns 0 if no sample waits; the hand is then where it was, and the step is
+    /// engaged as the one before.
     std::int64_t take(sand::Step& step);
-    /// Forgets what waits, and where the hand was.
+    /// Forgets all waiting samples. The hand is now at `at`.
     void restart(sand::ProbePoint at, bool engaged);
+    /// Drops all waiting samples and counts them.
     void dropWaiting();
-    /// Samples that were thinned out, let go, or dropped while they waited.
+    /// Returns the number of samples that were dropped: thinned out, too far ahead, or waiting when dropWaiting() was
+    /// called.
     [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
 
 private:
@@ -52,14 +55,14 @@ private:
     [[nodiscard]] std::int64_t waitingNs() const { return waiting_.back().timeNs - waiting_.front().timeNs; }
     void letGoIfFarAhead();
 
-    std::int64_t mostNs_;  // [ns] of hand that a step holds
+    std::int64_t mostNs_;  // [ns] of hand movement that a step may hold
     std::deque<HandSample> waiting_;
     sand::ProbePoint last_;
     bool engaged_ = false;
     std::uint64_t dropped_ = 0;
 };
 
-/// Keeps at most `most` (≥ 2) of the points: first, last, and evenly chosen ones between.
+/// Reduces `path` to at most `most` (≥ 2) points: the first, the last, and evenly chosen ones in between.
 void thin(std::vector<sand::ProbePoint>& path, std::size_t most);
 
 }  // namespace haptic_bridge
