@@ -20,64 +20,66 @@
 
 namespace haptic_bridge {
 
-/// One TCP connection that carries messages, in the clear or over TLS. Lives on its executor's one thread: every call
-/// and callback is there.
+/// One TCP connection that carries messages, in plain text or over TLS.
 ///
-/// Callbacks are released when the connection has closed, so that they may hold what owns the connection. Whoever sends
-/// more messages than setRate() allows is read from more slowly; a peer never gets more memory than one long message
-/// that was asked for, and kMaxUnsent.
+/// Threads: all calls and callbacks are on the one thread of the connection's executor.
+///
+/// The connection releases its callbacks when it has closed, so that a callback may own the owner of the connection. If
+/// the other side sends more messages than setRate() allows, the connection reads more slowly. For one peer it
+/// allocates at most one long message that was expected, and kMaxUnsent bytes.
 class Connection : public std::enable_shared_from_this<Connection> {
 public:
     using Socket = boost::asio::ip::tcp::socket;
-    using Fault = std::optional<RefusalCode>;  // what the other side did wrong, if it did
+    using Fault = std::optional<RefusalCode>;  // fault of the other side; nullopt if it made none
     struct Handlers {
         std::function<void(Message&&)> message;
-        /// Once: why the connection ended, in words.
+        /// Called once when the connection has ended, with the reason.
         std::function<void(const std::string& why, Fault fault)> closed;
-        bool server = false;  // of two ends the one that answers garbage with a Refusal, before closing
-        /// Messages may be sent from now on; before start() returns where there is no TLS to agree on.
+        bool server = false;  // true: this end answers garbage with a Refusal before it closes
+        /// Called when messages may be sent. Without TLS, start() calls it before it returns.
         std::function<void()> ready = {};
     };
 
-    /// `tls`, when given, carries everything.
+    /// If `tls` is not null, it encrypts all bytes.
     explicit Connection(Socket socket, std::unique_ptr<TlsSession> tls = nullptr);
     void start(Handlers handlers);
 
     void send(const Message& message) { sendBytes(encode(message)); }
-    /// Closes the connection when the other side leaves too much unread: more than setMaxUnsent() in ordinary messages,
-    /// or a second long one.
+    /// Sends `bytes`, an encoded message. Closes the connection if the other side leaves too much unread: more than
+    /// setMaxUnsent() bytes in ordinary messages, or a second long message.
     void sendBytes(base::Bytes bytes);
     void expectState(bool expected) { reader_.expectState(expected); }
     void expectLoads(bool expected) { reader_.expectLoads(expected); }
-    /// Ordinary messages may be so long from now on [byte].
+    /// Sets the largest length of an ordinary message from now on [byte].
     void limit(std::size_t most) { reader_.limit(most); }
-    /// [byte]; kMaxUnsent at first.
+    /// Sets how many bytes of ordinary messages may wait to be sent; kMaxUnsent at first.
     void setMaxUnsent(std::size_t most) { outbox_.setMost(most); }
-    /// Messages a second that are read at most, and as many at once; kMaxRate at first.
+    /// Sets how many messages are read per second at most, and in one burst; kMaxRate at first.
     void setRate(double perSecond) { rate_.setRate(perSecond); }
-    /// [byte] that may come in all, without bound at first: who sends more is cut off.
+    /// Sets the largest number of bytes that may arrive in total; unlimited at first. A peer that sends more is
+    /// disconnected.
     void setMaxIn(std::uint64_t most) { maxIn_ = most; }
-    /// How long finish() waits for the other side at most; half a second at first.
+    /// Sets how long finish() waits for the other side at most; half a second at first.
     void setLinger(std::chrono::milliseconds most) { lingers_ = most; }
-    /// Reading stops after the message in hand, and goes on with resume(): TCP then holds the other side back.
+    /// Stops reading after the current message, until resume(). TCP then holds the other side back.
     void pause() { paused_ = true; }
     void resume();
-    /// Closes at once; `closed` is called with `why`, unless it was before.
+    /// Closes at once. Calls `closed` with `why`, unless it was called before.
     void close(const std::string& why, Fault fault = std::nullopt);
-    /// Closes when everything sent has arrived, or after setLinger(); `closed` is not called any more.
+    /// Closes when everything that was sent has arrived, or after the time of setLinger(). Does not call `closed`.
     void finish();
 
     [[nodiscard]] std::uint64_t bytesIn() const { return bytesIn_; }
     [[nodiscard]] std::uint64_t bytesOut() const { return bytesOut_; }
-    [[nodiscard]] std::uint64_t throttled() const { return throttles_; }  // how often it was read from more slowly
-    [[nodiscard]] std::string peer() const { return peer_; }              // "127.0.0.1:40312"
+    [[nodiscard]] std::uint64_t throttled() const { return throttles_; }  // times at which reading was slowed down
+    [[nodiscard]] std::string peer() const { return peer_; }              // such as "127.0.0.1:40312"
     [[nodiscard]] boost::asio::ip::address address() const { return address_; }
     [[nodiscard]] bool overTls() const { return tls_ != nullptr; }
-    /// TlsSession::binding() as it was when `ready` was called, or nothing.
+    /// Returns TlsSession::binding() at the call of `ready`; empty without TLS.
     [[nodiscard]] const base::Bytes& binding() const { return binding_; }
 
-    static constexpr std::size_t kMaxUnsent = 1024 * 1024;  // [byte], of ordinary messages
-    static constexpr double kMaxRate = 50'000;              // [1/s]; a device that streams positions makes 16000
+    static constexpr std::size_t kMaxUnsent = 1024 * 1024;  // [byte] of ordinary messages
+    static constexpr double kMaxRate = 50'000;  // [message/s]; a device that streams positions sends up to 16000
     static constexpr std::chrono::milliseconds kLinger{500};
 
 private:
@@ -96,7 +98,7 @@ private:
     Socket socket_;
     std::unique_ptr<TlsSession> tls_;
     base::Bytes binding_;
-    bool told_ = false;  // that TLS is established
+    bool told_ = false;  // whether `ready` was called after the TLS handshake
     boost::asio::steady_timer linger_, throttle_;
     Handlers handlers_;
     MessageReader reader_;
@@ -111,7 +113,7 @@ private:
     bool paused_ = false, throttling_ = false, reading_ = false, finishing_ = false, open_ = true;
 };
 
-/// "127.0.0.1:7750", or "[::1]:7750".
+/// Returns a text such as "127.0.0.1:7750" or "[::1]:7750".
 [[nodiscard]] std::string textOf(const boost::asio::ip::tcp::endpoint& endpoint);
 
 }  // namespace haptic_bridge

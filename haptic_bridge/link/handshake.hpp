@@ -10,35 +10,39 @@
 
 namespace haptic_bridge {
 
-/// How this end of the link proves who it is, and whether it speaks TLS; the default does neither. Copies share.
+/// Secrets and TLS of one end of the link. The default has neither. Copies share the same TLS context.
 struct LinkSecurity {
-    const Security* functions = nullptr;  // there is a secret
+    const Security* functions = nullptr;  // null: this end has no secret
     Secrets secrets;
     std::shared_ptr<const TlsContext> tls;  // null: plain TCP
     [[nodiscard]] bool proves() const { return functions != nullptr; }
 };
 
-/// The proof that one side gives the other: a MAC over all that both have said, under the role's secret. `binding` is
-/// TlsSession::binding(), empty over plain TCP.
+/// Everything that both sides have sent in the handshake. mac() signs it with the role's secret, as the proof of one
+/// side. `binding` is TlsSession::binding(); it is empty over plain TCP.
 struct Transcript {
     Hello hello;
     Challenge challenge;
     base::Bytes binding;
     enum class Side : std::uint8_t { master, server };
+    /// Returns the MAC by which `side` proves that it knows `secret`.
     [[nodiscard]] MacBytes mac(const Security& functions, const std::string& secret, Side side) const;
 };
 
-/// The master's half of the greeting, or a watcher's. Knows no socket.
+/// The master's half of the handshake, or a watcher's. It does not use sockets.
 class MasterHandshake {
 public:
-    /// `security` outlives this.
+    /// `security` must outlive this object.
     MasterHandshake(const LinkSecurity& security, const Identity& identity, Role role, base::Bytes binding);
 
     [[nodiscard]] const Hello& hello() const { return transcript_.hello; }
-    /// Nothing when this challenge must not be answered: because().
+    /// Returns the proof that answers `challenge`. Returns nullopt if it must not be answered; because() gives the
+    /// reason.
     [[nodiscard]] std::optional<Proof> answer(const Challenge& challenge);
-    /// Whether the server has shown what it must; if not: because().
+    /// Returns whether the server has proved the secret and granted the role. If it returns false, because() gives the
+    /// reason.
     [[nodiscard]] bool accepts(const Welcome& welcome);
+    /// Returns whether a server without sand has proved the secret. If it returns false, because() gives the reason.
     [[nodiscard]] bool accepts(const PositionGreeting& greeting);
     [[nodiscard]] const Refusal& because() const { return because_; }
 
@@ -52,17 +56,20 @@ private:
     Refusal because_;
 };
 
-/// The server's half. Knows no socket.
+/// The server's half of the handshake. It does not use sockets.
 class ServerHandshake {
 public:
     explicit ServerHandshake(const LinkSecurity& security) : security_(security) {}
 
-    /// Whether somebody with this greeting may go on; identities were compared before.
+    /// Returns the reason to refuse a peer with this greeting; nullopt if it may continue. The caller has compared the
+    /// identities before.
     [[nodiscard]] std::optional<Refusal> refusalFor(const Hello& hello, bool overTls) const;
-    /// What the guest must answer before it is welcome; nothing when no secret is asked for.
+    /// Returns the challenge that an unauthenticated connection must answer before the Welcome. Returns nullopt if this
+    /// server has no secret.
     [[nodiscard]] std::optional<Challenge> challenge(const Hello& hello, const Identity& server, base::Bytes binding);
+    /// Returns whether `proof` answers the challenge with the secret of the role.
     [[nodiscard]] bool accepts(const Proof& proof) const;
-    /// For the Welcome: zeros without a secret.
+    /// Returns the MAC of the Welcome; zeros without a secret.
     [[nodiscard]] MacBytes mac() const;
 
 private:

@@ -13,25 +13,28 @@ class CommandLine;
 
 namespace haptic_bridge {
 
-/// What a user says about who may come in, in every program of the link.
+/// Options for secrets and TLS, the same in every program of the link.
 struct LinkOptions {
     std::string secretFile;
     bool tls = false;
-    std::string certificate, key;  // of a server; empty: made at every start
+    std::string certificate, key;  // PEM files of a server; empty: it makes a certificate at every start
 
-    /// Adds the options of either end; a server has two more.
+    /// Adds these options to `line`. A server has two options more: certificate and key.
     void addTo(host::CommandLine& line, bool server);
 
-    /// Loads the module where it is needed. Throws base::InputError.
+    /// Returns the security of a server. Loads the security module if it is needed. Throws base::InputError.
     [[nodiscard]] LinkSecurity forServer() const;
+    /// Returns the security of a client with `role`. Loads the security module if it is needed. Throws
+    /// base::InputError.
     [[nodiscard]] LinkSecurity forClient(Role role) const;
 };
 
-/// Throws base::InputError that begins with `option` for the address of another machine and no secret. Names are
-/// looked up later, by whoever connects.
+/// Throws base::InputError that begins with `option` if `address` is an IP address of another machine and there is no
+/// secret. Host names are not resolved here; the connection checks their addresses later.
 void requireSecret(const Address& address, const LinkSecurity& security, const std::string& option);
 
-/// Addresses of this machine alone, IPv4 ones written as IPv6 too.
+/// Returns whether `address` is a loopback address, which only this machine can reach. An IPv4 address may also be
+/// written as IPv6.
 [[nodiscard]] bool isLoopback(const boost::asio::ip::address& address);
 
 }  // namespace haptic_bridge

@@ -10,20 +10,20 @@
 
 namespace haptic_bridge {
 
-/// Cuts a stream of bytes into messages; keeps half a message until the rest arrives.
+/// Cuts a stream of bytes into messages. Keeps a partial message until the rest of it arrives.
 class MessageReader {
 public:
     void feed(std::span<const std::uint8_t> bytes);
-    /// The next whole message, or nothing yet. Throws base::FormatError for a stream that is no such stream (a length
-    /// beyond the bounds, garbage), after which the link must be closed.
+    /// Returns the next whole message; nullopt if it has not arrived yet. Throws base::FormatError if a length is out
+    /// of bounds or the bytes are not a message. The link must then be closed.
     [[nodiscard]] std::optional<Message> next();
-    /// A State may come next, up to kMaxState long.
+    /// Sets whether a State of up to kMaxState bytes may come next.
     void expectState(bool expected) { stateExpected_ = expected; }
-    /// Sand to be loaded may come, in messages up to kMaxState long.
+    /// Sets whether messages with loaded sand, of up to kMaxState bytes, may come.
     void expectLoads(bool expected) { loadsExpected_ = expected; }
-    /// Ordinary messages may be this long from now on [byte]; at first kMaxMessage.
+    /// Sets the largest length of an ordinary message from now on [byte]; kMaxMessage at first.
     void limit(std::size_t most) { most_ = most; }
-    /// Whether the stream stands in the middle of a message.
+    /// Returns whether the stream ends in the middle of a message.
     [[nodiscard]] bool midMessage() const { return begin_ < buffer_.size(); }
 
 private:

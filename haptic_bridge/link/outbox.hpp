@@ -8,15 +8,15 @@
 
 namespace haptic_bridge {
 
-/// Queue of the bytes to be sent over one connection, oldest first. Knows when they are too many.
+/// Queue of the bytes that wait to be sent over one connection, oldest first. Its size is limited.
 class Outbox {
 public:
     explicit Outbox(std::size_t most) : most_(most) {}
 
-    /// [byte], of ordinary messages.
+    /// Sets how many bytes of ordinary messages may wait.
     void setMost(std::size_t most) { most_ = most; }
-    /// Returns false, and takes nothing in, when too much would wait: too many bytes in ordinary messages, or a second
-    /// long one.
+    /// Adds `bytes`. Returns false, and leaves the queue unchanged, if too much would wait: more ordinary bytes than
+    /// setMost() allows, or a second long message.
     [[nodiscard]] bool push(base::Bytes bytes, bool isLong) {
         if (isLong ? long_ > 0 : bytes_ + bytes.size() > most_) {
             return false;
@@ -29,7 +29,7 @@ public:
     [[nodiscard]] bool empty() const { return waiting_.empty(); }
     [[nodiscard]] std::size_t size() const { return waiting_.size(); }
     [[nodiscard]] const base::Bytes& front() const { return waiting_.front().bytes; }
-    /// The oldest has been sent.
+    /// Removes the oldest entry, because it has been sent.
     void pop() {
         const Entry& sent = waiting_.front();
         long_ -= sent.isLong ? 1 : 0;

@@ -6,13 +6,15 @@
 
 namespace haptic_bridge {
 
-/// How many messages may come: `perSecond` of them, and as many at once. Times are [ns] of one monotonic clock.
+/// Limit of the rate of messages: `perSecond` messages per second, and as many in one burst. Times are [ns] of one
+/// monotonic clock.
 class RateLimit {
 public:
     RateLimit(double perSecond, std::int64_t nowNs) : rate_(perSecond), allowed_(perSecond), countedNs_(nowNs) {}
 
     void setRate(double perSecond) { rate_ = allowed_ = perSecond; }
-    /// Whether one more may come. `now` is called only when none is left, because a clock takes longer than a message.
+    /// Returns whether one more message may come. Calls `now` only if none is left, because reading the clock takes
+    /// longer than a message.
     template <class Now>
     [[nodiscard]] bool allows(const Now& now) {
         if (allowed_ < 1) {
@@ -22,7 +24,7 @@ public:
         }
         return allowed_ >= 1;
     }
-    /// Some have come, or what costs as much.
+    /// Counts `messages` messages, or an equal cost.
     void use(double messages) { allowed_ -= messages; }
 
 private:

@@ -9,7 +9,7 @@
 
 namespace haptic_bridge {
 
-/// What somebody knows who may connect, by role.
+/// Secrets by role. A peer must know the secret of its role.
 struct Secrets {
     std::optional<std::string> move, watch;
     [[nodiscard]] const std::optional<std::string>& of(Role role) const { return role == Role::move ? move : watch; }
@@ -20,12 +20,13 @@ inline constexpr std::size_t kMinSecret = 16;        // [byte]
 inline constexpr std::size_t kMaxSecret = 256;       // [byte]
 inline constexpr std::size_t kMaxSecretFile = 4096;  // [byte]
 
-/// Reads lines "ROLE SECRET", ROLE move or watch, each once at most; empty lines and those that begin with # say
-/// nothing. The secret's characters, as they stand, are the key. Throws base::InputError with `file` and the line, and
-/// never with a secret in it.
+/// Reads lines of the form "ROLE SECRET". ROLE is move or watch, and each may occur once. Empty lines and lines that
+/// begin with # are ignored. The characters of the secret are the key, without decoding. Throws base::InputError with
+/// `file` and the line; its text never contains a secret.
 [[nodiscard]] Secrets parseSecrets(std::string_view text, const std::string& file);
 
-/// Throws base::InputError also for what is no regular file, or may be read by anybody but its owner.
+/// Reads the secrets in `file`. Throws base::InputError also if `file` is not a regular file, or if other users than
+/// its owner may read or change it.
 [[nodiscard]] Secrets readSecrets(const std::string& file);
 
 }  // namespace haptic_bridge

@@ -9,15 +9,15 @@
 
 #include "base/byte_stream.hpp"
 
-/// What OpenSSL does for the link, as sandwall-security.so hands it out: a program that uses neither a secret nor TLS
-/// maps no OpenSSL.
+/// Functions of OpenSSL that the link uses. The module sandwall-security.so provides them, so that a program without a
+/// secret and without TLS never loads OpenSSL.
 namespace haptic_bridge {
 
 using ByteSpan = std::span<const std::uint8_t>;
 
-/// One end of one TLS 1.3 connection, without a socket: bytes in, bytes out. One thread at a time.
+/// One end of a TLS 1.3 connection, without a socket: bytes in, bytes out. Used by one thread at a time.
 ///
-/// The other end's certificate is not judged: whoever is there must prove a secret over binding().
+/// The other end's certificate is not checked, because the other end must prove a secret over binding().
 class TlsSession {
 public:
     virtual ~TlsSession() = default;
@@ -25,20 +25,23 @@ public:
     TlsSession(const TlsSession&) = delete;
     TlsSession& operator=(const TlsSession&) = delete;
 
-    /// Takes what came from the other end; appends what it says to `plain`, and what must be sent to `reply`. Throws
-    /// std::runtime_error that says why this is no such connection, after which it is of no use; `reply` then holds the
-    /// alert for the other end.
+    /// Takes `bytes` from the other end. Appends the decrypted bytes to `plain`, and the bytes that must be sent to
+    /// `reply`. Throws std::runtime_error with the reason if the TLS connection fails. The session is then of no
+    /// further use, and `reply` holds the alert for the other end.
     virtual void receive(ByteSpan bytes, base::Bytes& plain, base::Bytes& reply) = 0;
-    /// Of a client: its first bytes.
+    /// Appends the first bytes of a client to `reply`.
     virtual void begin(base::Bytes& reply) = 0;
-    /// Once established: appends what carries `plain`. Throws std::runtime_error when that cannot be, as before.
+    /// Encrypts `plain` and appends the result to `sealed`. Only after the handshake. Throws std::runtime_error if the
+    /// connection cannot send.
     virtual void seal(ByteSpan plain, base::Bytes& sealed) = 0;
+    /// Returns whether the TLS handshake is complete.
     [[nodiscard]] virtual bool established() const = 0;
-    /// Once established: the same 32 bytes at both ends of this connection and nowhere else (tls-exporter, RFC 9266).
+    /// Returns 32 bytes that only the two ends of this connection share (tls-exporter, RFC 9266). Only after the
+    /// handshake.
     [[nodiscard]] virtual base::Bytes binding() const = 0;
 };
 
-/// Makes the ends of connections; TLS 1.3 and nothing older. Any thread.
+/// Factory of TLS sessions. It accepts only TLS 1.3. Any thread may use it.
 class TlsContext {
 public:
     virtual ~TlsContext() = default;
@@ -48,7 +51,7 @@ public:
     [[nodiscard]] virtual std::unique_ptr<TlsSession> open() const = 0;
 };
 
-/// The functions of the module. Any thread.
+/// Functions of the security module. Any thread may call them.
 class Security {
 public:
     virtual ~Security() = default;
@@ -56,23 +59,24 @@ public:
     Security(const Security&) = delete;
     Security& operator=(const Security&) = delete;
 
-    /// Throws std::runtime_error when the system has no random bytes.
+    /// Fills `bytes` with random bytes. Throws std::runtime_error if the system has none.
     virtual void random(std::span<std::uint8_t> bytes) const = 0;
     [[nodiscard]] virtual std::array<std::uint8_t, 32> hmacSha256(ByteSpan key, ByteSpan message) const = 0;
-    /// Takes the same time wherever they differ.
+    /// Compares two byte strings. The time does not depend on where they differ.
     [[nodiscard]] virtual bool equal(ByteSpan one, ByteSpan other) const = 0;
-    /// Throws std::runtime_error with words when the PEM files cannot be used; both empty: a certificate made now.
+    /// Returns the context of a server with these PEM files. If both names are empty, makes a certificate now. Throws
+    /// std::runtime_error with a reason if the files cannot be used.
     [[nodiscard]] virtual std::unique_ptr<TlsContext> tlsServer(const std::string& certificate,
                                                                 const std::string& key) const = 0;
     [[nodiscard]] virtual std::unique_ptr<TlsContext> tlsClient() const = 0;
 };
 
-/// What the module defines, with C linkage: the one object, never deleted.
+/// Name of the function that the module defines, with C linkage. It returns one object that is never deleted.
 inline constexpr const char* kSecuritySymbol = "sandwallSecurity1";
 using GetSecurity = const Security*();
 
-/// Loads sandwall-security.so from beside this program; the same object at every call. Throws base::InputError that
-/// begins with `option` when it is missing.
+/// Loads sandwall-security.so from the folder of this program. Returns the same object at every call. Throws
+/// base::InputError that begins with `option` if the module is missing.
 [[nodiscard]] const Security& loadSecurity(const std::string& option);
 
 }  // namespace haptic_bridge

@@ -9,24 +9,27 @@
 
 namespace haptic_bridge {
 
-/// The last steps of the sand, for a server that comes back and lacks only those. Bounded; a value.
+/// The latest steps of the sand. A server that reconnects and lacks only these gets them instead of the whole sand.
+/// Holds at most kSteps steps; can be copied.
 class StepRing {
 public:
-    static constexpr std::size_t kSteps = 240;  // four seconds: applied more quickly than a large sand is sent
+    // Four seconds at 60 steps per second. Applying them is faster than sending a large sand.
+    static constexpr std::size_t kSteps = 240;
 
-    /// The sand has this hash after this step; steps before it may or may not have been told.
+    /// Records that the sand has `stateHash` after step `stepNumber`. Earlier steps need not be known.
     void reached(std::uint64_t stepNumber, std::uint64_t stateHash);
-    /// The next step; one that does not follow the last begins anew, and so does one with sand that is loaded.
+    /// Adds the next step. If it does not follow the last one, or if it loads sand, the ring begins again after it.
     void add(const sand::Step& step);
-    /// The steps from there to `stepNumber`, if that hash was reached there and all are known.
+    /// Returns the steps after `there` up to `stepNumber`. Returns nullopt if the sand of `there` is unknown or
+    /// differs, or if a step is missing.
     [[nodiscard]] std::optional<std::vector<sand::Step>> since(const NeedState& there, std::uint64_t stepNumber) const;
 
 private:
     struct Entry {
         sand::Step step;
-        std::optional<std::uint64_t> hash;  // after it
+        std::optional<std::uint64_t> hash;  // of the sand after the step
     };
-    std::uint64_t begin_ = 0;  // number of the step before the first
+    std::uint64_t begin_ = 0;  // number of the step before the first entry
     std::optional<std::uint64_t> beginHash_;
     std::deque<Entry> entries_;
 };
