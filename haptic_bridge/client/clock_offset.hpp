@@ -7,8 +7,9 @@
 
 namespace haptic_bridge {
 
-/// Estimates how far another host's clock is ahead: of the latest exchanges, the one with the shortest round trip is
-/// believed, because its two ways can differ least. The error is at most half that round trip.
+/// Estimate of how far another host's clock is ahead of this one. It takes the exchange with the shortest round trip
+/// among the latest 64, because the two directions of that exchange can differ least. The error is at most half of that
+/// round trip.
 class ClockOffset {
 public:
     void add(std::int64_t sentNs, std::int64_t otherNs, std::int64_t receivedNs) {
@@ -20,7 +21,7 @@ public:
             best_ = exchanges_[i].roundTripNs < best_.roundTripNs ? exchanges_[i] : best_;
         }
     }
-    [[nodiscard]] std::int64_t offsetNs() const { return best_.offsetNs; }  // other − own; 0 before the first exchange
+    [[nodiscard]] std::int64_t offsetNs() const { return best_.offsetNs; }  // [ns], other − own; 0 at first
     [[nodiscard]] std::int64_t roundTripNs() const { return best_.roundTripNs; }
 
 private:

@@ -19,7 +19,7 @@
 
 namespace haptic_bridge {
 
-/// Implementation of Client: a network thread runs the whole conversation, and puts what it learns on a shelf for the
+/// Implementation of Client. Its network thread runs the whole conversation, and puts the results on the shelf for the
 /// callers.
 class Client::Session {
 public:
@@ -28,7 +28,7 @@ public:
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
-    // Any thread:
+    // These functions may be called by any thread.
     void grant(Start start, base::Bytes state, StepRing recent);
     std::vector<TimedStep> drain(std::size_t most);
     void shown(const Shown& frame);
@@ -60,11 +60,11 @@ private:
     [[nodiscard]] bool up() const { return isUp(shelf.link()); }
     [[nodiscard]] static bool isUp(Link link) { return link >= Link::offered && link <= Link::streaming; }
     void resumeReading();
-    [[nodiscard]] bool silent() const;  // on purpose
+    [[nodiscard]] bool silent() const;  // returns whether a drill keeps the client silent
 
     void receive(Message&& message);
     void outOfTurn() { connection_->close("it sent a message out of turn", RefusalCode::garbage); }
-    // Messages of a server, by the state of the link when they came.
+    // Handlers of the server's messages. `link` is the state of the link when the message came.
     void take(Link link, const Refusal& refusal);
     void take(Link link, const Bye& bye);
     void take(Link link, const Challenge& challenge);
@@ -91,13 +91,14 @@ private:
     boost::asio::io_context io_;
     boost::asio::ip::tcp::resolver resolver_{io_};
     Timer retryTimer_{io_}, pingTimer_{io_}, watchTimer_{io_}, drillTimer_{io_};
-    Timer goodbyeTimer_{io_};  // nothing else's: a handler that is due already must not put off the end
+    // A timer of its own, because a handler of another timer that is already due must not delay the end.
+    Timer goodbyeTimer_{io_};
     std::shared_ptr<Connection> connection_;
     std::string peer_;
     Grant grant_;
     ClockOffset clock_;
     Milliseconds backOff_{};
-    std::int64_t heardNs_ = 0;  // by now_
+    std::int64_t heardNs_ = 0;  // [ns], on the clock now_
     std::chrono::steady_clock::time_point silentUntil_;
     int pings_ = 0;
     bool everWelcomed_ = false, stopping_ = false;

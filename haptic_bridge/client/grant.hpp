@@ -10,8 +10,8 @@
 
 namespace haptic_bridge {
 
-/// The numbering as a master has handed it over: from where on, with what sand, and which steps have come since. A
-/// value; used by one thread.
+/// The master's permission for a server to number the steps: the first step, the sand before it, and the steps that
+/// have come since. Used by one thread; can be copied.
 class Grant {
 public:
     Grant() = default;
@@ -20,22 +20,23 @@ public:
 
     [[nodiscard]] const Start& start() const { return start_; }
     [[nodiscard]] std::uint64_t lastStep() const { return lastStep_; }
-    /// The server asks for sand, at most twice.
+    /// Returns whether the server may ask for sand. It may ask twice.
     [[nodiscard]] bool mayHandOver() const { return handOvers_ < 2; }
-    /// Returns the messages that bring the server's sand to the start: CatchUps with the steps that it lacks. Returns
-    /// the State if these steps are not known, or if the server asks again.
+    /// Returns the messages that bring the server's sand to the start: CatchUps with the steps that it lacks. If these
+    /// steps are not known, or if the server asks again, returns the State.
     [[nodiscard]] std::vector<Message> handOver(const NeedState& need);
-    /// The server has begun: the sand for it is released.
+    /// Releases the sand for the server, because the server has begun.
     void begun() {
         state_ = {};
         recent_ = {};
     }
 
     enum class Arrival { next, stale, foreign, afterGap };
-    /// Judges a step of the server by epoch and number. The next one counts as the last from now on.
+    /// Classifies a step of the server by epoch and number. If it is the next step, it counts as the last one from now
+    /// on.
     [[nodiscard]] Arrival arrived(const sand::Step& step);
-    /// Limits `frame` to what the server may be told: a frame that was drawn before the first step says nothing about
-    /// the steps.
+    /// Limits the step number of `frame` to the steps of this grant. A frame that was drawn before the first step
+    /// therefore reports no step of it.
     [[nodiscard]] Shown bounded(const Shown& frame) const;
 
 private:

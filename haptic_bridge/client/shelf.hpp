@@ -12,29 +12,33 @@
 
 namespace haptic_bridge {
 
-/// Hands over what the network thread receives to the callers of Client. Any thread may call every member.
+/// Place where the network thread leaves what it has received for the callers of Client. Any thread may call every
+/// member.
 ///
-/// `full` is true from when too much lies here until somebody drains: the network thread then reads nothing more.
+/// The shelf is full from the moment when too many steps or positions wait until a caller drains them. Meanwhile the
+/// network thread does not read.
 class Shelf {
 public:
+    /// Sets the state of the link and its message. A change of either counts as a new message to print.
     void tell(Link link, const std::string& message);
     [[nodiscard]] LinkStatus status() const;
     [[nodiscard]] Link link() const { return status().link; }
-    /// From offered to granting, at once: a caller that polls again must not see an offer. Drops the steps that were
-    /// not drained. Returns whether the link was offered; otherwise changes nothing.
+    /// Changes the link from offered to granting at once, so that a caller that polls again does not see an offer.
+    /// Drops the steps that were not drained. Returns false, and leaves the link unchanged, if the link was not
+    /// offered.
     [[nodiscard]] bool beginGranting();
 
-    /// Returns whether the shelf is full now.
+    /// Adds a step. Returns whether the shelf is full now.
     [[nodiscard]] bool add(TimedStep step);
-    /// A timing test that came after step `after`.
+    /// Adds timing test `id`, which came after step `after`.
     void addTest(std::uint32_t id, std::uint64_t after);
     void dropTests();
-    /// At most `most` steps, in order. Sets `resume` when the network thread is to read on.
+    /// Returns at most `most` steps, in order. Sets `resume` to true if the network thread must continue to read.
     [[nodiscard]] std::vector<TimedStep> drain(std::size_t most, bool& resume);
-    /// Tests that came before the steps drained last, once.
+    /// Returns each test that came before the steps drained last, once.
     [[nodiscard]] std::vector<std::uint32_t> takeTestsInFrame();
 
-    /// Returns whether the shelf is full since this position.
+    /// Adds a position. Returns true if the shelf has become full with it.
     [[nodiscard]] bool add(TimedPosition position);
     void dropPositions();
     [[nodiscard]] std::vector<TimedPosition> drainPositions(bool& resume);
@@ -64,10 +68,10 @@ private:
     std::deque<TimedStep> steps_;
     struct Test {
         std::uint32_t id = 0;
-        std::uint64_t after = 0;  // number of the step before it
+        std::uint64_t after = 0;  // number of the step before the test
     };
-    std::deque<Test> tests_;                   // that wait for a frame, as steps do
-    std::vector<std::uint32_t> testsInFrame_;  // to be echoed after the next swap
+    std::deque<Test> tests_;                   // tests that wait for a frame, as steps do
+    std::vector<std::uint32_t> testsInFrame_;  // ids of tests to be answered after the next swap
     std::vector<base::Bytes> ticks_;
     std::vector<TimedPosition> positions_;
     std::uint64_t floods_ = 0;
