@@ -7,8 +7,8 @@
 
 namespace haptic_bridge {
 
-/// Fills in what a hand at `around` feels of the sand after the terrain's last step, but for the time. The thread that
-/// makes steps and a replay both call this.
+/// Fills `surface` with the sand that a hand at `around` feels after the last step of `terrain`. Does not set its time.
+/// Both the thread that makes steps and a replay call this function.
 inline void takeSurface(const sand::Replica& terrain, const sand::ProbePoint& around, FeltSand& surface) {
     surface.patch.take(terrain, around);
     surface.around = {around.x, around.y, 0};

@@ -9,10 +9,10 @@
 
 namespace haptic_bridge {
 
-/// The force thread: ticks the hand a thousand times a second on the host's clock, and waits for nobody.
+/// The force thread. It runs a thousand ticks per second on the host's clock, and never waits for another thread.
 ///
-/// It sleeps until absolute deadlines, before other threads where the host allows it. A deadline that is missed by a
-/// whole tick or more is skipped: a burst of late ticks would feel the same place again and again.
+/// It sleeps until absolute deadlines, with real-time priority if the host allows it. If the loop is late by one tick
+/// or more, it skips the missed ticks. A burst of late ticks would feel the same place again and again.
 class ForceLoop {
 public:
     ForceLoop(HapticTick& hand, HandChannel& channel);
@@ -20,13 +20,13 @@ public:
     ForceLoop(const ForceLoop&) = delete;
     ForceLoop& operator=(const ForceLoop&) = delete;
 
-    // Any thread:
+    // These functions may be called by any thread.
     [[nodiscard]] const base::LiveHistogram& period() const { return period_; }
-    [[nodiscard]] const base::LiveHistogram& computing() const { return computing_; }               // of a whole tick
+    [[nodiscard]] const base::LiveHistogram& computing() const { return computing_; }  // cost of a whole tick
     [[nodiscard]] std::uint64_t missed() const { return missed_.load(std::memory_order_relaxed); }  // [tick]
-    /// Why the loop has no real-time priority; empty where it has.
+    /// Returns the reason why the loop has no real-time priority; empty if it has.
     [[nodiscard]] const std::string& priorityRefused() const { return priorityRefused_; }
-    /// What the loop did so far, in one line.
+    /// Returns one line for the user: ticks, periods, computing times and missed deadlines so far.
     [[nodiscard]] std::string summary() const;
 
 private:

@@ -11,16 +11,16 @@
 
 namespace haptic_bridge {
 
-/// What the force thread shares with the sand's, without locks.
+/// Data that the force thread and the sand thread share without locks.
 struct HandChannel {
-    boost::lockfree::spsc_queue<HandSample, boost::lockfree::capacity<8192>> samples;  // force thread to sand
-    std::atomic<std::uint64_t> overflow{0};  // samples that found the queue full
-    base::TripleBuffer<FeltSand> surface;    // sand to force thread
-    std::atomic<bool> moving{false};         // the hand's recording runs; it rests while nobody is linked
-    std::atomic<std::uint32_t> sitting{0};   // counts the links: the hand begins anew with each
-    TickRecorder* recorder = nullptr;        // of every tick, when somebody wants them
+    boost::lockfree::spsc_queue<HandSample, boost::lockfree::capacity<8192>> samples;  // force thread to sand thread
+    std::atomic<std::uint64_t> overflow{0};  // samples that were lost because the queue was full
+    base::TripleBuffer<FeltSand> surface;    // from sand thread to force thread
+    std::atomic<bool> moving{false};         // a master is linked; without one the hand rests
+    std::atomic<std::uint32_t> sitting{0};   // number of links so far; the hand starts afresh with each
+    TickRecorder* recorder = nullptr;        // recorder of all ticks; null if they are not recorded
 
-    // For the thread that ticks.
+    // For the thread that runs the ticks.
     void beginSitting(HapticTick& hand) const {
         hand.restart();
         if (recorder != nullptr) {

@@ -6,9 +6,10 @@
 
 namespace haptic_bridge {
 
-/// Link between the hand and the thread that makes steps: gives samples to it, and takes the sand to feel from it.
+/// Connection between the hand and the thread that makes steps. It passes the hand's samples to that thread, and the
+/// sand back to the hand.
 ///
-/// Used by that one thread.
+/// Used only by the thread that makes steps.
 class HandFeed {
 public:
     HandFeed() = default;
@@ -16,23 +17,23 @@ public:
     HandFeed(const HandFeed&) = delete;
     HandFeed& operator=(const HandFeed&) = delete;
 
-    /// A link begins, on this sand: the hand forgets the link before.
+    /// Begins a link on this sand. The hand forgets the previous link.
     virtual void begin(const sand::Replica& terrain) = 0;
-    /// The link ends: from now on the hand rests.
+    /// Ends the link. The hand rests from now on.
     virtual void end() = 0;
-    /// Adds the samples that have come by themselves to `path`. Without a path they are dropped.
+    /// Adds the samples that have arrived since the last call to `path`. If `path` is null, they are dropped.
     virtual void collect(PathBuilder* path) = 0;
-    /// Adds the samples of the next step where they come only when they are asked for.
+    /// Adds the samples of the next step, if the hand is ticked only on request. Otherwise does nothing.
     virtual void tickForStep(PathBuilder& path) = 0;
-    /// The hand feels this sand from now on.
+    /// Makes the hand feel this sand from now on.
     virtual void publish(const sand::Replica& terrain) = 0;
-    /// Whether times of samples are the host's [ns, monotonic].
+    /// Returns whether the times of the samples are on the host's monotonic clock [ns].
     [[nodiscard]] virtual bool onHostClock() const = 0;
-    /// Samples that were lost on the way.
+    /// Returns the number of samples that were lost because the queue was full.
     [[nodiscard]] virtual std::uint64_t overflow() const { return 0; }
 };
 
-/// In real time: a force thread ticks the hand, and both sides meet in a channel without locks.
+/// Feed in real time: a force thread runs the ticks, and both threads meet in a channel without locks.
 class ChannelFeed : public HandFeed {
 public:
     ChannelFeed(const HapticTick& hand, HandChannel& channel) : hand_(hand), channel_(channel) {}
@@ -49,7 +50,7 @@ private:
     HandChannel& channel_;
 };
 
-/// Under a virtual clock: the thread that makes steps ticks the hand itself, as quickly as it can.
+/// Feed under a virtual clock: the thread that makes steps also runs the ticks of the hand, as fast as it can.
 ///
 /// Step n takes exactly the samples at the virtual milliseconds in ((n−1)/rate, n/rate], counted from the first start.
 class VirtualFeed : public HandFeed {
@@ -65,10 +66,10 @@ public:
 
 private:
     HapticTick& hand_;
-    const HandChannel& channel_;  // of which it needs the recorder alone
+    const HandChannel& channel_;  // only its recorder is used
     std::uint64_t stepsPerSecond_;
     FeltSand surface_;
-    std::uint64_t steps_ = 0;  // made since the first start
+    std::uint64_t steps_ = 0;  // number of steps since the first start
 };
 
 }  // namespace haptic_bridge

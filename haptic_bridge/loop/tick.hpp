@@ -11,25 +11,25 @@ namespace haptic_bridge {
 
 /// Input of a hand at one tick. Together with the steps of a session it determines the forces.
 struct TickInput {
-    double time = 0;  // [s], of the device
+    double time = 0;  // [s], time at which the device was read
     Pose pose;
     ArmReading reading;
-    std::int64_t nowNs = 0;         // of the loop's clock
-    std::int64_t surfaceAgeNs = 0;  // then
+    std::int64_t nowNs = 0;         // [ns], on the loop's clock
+    std::int64_t surfaceAgeNs = 0;  // [ns], age of the sand at this tick
     std::uint64_t surfaceStep = 0;
-    sand::ProbePoint around;  // FeltSand's, at height 0
+    sand::ProbePoint around;  // FeltSand::around, at height 0
 };
 
-/// One tick of the force loop, whole: what --record writes, and what a replay must find again bit for bit.
+/// Complete record of one tick of the force loop. --record writes it, and a replay must reproduce it bit for bit.
 struct Tick {
-    double time = 0;                          // [s] since the session began, the device's
-    sand::force::Vec3 armPlace, armVelocity;  // [m], [m/s], the device's axes; 0 for a recording
+    double time = 0;                          // [s] since the session began, on the device's clock
+    sand::force::Vec3 armPlace, armVelocity;  // [m], [m/s], along the device's axes; 0 for a recording
     sand::force::Vec3 place, velocity;        // [scene unit], [scene unit/s], east, north, up
     sand::force::Vec3 lawful, sent;           // [N], scene axes, before and after the guards
-    std::uint32_t guards = 0;                 // which acted, a bit each (guards.hpp)
-    double surfaceAge = 0;                    // [s]
+    std::uint32_t guards = 0;                 // one bit for each guard that acted (hand/guard_counts.hpp)
+    double surfaceAge = 0;                    // [s], age of the sand
     std::uint64_t surfaceStep = 0;            // number of the step whose sand was felt
-    sand::ProbePoint sample;                  // what goes into the steps
+    sand::ProbePoint sample;                  // probe point that goes into the steps
     bool engaged = false;
 };
 

@@ -9,17 +9,19 @@
 
 namespace haptic_bridge {
 
-/// The CSV file of --record. A disk that refuses is told in one line; the file then ends with a whole row. One thread.
+/// CSV file of --record. If the disk refuses a write, the file prints one line to the log and ends with a whole row.
+/// Used by one thread.
 class TickFile {
 public:
-    /// `log` gets one line for a person. Throws base::InputError when the file cannot be made.
+    /// `log` gets one line for the user. Throws base::InputError if the file cannot be created.
     TickFile(std::string file, std::function<void(const std::string&)> log);
     ~TickFile();
     TickFile(const TickFile&) = delete;
     TickFile& operator=(const TickFile&) = delete;
 
+    /// Adds a row for `tick`. write() writes it.
     void add(const Tick& tick);
-    /// Writes the rows that were added since.
+    /// Writes the rows that were added since the last call.
     void write();
 
 private:
@@ -27,8 +29,8 @@ private:
 
     std::string file_;
     std::function<void(const std::string&)> log_;
-    int descriptor_ = -1;    // < 0: the disk has refused
-    std::int64_t size_ = 0;  // [byte], whole rows on disk
+    int descriptor_ = -1;    // < 0: the disk has refused a write
+    std::int64_t size_ = 0;  // [byte], length of the whole rows on disk
     std::string rows_;
 };
 

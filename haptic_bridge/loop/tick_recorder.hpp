@@ -17,32 +17,33 @@ namespace haptic_bridge {
 
 /// Writes every tick of a hand to a CSV file, and cuts the tick track into pieces for the master's journal.
 ///
-/// Ticks come from the thread that makes them through a queue without locks; a thread of the recorder's own formats and
-/// writes. A disk that refuses is told in one line: what stands in the file then ends with a whole row, and the track
-/// goes on. In real time a tick that finds the queue full is left out and told; the fast pace waits instead.
+/// The thread that runs the ticks puts them into a queue without locks. The recorder's own thread formats and writes
+/// them. If the disk refuses a write, the file ends with a whole row and one line is logged; the tick track continues.
+/// If the queue is full, a tick in real time is left out, and the loss is logged. Under the fast pace the thread waits
+/// instead.
 class TickRecorder {
 public:
     struct Options {
         std::string file;
-        bool wait = false;                            // the fast pace
-        std::function<void(const std::string&)> log;  // one line for a person; on the recorder's thread
+        bool wait = false;                            // true under the fast pace: wait when the queue is full
+        std::function<void(const std::string&)> log;  // gets one line for the user, on the recorder's thread
     };
-    /// Throws base::InputError when the file cannot be made. `hand` outlives this.
+    /// Throws base::InputError if the file cannot be created. `hand` must outlive this object.
     TickRecorder(Options options, const HapticTick& hand);
     ~TickRecorder();
     TickRecorder(const TickRecorder&) = delete;
     TickRecorder& operator=(const TickRecorder&) = delete;
 
-    // The ticking thread:
-    /// A link begins: the hand has forgotten what was before.
+    // For the thread that runs the ticks.
+    /// Begins a new sitting, because a link begins. The hand has forgotten its earlier ticks.
     void begin();
-    /// The hand has ticked.
+    /// Records the last tick of the hand.
     void add();
 
-    // The streaming thread:
-    /// What the master has not got yet.
+    // For the streaming thread.
+    /// Returns the pieces that the master has not received yet.
     [[nodiscard]] std::vector<base::Bytes> takePieces();
-    /// Returns when all that was added before has become pieces, or after 0.3 s; the fast pace waits up to 30 s.
+    /// Waits until everything that was added before is in pieces, but at most 0.3 s; under the fast pace at most 30 s.
     void flush();
 
 private:
@@ -66,7 +67,7 @@ private:
     std::mutex mutex_;
     std::vector<base::Bytes> pieces_;
 
-    // The recorder's thread.
+    // For the recorder's own thread.
     TickFile file_;
     TrackPiece piece_;
     std::uint64_t toldLost_ = 0;

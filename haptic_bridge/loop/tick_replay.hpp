@@ -13,17 +13,18 @@
 
 namespace haptic_bridge {
 
-/// Recomputes the forces of a session from its tick track: the same hand, with a device that plays the track back, over
-/// surfaces that a replica makes by replaying the steps.
+/// Recomputation of the forces of a session from its tick track. It runs the same HapticTick, with a device that plays
+/// the track back. A replica that replays the steps gives the surfaces.
 class TickReplay {
 public:
-    /// `scene` outlives this. Throws base::FormatError for pieces that are none.
+    /// `scene` must outlive this object. Throws base::FormatError if `pieces` are not pieces of a tick track.
     TickReplay(const scene::Scene& scene, const std::vector<base::Bytes>& pieces);
 
     [[nodiscard]] bool empty() const { return pieces_.empty(); }
-    /// Ticks the hand for as long as it felt the sand as it is now. Call it at the start and after every step.
+    /// Runs the ticks that felt the sand as it is now, and appends their rows to `rows`. Call it at the start and after
+    /// every step.
     void feel(const sand::Replica& terrain, std::string& rows);
-    /// Ticks that felt steps which the session did not keep, at its end.
+    /// Returns how many ticks are left at the end, because they felt steps that the session did not keep.
     [[nodiscard]] std::size_t left() const;
 
 private:
@@ -33,10 +34,10 @@ private:
 
     const scene::Scene* scene_;
     std::deque<TrackPiece> pieces_;
-    std::size_t next_ = 0;  // in the first piece
+    std::size_t next_ = 0;  // index of the next tick in the first piece
     std::uint32_t sitting_ = 0;
     std::unique_ptr<HapticTick> hand_;
-    Player* player_ = nullptr;  // the hand's
+    Player* player_ = nullptr;  // device of hand_
     FeltSand surface_;
 };
 

@@ -14,34 +14,36 @@
 
 namespace haptic_bridge {
 
-/// What a device was, from a link's start to its end.
+/// Properties of the device in one sitting, from a link's start to its end.
 struct TrackHeader {
-    bool body = false;  // false: a recording, which has no physics
+    bool body = false;  // false: a device without a body, such as a recording
     ArmPhysics physics;
     double scale = 1;  // Device::scale()
     HandSettings::Datum datum = HandSettings::Datum::surface;
     bool literal = false;  // Guards::Mode::literal
 };
 
-/// A piece of the track, as a message carries it and a journal keeps it: of one sitting, from a link's start to its
-/// end, its header, or ticks that follow each other.
+/// Piece of the tick track, as a message carries it and a journal keeps it. It belongs to one sitting, from a link's
+/// start to its end. It holds the sitting's header or consecutive ticks.
 struct TrackPiece {
     std::uint32_t sitting = 0;
-    bool begins = false;
-    TrackHeader header;            // when it begins
-    std::vector<TickInput> ticks;  // otherwise
+    bool begins = false;  // true: the piece holds the header, false: ticks
+    TrackHeader header;
+    std::vector<TickInput> ticks;
 };
 
 [[nodiscard]] TrackHeader headerOf(const HapticTick& hand);
 [[nodiscard]] base::Bytes encode(const TrackPiece& piece);
-/// Throws base::FormatError for bytes that encode() does not write.
+/// Returns the piece that encode() wrote as `bytes`. Throws base::FormatError for other bytes.
 [[nodiscard]] TrackPiece decodeTrackPiece(std::span<const std::uint8_t> bytes);
 
-/// The most ticks of a piece, so that it is a message of usual length.
+/// Largest number of ticks in a piece, so that it fits an ordinary message.
 inline constexpr std::size_t kMostTicksInPiece = 400;
 
-/// The title line of --record's file, and one row: numbers in the shortest digits that give the same doubles again.
+/// Returns the title line of the file of --record.
 [[nodiscard]] std::string tickTitles();
+/// Appends one row of the file of --record to `text`. Each number has the fewest digits that give the same double
+/// again.
 void appendRow(const Tick& tick, std::string& text);
 
 }  // namespace haptic_bridge

@@ -9,31 +9,33 @@
 
 namespace haptic_bridge {
 
-/// Everything between what the sand answers and what a device gets, in the order of docs/forces.md. Used by one thread;
-/// asks for no memory.
+/// All guards between the law's force and the device, in the order of docs/forces.md. Used by one thread; allocates no
+/// memory.
 class Guards {
 public:
-    /// literal: the law as its paper has it, whatever that does to a device; only what is no number is not sent.
+    /// literal: sends the law of the paper without limits, which may damage a device. A force of 0 is sent only if a
+    /// number is not finite or the device does not answer.
     enum class Mode : std::uint8_t { on, literal };
 
     explicit Guards(const ForceLimits& limits, Mode mode = Mode::on)
         : limits_(limits), mode_(mode), slew_(limits.slew), passivity_(limits) {}
 
-    /// What one tick knows. Places and velocities are metres of the device along the scene's axes.
+    /// Input of the guards at one tick. Places and velocities are in metres of the device along the scene's axes.
     struct Reading {
-        double time = 0;        // [s], of the loop's clock
-        bool present = true;    // the device answers
-        bool engaged = false;   // and may touch the sand
-        double surfaceAge = 0;  // [s]
+        double time = 0;        // [s], time at which the device was read
+        bool present = true;    // whether the device answers
+        bool engaged = false;   // whether the tool may touch the sand
+        double surfaceAge = 0;  // [s], age of the sand
         sand::force::Vec3 place, velocity;
-        sand::force::Response felt;  // of nothing unless engaged
+        sand::force::Response felt;  // zero unless engaged
     };
     struct Forces {
         sand::force::Vec3 lawful, sent;  // [N]
-        std::uint32_t acted = 0;         // a bit for each guard
+        std::uint32_t acted = 0;         // one bit for each guard that acted
     };
+    /// Returns the law's force and the force to be sent at this tick.
     [[nodiscard]] Forces tick(const Reading& reading);
-    /// The next tick is the first again.
+    /// Forgets all ticks, so that the next one counts as the first.
     void forget() { begun_ = false; }
 
     [[nodiscard]] Mode mode() const { return mode_; }
@@ -51,7 +53,7 @@ private:
     PassivityObserver passivity_;
     bool begun_ = false;
     double time_ = 0, rampFrom_ = 0;     // [s]
-    sand::force::Vec3 place_, damping_;  // [m], [N] of the observer's
+    sand::force::Vec3 place_, damping_;  // [m], [N]; the damping is that of the observer
 };
 
 }  // namespace haptic_bridge

@@ -6,12 +6,12 @@
 
 namespace haptic_bridge {
 
-/// A law's answer as a force, without limits: push and friction, at a velocity [m/s].
+/// Returns the force of the law's response without limits: push and friction at `velocity` [m/s].
 [[nodiscard]] sand::force::Vec3 lawfulForce(const sand::force::Response& felt, sand::force::Vec3 velocity,
                                             double scale /* [scene unit/m] */);
 
-/// The same law, made no stiffer and no more viscous than the limits say: constants lowered, so that it keeps its
-/// shape. Sets the bits of the guards that took more than three hundredths away.
+/// Returns the force of the law, at most as stiff and as viscous as `limits` allow. It lowers the law's constants, so
+/// that the law keeps its shape. Sets the bit of each guard that took away more than three hundredths.
 [[nodiscard]] sand::force::Vec3 limitedForce(const sand::force::Response& felt, sand::force::Vec3 velocity,
                                              const ForceLimits& limits, std::uint32_t& acted);
 

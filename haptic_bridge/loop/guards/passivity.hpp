@@ -8,34 +8,36 @@
 
 namespace haptic_bridge {
 
-/// Observes the energy that the forces sent have given the hand, and damps what they should not have (after Hannaford
-/// and Ryu 2002).
+/// Observer of the energy that the sent forces have given the hand. It damps the energy that they should not have given
+/// (after Hannaford and Ryu 2002).
 ///
-/// Sand gives back at most what a spring of its stiffness holds at the present force, so no credit is kept beyond
-/// that, however much work a hand has left in the sand; and the arm itself takes three quarters of what its damping
-/// does: a loop within its limits leaks half of that. A surplus is forgotten with a time constant of half a second,
-/// because the arm and the hand have taken by then what was not taken back.
+/// Sand gives back at most the energy of a spring of its stiffness at the present force. The observer therefore keeps
+/// no more credit than that, however much work the hand has put into the sand. It counts three quarters of the arm's
+/// own damping as taken by the arm; a loop within its limits leaks half of that damping. A surplus decays with a time
+/// constant of half a second, because by then the arm and the hand have taken it.
 class PassivityObserver {
 public:
     explicit PassivityObserver(const ForceLimits& limits);
 
-    /// Where the tip is now [m], after it moved for `span` [s] under the force that acted.
+    /// Takes the tip's current `place` [m]. The tip has moved for `span` [s] under the force that acted.
     void observe(sand::force::Vec3 place, double span);
-    /// The damping force that takes the surplus back within a tick; 0 when there is none.
+    /// Returns the damping force that takes the surplus back within one tick; zero without a surplus.
     [[nodiscard]] sand::force::Vec3 control(sand::force::Vec3 velocity, std::uint32_t& acted) const;
-    /// What goes to the device now.
+    /// Takes the force that is sent to the device at this tick.
     void sent(sand::force::Vec3 force);
     void restart();
 
-    [[nodiscard]] double returned() const { return returned_; }  // [J], Σ F · Δx since the start, negative if taken
-    [[nodiscard]] double surplus() const { return surplus_; }    // [J], given beyond what is accounted for
+    [[nodiscard]] double returned() const {
+        return returned_;
+    }  // [J], Σ F · Δx since the start; negative if the forces took energy
+    [[nodiscard]] double surplus() const { return surplus_; }  // [J], energy given beyond credit and damping
 
 private:
     static constexpr std::size_t kMostDelay = 16;
 
     double stiffness_, damping_, most_, tolerance_;
     std::size_t delay_;
-    std::array<sand::force::Vec3, kMostDelay> sent_{};  // a ring
+    std::array<sand::force::Vec3, kMostDelay> sent_{};  // ring buffer of the latest forces
     std::size_t newest_ = 0;
     sand::force::Vec3 place_;
     bool begun_ = false;

@@ -8,13 +8,15 @@
 
 namespace haptic_bridge {
 
-/// Lets a force grow or turn by at most so much a tick, and fall at once: a hand that leaves the sand must not be held.
+/// Limit on how fast a force changes. A force may grow or turn by at most `most` per tick. It may fall at once, because
+/// a hand that leaves the sand must not be held.
 class Slew {
 public:
     explicit Slew(double most /* [N/tick] */) : most_(most) {}
 
     [[nodiscard]] sand::force::Vec3 follow(sand::force::Vec3 wanted, std::uint32_t& acted) {
-        // What is left of the last force along its own direction may go freely; from there the step is bounded.
+        // The part of the last force that remains along its own direction may fall freely. From there the change is
+        // bounded.
         const double size = norm(last_);
         const double along = size > 0 ? std::clamp(dot(wanted, last_) / size, 0.0, size) : 0;
         const sand::force::Vec3 kept = size > 0 ? (along / size) * last_ : sand::force::Vec3{};

@@ -7,17 +7,18 @@
 
 namespace haptic_bridge {
 
-/// Velocity by the first-order adaptive window (Janabi-Sharifi, Hayward and Chen 2000), on each axis for itself: the
-/// slope over the longest stretch of the last ticks through which one straight line passes within the resolution. A
-/// fast hand is heard at once, and a slow one without the noise of a difference over one tick.
+/// Velocity by the first-order adaptive window (Janabi-Sharifi, Hayward and Chen 2000). Each axis is separate.
+///
+/// The velocity is the slope over the longest run of the latest ticks through which one straight line passes within the
+/// resolution. A fast hand is noticed at once. A slow hand has less noise than in a difference over one tick.
 class VelocityWindow {
 public:
     static constexpr int kLongest = 15;  // [tick]
 
-    /// `resolution` is the reading's, in the unit of places.
+    /// `resolution` is that of a reading, in the unit of places.
     explicit VelocityWindow(double resolution) : resolution_(resolution) {}
 
-    /// The velocity with this reading [unit/s]; 0 at the first, and while the clock stands still.
+    /// Adds a reading and returns the velocity [unit/s]; 0 at the first reading, and while the clock does not advance.
     [[nodiscard]] sand::force::Vec3 add(double time /* [s] */, sand::force::Vec3 place);
     void restart() { count_ = 0; }
 
@@ -27,7 +28,7 @@ private:
         double time = 0;
         sand::force::Vec3 place;
     };
-    /// The reading `ago` ticks before the last.
+    /// Returns the reading `ago` ticks before the last one.
     [[nodiscard]] const Reading& reading(int ago) const {
         return readings_[static_cast<std::size_t>((newest_ + kKept - ago) % kKept)];
     }
