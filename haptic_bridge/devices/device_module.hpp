@@ -10,12 +10,12 @@
 
 namespace haptic_bridge {
 
-/// "FILE.so" or "FILE.so:WHAT": loads a driver and opens its arm. Throws base::InputError that begins with --device
-/// when the file is no such module or the arm cannot be opened. Modules stay loaded.
+/// Loads a driver and opens its arm. `spec` is "FILE.so" or "FILE.so:WHAT". Throws base::InputError that begins with
+/// --device if the file is not a driver or the arm cannot be opened. Modules stay loaded.
 [[nodiscard]] std::unique_ptr<Arm> openArmModule(const std::string& spec);
 
-/// The window of the mouse, from sandwall-window.so beside this program: nothing else maps GLFW or GL. Throws
-/// base::InputError when it is missing, or there is no display.
+/// Opens the window of the mouse. Its module sandwall-window.so lies beside this program, and only this module loads
+/// GLFW and GL. Throws base::InputError if the module is missing or there is no display.
 [[nodiscard]] std::unique_ptr<PictureWindow> openPictureWindow(const std::string& title, int width, int height);
 
 }  // namespace haptic_bridge

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The one header that a driver of your own includes: `sandwall-haptic-server --device driver:FILE.so`.
+/// Header for drivers, the only one that a driver of your own includes: `sandwall-haptic-server --device
+/// driver:FILE.so`.
 ///
-/// Derive a class from haptic_bridge::Arm, with a constructor that takes `const char* what` (the text behind the file's
-/// name in --device; it may be empty) and throws std::exception with one line for a person if the device is not there.
-/// Name it in SANDWALL_DRIVER at the end of the source. haptic_bridge/examples/driver_arm.cpp is a whole driver.
+/// Derive a class from haptic_bridge::Arm. Give it a constructor that takes `const char* what`: the text after the
+/// file's name in --device, which may be empty. The constructor throws std::exception with one line for the user if the
+/// device does not answer. Name the class in SANDWALL_DRIVER at the end of the source.
+/// haptic_bridge/examples/driver_arm.cpp is a whole driver.
 #pragma once
 
 #include "base/triple_buffer.hpp"
@@ -12,7 +14,8 @@
 
 namespace haptic_bridge {
 
-/// Grows whenever a driver must be built again: when Arm, ArmPhysics, ArmReading or the symbols below change.
+/// Version of the interface. It grows when drivers must be built again, because Arm, ArmPhysics, ArmReading or the
+/// symbols below have changed.
 inline constexpr int kDriverInterface = 1;
 
 inline constexpr const char* kDriverInterfaceSymbol = "sandwallDriverInterface";
@@ -22,7 +25,7 @@ using OpenArm = Arm*(const char* what);
 
 }  // namespace haptic_bridge
 
-/// Defines what the haptic server looks for in a driver's module.
+/// Defines the functions that the haptic server looks up in the module of a driver.
 #define SANDWALL_DRIVER(Type)                                                            \
     extern "C" int sandwallDriverInterface() { return haptic_bridge::kDriverInterface; } \
     extern "C" haptic_bridge::Arm* sandwallArm1(const char* what) { return new Type(what); }

@@ -11,23 +11,25 @@
 
 namespace haptic_bridge {
 
-/// Lays an arm over the sand: metres in its own axes become hand space, and forces go back the same way.
+/// An arm that is mapped to the sand: metres along its own axes become hand space, and forces go back the same way.
 ///
-/// A force is felt as it is, in newtons at the hand: the scale changes how far the hand goes for it, so the limits of
-/// stiffness and damping hold after the scale. It goes back through the transpose of the mapping, so that a force which
-/// does no work on a closed path of the tool does none on the hand's either; where the vertical has a scale of its own,
-/// the weaker direction is shortened. While the second button is held, the tool stays where it is and the hand moves
-/// away under it. With a drift the middle of the workspace slowly comes to where the hand works, while nothing is felt.
+/// A force reaches the hand unchanged, in newtons: the scale only changes how far the tool moves. The limits of
+/// stiffness and damping therefore hold after the scale. Forces go back through the transpose of the mapping. A force
+/// that does no work on a closed path of the tool then does no work on the hand's path either. If the vertical has a
+/// scale of its own, the force along the direction with the smaller scale is reduced.
+///
+/// While the second button is held, the tool keeps its place, and the hand moves freely. With a drift, the middle of
+/// the workspace moves slowly to where the hand works, while the hand feels no force.
 class MappedDevice : public Device {
 public:
-    static constexpr double kRampSeconds = 0.5;    // from no force to all of it
-    static constexpr double kFadeSeconds = 0.05;   // and back, when the hand is in order
-    static constexpr double kFarthestShare = 0.5;  // [reach], of a movement between two readings
+    static constexpr double kRampSeconds = 0.5;    // [s], ramp from no force to the full force
+    static constexpr double kFadeSeconds = 0.05;   // [s], ramp back to no force while readings are plausible
+    static constexpr double kFarthestShare = 0.5;  // [reach], largest movement between two readings
 
-    /// The arm over this scene. Throws base::InputError for settings that an arm cannot have.
+    /// Maps `arm` to `scene`. Throws base::InputError for settings that an arm cannot have.
     MappedDevice(std::unique_ptr<Arm> arm, const HandSettings& settings, const scene::Scene& scene);
 
-    /// [scene unit/m] that an arm gets over this scene.
+    /// Returns the scale of `arm` over `scene` [scene unit/m].
     [[nodiscard]] static double scaleFor(const ArmPhysics& arm, const HandSettings& settings,
                                          const scene::Scene& scene);
 
@@ -47,15 +49,15 @@ private:
 
     std::unique_ptr<Arm> arm_;
     HandSettings settings_;
-    double scale_;                  // [scene unit/m], of the horizontal
-    double horizontal_, vertical_;  // hand space per metre
-    sand::force::Vec3 origin_;      // [m], east, north, up: over the field's centre
+    double scale_;                  // [scene unit/m], horizontal scale
+    double horizontal_, vertical_;  // [hand space/m]
+    sand::force::Vec3 origin_;      // [m], east, north, up: place of the arm over the field's centre
     TroubleCounts troubles_;
     ReadingCheck check_;
-    std::atomic<double> share_{1};  // of the force that is asked for, 0 to 1
+    std::atomic<double> share_{1};  // share of each force that the arm gets, 0 to 1
     Pose pose_;
-    ArmReading reading_;      // the last that could be believed, and whether this one could
-    sand::force::Vec3 last_;  // [m], its place: east, north, up
+    ArmReading reading_;      // the last plausible reading; `present` is that of the latest
+    sand::force::Vec3 last_;  // [m], place of reading_: east, north, up
     bool known_ = false, feels_ = false;
     double time_ = 0, gain_ = 0;
 };

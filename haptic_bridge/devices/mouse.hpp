@@ -15,16 +15,16 @@
 
 namespace haptic_bridge {
 
-/// A hand for whoever has no haptic arm: a window shows the sand from above; the left button touches, the wheel sets
-/// how deep, and the force is an arrow.
+/// A hand for users without a haptic arm. A window shows the sand from above. The left button touches the sand, the
+/// wheel sets the depth, and an arrow shows the force.
 ///
-/// A thread of its own draws about 30 times a second; neither the force loop nor the sand thread ever waits for it. A
-/// window that was closed is an absent device.
+/// The device's own thread draws about 30 times per second. The force loop and the sand thread never wait for it. When
+/// the user closes the window, the device counts as absent.
 class MouseDevice : public Device, public SandWatcher {
 public:
     using OpenWindow = std::function<std::unique_ptr<PictureWindow>()>;
 
-    /// Throws what `open` throws, which is called on the device's thread.
+    /// Calls `open` on the device's thread. Throws what `open` throws.
     explicit MouseDevice(const OpenWindow& open);
     ~MouseDevice() override;
 
@@ -34,7 +34,8 @@ public:
     [[nodiscard]] const TroubleCounts* troubles() const override { return &troubles_; }
     [[nodiscard]] SandWatcher* watcher() override { return this; }
     void stepped(const sand::Replica& terrain) override;
-    /// Also by keys in the window: f all or nothing, + and - a tenth more or less.
+    /// Sets the share of the force that is shown. Keys in the window do the same: f switches it on and off, + and -
+    /// change it by a tenth.
     void shareForce(double share) override { share_ = share; }
 
 private:
@@ -45,13 +46,13 @@ private:
         Pose pose;
         bool open = true;
     };
-    base::TripleBuffer<Hand> hand_;                // window to force loop
-    base::TripleBuffer<sand::force::Vec3> force_;  // force loop to window
-    base::TripleBuffer<SandSketch> sketch_;        // sand to window
+    base::TripleBuffer<Hand> hand_;                // from window to force loop
+    base::TripleBuffer<sand::force::Vec3> force_;  // from force loop to window
+    base::TripleBuffer<SandSketch> sketch_;        // from sand thread to window
     std::atomic<double> share_{1};
     TroubleCounts troubles_;
-    std::int64_t sketchedNs_ = 0;  // the sand thread's
-    // The window's thread.
+    std::int64_t sketchedNs_ = 0;  // [ns], of the last sketch; used by the sand thread
+    // For the window's thread.
     SketchedHand shown_;
     double wheel_ = 0;
     std::atomic<bool> stopping_{false};

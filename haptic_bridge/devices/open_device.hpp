@@ -10,9 +10,9 @@
 
 namespace haptic_bridge {
 
-/// Opens what docs/devices.md lists: "script:gis", "script:FILE", "trace:FILE", "driver:FILE.so", "sim:PRESET",
-/// "mouse", "spacenav". Throws base::InputError for anything else, for files that cannot be read and devices that are
-/// not there.
+/// Opens a device of docs/devices.md: "script:gis", "script:FILE", "trace:FILE", "driver:FILE.so", "sim:PRESET",
+/// "mouse" or "spacenav". Throws base::InputError if `spec` is unknown, if a file cannot be read, or if the device does
+/// not answer.
 [[nodiscard]] std::unique_ptr<Device> openDevice(const std::string& spec, const HandSettings& settings,
                                                  const scene::Scene& scene);
 

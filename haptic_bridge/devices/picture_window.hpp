@@ -7,23 +7,23 @@
 
 namespace haptic_bridge {
 
-/// Pixels from the upper left, rows downwards: 0xAABBGGRR, which is R, G, B, A in memory.
+/// Picture, with rows downwards from the upper left corner. A pixel is 0xAABBGGRR, which is R, G, B, A in memory.
 struct Picture {
     int width = 0, height = 0;
     std::vector<std::uint32_t> pixels;
 };
 
-/// What a person does with mouse and keys.
+/// Input of the user with mouse and keys.
 struct WindowInput {
-    int width = 0, height = 0;  // [pixel], of the picture that fits now
-    double x = 0, y = 0;        // [pixel], of the pointer, from the upper left
-    double wheel = 0;           // notches since the start, away from the person
-    bool left = false;          // held
-    std::string keys;           // pressed since this was asked last
+    int width = 0, height = 0;  // [pixel], size of a picture that fits the window
+    double x = 0, y = 0;        // [pixel], place of the pointer, from the upper left
+    double wheel = 0;           // [notch] since the start, positive away from the user
+    bool left = false;          // the left button is held
+    std::string keys;           // keys pressed since the last call
     bool closed = false;
 };
 
-/// A window that shows a picture. Opened, used and closed by one thread. What it is made with is its module's business.
+/// A window that shows a picture. One thread opens, uses and closes it. Its module decides which library draws it.
 class PictureWindow {
 public:
     PictureWindow() = default;
@@ -34,7 +34,8 @@ public:
     virtual void show(const Picture& picture) = 0;
 };
 
-/// What sandwall-window.so defines, with C linkage. Throws std::exception with a line for a person.
+/// Name of the function that sandwall-window.so defines, with C linkage. The function throws std::exception with one
+/// line for the user.
 inline constexpr const char* kPictureWindowSymbol = "sandwallPictureWindow1";
 using OpenPictureWindow = PictureWindow*(const char* title, int width, int height);
 

@@ -10,29 +10,29 @@
 
 namespace haptic_bridge {
 
-/// The sand as a window shows it: every so many-th cell, so that a copy takes a moment.
+/// Reduced copy of the sand for a window. It keeps every n-th cell, so that copying is quick.
 struct SandSketch {
-    static constexpr int kMostSide = 384;  // [cell] kept
+    static constexpr int kMostSide = 384;  // [cell], largest side of the copy
     int columns = 0, rows = 0;
-    std::vector<float> heights;  // [cell], rows from south to north
-    double toolRadius = 0;       // [half side], as hand space has it
+    std::vector<float> heights;  // [kept cell], rows from south to north
+    double toolRadius = 0;       // [half side], as in hand space
     std::uint64_t step = 0;
 
-    /// Asks for memory the first time alone.
+    /// Copies the sand of `terrain`. Allocates memory only at the first call.
     void take(const sand::Replica& terrain);
 };
 
-/// Where the hand is in the picture, and what it feels.
+/// Place of the hand in the picture, and the force that it feels.
 struct SketchedHand {
     double x = 0, y = 0;  // hand space
     bool touches = false;
-    double depth = 0.5;       // [tool radius], of the underside when it touches
+    double depth = 0.5;       // [tool radius], depth of the underside when the tool touches the sand
     sand::force::Vec3 force;  // [N], east, north, up
 };
 
-/// The field's rectangle in a picture: as large as fits, in the middle.
+/// The field's rectangle in a picture: as large as fits, centred.
 struct SketchFrame {
-    double left = 0, top = 0, pixelsPerHalfSide = 1, halfWidth = 1, halfHeight = 1;  // the latter in hand space
+    double left = 0, top = 0, pixelsPerHalfSide = 1, halfWidth = 1, halfHeight = 1;  // the half sides in hand space
     static SketchFrame of(int width, int height, int columns, int rows);
     [[nodiscard]] double handX(double pixel) const { return (pixel - left) / pixelsPerHalfSide - halfWidth; }
     [[nodiscard]] double handY(double pixel) const { return halfHeight - (pixel - top) / pixelsPerHalfSide; }
@@ -40,8 +40,8 @@ struct SketchFrame {
     [[nodiscard]] double pixelY(double y) const { return top + (halfHeight - y) * pixelsPerHalfSide; }
 };
 
-/// Seen from above, lit from the north-west: the sand, the tool's circle, the force along the sand as an arrow and its
-/// upward part as a bar at the left edge, the depth of the wheel as a bar at the right.
+/// Paints the sand from above, lit from the north-west, and the tool's circle. An arrow shows the horizontal force, and
+/// a bar at the left edge its upward part. A bar at the right edge shows the depth that the wheel has set.
 void paint(const SandSketch& sand, const SketchedHand& hand, Picture& picture);
 
 }  // namespace haptic_bridge

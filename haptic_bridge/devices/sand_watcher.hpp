@@ -5,7 +5,8 @@
 
 namespace haptic_bridge {
 
-/// A device that shows the sand: told by the sand thread after its steps. Copies what it needs, and never waits.
+/// A device that shows the sand. The sand thread calls stepped() after its steps. stepped() copies what it needs and
+/// never waits.
 class SandWatcher {
 public:
     SandWatcher() = default;

@@ -11,33 +11,34 @@
 
 namespace haptic_bridge {
 
-/// An arm that obeys physics, for tests and for whoever has none: mass, damping and Coulomb's friction on each axis,
-/// an encoder, a delay, a motor that saturates, end stops, and a hand that follows a path.
+/// A simulated arm, for tests and for users without an arm. It has mass, damping and Coulomb friction on each axis, an
+/// encoder, a delay, a motor with a greatest force, end stops, and a hand that follows a path.
 ///
-/// Time is handed in: a virtual clock and the host's are alike to it. Between two calls it moves exactly as its
-/// equation does under held forces. Used by one thread.
+/// The caller passes the time, so the arm works with a virtual clock and with the host's clock. Between two calls it
+/// moves exactly as its equation says under the held forces. Used by one thread.
 class SimulatedArm : public Arm {
 public:
-    /// Where the hand wants the tip to be [m], and whether it presses the button.
+    /// Place to which the hand moves the tip [m], and whether it presses the button.
     struct Target {
         sand::force::Vec3 place;
         bool touches = true;
     };
     using Path = std::function<Target(double time /* [s] */)>;
 
-    /// It starts at rest where the path does; without a path in the middle of its workspace, held by nobody.
+    /// The arm starts at rest at the start of `path`. Without a path it starts in the middle of its workspace, and no
+    /// hand holds it.
     explicit SimulatedArm(const ArmPhysics& physics, Grip grip = {}, Path path = {});
 
     [[nodiscard]] const ArmPhysics& physics() const override { return physics_; }
-    /// Rounded to the encoder's resolution.
+    /// Returns the reading at `time` [s], rounded to the encoder's resolution.
     [[nodiscard]] ArmReading read(double time) override;
-    /// Shortened to the motor's most; acts `delayTicks` milliseconds after the time read last. A force that is no
-    /// number is none.
+    /// Pushes with `force`, reduced to the motor's greatest force. The force acts `delayTicks` milliseconds after the
+    /// time that was read last. A force that is not finite counts as zero.
     void push(sand::force::Vec3 force) override;
 
-    // What no encoder tells: for tests and measurements.
+    // Values that an encoder does not show, for tests and measurements.
     void start(sand::force::Vec3 place, sand::force::Vec3 velocity);
-    void load(sand::force::Vec3 force /* [N] */) { load_ = force; }  // besides the motor's, until changed
+    void load(sand::force::Vec3 force /* [N] */) { load_ = force; }  // adds to the motor's force until the next call
     void letGo() { body_.grip = {}; }
     [[nodiscard]] sand::force::Vec3 place() const { return vector(&ArmAxis::place); }        // [m]
     [[nodiscard]] sand::force::Vec3 velocity() const { return vector(&ArmAxis::velocity); }  // [m/s]
@@ -63,18 +64,19 @@ private:
     bool begun_ = false;
     Target target_;
     sand::force::Vec3 load_, acting_;
-    std::array<Pending, kMostPending> pending_;  // a ring, oldest first
+    std::array<Pending, kMostPending> pending_;  // ring buffer, oldest first
     std::size_t oldest_ = 0, waiting_ = 0;
 };
 
-/// What the numbers of a stroke list are in an arm's metres.
+/// Size of a stroke list's units in the arm's metres.
 struct StrokeSpace {
-    double halfSide = 0.064;  // [m], of 1 in the plane
-    double radius = 0.0008;   // [m], of a tool radius in height; the tool touches level sand at 0
+    double halfSide = 0.064;  // [m] for 1 in the plane
+    double radius = 0.0008;   // [m] for one tool radius in height; the tool touches level sand at 0
 };
 
-/// "sim:PRESET[,KEY=VALUE]...": path=FILE.strokes or path=gis, grip=N/m, grip_damping=N·s/m, and delay (ticks),
-/// damping, mass, friction, resolution, max_force, stiffness in ArmPhysics' units. Throws base::InputError.
+/// Opens "sim:PRESET[,KEY=VALUE]...". The keys are path=FILE.strokes or path=gis, grip=N/m, grip_damping=N·s/m, and
+/// delay (ticks), damping, mass, friction, resolution, max_force and stiffness in the units of ArmPhysics. Throws
+/// base::InputError.
 [[nodiscard]] std::unique_ptr<SimulatedArm> openSimulatedArm(const std::string& spec, const StrokeSpace& space = {});
 
 }  // namespace haptic_bridge

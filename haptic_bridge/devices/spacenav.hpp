@@ -10,17 +10,17 @@
 
 namespace haptic_bridge {
 
-/// A six-axis mouse through libspnav and its daemon. How far the cap is pushed says how fast the hand goes; the first
-/// button touches, the second brings the hand back to the centre, over the sand.
+/// A six-axis mouse, used through libspnav and its daemon. The farther the user pushes the cap, the faster the hand
+/// moves. The first button touches the sand. The second button brings the hand back to the centre, over the sand.
 ///
-/// The library is loaded when this is made, and never before. A thread of the device's own asks it for news.
+/// The constructor loads the library; no other code loads it. The device's own thread polls it for events.
 class SpacenavDevice : public Device {
 public:
-    static constexpr double kFullDeflection = 350;  // as the daemon counts
+    static constexpr double kFullDeflection = 350;  // [unit of the daemon]
     static constexpr double kSpeed = 1.0;           // [half side/s] at full deflection
-    static constexpr double kClimb = 6.0;           // [tool radius/s]
+    static constexpr double kClimb = 6.0;           // [tool radius/s] at full deflection
 
-    /// Throws base::InputError when library or daemon is missing.
+    /// Throws base::InputError if the library or the daemon is missing.
     explicit SpacenavDevice(const std::string& library = "libspnav.so.0");
     ~SpacenavDevice() override;
 
@@ -33,7 +33,7 @@ private:
     void listen();
 
     const Library* library_;
-    std::array<std::atomic<int>, 3> push_{};  // to the right, up, away, as the library has its axes
+    std::array<std::atomic<int>, 3> push_{};  // right, up and away from the user, in the library's axes
     std::atomic<bool> touches_{false};
     std::atomic<int> homings_{0};
     Pose pose_;

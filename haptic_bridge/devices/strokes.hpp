@@ -10,36 +10,37 @@
 
 namespace haptic_bridge {
 
-/// A list of strokes as a file gives it (docs/devices.md), in hand space.
+/// A list of strokes from a file (docs/devices.md), in hand space.
 struct Strokes {
     struct Point {
         double x = 0, y = 0;
-        double hold = 0;  // [s] that the tool rests there
+        double hold = 0;  // [s], time that the tool rests at the point
     };
-    /// Which way the tool is turned along a stroke.
+    /// Heading of the tool along a stroke.
     struct Turn {
-        std::optional<double> heading = std::nullopt;  // [deg]; none: as it was before
-        bool follow = false;                           // along the stroke instead
+        std::optional<double> heading = std::nullopt;  // [deg]; nullopt: as before
+        bool follow = false;                           // true: the tool turns into the direction of the stroke
         bool leftFoot = false;
     };
     struct Stroke {
         std::vector<Point> points;  // at least one
         double speed = 1;           // [half side / s]
-        double depth = 0.5;         // [tool radius] of the underside under the surface
+        double depth = 0.5;         // [tool radius], depth of the underside below the surface
         Turn turn{};
     };
     std::vector<Stroke> strokes;  // at least one
     double travel = 4;            // [half side / s] between strokes
-    double lift = 2;              // [tool radius] of the underside over the surface between strokes
+    double lift = 2;              // [tool radius], height of the underside above the surface between strokes
 
-    /// `name` stands for the file in messages. Throws base::InputError with its line.
+    /// Parses the text of a stroke list. Throws base::InputError with `name`, which messages show as the file, and with
+    /// the line.
     static Strokes parse(std::string_view text, const std::string& name);
 };
 
-/// The letters G I S, written large across the field; embedded from gis.strokes.
+/// Returns a stroke list that writes the letters G I S across the field. It is embedded from gis.strokes.
 [[nodiscard]] std::string_view gisStrokes();
 
-/// Draws strokes at their speeds, and hovers when the last is done.
+/// A device that draws strokes at their speeds, and hovers after the last one.
 class StrokeDevice : public Device {
 public:
     explicit StrokeDevice(const Strokes& strokes);
@@ -49,7 +50,8 @@ public:
     [[nodiscard]] double duration() const { return knots_.back().time; }  // [s]
 
 private:
-    /// The hand moves from knot to knot in straight lines; `pose` holds from the knot before to this one.
+    /// Point on the path of the hand, which moves in straight lines from knot to knot. Height, touch and heading hold
+    /// from the previous knot up to this one.
     struct Knot {
         double time;
         double x, y;

@@ -12,7 +12,7 @@
 
 namespace haptic_bridge {
 
-/// A recorded hand: samples at their own times, with the jitter and the gaps of a real device.
+/// A recorded hand. The samples keep their own times, with the jitter and the gaps of a real device.
 struct Trace {
     struct Sample {
         double time = 0;                // [s] since the first sample, never decreasing
@@ -20,16 +20,17 @@ struct Trace {
     };
     std::vector<Sample> samples;  // at least two
 
-    /// A CSV with a header line; times are numbers, or "YYYY/MM/DD/HH:MM:SS.ffffff". `name` stands for the file in
-    /// messages. Throws base::InputError with its line.
+    /// Parses a CSV with a header line. Times are numbers, or have the form "YYYY/MM/DD/HH:MM:SS.ffffff". Throws
+    /// base::InputError with `name`, which messages show as the file, and with the line.
     static Trace parse(std::istream& text, const std::string& name, const HandSettings& settings);
 };
 
-/// Replays a trace through the mapping, straight between samples by time, and hovers when it is over.
+/// A device that replays a trace through the mapping. It interpolates linearly between samples by time, and hovers
+/// after the last one.
 class TraceDevice : public Device {
 public:
-    /// The field's extent and the tool's radius are in scene units; the median and the bounding box of the trace are
-    /// taken once, here.
+    /// `fieldWidth`, `fieldHeight` and `toolRadius` are in scene units. The constructor computes the median and the
+    /// bounding box of the trace once.
     TraceDevice(const Trace& trace, const HandSettings& settings, double fieldWidth, double fieldHeight,
                 double toolRadius);
     [[nodiscard]] Pose read(double time) override;
@@ -44,7 +45,7 @@ private:
     std::vector<Knot> knots_;
     HandSettings settings_;
     sand::force::Vec3 origin_;              // [unit of the trace], east, north, up
-    double horizontal_ = 1, vertical_ = 1;  // hand space per unit of the trace
+    double horizontal_ = 1, vertical_ = 1;  // [hand space/unit of the trace]
     std::size_t next_ = 1;
 };
 
