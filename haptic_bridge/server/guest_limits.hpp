@@ -12,18 +12,18 @@
 
 namespace haptic_bridge {
 
-/// What counts as one guest: an IPv4 address, also one that is mapped into IPv6, or the /64 network of an IPv6 address,
-/// of which one machine may have as many as it likes.
+/// Returns the address by which unauthenticated connections are counted: an IPv4 address, also if it is mapped into
+/// IPv6, or the /64 network of an IPv6 address. One machine may have as many addresses of such a network as it likes.
 [[nodiscard]] boost::asio::ip::address guestOf(const boost::asio::ip::address& address);
 
-/// How often somebody may come: kBurst times at once, then kPerSecond, by guestOf() an address; who is refused comes
-/// later still. Knows no clock.
+/// Limits how often connections may come from one address, as guestOf() returns it: kBurst at once, then kPerSecond. An
+/// address that was refused must wait longer. The caller passes the time.
 class GuestLimits {
 public:
     static constexpr double kBurst = 16, kPerSecond = 8;
-    static constexpr double kPenalty = 1;            // a refusal costs as much as so many more connections
-    static constexpr double kDeepest = -16;          // and nobody waits for longer than two seconds
-    static constexpr std::size_t kAddresses = 1024;  // that are kept apart; the rest shares one count
+    static constexpr double kPenalty = 1;    // a refusal counts as this many further connections
+    static constexpr double kDeepest = -16;  // lowest allowance, so that no address waits longer than about two seconds
+    static constexpr std::size_t kAddresses = 1024;  // [address] counted separately; further addresses share one count
 
     [[nodiscard]] bool mayCome(const boost::asio::ip::address& address, std::int64_t nowNs);
     void refused(const boost::asio::ip::address& address, std::int64_t nowNs);
@@ -39,13 +39,15 @@ private:
     Visits others_;
 };
 
-/// Counts what was refused by kind, and says it once a minute at most for each peer and kind.
+/// Counts refusals by kind, and gives at most one line per minute for each peer and kind.
 class RefusalLog {
 public:
     static constexpr std::int64_t kQuietNs = 60'000'000'000;
-    static constexpr std::size_t kRemembered = 1024;  // peers and kinds; of more it says one line a minute
+    // [pair of peer and kind]; further peers share one line per minute and kind.
+    static constexpr std::size_t kRemembered = 1024;
 
-    /// Nothing when it has been said already; how many were not said meanwhile stands behind `line`.
+    /// Counts a refusal and returns the line to print. Returns nullopt if this peer and kind had a line in the last
+    /// minute. The next line then ends with the number of lines that were left out.
     [[nodiscard]] std::optional<std::string> add(RefusalCode code, const std::string& address, const std::string& line,
                                                  std::int64_t nowNs);
     void count(RefusalCode code) { ++counts_[static_cast<std::size_t>(code) - 1]; }
@@ -60,14 +62,15 @@ private:
     std::map<std::pair<std::string, RefusalCode>, Said> said_;
 };
 
-/// Lets guests in as often as GuestLimits allows, and remembers who was refused and why. `log` gets lines for a person.
+/// Admits unauthenticated connections as often as GuestLimits allows, and logs refusals with the reason. `log` gets
+/// lines for the user.
 class Gate {
 public:
     explicit Gate(std::function<void(const std::string&)> log) : log_(std::move(log)) {}
     [[nodiscard]] bool mayCome(const boost::asio::ip::address& address, std::int64_t nowNs) {
         return limits_.mayCome(address, nowNs);
     }
-    /// Counts a refusal, and logs `line` unless it is empty. A guest that was refused may come less often.
+    /// Counts a refusal, and logs `line` unless it is empty. An address that was refused may connect less often.
     void refused(RefusalCode code, const boost::asio::ip::address& address, const std::string& line,
                  std::int64_t nowNs);
     [[nodiscard]] const RefusalCounts& counts() const { return refusals_.counts(); }

@@ -7,13 +7,13 @@
 
 namespace haptic_bridge {
 
-/// Listens at "ADDRESS:PORT"; port 0 takes any free one. Throws base::InputError that begins with --listen when the
-/// address cannot be had, or is one that others reach and there is no secret.
+/// Listens at `text`, "ADDRESS:PORT"; port 0 takes any free one. Throws base::InputError that begins with --listen if
+/// the address cannot be used. Also throws if other machines can reach the address and `secret` is false.
 [[nodiscard]] boost::asio::ip::tcp::acceptor listenAt(boost::asio::io_context& io, const std::string& text,
                                                       bool secret);
 
-/// Writes the port's number, unless `file` is empty. Written beside, then renamed: a reader sees no port, or the whole
-/// of it. Throws base::InputError when the file cannot be written.
+/// Writes the port's number to `file`, unless `file` is empty. It writes another file and renames it, so that a reader
+/// never sees half a number. Throws base::InputError if the file cannot be written.
 void writePortFile(const std::string& file, std::uint16_t port);
 
 }  // namespace haptic_bridge

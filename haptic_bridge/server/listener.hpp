@@ -16,23 +16,24 @@ class Peer;
 template <class Member>
 class Roster;
 
-/// The streaming thread: accepts masters, one at a time, and sends the sand thread's steps to the master and to
+/// The streaming thread. It accepts masters, one at a time, and sends the steps of the sand thread to the master and to
 /// watchers.
 ///
-/// Everything runs on the thread that runs the service's `io`. A master that leaves, breaks or sends garbage ends its
-/// own link and nothing else; the next one may come. A guest is a connection before its welcome. Roster and Gate bound
-/// how many guests there are and how often they come.
+/// Everything runs on the thread that runs the service's `io`. A master that leaves, fails or sends garbage ends only
+/// its own link, and another master may connect. Roster and Gate limit how many unauthenticated connections there are
+/// and how often they come.
 class Listener {
 public:
-    /// Takes over a listening acceptor.
+    /// Takes over `acceptor`, which must listen.
     Listener(Service service, boost::asio::ip::tcp::acceptor acceptor);
     ~Listener();
 
-    /// Callbacks for the sand thread. Each hands its call over to the streaming thread.
+    /// Returns callbacks for the sand thread. Each hands its call over to the streaming thread.
     [[nodiscard]] SandThread::Output output();
-    /// Masters are taken in from now on.
+    /// Accepts masters from now on.
     void serve(SandThread& sandThread);
-    /// Says goodbye to the master and stops listening; stops the io context when that has arrived, or after 0.6 s.
+    /// Says goodbye to the master and stops listening. Stops the io context when the master's connection has closed, or
+    /// after 0.6 s.
     void shut(const std::string& reason);
 
 private:

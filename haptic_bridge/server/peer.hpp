@@ -12,17 +12,18 @@
 
 namespace haptic_bridge {
 
-/// The server's end of one connection, from the greeting to the goodbye. On the streaming thread alone.
+/// The server's end of one connection, from the greeting to the goodbye. Used only by the streaming thread.
 class Peer : public std::enable_shared_from_this<Peer> {
 public:
     Peer(const Service& service, Gate& gate, Roster<Peer>& roster, Connection::Socket socket);
     void start();
 
+    // Calls for the master's link, from the callbacks of the sand thread.
     void ready();
     void needState(const NeedState& need);
     void unusable(const std::string& why);
     void step(base::Bytes message);
-    /// Of a guest: ends at once.
+    /// Closes an unauthenticated connection at once.
     void makeRoom();
     /// Sends the last report and a goodbye, then closes.
     void sayGoodbye(const std::string& reason);
@@ -75,7 +76,7 @@ private:
     struct Grant {
         std::uint32_t epoch = 0;
         std::uint64_t firstStep = 0;
-        std::size_t catchUpsLeft = 0;  // that may still come
+        std::size_t catchUpsLeft = 0;  // CatchUps that may still come
         bool askedForSteps = false;
     } grant_;
     struct Sent {

@@ -14,44 +14,46 @@
 
 namespace haptic_bridge {
 
-inline constexpr std::size_t kMaxGuests = 16;  // connections that have not been welcomed yet
-inline constexpr int kMaxGuestsOfOne = 4;      // of those, from one address beyond this machine
+inline constexpr std::size_t kMaxGuests = 16;  // unauthenticated connections
+inline constexpr int kMaxGuestsOfOne = 4;      // of these, from one address of another machine
 inline constexpr std::size_t kMaxWatchers = 8;
-inline constexpr int kMaxConnections = 64;  // of all kinds, those included that are being closed
+inline constexpr int kMaxConnections = 64;  // of all kinds, also connections that are being closed
 
-/// Who is connected: guests that have not been welcomed, at most one master, and watchers. `Member` is Peer; tests have
-/// members without sockets. One thread.
+/// All connections: unauthenticated ones, at most one master, and watchers. `Member` is Peer; tests use members without
+/// sockets. Used by one thread.
 template <class Member>
 class Roster {
 public:
     using Pointer = std::shared_ptr<Member>;
 
-    /// Whether there is a place for one more from this address.
+    /// Returns whether one more connection from this address has a place.
     [[nodiscard]] bool hasRoomFor(const boost::asio::ip::address& address) const {
         const auto same = std::count_if(guests_.begin(), guests_.end(), [guest = guestOf(address)](const auto& one) {
             return guestOf(one->address()) == guest;
         });
         return (same < kMaxGuestsOfOne || isLoopback(address)) && *connections_ < kMaxConnections;
     }
-    /// A connection begins as a guest. Closes the oldest guest when there are too many.
+    /// Adds a connection, which is unauthenticated at first. If there are too many of these, closes the oldest.
     void add(Pointer guest) {
         if (guests_.size() >= kMaxGuests) {
-            // Not the newcomer: sixteen who say nothing would keep out the master. A greeting takes milliseconds.
+            // The oldest is closed and not the newest, because sixteen silent connections would keep the master out. A
+            // greeting takes milliseconds.
             Pointer(guests_.front())->makeRoom();
         }
         guests_.push_back(std::move(guest));
     }
-    /// A guest becomes the master; returns the number of its session.
+    /// Makes an unauthenticated connection the master. Returns the number of its session.
     std::uint32_t promoteToMaster(const Pointer& guest) {
         removeGuest(*guest);
         master_ = guest;
         return ++sessions_;
     }
+    /// Makes an unauthenticated connection a watcher.
     void promoteToWatcher(const Pointer& guest) {
         removeGuest(*guest);
         watchers_.insert(guest);
     }
-    /// Forgets a member that ends. Returns whether it was the master.
+    /// Removes a member that ends. Returns whether it was the master.
     bool remove(const Pointer& member) {
         removeGuest(*member);
         watchers_.erase(member);
@@ -62,7 +64,7 @@ public:
 
     [[nodiscard]] const Pointer& master() const { return master_; }
     [[nodiscard]] bool watchersAreFull() const { return watchers_.size() >= kMaxWatchers; }
-    // Copies, because a member may leave while it is spoken to.
+    // These return copies, because a member may leave while the caller uses it.
     [[nodiscard]] std::vector<Pointer> guests() const { return {guests_.begin(), guests_.end()}; }
     [[nodiscard]] std::vector<Pointer> watchers() const { return {watchers_.begin(), watchers_.end()}; }
 
@@ -82,10 +84,10 @@ private:
         std::erase_if(guests_, [&](const auto& one) { return one.get() == &guest; });
     }
 
-    std::list<Pointer> guests_;  // the oldest first
+    std::list<Pointer> guests_;  // unauthenticated connections, oldest first
     Pointer master_;
     std::set<Pointer> watchers_;
-    std::shared_ptr<int> connections_ = std::make_shared<int>(0);  // those included that are being closed
+    std::shared_ptr<int> connections_ = std::make_shared<int>(0);  // also connections that are being closed
     std::uint32_t sessions_ = 0;
 };
 

@@ -10,28 +10,29 @@
 
 namespace haptic_bridge {
 
-/// At which times a master is sent timing tests: at random, from a seed, because nothing in a session should differ by
-/// chance.
+/// Times of the timing tests. They are random, but from a seed, so that a session can be repeated exactly.
 struct TimingTests {
-    double perSecond = 4;  // mean
-    double after = 0;      // [s] from when the server numbers the steps: a wall's first frames compile shaders
+    double perSecond = 4;  // mean number of tests per second
+    double after = 0;      // [s] of a link before the first test, because a wall's first frames compile shaders
     std::uint32_t seed = 7;
 };
 
-/// The timing tests of one link, and half of their way there and back. Pure: calls bring the time [ns, one clock].
+/// Timing tests of one link, and half of their round-trip times. It reads no clock: the caller passes the time [ns] of
+/// one clock.
 class RoundTrips {
 public:
     explicit RoundTrips(const TimingTests& tests) : perSecond_(tests.perSecond), random_(tests.seed) {}
 
     /// Returns the pause before the next test [s].
     [[nodiscard]] double pause();
-    /// The next test, which is sent now. On the wire it is as long as a message of `bytes`.
+    /// Returns the next test, which is sent now. On the wire it is as long as a message of `bytes` bytes.
     [[nodiscard]] TimingTest next(std::size_t bytes, std::int64_t nowNs);
-    /// An answer has come. One to a test that is not known any more is ignored.
+    /// Takes an answer. Ignores it if its test is unknown or forgotten.
     void echoed(const TimingEcho& echo, std::int64_t nowNs);
+    /// Fills in the round-trip times of `report`.
     void fill(Report& report) const;
 
-    static constexpr std::size_t kMostOut = 64;  // tests without their last answer; of more the oldest is forgotten
+    static constexpr std::size_t kMostOut = 64;  // tests without their last answer; beyond that the oldest is forgotten
 
 private:
     struct Out {
@@ -42,7 +43,7 @@ private:
     std::minstd_rand random_;
     std::uint32_t last_ = 0;
     std::map<std::uint32_t, Out> out_;       // by id
-    base::LiveHistogram toWall_, toMaster_;  // half of the round trips
+    base::LiveHistogram toWall_, toMaster_;  // half of each round trip
 };
 
 }  // namespace haptic_bridge

@@ -15,24 +15,24 @@ namespace haptic_bridge {
 
 enum class Pace : std::uint8_t { realtime, fast };
 
-/// The sand thread: has a StepMaker make steps when they are due, and obeys commands between them.
+/// The sand thread. Its StepMaker makes steps when they are due, and it carries out commands between them.
 ///
-/// In real time a step is due by the StepClock and takes what the force thread has queued, of a hand that is ahead of
-/// its wall a part (PathBuilder). Under the fast pace there is no clock: steps come as quickly as the wall's window
-/// allows, with the samples of a VirtualFeed.
+/// In real time the StepClock decides when a step is due. The step takes the samples that the force thread has queued;
+/// if the hand is far ahead of the wall, only a part of them (PathBuilder). Under the fast pace there is no clock:
+/// steps come as fast as the wall's window allows, with the samples of a VirtualFeed.
 class SandThread {
 public:
-    using Output = StepMaker::Output;  // called on the sand thread
+    using Output = StepMaker::Output;  // callbacks, called on the sand thread
 
-    /// Under Pace::fast `hand` is ticked by this thread, and must not be used by another.
-    /// `watcher` may be null: told of the sand after every step, on the sand thread.
+    /// Under Pace::fast this thread runs the ticks of `hand`, and no other thread may use it.
+    /// `watcher` may be null. It is shown the sand after every step, on the sand thread.
     SandThread(const scene::Scene& scene, Pace pace, HapticTick& hand, HandChannel& channel, Output output,
                const sand::grid::Erosion::Options& sweeps = {}, SandWatcher* watcher = nullptr);
     ~SandThread();
     SandThread(const SandThread&) = delete;
     SandThread& operator=(const SandThread&) = delete;
 
-    // From any thread; the answer comes through Output.
+    // Any thread may call these. The answers come through Output.
     void start(std::uint32_t session, const Start& start) { post(Granted{session, start}); }
     void state(base::Bytes bytes) { post(State{std::move(bytes)}); }
     void catchUp(CatchUp steps) { post(std::move(steps)); }
@@ -75,7 +75,7 @@ private:
     std::condition_variable wake_;
     std::deque<Command> commands_;
 
-    // The sand thread's own.
+    // For the sand thread only.
     StepMaker maker_;
     SandWatcher* watcher_;
     bool stopping_ = false;

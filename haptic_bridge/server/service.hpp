@@ -13,20 +13,20 @@
 
 namespace haptic_bridge {
 
-/// Settings and callbacks of a server that all connections share. All of it is used on the thread that runs `io`.
+/// Settings and callbacks of a server that all its connections share. Used only on the thread that runs `io`.
 struct Service {
     boost::asio::io_context& io;
     Identity identity = {};
     std::uint32_t stepsPerSecond = 0;
     std::function<Report()> report = {};               // the parts of a report that the link does not measure itself
-    std::function<void(const std::string&)> log = {};  // one line for a person
-    /// Pieces of the tick track that are there for the master's journal; with `all`, waits for the last ones. Empty
-    /// where nothing is recorded.
+    std::function<void(const std::string&)> log = {};  // prints one line for the user
+    /// Returns the pieces of the tick track that are ready for the master's journal. With `all`, waits for the last
+    /// ones. Empty if nothing is recorded.
     std::function<std::vector<base::Bytes>(bool all)> ticks = {};
-    std::function<void(double share)> shareForce = {};  // an operator's wish
+    std::function<void(double share)> shareForce = {};  // sets the share of the force, as an operator asked
     TimingTests tests = {};
     LinkSecurity security = {};
-    SandThread* sandThread = nullptr;  // from Listener::serve() on
+    SandThread* sandThread = nullptr;  // set by Listener::serve()
 };
 
 }  // namespace haptic_bridge

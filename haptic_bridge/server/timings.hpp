@@ -10,8 +10,8 @@
 
 namespace haptic_bridge {
 
-/// Writes named histograms as CSV: what, the shortest duration of a bucket [us], how often. Empty buckets are left out.
-/// Throws base::InputError when the file cannot be written.
+/// Writes named histograms as CSV. A row holds the name, the shortest duration of a bucket [us], and its count. Empty
+/// buckets are left out. Throws base::InputError if the file cannot be written.
 void writeTimings(const std::string& file,
                   const std::vector<std::pair<std::string, const base::LiveHistogram*>>& histograms);
 
