@@ -12,8 +12,8 @@ struct Row {
     double mass, damping, friction, resolution, maxForce, reach, maxStiffness;
 };
 
-// Masses and dampings are apparent ones at the tip, in the middle of the workspace, as measured devices have them;
-// forces, resolutions, reaches and the Touch's stiffness are their makers'.
+// Masses and dampings are apparent values at the tip, in the middle of the workspace, as measured on such devices.
+// Forces, resolutions, reaches and the Touch's stiffness come from the makers.
 constexpr std::array<Row, kArmPresets.size()> kRows{{
     {0.045, 0.35, 0.26, 55e-6, 3.3, 0.075, 400},
     {0.13, 1.5, 0.3, 60e-6, 8, 0.04, kUnstated},

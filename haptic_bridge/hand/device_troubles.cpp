@@ -12,17 +12,20 @@ namespace {
 std::string lineOf(const std::string& name, Trouble trouble, std::uint64_t times) {
     switch (trouble) {
         case Trouble::absent:
-            return fmt::format("{} does not answer; the hand is lifted and feels nothing until it does", name);
+            return fmt::format("{} does not answer; the tool is lifted and the hand feels nothing until it answers",
+                               name);
         case Trouble::noNumber:
-            return fmt::format("{} sends no numbers, {} times so far; the hand is lifted and feels nothing", name,
-                               times);
+            return fmt::format(
+                "{} sends values that are not finite, {} times so far; the tool is lifted and the hand feels nothing",
+                name, times);
         case Trouble::jump:
-            return fmt::format("{} jumps, {} times so far; the hand is lifted, and put down where it is then", name,
+            return fmt::format("{} jumps, {} times so far; the tool is lifted, and put down at the new place", name,
                                times);
         case Trouble::backwards:
-            return fmt::format("{} runs backwards in time, {} readings so far are left out", name, times);
+            return fmt::format("{} runs backwards in time, {} readings so far were ignored", name, times);
         case Trouble::flood:
-            return fmt::format("{} sends more than can be taken in, and was held back {} times so far", name, times);
+            return fmt::format("{} sends more than the master can take in, and was held back {} times so far", name,
+                               times);
     }
     return {};
 }

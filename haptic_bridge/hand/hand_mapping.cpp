@@ -23,7 +23,7 @@ double HandMapping::surface(double x, double y) const {
     if (datum_ == HandSettings::Datum::level) {
         return reference_;
     }
-    // Nine by nine places under the tool: ripples smaller than the tool must not shake the hand.
+    // Averages nine by nine places under the tool, because ripples smaller than the tool must not shake the hand.
     const sand::HeightField& field = scene_.terrain;
     constexpr int kHalf = 4;
     double sum = 0;

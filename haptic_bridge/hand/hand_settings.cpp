@@ -26,7 +26,7 @@ struct Option {
         double result = 0;
         const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), result);
         if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(result)) {
-            fail(fmt::format("'{}' is no number", word));
+            fail(fmt::format("'{}' is not a number", word));
         }
         return result;
     }
@@ -45,7 +45,7 @@ struct Option {
             begin = end + 1;
         }
         if (result.size() != count || std::any_of(result.begin(), result.end(), [](auto w) { return w.empty(); })) {
-            fail(fmt::format("needs {} values with commas between them", count));
+            fail(fmt::format("needs {} values, separated by commas", count));
         }
         return result;
     }
@@ -61,7 +61,7 @@ void readAxes(const Option& option, HandSettings& settings) {
             word.remove_prefix(1);
         }
         if (word.size() != 1 || word[0] < 'x' || word[0] > 'z' || used[static_cast<std::size_t>(word[0] - 'x')]) {
-            option.fail("give east, north and up as x, y and z, each once, with '-' where they are reversed");
+            option.fail("give east, north and up as x, y and z, each once; '-' reverses an axis");
         }
         used[static_cast<std::size_t>(word[0] - 'x')] = true;
         settings.axes[i] = {word[0] - 'x', sign};
@@ -73,7 +73,7 @@ void readTime(const Option& option, HandSettings& settings) {
         {{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}}};
     const auto* unit = std::find_if(units.begin(), units.end(), [&](const auto& u) { return u.first == option.value; });
     if (unit == units.end()) {
-        option.fail("is s, ms, us or ns");
+        option.fail("must be s, ms, us or ns");
     }
     settings.secondsPerTick = unit->second;
 }
@@ -86,14 +86,14 @@ void readEngage(const Option& option, HandSettings& settings) {
     } else if (option.value == "button") {
         settings.engage = HandSettings::Engage::button;
     } else {
-        option.fail("is near, always or button");
+        option.fail("must be near, always or button");
     }
 }
 
 void apply(const Option& option, HandSettings& settings) {
     const auto either = [&option](std::string_view first, std::string_view second) {
         if (option.value != first && option.value != second) {
-            option.fail(fmt::format("is {} or {}", first, second));
+            option.fail(fmt::format("must be {} or {}", first, second));
         }
         return option.value == first;
     };
@@ -116,7 +116,7 @@ void apply(const Option& option, HandSettings& settings) {
     } else if (option.key == "drift") {
         settings.drift = option.number(option.value);
         if (!(settings.drift >= 0 && settings.drift <= 1)) {
-            option.fail("lies between 0 and 1");
+            option.fail("must be between 0 and 1");
         }
     } else if (option.key == "engage") {
         readEngage(option, settings);

@@ -10,7 +10,7 @@ void thin(std::vector<sand::ProbePoint>& path, std::size_t most) {
         return;
     }
     for (std::size_t i = 0; i < most; ++i) {
-        path[i] = path[i * (path.size() - 1) / (most - 1)];  // from further on, or from there
+        path[i] = path[i * (path.size() - 1) / (most - 1)];  // the source index is never smaller than i
     }
     path.resize(most);
 }
@@ -25,13 +25,14 @@ void PathBuilder::add(const HandSample& sample) {
 void PathBuilder::thinWaiting() {
     std::deque<HandSample> kept;
     for (std::size_t i = 0; i < waiting_.size(); ++i) {
-        // The last sample before a change of engagement says where a stroke ends.
+        // The last sample before a change of engagement is kept, because a stroke ends there.
         const bool ends = i + 1 == waiting_.size() || waiting_[i + 1].engaged != waiting_[i].engaged;
         if (i % 2 == 0 || ends) {
             kept.push_back(waiting_[i]);
         }
     }
-    if (kept.size() > kMaxWaiting) {  // a hand that taps at every sample cannot be thinned: the oldest go
+    // A hand that taps at every sample cannot be thinned out. Its oldest samples are dropped.
+    if (kept.size() > kMaxWaiting) {
         kept.erase(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(kMaxWaiting / 2));
     }
     dropped_ += waiting_.size() - kept.size();
@@ -48,7 +49,7 @@ void PathBuilder::letGoIfFarAhead() {
     }
     dropped_ += all - waiting_.size();
     const HandSample now = waiting_.front();
-    if (engaged_ && now.engaged) {  // no furrow from where the sand is to there
+    if (engaged_ && now.engaged) {  // avoids a furrow from the tool's last place to the hand
         waiting_.push_front({now.timeNs, now.at, false});
     }
 }
@@ -70,7 +71,7 @@ std::int64_t PathBuilder::take(sand::Step& step) {
         waiting_.pop_front();
         readNs = sample.timeNs;
         step.heading = sample.heading ? sample.heading : step.heading;
-        // A hand that engages where it hovers must press there, though it has not moved.
+        // A hand that engages where it hovers must press there, although it has not moved.
         if (sample.at != last_ || (changed && path.empty())) {
             path.push_back(sample.at);
             last_ = sample.at;
