@@ -17,7 +17,7 @@ Address Address::parse(std::string_view text, std::string_view option) {
     if (text.starts_with('[')) {
         const auto end = text.find(']');
         if (end == std::string_view::npos || (end + 1 < text.size() && text[end + 1] != ':')) {
-            fail("is no address");
+            fail("is not an address");
         }
         address.host = text.substr(1, end - 1);
         port = text.substr(end + 1);
@@ -33,7 +33,7 @@ Address Address::parse(std::string_view text, std::string_view option) {
         port.remove_prefix(1);
         const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), address.port);
         if (error != std::errc{} || end != port.data() + port.size()) {
-            fail("has no port in 0 to 65535");
+            fail("has no port from 0 to 65535");
         }
     }
     return address;

@@ -17,9 +17,10 @@ using boost::system::error_code;
 namespace {
 
 constexpr std::chrono::milliseconds kThrottle{20};
-// What TLS begins every record with: change of cipher, alert, handshake, data; a client's first is a handshake.
+// Types with which every TLS record begins: change of cipher, alert, handshake, data. A client's first record is a
+// handshake.
 constexpr std::uint8_t kFirstRecord = 20, kHandshake = 22, kLastRecord = 23;
-constexpr double kRecordBytes = 32;  // of TLS around a message, about
+constexpr double kRecordBytes = 32;  // [byte], approximate overhead of TLS per message
 
 }  // namespace
 
@@ -36,7 +37,7 @@ Connection::Connection(Socket socket, std::unique_ptr<TlsSession> tls)
       throttle_(socket_.get_executor()),
       rate_(kMaxRate, host::monotonicNs()) {
     error_code ignored;
-    // A step must not wait for the acknowledgement of the one before.
+    // A step must not wait for the acknowledgement of the step before.
     socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
     const auto endpoint = socket_.remote_endpoint(ignored);
     peer_ = ignored ? "an unknown address" : textOf(endpoint);
@@ -52,7 +53,7 @@ void Connection::start(Handlers handlers) {
     }
     read();
     if (!tls_ && handlers_.ready) {
-        const auto ready = handlers_.ready;  // a copy: closing releases the handlers
+        const auto ready = handlers_.ready;  // a copy, because closing releases the handlers
         ready();
     }
 }
@@ -86,7 +87,7 @@ void Connection::take(std::size_t count) {
         return;
     }
     if (bytesIn_ + count > maxIn_) {
-        close("a greeting too long", RefusalCode::limit);
+        close("its greeting is too long", RefusalCode::limit);
         return;
     }
     if (!tls_) {
@@ -99,14 +100,14 @@ void Connection::take(std::size_t count) {
     deliver();
 }
 
-/// Returns the bytes that TLS has carried, and answers TLS. Returns nullopt if that has closed the connection.
+/// Returns the decrypted bytes, and sends the answers of TLS. Returns nullopt if this has closed the connection.
 std::optional<base::Bytes> Connection::unseal(ByteSpan bytes) {
     base::Bytes plain, reply;
     std::string trouble;
     bool first = false;
     try {
         tls_->receive(bytes, plain, reply);
-        // Once: a message of the handshake that comes in pieces makes it look unfinished again.
+        // Only once, because a handshake message that arrives in pieces makes the handshake look unfinished again.
         first = !told_ && tls_->established();
         if (first) {
             told_ = true;
@@ -126,13 +127,13 @@ std::optional<base::Bytes> Connection::unseal(ByteSpan bytes) {
         const auto ready = handlers_.ready;
         ready();
     }
-    if (told_ && plain.size() < bytes.size()) {  // records that never become a message cost time, too
+    if (told_ && plain.size() < bytes.size()) {  // records without a message also cost time
         rate_.use(static_cast<double>(bytes.size() - plain.size()) / kRecordBytes);
     }
     return plain;
 }
 
-/// Whether the first byte tells that one side speaks TLS and the other does not; this end then says so and closes.
+/// Returns whether the first byte shows that only one side uses TLS. This end then sends the reason and closes.
 bool Connection::speaksOtherwise(ByteSpan first) {
     const bool version = first.size() < 2 || first[1] == 3;
     const bool isTls = version && (tls_ && !handlers_.server ? first[0] >= kFirstRecord && first[0] <= kLastRecord
@@ -141,16 +142,16 @@ bool Connection::speaksOtherwise(ByteSpan first) {
         return false;
     }
     if (tls_ && !handlers_.server) {
-        close("it does not speak TLS; start it with --tls, or this side without", RefusalCode::tls);
+        close("it does not use TLS; start it with --tls, or start this side without", RefusalCode::tls);
     } else if (tls_) {
-        tls_ = nullptr;  // the answer must be understood
-        refuse(RefusalCode::tls, "this server speaks TLS alone; give your side --tls and --secret-file",
-               "it does not speak TLS");
+        tls_ = nullptr;  // the other side must be able to read the answer
+        refuse(RefusalCode::tls, "this server accepts only TLS; give your side --tls and --secret-file",
+               "it does not use TLS");
     } else if (handlers_.server) {
-        refuse(RefusalCode::tls, "this server speaks no TLS; start it with --tls, or your side without",
-               "it speaks TLS, this server does not; both take --tls or neither");
+        refuse(RefusalCode::tls, "this server does not use TLS; start it with --tls, or start your side without",
+               "it uses TLS and this server does not; give --tls to both or to neither");
     } else {
-        close("it speaks TLS; give this side --tls, too", RefusalCode::tls);
+        close("it uses TLS; give this side --tls, too", RefusalCode::tls);
     }
     return true;
 }
@@ -159,12 +160,12 @@ void Connection::refuse(RefusalCode code, const std::string& answer, const std::
     send(Refusal{code, answer});
     const auto closed = std::move(handlers_.closed);
     finish();
-    if (closed) {  // unless the answer was too much for who does not read: then it has been called
+    if (closed) {  // otherwise the answer was too long for a peer that does not read, and `closed` was called
         closed(why, code);
     }
 }
 
-/// Counts the message that comes next; false when it must wait.
+/// Returns whether the next message may be delivered. If not, delivery continues after kThrottle.
 bool Connection::mayDeliver() {
     if (rate_.allows(host::monotonicNs)) {
         return true;
@@ -194,7 +195,7 @@ void Connection::deliver() {
             }
             rate_.use(1);
             if (handlers_.message) {
-                // A copy: the handler may close the connection, which releases the handlers.
+                // A copy, because the handler may close the connection, which releases the handlers.
                 const auto handle = handlers_.message;
                 handle(std::move(*message));
             }
@@ -225,7 +226,7 @@ void Connection::sendBytes(base::Bytes bytes) {
         base::Bytes sealed;
         try {
             tls_->seal(bytes, sealed);
-        } catch (const std::runtime_error& error) {  // the other end may have begun what it does not finish
+        } catch (const std::runtime_error& error) {  // the other end may have left a TLS message unfinished
             close(std::string("TLS failed: ") + error.what(), RefusalCode::tls);
             return;
         }
@@ -279,8 +280,8 @@ void Connection::finish() {
 }
 
 void Connection::endSending() {
-    // Only the sending side: closing while the peer's bytes lie unread would reset the connection, and what was sent
-    // last, the reason, would be lost on its way.
+    // Shuts down only the sending side. Closing while bytes of the peer are unread would reset the connection. The last
+    // message, which gives the reason, would then be lost.
     error_code ignored;
     socket_.shutdown(Socket::shutdown_send, ignored);
 }

@@ -7,7 +7,7 @@ namespace haptic_bridge {
 
 MacBytes Transcript::mac(const Security& functions, const std::string& secret, Side side) const {
     base::ByteWriter writer;
-    // The label tells the sides apart: what one has said is no answer of the other.
+    // The label differs for the two sides, so that neither side can answer with the other's proof.
     writer.putText(side == Side::master ? "sandwall 6 master" : "sandwall 6 server");
     writer.putBytes(encode(hello));
     writer.putBytes(encode(challenge));
@@ -50,7 +50,7 @@ bool MasterHandshake::proven(const Identity& server, const MacBytes& mac) {
         return true;
     }
     if (!challenged_) {
-        return refuse(RefusalCode::secret, "it asks for no secret and proves none; start it with --secret-file");
+        return refuse(RefusalCode::secret, "it does not prove a secret; start it with --secret-file");
     }
     const auto proves = [&](Role role) {
         const auto& secret = security_.secrets.of(role);
@@ -60,7 +60,7 @@ bool MasterHandshake::proven(const Identity& server, const MacBytes& mac) {
     const Role role = transcript_.hello.role;
     if (!proves(role)) {
         return proves(Role::watch)
-                   ? refuse(RefusalCode::role, "it proves the secret of role watch alone, and must not number steps")
+                   ? refuse(RefusalCode::role, "it proves only the secret of role watch, and must not number steps")
                    : refuse(RefusalCode::secret, "it does not know the secret; give both sides the same --secret-file");
     }
     return server == transcript_.challenge.server ||
@@ -72,8 +72,8 @@ bool MasterHandshake::accepts(const Welcome& welcome) {
         return false;
     }
     return welcome.role == transcript_.hello.role ||
-           refuse(RefusalCode::role, "it grants role " + std::string(nameOf(welcome.role)) + ", and " +
-                                         std::string(nameOf(transcript_.hello.role)) + " was asked for");
+           refuse(RefusalCode::role, "it grants role " + std::string(nameOf(welcome.role)) + ", but role " +
+                                         std::string(nameOf(transcript_.hello.role)) + " was requested");
 }
 
 bool MasterHandshake::accepts(const PositionGreeting& greeting) {
@@ -82,7 +82,8 @@ bool MasterHandshake::accepts(const PositionGreeting& greeting) {
 
 std::optional<Refusal> ServerHandshake::refusalFor(const Hello& hello, bool overTls) const {
     if (hello.tls != overTls) {
-        return Refusal{RefusalCode::tls, "what you believe of TLS is not what arrives here; somebody is in between"};
+        return Refusal{RefusalCode::tls,
+                       "your side and this server disagree on TLS; another machine may be in between"};
     }
     if (security_.proves() && !hello.proves) {
         return Refusal{RefusalCode::secret, "this server asks for a secret; give your side --secret-file, too"};
@@ -93,7 +94,7 @@ std::optional<Refusal> ServerHandshake::refusalFor(const Hello& hello, bool over
     }
     if (security_.proves() && !security_.secrets.of(hello.role)) {
         return Refusal{RefusalCode::role, "this server has no secret of role " + std::string(nameOf(hello.role)) +
-                                              ", so nobody gets it; add a line to its --secret-file"};
+                                              "; add a line to its --secret-file"};
     }
     return std::nullopt;
 }

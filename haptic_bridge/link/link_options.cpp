@@ -13,7 +13,7 @@ LinkSecurity withSecrets(const LinkOptions& options) {
         security.secrets = readSecrets(options.secretFile);
         security.functions = &loadSecurity("--secret-file");
     } else if (options.tls) {
-        throw base::InputError("--tls: needs --secret-file, which tells the other side from somebody in between");
+        throw base::InputError("--tls: needs --secret-file, which detects an attacker in between");
     }
     return security;
 }
@@ -21,18 +21,19 @@ LinkSecurity withSecrets(const LinkOptions& options) {
 }  // namespace
 
 void LinkOptions::addTo(host::CommandLine& line, bool server) {
-    line.option("--secret-file", secretFile, "lines ROLE SECRET that both sides know (docs/security.md)");
+    line.option("--secret-file", secretFile, "file with lines ROLE SECRET, the same on both sides (docs/security.md)");
     line.flag("--tls", tls, "TLS 1.3 on the haptic link; needs --secret-file");
     if (server) {
-        line.option("--tls-cert", certificate, "PEM file, instead of a certificate made at the start");
-        line.option("--tls-key", key, "PEM file of its key");
+        line.option("--tls-cert", certificate,
+                    "PEM file with a certificate; without it the server makes one at the start");
+        line.option("--tls-key", key, "PEM file with the key of the certificate");
     }
 }
 
 LinkSecurity LinkOptions::forServer() const {
     LinkSecurity security = withSecrets(*this);
     if (certificate.empty() != key.empty() || (!tls && !certificate.empty())) {
-        throw base::InputError("--tls-cert and --tls-key: give both or none, and --tls with them");
+        throw base::InputError("--tls-cert and --tls-key: give both or neither, and --tls with them");
     }
     try {
         security.tls = tls ? security.functions->tlsServer(certificate, key) : nullptr;

@@ -11,7 +11,7 @@ namespace haptic_bridge {
 namespace {
 
 constexpr std::size_t kLengthBytes = sizeof(std::uint32_t);
-constexpr std::size_t kMaxKept = 1024 * 1024;  // [byte], of a buffer that holds nothing
+constexpr std::size_t kMaxKept = 1024 * 1024;  // [byte], largest capacity that an empty buffer keeps
 
 template <class Kind>
 constexpr std::uint8_t typeOf() {
@@ -37,7 +37,7 @@ void MessageReader::feed(std::span<const std::uint8_t> bytes) {
         buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(begin_));
         begin_ = 0;
         if (buffer_.empty() && buffer_.capacity() > kMaxKept) {
-            buffer_ = base::Bytes();  // what a State needed once is not held for ever
+            buffer_ = base::Bytes();  // frees the memory that a State needed
         }
     }
     const std::size_t end = buffer_.size();
@@ -53,7 +53,7 @@ std::optional<Message> MessageReader::next() {
     const auto length = base::ByteReader(stream).get<std::uint32_t>();
     const bool longMessage = length > most_;
     if (length == 0 || length > kMaxState || (longMessage && !stateExpected_ && !loadsExpected_)) {
-        throw base::FormatError(fmt::format("a message of {} bytes, {} is the most", length, most_));
+        throw base::FormatError(fmt::format("a message of {} bytes; at most {} are allowed", length, most_));
     }
     if (longMessage && stream.size() > kLengthBytes && !mayBeLong(stream[kLengthBytes])) {
         throw base::FormatError(fmt::format("a message of {} bytes that holds no sand", length));
@@ -63,7 +63,7 @@ std::optional<Message> MessageReader::next() {
     }
     begin_ += kLengthBytes + length;
     if (stream[kLengthBytes] == typeOf<State>() && !std::exchange(stateExpected_, false)) {
-        throw base::FormatError("a state that nobody asked for");
+        throw base::FormatError("a state that was not requested");
     }
     return decode(stream.subspan(kLengthBytes, length));
 }

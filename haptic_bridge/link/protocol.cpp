@@ -19,7 +19,8 @@ void putIdentity(const Identity& identity, base::ByteWriter& writer) {
     writer.putText(std::string_view(identity.sceneName).substr(0, kMaxSceneName));
 }
 
-/// Texts of the other side are printed: one line of plain characters, whatever came.
+/// Reads a text of the other side. Such texts are printed, so control characters are replaced and the text stays on one
+/// line.
 std::string getLine(base::ByteReader& reader) {
     std::string text = reader.getText();
     const auto at = [&text](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
@@ -33,7 +34,7 @@ std::string getLine(base::ByteReader& reader) {
     return text;
 }
 
-/// Leaves nothing to read when the protocol is another one: what follows then is not ours to judge.
+/// Reads an identity. If the protocol version differs, skips the rest of the message, because its layout is unknown.
 Identity getIdentity(base::ByteReader& reader) {
     if (reader.get<std::uint32_t>() != kMagic) {
         throw base::FormatError("a greeting without the magic word SWHB");
@@ -128,7 +129,7 @@ void put(const Pong& pong, base::ByteWriter& writer) {
     writer.put(pong.masterNs);
     writer.put(pong.serverNs);
 }
-/// The one list of a report's numbers, in the order of the wire.
+/// Visits all numbers of a report in their order on the wire. Both encoding and decoding use this list.
 template <class AnyReport, class Visit>
 void eachNumber(AnyReport& report, const Visit& visit) {
     for (auto* number : {&report.hapticPeriodUsP50, &report.hapticPeriodUsP99, &report.hapticPeriodUsMax,
@@ -195,12 +196,12 @@ void get(Proof& proof, base::ByteReader& reader) { get(proof.mac, reader); }
 void get(CatchUp& catchUp, base::ByteReader& reader) {
     const auto last = reader.get<std::uint8_t>();
     if (last > 1) {
-        throw base::FormatError("a catch-up that is neither the last nor another");
+        throw base::FormatError("a catch-up whose mark of the last one is neither 0 nor 1");
     }
     catchUp.last = last == 1;
     auto count = reader.get<std::uint16_t>();
     if (count > kMaxCatchUp) {
-        throw base::FormatError(fmt::format("a catch-up of {} steps, where {} are the most", count, kMaxCatchUp));
+        throw base::FormatError(fmt::format("a catch-up of {} steps; at most {} are allowed", count, kMaxCatchUp));
     }
     for (; count > 0; --count) {
         catchUp.steps.push_back(sand::decodeStep(reader));
@@ -271,7 +272,7 @@ void get(Report& report, base::ByteReader& reader) {
     eachNumber(report, [&reader](auto& number) {
         number = reader.get<std::remove_reference_t<decltype(number)>>();
         if (!std::isfinite(static_cast<double>(number))) {
-            throw base::FormatError("a report with a number that is none");
+            throw base::FormatError("a report with a number that is not finite");
         }
     });
 }
@@ -286,7 +287,7 @@ void get(EditRequest& request, base::ByteReader& reader) {
 void get(ForceShare& force, base::ByteReader& reader) {
     force.share = reader.get<double>();
     if (!(force.share >= 0 && force.share <= 1)) {
-        throw base::FormatError("a share of the force that is not within 0 and 1");
+        throw base::FormatError("a share of the force outside 0 to 1");
     }
 }
 void get(TickPiece& piece, base::ByteReader& reader) {
@@ -308,7 +309,7 @@ void get(PositionGreeting& greeting, base::ByteReader& reader) {
     }
     get(greeting.mac, reader);
 }
-/// Numbers that are none pass: a device that sends them is told of, and not cut off.
+/// Accepts numbers that are not finite, so that the master can report the device and keep the link.
 void get(Position& position, base::ByteReader& reader) {
     position.timeNs = reader.get<std::int64_t>();
     position.x = reader.get<double>();
@@ -337,7 +338,7 @@ std::string_view nameOf(Role role) { return role == Role::move ? "move" : "watch
 base::Bytes encode(const Message& message) {
     std::uint32_t length = 0;
     base::ByteWriter writer;
-    writer.put(length);  // known at the end: a message may hold hundreds of megabytes, which are written once
+    writer.put(length);  // the length is known only at the end; hundreds of megabytes are then written once
     writer.put(static_cast<std::uint8_t>(message.index() + 1));
     std::visit([&writer](const auto& kind) { put(kind, writer); }, message);
     base::Bytes framed = writer.take();

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
 
-/// The next word of a line, which is then shorter.
+/// Returns the next word of `line` and removes it from `line`.
 std::string_view cutWord(std::string_view& line) {
     line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
     const std::string_view word = line.substr(0, line.find_first_of(kBlanks));
@@ -39,15 +39,15 @@ struct Line {
         if (role.empty() || role.starts_with('#')) {
             return;
         }
-        if (role != "move" && role != "watch") {  // which may be a secret: it is not repeated
-            fail("begins with neither move nor watch; write ROLE SECRET");
+        if (role != "move" && role != "watch") {  // the word may be a secret, so the message does not repeat it
+            fail("does not begin with move or watch; write ROLE SECRET");
         }
         const std::string_view secret = cutWord(rest);
         if (!cutWord(rest).empty()) {
             fail("holds more than ROLE SECRET; a secret has no blanks");
         }
         if (secret.size() < kMinSecret || secret.size() > kMaxSecret) {
-            fail(fmt::format("a secret of {} characters, {} to {} are wanted; openssl rand -hex 32 makes one",
+            fail(fmt::format("a secret of {} characters, expected {} to {}; openssl rand -hex 32 makes one",
                              secret.size(), kMinSecret, kMaxSecret));
         }
         if (std::any_of(secret.begin(), secret.end(), [](char c) { return c < 0x21 || c > 0x7e; })) {
@@ -74,13 +74,14 @@ Secrets parseSecrets(std::string_view text, const std::string& file) {
         throw base::InputError(file + ": holds no secret; write a line such as: move " + "$(openssl rand -hex 32)");
     }
     if (secrets.move == secrets.watch) {
-        throw base::InputError(file + ": has one secret for both roles: who may watch could move; make another");
+        throw base::InputError(file +
+                               ": has the same secret for both roles, so a watcher could move the probe; make another");
     }
     return secrets;
 }
 
 Secrets readSecrets(const std::string& file) {
-    // Without waiting: a pipe that nobody writes to is no secret either.
+    // O_NONBLOCK is set because opening a pipe without a writer would wait. Pipes are refused below.
     const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
     if (descriptor < 0) {
         throw base::InputError(file + ": cannot be read (" + std::strerror(errno) + "); check --secret-file");
@@ -95,14 +96,15 @@ Secrets readSecrets(const std::string& file) {
     }
     close(descriptor);
     if (!regular) {
-        throw base::InputError(file + ": is no regular file; --secret-file takes one of lines ROLE SECRET");
+        throw base::InputError(file + ": is not a regular file; --secret-file takes a file with lines ROLE SECRET");
     }
     if ((about.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
-        throw base::InputError(file + ": others may read or change it; chmod 600 it, and take a new secret");
+        throw base::InputError(file +
+                               ": other users may read or change it; run chmod 600 on it, and make a new secret");
     }
     if (count < 0 || static_cast<std::size_t>(count) > kMaxSecretFile) {
         throw base::InputError(
-            fmt::format("{}: is larger than {} bytes; it holds two lines at most", file, kMaxSecretFile));
+            fmt::format("{}: is larger than {} bytes; a secret file has two lines at most", file, kMaxSecretFile));
     }
     return parseSecrets({bytes.data(), static_cast<std::size_t>(count)}, file);
 }

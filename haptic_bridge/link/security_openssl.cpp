@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The module that holds OpenSSL. TLS runs over memory instead of a socket, as it does inside Asio's own stream: the
-// sockets stay with the program, whose Asio a module must not share.
+// The module that uses OpenSSL. TLS runs over memory instead of a socket, as it does inside Asio's own stream. The
+// sockets stay in the program, because a module must not share the program's Asio.
 #include <openssl/crypto.h>
 #include <openssl/err.h>
 #include <openssl/evp.h>
@@ -25,11 +25,12 @@ struct Frees {
 };
 using Context = std::unique_ptr<SSL_CTX, Frees<SSL_CTX_free>>;
 
-constexpr std::size_t kBinding = 32;               // [byte]
-constexpr std::size_t kPiece = 16 * 1024;          // [byte], the most that a record of TLS holds
-constexpr long kValidity = 365L * 24 * 3600 * 20;  // [s]; nobody judges it, and clocks on a stage are often wrong
+constexpr std::size_t kBinding = 32;       // [byte]
+constexpr std::size_t kPiece = 16 * 1024;  // [byte], largest payload of a TLS record
+// [s]. It is long because the other end does not check it, and clocks on a stage are often wrong.
+constexpr long kValidity = 365L * 24 * 3600 * 20;
 
-/// What OpenSSL complains of first; the rest is forgotten.
+/// Returns the first error of OpenSSL as text, or `otherwise` if it has none. Forgets all other errors.
 std::string complaint(const std::string& otherwise) {
     const unsigned long error = ERR_get_error();
     ERR_clear_error();
@@ -62,8 +63,8 @@ public:
     void receive(ByteSpan bytes, base::Bytes& plain, base::Bytes& reply) override {
         ERR_clear_error();
         if ((SSL_get_shutdown(ssl_.get()) & SSL_RECEIVED_SHUTDOWN) != 0) {
-            // OpenSSL reads nothing any more, and would keep all of it.
-            throw std::runtime_error("it went on after it had said its last");
+            // OpenSSL does not read any more, and would keep all bytes in memory.
+            throw std::runtime_error("it sent data after it had closed TLS");
         }
         require(BIO_write(SSL_get_rbio(ssl_.get()), bytes.data(), static_cast<int>(bytes.size())) ==
                     static_cast<int>(bytes.size()),
@@ -86,12 +87,12 @@ public:
 
     void seal(ByteSpan plain, base::Bytes& sealed) override {
         ERR_clear_error();
-        // Piece by piece: what OpenSSL writes into never shrinks, and a state of the sand is large.
+        // Encrypts piece by piece. OpenSSL's output buffer never shrinks, and a state of the sand is large.
         for (; !plain.empty(); plain = plain.subspan(std::min(plain.size(), kPiece))) {
             const ByteSpan piece = plain.first(std::min(plain.size(), kPiece));
             std::size_t count = 0;
             require(SSL_write_ex(ssl_.get(), piece.data(), piece.size(), &count) == 1 && count == piece.size(),
-                    "cannot be sealed");
+                    "the bytes cannot be encrypted");
             take(sealed);
         }
     }
@@ -108,7 +109,8 @@ public:
     }
 
 private:
-    /// False when the other end must say more first, or has said its last.
+    /// Returns false if the other end must send more first, or has closed TLS. Throws std::runtime_error if the
+    /// connection is broken.
     bool go(int result, base::Bytes& reply) {
         if (result == 1) {
             return true;
@@ -148,15 +150,15 @@ private:
 
 Context contextOf(const SSL_METHOD* method) {
     Context context(SSL_CTX_new(method));
-    require(context && SSL_CTX_set_min_proto_version(context.get(), TLS1_3_VERSION) == 1, "TLS 1.3 is not there");
+    require(context && SSL_CTX_set_min_proto_version(context.get(), TLS1_3_VERSION) == 1, "OpenSSL has no TLS 1.3");
     SSL_CTX_set_verify(context.get(), SSL_VERIFY_NONE, nullptr);
-    // No way to come back without the whole handshake.
+    // Disables session resumption: every connection does the whole handshake.
     SSL_CTX_set_num_tickets(context.get(), 0);
     SSL_CTX_set_session_cache_mode(context.get(), SSL_SESS_CACHE_OFF);
     return context;
 }
 
-/// A key that lives as long as the program, and a certificate that says nothing.
+/// Makes a key that lives as long as the program, and a certificate without information.
 void makeCertificate(SSL_CTX* context) {
     const std::unique_ptr<EVP_PKEY, Frees<EVP_PKEY_free>> key(EVP_EC_gen("P-256"));
     const std::unique_ptr<X509, Frees<X509_free>> certificate(X509_new());
