@@ -70,7 +70,7 @@ void Client::drill(LinkDrill drill, std::chrono::milliseconds length) { session_
 
 void Client::stop() { session_->stop(); }
 
-// The link with a server that has no sand and streams where its hand is.
+// Link with a server that has no sand and streams positions of its hand.
 
 void Client::Session::take(Link link, const PositionGreeting& greeting) {
     if (isUp(link)) {
@@ -78,8 +78,8 @@ void Client::Session::take(Link link, const PositionGreeting& greeting) {
         return;
     }
     if (greeting.protocol != kProtocolVersion) {
-        refuse(fmt::format("refused: it streams positions in protocol version {}, the master speaks {}; "
-                           "docs/protocol.md has the present one",
+        refuse(fmt::format("refused: it streams positions in protocol version {}, the master has version {}; "
+                           "docs/protocol.md describes the master's",
                            greeting.protocol, kProtocolVersion),
                RefusalCode::protocol);
         return;
@@ -112,7 +112,7 @@ std::vector<TimedPosition> Client::Session::drainPositions() {
     return positions;
 }
 
-// Faults of the link on purpose.
+// Drills: faults of the link on purpose.
 
 void Client::Session::drill(LinkDrill drill, std::chrono::milliseconds length) {
     boost::asio::post(io_, [this, drill, length] {

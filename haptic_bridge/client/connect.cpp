@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the master's end of the link comes about, ends, and is tried again.
+// The master's end of the link: connecting, ending and trying again.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,10 +21,10 @@ constexpr std::chrono::milliseconds kConnectTimeout{3000};
 }  // namespace
 
 void Client::Session::connect() {
-    if (stopping_) {  // the retry was due already when it was cancelled
+    if (stopping_) {  // the retry was already due when stop() cancelled it
         return;
     }
-    // One answer of the two below wins; the other finds `done` set.
+    // The first of the two answers below wins. The other finds `done` set.
     const auto done = std::make_shared<bool>(false);
     const auto socket = std::make_shared<tcp::socket>(io_);
     watchTimer_.expires_after(kConnectTimeout);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kGoodbye{500};
 
-/// Whether a message may come from a server that no steps are expected of.
+/// Returns whether `message` may come while no steps are expected: a greeting, or a position of a streaming server.
 bool greets(const Message& message, Link link) {
     if (std::holds_alternative<Challenge>(message) || std::holds_alternative<Welcome>(message)) {
         return link < Link::offered || link > Link::streaming;
@@ -40,7 +40,7 @@ Client::Session::Session(Address address, Offer offer, LinkSecurity security, Li
     thread_ = std::thread([this] { run(); });
 }
 
-/// Until io_ is stopped: whatever goes wrong costs the link, and neither this thread nor the wall.
+/// Runs until io_ is stopped. An error ends only the link; this thread and the wall continue.
 void Client::Session::run() {
     const auto work = asio::make_work_guard(io_);
     while (!io_.stopped()) {
@@ -66,11 +66,11 @@ void Client::Session::stop() {
         stopping_ = true;
         resolver_.cancel();
         retryTimer_.cancel();
-        const auto connection = connection_;  // what was held back may close it
+        const auto connection = connection_;  // a copy, because a message that was held back may close the connection
         if (connection) {
             connection->resume();
         }
-        if (connection_ && handshake_) {  // not in the middle of agreeing on TLS
+        if (connection_ && handshake_) {  // not during the TLS handshake
             connection_->send(Bye{"the master has ended"});
         }
         goodbyeTimer_.expires_after(connection_ && handshake_ ? kGoodbye : Milliseconds(0));
@@ -100,7 +100,7 @@ void Client::Session::watch() {
         const std::int64_t now = now_();
         heardNs_ = shelf.full() ? now : heardNs_;
         if (now - heardNs_ > kSilenceNs) {
-            if (!up()) {  // it accepted the connection and never greeted
+            if (!up()) {  // the server accepted the connection and never greeted
                 countRefusal(RefusalCode::limit);
             }
             connection_->close(fmt::format("silent for {} s", kSilenceNs / 1'000'000'000));
@@ -111,7 +111,7 @@ void Client::Session::watch() {
 }
 
 void Client::Session::ping() {
-    // Quick at first, so that the clock offset is known within the first frames.
+    // Pings are frequent at first, so that the clock offset is known within the first frames.
     pingTimer_.expires_after(pings_ < 8 ? Milliseconds(10) : Milliseconds(250));
     pingTimer_.async_wait([this](error_code error) {
         if (!error && connection_) {
@@ -149,7 +149,7 @@ void Client::Session::shareForce(double share) {
 void Client::Session::request(const EditRequest& request) {
     asio::post(io_, [this, request] {
         if (connection_ && shelf.link() == Link::linked) {
-            connection_->expectLoads(request.edit.kind == sand::Edit::load);  // it comes back in a step
+            connection_->expectLoads(request.edit.kind == sand::Edit::load);  // the load comes back in a step
             connection_->send(request);
         }
     });
@@ -169,7 +169,7 @@ void Client::Session::receive(Message&& message) {
     const Link link = shelf.link();
     const bool welcomed = link >= Link::offered && link <= Link::linked;
     if (!ends && !welcomed && !greets(message, link)) {
-        connection_->close("it did not greet", RefusalCode::garbage);
+        connection_->close("it sent another message than a greeting", RefusalCode::garbage);
         return;
     }
     std::visit([this, link](auto& kind) { take(link, kind); }, message);
@@ -199,7 +199,8 @@ void Client::Session::take(Link link, const Welcome& greeting) {
         return;
     }
     const Identity mine{kProtocolVersion, sand::kAlgorithmVersion, offer_.rulesDigest, offer_.sceneName};
-    // The server judged as well; a server that does not is no reason to show sand that differs from what is felt.
+    // The server compares as well. The client does not rely on that, because the wall must not show other sand than the
+    // hand feels.
     if (const auto refusal = refusalFor(greeting.server, mine)) {
         refuse("refused: " + refusal->text, refusal->code);
         return;
@@ -238,7 +239,7 @@ void Client::Session::take(Link link, const NeedState& need) {
     const std::vector<Message> answer = grant_.handOver(need);
     const bool whole = std::holds_alternative<State>(answer.front());
     shelf.count([whole](LinkCounters& counters) { ++(whole ? counters.snapshots : counters.catchUps); });
-    const auto connection = connection_;  // sending may close it
+    const auto connection = connection_;  // a copy, because sending may close the connection
     for (const Message& message : answer) {
         connection->send(message);
     }

@@ -8,8 +8,8 @@
 namespace haptic_bridge {
 namespace {
 
-constexpr std::size_t kMaxTests = 64;         // a wall that stands still has no round trip to tell
-constexpr std::size_t kMaxTickPieces = 4096;  // half an hour of them; a session that keeps none takes none out
+constexpr std::size_t kMaxTests = 64;         // a wall that shows no frames answers no tests
+constexpr std::size_t kMaxTickPieces = 4096;  // half an hour of pieces; a session without a journal never drains them
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What passes while a server numbers the steps: its steps and timing tests one way, what the wall has shown the other.
+// Messages while a server numbers the steps. Steps and timing tests come from the server; the master reports which step
+// the wall shows.
 #include <fmt/format.h>
 
 #include <boost/asio/post.hpp>
@@ -62,7 +63,7 @@ void Client::Session::shown(const Shown& frame) {
         if (!connection_ || silent() || shelf.link() != Link::linked) {
             return;
         }
-        const auto connection = connection_;  // sending may close it
+        const auto connection = connection_;  // a copy, because sending may close the connection
         connection->send(grant_.bounded(frame));
         for (const std::uint32_t id : tests) {
             connection->send(TimingEcho{id, Leg::shown});

@@ -23,13 +23,13 @@ namespace asio = boost::asio;
 using boost::system::error_code;
 using namespace haptic_bridge;
 
-/// Listens to one haptic server, and says once a second what it hears.
+/// Watches one haptic server, and prints a line per second.
 class Watcher {
 public:
     Watcher(asio::io_context& io, const LinkSecurity& security, std::uint64_t lines)
         : timer_(io), security_(security), linesLeft_(lines) {}
 
-    /// Throws base::InputError when nobody is there.
+    /// Connects to the server. Throws base::InputError if no server answers.
     void connect(asio::io_context& io, const Address& address) {
         asio::ip::tcp::socket socket(io);
         error_code error;
@@ -54,7 +54,7 @@ public:
     void stop() {
         ended_ = "";
         if (welcomed_) {
-            connection_->send(Bye{"enough seen"});
+            connection_->send(Bye{"the watcher has ended"});
         }
         connection_->finish();
         timer_.cancel();
@@ -108,7 +108,7 @@ private:
             }
             if (welcomed_) {
                 connection_->send(Ping{host::monotonicNs()});
-                constexpr double kUnits = 256;  // to a cell
+                constexpr double kUnits = 256;  // [probe unit/cell]
                 fmt::print("step {} {:016x}, probe at {:.2f} {:.2f} {:.2f} cells{}, {} steps/s, {} bytes/s\n",
                            last_.number, hash_, probe_.x / kUnits, probe_.y / kUnits, probe_.z / kUnits,
                            last_.engaged ? " in the sand" : "", steps_, connection_->bytesIn() - bytes_);
@@ -130,7 +130,7 @@ private:
         connection_->finish();
     }
 
-    static constexpr std::int64_t kSilenceNs = 10'000'000'000;  // a report comes once a second
+    static constexpr std::int64_t kSilenceNs = 10'000'000'000;  // [ns]; a report comes once a second
 
     asio::steady_timer timer_;
     const LinkSecurity& security_;
@@ -169,13 +169,13 @@ int main(int argc, char** argv) {
     if (host::answersVersion(argc, argv, "sandwall-watch", {{"protocol", haptic_bridge::kProtocolVersion}})) {
         return 0;
     }
-    host::CommandLine line("Prints once a second what a haptic server's hand does; it cannot move anything.",
+    host::CommandLine line("Prints once a second what the hand of a haptic server does. It cannot move the probe.",
                            "sandwall-watch");
     std::string address;
     LinkOptions options;
     std::uint64_t lines = 0;
     line.option("server", address, "HOST:PORT of the haptic server").required();
-    line.option("--lines", lines, "end after so many; 0, the default, with the server");
+    line.option("--lines", lines, "end after this many lines (default: 0, end with the server)");
     options.addTo(line, false);
     return host::runMain(line, argc, argv, [&] { return run(address, options, lines); });
 }
