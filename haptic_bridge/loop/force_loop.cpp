@@ -42,7 +42,7 @@ void ForceLoop::run() {
     prctl(PR_SET_TIMERSLACK, 1UL);
 
     std::int64_t due = host::monotonicNs(), last = due;
-    std::int64_t handTimeNs = 0;  // runs while a master is linked
+    std::int64_t handTimeNs = 0;  // [ns], advances while a master is linked
     std::uint32_t sitting = 0;
     while (!stopping_) {
         due += kTickNs;

@@ -20,8 +20,8 @@ void ChannelFeed::collect(PathBuilder* path) {
     });
 }
 
-/// Around the hand, and not around the tool: before a link's first step the tool is where no hand has been, and later a
-/// hand may be ahead of its tool.
+/// The patch is around the hand and not around the tool. Before a link's first step the tool is at a place where no
+/// hand has been. Later the hand may be ahead of its tool.
 void ChannelFeed::publish(const sand::Replica& terrain) {
     FeltSand& next = channel_.surface.next();
     takeSurface(terrain, hand_.where(), next);

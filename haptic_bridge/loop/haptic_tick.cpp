@@ -12,7 +12,7 @@
 namespace haptic_bridge {
 namespace {
 
-/// [scene unit], of one step of a quantised place.
+/// Returns the size of one step of a quantised place [scene unit].
 double probeStep(const scene::Scene& scene) { return scene.terrain.cellSize() / sand::kProbePerCell; }
 
 ForceLimits limitsFor(const scene::Scene& scene, const Device& device, const LawAtRadius& law) {
@@ -26,11 +26,11 @@ ForceLimits limitsFor(const scene::Scene& scene, const Device& device, const Law
     touch.name = "a recording, felt as with a Touch";
     touch.resolution = 0;
     ForceLimits limits = ForceLimits::of(touch, scale, law, friction, probeStep(scene) / scale);
-    limits.fastestThing = std::numeric_limits<double>::infinity();  // a list of strokes presses within a tick
+    limits.fastestThing = std::numeric_limits<double>::infinity();  // a stroke list goes down within one tick
     return limits;
 }
 
-/// The constant that the gain lowers: a law is proportional to it.
+/// Returns the limits in words. They name the constant that the gain lowers, because a law is proportional to it.
 std::vector<std::string> inWords(const sand::ForceConstants& constants, const ForceLimits& limits,
                                  const LawAtRadius& law) {
     return constants.law == sand::ForceLaw::repulse ? limits.inWords("k_s", constants.stiffness, law)
@@ -95,7 +95,7 @@ HandSample HapticTick::tick(double deviceTime, std::int64_t nowNs, const FeltSan
     const std::int64_t begin = host::monotonicNs();
     fillTick(sample.engaged);
     const double perMetre = guards_.limits().scale;
-    // On the device's clock, which a recording of ticks keeps, so that a replay finds the same.
+    // The time is on the device's clock. A recording of ticks keeps that clock, so that a replay finds the same forces.
     Guards::Reading reading{deviceTime,
                             present,
                             sample.engaged,

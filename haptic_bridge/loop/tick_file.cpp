@@ -20,7 +20,7 @@ TickFile::TickFile(std::string file, std::function<void(const std::string&)> log
       descriptor_(open(file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)),
       rows_(tickTitles()) {
     if (descriptor_ < 0) {
-        throw base::InputError(fmt::format("--record {}: cannot be made ({}); give a file in a folder that is there",
+        throw base::InputError(fmt::format("--record {}: cannot be created ({}); give a file in a folder that exists",
                                            file_, std::strerror(errno)));
     }
 }
@@ -48,11 +48,11 @@ void TickFile::write() {
 }
 
 void TickFile::giveUp(int error) {
-    // The disk may have taken half a row. Cut, so that the file ends with a whole one.
+    // The disk may have written half a row. The file is cut so that it ends with a whole row.
     [[maybe_unused]] const int cut = ftruncate(descriptor_, size_);
     close(descriptor_);
     descriptor_ = -1;
-    log_(fmt::format("--record {}: cannot be written ({}); it ends here, and the session goes on", file_,
+    log_(fmt::format("--record {}: cannot be written ({}); the file ends here, and the session continues", file_,
                      std::strerror(error)));
 }
 

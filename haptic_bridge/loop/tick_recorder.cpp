@@ -12,7 +12,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kPoll = 5ms;
-constexpr std::size_t kMostPieces = 4096;  // a master that takes none is not there any more
+constexpr std::size_t kMostPieces = 4096;  // when so many wait, the master is gone
 
 }  // namespace
 
@@ -57,7 +57,7 @@ void TickRecorder::run() {
         done_.fetch_add(taken, std::memory_order_release);
         if (const std::uint64_t lost = lost_; lost != toldLost_ && (toldLost_ == 0 || last)) {
             options_.log(
-                fmt::format("--record {}: {} ticks could not be kept in time and are missing", options_.file, lost));
+                fmt::format("--record {}: {} ticks could not be written in time and are missing", options_.file, lost));
             toldLost_ = lost;
         }
         if (!last) {
@@ -71,7 +71,7 @@ void TickRecorder::take(const Entry& entry) {
         endPiece();
         const TrackPiece header{++piece_.sitting, true, header_, {}};
         const std::lock_guard lock(mutex_);
-        pieces_.clear();  // of a link that is gone
+        pieces_.clear();  // pieces of a previous link
         pieces_.push_back(encode(header));
         return;
     }

@@ -8,7 +8,7 @@
 
 namespace haptic_bridge {
 
-/// Answers what the device of the session answered.
+/// Device that returns the readings of the session's device.
 class TickReplay::Player : public Device {
 public:
     explicit Player(TrackHeader header) : header_(std::move(header)) {}
@@ -30,7 +30,8 @@ TickReplay::TickReplay(const scene::Scene& scene, const std::vector<base::Bytes>
     for (const base::Bytes& bytes : pieces) {
         TrackPiece piece = decodeTrackPiece(bytes);
         sitting_ = piece.begins ? piece.sitting : sitting_;
-        if (piece.sitting == sitting_ && (piece.begins || !pieces_.empty())) {  // not the tail of a link before
+        // Leaves out the rest of a previous link.
+        if (piece.sitting == sitting_ && (piece.begins || !pieces_.empty())) {
             pieces_.push_back(std::move(piece));
         }
     }

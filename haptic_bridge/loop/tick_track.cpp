@@ -36,7 +36,7 @@ std::int32_t getProbe(base::ByteReader& reader) {
     return static_cast<std::int32_t>(value);
 }
 
-/// The one list of an arm's numbers.
+/// Visits all numbers of an arm. Both encoding and decoding use this list.
 template <class Physics, class Visit>
 void eachNumber(Physics& physics, const Visit& visit) {
     for (auto* number : {&physics.mass, &physics.damping, &physics.friction, &physics.resolution, &physics.maxForce,
@@ -91,7 +91,7 @@ base::Bytes encode(const TrackPiece& piece) {
     }
     writer.putVarint(piece.ticks.size());
     std::int64_t beforeNs = 0;
-    sand::ProbePoint around;  // of the tick before
+    sand::ProbePoint around;  // FeltSand::around of the previous tick
     for (const TickInput& tick : piece.ticks) {
         const bool elsewhere = tick.around != around;
         writer.put(tick.time);
@@ -146,7 +146,7 @@ TrackPiece decodeTrackPiece(std::span<const std::uint8_t> bytes) {
         }
     }
     if (!reader.atEnd()) {
-        throw base::FormatError("a piece of a tick track with bytes too many");
+        throw base::FormatError("a piece of a tick track with too many bytes");
     }
     return piece;
 }

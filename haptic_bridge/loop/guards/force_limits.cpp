@@ -13,10 +13,10 @@
 namespace haptic_bridge {
 namespace {
 
-constexpr double kRest = 1e-3;  // [m/s], below which an arm rests
-constexpr double kQuiet = 0.6;  // a relay is no sine: measured chatter is up to 1.4 times as fast
+constexpr double kRest = 1e-3;  // [m/s]; a slower arm counts as resting
+constexpr double kQuiet = 0.6;  // margin: chatter is not a sine, and was measured up to 1.4 times as fast
 
-/// As a person writes a number: 19, 130, 0.19.
+/// Rounds a number to `digits` digits, so that it is easy to read: 19, 130, 0.19.
 double rounded(double number, int digits = 2) {
     if (!(std::abs(number) > 0) || !std::isfinite(number)) {
         return number;
@@ -40,7 +40,7 @@ LawAtRadius lawAtRadius(const scene::Scene& scene) {
     const double middle = kCells / 2.0 * radius / kPerRadius;
     sand::force::ForceModel model(scene.force);
     sand::force::Response response;
-    // A model that works between two surfaces may take a while to trust the first.
+    // A model that works between two surfaces may need some ticks until it uses the first one fully.
     for (int tick = 0; tick < 200; ++tick) {
         response = model.at(patch, 1, tool, {middle, middle, 0}, tick * ForceLimits::kTick);
     }
@@ -54,15 +54,17 @@ ForceLimits ForceLimits::of(const ArmPhysics& arm, double scale, const LawAtRadi
     limits.scale = scale;
     limits.resolution = arm.resolution + probeStep;
     const double delay = arm.delayTicks * kTick;
-    const double sampled = arm.damping / (kTick / 2 + delay);  // where a sampled spring diverges
+    const double sampled = arm.damping / (kTick / 2 + delay);  // stiffness at which a sampled spring diverges
     limits.stiffness = std::min(arm.maxStiffness, sampled) / 2;
     if (arm.friction < limits.stiffness * limits.resolution / 2) {
-        // A weight that rests between two steps of the encoder sees a relay of K times a step. It chatters at the
-        // amplitude where a relay is as stiff as the limit, 2 K step/π over that, and at the limit's frequency.
+        // A weight that rests between two steps of the encoder feels a relay that switches a force of K times one step.
+        // The relay chatters at an amplitude at which it is as stiff as the limit: 2 K step/π divided by that limit. It
+        // chatters at the limit's frequency.
         const double quiet = kRest * std::numbers::pi / 2 * std::sqrt(sampled * arm.mass) / limits.resolution;
         limits.stiffness = std::min(limits.stiffness, kQuiet * quiet);
     }
-    // A damper is stable while B < m over the age of the velocity, or somewhat more; the longest window is the oldest.
+    // A damper is stable while B < m divided by the age of the velocity, or while B is slightly larger. The longest
+    // window has the oldest velocity.
     limits.damping = arm.mass / (kTick / 2 + delay + VelocityWindow::kLongest * kTick / 2);
     limits.internalFriction = internalFriction;
     limits.maxForce = arm.maxForce;

@@ -41,7 +41,7 @@ Guards::Forces Guards::tick(const Reading& reading) {
     }
     if (forces.acted != 0) {
         restart(reading.time);
-        // Old sand that nobody touches is no event.
+        // Stale sand counts only while the tool touches it.
         forces.acted &= reading.engaged ? ~0U : ~bit(Guard::stale);
         return forces;
     }
@@ -60,7 +60,7 @@ Vec3 Guards::limited(const Reading& reading, std::uint32_t& acted) {
         force = limitedForce(reading.felt, reading.velocity, limits_, acted);
     }
     force = slew_.follow(force, acted);
-    // Damping may hold a push back, not turn it into a pull; and it comes no faster than a force may.
+    // Damping may reduce a push, but must not turn it into a pull. It also grows no faster than a force may.
     const double pushed = std::max(dot(force, reading.felt.normal), 0.0);
     const Vec3 damping = pushed > 0 ? passivity_.control(reading.velocity, acted) : Vec3{};
     damping_ = shortened(damping_ + shortened(damping - damping_, limits_.slew / 2), pushed);
@@ -77,7 +77,7 @@ Vec3 Guards::limited(const Reading& reading, std::uint32_t& acted) {
     return force;
 }
 
-/// What makes a tick one in which nothing may be sent.
+/// Returns one bit for each fault of this tick. After any fault no force is sent.
 std::uint32_t Guards::faults(const Reading& reading, double span, Vec3 lawful) const {
     std::uint32_t acted = 0;
     const bool numbers = std::isfinite(norm(lawful)) && std::isfinite(norm(reading.place)) &&

@@ -11,7 +11,7 @@ namespace {
 using sand::force::Vec3;
 
 constexpr double kFramesPerSecond = 60;
-constexpr double kMatters = 0.97;  // less is left, and a guard has acted
+constexpr double kMatters = 0.97;  // a guard has acted if a smaller share is left
 
 }  // namespace
 
@@ -20,8 +20,8 @@ Vec3 lawfulForce(const sand::force::Response& felt, Vec3 velocity, double scale)
 }
 
 Vec3 limitedForce(const sand::force::Response& felt, Vec3 velocity, const ForceLimits& limits, std::uint32_t& acted) {
-    // The gain is the same everywhere, or the force would climb within a fraction of a cell where little of the tool
-    // is over the sand; only where the law is stiffer than at one radius' depth is there less of it.
+    // The gain is the same everywhere. Otherwise the force would rise within a fraction of a cell where little of the
+    // tool is over the sand. The gain is smaller only where the law is stiffer than at a depth of one radius.
     const double stiffness = limits.gain * felt.stiffness * limits.scale;
     const double gain = limits.gain * (stiffness > limits.stiffness ? limits.stiffness / stiffness : 1);
     const Vec3 push = gain * felt.push;

@@ -20,7 +20,7 @@ PassivityObserver::PassivityObserver(const ForceLimits& limits)
     : stiffness_(limits.lawStiffness),
       damping_(kArmsShare * limits.arm.damping),
       most_(limits.damping),
-      // Two steps of the encoder under the greatest force are noise, not energy.
+      // Two steps of the encoder under the greatest force count as noise.
       tolerance_(2 * limits.maxForce * limits.resolution),
       delay_(std::min(static_cast<std::size_t>(std::max(limits.arm.delayTicks, 0)), kMostDelay - 1)) {}
 
@@ -30,12 +30,12 @@ void PassivityObserver::observe(Vec3 place, double span) {
         const Vec3 way = place - place_;
         const double given = dot(acted, way);
         returned_ += given;
-        // The way itself, and not the velocity: what a coarse encoder adds to a spring's leak it adds to both.
+        // Uses the distance itself and not the velocity. An error of a coarse encoder then appears in both terms.
         surplus_ += given - damping_ * dot(way, way) / span;
     }
     begun_ = true;
     place_ = place;
-    // What was not taken back by now, the arm and the hand have: it does not make the loop any less stable.
+    // The arm and the hand have taken the rest of an old surplus, so it no longer makes the loop less stable.
     surplus_ -= surplus_ > 0 ? std::clamp(span / kMemory, 0.0, 1.0) * surplus_ : 0;
 }
 
@@ -51,7 +51,7 @@ Vec3 PassivityObserver::control(Vec3 velocity, std::uint32_t& acted) const {
 void PassivityObserver::sent(Vec3 force) {
     newest_ = (newest_ + 1) % kMostDelay;
     sent_[newest_] = force;
-    double greatest = 0;  // of those on their way, squared
+    double greatest = 0;  // square of the greatest force that still acts or will act
     for (std::size_t ago = 0; ago <= delay_; ++ago) {
         const Vec3 under = sent_[(newest_ + kMostDelay - ago) % kMostDelay];
         greatest = std::max(greatest, dot(under, under));

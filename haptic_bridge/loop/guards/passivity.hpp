@@ -27,10 +27,8 @@ public:
     void sent(sand::force::Vec3 force);
     void restart();
 
-    [[nodiscard]] double returned() const {
-        return returned_;
-    }  // [J], Σ F · Δx since the start; negative if the forces took energy
-    [[nodiscard]] double surplus() const { return surplus_; }  // [J], energy given beyond credit and damping
+    [[nodiscard]] double returned() const { return returned_; }  // [J], Σ F · Δx since the start; negative if taken
+    [[nodiscard]] double surplus() const { return surplus_; }    // [J], energy given beyond credit and damping
 
 private:
     static constexpr std::size_t kMostDelay = 16;
