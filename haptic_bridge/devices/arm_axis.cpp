@@ -6,7 +6,7 @@
 namespace haptic_bridge {
 namespace {
 
-/// m y'' + c y' + k y = f from (y, v), at time t.
+/// Solution of m y'' + c y' + k y = f from (y, v) at time t.
 struct Motion {
     double mass, damping, stiffness, force;
 
@@ -30,7 +30,8 @@ private:
     [[nodiscard]] State sprung(State start, double t) const {
         const double a = damping / (2 * mass), w2 = stiffness / mass - a * a;
         const double rest = force / stiffness, y = start.place - rest, v = start.velocity;
-        // c = e^(−at) cos wt and s = e^(−at) sin(wt)/w, or their hyperbolic kin, which must not overflow.
+        // c = e^(−at) cos wt and s = e^(−at) sin(wt)/w, or the hyperbolic functions in their place, which must not
+        // overflow.
         double c = 0, s = 0;
         if (w2 > 0) {
             const double w = std::sqrt(w2), decay = std::exp(-a * t);
@@ -48,12 +49,13 @@ private:
     }
 };
 
-/// The first time in (0, most] at which the arm itself, which goes `drift` faster than it seems from its target, comes
-/// to a stop; `most` when it does not.
+/// Returns the first time in (0, most] at which the arm itself comes to a stop; `most` if it does not stop. The arm
+/// moves by `drift` faster than it seems to move when seen from its target.
 double firstStop(const Motion& motion, Motion::State start, double drift, double most) {
     const double sign = start.velocity + drift > 0 ? 1 : -1;
     const auto goesOn = [&](double t) { return sign * (motion.at(start, t).velocity + drift) > 0; };
-    // A tick is a small part of any arm's period: within a slice of it the velocity crosses zero once, or not at all.
+    // A tick is a small part of any arm's period. Within a slice of it the velocity therefore crosses zero at most
+    // once.
     constexpr int kSlices = 4, kHalvings = 50;
     double before = 0;
     for (int slice = 1; slice <= kSlices; ++slice) {
@@ -74,9 +76,9 @@ double firstStop(const Motion& motion, Motion::State start, double drift, double
 }  // namespace
 
 void ArmAxis::advance(const Body& body, double force, Target target, double time) {
-    constexpr int kMostStops = 16;  // of one call; an arm that stops more often has come to rest
+    constexpr int kMostStops = 16;  // in one call; an arm that stops more often is at rest
     for (int stops = 0; time > 0 && stops < kMostStops; ++stops) {
-        // On an arm at rest, and how fast that grows while the target goes on.
+        // Force on an arm at rest, and its growth per second while the target moves on.
         const double pull = force + body.grip.damping * target.velocity - body.grip.stiffness * (place - target.place);
         const double growth = body.grip.stiffness * target.velocity;
         const bool moves = velocity != 0;
@@ -91,7 +93,7 @@ void ArmAxis::advance(const Body& body, double force, Target target, double time
             time -= held;
         }
         const double y = place - target.place;
-        // Seen from the target, which moves evenly, the forcing is constant.
+        // Seen from the target, which moves at constant speed, the force is constant.
         const Motion motion{body.mass, body.damping + body.grip.damping, body.grip.stiffness,
                             force - direction * body.friction - body.damping * target.velocity};
         const Motion::State start{y, velocity - target.velocity};

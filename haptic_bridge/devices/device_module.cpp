@@ -13,8 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A driver of the user's: not of our build, but of our interface. Never closed, because drivers leave threads behind
-/// that outlive any device.
+/// Loads a driver that a user has built. It need not be from this build, but must have this interface. It is never
+/// closed, because drivers may leave threads that outlive any device.
 void* loadDriver(const fs::path& file, const std::string& option) {
     void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (handle == nullptr) {
@@ -48,13 +48,13 @@ void requireInterface(void* handle, const fs::path& file) {
     }
 }
 
-/// What a module's function makes; its exceptions become the user's.
+/// Returns what `make` returns. Its exceptions become InputErrors that begin with `option`.
 template <class Make>
 auto made(const std::string& option, const Make& make) {
     try {
         auto thing = make();
         if (!thing) {
-            throw base::InputError("the driver has opened nothing");
+            throw base::InputError("the driver has opened no device");
         }
         return thing;
     } catch (const std::exception& error) {
@@ -68,7 +68,7 @@ std::unique_ptr<Arm> openArmModule(const std::string& spec) {
     const std::size_t ending = spec.find(".so");
     const std::size_t colon = spec.find(':', ending == std::string::npos ? 0 : ending);
     const std::string option = "--device driver:" + spec;
-    // As a path: the loader looks for a bare name elsewhere, and not here.
+    // As a path, because the loader would look for a bare name in its own folders and not in the current one.
     const fs::path file = fs::absolute(spec.substr(0, colon));
     const std::string what = colon == std::string::npos ? "" : spec.substr(colon + 1);
     void* handle = loadDriver(file, option);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one file that knows GLFW here; a module of its own, so that no other device maps it.
+// The only file here that uses GLFW. It is a module of its own, so that no other device loads GLFW.
 #include <GLFW/glfw3.h>
 
 #include <stdexcept>
@@ -17,7 +17,7 @@ public:
         if (glfwInit() == GLFW_FALSE) {
             throw std::runtime_error("no window can be opened; set DISPLAY to an X display");
         }
-        // The oldest OpenGL draws a picture in one call, and any driver has it.
+        // The oldest OpenGL draws a picture in one call, and every driver supports it.
         window_ = glfwCreateWindow(width, height, title, nullptr, nullptr);
         if (window_ == nullptr) {
             glfwTerminate();
@@ -48,7 +48,7 @@ public:
         glfwGetWindowSize(window_, &across, &down);
         glfwGetFramebufferSize(window_, &input_.width, &input_.height);
         glfwGetCursorPos(window_, &input_.x, &input_.y);
-        // Where a pixel of the screen is several of the picture.
+        // A screen coordinate may be several pixels of the picture.
         input_.x *= across > 0 ? static_cast<double>(input_.width) / across : 1;
         input_.y *= down > 0 ? static_cast<double>(input_.height) / down : 1;
         input_.left = glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS;

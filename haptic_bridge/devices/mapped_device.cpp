@@ -12,7 +12,7 @@ using sand::force::Vec3;
 
 namespace {
 
-constexpr double kFittedShare = 0.8;  // of the field's shorter side, when no scale is given
+constexpr double kFittedShare = 0.8;  // of the field's shorter side, if no scale is given
 
 double& part(Vec3& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
@@ -31,9 +31,8 @@ MappedDevice::MappedDevice(std::unique_ptr<Arm> arm, const HandSettings& setting
       origin_(settings.origin.value_or(Vec3{})),
       check_(kFarthestShare * arm_->physics().reach, troubles_) {
     if (settings.datum == HandSettings::Datum::surface) {
-        // On a slope such a mapping bends the hand's space, and a force along it would do work on a closed path.
-        throw base::InputError(
-            "--map datum=surface: is for recordings; an arm feels the sand at its own height, level");
+        // On a slope such a mapping would bend the hand's space. A force in that space would do work on a closed path.
+        throw base::InputError("--map datum=surface: works only for recordings; an arm needs datum=level");
     }
 }
 
@@ -52,7 +51,7 @@ void MappedDevice::moveOrigin(const ArmReading& reading, Vec3 place) {
     const Vec3 moved = known_ ? place - last_ : Vec3{};
     if (reading.second) {
         origin_ = origin_ + moved;
-    } else if (!feels_) {  // where a force acts, a moving origin would put energy into the hand
+    } else if (!feels_) {  // while a force acts, a moving origin would put energy into the hand
         const double share = settings_.drift * norm(moved) / arm_->physics().reach;
         origin_ = origin_ - share * Vec3{place.x, place.y, 0};
     }
@@ -95,7 +94,8 @@ Pose MappedDevice::read(double time) {
             pose_.engaged = true;
             break;
         case HandSettings::Engage::button:
-            // The clutch holds a stroke: letting go of the button under it would lift the tool unseen.
+            // The clutch keeps the stroke engaged. Without that, releasing the touch button during the clutch would
+            // lift the tool unnoticed.
             pose_.engaged = reading.second ? pose_.engaged : reading.first;
             break;
     }

@@ -12,7 +12,7 @@ namespace haptic_bridge {
 namespace {
 
 constexpr std::int64_t kFrameNs = 33'000'000;
-constexpr double kHover = 3;            // [tool radius] over the surface, when the button is up
+constexpr double kHover = 3;            // [tool radius] above the surface while the button is up
 constexpr double kDepthPerNotch = 0.1;  // [tool radius]
 constexpr double kDeepest = 3;          // [tool radius], of the underside
 
@@ -74,7 +74,7 @@ void MouseDevice::follow(const WindowInput& input) {
         shown_.x = std::clamp(frame.handX(input.x), -frame.halfWidth, frame.halfWidth);
         shown_.y = std::clamp(frame.handY(input.y), -frame.halfHeight, frame.halfHeight);
     }
-    // Towards the person is down, into the sand.
+    // Turning the wheel towards the user lowers the tool into the sand.
     shown_.depth = std::clamp(shown_.depth - kDepthPerNotch * (input.wheel - wheel_), 0.0, kDeepest);
     wheel_ = input.wheel;
     shown_.touches = input.left && !input.closed;
@@ -107,7 +107,7 @@ void MouseDevice::run(PictureWindow& window) {
             paint(sketch_.latest(), shown_, picture);
             window.show(picture);
         }
-        // Read eight times a frame of the wall: a path needs more points than frames.
+        // The window is read eight times per frame of the wall, because a path needs more points than there are frames.
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
 }

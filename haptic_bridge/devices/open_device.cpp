@@ -21,12 +21,13 @@ std::ifstream openToRead(const std::string& file) {
     std::ifstream stream(file, std::ios::binary);
     // Opening a folder succeeds; reading it does not.
     if (!stream || (stream.peek(), stream.bad())) {
-        throw base::InputError(file + ": cannot be read; give --device a file that is there");
+        throw base::InputError(file + ": cannot be read; give --device a file that exists");
     }
     return stream;
 }
 
-/// Its stroke list is in hand space, so the arm is asked for its reach before it is told how large that is.
+/// Opens a simulated arm. Its stroke list is in hand space. The arm is therefore opened once to learn its reach, and
+/// again with the size of hand space in metres.
 std::unique_ptr<Device> openSimulated(const std::string& spec, const HandSettings& settings,
                                       const scene::Scene& scene) {
     const double scale = MappedDevice::scaleFor(openSimulatedArm(spec)->physics(), settings, scene);

@@ -17,12 +17,12 @@
 namespace haptic_bridge {
 namespace {
 
-// The forearm of a person who draws, relaxed: a few hundred N/m, damped to about half of the critical.
+// The relaxed forearm of a person while drawing: a few hundred N/m, damped to about half of the critical damping.
 constexpr Grip kUsualGrip{300, 5};
 
 struct Spec {
     std::string text;
-    std::size_t begin;  // of what has not been read
+    std::size_t begin;  // index of the first unread character
 
     [[noreturn]] void fail(const std::string& what) const { throw base::InputError("--device " + text + ": " + what); }
     [[nodiscard]] std::string_view next() {
@@ -49,7 +49,7 @@ Strokes readStrokes(const Spec& spec, const std::string& file) {
     std::ifstream stream(file, std::ios::binary);
     // Opening a folder succeeds; reading it does not.
     if (!stream || (stream.peek(), stream.bad())) {
-        spec.fail(fmt::format("{} cannot be read; give path=gis, or a stroke list that is there", file));
+        spec.fail(fmt::format("{} cannot be read; give path=gis, or a stroke list that exists", file));
     }
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     return Strokes::parse(text, file);
@@ -101,7 +101,7 @@ std::unique_ptr<SimulatedArm> openSimulatedArm(const std::string& text, const St
     const std::string_view preset = spec.next();
     const auto physics = armPreset(preset);
     if (!physics) {
-        spec.fail(fmt::format("'{}' is none of touch, falcon, omega.3, delta.3", preset));
+        spec.fail(fmt::format("preset '{}' is unknown; give touch, falcon, omega.3 or delta.3", preset));
     }
     Settings settings{.physics = *physics, .delay = static_cast<double>(physics->delayTicks)};
     SimulatedArm::Path path;
@@ -113,14 +113,14 @@ std::unique_ptr<SimulatedArm> openSimulatedArm(const std::string& text, const St
         if (name == "path") {
             path = pathAlong(readStrokes(spec, std::string(value)), space);
         } else if (!setNumber(settings, spec, name, value)) {
-            spec.fail(
-                fmt::format("'{}' is none of path, grip, grip_damping, delay, damping, mass, friction, "
-                            "resolution, max_force, stiffness",
-                            name));
+            spec.fail(fmt::format(
+                "key '{}' is unknown; the keys are path, grip, grip_damping, delay, damping, mass, friction, "
+                "resolution, max_force and stiffness",
+                name));
         }
     }
     if (settings.delay != std::floor(settings.delay)) {
-        spec.fail(fmt::format("delay counts whole ticks, got {}", settings.delay));
+        spec.fail(fmt::format("delay must be a whole number of ticks, got {}", settings.delay));
     }
     settings.physics.delayTicks = static_cast<int>(settings.delay);
     return std::make_unique<SimulatedArm>(settings.physics, settings.grip, std::move(path));

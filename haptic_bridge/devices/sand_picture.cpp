@@ -8,7 +8,7 @@ namespace haptic_bridge {
 namespace {
 
 constexpr double kPixelsPerNewton = 40;
-constexpr double kBarDepth = 3;  // [tool radius], at the bar's end
+constexpr double kBarDepth = 3;  // [tool radius] at the end of the bar
 
 std::uint32_t colour(double red, double green, double blue) {
     const auto level = [](double share) {
@@ -54,7 +54,7 @@ public:
             dot(x + (radius - 1) * std::cos(angle), y + (radius - 1) * std::sin(angle), c);
         }
     }
-    /// From the middle of the picture's height up or down.
+    /// Draws a bar up or down from the middle of the picture's height.
     void bar(int left, double share, std::uint32_t c) {
         const double middle = picture_.height / 2.0, end = middle * (1 - std::clamp(share, -1.0, 1.0));
         const double lowest = std::min(middle, end);
@@ -79,7 +79,7 @@ std::uint32_t shade(const SandSketch& sand, int column, int row, double mean, do
     };
     const double slopeEast = (at(column + 1, row) - at(column - 1, row)) / 2;
     const double slopeNorth = (at(column, row + 1) - at(column, row - 1)) / 2;
-    // From the north-west, as maps are lit.
+    // Light comes from the north-west, as on maps.
     const double lit =
         (slopeEast - slopeNorth + 1.2) / (1.7 * std::sqrt(1 + slopeEast * slopeEast + slopeNorth * slopeNorth));
     const double high = 0.12 * std::clamp((at(column, row) - mean) / span, -1.0, 1.0);
@@ -120,7 +120,7 @@ void SandSketch::take(const sand::Replica& terrain) {
     std::size_t next = 0;
     for (int row = 0; row < rows; ++row) {
         for (int column = 0; column < columns; ++column) {
-            // In kept cells, so that slopes are slopes.
+            // Heights are in kept cells, so that differences of heights are slopes.
             heights[next++] = static_cast<float>(terrain.surface().height((column * every + 0.5) * sand::kProbePerCell,
                                                                           (row * every + 0.5) * sand::kProbePerCell)) /
                               static_cast<float>(sand::kUnitsPerCell * every);

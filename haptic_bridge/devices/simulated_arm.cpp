@@ -61,7 +61,7 @@ void SimulatedArm::push(Vec3 force) {
         acting_ = force;
         return;
     }
-    if (waiting_ == kMostPending) {  // pushed far more often than read: the oldest have acted as if at once
+    if (waiting_ == kMostPending) {  // pushed far more often than read: the oldest force acts at once
         acting_ = pending_[oldest_].force;
         oldest_ = (oldest_ + 1) % kMostPending;
         --waiting_;

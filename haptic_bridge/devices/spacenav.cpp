@@ -12,7 +12,8 @@
 
 namespace haptic_bridge {
 
-/// What is used of libspnav, as its manual describes it; declared here, so that building needs no header of it.
+/// The parts of libspnav that are used, as its manual describes them. They are declared here, so that a build does not
+/// need the library's header.
 struct SpacenavDevice::Library {
     enum Type { kMotion = 1, kButton = 2 };
     struct Motion {
@@ -35,7 +36,7 @@ struct SpacenavDevice::Library {
     static const Library& load(const std::string& name);
 };
 
-/// Loaded once, and never closed.
+/// Loads the library `name` once, and never closes it.
 const SpacenavDevice::Library& SpacenavDevice::Library::load(const std::string& name) {
     static std::map<std::string, Library> loaded;
     if (const auto known = loaded.find(name); known != loaded.end()) {
@@ -97,7 +98,7 @@ Pose SpacenavDevice::read(double time) {
     const auto speed = [&](std::size_t axis) {
         return std::clamp(push_[axis].load(std::memory_order_relaxed) / kFullDeflection, -1.0, 1.0);
     };
-    // Over any field whose sides are 1 to 8; farther there is nothing to touch.
+    // Covers any field whose sides have a ratio of up to 1 to 8. The tool cannot touch sand farther out.
     pose_.x = std::clamp(pose_.x + kSpeed * speed(0) * passed, -8.0, 8.0);
     pose_.y = std::clamp(pose_.y + kSpeed * speed(2) * passed, -8.0, 8.0);
     pose_.z = std::clamp(pose_.z + kClimb * speed(1) * passed, -3.0, 20.0);

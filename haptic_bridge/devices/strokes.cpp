@@ -13,8 +13,8 @@
 namespace haptic_bridge {
 namespace {
 
-constexpr double kReach = 100;    // [half side]: farther out is a typing error
-constexpr int kArcSegments = 64;  // of a full turn
+constexpr double kReach = 100;    // [half side]; a larger coordinate is a typing error
+constexpr int kArcSegments = 64;  // segments of a full turn
 
 /// One line of a stroke file, cut into words.
 struct Line {
@@ -63,7 +63,7 @@ void addArc(const Line& line, std::vector<Strokes::Point>& points) {
     }
 }
 
-/// [deg]; nothing from a place to itself.
+/// Returns the direction of the way [deg]; nullopt if both points are equal.
 std::optional<double> courseOf(Strokes::Point from, Strokes::Point to) {
     if (from.x == to.x && from.y == to.y) {
         return std::nullopt;
@@ -71,13 +71,13 @@ std::optional<double> courseOf(Strokes::Point from, Strokes::Point to) {
     return std::atan2(to.y - from.y, to.x - from.x) * 180 / std::numbers::pi;
 }
 
-/// Reads line by line; speed, depth and the way the tool is turned hold for the strokes that begin after them.
+/// Reads a stroke list line by line. Speed, depth and heading hold for the strokes that begin after them.
 class StrokeReader {
 public:
     void take(const Line& line) {
         const std::string_view word = line.words[0];
         if (word == "stroke") {
-            line.expect(0, "nothing");
+            line.expect(0, "no values");
             closeStroke(line);
             strokes_.strokes.push_back({{}, speed_, depth_, turn_});
         } else if (word == "speed") {
@@ -102,7 +102,8 @@ public:
             lastPoint(line).hold = line.value(1, 0, 3600);
         } else if (!takeTurn(line)) {
             line.fail(fmt::format(
-                "'{}' is none of stroke, point, arc, hold, speed, depth, travel, lift, heading, follow, foot", word));
+                "'{}' is unknown; write stroke, point, arc, hold, speed, depth, travel, lift, heading, follow or foot",
+                word));
         }
     }
     [[nodiscard]] Strokes finish(const Line& end) {
@@ -114,7 +115,7 @@ public:
     }
 
 private:
-    /// Whether the line says how the tool is turned.
+    /// Takes a line that sets the tool's heading. Returns false if the line is of another kind.
     bool takeTurn(const Line& line) {
         const std::string_view word = line.words[0];
         if (word == "heading") {
@@ -122,7 +123,7 @@ private:
             turn_.heading = line.value(1, -3600, 3600);
             turn_.follow = false;
         } else if (word == "follow") {
-            line.expect(0, "nothing");
+            line.expect(0, "no values");
             turn_.follow = true;
         } else if (word == "foot") {
             line.expect(1, "left or right");
@@ -178,7 +179,7 @@ StrokeDevice::StrokeDevice(const Strokes& strokes) : hoverHeight_(1 + strokes.li
     const Strokes::Point first = strokes.strokes.front().points.front();
     knots_.push_back({0, first.x, first.y, hoverHeight_, false, std::nullopt, false});
     for (const Strokes::Stroke& stroke : strokes.strokes) {
-        // In the air it is turned as the stroke begins.
+        // In the air the tool already has the heading with which the stroke begins.
         Strokes::Turn before = stroke.turn;
         if (stroke.turn.follow && stroke.points.size() > 1) {
             before.heading = courseOf(stroke.points[0], stroke.points[1]);

@@ -13,15 +13,15 @@
 namespace haptic_bridge {
 namespace {
 
-constexpr double kTracedShare = 0.8;  // of the field, by a trace without a scale
-constexpr double kLargest = 1e12;     // of a time or a coordinate
+constexpr double kTracedShare = 0.8;  // of the field that a trace without a scale covers
+constexpr double kLargest = 1e12;     // largest time or coordinate
 
 std::optional<double> boundedNumber(std::string_view word) {
     const std::optional<double> value = base::numberOf(word);
     return value && std::abs(*value) <= kLargest ? value : std::nullopt;
 }
 
-/// "2023/09/05/19:18:29.980002" as seconds since 1970.
+/// Returns a date such as "2023/09/05/19:18:29.980002" as seconds since 1970; nullopt if `word` is not a date.
 std::optional<double> dateOf(std::string_view word) {
     constexpr std::string_view form = "dddd/dd/dd/dd:dd:";
     if (word.size() < form.size()) {
@@ -47,7 +47,7 @@ std::optional<double> dateOf(std::string_view word) {
     return static_cast<double>(days) * 86400.0 + part(11, 2) * 3600 + part(14, 2) * 60 + *seconds;
 }
 
-/// Which cells of a line hold time, x, y and z.
+/// Returns the indices of the columns that hold time, x, y and z.
 std::array<std::size_t, 4> findColumns(std::string_view header, const std::string& name, const HandSettings& settings) {
     const auto titles = base::split(header, ',');
     std::array<std::size_t, 4> found{};
@@ -64,7 +64,7 @@ std::array<std::size_t, 4> findColumns(std::string_view header, const std::strin
     return found;
 }
 
-/// Reads one line after another; the first decides what kind of time the trace has.
+/// Reads one line after another. The first line decides which form of time the trace has.
 class SampleReader {
 public:
     SampleReader(const std::string& name, const HandSettings& settings, std::array<std::size_t, 4> columns)
@@ -84,7 +84,7 @@ public:
             if (!value) {
                 throw base::InputError(
                     name_, number,
-                    settings_.columns[i + 1] + " is no number: '" + std::string(cells[columns_[i + 1]]) + "'");
+                    settings_.columns[i + 1] + " is not a number: '" + std::string(cells[columns_[i + 1]]) + "'");
             }
             sample.place[i] = *value;
         }
@@ -162,7 +162,7 @@ TraceDevice::TraceDevice(const Trace& trace, const HandSettings& settings, doubl
     origin_ = settings.origin.value_or(sand::force::Vec3{(*west + *eastmost) / 2, (*south + *northmost) / 2, *middle});
     double scale = settings.scale.value_or(
         kTracedShare * std::min(fieldWidth / std::max(width, 1e-9), fieldHeight / std::max(height, 1e-9)));
-    // A hand that never moved sideways has no size to fit.
+    // A hand that never moved sideways has no size that could be fitted to the field.
     scale = !settings.scale && width <= 0 && height <= 0 ? 1 : scale;
     horizontal_ = scale / (std::min(fieldWidth, fieldHeight) / 2);
     vertical_ = scale * settings.verticalScale / std::max(toolRadius, 1e-12);
@@ -179,7 +179,7 @@ Pose TraceDevice::read(double time) {
     const sand::force::Vec3 place = from.place + share * (to.place - from.place) - origin_;
     Pose pose{place.x * horizontal_, place.y * horizontal_, 1 - settings_.depth.value_or(0.5) + place.z * vertical_,
               false};
-    const double underside = pose.z - 1;  // [tool radius] over the surface
+    const double underside = pose.z - 1;  // [tool radius] above the surface
     pose.engaged = !finished(time) && (settings_.engage == HandSettings::Engage::always || underside < 1);
     return pose;
 }
