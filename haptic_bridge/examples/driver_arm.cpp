@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A driver for Sandwall, to start your own from: `sandwall-haptic-server --device driver:FILE.so`. What a maker's
-// library does stands in `maker`, six functions; docs/devices.md says what they are called in the usual libraries.
+// A driver for Sandwall, as a start for your own: `sandwall-haptic-server --device driver:FILE.so`. Namespace `maker`
+// has six functions, which your maker's library provides. docs/devices.md lists their names in the usual libraries.
 //
 //     g++ -std=c++20 -O2 -shared -fPIC -I SANDWALL driver_arm.cpp -o my_driver.so -lYOURS
 #include <atomic>
@@ -12,7 +12,7 @@
 #include "haptic_bridge/devices/driver.hpp"
 #include "host/clock.hpp"
 
-/// Replace these bodies by calls of your library; as they stand, they are an arm that nobody holds.
+/// Replace these bodies by calls of your library. Unchanged, they describe an arm that no hand holds.
 namespace maker {
 inline bool open(const char*) { return true; }
 inline void close() {}
@@ -31,14 +31,15 @@ using haptic_bridge::ArmPhysics;
 using haptic_bridge::ArmReading;
 using sand::force::Vec3;
 
-/// Talks to the device on a thread of its own, because a driver may wait for its hardware and the force loop must not.
+/// Arm that uses its device on a thread of its own, because a driver may wait for its hardware and the force loop must
+/// not.
 class DriverArm : public haptic_bridge::Arm {
 public:
     explicit DriverArm(const char* what) {
         if (!maker::open(what)) {
             throw std::runtime_error(maker::lastError());
         }
-        // From the data sheet. What is said here is what the guards rely on: rather too little damping than too much.
+        // From the data sheet. The guards rely on these numbers. If in doubt, give too little damping, not too much.
         physics_.name = "my device";
         physics_.mass = 0.2;           // [kg], apparent at the tip
         physics_.damping = 1.0;        // [N s/m]
@@ -47,7 +48,7 @@ public:
         physics_.maxForce = 8;         // [N]
         physics_.reach = 0.06;         // [m]
         physics_.maxStiffness = 2000;  // [N/m]
-        physics_.delayTicks = 1;       // this thread adds up to one
+        physics_.delayTicks = 1;       // [tick of 1 ms]; this thread adds up to one
         thread_ = std::thread([this] { talk(); });
     }
     ~DriverArm() override {
@@ -61,7 +62,7 @@ public:
     [[nodiscard]] ArmReading read(double) override {
         const Seen& seen = seen_.latest();
         ArmReading reading = seen.reading;
-        // A library that hangs must not pass for a hand that rests.
+        // A library that hangs must not look like a hand that rests.
         reading.present = reading.present && host::monotonicNs() - seen.timeNs < kPatienceNs;
         return reading;
     }
@@ -96,7 +97,7 @@ private:
 
     ArmPhysics physics_;
     base::TripleBuffer<Seen> seen_;   // device to force loop
-    base::TripleBuffer<Vec3> force_;  // and back
+    base::TripleBuffer<Vec3> force_;  // force loop to device
     std::atomic<bool> stopping_{false};
     std::thread thread_;
 };

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Streams where a hand is to the master of a wall, from a server that has no sand: put your device into hand().
+"""Streams the positions of a hand to the master of a wall, from a server without sand. Put your device into hand().
 
     python3 position_sender.py --listen 0.0.0.0:7750 --secret-file FILE     on the machine with the device
     scripts/sandwall run ... --haptic MACHINE:7750 --secret-file FILE       on the wall's
 
-The master connects, this server greets and sends positions; whatever the master says then need not be read. It numbers
-the steps, moves the sand, and lifts the tool when positions stay away. On 127.0.0.1 no secret is needed. docs/protocol.md
-has every byte, docs/security.md the file. Standard library, whatever the system.
+The master connects. This server then greets and sends positions; it need not read later messages of the master. The
+master numbers the steps and moves the sand. It lifts the tool if no positions arrive. On 127.0.0.1 no secret is needed.
+docs/protocol.md describes every byte, docs/security.md the secret file. The script needs only the standard library and
+runs on every system.
 """
 
 import argparse
@@ -28,7 +29,7 @@ LONGEST_GREETING, PATIENCE, SILENCE = 1024, 3, 10  # bytes, seconds, seconds
 
 
 def message(kind, payload):
-    """As on the wire: length, type, payload; all little-endian."""
+    """Returns the bytes on the wire: length, type, payload; all little-endian."""
     return struct.pack("<IB", 1 + len(payload), kind) + payload
 
 
@@ -38,14 +39,14 @@ def greeting(device, proof=bytes(32)):
 
 
 def receive(master, deadline):
-    """A whole message as it came, of one who is not known yet."""
+    """Returns the bytes of a whole message from an unauthenticated connection."""
     def read(count):
         data = b""
         while len(data) < count:
             master.settimeout(max(0.001, deadline - time.monotonic()))
             piece = master.recv(count - len(data))
             if not piece:
-                raise OSError("it has gone")
+                raise OSError("it has closed the connection")
             data += piece
         return data
     length = read(4)
@@ -61,11 +62,11 @@ def refuse(master, text):
 
 
 def prove(master, device, secret):
-    """Sees that the master knows the secret; returns the proof that this server knows it, too."""
-    deadline = time.monotonic() + PATIENCE  # of all of it, however slowly it comes
+    """Checks that the master knows the secret. Returns the proof that this server knows it too."""
+    deadline = time.monotonic() + PATIENCE  # for both messages together
     hello = receive(master, deadline)
     if hello[4] != HELLO or len(hello) < 63 or hello[5:9] != MAGIC or hello[9:13] != struct.pack("<I", PROTOCOL):
-        raise OSError("no greeting of this protocol")
+        raise OSError("its greeting has another protocol")
     role, flags = hello[-34], hello[-33]
     if role != MOVE or flags != PROVES:
         refuse(master, "this server asks for a secret of role move, without TLS; give your side --secret-file, too")
@@ -79,7 +80,7 @@ def prove(master, device, secret):
         return hmac.digest(secret, said, "sha256")
     answer = receive(master, deadline)
     if answer[4] != PROOF or not hmac.compare_digest(answer[5:], proof_of(b"master")):
-        refuse(master, "the secret of role move is another here; give both sides the same --secret-file")
+        refuse(master, "the secret of role move differs here; give both sides the same --secret-file")
     return proof_of(b"server")
 
 
@@ -90,9 +91,9 @@ def position(seconds, x, y, z, touches):
 def hand(seconds):
     """Replace this by a reading of your device.
 
-    x runs east and y north from the centre of the field, 1 is half of its shorter side; z is the height of the tool's
-    centre over the sand as the session began, in tool radii: 1 touches it, 0 is half sunk. Here: circles, half sunk,
-    lifted for the last quarter of each.
+    x runs east and y north from the centre of the field; 1 is half of its shorter side. z is the height of the tool's
+    centre above the sand as the session began, in tool radii: at 1 the tool touches the sand, at 0 half of it is below.
+    This example draws circles at z = 0, and lifts the tool for the last quarter of each.
     """
     turn = seconds / 2
     touches = turn % 1 < 0.75
@@ -101,7 +102,7 @@ def hand(seconds):
 
 
 def stream(master, rate, secret):
-    """Sends positions until the master has gone; the times are this machine's, and never run backwards."""
+    """Sends positions until the master has gone. Their times are on this machine's clock and never run backwards."""
     master.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     master.settimeout(PATIENCE)
     master.sendall(greeting("circles", prove(master, "circles", secret)) if secret else greeting("circles"))
@@ -115,10 +116,10 @@ def stream(master, rate, secret):
 
 
 def secret_of(file):
-    """Of role move, as it stands in the file."""
+    """Returns the secret of role move from `file`."""
     with open(file, encoding="ascii") as lines:
         if os.name == "posix" and os.fstat(lines.fileno()).st_mode & 0o077:
-            sys.exit(f"{file}: others may read it; chmod 600 {file}")
+            sys.exit(f"{file}: other users may read it; run chmod 600 {file}")
         for words in map(str.split, lines):
             if len(words) == 2 and words[0] == "move" and len(words[1]) >= 16:
                 return words[1].encode()
@@ -135,7 +136,7 @@ def main():
     secret = secret_of(args.secret_file) if args.secret_file else None
     address = "127.0.0.1" if address == "localhost" else address
     if not secret and not ipaddress.ip_address(address).is_loopback:
-        sys.exit(f"--listen {args.listen}: others can reach that address, so a --secret-file is needed")
+        sys.exit(f"--listen {args.listen}: other machines can reach that address, so it needs --secret-file")
     with socket.create_server((address, int(port))) as listener:
         print("listening on %s:%d" % listener.getsockname()[:2], flush=True)
         while True:  # the next master may come when one has gone

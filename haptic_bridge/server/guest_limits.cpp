@@ -34,7 +34,7 @@ GuestLimits::Visits& GuestLimits::visitsOf(const boost::asio::ip::address& from,
         std::erase_if(visits_, [nowNs](const auto& entry) {
             Visits visits = entry.second;
             refill(visits.allowed, visits.countedNs, nowNs);
-            return visits.allowed >= kBurst;  // as one who has never come
+            return visits.allowed >= kBurst;  // as an address that has never connected
         });
     }
     const bool kept = visits_.contains(address) || visits_.size() < kAddresses;
@@ -74,7 +74,7 @@ std::optional<std::string> RefusalLog::add(RefusalCode code, const std::string& 
     }
     const std::uint64_t more = said->second.more;
     said->second = {nowNs, 0};
-    return more == 0 ? line : fmt::format("{} (and {} more of that kind since it was said last)", line, more);
+    return more == 0 ? line : fmt::format("{} (and {} more of this kind since the last such line)", line, more);
 }
 
 void Gate::refused(RefusalCode code, const boost::asio::ip::address& address, const std::string& line,

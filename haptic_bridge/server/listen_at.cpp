@@ -20,12 +20,12 @@ asio::ip::tcp::acceptor listenAt(asio::io_context& io, const std::string& text, 
     const auto host = asio::ip::make_address(address.host == "localhost" ? "127.0.0.1" : address.host, error);
     if (error) {
         throw base::InputError("--listen: '" + address.host +
-                               "' is no IP address; write one such as 127.0.0.1, or "
+                               "' is not an IP address; write one such as 127.0.0.1, or "
                                "0.0.0.0 for every network");
     }
     if (!secret && !isLoopback(host)) {
         throw base::InputError("--listen " + text +
-                               ": others can reach that address, so a --secret-file is needed (docs/security.md); "
+                               ": other machines can reach that address, so it needs --secret-file (docs/security.md); "
                                "127.0.0.1 needs none");
     }
     const asio::ip::tcp::endpoint endpoint(host, address.port);

@@ -22,7 +22,7 @@ Listener::Listener(Service service, asio::ip::tcp::acceptor acceptor)
 Listener::~Listener() = default;
 
 SandThread::Output Listener::output() {
-    // What comes for a session that has ended meanwhile is for nobody.
+    // Calls for a session that has ended meanwhile are dropped.
     const auto hand = [this](std::uint32_t session, auto act) {
         asio::post(service_.io, [this, session, act = std::move(act)]() mutable {
             if (const auto master = roster_->master(); master && master->session() == session) {
@@ -51,7 +51,7 @@ void Listener::accept() {
         if (shutting_) {
             return;
         }
-        if (error) {  // out of descriptors, or the peer has gone again: try a little later
+        if (error) {  // out of file descriptors, or the peer has already gone: try again a little later
             pause_.expires_after(std::chrono::milliseconds(100));
             pause_.async_wait([this](error_code cancelled) {
                 if (!cancelled) {
@@ -62,8 +62,8 @@ void Listener::accept() {
         }
         try {
             admit(std::move(socket));
-        } catch (const std::exception& failure) {  // no memory for TLS, say
-            service_.log(std::string("a guest cannot be answered: ") + failure.what());
+        } catch (const std::exception& failure) {  // for example, no memory for TLS
+            service_.log(std::string("an unauthenticated connection cannot be answered: ") + failure.what());
         }
         accept();
     });
@@ -77,10 +77,10 @@ void Listener::admit(Connection::Socket socket) {
     }
     const std::int64_t now = host::monotonicNs();
     if (!gate_->mayCome(address, now)) {
-        gate_->refused(RefusalCode::limit, address, "comes too often, and is not answered for a while", now);
+        gate_->refused(RefusalCode::limit, address, "connects too often, and is not answered for a while", now);
     } else if (!roster_->hasRoomFor(address)) {
-        gate_->refused(RefusalCode::limit, address, "is one of too many that have not greeted, and is not answered",
-                       now);
+        gate_->refused(RefusalCode::limit, address,
+                       "is one of too many unauthenticated connections, and is not answered", now);
     } else {
         const auto guest = std::make_shared<Peer>(service_, *gate_, *roster_, std::move(socket));
         roster_->add(guest);

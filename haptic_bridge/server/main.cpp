@@ -67,7 +67,8 @@ Report measured(const HapticTick& hand, const ForceLoop* loop, const SandThread&
     return report;
 }
 
-/// Tells a person what the device does wrong, twice a second at most; the loop itself must not wait for a terminal.
+/// Prints what the device does wrong, at most twice per second. The force loop does not print, because it must not wait
+/// for a terminal.
 class DeviceWatch {
 public:
     DeviceWatch(asio::io_context& io, const std::string& device, const Device& watched)
@@ -153,7 +154,7 @@ void runLinks(asio::io_context& io) {
     while (!io.stopped()) {
         try {
             io.run();
-        } catch (const std::exception& error) {  // of one link, whose silence then ends it
+        } catch (const std::exception& error) {  // of one link, which ends after a time of silence
             print(std::string("a link failed: ") + error.what());
         }
     }
@@ -174,12 +175,12 @@ void serve(const Options& options) {
     const scene::Scene scene = openScene(options.scene);
     const HandSettings settings = HandSettings::parse(options.map);
     std::unique_ptr<Device> opened = openDevice(options.device, settings, scene);
-    Device& device = *opened;  // the hand's, in a moment
+    Device& device = *opened;  // the hand takes ownership below
     device.shareForce(options.force ? options.forceScale : 0);
     const auto datum =
         settings.datum.value_or(device.physics() ? HandSettings::Datum::level : HandSettings::Datum::surface);
     HapticTick hand(scene, std::move(opened), datum, options.guards);
-    hand.rest(0);  // a master that links before the force loop's first tick feels the sand under the hand too
+    hand.rest(0);  // so that a master that links before the force loop's first tick also feels the sand under the hand
     const std::unique_ptr<TickRecorder> recorder = recorderOf(options, hand);
     HandChannel channel;
     channel.recorder = recorder.get();
@@ -221,29 +222,30 @@ void describe(host::CommandLine& line, Options& options) {
     line.option("--device", options.device,
                 "script:gis, script:FILE, trace:FILE.csv, driver:FILE.so, sim:PRESET, mouse or spacenav")
         .required();
-    line.option("--map", options.map, "KEY=VALUE, how a trace lies over the sand (docs/devices.md); repeatable")
+    line.option("--map", options.map, "KEY=VALUE, a setting of the mapping to the sand (docs/devices.md); repeatable")
         .oneValueEach();
     line.choice<Pace>("--pace", options.pace, {{"realtime", Pace::realtime}, {"fast", Pace::fast}},
-                      "realtime, or fast: a virtual clock, as quick as the wall");
+                      "realtime, or fast: a virtual clock that runs as fast as the wall");
     line.option("--record", options.record,
                 "a CSV file: one row per tick, and the same ticks go into the session's journal");
     line.choice<bool>("--force", options.force, {{"on", true}, {"off", false}},
-                      "on or off: whether an arm feels anything at the start");
+                      "on or off: whether an arm feels forces at the start");
     line.option("--force-scale", options.forceScale, "0 to 1: the share of the force that an arm feels")
         .range(0.0, 1.0);
     line.choice<Guards::Mode>("--guards", options.guards,
                               {{"on", Guards::Mode::on}, {"literal", Guards::Mode::literal}},
-                              "on, or literal: the law as its paper has it, for simulated arms only");
+                              "on, or literal: the paper's law without limits, for simulated arms only");
     line.option("--listen", options.listen, "ADDRESS:PORT; port 0 takes any free one");
-    line.option("--port-file", options.portFile, "written when the server listens: the port's number");
+    line.option("--port-file", options.portFile, "file that gets the port's number when the server listens");
     line.option("--timings", options.timings,
-                "CSV file, written at the end: how often each period of the force loop and each cost of a force came");
+                "CSV file for histograms at the end: period of the force loop and time for each force");
     line.option("--timing-tests", options.tests.perSecond,
                 "timing tests a second, at random times (default: 4; docs/latency.md)")
         .range(0.1, 100.0);
-    line.option("--timing-after", options.tests.after, "[s] of a link before the first (default: 0)")
+    line.option("--timing-after", options.tests.after,
+                "[s] from the start of a link to its first timing test (default: 0)")
         .range(0.0, 3600.0);
-    line.option("--timing-seed", options.tests.seed, "of those times (default: 7)");
+    line.option("--timing-seed", options.tests.seed, "seed of the random times (default: 7)");
     options.link.addTo(line, true);
     host::addSandThreads(line, options.sandThreads);
     line.flag("--die-with-parent", options.dieWithParent, "end when the program that started this one ends");
@@ -258,7 +260,7 @@ int main(int count, char** words) {
                               {"driver_interface", kDriverInterface}})) {
         return 0;
     }
-    host::CommandLine line("Feels the sand at 1 kHz, and streams what the hand does to a wall's master.",
+    host::CommandLine line("Feels the sand at 1 kHz, and streams the steps of the hand to the master of a wall.",
                            "sandwall-haptic-server");
     Options options;
     describe(line, options);

@@ -17,11 +17,11 @@ using std::chrono::milliseconds;
 
 namespace {
 
-constexpr std::int64_t kGreetingNs = 3'000'000'000;  // a guest must greet within
-constexpr std::int64_t kSilenceNs = 10'000'000'000;  // a master pings four times a second
-constexpr std::uint64_t kMaxGuestBytes = 16 * 1024;  // a greeting takes some hundred, TLS some hundred more
-constexpr double kWatcherRate = 50;                  // [1/s]; it has nothing to say but four pings
-constexpr std::size_t kWatcherUnsent = 256 * 1024;   // [byte]; about half a minute of steps
+constexpr std::int64_t kGreetingNs = 3'000'000'000;  // [ns], time in which an unauthenticated connection must greet
+constexpr std::int64_t kSilenceNs = 10'000'000'000;  // [ns]; a master sends a Ping four times a second
+constexpr std::uint64_t kMaxGuestBytes = 16 * 1024;  // [byte]; a greeting takes some hundreds, TLS some hundreds more
+constexpr double kWatcherRate = 50;                  // [message/s]; a watcher sends only four Pings per second
+constexpr std::size_t kWatcherUnsent = 256 * 1024;   // [byte], about half a minute of steps
 
 }  // namespace
 
@@ -42,7 +42,7 @@ void Peer::start() {
     connection_->limit(kMaxGreeting);
     connection_->setMaxIn(kMaxGuestBytes);
     if (roster_.connections() > kMaxConnections / 2) {
-        connection_->setLinger(milliseconds(0));  // no place is kept for who is refused
+        connection_->setLinger(milliseconds(0));  // a refused connection must not keep a place
     }
     connection_->start(
         {[self = shared_from_this()](Message&& message) { self->receive(std::move(message)); },
@@ -53,7 +53,7 @@ void Peer::start() {
 
 void Peer::makeRoom() {
     const auto kept = shared_from_this();
-    connection_->close("others wait, and it has not greeted yet", RefusalCode::limit);
+    connection_->close("it has not greeted yet, and other connections wait", RefusalCode::limit);
 }
 
 void Peer::log(const std::string& what) const {
@@ -85,7 +85,7 @@ void Peer::receive(Message&& message) {
     heardNs_ = phase_ <= Phase::proving ? heardNs_ : host::monotonicNs();
     const bool passes = std::holds_alternative<Ping>(message) || std::holds_alternative<Bye>(message);
     if (phase_ == Phase::watching && !passes) {
-        refuse({RefusalCode::role, "who watches only listens; that takes the secret of role move"});
+        refuse({RefusalCode::role, "a watcher only listens; this message needs the secret of role move"});
         return;
     }
     std::visit([this](auto& kind) { take(kind); }, message);
@@ -96,7 +96,7 @@ void Peer::take(const Hello& hello) {
         outOfTurn();
         return;
     }
-    // A watcher has no sand that could differ.
+    // A watcher has no sand, so only the protocol version must be equal.
     const bool versionAlone = hello.role == Role::watch && hello.master.protocol == kProtocolVersion;
     if (const auto refusal = versionAlone ? std::nullopt : refusalFor(service_.identity, hello.master)) {
         refuse(*refusal);
@@ -120,9 +120,9 @@ void Peer::take(const Proof& proof) {
     if (phase_ != Phase::proving) {
         outOfTurn();
     } else if (!handshake_.accepts(proof)) {
-        refuse({RefusalCode::secret,
-                fmt::format("the secret of role {} is another here; give both sides the same --secret-file",
-                            nameOf(role_))});
+        refuse(
+            {RefusalCode::secret,
+             fmt::format("the secret of role {} differs here; give both sides the same --secret-file", nameOf(role_))});
     } else {
         welcome();
     }
@@ -184,7 +184,7 @@ void Peer::take(EditRequest& request) {
         outOfTurn();
         return;
     }
-    connection_->expectLoads(request.edit.kind != sand::Edit::load);  // one at a time: until it is in a step
+    connection_->expectLoads(request.edit.kind != sand::Edit::load);  // one load at a time, until it is in a step
     service_.sandThread->edit(std::move(request));
 }
 
@@ -196,7 +196,8 @@ void Peer::take(const ForceShare& force) {
     }
 }
 
-/// Only now is it told who else is here: before, nobody knows who asks.
+/// Welcomes the peer, or refuses it if there is no place for it. Only after the proof may a peer learn who else is
+/// connected.
 void Peer::welcome() {
     if (role_ == Role::move && roster_.master()) {
         refuse({RefusalCode::busy, fmt::format("busy: the master at {} is linked; one wall at a time",
@@ -204,7 +205,7 @@ void Peer::welcome() {
         return;
     }
     if (role_ == Role::watch && roster_.watchersAreFull()) {
-        refuse({RefusalCode::busy, fmt::format("busy: {} watch already", kMaxWatchers)});
+        refuse({RefusalCode::busy, fmt::format("busy: {} watchers are linked already", kMaxWatchers)});
         return;
     }
     connection_->setMaxIn(std::numeric_limits<std::uint64_t>::max());
@@ -247,7 +248,7 @@ void Peer::ready() {
 
 void Peer::needState(const NeedState& need) {
     connection_->expectState(true);
-    // By steps at the first time alone; then it is the whole sand.
+    // Steps are accepted only the first time. After that the master must send the whole sand.
     grant_.catchUpsLeft = std::exchange(grant_.askedForSteps, true) ? 0 : StepRing::kSteps / kMaxCatchUp;
     connection_->send(need);
 }
@@ -266,7 +267,8 @@ void Peer::sendTicks(bool all) {
 void Peer::step(base::Bytes message) {
     sendTicks(false);
     ++sent_.steps;
-    if (message.size() <= kMaxMessage) {  // not one with sand that is loaded: timing tests are as long as the last
+    // Leaves out a step that loads sand, because timing tests are as long as the last step.
+    if (message.size() <= kMaxMessage) {
         sent_.bytes += message.size();
         sent_.lastBytes = message.size();
     }
@@ -278,7 +280,8 @@ void Peer::step(base::Bytes message) {
 }
 
 void Peer::watchStep(const base::Bytes& message) {
-    if (message.size() <= kMaxMessage) {  // not sand that is loaded: the master alone has asked for so much
+    // Leaves out a step that loads sand, because only the master has asked for so much.
+    if (message.size() <= kMaxMessage) {
         connection_->sendBytes(base::Bytes(message));
     }
 }
@@ -333,13 +336,13 @@ void Peer::end(const std::string& why, Connection::Fault fault) {
     }
     const auto kept = shared_from_this();
     const bool guest = phase_ <= Phase::proving;
-    // Masters come one at a time and are told of whenever they go; of guests and watchers a flood may come.
+    // Masters come one at a time, so each end is logged. Unauthenticated connections and watchers may come in floods.
     const bool master = !guest && role_ == Role::move;
     if (master) {
         log(why);
     }
     if (fault) {
-        const std::string who = guest ? "a guest: " : "a watcher: ";
+        const std::string who = guest ? "an unauthenticated connection: " : "a watcher: ";
         gate_.refused(*fault, connection_->address(), master ? "" : who + why, host::monotonicNs());
     }
     phase_ = Phase::over;

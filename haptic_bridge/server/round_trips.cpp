@@ -14,7 +14,7 @@ HalfRoundTrip told(const base::LiveHistogram& halves) {
 }  // namespace
 
 double RoundTrips::pause() {
-    // Poisson arrivals see time averages: no phase of a frame is met more often than it lasts.
+    // Poisson arrivals see time averages: no phase of a frame is sampled more often than its share of the time.
     return std::exponential_distribution<double>(perSecond_)(random_);
 }
 

@@ -10,7 +10,7 @@
 namespace haptic_bridge {
 namespace {
 
-constexpr std::int64_t kIdlePoll = 20'000'000;  // [ns]: an idle sand thread empties the hand's queue this often
+constexpr std::int64_t kIdlePoll = 20'000'000;  // [ns], interval at which an idle sand thread empties the hand's queue
 
 std::unique_ptr<HandFeed> feedFor(Pace pace, HapticTick& hand, HandChannel& channel, int stepsPerSecond) {
     if (pace == Pace::fast) {
@@ -67,7 +67,7 @@ void SandThread::run() {
     }
 }
 
-/// Sleeps until a command comes or a step is due; says whether one is.
+/// Sleeps until a command comes or a step is due. Returns whether a step is due.
 bool SandThread::waitForWork() {
     std::unique_lock lock(mutex_);
     const auto commanded = [this] { return !commands_.empty(); };

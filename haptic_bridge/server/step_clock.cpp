@@ -7,11 +7,11 @@
 namespace haptic_bridge {
 namespace {
 
-constexpr double kLockRange = 0.05;               // of the nominal period
-constexpr double kSmoothing = 0.05;               // of the frame interval, per frame
-constexpr double kPhaseGain = 0.1;                // of the phase error, per step
-constexpr std::int64_t kLate = 250'000'000;       // [ns]
-constexpr std::int64_t kFramesOld = 500'000'000;  // [ns] without a frame: free running
+constexpr double kLockRange = 0.05;               // share of the nominal period
+constexpr double kSmoothing = 0.05;               // share of a new frame interval in the mean, per frame
+constexpr double kPhaseGain = 0.1;                // share of the phase error that is corrected per step
+constexpr std::int64_t kLate = 250'000'000;       // [ns], lateness after which the clock starts again
+constexpr std::int64_t kFramesOld = 500'000'000;  // [ns] without a frame, after which the clock runs free
 
 }  // namespace
 
@@ -26,7 +26,7 @@ void StepClock::start(std::int64_t now) {
 void StepClock::frameShown(std::int64_t now, std::int64_t intervalNs) {
     const double interval = static_cast<double>(intervalNs);
     const double nominal = static_cast<double>(period_);
-    // One slow frame is an accident, not the wall's rate.
+    // One slow frame does not change the wall's rate.
     const bool near = std::abs(interval - nominal) < nominal / 2;
     if (near) {
         frame_ = frame_ == 0 ? interval : frame_ + kSmoothing * (interval - frame_);
@@ -44,7 +44,7 @@ void StepClock::advance(std::int64_t now) {
         due_ += period_;
         return;
     }
-    // How much the step just due was late against the middle between two swaps, in (−frame/2, frame/2].
+    // Lateness of the step just due against the middle between two swaps, in (−frame/2, frame/2].
     double error = std::fmod(static_cast<double>(due_ - lastFrame_) - frame_ / 2, frame_);
     error -= error > frame_ / 2 ? frame_ : 0;
     error += error <= -frame_ / 2 ? frame_ : 0;

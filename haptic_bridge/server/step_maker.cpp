@@ -38,11 +38,11 @@ void StepMaker::state(const base::Bytes& bytes) {
     try {
         terrain_.decodeState(bytes);
     } catch (const base::FormatError& error) {
-        output_.unusable(session_, std::string("the state sent is none of this scene: ") + error.what());
+        output_.unusable(session_, std::string("the state does not fit this scene: ") + error.what());
         return;
     }
     if (!asGranted()) {
-        output_.unusable(session_, "the state sent does not have the hash that was announced");
+        output_.unusable(session_, "the state does not have the announced hash");
         return;
     }
     begin();
@@ -65,7 +65,7 @@ void StepMaker::catchUp(const CatchUp& steps) {
     if (fits && asGranted()) {
         begin();
     } else {
-        output_.needState(session_, {});  // the whole sand, whatever is here
+        output_.needState(session_, {});  // asks for the whole sand
     }
 }
 
@@ -73,7 +73,7 @@ void StepMaker::shown(const Shown& frame, std::int64_t nowNs) {
     if (!running()) {
         return;
     }
-    // A master may claim anything: the number never falls, and never passes the last step that was sent.
+    // The master's number is not trusted: shown_ never falls, and never passes the last step that was sent.
     shown_ = std::max(shown_, std::min(frame.stepNumber, terrain_.stepNumber()));
     clock_.frameShown(nowNs, frame.frameIntervalNs);
 }
@@ -88,7 +88,7 @@ void StepMaker::begin() {
     phase_ = Phase::running;
     edit_ = {};
     shown_ = start_.stepNumber;
-    // The tool may have been left in the sand elsewhere, by whichever process numbered before. Lifting it avoids a
+    // The process that numbered the steps before may have left the tool in the sand elsewhere. Lifting it avoids a
     // furrow from there to the hand.
     liftFirst_ = terrain_.engaged();
     path_.restart(terrain_.probe(), false);
@@ -102,7 +102,8 @@ void StepMaker::collect() {
     dropped_ = path_.dropped() + hand_.overflow();
 }
 
-/// Returns when the last sample of the step was read [ns, the host's]; 0 if the step has none, or another clock.
+/// Returns when the last sample of the step was read [ns, the host's clock]; 0 if the step has no sample, or if the
+/// samples have another clock.
 std::int64_t StepMaker::fill(sand::Step& step) {
     if (std::exchange(liftFirst_, false)) {
         return 0;
@@ -110,15 +111,16 @@ std::int64_t StepMaker::fill(sand::Step& step) {
     hand_.tickForStep(path_);
     const std::int64_t readNs = path_.take(step);
     if (sand::isRound(terrain_.toolShape().kind) || step.heading == terrain_.heading()) {
-        step.heading.reset();  // nothing that the sand would notice
+        step.heading.reset();  // the heading would not change the sand
     }
     return hand_.onHostClock() ? readNs : 0;
 }
 
 void StepMaker::makeStep() {
-    if (blocked()) {  // in real time only: the fast pace waits instead
+    if (blocked()) {  // only in real time, because the fast pace waits instead
         ++withheld_;
-        hand_.publish(terrain_);  // the same sand, but not a stale one: a hand goes on to feel a wall that waits
+        // Publishes the same sand with a new time, so that the hand continues to feel it while the wall waits.
+        hand_.publish(terrain_);
         clock_.advance(now_());
         return;
     }

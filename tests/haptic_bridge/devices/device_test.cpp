@@ -37,9 +37,9 @@ TEST(Trace, NamesTheLineOfWhatItCannotRead) {
     starts("", "hand.csv:1: the trace is empty");
     starts("time,x,y\n0,1,2\n", "hand.csv:1: no column 'z'");
     starts("time,x,y,z\n0,1,2,3\n0.1,1,2\n", "hand.csv:3: 4 values expected, got 3");
-    starts("time,x,y,z\n0,1,2,3\n0.1,1,2,3z\n", "hand.csv:3: z is no number: '3z'");
-    starts("time,x,y,z\n0,1,2,3\n0.1,nan,2,3\n", "hand.csv:3: x is no number: 'nan'");
-    starts("time,x,y,z\n0,1,2,3\n\n0.1,1e300,2,3\n", "hand.csv:4: x is no number");
+    starts("time,x,y,z\n0,1,2,3\n0.1,1,2,3z\n", "hand.csv:3: z is not a number: '3z'");
+    starts("time,x,y,z\n0,1,2,3\n0.1,nan,2,3\n", "hand.csv:3: x is not a number: 'nan'");
+    starts("time,x,y,z\n0,1,2,3\n\n0.1,1e300,2,3\n", "hand.csv:4: x is not a number");
     starts("time,x,y,z\n0.5,1,2,3\n0.1,1,2,3\n", "hand.csv:3: time runs backwards: '0.1'");
     starts("time,x,y,z\nnoon,1,2,3\n", "hand.csv:2: time is neither");
     starts("time,x,y,z\n2023/02/30/10:00:00.0,1,2,3\n", "hand.csv:2: time is neither");
@@ -124,7 +124,7 @@ TEST(Strokes, NamesTheLineOfWhatItCannotRead) {
     starts("stroke\npoint 1 two\n", "word:2: 'point' needs a number");
     starts("stroke\n\nstroke\npoint 0 0\n", "word:3: the stroke before this line has no points");
     starts("speed 0\n", "word:1: 'speed' needs a number");
-    starts("stroke\nline 0 0\n", "word:2: 'line' is none of");
+    starts("stroke\nline 0 0\n", "word:2: 'line' is unknown; write stroke");
     starts("stroke\narc 0 0 1 1 0\n", "word:2: 'arc' takes");
 }
 

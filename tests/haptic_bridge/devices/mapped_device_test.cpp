@@ -233,7 +233,9 @@ TEST(Troubles, AreToldOnceNotAThousandTimesASecond) {
         }
     }
     EXPECT_EQ(told, 3) << "every ten seconds";
-    EXPECT_EQ(first, "device Touch sends no numbers, 1 times so far; the hand is lifted and feels nothing");
+    EXPECT_EQ(
+        first,
+        "device Touch sends values that are not finite, 1 times so far; the tool is lifted and the hand feels nothing");
 }
 
 TEST(Troubles, AnAbsentDeviceIsToldWhenItGoesAndWhenItIsBack) {
@@ -255,7 +257,7 @@ TEST(Troubles, AnAbsentDeviceIsToldWhenItGoesAndWhenItIsBack) {
     run(30'000, 40'000, false);
     run(40'000, 41'000, true);
     ASSERT_EQ(told.size(), 3U);
-    EXPECT_EQ(told[0], "device Touch does not answer; the hand is lifted and feels nothing until it does");
+    EXPECT_EQ(told[0], "device Touch does not answer; the tool is lifted and the hand feels nothing until it answers");
     EXPECT_EQ(told[1], "device Touch answers again");
     EXPECT_EQ(told[2], told[0]);
 }

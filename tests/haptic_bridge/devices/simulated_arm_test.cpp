@@ -235,14 +235,14 @@ TEST(OpenSimulatedArm, NamesWhatItCannotRead) {
     const auto starts = [](const std::string& spec, const std::string& start) {
         EXPECT_EQ(complaint(spec).substr(0, start.size()), start) << complaint(spec);
     };
-    starts("sim:", "--device sim:: '' is none of touch");
-    starts("sim:phantom", "--device sim:phantom: 'phantom' is none of touch, falcon, omega.3, delta.3");
+    starts("sim:", "--device sim:: preset '' is unknown; give touch");
+    starts("sim:phantom", "--device sim:phantom: preset 'phantom' is unknown; give touch, falcon, omega.3 or delta.3");
     starts("sim:touch,mass=0", "--device sim:touch,mass=0: mass needs a number from 0.001 to 100, got '0'");
     starts("sim:touch,mass=nan", "--device sim:touch,mass=nan: mass needs a number");
     starts("sim:touch,damping=-1", "--device sim:touch,damping=-1: damping needs a number");
-    starts("sim:touch,delay=0.5", "--device sim:touch,delay=0.5: delay counts whole ticks");
-    starts("sim:touch,colour=red", "--device sim:touch,colour=red: 'colour' is none of");
-    starts("sim:touch,", "--device sim:touch,: '' is none of path");
+    starts("sim:touch,delay=0.5", "--device sim:touch,delay=0.5: delay must be a whole number of ticks");
+    starts("sim:touch,colour=red", "--device sim:touch,colour=red: key 'colour' is unknown");
+    starts("sim:touch,", "--device sim:touch,: key '' is unknown; the keys are path");
     starts("sim:touch,path=/nowhere", "--device sim:touch,path=/nowhere: /nowhere cannot be read");
 }
 

@@ -122,7 +122,7 @@ TEST_F(ConnectionTest, CutsOffWhoSendsMoreThanItMay) {
     EXPECT_EQ(closed_, 0);
     say(pings);
     ASSERT_TRUE(runUntil([&] { return closed_ > 0; }));
-    EXPECT_EQ(why_, "a greeting too long");
+    EXPECT_EQ(why_, "its greeting is too long");
     EXPECT_EQ(fault_, RefusalCode::limit);
 }
 

@@ -57,7 +57,7 @@ TEST_F(LinkSecurityTest, RefusesWhoDoesNotKnowTheSecretAndSaysSo) {
     ServerProcess server(folder_, arguments({"--secret-file", both_}));
     const Address address = server.address();
     const std::string wrong = secretFile("wrong", "move another-secret-entirely\n");
-    EXPECT_NE(refusalOf(address, client(wrong)).find("the secret of role move is another here"), std::string::npos);
+    EXPECT_NE(refusalOf(address, client(wrong)).find("the secret of role move differs here"), std::string::npos);
     EXPECT_NE(refusalOf(address, {}).find("asks for a secret"), std::string::npos);
     {
         RawPeer skips(address.port);  // and says nothing of a secret
@@ -76,10 +76,10 @@ TEST_F(LinkSecurityTest, RefusesWhoDoesNotKnowTheSecretAndSaysSo) {
     {
         RawPeer large(address.port);  // nobody knows it yet: a kilobyte is enough
         large.send(Bye{std::string(2000, 'x')});
-        EXPECT_NE(large.refusal().find("1024 is the most"), std::string::npos);
+        EXPECT_NE(large.refusal().find("at most 1024 are allowed"), std::string::npos);
     }
     EXPECT_TRUE(links(address, client(both_))) << "after all that it serves as if nothing had happened";
-    EXPECT_NE(server.errors().find("the secret of role move is another here"), std::string::npos) << server.errors();
+    EXPECT_NE(server.errors().find("the secret of role move differs here"), std::string::npos) << server.errors();
     EXPECT_NE(server.errors().find("secret proved"), std::string::npos) << server.errors();
     const std::string errors = server.errors();
     EXPECT_EQ(errors.find(quoted(kMove)), std::string::npos) << "nobody prints a secret";
@@ -105,25 +105,24 @@ TEST_F(LinkSecurityTest, AWholeGreetingPlayedBackOpensNothing) {
     replayer.send(std::span(capture.there).first(std::min<std::size_t>(capture.there.size(), 1024)));
     const auto challenge = replayer.receive();
     ASSERT_TRUE(challenge && std::holds_alternative<Challenge>(*challenge));
-    EXPECT_NE(replayer.refusal().find("the secret of role move is another here"), std::string::npos);
+    EXPECT_NE(replayer.refusal().find("the secret of role move differs here"), std::string::npos);
 }
 
 TEST_F(LinkSecurityTest, NeitherSideFallsBackFromTls) {
     ServerProcess sealed(folder_, arguments({"--secret-file", both_, "--tls"}));
     const Address address = sealed.address();
-    EXPECT_NE(refusalOf(address, client(both_)).find("speaks TLS alone"), std::string::npos);
+    EXPECT_NE(refusalOf(address, client(both_)).find("accepts only TLS"), std::string::npos);
     EXPECT_TRUE(links(address, client(both_, true))) << sealed.errors();
     const std::string wrong = secretFile("wrong", "move another-secret-entirely\n");
-    EXPECT_NE(refusalOf(address, client(wrong, true)).find("is another here"), std::string::npos);
-    EXPECT_NE(sealed.errors().find("it does not speak TLS"), std::string::npos) << sealed.errors();
+    EXPECT_NE(refusalOf(address, client(wrong, true)).find("differs here"), std::string::npos);
+    EXPECT_NE(sealed.errors().find("it does not use TLS"), std::string::npos) << sealed.errors();
     EXPECT_NE(sealed.errors().find("TLS 1.3"), std::string::npos) << sealed.errors();
     const Folder other;
     std::vector<std::string> plainly = ServerProcess::usual(sceneFile_, other);
     plainly.insert(plainly.end(), {"--secret-file", both_});
     ServerProcess plain(other, plainly);
-    EXPECT_NE(refusalOf(plain.address(), client(both_, true)).find("does not speak TLS"), std::string::npos);
-    EXPECT_TRUE(eventually([&] { return plain.errors().find("it speaks TLS") != std::string::npos; }))
-        << plain.errors();
+    EXPECT_NE(refusalOf(plain.address(), client(both_, true)).find("does not use TLS"), std::string::npos);
+    EXPECT_TRUE(eventually([&] { return plain.errors().find("it uses TLS") != std::string::npos; })) << plain.errors();
     EXPECT_THROW((void)client("", true), base::InputError) << "TLS without a secret proves nothing";
 }
 

@@ -26,10 +26,10 @@ TEST(SecretFile, NamesTheLineAndNeverTheSecret) {
     const std::vector<std::pair<std::string, std::string>> wrong{
         {"move 0123456789abcde", "secrets:1: a secret of 15 characters"},
         {"\nmove", "secrets:2: a secret of 0 characters"},
-        {"0123456789abcdef", "secrets:1: begins with neither move nor watch"},
+        {"0123456789abcdef", "secrets:1: does not begin with move or watch"},
         {"move 0123456789abcdef 0123456789abcdef", "secrets:1: holds more"},
         {"move 0123456789abcdef\nmove 0123456789abcdeg", "secrets:2: a second secret of role move"},
-        {"move 0123456789abcdef\nwatch 0123456789abcdef", "secrets: has one secret for both roles"},
+        {"move 0123456789abcdef\nwatch 0123456789abcdef", "secrets: has the same secret for both roles"},
         {"move 0123456789\001"
          "bcdef",
          "secrets:1: a secret with characters"},
@@ -47,8 +47,8 @@ TEST_F(LinkSecurityTest, TakesASecretOnlyFromAFileOfItsOwnersAlone) {
     const std::string pipe = folder_.file("pipe");
     ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
     const std::string large = secretFile("large", std::string(kMaxSecretFile + 1, '#'));
-    for (const auto& [file, word] : std::vector<std::pair<std::string, std::string>>{{open, "others may read"},
-                                                                                     {pipe, "no regular file"},
+    for (const auto& [file, word] : std::vector<std::pair<std::string, std::string>>{{open, "other users may read"},
+                                                                                     {pipe, "not a regular file"},
                                                                                      {folder_.file("none"), "cannot"},
                                                                                      {large, "larger than"}}) {
         try {

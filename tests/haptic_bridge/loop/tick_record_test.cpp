@@ -133,7 +133,8 @@ TEST_F(Recorded, AFullDiskEndsTheRowsAndNotTheTrack) {
     recorder_.reset();
     ASSERT_EQ(told_.size(), 1U);
     EXPECT_EQ(told_[0],
-              "--record /dev/full: cannot be written (No space left on device); it ends here, and the session goes on");
+              "--record /dev/full: cannot be written (No space left on device); the file ends here, and the session "
+              "continues");
     TickReplay replay(scene_, pieces_);
     const std::string rows = replayed(replay, steps_.size());
     EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 1 + 20 * 16);

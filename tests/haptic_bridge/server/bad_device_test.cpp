@@ -22,8 +22,8 @@ protected:
 
 TEST_F(BadDevice, IsToldInALineAndTheWallGoesOn) {
     for (const auto& [what, line] :
-         {std::pair{"stops", "does not answer; the hand is lifted and feels nothing until it does"},
-          {"nan", "sends no numbers, "},
+         {std::pair{"stops", "does not answer; the tool is lifted and the hand feels nothing until it answers"},
+          {"nan", "sends values that are not finite, "},
           {"jumps", "jumps, "}}) {
         ServerProcess server(folder_, words(what, "fast"));
         Client client(server.address(), offerOf(scene_));

@@ -36,7 +36,7 @@ TEST_F(LinkSecurityTest, AWatcherSeesTheStepsAndMovesNothing) {
             last = step->step.number;
         }
     }
-    EXPECT_TRUE(eventually([&] { return server.errors().find("who watches only listens") != std::string::npos; }))
+    EXPECT_TRUE(eventually([&] { return server.errors().find("a watcher only listens") != std::string::npos; }))
         << server.errors();
     EXPECT_EQ(wall.divergences + wall.outOfOrder, 0);
     master.stop();
@@ -70,7 +70,7 @@ TEST_F(LinkSecurityTest, TheProgramThatWatchesPrintsWhereTheProbeIs) {
     EXPECT_EQ(told.find("scene 'small', 60 steps per second\nstep "), 0U) << told;
     EXPECT_NE(told.find("probe at "), std::string::npos) << told;
     const std::string plain = watch("");
-    EXPECT_NE(plain.find("this server speaks TLS alone"), std::string::npos) << plain;
+    EXPECT_NE(plain.find("this server accepts only TLS"), std::string::npos) << plain;
     EXPECT_EQ(wall.divergences + wall.outOfOrder, 0);
 }
 

@@ -78,7 +78,8 @@ TEST_F(Positions, NonsenseLiftsTheToolAndIsTold) {
     add(0, 0, kNoNumber);
     EXPECT_FALSE(step().engaged);
     EXPECT_EQ(told(),
-              "haptic link: the server sends no numbers, 2 times so far; the hand is lifted and feels nothing\n");
+              "haptic link: the server sends values that are not finite, 2 times so far; the tool is lifted and the "
+              "hand feels nothing\n");
     add(0, 0, 0);
     EXPECT_TRUE(step().engaged) << "the hand continues";
     EXPECT_EQ(told(), "");
@@ -107,7 +108,8 @@ TEST_F(Positions, ATimeThatRunsBackwardsIsLeftOut) {
 
 TEST_F(Positions, AFloodIsTold) {
     floods_ = 3;
-    EXPECT_EQ(told(), "haptic link: the server sends more than can be taken in, and was held back 3 times so far\n");
+    EXPECT_EQ(told(),
+              "haptic link: the server sends more than the master can take in, and was held back 3 times so far\n");
 }
 
 TEST_F(Positions, AToolLeftInTheSandIsLiftedFirst) {
