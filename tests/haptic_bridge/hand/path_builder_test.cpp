@@ -54,9 +54,9 @@ TEST(PathBuilder, LeavesOutWhereTheHandRestsButNotWherePressed) {
     builder.add(at(5, true));
     const sand::Step pressed = take(builder);
     EXPECT_TRUE(pressed.engaged);
-    EXPECT_EQ(pressed.path.size(), 1U) << "the press itself";
+    EXPECT_EQ(pressed.path.size(), 1U) << "the path has the point of the press";
     const sand::Step held = take(builder);
-    EXPECT_TRUE(held.engaged) << "no sample: as it was";
+    EXPECT_TRUE(held.engaged) << "without a sample the step is engaged as before";
     EXPECT_TRUE(held.path.empty());
 }
 
@@ -71,7 +71,7 @@ TEST(PathBuilder, GivesTheLastHeadingOfItsSamples) {
     builder.take(step);
     EXPECT_EQ(step.heading, north);
     builder.take(lifted);
-    EXPECT_EQ(lifted.heading, east) << "of the samples behind the lift";
+    EXPECT_EQ(lifted.heading, east) << "the heading of the samples after the lift";
     builder.take(resting);
     EXPECT_FALSE(resting.heading.has_value());
 }
@@ -91,7 +91,7 @@ TEST(PathBuilder, ThinsALongPathEvenly) {
     EXPECT_EQ(builder.dropped(), 1000 - sand::kMaxPathPoints);
 }
 
-/// A hand that goes a probe unit each millisecond, in the sand.
+/// A hand that moves one probe unit per millisecond, in the sand.
 void digFor(PathBuilder& builder, int milliseconds) {
     for (int x = 1; x <= milliseconds; ++x) {
         builder.add({x * 1'000'000LL, {x, 0, 0}, true});
@@ -105,7 +105,7 @@ TEST(PathBuilder, CatchesUpByStepsOfFourPeriods) {
     int steps = 0;
     for (sand::Step step = take(builder); !step.path.empty(); step = take(builder)) {
         EXPECT_TRUE(step.engaged);
-        EXPECT_EQ(step.path.front().x, last + 1) << "nothing of the hand is lost";
+        EXPECT_EQ(step.path.front().x, last + 1) << "no movement of the hand is lost";
         EXPECT_LE(step.path.back().x - last, 67) << "[ms]";
         last = step.path.back().x;
         ++steps;
@@ -123,7 +123,7 @@ TEST(PathBuilder, LetsGoOfAHandThatIsFarAhead) {
     EXPECT_FALSE(lifted.engaged);
     ASSERT_EQ(lifted.path.size(), 1U);
     EXPECT_TRUE(down.engaged);
-    EXPECT_EQ(down.path.front(), lifted.path.front()) << "pressed where it was put";
+    EXPECT_EQ(down.path.front(), lifted.path.front()) << "the tool presses where it was put down";
     EXPECT_GT(down.path.front().x, 1500 - 67);
     EXPECT_EQ(down.path.back().x, 1500);
     EXPECT_GE(builder.dropped(), 1400U);
@@ -142,7 +142,7 @@ TEST(PathBuilder, StaysBoundedWhileNobodyTakes) {
     for (int x = 1; x <= 100'000; ++x) {
         builder.add(at(x, x % 2 == 0));
     }
-    EXPECT_GT(builder.dropped(), 100'000U) << "a tapping hand is bounded too";
+    EXPECT_GT(builder.dropped(), 100'000U) << "the samples of a tapping hand are also bounded";
 }
 
 }  // namespace
