@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a server comes to the sand of its master.
+// How a server gets the sand of its master.
 #include <utility>
 
 #include "haptic_bridge/link/step_ring.hpp"
@@ -11,12 +11,13 @@ namespace {
 using namespace haptic_bridge;
 using namespace test;
 
-// A server that is a few steps behind gets those, by number; one whose sand has another history all of it.
+// A server that is a few steps behind gets these steps, by number. A server whose sand has another history gets the
+// whole sand.
 TEST_F(LinkSecurityTest, CatchesUpByStepsOnTheSameHistoryAndByTheSandElse) {
     ServerProcess server(folder_, arguments({}));
     Wall wall(scene_);
     StepRing ring;
-    const auto own = [&](int steps) {  // as a master numbers on by itself
+    const auto own = [&](int steps) {  // as a master that numbers its own steps
         ++wall.epoch;
         for (int i = 0; i < steps; ++i) {
             sand::Step step{wall.epoch, wall.terrain.stepNumber() + 1, false, {}};
@@ -42,7 +43,7 @@ TEST_F(LinkSecurityTest, CatchesUpByStepsOnTheSameHistoryAndByTheSandElse) {
             return wall.terrain.stepNumber() >= until;
         })) << client.link().message
             << server.errors();
-        // A step that the server made and this wall never applies: the server has another history from here on.
+        // The server made a step that this wall never applies, so the server has another history from here on.
         EXPECT_TRUE(eventually([&] { return !client.drain(1).empty(); })) << client.link().message;
         return std::pair{client.counters().catchUps, client.counters().snapshots};
     };
@@ -62,7 +63,7 @@ TEST_F(LinkSecurityTest, CatchesUpByStepsOnTheSameHistoryAndByTheSandElse) {
 
 TEST_F(LinkSecurityTest, TakesSoManyCatchUpsAndNoneAfterTheLast) {
     ServerProcess server(folder_, arguments({}));
-    const auto hear = [](RawPeer& peer) {  // whatever is no report
+    const auto hear = [](RawPeer& peer) {  // the next message that is not a report
         auto message = peer.receive();
         while (message && std::holds_alternative<Report>(*message)) {
             message = peer.receive();
@@ -81,7 +82,7 @@ TEST_F(LinkSecurityTest, TakesSoManyCatchUpsAndNoneAfterTheLast) {
             master.send(CatchUp{last, {}});
         }
         if (last) {
-            ASSERT_TRUE(hear(master)) << "they do not lead there: all of the sand";
+            ASSERT_TRUE(hear(master)) << "the steps do not lead there, so the whole sand is requested";
         }
         master.send(CatchUp{true, {}});
         const auto answer = hear(master);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One end of a connection against another end that may say anything.
+// One end of a connection against a peer that may send anything.
 #include "haptic_bridge/link/connection.hpp"
 
 #include <boost/asio/connect.hpp>
@@ -15,11 +15,11 @@ using namespace haptic_bridge;
 using namespace test;
 namespace asio = boost::asio;
 
-/// What a test wants TLS to be.
+/// A TLS session whose behaviour the test chooses.
 struct FalseTls : TlsSession {
     bool agreed = false, broken = false, swallows = false;
     void receive(ByteSpan bytes, base::Bytes& plain, base::Bytes&) override {
-        // 'e' ends the handshake, 'b' begins a message of it that never ends; what follows is data.
+        // 'e' ends the handshake. 'b' begins a handshake message that never ends. Other bytes are data.
         agreed = bytes[0] == 22 || bytes[0] == 'e';
         broken = bytes[0] == 'b';
         plain.assign(bytes.begin() + 1, swallows ? bytes.begin() + 1 : bytes.end());
@@ -138,7 +138,7 @@ TEST_F(ConnectionTest, ReadsMoreSlowlyFromWhoSendsRecordsAndNoMessages) {
     EXPECT_EQ(closed_, 0) << why_;
 }
 
-/// Both ends of TLS as they are, in memory.
+/// Both ends of real TLS, in memory.
 class TlsEnds : public testing::Test {
 protected:
     void SetUp() override {

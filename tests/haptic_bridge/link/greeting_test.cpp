@@ -27,13 +27,14 @@ TEST_F(Greeting, ProvesBothSidesAndNoneToTheOther) {
     ASSERT_TRUE(proof);
     EXPECT_TRUE(server.accepts(*proof));
     EXPECT_TRUE(master.accepts(Welcome{identity_, 60, Role::move, server.mac()}));
-    // What one side has said, said back to it, proves nothing.
+    // A side's own proof, sent back to it, proves nothing.
     EXPECT_FALSE(master.accepts(Welcome{identity_, 60, Role::move, proof->mac})) << "reflected";
     EXPECT_FALSE(server.accepts(Proof{server.mac()})) << "reflected";
-    EXPECT_FALSE(master.accepts(Welcome{identity_, 60, Role::watch, server.mac()})) << "less than was asked for";
+    EXPECT_FALSE(master.accepts(Welcome{identity_, 60, Role::watch, server.mac()})) << "a lower role than requested";
     Identity other = identity_;
     other.rulesDigest ^= 1;
-    EXPECT_FALSE(master.accepts(Welcome{other, 60, Role::move, server.mac()})) << "not who was challenged";
+    EXPECT_FALSE(master.accepts(Welcome{other, 60, Role::move, server.mac()}))
+        << "another server than the one that sent the challenge";
     EXPECT_FALSE(master.answer(*challenge)) << "twice";
 }
 
@@ -67,7 +68,7 @@ TEST_F(Greeting, AServerThatMayOnlyWatchNumbersNoSteps) {
     EXPECT_EQ(trusting.because().code, RefusalCode::secret);
 }
 
-// Somebody in between ends TLS on both sides with a certificate of his own, and hands on what is said inside.
+// An attacker in between ends TLS on both sides with a certificate of its own, and forwards the decrypted messages.
 TEST_F(Greeting, TlsIsBoundToTheProofSoThatNobodyStandsBetween) {
     const auto shake = [](TlsSession& guest, TlsSession& host) {
         base::Bytes there, back, plain;

@@ -20,7 +20,7 @@ namespace test {
 inline const std::string kMove = "the secret of those who move";
 inline const std::string kWatch = "the secret of those who watch";
 
-/// A folder with a scene and a file of both secrets, and what a server and its guests need of them.
+/// A folder with a scene and a file with both secrets, as servers and clients need them.
 class LinkSecurityTest : public testing::Test {
 protected:
     std::string secretFile(const std::string& name, const std::string& text) {
@@ -51,7 +51,7 @@ protected:
                 false,
                 {}};
     }
-    /// What the link says when it is refused.
+    /// Returns the message of a link that is refused.
     std::string refusalOf(const haptic_bridge::Address& address, const haptic_bridge::LinkSecurity& security) {
         haptic_bridge::Client client(address, offerOf(scene_), security);
         EXPECT_TRUE(eventually([&] { return client.link().link == haptic_bridge::Link::refused; }))

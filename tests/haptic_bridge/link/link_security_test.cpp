@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who may come in: the real server against guests who should not, over plain TCP and TLS.
+// The real server against peers that it must refuse, over plain TCP and TLS.
 #include <algorithm>
 #include <mutex>
 
@@ -14,7 +14,7 @@ using namespace haptic_bridge;
 using namespace test;
 using impaired_link::ImpairedLink;
 
-/// What passes between two ends.
+/// A relay that records the bytes between two ends.
 struct Capture {
     std::mutex mutex;
     base::Bytes there, back;
@@ -60,7 +60,7 @@ TEST_F(LinkSecurityTest, RefusesWhoDoesNotKnowTheSecretAndSaysSo) {
     EXPECT_NE(refusalOf(address, client(wrong)).find("the secret of role move differs here"), std::string::npos);
     EXPECT_NE(refusalOf(address, {}).find("asks for a secret"), std::string::npos);
     {
-        RawPeer skips(address.port);  // and says nothing of a secret
+        RawPeer skips(address.port);  // it sends no proof of a secret
         skips.send(hello());
         EXPECT_NE(skips.refusal().find("asks for a secret"), std::string::npos);
     }
@@ -74,15 +74,15 @@ TEST_F(LinkSecurityTest, RefusesWhoDoesNotKnowTheSecretAndSaysSo) {
         EXPECT_NE(pushes.refusal().find("out of turn"), std::string::npos);
     }
     {
-        RawPeer large(address.port);  // nobody knows it yet: a kilobyte is enough
+        RawPeer large(address.port);  // unauthenticated: at most one kilobyte per message
         large.send(Bye{std::string(2000, 'x')});
         EXPECT_NE(large.refusal().find("at most 1024 are allowed"), std::string::npos);
     }
-    EXPECT_TRUE(links(address, client(both_))) << "after all that it serves as if nothing had happened";
+    EXPECT_TRUE(links(address, client(both_))) << "after all faults the server still serves";
     EXPECT_NE(server.errors().find("the secret of role move differs here"), std::string::npos) << server.errors();
     EXPECT_NE(server.errors().find("secret proved"), std::string::npos) << server.errors();
     const std::string errors = server.errors();
-    EXPECT_EQ(errors.find(quoted(kMove)), std::string::npos) << "nobody prints a secret";
+    EXPECT_EQ(errors.find(quoted(kMove)), std::string::npos) << "the server prints no secret";
 }
 
 TEST_F(LinkSecurityTest, ASecretOnOneSideAloneIsRefusedEitherWay) {
@@ -179,7 +179,7 @@ TEST_F(LinkSecurityTest, WithoutASecretNoOpenSslIsMapped) {
     }
     ServerProcess secret(folder_, arguments({"--secret-file", both_}));
     ASSERT_NE(secret.port(), 0);
-    EXPECT_NE(maps(secret).find("libcrypto"), std::string::npos) << "so that this test can fail";
+    EXPECT_NE(maps(secret).find("libcrypto"), std::string::npos) << "the check finds a library that is loaded";
 }
 
 TEST_F(LinkSecurityTest, TheExampleOfAPositionServerProvesItsSecret) {
@@ -197,7 +197,7 @@ TEST_F(LinkSecurityTest, TheExampleOfAPositionServerProvesItsSecret) {
                                                                  {"--secret-file " + both_, "", false},
                                                                  {"", both_, false},
                                                                  {"", "", true}}) {
-        // Ends with the shell's timeout whatever happens to this test.
+        // The server ends by the shell's timeout, even if this test fails.
         FILE* sender =
             popen(("timeout 60 " + run.substr(5) + option + " 2>/dev/null & echo $! >" + folder_.file("pid") + "; wait")
                       .c_str(),

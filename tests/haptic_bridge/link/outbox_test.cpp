@@ -12,14 +12,14 @@ using namespace haptic_bridge;
 TEST(Outbox, HoldsOrdinaryMessagesUpToItsMostAndOneLongOne) {
     Outbox outbox(10);
     EXPECT_TRUE(outbox.push(base::Bytes(6, 1), false));
-    EXPECT_TRUE(outbox.push(base::Bytes(100, 2), true)) << "a long one does not count";
-    EXPECT_FALSE(outbox.push(base::Bytes(100, 3), true)) << "but a second one does";
+    EXPECT_TRUE(outbox.push(base::Bytes(100, 2), true)) << "a long message does not count";
+    EXPECT_FALSE(outbox.push(base::Bytes(100, 3), true)) << "a second long message is refused";
     EXPECT_TRUE(outbox.push(base::Bytes(4, 4), false));
     EXPECT_FALSE(outbox.push(base::Bytes(1, 5), false));
-    EXPECT_EQ(outbox.size(), 3U) << "what is refused is not kept";
+    EXPECT_EQ(outbox.size(), 3U) << "refused messages are not kept";
     outbox.pop();
     EXPECT_EQ(outbox.front(), base::Bytes(100, 2)) << "the oldest first";
-    EXPECT_TRUE(outbox.push(base::Bytes(6, 6), false)) << "what was sent makes room";
+    EXPECT_TRUE(outbox.push(base::Bytes(6, 6), false)) << "a sent message makes room";
     outbox.pop();
     EXPECT_TRUE(outbox.push(base::Bytes(100, 7), true));
     outbox.setMost(3);

@@ -15,7 +15,7 @@ using namespace haptic_bridge;
 
 sand::Step someStep() { return {3, 77, true, {{100, -200, 300}, {101, -200, 299}, {110, 5, 299}}}; }
 
-/// One of each kind, with values that no default has.
+/// One message of each kind, with values that differ from all defaults.
 std::vector<Message> oneOfEach() {
     const Identity identity{kProtocolVersion, sand::kAlgorithmVersion, 0x0123456789abcdefULL, "dunes"};
     Report report;
@@ -82,7 +82,7 @@ TEST(Protocol, BytesOnTheWireAreThoseOfTheDocument) {
     EXPECT_EQ(encode(Hello{{6, 1, 2, "a"}, Role::watch, true, true, nonce}), hello);
 }
 
-// Of 43 numbers that look alike each must stand where the document has it, or both ends would mistake them alike.
+// Each of 43 numbers of the same type must be at its documented place. Otherwise both ends would make the same mistake.
 TEST(Protocol, TheNumbersOfAReportStandInTheOrderOfTheDocument) {
     Report report{.hapticPeriodUsP50 = 1,
                   .hapticPeriodUsP99 = 2,
@@ -117,7 +117,7 @@ TEST(Protocol, RefusesEveryTruncationAndEveryTrailingByte) {
     for (const Message& message : oneOfEach()) {
         const base::Bytes framed = encode(message);
         const auto whole = withoutLength(framed);
-        // Any length is right for a state or the padding of a timing test.
+        // A state, and the padding of a timing test, may have any length.
         const bool open = std::holds_alternative<State>(message) || std::holds_alternative<TimingTest>(message) ||
                           std::holds_alternative<TickPiece>(message);
         for (std::size_t length = 0; length < (open ? 1 : whole.size()); ++length) {
@@ -149,7 +149,7 @@ TEST(Protocol, AnEditTakesItsDetailsAlong) {
     }
 }
 
-// Nobody who is not linked, or was not asked, makes us hold more than an ordinary message.
+// A peer that is not linked, or was not asked for sand, cannot make this side hold more than an ordinary message.
 TEST(Protocol, SandToBeLoadedPassesWhereItIsExpectedAndNothingElseAsLong) {
     const base::Bytes sand(100'000, 7);
     sand::Step step = someStep();
@@ -188,7 +188,7 @@ TEST(Protocol, SurvivesRandomMutations) {
         reader.expectState(random() % 2 == 0);
         reader.feed(framed);
         try {
-            // Whatever is accepted must be a message that can be said again.
+            // Every accepted message must encode again.
             if (const auto message = reader.next()) {
                 (void)encode(*message);
             }
@@ -254,7 +254,7 @@ TEST(Protocol, ReadsOnlyTheVersionOfAnotherProtocol) {
     payload.put(std::uint8_t{1});
     payload.put(kMagic);
     payload.put(kProtocolVersion + 1);
-    payload.putText("a layout nobody knows yet");
+    payload.putText("an unknown layout");
     const auto hello = std::get<Hello>(decode(payload.bytes()));
     EXPECT_EQ(hello.master.protocol, kProtocolVersion + 1);
     const auto refusal = refusalFor({}, hello.master);

@@ -16,7 +16,7 @@
 
 namespace test {
 
-/// A plain socket that says whatever a test wants to a server.
+/// A plain socket that sends to a server whatever a test wants.
 class RawPeer {
 public:
     explicit RawPeer(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
@@ -36,7 +36,7 @@ public:
         EXPECT_EQ(::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL), static_cast<ssize_t>(bytes.size()));
     }
     void send(const haptic_bridge::Message& message) const { send(haptic_bridge::encode(message)); }
-    /// The next message, or nothing when the server has closed.
+    /// Returns the next message; nullopt if the server has closed the connection.
     std::optional<haptic_bridge::Message> receive() { return nextMessage(socket_, reader_); }
     std::string refusal() {
         const auto message = receive();

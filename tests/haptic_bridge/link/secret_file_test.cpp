@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which files of secrets are taken, and what is said of those that are not.
+// Which secret files are accepted, and the messages about the others.
 #include "haptic_bridge/link/secret_file.hpp"
 
 #include "base/input_error.hpp"

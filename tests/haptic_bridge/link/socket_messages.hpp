@@ -13,8 +13,8 @@
 
 namespace test {
 
-/// The next message that comes through a plain socket, or nothing when the other side has closed or has said nothing
-/// for as long as the socket waits. `reader` holds what came behind the message before.
+/// Returns the next message from a plain socket. Returns nullopt if the other side has closed it, or is silent for
+/// longer than the socket waits. `reader` keeps bytes that came after the previous message.
 inline std::optional<haptic_bridge::Message> nextMessage(int socket, haptic_bridge::MessageReader& reader) {
     while (true) {
         if (auto message = reader.next()) {

@@ -12,7 +12,7 @@ using haptic_bridge::StepRing;
 
 std::uint64_t hashAfter(std::uint64_t step) { return 1000 + step; }
 
-/// What a wall has applied: steps `first` to `last`, with the hash after each.
+/// Adds the steps `first` to `last` to the ring of a wall, with the hash after each.
 void apply(StepRing& ring, std::uint64_t first, std::uint64_t last) {
     for (std::uint64_t number = first; number <= last; ++number) {
         ring.add({1, number, false, {}});
@@ -27,7 +27,7 @@ StepRing ringUntil(std::uint64_t last) {
     return ring;
 }
 
-/// The numbers of the steps from there on; empty where they are not known.
+/// Returns the numbers of the steps from there on; empty if they are not known.
 std::vector<std::uint64_t> numbers(const StepRing& ring, std::uint64_t step, std::uint64_t hash, std::uint64_t until) {
     std::vector<std::uint64_t> found;
     for (const sand::Step& one : ring.since(NeedState{step, hash}, until).value_or(std::vector<sand::Step>())) {
@@ -47,7 +47,7 @@ TEST(StepRing, GivesNoneBehindAnotherHashOrOneThatNobodyKnows) {
     StepRing ring = ringUntil(6);
     EXPECT_FALSE(ring.since({2, hashAfter(3)}, 5));
     EXPECT_FALSE(ring.since({0, hashAfter(1)}, 5));
-    ring.add({1, 7, false, {}});  // applied, and no hash of it is known yet
+    ring.add({1, 7, false, {}});  // applied, but its hash is not known yet
     ring.add({1, 8, false, {}});
     EXPECT_FALSE(ring.since({7, hashAfter(7)}, 8));
     EXPECT_FALSE(ring.since({7, 0}, 8));
@@ -55,8 +55,8 @@ TEST(StepRing, GivesNoneBehindAnotherHashOrOneThatNobodyKnows) {
 
 TEST(StepRing, GivesNoneThatItDoesNotHold) {
     const StepRing ring = ringUntil(6);
-    EXPECT_FALSE(ring.since({6, hashAfter(6)}, 7)) << "step 7 is not there";
-    EXPECT_FALSE(ring.since({6, hashAfter(6)}, 6)) << "nothing is lacking";
+    EXPECT_FALSE(ring.since({6, hashAfter(6)}, 7)) << "step 7 is unknown";
+    EXPECT_FALSE(ring.since({6, hashAfter(6)}, 6)) << "no step is lacking";
     EXPECT_FALSE(ring.since({5, hashAfter(5)}, 4)) << "the server is ahead";
 }
 
@@ -66,7 +66,7 @@ TEST(StepRing, HoldsTheLast240Steps) {
     EXPECT_FALSE(ring.since({9, hashAfter(9)}, StepRing::kSteps + 10));
 }
 
-// Sand that is loaded is too much for a catch-up.
+// Loaded sand is too large for a catch-up.
 TEST(StepRing, BeginsAnewBehindALoad) {
     StepRing ring = ringUntil(6);
     ring.add({1, 7, false, {}, sand::Edit::loaded(base::Bytes(10, 1))});
