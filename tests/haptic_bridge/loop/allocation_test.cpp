@@ -27,7 +27,7 @@ TEST(ForceTick, AsksForNoMemory) {
     EXPECT_EQ(test::heapRequests() - before, 0);
     EXPECT_GT(norm(session.hand().lastTick().sent), 0) << "the ticks were in the sand";
     const auto some = std::make_unique<SimulatedArm>(touchPreset());
-    EXPECT_GT(test::heapRequests() - before, 0) << "and asking is seen";
+    EXPECT_GT(test::heapRequests() - before, 0) << "the count notices an allocation";
 }
 
 }  // namespace

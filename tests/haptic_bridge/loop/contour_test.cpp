@@ -39,7 +39,7 @@ TEST(Contour, LiesOnTheOutlineThatTheSandFeels) {
             const ToolShape shape = shapeOf(static_cast<ToolKind>(kind));
             const sand::TurnedShape turned(shape, heading);
             const Contour contour = contourOf(shape, heading, kCell);
-            // Across gaps between toes and at the waist of a foot it goes straight.
+            // Across the gaps between toes and at the waist of a foot the contour is straight.
             const double close = (shape.kind == ToolKind::footprint ? 0.12 : 0.03) * shape.radius;
             for (const Vec3& point : contour.points) {
                 int below = 0;
@@ -58,8 +58,8 @@ TEST(Contour, LiesOnTheOutlineThatTheSandFeels) {
     }
 }
 
-// 32 points along the sides of a rectangle of 2 R x R, 6 R around, from the middle of its back on: 3/16 R apart. The
-// third lies at (-R, -3/8 R), and is the farthest; a corner is 1.118 R away.
+// 32 points lie along the sides of a rectangle of 2 R x R, which is 6 R around. They begin at the middle of its back
+// and are 3/16 R apart. The third is at (-R, -3/8 R) and is the farthest. A corner is 1.118 R away.
 TEST(Contour, ARectanglesReachIsItsFarthestControlPoint) {
     const double radius = 20 * kCell;
     const Contour contour = contourOf(shapeOf(ToolKind::rectangle), {}, kCell);
@@ -67,7 +67,7 @@ TEST(Contour, ARectanglesReachIsItsFarthestControlPoint) {
     for (const Vec3& point : contour.points) {
         farthest = std::max(farthest, std::hypot(point.x, point.y));
     }
-    // Sums of 512 pieces of about a hundredth: their rounding is below 512 times that of a double near 1.
+    // Sums of 512 pieces of about 0.01. Their rounding is below 512 times that of a double near 1.
     EXPECT_NEAR(contour.reach, farthest, 1e-12 * radius);
     EXPECT_NEAR(contour.reach, std::hypot(1, 3.0 / 8) * radius, 1e-12 * radius);
 }
@@ -87,7 +87,7 @@ TEST(Contour, RunsCounterClockwiseInEqualPieces) {
                 longest = std::max(longest, piece);
             }
             EXPECT_GT(area, 0.02) << kind;
-            // Along the outline they are equal; straight on they are shorter around corners and toes.
+            // The pieces are equal along the outline. In a straight line they are shorter around corners and toes.
             const bool bent = static_cast<ToolKind>(kind) == ToolKind::footprint ||
                               static_cast<ToolKind>(kind) == ToolKind::rectangle;
             EXPECT_GT(shortest, (bent ? 0.2 : 0.97) * longest) << kind;

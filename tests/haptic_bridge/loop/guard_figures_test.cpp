@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The guards against figures that were derived on paper from docs/forces.md, with T = 1 ms.
+// Compares the guards with figures that were derived on paper from docs/forces.md, with T = 1 ms.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,13 +17,14 @@ using sand::force::Response;
 using sand::force::Vec3;
 using test::kTick;
 
-/// The first paper's law at a radius' depth on its field, 2 scene units over 0.16 m: 500 N and 50 N·frame a unit.
+/// The first paper's law at a depth of one radius on its field, 2 scene units over 0.16 m: 500 N and 50 N·frame per
+/// scene unit.
 constexpr double kFieldScale = 12.5;  // [scene unit/m]
 constexpr LawAtRadius kFieldLaw{500, 50, 5};
 
 ForceLimits figuresOf(const ArmPhysics& arm) { return ForceLimits::of(arm, kFieldScale, kFieldLaw, 0.67); }
 
-// K = b / (T/2 + t_d) / 2 where the maker allows more; B = m / (T/2 + t_d + 7.5 T); the slew K · 2 m/s · T. The presets
+// K = b / (T/2 + t_d) / 2 if the maker allows more; B = m / (T/2 + t_d + 7.5 T); the slew K · 2 m/s · T. The presets
 // have a delay of 1 ms: 1.5 ms in K and 9 ms in B.
 TEST(GuardFigures, AreThoseOfEachArm) {
     struct Row {
@@ -38,7 +39,7 @@ TEST(GuardFigures, AreThoseOfEachArm) {
         EXPECT_NEAR(limits.stiffness, stiffness, 1e-4);
         EXPECT_NEAR(limits.damping, damping, 1e-5);
         EXPECT_NEAR(limits.slew, slew, 1e-6);
-        // 500 N a unit at 12.5 units a metre are 6250 N/m.
+        // 500 N per unit at 12.5 units per metre are 6250 N/m.
         EXPECT_NEAR(limits.gain, stiffness / 6250, 1e-7);
         EXPECT_NEAR(limits.lawStiffness, stiffness, 1e-4);
     }
@@ -52,7 +53,7 @@ TEST(GuardFigures, AreThoseOfEachArm) {
     EXPECT_NEAR(figuresOf(touch).damping, 4.090909, 1e-6);
 }
 
-// A slew follows the law that the device gets, not the K that it could bear: 5 N a unit are 62.5 N/m.
+// The slew follows the law that the device gets, not the K that it could bear. 5 N per unit are 62.5 N/m.
 TEST(GuardFigures, OfASoftLawAreItsOwn) {
     const ForceLimits limits = ForceLimits::of(touchPreset(), kFieldScale, {5, 0.5, 0.05}, 0.67);
     EXPECT_EQ(limits.gain, 1);
@@ -60,7 +61,7 @@ TEST(GuardFigures, OfASoftLawAreItsOwn) {
     EXPECT_NEAR(limits.slew, 0.125, 1e-9);
 }
 
-/// A Touch of m = 0.045 kg without limits; a test sets its own.
+/// A Touch of m = 0.045 kg without limits. Each test sets its own limits.
 ForceLimits freeTouch() {
     ForceLimits limits = figuresOf(touchPreset());
     limits.gain = 1;
@@ -68,7 +69,7 @@ ForceLimits freeTouch() {
     limits.resolution = 0;
     return limits;
 }
-/// Drag [N·frame/scene unit] that is so many newtons per metre a second.
+/// Returns the drag [N·frame/scene unit] for a damping in [N·s/m].
 double dragOf(double viscous) { return viscous * 60 / kFieldScale; }
 
 // B becomes B / (1 + 2 B T/m): T/m is 1/45 m/(N·s).
@@ -83,8 +84,8 @@ TEST(GuardFigures, FrictionGrowsSoftly) {
         const Vec3 force = limitedForce(felt, {0.02, -0.01, 0.3}, freeTouch(), acted);
         EXPECT_NEAR(force.x, -0.02 * soft, 1e-6) << asked;
         EXPECT_NEAR(force.y, 0.01 * soft, 1e-6) << asked;
-        EXPECT_NEAR(force.z, 1, 1e-12) << "nothing along the normal";
-        // 0.45 loses 2 %, and more than 3 % count.
+        EXPECT_NEAR(force.z, 1, 1e-12) << "no friction along the normal";
+        // 0.45 loses 2 %. Only a loss of more than 3 % sets the bit.
         EXPECT_EQ(acted, asked < 1 ? 0 : bit(Guard::damping)) << asked;
     }
 }
@@ -93,7 +94,7 @@ TEST(GuardFigures, FrictionIsAtMostWhatTheArmBearsAndTheSandHolds) {
     ForceLimits limits = freeTouch();
     limits.damping = 5;
     std::uint32_t acted = 0;
-    // 45 N·s/m, soft 15, are more than 5: 0.02 m/s meet 0.1 N.
+    // 45 N·s/m, softened to 15, exceed the limit of 5. A speed of 0.02 m/s therefore gives 0.1 N.
     const Response felt{{0, 0, 1}, {0, 0, 1}, dragOf(45), 0};
     EXPECT_NEAR(limitedForce(felt, {0.02, 0, 0}, limits, acted).x, -0.1, 1e-12);
     EXPECT_EQ(acted, bit(Guard::damping));
@@ -106,7 +107,7 @@ TEST(GuardFigures, FrictionIsAtMostWhatTheArmBearsAndTheSandHolds) {
     EXPECT_EQ(acted, bit(Guard::damping) | bit(Guard::friction));
 }
 
-// Friction leans with the surface. The normal is (-0.6, 0, 0.8), and the hand moves straight down by 0.02 m/s. The part
+// Friction acts along the surface. The normal is (-0.6, 0, 0.8), and the hand moves straight down by 0.02 m/s. The part
 // along the surface is (0, 0, -0.02) + 0.016 (-0.6, 0, 0.8) = (-0.0096, 0, -0.0072). 4.090909 N·s/m act against it.
 TEST(GuardFigures, FrictionRunsAlongASlope) {
     std::uint32_t acted = 0;
@@ -133,7 +134,7 @@ struct Warm {
     }
 };
 
-// K · 2 m/s · T is 0.2333333 N a tick: a tool that is put deep into the sand at once is pushed as by a hand of 2 m/s.
+// K · 2 m/s · T is 0.2333333 N per tick. A tool that is put deep into the sand at once is pushed as by a hand of 2 m/s.
 TEST(GuardFigures, AForceGrowsByTheSlewAndFallsAtOnce) {
     Warm hand;
     hand.reading.engaged = true;
@@ -148,7 +149,7 @@ TEST(GuardFigures, AForceGrowsByTheSlewAndFallsAtOnce) {
     EXPECT_EQ(norm(hand.next().sent), 0);
 }
 
-/// Whether a tip that goes this way [m] within a time [s] silences the force.
+/// Returns whether a tip that moves by `way` [m] within `span` [s] sets the guard `jumped`.
 bool silences(Vec3 way, double span) {
     ForceLimits limits = figuresOf(touchPreset());
     limits.resolution = 0;
@@ -161,11 +162,12 @@ TEST(GuardFigures, NoTipIsFasterThanTwentyMetresASecond) {
     for (const double span : {1e-3, 5e-3}) {
         EXPECT_FALSE(silences({0, 0, -19 * span}, span)) << span;
         EXPECT_TRUE(silences({0, 0, -21 * span}, span)) << span;
-        // The speed counts, and not an axis': 11 m/s along each of three are 19.1, and 12 are 20.8.
+        // The speed counts, and not the part along one axis: 11 m/s along each of three axes are 19.1 m/s, and 12 are
+        // 20.8.
         EXPECT_FALSE(silences({11 * span, -11 * span, 11 * span}, span)) << span;
         EXPECT_TRUE(silences({12 * span, -12 * span, 12 * span}, span)) << span;
     }
-    // A tick that comes early has moved its tip no farther than a whole one might have.
+    // In a tick that comes early the tip may move as far as in a whole tick.
     EXPECT_FALSE(silences({0.019, 0, 0}, 0.2e-3));
     EXPECT_TRUE(silences({0.021, 0, 0}, 0.2e-3));
 }
@@ -191,9 +193,9 @@ PassivityObserver observerOf(double damping, double lawStiffness = 0, double res
     return PassivityObserver(limits);
 }
 
-constexpr double kLeft = 0.998;  // of a surplus after a tick: 1 ms of the 500 ms of its memory
+constexpr double kLeft = 0.998;  // share of a surplus that is left after a tick: 1 ms of the 500 ms of its memory
 
-// Over 1 mm within a tick 1 N gives 1 mJ; three quarters of b = 0.5 N·s/m take 0.75 · 0.5 · (1 mm)² / 1 ms = 0.375 mJ.
+// Over 1 mm within a tick 1 N gives 1 mJ. Three quarters of b = 0.5 N·s/m take 0.75 · 0.5 · (1 mm)² / 1 ms = 0.375 mJ.
 TEST(GuardFigures, TheArmIsTrustedWithThreeQuartersOfItsDamping) {
     PassivityObserver observer = observerOf(0.5);
     observer.observe({}, kTick);
@@ -201,11 +203,11 @@ TEST(GuardFigures, TheArmIsTrustedWithThreeQuartersOfItsDamping) {
     observer.observe({0.001, 0, 0}, kTick);
     EXPECT_NEAR(observer.returned(), 1e-3, 1e-15);
     EXPECT_NEAR(observer.surplus(), kLeft * 0.625e-3, 1e-12);
-    // Taken back within a tick: 0.62375 mJ over (1 m/s)² · 1 ms.
+    // The surplus is taken back within a tick: 0.62375 mJ over (1 m/s)² · 1 ms.
     std::uint32_t acted = 0;
     EXPECT_NEAR(observer.control({1, 0, 0}, acted).x, -0.62375, 1e-9);
     EXPECT_EQ(acted, bit(Guard::passivity));
-    // And by at most B = 0.05 / 8 ms = 6.25 N·s/m: at 0.1 m/s it would be 62.4 N·s/m.
+    // The damping is at most B = 0.05 / 8 ms = 6.25 N·s/m. At 0.1 m/s it would be 62.4 N·s/m.
     EXPECT_NEAR(observer.control({0, 0.1, 0}, acted).y, -0.625, 1e-12);
 }
 
@@ -221,10 +223,10 @@ TEST(GuardFigures, ASurplusIsForgottenWithinHalfASecond) {
         observer.observe({0.001, 0, 0}, kTick);
     }
     EXPECT_NEAR(observer.surplus() / before, 0.3675, 1e-4) << "0.998^500; a time constant of 0.5 s has e^-1 = 0.3679";
-    EXPECT_NEAR(observer.returned(), 1e-3, 1e-15) << "what was given is given";
+    EXPECT_NEAR(observer.returned(), 1e-3, 1e-15) << "returned() does not decay";
 }
 
-// 1 N into sand of 100 N/m holds 1² / 200 J = 5 mJ, whatever else a hand has left there.
+// 1 N into sand of 100 N/m stores 1² / 200 J = 5 mJ, whatever work the hand has done on the sand.
 TEST(GuardFigures, CreditIsWhatTheSandsSpringHolds) {
     PassivityObserver observer = observerOf(0, 100);
     observer.observe({}, kTick);
@@ -242,12 +244,12 @@ TEST(GuardFigures, CreditCountsTheForcesOnTheirWay) {
     observer.observe({}, kTick);
     observer.sent({1, 0, 0});
     observer.observe({-0.02, 0, 0}, kTick);
-    EXPECT_EQ(observer.returned(), 0) << "a tick of delay: nothing has acted yet";
+    EXPECT_EQ(observer.returned(), 0) << "a tick of delay: no force has acted yet";
     observer.sent({});
     observer.observe({-0.04, 0, 0}, kTick);
     EXPECT_NEAR(observer.returned(), -0.02, 1e-12);
     observer.sent({});
-    EXPECT_EQ(observer.surplus(), 0) << "neither the last force nor the one on its way holds anything";
+    EXPECT_EQ(observer.surplus(), 0) << "the last force and the one on its way are 0";
     observer.sent({1, 0, 0});
     observer.observe({-0.04, 0, 0}, kTick);
     observer.sent({});
@@ -272,7 +274,7 @@ TEST(GuardFigures, TwoStepsOfTheEncoderUnderTheGreatestForceAreNoise) {
 }
 
 TEST(GuardFigures, AVelocityIsThatOfTheLastFifteenTicksAtMost) {
-    VelocityWindow window(1e9);  // a resolution through which any line passes: the window is as long as can be
+    VelocityWindow window(1e9);  // any line passes within this resolution, so the window has its greatest length
     Vec3 found;
     for (int tick = 0; tick <= 100; ++tick) {
         // At rest until tick 80, then 1 m/s.

@@ -47,8 +47,8 @@ TEST(VelocityWindow, IsADifferenceOverOneTickWithoutAResolutionAndExactOnALine) 
     EXPECT_EQ(norm(window.add(0, {1, 2, 3})), 0);
     EXPECT_NEAR(window.add(0.001, {1.001, 2, 3}).x, 1, 1e-9);
     EXPECT_NEAR(window.add(0.002, {1.000, 2, 3}).x, -1, 1e-9);
-    EXPECT_EQ(norm(window.add(0.002, {5, 2, 3})), 0) << "a clock that stands still has no velocities";
-    EXPECT_EQ(norm(window.add(0.001, {5, 9, 3})), 0) << "nor one that runs backwards";
+    EXPECT_EQ(norm(window.add(0.002, {5, 2, 3})), 0) << "the velocity is 0 while the clock does not advance";
+    EXPECT_EQ(norm(window.add(0.001, {5, 9, 3})), 0) << "the velocity is 0 if the clock runs backwards";
 }
 
 TEST(ForceLimits, AreHalfOfWhatTheArmBearsInWords) {
@@ -67,7 +67,8 @@ TEST(ForceLimits, AreHalfOfWhatTheArmBearsInWords) {
         "0.35 N s/m of damping and 1 tick of delay bear");
     ArmPhysics stiff = touchPreset();
     stiff.damping = 5;
-    EXPECT_NEAR(ForceLimits::of(stiff, test::kScale, law, 0.67).stiffness, 200, 1e-9) << "half of its maker's";
+    EXPECT_NEAR(ForceLimits::of(stiff, test::kScale, law, 0.67).stiffness, 200, 1e-9)
+        << "half of what the maker allows";
     const LawAtRadius soft{5, 0.5, 0.05};
     const ForceLimits free = ForceLimits::of(touchPreset(), test::kScale, soft, 0.67);
     EXPECT_EQ(free.gain, 1);
@@ -96,7 +97,7 @@ TEST(ForceLimits, BearLessWhereAnEncodersStepWouldChatter) {
     EXPECT_EQ(ForceLimits::of(arm, test::kScale, law, 0.67).stiffness, 5000);
     arm.resolution = 20e-6;
     arm.friction = 0.1;
-    EXPECT_EQ(ForceLimits::of(arm, test::kScale, law, 0.67).stiffness, 5000) << "its friction holds it";
+    EXPECT_EQ(ForceLimits::of(arm, test::kScale, law, 0.67).stiffness, 5000) << "the arm's friction holds the weight";
 }
 
 TEST(LimitedLaw, LeavesWhatIsWithinTheLimits) {
@@ -108,7 +109,8 @@ TEST(LimitedLaw, LeavesWhatIsWithinTheLimits) {
     const Vec3 force = limitedForce(soft, velocity, limits, acted), law = lawfulForce(soft, velocity, test::kScale);
     EXPECT_EQ(acted, 0U);
     EXPECT_LT(norm(force - law), 0.05 * norm(law));
-    EXPECT_NEAR(law.y, -0.5 * 0.02 * test::kScale / 60, 1e-12) << "per frame of 1/60 s, and nothing along the normal";
+    EXPECT_NEAR(law.y, -0.5 * 0.02 * test::kScale / 60, 1e-12)
+        << "per frame of 1/60 s, and no friction along the normal";
     EXPECT_NEAR(law.z, 0.2, 1e-12);
 }
 
@@ -141,14 +143,15 @@ TEST(Slew, BoundsWhatGrowsOrTurnsAndLetsGo) {
         (void)slew.follow({0, 0, 1}, acted);
     }
     acted = 0;
-    EXPECT_EQ(slew.follow({0, 0, 0.2}, acted).z, 0.2) << "what falls is not held back";
+    EXPECT_EQ(slew.follow({0, 0, 0.2}, acted).z, 0.2) << "a falling force is not held back";
     EXPECT_EQ(slew.follow({}, acted).z, 0);
     EXPECT_EQ(acted, 0U);
     (void)slew.follow({0, 0, 0.1}, acted);
-    EXPECT_NEAR(slew.follow({0, 0, -1}, acted).z, -0.1, 1e-12) << "a force that turns begins at nothing";
+    EXPECT_NEAR(slew.follow({0, 0, -1}, acted).z, -0.1, 1e-12) << "a force that reverses begins at 0";
 }
 
-/// A spring so stiff that sampling makes it leak, without limits: what the observer sees, and what damping makes of it.
+/// A spring so stiff that sampling makes it gain energy, without limits: the energy that the observer sees, and the
+/// effect of its damping.
 struct Leak {
     double observed = 0, exact = 0, energy = 0;
 };
@@ -184,7 +187,7 @@ TEST(PassivityObserver, SeesWhatASampledSpringLeaksAndCutsIt) {
     EXPECT_NEAR(free.observed, free.exact, 1e-9 * free.exact) << "K/2 Δx² every tick";
     constexpr double kStart = 0.05 / 2 * 0.01 * 0.01;
     EXPECT_GT(free.energy, 1.3 * kStart) << "the loop diverges";
-    EXPECT_LT(damped.energy, kStart) << "the controller keeps it";
+    EXPECT_LT(damped.energy, kStart) << "the observer's damping keeps the loop stable";
 }
 
 TEST(PassivityObserver, LeavesAStableSpringAlone) {
@@ -243,7 +246,7 @@ TEST(Guards, RampTheFirstTwoSeconds) {
     EXPECT_NEAR(before, whole, 1e-9);
 }
 
-/// `hurt` makes one reading bad; it must silence the force within that tick, by `guard`, and the ramp follows.
+/// `hurt` makes one reading bad. The guard `guard` must set the force to 0 within that tick, and the ramp follows.
 template <class Hurt>
 void expectSilence(Guard guard, const Hurt& hurt) {
     Resting hand;
@@ -259,7 +262,7 @@ void expectSilence(Guard guard, const Hurt& hurt) {
     hand.reading = good;
     hand.reading.time = time;
     hand.next();
-    EXPECT_LE(hand.last.sent.z, whole * 1e-3) << "it comes back by the ramp";
+    EXPECT_LE(hand.last.sent.z, whole * 1e-3) << "the force comes back in the ramp";
     for (int tick = 0; tick < 2100; ++tick) {
         hand.next();
     }

@@ -12,7 +12,7 @@ namespace {
 
 using namespace haptic_bridge;
 
-/// A hand that stands in the middle, and remembers when it was read.
+/// A hand in the middle of the field. It remembers the times at which it was read.
 class ClockedHand : public Device {
 public:
     explicit ClockedHand(std::vector<double>& times) : times_(times) {}
@@ -42,11 +42,11 @@ protected:
     PathBuilder path_{60};
 };
 
-// 1000/60 ms: steps of 16, 17 and 17 ticks, and none is left out or read twice.
+// 1000/60 ms per step: steps have 16, 17 and 17 ticks, and each tick is read exactly once.
 TEST_F(FeedTest, AVirtualClockGivesEachStepItsMilliseconds) {
     VirtualFeed feed(hand_, *channel_, 60);
     feed.begin(sand_);
-    ASSERT_EQ(times_, std::vector<double>{0}) << "read once where it rests";
+    ASSERT_EQ(times_, std::vector<double>{0}) << "the hand is read once while it rests";
     std::vector<std::size_t> ticks;
     for (int step = 0; step < 6; ++step) {
         const std::size_t before = times_.size();
@@ -59,7 +59,7 @@ TEST_F(FeedTest, AVirtualClockGivesEachStepItsMilliseconds) {
         EXPECT_NEAR(times_[i], 0.001 * static_cast<double>(i), 1e-12);
     }
     feed.begin(sand_);
-    EXPECT_NEAR(times_.back(), 0.1, 1e-12) << "the clock goes on with the next link";
+    EXPECT_NEAR(times_.back(), 0.1, 1e-12) << "the clock continues in the next link";
     EXPECT_FALSE(feed.onHostClock());
 }
 
@@ -95,7 +95,7 @@ TEST_F(FeedTest, AChannelCarriesSamplesOneWayAndSandTheOther) {
     EXPECT_FALSE(channel_->moving);
     channel_->overflow = 3;
     EXPECT_EQ(feed.overflow(), 3U);
-    EXPECT_TRUE(times_.empty()) << "the force thread's alone";
+    EXPECT_TRUE(times_.empty()) << "only the force thread reads the hand";
 }
 
 }  // namespace

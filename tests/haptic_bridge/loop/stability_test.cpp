@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole hands on level sand under a virtual clock: what the guards make of the first paper's constants on real arms.
+// Whole hands on level sand under a virtual clock: the first paper's constants, as the guards limit them, on real arms.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ using test::kTick;
 using test::Outcome;
 using test::Trial;
 
-constexpr double kPapersTouch = test::kPapersRadius;  // [scene unit], of the centre, as the tool touches
+constexpr double kPapersTouch = test::kPapersRadius;  // [scene unit], height of the centre at the first touch
 
 const scene::Scene& papersSand() {
     static const scene::Scene scene = test::levelSand();
@@ -52,7 +52,7 @@ TEST(GuardedLoop, RestsOnEveryArmWithThePapersConstantsWhereTheLiteralOneDoesNot
                         ++trials;
                         if (damping == 0.5 && delay == 1 && depth == 3 && !held) {
                             trial.mode = Guards::Mode::literal;
-                            EXPECT_FALSE(run(trial, papersSand()).settles()) << "the papers' constants as they are";
+                            EXPECT_FALSE(run(trial, papersSand()).settles()) << "the papers' constants without guards";
                             ++diverged;
                         }
                     }
@@ -60,14 +60,14 @@ TEST(GuardedLoop, RestsOnEveryArmWithThePapersConstantsWhereTheLiteralOneDoesNot
             }
         }
     }
-    // A loop that sends nothing would rest too.
+    // A loop that sends no force would also rest.
     EXPECT_GT(unlimited, touching * 9 / 10) << touching;
     std::printf("%d trials, %ld ticks in the sand, %ld of them unlimited; %d literal ones diverged\n", trials, touching,
                 unlimited, diverged);
 }
 
 TEST(GuardedLoop, IsTheLiteralOneWhereNothingLimitsIt) {
-    // A hundredth of the paper's stiffness: 62 N/m, of 117 that a Touch bears.
+    // A hundredth of the paper's stiffness is 62 N/m. A Touch can bear 117 N/m.
     sand::ForceConstants soft;
     soft.stiffness = 10;
     const scene::Scene scene = test::levelSand(soft);
@@ -158,7 +158,7 @@ TEST(GuardedLoop, FallsSilentWithItsSandAndWithItsDevice) {
     EXPECT_FALSE(session.sample().engaged) << "and the wall's tool hovers";
 }
 
-/// Makes steps as the sand thread does, 60 a second, between the ticks of a hand.
+/// Makes 60 steps per second between the ticks of a hand, as the sand thread does.
 class MovingSand {
 public:
     MovingSand(const scene::Scene& scene, ArmSession& hand)
@@ -166,7 +166,7 @@ public:
         publish();
     }
 
-    /// Whether this tick was the first on a new surface.
+    /// Runs a tick. Returns whether it was the first on a new surface.
     bool tick() {
         const bool fresh = fresh_;
         fresh_ = false;
@@ -217,7 +217,7 @@ TEST(GuardedLoop, GainsNothingFromSandThatIsDisplacedAndErodes) {
         const Vec3 sent = session.hand().lastTick().sent;
         jump = fresh ? std::max(jump, norm(sent - before)) : jump;
         before = sent;
-        if (tick >= 600) {  // the hand rests: the sand goes on sliding
+        if (tick >= 600) {  // the hand rests while the sand still slides
             least = std::min(least, observer.returned());
             mostAfterwards = std::max(mostAfterwards, observer.returned() - least);
         }
@@ -225,7 +225,7 @@ TEST(GuardedLoop, GainsNothingFromSandThatIsDisplacedAndErodes) {
     }
     EXPECT_LT(observer.returned(), 0) << "the hand has worked on the sand, not the sand on the hand";
     const double held = dot(before, before) / (2 * session.hand().guards().limits().lawStiffness);
-    EXPECT_LT(mostAfterwards, held) << "at rest nothing comes but what the spring held";
+    EXPECT_LT(mostAfterwards, held) << "at rest the hand gets at most the energy that the spring held";
     EXPECT_LT(lastSpeed, 1e-3);
     EXPECT_LT(jump, 0.15);
     EXPECT_GT(norm(before), 0.02);
@@ -233,13 +233,13 @@ TEST(GuardedLoop, GainsNothingFromSandThatIsDisplacedAndErodes) {
                 -observer.returned(), mostAfterwards, jump);
 }
 
-/// A tip that goes where it likes, through the sand and over it, never faster than 1 m/s.
+/// A tip that moves at random, through the sand and above it, never faster than 1 m/s.
 class Wanderer {
 public:
     explicit Wanderer(unsigned seed) : random_(seed) {}
     Vec3 next() {
         std::normal_distribution<double> normal(0, 1);
-        // Pulled home, so that it is in the sand for half of the time.
+        // The tip is pulled towards its start, so that it is in the sand for half of the time.
         const Vec3 wish{normal(random_) - 100 * place_.x, normal(random_) - 100 * place_.y,
                         normal(random_) - 300 * place_.z};
         speed_ = speed_ + 0.02 * wish;
@@ -268,7 +268,8 @@ TEST(GuardedForce, IsContinuousPointsOutOfTheSandAndIsNothingOverIt) {
             const Vec3 at = tip.next();
             session.arm().start(at, {});
             const Tick& now = session.tick();
-            // Of a tick's slew, half is the way at 1 m/s, half the observer's damping, half friction that turns round.
+            // The change has three parts, each half of a tick's slew: the way at 1 m/s, the observer's damping, and
+            // friction that reverses.
             ASSERT_LE(norm(now.sent - before), 1.5 * limits.slew) << name << ", tick " << tick;
             ASSERT_GE(now.sent.z, 0) << name << ", tick " << tick;
             if (now.place.z >= kPapersTouch) {
@@ -306,7 +307,7 @@ TEST(GuardedForce, DoesNoWorkOnAClosedPathInLevelSandButFriction) {
                 const Vec3 at = corners[leg - 1] + (static_cast<double>(tick) / ticks) * way;
                 session.arm().start(at, {});
                 const Vec3 now = session.tick().sent;
-                work += 0.5 * dot(now + sent, at - before);  // the trapezium rule: no sample's lag
+                work += 0.5 * dot(now + sent, at - before);  // trapezium rule: no lag of a sample
                 turnover += std::abs(dot(now, at - before));
                 before = at;
                 sent = now;

@@ -20,7 +20,7 @@ namespace {
 
 using namespace haptic_bridge;
 
-/// A hand with an arm over 60 x 60 cells, its steps and its recorder: a server without its threads and its link.
+/// A hand with an arm over 60 x 60 cells, with its steps and its recorder: a server without threads and link.
 class Recorded : public testing::Test {
 protected:
     void open(const std::string& file) {
@@ -30,7 +30,8 @@ protected:
         recorder_ = std::make_unique<TickRecorder>(
             TickRecorder::Options{file, true, [this](const std::string& line) { told_.push_back(line); }}, *hand_);
     }
-    /// A link begins: steps of 16 ticks, an arm that draws, lifts, is away for a while and sends no numbers once.
+    /// Runs a link with steps of 16 ticks. The arm draws, lifts, is away for a while, and once sends values that are
+    /// not finite.
     void sit(int steps) {
         hand_->restart();
         recorder_->begin();
@@ -91,9 +92,9 @@ protected:
 TEST_F(Recorded, ReplaysToTheSameRowsByteForByte) {
     open(folder_.file("ticks.csv"));
     sit(40);
-    sit(20);  // the link was lost and came back: the hand begins anew
+    sit(20);  // the link was lost and came back, so the hand starts afresh
     recorder_.reset();
-    EXPECT_GT(engaged_, 300) << "it must feel something";
+    EXPECT_GT(engaged_, 300) << "the hand must be in the sand";
     TickReplay replay(scene_, pieces_);
     const std::string rows = replayed(replay, steps_.size());
     EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 1 + 60 * 16);
@@ -120,7 +121,7 @@ TEST_F(Recorded, IgnoresTheTailOfALinkBefore) {
     const std::size_t first = pieces_.size();
     sit(5);
     recorder_.reset();
-    // The first piece, which says what the device is, did not arrive.
+    // The first piece, which describes the device, did not arrive.
     TickReplay replay(scene_, {pieces_.begin() + 1, pieces_.end()});
     ASSERT_GT(first, 1U);
     const std::string rows = replayed(replay, steps_.size());
