@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The master's end against servers that do not behave.
+// The master's end of the link against faulty servers.
 #include "haptic_bridge/client/client.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ StepMessage stepOf(std::uint32_t epoch, std::uint64_t number) {
     return {1, 2, {epoch, number, false, {{static_cast<std::int32_t>(number), 0, 0}}}};
 }
 
-/// Greets, and takes the numbering over.
+/// Welcomes the client and takes over the numbering of steps.
 bool linkUp(FakeServer::Guest& guest) {
     if (!guest.await<Hello>()) {
         return false;
@@ -72,7 +72,7 @@ TEST(Client, StopsWhileAServerStaysSilent) {
     client.stop();
 }
 
-// Nothing is agreed on yet that a goodbye could be sent over.
+// TLS is not established yet, so the client cannot send a goodbye.
 TEST(Client, StopsWhileAServerStaysSilentBeforeTls) {
     FakeServer server([](FakeServer::Guest& guest) {
         std::array<std::uint8_t, 4096> chunk{};
@@ -137,7 +137,7 @@ TEST(Client, RefusesGarbageAndTriesAgain) {
 
 TEST(Client, TakesPositionsFromAServerWithoutSand) {
     FakeServer server(toTheFirst([](FakeServer::Guest& guest) {
-        guest.send(PositionGreeting{kProtocolVersion, "glove"});  // without having read the Hello
+        guest.send(PositionGreeting{kProtocolVersion, "glove"});  // sent without reading the Hello
         for (int i = 0; i < 3; ++i) {
             guest.send(Position{i, 0.1 * i, 0, 0, true});
         }
@@ -174,13 +174,13 @@ TEST(Client, HoldsAFloodOfPositionsBack) {
         all += count;
         return all >= 100'000;
     }));
-    // What a chunk of the socket holds beyond the bound is still taken in.
+    // The client still takes in the rest of a chunk of the socket beyond the bound.
     EXPECT_LE(most, Client::kMaxPositions + 64 * 1024 / 38);
 }
 
 TEST(Client, StopsThoughAnotherTimerBecomesDueMeanwhile) {
-    // The link is looked at every half second: that instant, and the stop, come while the network thread is busy with
-    // a large state, the stop first. Looking must not put off the end.
+    // The client checks the link every half second. This check and the stop both become due while the network thread is
+    // busy with a large state, the stop first. The check must not delay the end.
     std::atomic<bool> needed = false, over = false;
     FakeServer server([&](FakeServer::Guest& guest) {
         if (!guest.await<Hello>()) {
@@ -192,14 +192,14 @@ TEST(Client, StopsThoughAnotherTimerBecomesDueMeanwhile) {
         std::this_thread::sleep_until(welcomed + 470ms);
         guest.send(NeedState{});
         needed = true;
-        eventually([&] { return over.load(); });  // reads nothing more
+        eventually([&] { return over.load(); });  // reads no more messages
     });
     Client client(server.address(), kOffer);
     ASSERT_TRUE(reaches(client, Link::offered)) << client.link().message;
     client.grant(1, 10, 0, base::Bytes(std::size_t{256} << 20U), {});
     ASSERT_TRUE(eventually([&] { return needed.load(); }));
     std::this_thread::sleep_for(10ms);
-    // The guest reads nothing more before this is over: a stop that waits for it would not return.
+    // The server reads no more messages until `over` is set. A stop that waited for the server would not return.
     const auto stopped = std::async(std::launch::async, [&] { client.stop(); });
     EXPECT_EQ(stopped.wait_for(60s), std::future_status::ready);
     over = true;
@@ -270,7 +270,7 @@ TEST(Client, GivesUpTheLinkOverAMissingStep) {
     std::atomic<bool> seen = false;
     FakeServer server([&](FakeServer::Guest& guest) {
         if (server.guests() > 1) {
-            eventually([&] { return seen.load(); });  // a greeting would take the place of the message
+            eventually([&] { return seen.load(); });  // a greeting would replace the message
         }
         if (linkUp(guest)) {
             guest.send(stepOf(1, 1));
@@ -284,7 +284,7 @@ TEST(Client, GivesUpTheLinkOverAMissingStep) {
         << client.link().message;
     seen = true;
     EXPECT_EQ(client.drain(10).size(), 1U);
-    EXPECT_TRUE(reaches(client, Link::offered)) << "it must come back";
+    EXPECT_TRUE(reaches(client, Link::offered)) << "the client must connect again";
 }
 
 TEST(Client, AnswersATimingTestAtOnceAndAgainWhenAFrameThatTookItIsShown) {
@@ -311,12 +311,12 @@ TEST(Client, AnswersATimingTestAtOnceAndAgainWhenAFrameThatTookItIsShown) {
     Client client(server.address(), kOffer);
     grantWhenOffered(client, 1, 0);
     ASSERT_TRUE(eventually([&] { return client.counters().stepsIn == 3; }));
-    EXPECT_TRUE(eventually([&] { return received.load(); })) << "before any frame";
-    client.shown(0, 1);  // began before the test came
+    EXPECT_TRUE(eventually([&] { return received.load(); })) << "the first echo comes before any frame";
+    client.shown(0, 1);  // this frame began before the test came
     EXPECT_EQ(client.drain(1).size(), 1U);
-    client.shown(1, 1);  // took the steps before it in part
+    client.shown(1, 1);  // this frame took only a part of the steps before the test
     EXPECT_EQ(client.drain(1).size(), 1U);
-    client.shown(2, 1);  // took all that came before it
+    client.shown(2, 1);  // this frame took all steps before the test
     client.shown(3, 1);
     EXPECT_TRUE(eventually([&] { return framesBefore >= 0; }));
     EXPECT_EQ(framesBefore, 3);
@@ -336,7 +336,7 @@ TEST(Client, HoldsAFloodBackAndLosesNothing) {
     grantWhenOffered(client, 1, 0);
     ASSERT_TRUE(eventually([&] { return client.counters().stepsIn == Client::kMaxQueued; }));
     std::this_thread::sleep_for(50ms);
-    EXPECT_EQ(client.counters().stepsIn, Client::kMaxQueued) << "nobody drains";
+    EXPECT_EQ(client.counters().stepsIn, Client::kMaxQueued) << "no caller drains the steps";
     std::uint64_t next = 1;
     ASSERT_TRUE(eventually([&] {
         for (const auto& timed : client.drain(100)) {

@@ -23,21 +23,21 @@
 
 namespace test {
 
-/// A listening socket whose every guest gets one conversation, on a thread of its own.
+/// A listening socket. Each connection gets one conversation, on a thread of the server's own.
 class FakeServer {
 public:
     struct Guest {
         int socket;
         haptic_bridge::MessageReader reader;
 
-        /// Whether somebody was there to take it.
+        /// Returns whether the client was still connected.
         bool send(std::span<const std::uint8_t> bytes) const {  // NOLINT(modernize-use-nodiscard)
             return ::send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL) >= 0;
         }
         void send(const haptic_bridge::Message& message) const { send(haptic_bridge::encode(message)); }
-        /// The next message, or nothing when the client has gone.
+        /// Returns the next message; nullopt if the client has disconnected.
         std::optional<haptic_bridge::Message> next() { return nextMessage(socket, reader); }
-        /// Reads until a message of this kind comes; nothing when the client has gone.
+        /// Reads until a message of this kind comes. Returns nullopt if the client has disconnected.
         template <class Kind>
         std::optional<Kind> await() {
             while (const auto message = next()) {
@@ -91,7 +91,7 @@ private:
             setsockopt(guest.socket, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
             ++guests_;
             talk_(guest);
-            // Closing with a ping unread would reset the connection, and the client would lose the last messages.
+            // Closing with an unread Ping would reset the connection, and the client would lose the last messages.
             shutdown(guest.socket, SHUT_WR);
             guest.ignoreTheRest();
             close(guest.socket);
@@ -105,8 +105,8 @@ private:
     std::thread thread_;
 };
 
-/// Talks to the first guest only; later guests get silence until they leave. For tests of how one conversation ends:
-/// the client connects again, and a second conversation would change what the test looks at.
+/// Talks only on the first connection. Later connections get silence until they end. For tests of the end of one
+/// conversation, because the client connects again, and a second conversation would change the result.
 inline std::function<void(FakeServer::Guest&)> toTheFirst(std::function<void(FakeServer::Guest&)> talk) {
     return [talk = std::move(talk), first = true](FakeServer::Guest& guest) mutable {
         if (std::exchange(first, false)) {

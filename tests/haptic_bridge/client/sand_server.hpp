@@ -30,15 +30,15 @@ public:
           server_([this](FakeServer::Guest& guest) { talk(guest); }) {}
 
     [[nodiscard]] haptic_bridge::Address address() const { return server_.address(); }
-    [[nodiscard]] int links() const { return links_; }            // for which it was handed the numbering
-    [[nodiscard]] int states() const { return states_; }          // by all of the wall's sand
-    [[nodiscard]] int catchUps() const { return catchUps_; }      // by steps that it lacked
-    [[nodiscard]] std::uint64_t shown() const { return shown_; }  // the last step that the master says the wall shows
-    [[nodiscard]] int requests() const { return requests_; }      // edits that it was asked for
-    [[nodiscard]] int shares() const { return shares_; }          // of the force, that it was told
-    /// Whether it was ever asked for an edit while another was in no step yet.
+    [[nodiscard]] int links() const { return links_; }            // links on which it was granted the steps
+    [[nodiscard]] int states() const { return states_; }          // times that it got the whole sand
+    [[nodiscard]] int catchUps() const { return catchUps_; }      // times that it got the steps that it lacked
+    [[nodiscard]] std::uint64_t shown() const { return shown_; }  // latest step that the wall shows
+    [[nodiscard]] int requests() const { return requests_; }      // edits that were requested
+    [[nodiscard]] int shares() const { return shares_; }          // shares of the force that it received
+    /// Returns whether an edit was ever requested while another one was not in a step yet.
     [[nodiscard]] bool crowded() const { return crowded_; }
-    /// From its second link on it claims to be at this step, with the hash that it has said there.
+    /// Makes the server claim this step from its second link on, with the hash that it sent for this step.
     void claimStep(std::uint64_t step) { claimed_ = step; }
 
 private:
@@ -89,7 +89,7 @@ private:
         return sand_.stepNumber() == start.stepNumber && sand_.stateHash() == start.stateHash;
     }
 
-    /// Comes to the sand that the master begins with.
+    /// Gets the sand that the master begins with.
     bool reach(FakeServer::Guest& guest, const haptic_bridge::Start& start) {
         if (isAt(start)) {
             return true;
@@ -105,7 +105,7 @@ private:
             }
             if (const auto* steps = std::get_if<haptic_bridge::CatchUp>(&*message); steps != nullptr && steps->last) {
                 ++catchUps_;
-                guest.send(haptic_bridge::NeedState{});  // all of it
+                guest.send(haptic_bridge::NeedState{});  // asks for the whole sand
             }
         }
         return false;
@@ -127,10 +127,10 @@ private:
     const haptic_bridge::Identity identity_;
     const std::uint32_t stepsPerSecond_;
     const Say say_;
-    // The server thread's own.
+    // For the server thread only.
     sand::Replica sand_;
-    std::map<std::uint64_t, std::uint64_t> said_;  // hashes, by step
-    std::optional<sand::Edit> edit_;               // for the next step
+    std::map<std::uint64_t, std::uint64_t> said_;  // hashes that were sent, by step
+    std::optional<sand::Edit> edit_;               // edit for the next step
 
     std::atomic<int> links_{0}, states_{0}, catchUps_{0}, requests_{0}, shares_{0};
     std::atomic<std::uint64_t> shown_{0};

@@ -44,13 +44,13 @@ TEST(Shelf, AFullShelfHoldsTheServerBackUntilSomebodyDrains) {
     EXPECT_TRUE(shelf.full());
     bool resume = true;
     (void)shelf.drain(0, resume);
-    EXPECT_FALSE(resume) << "nothing was taken";
+    EXPECT_FALSE(resume) << "no step was drained";
     (void)shelf.drain(1, resume);
     EXPECT_TRUE(resume);
     EXPECT_FALSE(shelf.full());
 }
 
-// Like a step, a test that comes while a frame is drawn is in the next.
+// A test that comes while a frame is drawn belongs to the next frame, as a step does.
 TEST(Shelf, ATestIsInTheFrameThatTakesTheStepsBeforeIt) {
     Shelf shelf;
     (void)shelf.add(timed(1));
@@ -63,7 +63,7 @@ TEST(Shelf, ATestIsInTheFrameThatTakesTheStepsBeforeIt) {
     EXPECT_EQ(shelf.takeTestsInFrame(), std::vector<std::uint32_t>{10});
     (void)shelf.drain(1, resume);
     EXPECT_EQ(shelf.takeTestsInFrame(), std::vector<std::uint32_t>{20});
-    EXPECT_TRUE(shelf.takeTestsInFrame().empty()) << "once";
+    EXPECT_TRUE(shelf.takeTestsInFrame().empty()) << "each test is returned once";
 }
 
 TEST(Shelf, AnOfferIsTakenOnceAndDropsStepsOfTheLinkBefore) {
@@ -95,7 +95,7 @@ TEST(Shelf, CountsAFloodOfPositionsOnceUntilTheyAreTaken) {
         ASSERT_FALSE(shelf.add(TimedPosition{}));
     }
     EXPECT_TRUE(shelf.add(TimedPosition{}));
-    EXPECT_FALSE(shelf.add(TimedPosition{})) << "what was on its way already";
+    EXPECT_FALSE(shelf.add(TimedPosition{})) << "a position that was already on its way";
     EXPECT_EQ(shelf.floods(), 1U);
     bool resume = false;
     EXPECT_EQ(shelf.drainPositions(resume).size(), Client::kMaxPositions + 1);
@@ -115,10 +115,10 @@ TEST(Grant, JudgesStepsByEpochAndNumber) {
     EXPECT_EQ(grant.arrived(numbered(10, 3)), Grant::Arrival::stale);
     EXPECT_EQ(grant.arrived(numbered(12, 3)), Grant::Arrival::afterGap);
     EXPECT_EQ(grant.arrived(numbered(11, 3)), Grant::Arrival::next);
-    EXPECT_EQ(grant.arrived(numbered(11, 3)), Grant::Arrival::stale) << "doubled";
+    EXPECT_EQ(grant.arrived(numbered(11, 3)), Grant::Arrival::stale) << "a step that came twice";
     EXPECT_EQ(grant.lastStep(), 11U);
-    EXPECT_EQ(grant.bounded({9, 1}).stepNumber, 10U) << "drawn before the hand-over";
-    EXPECT_EQ(grant.bounded({15, 1}).stepNumber, 11U) << "the master's own steps since";
+    EXPECT_EQ(grant.bounded({9, 1}).stepNumber, 10U) << "a frame drawn before the grant";
+    EXPECT_EQ(grant.bounded({15, 1}).stepNumber, 11U) << "steps that the master has numbered since";
 }
 
 TEST(Grant, HandsOverTheStepsThatAreLackedOnceAndThenTheSand) {
@@ -136,7 +136,7 @@ TEST(Grant, HandsOverTheStepsThatAreLackedOnceAndThenTheSand) {
     EXPECT_EQ(std::get<CatchUp>(steps[1]).steps.back().number, kMaxCatchUp + 3);
     ASSERT_TRUE(grant.mayHandOver());
     const auto sand = grant.handOver({0, 77});
-    ASSERT_EQ(sand.size(), 1U) << "the same steps would not help again";
+    ASSERT_EQ(sand.size(), 1U) << "the same steps would fail again, so the whole sand is sent";
     EXPECT_EQ(std::get<State>(sand[0]).bytes, (base::Bytes{1, 2, 3}));
     EXPECT_FALSE(grant.mayHandOver());
 }
