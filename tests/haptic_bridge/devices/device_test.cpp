@@ -66,7 +66,7 @@ TEST(TraceDevice, FitsFourFifthsOfTheFieldAndDigsHalfARadius) {
     EXPECT_NEAR(start.y, -0.4, 1e-12);
     EXPECT_NEAR(corner.x, 0.8, 1e-12);
     EXPECT_NEAR(corner.y, 0.4, 1e-12);
-    EXPECT_NEAR(start.z, 0.5, 1e-12) << "the underside half a radius under the surface";
+    EXPECT_NEAR(start.z, 0.5, 1e-12) << "the underside is half a radius below the surface";
     EXPECT_TRUE(start.engaged);
 }
 
@@ -83,16 +83,16 @@ TEST(TraceDevice, EngagesNearTheSandOrAlways) {
     const std::string lifted = "time,x,y,z\n0,0,0,0\n1,0,0,0\n2,0,0,0\n3,0,0,1\n4,0,0,1\n";
     TraceDevice near = deviceOf(lifted, {"scale=1"}), always = deviceOf(lifted, {"scale=1", "engage=always"});
     EXPECT_TRUE(near.read(1).engaged);
-    EXPECT_FALSE(near.read(3.5).engaged) << "25 radii up";
+    EXPECT_FALSE(near.read(3.5).engaged) << "25 radii above the sand";
     EXPECT_TRUE(always.read(3.5).engaged);
     const Pose over = always.read(9);
     EXPECT_TRUE(always.finished(9));
-    EXPECT_FALSE(over.engaged) << "a recording that is over hovers";
+    EXPECT_FALSE(over.engaged) << "a finished recording hovers";
     EXPECT_EQ(over.z, always.read(10).z);
 }
 
 TEST(TraceDevice, BridgesGapsByTime) {
-    // A hand at constant speed, recorded with jitter and gaps: read every millisecond, it moves evenly all the same.
+    // A hand at constant speed was recorded with jitter and gaps. Read every millisecond, it still moves evenly.
     const unsigned seed = test::randomSeed();
     SCOPED_TRACE(test::again(seed));
     const std::string text = test::jitteryTrace(seed, 2.0, [](double t) {
@@ -154,13 +154,13 @@ TEST(StrokeDevice, TurnsItsToolAsTheFileSaysAndHoldsAStamp) {
         Strokes::parse("speed 1\ntravel 1\nstroke\npoint 0 0\npoint 1 0\nheading 30\nfoot left\nstroke\npoint 1 1\n"
                        "hold 0.5\nfollow\nfoot right\nstroke\npoint 1 1\npoint 1 2\npoint 0 2\n",
                        "walk"));
-    EXPECT_FALSE(device.read(0.5).heading.has_value()) << "nobody has turned it yet";
-    EXPECT_EQ(device.read(1.5).heading, 30) << "in the air, for the stroke to come";
+    EXPECT_FALSE(device.read(0.5).heading.has_value()) << "the tool has not been turned yet";
+    EXPECT_EQ(device.read(1.5).heading, 30) << "in the air the tool turns for the next stroke";
     const Pose stamp = device.read(2.3);
     EXPECT_TRUE(stamp.engaged);
     EXPECT_TRUE(stamp.leftFoot);
     EXPECT_NEAR(device.read(3.0).heading.value_or(0), 90, 1e-9);
-    EXPECT_NEAR(std::abs(device.read(4.0).heading.value_or(0)), 180, 1e-9) << "round the corner";
+    EXPECT_NEAR(std::abs(device.read(4.0).heading.value_or(0)), 180, 1e-9) << "after the corner";
     EXPECT_FALSE(device.read(4.0).leftFoot);
     EXPECT_DOUBLE_EQ(device.duration(), 4.5);
 }
@@ -214,7 +214,7 @@ TEST(HandMapping, FollowsTheStartingSurface) {
     const HandMapping mapping(scene, HandSettings::Datum::surface);
     EXPECT_EQ(mapping.probe({-1, 0, 0.5, true})->z, 2 * 256);
     EXPECT_EQ(mapping.probe({1, 0, 0.5, true})->z, 12 * 256);
-    EXPECT_EQ(mapping.probe({50, 0, 0, true})->z, 10 * 256) << "beyond the field its rim goes on";
+    EXPECT_EQ(mapping.probe({50, 0, 0, true})->z, 10 * 256) << "beyond the field the height of the rim counts";
 }
 
 TEST(HandMapping, ClampsWhatIsOutOfReachAndDropsWhatIsNoNumber) {

@@ -5,7 +5,7 @@
 
 namespace test {
 
-/// An arm that is where the test says, and remembers what it is pushed with.
+/// An arm at a place that the test sets. It remembers the force that it is pushed with.
 class FakeArm : public haptic_bridge::Arm {
 public:
     struct State {

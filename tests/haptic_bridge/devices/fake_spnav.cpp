@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A libspnav whose cap a test pushes: what it is asked for stands in two functions more.
+// A libspnav whose cap a test pushes. Two additional functions set what the library returns.
 #include <deque>
 #include <mutex>
 

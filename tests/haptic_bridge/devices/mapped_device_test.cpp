@@ -32,12 +32,12 @@ protected:
         state_.reading.place = place;
         return device_->read(time_ += kArmTick);
     }
-    /// What the arm is pushed with.
+    /// Returns the force that the arm is pushed with.
     Vec3 feel(Vec3 force) {
         device_->sendForce(force);
         return state_.pushed;
     }
-    /// Long enough that the ramp at the start is over.
+    /// Runs ticks until the ramp at the start is over.
     void rest() {
         for (int i = 0; i < 600; ++i) {
             (void)at(state_.reading.place);
@@ -66,7 +66,7 @@ TEST_F(Mapped, FitsTheReachIntoTheField) {
 }
 
 TEST_F(Mapped, TurnsPlacesAndTurnsForcesBack) {
-    // y of the device is up, and z comes towards whoever holds it.
+    // The device's y axis points up, and its z axis points towards the user.
     map({"axes=x,-z,y", "scale=2"});
     rest();
     const Pose pose = at({0.01, 0.02, 0.03});
@@ -74,10 +74,10 @@ TEST_F(Mapped, TurnsPlacesAndTurnsForcesBack) {
     EXPECT_DOUBLE_EQ(pose.y, -0.03 * 2 / half_);
     EXPECT_DOUBLE_EQ(pose.z, 1 + 0.02 * 2 / scene_.toolRadius());
     expectEqual(feel({1, 2, 3}), {1, 3, -2});
-    EXPECT_DOUBLE_EQ(device_->scale(), 2) << "newtons are felt as they are; only stiffness scales";
+    EXPECT_DOUBLE_EQ(device_->scale(), 2) << "a force stays the same in newtons; only stiffness scales";
 }
 
-// A spring in the scene stays one at the hand: pushed round any loop, it takes out what it put in.
+// A spring in the scene is also a spring at the hand: pushed round any closed loop, it returns the energy that it took.
 TEST_F(Mapped, NeverPutsEnergyIntoAClosedPath) {
     for (const std::string vertical : {"vertical=0.25", "vertical=1", "vertical=3"}) {
         map({"scale=2", vertical, "axes=-y,z,x"});
@@ -89,7 +89,7 @@ TEST_F(Mapped, NeverPutsEnergyIntoAClosedPath) {
             const double turn = 2 * std::numbers::pi * i / kSteps;
             const Vec3 place{0.01 * std::cos(turn), 0.008 * std::sin(turn), 0.006 * std::sin(turn + 0.7)};
             const Pose pose = at(place);
-            // The gradient of an unround bowl, so that height and sides share their energy.
+            // The gradient of an elliptic bowl, so that height and sides share their energy.
             const double x = pose.x * half_, y = pose.y * half_, z = pose.z * scene_.toolRadius();
             const Vec3 force{-30 * x - 20 * z, -10 * y, -50 * z - 20 * x};
             const Vec3 now = feel(force);
@@ -131,7 +131,7 @@ TEST_F(Mapped, TheClutchHoldsTheToolWhileTheHandMoves) {
     }
     EXPECT_DOUBLE_EQ(last, 0);
     state_.reading.second = false;
-    EXPECT_NEAR(at({-0.02, 0, 0}).x, before.x + 0.01 * 2 / half_, 1e-12) << "it goes on from there";
+    EXPECT_NEAR(at({-0.02, 0, 0}).x, before.x + 0.01 * 2 / half_, 1e-12) << "the tool continues from there";
     EXPECT_GT(feel({0, 0, 1}).z, 0);
     EXPECT_LE(feel({0, 0, 1}).z, kArmTick / MappedDevice::kRampSeconds + 1e-12);
 }
@@ -170,7 +170,7 @@ TEST_F(Mapped, ForceIsSwitchedWithARamp) {
     EXPECT_DOUBLE_EQ(settle(1), 2);
     EXPECT_DOUBLE_EQ(settle(0), 0);
     EXPECT_DOUBLE_EQ(settle(0.25), 0.5);
-    EXPECT_DOUBLE_EQ(settle(7), 2) << "no more than the guards let pass";
+    EXPECT_DOUBLE_EQ(settle(7), 2) << "never more than the guards let pass";
 }
 
 TEST_F(Mapped, ABadReadingLiftsTheHandAndTakesTheForceAway) {
@@ -188,12 +188,12 @@ TEST_F(Mapped, ABadReadingLiftsTheHandAndTakesTheForceAway) {
         state_.reading = reading;
         const Pose during = device_->read(time_ += kArmTick);
         EXPECT_FALSE(during.engaged);
-        EXPECT_DOUBLE_EQ(during.x, before.x) << "it stays where it was";
+        EXPECT_DOUBLE_EQ(during.x, before.x) << "the tool stays where it was";
         expectEqual(feel({0, 0, 2}), {});
-        EXPECT_FALSE(device_->reading().present) << "the guards must know";
-        EXPECT_DOUBLE_EQ(device_->reading().place.x, 0.01) << "and never see what is no place";
+        EXPECT_FALSE(device_->reading().present) << "the guards must notice";
+        EXPECT_DOUBLE_EQ(device_->reading().place.x, 0.01) << "and never see an invalid place";
         EXPECT_EQ(device_->troubles()->of(trouble), 1U);
-        // Back, and for an arm that has jumped: there.
+        // The tool comes back: after a jump, at the arm's new place.
         state_.reading = {{trouble == Trouble::jump ? 1 : 0.01, 0, 0}, false, false, true};
         EXPECT_TRUE(device_->read(time_ += kArmTick).engaged);
         const double returned = feel({0, 0, 2}).z;
@@ -232,7 +232,7 @@ TEST(Troubles, AreToldOnceNotAThousandTimesASecond) {
             ++told;
         }
     }
-    EXPECT_EQ(told, 3) << "every ten seconds";
+    EXPECT_EQ(told, 3) << "one line every ten seconds";
     EXPECT_EQ(
         first,
         "device Touch sends values that are not finite, 1 times so far; the tool is lifted and the hand feels nothing");

@@ -24,7 +24,7 @@ auto spring(double stiffness) {
     return [stiffness](double x) { return -stiffness * x; };
 }
 
-/// A damper that knows places only: the difference over `window` ticks.
+/// A damper that sees only places. It uses the difference over `window` ticks.
 auto damper(double damping, int window) {
     return [=, places = std::array<double, 16>{}, count = 0](double x) mutable {
         places[static_cast<std::size_t>(count % 16)] = x;
@@ -47,7 +47,8 @@ TEST(SimulatedArm, DecaysFreelyAsItsEquationDoes) {
 }
 
 TEST(SimulatedArm, MovesTheSameHoweverTimeIsCut) {
-    // Under held forces, with a hand, friction and a delay: whether read every tick or at odd times between.
+    // Under held forces, with a hand, friction and a delay, the arm moves the same if it is read every tick or at odd
+    // times in between.
     ArmPhysics physics = touchPreset();
     physics.resolution = 0;
     const auto path = [](double time) { return SimulatedArm::Target{{0.02 * time, 0.01, -0.005}, true}; };
@@ -58,7 +59,7 @@ TEST(SimulatedArm, MovesTheSameHoweverTimeIsCut) {
         (void)fine.read(tick * kTick);
         coarse.push(force);
         fine.push(force);
-        // A stop and a start within a quarter of a tick may be passed over, which is where they differ.
+        // A stop and a start within a quarter of a tick may be missed. Only there may the two differ.
         ASSERT_NEAR(norm(coarse.place() - fine.place()), 0, 1e-7) << "tick " << tick;
         for (const double share : {0.25, 0.5}) {
             (void)fine.read((tick + share) * kTick);
@@ -76,11 +77,11 @@ TEST(SimulatedArm, HoldsFastUntilMoreThanItsFrictionPulls) {
     EXPECT_EQ(arm.place().x, 0);
     arm.load({0.36, 0, 0});
     (void)arm.read(3);
-    EXPECT_NEAR(arm.velocity().x, 0.1 / 0.35, 1e-6) << "what is left over friction, against damping";
+    EXPECT_NEAR(arm.velocity().x, 0.1 / 0.35, 1e-6) << "the force above friction, against the damping";
     arm.load({});
     arm.start({}, {0.1, 0, 0});
     (void)arm.read(4);
-    EXPECT_EQ(arm.velocity().x, 0) << "friction stops it, and does not turn it round";
+    EXPECT_EQ(arm.velocity().x, 0) << "friction stops the arm and does not reverse it";
     // m v' + b v + F = 0 from v: the way to the stop is (m/b)(v − (F/b) ln(1 + b v/F)).
     EXPECT_NEAR(arm.place().x, 0.045 / 0.35 * (0.1 - 0.26 / 0.35 * std::log1p(0.35 * 0.1 / 0.26)), 1e-12);
 }
@@ -111,12 +112,13 @@ TEST(SimulatedArm, IsHeldByAHandThatFollowsItsPath) {
     const auto path = [](double time) { return SimulatedArm::Target{{0.05 * time, 0, -0.01}, true}; };
     SimulatedArm arm(physics, {300, 5}, path);
     (void)arm.read(0);
-    EXPECT_EQ(arm.place().z, -0.01) << "it starts where the path does";
+    EXPECT_EQ(arm.place().z, -0.01) << "the arm starts at the start of the path";
     for (int tick = 1; tick <= 1000; ++tick) {
         (void)arm.read(tick * kTick);
     }
     EXPECT_NEAR(arm.velocity().x, 0.05, 1e-9);
-    EXPECT_NEAR(arm.place().x, 0.05 - 0.35 * 0.05 / 300, 1e-9) << "its damping over the hand's stiffness behind";
+    EXPECT_NEAR(arm.place().x, 0.05 - 0.35 * 0.05 / 300, 1e-9)
+        << "the arm lags by its damping force over the hand's stiffness";
 }
 
 TEST(SimulatedArm, RunsOnTheHostsClockAsOnAVirtualOne) {
@@ -159,7 +161,8 @@ TEST(SampledLoop, DamperBearsTwiceTheMassOverTheTickAndASixthOfThatWithAWindow) 
     EXPECT_GT(growth(textbookArm(0.5, 1), damper(44, 1)), 1);
 }
 
-/// Of an arm that is pressed into the first paper's sand with the force of one radius' depth, after three seconds.
+/// Returns the largest speed after about three seconds of an arm that is pressed into the first paper's sand, with the
+/// force of a depth of one radius.
 double lastSpeedInSeedSand(double damping) {
     SimulatedArm arm(textbookArm(damping));
     arm.start({0, 0, -0.01 / kPapersScale}, {0, 0, 0.05});
@@ -174,7 +177,7 @@ double lastSpeedInSeedSand(double damping) {
 }
 
 TEST(SampledLoop, SeedSpringCyclesBelowAndSettlesAbove3125MillinewtonsPerMetreAndSecond) {
-    EXPECT_GT(lastSpeedInSeedSand(2.9), 0.3) << "it leaves the sand and falls back, for ever";
+    EXPECT_GT(lastSpeedInSeedSand(2.9), 0.3) << "the arm leaves the sand and falls back without end";
     EXPECT_LT(lastSpeedInSeedSand(3.3), 1e-3);
 }
 
@@ -185,7 +188,7 @@ TEST(SampledLoop, SeedFrictionDivergesFromASixthOfARadiusOn) {
     EXPECT_GT(growth(textbookArm(0.5), friction(2.0e-3)), 1);
 }
 
-/// A spring that is asked once a frame of 1/60 s, held or interpolated between.
+/// A spring that is evaluated once per frame of 1/60 s. Between frames its force is held or interpolated.
 auto frameSpring(double stiffness, bool interpolated) {
     return [=, tick = 0, frame = -1, begun = 0, from = 0.0, to = 0.0](double x) mutable {
         constexpr double kTicksPerFrame = 1000.0 / 60;
@@ -207,7 +210,7 @@ TEST(SampledLoop, InterpolationBetweenFramesBearsHalfOfWhatHoldingDoesAndALocalM
     EXPECT_GT(growth(textbookArm(0.5), frameSpring(35, true), 6), 1);
     EXPECT_LT(growth(textbookArm(0.5), frameSpring(58, false), 6), 1);
     EXPECT_GT(growth(textbookArm(0.5), frameSpring(66, false), 6), 1);
-    // On level sand force and Jacobian of the last surface are the spring itself, asked every tick.
+    // On level sand the force and Jacobian of the last surface are the spring itself, evaluated at every tick.
     EXPECT_LT(growth(textbookArm(0.5), spring(950), 6), 1);
 }
 
@@ -228,7 +231,7 @@ TEST(OpenSimulatedArm, ReadsPresetsAndWhatIsChangedOfThem) {
     EXPECT_EQ(arm->physics().delayTicks, 0);
     EXPECT_EQ(arm->physics().mass, 0.13);
     (void)arm->read(0);
-    EXPECT_GT(arm->place().z, 0) << "the hand begins over the sand";
+    EXPECT_GT(arm->place().z, 0) << "the hand begins above the sand";
 }
 
 TEST(OpenSimulatedArm, NamesWhatItCannotRead) {

@@ -12,7 +12,7 @@ namespace {
 
 using haptic_bridge::SpacenavDevice;
 
-/// The library that stands in, and what a test does to its cap.
+/// The fake library, and functions with which a test moves its cap.
 class Spacenav : public testing::Test {
 protected:
     template <class... Words>
@@ -27,8 +27,8 @@ protected:
 
 TEST_F(Spacenav, APushIsASpeed) {
     SpacenavDevice device(library_);
-    call("fakeSpnavPush", 175, -350, 700);  // half to the right, down, and farther away than the cap goes
-    // The library is asked on another thread: time stands still until its news is in.
+    call("fakeSpnavPush", 175, -350, 700);  // half to the right, fully down, and farther away than the cap can go
+    // Another thread polls the library. The test's time does not advance until the event has arrived.
     double x = 0, time = 0;
     ASSERT_TRUE(test::eventually([&] { return (x = device.read(time += 1e-6).x) > 0; }));
     const haptic_bridge::Pose from = device.read(time);
@@ -37,17 +37,18 @@ TEST_F(Spacenav, APushIsASpeed) {
     }
     const haptic_bridge::Pose to = device.read(time);
     EXPECT_NEAR(to.x - from.x, 0.5 * SpacenavDevice::kSpeed * 0.5, 1e-9);
-    EXPECT_NEAR(to.y - from.y, 0.5 * SpacenavDevice::kSpeed, 1e-9) << "full speed, and no more";
+    EXPECT_NEAR(to.y - from.y, 0.5 * SpacenavDevice::kSpeed, 1e-9) << "full speed is the most";
     EXPECT_NEAR(to.z - from.z, -0.5 * SpacenavDevice::kClimb, 1e-9);
     EXPECT_FALSE(to.engaged);
-    // A cap that is let go stands still, and a clock that stands still moves nothing.
+    // A released cap stops the hand, and a clock that does not advance also stops it.
     call("fakeSpnavPush", 0, 0, 0);
     call("fakeSpnavButton", 0, 1);
     ASSERT_TRUE(test::eventually([&] { return device.read(time).engaged; }));
     EXPECT_DOUBLE_EQ(device.read(time += 0.05).x, to.x);
     call("fakeSpnavButton", 0, 0);
     call("fakeSpnavButton", 1, 1);
-    ASSERT_TRUE(test::eventually([&] { return device.read(time).x == 0; })) << "the second button brings it home";
+    ASSERT_TRUE(test::eventually([&] { return device.read(time).x == 0; }))
+        << "the second button brings the hand back to the centre";
     EXPECT_FALSE(device.read(time).engaged);
 }
 
@@ -122,7 +123,7 @@ TEST(HeadlessServer, SaysThatAMouseNeedsADisplay) {
     unsetenv("DISPLAY");
     test::ServerProcess server(folder, words);
     EXPECT_EQ(server.wait(), 2);
-    // A build without windows says that there is no such module.
+    // A build without windows reports that the module is missing.
     EXPECT_TRUE(server.errors().starts_with("sandwall-haptic-server: --device mouse: ")) << server.errors();
     if (display != nullptr) {
         setenv("DISPLAY", kept.c_str(), 1);
