@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arms that do what no arm should, behind the real server: a line, and the wall goes on.
+// Faulty arms behind the real server. The server prints one line, and the wall continues.
 #include "scene/load/scene_file.hpp"
 #include "tests/haptic_bridge/server/server_process.hpp"
 

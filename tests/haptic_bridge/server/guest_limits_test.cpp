@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many guests there may be, how often they come, and how often that is said.
+// Limits on unauthenticated connections: their number, their rate, and how often a refusal is printed.
 #include "haptic_bridge/server/guest_limits.hpp"
 
 #include <memory>
@@ -49,10 +49,10 @@ TEST(GuestLimits, HoldsBackWhoComesOftenAndNobodyElse) {
         limits.refused(often, now);
     }
     now += 1'900'000'000;
-    EXPECT_FALSE(limits.mayCome(often, now)) << "who was refused comes later still";
+    EXPECT_FALSE(limits.mayCome(often, now)) << "a refused address must wait longer";
     now += 300'000'000;
-    EXPECT_TRUE(limits.mayCome(often, now)) << "but not never";
-    for (unsigned i = 0; i < 5000; ++i) {  // more addresses than are kept apart
+    EXPECT_TRUE(limits.mayCome(often, now)) << "it may come again after about two seconds";
+    for (unsigned i = 0; i < 5000; ++i) {  // more addresses than are counted separately
         (void)limits.mayCome(boost::asio::ip::address_v4(0x0a000000U + i), now);
     }
     EXPECT_TRUE(limits.mayCome(often, now + 10'000'000'000));
@@ -81,7 +81,7 @@ TEST(Gate, HoldsBackWhoDoesWrongAndNotWhoComesTooOften) {
     }
     EXPECT_TRUE(gate.mayCome(busy, 1));
     EXPECT_FALSE(gate.mayCome(wrong, 1));
-    EXPECT_EQ(lines, std::vector<std::string>{"192.0.2.1: a master is linked"}) << "once, and none that is empty";
+    EXPECT_EQ(lines, std::vector<std::string>{"192.0.2.1: a master is linked"}) << "each line once, and no empty line";
     EXPECT_EQ(gate.counts()[static_cast<std::size_t>(RefusalCode::garbage) - 1], 40U);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Binaries as readelf sees them: the flags of cmake/Hardening.cmake reach them, and few can open a socket.
+// Checks binaries with readelf: the flags of cmake/Hardening.cmake reach them, and only a few can open a socket.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -43,9 +43,10 @@ TEST(Hardening, EveryProgramAndModuleHasIt) {
         ASSERT_NE(stack, std::string::npos);
         EXPECT_FALSE(holds(told.substr(stack, told.find('\n', stack) - stack), "RWE"));
     }
-    // What this program depends on is built whenever it is; a list without them has looked at nothing.
+    // This program depends on these binaries, so they are always built. A list without them means that the test looked
+    // in the wrong place.
     for (const char* name : {"sandwall-haptic-server", "sandwall-watch", "sandwall-security.so"}) {
-        EXPECT_TRUE(files.contains(name)) << name << " was not looked at";
+        EXPECT_TRUE(files.contains(name)) << name << " was not checked";
     }
     const std::string symbols = outputOf("readelf --dyn-syms -W " SANDWALL_BIN_DIR "/sandwall-haptic-server");
     EXPECT_TRUE(holds(symbols, "__stack_chk_fail"));
@@ -68,10 +69,11 @@ std::set<std::string> networkCallsOf(const std::string& program) {
     return calls;
 }
 
-// It runs the force loop of a haptic server, on ticks from a journal.
+// sandwall-replay runs the force loop of a haptic server, on ticks from a journal.
 TEST(Hardening, ReplayOpensNoSocket) {
     EXPECT_EQ(networkCallsOf("sandwall-replay"), std::set<std::string>{});
-    EXPECT_TRUE(networkCallsOf("sandwall-haptic-server").contains("listen")) << "the look finds calls where they are";
+    EXPECT_TRUE(networkCallsOf("sandwall-haptic-server").contains("listen"))
+        << "the check finds calls in a program that has them";
 }
 
 }  // namespace

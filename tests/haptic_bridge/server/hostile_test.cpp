@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Somebody who means no good at either end of the link; scripts/hostile.sh does the same a million times over.
+// An attacker at either end of the link. scripts/hostile.sh runs the same test a million times.
 #include <cstdio>
 #include <thread>
 
@@ -63,7 +63,7 @@ TEST_F(Hostile, ThousandsOfFramesDoNotTouchWhoIsLinkedToTheServer) {
     EXPECT_TRUE(wall.follow(client, wall.terrain.stepNumber() + 60)) << client.link().message << server.errors();
     client.stop();
     ASSERT_TRUE(client.report());
-    EXPECT_GT(total(client.report()->refused), done.connections / 4) << "each is counted";
+    EXPECT_GT(total(client.report()->refused), done.connections / 4) << "each refusal is counted";
     std::printf("%zu frames read, %zu refused unread\n", static_cast<std::size_t>(done.read),
                 static_cast<std::size_t>(done.frames - done.read));
     const std::string errors = server.errors();
@@ -80,7 +80,7 @@ TEST_F(Hostile, AMasterTakesNothingFromAServerThatIsNone) {
     EXPECT_TRUE(eventually(
         [&] {
             most = std::max(most, client.drainPositions().size());
-            EXPECT_TRUE(client.drain(100).empty()) << "nobody was granted anything";
+            EXPECT_TRUE(client.drain(100).empty()) << "no server was granted the steps";
             return server.positions() > 0 && refused() >= 3;
         },
         240000ms))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The link that stands in for a wireless one, and a hand that is felt over it.
+// A simulated wireless link, and a hand that feels the sand over it.
 #include "tests/impaired_link/impaired_link.hpp"
 
 #include <boost/asio/connect.hpp>
@@ -34,7 +34,7 @@ TEST(ImpairedSchedule, PiecesLeaveInOrderAndWithinDelayAndJitter) {
         before = left;
     }
     EXPECT_GE(least, 20 * kMs);
-    EXPECT_LT(least, 21 * kMs) << "the whole of the jitter is used";
+    EXPECT_LT(least, 21 * kMs) << "the whole range of the jitter is used";
     EXPECT_LT(most, 30 * kMs);
     EXPECT_GT(most, 29 * kMs);
     EXPECT_EQ(schedule.stalls(), 0U);
@@ -49,7 +49,7 @@ TEST(ImpairedSchedule, WhatIsLostHoldsUpWhatIsBehindIt) {
         EXPECT_EQ(left - i * 1000 * kMs, schedule.stalls() > stalls ? 101 * kMs : kMs);
         late += schedule.stalls() > stalls ? 1 : 0;
     }
-    // Of 10,000 chances of a tenth: 1000, with a deviation of 30.
+    // 10,000 trials with a probability of 0.1 have a mean of 1000 and a standard deviation of 30.
     EXPECT_GT(late, 880);
     EXPECT_LT(late, 1120);
     Schedule always({.delayMs = 1, .stallShare = 1, .stallMs = 100}, 0);
@@ -73,7 +73,7 @@ TEST(ImpairedSchedule, OneSeedIsOneScheduleAndEveryDirectionHasItsOwn) {
     EXPECT_LT(equal, 10);
 }
 
-/// What listens behind a link, and one connection through it.
+/// A listening socket behind a link, and one connection through the link.
 class Crossing {
 public:
     explicit Crossing(const Impairment& impairment)
@@ -111,13 +111,13 @@ std::vector<std::uint8_t> readToEnd(tcp::socket& socket) {
 
 TEST(ImpairedLink, BytesOfBothDirectionsComeWholeInOrderAndHeldInBounds) {
     Crossing crossing({.delayMs = 2, .jitterMs = 3, .stallShare = 0.01, .stallMs = 5, .seed = 2});
-    // More than the link and the sockets hold: the sender has to wait.
+    // This is more than the link and the sockets can hold, so the sender has to wait.
     const auto sent = noise(8'000'000, 1), answered = noise(300'000, 2);
     std::thread writer([&] {
         boost::asio::write(crossing.near, boost::asio::buffer(sent));
         crossing.near.shutdown(tcp::socket::shutdown_send);
     });
-    std::this_thread::sleep_for(50ms);  // nobody reads yet
+    std::this_thread::sleep_for(50ms);  // no reader yet
     std::thread answerer([&] {
         boost::asio::write(crossing.far, boost::asio::buffer(answered));
         crossing.far.shutdown(tcp::socket::shutdown_send);
@@ -169,7 +169,7 @@ TEST_F(HandOverABadLink, TheSandIsTheSameAndAResetEndsNothing) {
     haptic_bridge::Client client({"127.0.0.1", link.port()}, offerOf(scene_));
     Wall wall(scene_);
     ASSERT_TRUE(wall.follow(client, 20)) << client.link().message << "\n" << server.errors();
-    // The wall says after every frame what it shows, so the reset comes soon.
+    // The wall reports after every frame which step it shows, so the reset comes soon.
     ASSERT_TRUE(eventually([&] {
         client.shown(wall.terrain.stepNumber(), 16'666'667);
         return link.resets() == 1;
@@ -181,7 +181,7 @@ TEST_F(HandOverABadLink, TheSandIsTheSameAndAResetEndsNothing) {
     EXPECT_EQ(client.counters().reconnects, 1U);
     EXPECT_EQ(wall.divergences, 0);
     EXPECT_EQ(wall.outOfOrder, 0);
-    EXPECT_GT(wall.engaged, engaged) << "the hand goes on";
+    EXPECT_GT(wall.engaged, engaged) << "the hand continues";
     EXPECT_EQ(samples::fieldOf(wall.terrain).volume() + wall.terrain.outflow(), scene_.terrain.volume());
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene that does not fit the server's memory is refused before its heights are made. The sanitizers map terabytes,
-// so that a program of theirs cannot run under a limit.
+// A scene that does not fit the server's memory is refused before its heights are allocated. Sanitizers map terabytes,
+// so their programs cannot run under a limit.
 #include "tests/haptic_bridge/server/server_process.hpp"
 #include "tests/support/run_program.hpp"
 
@@ -22,14 +22,14 @@ protected:
     test::Folder folder_;
 };
 
-// 16 bytes a cell: the scene's heights, the replica's, and two fluxes. 2^28 cells are 4 GiB.
+// 16 bytes per cell: the scene's heights, the replica's heights, and two fluxes. 2^28 cells are 4 GiB.
 TEST_F(ServerMemory, OfAFieldIsAskedBeforeItsHeightsAreMade) {
     const std::string field = "[field]\ncolumns = 16384\nrows = 16384\n";
     expectRefused(field + "[terrain]\n", "16384 x 16384 cells need at least 4.0 GiB, and ");
     expectRefused(field + "[terrain]\nkind = \"dunes\"\n", "16384 x 16384 cells need at least 4.0 GiB, and ");
 }
 
-// A reader holds 16 bytes a pixel. Were the pixels read first, the word would be refused.
+// A reader holds 16 bytes per pixel. If the pixels were read first, the word in the file would be refused instead.
 TEST_F(ServerMemory, OfARasterIsAskedBeforeItsPixelsAreRead) {
     folder_.write("t.asc", "ncols 16384\nnrows 16384\ncellsize 1\nNODATA_value -1\n1 word\n");
     expectRefused("[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n",

@@ -9,7 +9,7 @@ namespace {
 
 using namespace haptic_bridge;
 
-/// A connection without a socket: it leaves the roster when it is asked to make room.
+/// A connection without a socket. It leaves the roster when it is asked to make room.
 struct Someone {
     Roster<Someone>* roster = nullptr;
     std::string from = "192.0.2.1";
@@ -39,7 +39,7 @@ TEST(Roster, TheOldestGuestMakesRoom) {
         (void)comeTo(roster, "127.0.0.1");
     }
     EXPECT_FALSE(first->left);
-    EXPECT_TRUE(roster.hasRoomFor(second->address())) << "this machine may have as many as it likes";
+    EXPECT_TRUE(roster.hasRoomFor(second->address())) << "this machine may have any number of connections";
     (void)comeTo(roster, "127.0.0.1");
     EXPECT_TRUE(first->left);
     EXPECT_FALSE(second->left);
@@ -57,7 +57,7 @@ TEST(Roster, OneAddressHasFourGuests) {
     EXPECT_TRUE(roster.hasRoomFor(boost::asio::ip::make_address("192.0.2.2")));
     (void)roster.promoteToMaster(guests[0]);
     EXPECT_TRUE(roster.hasRoomFor(boost::asio::ip::make_address("192.0.2.1")))
-        << "a welcomed peer does not count as a guest";
+        << "a welcomed peer does not count as an unauthenticated connection";
 }
 
 TEST(Roster, HasOneMasterAtATimeAndNumbersTheirSessions) {
@@ -70,7 +70,7 @@ TEST(Roster, HasOneMasterAtATimeAndNumbersTheirSessions) {
     EXPECT_EQ(roster.watchers(), std::vector{watcher});
     EXPECT_TRUE(roster.guests().empty());
     EXPECT_FALSE(roster.remove(watcher));
-    EXPECT_EQ(roster.master(), master) << "a watcher that leaves";
+    EXPECT_EQ(roster.master(), master) << "a watcher that leaves does not remove the master";
     EXPECT_TRUE(roster.remove(master));
     EXPECT_EQ(roster.master(), nullptr);
     EXPECT_EQ(roster.promoteToMaster(comeTo(roster, "127.0.0.1")), 2U);

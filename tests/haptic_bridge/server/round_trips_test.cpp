@@ -17,7 +17,7 @@ TEST(RoundTrips, CountHalfOfEachLegOnce) {
     RoundTrips trips{TimingTests{}};
     const TimingTest test = trips.next(0, 1'000'000'000);
     trips.echoed({test.id, Leg::received}, 1'002'000'000);
-    trips.echoed({test.id, Leg::received}, 1'900'000'000);  // doubled
+    trips.echoed({test.id, Leg::received}, 1'900'000'000);  // sent twice
     trips.echoed({test.id, Leg::shown}, 1'020'000'000);
     trips.echoed({test.id, Leg::shown}, 1'900'000'000);
     trips.echoed({test.id + 1, Leg::shown}, 1'900'000'000);  // never sent
@@ -48,7 +48,7 @@ TEST(RoundTrips, ForgetTheOldestTestThatIsNotAnswered) {
     EXPECT_EQ(reportOf(trips).toWall.count, 1U);
 }
 
-// The mean of n exponential pauses of mean m lies within 6 m / sqrt(n) of m, but for one seed in 5e8; the seed is
+// The mean of n exponential pauses of mean m lies within 6 m / sqrt(n) of m, except for one seed in 5e8. The seed is
 // fixed.
 TEST(RoundTrips, PauseAtRandomFromASeed) {
     constexpr int kPauses = 40'000;

@@ -14,7 +14,7 @@ namespace {
 using namespace haptic_bridge;
 using namespace test;
 
-/// A hand that stands where the test says, half a radius deep in the sand as the session began.
+/// A hand at a place that the test sets, half a radius deep in the sand as the session began.
 class StandingHand : public Device {
 public:
     explicit StandingHand(const std::atomic<double>& east) : east_(east) {}
@@ -26,7 +26,7 @@ private:
     const std::atomic<double>& east_;
 };
 
-/// A sand thread whose wall shows nothing, and what it has put out.
+/// A sand thread whose wall shows no step, and the messages that it has sent.
 class Server {
 public:
     Server(const scene::Scene& scene, Pace pace, std::unique_ptr<Device> device)
@@ -37,7 +37,7 @@ public:
                   {[](std::uint32_t) {}, [](std::uint32_t, NeedState) {}, [](std::uint32_t, const std::string&) {},
                    [this](std::uint32_t, const base::Bytes& message) { take(message); }}) {}
 
-    /// A master links, whose sand is that of all steps so far.
+    /// Links a master whose sand is that of all steps so far.
     void link() {
         ++epoch_;
         thread_.start(epoch_, {epoch_, replica_.stepNumber(), replica_.stateHash()});
@@ -72,7 +72,7 @@ private:
     SandThread thread_;
 };
 
-/// The first paper's field and tool, of 2.5 cells; west of x = -0.3 the sand stands 0.02 higher.
+/// The first paper's field and tool, of 2.5 cells. West of x = -0.3 the sand is 0.02 higher.
 scene::Scene terraced() {
     scene::Scene scene = levelSand({}, 500);
     for (int row = 0; row < 500; ++row) {
@@ -82,7 +82,7 @@ scene::Scene terraced() {
     }
     return scene;
 }
-/// That sand, a hand over it, and a server that is not linked yet.
+/// The terrace sand, a hand over it, and a server that is not linked yet.
 struct Terrace {
     Terrace(Pace pace, double place) : east(place), server(scene, pace, std::make_unique<StandingHand>(east)) {}
 
@@ -102,7 +102,7 @@ TEST(SandThread, TheFirstSurfaceIsTheSandUnderTheHand) {
     server.link();
     ASSERT_TRUE(server.made(1));
     const Tick first = server.ticks().front();
-    EXPECT_EQ(first.surfaceStep, 0U) << "felt before there was a step";
+    EXPECT_EQ(first.surfaceStep, 0U) << "the sand was felt before the first step";
     EXPECT_NEAR(first.sent.z, kHalfRadius, kFloat);
 }
 
@@ -124,12 +124,12 @@ TEST(SandThread, TheFirstSurfaceOfTheNextLinkIsTheSandUnderTheHandThen) {
 TEST(SandThread, InRealTimeTheFirstSurfaceIsTheSandWhereTheHandRests) {
     Terrace terrace(Pace::realtime, kWest);
     Server& server = terrace.server;
-    server.hand().rest(0);  // as the force loop does a thousand times a second while nobody is linked
+    server.hand().rest(0);  // as the force loop does at 1 kHz while no master is linked
     server.link();
     ASSERT_TRUE(eventually([&] { return !server.channel().surface.latest().patch.empty(); }));
     const FeltSand& surface = server.channel().surface.latest();
     EXPECT_NEAR(surface.patch.height(1 + kWest, 1), 0.02, 1e-6);
-    // 11 cells on either side of the hand and no more: the whole field would hold that place too.
+    // 11 cells on each side of the hand and no more, because the whole field would also contain the other place.
     EXPECT_EQ(surface.around, (sand::ProbePoint{100 * sand::kProbePerCell, 250 * sand::kProbePerCell, 0}));
 }
 
@@ -138,7 +138,7 @@ TEST(SandThread, IsAtMostEightStepsAheadOfTheWall) {
     Terrace terrace(Pace::realtime, kEast);
     Server& server = terrace.server;
     server.link();
-    // A step that is withheld was due while the wall was a whole window behind.
+    // A withheld step was due while the wall was a whole window behind.
     const auto withheld = [&](std::uint64_t steps) {
         return eventually([&] { return server.thread().withheld() >= steps; });
     };
@@ -150,8 +150,7 @@ TEST(SandThread, IsAtMostEightStepsAheadOfTheWall) {
     EXPECT_EQ(server.ticks().size(), 11U);
 }
 
-// A wall that keeps the server waiting holds the sand still; what the hand feels of it is as it is, and not out of
-// date.
+// A wall that keeps the server waiting stops the sand. The hand still feels that sand, and it does not count as stale.
 TEST(SandThread, WhatIsFeltDoesNotAgeWhileStepsAreWithheld) {
     const Folder folder;
     const scene::Scene scene = scene::loadScene(folder.write("small.toml", kSmallScene));
@@ -164,7 +163,7 @@ TEST(SandThread, WhatIsFeltDoesNotAgeWhileStepsAreWithheld) {
     const auto withheld = [&](std::uint64_t steps) {
         return eventually([&] { return sandThread.withheld() >= steps; });
     };
-    ASSERT_TRUE(withheld(2)) << "nothing is shown";
+    ASSERT_TRUE(withheld(2)) << "the wall shows no step";
     ASSERT_TRUE(eventually([&] { return channel.surface.latest().step == StepMaker::kWindow; }));
     const std::int64_t before = channel.surface.latest().timeNs;
     ASSERT_TRUE(withheld(sandThread.withheld() + 3));

@@ -22,7 +22,7 @@ namespace test {
 
 using namespace std::chrono_literals;
 
-/// Waits until `done` holds, for at most a bounded time; says whether it did.
+/// Waits a bounded time until `done` returns true. Returns whether it did.
 template <class Done>
 bool eventually(const Done& done, std::chrono::milliseconds most = 60000ms) {
     const auto end = std::chrono::steady_clock::now() + most;
@@ -35,7 +35,7 @@ bool eventually(const Done& done, std::chrono::milliseconds most = 60000ms) {
     return true;
 }
 
-/// A folder of its own that goes with the test.
+/// A temporary folder that is removed with the test.
 class Folder {
 public:
     Folder() = default;
@@ -72,7 +72,7 @@ radius = 0.04
 talus_deg = 34
 )";
 
-/// The real program, started and stopped by its process id; its output goes to files in the folder.
+/// The real program, started and stopped by its process id. Its output goes to files in the folder.
 class ServerProcess {
 public:
     ServerProcess(const Folder& folder, std::vector<std::string> arguments) : folder_(folder) {
@@ -98,7 +98,7 @@ public:
     ServerProcess(const ServerProcess&) = delete;
     ServerProcess& operator=(const ServerProcess&) = delete;
 
-    /// The usual server of the tests: fast, script:gis, on any free port.
+    /// Returns the options of the usual server of the tests: fast, script:gis, on any free port.
     static std::vector<std::string> usual(const std::string& scene, const Folder& folder, int port = 0,
                                           const std::string& pace = "fast") {
         return {"--scene",
@@ -114,14 +114,14 @@ public:
                 folder.file("port")};
     }
 
-    /// 0 when the server does not come up.
+    /// Returns the port; 0 if the server does not start.
     [[nodiscard]] std::uint16_t port() const {
         eventually([this] { return std::filesystem::exists(folder_.file("port")); });
         return static_cast<std::uint16_t>(std::atoi(folder_.read("port").c_str()));
     }
     [[nodiscard]] haptic_bridge::Address address() const { return {"127.0.0.1", port()}; }
 
-    /// The exit status, −signal, or 999 when it does not end in time.
+    /// Returns the exit status, −signal, or 999 if the program does not end in time.
     int wait() {
         int status = 0;
         const bool ended = pid_ <= 0 || eventually([&] { return waitpid(pid_, &status, WNOHANG) == pid_; });
@@ -147,11 +147,12 @@ private:
     pid_t pid_ = 0;
 };
 
-/// A master without a wall: a replica that applies what the client hands over, and shows it at once.
+/// A master without a wall. Its replica applies the steps from the client, and it reports them as shown at once.
 struct Wall {
     explicit Wall(const scene::Scene& scene) : terrain(scene) {}
 
-    /// Grants when offered, and follows until `steps` is reached or time is up. Counts hashes that differ.
+    /// Grants the steps when the link is offered. Follows until `steps` is reached or the time is over. Counts hashes
+    /// that differ.
     bool follow(haptic_bridge::Client& client, std::uint64_t steps) {
         return eventually(
             [&] {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The real server program over loopback, with the real client.
+// Tests of the real server program over loopback, with the real client.
 #include "base/input_error.hpp"
 #include "scene/load/scene_file.hpp"
 #include "tests/haptic_bridge/link/raw_peer.hpp"
@@ -29,12 +29,13 @@ TEST_F(HapticServer, WritesTheSameSandTwice) {
         EXPECT_EQ(wall.divergences, 0);
         EXPECT_EQ(wall.outOfOrder, 0);
         // G, I and S are drawn from 0 to 1.1994 s, 1.3365 to 1.8819 s and 2.1050 to 3.1616 s: 168.1 steps of 1/60 s. A
-        // step touches or hovers as a whole. Samples of a step in which the hand lands go into the next, so that the
-        // first step of I and of S is longer instead of one more: I's has 14 samples that waited and 16 of its own.
+        // step is engaged or hovering as a whole. If the hand lands within a step, its samples go into the next step.
+        // The first step of I and of S is therefore longer, and there is no step more. The first step of I has 14
+        // samples that waited and 16 of its own.
         EXPECT_EQ(wall.strokes, 3);
         EXPECT_EQ(wall.engaged, 167);
         EXPECT_EQ(wall.longest, 30U);
-        EXPECT_FALSE(wall.terrain.engaged()) << "the word must be complete within 240 steps";
+        EXPECT_FALSE(wall.terrain.engaged()) << "the three letters must be complete within 240 steps";
         EXPECT_EQ(samples::fieldOf(wall.terrain).volume() + wall.terrain.outflow(), scene_.terrain.volume());
         hashes.push_back(wall.terrain.stateHash());
         client.stop();
@@ -60,13 +61,14 @@ TEST_F(HapticServer, WritesWithARecordedHand) {
     ASSERT_TRUE(wall.follow(client, 380)) << client.link().message << "\n" << server.errors();
     EXPECT_EQ(wall.divergences, 0);
     EXPECT_EQ(wall.strokes, 3) << "G, I and S";
-    EXPECT_FALSE(wall.terrain.engaged()) << "a recording that is over hovers";
-    // The I stands in the middle of the field, and the sand between I and S is untouched.
+    EXPECT_FALSE(wall.terrain.engaged()) << "a finished recording hovers";
+    // The I is in the middle of the field, and the sand between I and S is untouched.
     EXPECT_LT(samples::fieldOf(wall.terrain).height(64, 64), scene_.terrain.height(64, 64));
     EXPECT_EQ(samples::fieldOf(wall.terrain).height(78, 48), scene_.terrain.height(78, 48));
 }
 
-// A hand that turns its tool says so when it turns, and not of a ball, for which it makes no difference.
+// A hand that turns its tool sends the heading when it changes. A ball gets no heading, because it would make no
+// difference.
 TEST_F(HapticServer, TurnsTheToolThatHasAHeading) {
     const std::string walk = folder_.write("walk.strokes",
                                            "follow\nstroke\npoint -0.5 0\npoint 0.5 0\npoint 0.5 0.5\n"
@@ -126,7 +128,7 @@ TEST_F(HapticServer, GetsFewerStepsThroughASlowWallAndLosesNone) {
     Client client(server.address(), offerOf(scene_));
     Wall wall(scene_);
     ASSERT_TRUE(wall.follow(client, 5));
-    // The wall stands still until the window of 8 steps is full, and while the server withholds some more.
+    // The wall shows no frame until the window of 8 steps is full and the server has withheld some more steps.
     const std::uint64_t before = wall.terrain.stepNumber();
     ASSERT_TRUE(eventually([&] { return client.counters().stepsIn >= before + 8; })) << client.counters().stepsIn;
     std::this_thread::sleep_for(1000ms);
@@ -134,7 +136,7 @@ TEST_F(HapticServer, GetsFewerStepsThroughASlowWallAndLosesNone) {
     ASSERT_TRUE(wall.follow(client, before + 40)) << client.link().message;
     EXPECT_EQ(wall.divergences, 0);
     EXPECT_EQ(wall.outOfOrder, 0);
-    EXPECT_GT(wall.longest, 17U) << "what was withheld comes as a longer path";
+    EXPECT_GT(wall.longest, 17U) << "the withheld movement comes as a longer path";
     EXPECT_LE(wall.longest, 64U) << "docs/protocol.md";
     client.stop();
     ASSERT_TRUE(client.report().has_value());
@@ -167,7 +169,8 @@ TEST_F(HapticServer, DoesWhatAnOperatorAsksAndTakesTheWallsMaterialWhenItComesBa
     sand::Tuning tuning = scene_.rules.tuning();
     tuning.toolRadius *= 2;
     tuning.threshold /= 2;
-    // The second is no sand of this field and changes nothing, but it is as long as that of a large one.
+    // The bytes of the second load do not fit this field, so the load is ignored. They are as long as the sand of a
+    // large field.
     const std::vector<sand::Edit> asked{sand::Edit::tuned(tuning), sand::Edit::loaded(base::Bytes(300'000, 7)),
                                         sand::Edit::loaded(sand::Replica(scene_).copySand()->encode())};
     for (const sand::Edit& edit : asked) {
@@ -182,7 +185,7 @@ TEST_F(HapticServer, DoesWhatAnOperatorAsksAndTakesTheWallsMaterialWhenItComesBa
     server = std::make_unique<ServerProcess>(folder_, ServerProcess::usual(sceneFile_, folder_, port));
     ASSERT_TRUE(wall.follow(client, 240)) << client.link().message << "\n" << server->errors();
     EXPECT_EQ(wall.terrain.rules().tuning(), tuning);
-    EXPECT_EQ(wall.divergences, 0) << "the server computes with what the operator has chosen";
+    EXPECT_EQ(wall.divergences, 0) << "the server computes with the operator's settings";
 }
 
 TEST_F(HapticServer, ServesTheNextMasterFromItsOwnState) {
@@ -264,7 +267,7 @@ TEST_F(HapticServer, AnswersGarbageHalfMessagesAndOtherVersionsWithAReason) {
         liar.send(haptic_bridge::State{base::Bytes(100'000, 1)});
         EXPECT_NE(liar.refusal().find("state"), std::string::npos);
     }
-    // After all that it serves as if nothing had happened.
+    // After all faults the server still serves.
     Client client({"127.0.0.1", port}, offerOf(scene_));
     Wall wall(scene_);
     EXPECT_TRUE(wall.follow(client, 20)) << client.link().message << "\n" << server.errors();
@@ -281,7 +284,7 @@ TEST_F(HapticServer, SendsTimingTestsAsLongAsAStepAndCountsEachLegOnce) {
     master.send(Hello{mine});
     master.send(Start{1, 0, sand::Replica(scene_).stateHash()});
     std::size_t step = 0;
-    unsigned tests = 0, compared = 0;  // the first may come before there is a step
+    unsigned tests = 0, compared = 0;  // the first test may come before there is a step
     while (tests < 3 || compared == 0) {
         const auto message = master.receive();
         ASSERT_TRUE(message) << server.errors();
@@ -314,7 +317,7 @@ TEST_F(HapticServer, SendsTimingTestsAsLongAsAStepAndCountsEachLegOnce) {
     EXPECT_EQ(report->toWall.count, tests - 1);
 }
 
-/// What the server printed before it gave up, expected with exit status 2.
+/// Returns the output of a server that is expected to end with exit status 2.
 std::string complaint(const Folder& folder, const std::vector<std::string>& arguments) {
     ServerProcess server(folder, arguments);
     EXPECT_EQ(server.wait(), base::kExitBadInput) << server.errors();

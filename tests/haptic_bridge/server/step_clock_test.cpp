@@ -15,8 +15,8 @@ using haptic_bridge::StepClock;
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-/// Runs steps at 60 per second nominal against a wall of `frameHz`, and returns how many steps each frame of the last
-/// half of `seconds` found, with a swap every 1/frameHz.
+/// Runs steps at a nominal 60 per second against a wall of `frameHz`, with a swap every 1/frameHz. Returns how many
+/// steps each frame of the last half of `seconds` found.
 std::vector<int> stepsPerFrame(double frameHz, int seconds) {
     StepClock clock(60);
     clock.start(0);
@@ -77,7 +77,7 @@ TEST(ClockOffset, BelievesTheShortestRoundTrip) {
     haptic_bridge::ClockOffset clock;
     EXPECT_EQ(clock.offsetNs(), 0);
     constexpr std::int64_t kAhead = 5'000'000;
-    clock.add(0, 900'000 + kAhead, 1'000'000);  // the way there took nine tenths
+    clock.add(0, 900'000 + kAhead, 1'000'000);  // the way to the server took nine tenths of the round trip
     EXPECT_EQ(clock.offsetNs(), kAhead + 400'000);
     clock.add(0, 50'000 + kAhead, 100'000);
     EXPECT_EQ(clock.offsetNs(), kAhead);

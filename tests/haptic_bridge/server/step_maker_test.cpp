@@ -11,7 +11,7 @@ namespace {
 
 using namespace haptic_bridge;
 
-/// A hand whose next samples the test gives.
+/// A hand whose next samples come from the test.
 class GivenHand : public HandFeed {
 public:
     void begin(const sand::Replica&) override { began = true; }
@@ -28,11 +28,11 @@ public:
     [[nodiscard]] bool onHostClock() const override { return true; }
 
     std::vector<HandSample> samples;
-    std::vector<std::uint64_t> felt;  // number of the step, at every publish
+    std::vector<std::uint64_t> felt;  // step number at every publish
     bool began = false, ended = false;
 };
 
-/// A server without thread, clock and link, and what it has put out.
+/// A server without thread, clock and link, and the messages that it has sent.
 class StepMakerTest : public testing::Test {
 protected:
     [[nodiscard]] static Start grantOf(sand::Replica sand, std::uint32_t epoch = 1) {
@@ -98,12 +98,12 @@ TEST_F(StepMakerTest, AsksForTheSandThatItLacksAndJudgesIt) {
     maker_.start(1, grantOf(master));
     ASSERT_EQ(needs_, (std::vector<NeedState>{{0, sand::Replica(scene_).stateHash()}}));
     maker_.state({1, 2, 3});
-    ASSERT_EQ(unusable_.size(), 1U) << "no state";
+    ASSERT_EQ(unusable_.size(), 1U) << "the bytes are not a state";
     maker_.start(2, grantOf(master));
     maker_.state(sand::Replica(scene_).encodeState());
-    EXPECT_EQ(unusable_.size(), 2U) << "a state, and another one";
+    EXPECT_EQ(unusable_.size(), 2U) << "the bytes are the state of another step";
     maker_.state(master.encodeState());
-    EXPECT_TRUE(ready_.empty()) << "nobody asked for it";
+    EXPECT_TRUE(ready_.empty()) << "the state was not requested";
     maker_.start(3, grantOf(master));
     maker_.state(master.encodeState());
     EXPECT_EQ(ready_, std::vector<std::uint32_t>{3});
@@ -120,7 +120,7 @@ TEST_F(StepMakerTest, CatchesUpByTheStepsThatItLacks) {
     maker_.start(1, grantOf(master));
     maker_.catchUp({false, {missed[0], missed[1]}});
     maker_.catchUp({true, {missed[3]}});
-    ASSERT_EQ(needs_.size(), 2U) << "a step is missing: all of the sand is asked for";
+    ASSERT_EQ(needs_.size(), 2U) << "a step is missing, so the whole sand is requested";
     EXPECT_EQ(needs_[1], NeedState{});
     maker_.start(2, grantOf(master));
     maker_.catchUp({true, {missed[2], missed[3]}});
@@ -132,13 +132,13 @@ TEST_F(StepMakerTest, IsAWindowAheadOfTheWallAndKeepsTheHandsSandFresh) {
     step(StepMaker::kWindow + 3);
     EXPECT_EQ(steps_.size(), StepMaker::kWindow);
     EXPECT_EQ(maker_.withheld(), 3U);
-    EXPECT_EQ(hand_.felt.size(), StepMaker::kWindow + 3) << "a hand goes on to feel a wall that waits";
+    EXPECT_EQ(hand_.felt.size(), StepMaker::kWindow + 3) << "the hand continues to feel the sand while the wall waits";
     maker_.shown({100, 16'666'667}, now_);
     step(StepMaker::kWindow + 1);
     EXPECT_EQ(steps_.size(), 2 * StepMaker::kWindow) << "a wall cannot show more than was sent";
     maker_.shown({3, 16'666'667}, now_);
     step();
-    EXPECT_EQ(steps_.size(), 2 * StepMaker::kWindow) << "or go back";
+    EXPECT_EQ(steps_.size(), 2 * StepMaker::kWindow) << "a wall cannot go back either";
 }
 
 TEST_F(StepMakerTest, PutsAnEditIntoOneStepAndForgetsItWithItsMaster) {
@@ -162,12 +162,12 @@ TEST_F(StepMakerTest, LiftsAToolThatTheMasterBeforeLeftInTheSand) {
     ASSERT_TRUE(maker_.sand().engaged());
     maker_.release();
     hand_.samples = {{now_, {20 * 256, 20 * 256, 0}, true}};
-    maker_.collect();  // nobody is linked: dropped
+    maker_.collect();  // dropped, because no master is linked
     maker_.start(2, grantOf(maker_.sand(), 2));
     hand_.samples = {{now_, {40 * 256, 40 * 256, 0}, true}};
     step(2);
     EXPECT_FALSE(steps_[1].step.engaged);
-    EXPECT_TRUE(steps_[1].step.path.empty()) << "no furrow from there to here";
+    EXPECT_TRUE(steps_[1].step.path.empty()) << "no furrow from the old place to the hand";
     EXPECT_TRUE(steps_[2].step.engaged);
     EXPECT_EQ(steps_[2].step.path, (std::vector<sand::ProbePoint>{{40 * 256, 40 * 256, 0}}));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who only watches: sees every step, moves nothing and holds nobody up.
+// A watcher sees every step, moves nothing, and does not delay the master.
 #include <filesystem>
 
 #include "tests/haptic_bridge/link/link_security_fixture.hpp"
@@ -17,7 +17,7 @@ TEST_F(LinkSecurityTest, AWatcherSeesTheStepsAndMovesNothing) {
     ASSERT_TRUE(wall.follow(master, 10));
     RawPeer watcher(server.port());
     Hello asking = hello(Role::watch);
-    asking.master.rulesDigest = 0;  // it has no sand
+    asking.master.rulesDigest = 0;  // a watcher has no sand
     watcher.send(asking);
     const auto welcome = watcher.receive();
     ASSERT_TRUE(welcome && std::holds_alternative<Welcome>(*welcome));
@@ -82,7 +82,8 @@ TEST_F(LinkSecurityTest, WhoWatchesAndDoesNotReadIsCutOff) {
     RawPeer watcher(server.port());
     watcher.send(hello(Role::watch));
     ASSERT_TRUE(watcher.receive());
-    // Loopback takes some megabytes before the server sees that nobody reads: steps of loads that fit a message.
+    // Loopback takes some megabytes before the server notices a peer that does not read. The steps load sand and still
+    // fit an ordinary message.
     const auto cutOff = [&] { return server.errors().find("does not read what is sent") != std::string::npos; };
     for (int round = 0; round < 400 && !cutOff(); ++round) {
         master.request(sand::Edit::loaded(base::Bytes(50'000, 7)));
