@@ -15,9 +15,8 @@ namespace haptic_bridge {
 
 using ByteSpan = std::span<const std::uint8_t>;
 
-/// One end of a TLS 1.3 connection, without a socket: bytes in, bytes out. Used by one thread at a time.
-///
-/// The other end's certificate is not checked, because the other end must prove a secret over binding().
+/// The session does not check the certificate of the other end, because the other end must prove a secret over
+/// binding().
 class TlsSession {
 public:
     virtual ~TlsSession() = default;

@@ -82,7 +82,7 @@ private:
     struct Sent {
         std::uint64_t steps = 0, bytes = 0;
         std::size_t lastBytes = 0;
-    } sent_;  // of steps
+    } sent_;  // counts of step messages
     RoundTrips roundTrips_;
     std::int64_t heardNs_ = 0;
 };

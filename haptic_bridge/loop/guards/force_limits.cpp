@@ -80,17 +80,18 @@ std::vector<std::string> ForceLimits::inWords(const std::string& name, double co
     const double sampled = arm.damping / (kTick / 2 + arm.delayTicks * kTick);
     const double half = std::min(arm.maxStiffness, sampled) / 2;
     const std::string why =
-        stiffness < half ? fmt::format("what its encoder's step of {:g} um lets rest", 1e6 * arm.resolution)
+        stiffness < half ? fmt::format("at which it rests despite its encoder's step of {:g} um", 1e6 * arm.resolution)
         : arm.maxStiffness <= sampled ? std::string("half of what its maker allows")
-                                      : fmt::format("half of what {:g} N s/m of damping and {} tick{} of delay bear",
+                                      : fmt::format("half of what {:g} N s/m of damping and {} tick{} of delay allow",
                                                     arm.damping, arm.delayTicks, arm.delayTicks == 1 ? "" : "s");
     const double drag = gain * law.drag * scale / 60;
     return {
-        fmt::format("{} {:g} {}: {} at {:.3g} scene units per metre is asked for {:.4g} N/m, and bears {:.3g} N/m, {}",
-                    name, constant, gain < 1 ? fmt::format("→ {:g}", rounded(gain * constant)) : "as it is", arm.name,
-                    scale, asked, stiffness, why),
+        fmt::format(
+            "{} {:g} {}: {} at {:.3g} scene units per metre; the law asks for {:.4g} N/m, the limit is {:.3g} N/m, {}",
+            name, constant, gain < 1 ? fmt::format("→ {:g}", rounded(gain * constant)) : "as it is", arm.name, scale,
+            asked, stiffness, why),
         fmt::format("friction {:g} N s/m at one radius' depth, at most {:g} N s/m and {:g} of the push; at most "
-                    "{:g} N, growing by at most {:g} N a tick",
+                    "{:g} N, growing by at most {:g} N per tick",
                     rounded(drag), rounded(damping), rounded(internalFriction), maxForce, rounded(slew))};
 }
 

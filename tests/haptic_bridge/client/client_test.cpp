@@ -132,7 +132,7 @@ TEST(Client, RefusesGarbageAndTriesAgain) {
     const Client client(server.address(), kOffer);
     ASSERT_TRUE(reaches(client, Link::refused));
     EXPECT_NE(client.link().message.find("it sent a message of"), std::string::npos) << client.link().message;
-    EXPECT_TRUE(eventually([&] { return server.guests() >= 2; })) << "it must try again";
+    EXPECT_TRUE(eventually([&] { return server.guests() >= 2; })) << "the client must try again";
 }
 
 TEST(Client, TakesPositionsFromAServerWithoutSand) {

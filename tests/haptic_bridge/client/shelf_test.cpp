@@ -30,7 +30,7 @@ TEST(Shelf, HandsStepsOverInOrderAndAtMostAsManyAsWanted) {
     }
     bool resume = true;
     EXPECT_EQ(numbersOf(shelf.drain(3, resume)), (std::vector<std::uint64_t>{1, 2, 3}));
-    EXPECT_FALSE(resume) << "it was never full";
+    EXPECT_FALSE(resume) << "the shelf was never full";
     EXPECT_EQ(numbersOf(shelf.drain(9, resume)), (std::vector<std::uint64_t>{4, 5}));
     EXPECT_EQ(shelf.counters().stepsIn, 5U);
 }

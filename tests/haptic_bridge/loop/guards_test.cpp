@@ -61,10 +61,10 @@ TEST(ForceLimits, AreHalfOfWhatTheArmBearsInWords) {
     EXPECT_NEAR(limits.gain * 1000, 18.6, 0.1);
     EXPECT_NEAR(limits.lawStiffness, limits.stiffness, 1e-9);
     const auto words = limits.inWords("k_s", 1000, law);
-    EXPECT_EQ(
-        words[0],
-        "k_s 1000 → 19: touch at 12.5 scene units per metre is asked for 6281 N/m, and bears 117 N/m, half of what "
-        "0.35 N s/m of damping and 1 tick of delay bear");
+    EXPECT_EQ(words[0],
+              "k_s 1000 → 19: touch at 12.5 scene units per metre; the law asks for 6281 N/m, the limit is 117 N/m, "
+              "half of what "
+              "0.35 N s/m of damping and 1 tick of delay allow");
     ArmPhysics stiff = touchPreset();
     stiff.damping = 5;
     EXPECT_NEAR(ForceLimits::of(stiff, test::kScale, law, 0.67).stiffness, 200, 1e-9)

@@ -72,7 +72,7 @@ radius = 0.04
 talus_deg = 34
 )";
 
-/// The real program, started and stopped by its process id. Its output goes to files in the folder.
+/// The server program, started and stopped by its process id. Its output goes to files in the folder.
 class ServerProcess {
 public:
     ServerProcess(const Folder& folder, std::vector<std::string> arguments) : folder_(folder) {
