@@ -14,7 +14,7 @@ namespace {
 constexpr std::int64_t kFrameNs = 33'000'000;
 constexpr double kHover = 3;            // [tool radius] above the surface while the button is up
 constexpr double kDepthPerNotch = 0.1;  // [tool radius]
-constexpr double kDeepest = 3;          // [tool radius], of the underside
+constexpr double kDeepest = 3;          // [tool radius], greatest depth of the underside
 
 }  // namespace
 

@@ -24,7 +24,7 @@ struct SandSketch {
 
 /// Place of the hand in the picture, and the force that it feels.
 struct SketchedHand {
-    double x = 0, y = 0;  // hand space
+    double x = 0, y = 0;  // [hand space]
     bool touches = false;
     double depth = 0.5;       // [tool radius], depth of the underside when the tool touches the sand
     sand::force::Vec3 force;  // [N], east, north, up

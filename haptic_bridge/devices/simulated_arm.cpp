@@ -83,7 +83,7 @@ void SimulatedArm::advanceTo(double time, Vec3 targetVelocity) {
     axes_[1].advance(body_, force.y, {target_.place.y, targetVelocity.y}, span);
     axes_[2].advance(body_, force.z, {target_.place.z, targetVelocity.z}, span);
     for (ArmAxis& axis : axes_) {
-        if (std::abs(axis.place) > physics_.reach) {  // an end stop takes all of the speed
+        if (std::abs(axis.place) > physics_.reach) {  // an end stop stops the arm at once
             axis = {std::copysign(physics_.reach, axis.place), 0};
         }
     }

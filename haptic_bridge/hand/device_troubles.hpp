@@ -43,7 +43,7 @@ private:
 /// answer gives one line, and one more when it answers again.
 class TroubleTeller {
 public:
-    static constexpr double kQuiet = 10;  // [s]
+    static constexpr double kQuiet = 10;  // [s] between two lines about the same trouble
     static constexpr double kOver = 1;    // [s] since the last absent reading: the device answers again
 
     explicit TroubleTeller(std::string name) : name_(std::move(name)) {}

@@ -25,10 +25,11 @@ struct HandSettings {
     std::array<std::string, 4> columns{"time", "x", "y", "z"};
     double secondsPerTick = 1;                                     // [s], unit of times that are written as numbers
     std::array<Axis, 3> axes{Axis{0, 1}, Axis{1, 1}, Axis{2, 1}};  // east, north, up
-    std::optional<double> scale;              // [scene unit per unit of the trace]; nullopt: fit 80 % of the field
-    double verticalScale = 1;                 // scale of the vertical, relative to `scale`
-    std::optional<sand::force::Vec3> origin;  // [unit of the trace], east, north, up: over the field's centre; else the
-                                              // centre of the bounding box and the median height
+    std::optional<double> scale;  // [scene unit per unit of the trace]; nullopt: fit 80 % of the field
+    double verticalScale = 1;     // scale of the vertical, relative to `scale`
+    // Place over the field's centre [unit of the trace]: east, north, up. nullopt: for a recording the centre of its
+    // bounding box and its median height, for an arm the middle of its workspace.
+    std::optional<sand::force::Vec3> origin;
     // Depth of the underside below the surface when the hand is at the origin's height [tool radius]. nullopt: 0.5 for
     // a recording, 0 for an arm.
     std::optional<double> depth;

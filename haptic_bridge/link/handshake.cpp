@@ -90,7 +90,7 @@ std::optional<Refusal> ServerHandshake::refusalFor(const Hello& hello, bool over
     }
     if (!security_.proves() && hello.proves) {
         return Refusal{RefusalCode::secret,
-                       "this server has no secret to prove; start it with --secret-file, or your side without"};
+                       "this server has no secret to prove; start it with --secret-file, or start your side without"};
     }
     if (security_.proves() && !security_.secrets.of(hello.role)) {
         return Refusal{RefusalCode::role, "this server has no secret of role " + std::string(nameOf(hello.role)) +

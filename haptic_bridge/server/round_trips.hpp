@@ -42,7 +42,7 @@ private:
     double perSecond_;
     std::minstd_rand random_;
     std::uint32_t last_ = 0;
-    std::map<std::uint32_t, Out> out_;       // by id
+    std::map<std::uint32_t, Out> out_;       // tests without their last answer, by id
     base::LiveHistogram toWall_, toMaster_;  // half of each round trip
 };
 

@@ -18,7 +18,7 @@ struct Service {
     boost::asio::io_context& io;
     Identity identity = {};
     std::uint32_t stepsPerSecond = 0;
-    std::function<Report()> report = {};               // the parts of a report that the link does not measure itself
+    std::function<Report()> report = {};               // returns the parts of a report that the link does not measure
     std::function<void(const std::string&)> log = {};  // prints one line for the user
     /// Returns the pieces of the tick track that are ready for the master's journal. With `all`, waits for the last
     /// ones. Empty if nothing is recorded.

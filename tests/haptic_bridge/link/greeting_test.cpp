@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Both halves of a greeting prove that they know the secret, without a socket.
+// Tests of the handshake: both halves prove that they know the secret, without a socket.
 #include <utility>
 
 #include "haptic_bridge/link/handshake.hpp"

@@ -87,7 +87,7 @@ struct Terrace {
     Terrace(Pace pace, double place) : east(place), server(scene, pace, std::make_unique<StandingHand>(east)) {}
 
     const scene::Scene scene = terraced();
-    std::atomic<double> east;  // of the hand
+    std::atomic<double> east;  // [hand space], x of the hand
     Server server;
 };
 constexpr double kWest = -0.6, kEast = 0.2;  // in hand space: on the terrace, and far below it
@@ -133,7 +133,7 @@ TEST(SandThread, InRealTimeTheFirstSurfaceIsTheSandWhereTheHandRests) {
     EXPECT_EQ(surface.around, (sand::ProbePoint{100 * sand::kProbePerCell, 250 * sand::kProbePerCell, 0}));
 }
 
-// docs/protocol.md promises 8.
+// The window is 8 steps (docs/protocol.md).
 TEST(SandThread, IsAtMostEightStepsAheadOfTheWall) {
     Terrace terrace(Pace::realtime, kEast);
     Server& server = terrace.server;

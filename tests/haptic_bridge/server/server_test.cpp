@@ -30,7 +30,7 @@ TEST_F(HapticServer, WritesTheSameSandTwice) {
         EXPECT_EQ(wall.outOfOrder, 0);
         // G, I and S are drawn from 0 to 1.1994 s, 1.3365 to 1.8819 s and 2.1050 to 3.1616 s: 168.1 steps of 1/60 s. A
         // step is engaged or hovering as a whole. If the hand lands within a step, its samples go into the next step.
-        // The first step of I and of S is therefore longer, and there is no step more. The first step of I has 14
+        // The first step of I and of S is therefore longer, without an additional step. The first step of I has 14
         // samples that waited and 16 of its own.
         EXPECT_EQ(wall.strokes, 3);
         EXPECT_EQ(wall.engaged, 167);
