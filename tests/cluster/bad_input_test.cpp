@@ -4,8 +4,9 @@
 
 namespace {
 
-/// What a user gets wrong: one line, no banner of mpirun around it, exit status 2. One input per program that reads it;
-/// what each program refuses is tested beside its code.
+/// A user's mistakes. Each is reported in one line, without a banner of mpirun, and with exit status 2. There is one
+/// input per program that reads it. The tests beside each program's code test the other inputs that the program
+/// refuses.
 class BadInput : public SessionTest {
 protected:
     void expectRefusal(const std::vector<std::string>& arguments, const std::string& named) {
@@ -35,7 +36,7 @@ TEST_F(BadInput, OfTheMasterIsNamed) {
                   "--inject slow:rank=9,ms=30");
 }
 
-// "SWJL" and format 5: a journal from before release 0.2.0, which no program reads.
+// "SWJL" and format 5: a journal written before release 0.2.0. No program reads such a journal.
 TEST_F(BadInput, AJournalThatNoReleaseReadsIsRefusedByTheMaster) {
     std::filesystem::create_directories(out());
     const std::string journal = write("out/session.journal", {'S', 'W', 'J', 'L', 5, 0, 0, 0, 1, 0, 0, 0});
@@ -43,7 +44,7 @@ TEST_F(BadInput, AJournalThatNoReleaseReadsIsRefusedByTheMaster) {
 }
 
 TEST_F(BadInput, AFieldThatDoesNotFitTheMemoryIsRefused) {
-    // Three replicas of it are 12 GiB, and a machine that has that for a test is asked for more.
+    // Three replicas of this field need 12 GiB. On a machine with more memory the test asks for more ranks.
     const std::int64_t free = host::freeMemory();
     if (free > std::int64_t{48} << 30) {
         GTEST_SKIP() << "this machine has more memory than the largest field takes";

@@ -31,7 +31,7 @@ TEST_F(BadLink, TheWallGoesOnOverDelayJitterStallsAndAReset) {
     EXPECT_EQ(told["server_divergences"], 0);
     EXPECT_EQ(told["haptic"]["reconnects"], 1);
     EXPECT_GT(told["haptic"]["half_round_trip_to_master_ms"]["count"], 0);
-    EXPECT_GE(told["haptic"]["half_round_trip_to_master_ms"]["p50"], 20.0) << "the delay, there and back";
+    EXPECT_GE(told["haptic"]["half_round_trip_to_master_ms"]["p50"], 20.0) << "half of the delay of both directions";
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 
 namespace {
 
-/// `sandwall ctl` on a session that runs.
+/// `sandwall ctl` on a running session.
 class Operator : public SessionTest {
 protected:
     void begin(const std::string& device, const std::string& stereo = "passive",
@@ -29,8 +29,9 @@ protected:
             expectHand(*session_);
         }
     }
-    /// The words are in tests beside the code: tests/master/operator/control_test.cpp, tests/scene/material_test.cpp
-    /// and tests/walls/stereo_change_test.cpp. `named` is a value.
+    /// The session must refuse the command `words`, with `named`, a value, in the error. The full error messages are
+    /// tested beside the code, in tests/master/operator/control_test.cpp, tests/scene/material_test.cpp and
+    /// tests/walls/stereo_change_test.cpp.
     void expectRefusal(const std::string& words, const std::string& named = "") {
         const nlohmann::json answered = answer(words);
         ASSERT_TRUE(answered.is_object()) << words;
@@ -39,13 +40,13 @@ protected:
         EXPECT_FALSE(error.empty()) << words;
         EXPECT_NE(error.find(named), std::string::npos) << words << ": " << error;
     }
-    /// The same through `sandwall ctl`: status 2 and one line.
+    /// `sandwall ctl` must refuse the command `words` with status 2 and one line that contains `named`.
     void expectCtlRefusal(const std::string& words, const std::string& named) const {
         const support::Ran ran =
             support::runCommand(SANDWALL_SOURCE_DIR "/scripts/sandwall ctl " + out() + " " + words);
         expectOneLine({ran.status, ran.output}, named);
     }
-    /// Stops it, and replays what it did.
+    /// Stops the session and replays its journal.
     void endAndReplay(int edits) {
         ask("stop");
         EXPECT_EQ(session_->wait(kLong), 0) << session_->output();
@@ -72,7 +73,7 @@ protected:
         close(peer);
         return credentials.pid;
     }
-    /// No file of the master may grow beyond this: as if the disk were full.
+    /// Limits the size of every file that the master writes. The master then meets the errors of a full disk.
     void limitFiles(rlim_t bytes) const {
         rlimit limit{};
         ASSERT_EQ(prlimit(master(), RLIMIT_FSIZE, nullptr, &limit), 0);
@@ -89,8 +90,8 @@ protected:
     std::unique_ptr<support::ChildProcess> session_;
 };
 
-/// The step after which the sand was as an undo at this step leaves it: the one before the last stroke, or an edit in
-/// its midst.
+/// Returns the step to whose sand the undo at step `undo` returns. It is the step before the last stroke, or the last
+/// reset or load within that stroke.
 std::uint64_t keptBefore(const master::Journal& journal, std::uint64_t undo) {
     std::uint64_t kept = 0;
     bool engaged = false;
@@ -108,7 +109,7 @@ std::uint64_t keptBefore(const master::Journal& journal, std::uint64_t undo) {
     return kept;
 }
 
-/// Strokes of a tenth of a second that go on for longer than any test, however slow the machine is.
+/// Returns strokes of a tenth of a second each. Together they last longer than any test, even on a slow machine.
 std::string shortStrokes() {
     std::string text = "speed 2\ntravel 4\n";
     for (int i = 0; i < 2000; ++i) {
@@ -117,13 +118,15 @@ std::string shortStrokes() {
     return text;
 }
 
-// Every verb that changes sand, with a hand in it, on a whole wall; then the same again from the journal alone.
+// Uses every command that changes sand, on a whole wall, while a hand digs. Then replays the session from its journal
+// alone.
 TEST_F(Operator, ChangesToolMaterialAndSandOfTwelveRanksAndAReplayEndsInTheSameHash) {
     beginOn(wall(3, 4, "anaglyph"), "script:" + write("short.strokes", shortStrokes()));
     const auto canUndo = [](const nlohmann::json& now) { return now.value("can_undo", false); };
     EXPECT_EQ(awaitStatus(canUndo)["ranks"], 12);
     ask("undo");
-    awaitStatus(canUndo);  // in or after a later stroke: what a second undo keeps is more than the scene
+    awaitStatus(
+        canUndo);  // in or after a later stroke: the second undo returns to dug sand, and not to the scene's start
     EXPECT_EQ(ask("save dug-1")["file"], "saves/dug-1.sand");
     const std::uint64_t undone = ask("undo")["step"];
     ask("tool footprint radius=0.08 heading=60");
@@ -147,7 +150,8 @@ TEST_F(Operator, ChangesToolMaterialAndSandOfTwelveRanksAndAReplayEndsInTheSameH
     endAndReplay(9);
     const std::uint64_t kept = keptBefore(master::readJournal(out() + "/session.journal"), undone);
     ASSERT_GT(kept, 0U);
-    EXPECT_EQ(heightsAfter(undone), heightsAfter(kept)) << "undone by step " << undone << ", kept after " << kept;
+    EXPECT_EQ(heightsAfter(undone), heightsAfter(kept))
+        << "undone by step " << undone << ", as it was after step " << kept;
 
     support::ChildProcess film(
         {"/usr/bin/env", "-u", "DISPLAY", support::launcher(), "film", out() + "/session.journal", "--wall",
@@ -168,7 +172,7 @@ TEST_F(Operator, ChangesWhatIsShownAndTakesPictures) {
     EXPECT_EQ(ask("status")["stereo"], "mono");
     ask("capture");
     EXPECT_FALSE(picture(2, "wall.png").empty());
-    EXPECT_TRUE(picture(2, "wall_left.png").empty()) << "one eye";
+    EXPECT_TRUE(picture(2, "wall_left.png").empty()) << "mono has only one eye";
     ask("stereo anaglyph");
     EXPECT_EQ(ask("status")["pattern"], "none");
     ask("pattern grid");
@@ -179,13 +183,13 @@ TEST_F(Operator, ChangesWhatIsShownAndTakesPictures) {
     ask("capture");
     for (const char* name : {"wall_left.png", "wall_right.png", "tile_r1c1_output.png", "tile_r1c2_output.png"}) {
         EXPECT_FALSE(picture(1, name).empty()) << name;
-        EXPECT_EQ(picture(1, name), picture(3, name)) << name << ": as before";
+        EXPECT_EQ(picture(1, name), picture(3, name)) << name << " differs from the first capture";
     }
     EXPECT_NE(picture(1, "wall_left.png"), picture(1, "wall_right.png"));
     ask("eye-separation 0");
     awaitStatus([](const nlohmann::json& now) { return now.value("eye_separation", -1.0) == 0; });
     ask("capture");
-    EXPECT_TRUE(picture(4, "wall_left.png") == picture(4, "wall_right.png")) << "eyes in one place";
+    EXPECT_TRUE(picture(4, "wall_left.png") == picture(4, "wall_right.png")) << "both eyes are in one place";
     expectRefusal("stereo passive", "r1c1");
     expectRefusal("stereo side_by_side", "192x72");
     EXPECT_EQ(ask("status")["stereo"], "anaglyph");
@@ -209,10 +213,11 @@ TEST_F(Operator, WithBestEffortAFolderThatFillsUpEndsTheJournalAndNotTheSession)
     EXPECT_EQ(session_->wait(kLong), 0) << session_->output();
     EXPECT_EQ(summary()["divergences"], 0);
     const support::Ran replayed = support::runProgram("sandwall-replay", out() + "/session.journal");
-    EXPECT_EQ(replayed.status, 0) << "what is there is whole";
+    EXPECT_EQ(replayed.status, 0) << "the written part of the journal is damaged";
 }
 
-// Less than the journal reserves at a time, so that the sand stands with the next frame.
+// The disk is smaller than the 1 MiB that the journal usually reserves at a time. So the sand stops with the next frame
+// after the disk is full.
 TEST_F(Operator, IsToldAtOnceThatTheSandStandsForWantOfRoomAndNothingIsDoneLater) {
     std::filesystem::create_directory(out());
     const int status = support::onSmallDisk(out(), "size=700k", [this] {
@@ -232,17 +237,17 @@ TEST_F(Operator, IsToldAtOnceThatTheSandStandsForWantOfRoomAndNothingIsDoneLater
         const nlohmann::json then = awaitStatus(journalIs("written"));
         EXPECT_EQ(then["edits_waiting"], 0);
         const auto goesOn = [&](const nlohmann::json& now) { return now.value("step", 0) > then.value("step", 0) + 5; };
-        EXPECT_EQ(awaitStatus(goesOn)["edits"], 1) << "what was refused is not done";
+        EXPECT_EQ(awaitStatus(goesOn)["edits"], 1) << "a refused edit was made later";
         EXPECT_GT(ask("settle")["step"], 0);
         endAndReplay(2);
     });
     if (status == 77) {
-        GTEST_SKIP() << "this machine lets nobody mount a small disk";
+        GTEST_SKIP() << "this machine does not allow a test to mount a small disk";
     }
     EXPECT_EQ(status, 0);
 }
 
-// The hand is waited for, not thrown away: the server is the same, and its sand the wall's.
+// The paused session keeps its link: after it resumes, the server and its sand are the same.
 TEST_F(Operator, PausesAHandAndTakesItUpAgain) {
     begin("script:gis");
     awaitStatus([](const nlohmann::json& now) { return now.value("step", 0) > 10; });
@@ -251,7 +256,7 @@ TEST_F(Operator, PausesAHandAndTakesItUpAgain) {
     EXPECT_TRUE(paused["paused"]);
     const auto later =
         awaitStatus([&](const nlohmann::json& now) { return now.value("frame", 0) > paused.value("frame", 0) + 60; });
-    EXPECT_EQ(later["step"], paused["step"]) << "frames go on, steps do not";
+    EXPECT_EQ(later["step"], paused["step"]) << "frames continue while the steps are paused";
     EXPECT_EQ(later["state_hash"], paused["state_hash"]);
     EXPECT_EQ(ask("settle")["waits_for"], "resume");
     EXPECT_EQ(ask("status")["edits_waiting"], 1);

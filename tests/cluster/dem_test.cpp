@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Real ground, as a TIN, through a whole session and home again.
+// A terrain in a map projection as a TIN: imported, shown in a session, and exported again.
 #include <cmath>
 
 #include "scene/import/importer.hpp"
@@ -10,7 +10,7 @@ namespace {
 
 class Dem : public SessionTest {
 protected:
-    /// Hills of 24 m on cells of 10 m, somewhere in UTM zone 33.
+    /// Returns hills of 24 m on cells of 10 m, at a place in UTM zone 33.
     [[nodiscard]] static scene::EsriGrid hills() {
         scene::EsriGrid grid;
         grid.columns = 96;
@@ -71,7 +71,7 @@ TEST_F(Dem, AsATinOverOneAndFourRanksIsOneAndGoesHome) {
     const std::string rows = read("ticks.csv"), same = read("again.csv");
     EXPECT_GT(std::count(same.begin(), same.end(), '\n'), 1000);
     EXPECT_NE(same.find(",1\n"), std::string::npos) << "the hand never touched the sand";
-    EXPECT_TRUE(same == rows.substr(0, same.size())) << "forces are others when the journal is replayed";
+    EXPECT_TRUE(same == rows.substr(0, same.size())) << "the replay of the journal computes other forces";
 
     const scene::EsriGrid before = importer.readDem(file, {}), after = importer.readDem(home, {});
     EXPECT_EQ(after.units, before.units);
@@ -81,12 +81,12 @@ TEST_F(Dem, AsATinOverOneAndFourRanksIsOneAndGoesHome) {
     ASSERT_EQ(after.heights.size(), before.heights.size());
     int moved = 0;
     for (std::size_t i = 0; i < before.heights.size(); ++i) {
-        // A TIN that follows the hills to half a metre; where nobody was it still does.
+        // The TIN follows the hills to half a metre, also after the session at places that the hand has not touched.
         moved += std::abs(after.heights[i] - before.heights[i]) > 1 ? 1 : 0;
     }
     EXPECT_GT(moved, 100);
     EXPECT_LT(moved, 96 * 64 / 2);
-    EXPECT_NEAR(after.at(95, 63), before.at(95, 63), 0.51) << "a corner that the hand never came to";
+    EXPECT_NEAR(after.at(95, 63), before.at(95, 63), 0.51) << "a corner that the hand never touched";
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hands other than the built-in ones, over whole sessions.
+// Sessions with hands other than the built-in ones.
 #include <filesystem>
 #include <regex>
 
@@ -16,7 +16,7 @@ TEST_F(Devices, ASenderOfPositionsAloneMovesTheSandOfEveryRank) {
         {"/usr/bin/env", "python3", (SANDWALL_SOURCE_DIR "/haptic_bridge/examples/position_sender.py"), "--listen",
          "127.0.0.1:0"},
         folder_ / "sender.txt");
-    // The example prints where it listens in a line of its own.
+    // The example prints its address on a line of its own.
     std::smatch address;
     std::string said;
     ASSERT_TRUE(sender.waitUntil([&] {
@@ -39,7 +39,7 @@ TEST_F(Devices, ASenderOfPositionsAloneMovesTheSandOfEveryRank) {
     for (const double height : grid.heights) {
         lowest = std::min(lowest, height);
     }
-    EXPECT_LT(lowest, 0.199) << "a furrow";
+    EXPECT_LT(lowest, 0.199) << "the hand left no furrow";
 }
 
 TEST_F(Devices, ForcesAreRecomputedFromTheJournal) {
@@ -52,11 +52,11 @@ TEST_F(Devices, ForcesAreRecomputedFromTheJournal) {
             support::runProgram("sandwall-replay", out() + "/session.journal --forces " + again);
         EXPECT_EQ(replayed.status, 0) << replayed.output;
         const std::string rows = read("ticks.csv"), same = read("again.csv");
-        // What was felt of steps that the wall did not come to show stands in the record alone.
+        // The recording may also have later ticks, of steps that the wall never showed. The journal lacks these ticks.
         ASSERT_LE(same.size(), rows.size());
         EXPECT_TRUE(same == rows.substr(0, same.size())) << pace << ": the rows differ";
         const auto count = std::count(same.begin(), same.end(), '\n');
-        EXPECT_GT(count, pace == "fast" ? 90 * 1000 / 60 : 500) << "of a second and a half";
+        EXPECT_GT(count, pace == "fast" ? 90 * 1000 / 60 : 500) << "too few ticks for 1.5 s";
         EXPECT_NE(same.find(",1\n"), std::string::npos) << "the hand never touched the sand";
     }
 }

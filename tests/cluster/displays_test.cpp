@@ -8,21 +8,21 @@
 
 namespace {
 
-/// Sessions that draw in memory, on EGL, and in windows on an X server of the test's own.
+/// Sessions that draw in memory, with EGL, and in windows on an X server that the test starts.
 class Displays : public SessionTest {
 protected:
     void SetUp() override {
         server_ = std::make_unique<support::XServer>(folder_, std::vector<std::string>{"640x480x24"});
         environment_ = {"DISPLAY=" + server_->display()};
     }
-    /// Two tiles side by side on the screen, each in its window.
+    /// Returns a wall file of two tiles side by side on the screen, each in its own window.
     std::string placedWall(const std::string& stereo = "mono") {
         std::string file = wall(1, 2, stereo);
         std::ofstream(file, std::ios::app) << "[[place]]\ntiles = [\"r1c1\"]\nwindows = [[10, 20]]\n"
                                               "[[place]]\ntiles = [\"r1c2\"]\nwindows = [[200, 20]]\n";
         return file;
     }
-    /// A session that shows still sand until it is told to stop, once its windows show it.
+    /// Starts a session that shows still sand until it is stopped. Returns it when its windows show the sand.
     std::unique_ptr<support::ChildProcess> showStillSand() {
         auto session = start({"--wall", placedWall(), "--scene", scene(), "--out", out()});
         EXPECT_FALSE(session->waitForEvent("progress", [](const auto& event) { return event["frame"] > 1; }).is_null())
@@ -30,7 +30,7 @@ protected:
         return session;
     }
     void expectNothingLeft(const std::vector<pid_t>& family) {
-        EXPECT_TRUE(support::waitUntilGone(family, kLong).empty()) << "processes left running";
+        EXPECT_TRUE(support::waitUntilGone(family, kLong).empty()) << "processes are still running";
     }
     [[nodiscard]] pictures::Image tile(const std::string& name, const std::string& capture = "") const {
         return pictures::readPng(folder_ / "out" / capture / ("tile_" + name + ".png"));
@@ -58,7 +58,8 @@ TEST_F(Displays, EveryBackendShowsTheSameSandAndTheSamePictures) {
                 << backend << " " << names[i];
         }
     }
-    EXPECT_GT(pictures::compare(expected[0], expected[1], kLevels).badShare, kMostBad) << "eyes told apart";
+    EXPECT_GT(pictures::compare(expected[0], expected[1], kLevels).badShare, kMostBad)
+        << "both eyes see the same picture";
 }
 
 TEST_F(Displays, TilesAreSeenWhereTheWallFileSaysAndKeysAreObeyedInAnyWindow) {
@@ -73,9 +74,9 @@ TEST_F(Displays, TilesAreSeenWhereTheWallFileSaysAndKeysAreObeyedInAnyWindow) {
         right = screen.picture(200, 20, 96, 72);
         screen.type(windows[1], 't');
         EXPECT_TRUE(session->waitUntil([&] { return screen.picture(10, 20, 96, 72).rgb != left.rgb; }))
-            << "the other tile goes on showing sand";
+            << "the other tile still shows sand";
         session->type("pattern none");
-        EXPECT_TRUE(screen.comesToShow(left, 10, 20)) << "the sand comes back";
+        EXPECT_TRUE(screen.comesToShow(left, 10, 20)) << "the sand does not come back";
         screen.type(windows[0], 27);
     }
     EXPECT_EQ(session->wait(kLong), 0) << session->output();
@@ -84,7 +85,8 @@ TEST_F(Displays, TilesAreSeenWhereTheWallFileSaysAndKeysAreObeyedInAnyWindow) {
     EXPECT_FALSE(left.rgb == right.rgb);
 }
 
-// Two outputs in one wall that each pack both eyes, and then every mode that outputs of their size can change to.
+// Two outputs of one wall that each pack both eyes. The test changes them to every mode that outputs of their size can
+// show.
 TEST_F(Displays, TwoWindowsShowEachEyeItsPictureInEveryModeOfTheirSize) {
     const auto session = start({"--wall", placedWall("anaglyph"), "--scene", scene(), "--out", out(), "--no-pictures"});
     ASSERT_FALSE(session->waitForEvent("progress", [](const auto& event) { return event["frame"] > 1; }).is_null())
@@ -96,7 +98,7 @@ TEST_F(Displays, TwoWindowsShowEachEyeItsPictureInEveryModeOfTheirSize) {
             ask("stereo " + mode);
             const std::string folder = ask("capture").value("folder", "");
             const walls::Stereo stereo = walls::stereoNamed(mode);
-            std::vector<pictures::Image> first;  // of what each window shows
+            std::vector<pictures::Image> first;  // picture of each window
             for (const auto& [name, x] : {std::pair<std::string, int>{"r1c1", 10}, {"r1c2", 200}}) {
                 std::vector<pictures::Image> shown;
                 for (const walls::Eye eye : walls::eyesOf(stereo)) {
@@ -107,7 +109,7 @@ TEST_F(Displays, TwoWindowsShowEachEyeItsPictureInEveryModeOfTheirSize) {
                     shown = {pictures::packStereo(stereo, shown[0], shown[1])};
                     EXPECT_EQ(tile(name + "_output", folder).rgb, shown[0].rgb) << name << " in " << mode;
                 }
-                for (const pictures::Image& picture : shown) {  // two where the eyes are shown in turn
+                for (const pictures::Image& picture : shown) {  // two pictures if the eyes are shown in turn
                     EXPECT_TRUE(screen.comesToShow(picture, x, 20)) << "the window of " << name << " in " << mode;
                 }
                 first.push_back(shown[0]);
@@ -141,8 +143,9 @@ TEST_F(Displays, AnXServerThatGoesIsNamedAndTheJobEnds) {
     expectNothingLeft(family);
 }
 
-/// What a display lacks: one line with rank, host and cause, status 2, before the first frame. One session for a
-/// display and one for a shader; monitors, devices and a missing DISPLAY are tested in tests/window.
+/// Faults of a display. Each is reported before the first frame, in one line with rank, host and cause, and with exit
+/// status 2. One session tests a display and one a shader. Monitors, devices and a missing DISPLAY are tested in
+/// tests/window.
 class NoDisplay : public Displays {
 protected:
     void expectNamed(const std::string& more, const std::vector<std::string>& arguments, const std::string& named) {

@@ -5,22 +5,22 @@
 
 namespace {
 
-/// Faults on purpose, and what an operator sees of them.
+/// Injected faults, and the reports that an operator gets of them.
 class Drill : public SessionTest {
 protected:
-    /// A session without a hand, with one fault; it would run for an hour.
+    /// Starts a session without a hand, with one injected fault. It would run for an hour.
     std::unique_ptr<support::ChildProcess> drill(const std::string& wallFile, const std::string& fault) {
         return start({"--wall", wallFile, "--scene", scene(), "--steps", "200000", "--out", out(), "--no-pictures",
                       "--frame-timeout", "2", "--inject", fault});
     }
     void expectNothingLeft(const std::vector<pid_t>& family) {
-        EXPECT_TRUE(support::waitUntilGone(family, kLong).empty()) << "processes left running";
+        EXPECT_TRUE(support::waitUntilGone(family, kLong).empty()) << "processes are still running";
     }
     [[nodiscard]] nlohmann::json failure() const { return json("out/failure.json"); }
 };
 
 TEST_F(Drill, AHungRankIsNamedAndTheJobEnds) {
-    // Of four ranks: also those that wait for the hung one know that they are not it.
+    // There are four render ranks. The ranks that wait for the hung one know that they do not hang themselves.
     const auto session = drill(wall(2, 2, "mono"), "hang:rank=2,frame=30");
     const nlohmann::json waiting =
         session->waitForEvent("waiting", {{"frame", 30}, {"ranks", {2}}, {"ends_job", false}});
@@ -31,7 +31,7 @@ TEST_F(Drill, AHungRankIsNamedAndTheJobEnds) {
     expectNothingLeft(family);
     std::vector<nlohmann::json> endings = session->events("waiting");
     std::erase_if(endings, [](const nlohmann::json& event) { return !event["ends_job"]; });
-    ASSERT_EQ(endings.size(), 1U) << "one process speaks for all\n" << session->output();
+    ASSERT_EQ(endings.size(), 1U) << "more than one process reported the end of the job\n" << session->output();
     EXPECT_TRUE(support::holds(endings[0], {{"by", 0}, {"frame", 30}, {"ranks", {2}}, {"limit", 2}})) << endings[0];
     EXPECT_GE(endings[0]["seconds"], 2);
     EXPECT_TRUE(support::holds(failure(), {{"what", "hung"}, {"rank", 2}, {"tile", "r1c2"}, {"host", host()}}))
@@ -47,11 +47,11 @@ TEST_F(Drill, ADeadRankEndsTheJobAndIsKeptFromDyingAgain) {
     expectNothingLeft(family);
     EXPECT_FALSE(session->waitForEvent("drill", {{"frame", 30}, {"fault", fault}}).is_null()) << session->output();
     EXPECT_EQ(read("out/drills.done"), fault + "\n");
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "out/failure.json")) << "nobody was given up";
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out/failure.json")) << "the session gave up a rank";
 }
 
-// In frame 30 the noise has an arrival's length, in 31 another, and in 32 one for which there is no room. Each of the
-// three is sent and refused in tests/lockstep/barrier_test.cpp.
+// In frame 30 the noise has the length of an arrival, in frame 31 another length. In frame 32 it is too long for the
+// master's buffer. tests/lockstep/barrier_test.cpp sends each of the three and expects that it is refused.
 TEST_F(Drill, ARankThatSendsGarbageIsNamedAndGivenUp) {
     const auto session = drill(wall(1, 2, "mono"), "garbage:rank=2,frame=32");
     EXPECT_EQ(session->wait(kLong), 1) << session->output();
@@ -59,7 +59,7 @@ TEST_F(Drill, ARankThatSendsGarbageIsNamedAndGivenUp) {
         << session->output();
     EXPECT_TRUE(support::holds(failure(), {{"what", "broken"}, {"rank", 2}, {"tile", "r1c2"}, {"host", host()}}))
         << failure();
-    EXPECT_EQ(summary()["frames"], 32) << "an orderly end";
+    EXPECT_EQ(summary()["frames"], 32) << "the session did not end in order";
 }
 
 TEST_F(Drill, ARankThatIsSilentForAWhileIsNamedAndWaitedFor) {

@@ -6,21 +6,21 @@
 
 namespace {
 
-/// How sessions end, wanted or not: nothing hangs, nothing is left running.
+/// Intended and unintended ends of sessions. Each session must end, and no process may be left running.
 class Ending : public SessionTest {
 protected:
-    /// A session that would run for minutes, with a hand in its sand.
+    /// Starts a session that would run for minutes, with a hand in its sand.
     std::unique_ptr<support::ChildProcess> runningSession() {
         auto session = start({"--wall", wall(2, 2), "--scene", scene(), "--device", "script:gis", "--steps", "100000",
                               "--out", out(), "--frame-timeout", "3"});
         expectFrames(*session);
         expectHand(*session);
         family_ = session->family();
-        EXPECT_GE(family_.size(), 8U) << "launcher, server, mpirun, master and four ranks";
+        EXPECT_GE(family_.size(), 8U) << "expected launcher, server, mpirun, master and four ranks";
         return session;
     }
     void expectNothingLeft() {
-        EXPECT_TRUE(support::waitUntilGone(family_, kLong).empty()) << "processes left running";
+        EXPECT_TRUE(support::waitUntilGone(family_, kLong).empty()) << "processes are still running";
     }
     std::vector<pid_t> family_;
 };
@@ -39,7 +39,7 @@ TEST_F(Ending, AKilledLauncherEndsTheSessionInOrder) {
     const auto session = runningSession();
     session->signal(SIGKILL);
     expectNothingLeft();
-    EXPECT_EQ(summary()["divergences"], 0) << "the master saw its input end and finished its work";
+    EXPECT_EQ(summary()["divergences"], 0) << "the master must end in order when its input ends";
 }
 
 TEST_F(Ending, AKilledMpirunLeavesNothingRunning) {
@@ -48,7 +48,7 @@ TEST_F(Ending, AKilledMpirunLeavesNothingRunning) {
     EXPECT_NE(session->wait(kLong).value_or(0), 0) << session->output();
     expectNothingLeft();
     const support::Ran replayed = support::runProgram("sandwall-replay", out() + "/session.journal --hash");
-    EXPECT_EQ(replayed.status, 0) << "what was on disk is whole: " << replayed.output;
+    EXPECT_EQ(replayed.status, 0) << "the part of the journal on disk is damaged: " << replayed.output;
 }
 
 TEST_F(Ending, AStoppedMasterIsNamedAndTheJobEnds) {
@@ -57,7 +57,7 @@ TEST_F(Ending, AStoppedMasterIsNamedAndTheJobEnds) {
     EXPECT_NE(session->wait(kLong).value_or(0), 0) << session->output();
     std::vector<nlohmann::json> endings = session->events("waiting");
     std::erase_if(endings, [](const nlohmann::json& event) { return !event["ends_job"]; });
-    ASSERT_EQ(endings.size(), 1U) << "one rank speaks for all\n" << session->output();
+    ASSERT_EQ(endings.size(), 1U) << "more than one rank reported the end of the job\n" << session->output();
     EXPECT_TRUE(support::holds(endings[0], {{"by", 1}, {"ranks", {0}}, {"limit", 3}})) << endings[0];
     EXPECT_GE(endings[0]["seconds"], 3);
     expectNothingLeft();

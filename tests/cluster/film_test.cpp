@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kSteps = 91;  // odd, so that the last frame of a film at half the rate shows one step instead of two
 
-/// Films of the journal of one session on a wall of two passive tiles, which all tests share.
+/// Films of the journal of one session, which all tests share. Its wall has two passive tiles.
 class Film : public SessionTest {
 protected:
     static void TearDownTestSuite() {
@@ -53,7 +53,7 @@ protected:
         EXPECT_TRUE(status.has_value()) << process.output();
         return {status.value_or(-1), process.output()};
     }
-    /// A copy of the journal, which a test may damage.
+    /// Returns the path of a copy of the journal, which the test may damage.
     [[nodiscard]] std::filesystem::path journalCopy() const {
         std::filesystem::copy_file(recorded_ / "session.journal", folder_ / "session.journal");
         return folder_ / "session.journal";
@@ -73,7 +73,8 @@ protected:
         return count;
     }
     [[nodiscard]] static pictures::Image live(const std::string& name) { return pictures::readPng(recorded_ / name); }
-    /// The last picture of a film and that of the wall are equal to the byte, and neither is of one colour.
+    /// The last picture of a film must equal the picture `expected` of the wall in every byte. The picture must have
+    /// more than one colour.
     void expectLast(int number, const pictures::Image& expected, const std::string& what) const {
         const pictures::Image shown = pictures::readPng(frame(number));
         ASSERT_EQ(shown.width, expected.width) << what;
@@ -115,12 +116,12 @@ TEST_F(Film, EndsInTheSessionsSandAndItsPicture) {
     }
 }
 
-// Where a longer film was before, in a folder that has files of the user's, too.
+// The folder already has a longer film and a file of the user.
 TEST_F(Film, ShowsASessionOnAnyOtherWallAtAnyRate) {
     std::filesystem::create_directories(folder_ / "film");
     write("film/frame_000012.png", "of a film before");
     write("film/frame_mine.png", "of the user");
-    // The picture that a session leaves on the other wall is that of a film of it.
+    // A session on the other wall must end with the same picture as the film on that wall.
     const std::string other = wall(1, 1, "side_by_side");
     const Ended ended = film(other, {"--fps", "7"});
     ASSERT_EQ(ended.status, 0) << ended.output;
@@ -128,7 +129,7 @@ TEST_F(Film, ShowsASessionOnAnyOtherWallAtAnyRate) {
     EXPECT_EQ(filmSummary()["state_hash"], hashOfSession());
     EXPECT_TRUE(std::filesystem::exists(folder_ / "film" / "frame_mine.png"));
     record(other, out());
-    ASSERT_EQ(summary()["state_hash"], hashOfSession()) << "a script moves the same hand in every fast session";
+    ASSERT_EQ(summary()["state_hash"], hashOfSession()) << "the same script led to other sand in a second fast session";
     expectLast(11, pictures::readPng(folder_ / "out" / "tile_r1c1_output.png"), "one tile's output");
 }
 
@@ -139,11 +140,11 @@ TEST_F(Film, ATruncatedJournalIsShownToItsLastWholeRecord) {
     EXPECT_EQ(ended.status, 0) << ended.output;
     const int steps = filmSummary()["steps"];
     EXPECT_LT(steps, kSteps);
-    EXPECT_GE(steps, kSteps - 4);  // a record of a fast session holds at most four
+    EXPECT_GE(steps, kSteps - 4);  // a record of a fast session holds at most four steps
     EXPECT_EQ(frames(), (steps + 9) / 10);
 }
 
-// One film that cannot be; what a film refuses is tested in tests/master/film_test.cpp and tests/scripts/film_test.py.
+// One journal that cannot be filmed. tests/master/film_test.cpp and tests/scripts/film_test.py test the other refusals.
 TEST_F(Film, RefusesADamagedJournalInOneLine) {
     const std::filesystem::path journal = journalCopy();
     const auto middle = static_cast<std::streamoff>(std::filesystem::file_size(journal) * 3 / 4);

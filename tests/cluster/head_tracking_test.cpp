@@ -3,7 +3,7 @@
 #include "tests/cluster/session_fixture.hpp"
 #include "tests/support/run_program.hpp"
 
-// Pictures are compared by EXPECT_TRUE, because EXPECT_EQ would print them as text.
+// Pictures are compared with EXPECT_TRUE, because EXPECT_EQ would print them as text.
 namespace {
 
 class HeadTracking : public SessionTest {
@@ -21,7 +21,7 @@ protected:
     }
 };
 
-// What a tracked head sees is what a viewer sees who stands there.
+// A tracked head must see the same picture as a viewer whose place in the wall file is the same.
 TEST_F(HeadTracking, ATracedHeadSeesWhatAViewerSeesWhoStandsThere) {
     const std::string there = wall(1, 2);
     show({}, there);
@@ -42,7 +42,7 @@ TEST_F(HeadTracking, AHeadTurnedToItsSideSeesWithOneEyeAboveTheOther) {
     const std::string trace = write("head.csv", "time,x,y,z,yaw,pitch,roll\n0,0,1.6,3,0,0,90\n");
     show({"--track", "trace:" + trace}, wall(1, 1));
     const std::string tracked = firstTile("right");
-    // Rolled to the left by a right angle, the right eye is above.
+    // When the head is rolled to the left by a right angle, the right eye is above.
     std::string text = read("wall.toml");
     text.replace(text.find("[stereo]"), 0, "right = [0.0, 1.0, 0.0]\n");
     show({}, write("rolled.toml", text));
@@ -50,7 +50,7 @@ TEST_F(HeadTracking, AHeadTurnedToItsSideSeesWithOneEyeAboveTheOther) {
     EXPECT_FALSE(firstTile("left") == tracked);
 }
 
-// With --pace fast a wall counts its time in frames, so that the time of its 30th frame shows the rate it runs at.
+// With --pace fast a wall counts time in frames. So the time of its 30th frame shows its frame rate.
 TEST_F(HeadTracking, AWallOf120HertzShowsTheEyesInTurnInTheHeadsOwnTime) {
     const std::string trace =
         write("head.csv", "time,x,y,z\n0,0,1.6,3\n0.24,0.4,1.5,2.5\n0.26,0.4,1.5,2.5\n0.49,-0.4,1.7,2.8\n");
@@ -62,7 +62,7 @@ TEST_F(HeadTracking, AWallOf120HertzShowsTheEyesInTurnInTheHeadsOwnTime) {
         show({"--track", track}, write("other.toml", other));
         return firstTile("left") + firstTile("right");
     };
-    // Frame 30 of 120 in a second is at 0.25 s, and of 60 at 0.5 s.
+    // Frame 30 is at 0.25 s at a rate of 120 Hz, and at 0.5 s at 60 Hz.
     const std::string fast = seen("refresh = 120\n", "trace:" + trace, "[0.0, 1.6, 3.0]");
     EXPECT_TRUE(fast == seen("", "none", "[0.4, 1.5, 2.5]"));
     const std::string usual = seen("", "trace:" + trace, "[0.0, 1.6, 3.0]");

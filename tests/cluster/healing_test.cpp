@@ -5,11 +5,11 @@
 
 namespace {
 
-/// Ranks whose memory goes wrong while the wall runs.
+/// Ranks whose memory is corrupted while the wall runs.
 class Healing : public SessionTest {
 protected:
-    /// A fast session of 75 frames or more, with faults. A flip lies idle until its hash tile is read again from
-    /// memory, 16 frames at most: two that lie further apart are found one by one.
+    /// Runs a fast session of at least 75 frames with injected faults. A flipped bit stays undetected until the audit
+    /// reads its hash tile again, after at most 16 frames. Two flips that are further apart are found one by one.
     Ended dig(const std::string& wallFile, const std::vector<std::string>& faults, const std::string& folder) {
         std::vector<std::string> arguments{"--wall",   wallFile,     "--scene", scene(),
                                            "--device", "script:gis", "--pace",  "fast",
@@ -19,7 +19,7 @@ protected:
         }
         return runToEnd(arguments);
     }
-    /// The hash that the command of the session's last `divergence` event computes.
+    /// Runs the command in the session's last `divergence` event and returns the hash that it prints.
     std::string reproduced(const Ended& ended) {
         const std::vector<nlohmann::json> divergences = support::eventsIn(ended.output, "divergence");
         EXPECT_FALSE(divergences.empty()) << ended.output;
@@ -44,20 +44,21 @@ protected:
                 EXPECT_TRUE(in(one) == in(other)) << name;
             }
         }
-        EXPECT_EQ(pictures, 7) << "two eyes of two tiles, of the wall, and for red-cyan glasses";
+        EXPECT_EQ(pictures, 7) << "expected two eyes of two tiles, two of the wall, and a red-cyan picture";
     }
 };
 
 TEST_F(Healing, LeavesNoTraceInPicturesAndSand) {
     const std::string wallFile = wall(1, 2);
     ASSERT_EQ(dig(wallFile, {}, "undisturbed").status, 0);
-    // A render rank early on, the master, and the render rank again with a cell that is dug by then.
+    // The faults are in a render rank early on, in the master, and in the same render rank again. The last fault is in
+    // a cell that is dug by then.
     const Ended ended = dig(wallFile,
                             {"diverge:rank=2,frame=2,column=5,row=120", "diverge:rank=0,frame=22",
                              "diverge:rank=2,frame=42,column=64,row=64"},
                             "out");
     ASSERT_EQ(ended.status, 0) << ended.output;
-    // Rank 2 alone is wrong in one cell of the hash tile in the north-west; two of three ranks agree.
+    // Only rank 2 is wrong, in one cell of the hash tile in the north-west. Two of three ranks agree.
     const nlohmann::json odd{{"rank", 2}, {"hash_tile", 12}, {"columns", {0, 31}}, {"rows", {96, 127}}, {"cells", 1}};
     EXPECT_TRUE(ended.has(
         "divergence", {{"judge", "majority"}, {"agreeing", 2}, {"ranks", 3}, {"odd", nlohmann::json::array({odd})}}))
@@ -73,13 +74,13 @@ TEST_F(Healing, LeavesNoTraceInPicturesAndSand) {
     EXPECT_EQ(healed["per_rank"][0]["healed"], 0);
     EXPECT_EQ(healed["per_rank"][1]["healed"], 2);
     EXPECT_EQ(healed["per_rank"][1]["frames_differed"], 2);
-    EXPECT_EQ(healed["server_divergences"], 0) << "the haptic server was right all along";
+    EXPECT_EQ(healed["server_divergences"], 0) << "the haptic server's sand was never wrong";
     EXPECT_EQ(healed["state_hash"], json("undisturbed/summary.json")["state_hash"]);
     expectEqualPictures("undisturbed", "out");
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out/failure.json"));
 }
 
-// A column of sand four cells high stands in the midst of a dune that slides, in the frame whose pictures are kept.
+// A column of sand four cells high appears in the middle of a sliding dune, in the frame whose pictures are written.
 TEST_F(Healing, RedrawsTheFrameInWhichItHappens) {
     const std::string dunes = write("dunes.toml",
                                     "name = \"dunes\"\n[field]\ncolumns = 128\nrows = 128\n[terrain]\nkind = "
@@ -100,7 +101,7 @@ TEST_F(Healing, RedrawsTheFrameInWhichItHappens) {
 }
 
 TEST_F(Healing, LetsTheJournalDecideATie) {
-    // One render rank against the master: first the rank is right, then the master, then neither.
+    // One render rank and the master disagree. First the rank is right, then the master, then neither.
     const Ended ended = dig(wall(1, 1),
                             {"diverge:rank=0,frame=2", "diverge:rank=1,frame=22", "diverge:rank=0,frame=42",
                              "diverge:rank=1,frame=42,column=64,row=64"},
@@ -127,7 +128,7 @@ TEST_F(Healing, GivesUpARankThatNeedsItAThirdTime) {
     EXPECT_TRUE(support::holds(failure, {{"what", "broken"}, {"rank", 2}, {"tile", "r1c2"}, {"host", host()}}))
         << failure;
     EXPECT_TRUE(ended.has("failure", {{"failure", failure}})) << ended.output;
-    // Every step is in the journal: a session that is resumed loses nothing.
+    // Every step is in the journal, so a resumed session loses nothing.
     EXPECT_EQ(reproduced(ended).size(), 16U);
 }
 

@@ -6,13 +6,13 @@
 
 namespace {
 
-/// Sessions over several hosts: this machine under other names, reached by a script in ssh's place, so that ranks of
-/// different names talk over TCP as ranks of different machines do.
+/// Sessions over several hosts. The hosts are this machine under other names, reached by a script in place of ssh.
+/// Ranks of different names talk over TCP, as ranks of different machines do.
 class Hosts : public SessionTest {
 protected:
     void SetUp() override {
-        // Two hosts that are one machine need a place each for what Open MPI shares within a machine: its daemons make
-        // the same folders and map the same files otherwise, and now and then one of them fails over that.
+        // Open MPI shares files within a machine. Its daemons would make the same folders and map the same files for
+        // both hosts, and sometimes a daemon fails because of that. So each host has a folder of its own.
         const std::string agent = write("agent",
                                         "#!/bin/sh\nhost=$1; shift\n[ \"$host\" = away ] && exit 255\n"
                                         "export TMPDIR=\"${0%/*}/$host\"\n"
@@ -24,7 +24,7 @@ protected:
     }
     void TearDown() override { unsetenv("OMPI_MCA_plm_rsh_agent"); }
 
-    /// A session of 40 steps; the rest of the arguments says where.
+    /// Runs a session of 40 steps on the hosts that the arguments `where` name, and returns its summary.
     nlohmann::json show(std::vector<std::string> where) {
         where.insert(where.end(), {"--wall", wall(2, 2, "mono"), "--scene", scene(), "--device", "script:gis", "--pace",
                                    "fast", "--steps", "40", "--out", out()});
@@ -51,10 +51,11 @@ TEST_F(Hosts, EndWithTheLauncher) {
                                 "--network", "127.0.0.0/8"});
     expectFrames(*session);
     const std::vector<pid_t> family = session->family();
-    EXPECT_TRUE(support::findProgram(family, "sandwall-master").has_value()) << "its daemon started it, not mpirun";
+    EXPECT_TRUE(support::findProgram(family, "sandwall-master").has_value())
+        << "the master, which an Open MPI daemon has started, is missing";
     session->signal(SIGKILL);
-    EXPECT_TRUE(support::waitUntilGone(family, kLong).empty()) << "processes left running";
-    EXPECT_EQ(summary()["divergences"], 0) << "the master saw its input end and finished its work";
+    EXPECT_TRUE(support::waitUntilGone(family, kLong).empty()) << "processes are still running";
+    EXPECT_EQ(summary()["divergences"], 0) << "the master must end in order when its input ends";
 }
 
 TEST_F(Hosts, AHostThatCannotBeReachedIsOneLine) {

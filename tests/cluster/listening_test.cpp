@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which ports of a session on one host can be reached from other hosts.
+// The ports of a session on one host that other hosts can reach.
 #include <cstdio>
 #include <regex>
 #include <set>
@@ -23,7 +23,7 @@ TEST_F(Listening, NothingButMpirunItselfListensBeyondThisMachine) {
     while (fgets(piece.data(), piece.size(), pipe) != nullptr) {
         text += piece.data();
     }
-    ASSERT_EQ(pclose(pipe), 0) << "ss is in Debian's iproute2";
+    ASSERT_EQ(pclose(pipe), 0) << "install ss: it is in Debian's package iproute2";
     session->type("stop");
     std::istringstream lines(text);
     std::set<std::string> local, elsewhere;
@@ -32,7 +32,7 @@ TEST_F(Listening, NothingButMpirunItselfListensBeyondThisMachine) {
         std::smatch found;
         if (!std::regex_search(line, found, user) ||
             std::find(family.begin(), family.end(), std::stoi(found[2])) == family.end()) {
-            continue;  // of another process
+            continue;  // belongs to another process
         }
         std::istringstream columns(line);
         std::string address;
@@ -41,8 +41,9 @@ TEST_F(Listening, NothingButMpirunItselfListensBeyondThisMachine) {
         (loopback ? local : elsewhere).insert(found[1]);
     }
     elsewhere.erase("mpirun");
-    EXPECT_TRUE(elsewhere.empty()) << *elsewhere.begin() << " listens elsewhere:\n" << text;
-    EXPECT_TRUE(local.contains("sandwall-haptic")) << "so that this test can fail\n" << text;
+    EXPECT_TRUE(elsewhere.empty()) << *elsewhere.begin() << " listens on an address that other hosts can reach:\n"
+                                   << text;
+    EXPECT_TRUE(local.contains("sandwall-haptic")) << "this test must see at least the haptic server's port\n" << text;
     EXPECT_EQ(session->wait(kLong), 0) << session->output();
 }
 

@@ -9,10 +9,11 @@
 
 namespace {
 
-// Of a rank, beside its frame buffers [byte]: also at its peak, while shaders compile.
+// Largest memory of a rank without its frame buffers [byte]. It also holds at the peak, while shaders compile.
 constexpr double kMost = 120e6;
 
-/// Libraries of Mesa's and the windows' that a process has mapped: file names up to the first dot.
+/// Returns the files that a process has mapped, such as the libraries of Mesa and of windows, as names up to the first
+/// dot.
 std::set<std::string> librariesOf(pid_t process) {
     std::ifstream maps(fmt::format("/proc/{}/maps", process));
     std::set<std::string> names;
@@ -23,7 +24,7 @@ std::set<std::string> librariesOf(pid_t process) {
     return names;
 }
 
-/// A number of kibibytes in /proc/PID/status [byte].
+/// Returns the value of `key` in /proc/PID/status, which is in kibibytes there [byte].
 double statusOf(pid_t process, const std::string& key) {
     std::ifstream status(fmt::format("/proc/{}/status", process));
     for (std::string word; status >> word;) {
@@ -34,14 +35,14 @@ double statusOf(pid_t process, const std::string& key) {
     return 0;
 }
 
-/// Ranks at the size of real tiles, over a field of real size, whose drivers compile every shader as on the first day.
+/// Ranks that draw tiles and a field of real size. Their drivers compile every shader, as at the first start.
 class Memory : public SessionTest, public testing::WithParamInterface<std::string> {
 protected:
     void SetUp() override {
         server_ = std::make_unique<support::XServer>(folder_, std::vector<std::string>{"2048x1536x24"});
         environment_ = {"DISPLAY=" + server_->display(), "MESA_SHADER_CACHE_DISABLE=true"};
     }
-    /// A tile as large as one of the papers' wall, dug in until it is told to stop.
+    /// Starts a session on one tile as large as those of the papers' wall. A hand digs until the session is stopped.
     std::unique_ptr<support::ChildProcess> dig(const std::string& stereo) {
         const std::string file = write("wall.toml", "[viewer]\neye = [0.0, 1.6, 2.0]\n[stereo]\nmode = \"" + stereo +
                                                         "\"\n[grid]\nrows = 1\ncolumns = 1\ntile_size = [1.024, "
@@ -59,7 +60,7 @@ protected:
     std::unique_ptr<support::XServer> server_;
 };
 
-// Two eyes are the most that a rank draws; the buffers of other modes are counted in tests/render_node.
+// A rank draws at most two eyes. The buffers of other modes are counted in tests/render_node.
 TEST_P(Memory, OfARankIsSmallBesideItsFrameBuffersAndHoldsTheLibrariesOfItsBackendAlone) {
     const auto session = dig("passive");
     const std::vector<pid_t> family = session->family();
@@ -73,7 +74,7 @@ TEST_P(Memory, OfARankIsSmallBesideItsFrameBuffersAndHoldsTheLibrariesOfItsBacke
     ASSERT_EQ(session->wait(kLong), 0) << session->output();
     const auto report = summary()["per_rank"][0];
     const double frameBuffers = report["frame_buffer_bytes"];
-    // Colour and depth of each eye, and a back buffer in a window for each.
+    // Each eye has colour and depth, and in a window also a back buffer.
     EXPECT_EQ(frameBuffers, 2 * (GetParam() == "glfw" ? 12.0 : 8.0) * 1024 * 768);
     const double held = report["memory_bytes"].get<double>() - frameBuffers;
     fmt::print("{}: {:.0f} MB beside {:.0f} MB of frame buffers, at its peak {:.0f} MB\n", GetParam(), held * 1e-6,

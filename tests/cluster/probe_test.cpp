@@ -7,10 +7,10 @@
 
 namespace {
 
-/// What the programs say of this machine without a job, and what the doctor makes of it.
+/// Checks of this machine that need no MPI job: by the programs, and by the doctor.
 class Probe : public SessionTest {
 protected:
-    /// A mono wall of two tiles, the second with this in its [[place]].
+    /// Returns a mono wall file of two tiles. The second tile has `place` in its [[place]].
     std::string placedWall(const std::string& place) {
         std::string file = wall(1, 2, "mono");
         std::ofstream(file, std::ios::app) << "[[place]]\ntiles = [\"r1c2\"]\n" << place << "\n";
@@ -35,7 +35,7 @@ protected:
                                             SANDWALL_SOURCE_DIR, wallFile, folder_.string()));
         return {ran.status, nlohmann::json::parse(ran.output)};
     }
-    /// What the doctor found of one check on one rank; null if it found nothing.
+    /// Returns the finding of the doctor for one check on one rank, or null if the doctor has no such finding.
     static nlohmann::json finding(const Json& ran, const std::string& check, int rank) {
         for (const nlohmann::json& one : ran.found["findings"]) {
             if (one["check"] == check && one["ranks"] == nlohmann::json{rank}) {
@@ -69,11 +69,12 @@ TEST_F(Probe, WindowsThatAreNotAsWishedAreTold) {
     EXPECT_EQ(finding(ran, "gl", 1)["backend"], "osmesa");
     EXPECT_EQ(finding(ran, "gl", 2)["backend"], "glfw");
 
-    // 96 pixels wide at 600 of 640: 56 columns of 72 rows are nowhere.
+    // A window 96 pixels wide at column 600 of 640 loses 56 columns of 72 rows.
     const std::string across = placedWall(display + "windows = [[600, 20]]");
     const nlohmann::json shortcomings = probeJson(across, "2").found["shortcomings"];
     ASSERT_EQ(shortcomings.size(), 1U) << shortcomings;
-    EXPECT_NE(shortcomings[0].get<std::string>().find("4032"), std::string::npos) << "the pixels that nobody sees";
+    EXPECT_NE(shortcomings[0].get<std::string>().find("4032"), std::string::npos)
+        << "the number of hidden pixels is missing";
     ran = doctor(across);
     EXPECT_EQ(ran.status, 1) << ran.found;
     EXPECT_EQ(ran.found["red"], 1) << ran.found;

@@ -7,10 +7,10 @@
 
 namespace {
 
-/// A process is killed and started again, and the sand is the same.
+/// A process is killed and started again. The sand must stay the same.
 class Recovery : public SessionTest {
 protected:
-    /// Runs a script of ours to its end, as runToEnd() runs a session.
+    /// Runs one of the project's scripts to its end, as runToEnd() runs a session.
     Ended script(const std::string& name, std::vector<std::string> arguments) {
         arguments.insert(arguments.begin(), {"/usr/bin/env", "-u", "DISPLAY", SANDWALL_SOURCE_DIR "/scripts/" + name});
         support::ChildProcess process(arguments, folder_ / "output.txt");
@@ -18,7 +18,7 @@ protected:
         EXPECT_TRUE(status.has_value()) << "still running after " << kLongScript << " s:\n" << process.output();
         return {status.value_or(-1), process.output()};
     }
-    /// Waits until the session has written `count` such events, and steps are shown after the last one.
+    /// Waits until the session has written `count` events of this name, and has shown steps after the last one.
     static void expectSteps(support::ChildProcess& session, const std::string& event, std::size_t count) {
         EXPECT_TRUE(session.waitUntil([&] { return session.events(event).size() >= count; })) << session.output();
         const std::size_t before = session.events("progress").size();
@@ -39,7 +39,7 @@ TEST_F(Recovery, KillsOfEveryProcessLoseNothing) {
         start({"--wall", wall(1, 2, "mono"), "--scene", scene(), "--device", "script:gis", "--out", out(),
                "--no-pictures", "--frame-timeout", "4", "--restarts", "100000", "--restart-window", "0.001"});
     expectSteps(*session, "link", 1);
-    // A frame may be late on a busy machine, and the job is started again then, too: there may be more recoveries.
+    // On a busy machine a frame may be so late that the job is started again. So there may be more recoveries.
     int lastShown = 0;
     for (const auto& [program, signal] : {std::pair{"sandwall-master", SIGABRT},
                                           {"sandwall-render-node", SIGKILL},
@@ -50,7 +50,7 @@ TEST_F(Recovery, KillsOfEveryProcessLoseNothing) {
         strike(*session, program, signal);
         expectSteps(*session, "recovered", recovered + 1);
         const nlohmann::json recovery = session->events("recovered").back()["recovery"];
-        EXPECT_GE(recovery["step"], lastShown) << "steps that were shown are lost";
+        EXPECT_GE(recovery["step"], lastShown) << "shown steps were lost";
     }
     const auto links = [&] {
         const std::vector<nlohmann::json> all = session->events("link");
@@ -70,7 +70,7 @@ TEST_F(Recovery, KillsOfEveryProcessLoseNothing) {
     EXPECT_EQ(summary()["state_hash"], replayedHash());
 }
 
-// Ten seconds of silence end its link, and ten more its process.
+// The link ends after ten seconds of silence, and the server's process after ten more.
 TEST_F(Recovery, AHapticServerThatHangsIsKilledAndStartedAgain) {
     const auto session = start({"--wall", wall(1, 1, "mono"), "--scene", scene(), "--device", "script:gis", "--out",
                                 out(), "--no-pictures", "--restarts", "3"});
@@ -79,7 +79,7 @@ TEST_F(Recovery, AHapticServerThatHangsIsKilledAndStartedAgain) {
     strike(*session, "sandwall-haptic-server", SIGSTOP);
     ASSERT_FALSE(session->waitForEvent("without_hand", {{"reason", "lost"}, {"epoch", 2}}).is_null())
         << session->output();
-    EXPECT_EQ(session->events("restart").size(), 0U) << "the wall goes on first";
+    EXPECT_EQ(session->events("restart").size(), 0U) << "the wall must continue before the server is restarted";
     const int lost = ask("status")["step"];
     awaitStatus([&](const nlohmann::json& now) { return now.value("step", 0) > lost + 30; });
     EXPECT_EQ(ask("status")["linked"], false);
@@ -96,7 +96,7 @@ TEST_F(Recovery, AHapticServerThatHangsIsKilledAndStartedAgain) {
     EXPECT_EQ(summary()["state_hash"], replayedHash());
 }
 
-// The script that operators run for an hour checks itself; its status says whether anything was lost.
+// The script that operators run for an hour checks itself. Its exit status shows whether anything was lost.
 TEST_F(Recovery, ARandomKillLosesNothing) {
     const Ended ended = script(
         "random_kills.py", {"--kills", "1", "--victims", "rank,master", "--signals", "KILL,SEGV", "--seed", "337",
@@ -126,7 +126,7 @@ TEST_F(Recovery, AMachineThatDiedGoesOnWhereItsJournalEnds) {
     EXPECT_EQ(ended.status, 0) << ended.output;
     const std::vector<nlohmann::json> resumed = support::eventsIn(ended.output, "resumed");
     ASSERT_EQ(resumed.size(), 1U) << ended.output;
-    EXPECT_GE(resumed[0]["step"], shown["step"]) << "what was shown was on the disk";
+    EXPECT_GE(resumed[0]["step"], shown["step"]) << "shown steps were not on the disk";
     EXPECT_EQ(summary()["steps"], 1000);
     EXPECT_EQ(summary()["state_hash"], replayedHash());
 }
@@ -140,7 +140,7 @@ TEST_F(Recovery, ARankThatDiesTooOftenIsNamedInTheReport) {
     }
     const std::vector<pid_t> family = session->family();
     EXPECT_EQ(session->wait(kLong), 1) << session->output();
-    EXPECT_TRUE(support::waitUntilGone(family, kLong).empty()) << "processes left running";
+    EXPECT_TRUE(support::waitUntilGone(family, kLong).empty()) << "processes are still running";
     EXPECT_FALSE(
         session->waitForEvent("restart", {{"rank", 1}, {"how", "SIGBUS"}, {"count", 1}, {"limit", 1}}).is_null())
         << session->output();
@@ -159,7 +159,7 @@ TEST_F(Recovery, ARankThatDiesTooOftenIsNamedInTheReport) {
 
 TEST_F(Recovery, ASpareTakesThePlaceOfAHostThatIsCutOff) {
     if (support::runCommand(SANDWALL_SOURCE_DIR "/scripts/emulate_cluster.sh --check").status != 0) {
-        GTEST_SKIP() << "this machine makes no network namespaces, for root or in a user namespace";
+        GTEST_SKIP() << "this machine does not allow network namespaces, neither for root nor in a user namespace";
     }
     const Ended ended = script("emulate_cluster.sh",
                                {"--out", out(), "--wall", wall(1, 2, "mono"), "--scene", scene(), "--spares", "1",
@@ -172,7 +172,8 @@ TEST_F(Recovery, ASpareTakesThePlaceOfAHostThatIsCutOff) {
     EXPECT_EQ(summary()["divergences"], 0);
     EXPECT_EQ(summary()["steps"], 240);
     EXPECT_EQ(summary()["state_hash"], replayedHash());
-    EXPECT_EQ(support::runCommand("ip netns list | grep -c ^sandwall-emulated-").output, "0\n") << "left behind";
+    EXPECT_EQ(support::runCommand("ip netns list | grep -c ^sandwall-emulated-").output, "0\n")
+        << "network namespaces were left behind";
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 
 namespace {
 
-/// A session that stops and is resumed.
+/// A session that is stopped and resumed.
 class Resuming : public SessionTest {
 protected:
     std::unique_ptr<support::ChildProcess> begin(const std::vector<std::string>& more) {
@@ -27,7 +27,7 @@ protected:
         EXPECT_TRUE(session.waitUntil([&] {
             const auto steps = master::checkpointsOf(journal());
             return !steps.empty() && steps.front() > after;
-        })) << "no checkpoint";
+        })) << "no checkpoint was written in time";
     }
     static pid_t masterOf(const support::ChildProcess& session) {
         return support::findProgram(session.family(), "sandwall-master").value();
@@ -42,7 +42,8 @@ protected:
     }
 };
 
-// Killed, its journal torn; then refused by the disk; then to its end: one session, one journal, one sand.
+// The session is killed and its journal torn. It is resumed, and then the disk refuses to write. It is resumed again
+// and runs to its end. All three runs are one session with one journal and one sand.
 TEST_F(Resuming, ASessionGoesOnWhereItStopped) {
     auto session = begin({});
     ask("tool ellipse radius=0.05 width=0.5");
@@ -61,7 +62,7 @@ TEST_F(Resuming, ASessionGoesOnWhereItStopped) {
     EXPECT_EQ(status["edits"], 1);
     EXPECT_EQ(status["journal_policy"], "required");
     EXPECT_EQ(status["journal_state"], "written");
-    // As the operator had it, not as the scene has it.
+    // The tool is as the operator set it, and not as the scene defines it.
     ask("tool width=0.4");
     EXPECT_NEAR(ask("status")["tool_radius"].get<double>(), 0.05, 1e-3);
     rlimit none{1, 1};
@@ -87,7 +88,7 @@ TEST_F(Resuming, ASessionGoesOnWhereItStopped) {
     const nlohmann::json told = summary();
     EXPECT_EQ(told["steps"], end);
     EXPECT_EQ(told["edits"], 2);
-    EXPECT_EQ(told["divergences"], 3) << "what the tries before had healed counts too";
+    EXPECT_EQ(told["divergences"], 3) << "the divergences of the earlier runs must count, too";
     EXPECT_EQ(told["healed"], 2);
     EXPECT_EQ(told["haptic"]["reconnects"], 4);
     EXPECT_EQ(told["haptic"]["refused"]["servers"]["secret"], 7);
@@ -102,7 +103,7 @@ TEST_F(Resuming, ASessionGoesOnWhereItStopped) {
     const support::Ran verified = support::runProgram("sandwall-replay", journal().string() + " --verify");
     EXPECT_EQ(verified.status, 0) << verified.output;
 
-    // Another scene is another session.
+    // A session cannot be resumed with another scene.
     const std::string other = write("other.toml",
                                     "name = \"other\"\n[field]\ncolumns = 128\nrows = 128\n[terrain]\n"
                                     "height = 0.2\n[material]\n[tool]\nradius = 0.04\n");

@@ -41,8 +41,8 @@ protected:
     }
 };
 
-// Every display file of the project, small: real ranks show it, and every eye has its picture. That a single eye sees
-// what lies between two is tested in tests/render_node/stereo_truth_test.cpp, for all of them.
+// Shows every wall file of the project, at a tenth of its size, with real ranks. Every eye must have its picture.
+// tests/render_node/stereo_truth_test.cpp tests for all wall files that a single eye sees the picture between two eyes.
 TEST_P(Sample, IsShownByItsRanks) {
     const walls::Wall wall =
         support::reduced(walls::loadWall(fmt::format(SANDWALL_SOURCE_DIR "/walls/configs/{}.toml", GetParam())), 0.1);
@@ -58,7 +58,7 @@ TEST_P(Sample, IsShownByItsRanks) {
     }
     const auto likeTheFirst = [&](const pictures::Image& image) { return image.rgb == seen[0].rgb; };
     if (seen.size() > 1) {
-        EXPECT_FALSE(std::all_of(seen.begin(), seen.end(), likeTheFirst)) << "all eyes see the same";
+        EXPECT_FALSE(std::all_of(seen.begin(), seen.end(), likeTheFirst)) << "all eyes see the same picture";
     }
 }
 
@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(Walls, Sample, testing::ValuesIn(samples()), [](const a
 
 class SampleInMono : public Sample {};
 
-// --mono shows the picture from the middle of the eyes, and the sand is the same.
+// With --mono the wall shows the picture from the middle of the eyes. The sand stays the same.
 TEST_P(SampleInMono, IsSeenFromTheMiddle) {
     const walls::Wall wall =
         support::reduced(walls::loadWall(fmt::format(SANDWALL_SOURCE_DIR "/walls/configs/{}.toml", GetParam())), 0.1);

@@ -9,10 +9,10 @@
 
 namespace {
 
-/// Tiles of real ranks against pictures of single ranks that see the same through one camera. The renderer decides
-/// pixels at silhouettes either way; a picture one pixel off, or of the other eye, must not pass the same test. One
-/// wall of both kinds of tiles; tests/render_node/wall_seam_test.cpp does the same for every sample wall in one
-/// process.
+/// Compares tiles of real ranks with pictures of single ranks that see the same through one camera. The renderer may
+/// decide pixels at silhouettes either way. A picture that is shifted by one pixel, or of the other eye, must not pass
+/// the same comparison. One wall has both kinds of tiles. tests/render_node/wall_seam_test.cpp does the same for every
+/// sample wall in one process.
 class Seam : public SessionTest {
 protected:
     void show(const std::string& name, const walls::Wall& wall) {
@@ -39,7 +39,7 @@ protected:
         eyesTold_ += tells(otherEye);
         ++compared_;
     }
-    /// Every tile of the grid is its part of one rank's picture of the whole grid.
+    /// Every tile of the grid must equal its part of one rank's picture of the whole grid.
     void expectCropsOfTheGrid(const std::string& session, const walls::Wall& wall) {
         const walls::Wall whole = support::wholeWallOf(wall);
         show("whole", whole);
@@ -59,7 +59,7 @@ protected:
             }
         }
     }
-    /// Every explicit screen shows what one rank shows that has it alone.
+    /// Every explicit screen must show the same picture as a rank that draws this screen alone.
     void expectScreensOfTheirOwn(const std::string& session, const walls::Wall& wall) {
         for (const walls::Tile& tile : wall.tiles) {
             if (tile.row != 0) {
@@ -76,7 +76,7 @@ protected:
     int compared_ = 0, shiftsTold_ = 0, eyesTold_ = 0;  // pictures
 };
 
-// A wall that has sand on every tile, near and far, and a desk before it: every picture must tell both faults.
+// The wall has sand on every tile, near and far, and a desk in front of it. Every picture must reveal both faults.
 TEST_F(Seam, EveryTileIsTheCropOfTheWholeWallAndAScreenBesideItIsAsIfAlone) {
     walls::Wall wall = walls::loadWall(this->wall(2, 2));
     wall.viewer.eye = {0.1, 1.5, 2.5};

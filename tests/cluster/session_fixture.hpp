@@ -23,12 +23,12 @@
 #include "tests/support/folder_test.hpp"
 #include "tests/support/run_program.hpp"
 
-inline constexpr double kLong = 120;      // [s], for what takes a few on an idle machine
-inline constexpr int kLevels = 8;         // of a channel, within which pictures are alike
-inline constexpr double kMostBad = 0.01;  // share of the pixels beyond that
+inline constexpr double kLong = 120;      // [s], for work that takes a few seconds on an idle machine
+inline constexpr int kLevels = 8;         // largest difference of a channel in equal pictures
+inline constexpr double kMostBad = 0.01;  // largest share of pixels that differ by more than kLevels
 
-/// Whole sessions through scripts/sandwall, at sizes that two cores draw in moments. What they check is events, files,
-/// exit statuses and values, never the words of messages (docs/events.md).
+/// Whole sessions, started with scripts/sandwall, that are small enough for two cores. The tests check events, files,
+/// exit statuses and values, and never the text of messages (docs/events.md).
 class SessionTest : public test::FolderTest {
 protected:
     std::string write(const std::string& name, const std::string& text) {
@@ -40,7 +40,7 @@ protected:
         return {std::istreambuf_iterator<char>(stream), {}};
     }
 
-    /// A wall of equal tiles of 96 x 72 pixels per eye.
+    /// Returns a wall file of equal tiles of 96 x 72 pixels per eye.
     std::string wall(int rows, int columns, const std::string& stereo = "passive") {
         const std::string text =
             "name = \"test\"\n[viewer]\neye = [0.0, 1.6, 3.0]\neye_separation = 0.065\n[stereo]\nmode = \"" + stereo +
@@ -53,7 +53,7 @@ protected:
             "centre = [0.0, 1.2, 0.0]\nwidth = 2.6\ntilt_deg = 40.0\n";
         return write("wall.toml", text);
     }
-    /// A small level sand box.
+    /// Returns a scene file of a small box of level sand.
     std::string scene(const std::string& more = "") {
         return write(
             "scene.toml",
@@ -62,16 +62,16 @@ protected:
     }
 
     std::unique_ptr<support::ChildProcess> start(const std::vector<std::string>& arguments) {
-        // mpirun would give its ranks a second to end; in supervised sessions it does not either.
+        // By default mpirun gives its ranks a second to end. Supervised sessions set the same 0.
         std::vector<std::string> command{"/usr/bin/env", "-u", "DISPLAY", "OMPI_MCA_odls_base_sigkill_timeout=0"};
         command.insert(command.end(), environment_.begin(), environment_.end());
         command.insert(command.end(), {SANDWALL_SOURCE_DIR "/scripts/sandwall", "run"});
         command.insert(command.end(), arguments.begin(), arguments.end());
-        // What ends stays ended; recovery_test.cpp is about what is started again.
+        // Processes that end are not started again, except in recovery_test.cpp.
         if (std::find(arguments.begin(), arguments.end(), "--restarts") == arguments.end()) {
             command.insert(command.end(), {"--restarts", "0"});
         }
-        // What an earlier session has said must not pass for this one's.
+        // The output of an earlier session must not count as output of this one.
         std::filesystem::remove(folder_ / "output.txt");
         return std::make_unique<support::ChildProcess>(command, folder_ / "output.txt");
     }
@@ -80,7 +80,7 @@ protected:
         int status;
         std::string output;
 
-        /// Whether it has written such an event.
+        /// Returns true if the session has written an event of this name with the fields of `wanted`.
         [[nodiscard]] bool has(const std::string& name, const nlohmann::json& wanted) const {
             const auto all = support::eventsIn(output, name);
             return std::any_of(all.begin(), all.end(), [&](const auto& one) { return support::holds(one, wanted); });
@@ -92,14 +92,15 @@ protected:
         EXPECT_TRUE(status.has_value()) << "still running after " << seconds << " s:\n" << session->output();
         return {status.value_or(-1), session->output()};
     }
-    /// Bad input: status 2 and one line, which names the file and line, option or value. On a busy machine ranks may
-    /// have reported before that they wait for the master, each time with an event.
+    /// The session must have refused its input with status 2 and one line. The line contains `named`: the file and
+    /// line, the option or the value. On a busy machine ranks may also have reported that they wait for the master;
+    /// each such line comes with an event.
     static void expectOneLine(const Ended& ended, const std::string& named) {
         const std::string message = support::messagesIn(ended.output);
         const auto waits = static_cast<std::ptrdiff_t>(support::eventsIn(ended.output, "waiting").size());
         EXPECT_EQ(ended.status, 2) << ended.output;
         EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 1 + waits) << ended.output;
-        EXPECT_TRUE(message.starts_with("sandwall")) << "a line begins with its program's name: " << ended.output;
+        EXPECT_TRUE(message.starts_with("sandwall")) << "a line must begin with its program's name: " << ended.output;
         EXPECT_NE(message.find(named), std::string::npos) << ended.output;
     }
     /// Waits until frames are shown.
@@ -111,15 +112,15 @@ protected:
         EXPECT_FALSE(session.waitForEvent("link", {{"state", "linked"}}).is_null()) << session.output();
     }
 
-    /// The answer of the running session to an operator's command.
+    /// Sends an operator's command to the running session and returns the answer.
     [[nodiscard]] nlohmann::json answer(const std::string& words) const { return support::askSession(out(), words); }
-    /// The answer to a command that must succeed.
+    /// Sends a command that must succeed and returns the answer.
     nlohmann::json ask(const std::string& words) const {
         nlohmann::json answered = answer(words);
         EXPECT_TRUE(answered.is_object() && answered.value("ok", false)) << words << ": " << answered.dump();
         return answered.is_object() ? answered : nlohmann::json::object();
     }
-    /// Asks until the status is as wanted.
+    /// Asks for the status until `wanted` accepts it, and returns it. Fails after two minutes.
     nlohmann::json awaitStatus(const std::function<bool(const nlohmann::json&)>& wanted) const {
         const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(120);
         while (true) {
@@ -128,14 +129,14 @@ protected:
                 return now;
             }
             if (std::chrono::steady_clock::now() > until) {
-                ADD_FAILURE() << "not within two minutes: " << now.dump();
+                ADD_FAILURE() << "the expected status did not come within two minutes: " << now.dump();
                 return now;
             }
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }
     }
 
-    /// As messages name this machine.
+    /// The name of this machine in messages.
     [[nodiscard]] static std::string host() {
         std::array<char, 256> name{};
         gethostname(name.data(), name.size() - 1);
@@ -149,7 +150,7 @@ protected:
         const support::Ran replayed = support::runProgram("sandwall-replay", out() + "/session.journal --hash");
         EXPECT_EQ(replayed.status, 0) << replayed.output;
         const std::string text = replayed.output.substr(0, replayed.output.find_last_not_of('\n') + 1);
-        return text.substr(text.rfind('\n') + 1);  // warnings may stand before it
+        return text.substr(text.rfind('\n') + 1);  // warnings may be printed before the hash
     }
 
     std::vector<std::string> environment_;  // NAME=value, for the sessions

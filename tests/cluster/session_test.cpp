@@ -10,7 +10,7 @@ namespace {
 
 class Lockstep : public SessionTest {};
 
-// The replicas of a TIN are compared in dem_test.cpp.
+// dem_test.cpp compares the replicas of a TIN.
 TEST_F(Lockstep, OneFourAndTwelveRanksOfAnyThreadsHashLikeTheirJournal) {
     struct Way {
         int rows, columns;
@@ -37,7 +37,8 @@ TEST_F(Lockstep, OneFourAndTwelveRanksOfAnyThreadsHashLikeTheirJournal) {
     }
 }
 
-// Typed at the launcher, with nobody but the master to number the steps; control_test.cpp does it with a hand.
+// The commands are typed at the launcher. There is no hand, so the master numbers the steps. control_test.cpp tests
+// commands with a hand.
 TEST_F(Lockstep, AnOperatorSettlesTheSandOnEveryReplica) {
     const auto session = start({"--wall", wall(1, 2), "--scene", scene(), "--device", "none", "--steps", "100000",
                                 "--out", out(), "--no-pictures"});
@@ -71,19 +72,18 @@ TEST_F(Lockstep, ASessionLeavesItsPicturesAndItsFigures) {
         ASSERT_TRUE(result.contains(pointer)) << path;
         EXPECT_TRUE(result[pointer].is_number()) << path << " is " << result[pointer];
     }
-    // The force loop has a deadline in each millisecond, and each is a tick or is counted as missed. There are no more
-    // of them than milliseconds of the session. Of 60 steps that are at least 15 ms apart (StepClock) there are 900; a
-    // busy machine may end the session while half of them wait to be counted.
+    // The force loop has a deadline in each millisecond. Each deadline is a tick or is counted as missed. There are at
+    // most as many deadlines as milliseconds in the session. 60 steps that are at least 15 ms apart (StepClock) have
+    // 900 deadlines. A busy machine may end the session while half of them are not counted yet.
     const std::chrono::duration<double, std::micro> all = std::chrono::steady_clock::now() - began;
     const double ticks = result["haptic"]["ticks"], missed = result["haptic"]["ticks_missed"];
     EXPECT_LE(ticks + missed, all.count() / 1000);
     EXPECT_GE(ticks + missed, 450);
-    // There is one tick for a deadline at most, so that the mean period, and with it the longest, is a millisecond or
-    // more.
+    // Each deadline has at most one tick. So the mean period is at least a millisecond, and the longest one, too.
     const double middle = result["haptic_period_us"]["p50"], longest = result["haptic_period_us"]["max"];
     EXPECT_GE(longest, 1000);
-    // A period of two milliseconds or more ends with a tick whose deadlines were missed. Where fewer than half of the
-    // ticks are such, the middle period, which is known within 1 %, is shorter.
+    // A period of two milliseconds or more ends with a tick that follows missed deadlines. If fewer than half of the
+    // ticks are such ticks, the median period is shorter. The median is known within 1 %.
     EXPECT_LT(middle, missed < ticks / 2 ? 1.01 * 2000 : 1.01 * longest);
 }
 
@@ -122,7 +122,7 @@ TEST_F(Lockstep, AHapticServerThatComesBackIsLinkedAgain) {
     session->type("stop");
     EXPECT_EQ(session->wait(kLong), 0) << session->output();
     EXPECT_EQ(summary()["divergences"], 0);
-    EXPECT_EQ(summary()["server_divergences"], 0) << "the server continued from the wall's sand";
+    EXPECT_EQ(summary()["server_divergences"], 0) << "the server must continue from the wall's sand";
     EXPECT_EQ(summary()["haptic"]["reconnects"], 1);
 }
 

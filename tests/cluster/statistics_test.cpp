@@ -9,7 +9,7 @@
 
 namespace {
 
-/// What a session reports of its ranks: which one is the slowest, and what all of them cost.
+/// The report of a session on its ranks: the slowest one, and the cost of all.
 class WallStatistics : public SessionTest {
 protected:
     std::vector<std::string> stillWall(int rows, int columns, const std::vector<std::string>& more) {
@@ -19,7 +19,8 @@ protected:
     }
 };
 
-// Nothing is drawn, so that only the barrier can tell which rank is slow. Far above what a busy machine does by chance.
+// Nothing is drawn, so only the barrier can show which rank is slow. The injected delay is far above the delays of a
+// busy machine.
 TEST_F(WallStatistics, NameTheRankThatIsSlowOnAStillWallNowAndInTheSummary) {
     const auto session = start(stillWall(2, 2, {"--no-pictures", "--inject", "slow:rank=3,ms=150,frame=2"}));
     expectFrames(*session);
@@ -31,7 +32,7 @@ TEST_F(WallStatistics, NameTheRankThatIsSlowOnAStillWallNowAndInTheSummary) {
     EXPECT_EQ(session->wait(kLong), 0) << session->output();
     const nlohmann::json result = summary();
     EXPECT_EQ(result["slowest"]["rank"], 3);
-    EXPECT_GE(result["per_rank"][2]["draw_ms"]["p50"], 150) << "what the fault takes";
+    EXPECT_GE(result["per_rank"][2]["draw_ms"]["p50"], 150) << "the injected fault takes 150 ms per frame";
     EXPECT_EQ(result["per_rank"][2]["frames_agreed"], result["frames"]);
     EXPECT_EQ(result["divergences"], 0);
 }
@@ -50,8 +51,8 @@ TEST_F(WallStatistics, ComeAndGoInThePicturesAtTheOperatorsWish) {
     };
     const pictures::Image shown = picture(1), hidden = picture(2);
     EXPECT_NE(picture(3).rgb, hidden.rgb);
-    EXPECT_EQ(picture(4).rgb, hidden.rgb) << "hidden, they leave the sand as it was";
-    // 96 x 72 pixels: a panel of four short lines at the top left, and the sand below as it was.
+    EXPECT_EQ(picture(4).rgb, hidden.rgb) << "hidden statistics must not change the picture";
+    // A picture has 96 x 72 pixels. A panel of four short lines is at the top left, and the sand below it is unchanged.
     const auto row = [](const pictures::Image& image, int y) {
         const auto begin = image.rgb.begin() + std::ptrdiff_t{3} * image.width * y;
         return std::vector(begin, begin + std::ptrdiff_t{3} * image.width);
@@ -62,8 +63,8 @@ TEST_F(WallStatistics, ComeAndGoInThePicturesAtTheOperatorsWish) {
     }
 }
 
-// At six frames a second each frame takes as many steps as one may, on a busy machine as on an idle one: its message
-// differs by the figures alone.
+// At six frames per second each frame takes as many steps as a frame may hold, even on a busy machine. So the frame
+// messages differ only by the statistics.
 TEST_F(WallStatistics, TravelOnlyWhileTheyAreShown) {
     const auto usualBytes = [this](std::vector<std::string> more) {
         more.insert(more.end(), {"--frames", "9", "--refresh", "6", "--no-pictures"});
@@ -75,20 +76,20 @@ TEST_F(WallStatistics, TravelOnlyWhileTheyAreShown) {
     EXPECT_GT(usualBytes({"--show", "statistics"}), unobserved);
 }
 
-/// What the kernel has counted of a thread so far [s].
+/// Times of a thread since its start, as the kernel counts them [s].
 struct ThreadTimes {
-    double ran = 0;      // on a core
+    double ran = 0;      // time on a core
     double queued = 0;   // ready to run, while others had the cores
     double counted = 0;  // the clock of the measurement, the same for all threads
 
-    /// The share of the time since `then`, without the time in the queue, in which the thread ran: 1 for a thread that
-    /// spins, however busy the machine is.
+    /// Returns the share of the time since `then` in which the thread ran, not counting the time in the queue for a
+    /// core. It is 1 for a thread that spins, even on a busy machine.
     [[nodiscard]] double busySince(const ThreadTimes& then) const {
         return (ran - then.ran) / (counted - then.counted - (queued - then.queued));
     }
 };
 
-/// By thread number.
+/// Returns the times of all threads of `processes`, by thread number.
 std::map<std::string, ThreadTimes> threadTimes(const std::vector<pid_t>& processes) {
     std::map<std::string, ThreadTimes> times;
     for (const pid_t pid : processes) {
@@ -104,10 +105,10 @@ std::map<std::string, ThreadTimes> threadTimes(const std::vector<pid_t>& process
     return times;
 }
 
-// Ranks that waited by spinning took whatever was idle: 84 % of a core on a machine whose cores others kept busy, and
-// all cores of one of its own. Processor time alone would depend on how busy the machine is. A thread that spins runs
-// for all of the time that it does not queue for a core; a thread that sleeps, for little of it. All threads together
-// took 14 to 20 % of a core, on an idle machine and on a busy one, and 45 to 66 % when waits only yielded.
+// Ranks that waited by spinning took 84 % of a core on a busy machine, and all cores on an idle one. Processor time
+// alone would depend on the load of the machine. A spinning thread runs whenever it does not queue for a core. A
+// sleeping thread runs for little of that time. All threads together took 14 to 20 % of a core, on an idle machine and
+// on a busy one. They took 45 to 66 % when waits only yielded.
 TEST_F(WallStatistics, AStillWallLeavesTheCoresIdle) {
     const auto session = start(stillWall(2, 3, {"--frames", "100000", "--no-pictures"}));
     const auto reached = [&](int frame) {
@@ -129,7 +130,7 @@ TEST_F(WallStatistics, AStillWallLeavesTheCoresIdle) {
         }
     }
     std::printf("seven processes of a still wall: %.1f %% of one core\n", 100 * share);
-    EXPECT_GT(share, 0) << "measured nothing";
+    EXPECT_GT(share, 0) << "the measurement found no running thread";
     EXPECT_LT(share, 0.4);
 }
 

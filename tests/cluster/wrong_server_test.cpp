@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sessions whose haptic server is part of the test, so that the test sees each message of the master.
+// In these sessions the test itself is the haptic server, so it sees each message of the master.
 #include <filesystem>
 
 #include "master/journal/journal.hpp"
@@ -34,16 +34,16 @@ TEST_F(WrongServer, WithOtherSandIsCountedAndStartsAgainFromTheWalls) {
     EXPECT_EQ(now["linked"], true);
     session->type("stop");
     EXPECT_EQ(session->wait(kLong), 0) << session->output();
-    EXPECT_EQ(server.states(), 1) << "it was given the wall's whole sand";
+    EXPECT_EQ(server.states(), 1) << "the server must get the wall's whole sand once";
     EXPECT_EQ(summary()["server_divergences"], 1);
-    EXPECT_EQ(summary()["divergences"], 0) << "no rank was wrong";
+    EXPECT_EQ(summary()["divergences"], 0) << "no rank has diverged";
     EXPECT_EQ(summary()["haptic"]["reconnects"], 1);
     EXPECT_EQ(summary()["haptic"]["hand_overs"]["by_state"], 1);
     EXPECT_EQ(summary()["state_hash"], replayedHash());
-    EXPECT_EQ(json("out/incidents.json")["server_divergences"], 1) << "a session that goes on counts from there";
+    EXPECT_EQ(json("out/incidents.json")["server_divergences"], 1) << "a resumed session counts from this value";
 }
 
-// The master tells the server which step the wall shows. A step that is shown must be on disk.
+// The master sends the server the number of the last step that the wall shows. A shown step must be on disk.
 TEST_F(WrongServer, SeesNoStepShownThatADiskHasFailedToSync) {
     constexpr std::size_t kFails = 40;  // calls of fdatasync before the one that fails; the first is the header's
     environment_ = {"LD_PRELOAD=" + std::filesystem::absolute(support::pathOfProgram("sync-log.so")).string(),
@@ -55,15 +55,15 @@ TEST_F(WrongServer, SeesNoStepShownThatADiskHasFailedToSync) {
     const nlohmann::json failure = json("out/failure.json");
     EXPECT_TRUE(support::holds(failure, {{"what", "disk"}, {"rank", 0}, {"host", host()}, {"tile", ""}})) << failure;
     EXPECT_FALSE(session->waitForEvent("failure", {{"failure", failure}}).is_null()) << session->output();
-    EXPECT_FALSE(std::filesystem::exists(out() + "/summary.json")) << "no orderly end";
+    EXPECT_FALSE(std::filesystem::exists(out() + "/summary.json")) << "a session that fails must write no summary";
     const master::Journal journal = master::readJournal(out() + "/session.journal");
-    ASSERT_EQ(journal.frames.size(), kFails - 1) << "every frame before, and no more";
+    ASSERT_EQ(journal.frames.size(), kFails - 1) << "the journal must hold exactly the frames before the failed sync";
     EXPECT_EQ(journal.tornBytes, 0);
     EXPECT_GT(server.shown(), 0U);
     EXPECT_LE(server.shown(), journal.frames.back().steps.back().number);
     const std::string syncs = read("syncs");
     EXPECT_EQ(std::count(syncs.begin(), syncs.end(), '\n'), static_cast<std::ptrdiff_t>(kFails + 1));
-    EXPECT_EQ(replayedHash().size(), 16U) << "what was shown can be replayed";
+    EXPECT_EQ(replayedHash().size(), 16U) << "the shown steps cannot be replayed";
 }
 
 }  // namespace
