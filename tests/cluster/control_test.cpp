@@ -125,8 +125,7 @@ TEST_F(Operator, ChangesToolMaterialAndSandOfTwelveRanksAndAReplayEndsInTheSameH
     const auto canUndo = [](const nlohmann::json& now) { return now.value("can_undo", false); };
     EXPECT_EQ(awaitStatus(canUndo)["ranks"], 12);
     ask("undo");
-    awaitStatus(
-        canUndo);  // in or after a later stroke: the second undo returns to dug sand, and not to the scene's start
+    awaitStatus(canUndo);  // in or after a later stroke, so that the second undo returns to dug sand
     EXPECT_EQ(ask("save dug-1")["file"], "saves/dug-1.sand");
     const std::uint64_t undone = ask("undo")["step"];
     ask("tool footprint radius=0.08 heading=60");

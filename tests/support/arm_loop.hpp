@@ -8,9 +8,9 @@
 
 namespace test {
 
-inline constexpr double kTick = 1e-3;  // [s], of the force loop
+inline constexpr double kTick = 1e-3;  // [s], length of one tick of the force loop
 
-/// An arm as textbooks draw it: mass and damping, no friction, no encoder, no limits.
+/// Returns an arm as in textbooks: mass and damping, without friction, encoder steps or limits.
 inline haptic_bridge::ArmPhysics textbookArm(double damping, int delayTicks = 0, double mass = 0.05) {
     haptic_bridge::ArmPhysics arm;
     arm.name = "textbook";
@@ -24,8 +24,8 @@ inline haptic_bridge::ArmPhysics textbookArm(double damping, int delayTicks = 0,
     return arm;
 }
 
-/// The greatest speed of the last fifth of a second over that of the first, of an arm that starts with 1 cm/s along x
-/// under force = law(place); more than 1 diverges.
+/// Returns the greatest speed of the last 0.2 s, divided by that of the first 0.2 s. The arm starts with 1 cm/s along x
+/// under force = law(place). A result above 1 means that the motion diverges.
 template <class Law>
 double growth(const haptic_bridge::ArmPhysics& physics, Law law, double seconds = 3) {
     haptic_bridge::SimulatedArm arm(physics);

@@ -20,7 +20,7 @@ using sand::force::Vec3;
 inline constexpr double kScale = haptic_bridge::kTouchField > 0 ? 2 / haptic_bridge::kTouchField : 0;  // [unit/m]
 inline constexpr double kPapersRadius = 0.01;                                                          // [scene unit]
 
-/// Level sand, by default the first paper's field (−1,1)²; the tool's radius is 0.01.
+/// Returns a scene of level sand, by default the first paper's field (−1,1)². The tool's radius is 0.01.
 inline scene::Scene levelSand(const sand::ForceConstants& force = {}, int cells = 512, double side = 2) {
     scene::Scene scene;
     scene.terrain = sand::HeightField(cells, cells, side / cells);
@@ -33,10 +33,10 @@ inline scene::Scene levelSand(const sand::ForceConstants& force = {}, int cells 
     return scene;
 }
 
-/// An arm straight over the middle of the field, axes as the scene's; at height 0 the tool touches level sand.
+/// An arm above the middle of the field, with the axes of the scene. At height 0 the tool touches level sand.
 class ArmOnSand : public haptic_bridge::Device {
 public:
-    /// `claimed` is what its maker says of it, which may be wrong.
+    /// `claimed` is the description that the arm's driver gives, which may be wrong.
     ArmOnSand(std::unique_ptr<SimulatedArm> arm, const scene::Scene& scene, const ArmPhysics& claimed)
         : arm_(std::move(arm)),
           claimed_(claimed),
@@ -67,7 +67,7 @@ public:
     ArmSession(const scene::Scene& scene, std::unique_ptr<SimulatedArm> arm,
                haptic_bridge::Guards::Mode mode = haptic_bridge::Guards::Mode::on)
         : ArmSession(scene, std::move(arm), mode, nullptr) {}
-    /// `claimed`, unless null, is what the guards are told of the arm.
+    /// `claimed` is the description of the arm that the guards get. If it is null, they get the true one.
     ArmSession(const scene::Scene& scene, std::unique_ptr<SimulatedArm> arm, haptic_bridge::Guards::Mode mode,
                const ArmPhysics* claimed)
         : arm_(arm.get()),
@@ -79,7 +79,7 @@ public:
         surface_.tool = sand::force::Contour::sphere(scene.toolRadius());
     }
 
-    /// A tick on a surface that is `age` old [s], `span` [s] after the one before.
+    /// Runs a tick on a surface that is `age` old [s], `span` after the tick before [s].
     const haptic_bridge::Tick& tick(double age = 0, double span = 1e-3) {
         time_ += span;
         const auto now = static_cast<std::int64_t>(time_ * 1e9);
@@ -87,7 +87,7 @@ public:
         sample_ = hand_.tick(time_, now, surface_);
         return hand_.lastTick();
     }
-    /// In the air, until the ramp is over.
+    /// Runs ticks with the tool in the air, until the force ramp of the start is over.
     void warmUp() {
         arm_->start({0, 0, 0.002}, {});
         for (int i = 0; i < 2010; ++i) {
@@ -108,23 +108,23 @@ private:
     double time_ = 0;
 };
 
-/// One trial of the sweep: an arm is put into level sand at a depth and a speed, and must come to rest.
+/// One trial of the sweep: an arm is put into level sand at a depth and a speed. It must come to rest.
 struct Trial {
     ArmPhysics arm;
     double depth = 1;   // [tool radius]
     double speed = 0;   // [m/s]
-    bool held = false;  // by a hand that goes to and fro for half a second; otherwise a weight presses
+    bool held = false;  // by a hand that moves to and fro for half a second; otherwise a weight presses
     haptic_bridge::Guards::Mode mode = haptic_bridge::Guards::Mode::on;
 };
 struct Outcome {
-    double lastSpeed = 0;  // [m/s], the greatest of the last tenth of a second
-    double allowed = 0;    // [s] that it was given to come to rest
-    double mostForce = 0;  // [N]
-    double deviation = 0;  // largest, to 3.5 radii of depth, of the force sent from the law with the constants said at
-                           // start, where no other limit acts; share of the law's
-    long touching = 0;     // [tick]
-    long unlimited = 0;    // [tick], of those: no limit but the constants'
-    long damped = 0;       // [tick], by the passivity observer
+    double lastSpeed = 0;  // [m/s], greatest speed of the last tenth of a second
+    double allowed = 0;    // [s], time in which the arm must come to rest
+    double mostForce = 0;  // [N], greatest force sent
+    double deviation = 0;  // largest difference between the sent force and the law, as a share of the law's force. The
+                           // law has the constants printed at the start. Depths to 3.5 radii, without other limits.
+    long touching = 0;     // [tick], ticks in which the tool touches the sand
+    long unlimited = 0;    // [tick], touching ticks in which only the constants limit the force
+    long damped = 0;       // [tick], ticks in which the passivity observer damps
     [[nodiscard]] bool settles() const { return lastSpeed < 1e-3; }
 };
 
@@ -138,8 +138,8 @@ inline SimulatedArm::Path toAndFro(double depth /* [m] */, double speed /* [m/s]
     };
 }
 
-/// "Rests" is below 1 mm/s within 3 s. An arm that is heavier than its damping can stop in that time, were it free, is
-/// given what the slowest loop within its limits takes: half of the damping is left to decay at b/4m.
+/// Runs a trial. The arm must be slower than 1 mm/s after 3 s. A heavy arm may need longer to stop by its damping
+/// alone. It gets the time of the slowest loop within its limits, in which half of the damping is left: decay at b/4m.
 inline Outcome run(const Trial& trial, const scene::Scene& scene) {
     const double depth = trial.depth * scene.toolRadius() / kScale;  // [m]
     constexpr double kWarm = 2.01;
@@ -169,7 +169,8 @@ inline Outcome run(const Trial& trial, const scene::Scene& scene) {
         outcome.damped += (tick.guards & bit(haptic_bridge::Guard::passivity)) != 0 ? 1 : 0;
         if (law > 0) {
             ++outcome.touching;
-            // Deeper than the sweep goes, the law is stiffer than its constants say at one radius, and is held to K.
+            // Below the depths of the sweep the law is stiffer than its constants say at one radius. There the guards
+            // hold it to K.
             const bool deeper = tick.place.z - scene.toolRadius() < -3.5 * scene.toolRadius();
             if (!deeper && (tick.guards & ~bit(haptic_bridge::Guard::stiffness)) == 0) {
                 ++outcome.unlimited;

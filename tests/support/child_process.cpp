@@ -35,10 +35,11 @@ struct Stat {
     pid_t parent = 0;
 };
 
-/// What the kernel says of a process; state X when there is none.
+/// Returns the kernel's record of a process; its state is X if the process does not exist.
 Stat statOf(pid_t pid) {
     std::ifstream stream("/proc/" + std::to_string(pid) + "/stat");
-    // As a line, which ends a stream in peace when the process goes meanwhile; an iterator over its buffer throws.
+    // Reads with getline(), because it fails quietly if the process ends meanwhile. An iterator over the stream's
+    // buffer would throw.
     std::string text;
     std::getline(stream, text, '\0');
     Stat stat;
@@ -51,7 +52,7 @@ Stat statOf(pid_t pid) {
     return stat;
 }
 
-/// Whether the process was started with `mark` (NAME=value) in its environment.
+/// Returns true if the process was started with `mark` (NAME=value) in its environment.
 bool carries(pid_t pid, const std::string& mark) {
     std::ifstream stream("/proc/" + std::to_string(pid) + "/environ");
     for (std::string variable; std::getline(stream, variable, '\0');) {
@@ -83,7 +84,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command, std::filesys
     words.push_back(nullptr);
     std::array<int, 2> input{};
     if (pipe2(input.data(), O_CLOEXEC) != 0) {
-        throw std::runtime_error("no pipe for " + command.at(0));
+        throw std::runtime_error("cannot make a pipe for " + command.at(0));
     }
     pid_ = fork();
     if (pid_ < 0) {
@@ -117,7 +118,7 @@ ChildProcess::~ChildProcess() {
 void ChildProcess::type(const std::string& line) const {
     const std::string text = line + "\n";
     if (write(input_, text.data(), text.size()) != static_cast<ssize_t>(text.size())) {
-        throw std::runtime_error("nobody reads '" + line + "'");
+        throw std::runtime_error("no process reads the line '" + line + "'");
     }
 }
 
@@ -129,7 +130,8 @@ std::string ChildProcess::output() const {
 bool ChildProcess::waitUntil(const std::function<bool()>& condition, double seconds) {
     const auto until = deadline(seconds);
     while (true) {
-        const bool last = wait(0).has_value() || Clock::now() > until;  // before the look: what it wrote last counts
+        // Asked before the condition is checked, so that the last output counts.
+        const bool last = wait(0).has_value() || Clock::now() > until;
         if (condition()) {
             return true;
         }
@@ -191,7 +193,7 @@ std::vector<pid_t> ChildProcess::family() const {
             }
         }
     }
-    // A child between fork and exec, or with an environment of its own, is known by its parent.
+    // A child between fork and exec, or with an environment of its own, is found by its parent.
     for (std::size_t i = 0; i < all.size(); ++i) {
         const auto [first, last] = children.equal_range(all[i]);
         std::for_each(first, last, [&](const auto& pair) {
@@ -220,7 +222,7 @@ std::vector<pid_t> waitUntilGone(const std::vector<pid_t>& processes, double sec
 }
 
 std::optional<pid_t> findProgram(const std::vector<pid_t>& processes, const std::string& name) {
-    // The kernel keeps fifteen letters of a name.
+    // The kernel stores fifteen letters of a name.
     const auto found = std::find_if(processes.begin(), processes.end(),
                                     [&](pid_t pid) { return statOf(pid).name == name.substr(0, 15); });
     return found == processes.end() ? std::nullopt : std::optional(*found);

@@ -12,8 +12,9 @@
 
 namespace support {
 
-/// What `sandwall ctl` does, without the start of a Python for each command: sends a line to the control socket of the
-/// session in `folder` and returns the answer. A discarded value if nothing listens there or the answer is not JSON.
+/// Sends a line to the control socket of the session in `folder` and returns the answer. `sandwall ctl` does the same,
+/// but it would start Python for each command. Returns a discarded value if no session listens or the answer is not
+/// JSON.
 inline nlohmann::json askSession(const std::filesystem::path& folder, const std::string& line) {
     const std::string path = (folder / "control").string();
     sockaddr_un address{};

@@ -9,7 +9,8 @@
 
 namespace support {
 
-/// Whether `event` has every field of `wanted` with the same value; objects and arrays are compared the same way.
+/// Returns true if `event` has every field of `wanted` with the same value. Compares nested objects and arrays in the
+/// same way.
 inline bool holds(const nlohmann::json& event, const nlohmann::json& wanted) {
     if (!wanted.is_structured()) {
         return event == wanted;
@@ -33,8 +34,8 @@ inline bool holds(const nlohmann::json& event, const nlohmann::json& wanted) {
     return true;
 }
 
-/// The events of one name in the output of programs, in order (docs/events.md). An empty name is any event.
-/// A last line without its end is left out, because the rest of it may still come.
+/// Returns the events of one name in the output of programs, in order (docs/events.md). An empty name selects all
+/// events. Leaves out an unfinished last line, because the rest of it may still come.
 inline std::vector<nlohmann::json> eventsIn(const std::string& output, std::string_view name = "") {
     constexpr std::string_view kTag = "@sandwall ";
     std::vector<nlohmann::json> events;
@@ -52,7 +53,7 @@ inline std::vector<nlohmann::json> eventsIn(const std::string& output, std::stri
     return events;
 }
 
-/// The output without its events: what a person reads.
+/// Returns the output without its events: the text that a person reads.
 inline std::string messagesIn(const std::string& output) {
     std::istringstream lines(output);
     std::string text;

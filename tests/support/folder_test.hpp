@@ -12,7 +12,7 @@
 
 namespace test {
 
-/// A new folder, empty, whoever else makes one now.
+/// Makes an empty folder with a name of its own, even if other processes make folders at the same time.
 inline std::filesystem::path newFolder() {
     std::string name = (std::filesystem::temp_directory_path() / "sandwall-XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr) {
@@ -21,8 +21,8 @@ inline std::filesystem::path newFolder() {
     return name;
 }
 
-/// A test with a folder of its own, which is there before the members of a derived one are made. It goes with the test,
-/// unless that has failed: what lies there may say why.
+/// A test with a folder of its own, which exists before the members of a derived class are made. It is removed with the
+/// test. The folder of a failed test stays, because its files may show the reason.
 class FolderTest : public testing::Test {
 protected:
     ~FolderTest() override {

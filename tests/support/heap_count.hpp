@@ -3,7 +3,7 @@
 
 namespace test {
 
-/// How often this thread has asked the heap for memory. A program that links heap_count.cpp counts.
+/// Returns the number of heap allocations of this thread so far. Counts only in a program that links heap_count.cpp.
 [[nodiscard]] long heapRequests();
 
 }  // namespace test

@@ -9,8 +9,9 @@
 
 namespace test {
 
-/// A hand recorded as real devices do at "1 kHz": periods of 1.017 ms on average, now and then 2 ms, rare gaps up to
-/// 20 ms, each followed by a tick that comes at once. `place` tells where the hand is at a time [s].
+/// Returns the trace of a hand, recorded as real devices do at a nominal 1 kHz. Periods are 1.017 ms on average and
+/// sometimes 2 ms. Rare gaps last up to 20 ms, and now and then two ticks are only 8 µs apart. `place` returns the
+/// place of the hand at a time [s].
 inline std::string jitteryTrace(unsigned seed, double seconds,
                                 const std::function<std::array<double, 3>(double)>& place) {
     std::mt19937 random(seed);

@@ -9,17 +9,18 @@
 
 #include "sand/model/height_field.hpp"
 
-/// Piles whose rest state is known in closed form, O1 to O5, and how far a field is from one.
+/// Piles whose rest state is known in closed form, O1 to O5, and the distance of a field from one.
 ///
-/// Lengths and heights are in cells, `talus` is the tangent of the angle of repose. A profile is any function of a
-/// point (x, y), where cell (i, j) covers [i, i + 1] x [j, j + 1]; a field holds the mean of it over each cell.
+/// Lengths and heights are in cells. `talus` is the tangent of the angle of repose. A profile is any function of a
+/// point (x, y), where cell (i, j) covers [i, i + 1] x [j, j + 1]. A field holds the mean of the profile over each
+/// cell.
 namespace oracles {
 
-/// O1: sand released from a standing cylinder. A low one keeps a flat top and becomes a frustum, a tall one a cone.
+/// O1: sand released from a standing cylinder. A low cylinder becomes a frustum with a flat top, a tall one a cone.
 class Cylinder {
 public:
     Cylinder(double radius, double height, double talus = 1) : radius_(radius), height_(height), talus_(talus) {
-        const double ramp = height / talus;  // how wide the slope is, seen from above
+        const double ramp = height / talus;  // width of the slope, seen from above
         if (height <= std::numbers::sqrt3 * talus * radius) {
             apex_ = height;
             foot_ = ramp / 2 + std::sqrt(radius * radius - ramp * ramp / 12);
@@ -42,9 +43,10 @@ private:
     double apex_, foot_;
 };
 
-/// O2: sand released from a wall of `halfWidth` on either side of a line, endless along it. `s` is the distance from
-/// that line. A low one keeps a flat top, a tall one becomes a roof. A wall that ends, as one off the grid's axes must,
-/// is this pile far from its ends: some three feet away for a tall one, whose ends slide furthest.
+/// O2: sand released from an endless wall that reaches `halfWidth` to either side of a line. `s` is the distance from
+/// that line. A low wall keeps a flat top, and a tall one becomes a roof. A wall across the grid's axes must end. It
+/// rests in this shape far from its ends. For a tall wall, whose ends slide furthest, that is about 3 foot() away from
+/// them.
 class Prism {
 public:
     Prism(double halfWidth, double height, double talus = 1) : halfWidth_(halfWidth), height_(height), talus_(talus) {
@@ -64,7 +66,7 @@ private:
     double apex_, foot_;
 };
 
-/// O3: all that was poured on one spot is a cone: R = (3 V / (pi g))^(1/3).
+/// O3: sand poured on one spot. It becomes a cone: R = (3 V / (pi g))^(1/3).
 class PouredCone {
 public:
     explicit PouredCone(double volume, double talus = 1)
@@ -78,9 +80,8 @@ private:
     double talus_, foot_;
 };
 
-/// O4: what stays on an open table that was piled as high as it holds: talus x distance to the nearest rim. On a grid
-/// height 0 is met half a cell beyond the field's edge, at the centres of the cells that are no longer there; on a TIN
-/// at the edge itself.
+/// O4: the largest pile on an open table: talus x distance to the nearest rim. On a grid its height is 0 half a cell
+/// beyond the field's edge, where the centres of the next cells would be. On a TIN its height is 0 at the edge itself.
 class OpenTable {
 public:
     OpenTable(double columns, double rows, double talus = 1, double beyond = 0.5 /* [cell] */)
@@ -95,7 +96,7 @@ private:
     double columns_, rows_, talus_, beyond_;
 };
 
-/// O5: a plane that rises along x from 0 by `slope` per cell in a closed box. Up to the talus nothing moves; above, it
+/// O5: a plane that rises along x from 0 by `slope` per cell in a closed box. Up to the talus it stays. A steeper plane
 /// turns about its centroid until it is as steep as the talus.
 class TiltedPlane {
 public:
@@ -110,7 +111,7 @@ private:
     double columns_, slope_, talus_;
 };
 
-/// A straight line through (x0, y0), turned by `degrees` from the y axis: prisms off the grid's axes.
+/// A straight line through (x0, y0), turned by `degrees` from the y axis, for prisms across the grid's axes.
 struct Line {
     double x0, y0, degrees;
     [[nodiscard]] double across(double x, double y) const {
@@ -123,13 +124,13 @@ struct Line {
     }
 };
 
-/// A profile of the distance from (x0, y0) as one of (x, y).
+/// Returns a profile of (x, y) from one of the distance from (x0, y0).
 template <class Radial>
 auto around(double x0, double y0, Radial radial) {
     return [=](double x, double y) { return radial(std::sqrt((x - x0) * (x - x0) + (y - y0) * (y - y0))); };
 }
 
-/// Mean of a profile over a cell, by kSub x kSub samples.
+/// Returns the mean of a profile over a cell, from kSub x kSub samples.
 template <int kSub = 8, class Profile>
 double meanOverCell(int column, int row, const Profile& profile) {
     double sum = 0;
@@ -140,7 +141,7 @@ double meanOverCell(int column, int row, const Profile& profile) {
     return sum / (kSub * kSub);
 }
 
-/// Means over the cells of a columns x rows field, row by row from the south.
+/// Returns the means of a profile over the cells of a columns x rows field, row by row from the south.
 template <int kSub = 8, class Profile>
 std::vector<double> sampled(int columns, int rows, const Profile& profile) {
     std::vector<double> means;
@@ -153,7 +154,8 @@ std::vector<double> sampled(int columns, int rows, const Profile& profile) {
     return means;
 }
 
-/// A field that holds a profile: 16 x 16 samples a cell, so that the area of a round footprint is right within 1e-5.
+/// Returns a field that holds a profile. It takes 16 x 16 samples per cell, so that the area of a round footprint is
+/// right within 1e-5.
 template <class Profile>
 sand::HeightField fieldOf(int columns, int rows, const Profile& profile) {
     sand::HeightField field(columns, rows, 1.0);
@@ -166,14 +168,14 @@ sand::HeightField fieldOf(int columns, int rows, const Profile& profile) {
     return field;
 }
 
-/// How far heights are from what they should be.
+/// The distance of heights from the expected ones.
 struct Distance {
     double misplaced = 0;  // sum of |error| over the sum of |expected|: the share of sand in the wrong place
     double largest = 0;    // [cell], L-infinity
     double apex = 0;       // [cell], highest height found minus highest expected, signed
 };
 
-/// Compares cell by cell where `counts(column, row)` says so. `height(i)` and `expected[i]` in cells, row by row.
+/// Compares the cells for which `counts(column, row)` is true. `height(i)` and `expected[i]` are in cells, row by row.
 template <class Height, class Counts>
 Distance distance(int columns, const std::vector<double>& expected, const Height& height, const Counts& counts) {
     Distance result;
@@ -198,7 +200,7 @@ Distance distance(int columns, const std::vector<double>& expected, const Height
     return result;
 }
 
-/// A field against means of the same size, where `counts` says so.
+/// Compares a field with means of the same size, in the cells for which `counts` is true.
 template <class Counts>
 Distance distance(const sand::HeightField& field, const std::vector<double>& expected, const Counts& counts) {
     const int columns = field.columns();
@@ -209,13 +211,13 @@ Distance distance(const sand::HeightField& field, const std::vector<double>& exp
     return distance(columns, expected, height, counts);
 }
 
-/// A field against means of the same size, every cell of it.
+/// Compares every cell of a field with means of the same size.
 inline Distance distance(const sand::HeightField& field, const std::vector<double>& expected) {
     return distance(field, expected, [](int, int) { return true; });
 }
 
-/// Distance from (x0, y0), in the direction of `degrees`, at which the ground falls below height z [cell]: between the
-/// samples of a ray, by bilinear interpolation between cell centres. 0 when it is nowhere above z.
+/// Returns the distance from (x0, y0), in the direction of `degrees`, at which the ground falls below height z [cell].
+/// Interpolates between samples of a ray, and bilinearly between cell centres. Returns 0 if the ray is nowhere above z.
 inline double radiusAt(const sand::HeightField& field, double x0, double y0, double degrees, double z) {
     const double dx = std::cos(degrees * std::numbers::pi / 180);
     const double dy = std::sin(degrees * std::numbers::pi / 180);

@@ -14,7 +14,7 @@ struct PointMass {
 
     void push(sand::force::Vec3 force /* [N] */, double tick /* [s] */) {
         const double kept = std::exp(-damping * tick / mass);
-        const sand::force::Vec3 last = (1 / damping) * force;  // the velocity it comes to in the end
+        const sand::force::Vec3 last = (1 / damping) * force;  // the final velocity
         place = place + tick * last + (mass / damping * (1 - kept)) * (velocity - last);
         velocity = last + kept * (velocity - last);
     }

@@ -11,16 +11,17 @@
 
 namespace reference {
 
-/// Sweeps by the letter of docs/sand.md, face by face over the whole field. It shares no code with sand::grid::Erosion,
-/// which must give the same heights bit for bit. A cell is its offset from the first one.
+/// Sweeps exactly as docs/sand.md describes, face by face over the whole field. Shares no code with
+/// sand::grid::Erosion, which must give the same heights bit for bit. A cell is given by its offset from the first
+/// cell.
 class Sand {
 public:
     sand::HeightField field;
     sand::Rules rules;
-    const sand::Ground* ground;                  // null: no rock and no wall
-    const sand::grid::Obstacle* tool = nullptr;  // null: no tool stands in the sand
-    int undisturbed = 0;                         // [sweep] since something else changed the field
-    std::int64_t outflow = 0;                    // over an open rim [unit · cell]
+    const sand::Ground* ground;                  // null: neither rock nor wall cells
+    const sand::grid::Obstacle* tool = nullptr;  // null: no tool is in the sand
+    int undisturbed = 0;                         // [sweep], sweeps since something else changed the field
+    std::int64_t outflow = 0;                    // volume lost over an open rim [unit · cell]
 
     Sand(sand::HeightField start, const sand::Rules& laws, const sand::Ground* rock)
         : field(std::move(start)), rules(laws), ground(rock), seen(field.cells()), layer(seen), room(seen), slid(seen) {
@@ -55,8 +56,8 @@ public:
 private:
     struct Face {
         std::ptrdiff_t from, to, side;  // cells on either side of the face; the step from a cell to the next along it
-        bool overRim;                   // to a height of 0, from which nothing comes back
-        std::int32_t q;                 // [unit] in the last sweep
+        bool overRim;                   // leads to a height of 0, from which no sand returns
+        std::int32_t q;                 // [unit], flux of the last sweep
     };
 
     void addFaces(std::ptrdiff_t cell, std::ptrdiff_t ahead, std::ptrdiff_t side, bool first, bool last) {
@@ -89,15 +90,16 @@ private:
         return std::clamp(q, -std::min(room.row(0)[i], layer.row(0)[j] / 4),
                           std::min(face.overRim ? q : room.row(0)[j], layer.row(0)[i] / 4));
     }
-    /// How much higher the cell after `cell` is than the one before; a step counts at most the sand of its upper cell.
+    /// Returns the height of the cell after `cell` minus the height of the cell before it. A step counts at most the
+    /// sand of its upper cell.
     [[nodiscard]] float rise(std::ptrdiff_t cell, std::ptrdiff_t side) const {
         const auto step = [h = seen.row(0), s = layer.row(0)](std::ptrdiff_t c, std::ptrdiff_t d) {
             return std::clamp(h[c] - h[d], -s[d], s[c]);
         };
         return float(step(cell + side, cell) + step(cell, cell - side));
     }
-    /// Finds heights, sand and room. A wall is higher than all sand; beyond the rim the ground goes on as it came,
-    /// where a step counts at most the sand of its upper cell.
+    /// Finds heights, sand and room. A wall cell is higher than all sand. Beyond the rim the slope of the ground
+    /// continues, where a step counts at most the sand of its upper cell.
     void look() {
         for (int y = -1; y <= field.rows(); ++y) {
             for (int x = -1; x <= field.columns(); ++x) {
@@ -122,7 +124,7 @@ private:
         }
     }
 
-    sand::CellArray seen, layer, room;  // [unit], heights as slopes see them, sand, and what a face may bring
+    sand::CellArray seen, layer, room;  // [unit]: heights for slopes, sand, and the most that a face may bring
     sand::CellArray slid;               // not 0: sand went through a face of the cell in the last sweep
     std::vector<Face> faces;
 };

@@ -9,11 +9,11 @@
 #include "sand/grid/net_flux.hpp"
 #include "sand/model/height_field.hpp"
 
-/// Plain sweeps, cell by cell, that tell what passed every face: what fast ones are compared with.
+/// Plain sweeps, cell by cell, that count the sand through every face. Fast sweeps are compared with them.
 namespace reference {
 
-/// Difference from north to south, or east to west, of a cell's neighbours; beyond the rim the ground goes on as it
-/// came.
+/// Returns the height difference between a cell's northern and southern neighbours, or its eastern and western ones.
+/// Beyond the rim the slope of the ground continues.
 inline double alongColumn(const sand::HeightField& field, int x, int y) {
     const auto height = [&](int row) { return static_cast<double>(field.height(x, row)); };
     const int last = field.rows() - 1;
@@ -37,7 +37,8 @@ struct Isotropic {
     }
 };
 
-/// Each pair of neighbours by itself. No scheme of ours: it rests in the wrong pile, which oracles must notice.
+/// A rule that looks at each pair of neighbours alone. No scheme of ours uses it: its sand rests in the wrong pile,
+/// which the oracles must detect.
 struct FourNeighbours {
     std::int64_t operator()(double across, double, double threshold) const {
         const double flux = std::ceil(std::max(std::abs(across) - threshold, 0.0) / 4);
@@ -45,7 +46,7 @@ struct FourNeighbours {
     }
 };
 
-/// Sweeps a closed field of square cells until nothing moves; returns all that passed its faces.
+/// Sweeps a closed field of square cells until no sand moves. Returns the sum of all sand that has passed its faces.
 template <class Law>
 sand::grid::NetFlux relax(sand::HeightField& field, std::int32_t threshold, Law law) {
     sand::grid::NetFlux total(field.columns(), field.rows());

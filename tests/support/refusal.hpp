@@ -8,7 +8,7 @@
 
 namespace test {
 
-/// The line with which `act` refuses its input; "nothing" if it refuses none.
+/// Returns the error line with which `act` refuses its input, or "nothing" if it accepts the input.
 inline std::string refusalOf(const std::function<void()>& act) {
     try {
         act();

@@ -15,38 +15,38 @@
 #include "sand/grid/erosion.hpp"
 #include "scene/material.hpp"
 
-/// Letting fields slide to rest, for tests of the solver.
+/// Helpers that let fields slide to rest, for tests of the solver.
 namespace samples {
 
-/// The address sanitizer makes a sweep some twenty times dearer: there the largest grids are left out, and what they
-/// show is shown by the other builds.
+/// A sweep takes some twenty times as long under the address sanitizer. So its builds leave out the largest grids,
+/// which the other builds test.
 #ifdef __SANITIZE_ADDRESS__
 inline constexpr bool kSanitized = true;
 #else
 inline constexpr bool kSanitized = false;
 #endif
 
-/// Ten times as slow as a release build: tests then run fewer of many alike.
+/// A slow build takes ten times as long as a release build. Its tests run fewer of many similar cases.
 #ifdef __OPTIMIZE__
 inline constexpr bool kSlowBuild = kSanitized;
 #else
 inline constexpr bool kSlowBuild = true;
 #endif
 
-/// Every scheme, the default first.
+/// All schemes. The default comes first.
 inline constexpr auto kSchemes = [] {
     std::array<sand::Scheme, sand::kSchemes.size()> schemes{};
     std::ranges::transform(sand::kSchemes, schemes.begin(), &sand::NamedScheme::scheme);
     return schemes;
 }();
 
-/// The band of scenes that name none.
+/// The band of scenes that do not set one.
 inline constexpr double kDefaultBand = scene::Material{}.band;
 
-/// A scheme and a band: what decides how sand slides. Converts from a scheme alone, without a band.
+/// A scheme and a band, which decide how sand slides. Converts from a scheme alone, without a band.
 struct Law {
     sand::Scheme scheme = sand::Scheme::isotropic;
-    double band = 0;  // share of the threshold beyond which sand at rest starts to slide
+    double band = 0;  // share by which the slope that starts a slide exceeds the threshold
 
     Law() = default;
     Law(sand::Scheme of, double width = 0) : scheme(of), band(width) {}  // NOLINT(google-explicit-constructor)
@@ -54,7 +54,7 @@ struct Law {
     friend auto operator<=>(const Law&, const Law&) = default;
 };
 
-/// Every scheme without a band and with the default one.
+/// Returns every scheme, both without a band and with the default band.
 inline std::vector<Law> laws() {
     std::vector<Law> all;
     for (const sand::Scheme scheme : kSchemes) {
@@ -68,7 +68,8 @@ inline std::string nameOf(const Law& law) {
     return fmt::format("scheme {}, band {}", known->name, law.band);
 }
 
-/// Rules for a field alone: closed rim, square cells; 45 degrees and no band unless said.
+/// Returns rules for a field with a closed rim and square cells. By default the threshold is 45 degrees, without a
+/// band.
 inline sand::Rules rulesFor(const sand::HeightField& field, const Law& law = {},
                             std::int32_t threshold = sand::kUnitsPerCell) {
     sand::Rules rules;
@@ -94,8 +95,8 @@ inline Extremes extremesOf(const sand::HeightField& field) {
     return result;
 }
 
-/// Sweeps until nothing moves, and expects that the volume is kept and no new extreme arises, which holds for any
-/// field in a closed box. Returns the number of sweeps.
+/// Sweeps until no sand moves. Expects that the volume stays and that no new extreme arises, which holds for any field
+/// in a closed box. Returns the number of sweeps.
 inline std::int64_t relax(sand::HeightField& field, const sand::Rules& rules, int most = 1000000) {
     const std::int64_t volume = field.volume();
     const Extremes before = extremesOf(field);
@@ -109,11 +110,12 @@ inline std::int64_t relax(sand::HeightField& field, const sand::Rules& rules, in
     return erosion.sweepsDone();
 }
 
-/// Slope m at the steepest face of a field of square cells, as scheme G measures it, less the threshold [unit].
+/// Returns the slope m at the steepest face of a field of square cells, minus the threshold [unit]. Scheme G measures m
+/// in this way.
 inline double steepestExcess(const sand::HeightField& field, std::int32_t threshold) {
     const int columns = field.columns();
     const int rows = field.rows();
-    // Beyond the rim the ground goes on as it came.
+    // Beyond the rim the slope of the ground continues.
     const auto height = [&](int x, int y) {
         const auto inRow = [&](int row) {
             const auto cell = [&](int column) { return static_cast<double>(field.height(column, row)); };
@@ -144,8 +146,8 @@ inline double steepestExcess(const sand::HeightField& field, std::int32_t thresh
     return steepest - threshold;
 }
 
-/// How far above the threshold a face may be at rest [unit]: a flux below one unit moves nothing, and sand that never
-/// slid rests up to the start threshold.
+/// Returns the largest excess over the threshold that a face may have at rest [unit]. A flux below one unit moves no
+/// sand. Sand that has never slid rests up to the start threshold.
 inline double restingExcess(std::int32_t threshold, const Law& law = {}) {
     return std::cbrt(8.0 * threshold) + 4 + law.band * threshold;
 }

@@ -11,11 +11,11 @@
 namespace support {
 
 struct Ran {
-    int status = -1;     // exit status, -1 when a signal ended it
+    int status = -1;     // exit status, or -1 if a signal ended the program
     std::string output;  // stdout and stderr together
 };
 
-/// Runs words of the shell to their end, without events in the output.
+/// Runs a shell command to its end, without events in the output.
 inline Ran runCommand(const std::string& command) {
     std::FILE* pipe = popen(("unset SANDWALL_EVENTS; " + command + " 2>&1").c_str(), "r");
     if (pipe == nullptr) {
@@ -31,13 +31,13 @@ inline Ran runCommand(const std::string& command) {
     return ran;
 }
 
-/// Where a program of this build is.
+/// Returns the path of a program of this build.
 inline std::string pathOfProgram(const std::string& name) { return SANDWALL_BIN_DIR "/" + name; }
 
-/// The script that starts sessions.
+/// Returns the path of the script that starts sessions.
 inline std::string launcher() { return SANDWALL_SOURCE_DIR "/scripts/sandwall"; }
 
-/// Runs one of our programs to its end; `arguments` are words of the shell.
+/// Runs one of our programs to its end. `arguments` are shell words.
 inline Ran runProgram(const std::string& name, const std::string& arguments) {
     return runCommand(pathOfProgram(name) + " " + arguments);
 }

@@ -7,8 +7,8 @@
 
 namespace support {
 
-/// Runs one of our programs as an MPI job on this machine; `arguments` are words of the shell. Ranks talk through
-/// memory, or, with `transport` "tcp", over the loopback interface.
+/// Runs one of our programs as an MPI job on this machine. `arguments` are shell words. Ranks talk through memory, or
+/// over the loopback interface if `transport` is "tcp".
 inline Ran runRanks(int ranks, const std::string& program, const std::string& arguments,
                     const std::string& transport = "vader") {
     return runCommand(

@@ -12,7 +12,7 @@
 #include "sand/replica.hpp"
 #include "scene/scene.hpp"
 
-/// Scenes and cameras that tests and benchmarks of the drawing share. One scene unit is a metre in the room.
+/// Scenes and cameras that tests and benchmarks of drawing share. One scene unit is a metre in the room.
 namespace sample {
 
 inline constexpr double kWidth = 2;  // [scene unit], as in the first paper
@@ -36,7 +36,7 @@ inline scene::Scene duneScene(int columns) {
     return scene;
 }
 
-/// Returns the change of a replica in which these cells changed.
+/// Returns a change that lists exactly `cells`.
 inline sand::SurfaceChange changeOf(const sand::CellRect& cells) {
     return {.whole = false, .parts = sand::CellChange{{cells}}};
 }
@@ -46,7 +46,7 @@ inline sand::ProbePoint probeAt(const scene::Scene& scene, const glm::dvec3& pla
     return {static_cast<std::int32_t>(units.x), static_cast<std::int32_t>(units.y), static_cast<std::int32_t>(units.z)};
 }
 
-/// Drags the tool along a straight line, a step each centimetre, and lets the sand settle for some steps.
+/// Drags the tool along a straight line, with a step per centimetre. Then lets the sand settle for 60 steps.
 inline void drag(sand::Replica& terrain, const scene::Scene& scene, const glm::dvec3& from, const glm::dvec3& to) {
     sand::Step step;
     const int steps = 1 + static_cast<int>(glm::length(to - from) / 0.01);
@@ -61,12 +61,13 @@ inline void drag(sand::Replica& terrain, const scene::Scene& scene, const glm::d
     }
 }
 
-/// A rectangle of the picture plane of a big camera, in shares of its width and height from the lower left.
+/// A rectangle of a camera's picture plane, in shares of its width and height from the lower left.
 struct Window {
     double left = 0, bottom = 0, right = 1, top = 1;
 };
 
-/// A head at `eye` looking straight down a plane 2 m × 1.5 m through `target`, seen through one window of it.
+/// Returns the camera of a head at `eye` that looks at the middle of a plane of 2 m × 1.5 m through `target`. The
+/// camera shows one window of this plane.
 inline render_node::Camera camera(const glm::dvec3& eye, const glm::dvec3& target, const Window& window = {}) {
     constexpr double kNear = 0.05;
     const double half = 0.5 * kNear;  // tangent 0.5: 53 degrees across
@@ -80,7 +81,7 @@ inline render_node::Camera camera(const glm::dvec3& eye, const glm::dvec3& targe
     return {projection * glm::lookAt(eye, target, up), eye};
 }
 
-/// These layers are shown, no other.
+/// Returns a set of exactly these layers.
 inline lockstep::Overlays layersOf(std::initializer_list<lockstep::Overlay> shown) {
     lockstep::Overlays layers;
     for (const lockstep::Overlay layer : shown) {

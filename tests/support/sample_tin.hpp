@@ -14,13 +14,14 @@
 
 namespace sample {
 
-/// A TIN whose triangles are made and changed by hand, without being Delaunay's: what draws it need not care.
+/// A TIN whose triangles are made and changed by hand. They need not be Delaunay triangles, because the drawing code
+/// must work with any triangles.
 class Tin {
 public:
     using Vertex = sand::tin::Vertex;
     using Slot = std::int32_t;
 
-    /// The surface that a height field is drawn as: the same vertices and diagonals.
+    /// Makes the surface as which a height field is drawn, with the same vertices and diagonals.
     explicit Tin(const sand::HeightField& field) {
         const int columns = field.columns(), rows = field.rows(), across = columns + 2;
         const auto along = [](int vertex, int cells) {
@@ -63,7 +64,7 @@ public:
         heights_[static_cast<std::size_t>(vertex)] = height;
         damage_.vertices.push_back(vertex);
     }
-    /// A vertex in the middle of a triangle.
+    /// Adds a vertex in the middle of a triangle.
     Vertex split(Slot slot, double height) {
         const auto [a, b, c] = triangle(slot).corner;
         const sand::tin::Place p = place(a), q = place(b), r = place(c);
@@ -78,12 +79,12 @@ public:
         link();
         return vertex;
     }
-    /// The same vertex elsewhere, within its triangles.
+    /// Moves a vertex within its triangles.
     void move(Vertex vertex, const sand::tin::Place& to) {
         mesh_.places[static_cast<std::size_t>(vertex)] = to;
         damage_.vertices.push_back(vertex);
     }
-    /// Takes out a vertex, where it has three triangles.
+    /// Removes a vertex if it has three triangles.
     void join(Vertex vertex) {
         std::vector<Slot> around;
         for (Slot slot = 0; slot < static_cast<Slot>(mesh_.triangles.size()); ++slot) {
@@ -106,7 +107,7 @@ public:
         damage_.vertices.push_back(vertex);
         link();
     }
-    /// Turns the edge across a corner, where it lies within the field.
+    /// Flips the edge opposite a corner if both its triangles exist and the flipped edge lies between them.
     void flip(Slot slot, std::size_t edge) {
         const Slot beyond = triangle(slot).neighbour[edge];
         if (beyond < 0) {
@@ -135,7 +136,7 @@ public:
         }
         link();
     }
-    /// Takes the ground out of every triangle whose middle `isHole(x, y)` [probe unit].
+    /// Makes a hole of every triangle whose middle satisfies `isHole(x, y)` [probe unit].
     template <class IsHole>
     void cut(const IsHole& isHole) {
         for (Slot slot = 0; slot < static_cast<Slot>(mesh_.triangles.size()); ++slot) {
@@ -146,7 +147,7 @@ public:
             damage_.triangles.push_back(slot);
         }
     }
-    /// The same surface in other slots, its triangles begun at other corners.
+    /// Puts the triangles of the surface into other slots and rotates their corners.
     void shuffle(std::mt19937& random) {
         for (std::size_t last = mesh_.triangles.size() - 1; last > 0; --last) {
             std::swap(mesh_.triangles[last], mesh_.triangles[random() % (last + 1)]);
@@ -166,7 +167,7 @@ private:
         damage_.triangles.push_back(static_cast<Slot>(mesh_.triangles.size()));
         mesh_.triangles.emplace_back().corner = corner;
     }
-    /// Derives all else from corners and constraints.
+    /// Derives all other members from corners and constraints.
     void link() {
         mesh_.triangleAt.assign(mesh_.places.size(), -1);
         std::map<std::pair<Vertex, Vertex>, Slot> beside;

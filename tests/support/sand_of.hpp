@@ -5,7 +5,8 @@
 #include "sand/replica.hpp"
 #include "sand/tin/geometry/surface_view.hpp"
 
-/// The sand of a replica, for tests that know what it is made of. Each throws when it is made of the other.
+/// Access to the sand of a replica, for tests that know its kind. Each function throws if the sand is of the other
+/// kind.
 namespace samples {
 
 inline const sand::HeightField& fieldOf(const sand::Replica& terrain) {
@@ -20,7 +21,7 @@ inline const sand::tin::SurfaceView& tinOf(const sand::Replica& terrain) {
     return std::get<sand::TinData>(terrain.surface().data()).view;
 }
 
-/// Every cell that may have changed since this was asked for last.
+/// Returns every cell that may have changed since the last call.
 inline std::vector<sand::CellRect> takeCells(sand::Replica& terrain) {
     const sand::SurfaceChange change = terrain.takeChange();
     return change.whole ? std::vector{fieldOf(terrain).bounds()} : std::get<sand::CellChange>(change.parts).cells;

@@ -10,10 +10,11 @@
 #include "sand/replica.hpp"
 #include "scene/scene.hpp"
 
-/// Small worlds that several tests share.
+/// Small scenes that several tests share.
 namespace samples {
 
-/// Level sand, talus 45 degrees, no band, a tool of `toolCells` cells.
+/// Returns a scene of level sand with a talus of 45 degrees, without a band. The tool has a radius of `toolCells`
+/// cells.
 inline scene::Scene flatScene(int columns, int rows, double toolCells = 4) {
     scene::Scene scene;
     scene.name = "flat";
@@ -27,7 +28,8 @@ inline scene::Scene flatScene(int columns, int rows, double toolCells = 4) {
     return scene;
 }
 
-/// A cylinder of `radius` cells and `height` cells in the middle of an N x N field, its rim cells filled by area.
+/// Returns an n x n field with a cylinder of `radius` cells and `height` cells in its middle. Cells at its outline are
+/// filled by their area.
 inline sand::HeightField cylinder(int n, double radius, double height) {
     sand::HeightField field(n, n, 1.0);
     constexpr int kSub = 16;
@@ -56,7 +58,7 @@ inline sand::HeightField randomField(int columns, int rows, std::int32_t range, 
     return field;
 }
 
-/// A hand that wanders through the sand without any sense: about one step in five hovers.
+/// Returns a step of a hand that moves at random. About one step in five hovers.
 inline sand::Step randomStep(std::uint64_t number, const sand::Rules& rules, std::mt19937& random) {
     sand::Step step{.epoch = 1, .number = number, .engaged = random() % 5 != 0, .path = {}};
     const auto within = [&random](std::int32_t cells) {
@@ -70,11 +72,11 @@ inline sand::Step randomStep(std::uint64_t number, const sand::Rules& rules, std
     return step;
 }
 
-/// As randomStep(), now and then turned or with another tool.
+/// Returns a random step like randomStep(), but sometimes turned or with another tool.
 inline sand::Step wildStep(std::uint64_t number, const sand::Rules& rules, std::mt19937& random) {
     sand::Step step = randomStep(number, rules, random);
     if (random() % 3 == 0) {
-        // Whole numbers, where libm cannot differ from host to host.
+        // Whole numbers, because the results of libm may differ between hosts.
         constexpr std::array<std::pair<int, int>, 5> kWays{
             {{16384, 0}, {0, -16384}, {11585, 11585}, {-8192, 14189}, {-16381, -286}}};
         const auto& [x, y] = kWays.at(random() % kWays.size());

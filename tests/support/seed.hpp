@@ -7,13 +7,13 @@
 
 namespace test {
 
-/// The seed of a random test: another one in each run, or SANDWALL_SEED from the environment.
+/// Returns the seed of a random test: SANDWALL_SEED from the environment, or another one in each run.
 inline unsigned randomSeed() {
     const char* const given = std::getenv("SANDWALL_SEED");
     return given == nullptr ? std::random_device{}() : static_cast<unsigned>(std::strtoul(given, nullptr, 10));
 }
 
-/// For SCOPED_TRACE: how a failing test runs again with the same numbers.
+/// Returns a message for SCOPED_TRACE that shows how to run a failed test again with the same numbers.
 inline std::string again(unsigned seed) { return "run again with SANDWALL_SEED=" + std::to_string(seed); }
 
 }  // namespace test

@@ -15,7 +15,8 @@
 
 namespace support {
 
-/// In a new user namespace: who has no number there can make no file.
+/// Maps the user and the group into a new user namespace. A process without a mapped id could make no file there.
+/// Returns false if the kernel refuses the mapping.
 inline bool mapIds(uid_t user, gid_t group) {
     const auto say = [](const char* file, const std::string& text) {
         return static_cast<bool>(std::ofstream(file) << text << std::flush);
@@ -25,8 +26,8 @@ inline bool mapIds(uid_t user, gid_t group) {
            say("/proc/self/gid_map", std::to_string(group) + " " + std::to_string(group) + " 1");
 }
 
-/// Runs in a child that has a mount namespace with a file system of so many bytes at `folder`; its status, or 77 where
-/// this machine lets nobody have one.
+/// Runs `work` in a child process, in whose mount namespace a file system of `size` is mounted at `folder`. Returns the
+/// child's exit status, or 77 if this machine does not allow the mount.
 template <class Work>
 int onSmallDisk(const std::filesystem::path& folder, const char* size, const Work& work, unsigned long flags = 0) {
     const pid_t child = fork();
@@ -50,7 +51,7 @@ int onSmallDisk(const std::filesystem::path& folder, const char* size, const Wor
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/// Takes all the room there is.
+/// Fills the file system with a file of zeros.
 inline void fill(const std::filesystem::path& file) {
     const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT, 0644);
     const std::string zeros(4096, '\0');

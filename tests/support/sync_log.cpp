@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Replaces the C library's fdatasync (LD_PRELOAD) for files named session.journal*. Each call appends a line to the
-// file that SANDWALL_SYNC_LOG names: "sync", the number of the call, the size of the file [byte]. The call whose number
-// is SANDWALL_SYNC_FAILS fails with EIO, as on a broken disk.
+// file named by SANDWALL_SYNC_LOG: "sync", the number of the call, the size of the file [byte]. The call with the
+// number SANDWALL_SYNC_FAILS fails with EIO, as on a broken disk.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The main of every test program.
+// The main function of every test program.
 //
-// Tests name files of the project relative to its root: this source alone holds an absolute path, so that ccache finds
-// the objects of all others again in another clone.
+// Tests name files of the project relative to its root. Only this source holds an absolute path, so that ccache finds
+// the objects of all other sources again in another clone.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -18,19 +18,21 @@ int exitStatus(int failed) {
     if (failed != 0 || all.skipped_test_count() == 0) {
         return failed;
     }
-    // The last lines of a test that was skipped are gtest's list of its name.
+    // gtest ends its output with the names of the skipped tests.
     if (std::getenv("SANDWALL_MAY_SKIP") != nullptr) {
         return kSkipped;
     }
-    std::fputs("A test was skipped: it needs what Debian 12 gives to root. Set SANDWALL_MAY_SKIP=1 to allow that.\n",
-               stderr);
+    std::fputs(
+        "A test was skipped: it needs rights that root has on Debian 12. Set SANDWALL_MAY_SKIP=1 to allow that.\n",
+        stderr);
     return 1;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    // Before the tests are listed: some have a file of the project for a parameter.
+    // Changes the folder before gtest lists the tests, because some tests have a file of the project as their
+    // parameter.
     std::filesystem::current_path(SANDWALL_ROOT);
     testing::InitGoogleTest(&argc, argv);
     return exitStatus(RUN_ALL_TESTS());

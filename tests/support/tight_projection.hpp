@@ -8,11 +8,13 @@
 
 #include "sand/model/height_field.hpp"
 
-/// The projection that a certificate speaks of, solved as far as doubles go: slow, and by none of the tested code.
+/// The projection to which a certificate refers, solved as far as the precision of doubles allows. It is slow and
+/// shares no code with the tested solver.
 namespace reference {
 
-/// The field nearest to `start` in which every quad has the root of half its four squared differences at most
-/// `steepest` [unit]: dual gradient steps with momentum and restart on a closed field of square cells, at least 2 x 2.
+/// The field nearest to `start` in which no quad is steeper than `steepest` [unit]. The steepness of a quad is the root
+/// of half of its four squared differences. The solver takes dual gradient steps with momentum and restart. The field
+/// must be closed, with square cells, and have at least 2 x 2 of them.
 class TightProjection {
 public:
     TightProjection(const sand::HeightField& start, double steepest)
@@ -27,8 +29,8 @@ public:
         extrapolated_ = now_;
     }
 
-    /// Iterates until no quad is steeper than allowed by more than a share of 1e-7, at most 200,000 times; returns
-    /// whether it got there.
+    /// Iterates until no quad is steeper than allowed by more than a share of 1e-7, at most 200,000 times. Returns true
+    /// if it has reached that.
     bool solve() {
         double weight = 1;
         for (int i = 0; i < 200000; ++i) {
@@ -75,7 +77,7 @@ private:
         }
     }
 
-    /// Heights from the extrapolated pressures; the greatest excess of a quad.
+    /// Computes the heights from the extrapolated pressures. Returns the greatest excess of a quad.
     double computeHeights() {
         heights_ = start_;
         forEachQuad([this](int x, int y, std::size_t quad) {
@@ -91,7 +93,8 @@ private:
         return excess;
     }
 
-    /// A step of 1/16: a face difference has norm 8, and lies in two quads.
+    /// Takes a gradient step of 1/16, because the operator of the face differences has norm 8 and each face belongs to
+    /// two quads.
     double step(double weight) {
         const std::vector<Faces> before = now_;
         double turn = 0;
@@ -125,7 +128,7 @@ private:
     double radius_;
     std::vector<double> start_, heights_;
     std::vector<Faces> now_, extrapolated_;
-    double stale_ = 1e300;  // the greatest change of the last step
+    double stale_ = 1e300;  // greatest change in the last step
 };
 
 }  // namespace reference

@@ -13,8 +13,8 @@
 #include "sand/tin/geometry/tin_start.hpp"
 #include "sand/tin/volume/vertex_sand.hpp"
 
-/// Meshes of every kind, piles on them, and how far sand lies from where it should. Lengths in cells of 256 probe
-/// units.
+/// Meshes of every kind, piles on them, and the distance of sand from the expected shape. Lengths are in cells of 256
+/// probe units.
 namespace tin_piles {
 
 using sand::tin::Place;
@@ -22,7 +22,7 @@ using sand::tin::Vertex;
 using sand::tin::VertexSand;
 
 inline constexpr int kCell = 256;         // [probe unit]
-inline constexpr double kHeight = 65536;  // [unit], of a cell
+inline constexpr double kHeight = 65536;  // [unit], length of a cell's side
 
 enum class Kind : std::uint8_t { regular, jittered, random };
 
@@ -31,11 +31,12 @@ inline const char* nameOf(Kind kind) {
     return kNames.at(static_cast<std::size_t>(kind));
 }
 
-/// In [0, 1), the same with every library.
+/// Returns a random number in [0, 1), the same with every standard library.
 inline double chance(std::mt19937& random) { return static_cast<double>(random()) / 4294967296.0; }
 
-/// About n² vertices on n x n cells: a square lattice turned by `degrees` about the middle, the same with every vertex
-/// moved by up to a quarter of a cell each way, or independent places; and a vertex per cell along the rim.
+/// Returns the places of about n² vertices on n x n cells. A regular mesh is a square lattice turned by `degrees` about
+/// the middle. In a jittered mesh each vertex of this lattice is moved by up to a quarter of a cell in each direction.
+/// A random mesh has independent places. Each mesh also has a vertex per cell along the rim.
 inline std::vector<Place> placesOf(Kind kind, int n, double degrees, std::uint32_t seed) {
     std::mt19937 random(seed);
     const std::int32_t side = n * kCell;
@@ -68,7 +69,7 @@ inline std::vector<Place> placesOf(Kind kind, int n, double degrees, std::uint32
     return places;
 }
 
-/// Level sand with jittered places.
+/// Returns level sand with jittered places.
 inline sand::tin::TinStart levelStart(int side /* [cell] */, std::uint32_t seed) {
     sand::tin::TinStart start;
     start.width = start.depth = side * kCell;
@@ -104,7 +105,7 @@ void everywhereIn(const std::array<Place, 3>& at, const Visit& visit) {
     }
 }
 
-/// Calls visit(corners, doubled area [probe unit²], weights, x, y) all over the field.
+/// Calls visit(corners, doubled area [probe unit²], weights, x, y) for points all over the field.
 template <class Visit>
 void everywhere(const VertexSand& layer, const Visit& visit) {
     const sand::tin::Triangles& mesh = layer.triangles();
@@ -121,7 +122,7 @@ void everywhere(const VertexSand& layer, const Visit& visit) {
     }
 }
 
-/// Makes the volume of every vertex what the profile z = f(x, y) [cell] has under the vertex's share of the surface.
+/// Gives every vertex the volume that the profile z = f(x, y) [cell] has under the vertex's share of the surface.
 template <class Profile>
 void fill(VertexSand& layer, const Profile& profile) {
     std::vector<double> volumes(layer.volumes().size());
@@ -138,7 +139,7 @@ void fill(VertexSand& layer, const Profile& profile) {
     }
 }
 
-/// Volume between the surface and a profile, over that of the profile, where `counts(x, y)`.
+/// Returns the volume between the surface and a profile, divided by the profile's volume, where `counts(x, y)` is true.
 template <class Profile, class Counts>
 double misplaced(const VertexSand& layer, const Profile& profile, const Counts& counts) {
     double wrong = 0;
@@ -162,7 +163,7 @@ double misplaced(const VertexSand& layer, const Profile& profile) {
     return misplaced(layer, profile, [](double, double) { return true; });
 }
 
-/// Height of the surface over a place [cell].
+/// Returns the height of the surface over a place [cell].
 inline double heightAt(const VertexSand& layer, Place place, std::int32_t& triangle) {
     const sand::tin::Located there = locate(layer.triangles(), place, triangle);
     triangle = there.triangle;
@@ -177,7 +178,7 @@ inline double heightAt(const VertexSand& layer, Place place, std::int32_t& trian
     return sum / area;
 }
 
-/// The lowest and the highest height [unit].
+/// The lowest and the highest height of a surface [unit].
 struct Extremes {
     double lowest = std::numeric_limits<double>::max(), highest = std::numeric_limits<double>::lowest();
 };

@@ -12,7 +12,7 @@
 #include "walls/canvas.hpp"
 #include "walls/wall.hpp"
 
-/// Walls of the project's own files made small, or made of one camera, for tests that start a session with them.
+/// Walls for tests that start a session: walls of the project's files at a smaller size, or seen by one camera.
 namespace support {
 
 inline std::string tomlList(glm::dvec2 v) { return fmt::format("[{:.17g}, {:.17g}]", v.x, v.y); }
@@ -45,7 +45,7 @@ inline std::string placeText(const walls::Tile& tile) {
     return text.empty() ? text : fmt::format("[[place]]\ntiles = [\"{}\"]\n{}", tile.name, text);
 }
 
-/// A wall file that gives this wall back, provided that no explicit screen lies on another tile.
+/// Returns the text of a wall file that describes this wall. No explicit screen may overlap another tile.
 inline std::string wallText(const walls::Wall& wall) {
     std::string text = fmt::format("name = \"{}\"\nrefresh = {:.17g}\n", wall.name, wall.refreshHz);
     text += fmt::format("[viewer]\neye = {}\neye_separation = {:.17g}\nright = {}\n[stereo]\nmode = \"{}\"\n",
@@ -80,8 +80,9 @@ inline std::string wallText(const walls::Wall& wall) {
     return text;
 }
 
-/// The wall with `factor` times its pixels and as many metres. Bezels become whole pixels, one at least where there is
-/// one at all, so that one camera's picture can be cut into the tiles'. Windows move together.
+/// Returns the wall with `factor` times its pixels and the same size in metres. Rounds bezels to whole pixels, so that
+/// the picture of one camera can be cut into tiles. A bezel that is not 0 has at least one pixel. Windows move
+/// together.
 inline walls::Wall reduced(walls::Wall wall, double factor) {
     const auto fewer = [&](glm::ivec2 pixels) {
         return glm::max(glm::ivec2(glm::round(glm::dvec2(pixels) * factor)), glm::ivec2(1));
@@ -112,23 +113,25 @@ inline walls::Wall reduced(walls::Wall wall, double factor) {
     return wall;
 }
 
-/// The text of one of the project's walls, reduced.
+/// Returns the text of one of the project's wall files, reduced.
 inline std::string reducedWall(const std::filesystem::path& config, double factor) {
     return wallText(reduced(walls::loadWall(config), factor));
 }
 
-/// One camera over the whole grid, bezels and all: one tile, "r1c1", whose picture has the tiles of the grid at
-/// wallCanvas(wall).tiles. Explicit screens are left out. Throws std::invalid_argument as walls::wholeWall does.
+/// Returns a wall with one camera over the whole grid, including its bezels. Its only tile is "r1c1". The tiles of the
+/// grid are at wallCanvas(wall).tiles in its picture. Leaves out explicit screens. Throws std::invalid_argument as
+/// walls::wholeWall does.
 inline walls::Wall wholeWallOf(walls::Wall wall) {
     std::erase_if(wall.tiles, [](const walls::Tile& tile) { return tile.row == 0; });
     return walls::wholeWall(wall);
 }
 
-/// One camera that sees a single tile: an explicit screen of the same name, place and corners.
+/// Returns a wall with one camera that sees the single tile `name`, as an explicit screen of the same name, place and
+/// corners.
 inline walls::Wall wholeWallOf(walls::Wall wall, const std::string& name) {
     std::erase_if(wall.tiles, [&](const walls::Tile& tile) { return tile.name != name; });
     if (wall.tiles.empty()) {
-        throw std::invalid_argument("no tile " + name);
+        throw std::invalid_argument("the wall has no tile " + name);
     }
     wall.grid.reset();
     wall.tiles.front().rank = 1;

@@ -18,11 +18,11 @@ namespace {
 
 using Resources = std::unique_ptr<XRRScreenResources, void (*)(XRRScreenResources*)>;
 
-/// Outputs, modes and what drives the monitors, of one screen.
+/// Returns the outputs, modes and monitor controllers (CRTCs) of one screen.
 Resources resourcesOf(_XDisplay* display, unsigned long root) {
     Resources resources(XRRGetScreenResources(display, root), XRRFreeScreenResources);
     if (resources == nullptr || resources->noutput != 1 || resources->ncrtc != 1) {
-        throw std::runtime_error("the X server has not one monitor");
+        throw std::runtime_error("the X server must have exactly one monitor");
     }
     return resources;
 }
@@ -42,7 +42,7 @@ pictures::Image XScreen::picture(int x, int y, int width, int height) const {
     XImage* image = XGetImage(display_.get(), root_, x, y, static_cast<unsigned>(width), static_cast<unsigned>(height),
                               AllPlanes, ZPixmap);
     if (image == nullptr) {
-        throw std::runtime_error("the X server gives no picture of its screen");
+        throw std::runtime_error("the X server returned no picture of its screen");
     }
     pictures::Image result(width, height);
     std::size_t next = 0;
@@ -59,7 +59,7 @@ pictures::Image XScreen::picture(int x, int y, int width, int height) const {
 }
 
 bool XScreen::comesToShow(const pictures::Image& expected, int x, int y) const {
-    // The server draws what it was sent when it comes to it.
+    // The server may draw a picture some time after it was sent.
     const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
     while (picture(x, y, expected.width, expected.height).rgb != expected.rgb) {
         if (std::chrono::steady_clock::now() > until) {
@@ -76,7 +76,8 @@ void XScreen::addMode(double hertz) const {
     XRRModeInfo mode{};
     mode.width = static_cast<unsigned>(DisplayWidth(display_.get(), DefaultScreen(display_.get())));
     mode.height = static_cast<unsigned>(DisplayHeight(display_.get(), DefaultScreen(display_.get())));
-    // A tenth and a twentieth more for the beam's way back, as an analogue monitor would need.
+    // Adds a tenth to the width and a twentieth to the height for the beam's way back, as an analogue monitor would
+    // need.
     mode.hTotal = mode.width + mode.width / 10;
     mode.hSyncStart = mode.width + 1;
     mode.hSyncEnd = mode.hTotal - 1;
@@ -147,7 +148,7 @@ void XScreen::type(unsigned long window, char key) const {
     event.xkey.keycode = XKeysymToKeycode(display_.get(), symbol);
     for (const int kind : {KeyPress, KeyRelease}) {
         event.xkey.type = kind;
-        event.xkey.time += 10;  // GLFW takes presses of the same time for repeats
+        event.xkey.time += 10;  // GLFW treats presses with the same time as repeats
         XSendEvent(display_.get(), window, False, kind == KeyPress ? KeyPressMask : KeyReleaseMask, &event);
     }
     XSync(display_.get(), False);

@@ -11,7 +11,8 @@
 namespace support {
 namespace {
 
-/// The number that Xvfb writes in a line of its own when it takes connections; warnings may stand around it.
+/// Returns the display number, which Xvfb prints on a line of its own when it accepts connections. Warnings may be
+/// printed around it.
 std::string displayNumber(const std::string& output) {
     std::istringstream lines(output.substr(0, output.rfind('\n') + 1));
     for (std::string line; std::getline(lines, line);) {
@@ -37,7 +38,7 @@ XServer::XServer(const std::filesystem::path& folder, const std::vector<std::str
         if (!number.empty()) {
             display_ = ":" + number;
         } else if (ended || std::chrono::steady_clock::now() > until) {
-            throw std::runtime_error("Xvfb (Debian's package xvfb) does not come up: " + process_->output());
+            throw std::runtime_error("Xvfb (Debian's package xvfb) did not start: " + process_->output());
         } else {
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }
@@ -45,7 +46,7 @@ XServer::XServer(const std::filesystem::path& folder, const std::vector<std::str
 }
 
 void XServer::end() {
-    // Not SIGKILL: it would leave its lock behind, and the number would be lost to others.
+    // SIGKILL would leave the lock file behind, and no other server could use the display number.
     if (process_ && !process_->wait(0)) {
         process_->signal(SIGTERM);
         (void)process_->wait(30);

@@ -10,11 +10,11 @@
 
 namespace support {
 
-/// An X server in memory (Xvfb) on a display that nobody uses, gone with this.
+/// An X server in memory (Xvfb) on a free display. It ends with this object.
 class XServer {
 public:
-    /// `screens` as Xvfb takes them: "640x480x24". What it prints goes to a file in `folder`. Throws
-    /// std::runtime_error with that when it does not come up within a minute.
+    /// Starts a server with `screens` in Xvfb's notation, such as "640x480x24". Its output goes to a file in `folder`.
+    /// Throws std::runtime_error with that output if the server does not start within a minute.
     XServer(const std::filesystem::path& folder, const std::vector<std::string>& screens);
 
     ~XServer() { end(); }
@@ -22,7 +22,7 @@ public:
     XServer& operator=(const XServer&) = delete;
 
     [[nodiscard]] const std::string& display() const { return display_; }  // ":3"
-    /// Ends it; its clients find their connections cut.
+    /// Ends the server, which cuts the connections of its clients.
     void end();
 
 private:
