@@ -41,7 +41,7 @@ TEST(Text, FindsANameOrListsThemAll) {
     EXPECT_EQ(base::indexOf("tin", kNames, "surface"), 1U);
     try {
         (void)base::indexOf("cube", kNames, "surface");
-        ADD_FAILURE() << "cube is no surface";
+        ADD_FAILURE() << "the unknown name cube was accepted";
     } catch (const base::InputError& error) {
         EXPECT_STREQ(error.what(), "no surface 'cube'; there are grid, tin");
     }

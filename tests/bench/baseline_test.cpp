@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules in common use must be what they claim to be, or the comparison is worth nothing.
+// The rules in common use must be implemented correctly. Otherwise the comparison is worthless.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -55,7 +55,7 @@ TEST(Baselines, LeaveSandAtTheTalusAlone) {
     }
 }
 
-// One spike of height 9 at a talus of 1: what each rule gives its neighbours, by hand.
+// A spike of height 9 at a talus of 1. The expected shares of its neighbours are computed by hand.
 TEST(Baselines, MoveTheSharesOfTheirRules) {
     const auto spike = [](BaselineScheme scheme) {
         FloatField field(9);
@@ -74,8 +74,8 @@ TEST(Baselines, MoveTheSharesOfTheirRules) {
     const FloatField n8r2 = spike(BaselineScheme::jacobiN8r2);
     EXPECT_FLOAT_EQ(n8r2.row(5)[5], (9 - std::sqrt(2.0F)) / 8);
     EXPECT_FLOAT_EQ(n8r2.row(5)[4], 1);
-    // In place: the face to the south comes first and leaves 5 in the spike. Of these 2 go east, from where 0.5 go on
-    // east and 0.25 north; of the 3 that are left 1 goes west and 0.5 north.
+    // In place, the face to the south comes first: 4 go south, and 5 are left in the spike. 2 of these go east, and
+    // from there 0.5 continue east and 0.25 north. 3 are left in the spike: 1 goes west and 0.5 north.
     const FloatField inPlace = spike(BaselineScheme::inPlaceN4);
     EXPECT_FLOAT_EQ(inPlace.row(3)[4], 4);
     EXPECT_FLOAT_EQ(inPlace.row(4)[5], 1.25F);
@@ -105,7 +105,7 @@ TEST(Baselines, AreTheSameInBothInstructionSets) {
     }
 }
 
-// Vectors and whole rows, against faces one after another.
+// Compares sweeps with vectors and whole rows with sweeps from face to face.
 TEST(Baselines, IntegerN4GivesWhatPlainSweepsGive) {
     std::mt19937 random(51);
     for (const auto& [columns, rows] : {std::pair{37, 23}, {1, 9}, {9, 1}, {1, 1}}) {
@@ -139,14 +139,14 @@ TEST(Baselines, IntegerN4StartsBeyondTheBandAlone) {
     bench::IntegerN4 within(field, bench::rulesFor(field, 1, 0.1));
     within.sweep(9);
     EXPECT_TRUE(sameHeights(within.field(), field));
-    EXPECT_EQ(within.sweepsDone(), 1) << "the one sweep that finds nothing to do";
+    EXPECT_EQ(within.sweepsDone(), 1) << "expected one sweep, which moves no sand";
     field.setHeight(0, 0, sand::kUnitsPerCell + 7002);
     bench::IntegerN4 beyond(field, bench::rulesFor(field, 1, 0.1));
     beyond.sweep(1);
-    EXPECT_EQ(beyond.field().height(1, 0), 1751) << "a quarter of 7002, rounded up";
+    EXPECT_EQ(beyond.field().height(1, 0), 1751) << "expected a quarter of 7002, rounded up";
 }
 
-// Without it, error against time compares nothing: the rules rest in the pile that the integer N4 rests in.
+// The rules must rest in the same pile as the integer N4. Otherwise a comparison of error against time is meaningless.
 TEST(Baselines, JacobiN4RestsInThePileOfTheIntegerN4) {
     const bench::Pile pile = bench::lowPile(32);
     std::vector<std::vector<double>> heights;
@@ -156,7 +156,8 @@ TEST(Baselines, JacobiN4RestsInThePileOfTheIntegerN4) {
         ASSERT_TRUE(relaxation->atRest()) << method.name;
         heights.push_back(relaxation->heights());
     }
-    // Rounding each flux up moves at most a unit per face and sweep: 4 x 200 sweeps / 2^16 = 1.2 % of a cell at most.
+    // Rounding each flux up moves at most one unit per face and sweep. That is at most 4 x 200 sweeps / 2^16 = 1.2 % of
+    // a cell.
     EXPECT_LE(bench::misplaced(heights[0], heights[1]), 1e-3);
 }
 

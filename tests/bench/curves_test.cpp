@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The benchmark program itself: every curve writes a table that a script can read, and says in one line what it cannot
-// do. What the curves show is for the report and not tested here.
+// Tests the benchmark program itself. Every curve must write a table that a script can read, and refuse bad input in
+// one line. The values of the curves are for the report and are not tested here.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 using support::runProgram;
 
-/// A file of ours, gone with the test.
+/// A temporary file of this process, removed with the object.
 class TemporaryFile {
 public:
     explicit TemporaryFile(const std::string& name)
@@ -49,18 +49,19 @@ std::size_t fields(const std::string& line) {
     return count;
 }
 
-/// Comments that say where the numbers come from, then names, then at least one row, all with as many fields.
+/// The table must begin with comments about the origin of its numbers. Then come a line of names and at least one row,
+/// all with the same number of fields.
 void expectTable(const std::vector<std::string>& lines, const std::string& command) {
     const auto first = std::find_if(lines.begin(), lines.end(), [](const auto& line) { return line.front() != '#'; });
-    ASSERT_NE(first, lines.end()) << "no table";
+    ASSERT_NE(first, lines.end()) << "the file has no table";
     for (const char* fact : {"machine", "compiler", "flags", "code path", "seed", "command", "date"}) {
         const std::string start = std::string("# ") + fact + ": ";
         const auto comment = std::find_if(lines.begin(), first, [&](const auto& l) { return l.starts_with(start); });
-        ASSERT_NE(comment, first) << "nothing says " << fact;
+        ASSERT_NE(comment, first) << "no comment names the " << fact;
         EXPECT_GT(comment->size(), start.size());
     }
     EXPECT_NE(std::find(lines.begin(), first, "# command: sandwall-bench " + command), first);
-    EXPECT_GE(std::distance(first, lines.end()), 2) << "no row";
+    EXPECT_GE(std::distance(first, lines.end()), 2) << "the table has no row";
     for (auto line = first; line != lines.end(); ++line) {
         EXPECT_EQ(fields(*line), fields(*first)) << *line;
     }
@@ -74,10 +75,10 @@ TEST_P(Curve, WritesATableWithItsOrigin) {
     const support::Ran ran = runProgram("sandwall-bench", command);
     ASSERT_EQ(ran.status, 0) << ran.output;
     expectTable(csv.lines(), command);
-    EXPECT_FALSE(ran.output.empty()) << "no progress on stderr";
+    EXPECT_FALSE(ran.output.empty()) << "the program printed no progress on stderr";
 }
 
-// As small as each curve can be and still have a row.
+// Each curve is as small as it can be and still has a row.
 INSTANTIATE_TEST_SUITE_P(Bench, Curve,
                          testing::Values("work-precision --sizes 8,16", "error-at-rest --sizes 8,16",
                                          "sweeps --sizes 16", "anisotropy --sizes 16", "decay --sizes 16",
@@ -95,7 +96,8 @@ INSTANTIATE_TEST_SUITE_P(Bench, Curve,
                              return name;
                          });
 
-// A tool of 307 cells stirs sand to 1229 cells, and volumes of 2048 x 2048 hold 42.
+// The tool has a radius of 307 cells and may heap sand up to 1229 cells. Volumes on 2048 x 2048 cells can hold a height
+// of only 42 cells.
 TEST(SandwallBench, ExplainsATinWhoseVolumesHoldLessThanItsToolIsHigh) {
     const TemporaryFile scene("tin.toml");
     std::ofstream(scene.path()) << "steps_per_second = 1000\n[field]\ncolumns = 2048\n[terrain]\n[tin]\nwidest = 0\n"
@@ -125,7 +127,7 @@ TEST(SandwallBench, RefusesInOneLineWhatItCannotDo) {
     }
 }
 
-// Whatever the way the sand is computed, its hash is one per scheme.
+// Each scheme must have one hash, in whatever way the sand is computed.
 TEST(SandwallBench, ComputesOneHashPerScheme) {
     const TemporaryFile csv("hashes.csv");
     ASSERT_EQ(runProgram("sandwall-bench", "hashes --sizes 16 --out " + csv.path()).status, 0);

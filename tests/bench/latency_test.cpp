@@ -52,7 +52,7 @@ TEST(LatencyBench, MeasuresAWallBesideTheFloor) {
     EXPECT_EQ(row["paper_stddev"], "14.8");
     EXPECT_GT(std::stoi(row["wall_count"]), 0);
     EXPECT_GE(std::stoi(row["master_count"]), std::stoi(row["wall_count"]));
-    EXPECT_GE(std::stod(row["master_mean"]), 3) << "the link's own delay, there and back";
+    EXPECT_GE(std::stod(row["master_mean"]), 3) << "the link's own delay in both directions";
     EXPECT_GE(std::stod(row["floor_message_mean"]), 3);
     EXPECT_EQ(row["divergences"], "0");
     std::filesystem::remove(file);

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""That the build id follows what ranks run, and no path.
+"""Tests that the build id follows the code that ranks run, and no path.
 
 usage: build_id_test.py BUILD_FOLDER CMAKE
 """
@@ -24,7 +24,8 @@ def identified():
 
 
 def of_the_sand_alone():
-    """A build without ranks (SANDWALL_SAND_ONLY) identifies the haptic server and modules only."""
+    """Returns whether this is a build without ranks (SANDWALL_SAND_ONLY). It identifies the haptic server and
+    modules only."""
     return "flags sandwall-master " not in MANIFEST.read_text()
 
 
@@ -41,7 +42,7 @@ class BuildId(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
 
     def copy(self, name):
-        """The identified files in another folder, as in another clone."""
+        """Copies the identified files into another folder, as in another clone."""
         for path in identified():
             (self.folder / name / path).parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(ROOT / path, self.folder / name / path)
@@ -59,7 +60,7 @@ class BuildId(unittest.TestCase):
         before = build_id(clone)
         source = clone / "sand/tin/flow/weights.cpp"
         text, changes = re.subn(r"(constexpr \w+ \w+ = \d)", r"\g<1>1", source.read_text(), count=1)
-        self.assertEqual(changes, 1, "no constant is left there; name another file")
+        self.assertEqual(changes, 1, "found no constant in this file; name another one in this test")
         source.write_text(text)
         self.assertNotEqual(build_id(clone), before)
 
@@ -93,12 +94,12 @@ class BuildId(unittest.TestCase):
                                            "-DDIR=SOURCE"])
 
     def test_nothing_that_a_rank_is_compiled_from_is_left_out(self):
-        """Against what the compiler has read, as ninja has noted it."""
+        """Compares the identified files with the files that the compiler has read, as ninja has recorded them."""
         if not (BUILD / "bin" / "sandwall-master").exists() or not (BUILD / "build.ninja").exists():
             return  # a build of the sand alone has no ranks
         said = subprocess.run(["ninja", "-C", BUILD, "-t", "deps"], capture_output=True, text=True, check=True).stdout
         read, of_a_rank = set(), False
-        # A block per object: its path, and below it, indented, what it was compiled from.
+        # There is a block per object: its path, then the indented files from which it was compiled.
         for line in said.splitlines():
             if line and not line.startswith(" "):
                 path = line.split(":")[0]

@@ -14,7 +14,7 @@ struct Given {
     std::string error;
 };
 
-/// Parses `words` as the arguments of a program, and keeps what it prints on stderr.
+/// Parses `words` as the arguments of a program. Returns the exit status and the output on stderr.
 Given parse(host::CommandLine& line, std::vector<std::string> words) {
     words.insert(words.begin(), "program");
     std::vector<char*> pointers;
@@ -79,7 +79,7 @@ TEST_F(CommandLineOptions, TakesValuesOfEveryKind) {
 
 TEST_F(CommandLineOptions, AnswersHelpWhereverItIsAsked) {
     const auto answers = [&](std::vector<const char*> words) {
-        words.insert(words.begin(), "--help");  // the program's name, which asks for nothing
+        words.insert(words.begin(), "--help");  // the program's name, which must not count as an option
         testing::internal::CaptureStdout();
         const bool answered = line_.answersHelp(static_cast<int>(words.size()), const_cast<char**>(words.data()));
         EXPECT_EQ(testing::internal::GetCapturedStdout().empty(), !answered);

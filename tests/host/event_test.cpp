@@ -27,8 +27,8 @@ TEST(Event, TakesJsonAsItIsAndRefusesWhatIsNoJson) {
     EXPECT_THROW((void)host::eventLine("waiting", {{"ranks", host::Json{"[2,"}}}), std::invalid_argument);
 }
 
-// A program that runs without SANDWALL_EVENTS shows its messages alone. The variable is read once for each process, so
-// each case runs in a process of its own.
+// A program without SANDWALL_EVENTS prints only its messages. Each process reads the variable once, so each case runs
+// in a process of its own.
 TEST(Event, IsWrittenOnlyWhereItIsWanted) {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     const auto emitWith = [](const char* value) {
@@ -46,7 +46,7 @@ TEST(EventsOfTests, AreFoundAmongMessagesAndComparedByTheFieldsThatAreWanted) {
         "{\"event\":\"drill\"}\n"
         "@sandwall {\"event\":\"link\",\"epoch\":4";
     const auto links = support::eventsIn(output, "link");
-    ASSERT_EQ(links.size(), 1U) << "a line without its end may still grow";
+    ASSERT_EQ(links.size(), 1U) << "an unfinished line must not count as an event";
     EXPECT_EQ(support::eventsIn(output).size(), 2U);
     EXPECT_TRUE(support::holds(links[0], {{"epoch", 3}, {"at", {{"y", 2}}}}));
     EXPECT_FALSE(support::holds(links[0], {{"epoch", 4}}));

@@ -1,3 +1,3 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stands in for a module of another build.
+// Simulates a module of another build.
 extern "C" const char* sandwallBuildId() { return "f0f0f0f0f0f0f0f0"; }

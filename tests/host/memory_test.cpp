@@ -13,7 +13,7 @@ TEST(Memory, ThisMachineHasSome) {
     EXPECT_LT(host::freeMemory(), std::int64_t{1} << 50);
 }
 
-/// Returns what this process has mapped [byte].
+/// Returns the memory that this process has mapped [byte].
 std::int64_t mapped() {
     std::ifstream stream("/proc/self/statm");
     std::int64_t pages = 0;
@@ -21,7 +21,7 @@ std::int64_t mapped() {
     return pages * 4096;
 }
 
-// A limit that is a little above what is mapped leaves that little, however much the machine has.
+// The limit is a little above the mapped memory. So only this little is free, however much memory the machine has.
 TEST(Memory, AProcessWithALimitHasWhatTheLimitLeaves) {
     rlimit before{};
     ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
@@ -32,9 +32,9 @@ TEST(Memory, AProcessWithALimitHasWhatTheLimitLeaves) {
     const std::int64_t left = host::freeMemoryOfProcess();
     ASSERT_EQ(setrlimit(RLIMIT_AS, &before), 0);
     EXPECT_LE(left, room);
-    EXPECT_GT(left, room / 2) << "a stream and its buffer may have been mapped between";
+    EXPECT_GT(left, room / 2) << "only a stream and its buffer may have been mapped meanwhile";
     if (before.rlim_cur == RLIM_INFINITY) {
-        EXPECT_GT(host::freeMemoryOfProcess(), room) << "without a limit it is the machine's";
+        EXPECT_GT(host::freeMemoryOfProcess(), room) << "without a limit the machine's memory counts";
     }
 }
 

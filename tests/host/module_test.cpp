@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The one line that loading this module is refused with.
+/// Returns the error line with which loading this module is refused, or "loaded".
 std::string refusal(const host::Module& module, const std::vector<fs::path>& folders) {
     try {
         (void)host::loadModule(module, folders);
@@ -28,13 +28,13 @@ std::string refusal(const host::Module& module, const std::vector<fs::path>& fol
 
 class Modules : public test::FolderTest {
 protected:
-    /// Puts a module of another build into the test's folder, under the name of one of ours.
+    /// Puts a module of another build into the test's folder, under the name of one of our modules.
     fs::path foreign(const std::string& name) const {
         fs::copy_file(fs::path(SANDWALL_BIN_DIR) / "foreign-module.so", folder_ / name,
                       fs::copy_options::overwrite_existing);
         return folder_ / name;
     }
-    /// A program beside the foreign module refuses it in one line that names the file and both builds.
+    /// A copy of a program beside the foreign module must refuse it, in one line that names the file and both builds.
     void expectRefused(const std::string& module, const std::string& program, const std::string& arguments) const {
         const fs::path file = foreign(module);
         fs::copy_file(fs::path(SANDWALL_BIN_DIR) / program, folder_ / program, fs::copy_options::overwrite_existing);
@@ -70,7 +70,7 @@ TEST_F(Modules, ThatAreNoLibrariesAreRefused) {
     EXPECT_TRUE(line.ends_with("; install it")) << line;
 }
 
-// Every program that loads modules, beside one of another build.
+// Runs every program that loads modules beside a module of another build.
 TEST_F(Modules, OfAnotherBuildAreRefusedByEveryLoader) {
     const std::string head = "[field]\ncolumns = 64\nrows = 64\n[material]\n[tool]\nradius = 0.1\n";
     const std::string formula =

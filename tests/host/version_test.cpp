@@ -48,10 +48,10 @@ TEST(Version, IsAnsweredByEveryProgramOfTheBuild) {
         EXPECT_EQ(object["program"], program);
         EXPECT_EQ(object["build"], host::buildId()) << program;
         for (const std::string& version : versions) {
-            EXPECT_TRUE(object.value(version, 0) > 0) << program << " does not tell " << version;
+            EXPECT_TRUE(object.value(version, 0) > 0) << program << " does not print its version of " << version;
         }
-        // Open MPI cannot start without a folder for temporary files. Programs of a job must not need it for an answer:
-        // it takes seconds on a busy machine, and all jobs of a user share one folder.
+        // Open MPI cannot start without a folder for temporary files. Programs of an MPI job must answer --help without
+        // starting it. The start takes seconds on a busy machine, and all jobs of a user share one folder.
         const support::Ran help =
             support::runCommand("TMPDIR=/dev/null " + support::pathOfProgram(program) + " --help");
         EXPECT_EQ(help.status, 0) << program;
@@ -60,7 +60,8 @@ TEST(Version, IsAnsweredByEveryProgramOfTheBuild) {
     EXPECT_GE(asked, 2U);
 }
 
-// A session's lines come from several programs. One that ends for bad input says which of them it is.
+// The messages of a session come from several programs. So a program that ends because of bad input must print its
+// name.
 TEST(Refusals, BeginWithTheProgramsName) {
     const std::vector<std::pair<std::string, std::string>> refused{
         {"sandwall-haptic-server", "--scene /no/file.toml --device mouse"},
@@ -82,7 +83,7 @@ TEST(Refusals, BeginWithTheProgramsName) {
         const support::Ran ran = support::runProgram(program, arguments);
         EXPECT_EQ(ran.status, 2) << program << ": " << ran.output;
         EXPECT_TRUE(ran.output.starts_with(program + ": ")) << ran.output;
-        EXPECT_EQ(ran.output.find(program, 1), std::string::npos) << "once: " << ran.output;
+        EXPECT_EQ(ran.output.find(program, 1), std::string::npos) << "the name must be printed once: " << ran.output;
         EXPECT_EQ(ran.output.find('\n'), ran.output.size() - 1) << ran.output;
     }
     EXPECT_GE(asked, 2U);

@@ -30,7 +30,7 @@ TEST(WorkerPool, RunsEveryTaskOnce) {
     }
 }
 
-// Each task waits for the others to have begun: with fewer than three threads this would wait for ever.
+// Each task waits until the others have begun. With fewer than three threads this test would hang.
 TEST(WorkerPool, WorksOnAllThreadsAtOnce) {
     WorkerPool pool(3);
     std::latch begun(3);
